@@ -1,0 +1,15 @@
+//! Geometry and kinematics of a smooth convex body touched by palms: no masses, no forces, no files.
+//!
+//! A smooth convex body is described by its support function `h(n)` about a body-fixed origin (in this workspace
+//! the centre of mass). Its gradient is the contact point with outward normal `n`, its Hessian holds the radii of
+//! curvature. No chart of the sphere is used anywhere, so there is no direction in which a formula fails.
+//!
+//! Frames: `W` world (Z up), `O` object, `P_i` palm `i`. Units: SI.
+
+mod direction;
+mod palm;
+mod support;
+
+pub use direction::{Direction, DirectionError};
+pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple, SlopeMotion};
+pub use support::{CurvatureRadii, SupportFunction, SupportJet};

@@ -1,0 +1,9 @@
+//! Newton-Euler dynamics of a smooth convex body held by palms: motion, contact forces, loss of contact, sensor logs.
+//!
+//! Frames: `W` world (Z up, gravity `(0, 0, -g)`), `O` object (origin in the centre of mass). Units: SI.
+
+mod log;
+mod mass;
+
+pub use log::{LogError, PalmReading, Sample, SensorLog, TrueState};
+pub use mass::{MassError, MassProperties, PrincipalInertia};

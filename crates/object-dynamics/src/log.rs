@@ -1,0 +1,255 @@
+//! What the palms sensed, in memory. File formats live elsewhere.
+
+use contact_kinematics::{Direction, DirectionError};
+use glam::{DQuat, DVec3};
+use thiserror::Error;
+
+/// A log of three palms: samples in strictly increasing time, at least two of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SensorLog {
+    samples: Vec<Sample>,
+    truth: Option<Vec<TrueState>>,
+}
+
+/// One instant of a log.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Time in s.
+    pub t: f64,
+    /// Readings of palms 1, 2, 3.
+    pub palms: [PalmReading; 3],
+}
+
+/// What one palm senses at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PalmReading {
+    /// Unit normal towards the object, world axes.
+    pub normal: Direction,
+    /// Contact `(s1, s2)` in the palm's frame, in m; none while the object does not touch the palm.
+    pub contact: Option<[f64; 2]>,
+    /// Normal contact force in N, at least zero; none where it was not measured.
+    pub force: Option<f64>,
+    /// Motor torque about `t1` in N m; none where it was not measured.
+    pub torque: Option<f64>,
+    /// Rate of rotation about `t1` in rad/s; none where it must be taken from the normals.
+    pub rate: Option<f64>,
+}
+
+/// True state of the object, where a simulator knows it. Never read by an estimator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrueState {
+    /// Centre of mass, m, world.
+    pub p_WCm: DVec3,
+    /// Orientation, body to world.
+    pub R_WO: DQuat,
+    /// Velocity of the centre of mass, m/s, world.
+    pub v_WCm: DVec3,
+    /// Angular velocity, rad/s, world axes.
+    pub w_WO: DVec3,
+}
+
+/// Why samples are not a log.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum LogError {
+    /// Fewer than two samples.
+    #[error("log has {found} sample(s); at least 2 are needed")]
+    TooShort {
+        /// How many there are.
+        found: usize,
+    },
+    /// A time is not a number.
+    #[error("t of sample {sample} is {value}; it must be finite")]
+    TimeNotFinite {
+        /// Index from 0.
+        sample: usize,
+        /// As given.
+        value: f64,
+    },
+    /// Time does not increase.
+    #[error(
+        "t of sample {sample} is {time} s, not above {previous} s before it; sort the log and drop repeats"
+    )]
+    TimeNotIncreasing {
+        /// Index from 0.
+        sample: usize,
+        /// Its time.
+        time: f64,
+        /// The time before.
+        previous: f64,
+    },
+    /// A reading is NaN or infinite.
+    #[error("{what} of palm {palm} at sample {sample} (t = {time} s) is {value}; it must be finite")]
+    ReadingNotFinite {
+        /// Which reading.
+        what: &'static str,
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// As given.
+        value: f64,
+    },
+    /// A normal contact force pulls.
+    #[error("force of palm {palm} at sample {sample} (t = {time} s) is {value} N; a palm cannot pull")]
+    NegativeForce {
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// As given, in N.
+        value: f64,
+    },
+    /// A normal is not a unit vector.
+    #[error("normal of palm {palm} at sample {sample}: {source}")]
+    Normal {
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Why.
+        source: DirectionError,
+    },
+    /// Truth does not match the samples.
+    #[error("truth has {found} rows for {expected} samples")]
+    TruthLength {
+        /// Number of samples.
+        expected: usize,
+        /// Number of truth rows.
+        found: usize,
+    },
+}
+
+impl SensorLog {
+    /// Checks the samples and takes them.
+    ///
+    /// A force may be negative by noise; only one that is negative beyond a tenth of the largest is refused.
+    ///
+    /// # Errors
+    /// [`LogError`] names the first sample that cannot be used.
+    pub fn new(samples: Vec<Sample>, truth: Option<Vec<TrueState>>) -> Result<Self, LogError> {
+        if samples.len() < 2 {
+            return Err(LogError::TooShort { found: samples.len() });
+        }
+        let largest_force =
+            samples.iter().flat_map(|s| s.palms.iter().filter_map(|p| p.force)).fold(0.0_f64, f64::max);
+        for (index, sample) in samples.iter().enumerate() {
+            check_sample(index, sample, largest_force)?;
+            if index > 0 && sample.t <= samples[index - 1].t {
+                let previous = samples[index - 1].t;
+                return Err(LogError::TimeNotIncreasing { sample: index, time: sample.t, previous });
+            }
+        }
+        if let Some(rows) = &truth
+            && rows.len() != samples.len()
+        {
+            return Err(LogError::TruthLength { expected: samples.len(), found: rows.len() });
+        }
+        Ok(Self { samples, truth })
+    }
+
+    /// The samples, in time order.
+    #[must_use]
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// The true states, one a sample, where they are known.
+    #[must_use]
+    pub fn truth(&self) -> Option<&[TrueState]> {
+        self.truth.as_deref()
+    }
+
+    /// Time from the first sample to the last, in s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.samples[self.samples.len() - 1].t - self.samples[0].t
+    }
+
+    /// Index of the first sample at which some palm is without contact, with the palm's index from 0.
+    #[must_use]
+    pub fn first_contact_loss(&self) -> Option<(usize, usize)> {
+        self.samples
+            .iter()
+            .enumerate()
+            .find_map(|(k, s)| s.palms.iter().position(|p| p.contact.is_none()).map(|palm| (k, palm)))
+    }
+
+    /// The same log without truth: what a robot has.
+    #[must_use]
+    pub fn without_truth(&self) -> Self {
+        Self { samples: self.samples.clone(), truth: None }
+    }
+}
+
+fn check_sample(index: usize, sample: &Sample, largest_force: f64) -> Result<(), LogError> {
+    let time = sample.t;
+    if !time.is_finite() {
+        return Err(LogError::TimeNotFinite { sample: index, value: time });
+    }
+    for (i, palm) in sample.palms.iter().enumerate() {
+        let readings = [
+            ("s1", palm.contact.map(|s| s[0])),
+            ("s2", palm.contact.map(|s| s[1])),
+            ("force", palm.force),
+            ("torque", palm.torque),
+            ("rate", palm.rate),
+        ];
+        for (what, reading) in readings {
+            if let Some(value) = reading.filter(|v| !v.is_finite()) {
+                return Err(LogError::ReadingNotFinite { what, palm: i + 1, sample: index, time, value });
+            }
+        }
+        if let Some(value) = palm.force.filter(|&f| f < -0.1 * largest_force) {
+            return Err(LogError::NegativeForce { palm: i + 1, sample: index, time, value });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(t: f64, force: f64) -> Sample {
+        let palm = PalmReading {
+            normal: Direction::X,
+            contact: Some([0.1, 0.2]),
+            force: Some(force),
+            torque: None,
+            rate: None,
+        };
+        Sample { t, palms: [palm; 3] }
+    }
+
+    #[test]
+    fn bad_logs_are_named() {
+        assert!(matches!(SensorLog::new(vec![], None), Err(LogError::TooShort { found: 0 })));
+        assert!(matches!(SensorLog::new(vec![sample(0.0, 1.0)], None), Err(LogError::TooShort { found: 1 })));
+        let repeated = vec![sample(0.0, 1.0), sample(0.0, 1.0)];
+        assert!(matches!(SensorLog::new(repeated, None), Err(LogError::TimeNotIncreasing { sample: 1, .. })));
+        let not_a_number = vec![sample(0.0, 1.0), sample(f64::NAN, 1.0)];
+        assert!(matches!(SensorLog::new(not_a_number, None), Err(LogError::TimeNotFinite { sample: 1, .. })));
+        let force = vec![sample(0.0, 1.0), sample(1.0, f64::INFINITY)];
+        assert!(matches!(SensorLog::new(force, None), Err(LogError::ReadingNotFinite { what: "force", .. })));
+        let pull = vec![sample(0.0, 1.0), sample(1.0, -0.5)];
+        assert!(matches!(
+            SensorLog::new(pull, None),
+            Err(LogError::NegativeForce { palm: 1, sample: 1, .. })
+        ));
+        let truth = SensorLog::new(vec![sample(0.0, 1.0), sample(1.0, 1.0)], Some(vec![]));
+        assert!(matches!(truth, Err(LogError::TruthLength { expected: 2, found: 0 })));
+    }
+
+    #[test]
+    fn contact_loss_is_found() {
+        let mut samples: Vec<_> = (0..5).map(|k| sample(f64::from(k), 1.0)).collect();
+        samples[3].palms[1].contact = None;
+        let log = SensorLog::new(samples, None).unwrap();
+        assert_eq!(log.first_contact_loss(), Some((3, 1)));
+        assert_eq!(log.duration(), 4.0);
+    }
+}
