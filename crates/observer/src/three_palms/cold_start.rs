@@ -1,0 +1,181 @@
+//! A start that needs no guess: static balance for the centre of mass, rest for the momentum, a grid of orientations,
+//! and windows that grow while the fit follows.
+
+use super::momentum::{MomentumProblem, Scales, StartState, UNKNOWNS};
+use super::track::Track;
+use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt};
+use glam::{DMat3, DQuat, DVec3};
+use object_dynamics::MassProperties;
+
+/// First windows in units of the natural time `sqrt(length / g)`, in the order in which they are tried: far below one
+/// the data determine little, far above it the motion has left the neighbourhood of rest.
+const FIRST_WINDOWS: [f64; 3] = [1.5, 3.0, 0.75];
+/// Factor by which the window grows.
+const GROWTH: f64 = 1.35;
+/// Samples per natural time while the window grows: enough for the Runge-Kutta steps and for the shape of the motion.
+const SAMPLES_PER_NATURAL_TIME: f64 = 24.0;
+/// Weight of the contact normals' common point against static balance: it decides the height alone.
+const NORMALS_WEIGHT: f64 = 0.01;
+/// Candidates that are followed beyond the first window.
+const FOLLOWED: usize = 4;
+/// Share of the mean information that holds a candidate near its start in the first windows.
+const PRIOR: f64 = 1e-3;
+/// Residual below which a fit is taken as right, in natural velocities: other simulators' logs leave 1e-6.
+const NEXT_TO_NOTHING: f64 = 3e-6;
+/// Von Neumann ratio of the residuals above which they pass for noise.
+const WHITE: f64 = 0.6;
+/// Fits on the way: good enough to start the next from.
+const COARSE: LevenbergMarquardt =
+    LevenbergMarquardt { iterations: 25, step_tolerance: 1e-6, damping: 1e-2, prior: 0.0 };
+
+/// Natural sizes of the track's scene.
+pub(super) fn scales(track: &Track, mass: &MassProperties) -> Scales {
+    let contacts = track.nodes.iter().flat_map(|n| n.p_WC);
+    let count = (3 * track.nodes.len()) as f64;
+    let mean = contacts.clone().sum::<DVec3>() / count;
+    let length = contacts.map(|c| c.distance(mean)).sum::<f64>() / count;
+    // A log of one point is no scene, but must not divide by zero.
+    let length = if length > 0.0 { length } else { 1.0 };
+    let rate = 1.0 / natural_time(track, length);
+    let inertia = mass.inertia();
+    let moment = (inertia.x_axis.x + inertia.y_axis.y + inertia.z_axis.z) / 3.0;
+    Scales { length, velocity: length * rate, momentum: moment * rate }
+}
+
+fn natural_time(track: &Track, length: f64) -> f64 {
+    let g = track.gravity.length();
+    if g > 0.0 { (length / g).sqrt() } else { track.duration() / 4.0 }
+}
+
+/// The best fits found, best first, each over the whole (thinned) track.
+///
+/// The few candidates that fit the first window best are followed first. Only if none of them explains the data are
+/// the others tried, and then other first windows: a search that ends as soon as it can.
+pub(super) fn cold_start(track: &Track, mass: &MassProperties) -> Vec<Fit<StartState, UNKNOWNS>> {
+    let scales = scales(track, mass);
+    let natural = natural_time(track, scales.length);
+    let spacing = track.duration() / (track.len() - 1) as f64;
+    let stride = (natural / SAMPLES_PER_NATURAL_TIME / spacing).floor().max(1.0) as usize;
+    let search = Search { track: &track.thinned(stride), mass, scales };
+    let mut found = Vec::new();
+    for first in FIRST_WINDOWS.map(|share| (share * natural).min(track.duration())) {
+        let mut candidates = search.candidates(first);
+        while !candidates.is_empty() {
+            let batch = candidates.drain(..candidates.len().min(FOLLOWED));
+            found.extend(batch.map(|c| search.follow(c, first)));
+            sort(&mut found);
+            if found.first().is_some_and(|best| search.explains(best)) {
+                return found;
+            }
+        }
+    }
+    found
+}
+
+struct Search<'a> {
+    track: &'a Track,
+    mass: &'a MassProperties,
+    scales: Scales,
+}
+
+impl Search<'_> {
+    fn problem(&self, window: f64) -> MomentumProblem<'_> {
+        MomentumProblem::new(self.track, self.mass, self.scales, window)
+    }
+
+    /// Fits of the first window from rest, one for each orientation, best first.
+    fn candidates(&self, window: f64) -> Vec<Fit<StartState, UNKNOWNS>> {
+        let solver = LevenbergMarquardt { prior: PRIOR, ..COARSE };
+        let (problem, rest) = (self.problem(window), rest_state(self.track, window));
+        let axes = self.mass.principal().axes.inverse();
+        let starts = orientations().into_iter().map(|R_WI| StartState { R_WO: R_WI * axes, ..rest });
+        let mut fits: Vec<_> = starts.map(|start| solver.fit(&problem, start)).collect();
+        sort(&mut fits);
+        fits
+    }
+
+    fn follow(&self, candidate: Fit<StartState, UNKNOWNS>, first: f64) -> Fit<StartState, UNKNOWNS> {
+        let mut fit = candidate;
+        let mut window = first;
+        while window < self.track.duration() {
+            window = (window * GROWTH).min(self.track.duration());
+            fit = COARSE.fit(&self.problem(window), fit.point);
+        }
+        fit
+    }
+
+    /// Whether what is left of the data is noise, or next to nothing: then no other minimum can be better to speak of.
+    fn explains(&self, fit: &Fit<StartState, UNKNOWNS>) -> bool {
+        let residuals = self.problem(f64::INFINITY).residuals(&fit.point);
+        fit.normal.rms() < NEXT_TO_NOTHING * self.scales.velocity || whiteness(&residuals) > WHITE
+    }
+}
+
+/// Von Neumann's ratio of residuals in time order: about 1 where they are independent, about 0 where they are smooth.
+pub(super) fn whiteness(residuals: &[[f64; 3]]) -> f64 {
+    let total: f64 = residuals.iter().flatten().map(|e| e * e).sum();
+    let steps: f64 =
+        residuals.windows(2).flat_map(|w| (0..3).map(move |i| (w[1][i] - w[0][i]).powi(2))).sum();
+    if total > 0.0 { 0.5 * steps / total } else { 1.0 }
+}
+
+fn sort(candidates: &mut Vec<Fit<StartState, UNKNOWNS>>) {
+    candidates.retain(|c| c.status != FitStatus::Failed);
+    candidates.sort_by(|a, b| a.normal.cost.total_cmp(&b.normal.cost));
+}
+
+/// A body at rest: the centre of mass where the contact wrench balances, at the height where the contact normals pass
+/// each other most closely (they meet there for a ball).
+fn rest_state(track: &Track, window: f64) -> StartState {
+    let end = track.t.partition_point(|&t| t <= window).max(1);
+    let mut matrix = DMat3::ZERO;
+    let mut rhs = DVec3::ZERO;
+    for node in &track.nodes[..end] {
+        let wrench = |i: usize| node.forces[i] * node.palms[i].frame.n;
+        let force = wrench(0) + wrench(1) + wrench(2);
+        let torque = (0..3).map(|i| node.p_WC[i].cross(wrench(i))).sum::<DVec3>();
+        let square = force.length_squared().max(f64::MIN_POSITIVE);
+        // Q = p x F, least squares: (|F|^2 1 - F F') p = F x Q.
+        matrix += projector(force / square.sqrt());
+        rhs += force.cross(torque) / square;
+        for i in 0..3 {
+            let across = projector(node.palms[i].frame.n);
+            matrix += across * NORMALS_WEIGHT;
+            rhs += across * node.p_WC[i] * NORMALS_WEIGHT;
+        }
+    }
+    let node = &track.nodes[0];
+    // Three palms apart make this matrix regular; parallel ones leave a height of zero.
+    let invertible = matrix.determinant().abs() > 1e-12;
+    let p_WCm = if invertible { matrix.inverse() * rhs } else { node.p_WC.iter().sum::<DVec3>() / 3.0 };
+    let normals =
+        DMat3::from_cols(node.palms[0].frame.n, node.palms[1].frame.n, node.palms[2].frame.n).transpose();
+    let carried = normals.inverse() * -DVec3::from_array(node.lift);
+    let v_WCm = if carried.is_finite() { carried } else { DVec3::ZERO };
+    StartState { p_WCm, v_WCm, L_WO: DVec3::ZERO, R_WO: DQuat::IDENTITY }
+}
+
+/// `1 - u u'`.
+fn projector(u: DVec3) -> DMat3 {
+    DMat3::IDENTITY - DMat3::from_cols(u * u.x, u * u.y, u * u.z)
+}
+
+/// Orientations of principal axes, spread over all that differ: turns by pi about a principal axis change nothing, so
+/// the 24 turns of a cube leave 6, and each is taken as it is and turned by 45 degrees about each axis.
+fn orientations() -> Vec<DQuat> {
+    let third =
+        |k: i32| DQuat::from_axis_angle(DVec3::ONE.normalize(), f64::from(k) * std::f64::consts::TAU / 3.0);
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let mut all = Vec::new();
+    for swap in [DQuat::IDENTITY, DQuat::from_rotation_z(quarter)] {
+        for k in 0..3 {
+            let base = third(k) * swap;
+            all.push(base);
+        }
+    }
+    let bases = all.clone();
+    for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+        all.extend(bases.iter().map(|base| DQuat::from_axis_angle(axis, 0.5 * quarter) * *base));
+    }
+    all
+}
