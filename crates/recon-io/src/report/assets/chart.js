@@ -91,11 +91,11 @@ class Chart {
   draw() {
     const width = this.svg.clientWidth, height = this.svg.clientHeight;
     if (!width) return;
-    Object.assign(this, { left: this.logarithmic ? 44 : 40, top: 8, plotHeight: height - 40 });
+    Object.assign(this, { left: this.logarithmic ? 44 : 40, top: 8, plotHeight: height - 34 });
     this.plotWidth = width - this.left - 10;
     this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     this.svg.replaceChildren();
-    this.axes(height);
+    this.axes();
     for (const s of this.series) {
       element("svg:path", { class: "curve", d: this.path(s.values), style: `stroke:${s.colour}` }, this.svg);
     }
@@ -107,13 +107,13 @@ class Chart {
     this.point();
   }
 
-  axes(height) {
+  axes() {
     const bottom = this.top + this.plotHeight, ts = this.clock.times;
     const text = (x, y, words, anchor) => element("svg:text", { x, y, "text-anchor": anchor, text: words }, this.svg);
     const step = this.logarithmic ? Math.max(1, Math.ceil((this.high - this.low) / 5)) : 0;
     const marks = this.logarithmic
       ? Array.from({ length: Math.floor((this.high - this.low) / step) + 1 }, (_, k) => this.low + k * step)
-      : ticks(this.low, this.high, 5);
+      : ticks(this.low, this.high, 6);
     for (const v of marks) {
       element("svg:line", { class: "grid", x1: this.left, x2: this.left + this.plotWidth, y1: this.y(v), y2: this.y(v) }, this.svg);
       text(this.left - 7, this.y(v) + 4, this.logarithmic ? format(10 ** v, 1).replace("1 × ", "") : plain(v, marks), "end");
@@ -121,9 +121,9 @@ class Chart {
     const times = ticks(ts[0], ts[ts.length - 1], Math.max(3, Math.min(8, this.plotWidth / 75)));
     for (const t of times) {
       element("svg:line", { class: "grid", x1: this.x(t), x2: this.x(t), y1: bottom, y2: bottom + 4 }, this.svg);
-      text(this.x(t), bottom + 17, plain(t, times), "middle");
+      if (this.x(t) < this.left + this.plotWidth - 45) text(this.x(t), bottom + 17, plain(t, times), "middle");
     }
-    text(this.left + this.plotWidth, height - 2, "t in s", "end");
+    text(this.left + this.plotWidth, bottom + 17, "t in s", "end");
   }
 
   path(values) {

@@ -21,25 +21,32 @@ function prepare(data) {
 // The three palm normals at time k; an immobile palm has one for all times.
 const normalsAt = (scene, k) => scene.normals.map((n) => n[Math.min(k, n.length - 1)]);
 
-// How far up the palms the contacts go, and where to look.
+// How far up the palms the contacts go, and a view that holds the palms and the object at all times.
 function motionCamera(data, scene) {
-  let reach = 0, low = Infinity, high = -Infinity;
-  for (const curve of scene.curves) {
-    for (const c of curve.world) if (c) { reach = Math.max(reach, norm(c)); low = Math.min(low, c[2]); high = Math.max(high, c[2]); }
+  const normals = normalsAt(scene, 0), extents = { reach: 0, width: 0 };
+  scene.curves.forEach((curve, i) => curve.world.forEach((c) => {
+    if (!c) return;
+    const axis = unit(cross(normals[i], [0, 0, 1]));
+    extents.reach = Math.max(extents.reach, norm(c));
+    extents.width = Math.max(extents.width, Math.abs(dot(axis, c)));
+  }));
+  extents.reach += 0.4 * data.size;
+  extents.width += 0.4 * data.size;
+  // Over the first palm, seen from outside and drawn faintly: the other two then stand left and right of the object.
+  const azimuth = Math.atan2(-normals[0][1], -normals[0][0]) * 180 / Math.PI + 12;
+  const extent = normals.flatMap((_, i) => palmPolygon(normals, i, extents));
+  for (const p of scene.p) for (const d of [[1, 0, 0], [0, 1, 0], [0, 0, 1]]) {
+    extent.push(add(p, scale(d, 0.85 * data.size)), sub(p, scale(d, 0.85 * data.size)));
   }
-  reach += 0.55 * data.size;
-  const middle = scale(scene.p.reduce(add, [0, 0, 0]), 1 / scene.p.length);
-  // Between two palms, so that none hides the object: opposite to where the first one rises.
-  const n = scene.normals[0][0], azimuth = Math.atan2(n[1], n[0]) * 180 / Math.PI + 18;
-  const target = [0.5 * middle[0], 0.5 * middle[1], 0.5 * (middle[2] + 0.25 * reach)];
-  return { palmReach: reach, camera: { azimuth, elevation: 30, zoom: 1, target, reach: 0.78 * reach } };
+  const camera = { azimuth, elevation: 33, zoom: 1, target: scale(scene.p[0], 0.5), reach: extents.reach };
+  return { extents, camera: fit(camera, extent) };
 }
 
 // Draws the object on its palms at time k (the paper's Fig. 5).
-function drawMotion(renderer, c, look, data, scene, k, palmReach, show) {
+function drawMotion(renderer, c, look, data, scene, k, extents, show) {
   const normals = normalsAt(scene, k), m = pose(scene.q[k], scene.p[k]);
   const sheets = scene.sheets && scene.sheetsAt === stillKey(scene, k) ? scene.sheets
-    : normals.map((_, i) => sheet(palmPolygon(normals, i, palmReach)));
+    : normals.map((_, i) => sheet(palmPolygon(normals, i, extents)));
   Object.assign(scene, { sheets, sheetsAt: stillKey(scene, k) });
   const palms = (near) => normals.forEach((n, i) => {
     // A palm through the origin shows its inner side when the eye is on that side; then it is behind the object.
@@ -102,11 +109,16 @@ function drawBounds(renderer, c, scene, show, k) {
   }
 }
 
+// Seen from the side on which most contacts are.
 function boundsCamera(data, scene) {
-  let reach = data.size;
-  const bodies = [scene.body.lower, scene.body.upper].filter(Boolean);
-  for (const body of bodies) for (const v of body.vertices) reach = Math.max(reach, norm(v));
-  return { azimuth: 38, elevation: 24, zoom: 1, target: [0, 0, 0], reach: 0.95 * Math.min(reach, 2.5 * data.size) };
+  const own = scene.curves.flatMap((curve) => curve.own.filter(Boolean));
+  const side = unit(own.reduce((sum, p) => add(sum, unit(p)), [0, 0, 0]));
+  const vertices = [scene.body.lower, scene.body.upper, scene.body.shape].filter(Boolean).flatMap((b) => b.vertices);
+  // An upper bound that runs far off would leave the rest tiny.
+  const extent = [...own, ...vertices].map((p) => scale(p, Math.min(1, 2.5 * data.size / norm(p) || 1)));
+  const azimuth = Math.atan2(side[1], side[0]) * 180 / Math.PI + 25;
+  const elevation = Math.max(-35, Math.min(35, Math.asin(side[2]) * 180 / Math.PI)) + 12;
+  return fit({ azimuth, elevation, zoom: 1, target: [0, 0, 0], reach: data.size }, extent);
 }
 
 // A row of switches over the layers of a figure; `show` holds their state.

@@ -67,14 +67,20 @@ function verdict() {
 }
 
 function motionFigure() {
-  const { palmReach, camera } = motionCamera(data, scene);
+  const { extents, camera } = motionCamera(data, scene);
   const show = { palms: true, trails: true, shape: true, upper: true };
-  const draw = (look) => (r, c, l) => drawMotion(r, c, l, data, scene, look.k(), palmReach, look.show);
+  const draw = (look) => (r, c, l) => drawMotion(r, c, l, data, scene, look.k(), extents, look.show);
   const main = stage(byId("motion-view"), camera, draw({ k: () => clock.index, show }));
+  const legend = byId("motion-toggles");
+  PALMS.forEach((name, i) => {
+    const key = element("span", { class: "key" }, legend);
+    element("i", { class: "swatch", style: `--c:var(--${name})` }, key);
+    element("span", { text: "palm " + (i + 1) }, key);
+  });
   const layers = [["palms", "palms"], ["trails", "contacts on the palms"]];
-  if (scene.body.shape) layers.push(["shape", "true shape (else the bounds)"]);
+  if (scene.body.shape) layers.push(["shape", "true shape instead of bounds"]);
   else if (scene.body.upper) layers.push(["upper", "upper bound"]);
-  toggles(byId("motion-toggles"), main, show, layers);
+  toggles(legend, main, show, layers);
   const small = snapshots(camera, draw, show);
   main.listeners.push(() => small.forEach((s) => { Object.assign(s.camera, camera); s.show(); }));
   clock.listeners.push(() => main.show());
@@ -174,7 +180,7 @@ function charts() {
     title: "Centre of mass, world", unit: "m", series: split("p", 3, ["x", "y", "z"], ["q1", "q2", "q3"]),
   });
   byId("curves-caption").textContent =
-    "The radius function rᵢ is the distance of palm i's plane from the centre of mass. " +
+    "The radius functions r₁, r₂, r₃ are the distances of the palms' planes from the centre of mass. " +
     (truth ? "Estimates are solid lines in colour, the truth dashed on top of them. " : "") +
     "Move over a chart to read the values; all figures follow.";
 }
@@ -185,13 +191,13 @@ function boundsFigure() {
   const made = stage(byId("bounds-view"), boundsCamera(data, scene), (r, c) => drawBounds(r, c, scene, show, clock.index));
   const layers = [["lower", "lower bound", { colour: "body", kind: "fill" }]];
   if (scene.body.upper) layers.push(["upper", "upper bound", { colour: "glass", kind: "fill" }]);
-  layers.push(["curves", "contact curves", { colour: "p1" }]);
-  if (scene.body.wire) layers.push(["truth", "true shape", { colour: "truth" }]);
+  layers.push(["curves", "contact curves", { colour: "p1", kind: "three" }]);
+  if (scene.body.wire) layers.push(["truth", "true shape", { colour: "truth", kind: "thin" }]);
   toggles(byId("bounds-toggles"), made, show, layers);
   clock.listeners.push(() => made.show());
-  const { lower, upper } = data.bounds, rows = [["Lower bound", lower.volume]];
-  if (data.shape && data.shape.volume) rows.push(["True shape", data.shape.volume]);
-  if (upper) rows.push(["Upper bound", upper.volume]);
+  const { lower, upper } = data.bounds, rows = [["Lower bound", lower.volume, "body"]];
+  if (data.shape && data.shape.volume) rows.push(["True shape", data.shape.volume, "truth"]);
+  if (upper) rows.push(["Upper bound", upper.volume, "glass"]);
   volumes(rows, lower, upper);
   byId("bounds-caption").textContent =
     "The object seen from its own axes. The hull of the contact curves lies inside every convex object that made this log" +
@@ -205,10 +211,15 @@ function volumes(rows, lower, upper) {
   ["Volume", "m³"].forEach((text, i) => element("th", { text, style: i ? "text-align:right" : "" }, top));
   const body = element("tbody", {}, table), row = (name, text) => {
     const line = element("tr", {}, body);
-    element("td", { text: name }, line);
+    const cell = element("td", { text: name }, line);
     element("td", { class: "number", text }, line);
+    return cell;
   };
-  rows.forEach(([name, volume]) => row(name, format(volume, 5)));
+  const largest = Math.max(...rows.map((r) => r[1]));
+  rows.forEach(([name, volume, colour]) => {
+    const cell = row(name, format(volume, 5)), bar = element("i", { class: "bar-volume" }, cell);
+    bar.style.cssText = `--c:var(--${colour});width:${(100 * volume / largest).toFixed(1)}%`;
+  });
   if (upper) row("Lower / upper", format(lower.volume / upper.volume, 4));
   if (data.shape && data.shape.volume) {
     row("Lower / true", format(lower.volume / data.shape.volume, 4));

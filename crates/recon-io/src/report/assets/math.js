@@ -41,25 +41,47 @@ const turned = (m, p) => [
   m[2] * p[0] + m[6] * p[1] + m[10] * p[2],
 ];
 
-// A camera on a sphere about `target`; angles in degrees, `reach` is the radius that just fills the smaller side.
+// A camera on a sphere about `target`; angles in degrees. A ball of radius `reach` fills the height of the picture at
+// zoom 1, one of radius `reachAcross` its width, whichever needs more distance.
 const FIELD_OF_VIEW = 26 * Math.PI / 180;
 function lookAt(camera, aspect) {
   const az = camera.azimuth * Math.PI / 180, el = camera.elevation * Math.PI / 180;
   const back = [Math.cos(el) * Math.cos(az), Math.cos(el) * Math.sin(az), Math.sin(el)];
   const right = [-Math.sin(az), Math.cos(az), 0];
   const up = cross(back, right);
-  const narrow = Math.min(1, aspect);
-  const distance = camera.reach / (Math.sin(FIELD_OF_VIEW / 2) * narrow) / camera.zoom;
+  const reach = Math.max(camera.reach, (camera.reachAcross || camera.reach) / aspect);
+  const distance = reach / Math.sin(FIELD_OF_VIEW / 2) / camera.zoom;
   const eye = add(camera.target, scale(back, distance));
   const view = [
     right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0,
     -dot(right, eye), -dot(up, eye), -dot(back, eye), 1,
   ];
-  const near = distance * 0.05, far = distance + 8 * camera.reach, f = 1 / Math.tan(FIELD_OF_VIEW / 2);
+  const near = distance * 0.05, far = distance + 8 * reach, f = 1 / Math.tan(FIELD_OF_VIEW / 2);
   const projection = [
     f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0,
   ];
   return { eye, right, up, back, matrix: multiply(projection, view) };
+}
+
+// Moves `camera` and sets its reaches so that the points fill a picture of any shape with a small margin.
+function fit(camera, list) {
+  for (let pass = 0; pass < 4; pass++) {
+    const { eye, right, up, back, matrix: m } = lookAt(camera, 1);
+    let box = [Infinity, -Infinity, Infinity, -Infinity];
+    for (const p of list) {
+      const w = m[3] * p[0] + m[7] * p[1] + m[11] * p[2] + m[15];
+      const x = (m[0] * p[0] + m[4] * p[1] + m[8] * p[2] + m[12]) / w;
+      const y = (m[1] * p[0] + m[5] * p[1] + m[9] * p[2] + m[13]) / w;
+      box = [Math.min(box[0], x), Math.max(box[1], x), Math.min(box[2], y), Math.max(box[3], y)];
+    }
+    const half = Math.tan(FIELD_OF_VIEW / 2) * dot(sub(eye, camera.target), back);
+    const shift = add(scale(right, 0.5 * (box[0] + box[1]) * half), scale(up, 0.5 * (box[2] + box[3]) * half));
+    const unit = half * Math.cos(FIELD_OF_VIEW / 2) / 2 / 0.9;
+    Object.assign(camera, {
+      target: add(camera.target, shift), reachAcross: (box[1] - box[0]) * unit, reach: (box[3] - box[2]) * unit,
+    });
+  }
+  return camera;
 }
 
 // Numbers as people read them: four digits, a true minus, powers of ten as superscripts.

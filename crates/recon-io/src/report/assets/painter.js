@@ -28,8 +28,7 @@ class Painter {
       for (const t of body.triangles) {
         const n = turned(model, t.normal);
         if (dot(n, sub(this.look.eye, moved(model, t.points[0]))) <= 0) continue;
-        const shade = Math.min(1.08, 0.52 + 0.2 * (0.5 + 0.5 * n[2]) + 0.42 * Math.max(dot(n, light), 0));
-        c.fillStyle = c.strokeStyle = css(scale(colour, shade), 1);
+        c.fillStyle = c.strokeStyle = css(scale(colour, 0.5 + 0.56 * (0.5 + 0.5 * dot(n, light)) ** 2), 1);
         this.path(c, t.points.map((p) => this.project(model, p)));
         c.fill();
         c.stroke(); // hides the seam to the neighbour

@@ -13,8 +13,8 @@ out vec4 result;
 void main() {
   vec3 n = normalize(facing), v = normalize(eye - at);
   if (dot(n, v) < 0.0) n = -n;
-  float sky = 0.5 + 0.5 * n.z, key = max(dot(n, light), 0.0);
-  vec3 shaded = colour * (0.52 + 0.2 * sky + 0.42 * key) + vec3(0.08) * pow(max(dot(reflect(-light, n), v), 0.0), 24.0);
+  float key = 0.5 + 0.5 * dot(n, light);
+  vec3 shaded = colour * (0.5 + 0.56 * key * key) + vec3(0.08) * pow(max(dot(reflect(-light, n), v), 0.0), 24.0);
   float edge = pow(1.0 - abs(dot(n, v)), 2.0);
   float a = alpha * mix(1.0, 0.45 + 1.6 * edge, glass);
   result = vec4(mix(shaded, colour, 0.6 * glass) * a, a);
@@ -22,7 +22,7 @@ void main() {
 
 const LINE_VERTEX = `#version 300 es
 in vec3 a, b; in vec2 corner;
-uniform mat4 camera, model; uniform vec2 view; uniform float width, lift;
+uniform mat4 camera, model; uniform vec2 view; uniform float width, lift, cap;
 out float across;
 void main() {
   vec4 p = camera * model * vec4(a, 1.0), q = camera * model * vec4(b, 1.0);
@@ -30,7 +30,7 @@ void main() {
   float l = length(along);
   vec2 dir = l > 1e-6 ? along / l : vec2(1.0, 0.0);
   float half_width = 0.5 * width + 0.75;
-  vec2 shift = (vec2(-dir.y, dir.x) * corner.y + dir * (corner.x * 2.0 - 1.0) * 0.5) * half_width * 2.0 / view;
+  vec2 shift = (vec2(-dir.y, dir.x) * corner.y + dir * (corner.x * 2.0 - 1.0) * cap) * half_width * 2.0 / view;
   vec4 c = corner.x < 0.5 ? p : q;
   across = corner.y * half_width;
   gl_Position = vec4(c.xy + shift * c.w, c.z - lift * c.w, c.w);
@@ -173,7 +173,7 @@ class WebGl {
     const gl = this.gl;
     gl.disable(gl.CULL_FACE);
     gl.depthMask(false);
-    const program = this.use("line", model, { alpha, width: width * this.ratio, lift }, { colour });
+    const program = this.use("line", model, { alpha, width: width * this.ratio, lift, cap: alpha < 1 ? 0 : 0.5 }, { colour });
     this.attribute(program, "a", set.segments, 3, 24, 0, 1);
     this.attribute(program, "b", set.segments, 3, 24, 12, 1);
     this.attribute(program, "corner", this.strip, 2, 0, 0, 0);
