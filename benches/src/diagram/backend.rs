@@ -187,7 +187,7 @@ fn annotate(mut layout: Layout, drawing: &Drawing, frame: &Frame) -> Layout {
         layout = layout.with_annotation(note);
     }
     if !drawing.off_scale.is_empty() {
-        let x = frame.x.1 - 45.0 * (frame.x.1 - frame.x.0) / WIDTH;
+        let x = frame.x.1 - 60.0 * (frame.x.1 - frame.x.0) / WIDTH;
         layout =
             layout.with_annotation(TextAnnotation::new("no estimate", x, frame.off_scale).with_font_size(11));
     }
