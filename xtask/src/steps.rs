@@ -86,6 +86,10 @@ impl Report {
         self.result.is_err()
     }
 
+    fn skipped(&self) -> bool {
+        matches!(self.result, Ok(Outcome::Skipped(_)))
+    }
+
     fn line(&self) -> String {
         let took = self.took.as_secs_f64();
         match &self.result {
@@ -106,8 +110,13 @@ impl Report {
 pub(crate) fn table(reports: &[Report]) -> String {
     let mut lines: Vec<_> = reports.iter().map(Report::line).collect();
     let total: f64 = reports.iter().map(|report| report.took.as_secs_f64()).sum();
-    let failures = reports.iter().filter(|report| report.failed()).count();
-    let words = if failures == 0 { "pass".to_owned() } else { format!("{failures} FAILED") };
+    let count = |what: fn(&Report) -> bool| reports.iter().filter(|report| what(report)).count();
+    let (failed, skipped) = (count(Report::failed), count(Report::skipped));
+    let words = match (failed, skipped) {
+        (0, 0) => "pass".to_owned(),
+        (0, _) => format!("pass, {skipped} skipped"),
+        _ => format!("{failed} FAILED, {skipped} skipped"),
+    };
     lines.push(format!("{:<12} {total:>7.1} s  {words}", "all"));
     lines.join("\n")
 }
@@ -138,7 +147,7 @@ mod tests {
         let reports = run(&STEPS, &Choice::default());
         assert_eq!(reports.iter().map(Report::failed).collect::<Vec<_>>(), [true, false]);
         let table = table(&reports);
-        assert!(table.contains("    one\n    two") && table.ends_with("1 FAILED"), "{table}");
+        assert!(table.contains("    one\n    two") && table.ends_with("1 FAILED, 0 skipped"), "{table}");
     }
 
     #[test]
