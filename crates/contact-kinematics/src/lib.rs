@@ -6,10 +6,19 @@
 //!
 //! Frames: `W` world (Z up), `O` object, `P_i` palm `i`. Units: SI.
 
+mod contact;
 mod direction;
 mod palm;
 mod support;
 
+pub use contact::{
+    Contact, ContactCurve, ContactRates, ContactSupport, CurveError, CurvePoint, Darboux, ThreeContacts,
+    acceleration_defect, body_normal, body_normal_rate, contact_curve_rates, contact_velocity, darboux,
+    radius_rate, separation_rates,
+};
 pub use direction::{Direction, DirectionError};
 pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple, SlopeMotion};
-pub use support::{CurvatureRadii, SupportFunction, SupportJet};
+pub use support::{
+    CurvatureRadii, Ellipsoid, MinkowskiSum, Monomial, PolynomialSupport, ShapeError, Sphere,
+    SupportFunction, SupportJet, Translated, check_convex, principal_radii,
+};

@@ -2,8 +2,18 @@
 //!
 //! Frames: `W` world (Z up, gravity `(0, 0, -g)`), `O` object (origin in the centre of mass). Units: SI.
 
+pub mod integrate;
 mod log;
 mod mass;
+#[cfg(feature = "noise")]
+mod noise;
+mod three_palms;
 
 pub use log::{LogError, PalmReading, Sample, SensorLog, TrueState};
 pub use mass::{MassError, MassProperties, PrincipalInertia};
+#[cfg(feature = "noise")]
+pub use noise::SensorNoise;
+pub use three_palms::{
+    Accelerations, End, InitialMotion, Instant, MaximalState, MultiplierSolution, SampleTimes, SceneError,
+    Simulation, SimulationError, ThreePalmScene,
+};
