@@ -1,11 +1,36 @@
 //! Seeded inputs of the kinds on which hull algorithms are known to fail.
 
 use crate::random::random_bits;
+use crate::sample::ContactSample;
+use contact_kinematics::Direction;
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
 /// Semi-axes of the ellipsoid on which the curve kinds lie: that of the paper's Fig. 5.
-const AXES: DVec3 = DVec3::new(2.5, 2.0, 1.0);
+pub const AXES: DVec3 = DVec3::new(2.5, 2.0, 1.0);
+
+/// Contacts on three smooth closed curves on the ellipsoid with semi-axes [`AXES`].
+#[must_use]
+pub fn curve_contacts(count: usize, seed: u64) -> Vec<ContactSample> {
+    curve_normals(count, &mut Source::new(seed)).into_iter().map(ellipsoid_contact).collect()
+}
+
+/// Contacts all over the ellipsoid with semi-axes [`AXES`], normals uniform.
+#[must_use]
+pub fn ellipsoid_contacts(count: usize, seed: u64) -> Vec<ContactSample> {
+    let mut s = Source::new(seed);
+    (0..count).map(|_| ellipsoid_contact(s.direction())).collect()
+}
+
+/// Support function of the ellipsoid with semi-axes [`AXES`].
+#[must_use]
+pub fn ellipsoid_support(n: DVec3) -> f64 {
+    (AXES * n).length()
+}
+
+fn ellipsoid_contact(n: DVec3) -> ContactSample {
+    ContactSample { point: ellipsoid_point(n), normal: Direction::new_unchecked(n) }
+}
 
 /// A reproducible source of numbers.
 #[derive(Clone, Debug)]
@@ -170,7 +195,9 @@ impl InputKind {
             Self::Sphere => (0..count).map(|_| s.direction()).collect(),
             Self::Offset => (0..count).map(|_| s.direction() + DVec3::new(1e8, -1e8, 1e8)).collect(),
             Self::Grid => grid(count),
-            Self::Duplicates | Self::NearDuplicates => duplicates(count, self == Self::NearDuplicates, &mut s),
+            Self::Duplicates | Self::NearDuplicates => {
+                duplicates(count, self == Self::NearDuplicates, &mut s)
+            }
             Self::Lattice => {
                 let mut c = || s.below(7) as f64 - 3.0;
                 (0..count).map(|_| DVec3::new(c(), c(), c())).collect()
@@ -199,15 +226,18 @@ impl InputKind {
     }
 }
 
-/// Three smooth closed curves on the ellipsoid, like those of contacts on three palms.
+/// Points of three smooth closed curves on the ellipsoid, like those of contacts on three palms.
 fn curves(count: usize, s: &mut Source) -> Vec<DVec3> {
+    curve_normals(count, s).into_iter().map(ellipsoid_point).collect()
+}
+
+fn curve_normals(count: usize, s: &mut Source) -> Vec<DVec3> {
     let starts = [(); 3].map(|()| (s.rotation(), s.unit() * TAU));
     (0..count)
         .map(|i| {
             let (turn, phase) = starts[i % 3];
             let t = (i / 3) as f64 / (count.div_ceil(3)) as f64 * TAU;
-            let n = turn * DVec3::new(t.cos(), t.sin(), 0.6 * (2.0 * t + phase).sin()).normalize();
-            ellipsoid_point(n)
+            turn * DVec3::new(t.cos(), t.sin(), 0.6 * (2.0 * t + phase).sin()).normalize()
         })
         .collect()
 }
@@ -223,11 +253,7 @@ fn grid(count: usize) -> Vec<DVec3> {
         .map(|i| {
             let latitude = std::f64::consts::PI * (i / side) as f64 / side as f64;
             let longitude = TAU * (i % side) as f64 / side as f64;
-            DVec3::new(
-                latitude.sin() * longitude.cos(),
-                latitude.sin() * longitude.sin(),
-                latitude.cos(),
-            )
+            DVec3::new(latitude.sin() * longitude.cos(), latitude.sin() * longitude.sin(), latitude.cos())
         })
         .collect()
 }

@@ -17,10 +17,7 @@ pub struct SolidMoments {
 ///
 /// The divergence theorem over tetrahedra from `reference`, which should lie in or near the solid: then no digits are
 /// lost to the distance from the origin.
-pub(crate) fn solid_moments(
-    triangles: impl Iterator<Item = [DVec3; 3]>,
-    reference: DVec3,
-) -> SolidMoments {
+pub(crate) fn solid_moments(triangles: impl Iterator<Item = [DVec3; 3]>, reference: DVec3) -> SolidMoments {
     let mut volume = Compensated::default();
     let mut area = Compensated::default();
     let mut first = DVec3::ZERO;

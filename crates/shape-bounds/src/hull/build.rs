@@ -44,7 +44,7 @@ pub(super) enum Built {
         axis: usize,
     },
     /// The hull, and the original index of each of its points.
-    Space(Builder, Vec<u32>),
+    Space(Box<Builder>, Vec<u32>),
 }
 
 /// The hull of `points`: finite, not empty, scaled for the predicates.
@@ -67,7 +67,7 @@ pub(super) fn build(points: &[DVec3]) -> Built {
     for p in 0..order.len() as u32 {
         builder.insert(p);
     }
-    Built::Space(builder, order)
+    Built::Space(Box::new(builder), order)
 }
 
 impl Builder {
@@ -82,7 +82,8 @@ impl Builder {
         for (f, vertices) in corners.iter().enumerate() {
             for e in 0..3 {
                 let (from, to) = (vertices[e], vertices[(e + 1) % 3]);
-                let across = corners.iter().position(|g| (0..3).any(|k| g[k] == to && g[(k + 1) % 3] == from));
+                let across =
+                    corners.iter().position(|g| (0..3).any(|k| g[k] == to && g[(k + 1) % 3] == from));
                 facets.list[f].neighbours[e] = across.map_or(NONE, |g| g as u32);
             }
         }
@@ -103,7 +104,7 @@ impl Builder {
     /// The region is a disc: with exact signs, the facets strictly seen are those seen from `p` moved a little towards
     /// the hull, where nothing is degenerate. Its rim is hence one cycle, met in order.
     fn collect_visible(&mut self, p: u32, seen: u32) {
-        let q = self.facets.from_centre(p);
+        let q = self.facets.seen_from_centre(p);
         let (hidden_mark, visible_mark) = (2 * self.insertions, 2 * self.insertions + 1);
         self.rim.clear();
         self.visible.clear();

@@ -48,7 +48,8 @@ impl HullCertificate {
             }
         }
         let corners: Vec<[DVec3; 3]> = mesh.corners().collect();
-        verdict.flat_facets = corners.iter().filter(|[a, b, c]| projection_axis(*a, *b, *c).is_none()).count();
+        verdict.flat_facets =
+            corners.iter().filter(|[a, b, c]| projection_axis(*a, *b, *c).is_none()).count();
         verdict.outside =
             points.iter().filter(|p| corners.iter().any(|[a, b, c]| above(*a, *b, *c, **p) > 0.0)).count();
         let mut used: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();

@@ -125,7 +125,7 @@ impl Facets {
 
     /// Point `p` as seen from the centre.
     #[inline]
-    pub(super) fn from_centre(&self, p: u32) -> DVec3 {
+    pub(super) fn seen_from_centre(&self, p: u32) -> DVec3 {
         self.points[p as usize] - self.centre.unwrap_or(DVec3::ZERO)
     }
 }

@@ -16,7 +16,7 @@ impl Facets {
     /// a linear function, so that a local maximum is the maximum. Rounding may spoil that; the exact walk corrects it.
     pub(super) fn find_visible(&self, p: u32, start: u32) -> Option<u32> {
         let Some(centre) = self.centre else { return self.scan(p) };
-        let q = self.from_centre(p);
+        let q = self.seen_from_centre(p);
         let mut facet = start;
         let mut height = self.height(facet, q);
         loop {
@@ -64,7 +64,7 @@ impl Facets {
 
     /// The plain way: every facet.
     fn scan(&self, p: u32) -> Option<u32> {
-        let q = self.from_centre(p);
+        let q = self.seen_from_centre(p);
         (0..self.list.len() as u32)
             .find(|&facet| self.list[facet as usize].vertices[0] != NONE && self.is_visible(facet, p, q))
     }

@@ -11,10 +11,12 @@ mod seed;
 mod solid;
 #[cfg(test)]
 mod tests;
+mod walk;
 
 pub use certificate::HullCertificate;
 pub use error::PointsError;
 pub use solid::SolidHull;
+pub use walk::SupportWalk;
 
 use crate::planar::convex_corners;
 use crate::predicates::drop_axis;

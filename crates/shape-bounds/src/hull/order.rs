@@ -33,9 +33,7 @@ pub(super) fn insertion_order(points: &[DVec3]) -> Vec<u32> {
 }
 
 fn bounding_box(points: &[DVec3]) -> (DVec3, DVec3) {
-    points
-        .iter()
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
+    points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
 }
 
 /// Hilbert index of a cell (Skilling, "Programming the Hilbert curve", 2004).

@@ -73,6 +73,44 @@ impl SolidHull {
         &self.neighbours
     }
 
+    /// For each corner, one of the facets at it.
+    pub(crate) fn facet_at_each_vertex(&self) -> Vec<u32> {
+        let mut facet_at = vec![NONE; self.vertices.len()];
+        for (f, t) in self.triangles.iter().enumerate() {
+            t.iter().for_each(|v| facet_at[*v as usize] = f as u32);
+        }
+        facet_at
+    }
+
+    /// The next facet anticlockwise around corner `vertex`, and the corner that comes before it around `facet`.
+    #[inline]
+    pub(crate) fn next_around(&self, vertex: u32, facet: u32) -> (u32, u32) {
+        let t = self.triangles[facet as usize];
+        let corner = if t[0] == vertex {
+            0
+        } else if t[1] == vertex {
+            1
+        } else {
+            2
+        };
+        // It lies across the edge that ends at the vertex.
+        (self.neighbours[facet as usize][(corner + 2) % 3], t[(corner + 2) % 3])
+    }
+
+    /// Calls `visit` with each corner that shares an edge with `vertex`; `start` is a facet at it.
+    #[inline]
+    pub(crate) fn for_each_neighbour(&self, vertex: u32, start: u32, mut visit: impl FnMut(u32)) {
+        let mut facet = start;
+        loop {
+            let (next, neighbour) = self.next_around(vertex, facet);
+            visit(neighbour);
+            facet = next;
+            if facet == start {
+                break;
+            }
+        }
+    }
+
     /// The corners of a facet.
     #[must_use]
     pub fn corners(&self, facet: usize) -> [DVec3; 3] {

@@ -44,7 +44,8 @@ mod tests {
 
     #[test]
     fn only_strict_corners_remain() {
-        let square = [(0.0, 0.0), (1.0, 0.0), (0.5, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.5), (0.5, 0.5), (1.0, 1.0)];
+        let square =
+            [(0.0, 0.0), (1.0, 0.0), (0.5, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.5), (0.5, 0.5), (1.0, 1.0)];
         let points: Vec<DVec2> = square.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
         assert_eq!(convex_corners(&points), [0, 1, 3, 4]);
     }
