@@ -84,6 +84,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         motion,
         truth: Some(truth),
         bounds: Some(Bounds {
+            largest_gap: None,
             lower: Bound { volume: volume(&lower), mesh: lower },
             upper: Some(Bound { volume: volume(&upper), mesh: upper }),
         }),

@@ -118,7 +118,11 @@ function boundsCamera(data, scene) {
   const extent = [...own, ...vertices].map((p) => scale(p, Math.min(1, 2.5 * data.size / norm(p) || 1)));
   const azimuth = Math.atan2(side[1], side[0]) * 180 / Math.PI + 25;
   const elevation = Math.max(-35, Math.min(35, Math.asin(side[2]) * 180 / Math.PI)) + 12;
-  return fit({ azimuth, elevation, zoom: 1, target: [0, 0, 0], reach: data.size }, extent);
+  const camera = fit({ azimuth, elevation, zoom: 1, target: [0, 0, 0], reach: data.size }, extent);
+  // Room for the body as it turns.
+  const radius = Math.max(...extent.map((p) => norm(sub(p, camera.target))));
+  for (const key of ["reach", "reachAcross"]) camera[key] = Math.max(camera[key], radius);
+  return camera;
 }
 
 // A row of switches over the layers of a figure; `show` holds their state.
