@@ -36,7 +36,8 @@ pub(crate) fn evidence(estimate: &MotionEstimate) -> Vec<Evidence> {
     let misfit = e.residual_rms / e.noise_explains;
     let known = if e.rank == UNKNOWNS { Level::Good } else { Level::Bad };
     let misfit_level = if misfit > 3.0 { Level::Caution } else { Level::Good };
-    let white = if e.whiteness < 0.3 { Level::Caution } else { Level::Good };
+    // What is smooth but below the noise harms nobody.
+    let white = if e.whiteness < 0.3 && misfit > 1.0 { Level::Caution } else { Level::Good };
     let neutral = Level::Neutral;
     let number = EvidenceValue::Number;
     let row = |key: &str, name: &str, value, unit: &str, meaning: &str, level| Evidence {

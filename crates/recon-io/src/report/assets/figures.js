@@ -119,8 +119,8 @@ function boundsCamera(data, scene) {
   const azimuth = Math.atan2(side[1], side[0]) * 180 / Math.PI + 25;
   const elevation = Math.max(-35, Math.min(35, Math.asin(side[2]) * 180 / Math.PI)) + 12;
   const camera = fit({ azimuth, elevation, zoom: 1, target: [0, 0, 0], reach: data.size }, extent);
-  // Room for the body as it turns.
-  const radius = Math.max(...extent.map((p) => norm(sub(p, camera.target))));
+  // Some room for the body as it turns.
+  const radius = 0.82 * Math.max(...extent.map((p) => norm(sub(p, camera.target))));
   for (const key of ["reach", "reachAcross"]) camera[key] = Math.max(camera[key], radius);
   return camera;
 }
