@@ -1,29 +1,57 @@
 //! A start that needs no guess: static balance for the centre of mass, rest for the momentum, a grid of orientations,
 //! and windows that grow while the fit follows.
 
+use super::covariance::{NoiseLevel, residual_variance};
 use super::momentum::{MomentumProblem, Scales, StartState, UNKNOWNS};
-use super::track::Track;
+use super::track::{Node, Track};
 use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt};
+use contact_kinematics::PalmTriple;
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::MassProperties;
 
-/// First windows in units of the natural time `sqrt(length / g)`, in the order in which they are tried: far below one
-/// the data determine little, far above it the motion has left the neighbourhood of rest.
-const FIRST_WINDOWS: [f64; 3] = [1.5, 3.0, 0.75];
+/// The search, round by round. Bodies near rest come first; then other first windows, since far below one natural time
+/// the data determine little and far above it the motion has left the neighbourhood of rest; then bodies that spin,
+/// at heights about that of rest.
+const ROUNDS: [Round; 9] = [
+    Round { window: 1.5, height: 1.0, spin: 0.0 },
+    Round { window: 3.0, height: 1.0, spin: 0.0 },
+    Round { window: 0.75, height: 1.0, spin: 0.0 },
+    Round { window: 1.5, height: 1.0, spin: 0.5 },
+    Round { window: 1.5, height: 0.8, spin: 0.5 },
+    Round { window: 1.5, height: 1.2, spin: 0.5 },
+    Round { window: 1.5, height: 1.0, spin: 1.0 },
+    Round { window: 1.5, height: 0.8, spin: 1.0 },
+    Round { window: 1.5, height: 1.2, spin: 1.0 },
+];
+
+/// One family of starts.
+#[derive(Clone, Copy)]
+struct Round {
+    /// First window in units of the natural time `sqrt(length / g)`, or of a quarter of a short log.
+    window: f64,
+    /// Height of the centre of mass as a share of the one that static balance suggests.
+    height: f64,
+    /// Angular velocity in natural units, about each axis in both senses.
+    spin: f64,
+}
+
 /// Factor by which the window grows.
 const GROWTH: f64 = 1.35;
 /// Samples per natural time while the window grows: enough for the Runge-Kutta steps and for the shape of the motion.
 const SAMPLES_PER_NATURAL_TIME: f64 = 24.0;
 /// Weight of the contact normals' common point against static balance: it decides the height alone.
 const NORMALS_WEIGHT: f64 = 0.01;
-/// Candidates that are followed beyond the first window.
+/// Candidates that are followed beyond the first window before the outcome is looked at.
 const FOLLOWED: usize = 4;
+/// Candidates of a round that are followed in all.
+const FOLLOWED_IN_ALL: usize = 24;
 /// Share of the mean information that holds a candidate near its start in the first windows.
 const PRIOR: f64 = 1e-3;
-/// Residual below which a fit is taken as right, in natural velocities: other simulators' logs leave 1e-6.
-const NEXT_TO_NOTHING: f64 = 3e-6;
-/// Von Neumann ratio of the residuals above which they pass for noise.
-const WHITE: f64 = 0.6;
+/// Residual below which a fit is taken as right, in natural velocities: logs of other simulators leave up to 5e-6,
+/// wrong minima of random scenes 1e-4 and more.
+const NEXT_TO_NOTHING: f64 = 1e-5;
+/// Multiple of the residual that sensor noise leaves, below which a fit is taken as right.
+const EXPLAINED: f64 = 2.0;
 /// Fits on the way: good enough to start the next from.
 const COARSE: LevenbergMarquardt =
     LevenbergMarquardt { iterations: 25, step_tolerance: 1e-6, damping: 1e-2, prior: 0.0 };
@@ -51,15 +79,22 @@ fn natural_time(track: &Track, length: f64) -> f64 {
 ///
 /// The few candidates that fit the first window best are followed first. Only if none of them explains the data are
 /// the others tried, and then other first windows: a search that ends as soon as it can.
-pub(super) fn cold_start(track: &Track, mass: &MassProperties) -> Vec<Fit<StartState, UNKNOWNS>> {
+pub(super) fn cold_start(
+    track: &Track,
+    mass: &MassProperties,
+    noise: NoiseLevel,
+) -> Vec<Fit<StartState, UNKNOWNS>> {
     let scales = scales(track, mass);
     let natural = natural_time(track, scales.length);
     let spacing = track.duration() / (track.len() - 1) as f64;
     let stride = (natural / SAMPLES_PER_NATURAL_TIME / spacing).floor().max(1.0) as usize;
-    let search = Search { track: &track.thinned(stride), mass, scales };
+    let search = Search { track: &track.thinned(stride), mass, scales, noise, stride: stride as f64 };
+    let unit = natural.min(0.25 * track.duration());
     let mut found = Vec::new();
-    for first in FIRST_WINDOWS.map(|share| (share * natural).min(track.duration())) {
-        let mut candidates = search.candidates(first);
+    for round in ROUNDS {
+        let first = (round.window * unit).min(track.duration());
+        let mut candidates = search.candidates(first, round);
+        candidates.truncate(FOLLOWED_IN_ALL);
         while !candidates.is_empty() {
             let batch = candidates.drain(..candidates.len().min(FOLLOWED));
             found.extend(batch.map(|c| search.follow(c, first)));
@@ -76,6 +111,9 @@ struct Search<'a> {
     track: &'a Track,
     mass: &'a MassProperties,
     scales: Scales,
+    noise: NoiseLevel,
+    /// Samples of the log for one of the track.
+    stride: f64,
 }
 
 impl Search<'_> {
@@ -83,15 +121,42 @@ impl Search<'_> {
         MomentumProblem::new(self.track, self.mass, self.scales, window)
     }
 
-    /// Fits of the first window from rest, one for each orientation, best first.
-    fn candidates(&self, window: f64) -> Vec<Fit<StartState, UNKNOWNS>> {
+    /// Fits of the first window from the starts of a round, best first.
+    fn candidates(&self, window: f64, round: Round) -> Vec<Fit<StartState, UNKNOWNS>> {
         let solver = LevenbergMarquardt { prior: PRIOR, ..COARSE };
-        let (problem, rest) = (self.problem(window), rest_state(self.track, window));
+        let problem = self.problem(window);
+        let mut rest = rest_state(self.track, window);
+        rest.p_WCm.z *= round.height;
         let axes = self.mass.principal().axes.inverse();
-        let starts = orientations().into_iter().map(|R_WI| StartState { R_WO: R_WI * axes, ..rest });
-        let mut fits: Vec<_> = starts.map(|start| solver.fit(&problem, start)).collect();
+        let orientations = orientations().into_iter().map(|R_WI| R_WI * axes);
+        let starts: Vec<StartState> = if round.spin == 0.0 {
+            orientations.map(|R_WO| StartState { R_WO, ..rest }).collect()
+        } else {
+            let rate = round.spin * self.scales.velocity / self.scales.length;
+            let turns =
+                [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis * rate, axis * -rate]);
+            let basic: Vec<DQuat> = orientations.take(BASIC_ORIENTATIONS).collect();
+            turns
+                .flat_map(|w_WO| basic.iter().map(move |&R_WO| (w_WO, R_WO)))
+                .map(|(w_WO, R_WO)| self.spinning(StartState { R_WO, ..rest }, w_WO))
+                .collect()
+        };
+        let mut fits: Vec<_> = starts.into_iter().map(|start| solver.fit(&problem, start)).collect();
         sort(&mut fits);
         fits
+    }
+
+    /// The state with an angular velocity, and the velocity that keeps its contacts.
+    fn spinning(&self, rest: StartState, w_WO: DVec3) -> StartState {
+        let node = &self.track.nodes[0];
+        let L_WO = rest.R_WO * (self.mass.inertia() * (rest.R_WO.inverse() * w_WO));
+        let carried =
+            |i: usize| w_WO.dot(node.palms[i].frame.n.cross(node.p_WC[i] - rest.p_WCm)) - node.lift[i];
+        StartState {
+            L_WO,
+            v_WCm: from_normal_speeds(node, DVec3::new(carried(0), carried(1), carried(2))),
+            ..rest
+        }
     }
 
     fn follow(&self, candidate: Fit<StartState, UNKNOWNS>, first: f64) -> Fit<StartState, UNKNOWNS> {
@@ -106,17 +171,10 @@ impl Search<'_> {
 
     /// Whether what is left of the data is noise, or next to nothing: then no other minimum can be better to speak of.
     fn explains(&self, fit: &Fit<StartState, UNKNOWNS>) -> bool {
-        let residuals = self.problem(f64::INFINITY).residuals(&fit.point);
-        fit.normal.rms() < NEXT_TO_NOTHING * self.scales.velocity || whiteness(&residuals) > WHITE
+        let noise =
+            residual_variance(&self.problem(f64::INFINITY).linearised(&fit.point), &self.noise, self.stride);
+        fit.normal.rms() < (NEXT_TO_NOTHING * self.scales.velocity).max(EXPLAINED * noise.sqrt())
     }
-}
-
-/// Von Neumann's ratio of residuals in time order: about 1 where they are independent, about 0 where they are smooth.
-pub(super) fn whiteness(residuals: &[[f64; 3]]) -> f64 {
-    let total: f64 = residuals.iter().flatten().map(|e| e * e).sum();
-    let steps: f64 =
-        residuals.windows(2).flat_map(|w| (0..3).map(move |i| (w[1][i] - w[0][i]).powi(2))).sum();
-    if total > 0.0 { 0.5 * steps / total } else { 1.0 }
 }
 
 fn sort(candidates: &mut Vec<Fit<StartState, UNKNOWNS>>) {
@@ -148,17 +206,22 @@ fn rest_state(track: &Track, window: f64) -> StartState {
     // Three palms apart make this matrix regular; parallel ones leave a height of zero.
     let invertible = matrix.determinant().abs() > 1e-12;
     let p_WCm = if invertible { matrix.inverse() * rhs } else { node.p_WC.iter().sum::<DVec3>() / 3.0 };
-    let normals =
-        DMat3::from_cols(node.palms[0].frame.n, node.palms[1].frame.n, node.palms[2].frame.n).transpose();
-    let carried = normals.inverse() * -DVec3::from_array(node.lift);
-    let v_WCm = if carried.is_finite() { carried } else { DVec3::ZERO };
+    let v_WCm = from_normal_speeds(node, -DVec3::from_array(node.lift));
     StartState { p_WCm, v_WCm, L_WO: DVec3::ZERO, R_WO: DQuat::IDENTITY }
+}
+
+/// The velocity with the given parts along the palms' normals; zero for palms that do not determine one.
+fn from_normal_speeds(node: &Node, speeds: DVec3) -> DVec3 {
+    PalmTriple::new(node.palms.map(|p| p.frame.n)).map_or(DVec3::ZERO, |palms| palms.solve(speeds))
 }
 
 /// `1 - u u'`.
 fn projector(u: DVec3) -> DMat3 {
     DMat3::IDENTITY - DMat3::from_cols(u * u.x, u * u.y, u * u.z)
 }
+
+/// The first of [`orientations`]: the axes along the world's, in every order.
+const BASIC_ORIENTATIONS: usize = 6;
 
 /// Orientations of principal axes, spread over all that differ: turns by pi about a principal axis change nothing, so
 /// the 24 turns of a cube leave 6, and each is taken as it is and turned by 45 degrees about each axis.

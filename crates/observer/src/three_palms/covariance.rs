@@ -76,11 +76,12 @@ pub(super) fn propagate(
         }
     }
     let covariance = information_inverse * spread * information_inverse;
-    Propagated { covariance, residual_variance: residual_variance(&steps, vs, vf, stride) }
+    Propagated { covariance, residual_variance: residual_variance(&steps, noise, stride) }
 }
 
 /// Mean variance of the residuals at the true unknowns.
-fn residual_variance(steps: &[Linearised], vs: f64, vf: f64, stride: f64) -> f64 {
+pub(super) fn residual_variance(steps: &[Linearised], noise: &NoiseLevel, stride: f64) -> f64 {
+    let (vs, vf) = (noise.contact.powi(2), noise.force.powi(2));
     let mut state = Square::zeros();
     let mut sum = 0.0;
     for here in steps {

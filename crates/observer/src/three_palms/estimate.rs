@@ -1,4 +1,5 @@
-use super::cold_start::{cold_start, scales, whiteness};
+use super::cold_start::{cold_start, scales};
+use super::correlation::{correlation_samples, whiteness};
 use super::covariance::{NoiseLevel, propagate};
 use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
 use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNKNOWNS};
@@ -104,9 +105,10 @@ pub fn estimate_motion(log: &SensorLog, known: &KnownBody) -> Result<MotionEstim
 
 pub(super) fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate, EstimateError> {
     let mass = &known.mass;
-    let found = cold_start(track, mass);
-    let best = found.into_iter().next().ok_or(EstimateError::NoFit)?;
     let scales = scales(track, mass);
+    let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
+    let found = cold_start(track, mass, noise);
+    let best = found.into_iter().next().ok_or(EstimateError::NoFit)?;
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
     let solver = LevenbergMarquardt { iterations: 20, step_tolerance: 1e-10, damping: 1e-9, prior: 0.0 };
     let mut fit = solver.fit(&problem, best.point);
@@ -115,14 +117,14 @@ pub(super) fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<Moti
     }
     fit.point.R_WO = nearest_to_identity(mass, fit.point.R_WO);
     let residuals = problem.residuals(&fit.point);
-    let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
     let observability = Observability::new(&fit.normal.information);
     let (covariance, predicted) =
         scaled_covariance(track, known, &scales, &fit.point, &observability, &noise);
     let rms = fit.normal.rms();
-    let misfit = rms / predicted;
-    // Noise that explains less than there is left is no measure of the error: what is left is.
-    let covariance = covariance * misfit.max(1.0).powi(2);
+    // What noise does not explain is a lasting error of sensors or model: as many independent ones as there are
+    // correlation times in the log.
+    let excess = (rms * rms - predicted * predicted).max(0.0) * correlation_samples(&residuals);
+    let covariance = covariance + information_inverse(&observability) * excess;
     let weakest = weakest_direction(&covariance);
     let eigenvalues = observability.eigenvalues;
     let largest = eigenvalues[UNKNOWNS - 1];
@@ -164,16 +166,18 @@ fn scaled_covariance(
     observability: &Observability<UNKNOWNS>,
     noise: &NoiseLevel,
 ) -> (SMatrix<f64, UNKNOWNS, UNKNOWNS>, f64) {
-    let floor = RANK_TOLERANCE * observability.eigenvalues[UNKNOWNS - 1];
-    // Directions without information get the inverse of the floor: a variance that is plainly no knowledge.
-    let inverse = observability.eigenvalues.map(|v| 1.0 / v.max(floor).max(f64::MIN_POSITIVE));
-    let information_inverse =
-        observability.directions * SMatrix::from_diagonal(&inverse) * observability.directions.transpose();
     let stride = track.len().div_ceil(COVARIANCE_SAMPLES);
     let thin = track.thinned(stride);
     let problem = MomentumProblem::new(&thin, &known.mass, *scales, f64::INFINITY);
-    let result = propagate(&problem, start, &information_inverse, noise, stride as f64);
+    let result = propagate(&problem, start, &information_inverse(observability), noise, stride as f64);
     (result.covariance, result.residual_variance.sqrt().max(f64::MIN_POSITIVE))
+}
+
+fn information_inverse(observability: &Observability<UNKNOWNS>) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
+    let floor = RANK_TOLERANCE * observability.eigenvalues[UNKNOWNS - 1];
+    // Directions without information get the inverse of the floor: a variance that is plainly no knowledge.
+    let inverse = observability.eigenvalues.map(|v| 1.0 / v.max(floor).max(f64::MIN_POSITIVE));
+    observability.directions * SMatrix::from_diagonal(&inverse) * observability.directions.transpose()
 }
 
 fn weakest_direction(covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>) -> WeakDirection {

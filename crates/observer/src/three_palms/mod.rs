@@ -1,6 +1,7 @@
 //! Three palms in space.
 
 mod cold_start;
+mod correlation;
 mod covariance;
 mod curves;
 mod estimate;
