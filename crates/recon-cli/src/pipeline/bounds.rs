@@ -13,6 +13,9 @@ pub(crate) struct BoundsResult {
     pub(crate) lower: Option<TriangleMesh>,
     /// Surface of the upper bound; none where it is unbounded.
     pub(crate) upper: Option<TriangleMesh>,
+    /// How far the worst contact lies beyond the half-space of another, m: for exact contacts of a convex body at most
+    /// rounding, however they were moved.
+    pub(crate) contradiction: f64,
     /// What the reader must know.
     pub(crate) warnings: Vec<String>,
 }
@@ -33,8 +36,8 @@ pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliErro
             "The contacts leave the object unbounded on some side{side}: there is no upper bound."
         ));
     }
-    let (drawn_lower, drawn_upper) = if contacts.len() > DRAWN {
-        let some: Vec<ContactSample> = (0..DRAWN).map(|k| contacts[k * contacts.len() / DRAWN]).collect();
+    let some = thinned(contacts);
+    let (drawn_lower, drawn_upper) = if contacts.len() > some.len() {
         // Fewer contacts may leave nothing to draw where all of them gave bounds.
         ShapeBounds::from_contacts(&some).map_or(Ok((lower.clone(), upper.clone())), |b| meshes(&b))?
     } else {
@@ -47,7 +50,19 @@ pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliErro
             .map(|mesh| Bound { mesh, volume: whole.upper_volume() }),
         largest_gap: whole.largest_gap().map(|gap| gap.distance),
     };
-    Ok(BoundsResult { drawn, lower, upper, warnings })
+    Ok(BoundsResult { drawn, lower, upper, contradiction: contradiction(&some), warnings })
+}
+
+/// At most [`DRAWN`] contacts, spread evenly.
+fn thinned(contacts: &[ContactSample]) -> Vec<ContactSample> {
+    let count = contacts.len().min(DRAWN);
+    (0..count).map(|k| contacts[k * contacts.len() / count]).collect()
+}
+
+fn contradiction(contacts: &[ContactSample]) -> f64 {
+    let spaces: Vec<_> = contacts.iter().map(ContactSample::half_space).collect();
+    let beyond = |c: &ContactSample| spaces.iter().map(|s| s.excess(c.point)).fold(0.0, f64::max);
+    contacts.iter().map(beyond).fold(0.0, f64::max)
 }
 
 fn meshes(bounds: &ShapeBounds) -> Result<(Option<TriangleMesh>, Option<TriangleMesh>), CliError> {

@@ -6,28 +6,68 @@ use recon_io::{Evidence, EvidenceValue, Level, Verdict};
 /// Unknowns of the estimate: centre of mass, velocity, angular momentum, orientation.
 const UNKNOWNS: usize = 12;
 
-/// Whether the estimate can be relied on, in one sentence.
-pub(crate) fn verdict(estimate: &MotionEstimate) -> Verdict {
-    match &estimate.reliability {
-        Reliability::Reliable => Verdict {
-            level: Level::Good,
-            text: format!(
-                "The fit settled, and the log determines all {UNKNOWNS} unknowns of the motion; the least certain is the {}.",
-                estimate.evidence.weakest
-            ),
-        },
-        Reliability::Unreliable(reasons) => {
-            let reasons: Vec<_> = reasons.iter().map(ToString::to_string).collect();
-            Verdict {
-                level: Level::Bad,
-                text: format!("Do not rely on this result: {}.", reasons.join("; ")),
-            }
+/// Contacts that contradict each other by more than this share of the object's size are not those of a convex object
+/// in the motion found.
+const LARGEST_CONTRADICTION: f64 = 0.01;
+/// Up to this share of its size, and this many deviations of the sensors' noise, they agree.
+const AGREEMENT: (f64, f64) = (1e-6, 10.0);
+
+/// What speaks for or against an estimate beside its own evidence.
+pub(crate) struct Checks {
+    /// Something in the log does not go with the scene.
+    pub(crate) implausible: bool,
+    /// How far contacts contradict each other, m.
+    pub(crate) contradiction: f64,
+    /// Size of the object, m.
+    pub(crate) size: f64,
+}
+
+impl Checks {
+    fn contradicts(&self) -> bool {
+        // A contradiction that is not a number is one.
+        self.contradiction.is_nan() || self.contradiction > LARGEST_CONTRADICTION * self.size
+    }
+
+    fn level(&self, noise: f64) -> Level {
+        if self.contradicts() {
+            Level::Bad
+        } else if self.contradiction > AGREEMENT.0 * self.size + AGREEMENT.1 * noise {
+            Level::Caution
+        } else {
+            Level::Good
         }
     }
 }
 
+/// Whether the estimate can be relied on, in one sentence.
+pub(crate) fn verdict(estimate: &MotionEstimate, checks: &Checks) -> Verdict {
+    let mut reasons: Vec<String> = match &estimate.reliability {
+        Reliability::Reliable => Vec::new(),
+        Reliability::Unreliable(reasons) => reasons.iter().map(ToString::to_string).collect(),
+    };
+    if checks.implausible {
+        reasons.push("log and scene do not go together (see the warnings)".to_owned());
+    }
+    if checks.contradicts() {
+        reasons.push(format!(
+            "contacts lie up to {:.1e} m outside of what other contacts allow, so the motion is wrong or the object is \
+             not convex",
+            checks.contradiction
+        ));
+    }
+    if !reasons.is_empty() {
+        let text = format!("Do not rely on this result: {}.", reasons.join("; "));
+        return Verdict { level: Level::Bad, text };
+    }
+    let text = format!(
+        "The fit settled, and the log determines all {UNKNOWNS} unknowns of the motion; the least certain is the {}.",
+        estimate.evidence.weakest
+    );
+    Verdict { level: Level::Good, text }
+}
+
 /// What the estimate rests on, row by row.
-pub(crate) fn evidence(estimate: &MotionEstimate) -> Vec<Evidence> {
+pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Evidence> {
     let e = &estimate.evidence;
     let deviation = |block: usize| {
         let variance: f64 = (3 * block..3 * block + 3).map(|k| estimate.covariance[(k, k)]).sum();
@@ -96,6 +136,14 @@ pub(crate) fn evidence(estimate: &MotionEstimate) -> Vec<Evidence> {
             "",
             "Near 1 for residuals without pattern, near 0 for smooth ones.",
             white,
+        ),
+        row(
+            "contradiction",
+            "Contradiction of contacts",
+            number(checks.contradiction),
+            "m",
+            "How far a contact lies outside of what another allows; about zero for a convex object in the right motion.",
+            checks.level(e.noise.contact),
         ),
         row(
             "std_position",

@@ -1,5 +1,5 @@
 use super::bounds::{BoundsResult, bounds};
-use super::evidence::{evidence, verdict};
+use super::evidence::{Checks, evidence, verdict};
 use super::simulate::known_body;
 use super::truth::{axes_of_estimate, true_motion, true_shape};
 use crate::error::CliError;
@@ -40,8 +40,8 @@ pub(crate) fn reconstruct(
     progress: &Progress,
 ) -> Result<Reconstruction, CliError> {
     let mass = known_body(scene)?;
-    let mut warnings: Vec<String> =
-        implausibilities(log, scene).iter().map(|w| sentence(&w.to_string())).collect();
+    let odd = implausibilities(log, scene);
+    let mut warnings: Vec<String> = odd.iter().map(|w| sentence(&w.to_string())).collect();
     progress.step("estimating the motion");
     let known = KnownBody {
         mass,
@@ -54,9 +54,10 @@ pub(crate) fn reconstruct(
     warnings.extend(contact_loss(log, used));
     let palms = tracks(log, &estimate)?;
     progress.step("bounding the shape");
-    let BoundsResult { drawn, lower, upper, warnings: of_bounds } = bounds(&samples(&palms))?;
+    let BoundsResult { drawn, lower, upper, contradiction, warnings: of_bounds } = bounds(&samples(&palms))?;
+    let checks = Checks { implausible: !odd.is_empty(), contradiction, size: size(&palms) };
     warnings.extend(of_bounds);
-    warnings.extend(noise_and_bounds(&estimate, &palms));
+    warnings.extend(noise_and_bounds(&estimate, checks.size));
     let axes = log
         .truth()
         .map_or(DQuat::IDENTITY, |truth| axes_of_estimate(&mass, estimate.start.R_WO, truth[0].R_WO));
@@ -66,14 +67,14 @@ pub(crate) fn reconstruct(
     };
     let data = ReportData {
         title: title.to_owned(),
-        verdict: verdict(&estimate),
+        verdict: verdict(&estimate, &checks),
         times: estimate.motion.iter().map(|m| m.t).collect(),
         palms,
         motion: estimate.motion.iter().map(state).collect(),
         truth: log.truth().map(|truth| true_motion(&truth[..used], axes)),
         bounds: Some(drawn),
         true_shape: shape,
-        evidence: evidence(&estimate),
+        evidence: evidence(&estimate, &checks),
         warnings,
     };
     Ok(Reconstruction { data, lower, upper })
@@ -125,10 +126,14 @@ fn contact_loss(log: &SensorLog, used: usize) -> Option<String> {
     ))
 }
 
-/// The bounds take contacts as exact: what to say when they are not.
-fn noise_and_bounds(estimate: &MotionEstimate, palms: &[PalmTrack; 3]) -> Option<String> {
+/// Largest distance of a contact from the centre of mass, m.
+fn size(palms: &[PalmTrack; 3]) -> f64 {
     let contacts = palms.iter().flat_map(|p| p.contacts.iter().flatten());
-    let size = contacts.map(|c| c.p_OC.length()).fold(0.0, f64::max);
+    contacts.map(|c| c.p_OC.length()).fold(0.0, f64::max)
+}
+
+/// The bounds take contacts as exact: what to say when they are not.
+fn noise_and_bounds(estimate: &MotionEstimate, size: f64) -> Option<String> {
     let noise = estimate.evidence.noise.contact;
     (noise > NOTABLE_NOISE * size).then(|| {
         format!("The bounds take every contact as exact, but contact positions are noisy by {noise:.1e} m: the object may pass the bounds by a few times that.")
