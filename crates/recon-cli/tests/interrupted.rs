@@ -1,0 +1,109 @@
+//! Interruption and readers that go away.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+
+mod common;
+
+use common::{Scratch, scene};
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Longest wait for something that comes within a fraction of it.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn interrupt(child: &Child) {
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+}
+
+/// Waits until `condition` holds; false when the child ended before.
+fn wait_for(child: &mut Child, condition: impl Fn() -> bool) -> bool {
+    let start = Instant::now();
+    while start.elapsed() < PATIENCE {
+        if condition() {
+            return true;
+        }
+        if child.try_wait().unwrap().is_some() {
+            return false;
+        }
+        sleep(Duration::from_millis(2));
+    }
+    panic!("nothing happened in {PATIENCE:?}");
+}
+
+/// A scene that takes much longer to simulate or to write than to interrupt.
+fn long_scene(duration: f64) -> String {
+    let long = scene().replace("duration = 4.2", &format!("duration = {duration}"));
+    // At rest nearly, so that contact is kept.
+    long.replace("[0.0, 0.3, 0.3]", "[0.0, 0.0, 1e-9]").replace("sample_rate = 50.0", "sample_rate = 20000.0")
+}
+
+#[test]
+fn interrupted_while_computing_leaves_nothing() {
+    let scratch = Scratch::new("computing");
+    scratch.write("scene.toml", &long_scene(1000.0));
+    let mut child =
+        scratch.command(&["simulate", "scene.toml", "-o", "log.csv"]).stderr(Stdio::piped()).spawn().unwrap();
+    // The handler is in place long before the 20 million samples are there.
+    sleep(Duration::from_millis(500));
+    interrupt(&child);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let mut line = String::new();
+    BufReader::new(child.stderr.take().unwrap()).read_line(&mut line).unwrap();
+    assert!(line.contains("interrupted"), "{line}");
+    assert_eq!(scratch.names(), ["scene.toml"]);
+}
+
+#[test]
+fn interrupted_while_writing_leaves_nothing() {
+    let scratch = Scratch::new("writing");
+    scratch.write("scene.toml", &long_scene(10.0)).write("log.csv", "an earlier log");
+    let mut child = scratch
+        .command(&["simulate", "scene.toml", "-o", "log.csv"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let begun = wait_for(&mut child, || scratch.names().iter().any(|n| n.starts_with(".log.csv.partial")));
+    assert!(begun, "the log was written before it could be interrupted");
+    interrupt(&child);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(scratch.names(), ["log.csv", "scene.toml"]);
+    assert_eq!(scratch.read("log.csv"), "an earlier log");
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let scratch = Scratch::new("pipe");
+    scratch.write("scene.toml", &scene().replace("sample_rate = 50.0", "sample_rate = 5000.0"));
+    let mut child = scratch
+        .command(&["simulate", "scene.toml", "-o", "-"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut header = String::new();
+    BufReader::new(child.stdout.take().unwrap()).read_line(&mut header).unwrap();
+    assert!(header.starts_with("t,s1_1,"));
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_named() {
+    let scratch = Scratch::new("full");
+    scratch.write("scene.toml", &scene());
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = scratch
+        .command(&["simulate", "scene.toml", "-o", "-"])
+        .stdout(full)
+        .stderr(Stdio::piped())
+        .output()
+        .unwrap();
+    let words = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(5), "{words}");
+    assert!(words.contains("standard output cannot be written"), "{words}");
+}
