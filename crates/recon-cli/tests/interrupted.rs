@@ -33,21 +33,36 @@ fn wait_for(child: &mut Child, condition: impl Fn() -> bool) -> bool {
     panic!("nothing happened in {PATIENCE:?}");
 }
 
-/// A scene that takes much longer to simulate or to write than to interrupt.
-fn long_scene(duration: f64) -> String {
-    let long = scene().replace("duration = 4.2", &format!("duration = {duration}"));
-    // At rest nearly, so that contact is kept.
-    long.replace("[0.0, 0.3, 0.3]", "[0.0, 0.0, 1e-9]").replace("sample_rate = 50.0", "sample_rate = 20000.0")
+/// Whether a process has a handler for SIGINT, which is signal 2.
+fn catches_interruptions(id: u32) -> bool {
+    let Ok(status) = std::fs::read_to_string(format!("/proc/{id}/status")) else {
+        // No such file system: then time must do.
+        sleep(Duration::from_secs(2));
+        return true;
+    };
+    let caught = status.lines().find_map(|l| l.strip_prefix("SigCgt:")).unwrap();
+    u64::from_str_radix(caught.trim(), 16).unwrap() & 0b10 != 0
+}
+
+/// A ball that spins on its palms, for as long and as fast as is asked for.
+fn spinning_ball(duration: f64, rate: f64, spin: f64) -> String {
+    scene()
+        .replace("[1.0, 1.45, 2.05]", "[0.4, 0.4, 0.4]")
+        .replace("kind = \"ellipsoid\", semi_axes = [2.5, 2.0, 1.0]", "kind = \"sphere\", radius = 1.0")
+        .replace("[0.0, 0.3, 0.3]", &format!("[0.0, 0.0, {spin:?}]"))
+        .replace("duration = 4.2", &format!("duration = {duration:?}"))
+        .replace("sample_rate = 50.0", &format!("sample_rate = {rate:?}"))
 }
 
 #[test]
 fn interrupted_while_computing_leaves_nothing() {
     let scratch = Scratch::new("computing");
-    scratch.write("scene.toml", &long_scene(1000.0));
+    // Some ten million turns: minutes of work.
+    scratch.write("scene.toml", &spinning_ball(1e5, 1.0, 1e3));
     let mut child =
         scratch.command(&["simulate", "scene.toml", "-o", "log.csv"]).stderr(Stdio::piped()).spawn().unwrap();
-    // The handler is in place long before the 20 million samples are there.
-    sleep(Duration::from_millis(500));
+    let id = child.id();
+    assert!(wait_for(&mut child, || catches_interruptions(id)), "ended by itself");
     interrupt(&child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let mut line = String::new();
@@ -59,7 +74,7 @@ fn interrupted_while_computing_leaves_nothing() {
 #[test]
 fn interrupted_while_writing_leaves_nothing() {
     let scratch = Scratch::new("writing");
-    scratch.write("scene.toml", &long_scene(10.0)).write("log.csv", "an earlier log");
+    scratch.write("scene.toml", &spinning_ball(100.0, 2000.0, 1.0)).write("log.csv", "an earlier log");
     let mut child = scratch
         .command(&["simulate", "scene.toml", "-o", "log.csv"])
         .stdout(Stdio::null())
