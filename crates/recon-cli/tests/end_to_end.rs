@@ -23,6 +23,21 @@ fn difference(a: &Table, b: &Table, column: &str) -> f64 {
     values(a).iter().zip(values(b)).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
 }
 
+/// To 1e-9 of its size, the ellipsoid of Fig. 5 holds every contact (so it holds their hull) and is held by every
+/// half-space (so it is held by their intersection). Half turns about its axes leave it as it is.
+fn assert_curves_bound_the_ellipsoid(curves: &Table) {
+    let axes = [2.5, 2.0, 1.0];
+    for row in &curves.rows {
+        let values: Vec<f64> = row[2..].iter().map(|cell| cell.parse().unwrap()).collect();
+        let (x, n) = values.split_at(3);
+        let sum = |term: &dyn Fn(usize) -> f64| term(0) + term(1) + term(2);
+        let gauge = sum(&|i| (x[i] / axes[i]).powi(2)).sqrt();
+        assert!(gauge < 1.0 + 1e-9, "contact outside: {row:?}");
+        let support = sum(&|i| (axes[i] * n[i]).powi(2)).sqrt();
+        assert!(sum(&|i| n[i] * x[i]) > support - 2.5e-9, "half-space cuts: {row:?}");
+    }
+}
+
 #[test]
 fn demo_reconstructs_what_it_simulated() {
     let scratch = Scratch::new("demo");
@@ -42,6 +57,7 @@ fn demo_reconstructs_what_it_simulated() {
     );
     let volume = 4.0 / 3.0 * std::f64::consts::PI * 5.0;
     assert!(*lower < volume && volume < *upper, "{lower} {upper}");
+    assert_curves_bound_the_ellipsoid(&Table::parse(&scratch.read("demo/contact_curves.csv")));
     let report = scratch.read("demo/report.html");
     assert!(report.len() < 3_000_000, "{} bytes", report.len());
     assert_eq!(scratch.names(), ["demo"], "nothing is left beside the folder");
