@@ -1,6 +1,6 @@
 use super::cold_start::{cold_start, scales};
 use super::correlation::{correlation_samples, whiteness};
-use super::covariance::{NoiseLevel, propagate};
+use super::covariance::{NoiseLevel, Sampling, propagate};
 use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
 use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNKNOWNS};
 use super::noise::noise_level;
@@ -16,8 +16,9 @@ use thiserror::Error;
 const COVARIANCE_SAMPLES: usize = 400;
 /// Smallest share of the largest information that still counts as information: rounding of `J' J`.
 const RANK_TOLERANCE: f64 = 1e-14;
-/// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable.
-const LARGEST_DEVIATION: f64 = 0.05;
+/// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
+/// linearisation that its covariance comes from does not reach that far.
+const LARGEST_DEVIATION: f64 = 0.25;
 /// A residual above this many times of what noise explains, that is smooth over time, is a misfit.
 const MISFIT: f64 = 3.0;
 /// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
@@ -169,11 +170,15 @@ fn scaled_covariance(
     let stride = track.len().div_ceil(COVARIANCE_SAMPLES);
     let thin = track.thinned(stride);
     let problem = MomentumProblem::new(&thin, &known.mass, *scales, f64::INFINITY);
-    let result = propagate(&problem, start, &information_inverse(observability), noise, stride as f64);
-    (result.covariance, result.residual_variance.sqrt().max(f64::MIN_POSITIVE))
+    let per_node = stride as f64;
+    let sampling = Sampling { per_node, weight: per_node, direct: per_node };
+    let result = propagate(&problem, start, &information_inverse(observability), noise, sampling);
+    (result.covariance, result.residual.max(f64::MIN_POSITIVE))
 }
 
-fn information_inverse(observability: &Observability<UNKNOWNS>) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
+pub(super) fn information_inverse(
+    observability: &Observability<UNKNOWNS>,
+) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
     let floor = RANK_TOLERANCE * observability.eigenvalues[UNKNOWNS - 1];
     // Directions without information get the inverse of the floor: a variance that is plainly no knowledge.
     let inverse = observability.eigenvalues.map(|v| 1.0 / v.max(floor).max(f64::MIN_POSITIVE));

@@ -138,6 +138,16 @@ impl<'a> MomentumProblem<'a> {
         states
     }
 
+    /// Motion at the last sample of the window.
+    pub(super) fn end(&self, start: &StartState) -> StartState {
+        let mut end = *start;
+        self.walk(start, |k, q, _| {
+            let at = self.kinematics(start, k);
+            end = StartState { p_WCm: at.p, v_WCm: at.v, L_WO: at.L, R_WO: q };
+        });
+        end
+    }
+
     /// Residuals in time order, palm by palm, m/s.
     pub(super) fn residuals(&self, start: &StartState) -> Vec<[f64; 3]> {
         let motion = self.motion(start);

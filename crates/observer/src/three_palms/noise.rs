@@ -42,7 +42,7 @@ mod tests {
 
     #[test]
     fn a_smooth_signal_is_not_noise_and_noise_has_its_deviation() {
-        let smooth: Vec<f64> = (0..2000).map(|k| (f64::from(k) * 1e-3).sin()).collect();
+        let smooth: Vec<f64> = (0..20_000).map(|k| (f64::from(k) * 1e-3).sin()).collect();
         assert!(deviation(&mut differences(smooth.clone())) < 1e-12);
         // Sums of twelve uniform numbers are near enough to normal, with unit variance.
         let mut seed = 7u64;

@@ -169,6 +169,21 @@ impl Track {
         Self { t, nodes, integrals, middle, mass: self.mass, gravity: self.gravity, start: self.start }
     }
 
+    /// The same samples with time running backwards: frictionless motion obeys the same laws with all velocities
+    /// reversed.
+    pub(super) fn reversed(&self) -> Self {
+        let end = self.duration();
+        let t = self.t.iter().rev().map(|t| end - t).collect();
+        let mut nodes: Vec<Node> = self.nodes.iter().rev().copied().collect();
+        for node in &mut nodes {
+            for i in 0..3 {
+                node.palms[i].rate = -node.palms[i].rate;
+                node.lift[i] = -node.lift[i];
+            }
+        }
+        Self::assemble(t, nodes, self.mass, self.gravity, 0.0)
+    }
+
     /// Node `k` with its contacts from a parabola fitted to the `reach` samples on either side (none near the ends).
     fn smoothed(&self, k: usize, reach: usize) -> Node {
         let mut node = self.nodes[k];
@@ -176,16 +191,9 @@ impl Track {
         if reach < 2 {
             return node;
         }
-        // Savitzky-Golay weights of degree 2 for 2 reach + 1 samples: (3 (3 m^2 + 3 m - 1) - 15 i^2) / norm.
-        let m = reach as f64;
-        let norm = (2.0 * m - 1.0) * (2.0 * m + 1.0) * (2.0 * m + 3.0);
         for i in 0..3 {
             node.p_WC[i] = (0..=2 * reach)
-                .map(|j| {
-                    let offset = j as f64 - m;
-                    let weight = 3.0 * (3.0 * m * m + 3.0 * m - 1.0 - 5.0 * offset * offset) / norm;
-                    weight * self.nodes[k + j - reach].p_WC[i]
-                })
+                .map(|j| smoothing_weight(reach, j as f64 - reach as f64) * self.nodes[k + j - reach].p_WC[i])
                 .sum();
         }
         node
@@ -213,6 +221,18 @@ impl Track {
     pub fn duration(&self) -> f64 {
         self.t.last().copied().unwrap_or(0.0)
     }
+}
+
+/// Savitzky-Golay weight of degree 2 over `2 reach + 1` samples, at `offset` from the middle.
+fn smoothing_weight(reach: usize, offset: f64) -> f64 {
+    let m = reach as f64;
+    let norm = (2.0 * m - 1.0) * (2.0 * m + 1.0) * (2.0 * m + 3.0);
+    3.0 * (3.0 * m * m + 3.0 * m - 1.0 - 5.0 * offset * offset) / norm
+}
+
+/// Variance of a smoothed contact in variances of one sample: the weight of the middle one.
+pub(super) fn smoothing_variance(reach: usize) -> f64 {
+    if reach < 2 { 1.0 } else { smoothing_weight(reach, 0.0) }
 }
 
 fn sum(term: impl Fn(usize) -> DVec3) -> DVec3 {
