@@ -8,8 +8,11 @@ mod log;
 mod mesh;
 mod number;
 mod output;
+mod plausibility;
 mod report;
 mod scene;
+mod summary;
+mod table;
 
 pub use contacts::{
     ContactPoint, ContactsError, ContactsErrorKind, parse_contacts, read_contacts, write_contacts,
@@ -17,8 +20,11 @@ pub use contacts::{
 pub use log::{LogFileError, LogFileErrorKind, parse_log, read_log, write_log};
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use output::{AtomicFile, OutputError, OutputFolder};
+pub use plausibility::{Implausibility, implausibilities};
 pub use report::{
     Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
     ReportError, TrueShape, Verdict, write_report,
 };
 pub use scene::{KnownInertia, Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation};
+pub use summary::summary;
+pub use table::{write_contact_curves, write_motion, write_radius_functions};

@@ -112,6 +112,6 @@ mod tests {
         let z = &bytes[start + 3 * 24 + 16..start + 4 * 24];
         assert_eq!(f64::from_le_bytes(z.try_into().unwrap()), 0.1);
         let last = &bytes[bytes.len() - 13..];
-        assert_eq!((last[0], last[1..5].try_into().map(u32::from_le_bytes)), (3, Ok(2)));
+        assert_eq!(last, [3, 2, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0]);
     }
 }

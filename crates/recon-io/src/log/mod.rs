@@ -13,4 +13,3 @@ pub use read::{parse_log, read_log};
 pub use write::write_log;
 
 pub(crate) use columns::TRUTH;
-pub(crate) use write::true_values;

@@ -187,7 +187,7 @@ mod tests {
         let scratch = Scratch::new("bad");
         fs::write(scratch.0.join("file"), "").unwrap();
         assert!(matches!(OutputFolder::create(scratch.0.join("file")), Err(OutputError::Occupied { .. })));
-        assert!(matches!(OutputFolder::create(scratch.0.join("file/out")), Err(_)));
+        assert!(OutputFolder::create(scratch.0.join("file/out")).is_err());
         assert!(matches!(
             OutputFolder::create("/"),
             Err(OutputError::Occupied { .. } | OutputError::NoName { .. })

@@ -130,6 +130,8 @@ pub struct Bounds {
     pub lower: Bound,
     /// Around the object; none where the contacts leave it unbounded.
     pub upper: Option<Bound>,
+    /// Hausdorff distance between the two, m; none without an upper bound.
+    pub largest_gap: Option<f64>,
 }
 
 /// A convex bound.
@@ -213,9 +215,62 @@ impl ReportData {
         Ok(())
     }
 
+    /// How far the estimate is from the truth at each time; none without truth.
+    pub(crate) fn departures(&self) -> Option<Vec<Departure>> {
+        let truth = self.truth.as_ref()?;
+        let one = |(k, (a, b)): (usize, (&MotionState, &MotionState))| Departure {
+            position: a.p_WCm.distance(b.p_WCm),
+            angle: rotation_between(a.R_WO, b.R_WO),
+            velocity: a.v_WCm.distance(b.v_WCm),
+            angular_velocity: a.w_WO.distance(b.w_WO),
+            radius: self.palms.iter().fold(0.0, |most: f64, palm| {
+                let error = palm.contacts[k].map_or(0.0, |c| c.radius - palm.frames[k].n.dot(b.p_WCm));
+                most.max(error.abs())
+            }),
+        };
+        Some(self.motion.iter().zip(truth).enumerate().map(one).collect())
+    }
+
     /// True radius functions at time `k`: `r_i = n_i . p_WCm`, as the palms pass through the origin.
     pub(crate) fn true_radii(&self, k: usize) -> Option<[f64; 3]> {
         let state = self.truth.as_ref()?[k];
         Some([0, 1, 2].map(|i| self.palms[i].frames[k].n.dot(state.p_WCm)))
+    }
+}
+
+/// How far an estimate is from the truth at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Departure {
+    /// Of the centre of mass, m.
+    pub(crate) position: f64,
+    /// Of the orientation, rad.
+    pub(crate) angle: f64,
+    /// Of the velocity, m/s.
+    pub(crate) velocity: f64,
+    /// Of the angular velocity, rad/s.
+    pub(crate) angular_velocity: f64,
+    /// Of the worst of the three radius functions, m.
+    pub(crate) radius: f64,
+}
+
+/// Angle between two orientations in rad, exact for small ones too: `2 atan2(|v|, |w|)` of their quotient.
+fn rotation_between(a: DQuat, b: DQuat) -> f64 {
+    let d = a.conjugate() * b;
+    2.0 * d.xyz().length().atan2(d.w.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_rotations_are_measured_exactly() {
+        for angle in [1e-12, 1e-6, 0.1, 3.0] {
+            let a = DQuat::from_scaled_axis(DVec3::new(0.3, -1.0, 0.2));
+            let b = a * DQuat::from_axis_angle(DVec3::Z, angle);
+            for b in [b, -b] {
+                assert!((rotation_between(a, b) - angle).abs() < 4.0 * f64::EPSILON, "{angle}");
+            }
+        }
     }
 }

@@ -15,6 +15,47 @@ use recon::object_dynamics::{MassError, MassProperties};
 use std::path::Path;
 
 /// What is known of a scene. Everything but gravity may be unknown.
+///
+/// As a TOML file, in SI units (angles of palms in degrees where the key says so):
+/// ```
+/// # fn main() -> Result<(), recon_io::SceneErrorKind> {
+/// let scene = recon_io::Scene::parse(r#"
+/// gravity = 9.81                            # m/s^2, along -Z
+///
+/// [object]                                  # what is known of the object; all optional
+/// mass = 1.0
+/// principal_moments = [1.0, 1.45, 2.05]     # or `inertia`, a 3 x 3 tensor in body axes, or `radii_of_gyration`
+/// curvature_radii = [0.4, 6.25]             # bounds on the principal radii of curvature
+///
+/// [sensors]                                 # all optional; `recon simulate` puts this noise on its logs
+/// contact_std = 1e-3                        # standard deviation of s1 and s2
+/// force_std = 0.05                          # standard deviation of f
+/// sample_rate = 1000.0
+///
+/// [palms]                                   # all optional
+/// inertia = [0.1, 0.1, 0.1]                 # of each palm about its axis: with it, logs hold motor torques
+/// friction = 0.0
+///
+/// [simulation]                              # only for `recon simulate`, and as the truth to compare with
+/// duration = 4.2
+/// sample_rate = 1000.0                      # else that of the sensors, else 1000
+/// orientation = [1.0, 0.0, 0.0, 0.0]        # w first, body to world; the palms determine the position
+/// angular_velocity = [0.0, 0.3, 0.3]        # world axes
+/// seed = 1                                  # of the sensor noise
+/// ## kind: sphere (radius), ellipsoid (semi_axes), ellipsoid-plus-ball (semi_axes, radius), or polynomial (terms, each
+/// ## with a coefficient in m and the powers of n_x, n_y, n_z); offset: of the shape from the centre of mass.
+/// shape = { kind = "ellipsoid", semi_axes = [2.5, 2.0, 1.0], offset = [0.0, 0.0, 0.0] }
+/// ## azimuth: the horizontal direction in which a palm rises; slope: against the horizontal. In rad without `_deg`.
+/// palms = [
+///   { azimuth_deg = 270.0, slope_deg = 60.0 },
+///   { azimuth_deg = 30.0, slope_deg = 60.0, rate = 0.01 },
+///   { azimuth_deg = 150.0, slope_deg = 60.0, sinusoid = { amplitude = 0.05, frequency = 3.0, phase = 0.0 } },
+/// ]
+/// "#)?;
+/// assert!(scene.simulation.is_some());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Gravitational acceleration `g` in m/s^2, at least zero; gravity is `(0, 0, -g)`.

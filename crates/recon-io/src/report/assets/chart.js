@@ -97,10 +97,12 @@ class Chart {
     this.svg.replaceChildren();
     this.axes();
     for (const s of this.series) {
-      element("svg:path", { class: "curve", d: this.path(s.values), style: `stroke:${s.colour}` }, this.svg);
+      // Under a dashed truth the estimate is a broad band of the same colour, so that both show where they agree.
+      const look = s.truth ? "curve under" : this.logarithmic ? "curve fine" : "curve";
+      element("svg:path", { class: look, d: this.path(s.values), style: `stroke:${s.colour}` }, this.svg);
     }
     for (const s of this.series.filter((s) => s.truth)) {
-      element("svg:path", { class: "curve true", d: this.path(s.truth) }, this.svg);
+      element("svg:path", { class: "curve true", d: this.path(s.truth), style: `stroke:${s.colour}` }, this.svg);
     }
     this.cursor = element("svg:line", { class: "cursor", y1: this.top, y2: this.top + this.plotHeight }, this.svg);
     this.dots = this.series.map((s) => element("svg:circle", { r: 3.5, style: `fill:${s.colour}` }, this.svg));

@@ -8,13 +8,18 @@ function prepare(data) {
     shape: data.shape && data.shape.mesh.f.length ? smooth(solid(data.shape.mesh)) : null,
     wire: data.shape && data.shape.lines.length ? lines(data.shape.lines.map(points)) : null,
   };
-  const curves = data.palms.map((palm) => {
+  const normals = data.palms.map((palm) => points(palm.normals));
+  const curves = data.palms.map((palm, i) => {
     const world = points(palm.world), own = points(palm.body);
-    return { world, own, worldLine: lines([world]), ownLine: lines([own]) };
+    // The path on the palm is drawn in the palm's own axes, and so moves with it.
+    const onPalm = world.map((c, k) => {
+      const [t1, t2] = palmAxes(normals[i][Math.min(k, normals[i].length - 1)]);
+      return c && [dot(c, t1), dot(c, t2), 0];
+    });
+    return { world, own, onPalm, palmLine: lines([onPalm]), ownLine: lines([own]) };
   });
   const p = points(data.motion.p), q = [];
   for (let i = 0; i < data.motion.q.length; i += 4) q.push(data.motion.q.slice(i, i + 4));
-  const normals = data.palms.map((palm) => points(palm.normals));
   return { body, curves, p, q, normals };
 }
 
@@ -24,17 +29,19 @@ const normalsAt = (scene, k) => scene.normals.map((n) => n[Math.min(k, n.length 
 // How far up the palms the contacts go, and a view that holds the palms and the object at all times.
 function motionCamera(data, scene) {
   const normals = normalsAt(scene, 0), extents = { reach: 0, width: 0 };
-  scene.curves.forEach((curve, i) => curve.world.forEach((c) => {
-    if (!c) return;
-    const axis = unit(cross(normals[i], [0, 0, 1]));
-    extents.reach = Math.max(extents.reach, norm(c));
-    extents.width = Math.max(extents.width, Math.abs(dot(axis, c)));
-  }));
+  for (const curve of scene.curves) for (const s of curve.onPalm) if (s) {
+    extents.reach = Math.max(extents.reach, norm(s));
+    extents.width = Math.max(extents.width, Math.abs(s[0]));
+  }
   extents.reach += 0.4 * data.size;
   extents.width += 0.4 * data.size;
   // Over the first palm, seen from outside and drawn faintly: the other two then stand left and right of the object.
   const azimuth = Math.atan2(-normals[0][1], -normals[0][0]) * 180 / Math.PI + 12;
-  const extent = normals.flatMap((_, i) => palmPolygon(normals, i, extents));
+  const extent = [];
+  for (let part = 0; part < 12; part++) {
+    const now = normalsAt(scene, Math.floor(part / 11 * (scene.p.length - 1)));
+    now.forEach((_, i) => extent.push(...palmPolygon(now, i, extents)));
+  }
   for (const p of scene.p) for (const d of [[1, 0, 0], [0, 1, 0], [0, 0, 1]]) {
     extent.push(add(p, scale(d, 0.85 * data.size)), sub(p, scale(d, 0.85 * data.size)));
   }
@@ -57,8 +64,9 @@ function drawMotion(renderer, c, look, data, scene, k, extents, show) {
   });
   palms(false);
   if (show.trails) scene.curves.forEach((curve, i) => {
-    renderer.lines(curve.worldLine, IDENTITY, { colour: c[PALMS[i]], alpha: 0.28, width: 1.5 });
-    renderer.lines(curve.worldLine, IDENTITY, { colour: c[PALMS[i]], width: 2, count: curve.worldLine.upTo[k] });
+    const [t1, t2] = palmAxes(normals[i]), palm = [...t1, 0, ...t2, 0, ...normals[i], 0, 0, 0, 0, 1];
+    renderer.lines(curve.palmLine, palm, { colour: c[PALMS[i]], alpha: 0.28, width: 1.5 });
+    renderer.lines(curve.palmLine, palm, { colour: c[PALMS[i]], width: 2, count: curve.palmLine.upTo[k] });
   });
   drawBody(renderer, c, scene, m, show);
   scene.curves.forEach((curve, i) => {
@@ -118,7 +126,11 @@ function boundsCamera(data, scene) {
   const extent = [...own, ...vertices].map((p) => scale(p, Math.min(1, 2.5 * data.size / norm(p) || 1)));
   const azimuth = Math.atan2(side[1], side[0]) * 180 / Math.PI + 25;
   const elevation = Math.max(-35, Math.min(35, Math.asin(side[2]) * 180 / Math.PI)) + 12;
-  return fit({ azimuth, elevation, zoom: 1, target: [0, 0, 0], reach: data.size }, extent);
+  const camera = fit({ azimuth, elevation, zoom: 1, target: [0, 0, 0], reach: data.size }, extent);
+  // Some room for the body as it turns.
+  const radius = 0.82 * Math.max(...extent.map((p) => norm(sub(p, camera.target))));
+  for (const key of ["reach", "reachAcross"]) camera[key] = Math.max(camera[key], radius);
+  return camera;
 }
 
 // A row of switches over the layers of a figure; `show` holds their state.

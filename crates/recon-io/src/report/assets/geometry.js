@@ -64,11 +64,16 @@ function points(flat) {
   return list;
 }
 
+// Axes t1 (horizontal) and t2 (upwards) of a palm with normal n, as in the log.
+function palmAxes(n) {
+  const level = Math.hypot(n[0], n[1]) || 1, up = [-n[0] * n[2] / level, -n[1] * n[2] / level, level];
+  return [cross(up, n), up];
+}
+
 // The part of palm i that faces the object: its plane up to `reach` along its slope and `width` to either side, cut
 // where the other palms begin.
 function palmPolygon(normals, i, { reach, width }) {
-  const n = normals[i], level = Math.hypot(n[0], n[1]) || 1;
-  const up = [-n[0] * n[2] / level, -n[1] * n[2] / level, level], along = cross(up, n);
+  const [along, up] = palmAxes(normals[i]);
   const corner = (a, b) => add(scale(along, a * width), scale(up, b * reach));
   let polygon = [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)];
   for (let j = 0; j < 3; j++) if (j !== i) polygon = clip(polygon, normals[j]);

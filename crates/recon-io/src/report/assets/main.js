@@ -44,7 +44,7 @@ function facts() {
     if (bounds.upper) {
       fact("Upper bound", format(bounds.upper.volume), "m³");
       fact("Lower / upper", format(bounds.lower.volume / bounds.upper.volume, 3));
-    }
+    } else fact("Upper bound", "unbounded");
   }
   if (departure) {
     const largest = (list) => list.reduce((m, v) => Math.max(m, v === null ? 0 : v), 0);
@@ -181,7 +181,7 @@ function charts() {
   });
   byId("curves-caption").textContent =
     "The radius functions r₁, r₂, r₃ are the distances of the palms' planes from the centre of mass. " +
-    (truth ? "Estimates are solid lines in colour, the truth dashed on top of them. " : "") +
+    (truth ? "Estimates are broad lines, the truth is dashed. " : "") +
     "Move over a chart to read the values; all figures follow.";
 }
 
@@ -220,6 +220,7 @@ function volumes(rows, lower, upper) {
     const cell = row(name, format(volume, 5)), bar = element("i", { class: "bar-volume" }, cell);
     bar.style.cssText = `--c:var(--${colour});width:${(100 * volume / largest).toFixed(1)}%`;
   });
+  if (!upper) row("Upper bound", "unbounded");
   if (upper) row("Lower / upper", format(lower.volume / upper.volume, 4));
   if (data.shape && data.shape.volume) {
     row("Lower / true", format(lower.volume / data.shape.volume, 4));
