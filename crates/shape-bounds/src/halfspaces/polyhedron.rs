@@ -140,9 +140,14 @@ fn corners(dual: &SolidHull, half_spaces: &[HalfSpace]) -> Vec<DVec3> {
 /// How far a corner protrudes, at most, over a plane of a neighbouring corner.
 fn largest_protrusion(dual: &SolidHull, half_spaces: &[HalfSpace], corners: &[DVec3]) -> f64 {
     let mut largest = 0.0_f64;
-    for (corner, neighbours) in corners.iter().zip(dual.neighbours()) {
-        for plane in neighbours.iter().flat_map(|g| dual.triangles()[*g as usize]) {
-            largest = largest.max(half_spaces[plane as usize].excess(*corner));
+    for (f, (t, neighbours)) in dual.triangles().iter().zip(dual.neighbours()).enumerate() {
+        for (edge, g) in neighbours.iter().enumerate() {
+            // One look at each edge: what protrudes on one side of it protrudes on the other.
+            if (f as u32) < *g {
+                let [a, b, c] = dual.triangles()[*g as usize];
+                let opposite = a ^ b ^ c ^ t[edge] ^ t[(edge + 1) % 3];
+                largest = largest.max(half_spaces[opposite as usize].excess(corners[f]));
+            }
         }
     }
     largest
