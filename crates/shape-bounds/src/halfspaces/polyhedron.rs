@@ -78,6 +78,12 @@ impl Polyhedron {
         &self.face_sources
     }
 
+    /// For each face, its half-space with the margin that makes up for rounding.
+    #[must_use]
+    pub fn face_half_spaces(&self) -> &[HalfSpace] {
+        &self.half_spaces
+    }
+
     /// Half-spaces that could be left out because the others imply them, to rounding.
     #[must_use]
     pub fn redundant(&self) -> &[u32] {
