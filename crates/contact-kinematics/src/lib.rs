@@ -8,6 +8,7 @@
 
 mod direction;
 mod palm;
+pub mod planar;
 mod support;
 
 pub use direction::{Direction, DirectionError};
