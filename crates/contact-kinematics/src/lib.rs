@@ -13,4 +13,7 @@ mod support;
 
 pub use direction::{Direction, DirectionError};
 pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple, SlopeMotion};
-pub use support::{CurvatureRadii, SupportFunction, SupportJet};
+pub use support::{
+    CurvatureRadii, Ellipsoid, MinkowskiSum, Monomial, PolynomialSupport, ShapeError, Sphere,
+    SupportFunction, SupportJet, Translated, check_convex, principal_radii,
+};

@@ -1,7 +1,17 @@
 //! Support functions of smooth convex bodies.
 
+mod ellipsoid;
+mod harmonic;
+mod polynomial;
+mod sum;
+
+pub use ellipsoid::{Ellipsoid, Sphere};
+pub use polynomial::{Monomial, PolynomialSupport};
+pub use sum::{MinkowskiSum, Translated};
+
 use crate::Direction;
 use glam::{DMat3, DVec3};
+use thiserror::Error;
 
 /// Support function, contact point and curvature at one outward normal, all in body axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,17 +60,104 @@ pub struct CurvatureRadii {
     pub max: f64,
 }
 
-impl<S: SupportFunction + ?Sized> SupportFunction for &S {
-    fn jet(&self, n: Direction) -> SupportJet {
-        (**self).jet(n)
-    }
-    fn value(&self, n: Direction) -> f64 {
-        (**self).value(n)
-    }
-    fn point(&self, n: Direction) -> DVec3 {
-        (**self).point(n)
-    }
-    fn curvature_radii(&self) -> CurvatureRadii {
-        (**self).curvature_radii()
+/// Why a shape cannot be used.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ShapeError {
+    /// A length is zero, negative or not a number.
+    #[error("{what} is {value} m; it must be positive and finite")]
+    Length {
+        /// Which length.
+        what: &'static str,
+        /// As given, in m.
+        value: f64,
+    },
+    /// A coefficient is not a number.
+    #[error("coefficient {index} is {value}; it must be finite")]
+    Coefficient {
+        /// Which term, from 0.
+        index: usize,
+        /// As given.
+        value: f64,
+    },
+    /// A term has too high a degree.
+    #[error("term {index} has degree {degree}; the limit is {limit}")]
+    Degree {
+        /// Which term, from 0.
+        index: usize,
+        /// Its degree.
+        degree: u32,
+        /// The highest accepted.
+        limit: u32,
+    },
+    /// A row of spherical-harmonic coefficients has the wrong length.
+    #[error("harmonics of degree {degree} need {expected} coefficients, found {found}")]
+    HarmonicCount {
+        /// Degree `l` of the row.
+        degree: usize,
+        /// `2 l + 1`.
+        expected: usize,
+        /// As given.
+        found: usize,
+    },
+    /// The body is not certified to be smooth and strictly convex.
+    #[error(
+        "body is not certified convex: its principal radii of curvature are only known to be above {min:.3e} m; \
+         reduce the terms that bend it inwards"
+    )]
+    NotConvex {
+        /// Guaranteed lower bound of the radii, in m; not positive.
+        min: f64,
+    },
+}
+
+/// The body's radii of curvature, if they certify it smooth and strictly convex: the convexity margin is their `min`.
+///
+/// # Errors
+/// [`ShapeError::NotConvex`].
+pub fn check_convex(body: &(impl SupportFunction + ?Sized)) -> Result<CurvatureRadii, ShapeError> {
+    let radii = body.curvature_radii();
+    if radii.min > 0.0 && radii.max.is_finite() {
+        Ok(radii)
+    } else {
+        Err(ShapeError::NotConvex { min: radii.min })
     }
 }
+
+/// The two principal radii of curvature in the Hessian of a support function at the normal `n`, ascending, in m.
+#[must_use]
+pub fn principal_radii(hessian: DMat3, n: Direction) -> [f64; 2] {
+    // In a tangent basis, and not from trace and norm: those lose half of the digits where the radii are equal.
+    let (a, b) = n.tangent_basis();
+    let (ha, hb) = (hessian * a, hessian * b);
+    let (aa, ab, bb) = (a.dot(ha), a.dot(hb), b.dot(hb));
+    let (mean, half) = (0.5 * (aa + bb), (0.5 * (aa - bb)).hypot(ab));
+    [mean - half, mean + half]
+}
+
+fn check_length(what: &'static str, value: f64) -> Result<(), ShapeError> {
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(ShapeError::Length { what, value }) }
+}
+
+macro_rules! forward_support_function {
+    ($($pointer:ty),+) => {$(
+        impl<S: SupportFunction + ?Sized> SupportFunction for $pointer {
+            fn jet(&self, n: Direction) -> SupportJet {
+                (**self).jet(n)
+            }
+            fn value(&self, n: Direction) -> f64 {
+                (**self).value(n)
+            }
+            fn point(&self, n: Direction) -> DVec3 {
+                (**self).point(n)
+            }
+            fn curvature_radii(&self) -> CurvatureRadii {
+                (**self).curvature_radii()
+            }
+        }
+    )+};
+}
+
+forward_support_function!(&S, Box<S>);
+
+#[cfg(test)]
+mod tests;
