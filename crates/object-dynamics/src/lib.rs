@@ -5,6 +5,7 @@
 pub mod integrate;
 mod log;
 mod mass;
+pub mod planar;
 
 pub use log::{LogError, PalmReading, Sample, SensorLog, TrueState};
 pub use mass::{MassError, MassProperties, PrincipalInertia};
