@@ -1,1 +1,16 @@
-//! placeholder
+//! Observers: estimate the state of a system from its outputs, and say how well it is known.
+//!
+//! The generic part needs a [`Model`] (flow, output, linearisation) and knows nothing about palms: the Newton-method
+//! observer on a moving window ([`NewtonObserver`]), all samples at once ([`solve_batch`]) and the extended Kalman filter
+//! ([`ExtendedKalmanFilter`]). Each estimate comes with a [`Report`]: status, residual, rank, smallest information and its
+//! direction, condition, covariance.
+//!
+//! The feature `palms` (on by default) adds the estimators of shape and motion from touch.
+
+mod core;
+
+pub use core::{
+    Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Model, NewtonEstimate,
+    NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start, Status, describe_direction, rk4,
+    rk4_linearised, solve_batch,
+};
