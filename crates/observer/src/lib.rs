@@ -8,6 +8,8 @@
 //! The feature `palms` (on by default) adds the estimators of shape and motion from touch.
 
 mod core;
+#[cfg(feature = "palms")]
+pub mod planar;
 
 pub use core::{
     Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Model, NewtonEstimate,

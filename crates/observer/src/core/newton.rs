@@ -150,6 +150,17 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> NewtonObserver<Mo, N, M> {
 
     /// Takes a sample, steps, and returns the estimate at that sample.
     pub fn push(&mut self, sample: Sample<Mo::Input, M>) -> NewtonEstimate<N> {
+        self.append(sample);
+        self.improve()
+    }
+
+    /// Steps on the samples that are there; none before the first one.
+    pub fn step(&mut self) -> Option<NewtonEstimate<N>> {
+        (!self.samples.is_empty()).then(|| self.improve())
+    }
+
+    /// Takes a sample without stepping, as while too few of them have come for a step to make sense.
+    pub fn append(&mut self, sample: Sample<Mo::Input, M>) {
         self.window.append(&self.model, &sample.input);
         self.samples.push_back(sample);
         if self.samples.len() > self.options.window {
@@ -157,13 +168,19 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> NewtonObserver<Mo, N, M> {
                 Arrival::Forget => 0.0,
                 Arrival::Carry(factor) => factor,
             };
-            // The newcomer is not linearised yet, but only the two oldest nodes matter here.
+            // Only the two oldest nodes matter here; they are not linearised when samples were appended without steps.
+            if keep > 0.0 && self.window.linearised() < 2 {
+                self.window.linearise(&self.model, self.samples.iter());
+            }
             self.window.drop_first(keep);
             self.samples.pop_front();
         }
-        let estimate = self.improve();
-        self.last = Some(estimate);
-        estimate
+    }
+
+    /// Whether the next sample pushes the oldest one out of the window.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.samples.len() >= self.options.window
     }
 
     /// The latest estimate; none before the first sample.
@@ -212,11 +229,13 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> NewtonObserver<Mo, N, M> {
         let covariance = self.window.last_covariance(first_covariance);
         let residual = self.window.residual();
         let status = status(&information, &self.window, &step, &first_covariance.diagonal(), residual);
-        NewtonEstimate {
+        let estimate = NewtonEstimate {
             state: *self.window.state(self.window.len() - 1),
             first_state: *self.window.state(0),
             report: information.report(status, self.samples.len(), residual, covariance),
-        }
+        };
+        self.last = Some(estimate);
+        estimate
     }
 }
 

@@ -77,16 +77,23 @@ pub(super) struct Window<const N: usize, const M: usize> {
     prior: Prior<N>,
     data_cost: f64,
     channels: usize,
+    /// Number of nodes, from the oldest on, that the last linearisation covered.
+    linearised: usize,
 }
 
 impl<const N: usize, const M: usize> Window<N, M> {
     pub(super) fn new(start: &Start<N>, capacity: usize) -> Self {
         let prior = Prior { at: start.state, information: start.information, vector: SVector::zeros() };
-        Self { nodes: VecDeque::with_capacity(capacity), prior, data_cost: 0.0, channels: 0 }
+        Self { nodes: VecDeque::with_capacity(capacity), prior, data_cost: 0.0, channels: 0, linearised: 0 }
     }
 
     pub(super) fn len(&self) -> usize {
         self.nodes.len()
+    }
+
+    /// Number of nodes, from the oldest on, that the last linearisation covered.
+    pub(super) fn linearised(&self) -> usize {
+        self.linearised
     }
 
     /// State at sample `k` of the window.
@@ -155,6 +162,7 @@ impl<const N: usize, const M: usize> Window<N, M> {
     ) {
         self.data_cost = 0.0;
         self.channels = 0;
+        self.linearised = self.nodes.len();
         let mut before: Option<SVector<f64, N>> = None;
         for (node, sample) in self.nodes.iter_mut().zip(samples) {
             let x = node.x;
@@ -245,6 +253,7 @@ impl<const N: usize, const M: usize> Window<N, M> {
     /// it, zero: none), as linearised last.
     pub(super) fn drop_first(&mut self, keep: f64) {
         let Some(first) = self.nodes.pop_front() else { return };
+        self.linearised = self.linearised.saturating_sub(1);
         let Some(next) = self.nodes.front() else { return };
         let mut prior = Prior { at: next.at, information: SMatrix::zeros(), vector: SVector::zeros() };
         let backward = if keep > 0.0 { next.transition.try_inverse() } else { None };
