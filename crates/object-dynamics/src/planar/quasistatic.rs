@@ -7,6 +7,9 @@ use thiserror::Error;
 const GRID: u32 = 600;
 /// Newton steps allowed from one pair of palms to the next; quadratic convergence needs five.
 const NEWTON_STEPS: u32 = 20;
+/// Newton's last step in rad: convergence is quadratic, so the error after it is far below rounding; the torque balance
+/// itself is only known to 1e-17 m, which limits the step to 1e-13 where the stability is 1e-4 m.
+const SETTLED_STEP: f64 = 1e-12;
 /// Largest Newton step in rad: a longer one has left the branch.
 const LONGEST_STEP: f64 = 0.3;
 
@@ -103,7 +106,7 @@ impl<S: RadiusFunction> PlanarEquilibria<S> {
                 return Err(here);
             }
             phi0 -= step;
-            if step.abs() <= 4.0 * f64::EPSILON * phi0.abs().max(1.0) {
+            if step.abs() <= SETTLED_STEP {
                 return Ok(self.balance(palms, phi0).1);
             }
         }

@@ -13,6 +13,9 @@ const MOTION: usize = 5;
 /// Relative rate of object and palm, as a share of the natural rate, below which the contact offset `d` is taken from the
 /// sensor rather than from the motion. Small enough to cost no information in motion, large against rounding.
 const BLEND_SHARE: f64 = 0.02;
+/// Standard deviation of an interval's force doubt under white noise of one: `63/256 sqrt(252)`, the middle of the newest of
+/// five equal intervals.
+const DOUBT_PER_NOISE: f64 = 3.91;
 
 /// State `(cm, v, omega0)` and, after it, constants to be estimated; driven by forces, with the contacts as output.
 ///
@@ -227,6 +230,13 @@ impl Side<'_> {
     }
 }
 
+/// Error of the mean force over an interval from its interpolation: the middle counts for two thirds in Simpson's rule.
+/// None where the doubt may be noise, of which it contains [`DOUBT_PER_NOISE`] standard deviations.
+fn interpolation_error(input: &PairInput, palm: usize, force_deviation: f64) -> f64 {
+    let doubt = input.force_doubt[palm];
+    if doubt > 3.0 * DOUBT_PER_NOISE * force_deviation { doubt * 2.0 / 3.0 } else { 0.0 }
+}
+
 /// Stage of an interval at fraction 0, 1/2 or 1.
 fn at(input: &PairInput, fraction: f64) -> &PairStage {
     if fraction < 0.25 {
@@ -271,7 +281,8 @@ impl<const N: usize> Model<N, 2> for ForceDriven<N> {
         (y, h)
     }
 
-    /// Noise of the forces, and of the contacts as far as they enter `d`; one reading counts for one interval.
+    /// Noise of the forces, the error of their interpolation, and noise of the contacts as far as they enter `d`; one
+    /// reading counts for one interval.
     fn process_noise(&self, x: &SVector<f64, N>, input: &PairInput) -> Option<SMatrix<f64, N, N>> {
         let PlanarNominal { contact_deviation, force_deviation, .. } = self.nominal;
         if self.exact || contact_deviation <= 0.0 && force_deviation <= 0.0 {
@@ -280,7 +291,8 @@ impl<const N: usize> Model<N, 2> for ForceDriven<N> {
         let (mass, inertia) = self.mass_and_inertia(x);
         let mut q = SMatrix::<f64, N, N>::zeros();
         for side in [0, 1].map(|palm| self.side(x, &input.stages[0], palm)) {
-            let step = input.dt * force_deviation;
+            let step =
+                input.dt * force_deviation.hypot(interpolation_error(input, side.palm, force_deviation));
             let mut kick = SVector::<f64, N>::zeros();
             kick[2] = step * side.n.x / mass;
             kick[3] = step * side.n.y / mass;

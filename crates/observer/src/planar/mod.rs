@@ -8,6 +8,7 @@ mod error;
 mod force_driven;
 mod input;
 mod observer;
+mod quasistatic;
 mod scale;
 mod start;
 
@@ -17,5 +18,9 @@ pub use error::PlanarEstimateError;
 pub use force_driven::ForceDriven;
 pub use input::{InputBuilder, PairInput, PairStage, planar_samples};
 pub use observer::{PlanarEstimate, PlanarObserver, PlanarObserverOptions, PlanarStartFrom};
+pub use quasistatic::{
+    HeightFit, QuasistaticError, QuasistaticPath, QuasistaticPoint, height_from_closure,
+    quasistatic_reconstruction,
+};
 pub use scale::NaturalScale;
 pub use start::{ResidualStart, residual_start};
