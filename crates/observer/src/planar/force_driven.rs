@@ -13,9 +13,9 @@ const MOTION: usize = 5;
 /// Relative rate of object and palm, as a share of the natural rate, below which the contact offset `d` is taken from the
 /// sensor rather than from the motion. Small enough to cost no information in motion, large against rounding.
 const BLEND_SHARE: f64 = 0.02;
-/// Standard deviation of an interval's force doubt under white noise of one: `63/256 sqrt(252)`, the middle of the newest of
+/// Standard deviation of an interval's force change under white noise of one: `63/256 sqrt(252)`, the middle of the newest of
 /// five equal intervals.
-const DOUBT_PER_NOISE: f64 = 3.91;
+const CHANGE_PER_NOISE: f64 = 3.91;
 
 /// State `(cm, v, omega0)` and, after it, constants to be estimated; driven by forces, with the contacts as output.
 ///
@@ -231,10 +231,10 @@ impl Side<'_> {
 }
 
 /// Error of the mean force over an interval from its interpolation: the middle counts for two thirds in Simpson's rule.
-/// None where the doubt may be noise, of which it contains [`DOUBT_PER_NOISE`] standard deviations.
+/// None where the change that it is taken from may be noise.
 fn interpolation_error(input: &PairInput, palm: usize, force_deviation: f64) -> f64 {
-    let doubt = input.force_doubt[palm];
-    if doubt > 3.0 * DOUBT_PER_NOISE * force_deviation { doubt * 2.0 / 3.0 } else { 0.0 }
+    let significant = input.force_change[palm] > 3.0 * CHANGE_PER_NOISE * force_deviation;
+    if significant { input.force_error[palm] * 2.0 / 3.0 } else { 0.0 }
 }
 
 /// Stage of an interval at fraction 0, 1/2 or 1.

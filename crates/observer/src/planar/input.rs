@@ -34,9 +34,11 @@ pub struct PairInput {
     pub dt: f64,
     /// Start, middle and end.
     pub stages: [PairStage; 3],
-    /// How much the interpolated forces in the middle change when the oldest sample is left out, N: the size of the
-    /// interpolation's error where forces are exact, and of their noise where they are not.
-    pub force_doubt: [f64; 2],
+    /// How much the interpolated forces in the middle change when the oldest sample is left out, N.
+    pub force_change: [f64; 2],
+    /// Error of these forces for exact readings, N: the change above times its ratio to the change before it, as in a
+    /// geometric series.
+    pub force_error: [f64; 2],
 }
 
 /// Readings of one sample in the order that is interpolated: `P1, P2, f1, f2, s1, s2`.
@@ -151,23 +153,25 @@ impl InputBuilder {
         };
         let middle = if end == 0 { last } else { self.stage(0.5 * (start_t + t))? };
         self.before = Some(last);
-        let force_doubt = if end == 0 { [0.0; 2] } else { self.force_doubt(0.5 * (start_t + t)) };
-        Ok(PairInput { t, dt: t - start_t, stages: [first, middle, last], force_doubt })
+        let middle_t = 0.5 * (start_t + t);
+        let changes = [2, 3].map(|i| if end == 0 { [0.0; 2] } else { self.changes(i, middle_t) });
+        let force_change = changes.map(|[last, _]| last);
+        let force_error =
+            changes.map(|[last, before]| if before > last { last * last / before } else { last });
+        Ok(PairInput { t, dt: t - start_t, stages: [first, middle, last], force_change, force_error })
     }
 
-    /// Difference of the polynomials through all rows and through all but the oldest: by Newton's form, the highest
-    /// divided difference times the product of the distances to the other rows.
-    fn force_doubt(&self, t: f64) -> [f64; 2] {
-        let reach: f64 = self.rows[1..].iter().map(|row| t - row.t).product();
-        [2, 3].map(|i| {
-            let difference: f64 = self.rows.iter().map(|row| row.values[i] / self.spread(row.t)).sum();
+    /// Changes of the interpolated value `i` at `t` when the oldest row is left out, and when the next one is too: by
+    /// Newton's form, the highest divided difference times the distances to the other rows.
+    fn changes(&self, i: usize, t: f64) -> [f64; 2] {
+        [0, 1].map(|oldest| {
+            let rows = &self.rows[oldest..];
+            let spread =
+                |own: f64| -> f64 { rows.iter().filter(|row| row.t != own).map(|row| own - row.t).product() };
+            let difference: f64 = rows.iter().map(|row| row.values[i] / spread(row.t)).sum();
+            let reach: f64 = rows[1..].iter().map(|row| t - row.t).product();
             (difference * reach).abs()
         })
-    }
-
-    /// Product of the distances of a row's time to the times of the other rows.
-    fn spread(&self, t: f64) -> f64 {
-        self.rows.iter().filter(|row| row.t != t).map(|row| t - row.t).product()
     }
 
     /// Polynomial through the rows, values and (for the palms) rates, at time `t`.

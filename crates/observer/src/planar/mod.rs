@@ -8,8 +8,11 @@ mod error;
 mod force_driven;
 mod input;
 mod observer;
+mod palm_series;
 mod quasistatic;
 mod scale;
+mod shape_fit;
+mod shape_model;
 mod start;
 
 pub use authors::{AuthorsFields, AuthorsState};
@@ -23,4 +26,5 @@ pub use quasistatic::{
     quasistatic_reconstruction,
 };
 pub use scale::NaturalScale;
+pub use shape_fit::{ShapeFit, ShapeFitOptions, fit_shape};
 pub use start::{ResidualStart, residual_start};
