@@ -132,9 +132,9 @@ pub fn fit_shape(log: &PlanarLog, options: &ShapeFitOptions) -> Result<ShapeFit,
         }
         candidates.push((cost, x));
     }
-    let rivals = rivals(candidates, EARLY_MARGIN, 3);
+    let kept = rivals(candidates, EARLY_MARGIN, 3);
     let later = &windows[early..];
-    let finals = rivals.into_iter().map(|(mut cost, mut x)| {
+    let finals = kept.into_iter().map(|(mut cost, mut x)| {
         for &(count, noise) in later {
             (x, cost) = problem.minimise(x, count, noise, &mut iterations);
         }
