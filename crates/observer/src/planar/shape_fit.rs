@@ -342,8 +342,19 @@ impl<'a> Problem<'a> {
         let lowest = eigen.eigenvalues.imin();
         let inner = eigen.eigenvalues.map(|v| 1.0 / (1.0 + v.max(0.0)));
         let scaled = &eigen.eigenvectors * DMatrix::from_diagonal(&inner) * eigen.eigenvectors.transpose();
-        let covariance =
+        let mut covariance =
             DMatrix::from_fn(count, count, |i, j| scaled[(i, j)] * self.deviations[i] * self.deviations[j]);
+        for (_, rival) in finals.iter().skip(1) {
+            let away = rival - x;
+            covariance += &away * away.transpose();
+        }
+        // Some direction is free, and the search over many starts has then fitted noise along it (as a disc's turn rate to the
+        // strongest ripple): nothing beyond the prior is claimed.
+        if eigen.eigenvalues[lowest] < 1.0 {
+            let away = &self.centre - x;
+            covariance = DMatrix::from_diagonal(&self.deviations.component_mul(&self.deviations));
+            covariance += &away * away.transpose();
+        }
         let residual = (squares / (2 * all) as f64).sqrt();
         let smallest_information = eigen.eigenvalues[lowest].max(0.0);
         let status = if !residual.is_finite() {
