@@ -126,7 +126,7 @@ fn shape(marker: Marker) -> MarkerShape {
 
 fn layout(drawing: &Drawing, plots: &[Plot]) -> Layout {
     let mut layout = Layout::auto_from_plots(plots)
-        .with_width(WIDTH)
+        .with_width(width(drawing))
         .with_height(HEIGHT)
         .with_title(drawing.title.as_str())
         .with_x_label(drawing.x.label())
@@ -149,6 +149,14 @@ fn layout(drawing: &Drawing, plots: &[Plot]) -> Layout {
         };
     }
     layout
+}
+
+/// Wide enough that a legend with long names does not squeeze the diagram.
+fn width(drawing: &Drawing) -> f64 {
+    /// Legend labels up to so many characters fit into the usual width; each further one takes about 7 units.
+    const USUAL: usize = 26;
+    let labels = drawing.legend.iter().flat_map(|(_, items)| items).map(|item| item.label.chars().count());
+    WIDTH + 7.0 * labels.max().unwrap_or(0).saturating_sub(USUAL) as f64
 }
 
 fn legend_entry(item: &LegendItem) -> LegendEntry {
@@ -188,8 +196,9 @@ fn annotate(mut layout: Layout, drawing: &Drawing, frame: &Frame) -> Layout {
     }
     if !drawing.off_scale.is_empty() {
         let x = frame.x.1 - 60.0 * (frame.x.1 - frame.x.0) / WIDTH;
-        layout =
-            layout.with_annotation(TextAnnotation::new("no estimate", x, frame.off_scale).with_font_size(11));
+        layout = layout.with_annotation(
+            TextAnnotation::new("no estimate", x, frame.off_scale + NOTE_LIFT * unit).with_font_size(11),
+        );
     }
     layout
 }
@@ -198,6 +207,7 @@ fn annotate(mut layout: Layout, drawing: &Drawing, frame: &Frame) -> Layout {
 fn add_foot(scene: &mut Scene, drawing: &Drawing) {
     let left_out = match drawing.left_out {
         0 => String::new(),
+        1 => "1 setting is not drawn (failed, zero or not finite): see the CSV".to_owned(),
         n => format!("{n} settings are not drawn (failed, zero or not finite): see the CSV"),
     };
     for line in [left_out.as_str(), drawing.foot.as_str()] {

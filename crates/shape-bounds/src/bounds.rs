@@ -59,13 +59,27 @@ impl ShapeBounds {
     /// [`BoundsError`] for fewer than four contacts, values that are not finite, and contacts that contradict each
     /// other (a smallest contradictory set is named).
     pub fn from_contacts(contacts: &[ContactSample]) -> Result<Self, BoundsError> {
+        Self::check(contacts)?;
+        let points: Vec<DVec3> = contacts.iter().map(|c| c.point).collect();
+        let half_spaces: Vec<HalfSpace> = contacts.iter().map(ContactSample::half_space).collect();
+        Self::from_parts(&points, &half_spaces)
+    }
+
+    /// Whether there are contacts enough, all of finite coordinates.
+    pub(crate) fn check(contacts: &[ContactSample]) -> Result<(), BoundsError> {
         if contacts.len() < FEWEST {
             return Err(BoundsError::TooFew { found: contacts.len(), needed: FEWEST });
         }
-        let points: Vec<DVec3> = contacts.iter().map(|c| c.point).collect();
-        let half_spaces: Vec<HalfSpace> = contacts.iter().map(ContactSample::half_space).collect();
-        let lower = Hull::of(&points)?;
-        let upper = Intersection::of(&half_spaces)?;
+        match contacts.iter().position(|c| !c.point.is_finite()) {
+            Some(index) => Err(PointsError::NotFinite { index, point: contacts[index].point }.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// Bounds from points that are in the body and half-spaces that contain it.
+    pub(crate) fn from_parts(points: &[DVec3], half_spaces: &[HalfSpace]) -> Result<Self, BoundsError> {
+        let lower = Hull::of(points)?;
+        let upper = Intersection::of(half_spaces)?;
         let corners = match &lower {
             Hull::Point(i) => vec![points[*i]],
             Hull::Segment(ends) => ends.iter().map(|i| points[*i]).collect(),

@@ -22,6 +22,23 @@ pub fn ellipsoid_contacts(count: usize, seed: u64) -> Vec<ContactSample> {
     (0..count).map(|_| ellipsoid_contact(s.direction())).collect()
 }
 
+/// Contacts of [`curve_contacts`], one list for each curve, measured with normal noise: points with standard deviation
+/// `point_sd` per axis (m), normals with `normal_sd` about each tangent axis (rad).
+#[must_use]
+pub fn noisy_curves(count: usize, point_sd: f64, normal_sd: f64, seed: u64) -> Vec<Vec<ContactSample>> {
+    let mut s = Source::new(seed ^ 0xA01E);
+    let mut curves = vec![Vec::new(); 3];
+    for (i, c) in curve_contacts(count, seed).into_iter().enumerate() {
+        let (a, b) = c.normal.tangent_basis();
+        let normal = c.normal.get() + (a * s.normal() + b * s.normal()) * normal_sd;
+        curves[i % 3].push(ContactSample {
+            point: c.point + s.normal3() * point_sd,
+            normal: Direction::new_unchecked(normal.normalize()),
+        });
+    }
+    curves
+}
+
 /// Support function of the ellipsoid with semi-axes [`AXES`].
 #[must_use]
 pub fn ellipsoid_support(n: DVec3) -> f64 {

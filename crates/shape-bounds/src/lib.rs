@@ -31,14 +31,17 @@ mod halfspaces;
 mod hull;
 mod integrals;
 mod mesh;
+mod noise;
 mod planar;
 mod predicates;
 mod random;
 mod sample;
+mod twofold;
 
 pub use bounds::{BoundsError, Gap, ShapeBounds};
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
+pub use noise::{ContactNoise, NoiseError, NoisyContact};
 pub use sample::{ContactError, ContactSample, HalfSpace, NORMAL_TOLERANCE};

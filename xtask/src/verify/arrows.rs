@@ -14,8 +14,9 @@ const ALLOWED: [(&str, &[&str]); 10] = [
     ("recon", &CORE),
     ("recon-io", &["recon"]),
     ("recon-cli", &["recon", "recon-io"]),
-    ("recon-tests", &["recon", "recon-io"]),
-    ("recon-benches", &["recon", "recon-io"]),
+    // The two name `shape-bounds` only to switch on its feature `generators`, which the facade has no reason to carry.
+    ("recon-tests", &["recon", "recon-io", "shape-bounds"]),
+    ("recon-benches", &["recon", "recon-io", "shape-bounds"]),
     ("xtask", &[]),
 ];
 

@@ -125,7 +125,7 @@ pub(super) fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<Moti
     // What noise does not explain is a lasting error of sensors or model: as many independent ones as there are
     // correlation times in the log.
     let excess = (rms * rms - predicted * predicted).max(0.0) * correlation_samples(&residuals);
-    let covariance = covariance + information_inverse(&observability) * excess;
+    let covariance = covariance + information_inverse(&observability) * excess + unknown(&observability);
     let weakest = weakest_direction(&covariance);
     let eigenvalues = observability.eigenvalues;
     let largest = eigenvalues[UNKNOWNS - 1];
@@ -183,6 +183,14 @@ pub(super) fn information_inverse(
     // Directions without information get the inverse of the floor: a variance that is plainly no knowledge.
     let inverse = observability.eigenvalues.map(|v| 1.0 / v.max(floor).max(f64::MIN_POSITIVE));
     observability.directions * SMatrix::from_diagonal(&inverse) * observability.directions.transpose()
+}
+
+/// Unit variance, in natural sizes, of the directions that the data say nothing of in double precision: there noise is
+/// carried to the unknowns by zero over zero.
+fn unknown(observability: &Observability<UNKNOWNS>) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
+    let floor = RANK_TOLERANCE * observability.eigenvalues[UNKNOWNS - 1];
+    let variance = observability.eigenvalues.map(|v| if v > floor { 0.0 } else { 1.0 });
+    observability.directions * SMatrix::from_diagonal(&variance) * observability.directions.transpose()
 }
 
 fn weakest_direction(covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>) -> WeakDirection {

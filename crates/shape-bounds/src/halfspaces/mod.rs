@@ -1,5 +1,6 @@
 //! Intersections of half-spaces: the outer bound of a convex body (paper, section 8).
 
+mod caps;
 mod error;
 mod interior;
 mod polyhedron;
@@ -56,10 +57,11 @@ impl Intersection {
             return Err(IntersectionError::NotFinite { index, point, margin });
         }
         let interior = interior::interior_point(half_spaces)?;
-        let duals: Vec<DVec3> = half_spaces.iter().map(|h| h.normal.get() / -h.excess(interior)).collect();
+        let outer = polyhedron::moved_outwards(half_spaces);
+        let duals: Vec<DVec3> = outer.iter().map(|h| h.normal.get() / -h.excess(interior)).collect();
         match Hull::of(&duals) {
             Ok(Hull::Solid(dual)) if strictly_contains_origin(&dual) => {
-                Ok(Self::Bounded(Polyhedron::from_dual(&dual, half_spaces, interior)))
+                Ok(Self::Bounded(Polyhedron::from_dual(&dual, &outer, interior)))
             }
             _ => Ok(Self::Unbounded(Unbounded {
                 half_spaces: half_spaces.to_vec(),

@@ -1,4 +1,4 @@
-use super::vertex::common_point;
+use super::vertex::{common_point, polar_corner};
 use crate::hull::SolidHull;
 use crate::integrals::{SolidMoments, solid_moments};
 use crate::mesh::TriangleMesh;
@@ -10,15 +10,17 @@ use glam::DVec3;
 /// plane's distance (4) and of the computed corners (2 along a normal) together.
 const OUTWARD_ULPS: f64 = 8.0;
 
-/// Where rounding of the duals joins planes that are not neighbours, corners protrude over other planes, and as much may be
-/// missing elsewhere; planes are moved outwards by this many times the largest protrusion.
-const PROTRUSIONS: f64 = 8.0;
+/// A corner computed from the planes as given may protrude over its neighbours' planes by this many units of rounding of
+/// the largest coordinate, which is what evaluating the height takes; beyond, the corner of the rounded planes is used.
+const CONSISTENT_ULPS: f64 = 4.0;
 
 /// A bounded intersection of half-spaces with its corners and faces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polyhedron {
     interior: DVec3,
     vertices: Vec<DVec3>,
+    /// For each corner, those at the other ends of its three edges.
+    vertex_neighbours: Vec<[u32; 3]>,
     /// Where each face begins in `face_vertices`, and the end.
     face_starts: Vec<u32>,
     face_vertices: Vec<u32>,
@@ -29,23 +31,27 @@ pub struct Polyhedron {
 }
 
 impl Polyhedron {
-    /// The polyhedron whose polar dual about `interior` is `dual`, a hull of one point for each half-space.
+    /// The polyhedron of `all` half-spaces whose polar duals about `interior` have the hull `dual`. The half-spaces are
+    /// those of the duals, already moved outwards.
     pub(super) fn from_dual(dual: &SolidHull, all: &[HalfSpace], interior: DVec3) -> Self {
-        let largest = all.iter().map(|h| h.point.abs().max_element()).fold(0.0, f64::max);
-        let mut half_spaces: Vec<HalfSpace> = dual.sources().iter().map(|k| all[*k as usize]).collect();
-        move_outwards(&mut half_spaces, OUTWARD_ULPS * f64::EPSILON * largest);
-        let mut vertices = corners(dual, &half_spaces);
-        let protrusion = largest_protrusion(dual, &half_spaces, &vertices);
-        if protrusion > OUTWARD_ULPS * f64::EPSILON * largest {
-            move_outwards(&mut half_spaces, PROTRUSIONS * protrusion);
-            vertices = corners(dual, &half_spaces);
-        }
+        let half_spaces: Vec<HalfSpace> = dual.sources().iter().map(|k| all[*k as usize]).collect();
+        let vertices = corners(dual, &half_spaces, interior, CONSISTENT_ULPS * rounding_unit(all));
         let (face_starts, face_vertices) = faces_around_vertices(dual);
         let mut used = vec![false; all.len()];
         dual.sources().iter().for_each(|k| used[*k as usize] = true);
         let redundant = (0..all.len() as u32).filter(|k| !used[*k as usize]).collect();
         let face_sources = dual.sources().to_vec();
-        Self { interior, vertices, face_starts, face_vertices, face_sources, half_spaces, redundant }
+        let vertex_neighbours = dual.neighbours().to_vec();
+        Self {
+            interior,
+            vertices,
+            vertex_neighbours,
+            face_starts,
+            face_vertices,
+            face_sources,
+            half_spaces,
+            redundant,
+        }
     }
 
     /// A point strictly inside, in m.
@@ -58,6 +64,10 @@ impl Polyhedron {
     #[must_use]
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
+    }
+
+    pub(crate) fn vertex_neighbours(&self) -> &[[u32; 3]] {
+        &self.vertex_neighbours
     }
 
     /// Number of faces.
@@ -76,6 +86,12 @@ impl Polyhedron {
     #[must_use]
     pub fn face_sources(&self) -> &[u32] {
         &self.face_sources
+    }
+
+    /// For each face, its half-space with the margin that makes up for rounding.
+    #[must_use]
+    pub fn face_half_spaces(&self) -> &[HalfSpace] {
+        &self.half_spaces
     }
 
     /// Half-spaces that could be left out because the others imply them, to rounding.
@@ -129,23 +145,40 @@ impl Polyhedron {
     }
 }
 
-fn move_outwards(half_spaces: &mut [HalfSpace], by: f64) {
-    half_spaces.iter_mut().for_each(|h| h.margin += by);
+/// The rounding of the largest coordinate.
+fn rounding_unit(half_spaces: &[HalfSpace]) -> f64 {
+    f64::EPSILON * half_spaces.iter().map(|h| h.point.abs().max_element()).fold(0.0, f64::max)
 }
 
-fn corners(dual: &SolidHull, half_spaces: &[HalfSpace]) -> Vec<DVec3> {
-    dual.triangles().iter().map(|t| common_point(t.map(|v| &half_spaces[v as usize]))).collect()
+/// `half_spaces` moved outwards by more than all rounding in what follows.
+pub(super) fn moved_outwards(half_spaces: &[HalfSpace]) -> Vec<HalfSpace> {
+    let by = OUTWARD_ULPS * rounding_unit(half_spaces);
+    half_spaces.iter().map(|h| HalfSpace { margin: h.margin + by, ..*h }).collect()
 }
 
-/// How far a corner protrudes, at most, over a plane of a neighbouring corner.
-fn largest_protrusion(dual: &SolidHull, half_spaces: &[HalfSpace], corners: &[DVec3]) -> f64 {
-    let mut largest = 0.0_f64;
-    for (corner, neighbours) in corners.iter().zip(dual.neighbours()) {
-        for plane in neighbours.iter().flat_map(|g| dual.triangles()[*g as usize]) {
-            largest = largest.max(half_spaces[plane as usize].excess(*corner));
-        }
-    }
-    largest
+/// The corner of each facet of the dual.
+///
+/// The planes of the duals are those of the half-spaces but for rounding, and the combinatorics of the dual hull is
+/// exact for them: their corners are consistent to rounding, but where planes are nearly parallel they may slide far along
+/// them. The corner computed from the half-spaces as given is exact in that direction too, where it is a corner at all:
+/// where the rounded planes have chosen other neighbours, it protrudes.
+fn corners(dual: &SolidHull, half_spaces: &[HalfSpace], interior: DVec3, tolerance: f64) -> Vec<DVec3> {
+    let triangles = dual.triangles();
+    (0..triangles.len())
+        .map(|f| {
+            let t = triangles[f];
+            let planes = t.map(|v| &half_spaces[v as usize]);
+            let corner = common_point(planes);
+            let on_planes = planes.iter().all(|h| h.excess(corner).abs() <= tolerance);
+            let consistent = on_planes
+                && dual.neighbours()[f].iter().enumerate().all(|(edge, g)| {
+                    let [a, b, c] = triangles[*g as usize];
+                    let opposite = a ^ b ^ c ^ t[edge] ^ t[(edge + 1) % 3];
+                    half_spaces[opposite as usize].excess(corner) <= tolerance
+                });
+            if consistent { corner } else { interior + polar_corner(dual.corners(f)) }
+        })
+        .collect()
 }
 
 /// For each vertex of a hull, the facets around it, anticlockwise from outside, as starts and one list.

@@ -38,7 +38,7 @@ impl Facets {
     pub(super) fn new(points: Vec<DVec3>, centre: Option<DVec3>) -> Self {
         let origin = centre.unwrap_or(DVec3::ZERO);
         let reach = points.iter().fold(DVec3::ZERO, |reach, p| reach.max((*p - origin).abs()));
-        let list = Vec::with_capacity(64);
+        let list = Vec::with_capacity(2 * points.len());
         Self { points, centre, reach, list, free: Vec::new() }
     }
 
