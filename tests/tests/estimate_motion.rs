@@ -6,10 +6,8 @@ use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation, ThreePalmScene,
 };
-use recon::observer::{
-    KnownBody, MotionEstimate, NoiseLevel, Reason, Reliability, equivalent_orientations, estimate_motion,
-};
-use recon_tests::{f5, g2, orientation_difference};
+use recon::observer::{KnownBody, MotionEstimate, NoiseLevel, equivalent_orientations, estimate_motion};
+use recon_tests::{f5, g2};
 
 fn known<S: SupportFunction>(scene: &ThreePalmScene<S>, noise: Option<NoiseLevel>) -> KnownBody {
     KnownBody { mass: *scene.mass(), gravity: scene.gravity(), palm_inertias: scene.palm_inertias(), noise }

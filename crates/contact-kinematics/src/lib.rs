@@ -9,6 +9,7 @@
 mod contact;
 mod direction;
 mod palm;
+pub mod planar;
 mod support;
 
 pub use contact::{

@@ -7,6 +7,7 @@ mod log;
 mod mass;
 #[cfg(feature = "noise")]
 mod noise;
+pub mod planar;
 mod three_palms;
 
 pub use log::{LogError, PalmReading, Sample, SensorLog, TrueState};

@@ -1,9 +1,28 @@
-//! Newton-method observers, and estimators of the shape and motion of a body from touch.
+//! Observers: estimate the state of a system from its outputs, and say how well it is known.
+//!
+//! The generic part needs a [`Model`] (flow, output, linearisation) and knows nothing about palms: the Newton-method
+//! observer on a moving window ([`NewtonObserver`]), all samples at once ([`solve_batch`]) and the extended Kalman filter
+//! ([`ExtendedKalmanFilter`]). Each estimate comes with a [`Report`]: status, residual, rank, smallest information and its
+//! direction, condition, covariance.
+//!
+//! The feature `palms` (on by default) adds the estimators of shape and motion from touch.
 
+mod core;
 mod least_squares;
+#[cfg(feature = "palms")]
+pub mod planar;
 #[cfg(feature = "palms")]
 mod three_palms;
 
+pub use core::{
+    Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Model, NewtonEstimate,
+    NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start, Status, describe_direction, rk4,
+    rk4_linearised, solve_batch,
+};
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
-pub use three_palms::*;
+pub use three_palms::{
+    EstimateError, Evidence, KnownBody, MotionEstimate, MotionState, NoiseLevel, PaperError, PaperMethod,
+    PaperReconstruction, PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState,
+    Track, TrackError, WeakDirection, equivalent_orientations, estimate_motion, integrate_paper_system,
+};

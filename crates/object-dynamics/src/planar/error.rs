@@ -1,0 +1,81 @@
+//! What can go wrong in a planar simulation or with a planar log.
+
+use crate::integrate::IntegrationError;
+use contact_kinematics::planar::PalmPairError;
+use thiserror::Error;
+
+/// Why a planar simulation cannot go on.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum PlanarSimulationError {
+    /// The palms close or flatten their wedge, or the step size collapses.
+    #[error(transparent)]
+    Integration(#[from] IntegrationError<PalmPairError>),
+    /// Sample times do not increase, or one is not a number.
+    #[error("sample {index} is at {time} s; times must be finite and increase")]
+    Times {
+        /// Index from 0.
+        index: usize,
+        /// As given, s.
+        time: f64,
+    },
+    /// No sample time was given.
+    #[error("no sample times were given; at least one is needed")]
+    NoTimes,
+    /// A palm inertia is not positive.
+    #[error("inertia of palm {palm} is {value} kg m^2; it must be positive and finite")]
+    PalmInertia {
+        /// 1 or 2.
+        palm: usize,
+        /// As given, kg m^2.
+        value: f64,
+    },
+}
+
+/// Why samples are not a planar log.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum PlanarLogError {
+    /// Fewer than two samples.
+    #[error("planar log has {found} sample(s); at least 2 are needed")]
+    TooShort {
+        /// How many there are.
+        found: usize,
+    },
+    /// A reading is not a number.
+    #[error("{what} of sample {sample} is {value}; it must be finite")]
+    NotFinite {
+        /// Which reading.
+        what: &'static str,
+        /// Index from 0.
+        sample: usize,
+        /// As given.
+        value: f64,
+    },
+    /// Time does not increase.
+    #[error(
+        "t of sample {sample} is {time} s, not above {previous} s before it; sort the log and drop repeats"
+    )]
+    TimeNotIncreasing {
+        /// Index from 0.
+        sample: usize,
+        /// As given, s.
+        time: f64,
+        /// Of the sample before, s.
+        previous: f64,
+    },
+    /// The wedge is closed or flat.
+    #[error("sample {sample}: {source}")]
+    Palms {
+        /// Index from 0.
+        sample: usize,
+        /// Why.
+        source: PalmPairError,
+    },
+    /// Truth does not match the samples.
+    #[error("truth has {found} rows for {expected} samples")]
+    TruthLength {
+        /// Number of samples.
+        expected: usize,
+        /// Number of truth rows.
+        found: usize,
+    },
+}

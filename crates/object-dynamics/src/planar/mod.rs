@@ -1,0 +1,27 @@
+//! The planar case: motion, contact forces and sensor logs of an object between two hinged palms, frictionless.
+//!
+//! Conventions as in [`contact_kinematics::planar`]; gravity is `(0, -g)`. While both contacts hold, the object has one
+//! degree of freedom, its orientation `phi0`, and nothing is divided by but `sin phi2` and `I0/m + <d, d>`, both
+//! positive: the equations are regular at every speed and in every orientation.
+
+mod error;
+mod log;
+mod mass;
+mod motion;
+#[cfg(feature = "noise")]
+mod noise;
+mod quasistatic;
+mod reaction;
+mod simulate;
+mod torque_driven;
+
+pub use error::{PlanarLogError, PlanarSimulationError};
+pub use log::{PlanarLog, PlanarSample, PlanarTruth};
+pub use mass::{PlanarMass, PlanarMassError};
+pub use motion::{ConstantRates, HarmonicPalms, PairMotion};
+#[cfg(feature = "noise")]
+pub use noise::PlanarNoise;
+pub use quasistatic::{Equilibrium, FollowError, PlanarEquilibria};
+pub use reaction::{PairReaction, PlanarObject};
+pub use simulate::{LostContact, PlanarRun, PlanarRunSample, PlanarStart, simulate_prescribed};
+pub use torque_driven::{DrivenPalms, TorqueReaction, TorqueStart, TorqueState, simulate_torque_driven};

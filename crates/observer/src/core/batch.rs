@@ -1,0 +1,110 @@
+//! All samples at once, with Levenberg-Marquardt steps until nothing moves.
+
+use super::model::{Model, Sample};
+use super::newton::check_start;
+use super::report::{ObserverError, Report, Status};
+use super::window::{Start, Window};
+use nalgebra::SVector;
+
+/// Residual beyond which a converged solution is not explained by the noise; see the Newton observer.
+const CONSISTENT_RESIDUAL: f64 = 3.0;
+/// Damping is raised and lowered by this factor.
+const DAMPING_FACTOR: f64 = 10.0;
+/// Damping above this, in units of the largest eigenvalue, means that no downhill step can be found.
+const DAMPING_LIMIT: f64 = 1e12;
+
+/// How [`solve_batch`] works.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BatchOptions {
+    /// Most linearisations.
+    pub iterations: usize,
+    /// Stops when a step is below this share of the natural scales.
+    pub step_tolerance: f64,
+    /// Damping of the first step in natural units of the information; zero starts with Gauss-Newton.
+    pub damping: f64,
+}
+
+impl Default for BatchOptions {
+    fn default() -> Self {
+        Self { iterations: 50, step_tolerance: 1e-12, damping: 0.0 }
+    }
+}
+
+/// A batch solution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BatchSolution<const N: usize> {
+    /// States at all samples.
+    pub states: Vec<SVector<f64, N>>,
+    /// Evidence; its covariance belongs to the first state.
+    pub report: Report<N>,
+    /// Linearisations made.
+    pub iterations: usize,
+}
+
+/// Most probable trajectory through all `samples`, from `start`.
+///
+/// Without process noise a step is taken only when it lowers the cost, with the damping raised until it does
+/// (Levenberg-Marquardt in natural units); with process noise all states are free and full Gauss-Newton steps are taken.
+/// Stops when the step falls below the tolerance, when the cost cannot be lowered any more, or after the iterations.
+///
+/// # Errors
+/// [`ObserverError`] for fewer than two samples or an unusable start.
+pub fn solve_batch<Mo: Model<N, M>, const N: usize, const M: usize>(
+    model: &Mo,
+    samples: &[Sample<Mo::Input, M>],
+    start: &Start<N>,
+    options: &BatchOptions,
+) -> Result<BatchSolution<N>, ObserverError> {
+    if samples.len() < 2 {
+        return Err(ObserverError::TooFewSamples { found: samples.len(), needed: 2 });
+    }
+    check_start(start)?;
+    let scales = model.scales();
+    let mut window = Window::new(start, samples.len());
+    for sample in samples {
+        window.append(model, &sample.input);
+    }
+    let free_noise = model.process_noise(&start.state, &samples[1].input).is_some();
+    let mut damping = options.damping;
+    let mut iterations = 1;
+    window.linearise(model, samples.iter());
+    let mut settled = false;
+    while iterations < options.iterations && !settled {
+        iterations += 1;
+        let information = window.information(&scales);
+        let step = window.step(&information, damping);
+        settled = step.component_div(&scales).amax() <= options.step_tolerance;
+        if free_noise {
+            window.apply(step);
+            window.linearise(model, samples.iter());
+            continue;
+        }
+        let (before, first) = (window.cost(), *window.state(0));
+        window.roll_out(model, samples.iter(), first + step);
+        window.linearise(model, samples.iter());
+        // At the minimum the cost is flat to rounding: a rise of that size is no failure.
+        if window.cost() <= before * (1.0 + 1e-12) {
+            damping = if damping > 1e-3 { damping / DAMPING_FACTOR } else { 0.0 };
+        } else {
+            damping = (damping * DAMPING_FACTOR).max(information.largest() * 1e-6);
+            settled = settled || damping > DAMPING_LIMIT * information.largest();
+            window.roll_out(model, samples.iter(), first);
+            window.linearise(model, samples.iter());
+        }
+    }
+    let information = window.information(&scales);
+    let residual = window.residual();
+    let status = if !window.is_finite() || !residual.is_finite() {
+        Status::Diverged
+    } else if !information.observed() {
+        Status::NotObservable
+    } else if !settled {
+        Status::Moving
+    } else if residual > CONSISTENT_RESIDUAL {
+        Status::Inconsistent
+    } else {
+        Status::Converged
+    };
+    let report = information.report(status, samples.len(), residual, information.covariance());
+    Ok(BatchSolution { states: window.states().copied().collect(), report, iterations })
+}

@@ -1,0 +1,18 @@
+//! Observers for any system with a flow, an output and their linearisations; nothing here knows palms.
+
+mod batch;
+mod eigen;
+mod ekf;
+mod model;
+mod newton;
+mod report;
+mod rk4;
+mod window;
+
+pub use batch::{BatchOptions, BatchSolution, solve_batch};
+pub use ekf::{EkfEstimate, ExtendedKalmanFilter};
+pub use model::{Model, Sample};
+pub use newton::{Arrival, NewtonEstimate, NewtonObserver, NewtonOptions};
+pub use report::{ObserverError, Report, Status, describe_direction};
+pub use rk4::{rk4, rk4_linearised};
+pub use window::Start;

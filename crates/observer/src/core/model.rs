@@ -1,0 +1,48 @@
+//! What an observer must know about a system.
+
+use nalgebra::{SMatrix, SVector};
+
+/// A system in discrete time with `N` states and `M` output channels.
+///
+/// Sample `k` carries the input that drives the flow from sample `k - 1` to `k` and the output at `k`; whatever was
+/// measured and is not predicted (inputs, times, angles) belongs there. Noise enters in two places: independent noise on
+/// each output channel, whose information stands in the [`Sample`], and optional process noise of the flow.
+///
+/// See [`NewtonObserver`](crate::NewtonObserver) for a worked example.
+pub trait Model<const N: usize, const M: usize> {
+    /// What drives the flow over one sampling interval and the output at its end.
+    type Input;
+
+    /// State at the sample of `input` from the state `x` one sample before, and its derivative with respect to `x`.
+    fn flow(&self, x: &SVector<f64, N>, input: &Self::Input) -> (SVector<f64, N>, SMatrix<f64, N, N>);
+
+    /// Outputs at state `x`, and their derivative with respect to `x`.
+    fn output(&self, x: &SVector<f64, N>, input: &Self::Input) -> (SVector<f64, M>, SMatrix<f64, M, N>);
+
+    /// Covariance of what the flow over this interval leaves out; none for a flow that is exact.
+    fn process_noise(&self, _x: &SVector<f64, N>, _input: &Self::Input) -> Option<SMatrix<f64, N, N>> {
+        None
+    }
+
+    /// The state alone, without derivative; override it where that is cheaper.
+    fn advance(&self, x: &SVector<f64, N>, input: &Self::Input) -> SVector<f64, N> {
+        self.flow(x, input).0
+    }
+
+    /// Natural size of each state: the yardstick of ranks, conditions and of what counts as observed.
+    fn scales(&self) -> SVector<f64, N>;
+
+    /// Name of each state, as a report shall call it.
+    fn names(&self) -> [&'static str; N];
+}
+
+/// One sample: the input up to it and what was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<I, const M: usize> {
+    /// Input of the interval that ends here.
+    pub input: I,
+    /// Measured outputs; what stands in a channel without information is not looked at.
+    pub measured: SVector<f64, M>,
+    /// Information of each channel, one over its noise variance; zero for a channel that was not measured.
+    pub information: SVector<f64, M>,
+}

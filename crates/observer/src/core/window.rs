@@ -1,0 +1,275 @@
+//! Gauss-Newton on a stretch of samples: linearise forward, eliminate backward, step forward.
+
+use super::model::{Model, Sample};
+use super::report::ScaledInformation;
+use nalgebra::{SMatrix, SVector};
+use std::collections::VecDeque;
+
+/// Where an observer starts: a state, and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start<const N: usize> {
+    /// State at the first sample.
+    pub state: SVector<f64, N>,
+    /// Information (inverse covariance) of that state; zero for a mere guess, which then costs the estimate nothing.
+    pub information: SMatrix<f64, N, N>,
+}
+
+impl<const N: usize> Start<N> {
+    /// A guess: starts the iteration, but is no evidence.
+    #[must_use]
+    pub fn guess(state: SVector<f64, N>) -> Self {
+        Self { state, information: SMatrix::zeros() }
+    }
+
+    /// A prior with independent standard deviations.
+    #[must_use]
+    pub fn prior(state: SVector<f64, N>, deviations: &SVector<f64, N>) -> Self {
+        Self { state, information: SMatrix::from_diagonal(&deviations.map(|d| 1.0 / (d * d))) }
+    }
+}
+
+/// Quadratic model of the cost-to-go from one sample on, and the flow into it.
+#[derive(Clone, Copy)]
+struct Node<const N: usize, const M: usize> {
+    x: SVector<f64, N>,
+    /// Where the rest was linearised; differs from `x` after a step.
+    at: SVector<f64, N>,
+    /// Derivative of the flow from the node before, and that flow's end minus this state.
+    transition: SMatrix<f64, N, N>,
+    defect: SVector<f64, N>,
+    /// `(I + Q L)^-1` and `Q` for the flow into this node, where there is process noise.
+    noise: Option<(SMatrix<f64, N, N>, SMatrix<f64, N, N>)>,
+    own_information: SMatrix<f64, N, N>,
+    own_vector: SVector<f64, N>,
+    information: SMatrix<f64, N, N>,
+    vector: SVector<f64, N>,
+}
+
+/// Knowledge of the first state: cost `d' L d / 2 - v' d` with `d = x - at`.
+#[derive(Clone, Copy)]
+struct Prior<const N: usize> {
+    at: SVector<f64, N>,
+    information: SMatrix<f64, N, N>,
+    vector: SVector<f64, N>,
+}
+
+impl<const N: usize> Prior<N> {
+    /// Negative gradient of the cost at `x`.
+    fn pull(&self, x: &SVector<f64, N>) -> SVector<f64, N> {
+        self.vector - self.information * (x - self.at)
+    }
+
+    /// Twice the cost at `x`, up to a constant.
+    fn cost(&self, x: &SVector<f64, N>) -> f64 {
+        let d = x - self.at;
+        d.dot(&(self.information * d - self.vector * 2.0))
+    }
+}
+
+/// Trajectory over the samples of a window, with room for a fixed number of them.
+///
+/// Minimises, over the states `x_k` and the process noise `w_k`,
+/// `(x_0 - prior)' L_p (x_0 - prior) + sum w_k' Q_k^-1 w_k + sum |y_k - h(x_k)|^2_R^-1` with `x_k = flow(x_{k-1}) + w_k`.
+/// The quadratic model is eliminated from the last sample to the first (a Riccati sweep), so the cost is linear in the
+/// window's length and nothing larger than the state is ever inverted.
+pub(super) struct Window<const N: usize, const M: usize> {
+    nodes: VecDeque<Node<N, M>>,
+    prior: Prior<N>,
+    data_cost: f64,
+    channels: usize,
+    /// Number of nodes, from the oldest on, that the last linearisation covered.
+    linearised: usize,
+}
+
+impl<const N: usize, const M: usize> Window<N, M> {
+    pub(super) fn new(start: &Start<N>, capacity: usize) -> Self {
+        let prior = Prior { at: start.state, information: start.information, vector: SVector::zeros() };
+        Self { nodes: VecDeque::with_capacity(capacity), prior, data_cost: 0.0, channels: 0, linearised: 0 }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Number of nodes, from the oldest on, that the last linearisation covered.
+    pub(super) fn linearised(&self) -> usize {
+        self.linearised
+    }
+
+    /// State at sample `k` of the window.
+    pub(super) fn state(&self, k: usize) -> &SVector<f64, N> {
+        &self.nodes[k].x
+    }
+
+    /// All states of the window, oldest first.
+    pub(super) fn states(&self) -> impl Iterator<Item = &SVector<f64, N>> {
+        self.nodes.iter().map(|node| &node.x)
+    }
+
+    /// Twice the cost at the point of the last linearisation, process noise apart.
+    pub(super) fn cost(&self) -> f64 {
+        self.data_cost + self.prior.cost(&self.nodes[0].at)
+    }
+
+    /// Root mean square residual at the last linearisation, in units of the noise.
+    pub(super) fn residual(&self) -> f64 {
+        (self.data_cost / self.channels as f64).sqrt()
+    }
+
+    /// Whether every state is a number.
+    pub(super) fn is_finite(&self) -> bool {
+        self.nodes.iter().all(|node| node.x.iter().all(|v| v.is_finite()))
+    }
+
+    /// Appends a sample; its state follows from the last one by the flow.
+    pub(super) fn append<Mo: Model<N, M>>(&mut self, model: &Mo, input: &Mo::Input) {
+        let x = self.nodes.back().map_or(self.prior.at, |last| model.advance(&last.x, input));
+        let zero = SMatrix::zeros();
+        self.nodes.push_back(Node {
+            x,
+            at: x,
+            transition: zero,
+            defect: SVector::zeros(),
+            noise: None,
+            own_information: zero,
+            own_vector: SVector::zeros(),
+            information: zero,
+            vector: SVector::zeros(),
+        });
+    }
+
+    /// Sets the first state and lets the flow fill in the others.
+    pub(super) fn roll_out<'a, Mo: Model<N, M, Input: 'a>>(
+        &mut self,
+        model: &Mo,
+        samples: impl Iterator<Item = &'a Sample<Mo::Input, M>>,
+        first: SVector<f64, N>,
+    ) {
+        let mut x = first;
+        for (k, (node, sample)) in self.nodes.iter_mut().zip(samples).enumerate() {
+            if k > 0 {
+                x = model.advance(&x, &sample.input);
+            }
+            node.x = x;
+        }
+    }
+
+    /// Linearises about the present trajectory and eliminates backward.
+    pub(super) fn linearise<'a, Mo: Model<N, M, Input: 'a>>(
+        &mut self,
+        model: &Mo,
+        samples: impl Iterator<Item = &'a Sample<Mo::Input, M>>,
+    ) {
+        self.data_cost = 0.0;
+        self.channels = 0;
+        self.linearised = self.nodes.len();
+        let mut before: Option<SVector<f64, N>> = None;
+        for (node, sample) in self.nodes.iter_mut().zip(samples) {
+            let x = node.x;
+            node.at = x;
+            if let Some(previous) = before {
+                let (end, transition) = model.flow(&previous, &sample.input);
+                (node.defect, node.transition) = (end - x, transition);
+                node.noise = model.process_noise(&previous, &sample.input).map(|q| (SMatrix::identity(), q));
+            }
+            let (y, h) = model.output(&x, &sample.input);
+            node.own_information = SMatrix::zeros();
+            node.own_vector = SVector::zeros();
+            for channel in 0..M {
+                let weight = sample.information[channel];
+                if weight > 0.0 {
+                    let residual = sample.measured[channel] - y[channel];
+                    let row = h.row(channel).transpose();
+                    node.own_information += row * row.transpose() * weight;
+                    node.own_vector += row * (weight * residual);
+                    self.data_cost += weight * residual * residual;
+                    self.channels += 1;
+                }
+            }
+            before = Some(x);
+        }
+        self.eliminate();
+    }
+
+    fn eliminate(&mut self) {
+        let (mut carried_l, mut carried_b) = (SMatrix::zeros(), SVector::zeros());
+        for node in self.nodes.iter_mut().rev() {
+            node.information = node.own_information + carried_l;
+            node.vector = node.own_vector + carried_b;
+            let (mut l, mut b) = (node.information, node.vector - node.information * node.defect);
+            if let Some((gain, q)) = &mut node.noise {
+                // Q and L are positive semidefinite, hence I + Q L has eigenvalues of at least one.
+                let inverse = (SMatrix::identity() + *q * l).try_inverse();
+                *gain = inverse.unwrap_or_else(SMatrix::identity);
+                l *= *gain;
+                b = gain.transpose() * b;
+            }
+            carried_l = node.transition.transpose() * l * node.transition;
+            carried_b = node.transition.transpose() * b;
+        }
+    }
+
+    /// Information about the first state from the data and the prior, in natural units.
+    pub(super) fn information(&self, scales: &SVector<f64, N>) -> ScaledInformation<N> {
+        ScaledInformation::new(&(self.nodes[0].information + self.prior.information), scales)
+    }
+
+    /// Gauss-Newton step of the first state, damped by `damping` in natural units.
+    pub(super) fn step(&self, information: &ScaledInformation<N>, damping: f64) -> SVector<f64, N> {
+        let first = &self.nodes[0];
+        information.solve(&(first.vector + self.prior.pull(&first.at)), damping)
+    }
+
+    /// Applies a step of the first state to all states by the linear model, process noise at its best value.
+    pub(super) fn apply(&mut self, step: SVector<f64, N>) {
+        let mut delta = step;
+        for (k, node) in self.nodes.iter_mut().enumerate() {
+            if k > 0 {
+                delta = node.transition * delta + node.defect;
+                if let Some((gain, q)) = &node.noise {
+                    delta = gain * (delta + q * node.vector);
+                }
+            }
+            node.x = node.at + delta;
+        }
+    }
+
+    /// Carries the covariance of the first state to the last.
+    pub(super) fn last_covariance(&self, first: SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+        let mut p = first;
+        for node in self.nodes.iter().skip(1) {
+            match &node.noise {
+                Some((gain, q)) => {
+                    let a = gain * node.transition;
+                    p = a * p * a.transpose() + gain * q;
+                }
+                None => p = node.transition * p * node.transition.transpose(),
+            }
+        }
+        (p + p.transpose()) * 0.5
+    }
+
+    /// Drops the first sample. What it and the prior said is carried to the next one, weakened by `keep` (one: all of
+    /// it, zero: none), as linearised last.
+    pub(super) fn drop_first(&mut self, keep: f64) {
+        let Some(first) = self.nodes.pop_front() else { return };
+        self.linearised = self.linearised.saturating_sub(1);
+        let Some(next) = self.nodes.front() else { return };
+        let mut prior = Prior { at: next.at, information: SMatrix::zeros(), vector: SVector::zeros() };
+        let backward = if keep > 0.0 { next.transition.try_inverse() } else { None };
+        if let Some(backward) = backward {
+            let known = self.prior.information + first.own_information;
+            let mut information = backward.transpose() * known * backward;
+            let mut vector = backward.transpose() * (first.own_vector + self.prior.pull(&first.at));
+            if let Some((_, q)) = &next.noise {
+                let weaken = (SMatrix::identity() + information * q).try_inverse();
+                let weaken = weaken.unwrap_or_else(SMatrix::identity);
+                information = weaken * information;
+                vector = weaken * vector;
+            }
+            prior.information = (information + information.transpose()) * (0.5 * keep);
+            prior.vector = (vector + information * next.defect) * keep;
+        }
+        self.prior = prior;
+    }
+}

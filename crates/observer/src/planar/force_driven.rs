@@ -1,0 +1,326 @@
+//! The object driven by measured contact forces, in regular coordinates.
+
+use super::constants::{Constant, PlanarNominal};
+use super::error::PlanarEstimateError;
+use super::input::{PairInput, PairStage};
+use super::scale::NaturalScale;
+use crate::{Model, Sample, rk4, rk4_linearised};
+use glam::DVec2;
+use nalgebra::{SMatrix, SVector};
+
+/// Number of states of the motion: centre of mass, its velocity, angular velocity.
+const MOTION: usize = 5;
+/// Relative rate of object and palm, as a share of the natural rate, below which the contact offset `d` is taken from the
+/// sensor rather than from the motion. Small enough to cost no information in motion, large against rounding.
+const BLEND_SHARE: f64 = 0.02;
+/// Standard deviation of an interval's force change under white noise of one: `63/256 sqrt(252)`, the middle of the newest of
+/// five equal intervals.
+const CHANGE_PER_NOISE: f64 = 3.91;
+
+/// State `(cm, v, omega0)` and, after it, constants to be estimated; driven by forces, with the contacts as output.
+///
+/// `cm' = v`, `m v' = m g + f_1 n_1 + f_2 n_2`, `I0 omega0' = -f_1 d_1 - f_2 d_2`, where rigid contact gives
+/// `d_1 z_1 = n_1 . v - W_1 u_1 . cm` and `d_2 z_2 = n_2 . v + W_2 u_2 . cm` with `z_i = omega0 - W_i`, and the outputs are
+/// `s_1 = u_1 . cm - d_1`, `s_2 = u_2 . cm + d_2`.
+///
+/// The paper's coordinates divide by `z_i`; here nothing does: `d_i` is the ridge solution
+/// `(z e + zeta^2 d_measured) / (z^2 + zeta^2)`, which is the motion's `e / z` where the object turns and the sensor's where it
+/// does not, and exact in both. The residual of an output carries the matching weight `|z| / sqrt(z^2 + zeta^2)`, up to sign.
+#[derive(Clone, Debug)]
+pub struct ForceDriven<const N: usize> {
+    nominal: PlanarNominal,
+    scale: NaturalScale,
+    constants: Vec<Constant>,
+    blend: f64,
+    exact: bool,
+}
+
+/// One palm at one instant: `d`, its gradient, and what the output needs.
+struct Side<'a> {
+    palm: usize,
+    u: DVec2,
+    n: DVec2,
+    sign: f64,
+    rate: f64,
+    z: f64,
+    e: f64,
+    denominator: f64,
+    d: f64,
+    force: f64,
+    /// Contact reading without its offset, minus `u . cm`.
+    reach: f64,
+    stage: &'a PairStage,
+}
+
+impl<const N: usize> ForceDriven<N> {
+    /// A model of `N = 5 + constants.len()` states.
+    ///
+    /// # Errors
+    /// [`PlanarEstimateError::Constants`] when `N` does not match, [`PlanarEstimateError::Value`] for unusable numbers.
+    pub fn new(
+        nominal: PlanarNominal,
+        scale: NaturalScale,
+        constants: &[Constant],
+    ) -> Result<Self, PlanarEstimateError> {
+        nominal.check()?;
+        let expected = N.checked_sub(MOTION).filter(|&n| n == constants.len());
+        if expected.is_none() {
+            let expected = N.saturating_sub(MOTION);
+            return Err(PlanarEstimateError::Constants { states: N, expected, found: constants.len() });
+        }
+        let blend = BLEND_SHARE * scale.rate();
+        Ok(Self { nominal, scale, constants: constants.to_vec(), blend, exact: false })
+    }
+
+    /// The same model with a flow that is taken as exact, for a first fit in which only the start values are free.
+    #[must_use]
+    pub fn without_process_noise(mut self) -> Self {
+        self.exact = true;
+        self
+    }
+
+    /// What is taken as known.
+    #[must_use]
+    pub fn nominal(&self) -> &PlanarNominal {
+        &self.nominal
+    }
+
+    /// The scene's natural scale.
+    #[must_use]
+    pub fn scale(&self) -> NaturalScale {
+        self.scale
+    }
+
+    /// Constants that are estimated, in the order of the states after the fifth.
+    #[must_use]
+    pub fn constants(&self) -> &[Constant] {
+        &self.constants
+    }
+
+    /// Mass (kg) and moment of inertia (kg m^2) at a state.
+    #[must_use]
+    pub fn mass_and_inertia(&self, x: &SVector<f64, N>) -> (f64, f64) {
+        (
+            self.nominal.mass.mass() * self.constant(x, Constant::Mass).exp(),
+            self.nominal.mass.inertia() * self.constant(x, Constant::Inertia).exp(),
+        )
+    }
+
+    /// A sample: its contacts are the outputs, their noise the nominal one. Exact data count as one part in a million of
+    /// the natural length, which only sets the unit of the information.
+    #[must_use]
+    pub fn sample(&self, input: PairInput) -> Sample<PairInput, 2> {
+        let deviation = if self.nominal.contact_deviation > 0.0 {
+            self.nominal.contact_deviation
+        } else {
+            1e-6 * self.scale.length
+        };
+        let measured = SVector::<f64, 2>::from(input.stages[2].contacts);
+        Sample { input, measured, information: SVector::<f64, 2>::repeat(1.0 / (deviation * deviation)) }
+    }
+
+    /// Contact offsets `d_1`, `d_2` (m) at a state.
+    #[must_use]
+    pub fn contact_offsets(&self, x: &SVector<f64, N>, stage: &PairStage) -> [f64; 2] {
+        [0, 1].map(|palm| self.side(x, stage, palm).d)
+    }
+
+    /// Angular acceleration (rad/s^2) at a state.
+    #[must_use]
+    pub fn angular_acceleration(&self, x: &SVector<f64, N>, stage: &PairStage) -> f64 {
+        self.rate(stage, x)[4]
+    }
+
+    fn constant(&self, x: &SVector<f64, N>, constant: Constant) -> f64 {
+        self.constants.iter().position(|&c| c == constant).map_or(0.0, |i| x[MOTION + i])
+    }
+
+    fn side<'a>(&self, x: &SVector<f64, N>, stage: &'a PairStage, palm: usize) -> Side<'a> {
+        use super::constants::Side as Which;
+        let which = if palm == 0 { Which::First } else { Which::Second };
+        let (u, n, rate) = (stage.along[palm], stage.normals[palm], stage.rates[palm]);
+        let sign = if palm == 0 { -1.0 } else { 1.0 };
+        let p = u.x * x[0] + u.y * x[1];
+        let e = n.x * x[2] + n.y * x[3] + sign * rate * p;
+        let z = x[4] - rate;
+        let reach = stage.contacts[palm] - self.constant(x, Constant::ContactOffset(which)) - p;
+        let ridge = self.blend * self.blend;
+        // At least the ridge, which is positive because the natural rate is.
+        let denominator = z * z + ridge;
+        let d = (z * e + ridge * sign * reach) / denominator;
+        let gain = 1.0 + self.constant(x, Constant::ForceGain(which));
+        let force = gain * stage.forces[palm] + self.constant(x, Constant::ForceBias(which));
+        Side { palm, u, n, sign, rate, z, e, denominator, d, force, reach, stage }
+    }
+
+    fn rate(&self, stage: &PairStage, x: &SVector<f64, N>) -> SVector<f64, N> {
+        let (mass, inertia) = self.mass_and_inertia(x);
+        let [a, b] = [0, 1].map(|palm| self.side(x, stage, palm));
+        let push = a.n * a.force + b.n * b.force;
+        let mut rate = SVector::zeros();
+        rate[0] = x[2];
+        rate[1] = x[3];
+        rate[2] = push.x / mass;
+        rate[3] = push.y / mass - self.nominal.gravity;
+        rate[4] = -(a.force * a.d + b.force * b.d) / inertia;
+        rate
+    }
+
+    fn rate_linearised(
+        &self,
+        stage: &PairStage,
+        x: &SVector<f64, N>,
+    ) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        let rate = self.rate(stage, x);
+        let (mass, inertia) = self.mass_and_inertia(x);
+        let mut j = SMatrix::<f64, N, N>::zeros();
+        (j[(0, 2)], j[(1, 3)]) = (1.0, 1.0);
+        for side in [0, 1].map(|palm| self.side(x, stage, palm)) {
+            let slope = side.d_gradient(self.blend);
+            let torque = -side.force / inertia;
+            for (k, value) in slope.into_iter().enumerate() {
+                j[(4, k)] += torque * value;
+            }
+            for (i, constant) in self.constants.iter().enumerate() {
+                let column = MOTION + i;
+                let (force, offset) = side.constant_slopes(*constant, self.blend);
+                j[(2, column)] += force * side.n.x / mass;
+                j[(3, column)] += force * side.n.y / mass;
+                j[(4, column)] += -force * side.d / inertia + torque * offset;
+            }
+        }
+        for (i, constant) in self.constants.iter().enumerate() {
+            match constant {
+                Constant::Mass => {
+                    j[(2, MOTION + i)] -= rate[2];
+                    j[(3, MOTION + i)] -= rate[3] + self.nominal.gravity;
+                }
+                Constant::Inertia => j[(4, MOTION + i)] -= rate[4],
+                _ => {}
+            }
+        }
+        (rate, j)
+    }
+}
+
+impl Side<'_> {
+    /// Derivative of `d` with respect to `(cm, v, omega0)`.
+    fn d_gradient(&self, blend: f64) -> [f64; MOTION] {
+        let along = self.sign * (self.z * self.rate - blend * blend) / self.denominator;
+        let across = self.z / self.denominator;
+        [
+            along * self.u.x,
+            along * self.u.y,
+            across * self.n.x,
+            across * self.n.y,
+            (self.e - 2.0 * self.z * self.d) / self.denominator,
+        ]
+    }
+
+    /// Derivatives of this palm's force and of its `d` with respect to a constant.
+    fn constant_slopes(&self, constant: Constant, blend: f64) -> (f64, f64) {
+        match constant {
+            Constant::ForceGain(side) if side.index() == self.palm => (self.stage.forces[self.palm], 0.0),
+            Constant::ForceBias(side) if side.index() == self.palm => (1.0, 0.0),
+            Constant::ContactOffset(side) if side.index() == self.palm => {
+                (0.0, -self.sign * blend * blend / self.denominator)
+            }
+            _ => (0.0, 0.0),
+        }
+    }
+}
+
+/// Error of the mean force over an interval from its interpolation: the middle counts for two thirds in Simpson's rule.
+/// None where the change that it is taken from may be noise.
+fn interpolation_error(input: &PairInput, palm: usize, force_deviation: f64) -> f64 {
+    let significant = input.force_change[palm] > 3.0 * CHANGE_PER_NOISE * force_deviation;
+    if significant { input.force_error[palm] * 2.0 / 3.0 } else { 0.0 }
+}
+
+/// Stage of an interval at fraction 0, 1/2 or 1.
+fn at(input: &PairInput, fraction: f64) -> &PairStage {
+    if fraction < 0.25 {
+        &input.stages[0]
+    } else if fraction < 0.75 {
+        &input.stages[1]
+    } else {
+        &input.stages[2]
+    }
+}
+
+impl<const N: usize> Model<N, 2> for ForceDriven<N> {
+    type Input = PairInput;
+
+    fn flow(&self, x: &SVector<f64, N>, input: &PairInput) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        rk4_linearised(x, input.dt, |fraction, x| self.rate_linearised(at(input, fraction), x))
+    }
+
+    fn advance(&self, x: &SVector<f64, N>, input: &PairInput) -> SVector<f64, N> {
+        rk4(x, input.dt, |fraction, x| self.rate(at(input, fraction), x))
+    }
+
+    fn output(&self, x: &SVector<f64, N>, input: &PairInput) -> (SVector<f64, 2>, SMatrix<f64, 2, N>) {
+        let stage = &input.stages[2];
+        let (mut y, mut h) = (SVector::<f64, 2>::zeros(), SMatrix::<f64, 2, N>::zeros());
+        for side in [0, 1].map(|palm| self.side(x, stage, palm)) {
+            let row = side.palm;
+            let root = side.denominator.sqrt();
+            let residual = (side.z * side.reach - side.sign * side.e) / root;
+            y[row] = stage.contacts[row] - residual;
+            h[(row, 0)] = x[4] * side.u.x / root;
+            h[(row, 1)] = x[4] * side.u.y / root;
+            h[(row, 2)] = side.sign * side.n.x / root;
+            h[(row, 3)] = side.sign * side.n.y / root;
+            h[(row, 4)] = residual * side.z / side.denominator - side.reach / root;
+            for (i, constant) in self.constants.iter().enumerate() {
+                if matches!(constant, Constant::ContactOffset(s) if s.index() == row) {
+                    h[(row, MOTION + i)] = side.z / root;
+                }
+            }
+        }
+        (y, h)
+    }
+
+    /// Noise of the forces, the error of their interpolation, and noise of the contacts as far as they enter `d`; one
+    /// reading counts for one interval.
+    fn process_noise(&self, x: &SVector<f64, N>, input: &PairInput) -> Option<SMatrix<f64, N, N>> {
+        let PlanarNominal { contact_deviation, force_deviation, .. } = self.nominal;
+        if self.exact || contact_deviation <= 0.0 && force_deviation <= 0.0 {
+            return None;
+        }
+        let (mass, inertia) = self.mass_and_inertia(x);
+        let mut q = SMatrix::<f64, N, N>::zeros();
+        for side in [0, 1].map(|palm| self.side(x, &input.stages[0], palm)) {
+            let step =
+                input.dt * force_deviation.hypot(interpolation_error(input, side.palm, force_deviation));
+            let mut kick = SVector::<f64, N>::zeros();
+            kick[2] = step * side.n.x / mass;
+            kick[3] = step * side.n.y / mass;
+            kick[4] = -step * side.d / inertia;
+            q += kick * kick.transpose();
+            let share = self.blend * self.blend / side.denominator;
+            q[(4, 4)] += (input.dt * side.force * share * contact_deviation / inertia).powi(2);
+        }
+        Some(q)
+    }
+
+    fn scales(&self) -> SVector<f64, N> {
+        let NaturalScale { length, gravity } = self.scale;
+        let speed = self.scale.speed();
+        SVector::from_fn(|i, _| match i {
+            0 | 1 => length,
+            2 | 3 => speed,
+            4 => self.scale.rate(),
+            _ => match self.constants[i - MOTION] {
+                Constant::Mass | Constant::Inertia | Constant::ForceGain(_) => 1.0,
+                Constant::ForceBias(_) => self.nominal.mass.mass() * gravity,
+                Constant::ContactOffset(_) => length,
+            },
+        })
+    }
+
+    fn names(&self) -> [&'static str; N] {
+        let motion = ["centre of mass x", "centre of mass y", "velocity x", "velocity y", "angular velocity"];
+        std::array::from_fn(|i| motion.get(i).copied().unwrap_or_else(|| self.constants[i - MOTION].name()))
+    }
+}

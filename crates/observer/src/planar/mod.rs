@@ -1,0 +1,30 @@
+//! Planar estimators of shape and motion from touch (paper, section 3), better conditioned than the paper's.
+//!
+//! Conventions as in [`contact_kinematics::planar`] and [`object_dynamics::planar`].
+
+mod authors;
+mod constants;
+mod error;
+mod force_driven;
+mod input;
+mod observer;
+mod palm_series;
+mod quasistatic;
+mod scale;
+mod shape_fit;
+mod shape_model;
+mod start;
+
+pub use authors::{AuthorsFields, AuthorsState};
+pub use constants::{Constant, PlanarNominal, Side};
+pub use error::PlanarEstimateError;
+pub use force_driven::ForceDriven;
+pub use input::{InputBuilder, PairInput, PairStage, planar_samples};
+pub use observer::{PlanarEstimate, PlanarObserver, PlanarObserverOptions, PlanarStartFrom};
+pub use quasistatic::{
+    HeightFit, QuasistaticError, QuasistaticPath, QuasistaticPoint, height_from_closure,
+    quasistatic_reconstruction,
+};
+pub use scale::NaturalScale;
+pub use shape_fit::{ShapeFit, ShapeFitOptions, fit_shape};
+pub use start::{ResidualStart, residual_start};
