@@ -170,11 +170,12 @@ fn corners(dual: &SolidHull, half_spaces: &[HalfSpace], interior: DVec3, toleran
             let planes = t.map(|v| &half_spaces[v as usize]);
             let corner = common_point(planes);
             let on_planes = planes.iter().all(|h| h.excess(corner).abs() <= tolerance);
-            let consistent = on_planes && dual.neighbours()[f].iter().enumerate().all(|(edge, g)| {
-                let [a, b, c] = triangles[*g as usize];
-                let opposite = a ^ b ^ c ^ t[edge] ^ t[(edge + 1) % 3];
-                half_spaces[opposite as usize].excess(corner) <= tolerance
-            });
+            let consistent = on_planes
+                && dual.neighbours()[f].iter().enumerate().all(|(edge, g)| {
+                    let [a, b, c] = triangles[*g as usize];
+                    let opposite = a ^ b ^ c ^ t[edge] ^ t[(edge + 1) % 3];
+                    half_spaces[opposite as usize].excess(corner) <= tolerance
+                });
             if consistent { corner } else { interior + polar_corner(dual.corners(f)) }
         })
         .collect()
