@@ -24,6 +24,7 @@
 //! All lengths are in m, all coordinates in the body's frame.
 
 mod bounds;
+mod curvature;
 mod distance;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
@@ -40,6 +41,7 @@ mod sample;
 mod twofold;
 
 pub use bounds::{BoundsError, Gap, ShapeBounds};
+pub use curvature::{BallIntersection, CurvatureBounds, CurvatureError, RoundedHull};
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;
