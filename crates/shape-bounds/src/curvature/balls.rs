@@ -189,13 +189,11 @@ impl BallIntersection {
         face
     }
 
-    /// Distance from the interior along `direction` to sphere `k`.
+    /// Distance from the interior along `direction` to sphere `k`; only compared with others.
     fn reach(&self, k: u32, direction: DVec3) -> f64 {
         let b = self.centres[k as usize] - self.interior;
         let along = b.dot(direction);
-        // rho^2 - |b|^2 as a product keeps its digits when the centre is nearly a radius away.
-        let length = b.length();
-        along + (along * along + (self.radius - length) * (self.radius + length)).max(0.0).sqrt()
+        along + (along * along + self.radius * self.radius - b.length_squared()).max(0.0).sqrt()
     }
 
     fn excess_of(&self, k: u32, point: DVec3) -> f64 {

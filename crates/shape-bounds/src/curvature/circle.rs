@@ -95,17 +95,35 @@ impl Circle {
             };
         }
         let far = across.normalize() * self.radius;
+        if !first_out && !last_out && !self.passes(start, end, far) {
+            return Cut::Kept;
+        }
         let side = self.axis.cross(far) * (1.0 - cosine * cosine).sqrt();
         let (entry, exit) = (self.middle + far * cosine + side, self.middle + far * cosine - side);
-        // Right-handed, the circle is outside from `exit` to `entry`.
-        let length = self.angle(start, end);
-        let (to_exit, to_entry) = (self.angle(start, exit), self.angle(start, entry));
+        // Right-handed, the circle is outside from `exit` over `far` to `entry`.
         match (first_out, last_out) {
             (false, true) => Cut::Leaves(exit),
             (true, false) => Cut::Enters(entry),
-            (false, false) if to_exit < to_entry && to_entry < length => Cut::Interrupted(exit, entry),
-            (true, true) if to_entry < to_exit && to_exit < length => Cut::Visits(entry, exit),
+            (false, false) => Cut::Interrupted(exit, entry),
+            (true, true) if self.passes(start, end, -far) => Cut::Visits(entry, exit),
             (out, _) => whole(out),
+        }
+    }
+
+    /// Whether the arc from `start` to `end` (right-handed, all around if they coincide) passes the direction `d` from the
+    /// middle.
+    fn passes(&self, start: DVec3, end: DVec3, d: DVec3) -> bool {
+        if start == end {
+            return true;
+        }
+        let (s, e) = (start - self.middle, end - self.middle);
+        let left_of = |p: DVec3, q: DVec3| self.axis.dot(p.cross(q)) > 0.0;
+        let (after_start, before_end) = (left_of(s, d), left_of(d, e));
+        // The difference of the ends keeps the sense of short arcs.
+        if self.axis.dot(s.cross(end - start)) > 0.0 {
+            after_start && before_end
+        } else {
+            after_start || before_end
         }
     }
 }

@@ -30,11 +30,25 @@ pub(super) fn cut_arc(centres: &[DVec3], rho: f64, k: u32, arc: Arc, end: DVec3,
     let at = |i: u32| centres[i as usize];
     let centre = at(p);
     let outside = |y: DVec3| y.distance_squared(centre) > rho * rho;
-    if k < arc.other {
-        Circle::between(at(k), at(arc.other), rho).cut(arc.start, end, centre, outside)
+    let (a, b, from, to) = if k < arc.other {
+        (at(k), at(arc.other), arc.start, end)
     } else {
-        Circle::between(at(arc.other), at(k), rho).cut(end, arc.start, centre, outside).reversed()
+        (at(arc.other), at(k), end, arc.start)
+    };
+    if !outside(from) && !outside(to) && surely_kept(a, b, from, to, centre) {
+        return Cut::Kept;
     }
+    let cut = Circle::between(a, b, rho).cut(from, to, centre, outside);
+    if k < arc.other { cut } else { cut.reversed() }
+}
+
+/// A cheap test for most arcs with both ends in the ball: unless its centre is in the ball whose diameter is that between
+/// the arc's centres, at least half of the circle is outside, which an arc of less than half a circle cannot pass.
+fn surely_kept(a: DVec3, b: DVec3, from: DVec3, to: DVec3, centre: DVec3) -> bool {
+    let half = (b - a) / 2.0;
+    let middle = a + half;
+    middle.distance_squared(centre) >= half.length_squared()
+        && half.dot((from - middle).cross(to - from)) > 0.0
 }
 
 /// Clips face `k` with ball `p`; `touched` is called with the neighbour across each edge of which something is cut off.
