@@ -1,5 +1,9 @@
 //! Both bounds of a convex body from its contacts, and the gap between them.
 
+mod incremental;
+
+pub use incremental::IncrementalBounds;
+
 use crate::distance::{farthest_of, nearest};
 use crate::halfspaces::{Intersection, IntersectionError};
 use crate::hull::{Hull, PointsError, SupportWalk};

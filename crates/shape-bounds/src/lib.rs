@@ -40,10 +40,10 @@ mod random;
 mod sample;
 mod twofold;
 
-pub use bounds::{BoundsError, Gap, ShapeBounds};
+pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
 pub use curvature::{BallIntersection, CurvatureBounds, CurvatureError, RoundedHull};
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
-pub use hull::{Hull, HullCertificate, PointsError, SolidHull, SupportWalk};
+pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
 pub use noise::{ContactNoise, NoiseError, NoisyContact};

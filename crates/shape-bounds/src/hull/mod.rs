@@ -4,6 +4,7 @@ mod build;
 mod certificate;
 mod error;
 mod facets;
+mod incremental;
 mod locate;
 mod order;
 mod scaling;
@@ -15,6 +16,7 @@ mod walk;
 
 pub use certificate::HullCertificate;
 pub use error::PointsError;
+pub use incremental::IncrementalHull;
 pub(crate) use order::insertion_order;
 pub use solid::SolidHull;
 pub use walk::SupportWalk;
