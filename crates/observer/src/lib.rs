@@ -14,5 +14,5 @@ pub mod planar;
 pub use core::{
     Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Model, NewtonEstimate,
     NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start, Status, describe_direction, rk4,
-    rk4_linearised, solve_batch,
+    rk4_linearised, solve_batch, solve_batch_from,
 };

@@ -78,7 +78,7 @@ pub fn residual_start(
 }
 
 /// A disc of the natural size that turns at `omega0` where the contacts are.
-fn neutral_start(stage: &PairStage, radius: f64, omega0: f64) -> State {
+pub(super) fn neutral_start(stage: &PairStage, radius: f64, omega0: f64) -> State {
     let [u1, u2] = stage.along;
     // sin phi2, positive for any pair of palms.
     let sin = u1.perp_dot(u2);
