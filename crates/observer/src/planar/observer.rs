@@ -7,7 +7,8 @@ use super::input::{InputBuilder, PairInput, PairStage};
 use super::scale::NaturalScale;
 use super::start::{neutral_start, residual_start};
 use crate::{
-    Arrival, BatchOptions, NewtonObserver, NewtonOptions, Report, Sample, Start, Status, solve_batch_from,
+    Arrival, BatchOptions, Model, NewtonObserver, NewtonOptions, Report, Sample, Start, Status,
+    solve_batch_from,
 };
 use glam::DVec2;
 use nalgebra::SVector;
@@ -98,7 +99,8 @@ pub struct PlanarObserverOptions {
     pub arrival: Arrival,
     /// Where it starts.
     pub start: PlanarStartFrom,
-    /// Standard deviation of each estimated constant before the first sample, in its own unit; none for no knowledge.
+    /// Standard deviation of each estimated constant before the first sample, in its own unit; none for its
+    /// natural size (a factor of 2.7 of mass and inertia, a gain of one, a bias of the weight, an offset of the size).
     pub constant_deviation: Option<f64>,
 }
 
@@ -285,10 +287,10 @@ impl<const N: usize> PlanarObserver<N> {
         samples: &[Sample<PairInput, 2>],
     ) -> Result<(Start<N>, bool), PlanarEstimateError> {
         let mut start = Start::<N>::guess(SVector::zeros());
-        if let Some(deviation) = self.options.constant_deviation {
-            for i in MOTION..N {
-                start.information[(i, i)] = 1.0 / (deviation * deviation);
-            }
+        let scales = model.scales();
+        for i in MOTION..N {
+            let deviation = self.options.constant_deviation.unwrap_or(scales[i]);
+            start.information[(i, i)] = 1.0 / (deviation * deviation);
         }
         let guess = match self.options.start {
             PlanarStartFrom::Nothing => None,
@@ -306,9 +308,7 @@ impl<const N: usize> PlanarObserver<N> {
             start.information[(i, i)] = 1.0 / (deviations[i] * deviations[i]);
         }
         start.state.fixed_rows_mut::<MOTION>(0).copy_from(&neutral);
-        let residual = residual_start(&self.nominal, scale, inputs, guess)?;
-        let mut first = start.state;
-        first.fixed_rows_mut::<MOTION>(0).copy_from(&residual.state);
+        let first = residual_start(model, inputs, guess)?.state;
         let exact = model.clone().without_process_noise();
         let fit = solve_batch_from(&exact, samples, &start, first, &BatchOptions::default())?;
         // The prior is centred where the iteration starts; far out in its tails that costs a share of 1e-6 of the information.
