@@ -1,1 +1,36 @@
-//! placeholder
+//! Charts of cost against error, failure sweeps, and the timing that feeds them.
+//!
+//! A *work-precision* chart has one curve per method and one point per setting, error against cost, both
+//! logarithmic: a method is better where its curve is lower and further to the left. A *sweep* moves one parameter
+//! towards the place where methods fail and colours each point by what the method said about itself: right, reported
+//! as unreliable, or wrong without a warning. Each is written as CSV, SVG and PNG.
+//!
+//! [`Study`] runs methods, asks for their error and times them side by side; [`charts`] lists the diagrams of this
+//! project, which `cargo xtask chart` draws into `docs/charts/`.
+//!
+//! ```
+//! use recon_benches::{Axis, Budget, Study, WorkPrecision};
+//!
+//! let mut study = Study::new();
+//! for n in [10_u32, 100, 1000] {
+//!     let left_sum = move || (0..n).map(|i| (f64::from(i) / f64::from(n)).exp() / f64::from(n)).sum::<f64>();
+//!     study.case("left sum", format!("n = {n}"), left_sum, |sum| (sum - (1.0_f64.exp() - 1.0)).abs());
+//! }
+//! let chart = WorkPrecision::new("quadrature", "Integral of exp over the unit interval")
+//!     .axes(Axis::log("error", "1"), Axis::log("time", "ms"))
+//!     .methods(study.measure(Budget::quick(), 1.0));
+//! assert!(chart.csv().starts_with("method,setting,"));
+//! ```
+
+mod diagram;
+mod machine;
+mod timing;
+
+pub mod charts;
+
+pub use diagram::{
+    Axis, ChartError, Diagram, Goal, Judged, Method, Outcome, Point, Scale, Subject, Sweep, Verdict,
+    WorkPrecision, WrittenChart,
+};
+pub use machine::machine_line;
+pub use timing::{Budget, SideBySide, Study, Timing};

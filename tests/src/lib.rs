@@ -1,1 +1,99 @@
-//! placeholder
+//! Scenes that the cross-crate tests share.
+
+use glam::{DMat3, DQuat, DVec3};
+use recon::contact_kinematics::{
+    Ellipsoid, MinkowskiSum, Monomial, Palm, PolynomialSupport, SlopeMotion, SupportFunction,
+};
+use recon::object_dynamics::{InitialMotion, MassProperties, ThreePalmScene};
+
+/// A general body: an ellipsoid plus a polynomial.
+pub type GeneralBody = MinkowskiSum<Ellipsoid, PolynomialSupport>;
+
+/// `h = sqrt(n' diag(axes^2) n) + offset . n + dent n_x n_y n_z`.
+///
+/// # Panics
+/// When the numbers make no body.
+#[must_use]
+pub fn general_body(axes: DVec3, offset: DVec3, dent: f64) -> GeneralBody {
+    let mut terms = vec![Monomial { powers: [1, 1, 1], coefficient: dent }];
+    for axis in 0..3 {
+        let mut powers = [0; 3];
+        powers[axis] = 1;
+        terms.push(Monomial { powers, coefficient: offset[axis] });
+    }
+    MinkowskiSum(Ellipsoid::new(axes).unwrap(), PolynomialSupport::new(terms).unwrap())
+}
+
+/// The immobile scene `F5` of the oracle: semi-axes 1, 2, 2.5, azimuths 60, 180, 300 degrees, slope 60 degrees.
+///
+/// # Panics
+/// Never.
+#[must_use]
+pub fn f5() -> (ThreePalmScene<Ellipsoid>, InitialMotion) {
+    let axes = DVec3::new(1.0, 2.0, 2.5);
+    immobile(axes, [60.0, 180.0, 300.0], 9.81, DQuat::IDENTITY, DVec3::new(0.0, 0.3, 0.3))
+}
+
+/// The moving scene `G2` of the oracle: offset centre of mass, full inertia tensor, palms that swing.
+///
+/// # Panics
+/// Never.
+#[must_use]
+pub fn g2() -> (ThreePalmScene<GeneralBody>, InitialMotion) {
+    let body = general_body(DVec3::new(2.5, 2.0, 1.5), DVec3::new(0.2, -0.1, 0.15), 0.08);
+    let inertia = DMat3::from_cols_array(&[1.4, 0.08, -0.05, 0.08, 1.9, 0.06, -0.05, 0.06, 2.3]);
+    let palm = |azimuth, slope, amplitude, frequency, phase| {
+        Palm::new(azimuth, SlopeMotion::Sinusoid { slope, amplitude, frequency, phase }).unwrap()
+    };
+    let palms =
+        [palm(0.1, 0.9, 0.08, 1.7, 0.3), palm(2.0, 1.05, 0.1, 2.1, 1.0), palm(4.3, 1.0, 0.06, 1.3, 2.0)];
+    let scene = ThreePalmScene::new(body, MassProperties::new(1.3, inertia).unwrap(), palms, 9.81).unwrap();
+    (scene, InitialMotion { R_WO: DQuat::IDENTITY, w_WO: DVec3::new(0.2, 0.3, -0.4) })
+}
+
+/// The scene of the logs `A_fig5` (gravity 9.81) and `B_gentle` (gravity 1): semi-axes 2.5, 2, 1.
+#[must_use]
+pub fn fig5(gravity: f64) -> (ThreePalmScene<Ellipsoid>, InitialMotion) {
+    let axes = DVec3::new(2.5, 2.0, 1.0);
+    immobile(axes, LOG_PALMS, gravity, DQuat::IDENTITY, DVec3::new(0.0, 0.3, 0.3))
+}
+
+/// The scene of the log `D_tilted`.
+#[must_use]
+pub fn tilted() -> (ThreePalmScene<Ellipsoid>, InitialMotion) {
+    let q = DQuat::from_xyzw(0.499376169438922, -0.299625701663353, 0.549313786382815, 0.599251403326707);
+    immobile(DVec3::new(1.8, 1.3, 0.9), LOG_PALMS, 9.81, q, DVec3::new(0.8, -0.5, 0.4))
+}
+
+/// Directions in which the palms of the logs rise, degrees: their normals' azimuths are the opposite ones.
+const LOG_PALMS: [f64; 3] = [270.0, 30.0, 150.0];
+
+fn immobile(
+    axes: DVec3,
+    azimuths: [f64; 3],
+    gravity: f64,
+    R_WO: DQuat,
+    w_WO: DVec3,
+) -> (ThreePalmScene<Ellipsoid>, InitialMotion) {
+    let palms = azimuths.map(|degrees: f64| Palm::fixed(degrees.to_radians(), 60f64.to_radians()).unwrap());
+    let mass = MassProperties::uniform_ellipsoid(1.0, axes).unwrap();
+    let scene = ThreePalmScene::new(Ellipsoid::new(axes).unwrap(), mass, palms, gravity).unwrap();
+    (scene, InitialMotion { R_WO, w_WO })
+}
+
+/// Largest absolute difference of two orientations as matrices, whatever the sign of the quaternions.
+#[must_use]
+pub fn orientation_difference(a: DQuat, b: DQuat) -> f64 {
+    let difference = DMat3::from_quat(a) - DMat3::from_quat(b);
+    difference.to_cols_array().iter().fold(0.0, |m: f64, v| m.max(v.abs()))
+}
+
+/// Energy of an instant relative to another.
+#[must_use]
+pub fn relative_energy_drift<S: SupportFunction>(
+    scene: &ThreePalmScene<S>,
+    instants: &[recon::object_dynamics::Instant],
+) -> f64 {
+    let start = instants[0].energy(scene);
+    instants.iter().fold(0.0, |m: f64, now| m.max(((now.energy(scene) - start) / start).abs()))
+}

@@ -6,11 +6,17 @@
 //!
 //! Frames: `W` world (Z up), `O` object, `P_i` palm `i`. Units: SI.
 
+mod contact;
 mod direction;
 mod palm;
 pub mod planar;
 mod support;
 
+pub use contact::{
+    Contact, ContactCurve, ContactRates, ContactSupport, CurveError, CurvePoint, Darboux, ThreeContacts,
+    acceleration_defect, body_normal, body_normal_rate, contact_curve_rates, contact_velocity, darboux,
+    radius_rate, separation_rates,
+};
 pub use direction::{Direction, DirectionError};
 pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple, SlopeMotion};
 pub use support::{

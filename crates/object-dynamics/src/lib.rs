@@ -5,7 +5,16 @@
 pub mod integrate;
 mod log;
 mod mass;
+#[cfg(feature = "noise")]
+mod noise;
 pub mod planar;
+mod three_palms;
 
 pub use log::{LogError, PalmReading, Sample, SensorLog, TrueState};
 pub use mass::{MassError, MassProperties, PrincipalInertia};
+#[cfg(feature = "noise")]
+pub use noise::SensorNoise;
+pub use three_palms::{
+    Accelerations, End, InitialMotion, Instant, MaximalState, MultiplierSolution, SampleTimes, SceneError,
+    Simulation, SimulationError, ThreePalmScene,
+};

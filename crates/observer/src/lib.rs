@@ -8,11 +8,21 @@
 //! The feature `palms` (on by default) adds the estimators of shape and motion from touch.
 
 mod core;
+mod least_squares;
 #[cfg(feature = "palms")]
 pub mod planar;
+#[cfg(feature = "palms")]
+mod three_palms;
 
 pub use core::{
     Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Model, NewtonEstimate,
     NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start, Status, describe_direction, rk4,
     rk4_linearised, solve_batch, solve_batch_from,
+};
+pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
+#[cfg(feature = "palms")]
+pub use three_palms::{
+    EstimateError, Evidence, KnownBody, MotionEstimate, MotionState, NoiseLevel, PaperError, PaperMethod,
+    PaperReconstruction, PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState,
+    Track, TrackError, WeakDirection, equivalent_orientations, estimate_motion, integrate_paper_system,
 };

@@ -1,1 +1,30 @@
-//! placeholder
+//! Files of recon: sensor logs, scene files, contact lists, meshes, tables and the report. No mathematics.
+//!
+//! Errors of reading name the file, the line or key, the value and the mend. What is written as a whole appears as a
+//! whole or not at all ([`OutputFolder`], [`AtomicFile`]).
+
+mod contacts;
+mod log;
+mod mesh;
+mod number;
+mod output;
+mod plausibility;
+mod report;
+mod scene;
+mod summary;
+mod table;
+
+pub use contacts::{
+    ContactPoint, ContactsError, ContactsErrorKind, parse_contacts, read_contacts, write_contacts,
+};
+pub use log::{LogFileError, LogFileErrorKind, parse_log, read_log, write_log};
+pub use mesh::{MeshError, TriangleMesh, write_ply};
+pub use output::{AtomicFile, OutputError, OutputFolder};
+pub use plausibility::{Implausibility, implausibilities};
+pub use report::{
+    Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
+    ReportError, TrueShape, Verdict, write_report,
+};
+pub use scene::{KnownInertia, Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation};
+pub use summary::summary;
+pub use table::{write_contact_curves, write_motion, write_radius_functions};

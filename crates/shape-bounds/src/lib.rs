@@ -1,1 +1,47 @@
-//! placeholder
+//! Guaranteed inner and outer bounds on a convex body from contact points and normals.
+//!
+//! A convex body that was touched at points `x_k` with outward normals `n_k` contains the hull of the points and is
+//! contained in the half-spaces `n_k . (y - x_k) <= 0` (Moll and Erdmann, WAFR 2002, section 8). Which point is outside of
+//! which facet is decided by exact arithmetic, so that the bounds hold on thin, flat, repeated and far-away data.
+//!
+//! ```
+//! use glam::DVec3;
+//! use shape_bounds::{ContactSample, ShapeBounds};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A unit sphere, touched at the corners of a cube.
+//! let corner = |i: u32| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * 2.0 - DVec3::ONE;
+//! let contacts = ContactSample::from_raw((0..8).map(|i| corner(i).normalize()).map(|n| (n, n)))?;
+//! let bounds = ShapeBounds::from_contacts(&contacts)?;
+//! let sphere = 4.0 / 3.0 * std::f64::consts::PI;
+//! assert!(bounds.lower_volume() < sphere && sphere < bounds.upper_volume());
+//! let gap = bounds.largest_gap().ok_or("open")?;
+//! println!("next touch along {}, where up to {} m are unknown", gap.direction.get(), gap.distance);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! All lengths are in m, all coordinates in the body's frame.
+
+mod bounds;
+mod distance;
+#[cfg(any(test, feature = "generators"))]
+pub mod generators;
+mod halfspaces;
+mod hull;
+mod integrals;
+mod mesh;
+mod noise;
+mod planar;
+mod predicates;
+mod random;
+mod sample;
+mod twofold;
+
+pub use bounds::{BoundsError, Gap, ShapeBounds};
+pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
+pub use hull::{Hull, HullCertificate, PointsError, SolidHull, SupportWalk};
+pub use integrals::SolidMoments;
+pub use mesh::TriangleMesh;
+pub use noise::{ContactNoise, NoiseError, NoisyContact};
+pub use sample::{ContactError, ContactSample, HalfSpace, NORMAL_TOLERANCE};

@@ -138,7 +138,7 @@ impl SupportFunction for PolynomialSupport {
 fn cube_direction(face: usize, i: u32, j: u32, cells: u32) -> Direction {
     let centre = |k: u32| (2.0 * f64::from(k) + 1.0) / f64::from(cells) - 1.0;
     let mut v = [0.0; 3];
-    v[face / 2] = if face % 2 == 0 { 1.0 } else { -1.0 };
+    v[face / 2] = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
     v[(face / 2 + 1) % 3] = centre(i);
     v[(face / 2 + 2) % 3] = centre(j);
     Direction::new_unchecked(DVec3::from_array(v).normalize())

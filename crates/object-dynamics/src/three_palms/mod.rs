@@ -1,0 +1,12 @@
+//! A smooth convex body on three flat frictionless palms.
+
+mod instant;
+mod minimal;
+mod multiplier;
+mod scene;
+mod simulate;
+
+pub use instant::{Accelerations, Instant};
+pub use multiplier::{MaximalState, MultiplierSolution};
+pub use scene::{SceneError, ThreePalmScene};
+pub use simulate::{End, InitialMotion, SampleTimes, Simulation, SimulationError};

@@ -1,0 +1,200 @@
+//! Nonlinear least squares with few unknowns and many residuals, on a manifold if need be.
+
+use nalgebra::{Cholesky, SMatrix, SVector, SymmetricEigen};
+
+/// Sums that a Gauss-Newton step needs: `J' J`, `J' r` and `r' r`, in scaled unknowns.
+#[derive(Clone, Debug)]
+pub struct NormalEquations<const P: usize> {
+    /// `J' J`.
+    pub information: SMatrix<f64, P, P>,
+    /// `J' r`.
+    pub gradient: SVector<f64, P>,
+    /// `r' r`.
+    pub cost: f64,
+    /// Number of residuals.
+    pub count: usize,
+}
+
+impl<const P: usize> Default for NormalEquations<P> {
+    fn default() -> Self {
+        Self { information: SMatrix::zeros(), gradient: SVector::zeros(), cost: 0.0, count: 0 }
+    }
+}
+
+impl<const P: usize> NormalEquations<P> {
+    /// Adds one residual with its derivatives.
+    pub fn add(&mut self, row: &SVector<f64, P>, residual: f64) {
+        self.information.ger(1.0, row, row, 1.0);
+        self.gradient.axpy(residual, row, 1.0);
+        self.cost += residual * residual;
+        self.count += 1;
+    }
+
+    /// Root mean square of the residuals.
+    #[must_use]
+    pub fn rms(&self) -> f64 {
+        if self.count > 0 { (self.cost / self.count as f64).sqrt() } else { 0.0 }
+    }
+}
+
+/// A least-squares problem in `P` unknowns. Unknowns are scaled so that 1 is a natural size of each.
+pub trait LeastSquares<const P: usize> {
+    /// A value of the unknowns, on whatever manifold they live.
+    type Point: Clone;
+
+    /// Residuals and derivatives at a point; none where the model cannot be evaluated.
+    fn linearise(&self, point: &Self::Point) -> Option<NormalEquations<P>>;
+
+    /// `r' r` alone; none where the model cannot be evaluated.
+    fn cost(&self, point: &Self::Point) -> Option<f64>;
+
+    /// The point moved by a step in the scaled unknowns.
+    fn retract(&self, point: &Self::Point, step: &SVector<f64, P>) -> Self::Point;
+}
+
+/// How a fit ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FitStatus {
+    /// The last step was below the tolerance, or could not lower the cost any more for rounding.
+    Converged,
+    /// The iterations ran out.
+    OutOfIterations,
+    /// The model could not be evaluated at the start.
+    Failed,
+}
+
+/// Result of a fit.
+#[derive(Clone, Debug)]
+pub struct Fit<Point, const P: usize> {
+    /// The best point found.
+    pub point: Point,
+    /// Normal equations there.
+    pub normal: NormalEquations<P>,
+    /// How it ended.
+    pub status: FitStatus,
+    /// Linearisations used.
+    pub iterations: usize,
+}
+
+/// Levenberg-Marquardt with damping by a multiple of the identity in the scaled unknowns.
+///
+/// Stops when a step is shorter than `step_tolerance` (in units of the natural sizes), or when the predicted fall of
+/// the cost is below rounding. It ends at a local minimum: whether that is the right one is the caller's business.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LevenbergMarquardt {
+    /// Most linearisations.
+    pub iterations: usize,
+    /// Length of a step at which to stop.
+    pub step_tolerance: f64,
+    /// First damping, as a share of the mean information.
+    pub damping: f64,
+    /// Information of a prior that holds the unknowns at the start, as a share of the mean information; 0 for none.
+    pub prior: f64,
+}
+
+impl Default for LevenbergMarquardt {
+    fn default() -> Self {
+        Self { iterations: 50, step_tolerance: 1e-12, damping: 1e-3, prior: 0.0 }
+    }
+}
+
+/// Damping at which a step is too short to matter.
+const LARGEST_DAMPING: f64 = 1e12;
+
+impl LevenbergMarquardt {
+    /// Minimises the cost from `start`.
+    pub fn fit<const P: usize, L: LeastSquares<P>>(&self, problem: &L, start: L::Point) -> Fit<L::Point, P> {
+        let Some(mut normal) = problem.linearise(&start) else {
+            let normal = NormalEquations::default();
+            return Fit { point: start, normal, status: FitStatus::Failed, iterations: 1 };
+        };
+        let mut point = start;
+        let mut damping = self.damping;
+        // The prior pulls towards the start: `travelled` is where the point is from it, in the scaled unknowns.
+        let mut travelled = SVector::<f64, P>::zeros();
+        let mut iterations = 1;
+        while iterations < self.iterations {
+            let mean = normal.information.trace() / P as f64;
+            let weight = self.prior * mean;
+            let gradient = normal.gradient + travelled * weight;
+            let cost = normal.cost + weight * travelled.norm_squared();
+            let mut accepted = false;
+            while damping < LARGEST_DAMPING {
+                let shift = (damping + self.prior) * mean + f64::MIN_POSITIVE;
+                let Some(step) = solve_shifted(&normal.information, shift, &gradient) else {
+                    damping = (damping * 10.0).max(1e-10);
+                    continue;
+                };
+                let moved = problem.retract(&point, &step);
+                let arrived = travelled + step;
+                let trial = problem.cost(&moved).map(|c| c + weight * arrived.norm_squared());
+                let small = step.norm() < self.step_tolerance;
+                if trial.is_some_and(|c| c < cost) {
+                    (point, travelled, accepted) = (moved, arrived, true);
+                    damping = (damping * 0.1).max(1e-15);
+                }
+                if small {
+                    return self.finish(problem, point, normal, iterations);
+                }
+                if accepted {
+                    break;
+                }
+                damping = (damping * 10.0).max(1e-10);
+            }
+            if !accepted {
+                return self.finish(problem, point, normal, iterations);
+            }
+            let Some(next) = problem.linearise(&point) else { break };
+            normal = next;
+            iterations += 1;
+        }
+        Fit { point, normal, status: FitStatus::OutOfIterations, iterations }
+    }
+
+    fn finish<const P: usize, L: LeastSquares<P>>(
+        &self,
+        problem: &L,
+        point: L::Point,
+        last: NormalEquations<P>,
+        iterations: usize,
+    ) -> Fit<L::Point, P> {
+        let normal = problem.linearise(&point).unwrap_or(last);
+        Fit { point, normal, status: FitStatus::Converged, iterations: iterations + 1 }
+    }
+}
+
+fn solve_shifted<const P: usize>(
+    information: &SMatrix<f64, P, P>,
+    shift: f64,
+    gradient: &SVector<f64, P>,
+) -> Option<SVector<f64, P>> {
+    let mut matrix = *information;
+    for i in 0..P {
+        matrix[(i, i)] += shift;
+    }
+    let step = -Cholesky::new(matrix)?.solve(gradient);
+    step.iter().all(|v| v.is_finite()).then_some(step)
+}
+
+/// What the data say about the unknowns at a point: eigenvalues of the information in the scaled unknowns.
+#[derive(Clone, Debug)]
+pub struct Observability<const P: usize> {
+    /// Eigenvalues of `J' J`, ascending; scaled unknowns.
+    pub eigenvalues: SVector<f64, P>,
+    /// Unit eigenvectors in the same order, as columns.
+    pub directions: SMatrix<f64, P, P>,
+}
+
+impl<const P: usize> Observability<P> {
+    /// Of an information matrix in scaled unknowns.
+    #[must_use]
+    pub fn new(information: &SMatrix<f64, P, P>) -> Self {
+        let symmetric =
+            SymmetricEigen::new(nalgebra::DMatrix::from_column_slice(P, P, information.as_slice()));
+        let mut order: Vec<usize> = (0..P).collect();
+        order.sort_by(|&a, &b| symmetric.eigenvalues[a].total_cmp(&symmetric.eigenvalues[b]));
+        let eigenvalues = SVector::from_fn(|i, _| symmetric.eigenvalues[order[i]]);
+        let directions = SMatrix::from_fn(|row, column| symmetric.eigenvectors[(row, order[column])]);
+        Self { eigenvalues, directions }
+    }
+}

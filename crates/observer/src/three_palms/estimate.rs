@@ -1,0 +1,244 @@
+use super::cold_start::{cold_start, scales};
+use super::correlation::{correlation_samples, whiteness};
+use super::covariance::{NoiseLevel, Sampling, propagate};
+use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
+use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNKNOWNS};
+use super::noise::noise_level;
+use super::track::{Track, TrackError};
+use crate::least_squares::{FitStatus, LevenbergMarquardt, Observability};
+use contact_kinematics::{ContactCurve, CurveError};
+use glam::DVec3;
+use nalgebra::SMatrix;
+use object_dynamics::{MassProperties, SensorLog};
+use thiserror::Error;
+
+/// Samples that the covariance is computed from, at most: it varies as slowly as the motion.
+const COVARIANCE_SAMPLES: usize = 400;
+/// Smallest share of the largest information that still counts as information: rounding of `J' J`.
+const RANK_TOLERANCE: f64 = 1e-14;
+/// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
+/// linearisation that its covariance comes from does not reach that far.
+const LARGEST_DEVIATION: f64 = 0.25;
+/// A residual above this many times of what noise explains, that is smooth over time, is a misfit.
+const MISFIT: f64 = 3.0;
+/// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
+const NOISE_FLOOR: f64 = 1e-12;
+
+/// What is known beside the log.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KnownBody {
+    /// Mass and inertia.
+    pub mass: MassProperties,
+    /// Acceleration of free fall, world, m/s^2.
+    pub gravity: DVec3,
+    /// Moments of inertia of the palms about their axes, kg m^2: needed only for logs of torques on moving palms.
+    pub palm_inertias: Option<[f64; 3]>,
+    /// Sensor noise; where it is not known it is taken from the roughness of the readings.
+    pub noise: Option<NoiseLevel>,
+}
+
+/// Why there is no estimate.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum EstimateError {
+    /// The log cannot be used.
+    #[error("{0}")]
+    Track(#[source] TrackError),
+    /// Gravity is not a number.
+    #[error("gravity ({}, {}, {}) m/s^2 is not finite", gravity.x, gravity.y, gravity.z)]
+    Gravity {
+        /// As given.
+        gravity: DVec3,
+    },
+    /// No start leads to a finite residual.
+    #[error(
+        "no motion fits the log: the residual is not finite from any start; check units and frames of the log"
+    )]
+    NoFit,
+    /// The estimated curves are not curves.
+    #[error("contact curve of palm {palm}: {source}")]
+    Curve {
+        /// Palm number from 1.
+        palm: usize,
+        /// Why.
+        source: CurveError,
+    },
+}
+
+/// Motion of a body of known mass and inertia, with the evidence for it.
+#[derive(Clone, Debug)]
+pub struct MotionEstimate {
+    /// Motion at the first sample. Of the four orientations that differ by half turns about principal axes, and that
+    /// no data can tell apart, the one nearest to the world's axes.
+    pub start: StartState,
+    /// Motion at every sample in contact.
+    pub motion: Vec<MotionState>,
+    /// Contact curves of the three palms on the body.
+    pub curves: [ContactCurve; 3],
+    /// Radius function values at the contacts, m: one triple a sample.
+    pub radii: Vec<[f64; 3]>,
+    /// Covariance of the start: centre of mass (m), velocity (m/s), angular momentum (kg m^2/s), orientation (rotation
+    /// vector in world axes, rad), three each.
+    pub covariance: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+    /// How well the data determine it, and how well it explains them.
+    pub evidence: Evidence,
+    /// Whether to believe it.
+    pub reliability: Reliability,
+}
+
+/// Estimates the motion over a log, with no guess of any of its parts (the paper assumes the initial angular velocity
+/// to be known).
+///
+/// Unknown are centre of mass, velocity, angular momentum and orientation at the first sample, 12 numbers. Contact
+/// conditions at all samples up to the first loss of contact are fitted by least squares in the momentum form, on
+/// windows that grow.
+///
+/// # Errors
+/// [`EstimateError`] when the log cannot be used at all; an estimate that should not be believed is returned with
+/// [`Reliability::Unreliable`] and its reasons.
+pub fn estimate_motion(log: &SensorLog, known: &KnownBody) -> Result<MotionEstimate, EstimateError> {
+    if !known.gravity.is_finite() {
+        return Err(EstimateError::Gravity { gravity: known.gravity });
+    }
+    let track = Track::new(log, known.mass.mass(), known.gravity, known.palm_inertias)
+        .map_err(EstimateError::Track)?;
+    estimate_on_track(&track, known)
+}
+
+pub(super) fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate, EstimateError> {
+    let mass = &known.mass;
+    let scales = scales(track, mass);
+    let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
+    let found = cold_start(track, mass, noise);
+    let best = found.into_iter().next().ok_or(EstimateError::NoFit)?;
+    let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
+    let solver = LevenbergMarquardt { iterations: 20, step_tolerance: 1e-10, damping: 1e-9, prior: 0.0 };
+    let mut fit = solver.fit(&problem, best.point);
+    if fit.status == FitStatus::Failed {
+        return Err(EstimateError::NoFit);
+    }
+    fit.point.R_WO = nearest_to_identity(mass, fit.point.R_WO);
+    let residuals = problem.residuals(&fit.point);
+    let observability = Observability::new(&fit.normal.information);
+    let (covariance, predicted) =
+        scaled_covariance(track, known, &scales, &fit.point, &observability, &noise);
+    let rms = fit.normal.rms();
+    // What noise does not explain is a lasting error of sensors or model: as many independent ones as there are
+    // correlation times in the log.
+    let excess = (rms * rms - predicted * predicted).max(0.0) * correlation_samples(&residuals);
+    let covariance = covariance + information_inverse(&observability) * excess + unknown(&observability);
+    let weakest = weakest_direction(&covariance);
+    let eigenvalues = observability.eigenvalues;
+    let largest = eigenvalues[UNKNOWNS - 1];
+    let evidence = Evidence {
+        samples: track.len(),
+        duration: track.duration(),
+        residual_rms: rms,
+        noise_explains: predicted,
+        whiteness: whiteness(&residuals),
+        rank: eigenvalues.iter().filter(|&&v| v > RANK_TOLERANCE * largest).count(),
+        condition: (largest / eigenvalues[0].max(0.0)).sqrt(),
+        smallest_information: eigenvalues[0],
+        weakest,
+        noise,
+        iterations: fit.iterations,
+    };
+    let reliability = judge(&evidence, fit.status);
+    let motion = problem.motion(&fit.point);
+    let curves = super::curves::contact_curves(track, &motion)?;
+    let radii = super::curves::radii(track, &motion);
+    let covariance = unscale(&covariance, &scales);
+    Ok(MotionEstimate { start: fit.point, motion, curves, radii, covariance, evidence, reliability })
+}
+
+fn floored(noise: NoiseLevel, track: &Track, scales: &Scales) -> NoiseLevel {
+    let weight = track.mass * track.gravity.length();
+    NoiseLevel {
+        contact: noise.contact.max(NOISE_FLOOR * scales.length),
+        force: noise.force.max(NOISE_FLOOR * weight),
+    }
+}
+
+/// Covariance of the scaled unknowns from sensor noise, and the residual that the noise explains.
+fn scaled_covariance(
+    track: &Track,
+    known: &KnownBody,
+    scales: &Scales,
+    start: &StartState,
+    observability: &Observability<UNKNOWNS>,
+    noise: &NoiseLevel,
+) -> (SMatrix<f64, UNKNOWNS, UNKNOWNS>, f64) {
+    let stride = track.len().div_ceil(COVARIANCE_SAMPLES);
+    let thin = track.thinned(stride);
+    let problem = MomentumProblem::new(&thin, &known.mass, *scales, f64::INFINITY);
+    let per_node = stride as f64;
+    let sampling = Sampling { per_node, weight: per_node, direct: per_node };
+    let result = propagate(&problem, start, &information_inverse(observability), noise, sampling);
+    (result.covariance, result.residual.max(f64::MIN_POSITIVE))
+}
+
+pub(super) fn information_inverse(
+    observability: &Observability<UNKNOWNS>,
+) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
+    let floor = RANK_TOLERANCE * observability.eigenvalues[UNKNOWNS - 1];
+    // Directions without information get the inverse of the floor: a variance that is plainly no knowledge.
+    let inverse = observability.eigenvalues.map(|v| 1.0 / v.max(floor).max(f64::MIN_POSITIVE));
+    observability.directions * SMatrix::from_diagonal(&inverse) * observability.directions.transpose()
+}
+
+/// Unit variance, in natural sizes, of the directions that the data say nothing of in double precision: there noise is
+/// carried to the unknowns by zero over zero.
+fn unknown(observability: &Observability<UNKNOWNS>) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
+    let floor = RANK_TOLERANCE * observability.eigenvalues[UNKNOWNS - 1];
+    let variance = observability.eigenvalues.map(|v| if v > floor { 0.0 } else { 1.0 });
+    observability.directions * SMatrix::from_diagonal(&variance) * observability.directions.transpose()
+}
+
+fn weakest_direction(covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>) -> WeakDirection {
+    let spectrum = Observability::new(covariance);
+    let last = UNKNOWNS - 1;
+    let direction: Row = spectrum.directions.column(last).into_owned();
+    WeakDirection::new(&direction, spectrum.eigenvalues[last].max(0.0).sqrt())
+}
+
+fn judge(evidence: &Evidence, status: FitStatus) -> Reliability {
+    let mut reasons = Vec::new();
+    if status != FitStatus::Converged {
+        reasons.push(Reason::NotConverged { iterations: evidence.iterations });
+    }
+    // NaN counts as unknown.
+    let known = evidence.weakest.deviation <= LARGEST_DEVIATION;
+    if !known {
+        reasons.push(Reason::Unobservable { direction: evidence.weakest });
+    }
+    let misfit = evidence.residual_rms / evidence.noise_explains;
+    if misfit > MISFIT && !known {
+        reasons.push(Reason::Misfit { residual: evidence.residual_rms, explained: evidence.noise_explains });
+    }
+    if reasons.is_empty() { Reliability::Reliable } else { Reliability::Unreliable(reasons) }
+}
+
+fn unscale(
+    covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+    scales: &Scales,
+) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
+    let scale = scales.by_block();
+    SMatrix::from_fn(|i, j| covariance[(i, j)] * scale[i / 3] * scale[j / 3])
+}
+
+/// Of the orientations `R_WO D` with `D` a half turn about a principal axis, the one with the smallest angle.
+fn nearest_to_identity(mass: &MassProperties, R_WO: glam::DQuat) -> glam::DQuat {
+    equivalent_orientations(mass)
+        .into_iter()
+        .map(|turn| R_WO * turn)
+        .max_by(|a, b| a.w.abs().total_cmp(&b.w.abs()))
+        .unwrap_or(R_WO)
+}
+
+/// The four turns `D` of the body axes under which the inertia tensor does not change: identity and half turns about
+/// the principal axes. Motion and contacts are the same for `R_WO` and `R_WO D`; the body's shape is turned with them.
+#[must_use]
+pub fn equivalent_orientations(mass: &MassProperties) -> [glam::DQuat; 4] {
+    let axes = mass.principal().axes;
+    let half = |v: DVec3| axes * glam::DQuat::from_xyzw(v.x, v.y, v.z, 0.0) * axes.inverse();
+    [glam::DQuat::IDENTITY, half(DVec3::X), half(DVec3::Y), half(DVec3::Z)]
+}

@@ -1,0 +1,144 @@
+use super::covariance::NoiseLevel;
+use super::momentum::Row;
+use glam::DVec3;
+use std::fmt;
+
+/// What an estimate rests on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evidence {
+    /// Samples used.
+    pub samples: usize,
+    /// Time that they span, s.
+    pub duration: f64,
+    /// Root mean square of the contact residuals, m/s.
+    pub residual_rms: f64,
+    /// Root mean square that sensor noise would leave at the true motion, m/s.
+    pub noise_explains: f64,
+    /// Von Neumann's ratio of the residuals: about 1 for independent ones, near 0 for smooth ones (a misfit, or errors
+    /// that last).
+    pub whiteness: f64,
+    /// Directions of the 12 unknowns that the data determine at all, in exact arithmetic.
+    pub rank: usize,
+    /// Largest over smallest singular value of the scaled Jacobian.
+    pub condition: f64,
+    /// Smallest eigenvalue of `J' J` in scaled unknowns, (m/s)^2.
+    pub smallest_information: f64,
+    /// The worst known combination of the unknowns.
+    pub weakest: WeakDirection,
+    /// Sensor noise that the covariance is computed from.
+    pub noise: NoiseLevel,
+    /// Linearisations in the last fit.
+    pub iterations: usize,
+}
+
+/// A part of the state at the first sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Centre of mass.
+    CentreOfMass,
+    /// Velocity of the centre of mass.
+    Velocity,
+    /// Angular momentum, and with it the angular velocity.
+    AngularMomentum,
+    /// Orientation of the principal axes.
+    Orientation,
+}
+
+/// The combination of unknowns that the data determine worst, named by its largest part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WeakDirection {
+    /// What it is a change of.
+    pub quantity: Quantity,
+    /// Along or about which unit vector, world axes.
+    pub axis: DVec3,
+    /// Its standard deviation, in natural sizes (length of the scene, `sqrt(g length)`, radian).
+    pub deviation: f64,
+}
+
+impl WeakDirection {
+    /// Names a unit vector of the scaled unknowns.
+    pub(super) fn new(direction: &Row, deviation: f64) -> Self {
+        let block = |k: usize| DVec3::new(direction[3 * k], direction[3 * k + 1], direction[3 * k + 2]);
+        let largest =
+            (1..4).fold(0, |best, k| if block(k).length() > block(best).length() { k } else { best });
+        let quantity = match largest {
+            0 => Quantity::CentreOfMass,
+            1 => Quantity::Velocity,
+            2 => Quantity::AngularMomentum,
+            _ => Quantity::Orientation,
+        };
+        Self { quantity, axis: block(largest).normalize_or_zero(), deviation }
+    }
+}
+
+impl fmt::Display for WeakDirection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (name, preposition) = match self.quantity {
+            Quantity::CentreOfMass => ("centre of mass", "along"),
+            Quantity::Velocity => ("velocity", "along"),
+            Quantity::AngularMomentum => ("angular velocity", "about"),
+            Quantity::Orientation => ("orientation", "about"),
+        };
+        let DVec3 { x, y, z } = self.axis;
+        write!(f, "{name} {preposition} ({x:.2}, {y:.2}, {z:.2})")
+    }
+}
+
+/// Whether to believe an estimate.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reliability {
+    /// Its covariance tells how far.
+    Reliable,
+    /// It may be wrong by more than its numbers say.
+    Unreliable(Vec<Reason>),
+}
+
+/// Why not to believe an estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reason {
+    /// The fit did not settle.
+    NotConverged {
+        /// Linearisations used.
+        iterations: usize,
+    },
+    /// The data leave a direction open.
+    Unobservable {
+        /// Which.
+        direction: WeakDirection,
+    },
+    /// The motion found leaves more than noise.
+    Misfit {
+        /// Root mean square of the contact residuals, m/s.
+        residual: f64,
+        /// What noise explains, m/s.
+        explained: f64,
+    },
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotConverged { iterations } => {
+                write!(f, "the fit did not settle in {iterations} iterations")
+            }
+            Self::Unobservable { direction } => write!(
+                f,
+                "the log does not determine the {direction}: standard deviation {:.2e} of its natural size",
+                direction.deviation
+            ),
+            Self::Misfit { residual, explained } => write!(
+                f,
+                "the motion found leaves {residual:.2e} m/s of the contact condition where sensor noise explains \
+                 {explained:.2e}: a wrong motion, a wrong mass or inertia, or sensor errors that last"
+            ),
+        }
+    }
+}
+
+impl Reliability {
+    /// Whether the estimate may be believed to within its covariance.
+    #[must_use]
+    pub fn is_reliable(&self) -> bool {
+        *self == Self::Reliable
+    }
+}

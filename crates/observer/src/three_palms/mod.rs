@@ -1,0 +1,22 @@
+//! Three palms in space.
+
+mod cold_start;
+mod correlation;
+mod covariance;
+mod curves;
+mod estimate;
+mod evidence;
+mod momentum;
+mod noise;
+mod paper_method;
+mod quadrature;
+mod track;
+
+pub use covariance::NoiseLevel;
+pub use estimate::{EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion};
+pub use evidence::{Evidence, Quantity, Reason, Reliability, WeakDirection};
+pub use momentum::{MotionState, Scales, StartState};
+pub use paper_method::{
+    PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
+};
+pub use track::{Track, TrackError};

@@ -1,0 +1,378 @@
+//! The momentum form: position, velocity and angular momentum are affine in their initial values, and only the
+//! orientation needs an integration. Its residual is the contact condition `e_i = n_i . v - w . (n_i x (c_i - p)) +
+//! p_i = 0`, which no derivative of the data enters.
+
+use super::covariance::Linearised;
+use super::track::{Integrals, Track};
+use crate::least_squares::{LeastSquares, NormalEquations};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::{SMatrix, SVector};
+use object_dynamics::MassProperties;
+
+/// Number of unknowns: centre of mass, velocity, angular momentum, orientation.
+pub(super) const UNKNOWNS: usize = 12;
+pub(super) type Row = SVector<f64, UNKNOWNS>;
+/// By position, velocity, angular momentum and orientation at a sample, world axes.
+pub(super) type StateRow = SVector<f64, UNKNOWNS>;
+
+/// Motion of the body at the start of a track.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StartState {
+    /// Centre of mass, world, m.
+    pub p_WCm: DVec3,
+    /// Its velocity, world, m/s.
+    pub v_WCm: DVec3,
+    /// Angular momentum about the centre of mass, world axes, kg m^2/s.
+    pub L_WO: DVec3,
+    /// Orientation of the axes of the inertia tensor, body to world.
+    pub R_WO: DQuat,
+}
+
+/// Motion at one sample of a track.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionState {
+    /// Time as in the log, s.
+    pub t: f64,
+    /// Centre of mass, world, m.
+    pub p_WCm: DVec3,
+    /// Orientation, body to world.
+    pub R_WO: DQuat,
+    /// Velocity of the centre of mass, world, m/s.
+    pub v_WCm: DVec3,
+    /// Angular velocity, world axes, rad/s.
+    pub w_WO: DVec3,
+}
+
+/// Natural sizes of the unknowns, by which they are scaled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// Length, m: mean distance of the contacts from their mean.
+    pub length: f64,
+    /// Velocity, m/s.
+    pub velocity: f64,
+    /// Angular momentum, kg m^2/s.
+    pub momentum: f64,
+}
+
+impl Scales {
+    /// Of centre of mass, velocity, angular momentum and orientation.
+    pub(super) fn by_block(&self) -> [f64; 4] {
+        [self.length, self.velocity, self.momentum, 1.0]
+    }
+}
+
+/// Least squares of the contact conditions over the first samples of a track.
+pub(super) struct MomentumProblem<'a> {
+    track: &'a Track,
+    mass: &'a MassProperties,
+    scales: Scales,
+    end: usize,
+}
+
+/// The part of a sample that follows from the start state and the orientation.
+struct Kinematics {
+    v: DVec3,
+    p: DVec3,
+    L: DVec3,
+}
+
+impl<'a> MomentumProblem<'a> {
+    /// Of the samples up to `window` seconds after the start.
+    pub(super) fn new(track: &'a Track, mass: &'a MassProperties, scales: Scales, window: f64) -> Self {
+        let end = track.t.partition_point(|&t| t <= window + 1e-12).max(2).min(track.t.len());
+        Self { track, mass, scales, end }
+    }
+
+    fn kinematics(&self, start: &StartState, k: usize) -> Kinematics {
+        let t = self.track.t[k];
+        let Integrals { impulse, first_moment, moment, velocity, position, .. } = self.track.integrals[k];
+        Kinematics {
+            v: start.v_WCm + velocity,
+            p: start.p_WCm + start.v_WCm * t + position,
+            L: momentum(start, &[impulse, first_moment, moment]),
+        }
+    }
+
+    /// Walks the orientation along the track: calls `visit(k, q, middle)` at each sample, with the orientation there
+    /// and at the middle of the step that led to it.
+    fn walk(&self, start: &StartState, mut visit: impl FnMut(usize, DQuat, DQuat)) {
+        let inverse = self.mass.inverse_inertia();
+        let rate = |q: DQuat, L: DVec3| {
+            let w = inverse * (q.inverse() * L);
+            q * DQuat::from_xyzw(0.5 * w.x, 0.5 * w.y, 0.5 * w.z, 0.0)
+        };
+        let mut q = start.R_WO.normalize();
+        let mut L = start.L_WO;
+        visit(0, q, q);
+        for k in 1..self.end {
+            let h = self.track.t[k] - self.track.t[k - 1];
+            let middle_L = momentum(start, &self.track.middle[k - 1]);
+            let end_L = self.kinematics(start, k).L;
+            let k1 = rate(q, L);
+            let k2 = rate((q + k1 * (0.5 * h)).normalize(), middle_L);
+            let q3 = (q + k2 * (0.5 * h)).normalize();
+            let k3 = rate(q3, middle_L);
+            let k4 = rate((q + k3 * h).normalize(), end_L);
+            q = (q + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0)).normalize();
+            L = end_L;
+            visit(k, q, q3);
+        }
+    }
+
+    /// Contact condition of palm `i` at sample `k`, m/s.
+    fn residual(&self, k: usize, i: usize, at: &Kinematics, w: DVec3) -> f64 {
+        let node = &self.track.nodes[k];
+        let n = node.palms[i].frame.n;
+        n.dot(at.v) - w.dot(n.cross(node.p_WC[i] - at.p)) + node.lift[i]
+    }
+
+    /// Motion at every sample of the window.
+    pub(super) fn motion(&self, start: &StartState) -> Vec<MotionState> {
+        let mut states = Vec::with_capacity(self.end);
+        let times: Vec<f64> = self.track.times().take(self.end).collect();
+        self.walk(start, |k, q, _| {
+            let at = self.kinematics(start, k);
+            let w_WO = q * (self.mass.inverse_inertia() * (q.inverse() * at.L));
+            states.push(MotionState { t: times[k], p_WCm: at.p, R_WO: q, v_WCm: at.v, w_WO });
+        });
+        states
+    }
+
+    /// Motion at the last sample of the window.
+    pub(super) fn end(&self, start: &StartState) -> StartState {
+        let mut end = *start;
+        self.walk(start, |k, q, _| {
+            let at = self.kinematics(start, k);
+            end = StartState { p_WCm: at.p, v_WCm: at.v, L_WO: at.L, R_WO: q };
+        });
+        end
+    }
+
+    /// Residuals in time order, palm by palm, m/s.
+    pub(super) fn residuals(&self, start: &StartState) -> Vec<[f64; 3]> {
+        let motion = self.motion(start);
+        let one = |(k, state): (usize, &MotionState)| {
+            let at = self.kinematics(start, k);
+            std::array::from_fn(|i| self.residual(k, i, &at, state.w_WO))
+        };
+        motion.iter().enumerate().map(one).collect()
+    }
+
+    /// Calls `visit(k, kinematics, turning, sensitivity)` at every sample.
+    fn each_turning(
+        &self,
+        start: &StartState,
+        mut visit: impl FnMut(usize, &Kinematics, &Turning, &Sensitivity),
+    ) {
+        let mut theta = Sensitivity::at_start();
+        let mut before: Option<Turning> = None;
+        self.walk(start, |k, q, middle| {
+            let at = self.kinematics(start, k);
+            let here = Turning::new(self.mass, q, at.L, &self.track.integrals[k]);
+            if let Some(before) = &before {
+                let halfway = &self.track.middle[k - 1];
+                let mid = Turning::at(self.mass, middle, momentum(start, halfway), halfway[0], halfway[1]);
+                theta.advance(before, &mid, &here, self.track.t[k] - self.track.t[k - 1]);
+            }
+            visit(k, &at, &here, &theta);
+            before = Some(here);
+        });
+    }
+
+    /// `de = n . dv + (w x n) . dp - a . dw`, `a = n x b`, `dw = (K [L]x - [w]x) theta + K dL`.
+    fn by_state(&self, k: usize, i: usize, at: &Kinematics, here: &Turning) -> [DVec3; 4] {
+        let node = &self.track.nodes[k];
+        let n = node.palms[i].frame.n;
+        let a = n.cross(node.p_WC[i] - at.p);
+        // K is symmetric: -a . K x = by_L . x, and by_L . (L x theta) = theta . (by_L x L).
+        let by_L = -(here.K * a);
+        [here.w.cross(n), n, by_L, by_L.cross(at.L) + a.cross(here.w)]
+    }
+
+    /// The same by the scaled unknowns: `dp = dcm0 + t dv0`, `dL = dL0 + impulse x dcm0 + first_moment x dv0`.
+    fn row(&self, k: usize, by_state: &[DVec3; 4], here: &Turning, theta: &Sensitivity) -> Row {
+        let [by_p, by_v, by_L, by_theta] = *by_state;
+        let t = self.track.t[k];
+        let by_start = [
+            by_p + by_L.cross(here.impulse) + theta.transposed(0, by_theta),
+            by_v + by_p * t + by_L.cross(here.first_moment) + theta.transposed(1, by_theta),
+            by_L + theta.transposed(2, by_theta),
+            theta.transposed(3, by_theta),
+        ];
+        let scale = self.scales.by_block();
+        Row::from_fn(|j, _| by_start[j / 3][j % 3] * scale[j / 3])
+    }
+
+    /// The linearised motion with its noise inputs, sample by sample.
+    pub(super) fn linearised(&self, start: &StartState) -> Vec<Linearised> {
+        let mut all = Vec::with_capacity(self.end);
+        self.each_turning(start, |k, at, here, theta| {
+            let node = &self.track.nodes[k];
+            let by_state = std::array::from_fn(|i| self.by_state(k, i, at, here));
+            let rows = std::array::from_fn(|i| self.row(k, &by_state[i], here, theta));
+            let step = if k + 1 < self.end { self.track.t[k + 1] - self.track.t[k] } else { 0.0 };
+            let force = (0..3).map(|i| node.forces[i] * node.palms[i].frame.n).sum();
+            let kick =
+                |velocity: DVec3, momentum: DVec3| stack([DVec3::ZERO, velocity, momentum, DVec3::ZERO]);
+            let axes = |i: usize| [node.palms[i].frame.t1, node.palms[i].frame.t2];
+            all.push(Linearised {
+                rows,
+                by_state: by_state.map(stack),
+                // e depends on c as -w . (n x c), and through the palm's own speed: p = -rate s2.
+                by_contact: std::array::from_fn(|i| {
+                    let n = node.palms[i].frame.n;
+                    let [t1, t2] = axes(i);
+                    [-here.w.dot(n.cross(t1)), -here.w.dot(n.cross(t2)) - node.palms[i].rate]
+                }),
+                by_force: std::array::from_fn(|i| {
+                    let n = node.palms[i].frame.n;
+                    kick(n / self.mass.mass(), (node.p_WC[i] - at.p).cross(n))
+                }),
+                through_torque: std::array::from_fn(|i| {
+                    axes(i).map(|t| kick(DVec3::ZERO, t.cross(node.forces[i] * node.palms[i].frame.n)))
+                }),
+                flow: flow(here, force),
+                step,
+            });
+        });
+        all
+    }
+}
+
+fn stack(blocks: [DVec3; 4]) -> StateRow {
+    StateRow::from_fn(|j, _| blocks[j / 3][j % 3])
+}
+
+/// `dp' = dv`, `dL' = F x dp`, `theta' = M theta + K dL`.
+fn flow(here: &Turning, force: DVec3) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
+    let mut flow = SMatrix::zeros();
+    let mut put = |row: usize, column: usize, block: DMat3| {
+        for j in 0..3 {
+            for i in 0..3 {
+                flow[(3 * row + i, 3 * column + j)] = block.col(j)[i];
+            }
+        }
+    };
+    put(0, 1, DMat3::IDENTITY);
+    put(2, 0, cross_matrix(force));
+    put(3, 2, here.K);
+    put(3, 3, here.M);
+    flow
+}
+
+/// `L0 + moment - cm0 x impulse - v0 x first_moment` from `[impulse, first moment, moment]`.
+fn momentum(start: &StartState, [impulse, first_moment, moment]: &[DVec3; 3]) -> DVec3 {
+    start.L_WO + *moment - start.p_WCm.cross(*impulse) - start.v_WCm.cross(*first_moment)
+}
+
+/// What the sensitivity of the orientation needs at one time: `theta' = M theta + K (dL0 + impulse x dcm0 + ...)`.
+struct Turning {
+    w: DVec3,
+    /// Inverse inertia in world axes.
+    K: DMat3,
+    /// `K [L]x`.
+    M: DMat3,
+    impulse: DVec3,
+    first_moment: DVec3,
+}
+
+impl Turning {
+    fn new(mass: &MassProperties, q: DQuat, L: DVec3, integrals: &Integrals) -> Self {
+        Self::at(mass, q, L, integrals.impulse, integrals.first_moment)
+    }
+
+    fn at(mass: &MassProperties, q: DQuat, L: DVec3, impulse: DVec3, first_moment: DVec3) -> Self {
+        let R = DMat3::from_quat(q);
+        let K = R * mass.inverse_inertia() * R.transpose();
+        Self { w: K * L, K, M: K * cross_matrix(L), impulse, first_moment }
+    }
+
+    /// Right-hand side of the sensitivity equation, block by block.
+    fn rate(&self, theta: &[DMat3; 4]) -> [DMat3; 4] {
+        [
+            self.M * theta[0] + self.K * cross_matrix(self.impulse),
+            self.M * theta[1] + self.K * cross_matrix(self.first_moment),
+            self.M * theta[2] + self.K,
+            self.M * theta[3],
+        ]
+    }
+}
+
+/// Derivative of the orientation (a rotation vector in world axes) by centre of mass, velocity, angular momentum and
+/// orientation at the start.
+struct Sensitivity([DMat3; 4]);
+
+impl Sensitivity {
+    fn at_start() -> Self {
+        Self([DMat3::ZERO, DMat3::ZERO, DMat3::ZERO, DMat3::IDENTITY])
+    }
+
+    /// One Runge-Kutta step of order 4 of the linear equation `theta' = M theta + S`, as `theta' = w x theta + dw`
+    /// reduces to it.
+    fn advance(&mut self, start: &Turning, middle: &Turning, end: &Turning, h: f64) {
+        let move_by = |theta: &[DMat3; 4], k: &[DMat3; 4], h: f64| -> [DMat3; 4] {
+            std::array::from_fn(|i| theta[i] + k[i] * h)
+        };
+        let k1 = start.rate(&self.0);
+        let k2 = middle.rate(&move_by(&self.0, &k1, 0.5 * h));
+        let k3 = middle.rate(&move_by(&self.0, &k2, 0.5 * h));
+        let k4 = end.rate(&move_by(&self.0, &k3, h));
+        for i in 0..4 {
+            self.0[i] += (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (h / 6.0);
+        }
+    }
+
+    /// `block' v`.
+    fn transposed(&self, block: usize, v: DVec3) -> DVec3 {
+        self.0[block].transpose() * v
+    }
+}
+
+fn cross_matrix(v: DVec3) -> DMat3 {
+    DMat3::from_cols(DVec3::new(0.0, v.z, -v.y), DVec3::new(-v.z, 0.0, v.x), DVec3::new(v.y, -v.x, 0.0))
+}
+
+impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
+    type Point = StartState;
+
+    fn linearise(&self, point: &StartState) -> Option<NormalEquations<UNKNOWNS>> {
+        let mut normal = NormalEquations::default();
+        self.each_turning(point, |k, at, here, theta| {
+            for i in 0..3 {
+                let row = self.row(k, &self.by_state(k, i, at, here), here, theta);
+                normal.add(&row, self.residual(k, i, at, here.w));
+            }
+        });
+        normal.cost.is_finite().then_some(normal)
+    }
+
+    fn cost(&self, point: &StartState) -> Option<f64> {
+        let mut cost = 0.0;
+        self.walk(point, |k, q, _| {
+            let at = self.kinematics(point, k);
+            let w = q * (self.mass.inverse_inertia() * (q.inverse() * at.L));
+            for i in 0..3 {
+                cost += self.residual(k, i, &at, w).powi(2);
+            }
+        });
+        cost.is_finite().then_some(cost)
+    }
+
+    fn retract(&self, point: &StartState, step: &Row) -> StartState {
+        let part = |block: usize| DVec3::new(step[3 * block], step[3 * block + 1], step[3 * block + 2]);
+        StartState {
+            p_WCm: point.p_WCm + self.scales.length * part(0),
+            v_WCm: point.v_WCm + self.scales.velocity * part(1),
+            L_WO: point.L_WO + self.scales.momentum * part(2),
+            R_WO: (exponential(part(3)) * point.R_WO).normalize(),
+        }
+    }
+}
+
+/// `exp [v]x` as a quaternion, exact for small `v` too.
+pub(super) fn exponential(v: DVec3) -> DQuat {
+    let angle = v.length();
+    // sin(a/2) / a; the series is exact to rounding below 1e-4.
+    let ratio = if angle < 1e-4 { 0.5 - angle * angle / 48.0 } else { (0.5 * angle).sin() / angle };
+    DQuat::from_xyzw(ratio * v.x, ratio * v.y, ratio * v.z, (0.5 * angle).cos())
+}

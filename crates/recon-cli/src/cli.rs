@@ -1,0 +1,133 @@
+//! What can be asked for on the command line.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    done
+  1    a fault of recon itself
+  2    the command line is not understood
+  3    an input (log, scene, contacts) cannot be used
+  4    done, but the result is not to be relied on, or ends before it was asked to; it is written, and says why
+  5    a result cannot be written; what stood there before stands there still
+  130  interrupted; nothing is left half-written";
+
+const EXAMPLES: &str = "\
+Examples:
+  recon demo                                        the paper's Fig. 5, from nothing to a report
+  recon simulate scene.toml -o log.csv              a sensor log of a known object
+  recon reconstruct log.csv --scene scene.toml -o out   shape, motion and bounds from a log
+  recon bounds out/contact_curves.csv -o bounds     bounds from contact points and normals alone";
+
+/// Shape, motion and bounds of an unknown smooth convex object, from touch alone.
+#[derive(Debug, Parser)]
+#[command(name = "recon", version, after_help = format!("{EXAMPLES}\n\n{EXIT_CODES}"), propagate_version = true)]
+pub(crate) struct Cli {
+    /// Print results as JSON on standard output, and errors as JSON on standard error
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// What to do
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Simulate an object on three palms and write its sensor log
+    Simulate(SimulateArgs),
+    /// Reconstruct motion, contact curves and bounds from a sensor log
+    Reconstruct(ReconstructArgs),
+    /// Bound a convex object from contact points with outward normals
+    Bounds(BoundsArgs),
+    /// Simulate and reconstruct the scene of the paper's Fig. 5, with no input at all
+    Demo(DemoArgs),
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The scene is a TOML file with gravity, [object] mass and inertia, and [simulation] shape, palms, start and duration.
+`recon demo` writes one (scene.toml) to begin from. The log holds the truth beside the readings; noise is put on the
+readings where [sensors] gives its standard deviations.
+
+Examples:
+  recon simulate scene.toml -o log.csv
+  recon simulate scene.toml -o - | head -3")]
+pub(crate) struct SimulateArgs {
+    /// Scene file (TOML)
+    pub(crate) scene: PathBuf,
+    /// Sensor log to write (CSV); `-` for standard output
+    #[arg(short, long)]
+    pub(crate) output: PathBuf,
+    /// Tolerance of the integration, relative and absolute
+    #[arg(long, default_value_t = 1e-12, value_parser = tolerance)]
+    pub(crate) tolerance: f64,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The log is CSV (sensor log, version 1): t, and for each palm i the contact s1_i, s2_i, the normal nx_i, ny_i, nz_i and
+the force f_i or torque tau_i. The scene gives gravity, mass and inertia. No initial guess is needed.
+
+The output folder appears as a whole or not at all: motion.csv, contact_curves.csv, radius_functions.csv, summary.json,
+lower_bound.ply, upper_bound.ply and report.html, which opens in any browser.
+
+Examples:
+  recon reconstruct log.csv --scene scene.toml -o out
+  recon reconstruct log.csv --scene scene.toml -o out --json | jq .bounds")]
+pub(crate) struct ReconstructArgs {
+    /// Sensor log (CSV)
+    pub(crate) log: PathBuf,
+    /// Scene file (TOML)
+    #[arg(short, long)]
+    pub(crate) scene: Option<PathBuf>,
+    /// Folder to write; an earlier one of recon's is replaced
+    #[arg(short, long, default_value = "recon-out")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The contacts are CSV with the columns x, y, z (m) and nx, ny, nz (outward unit normal), in any one frame of the object.
+
+Examples:
+  recon bounds contacts.csv
+  recon bounds contacts.csv -o bounds")]
+pub(crate) struct BoundsArgs {
+    /// Contact points with outward normals (CSV)
+    pub(crate) contacts: PathBuf,
+    /// Folder to write the meshes and summary.json to; an earlier one of recon's is replaced
+    #[arg(short, long)]
+    pub(crate) output: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  recon demo
+  recon demo -o somewhere")]
+pub(crate) struct DemoArgs {
+    /// Folder to write; an earlier one of recon's is replaced
+    #[arg(short, long, default_value = "recon-demo")]
+    pub(crate) output: PathBuf,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if (1e-15..=1e-2).contains(&value) {
+        Ok(value)
+    } else {
+        Err("it must lie between 1e-15 and 1e-2".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn definitions_are_consistent() {
+        Cli::command().debug_assert();
+    }
+}

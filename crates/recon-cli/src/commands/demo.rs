@@ -1,0 +1,28 @@
+use super::reconstruct::tell;
+use crate::cli::DemoArgs;
+use crate::console::Console;
+use crate::error::{CliError, Outcome};
+use crate::pipeline::{reconstruct, simulate, write_reconstruction_folder};
+use crate::progress::Progress;
+use recon_io::{Scene, SceneError, write_log};
+use std::path::Path;
+
+/// The scene of the paper's Fig. 5, with what the paper leaves open filled in.
+const SCENE: &str = include_str!("../../scenes/fig5.toml");
+
+pub(crate) fn run(args: &DemoArgs, console: &Console) -> Result<Outcome, CliError> {
+    let path = Path::new("scene.toml");
+    let scene = Scene::parse(SCENE).map_err(|kind| SceneError { path: path.to_owned(), kind })?;
+    let progress = Progress::new(4, console.is_json());
+    progress.step("simulating");
+    let simulated = simulate(&scene, path, 1e-12)?;
+    let title = "An ellipsoid on three palms (Fig. 5 of Moll and Erdmann, 2002)";
+    let made = reconstruct(&simulated.log, &scene, title, &progress)?;
+    progress.step("writing the results");
+    let mut log = Vec::new();
+    write_log(&simulated.log, &mut log).map_err(CliError::StandardOutput)?;
+    let extras = [("scene.toml", SCENE.into()), ("log.csv", log)];
+    let figures = write_reconstruction_folder(&args.output, &made, &extras)?;
+    drop(progress);
+    tell(console, &made, figures, &args.output)
+}

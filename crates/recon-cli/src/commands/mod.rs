@@ -1,0 +1,20 @@
+//! The commands: from arguments to files and words.
+
+mod bounds;
+mod demo;
+mod reconstruct;
+mod simulate;
+
+use crate::cli::Command;
+use crate::console::Console;
+use crate::error::{CliError, Outcome};
+
+/// Runs a command.
+pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliError> {
+    match command {
+        Command::Simulate(args) => simulate::run(args, console),
+        Command::Reconstruct(args) => reconstruct::run(args, console),
+        Command::Bounds(args) => bounds::run(args, console),
+        Command::Demo(args) => demo::run(args, console),
+    }
+}

@@ -1,0 +1,68 @@
+use crate::cli::ReconstructArgs;
+use crate::console::Console;
+use crate::error::{CliError, Outcome};
+use crate::pipeline::{Reconstruction, reconstruct, write_reconstruction_folder};
+use crate::progress::Progress;
+use recon_io::{Scene, read_log};
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::Path;
+
+pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, CliError> {
+    let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::UnknownBody)?;
+    let progress = Progress::new(4, console.is_json());
+    progress.step("reading the log");
+    let log = read_log(&args.log)?;
+    let name = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
+    let made = reconstruct(&log, &scene, &name, &progress)?;
+    progress.step("writing the results");
+    let figures = write_reconstruction_folder(&args.output, &made, &[])?;
+    drop(progress);
+    tell(console, &made, figures, &args.output)
+}
+
+/// Prints what came out.
+pub(super) fn tell(
+    console: &Console,
+    made: &Reconstruction,
+    mut figures: Value,
+    folder: &Path,
+) -> Result<Outcome, CliError> {
+    figures["folder"] = folder.to_string_lossy().into();
+    console.result(&describe(made, &figures, folder), &figures)?;
+    Ok(if made.is_reliable() { Outcome::Done } else { Outcome::WithReservations })
+}
+
+fn describe(made: &Reconstruction, figures: &Value, folder: &Path) -> String {
+    let data = &made.data;
+    let mut text = format!("{}\n", data.verdict.text);
+    for warning in &data.warnings {
+        let _ = writeln!(text, "Warning: {warning}");
+    }
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<22} {value}");
+    };
+    if let (Some(first), Some(last)) = (data.times.first(), data.times.last()) {
+        line("samples", format!("{} over {:.3} s", data.times.len(), last - first));
+    }
+    if let Some(bounds) = &data.bounds {
+        line("lower bound", format!("{:.6} m^3", bounds.lower.volume));
+        if let Some(upper) = &bounds.upper {
+            line("upper bound", format!("{:.6} m^3", upper.volume));
+            line("lower / upper", format!("{:.4}", bounds.lower.volume / upper.volume));
+        }
+    }
+    let error = &figures["largest_error"];
+    let size = |key: &str, unit: &str| error[key].as_f64().map(|v| format!("{v:.2e} {unit}"));
+    for (name, key, unit) in [
+        ("largest error: position", "position_m", "m"),
+        ("  orientation", "orientation_rad", "rad"),
+        ("  angular velocity", "angular_velocity_rad_per_s", "rad/s"),
+    ] {
+        if let Some(size) = size(key, unit) {
+            line(name, size);
+        }
+    }
+    let _ = write!(text, "{}", folder.join("report.html").display());
+    text
+}

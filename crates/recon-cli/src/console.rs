@@ -1,0 +1,64 @@
+//! What is said to the user: results on standard output, everything else on standard error.
+
+use crate::error::CliError;
+use serde_json::{Value, json};
+use std::error::Error;
+use std::io::{self, ErrorKind, Write};
+
+/// Standard output and standard error, as text or as JSON.
+pub(crate) struct Console {
+    json: bool,
+}
+
+impl Console {
+    pub(crate) fn new(json: bool) -> Self {
+        Self { json }
+    }
+
+    /// Whether a program is reading.
+    pub(crate) fn is_json(&self) -> bool {
+        self.json
+    }
+
+    /// Prints a result: `text` for a person, `value` for a program.
+    pub(crate) fn result(&self, text: &str, value: &Value) -> Result<(), CliError> {
+        let line = if self.json { format!("{value:#}") } else { text.trim_end().to_owned() };
+        listened(writeln!(io::stdout().lock(), "{line}"))
+    }
+
+    /// Says something beside the result; a program reads it from the result instead.
+    pub(crate) fn note(&self, text: &str) {
+        if !self.json {
+            // Without anyone to read notes there is nothing to be done.
+            let _ = writeln!(io::stderr().lock(), "{text}");
+        }
+    }
+
+    /// Prints an error with its chain of causes.
+    pub(crate) fn error(&self, error: &CliError) {
+        let mut causes = Vec::new();
+        let mut cause = error.source();
+        while let Some(inner) = cause {
+            // Some errors print their source as a part of their own text; then it is not said twice.
+            let text = inner.to_string();
+            if !causes.last().is_some_and(|last: &String| last.contains(&text)) {
+                causes.push(text);
+            }
+            cause = inner.source();
+        }
+        let text = if self.json {
+            format!("{:#}", json!({ "error": error.to_string(), "causes": causes }))
+        } else {
+            std::iter::once(format!("recon: {error}")).chain(causes).collect::<Vec<_>>().join("\n  because: ")
+        };
+        let _ = writeln!(io::stderr().lock(), "{text}");
+    }
+}
+
+/// A reader that has gone away, such as `head`, has had what it wanted.
+pub(crate) fn listened(written: io::Result<()>) -> Result<(), CliError> {
+    match written {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(CliError::StandardOutput(e)),
+        _ => Ok(()),
+    }
+}

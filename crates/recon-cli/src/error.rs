@@ -1,0 +1,89 @@
+use recon::object_dynamics::{LogError, SceneError as DynamicsError, SimulationError};
+use recon::observer::EstimateError;
+use recon::shape_bounds::{BoundsError, IntersectionError};
+use recon_io::{ContactsError, LogFileError, MeshError, OutputError, SceneError};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use thiserror::Error;
+
+/// How a command ended that did not fail.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Outcome {
+    /// All is as asked.
+    Done,
+    /// There is a result, and it says why it must not be relied on, or why it is less than was asked for.
+    WithReservations,
+}
+
+impl Outcome {
+    pub(crate) fn exit_code(self) -> ExitCode {
+        match self {
+            Self::Done => ExitCode::SUCCESS,
+            Self::WithReservations => ExitCode::from(4),
+        }
+    }
+}
+
+/// Why a command failed.
+#[derive(Debug, Error)]
+pub(crate) enum CliError {
+    #[error("the sensor log cannot be used")]
+    Log(#[from] LogFileError),
+    #[error("the scene cannot be used")]
+    Scene(#[from] SceneError),
+    #[error("the contacts cannot be used")]
+    Contacts(#[from] ContactsError),
+    #[error(
+        "mass and inertia of the object are not known; give them in a scene file (--scene) as object.mass and \
+         object.principal_moments, object.inertia or object.radii_of_gyration"
+    )]
+    UnknownBody,
+    #[error("{} has no [simulation]: give shape, palms and duration there, as in the scene that `recon demo` writes", path.display())]
+    NothingToSimulate { path: PathBuf },
+    #[error("the object's shape cannot be used")]
+    Shape(#[from] recon::contact_kinematics::ShapeError),
+    #[error("the scene cannot be simulated")]
+    Dynamics(#[from] DynamicsError),
+    #[error("the simulation failed")]
+    Simulation(#[from] SimulationError),
+    #[error("the sensor noise of the scene makes the log unusable")]
+    Noise(#[source] LogError),
+    #[error("the log gives no motion")]
+    Estimate(#[from] EstimateError),
+    #[error("the contacts give no bounds")]
+    Bounds(#[from] BoundsError),
+    #[error("the upper bound cannot be cut to a picture")]
+    Picture(#[from] IntersectionError),
+    #[error("a bound is not a mesh")]
+    Mesh(#[from] MeshError),
+    #[error("the result cannot be written")]
+    Output(#[from] OutputError),
+    #[error("standard output cannot be written")]
+    StandardOutput(#[source] std::io::Error),
+    #[error("interrupted; nothing is left half-written")]
+    Interrupted,
+    #[error("interruptions cannot be caught")]
+    Signals(#[source] ctrlc::Error),
+}
+
+impl CliError {
+    /// The code of each kind is told in `recon --help`.
+    pub(crate) fn exit_code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Picture(_) | Self::Mesh(_) | Self::Signals(_) => 1,
+            Self::Log(_)
+            | Self::Scene(_)
+            | Self::Contacts(_)
+            | Self::UnknownBody
+            | Self::NothingToSimulate { .. }
+            | Self::Shape(_)
+            | Self::Dynamics(_)
+            | Self::Simulation(_)
+            | Self::Noise(_)
+            | Self::Estimate(_)
+            | Self::Bounds(_) => 3,
+            Self::Output(_) | Self::StandardOutput(_) => 5,
+            Self::Interrupted => 130,
+        })
+    }
+}

@@ -1,0 +1,81 @@
+use crate::error::CliError;
+use recon::shape_bounds::{ContactSample, Hull, Intersection, ShapeBounds};
+use recon_io::{Bound, Bounds, TriangleMesh};
+
+/// Most contacts that the bounds of a picture are made from: about 6000 triangles a body.
+const DRAWN: usize = 1500;
+
+/// Bounds from all contacts for measuring, and from some of them for drawing.
+pub(crate) struct BoundsResult {
+    /// Volumes of all, surfaces of [`DRAWN`].
+    pub(crate) drawn: Bounds,
+    /// Surface of the lower bound; none for contacts in one plane.
+    pub(crate) lower: Option<TriangleMesh>,
+    /// Surface of the upper bound; none where it is unbounded.
+    pub(crate) upper: Option<TriangleMesh>,
+    /// How far the worst contact lies beyond the half-space of another, m: for exact contacts of a convex body at most
+    /// rounding, however they were moved.
+    pub(crate) contradiction: f64,
+    /// What the reader must know.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// Lower and upper bound from contacts that are taken as exact.
+pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliError> {
+    let whole = ShapeBounds::from_contacts(contacts)?;
+    let (lower, upper) = meshes(&whole)?;
+    let mut warnings = Vec::new();
+    if lower.is_none() {
+        warnings.push(flat(whole.lower()).to_owned());
+    }
+    if let Intersection::Unbounded(open) = whole.upper() {
+        let d = open.directions().first().map(|d| d.get());
+        let side =
+            d.map_or(String::new(), |d| format!(", for one towards ({:.2}, {:.2}, {:.2})", d.x, d.y, d.z));
+        warnings.push(format!(
+            "The contacts leave the object unbounded on some side{side}: there is no upper bound."
+        ));
+    }
+    let some = thinned(contacts);
+    let (drawn_lower, drawn_upper) = if contacts.len() > some.len() {
+        // Fewer contacts may leave nothing to draw where all of them gave bounds.
+        ShapeBounds::from_contacts(&some).map_or(Ok((lower.clone(), upper.clone())), |b| meshes(&b))?
+    } else {
+        (lower.clone(), upper.clone())
+    };
+    let drawn = Bounds {
+        lower: Bound { mesh: drawn_lower.unwrap_or_default(), volume: whole.lower_volume() },
+        upper: drawn_upper
+            .filter(|_| upper.is_some())
+            .map(|mesh| Bound { mesh, volume: whole.upper_volume() }),
+        largest_gap: whole.largest_gap().map(|gap| gap.distance),
+    };
+    Ok(BoundsResult { drawn, lower, upper, contradiction: contradiction(&some), warnings })
+}
+
+/// At most [`DRAWN`] contacts, spread evenly.
+fn thinned(contacts: &[ContactSample]) -> Vec<ContactSample> {
+    let count = contacts.len().min(DRAWN);
+    (0..count).map(|k| contacts[k * contacts.len() / count]).collect()
+}
+
+fn contradiction(contacts: &[ContactSample]) -> f64 {
+    let spaces: Vec<_> = contacts.iter().map(ContactSample::half_space).collect();
+    let beyond = |c: &ContactSample| spaces.iter().map(|s| s.excess(c.point)).fold(0.0, f64::max);
+    contacts.iter().map(beyond).fold(0.0, f64::max)
+}
+
+fn meshes(bounds: &ShapeBounds) -> Result<(Option<TriangleMesh>, Option<TriangleMesh>), CliError> {
+    let own = |mesh: recon::shape_bounds::TriangleMesh| TriangleMesh::new(mesh.vertices, mesh.triangles);
+    let lower = bounds.lower().solid().map(|solid| own(solid.mesh())).transpose()?;
+    let upper = bounds.upper().bounded().map(|polyhedron| own(polyhedron.mesh())).transpose()?;
+    Ok((lower, upper))
+}
+
+fn flat(hull: &Hull) -> &'static str {
+    match hull {
+        Hull::Point(_) => "All contacts are at one point: the lower bound has no volume.",
+        Hull::Segment(_) => "All contacts lie on one line: the lower bound has no volume.",
+        Hull::Polygon(_) | Hull::Solid(_) => "All contacts lie in one plane: the lower bound has no volume.",
+    }
+}

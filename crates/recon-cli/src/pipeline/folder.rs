@@ -1,0 +1,77 @@
+use super::Reconstruction;
+use super::bounds::BoundsResult;
+use crate::error::CliError;
+use crate::interrupt::{Checked, check, while_writing};
+use recon_io::{
+    OutputFolder, TriangleMesh, summary, write_contact_curves, write_motion, write_ply,
+    write_radius_functions, write_report,
+};
+use serde_json::Value;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// A further file of a folder: its name and its contents.
+pub(crate) type Extra<'a> = (&'a str, Vec<u8>);
+
+/// Writes everything about a reconstruction; returns the summary.
+pub(crate) fn write_reconstruction_folder(
+    target: &Path,
+    made: &Reconstruction,
+    extras: &[Extra<'_>],
+) -> Result<Value, CliError> {
+    let data = &made.data;
+    let figures = summary(data);
+    while_writing(|| {
+        let folder = Folder(OutputFolder::create(target)?);
+        folder.write("motion.csv", |to| write_motion(&data.times, &data.motion, to))?;
+        folder.write("contact_curves.csv", |to| write_contact_curves(data, to))?;
+        folder.write("radius_functions.csv", |to| write_radius_functions(data, to))?;
+        folder.write_mesh("lower_bound.ply", "inside the object; metres, body axes", made.lower.as_ref())?;
+        folder.write_mesh("upper_bound.ply", "around the object; metres, body axes", made.upper.as_ref())?;
+        for (name, contents) in extras {
+            folder.write(name, |to| to.write_all(contents))?;
+        }
+        folder.write("report.html", |to| write_report(data, to))?;
+        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+        folder.commit()
+    })?;
+    Ok(figures)
+}
+
+/// Writes the meshes of bounds and their figures.
+pub(crate) fn write_bounds_folder(
+    target: &Path,
+    made: &BoundsResult,
+    figures: &Value,
+) -> Result<(), CliError> {
+    while_writing(|| {
+        let folder = Folder(OutputFolder::create(target)?);
+        folder.write_mesh("lower_bound.ply", "inside the object; metres", made.lower.as_ref())?;
+        folder.write_mesh("upper_bound.ply", "around the object; metres", made.upper.as_ref())?;
+        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+        folder.commit()
+    })
+}
+
+/// An output folder whose writing can be interrupted.
+struct Folder(OutputFolder);
+
+impl Folder {
+    fn write(
+        &self,
+        name: &str,
+        contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), CliError> {
+        check()?;
+        Ok(self.0.write(name, |to| contents(&mut Checked(to)))?)
+    }
+
+    fn write_mesh(&self, name: &str, comment: &str, mesh: Option<&TriangleMesh>) -> Result<(), CliError> {
+        mesh.map_or(Ok(()), |mesh| self.write(name, |to| write_ply(mesh, comment, to)))
+    }
+
+    fn commit(self) -> Result<(), CliError> {
+        check()?;
+        Ok(self.0.commit()?)
+    }
+}

@@ -1,0 +1,14 @@
+//! From files' contents to results in memory, and from results to a folder.
+
+mod body;
+mod bounds;
+mod evidence;
+mod folder;
+mod reconstruct;
+mod simulate;
+mod truth;
+
+pub(crate) use bounds::{BoundsResult, bounds};
+pub(crate) use folder::{write_bounds_folder, write_reconstruction_folder};
+pub(crate) use reconstruct::{Reconstruction, reconstruct};
+pub(crate) use simulate::{Simulated, simulate};

@@ -1,0 +1,149 @@
+use super::bounds::{BoundsResult, bounds};
+use super::evidence::{Checks, evidence, verdict};
+use super::simulate::known_body;
+use super::truth::{axes_of_estimate, true_motion, true_shape};
+use crate::error::CliError;
+use crate::progress::Progress;
+use glam::{DQuat, DVec3};
+use recon::contact_kinematics::{Direction, PalmFrame};
+use recon::object_dynamics::SensorLog;
+use recon::observer::{EstimateError, KnownBody, MotionEstimate, NoiseLevel, TrackError, estimate_motion};
+use recon::shape_bounds::ContactSample;
+use recon_io::{
+    Level, MotionState, PalmContact, PalmTrack, ReportData, Scene, TriangleMesh, implausibilities,
+};
+
+/// Contact noise above this share of the object's size is worth a warning beside the bounds.
+const NOTABLE_NOISE: f64 = 1e-6;
+
+/// Everything that was reconstructed from a log.
+pub(crate) struct Reconstruction {
+    pub(crate) data: ReportData,
+    /// Surface of the lower bound from all contacts.
+    pub(crate) lower: Option<TriangleMesh>,
+    /// Surface of the upper bound from all contacts.
+    pub(crate) upper: Option<TriangleMesh>,
+}
+
+impl Reconstruction {
+    /// Whether the result may be relied on.
+    pub(crate) fn is_reliable(&self) -> bool {
+        self.data.verdict.level == Level::Good
+    }
+}
+
+/// Motion, contact curves and bounds from a log. Truth in the log is only compared with, never used.
+pub(crate) fn reconstruct(
+    log: &SensorLog,
+    scene: &Scene,
+    title: &str,
+    progress: &Progress,
+) -> Result<Reconstruction, CliError> {
+    let mass = known_body(scene)?;
+    let odd = implausibilities(log, scene);
+    let mut warnings: Vec<String> = odd.iter().map(|w| sentence(&w.to_string())).collect();
+    progress.step("estimating the motion");
+    let known = KnownBody {
+        mass,
+        gravity: DVec3::new(0.0, 0.0, -scene.gravity),
+        palm_inertias: scene.palm_inertia,
+        noise: noise(scene),
+    };
+    let estimate = estimate_motion(&log.without_truth(), &known)?;
+    let used = estimate.motion.len();
+    warnings.extend(contact_loss(log, used));
+    let palms = tracks(log, &estimate)?;
+    progress.step("bounding the shape");
+    let BoundsResult { drawn, lower, upper, contradiction, warnings: of_bounds } = bounds(&samples(&palms))?;
+    let checks = Checks { implausible: !odd.is_empty(), contradiction, size: size(&palms) };
+    warnings.extend(of_bounds);
+    warnings.extend(noise_and_bounds(&estimate, checks.size));
+    let axes = log
+        .truth()
+        .map_or(DQuat::IDENTITY, |truth| axes_of_estimate(&mass, estimate.start.R_WO, truth[0].R_WO));
+    let shape = match (&scene.simulation, log.truth()) {
+        (Some(simulation), Some(_)) => Some(true_shape(simulation, axes)?),
+        _ => None,
+    };
+    let data = ReportData {
+        title: title.to_owned(),
+        verdict: verdict(&estimate, &checks),
+        times: estimate.motion.iter().map(|m| m.t).collect(),
+        palms,
+        motion: estimate.motion.iter().map(state).collect(),
+        truth: log.truth().map(|truth| true_motion(&truth[..used], axes)),
+        bounds: Some(drawn),
+        true_shape: shape,
+        evidence: evidence(&estimate, &checks),
+        warnings,
+    };
+    Ok(Reconstruction { data, lower, upper })
+}
+
+fn noise(scene: &Scene) -> Option<NoiseLevel> {
+    Some(NoiseLevel { contact: scene.sensors.contact_std?, force: scene.sensors.force_std? })
+}
+
+fn state(m: &recon::observer::MotionState) -> MotionState {
+    MotionState { p_WCm: m.p_WCm, R_WO: m.R_WO, v_WCm: m.v_WCm, w_WO: m.w_WO }
+}
+
+/// Frames and contacts of each palm over the samples that were used.
+fn tracks(log: &SensorLog, estimate: &MotionEstimate) -> Result<[PalmTrack; 3], CliError> {
+    let mut palms = [PalmTrack::default(), PalmTrack::default(), PalmTrack::default()];
+    for (i, palm) in palms.iter_mut().enumerate() {
+        let curve = estimate.curves[i].points();
+        for (k, point) in curve.iter().enumerate() {
+            let reading = &log.samples()[k].palms[i];
+            let frame = PalmFrame::from_normal(reading.normal).map_err(|source| {
+                CliError::Estimate(EstimateError::Track(TrackError::Palm { palm: i + 1, t: point.t, source }))
+            })?;
+            palm.frames.push(frame);
+            palm.contacts.push(reading.contact.map(|s| PalmContact {
+                p_WC: frame.contact_from_sensor(s),
+                p_OC: point.beta_O,
+                normal: point.n_O.get(),
+                radius: estimate.radii[k][i],
+            }));
+        }
+    }
+    Ok(palms)
+}
+
+fn samples(palms: &[PalmTrack; 3]) -> Vec<ContactSample> {
+    let contacts = palms.iter().flat_map(|p| p.contacts.iter().flatten());
+    contacts.map(|c| ContactSample { point: c.p_OC, normal: Direction::new_unchecked(c.normal) }).collect()
+}
+
+/// What to say when the log goes on after a palm lost contact.
+fn contact_loss(log: &SensorLog, used: usize) -> Option<String> {
+    let (sample, palm) = log.first_contact_loss()?;
+    Some(format!(
+        "Palm {} lost contact at t = {} s. The {used} samples before it are used, the {} from there on are not.",
+        palm + 1,
+        log.samples()[sample].t,
+        log.samples().len() - used
+    ))
+}
+
+/// Largest distance of a contact from the centre of mass, m.
+fn size(palms: &[PalmTrack; 3]) -> f64 {
+    let contacts = palms.iter().flat_map(|p| p.contacts.iter().flatten());
+    contacts.map(|c| c.p_OC.length()).fold(0.0, f64::max)
+}
+
+/// The bounds take contacts as exact: what to say when they are not.
+fn noise_and_bounds(estimate: &MotionEstimate, size: f64) -> Option<String> {
+    let noise = estimate.evidence.noise.contact;
+    (noise > NOTABLE_NOISE * size).then(|| {
+        format!("The bounds take every contact as exact, but contact positions are noisy by {noise:.1e} m: the object may pass the bounds by a few times that.")
+    })
+}
+
+/// A message as a sentence of its own.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
+    let end = if text.ends_with(['.', '?', ')']) { "" } else { "." };
+    format!("{first}{}{end}", letters.as_str())
+}

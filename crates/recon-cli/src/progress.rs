@@ -1,0 +1,53 @@
+//! A bar for work that takes over a second, on a terminal only.
+
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+use std::fmt::Write;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// How long work may take before a bar appears.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// The steps of a command, shown as `[####    ] 2/4 estimating the motion`.
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    step: Arc<Mutex<&'static str>>,
+}
+
+impl Progress {
+    /// Begins work of `steps` steps; `quiet` shows nothing.
+    pub(crate) fn new(steps: u64, quiet: bool) -> Self {
+        let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(steps) };
+        let step = Arc::new(Mutex::new(""));
+        let shown = Arc::clone(&step);
+        let late = move |state: &ProgressState, line: &mut dyn Write| {
+            if state.elapsed() > PATIENCE {
+                let (done, all) = (state.pos() as usize, state.len().unwrap_or(0) as usize);
+                let filled = "#".repeat(8 * done.min(all) / all.max(1));
+                let _ = write!(line, "[{filled:<8}] {done}/{all} {}", *locked(&shown));
+            }
+        };
+        if let Ok(style) = ProgressStyle::with_template("{late}") {
+            bar.set_style(style.with_key("late", late));
+        }
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self { bar, step }
+    }
+
+    /// Begins the next step.
+    pub(crate) fn step(&self, what: &'static str) {
+        *locked(&self.step) = what;
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+fn locked<'a>(step: &'a Mutex<&'static str>) -> MutexGuard<'a, &'static str> {
+    // A word cannot be left half-set by a panic elsewhere.
+    step.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,152 @@
+use recon::contact_kinematics::{DirectionError, PalmError};
+use recon::object_dynamics::LogError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// A sensor log that cannot be used: which file, and what is wrong with it where.
+#[derive(Debug, Error)]
+#[error("{}: {kind}", path.display())]
+pub struct LogFileError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong.
+    pub kind: LogFileErrorKind,
+}
+
+/// What is wrong with a sensor log. Lines count from 1, the header being line 1.
+#[derive(Debug, Error)]
+pub enum LogFileErrorKind {
+    /// The file cannot be read.
+    #[error("cannot be read: {0}")]
+    Read(#[from] std::io::Error),
+    /// The bytes are not UTF-8 text, or not CSV.
+    #[error("is not a CSV file in UTF-8: {0}")]
+    Csv(csv::Error),
+    /// Nothing in it.
+    #[error("is empty; a sensor log has a header row and at least two samples")]
+    Empty,
+    /// A column that every log needs is not there.
+    #[error("column `{column}` is missing{}; found: {found}", hint(similar.as_deref()))]
+    MissingColumn {
+        /// The name looked for.
+        column: String,
+        /// A column that differs only in case or punctuation, if there is one.
+        similar: Option<String>,
+        /// The header as found.
+        found: String,
+    },
+    /// Two columns share a name that has a meaning.
+    #[error("column `{column}` occurs more than once; keep one")]
+    RepeatedColumn {
+        /// The name.
+        column: String,
+    },
+    /// A row is shorter or longer than the header.
+    #[error("line {line} has {found} fields where the header has {expected}")]
+    FieldCount {
+        /// Line number.
+        line: u64,
+        /// Fields in the header.
+        expected: usize,
+        /// Fields in the row.
+        found: usize,
+    },
+    /// A field is not a number.
+    #[error("line {line}, column `{column}`: `{text}` is not a number")]
+    NotANumber {
+        /// Line number.
+        line: u64,
+        /// Column name.
+        column: String,
+        /// The field as found.
+        text: String,
+    },
+    /// A field is NaN or infinite where it must not be.
+    #[error("line {line}, column `{column}` is {value}; it must be finite{}", contact_note(column))]
+    NotFinite {
+        /// Line number.
+        line: u64,
+        /// Column name.
+        column: String,
+        /// The value.
+        value: f64,
+    },
+    /// One sensor coordinate is there and the other is not.
+    #[error(
+        "line {line}: s1_{palm} = {s1} but s2_{palm} = {s2}; without contact both are nan, with contact neither"
+    )]
+    HalfContact {
+        /// Line number.
+        line: u64,
+        /// Palm from 1.
+        palm: usize,
+        /// First coordinate.
+        s1: f64,
+        /// Second coordinate.
+        s2: f64,
+    },
+    /// A force without a place where it acts.
+    #[error(
+        "line {line}: palm {palm} has no contact (s1, s2 = nan) but f_{palm} = {force} N; without contact it is 0"
+    )]
+    ForceWithoutContact {
+        /// Line number.
+        line: u64,
+        /// Palm from 1.
+        palm: usize,
+        /// Force in N.
+        force: f64,
+    },
+    /// A palm normal is not a unit vector.
+    #[error("line {line}: normal of palm {palm} (nx_{palm}, ny_{palm}, nz_{palm}): {source}")]
+    Normal {
+        /// Line number.
+        line: u64,
+        /// Palm from 1.
+        palm: usize,
+        /// Why.
+        source: DirectionError,
+    },
+    /// A palm that has no frame.
+    #[error("line {line}: palm {palm}: {source}")]
+    Palm {
+        /// Line number.
+        line: u64,
+        /// Palm from 1.
+        palm: usize,
+        /// Why.
+        source: PalmError,
+    },
+    /// Palms that share a line throughout the log.
+    #[error("the palms never span space, here at line {line}: {source}")]
+    Palms {
+        /// Line of the sample at which they come nearest to it.
+        line: u64,
+        /// How far from it they are there.
+        source: PalmError,
+    },
+    /// The true orientation is not a unit quaternion.
+    #[error("line {line}: true orientation (qw, qx, qy, qz) has length {length}; it must be 1")]
+    TrueOrientation {
+        /// Line number.
+        line: u64,
+        /// Its length.
+        length: f64,
+    },
+    /// The samples do not make a log; `line` is that of the sample named by `source`, where it names one.
+    #[error("{}{source}", line.map_or(String::new(), |line| format!("line {line}: ")))]
+    Samples {
+        /// Line number.
+        line: Option<u64>,
+        /// Why.
+        source: LogError,
+    },
+}
+
+fn hint(similar: Option<&str>) -> String {
+    similar.map_or_else(String::new, |name| format!(" (is it `{name}`?)"))
+}
+
+fn contact_note(column: &str) -> &'static str {
+    if column.starts_with("f_") { " (nan only goes with a palm that has no contact)" } else { "" }
+}

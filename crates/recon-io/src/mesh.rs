@@ -1,0 +1,117 @@
+//! Triangle meshes as PLY files.
+
+use glam::DVec3;
+use std::io::{self, BufWriter, Write};
+use thiserror::Error;
+
+/// A triangle mesh: counter-clockwise seen from outside. Units and frame are those of its user (here: m, body axes).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleMesh {
+    /// Vertices.
+    pub vertices: Vec<DVec3>,
+    /// Triangles as indices into `vertices`.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Why vertices and triangles are not a mesh.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum MeshError {
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {triangle} names vertex {vertex}, but the mesh has {vertices}")]
+    NoSuchVertex {
+        /// Which triangle, from 0.
+        triangle: usize,
+        /// The vertex it names.
+        vertex: u32,
+        /// How many there are.
+        vertices: usize,
+    },
+    /// A vertex has a coordinate that is not a number.
+    #[error("vertex {vertex} is ({}, {}, {}); it must be finite", position.x, position.y, position.z)]
+    NotFinite {
+        /// Which vertex, from 0.
+        vertex: usize,
+        /// As given.
+        position: DVec3,
+    },
+}
+
+impl TriangleMesh {
+    /// Checks and takes a mesh.
+    ///
+    /// # Errors
+    /// [`MeshError`] names the first triangle or vertex that is wrong.
+    pub fn new(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        if let Some((vertex, &position)) = vertices.iter().enumerate().find(|(_, v)| !v.is_finite()) {
+            return Err(MeshError::NotFinite { vertex, position });
+        }
+        let count = vertices.len();
+        for (triangle, corners) in triangles.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= count) {
+                return Err(MeshError::NoSuchVertex { triangle, vertex, vertices: count });
+            }
+        }
+        Ok(Self { vertices, triangles })
+    }
+}
+
+/// Writes a mesh as binary little-endian PLY with double precision, which MeshLab, Blender, Open3D and trimesh open.
+///
+/// # Errors
+/// Those of `to`.
+pub fn write_ply(mesh: &TriangleMesh, comment: &str, to: impl Write) -> io::Result<()> {
+    let mut to = BufWriter::new(to);
+    write!(
+        to,
+        "ply\nformat binary_little_endian 1.0\ncomment {}\nelement vertex {}\nproperty double x\n\
+         property double y\nproperty double z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        comment.replace(['\n', '\r'], " "),
+        mesh.vertices.len(),
+        mesh.triangles.len()
+    )?;
+    for coordinate in mesh.vertices.iter().flat_map(DVec3::to_array) {
+        to.write_all(&coordinate.to_le_bytes())?;
+    }
+    for triangle in &mesh.triangles {
+        to.write_all(&[3])?;
+        for vertex in triangle {
+            to.write_all(&vertex.to_le_bytes())?;
+        }
+    }
+    to.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_meshes_are_named() {
+        let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let missing = TriangleMesh::new(vertices.clone(), vec![[0, 1, 2], [0, 1, 3]]);
+        assert_eq!(missing, Err(MeshError::NoSuchVertex { triangle: 1, vertex: 3, vertices: 3 }));
+        assert!(matches!(
+            TriangleMesh::new(vec![DVec3::X, DVec3::NAN], vec![]),
+            Err(MeshError::NotFinite { vertex: 1, .. })
+        ));
+    }
+
+    #[test]
+    fn ply_holds_every_byte_that_its_header_promises() {
+        let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(0.0, 0.0, 0.1)];
+        let mesh = TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]).unwrap();
+        let mut bytes = Vec::new();
+        write_ply(&mesh, "two\nlines", &mut bytes).unwrap();
+        let end = b"end_header\n";
+        let start = bytes.windows(end.len()).position(|w| w == end).unwrap() + end.len();
+        let header = std::str::from_utf8(&bytes[..start]).unwrap();
+        assert!(
+            header.contains("comment two lines\nelement vertex 4\n") && header.contains("element face 4\n")
+        );
+        assert_eq!(bytes.len() - start, 4 * 24 + 4 * 13);
+        let z = &bytes[start + 3 * 24 + 16..start + 4 * 24];
+        assert_eq!(f64::from_le_bytes(z.try_into().unwrap()), 0.1);
+        let last = &bytes[bytes.len() - 13..];
+        assert_eq!(last, [3, 2, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0]);
+    }
+}

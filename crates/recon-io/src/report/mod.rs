@@ -1,0 +1,17 @@
+//! `report.html`: one page without any reference to the outside, which shows a reconstruction to a person.
+
+mod data;
+mod encode;
+mod page;
+
+#[cfg(test)]
+mod tests;
+
+pub use data::{
+    Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
+    ReportError, TrueShape, Verdict,
+};
+pub use page::write_report;
+
+pub(crate) use data::Departure;
+pub(crate) use encode::level;

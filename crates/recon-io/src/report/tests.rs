@@ -1,0 +1,134 @@
+use super::*;
+use crate::{TriangleMesh, summary, write_contact_curves, write_motion, write_radius_functions};
+use glam::{DQuat, DVec3};
+use recon::contact_kinematics::PalmFrame;
+
+/// A unit ball that spins about Z on three still palms, with a rounding error put on the estimate.
+fn data(count: usize) -> ReportData {
+    let frames = [0.0, 2.1, 4.2].map(|azimuth| PalmFrame::from_azimuth_slope(azimuth, 1.0));
+    let height = 1.0 / frames[0].n.z;
+    let state = |k: usize, error: f64| MotionState {
+        p_WCm: DVec3::new(0.0, 0.0, height + error),
+        R_WO: DQuat::from_rotation_z(1e-2 * k as f64 + error),
+        v_WCm: DVec3::ZERO,
+        w_WO: DVec3::Z,
+    };
+    let palm = |frame: PalmFrame| PalmTrack {
+        frames: vec![frame; count],
+        contacts: (0..count)
+            .map(|k| {
+                let normal = state(k, 0.0).R_WO.inverse() * -frame.n;
+                let p_WC = DVec3::new(0.0, 0.0, height) - frame.n;
+                // The last sample has lost palm 1.
+                (k + 1 < count || frame != frames[0]).then_some(PalmContact {
+                    p_WC,
+                    p_OC: normal,
+                    normal,
+                    radius: 1.0,
+                })
+            })
+            .collect(),
+    };
+    let tetrahedron = TriangleMesh::new(
+        vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
+        vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+    );
+    let bound = |volume| Bound { mesh: tetrahedron.clone().unwrap(), volume };
+    ReportData {
+        title: "a <log> & \"more\"".into(),
+        verdict: Verdict { level: Level::Good, text: "All </script> is well.".into() },
+        times: (0..count).map(|k| 1e-2 * k as f64).collect(),
+        palms: frames.map(palm),
+        motion: (0..count).map(|k| state(k, 1e-7)).collect(),
+        truth: Some((0..count).map(|k| state(k, 0.0)).collect()),
+        bounds: Some(Bounds { lower: bound(1.0 / 6.0), upper: Some(bound(8.0)), largest_gap: Some(1.5) }),
+        true_shape: None,
+        evidence: vec![Evidence {
+            key: "condition".into(),
+            name: "Condition number".into(),
+            value: EvidenceValue::Number(f64::INFINITY),
+            unit: String::new(),
+            meaning: "Infinite here.".into(),
+            level: Level::Bad,
+        }],
+        warnings: vec!["<b>mind</b>".into()],
+    }
+}
+
+fn page(data: &ReportData) -> String {
+    let mut bytes = Vec::new();
+    write_report(data, &mut bytes).unwrap();
+    String::from_utf8(bytes).unwrap()
+}
+
+/// The JSON that a page carries.
+fn embedded(page: &str) -> serde_json::Value {
+    let (_, rest) = page.split_once("<script type=\"application/json\" id=\"data\">").unwrap();
+    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+}
+
+#[test]
+fn page_refers_to_nothing_outside_of_itself() {
+    let page = page(&data(50)).replace("http://www.w3.org/2000/svg", ""); // a name, not an address
+    for outside in ["http:", "https:", "src=", "href=", "@import", "url(", "fetch(", "{{"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    assert!(page.contains("default-src 'none'"));
+}
+
+#[test]
+fn text_cannot_break_out_of_the_page() {
+    let page = page(&data(50));
+    assert_eq!(page.matches("</script>").count(), 2);
+    assert!(page.contains("<title>a &lt;log&gt; &amp; \"more\" – recon</title>"));
+    let carried = embedded(&page);
+    assert_eq!(carried["verdict"]["text"], "All </script> is well.");
+    assert_eq!(carried["warnings"][0], "<b>mind</b>");
+}
+
+#[test]
+fn long_logs_are_thinned_and_gaps_are_kept() {
+    let carried = embedded(&page(&data(5000)));
+    let times = carried["t"].as_array().unwrap();
+    assert!(times.len() <= 700 && times[times.len() - 1] == 49.99);
+    assert!(carried["palms"][0]["radius"][times.len() - 1].is_null(), "palm 1 has lost contact at the end");
+    assert_eq!(carried["palms"][0]["normals"].as_array().unwrap().len(), 3, "a still palm has one normal");
+    assert!(carried["evidence"][0]["value"].is_null(), "JSON has no infinity");
+    let error = carried["departure"]["angle"][3].as_f64().unwrap();
+    assert!((error - 1e-7).abs() < 1e-9, "{error}");
+}
+
+#[test]
+fn tracks_of_different_length_are_refused() {
+    let mut bad = data(20);
+    bad.palms[2].contacts.pop();
+    let expected = ReportError::Length { what: "contacts of palm 3".into(), expected: 20, found: 19 };
+    assert_eq!(bad.check(), Err(expected));
+    assert_eq!(write_report(&bad, Vec::new()).unwrap_err().kind(), std::io::ErrorKind::InvalidInput);
+    let mut still = data(20);
+    still.times[7] = still.times[6];
+    assert!(matches!(still.check(), Err(ReportError::Times { index: 7, .. })));
+}
+
+#[test]
+fn summary_and_tables_hold_what_the_report_shows() {
+    let data = data(20);
+    let figures = summary(&data);
+    assert_eq!(figures["bounds"]["lower_over_upper"], 1.0 / 48.0);
+    let error = figures["largest_error"]["position_m"].as_f64().unwrap();
+    assert!((error - 1e-7).abs() < 1e-14);
+    assert_eq!(figures["evidence"]["condition"]["level"], "bad");
+    let text = |write: &dyn Fn(&mut Vec<u8>) -> std::io::Result<()>| {
+        let mut bytes = Vec::new();
+        write(&mut bytes).unwrap();
+        String::from_utf8(bytes).unwrap()
+    };
+    let motion = text(&|to| write_motion(&data.times, &data.motion, to));
+    assert!(
+        motion.starts_with("t,cmx,cmy,cmz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n") && motion.lines().count() == 21
+    );
+    let curves = text(&|to| write_contact_curves(&data, to));
+    assert_eq!(crate::parse_contacts(curves.as_bytes()).unwrap().len(), 59);
+    let radii = text(&|to| write_radius_functions(&data, to));
+    assert!(radii.lines().last().unwrap().ends_with(",nan,1.0,1.0"));
+}

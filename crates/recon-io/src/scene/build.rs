@@ -1,0 +1,181 @@
+use super::file::{ObjectTable, PalmTable, PalmsTable, SceneFile, SensorsTable, ShapeTable, SimulationTable};
+use super::{KnownInertia, Scene, SceneErrorKind as Kind, Sensors, Shape, Simulation};
+use glam::{DMat3, DQuat, DVec3};
+use recon::contact_kinematics::{CurvatureRadii, Palm, PalmTriple, SlopeMotion};
+
+/// Largest departure of the initial quaternion's length from 1.
+const UNIT_TOLERANCE: f64 = 1e-6;
+
+/// Most samples that a simulation may be asked for: a quarter of an hour at 1 kHz. Each takes about 2 kB of memory
+/// while it is simulated, so this is the most that a small machine holds.
+const MOST_SAMPLES: f64 = 1e6;
+
+/// Checks every number and says each thing in one way.
+pub(super) fn scene(file: SceneFile) -> Result<Scene, Kind> {
+    let gravity = Kind::not_negative("gravity", file.gravity)?;
+    let (mass, inertia) = mass_and_inertia(&file.object)?;
+    let sensors = sensors(&file.sensors)?;
+    let simulation = file.simulation.map(|s| simulation(s, &sensors)).transpose()?;
+    Ok(Scene {
+        gravity,
+        mass,
+        inertia,
+        curvature: curvature(&file.object)?,
+        sensors,
+        palm_inertia: palm_inertia(&file.palms)?,
+        friction: file.palms.friction.map(|f| Kind::not_negative("palms.friction", f)).transpose()?,
+        simulation,
+    })
+}
+
+fn mass_and_inertia(table: &ObjectTable) -> Result<(Option<f64>, Option<KnownInertia>), Kind> {
+    // The tensor is given row by row, and is symmetric.
+    let tensor = table.inertia.map(|rows| KnownInertia::Tensor(DMat3::from_cols_array_2d(&rows).transpose()));
+    let moments = table.principal_moments.map(|m| KnownInertia::PrincipalMoments(m.into()));
+    let radii = table.radii_of_gyration.map(|r| KnownInertia::RadiiOfGyration(r.into()));
+    let given = [
+        ("`object.inertia`", tensor),
+        ("`object.principal_moments`", moments),
+        ("`object.radii_of_gyration`", radii),
+    ];
+    let mut known = given.iter().filter(|(_, inertia)| inertia.is_some());
+    let inertia = known.next().and_then(|(_, inertia)| *inertia);
+    if known.next().is_some() {
+        let keys = given.iter().filter(|(_, i)| i.is_some()).map(|(key, _)| (*key).to_owned()).collect();
+        return Err(Kind::Ambiguous { keys });
+    }
+    let mass = table.mass.map(|m| Kind::positive("object.mass", m)).transpose()?;
+    if let Some(inertia) = inertia {
+        inertia.with_mass(mass.unwrap_or(1.0))?;
+    }
+    Ok((mass, inertia))
+}
+
+fn curvature(table: &ObjectTable) -> Result<Option<CurvatureRadii>, Kind> {
+    let Some([min, max]) = table.curvature_radii else { return Ok(None) };
+    let min = Kind::not_negative("object.curvature_radii[0]", min)?;
+    let max = Kind::check("object.curvature_radii[1]", max, "at least object.curvature_radii[0]", |v| {
+        v >= min && v > 0.0
+    })?;
+    Ok(Some(CurvatureRadii { min, max }))
+}
+
+fn sensors(table: &SensorsTable) -> Result<Sensors, Kind> {
+    Ok(Sensors {
+        contact_std: table.contact_std.map(|v| Kind::not_negative("sensors.contact_std", v)).transpose()?,
+        force_std: table.force_std.map(|v| Kind::not_negative("sensors.force_std", v)).transpose()?,
+        sample_rate: table.sample_rate.map(|v| Kind::positive("sensors.sample_rate", v)).transpose()?,
+    })
+}
+
+fn palm_inertia(table: &PalmsTable) -> Result<Option<[f64; 3]>, Kind> {
+    let Some(inertia) = table.inertia else { return Ok(None) };
+    for (i, value) in inertia.iter().enumerate() {
+        Kind::not_negative(&format!("palms.inertia[{i}]"), *value)?;
+    }
+    Ok(Some(inertia))
+}
+
+fn simulation(table: SimulationTable, sensors: &Sensors) -> Result<Simulation, Kind> {
+    let duration = Kind::positive("simulation.duration", table.duration)?;
+    let sample_rate = match table.sample_rate {
+        Some(rate) => Kind::positive("simulation.sample_rate", rate)?,
+        None => sensors.sample_rate.unwrap_or(1000.0),
+    };
+    Kind::check("simulation.duration", duration, "at least one sample and at most 1e6 samples long", |d| {
+        (1.0..=MOST_SAMPLES).contains(&(d * sample_rate))
+    })?;
+    let [w, x, y, z] = table.orientation;
+    let orientation = DQuat::from_xyzw(x, y, z, w);
+    let must = "the length 1 of a unit quaternion, w first";
+    Kind::check("simulation.orientation (its length)", orientation.length(), must, |l| {
+        (l - 1.0).abs() <= UNIT_TOLERANCE
+    })?;
+    let (shape, offset) = shape(table.shape)?;
+    Ok(Simulation {
+        shape,
+        offset,
+        palms: palms(&table.palms)?,
+        R_WO: orientation.normalize(),
+        w_WO: vector("simulation.angular_velocity", table.angular_velocity, Kind::finite)?,
+        duration,
+        sample_rate,
+        seed: table.seed,
+    })
+}
+
+fn vector(key: &str, values: [f64; 3], check: fn(&str, f64) -> Result<f64, Kind>) -> Result<DVec3, Kind> {
+    for (i, value) in values.iter().enumerate() {
+        check(&format!("{key}[{i}]"), *value)?;
+    }
+    Ok(values.into())
+}
+
+fn shape(table: ShapeTable) -> Result<(Shape, DVec3), Kind> {
+    let axes = |values| vector("simulation.shape.semi_axes", values, Kind::positive);
+    let (shape, offset) = match table {
+        ShapeTable::Sphere { radius, offset } => {
+            (Shape::Sphere { radius: Kind::positive("simulation.shape.radius", radius)? }, offset)
+        }
+        ShapeTable::Ellipsoid { semi_axes, offset } => {
+            (Shape::Ellipsoid { semi_axes: axes(semi_axes)? }, offset)
+        }
+        ShapeTable::EllipsoidPlusBall { semi_axes, radius, offset } => {
+            let radius = Kind::not_negative("simulation.shape.radius", radius)?;
+            (Shape::EllipsoidPlusBall { semi_axes: axes(semi_axes)?, radius }, offset)
+        }
+        ShapeTable::Polynomial { terms, offset } => {
+            for (i, term) in terms.iter().enumerate() {
+                Kind::finite(&format!("simulation.shape.terms[{i}].coefficient"), term.coefficient)?;
+            }
+            (Shape::Polynomial { terms: terms.iter().map(|t| (t.coefficient, t.powers)).collect() }, offset)
+        }
+    };
+    Ok((shape, vector("simulation.shape.offset", offset, Kind::finite)?))
+}
+
+fn palms(tables: &[PalmTable]) -> Result<[Palm; 3], Kind> {
+    let [a, b, c] = tables else { return Err(Kind::PalmCount { found: tables.len() }) };
+    let palms = [palm(1, a)?, palm(2, b)?, palm(3, c)?];
+    PalmTriple::new(palms.map(|p| p.at(0.0).frame.n)).map_err(Kind::Palms)?;
+    Ok(palms)
+}
+
+fn palm(number: usize, table: &PalmTable) -> Result<Palm, Kind> {
+    let azimuth = angle(number, ["azimuth", "azimuth_deg"], [table.azimuth, table.azimuth_deg])?;
+    let slope = angle(number, ["slope", "slope_deg"], [table.slope, table.slope_deg])?;
+    let motion = match (table.rate, &table.sinusoid) {
+        (None, None) => SlopeMotion::Fixed { slope },
+        (Some(rate), None) => SlopeMotion::Steady { slope, rate },
+        (None, Some(s)) => {
+            SlopeMotion::Sinusoid { slope, amplitude: s.amplitude, frequency: s.frequency, phase: s.phase }
+        }
+        (Some(_), Some(_)) => {
+            let keys = ["rate", "sinusoid"].map(|k| format!("`simulation.palms.{k}`")).to_vec();
+            return Err(Kind::Ambiguous { keys });
+        }
+    };
+    let palm = Palm::new(azimuth, motion).map_err(|source| Kind::Palm { palm: number, source })?;
+    let n = recon::contact_kinematics::Direction::new(palm.at(0.0).frame.n)
+        .map_err(|e| Kind::Palm { palm: number, source: e.into() })?;
+    recon::contact_kinematics::PalmFrame::from_normal(n)
+        .map_err(|source| Kind::Palm { palm: number, source })?;
+    Ok(palm)
+}
+
+/// An angle given in rad or in degrees, in rad.
+fn angle(palm: usize, keys: [&'static str; 2], values: [Option<f64>; 2]) -> Result<f64, Kind> {
+    match values {
+        [Some(radians), None] => Kind::finite(&format!("simulation.palms[{palm}].{}", keys[0]), radians),
+        [None, Some(degrees)] => {
+            Kind::finite(&format!("simulation.palms[{palm}].{}", keys[1]), degrees).map(f64::to_radians)
+        }
+        [Some(_), Some(_)] => {
+            Err(Kind::Ambiguous { keys: keys.map(|k| format!("`simulation.palms.{k}`")).to_vec() })
+        }
+        [None, None] => Err(Kind::Missing {
+            what: if keys[0] == "azimuth" { "azimuth of a palm" } else { "slope of a palm" },
+            mend: "every entry of `simulation.palms` needs `azimuth` and `slope` in rad, or `azimuth_deg` and `slope_deg`",
+        }),
+    }
+}

@@ -1,0 +1,93 @@
+use recon::contact_kinematics::PalmError;
+use recon::object_dynamics::MassError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// A scene file that cannot be used: which file, and what is wrong with it where.
+#[derive(Debug, Error)]
+#[error("{}: {kind}", path.display())]
+pub struct SceneError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong.
+    pub kind: SceneErrorKind,
+}
+
+/// What is wrong with a scene. Keys are named by their full path, such as `object.mass`.
+#[derive(Debug, Error)]
+pub enum SceneErrorKind {
+    /// The file cannot be read.
+    #[error("cannot be read: {0}")]
+    Read(#[from] std::io::Error),
+    /// Not TOML, or a key that is unknown, missing or of the wrong type; the message shows the place.
+    #[error("is not a scene\n{0}")]
+    Toml(#[from] toml::de::Error),
+    /// A number outside of what the quantity can be.
+    #[error("`{key}` is {value}; it must be {must}")]
+    Value {
+        /// Full path of the key.
+        key: String,
+        /// As given.
+        value: f64,
+        /// What is accepted.
+        must: &'static str,
+    },
+    /// The same thing is given in two ways.
+    #[error("{} are different ways to say the same; give one of them", keys.join(" and "))]
+    Ambiguous {
+        /// The keys, with backquotes.
+        keys: Vec<String>,
+    },
+    /// Something needed is not given.
+    #[error("{what} is not given; {mend}")]
+    Missing {
+        /// What it is.
+        what: &'static str,
+        /// How to give it.
+        mend: &'static str,
+    },
+    /// Mass and inertia that no body has.
+    #[error("`object`: {0}")]
+    Mass(#[from] MassError),
+    /// A palm that cannot be used.
+    #[error("`simulation.palms` ({palm}): {source}")]
+    Palm {
+        /// Palm from 1.
+        palm: usize,
+        /// Why.
+        source: PalmError,
+    },
+    /// Three palms are needed.
+    #[error("`simulation.palms` has {found} palms; three are needed")]
+    PalmCount {
+        /// How many there are.
+        found: usize,
+    },
+    /// The palms cannot hold an object.
+    #[error("`simulation.palms`: {0}")]
+    Palms(PalmError),
+}
+
+impl SceneErrorKind {
+    /// `value` when `accept` holds for it, else an error that names `key` and says what it `must` be.
+    pub(super) fn check(
+        key: &str,
+        value: f64,
+        must: &'static str,
+        accept: impl Fn(f64) -> bool,
+    ) -> Result<f64, Self> {
+        if accept(value) { Ok(value) } else { Err(Self::Value { key: key.to_owned(), value, must }) }
+    }
+
+    pub(super) fn positive(key: &str, value: f64) -> Result<f64, Self> {
+        Self::check(key, value, "above zero and finite", |v| v > 0.0 && v.is_finite())
+    }
+
+    pub(super) fn not_negative(key: &str, value: f64) -> Result<f64, Self> {
+        Self::check(key, value, "zero or above and finite", |v| v >= 0.0 && v.is_finite())
+    }
+
+    pub(super) fn finite(key: &str, value: f64) -> Result<f64, Self> {
+        Self::check(key, value, "finite", f64::is_finite)
+    }
+}

@@ -1,0 +1,175 @@
+//! Both bounds of a convex body from its contacts, and the gap between them.
+
+use crate::distance::nearest;
+use crate::halfspaces::{Intersection, IntersectionError};
+use crate::hull::{Hull, PointsError, SupportWalk};
+use crate::sample::{ContactSample, HalfSpace};
+use contact_kinematics::Direction;
+use glam::DVec3;
+use thiserror::Error;
+
+/// Contacts that a body in space needs at least for bounds with a volume.
+const FEWEST: usize = 4;
+
+/// Why contacts give no bounds.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum BoundsError {
+    /// Too few contacts.
+    #[error("{found} contacts: bounds in space need at least {needed}")]
+    TooFew {
+        /// Contacts given.
+        found: usize,
+        /// Contacts needed.
+        needed: usize,
+    },
+    /// The contact points have no hull.
+    #[error("lower bound: {0}")]
+    Points(#[from] PointsError),
+    /// The half-spaces have no intersection.
+    #[error("upper bound: {0}")]
+    HalfSpaces(#[from] IntersectionError),
+}
+
+/// Lower bound (hull of the contact points) and upper bound (intersection of the half-spaces) of a convex body, from
+/// contacts without noise (paper, section 8).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeBounds {
+    lower: Hull,
+    corners: Vec<DVec3>,
+    upper: Intersection,
+}
+
+/// Where, and how far, the bounds are apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// Direction, in the body's frame, in which the upper bound exceeds the lower one.
+    pub direction: Direction,
+    /// The point of the upper bound.
+    pub outer: DVec3,
+    /// The nearest point of the lower bound.
+    pub inner: DVec3,
+    /// Their distance in m.
+    pub distance: f64,
+}
+
+impl ShapeBounds {
+    /// Bounds from contacts on a convex body.
+    ///
+    /// # Errors
+    /// [`BoundsError`] for fewer than four contacts, values that are not finite, and contacts that contradict each
+    /// other (a smallest contradictory set is named).
+    pub fn from_contacts(contacts: &[ContactSample]) -> Result<Self, BoundsError> {
+        Self::check(contacts)?;
+        let points: Vec<DVec3> = contacts.iter().map(|c| c.point).collect();
+        let half_spaces: Vec<HalfSpace> = contacts.iter().map(ContactSample::half_space).collect();
+        Self::from_parts(&points, &half_spaces)
+    }
+
+    /// Whether there are contacts enough, all of finite coordinates.
+    pub(crate) fn check(contacts: &[ContactSample]) -> Result<(), BoundsError> {
+        if contacts.len() < FEWEST {
+            return Err(BoundsError::TooFew { found: contacts.len(), needed: FEWEST });
+        }
+        match contacts.iter().position(|c| !c.point.is_finite()) {
+            Some(index) => Err(PointsError::NotFinite { index, point: contacts[index].point }.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// Bounds from points that are in the body and half-spaces that contain it.
+    pub(crate) fn from_parts(points: &[DVec3], half_spaces: &[HalfSpace]) -> Result<Self, BoundsError> {
+        let lower = Hull::of(points)?;
+        let upper = Intersection::of(half_spaces)?;
+        let corners = match &lower {
+            Hull::Point(i) => vec![points[*i]],
+            Hull::Segment(ends) => ends.iter().map(|i| points[*i]).collect(),
+            Hull::Polygon(corners) => corners.iter().map(|i| points[*i]).collect(),
+            Hull::Solid(solid) => solid.vertices().to_vec(),
+        };
+        Ok(Self { lower, corners, upper })
+    }
+
+    /// The hull of the contact points: in the body.
+    #[must_use]
+    pub fn lower(&self) -> &Hull {
+        &self.lower
+    }
+
+    /// The intersection of the half-spaces: around the body.
+    #[must_use]
+    pub fn upper(&self) -> &Intersection {
+        &self.upper
+    }
+
+    /// Volume of the lower bound in m^3; zero for a hull without interior.
+    #[must_use]
+    pub fn lower_volume(&self) -> f64 {
+        self.lower.solid().map_or(0.0, |solid| solid.volume())
+    }
+
+    /// Volume of the upper bound in m^3; infinite when it is unbounded.
+    #[must_use]
+    pub fn upper_volume(&self) -> f64 {
+        self.upper.bounded().map_or(f64::INFINITY, |polyhedron| polyhedron.volume())
+    }
+
+    /// Support functions `(lower, upper)` in direction `n`, in m: the body's lies between them. The upper one is infinite
+    /// where the upper bound has no end, and everywhere if it has no end anywhere (clip it to know more).
+    #[must_use]
+    pub fn support(&self, n: Direction) -> (f64, f64) {
+        let lower = self.corners.iter().map(|v| v.dot(n.get())).fold(f64::NEG_INFINITY, f64::max);
+        (lower, self.upper.bounded().map_or(f64::INFINITY, |polyhedron| polyhedron.support(n)))
+    }
+
+    /// How much further the upper bound reaches than the lower one in direction `n`, in m.
+    #[must_use]
+    pub fn gap_along(&self, n: Direction) -> f64 {
+        let (lower, upper) = self.support(n);
+        upper - lower
+    }
+
+    /// For each corner of the upper bound, its nearest point of the lower one: the gap as a field. Empty when the
+    /// upper bound is unbounded.
+    ///
+    /// Gaps below rounding have no direction and are left out.
+    #[must_use]
+    pub fn gaps(&self) -> Vec<Gap> {
+        let Some(upper) = self.upper.bounded() else { return Vec::new() };
+        let mut walk = self.lower.solid().map(SupportWalk::new);
+        let mut farthest = |d: DVec3| match &mut walk {
+            Some(walk) => walk.farthest(d),
+            None => farthest_of(&self.corners, d),
+        };
+        let mut start = self.corners[0];
+        let mut gaps = Vec::with_capacity(upper.vertices().len());
+        for outer in upper.vertices() {
+            let found = nearest(*outer, start, &mut farthest);
+            start = farthest(*outer - found.point);
+            if let Ok(direction) = Direction::new(found.direction) {
+                gaps.push(Gap { direction, outer: *outer, inner: found.point, distance: found.certified });
+            }
+        }
+        gaps
+    }
+
+    /// The largest gap: its distance is the Hausdorff distance of the bounds, because the distance to a convex set is a
+    /// convex function, which is largest at a corner. `None` when the upper bound is unbounded or the gap is zero.
+    #[must_use]
+    pub fn largest_gap(&self) -> Option<Gap> {
+        self.gaps().into_iter().max_by(|x, y| x.distance.total_cmp(&y.distance))
+    }
+}
+
+fn farthest_of(points: &[DVec3], d: DVec3) -> DVec3 {
+    let mut best = (DVec3::ZERO, f64::NEG_INFINITY);
+    for p in points {
+        let height = p.dot(d);
+        if height > best.1 {
+            best = (*p, height);
+        }
+    }
+    best.0
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,70 @@
+use super::*;
+use crate::generators::{AXES, Source, curve_contacts, ellipsoid_contacts, ellipsoid_support};
+
+#[test]
+fn the_ellipsoid_lies_between_its_bounds() {
+    let size = AXES.max_element();
+    for seed in 0..6 {
+        for contacts in [curve_contacts(600, seed), ellipsoid_contacts(100, seed)] {
+            let bounds = ShapeBounds::from_contacts(&contacts).unwrap();
+            let mut s = Source::new(seed);
+            for _ in 0..300 {
+                let n = s.direction();
+                let truth = ellipsoid_support(n);
+                let (lower, upper) = bounds.support(Direction::new(n).unwrap());
+                assert!(lower <= truth + 1e-14 * size && truth <= upper, "{lower} {truth} {upper}");
+            }
+            let truth = 4.0 / 3.0 * std::f64::consts::PI * AXES.element_product();
+            assert!(bounds.lower_volume() < truth && truth < bounds.upper_volume());
+        }
+    }
+}
+
+#[test]
+fn the_largest_gap_is_the_hausdorff_distance() {
+    let bounds = ShapeBounds::from_contacts(&curve_contacts(150, 3)).unwrap();
+    let largest = bounds.largest_gap().unwrap();
+    // Two independent formulations: nearest points of corners, and the supremum of support function differences.
+    assert!((bounds.gap_along(largest.direction) - largest.distance).abs() < 1e-12);
+    assert!((largest.outer.distance(largest.inner) - largest.distance).abs() < 1e-12);
+    let mut s = Source::new(2);
+    for _ in 0..5000 {
+        let n = Direction::new(s.direction()).unwrap();
+        assert!(bounds.gap_along(n) <= largest.distance + 1e-12);
+    }
+}
+
+#[test]
+fn contacts_on_one_side_leave_the_other_open() {
+    let contacts: Vec<ContactSample> =
+        ellipsoid_contacts(200, 1).into_iter().filter(|c| c.normal.get().z > 0.3).collect();
+    let bounds = ShapeBounds::from_contacts(&contacts).unwrap();
+    assert!(bounds.upper_volume().is_infinite() && bounds.largest_gap().is_none());
+    assert!(bounds.lower_volume() > 0.0);
+    let Intersection::Unbounded(open) = bounds.upper() else { panic!("closed") };
+    let down = open.directions().iter().map(|d| d.get()).sum::<DVec3>().normalize();
+    assert!(down.z < -0.9, "{down}");
+}
+
+#[test]
+fn too_few_and_contradictory_contacts_are_named() {
+    let contacts = ellipsoid_contacts(50, 1);
+    assert_eq!(ShapeBounds::from_contacts(&contacts[..3]), Err(BoundsError::TooFew { found: 3, needed: 4 }));
+    let mut wrong = contacts.clone();
+    wrong[7].point = -wrong[7].point * 1.5;
+    let error = ShapeBounds::from_contacts(&wrong).unwrap_err();
+    let BoundsError::HalfSpaces(IntersectionError::Contradiction { conflict, .. }) = &error else {
+        panic!("{error}")
+    };
+    assert!(conflict.contains(&7), "{error}");
+}
+
+#[test]
+fn raw_contacts_are_checked() {
+    use crate::sample::ContactError;
+    let good = (DVec3::X, DVec3::X);
+    let error = ContactSample::from_raw([good, (DVec3::X, DVec3::X * 2.0)]).unwrap_err();
+    assert!(matches!(error, ContactError::Normal { index: 1, .. }), "{error}");
+    let error = ContactSample::from_raw([(DVec3::NAN, DVec3::X)]).unwrap_err();
+    assert!(matches!(error, ContactError::Point { index: 0, .. }), "{error}");
+}

@@ -1,0 +1,74 @@
+use super::Polyhedron;
+use crate::sample::HalfSpace;
+use glam::DVec3;
+
+/// Finds the parts of a polyhedron beyond planes.
+pub(crate) struct Caps<'a> {
+    body: &'a Polyhedron,
+    /// The search at which a corner was last met.
+    met: Vec<u32>,
+    search: u32,
+    /// A corner of the last cap.
+    corner: u32,
+    stack: Vec<u32>,
+}
+
+impl Polyhedron {
+    pub(crate) fn caps(&self) -> Caps<'_> {
+        Caps { body: self, met: vec![0; self.vertices().len()], search: 0, corner: 0, stack: Vec::new() }
+    }
+}
+
+impl Caps<'_> {
+    /// The largest distance from `from` of a point of the polyhedron on or beyond the plane; zero if there is none.
+    pub(crate) fn reach(&mut self, plane: &HalfSpace, from: DVec3) -> f64 {
+        let vertices = self.body.vertices();
+        let neighbours = self.body.vertex_neighbours();
+        let top = self.climb(plane);
+        if plane.excess(vertices[top as usize]) < 0.0 {
+            return 0.0;
+        }
+        self.search += 1;
+        self.met[top as usize] = self.search;
+        self.stack.push(top);
+        let mut reach = 0.0_f64;
+        while let Some(corner) = self.stack.pop() {
+            let here = vertices[corner as usize];
+            reach = reach.max(here.distance(from));
+            for next in neighbours[corner as usize] {
+                let there = vertices[next as usize];
+                if plane.excess(there) >= 0.0 {
+                    if self.met[next as usize] != self.search {
+                        self.met[next as usize] = self.search;
+                        self.stack.push(next);
+                    }
+                } else {
+                    // The edge leaves the cap where it crosses the plane.
+                    let (inside, outside) = (plane.excess(here), plane.excess(there));
+                    let crossing = here + (there - here) * (inside / (inside - outside));
+                    reach = reach.max(crossing.distance(from));
+                }
+            }
+        }
+        reach
+    }
+
+    /// The corner farthest along the plane's normal.
+    fn climb(&mut self, plane: &HalfSpace) -> u32 {
+        let vertices = self.body.vertices();
+        let mut height = plane.excess(vertices[self.corner as usize]);
+        loop {
+            let mut next = self.corner;
+            for v in self.body.vertex_neighbours()[self.corner as usize] {
+                let candidate = plane.excess(vertices[v as usize]);
+                if candidate > height {
+                    (height, next) = (candidate, v);
+                }
+            }
+            if next == self.corner {
+                return next;
+            }
+            self.corner = next;
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Intersections of half-spaces: the outer bound of a convex body (paper, section 8).
+
+mod caps;
+mod error;
+mod interior;
+mod polyhedron;
+mod recession;
+#[cfg(test)]
+mod tests;
+mod vertex;
+
+pub use error::IntersectionError;
+pub use polyhedron::Polyhedron;
+
+use crate::hull::{Hull, SolidHull};
+use crate::predicates::above;
+use crate::sample::HalfSpace;
+use contact_kinematics::Direction;
+use glam::DVec3;
+
+/// The intersection of half-spaces, which has an interior.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Intersection {
+    /// The intersection is a polyhedron.
+    Bounded(Polyhedron),
+    /// The half-spaces do not close around the body.
+    Unbounded(Unbounded),
+}
+
+/// An intersection of half-spaces that has no end in some directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unbounded {
+    half_spaces: Vec<HalfSpace>,
+    interior: DVec3,
+    directions: Vec<Direction>,
+}
+
+impl Intersection {
+    /// Intersects `half_spaces` in expected time O(n log n), as the hull of their polar duals about an interior point.
+    ///
+    /// Planes are moved outwards by a few units of rounding of the coordinates, so that what is computed contains the
+    /// exact intersection.
+    ///
+    /// # Errors
+    /// [`IntersectionError`] for no half-spaces, values that are not finite, half-spaces that contradict each other
+    /// (a smallest such set is named), and an interior too thin to compute with.
+    pub fn of(half_spaces: &[HalfSpace]) -> Result<Self, IntersectionError> {
+        let limit = u32::MAX as usize - 2;
+        if half_spaces.is_empty() {
+            return Err(IntersectionError::Empty);
+        }
+        if half_spaces.len() > limit {
+            return Err(IntersectionError::TooMany { count: half_spaces.len(), limit });
+        }
+        if let Some(index) = half_spaces.iter().position(|h| !h.point.is_finite() || !h.margin.is_finite()) {
+            let HalfSpace { point, margin, .. } = half_spaces[index];
+            return Err(IntersectionError::NotFinite { index, point, margin });
+        }
+        let interior = interior::interior_point(half_spaces)?;
+        let outer = polyhedron::moved_outwards(half_spaces);
+        let duals: Vec<DVec3> = outer.iter().map(|h| h.normal.get() / -h.excess(interior)).collect();
+        match Hull::of(&duals) {
+            Ok(Hull::Solid(dual)) if strictly_contains_origin(&dual) => {
+                Ok(Self::Bounded(Polyhedron::from_dual(&dual, &outer, interior)))
+            }
+            _ => Ok(Self::Unbounded(Unbounded {
+                half_spaces: half_spaces.to_vec(),
+                interior,
+                directions: recession::unbounded_directions(half_spaces),
+            })),
+        }
+    }
+
+    /// The polyhedron, if the intersection is bounded.
+    #[must_use]
+    pub fn bounded(&self) -> Option<&Polyhedron> {
+        match self {
+            Self::Bounded(polyhedron) => Some(polyhedron),
+            Self::Unbounded(_) => None,
+        }
+    }
+}
+
+fn strictly_contains_origin(dual: &SolidHull) -> bool {
+    (0..dual.triangles().len()).all(|f| {
+        let [a, b, c] = dual.corners(f);
+        above(a, b, c, DVec3::ZERO) < 0.0
+    })
+}
+
+impl Unbounded {
+    /// Generators of the cone of directions without end: every such direction is a sum of these with weights of at
+    /// least zero. A whole line without end is given by both its directions.
+    #[must_use]
+    pub fn directions(&self) -> &[Direction] {
+        &self.directions
+    }
+
+    /// A point strictly inside.
+    #[must_use]
+    pub fn interior(&self) -> DVec3 {
+        self.interior
+    }
+
+    /// The part within an axis-aligned cube: for pictures, or where something else is known to limit the body. Faces on
+    /// the cube have sources at and above the number of half-spaces, in the order +x, -x, +y, -y, +z, -z.
+    ///
+    /// # Errors
+    /// Those of [`Intersection::of`], when the cube misses the intersection.
+    pub fn within_cube(&self, centre: DVec3, half_side: f64) -> Result<Polyhedron, IntersectionError> {
+        let mut all = self.half_spaces.clone();
+        for axis in [Direction::X, Direction::Y, Direction::Z] {
+            for normal in [axis, -axis] {
+                all.push(HalfSpace { point: centre + normal.get() * half_side, normal, margin: 0.0 });
+            }
+        }
+        match Intersection::of(&all)? {
+            Intersection::Bounded(polyhedron) => Ok(polyhedron),
+            // Six faces of a cube bound everything; a dual hull that says otherwise has been rounded flat.
+            Intersection::Unbounded(_) => {
+                Err(IntersectionError::NoInterior { tight: Vec::new(), inradius: 0.0 })
+            }
+        }
+    }
+}

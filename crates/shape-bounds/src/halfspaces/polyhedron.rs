@@ -1,0 +1,202 @@
+use super::vertex::{common_point, polar_corner};
+use crate::hull::SolidHull;
+use crate::integrals::{SolidMoments, solid_moments};
+use crate::mesh::TriangleMesh;
+use crate::sample::HalfSpace;
+use contact_kinematics::Direction;
+use glam::DVec3;
+
+/// Planes are moved outwards by this many units of rounding of the largest coordinate: more than the rounding of a
+/// plane's distance (4) and of the computed corners (2 along a normal) together.
+const OUTWARD_ULPS: f64 = 8.0;
+
+/// A corner computed from the planes as given may protrude over its neighbours' planes by this many units of rounding of
+/// the largest coordinate, which is what evaluating the height takes; beyond, the corner of the rounded planes is used.
+const CONSISTENT_ULPS: f64 = 4.0;
+
+/// A bounded intersection of half-spaces with its corners and faces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polyhedron {
+    interior: DVec3,
+    vertices: Vec<DVec3>,
+    /// For each corner, those at the other ends of its three edges.
+    vertex_neighbours: Vec<[u32; 3]>,
+    /// Where each face begins in `face_vertices`, and the end.
+    face_starts: Vec<u32>,
+    face_vertices: Vec<u32>,
+    face_sources: Vec<u32>,
+    /// The half-space of each face, with the outward rounding in its margin.
+    half_spaces: Vec<HalfSpace>,
+    redundant: Vec<u32>,
+}
+
+impl Polyhedron {
+    /// The polyhedron of `all` half-spaces whose polar duals about `interior` have the hull `dual`. The half-spaces are
+    /// those of the duals, already moved outwards.
+    pub(super) fn from_dual(dual: &SolidHull, all: &[HalfSpace], interior: DVec3) -> Self {
+        let half_spaces: Vec<HalfSpace> = dual.sources().iter().map(|k| all[*k as usize]).collect();
+        let vertices = corners(dual, &half_spaces, interior, CONSISTENT_ULPS * rounding_unit(all));
+        let (face_starts, face_vertices) = faces_around_vertices(dual);
+        let mut used = vec![false; all.len()];
+        dual.sources().iter().for_each(|k| used[*k as usize] = true);
+        let redundant = (0..all.len() as u32).filter(|k| !used[*k as usize]).collect();
+        let face_sources = dual.sources().to_vec();
+        let vertex_neighbours = dual.neighbours().to_vec();
+        Self {
+            interior,
+            vertices,
+            vertex_neighbours,
+            face_starts,
+            face_vertices,
+            face_sources,
+            half_spaces,
+            redundant,
+        }
+    }
+
+    /// A point strictly inside, in m.
+    #[must_use]
+    pub fn interior(&self) -> DVec3 {
+        self.interior
+    }
+
+    /// Corners in m. Corners where more than three planes meet appear once for each three of them.
+    #[must_use]
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    pub(crate) fn vertex_neighbours(&self) -> &[[u32; 3]] {
+        &self.vertex_neighbours
+    }
+
+    /// Number of faces.
+    #[must_use]
+    pub fn face_count(&self) -> usize {
+        self.face_sources.len()
+    }
+
+    /// Corners of a face as indices into [`Self::vertices`], anticlockwise from outside.
+    #[must_use]
+    pub fn face(&self, face: usize) -> &[u32] {
+        &self.face_vertices[self.face_starts[face] as usize..self.face_starts[face + 1] as usize]
+    }
+
+    /// For each face, the index of the half-space that it lies on.
+    #[must_use]
+    pub fn face_sources(&self) -> &[u32] {
+        &self.face_sources
+    }
+
+    /// For each face, its half-space with the margin that makes up for rounding.
+    #[must_use]
+    pub fn face_half_spaces(&self) -> &[HalfSpace] {
+        &self.half_spaces
+    }
+
+    /// Half-spaces that could be left out because the others imply them, to rounding.
+    #[must_use]
+    pub fn redundant(&self) -> &[u32] {
+        &self.redundant
+    }
+
+    /// Volume, centroid and area.
+    #[must_use]
+    pub fn moments(&self) -> SolidMoments {
+        solid_moments(self.fans().map(|t| t.map(|v| self.vertices[v as usize])), self.interior)
+    }
+
+    /// Volume in m^3.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        self.moments().volume
+    }
+
+    /// Support function `max n . y` over the polyhedron, in m.
+    #[must_use]
+    pub fn support(&self, n: Direction) -> f64 {
+        self.vertices.iter().map(|v| v.dot(n.get())).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Whether `point` is inside. A point of the exact intersection is never denied; one outside by a few units of
+    /// rounding may be admitted.
+    #[must_use]
+    pub fn contains(&self, point: DVec3) -> bool {
+        self.excess(point) <= 0.0
+    }
+
+    /// The largest signed distance of `point` beyond a face's plane, in m; negative inside.
+    #[must_use]
+    pub fn excess(&self, point: DVec3) -> f64 {
+        self.half_spaces.iter().map(|h| h.excess(point)).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The surface as a mesh, each face as a fan of triangles.
+    #[must_use]
+    pub fn mesh(&self) -> TriangleMesh {
+        TriangleMesh { vertices: self.vertices.clone(), triangles: self.fans().collect() }
+    }
+
+    fn fans(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        (0..self.face_count()).flat_map(|f| {
+            let face = self.face(f);
+            face[1..].windows(2).map(|edge| [face[0], edge[0], edge[1]])
+        })
+    }
+}
+
+/// The rounding of the largest coordinate.
+fn rounding_unit(half_spaces: &[HalfSpace]) -> f64 {
+    f64::EPSILON * half_spaces.iter().map(|h| h.point.abs().max_element()).fold(0.0, f64::max)
+}
+
+/// `half_spaces` moved outwards by more than all rounding in what follows.
+pub(super) fn moved_outwards(half_spaces: &[HalfSpace]) -> Vec<HalfSpace> {
+    let by = OUTWARD_ULPS * rounding_unit(half_spaces);
+    half_spaces.iter().map(|h| HalfSpace { margin: h.margin + by, ..*h }).collect()
+}
+
+/// The corner of each facet of the dual.
+///
+/// The planes of the duals are those of the half-spaces but for rounding, and the combinatorics of the dual hull is
+/// exact for them: their corners are consistent to rounding, but where planes are nearly parallel they may slide far along
+/// them. The corner computed from the half-spaces as given is exact in that direction too, where it is a corner at all:
+/// where the rounded planes have chosen other neighbours, it protrudes.
+fn corners(dual: &SolidHull, half_spaces: &[HalfSpace], interior: DVec3, tolerance: f64) -> Vec<DVec3> {
+    let triangles = dual.triangles();
+    (0..triangles.len())
+        .map(|f| {
+            let t = triangles[f];
+            let planes = t.map(|v| &half_spaces[v as usize]);
+            let corner = common_point(planes);
+            let on_planes = planes.iter().all(|h| h.excess(corner).abs() <= tolerance);
+            let consistent = on_planes
+                && dual.neighbours()[f].iter().enumerate().all(|(edge, g)| {
+                    let [a, b, c] = triangles[*g as usize];
+                    let opposite = a ^ b ^ c ^ t[edge] ^ t[(edge + 1) % 3];
+                    half_spaces[opposite as usize].excess(corner) <= tolerance
+                });
+            if consistent { corner } else { interior + polar_corner(dual.corners(f)) }
+        })
+        .collect()
+}
+
+/// For each vertex of a hull, the facets around it, anticlockwise from outside, as starts and one list.
+fn faces_around_vertices(hull: &SolidHull) -> (Vec<u32>, Vec<u32>) {
+    let first = hull.facet_at_each_vertex();
+    let mut starts = Vec::with_capacity(first.len() + 1);
+    let mut around = Vec::with_capacity(3 * hull.triangles().len());
+    for (v, start) in first.iter().enumerate() {
+        starts.push(around.len() as u32);
+        let mut facet = *start;
+        loop {
+            around.push(facet);
+            facet = hull.next_around(v as u32, facet).0;
+            if facet == *start {
+                break;
+            }
+        }
+    }
+    starts.push(around.len() as u32);
+    (starts, around)
+}

@@ -1,0 +1,224 @@
+use super::*;
+use crate::generators::{AXES, Source, curve_contacts, ellipsoid_contacts, ellipsoid_support};
+use crate::sample::ContactSample;
+
+fn space(point: DVec3, normal: DVec3) -> HalfSpace {
+    HalfSpace { point, normal: Direction::new(normal).unwrap(), margin: 0.0 }
+}
+
+fn cube(half_side: f64) -> Vec<HalfSpace> {
+    [DVec3::X, DVec3::Y, DVec3::Z]
+        .into_iter()
+        .flat_map(|a| [a, -a])
+        .map(|n| space(n * half_side, n))
+        .collect()
+}
+
+fn polyhedron(half_spaces: &[HalfSpace]) -> Polyhedron {
+    match Intersection::of(half_spaces).unwrap() {
+        Intersection::Bounded(polyhedron) => polyhedron,
+        Intersection::Unbounded(open) => panic!("unbounded along {:?}", open.directions()),
+    }
+}
+
+#[test]
+fn a_cube_and_its_redundant_half_spaces() {
+    let mut spaces = cube(0.5);
+    spaces.push(space(DVec3::splat(0.6), DVec3::ONE));
+    spaces.push(spaces[0]);
+    let cube = polyhedron(&spaces);
+    let moments = cube.moments();
+    assert!((moments.volume - 1.0).abs() < 1e-14 && (moments.area - 6.0).abs() < 1e-13, "{moments:?}");
+    assert_eq!(cube.face_count(), 6);
+    assert_eq!(cube.redundant().len(), 2);
+    assert!(cube.redundant().contains(&6));
+    assert!(cube.contains(DVec3::splat(0.5)) && !cube.contains(DVec3::splat(0.5 + 1e-14)));
+}
+
+#[test]
+fn faces_are_plane_closed_and_anticlockwise() {
+    let spaces: Vec<HalfSpace> = curve_contacts(300, 2).iter().map(ContactSample::half_space).collect();
+    let body = polyhedron(&spaces);
+    // Each edge of a face belongs to one other face in the opposite sense.
+    let mut edges = std::collections::HashSet::new();
+    for f in 0..body.face_count() {
+        let face = body.face(f);
+        for k in 0..face.len() {
+            assert!(edges.insert((face[k], face[(k + 1) % face.len()])));
+        }
+        let plane = spaces[body.face_sources()[f] as usize];
+        for v in face {
+            let height = plane.excess(body.vertices()[*v as usize]);
+            assert!((0.0..1e-12).contains(&height), "{height}");
+        }
+        let [a, b, c] = [face[0], face[1], face[2]].map(|v| body.vertices()[v as usize]);
+        assert!((b - a).cross(c - b).dot(plane.normal.get()) >= -1e-14);
+    }
+    assert!(edges.iter().all(|(a, b)| edges.contains(&(*b, *a))));
+    let euler = body.vertices().len() as i64 - edges.len() as i64 / 2 + body.face_count() as i64;
+    assert_eq!(euler, 2);
+}
+
+#[test]
+fn corners_of_dense_curves_lie_in_every_half_space() {
+    // Neighbouring normals are 1e-4 apart, so that the plain three-plane system has a condition number of about 1e8.
+    let contacts = curve_contacts(100_000, 7);
+    let spaces: Vec<HalfSpace> = contacts.iter().map(ContactSample::half_space).collect();
+    let body = polyhedron(&spaces);
+    let mut s = Source::new(1);
+    for _ in 0..300 {
+        let corner = body.vertices()[s.below(body.vertices().len())];
+        let worst = spaces.iter().map(|h| h.excess(corner)).fold(f64::NEG_INFINITY, f64::max);
+        assert!(worst < 1e-10 * AXES.max_element(), "{worst}");
+    }
+}
+
+#[test]
+fn no_contact_is_cut_off_by_exact_arithmetic() {
+    for (seed, count) in [(1, 30), (2, 300), (3, 3000), (4, 20_000)] {
+        for contacts in [curve_contacts(count, seed), ellipsoid_contacts(count, seed)] {
+            let spaces: Vec<HalfSpace> = contacts.iter().map(ContactSample::half_space).collect();
+            let body = polyhedron(&spaces);
+            let Hull::Solid(hull) = Hull::of(body.vertices()).unwrap() else { panic!("flat") };
+            let step = (count / 200).max(1);
+            for c in contacts.iter().step_by(step) {
+                assert!(body.contains(c.point));
+                assert!(hull.contains(c.point), "{count}: {}", hull.excess(c.point));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_upper_bound_supports_the_body_and_converges() {
+    let true_volume = 4.0 / 3.0 * std::f64::consts::PI * AXES.x * AXES.y * AXES.z;
+    let mut excesses = Vec::new();
+    for count in [250, 1000, 4000] {
+        let spaces: Vec<HalfSpace> =
+            ellipsoid_contacts(count, 5).iter().map(ContactSample::half_space).collect();
+        let body = polyhedron(&spaces);
+        let mut s = Source::new(9);
+        for _ in 0..200 {
+            let n = s.direction();
+            let above = body.support(Direction::new(n).unwrap()) - ellipsoid_support(n);
+            assert!(above >= 0.0, "{above}");
+        }
+        excesses.push(body.volume() / true_volume - 1.0);
+    }
+    // The excess volume of random tangent planes falls like 1 / n.
+    for pair in excesses.windows(2) {
+        assert!((3.0..5.3).contains(&(pair[0] / pair[1])), "{excesses:?}");
+    }
+}
+
+#[test]
+fn unbounded_directions_are_described() {
+    let directions = |spaces: &[HalfSpace]| match Intersection::of(spaces).unwrap() {
+        Intersection::Unbounded(open) => open.directions().iter().map(|d| d.get()).collect::<Vec<_>>(),
+        Intersection::Bounded(_) => panic!("bounded"),
+    };
+    let has = |list: &[DVec3], d: DVec3| list.iter().any(|e| e.distance(d) < 1e-12);
+
+    // A cube without its lid: up.
+    let open: Vec<HalfSpace> = cube(1.0).into_iter().filter(|h| h.normal.get() != DVec3::Z).collect();
+    let found = directions(&open);
+    assert!(found.len() == 1 && has(&found, DVec3::Z), "{found:?}");
+    // An octant: its three axes.
+    let octant: Vec<HalfSpace> = [DVec3::X, DVec3::Y, DVec3::Z].map(|n| space(n, n)).to_vec();
+    let found = directions(&octant);
+    assert!(found.len() == 3 && [DVec3::X, DVec3::Y, DVec3::Z].iter().all(|n| has(&found, -*n)));
+    // A prism: both ends.
+    let prism: Vec<HalfSpace> = cube(1.0).into_iter().filter(|h| h.normal.get().z == 0.0).collect();
+    let found = directions(&prism);
+    assert!(found.len() == 2 && has(&found, DVec3::Z) && has(&found, -DVec3::Z), "{found:?}");
+    // A wedge: its edge both ways, and the two rims.
+    let wedge = [space(DVec3::X, DVec3::X), space(DVec3::Y, DVec3::Y)];
+    let found = directions(&wedge);
+    assert!([DVec3::Z, -DVec3::Z, -DVec3::X, -DVec3::Y].iter().all(|d| has(&found, *d)), "{found:?}");
+    // One half-space, and a slab.
+    assert_eq!(directions(&wedge[..1]).len(), 5);
+    assert_eq!(directions(&[space(DVec3::X, DVec3::X), space(-DVec3::X, -DVec3::X)]).len(), 4);
+}
+
+#[test]
+fn random_cones_are_polar_to_their_normals() {
+    let mut s = Source::new(8);
+    for _ in 0..100 {
+        let axis = s.direction();
+        let spaces: Vec<HalfSpace> =
+            (0..12).map(|_| s.direction()).filter(|n| n.dot(axis) > 0.1).map(|n| space(n, n)).collect();
+        if spaces.len() < 3 {
+            continue;
+        }
+        let Intersection::Unbounded(open) = Intersection::of(&spaces).unwrap() else { panic!("bounded") };
+        assert!(open.directions().len() >= 3);
+        for d in open.directions() {
+            let worst = spaces.iter().map(|h| h.normal.get().dot(d.get())).fold(f64::NEG_INFINITY, f64::max);
+            assert!(worst.abs() < 1e-13, "an extreme direction lies in a plane: {worst}");
+        }
+        let clipped = open.within_cube(DVec3::ZERO, 100.0).unwrap();
+        assert!(clipped.volume() > 0.0);
+    }
+}
+
+#[test]
+fn contradictions_name_a_smallest_conflict() {
+    let mut s = Source::new(12);
+    let mut sizes = std::collections::BTreeSet::new();
+    for _ in 0..200 {
+        // A body and, somewhere among its half-spaces, wrong ones.
+        let mut spaces: Vec<HalfSpace> =
+            (0..30).map(|_| (s.direction(), s.between(1.0, 2.0))).map(|(n, h)| space(n * h, n)).collect();
+        for _ in 0..3 {
+            let n = s.direction();
+            let at = s.below(spaces.len());
+            spaces.insert(at, space(-n * s.between(1.5, 3.0), n));
+        }
+        let error = Intersection::of(&spaces).unwrap_err();
+        let IntersectionError::Contradiction { conflict, deficit } = error else { panic!("{error}") };
+        sizes.insert(conflict.len());
+        let named: Vec<HalfSpace> = conflict.iter().map(|k| spaces[*k]).collect();
+        assert!(matches!(Intersection::of(&named), Err(IntersectionError::Contradiction { .. })));
+        for left_out in 0..named.len() {
+            let mut rest = named.clone();
+            rest.remove(left_out);
+            assert!(rest.is_empty() || Intersection::of(&rest).is_ok(), "{conflict:?} without {left_out}");
+        }
+        // The deficit is what it says.
+        for (margin, meets) in [(deficit * 1.001, true), (deficit * 0.999, false)] {
+            let moved: Vec<HalfSpace> = spaces.iter().map(|h| HalfSpace { margin, ..*h }).collect();
+            assert_eq!(interior::interior_point(&moved).is_ok(), meets);
+        }
+    }
+    assert!(sizes.iter().all(|k| (2..=4).contains(k)), "{sizes:?}");
+}
+
+#[test]
+fn two_faces_that_touch_leave_no_interior() {
+    let mut spaces = cube(1.0);
+    spaces.push(space(DVec3::X, -DVec3::X));
+    let error = Intersection::of(&spaces).unwrap_err();
+    assert!(matches!(&error, IntersectionError::NoInterior { tight, .. } if tight == &[0, 6]), "{error}");
+}
+
+#[test]
+fn a_thin_slab_far_away_is_found() {
+    for thickness in [1e-3, 1e-6, 1e-9] {
+        let shift = DVec3::new(30.0, -20.0, 10.0);
+        let mut spaces = cube(1.0);
+        spaces[4] = space(DVec3::Z * thickness, DVec3::Z);
+        spaces[5] = space(DVec3::ZERO, -DVec3::Z);
+        spaces.iter_mut().for_each(|h| h.point += shift);
+        let volume = polyhedron(&spaces).volume();
+        // Coordinates of 30 m are rounded to 4e-15 m.
+        assert!((volume / (4.0 * thickness) - 1.0).abs() < 2e-13 / thickness, "{thickness}: {volume}");
+    }
+}
+
+#[test]
+fn bad_half_spaces_are_named() {
+    assert_eq!(Intersection::of(&[]), Err(IntersectionError::Empty));
+    let mut spaces = cube(1.0);
+    spaces[3].margin = f64::NAN;
+    assert!(matches!(Intersection::of(&spaces), Err(IntersectionError::NotFinite { index: 3, .. })));
+}

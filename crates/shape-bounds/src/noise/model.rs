@@ -1,0 +1,100 @@
+use crate::sample::ContactSample;
+use glam::{DMat3, DVec3};
+use thiserror::Error;
+
+/// How uncertain one measured contact is: normal noise, standard deviations.
+///
+/// `point` and `normal` are independent from contact to contact. The pose's part may be correlated along a curve in any
+/// way, as the errors of an observer are, so nothing is gained on it by averaging.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactNoise {
+    /// Covariance of the contact point in the body's frame, in m^2.
+    pub point: DMat3,
+    /// Standard deviation of the normal about each tangent axis, in rad.
+    pub normal: f64,
+    /// Standard deviation per axis of the body pose's translation when the contact was made, in m.
+    pub pose_translation: f64,
+    /// Standard deviation per axis of the body pose's rotation about the body's origin, in rad.
+    pub pose_rotation: f64,
+}
+
+impl ContactNoise {
+    /// The same standard deviation of the point along all axes (m) and of the normal (rad), and an exact pose.
+    #[must_use]
+    pub fn isotropic(point: f64, normal: f64) -> Self {
+        Self {
+            point: DMat3::from_diagonal(DVec3::splat(point * point)),
+            normal,
+            pose_translation: 0.0,
+            pose_rotation: 0.0,
+        }
+    }
+
+    /// The first entry that is not a standard deviation or covariance.
+    pub(super) fn defect(&self) -> Option<(&'static str, f64)> {
+        for (name, value) in [
+            ("normal", self.normal),
+            ("pose_translation", self.pose_translation),
+            ("pose_rotation", self.pose_rotation),
+        ] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Some((name, value));
+            }
+        }
+        for column in 0..3 {
+            for row in 0..3 {
+                let value = self.point.col(column)[row];
+                let limit = (self.point.col(column)[column] * self.point.col(row)[row]).sqrt();
+                // A covariance is bounded by its variances (NaN fails every comparison).
+                if !(value.is_finite() && value.abs() <= limit * (1.0 + 1e-9)) {
+                    return Some(("point", value));
+                }
+            }
+        }
+        None
+    }
+}
+
+/// A measured contact with its noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoisyContact {
+    /// As measured.
+    pub contact: ContactSample,
+    /// How far it may be from the truth.
+    pub noise: ContactNoise,
+}
+
+/// Why noisy contacts give no bounds.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum NoiseError {
+    /// A confidence that is none.
+    #[error("confidence {0}: it must lie between 0.5 and 1, both excluded")]
+    Confidence(f64),
+    /// A noise level that is negative, not finite or not a covariance.
+    #[error("curve {curve}, contact {index}: noise `{name}` has the entry {value}, which is not possible")]
+    Noise {
+        /// Which curve.
+        curve: usize,
+        /// Which contact of it.
+        index: usize,
+        /// Which field.
+        name: &'static str,
+        /// The entry.
+        value: f64,
+    },
+    /// The noise leaves nothing that is certainly in the body.
+    #[error("nothing is certainly inside of the body: the noise is as large as the hull of the contacts")]
+    NoLowerBound,
+    /// With normals as uncertain as stated, no finite region certainly contains the body.
+    #[error(
+        "nothing finite certainly contains the body: normals are too uncertain, or leave some directions open \
+         (tried regions up to {reach} m)"
+    )]
+    NoUpperBound {
+        /// Radius of the largest region tried.
+        reach: f64,
+    },
+    /// The measured contacts have no bounds whatever the noise.
+    #[error(transparent)]
+    Bounds(#[from] crate::bounds::BoundsError),
+}

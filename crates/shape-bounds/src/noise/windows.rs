@@ -1,0 +1,88 @@
+//! Averages over runs of neighbouring contacts.
+//!
+//! A convex body that satisfies many linear inequalities satisfies their mean, and it contains the mean of its points.
+//! Means over longer runs carry less noise but cut the corner of the curve; taking runs of all lengths and intersecting
+//! (or joining) what each proves leaves the choice to the data.
+
+use super::model::NoisyContact;
+use contact_kinematics::Direction;
+use glam::{DMat3, DVec3};
+
+/// The longest run, in contacts: beyond, the noise left is below a tenth and the loss on a curve large.
+const LONGEST: usize = 128;
+
+/// The mean of a run of contacts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Window {
+    /// Mean point.
+    pub(super) point: DVec3,
+    /// Length of the mean normal, at most 1.
+    pub(super) shrink: f64,
+    /// Direction of the mean normal.
+    pub(super) normal: Direction,
+    /// Mean of `n_k . (x_k - point)`: where the mean of the inequalities puts its plane.
+    pub(super) offset: f64,
+    /// Covariance of the mean point from independent noise.
+    pub(super) covariance: DMat3,
+    /// Standard deviation of the plane's offset at `point`, from independent noise.
+    pub(super) offset_sd: f64,
+    /// Standard deviation per axis of the mean normal, from independent noise.
+    pub(super) normal_sd: f64,
+    /// The largest standard deviation of a single normal.
+    pub(super) single_normal_sd: f64,
+    /// Mean standard deviations of the pose.
+    pub(super) pose_translation: f64,
+    pub(super) pose_rotation: f64,
+}
+
+/// Windows of each length over `curves`, one list for each length.
+pub(super) fn windows(curves: &[Vec<NoisyContact>]) -> Vec<Vec<Window>> {
+    let longest = curves.iter().map(Vec::len).max().unwrap_or(0).min(LONGEST);
+    let mut lists = Vec::new();
+    let mut length = 1;
+    while length <= longest {
+        let stride = (length / 2).max(1);
+        let mut list = Vec::new();
+        for curve in curves {
+            let mut start = 0;
+            while start + length <= curve.len() {
+                list.extend(Window::mean(&curve[start..start + length]));
+                start += stride;
+            }
+        }
+        lists.push(list);
+        length *= 2;
+    }
+    lists
+}
+
+impl Window {
+    /// The mean of `run`; `None` if its normals cancel.
+    fn mean(run: &[NoisyContact]) -> Option<Self> {
+        let weight = 1.0 / run.len() as f64;
+        let mean = |of: &dyn Fn(&NoisyContact) -> f64| run.iter().map(of).sum::<f64>() * weight;
+        let point = run.iter().map(|c| c.contact.point).sum::<DVec3>() * weight;
+        let normal = run.iter().map(|c| c.contact.normal.get()).sum::<DVec3>() * weight;
+        let direction = Direction::new(normal).ok()?;
+        let point_variance = mean(&|c| {
+            let n = c.contact.normal.get();
+            n.dot(c.noise.point * n)
+        });
+        // Errors of the normals turn the planes about their own contacts, not about the mean point.
+        let turning = mean(&|c| c.noise.normal.powi(2) * c.contact.point.distance_squared(point));
+        let covariance =
+            run.iter().map(|c| c.noise.point).fold(DMat3::ZERO, |sum, m| sum + m) * (weight * weight);
+        Some(Self {
+            point,
+            shrink: normal.length(),
+            normal: direction,
+            offset: mean(&|c| c.contact.normal.get().dot(c.contact.point - point)),
+            covariance,
+            offset_sd: ((point_variance + turning) * weight).sqrt(),
+            normal_sd: (mean(&|c| c.noise.normal.powi(2)) * weight).sqrt(),
+            single_normal_sd: run.iter().map(|c| c.noise.normal).fold(0.0, f64::max),
+            pose_translation: mean(&|c| c.noise.pose_translation),
+            pose_rotation: mean(&|c| c.noise.pose_rotation),
+        })
+    }
+}

@@ -1,0 +1,65 @@
+//! The convex polygon of points in the plane.
+
+use crate::predicates::turn;
+use glam::DVec2;
+
+/// Indices of the strictly convex corners of `points`, anticlockwise from the lexicographically least; exact.
+///
+/// Andrew's monotone chain. One index for coincident points, two for collinear ones.
+pub(crate) fn convex_corners(points: &[DVec2]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    // Adding zero makes -0 and 0 one value for the total order.
+    let at = |i: u32| points[i as usize] + DVec2::ZERO;
+    order.sort_unstable_by(|&i, &j| {
+        (at(i).x.total_cmp(&at(j).x)).then(at(i).y.total_cmp(&at(j).y)).then(i.cmp(&j))
+    });
+    order.dedup_by(|j, i| at(*i) == at(*j));
+    if order.len() < 3 {
+        return order;
+    }
+    let mut corners = half_chain(order.iter().copied(), at);
+    corners.pop();
+    let upper = half_chain(order.iter().rev().copied(), at);
+    corners.extend_from_slice(&upper[..upper.len() - 1]);
+    corners
+}
+
+/// The chain that turns left all along `order`, from its first to its last point.
+fn half_chain(order: impl Iterator<Item = u32>, at: impl Fn(u32) -> DVec2) -> Vec<u32> {
+    let mut chain: Vec<u32> = Vec::new();
+    for i in order {
+        while let [.., a, b] = chain[..]
+            && turn(at(a), at(b), at(i)) <= 0.0
+        {
+            chain.pop();
+        }
+        chain.push(i);
+    }
+    chain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_strict_corners_remain() {
+        let square =
+            [(0.0, 0.0), (1.0, 0.0), (0.5, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.5), (0.5, 0.5), (1.0, 1.0)];
+        let points: Vec<DVec2> = square.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
+        assert_eq!(convex_corners(&points), [0, 1, 3, 4]);
+    }
+
+    #[test]
+    fn signed_zeros_are_one_point() {
+        let points = [DVec2::new(0.0, 0.0), DVec2::new(-0.0, 0.0), DVec2::new(0.0, -0.0)];
+        assert_eq!(convex_corners(&points).len(), 1);
+    }
+
+    #[test]
+    fn collinear_and_coincident_points() {
+        let line: Vec<DVec2> = (0..5).map(|i| DVec2::new(f64::from(i), 2.0 * f64::from(i))).collect();
+        assert_eq!(convex_corners(&line), [0, 4]);
+        assert_eq!(convex_corners(&[DVec2::ONE; 3]), [0]);
+    }
+}

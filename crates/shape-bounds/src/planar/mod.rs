@@ -1,0 +1,5 @@
+//! Bounds in the plane.
+
+mod chain;
+
+pub(crate) use chain::convex_corners;

@@ -1,0 +1,87 @@
+//! Steps that build: format, lints, docs, tests, and the crates and features one by one.
+
+use super::arrows::CORE;
+use crate::cargo::{cargo, run};
+use crate::metadata::Metadata;
+use crate::steps::Outcome;
+
+pub(crate) fn format() -> Result<Outcome, String> {
+    all(["fmt --all --check".to_owned()])
+}
+
+pub(crate) fn lint() -> Result<Outcome, String> {
+    all(["clippy --workspace --all-targets -- -D warnings".to_owned()])
+}
+
+/// Libraries only: the command of `recon-cli` has the name of the facade, and their pages would overwrite each other.
+pub(crate) fn docs() -> Result<Outcome, String> {
+    run(cargo("doc --workspace --no-deps --lib").env("RUSTDOCFLAGS", "-D warnings"))?;
+    Ok(Outcome::Passed)
+}
+
+pub(crate) fn tests() -> Result<Outcome, String> {
+    all(["test --workspace".to_owned()])
+}
+
+/// In a build of the whole workspace a core crate sees the features that others switch on in its dependencies. Here
+/// it has its own only.
+pub(crate) fn alone() -> Result<Outcome, String> {
+    let lines = CORE.iter().flat_map(|name| {
+        [
+            format!("test --package {name}"),
+            format!("clippy --package {name} --no-default-features --all-targets -- -D warnings"),
+        ]
+    });
+    all(lines)
+}
+
+/// All features of all members, each without the others and without the default ones.
+pub(crate) fn features() -> Result<Outcome, String> {
+    all(feature_lines(&Metadata::load()?))
+}
+
+fn feature_lines(metadata: &Metadata) -> Vec<String> {
+    let pairs =
+        metadata.members().flat_map(|member| member.features.iter().map(move |feature| (member, feature)));
+    let pairs = pairs.filter(|(_, feature)| *feature != "default");
+    let line = |package: &str, feature: &str| {
+        format!("check --package {package} --no-default-features --features {feature}")
+    };
+    pairs.map(|(member, feature)| line(&member.name, feature)).collect()
+}
+
+/// Runs all lines; the complaint names each one that failed.
+fn all(lines: impl IntoIterator<Item = String>) -> Result<Outcome, String> {
+    let complaints: Vec<_> = lines.into_iter().filter_map(|line| run(&mut cargo(&line)).err()).collect();
+    if complaints.is_empty() { Ok(Outcome::Passed) } else { Err(complaints.join("\n")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metadata::made_up::workspace;
+
+    #[test]
+    fn features_are_those_of_the_members() {
+        let mut metadata = workspace(&["a: b", "|b:"]);
+        for package in &mut metadata.packages {
+            package.features = ["default", "noise", "serde"].map(str::to_owned).into();
+        }
+        let expected =
+            ["noise", "serde"].map(|f| format!("check --package a --no-default-features --features {f}"));
+        assert_eq!(feature_lines(&metadata), expected);
+    }
+
+    #[test]
+    fn this_workspace_has_features_to_check() {
+        let lines = feature_lines(&Metadata::load().expect("cargo describes this workspace"));
+        assert!(lines.iter().any(|line| line.contains("--package observer")), "{lines:?}");
+    }
+
+    #[test]
+    fn every_line_that_fails_is_named() {
+        let complaint = all(["no-such-command-a", "--version", "no-such-command-b"].map(str::to_owned));
+        let complaint = complaint.expect_err("two of them do not exist");
+        assert!(complaint.lines().count() == 2 && complaint.contains("command-a"), "{complaint}");
+    }
+}

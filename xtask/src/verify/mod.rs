@@ -1,0 +1,75 @@
+//! The checks of the house.
+//!
+//! All builds share one profile and one set of compiler flags, so that a dependency is compiled once for checking and
+//! once for running, however many steps use it.
+
+mod arrows;
+mod builds;
+mod extras;
+mod licences;
+mod paths;
+mod spdx;
+mod versions;
+
+use std::process::ExitCode;
+
+use crate::metadata::Metadata;
+use crate::steps::{Choice, Outcome, Step, run, table};
+
+/// How cargo names the default registry in its metadata, whatever mirror it downloads from.
+pub(crate) const DEFAULT_REGISTRY: &str = "registry+https://github.com/rust-lang/crates.io-index";
+
+const STEPS: &[Step] = &[
+    step("format", "rustfmt has nothing to change", builds::format),
+    step("arrows", "members and core crates depend on what the architecture allows", || {
+        check(arrows::complaints)
+    }),
+    step("versions", "one glam, one nalgebra, one parry in the tree", versions::check),
+    step("licences", "every package has a licence we allow", || check(licences::complaints)),
+    step("sources", "every package is ours or from the default registry", || {
+        check(licences::foreign_sources)
+    }),
+    step("paths", "no tracked file names a folder of somebody's machine", paths::check),
+    step("deny", "cargo-deny: bans, licences, sources", extras::deny),
+    step("lint", "clippy over everything, warnings are errors", builds::lint),
+    step("docs", "rustdoc, warnings are errors", builds::docs),
+    step("tests", "all tests and doctests of the workspace", builds::tests),
+    step("alone", "each core crate passes its tests and lints with its own features only", builds::alone),
+    step("features", "each Cargo feature builds without the others", builds::features),
+    optional("hack", "cargo-hack: all combinations of features build", extras::hack),
+    optional("semver", "cargo-semver-checks: no breaking change without a new version", extras::semver),
+    optional("mutants", "cargo-mutants: tests notice changed code (long)", extras::mutants),
+];
+
+const fn step(name: &'static str, about: &'static str, run: fn() -> Result<Outcome, String>) -> Step {
+    Step { name, about, optional: false, run }
+}
+
+const fn optional(name: &'static str, about: &'static str, run: fn() -> Result<Outcome, String>) -> Step {
+    Step { name, about, optional: true, run }
+}
+
+/// A step whose check finds complaints in the metadata.
+fn check(complaints: fn(&Metadata) -> Vec<String>) -> Result<Outcome, String> {
+    let complaints = complaints(&Metadata::load()?);
+    if complaints.is_empty() { Ok(Outcome::Passed) } else { Err(complaints.join("\n")) }
+}
+
+pub(crate) fn main(words: impl Iterator<Item = String>) -> ExitCode {
+    let choice = match Choice::parse(words, STEPS) {
+        Ok(choice) => choice,
+        Err(complaint) => {
+            eprintln!("{complaint}");
+            return ExitCode::from(2);
+        }
+    };
+    if choice.list {
+        for step in STEPS {
+            println!("{:<12} {}{}", step.name, if step.optional { "(optional) " } else { "" }, step.about);
+        }
+        return ExitCode::SUCCESS;
+    }
+    let reports = run(STEPS, &choice);
+    println!("\n{}", table(&reports));
+    if reports.iter().any(|report| report.failed()) { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
