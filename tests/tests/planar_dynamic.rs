@@ -205,3 +205,27 @@ fn covariance_of_a_noise_free_run_is_finite_and_symmetric() {
         }
     }
 }
+
+/// The interpolation knows its own error: at 100 Hz, against forces simulated in the middle of the intervals.
+#[test]
+fn interpolation_error_is_estimated() {
+    let (mut actual, mut stated, mut count) = (0.0, 0.0, 0);
+    for name in ["S1_tumble_immobile", "S2_rotating_pair", "S4_ellipse_both_palms_move"] {
+        let (object, motion, start) = scene(name);
+        let run = simulate_prescribed(&object, &motion, start, &times(200.0, 0.9), 1e-13).unwrap();
+        let log = log(&run);
+        let coarse = PlanarLog::new(log.samples().iter().copied().step_by(2).collect(), None).unwrap();
+        let inputs = planar_samples(&coarse).unwrap();
+        for (k, input) in inputs.iter().enumerate().skip(6) {
+            let middle = log.samples()[2 * k - 1].forces.unwrap();
+            for i in 0..2 {
+                actual += (input.stages[1].forces[i] - middle[i]).powi(2);
+                stated += input.force_error[i].powi(2);
+                count += 1;
+            }
+        }
+    }
+    let (actual, stated) = (f64::sqrt(actual / f64::from(count)), f64::sqrt(stated / f64::from(count)));
+    println!("interpolation error of the forces at 100 Hz: {actual:.2e} N, stated {stated:.2e} N");
+    assert!(actual < 3.0 * stated && stated < 3.0 * actual, "{actual} {stated}");
+}

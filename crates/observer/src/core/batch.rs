@@ -55,6 +55,20 @@ pub fn solve_batch<Mo: Model<N, M>, const N: usize, const M: usize>(
     start: &Start<N>,
     options: &BatchOptions,
 ) -> Result<BatchSolution<N>, ObserverError> {
+    solve_batch_from(model, samples, start, start.state, options)
+}
+
+/// As [`solve_batch`], with an iteration that begins at `first` rather than at the mean of the prior.
+///
+/// # Errors
+/// As [`solve_batch`].
+pub fn solve_batch_from<Mo: Model<N, M>, const N: usize, const M: usize>(
+    model: &Mo,
+    samples: &[Sample<Mo::Input, M>],
+    start: &Start<N>,
+    first: SVector<f64, N>,
+    options: &BatchOptions,
+) -> Result<BatchSolution<N>, ObserverError> {
     if samples.len() < 2 {
         return Err(ObserverError::TooFewSamples { found: samples.len(), needed: 2 });
     }
@@ -64,7 +78,8 @@ pub fn solve_batch<Mo: Model<N, M>, const N: usize, const M: usize>(
     for sample in samples {
         window.append(model, &sample.input);
     }
-    let free_noise = model.process_noise(&start.state, &samples[1].input).is_some();
+    window.roll_out(model, samples.iter(), first);
+    let free_noise = model.process_noise(&first, &samples[1].input).is_some();
     let mut damping = options.damping;
     let mut iterations = 1;
     window.linearise(model, samples.iter());

@@ -10,7 +10,8 @@ pub enum Constant {
     Mass,
     /// Logarithm of the moment of inertia over its nominal value.
     Inertia,
-    /// Relative correction `g` of the force sensor of palm 0 or 1: true force `(1 + g) measured`.
+    /// Logarithm of true over measured force. With logarithms throughout, what cannot be seen (a common factor of mass, inertia
+    /// and both forces) is one fixed direction of the state space, in which repeated linearisation finds nothing either.
     ForceGain(Side),
     /// Force to add to the sensor's, N.
     ForceBias(Side),
@@ -45,8 +46,8 @@ impl Constant {
         match self {
             Constant::Mass => "log mass",
             Constant::Inertia => "log moment of inertia",
-            Constant::ForceGain(Side::First) => "force gain of palm 1",
-            Constant::ForceGain(Side::Second) => "force gain of palm 2",
+            Constant::ForceGain(Side::First) => "log force gain of palm 1",
+            Constant::ForceGain(Side::Second) => "log force gain of palm 2",
             Constant::ForceBias(Side::First) => "force bias of palm 1",
             Constant::ForceBias(Side::Second) => "force bias of palm 2",
             Constant::ContactOffset(Side::First) => "contact offset of palm 1",

@@ -20,7 +20,7 @@ pub use constants::{Constant, PlanarNominal, Side};
 pub use error::PlanarEstimateError;
 pub use force_driven::ForceDriven;
 pub use input::{InputBuilder, PairInput, PairStage, planar_samples};
-pub use observer::{PlanarEstimate, PlanarObserver, PlanarObserverOptions, PlanarStartFrom};
+pub use observer::{Doubt, PlanarEstimate, PlanarObserver, PlanarObserverOptions, PlanarStartFrom};
 pub use quasistatic::{
     HeightFit, QuasistaticError, QuasistaticPath, QuasistaticPoint, height_from_closure,
     quasistatic_reconstruction,

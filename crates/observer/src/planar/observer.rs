@@ -3,10 +3,13 @@
 use super::constants::{Constant, PlanarNominal};
 use super::error::PlanarEstimateError;
 use super::force_driven::ForceDriven;
-use super::input::{InputBuilder, PairInput};
+use super::input::{InputBuilder, PairInput, PairStage};
 use super::scale::NaturalScale;
-use super::start::residual_start;
-use crate::{Arrival, BatchOptions, NewtonObserver, NewtonOptions, Report, Start, solve_batch};
+use super::start::{neutral_start, residual_start};
+use crate::{
+    Arrival, BatchOptions, Model, NewtonObserver, NewtonOptions, Report, Sample, Start, Status,
+    solve_batch_from,
+};
 use glam::DVec2;
 use nalgebra::SVector;
 use object_dynamics::planar::PlanarSample;
@@ -14,6 +17,19 @@ use object_dynamics::planar::PlanarSample;
 /// Window in natural times `sqrt(L / g)`. Below 1.5 the information of the least known direction is a hundred times
 /// smaller; at 6 a start without a guess succeeds.
 const WINDOW_TIMES: f64 = 6.0;
+/// Fewest natural times, smallest relative rate (in natural rates), smallest offset (in deviations), smallest sine of the
+/// wedge and smallest range of the contacts (in natural lengths) for which the linearised covariance was found true; measured in docs/planar.md.
+const SHORTEST_SPAN: f64 = 1.5;
+const SLOWEST_RATE: f64 = 0.15;
+const ROUNDEST_OFFSET: f64 = 5.0;
+const NARROWEST_WEDGE: f64 = 0.3;
+const STILLEST_CONTACT: f64 = 0.2;
+/// The same for the range of the forces, in weights.
+const STILLEST_FORCE: f64 = 0.3;
+/// Residual above one, in its own standard deviations `1 / sqrt(2 n)` for `n` readings, beyond which noise does not explain it.
+const LARGEST_RESIDUAL_DEVIATIONS: f64 = 5.0;
+/// States of the motion.
+const MOTION: usize = 5;
 /// Fewest samples in a window.
 const FEWEST_SAMPLES: usize = 8;
 /// Most samples in a window, which bounds memory and time per sample.
@@ -31,6 +47,45 @@ pub enum PlanarStartFrom {
     Motion([f64; 5]),
 }
 
+/// Why an estimate of the motion is not believed although the linearised information looks sufficient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Doubt {
+    /// The samples span too few natural times.
+    TooShort {
+        /// Span in natural times.
+        spans: f64,
+    },
+    /// Contacts and forces hardly change: rest, slow rocking, or a disc. A judgement of the readings alone, before any estimate.
+    TooStill {
+        /// Larger range of both contacts in natural lengths.
+        range: f64,
+        /// Larger range of both forces in weights.
+        forces: f64,
+    },
+    /// The object hardly turns against a palm: the contact offset `d_i` is divided by that rate.
+    TooSlow {
+        /// 1 or 2.
+        palm: usize,
+        /// Root mean square of `z_i` in natural rates.
+        rate: f64,
+    },
+    /// The contact offsets are not distinguished from zero: the object may be a disc, whose turn does not show.
+    TooRound {
+        /// Largest of both root mean square offsets in their standard deviations.
+        offset: f64,
+    },
+    /// The palms are nearly parallel or nearly flat.
+    Wedge {
+        /// Sine of the angle between the palms.
+        sine: f64,
+    },
+    /// Residuals are larger than the noise: the fit may sit in a wrong minimum.
+    Residual {
+        /// Root mean square residual in standard deviations.
+        residual: f64,
+    },
+}
+
 /// How a [`PlanarObserver`] works; the default needs no guess and chooses its window from the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanarObserverOptions {
@@ -44,7 +99,8 @@ pub struct PlanarObserverOptions {
     pub arrival: Arrival,
     /// Where it starts.
     pub start: PlanarStartFrom,
-    /// Standard deviation of each estimated constant before the first sample, in its own unit; none for no knowledge.
+    /// Standard deviation of each estimated constant before the first sample, in its own unit; none for its
+    /// natural size (a factor of 2.7 of mass and inertia, a gain of one, a bias of the weight, an offset of the size).
     pub constant_deviation: Option<f64>,
 }
 
@@ -78,6 +134,8 @@ pub struct PlanarEstimate<const N: usize> {
     pub contact_points: [DVec2; 2],
     /// Evidence.
     pub report: Report<N>,
+    /// Why the linear covariance was not believed, where it was not; the report then claims no more than natural sizes.
+    pub doubt: Option<Doubt>,
 }
 
 /// Estimates motion and shape from a stream of samples with `N - 5` constants as states.
@@ -91,6 +149,8 @@ pub struct PlanarObserver<const N: usize> {
     newton: Option<NewtonObserver<ForceDriven<N>, N, 2>>,
     /// Orientation at the first sample of the window, rad.
     base: f64,
+    /// Time to wait for after the first sample before the next attempt to start, s; none before the first attempt.
+    next_attempt: Option<f64>,
 }
 
 impl<const N: usize> PlanarObserver<N> {
@@ -119,6 +179,7 @@ impl<const N: usize> PlanarObserver<N> {
             scale: None,
             newton: None,
             base: 0.0,
+            next_attempt: None,
         })
     }
 
@@ -161,14 +222,23 @@ impl<const N: usize> PlanarObserver<N> {
         let (Some(window), Some(first)) = (self.window(), self.waiting.first()) else { return Ok(None) };
         let collected = sample.t - first.t;
         let rounding = 1e-9 * window;
-        if collected + rounding < self.options.settle.unwrap_or(window) || self.waiting.len() < FEWEST_SAMPLES
-        {
+        let due = self.next_attempt.or(self.options.settle).unwrap_or(window);
+        if collected + rounding < due || self.waiting.len() < FEWEST_SAMPLES {
             return Ok(None);
         }
-        self.begin(window, collected)
+        let estimate = self.begin(window, collected)?;
+        if self.newton.is_none() {
+            self.next_attempt = Some(collected + 0.5 * window);
+            if self.waiting.len() > MOST_SAMPLES {
+                self.waiting.drain(..self.waiting.len() / 2);
+                self.next_attempt = Some(0.5 * collected + 0.5 * window);
+            }
+        }
+        Ok(estimate)
     }
 
-    /// First estimate from the samples that have been collected.
+    /// First estimate from the samples that have been collected. A cold start in doubt is reported but not built upon: the
+    /// samples are kept, and with more of them it is tried again.
     fn begin(
         &mut self,
         window: f64,
@@ -177,24 +247,8 @@ impl<const N: usize> PlanarObserver<N> {
         let Some(scale) = self.scale else { return Ok(None) };
         let inputs = std::mem::take(&mut self.waiting);
         let model = ForceDriven::<N>::new(self.nominal, scale, &self.constants)?;
-        let mut start = Start::<N>::guess(SVector::zeros());
-        if let Some(deviation) = self.options.constant_deviation {
-            for i in 5..N {
-                start.information[(i, i)] = 1.0 / (deviation * deviation);
-            }
-        }
-        let by_residuals = |guess| residual_start(&self.nominal, scale, &inputs, guess).map(|s| s.state);
-        let (motion, polish) = match self.options.start {
-            PlanarStartFrom::Nothing => (by_residuals(None)?, true),
-            PlanarStartFrom::Guess(guess) => (by_residuals(Some(guess.into()))?, true),
-            PlanarStartFrom::Motion(motion) => (motion.into(), false),
-        };
-        start.state.fixed_rows_mut::<5>(0).copy_from(&motion);
         let samples: Vec<_> = inputs.iter().map(|&input| model.sample(input)).collect();
-        if polish {
-            let exact = model.clone().without_process_noise();
-            start.state = solve_batch(&exact, &samples, &start, &BatchOptions::default())?.states[0];
-        }
+        let (start, cold) = self.start(&model, &inputs, &samples)?;
         let per_sample = collected / (inputs.len() - 1) as f64;
         let count = ((window / per_sample).round() as usize + 1).clamp(FEWEST_SAMPLES, MOST_SAMPLES);
         let options = NewtonOptions {
@@ -208,9 +262,58 @@ impl<const N: usize> PlanarObserver<N> {
         for sample in earlier {
             newton.append(*sample);
         }
-        let estimate = newton.push(*last);
+        let mut report = newton.push(*last).report;
+        if cold {
+            // The start was fitted with an exact flow; a second step settles the process noise.
+            report = newton.step().map_or(report, |e| e.report);
+        }
+        let doubt = if cold { doubt(&newton, &report, &scale) } else { None };
+        let state = newton.estimate().map_or(start.state, |e| e.state);
         self.newton = Some(newton);
-        Ok(self.estimate(estimate.state, estimate.report))
+        if let Some(reason) = doubt {
+            report = doubtful(report, &state, &last.input.stages[2], &scale);
+            let estimate = self.estimate(state, report, Some(reason));
+            (self.newton, self.waiting) = (None, inputs);
+            return Ok(estimate);
+        }
+        Ok(self.estimate(state, report, None))
+    }
+
+    /// Start of the Newton observer, and whether it is a cold one.
+    fn start(
+        &self,
+        model: &ForceDriven<N>,
+        inputs: &[PairInput],
+        samples: &[Sample<PairInput, 2>],
+    ) -> Result<(Start<N>, bool), PlanarEstimateError> {
+        let mut start = Start::<N>::guess(SVector::zeros());
+        let scales = model.scales();
+        for i in MOTION..N {
+            let deviation = self.options.constant_deviation.unwrap_or(scales[i]);
+            start.information[(i, i)] = 1.0 / (deviation * deviation);
+        }
+        let guess = match self.options.start {
+            PlanarStartFrom::Nothing => None,
+            PlanarStartFrom::Guess(guess) => Some(guess.into()),
+            PlanarStartFrom::Motion(motion) => {
+                start.state.fixed_rows_mut::<MOTION>(0).copy_from_slice(&motion);
+                return Ok((start, false));
+            }
+        };
+        let scale = model.scale();
+        // What the sensors' readings alone say: an object of about the natural size that moves at natural speeds.
+        let neutral = neutral_start(&inputs[0].stages[2], scale.length, 0.0);
+        let deviations = prior_deviations(&scale);
+        for i in 0..MOTION {
+            start.information[(i, i)] = 1.0 / (deviations[i] * deviations[i]);
+        }
+        start.state.fixed_rows_mut::<MOTION>(0).copy_from(&neutral);
+        let first = residual_start(model, inputs, guess)?.state;
+        let exact = model.clone().without_process_noise();
+        let fit = solve_batch_from(&exact, samples, &start, first, &BatchOptions::default())?;
+        // The prior is centred where the iteration starts; far out in its tails that costs a share of 1e-6 of the information.
+        start.state = fit.states[0];
+        Ok((start, true))
     }
 
     fn advance(&mut self, input: PairInput) -> Option<PlanarEstimate<N>> {
@@ -221,10 +324,26 @@ impl<const N: usize> PlanarObserver<N> {
             self.base += first_turn;
         }
         let estimate = newton.push(sample);
-        self.estimate(estimate.state, estimate.report)
+        let mut report = estimate.report;
+        let mut reason = None;
+        if self.options.arrival == Arrival::Forget
+            && !matches!(self.options.start, PlanarStartFrom::Motion(_))
+            && let (Some(newton), Some(scale)) = (&self.newton, self.scale)
+        {
+            reason = doubt(newton, &report, &scale);
+            if reason.is_some() {
+                report = doubtful(report, &estimate.state, &input.stages[2], &scale);
+            }
+        }
+        self.estimate(estimate.state, report, reason)
     }
 
-    fn estimate(&self, state: SVector<f64, N>, report: Report<N>) -> Option<PlanarEstimate<N>> {
+    fn estimate(
+        &self,
+        state: SVector<f64, N>,
+        report: Report<N>,
+        doubt: Option<Doubt>,
+    ) -> Option<PlanarEstimate<N>> {
         let newton = self.newton.as_ref()?;
         let input = newton.samples().last()?.input;
         let phi0 = self.base + turns(newton).sum::<f64>();
@@ -241,8 +360,91 @@ impl<const N: usize> PlanarObserver<N> {
         let along = [stage.along[0] * -d[0], stage.along[1] * d[1]];
         let back = DVec2::from_angle(-phi0);
         let contact_points = [0, 1].map(|i| back.rotate(along[i] - stage.normals[i] * radii[i]));
-        Some(PlanarEstimate { t: input.t, state, phi0, radii, radius_deviations, contact_points, report })
+        Some(PlanarEstimate {
+            t: input.t,
+            state,
+            phi0,
+            radii,
+            radius_deviations,
+            contact_points,
+            report,
+            doubt,
+        })
     }
+}
+
+/// A report that claims no more than the natural size of things: the estimate may be as wrong as it is far from a disc at rest.
+fn doubtful<const N: usize>(
+    mut report: Report<N>,
+    state: &SVector<f64, N>,
+    stage: &PairStage,
+    scale: &NaturalScale,
+) -> Report<N> {
+    report.status = Status::NotObservable;
+    let neutral = neutral_start(stage, scale.length, 0.0);
+    for (i, deviation) in prior_deviations(scale).iter().enumerate() {
+        report.covariance[(i, i)] += deviation * deviation + (state[i] - neutral[i]).powi(2);
+    }
+    report
+}
+
+/// How far the truth may be from a disc of the natural size at rest.
+fn prior_deviations(scale: &NaturalScale) -> [f64; MOTION] {
+    let (length, speed) = (0.5 * scale.length, scale.speed());
+    [length, length, speed, speed, 3.0 * scale.rate()]
+}
+
+/// Whether a window's linearised covariance is to be believed.
+fn doubt<const N: usize>(
+    newton: &NewtonObserver<ForceDriven<N>, N, 2>,
+    report: &Report<N>,
+    scale: &NaturalScale,
+) -> Option<Doubt> {
+    let model = newton.model();
+    let (mut span, mut count, mut sine) = (0.0, 0.0, 1.0_f64);
+    let (mut rates, mut offsets) = ([0.0; 2], [0.0; 2]);
+    let mut reach = [[f64::INFINITY, f64::NEG_INFINITY]; 4];
+    for (k, (x, sample)) in newton.trajectory().zip(newton.samples()).enumerate() {
+        let stage = &sample.input.stages[2];
+        span += if k > 0 { sample.input.dt } else { 0.0 };
+        count += 1.0;
+        sine = sine.min(stage.along[0].perp_dot(stage.along[1]));
+        let d = model.contact_offsets(x, stage);
+        for i in 0..2 {
+            rates[i] += (x[4] - stage.rates[i]).powi(2);
+            offsets[i] += d[i] * d[i];
+            for (slot, value) in [(i, stage.contacts[i]), (2 + i, stage.forces[i])] {
+                reach[slot] = [reach[slot][0].min(value), reach[slot][1].max(value)];
+            }
+        }
+    }
+    let spans = span / scale.time();
+    if spans < SHORTEST_SPAN {
+        return Some(Doubt::TooShort { spans });
+    }
+    if sine < NARROWEST_WEDGE {
+        return Some(Doubt::Wedge { sine });
+    }
+    let [s1, s2, f1, f2] = reach.map(|[low, high]| high - low);
+    let weight = model.nominal().mass.mass() * scale.gravity;
+    let (range, forces) = (s1.max(s2) / scale.length, f1.max(f2) / weight);
+    if range < STILLEST_CONTACT && forces < STILLEST_FORCE {
+        return Some(Doubt::TooStill { range, forces });
+    }
+    let largest = 1.0 + LARGEST_RESIDUAL_DEVIATIONS / f64::sqrt(4.0 * count);
+    if model.nominal().contact_deviation > 0.0 && !(report.residual <= largest) {
+        return Some(Doubt::Residual { residual: report.residual });
+    }
+    let rates = rates.map(|sum| f64::sqrt(sum / count) / scale.rate());
+    if let Some(i) = rates.iter().position(|&r| r.is_nan() || r < SLOWEST_RATE) {
+        return Some(Doubt::TooSlow { palm: i + 1, rate: rates[i] });
+    }
+    let last = newton.estimate()?;
+    let stage = &newton.samples().last()?.input.stages[2];
+    let deviations = model.offset_deviations(&last.state, stage, &report.covariance);
+    let significance = [0, 1].map(|i| f64::sqrt(offsets[i] / count) / deviations[i].max(f64::MIN_POSITIVE));
+    let offset = significance[0].max(significance[1]);
+    (offset.is_nan() || offset < ROUNDEST_OFFSET).then_some(Doubt::TooRound { offset })
 }
 
 /// Turn over each interval of the window, by the trapezoid rule with end correction: error of order `h^5` an interval.

@@ -1,0 +1,265 @@
+//! Where the planar observer has to say that it does not know.
+
+mod planar_common;
+
+use glam::DVec2;
+use nalgebra::SVector;
+use planar_common::{scene, times};
+use recon::contact_kinematics::planar::*;
+use recon::object_dynamics::planar::*;
+use recon::observer::planar::*;
+use recon::observer::{Model, Status};
+
+const CONTACT: f64 = 1e-4;
+const FORCE_SHARE: f64 = 0.002;
+
+struct Case<S> {
+    object: PlanarObject<S>,
+    motion: ConstantRates,
+    start: PlanarStart,
+    /// Window, s.
+    window: f64,
+}
+
+/// Last estimates over seeds, and how they stand to the truth.
+struct Verdict {
+    statuses: Vec<Status>,
+    /// Largest error in standard deviations.
+    worst: f64,
+    /// Standard deviation of the angular velocity, rad/s, and of the radius functions, m (medians).
+    omega_deviation: f64,
+    radius_deviation: f64,
+    condition: f64,
+    smallest_information: f64,
+    words: String,
+    doubts: Vec<Doubt>,
+}
+
+fn body(shape: impl RadiusFunction) -> PlanarObject<impl RadiusFunction> {
+    PlanarObject { shape, mass: PlanarMass::from_gyration(0.2, 0.0008).unwrap(), gravity: 9.81 }
+}
+
+fn wedge() -> ConstantRates {
+    ConstantRates { angles: [45_f64.to_radians(), 90_f64.to_radians()], rates: [0.2, 0.0] }
+}
+
+fn judge(case: &Case<impl RadiusFunction>, seeds: u64) -> Verdict {
+    let weight = case.object.mass.mass() * case.object.gravity;
+    let nominal = PlanarNominal {
+        mass: case.object.mass,
+        gravity: case.object.gravity,
+        contact_deviation: CONTACT,
+        force_deviation: FORCE_SHARE * weight,
+    };
+    let sampled = times(500.0, case.window + 0.02);
+    let run = simulate_prescribed(&case.object, &case.motion, case.start, &sampled, 1e-13).unwrap();
+    assert!(run.lost.is_none(), "{:?}", run.lost);
+    let clean = run.log().unwrap();
+    let noise = PlanarNoise { contact: CONTACT, force: FORCE_SHARE * weight, torque: 0.0 };
+    let mut verdict = Verdict {
+        statuses: Vec::new(),
+        worst: 0.0,
+        omega_deviation: 0.0,
+        radius_deviation: 0.0,
+        condition: f64::INFINITY,
+        smallest_information: 0.0,
+        words: String::new(),
+        doubts: Vec::new(),
+    };
+    let scale = NaturalScale { length: 0.04, gravity: 9.81 };
+    let names = ForceDriven::<5>::new(nominal, scale, &[]).unwrap().names();
+    let (mut omegas, mut radii) = (Vec::new(), Vec::new());
+    for seed in 0..seeds {
+        let log = noise.add_to(&clean, seed);
+        let options = PlanarObserverOptions {
+            window: Some(case.window),
+            settle: Some(case.window),
+            ..PlanarObserverOptions::default()
+        };
+        let mut observer = PlanarObserver::<5>::new(nominal, &[], options).unwrap();
+        let mut last = None;
+        for sample in log.samples() {
+            last = observer.push(sample).unwrap().or(last);
+        }
+        let estimate = last.unwrap();
+        let truth = run.samples.last().unwrap().truth;
+        let (p, v) = (truth.p_WCm, truth.v_WCm);
+        let error = estimate.state - SVector::<f64, 5>::new(p.x, p.y, v.x, v.y, truth.omega0);
+        let deviations = estimate.report.deviations();
+        let worst = error.iter().zip(&deviations).map(|(e, d)| e.abs() / d).fold(0.0, f64::max);
+        verdict.worst = verdict.worst.max(worst);
+        verdict.statuses.push(estimate.report.status);
+        verdict.doubts.extend(estimate.doubt);
+        omegas.push(deviations[4]);
+        radii.push(estimate.radius_deviations[0].max(estimate.radius_deviations[1]));
+        verdict.condition = estimate.report.condition;
+        verdict.smallest_information = estimate.report.smallest_information;
+        verdict.words = estimate.report.direction_in_words(&names);
+    }
+    omegas.sort_by(f64::total_cmp);
+    radii.sort_by(f64::total_cmp);
+    verdict.omega_deviation = omegas[omegas.len() / 2];
+    verdict.radius_deviation = radii[radii.len() / 2];
+    verdict
+}
+
+fn print(name: &str, v: &Verdict) {
+    let silent = v.statuses.iter().filter(|s| **s != Status::NotObservable).count();
+    println!(
+        "{name}: {} of {} not observable; worst error {:.1} deviations; deviation of omega0 {:.3} rad/s, of r {:.3} mm; condition {:.1e}, smallest information {:.1e}: {} {:?}",
+        v.statuses.len() - silent,
+        v.statuses.len(),
+        v.worst,
+        v.omega_deviation,
+        1e3 * v.radius_deviation,
+        v.condition,
+        v.smallest_information,
+        v.words,
+        v.doubts.first()
+    );
+}
+
+/// Every run is reported as not observable for the given reason, and its covariance covers the truth.
+fn must_doubt(name: &str, case: &Case<impl RadiusFunction>, reason: fn(&Doubt) -> bool) {
+    let v = judge(case, 5);
+    print(name, &v);
+    assert!(v.statuses.iter().all(|s| *s == Status::NotObservable), "{name}: {:?}", v.statuses);
+    assert!(v.doubts.len() == 5 && v.doubts.iter().all(reason), "{name}: {:?}", v.doubts);
+    assert!(v.worst < 4.0, "{name}: {} deviations", v.worst);
+    assert!(v.smallest_information.is_finite() && v.condition > 1.0 && !v.words.is_empty());
+}
+
+/// Every run is believed, and rightly.
+fn must_trust(name: &str, case: &Case<impl RadiusFunction>) {
+    let v = judge(case, 5);
+    print(name, &v);
+    assert!(v.doubts.is_empty(), "{name}: {:?}", v.doubts);
+    // 25 normal errors: 4 deviations in 600 such tests.
+    assert!(v.worst < 4.0, "{name}: {} deviations", v.worst);
+}
+
+fn spin(phi0: f64, omega0: f64) -> PlanarStart {
+    PlanarStart { phi0, omega0 }
+}
+
+fn still(d: &Doubt) -> bool {
+    matches!(d, Doubt::TooStill { .. })
+}
+
+/// Between rest and motion either the rate gives it away, or the fit that settled in a wrong minimum does by its residual.
+fn slow(d: &Doubt) -> bool {
+    matches!(d, Doubt::TooSlow { .. } | Doubt::Residual { .. })
+}
+
+#[test]
+fn discs_and_near_discs() {
+    let case =
+        |shape, omega0| Case { object: body(shape), motion: wedge(), start: spin(0.3, omega0), window: 0.4 };
+    must_doubt("centred circle", &case(Circle::new(0.04, DVec2::ZERO).unwrap(), 3.0), still);
+    let ellipse = |share: f64| Ellipse::new(0.04 * (1.0 + share), 0.04 * (1.0 - share), DVec2::ZERO).unwrap();
+    let case =
+        |share| Case { object: body(ellipse(share)), motion: wedge(), start: spin(0.3, 6.0), window: 0.4 };
+    must_doubt("ellipse, axes differ by 0.1 %", &case(0.0005), still);
+    must_doubt("ellipse, axes differ by 1 %", &case(0.005), still);
+    must_trust("ellipse, axes differ by 20 %", &case(0.1));
+}
+
+#[test]
+fn windows_of_all_lengths() {
+    let (object, motion, start) = scene("S2_rotating_pair");
+    for window in [0.02, 0.05, 0.1] {
+        let case = Case { object: object.clone(), motion, start, window };
+        must_doubt(&format!("window {window} s"), &case, |d| matches!(d, Doubt::TooShort { .. }));
+    }
+    for window in [0.2, 0.4] {
+        must_trust(&format!("window {window} s"), &Case { object: object.clone(), motion, start, window });
+    }
+}
+
+/// Rest and slow rocking; at 3 rad/s the object turns back twice in the window, through `z_i = 0`, and is observed.
+#[test]
+fn rest_and_rocking() {
+    let (object, motion, _) = scene("S3_rocking_immobile");
+    let all = PlanarEquilibria::new(&object.shape).all(&motion.at(0.0).unwrap().pair);
+    let rest = all.iter().find(|e| e.stability > 0.0).unwrap().phi0;
+    let case = |omega0| Case { object: object.clone(), motion, start: spin(rest, omega0), window: 0.4 };
+    for omega0 in [0.0, 0.02, 0.2, 1.0, 1.5] {
+        must_doubt(&format!("rocking at {omega0} rad/s"), &case(omega0), still);
+    }
+    for omega0 in [2.0, 2.5] {
+        must_doubt(&format!("rocking at {omega0} rad/s"), &case(omega0), slow);
+    }
+    for omega0 in [3.0, 3.5] {
+        must_trust(&format!("rocking at {omega0} rad/s, through z = 0"), &case(omega0));
+    }
+}
+
+#[test]
+fn nearly_closed_and_nearly_flat_wedges() {
+    let (object, ..) = scene("S2_rotating_pair");
+    for phi2 in [0.1_f64, 0.25, 2.95, 3.05] {
+        let motion = ConstantRates { angles: [0.5 * (std::f64::consts::PI - phi2), phi2], rates: [0.0; 2] };
+        let all = PlanarEquilibria::new(&object.shape).all(&motion.at(0.0).unwrap().pair);
+        let rest = all.iter().find(|e| e.stability > 0.0).unwrap().phi0;
+        let case = Case { object: object.clone(), motion, start: spin(rest, 0.5), window: 0.2 };
+        must_doubt(&format!("wedge of {phi2} rad"), &case, |d| matches!(d, Doubt::Wedge { .. }));
+    }
+}
+
+#[test]
+fn lost_contact_and_missing_forces_are_errors_with_a_place() {
+    let (object, motion, start) = scene("S2_rotating_pair");
+    let run = simulate_prescribed(&object, &motion, start, &times(500.0, 0.5), 1e-13).unwrap();
+    let nominal = PlanarNominal {
+        mass: object.mass,
+        gravity: object.gravity,
+        contact_deviation: CONTACT,
+        force_deviation: 0.0,
+    };
+    let make = || PlanarObserver::<5>::new(nominal, &[], PlanarObserverOptions::default()).unwrap();
+    let mut observer = make();
+    let mut failure = None;
+    for (k, s) in run.samples.iter().enumerate() {
+        let mut sample = s.sample;
+        if k >= 230 {
+            sample.contacts[1] = None;
+        }
+        if let Err(error) = observer.push(&sample) {
+            failure = Some((k, error));
+            break;
+        }
+    }
+    let (k, error) = failure.unwrap();
+    assert_eq!((k, error), (230, PlanarEstimateError::LostContact { palm: 2, t: run.samples[230].sample.t }));
+    let without = PlanarSample { forces: None, torques: None, ..run.samples[0].sample };
+    assert_eq!(make().push(&without), Err(PlanarEstimateError::NoForces { t: 0.0 }));
+    let mut observer = make();
+    observer.push(&run.samples[5].sample).unwrap();
+    assert!(matches!(observer.push(&run.samples[4].sample), Err(PlanarEstimateError::Time { .. })));
+}
+
+/// A force sensor that reads 20 % too much: no estimate passes as consistent.
+#[test]
+fn a_wrong_force_gain_is_noticed() {
+    let (object, motion, start) = scene("S2_rotating_pair");
+    let run = simulate_prescribed(&object, &motion, start, &times(500.0, 0.6), 1e-13).unwrap();
+    let nominal = PlanarNominal {
+        mass: object.mass,
+        gravity: object.gravity,
+        contact_deviation: CONTACT,
+        force_deviation: 0.001,
+    };
+    let noise = PlanarNoise { contact: CONTACT, force: 0.001, torque: 0.0 };
+    let log = noise.add_to(&run.log().unwrap(), 5);
+    let options = PlanarObserverOptions { settle: Some(0.4), ..PlanarObserverOptions::default() };
+    let mut observer = PlanarObserver::<5>::new(nominal, &[], options).unwrap();
+    let mut estimates = 0;
+    for sample in log.samples() {
+        let sample = PlanarSample { forces: sample.forces.map(|[a, b]| [1.2 * a, b]), ..*sample };
+        if let Some(estimate) = observer.push(&sample).unwrap() {
+            estimates += 1;
+            assert!(matches!(estimate.doubt, Some(Doubt::Residual { .. })), "{estimate:?}");
+        }
+    }
+    assert!(estimates > 0);
+}
