@@ -104,9 +104,9 @@ fn judge(tally: &mut Tally, mesh: &TriangleMesh, points: &[glam::DVec3]) {
 
 /// The largest height of a point over a facet, relative to the size of the set.
 fn largest_height(mesh: &TriangleMesh, points: &[glam::DVec3]) -> f64 {
-    let (low, high) = points.iter().fold((glam::DVec3::INFINITY, glam::DVec3::NEG_INFINITY), |(l, h), p| {
-        (l.min(*p), h.max(*p))
-    });
+    let (low, high) = points
+        .iter()
+        .fold((glam::DVec3::INFINITY, glam::DVec3::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)));
     let heights = mesh.corners().filter_map(|[a, b, c]| {
         let normal = (b - a).cross(c - a).try_normalize()?;
         points.iter().map(|p| normal.dot(*p - a)).max_by(f64::total_cmp)

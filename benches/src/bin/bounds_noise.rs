@@ -42,7 +42,9 @@ fn study(confidence: f64, level: f64, runs: u64) -> Result<String, Box<dyn std::
         lower += usize::from(inside);
         upper += usize::from(around);
         both += usize::from(inside && around);
-        plain_both += usize::from(ShapeBounds::from_contacts(&measured.concat()).is_ok_and(|b| holds(&b) == (true, true)));
+        plain_both += usize::from(
+            ShapeBounds::from_contacts(&measured.concat()).is_ok_and(|b| holds(&b) == (true, true)),
+        );
         let clean = ShapeBounds::from_contacts(&noisy_curves(CONTACTS, 0.0, 0.0, seed).concat())?;
         let gap = |b: &ShapeBounds| b.upper_volume() - b.lower_volume();
         ratios.push(gap(&bounds) / gap(&clean));
