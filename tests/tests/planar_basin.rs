@@ -1,5 +1,7 @@
 //! How far off a start may be, and which constants can be estimated along.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 mod planar_common;
 
 use nalgebra::{SMatrix, SVector};

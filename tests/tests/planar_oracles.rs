@@ -1,5 +1,7 @@
 //! Planar kinematics and simulation against the 40-digit oracle scenes.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 mod planar_common;
 
 use planar_common::{number, oracle_file, pair, scene, shape, times};

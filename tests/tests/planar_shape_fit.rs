@@ -1,5 +1,7 @@
 //! Shape and motion from contacts and palm angles alone.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 mod planar_common;
 
 use planar_common::{scene, times};
