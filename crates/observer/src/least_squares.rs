@@ -180,17 +180,25 @@ impl LevenbergMarquardt {
         iterations: usize,
     ) -> Fit<L::Point, P> {
         let normal = problem.linearise(&point).unwrap_or(last);
-        let minimum = self.prior > 0.0 || decrement(&normal) <= STILL_A_MINIMUM * normal.cost.abs();
+        let arrived = undamped(&normal).is_some_and(|step| {
+            step.norm() < self.step_tolerance
+                || -step.dot(&normal.gradient) <= STILL_A_MINIMUM * normal.cost.abs()
+        });
+        let minimum = self.prior > 0.0 || arrived;
         let status = if minimum { FitStatus::Converged } else { FitStatus::Stalled };
         Fit { point, normal, status, iterations: iterations + 1 }
     }
 }
 
-/// Fall of the cost that an undamped step promises; infinite where the information is singular in double precision.
-fn decrement<const P: usize>(normal: &NormalEquations<P>) -> f64 {
+/// The undamped step; none where the information is singular in double precision.
+fn undamped<const P: usize>(normal: &NormalEquations<P>) -> Option<SVector<f64, P>> {
     let shift = normal.information.trace() * f64::EPSILON;
-    let step = solve_shifted(&normal.information, shift, &normal.gradient);
-    step.map_or(f64::INFINITY, |step| -step.dot(&normal.gradient))
+    solve_shifted(&normal.information, shift, &normal.gradient)
+}
+
+/// Fall of the cost that an undamped step promises.
+fn decrement<const P: usize>(normal: &NormalEquations<P>) -> f64 {
+    undamped(normal).map_or(f64::INFINITY, |step| -step.dot(&normal.gradient))
 }
 
 fn solve_shifted<const P: usize>(
