@@ -17,7 +17,10 @@ mod table;
 pub use contacts::{
     ContactPoint, ContactsError, ContactsErrorKind, parse_contacts, read_contacts, write_contacts,
 };
-pub use log::{LogFileError, LogFileErrorKind, parse_log, read_log, write_log};
+pub use log::{
+    LogFileError, LogFileErrorKind, parse_log, parse_planar_log, read_log, read_planar_log, write_log,
+    write_planar_log,
+};
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use output::{AtomicFile, OutputError, OutputFolder};
 pub use plausibility::{Implausibility, implausibilities};

@@ -304,8 +304,8 @@ impl<const N: usize> PlanarObserver<N> {
         // What the sensors' readings alone say: an object of about the natural size that moves at natural speeds.
         let neutral = neutral_start(&inputs[0].stages[2], scale.length, 0.0);
         let deviations = prior_deviations(&scale);
-        for i in 0..MOTION {
-            start.information[(i, i)] = 1.0 / (deviations[i] * deviations[i]);
+        for (i, deviation) in deviations.iter().enumerate() {
+            start.information[(i, i)] = 1.0 / (deviation * deviation);
         }
         start.state.fixed_rows_mut::<MOTION>(0).copy_from(&neutral);
         let first = residual_start(model, inputs, guess)?.state;
@@ -432,7 +432,8 @@ fn doubt<const N: usize>(
         return Some(Doubt::TooStill { range, forces });
     }
     let largest = 1.0 + LARGEST_RESIDUAL_DEVIATIONS / f64::sqrt(4.0 * count);
-    if model.nominal().contact_deviation > 0.0 && !(report.residual <= largest) {
+    let inconsistent = report.residual.is_nan() || report.residual > largest;
+    if model.nominal().contact_deviation > 0.0 && inconsistent {
         return Some(Doubt::Residual { residual: report.residual });
     }
     let rates = rates.map(|sum| f64::sqrt(sum / count) / scale.rate());
