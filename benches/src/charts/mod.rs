@@ -2,6 +2,14 @@
 //!
 //! A new diagram is a new file here with a constant of the type [`Chart`], and one line in [`ALL`].
 
+mod contact_loss;
+mod fig5_simulation;
+mod mujoco;
+mod near_sphere;
+mod parallel_palms;
+mod reconstruction;
+mod shared;
+
 use crate::{Budget, Diagram};
 
 /// What a diagram's function gives: one diagram, or several that share their measurements. An error is whatever stops
@@ -20,7 +28,14 @@ pub struct Chart {
 }
 
 /// All of them, in the order of `--list`.
-pub const ALL: &[Chart] = &[];
+pub const ALL: &[Chart] = &[
+    fig5_simulation::CHART,
+    reconstruction::BY_WINDOW,
+    reconstruction::BY_RATE,
+    parallel_palms::CHART,
+    near_sphere::CHART,
+    contact_loss::CHART,
+];
 
 #[cfg(test)]
 mod tests {

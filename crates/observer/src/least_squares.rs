@@ -30,10 +30,18 @@ impl<const P: usize> NormalEquations<P> {
         self.count += 1;
     }
 
+    /// Takes the expected effect of noise out of the sums: `variance` times the square of a term with derivatives
+    /// `row`, of which a residual holds the product with unit noise.
+    pub fn subtract(&mut self, row: &SVector<f64, P>, term: f64, variance: f64) {
+        self.information.ger(-variance, row, row, 1.0);
+        self.gradient.axpy(-variance * term, row, 1.0);
+        self.cost -= variance * term * term;
+    }
+
     /// Root mean square of the residuals.
     #[must_use]
     pub fn rms(&self) -> f64 {
-        if self.count > 0 { (self.cost / self.count as f64).sqrt() } else { 0.0 }
+        if self.count > 0 { (self.cost.max(0.0) / self.count as f64).sqrt() } else { 0.0 }
     }
 }
 
@@ -55,8 +63,10 @@ pub trait LeastSquares<const P: usize> {
 /// How a fit ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FitStatus {
-    /// The last step was below the tolerance, or could not lower the cost any more for rounding.
+    /// A minimum: the linear model promises no lower cost to speak of.
     Converged,
+    /// No step lowers the cost, though the linear model promises it: a curved valley, or rounding.
+    Stalled,
     /// The iterations ran out.
     OutOfIterations,
     /// The model could not be evaluated at the start.
@@ -78,8 +88,9 @@ pub struct Fit<Point, const P: usize> {
 
 /// Levenberg-Marquardt with damping by a multiple of the identity in the scaled unknowns.
 ///
-/// Stops when a step is shorter than `step_tolerance` (in units of the natural sizes), or when the predicted fall of
-/// the cost is below rounding. It ends at a local minimum: whether that is the right one is the caller's business.
+/// Stops when a step is shorter than `step_tolerance` (in units of the natural sizes), or when an undamped step would
+/// move the unknowns by less than a thousandth of the deviation that the residuals leave them. It ends at a local
+/// minimum: whether that is the right one is the caller's business.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LevenbergMarquardt {
     /// Most linearisations.
@@ -98,6 +109,11 @@ impl Default for LevenbergMarquardt {
     }
 }
 
+/// Squared length of an undamped step, in deviations, at which there is nothing more to gain.
+const NOTHING_TO_GAIN: f64 = 1e-6;
+/// Share of the cost that an undamped step may promise at a minimum: rounding alone promises about unknowns over
+/// residuals.
+const STILL_A_MINIMUM: f64 = 0.01;
 /// Damping at which a step is too short to matter.
 const LARGEST_DAMPING: f64 = 1e12;
 
@@ -118,6 +134,11 @@ impl LevenbergMarquardt {
             let weight = self.prior * mean;
             let gradient = normal.gradient + travelled * weight;
             let cost = normal.cost + weight * travelled.norm_squared();
+            if self.prior == 0.0
+                && decrement(&normal) * normal.count as f64 <= NOTHING_TO_GAIN * normal.cost.abs()
+            {
+                return Fit { point, normal, status: FitStatus::Converged, iterations };
+            }
             let mut accepted = false;
             while damping < LARGEST_DAMPING {
                 let shift = (damping + self.prior) * mean + f64::MIN_POSITIVE;
@@ -129,7 +150,7 @@ impl LevenbergMarquardt {
                 let arrived = travelled + step;
                 let trial = problem.cost(&moved).map(|c| c + weight * arrived.norm_squared());
                 let small = step.norm() < self.step_tolerance;
-                if trial.is_some_and(|c| c < cost) {
+                if trial.is_some_and(|trial| trial < cost) {
                     (point, travelled, accepted) = (moved, arrived, true);
                     damping = (damping * 0.1).max(1e-15);
                 }
@@ -159,8 +180,17 @@ impl LevenbergMarquardt {
         iterations: usize,
     ) -> Fit<L::Point, P> {
         let normal = problem.linearise(&point).unwrap_or(last);
-        Fit { point, normal, status: FitStatus::Converged, iterations: iterations + 1 }
+        let minimum = self.prior > 0.0 || decrement(&normal) <= STILL_A_MINIMUM * normal.cost.abs();
+        let status = if minimum { FitStatus::Converged } else { FitStatus::Stalled };
+        Fit { point, normal, status, iterations: iterations + 1 }
     }
+}
+
+/// Fall of the cost that an undamped step promises; infinite where the information is singular in double precision.
+fn decrement<const P: usize>(normal: &NormalEquations<P>) -> f64 {
+    let shift = normal.information.trace() * f64::EPSILON;
+    let step = solve_shifted(&normal.information, shift, &normal.gradient);
+    step.map_or(f64::INFINITY, |step| -step.dot(&normal.gradient))
 }
 
 fn solve_shifted<const P: usize>(

@@ -1,6 +1,10 @@
 //! Both bounds of a convex body from its contacts, and the gap between them.
 
-use crate::distance::nearest;
+mod incremental;
+
+pub use incremental::IncrementalBounds;
+
+use crate::distance::{farthest_of, nearest};
 use crate::halfspaces::{Intersection, IntersectionError};
 use crate::hull::{Hull, PointsError, SupportWalk};
 use crate::sample::{ContactSample, HalfSpace};
@@ -80,12 +84,7 @@ impl ShapeBounds {
     pub(crate) fn from_parts(points: &[DVec3], half_spaces: &[HalfSpace]) -> Result<Self, BoundsError> {
         let lower = Hull::of(points)?;
         let upper = Intersection::of(half_spaces)?;
-        let corners = match &lower {
-            Hull::Point(i) => vec![points[*i]],
-            Hull::Segment(ends) => ends.iter().map(|i| points[*i]).collect(),
-            Hull::Polygon(corners) => corners.iter().map(|i| points[*i]).collect(),
-            Hull::Solid(solid) => solid.vertices().to_vec(),
-        };
+        let corners = lower.corner_points(points);
         Ok(Self { lower, corners, upper })
     }
 
@@ -158,17 +157,6 @@ impl ShapeBounds {
     pub fn largest_gap(&self) -> Option<Gap> {
         self.gaps().into_iter().max_by(|x, y| x.distance.total_cmp(&y.distance))
     }
-}
-
-fn farthest_of(points: &[DVec3], d: DVec3) -> DVec3 {
-    let mut best = (DVec3::ZERO, f64::NEG_INFINITY);
-    for p in points {
-        let height = p.dot(d);
-        if height > best.1 {
-            best = (*p, height);
-        }
-    }
-    best.0
 }
 
 #[cfg(test)]

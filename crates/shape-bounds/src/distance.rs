@@ -113,6 +113,18 @@ fn on_triangle(a: DVec3, b: DVec3, c: DVec3) -> (DVec3, Vec<usize>) {
         .unwrap_or((a, vec![0]))
 }
 
+/// The first of `points` that is farthest along `d`.
+pub(crate) fn farthest_of(points: &[DVec3], d: DVec3) -> DVec3 {
+    let mut best = (DVec3::ZERO, f64::NEG_INFINITY);
+    for p in points {
+        let height = p.dot(d);
+        if height > best.1 {
+            best = (*p, height);
+        }
+    }
+    best.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -24,6 +24,7 @@
 //! All lengths are in m, all coordinates in the body's frame.
 
 mod bounds;
+mod curvature;
 mod distance;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
@@ -33,15 +34,18 @@ mod integrals;
 mod mesh;
 mod noise;
 mod planar;
+mod poses;
 mod predicates;
 mod random;
 mod sample;
 mod twofold;
 
-pub use bounds::{BoundsError, Gap, ShapeBounds};
+pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
+pub use curvature::{BallIntersection, CurvatureBounds, CurvatureError, RoundedHull};
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
-pub use hull::{Hull, HullCertificate, PointsError, SolidHull, SupportWalk};
+pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
 pub use noise::{ContactNoise, NoiseError, NoisyContact};
+pub use poses::{BodyPose, PoseBounds, PoseError, TRUSTED, half_space_above_plane};
 pub use sample::{ContactError, ContactSample, HalfSpace, NORMAL_TOLERANCE};

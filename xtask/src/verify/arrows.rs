@@ -16,7 +16,8 @@ const ALLOWED: [(&str, &[&str]); 10] = [
     ("recon-cli", &["recon", "recon-io"]),
     // The two name `shape-bounds` only to switch on its feature `generators`, which the facade has no reason to carry.
     ("recon-tests", &["recon", "recon-io", "shape-bounds"]),
-    ("recon-benches", &["recon", "recon-io", "shape-bounds"]),
+    // The scenes of the tests are the scenes of the charts.
+    ("recon-benches", &["recon", "recon-io", "recon-tests", "shape-bounds"]),
     ("xtask", &[]),
 ];
 

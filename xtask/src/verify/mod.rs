@@ -37,8 +37,16 @@ const STEPS: &[Step] = &[
     step("alone", "each core crate passes its tests and lints with its own features only", builds::alone),
     step("features", "each Cargo feature builds without the others", builds::features),
     optional("hack", "cargo-hack: all combinations of features build", extras::hack),
-    optional("semver", "cargo-semver-checks: no breaking change without a new version", extras::semver),
-    optional("mutants", "cargo-mutants: tests notice changed code (long)", extras::mutants),
+    optional(
+        "semver",
+        "cargo-semver-checks: no breaking change since the last commit without a new version",
+        extras::semver,
+    ),
+    optional(
+        "mutants",
+        "cargo-mutants: tests notice changes in the last commit's lines (long)",
+        extras::mutants,
+    ),
 ];
 
 const fn step(name: &'static str, about: &'static str, run: fn() -> Result<Outcome, String>) -> Step {

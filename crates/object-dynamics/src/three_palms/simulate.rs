@@ -10,8 +10,8 @@ use thiserror::Error;
 const SUSPICIOUS_SHARE: f64 = 0.05;
 /// Points at which such a step is searched: a dip shorter than this share of a step can pass unnoticed.
 const SEARCH_POINTS: u32 = 16;
-/// Most samples a simulation may be asked for.
-const MOST_SAMPLES: usize = 100_000_000;
+/// Most samples a simulation may be asked for: each takes 1.5 kB.
+const MOST_SAMPLES: usize = 1_000_000;
 
 /// Orientation and angular velocity at `t = 0`; the palms determine the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -199,7 +199,9 @@ impl Search<'_> {
         let inverse = information_inverse(&Observability::new(&fit.normal.information));
         let problem = self.problem(f64::INFINITY);
         let noise = propagate(&problem, &fit.point, &inverse, &self.noise, self.sampling).residual;
-        fit.normal.rms() < (NEXT_TO_NOTHING * self.scales.velocity).max(EXPLAINED * noise)
+        let rms = fit.normal.rms();
+        rms < EXPLAINED * noise
+            || fit.status == FitStatus::Converged && rms < NEXT_TO_NOTHING * self.scales.velocity
     }
 }
 

@@ -1,3 +1,4 @@
+use super::bias::noise_bias;
 use super::cold_start::{cold_start, scales};
 use super::correlation::{correlation_samples, whiteness};
 use super::covariance::{NoiseLevel, Sampling, propagate};
@@ -19,8 +20,12 @@ const RANK_TOLERANCE: f64 = 1e-14;
 /// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
 /// linearisation that its covariance comes from does not reach that far.
 const LARGEST_DEVIATION: f64 = 0.25;
+/// Shift by noise, in standard deviations, above which the covariance does not cover the error.
+const LARGEST_BIAS: f64 = 1.0;
 /// A residual above this many times of what noise explains, that is smooth over time, is a misfit.
 const MISFIT: f64 = 3.0;
+/// Contact noise, relative to length, whose bias is worth taking out: its square must reach the rounding of the sums.
+const BIASING: f64 = 1e-7;
 /// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
 const NOISE_FLOOR: f64 = 1e-12;
 
@@ -111,8 +116,15 @@ pub(super) fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<Moti
     let found = cold_start(track, mass, noise);
     let best = found.into_iter().next().ok_or(EstimateError::NoFit)?;
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
-    let solver = LevenbergMarquardt { iterations: 20, step_tolerance: 1e-10, damping: 1e-9, prior: 0.0 };
+    let solver = LevenbergMarquardt { iterations: 60, step_tolerance: 1e-11, damping: 1e-9, prior: 0.0 };
     let mut fit = solver.fit(&problem, best.point);
+    if noise.contact > BIASING * scales.length {
+        // From the plain minimum: the corrected sum has one only near it.
+        fit = solver.fit(
+            &MomentumProblem::new(track, mass, scales, f64::INFINITY).unbiased(noise.contact),
+            fit.point,
+        );
+    }
     if fit.status == FitStatus::Failed {
         return Err(EstimateError::NoFit);
     }
@@ -121,7 +133,7 @@ pub(super) fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<Moti
     let observability = Observability::new(&fit.normal.information);
     let (covariance, predicted) =
         scaled_covariance(track, known, &scales, &fit.point, &observability, &noise);
-    let rms = fit.normal.rms();
+    let rms = (residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (3 * residuals.len()) as f64).sqrt();
     // What noise does not explain is a lasting error of sensors or model: as many independent ones as there are
     // correlation times in the log.
     let excess = (rms * rms - predicted * predicted).max(0.0) * correlation_samples(&residuals);
@@ -140,6 +152,7 @@ pub(super) fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<Moti
         smallest_information: eigenvalues[0],
         weakest,
         noise,
+        bias: bias(track, mass, &scales, &fit.point, &noise, &covariance),
         iterations: fit.iterations,
     };
     let reliability = judge(&evidence, fit.status);
@@ -210,11 +223,35 @@ fn judge(evidence: &Evidence, status: FitStatus) -> Reliability {
     if !known {
         reasons.push(Reason::Unobservable { direction: evidence.weakest });
     }
+    if evidence.bias.is_nan() || evidence.bias > LARGEST_BIAS {
+        reasons.push(Reason::Biased { shift: evidence.bias });
+    }
     let misfit = evidence.residual_rms / evidence.noise_explains;
     if misfit > MISFIT && !known {
         reasons.push(Reason::Misfit { residual: evidence.residual_rms, explained: evidence.noise_explains });
     }
     if reasons.is_empty() { Reliability::Reliable } else { Reliability::Unreliable(reasons) }
+}
+
+/// Largest shift by noise in standard deviations; infinite where noise of this size leads the fit nowhere.
+fn bias(
+    track: &Track,
+    mass: &MassProperties,
+    scales: &Scales,
+    estimate: &StartState,
+    noise: &NoiseLevel,
+    covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+) -> f64 {
+    if noise.contact.max(noise.force / (track.mass * track.gravity.length()) * scales.length)
+        < BIASING * scales.length
+    {
+        return 0.0;
+    }
+    let stride = track.len().div_ceil(COVARIANCE_SAMPLES);
+    let shift = noise_bias(track, mass, scales, estimate, noise, stride);
+    shift.map_or(f64::INFINITY, |shift| {
+        (0..UNKNOWNS).map(|i| shift[i].abs() / covariance[(i, i)].sqrt()).fold(0.0, f64::max)
+    })
 }
 
 fn unscale(

@@ -27,6 +27,9 @@ pub struct Evidence {
     pub weakest: WeakDirection,
     /// Sensor noise that the covariance is computed from.
     pub noise: NoiseLevel,
+    /// Largest shift of an unknown by noise, in its own standard deviations: what averages do not remove. Zero where
+    /// the noise is too small to shift anything.
+    pub bias: f64,
     /// Linearisations in the last fit.
     pub iterations: usize,
 }
@@ -106,6 +109,11 @@ pub enum Reason {
         /// Which.
         direction: WeakDirection,
     },
+    /// Noise shifts the estimate by more than its covariance covers.
+    Biased {
+        /// Largest shift of an unknown, in its standard deviations.
+        shift: f64,
+    },
     /// The motion found leaves more than noise.
     Misfit {
         /// Root mean square of the contact residuals, m/s.
@@ -125,6 +133,11 @@ impl fmt::Display for Reason {
                 f,
                 "the log does not determine the {direction}: standard deviation {:.2e} of its natural size",
                 direction.deviation
+            ),
+            Self::Biased { shift } => write!(
+                f,
+                "noise of this size shifts the estimate by {shift:.1} of its standard deviations: the motion is too \
+                 slow or too short for these sensors"
             ),
             Self::Misfit { residual, explained } => write!(
                 f,

@@ -1,5 +1,6 @@
 //! Three palms in space.
 
+mod bias;
 mod cold_start;
 mod correlation;
 mod covariance;
@@ -10,6 +11,7 @@ mod momentum;
 mod noise;
 mod paper_method;
 mod quadrature;
+mod random;
 mod track;
 
 pub use covariance::NoiseLevel;

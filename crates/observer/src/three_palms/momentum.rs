@@ -67,6 +67,8 @@ pub(super) struct MomentumProblem<'a> {
     mass: &'a MassProperties,
     scales: Scales,
     end: usize,
+    /// Variance of a contact coordinate whose effect is taken out of the sums, m^2.
+    variance: f64,
 }
 
 /// The part of a sample that follows from the start state and the orientation.
@@ -80,7 +82,24 @@ impl<'a> MomentumProblem<'a> {
     /// Of the samples up to `window` seconds after the start.
     pub(super) fn new(track: &'a Track, mass: &'a MassProperties, scales: Scales, window: f64) -> Self {
         let end = track.t.partition_point(|&t| t <= window + 1e-12).max(2).min(track.t.len());
-        Self { track, mass, scales, end }
+        Self { track, mass, scales, end, variance: 0.0 }
+    }
+
+    /// The same with the bias by contact noise of deviation `noise` (m) taken out.
+    ///
+    /// The residual holds the noise times the sliding rate of the body over the palm, so a plain sum of squares is
+    /// smaller for a body that turns less. What noise adds on average, `noise^2 |(w - w_P) x n|^2`, is subtracted, with
+    /// its derivatives.
+    pub(super) fn unbiased(self, noise: f64) -> Self {
+        Self { variance: noise * noise, ..self }
+    }
+
+    /// Derivatives of the residuals by the contact coordinates `(s1, s2)` of palm `i` at sample `k`, rad/s: the rates
+    /// at which the body turns against the palm about its tangents.
+    fn by_contact(&self, k: usize, i: usize, w: DVec3) -> [f64; 2] {
+        let palm = &self.track.nodes[k].palms[i];
+        // -w . (n x t1) = -w . t2; -w . (n x t2) = w . t1; and the palm's own speed: p = -rate s2.
+        [-w.dot(palm.frame.t2), w.dot(palm.frame.t1) - palm.rate]
     }
 
     fn kinematics(&self, start: &StartState, k: usize) -> Kinematics {
@@ -189,6 +208,21 @@ impl<'a> MomentumProblem<'a> {
         [here.w.cross(n), n, by_L, by_L.cross(at.L) + a.cross(here.w)]
     }
 
+    /// Derivatives of `axis . w` by the scaled unknowns.
+    fn turning_row(&self, axis: DVec3, at: &Kinematics, here: &Turning, theta: &Sensitivity) -> Row {
+        let by_L = here.K * axis;
+        // axis . (K (L x theta) - w x theta).
+        let by_theta = by_L.cross(at.L) - axis.cross(here.w);
+        let by_start = [
+            by_L.cross(here.impulse) + theta.transposed(0, by_theta),
+            by_L.cross(here.first_moment) + theta.transposed(1, by_theta),
+            by_L + theta.transposed(2, by_theta),
+            theta.transposed(3, by_theta),
+        ];
+        let scale = self.scales.by_block();
+        Row::from_fn(|j, _| by_start[j / 3][j % 3] * scale[j / 3])
+    }
+
     /// The same by the scaled unknowns: `dp = dcm0 + t dv0`, `dL = dL0 + impulse x dcm0 + first_moment x dv0`.
     fn row(&self, k: usize, by_state: &[DVec3; 4], here: &Turning, theta: &Sensitivity) -> Row {
         let [by_p, by_v, by_L, by_theta] = *by_state;
@@ -218,12 +252,7 @@ impl<'a> MomentumProblem<'a> {
             all.push(Linearised {
                 rows,
                 by_state: by_state.map(stack),
-                // e depends on c as -w . (n x c), and through the palm's own speed: p = -rate s2.
-                by_contact: std::array::from_fn(|i| {
-                    let n = node.palms[i].frame.n;
-                    let [t1, t2] = axes(i);
-                    [-here.w.dot(n.cross(t1)), -here.w.dot(n.cross(t2)) - node.palms[i].rate]
-                }),
+                by_contact: std::array::from_fn(|i| self.by_contact(k, i, here.w)),
                 by_force: std::array::from_fn(|i| {
                     let n = node.palms[i].frame.n;
                     kick(n / self.mass.mass(), (node.p_WC[i] - at.p).cross(n))
@@ -341,6 +370,12 @@ impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
             for i in 0..3 {
                 let row = self.row(k, &self.by_state(k, i, at, here), here, theta);
                 normal.add(&row, self.residual(k, i, at, here.w));
+                if self.variance > 0.0 {
+                    let frame = &self.track.nodes[k].palms[i].frame;
+                    let [first, second] = self.by_contact(k, i, here.w);
+                    normal.subtract(&self.turning_row(-frame.t2, at, here, theta), first, self.variance);
+                    normal.subtract(&self.turning_row(frame.t1, at, here, theta), second, self.variance);
+                }
             }
         });
         normal.cost.is_finite().then_some(normal)
@@ -352,7 +387,9 @@ impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
             let at = self.kinematics(point, k);
             let w = q * (self.mass.inverse_inertia() * (q.inverse() * at.L));
             for i in 0..3 {
-                cost += self.residual(k, i, &at, w).powi(2);
+                let [first, second] = self.by_contact(k, i, w);
+                cost +=
+                    self.residual(k, i, &at, w).powi(2) - self.variance * (first * first + second * second);
             }
         });
         cost.is_finite().then_some(cost)

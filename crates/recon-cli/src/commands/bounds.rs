@@ -54,7 +54,7 @@ fn describe(made: &BoundsResult, contacts: usize) -> String {
         let _ = writeln!(text, "  lower / upper          {:.4}", lower / upper.volume);
     }
     if let Some(gap) = made.drawn.largest_gap {
-        let _ = writeln!(text, "  largest gap            {gap:.6} m");
+        let _ = writeln!(text, "  gap, at most           {gap:.6} m");
     }
     text
 }

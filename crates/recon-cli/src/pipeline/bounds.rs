@@ -37,18 +37,18 @@ pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliErro
         ));
     }
     let some = thinned(contacts);
-    let (drawn_lower, drawn_upper) = if contacts.len() > some.len() {
-        // Fewer contacts may leave nothing to draw where all of them gave bounds.
-        ShapeBounds::from_contacts(&some).map_or(Ok((lower.clone(), upper.clone())), |b| meshes(&b))?
-    } else {
-        (lower.clone(), upper.clone())
-    };
+    let few = if contacts.len() > some.len() { ShapeBounds::from_contacts(&some).ok() } else { None };
+    let few = few.as_ref().unwrap_or(&whole);
+    // Fewer contacts may leave nothing to draw where all of them gave bounds; then all are drawn.
+    let (few_lower, few_upper) = meshes(few)?;
     let drawn = Bounds {
-        lower: Bound { mesh: drawn_lower.unwrap_or_default(), volume: whole.lower_volume() },
-        upper: drawn_upper
-            .filter(|_| upper.is_some())
-            .map(|mesh| Bound { mesh, volume: whole.upper_volume() }),
-        largest_gap: whole.largest_gap().map(|gap| gap.distance),
+        lower: Bound { mesh: few_lower.or(lower.clone()).unwrap_or_default(), volume: whole.lower_volume() },
+        upper: upper
+            .clone()
+            .map(|all| Bound { mesh: few_upper.unwrap_or(all), volume: whole.upper_volume() }),
+        // Fewer contacts give wider bounds, so theirs is no less; for dense curves the cost of all grows faster than
+        // their square.
+        largest_gap: few.largest_gap().map(|gap| gap.distance),
     };
     Ok(BoundsResult { drawn, lower, upper, contradiction: contradiction(&some), warnings })
 }

@@ -147,15 +147,15 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
         ),
         row(
             "std_position",
-            "Uncertainty of the centre of mass",
+            "Uncertainty of position",
             deviation(0),
             "m",
-            "Standard deviation at the first sample, all axes together.",
+            "Standard deviation of the centre of mass at the first sample, all axes together.",
             neutral,
         ),
         row(
             "std_velocity",
-            "Uncertainty of the velocity",
+            "Uncertainty of velocity",
             deviation(1),
             "m/s",
             "Standard deviation at the first sample.",
@@ -163,7 +163,7 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
         ),
         row(
             "std_orientation",
-            "Uncertainty of the orientation",
+            "Uncertainty of orientation",
             deviation(3),
             "rad",
             "Standard deviation at the first sample.",

@@ -130,7 +130,7 @@ pub struct Bounds {
     pub lower: Bound,
     /// Around the object; none where the contacts leave it unbounded.
     pub upper: Option<Bound>,
-    /// Hausdorff distance between the two, m; none without an upper bound.
+    /// No less than the Hausdorff distance between the two, m; none without an upper bound.
     pub largest_gap: Option<f64>,
 }
 

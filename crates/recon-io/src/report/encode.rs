@@ -117,11 +117,13 @@ fn departure(departures: &[Departure], keep: &[usize]) -> Value {
     let track = |of: fn(&Departure) -> f64| -> Vec<Option<f64>> {
         keep.iter().map(|&k| number(significant(of(&departures[k]), 3))).collect()
     };
+    let largest =
+        |of: fn(&Departure) -> f64| number(significant(departures.iter().map(of).fold(0.0, f64::max), 3));
     json!({
+        "largest": { "p": largest(|d| d.position), "w": largest(|d| d.angular_velocity) },
         "p": track(|d| d.position),
         "angle": track(|d| d.angle),
         "w": track(|d| d.angular_velocity),
-        "radius": track(|d| d.radius),
     })
 }
 

@@ -68,3 +68,41 @@ fn raw_contacts_are_checked() {
     let error = ContactSample::from_raw([(DVec3::NAN, DVec3::X)]).unwrap_err();
     assert!(matches!(error, ContactError::Point { index: 0, .. }), "{error}");
 }
+
+#[test]
+fn one_contact_at_a_time_gives_the_bounds_of_all() {
+    for contacts in [curve_contacts(240, 4), ellipsoid_contacts(120, 4)] {
+        let mut growing = IncrementalBounds::new();
+        assert!(growing.is_empty() && growing.bounds().is_err());
+        for (k, contact) in contacts.iter().enumerate() {
+            growing.insert(contact).unwrap();
+            if k % 40 == 39 {
+                let (now, all) =
+                    (growing.bounds().unwrap(), ShapeBounds::from_contacts(&contacts[..=k]).unwrap());
+                assert!((now.lower_volume() - all.lower_volume()).abs() < 1e-12);
+                if all.upper_volume().is_finite() {
+                    assert!((now.upper_volume() / all.upper_volume() - 1.0).abs() < 1e-11);
+                } else {
+                    assert!(now.upper_volume().is_infinite());
+                }
+            }
+        }
+        assert_eq!(growing.len(), contacts.len());
+    }
+}
+
+#[test]
+fn a_contradictory_contact_is_not_taken() {
+    let mut growing = IncrementalBounds::new();
+    for contact in ellipsoid_contacts(60, 2) {
+        growing.insert(&contact).unwrap();
+    }
+    let before = growing.bounds().unwrap();
+    let wrong = ContactSample { point: DVec3::new(-9.0, 0.0, 0.0), normal: Direction::X };
+    let error = growing.insert(&wrong).unwrap_err();
+    assert!(
+        matches!(&error, BoundsError::HalfSpaces(IntersectionError::Contradiction { conflict, .. }) if conflict.contains(&60)),
+        "{error}"
+    );
+    assert_eq!(growing.bounds().unwrap(), before);
+}

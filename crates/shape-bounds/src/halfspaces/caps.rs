@@ -2,6 +2,9 @@ use super::Polyhedron;
 use crate::sample::HalfSpace;
 use glam::DVec3;
 
+/// Corners whose heights differ by less than this part of the body's size are level.
+const PLATEAU: f64 = 1e-10;
+
 /// Finds the parts of a polyhedron beyond planes.
 pub(crate) struct Caps<'a> {
     body: &'a Polyhedron,
@@ -53,22 +56,55 @@ impl Caps<'_> {
         reach
     }
 
-    /// The corner farthest along the plane's normal.
+    /// How far the polyhedron reaches beyond the plane; negative if it stays below.
+    pub(crate) fn height(&mut self, plane: &HalfSpace) -> f64 {
+        let top = self.climb(plane);
+        plane.excess(self.body.vertices()[top as usize])
+    }
+
+    /// The corner farthest along the plane's normal, to [`PLATEAU`].
     fn climb(&mut self, plane: &HalfSpace) -> u32 {
         let vertices = self.body.vertices();
-        let mut height = plane.excess(vertices[self.corner as usize]);
         loop {
-            let mut next = self.corner;
+            let here = plane.excess(vertices[self.corner as usize]);
+            let mut best = (here, self.corner);
             for v in self.body.vertex_neighbours()[self.corner as usize] {
                 let candidate = plane.excess(vertices[v as usize]);
-                if candidate > height {
-                    (height, next) = (candidate, v);
+                if candidate > best.0 {
+                    best = (candidate, v);
                 }
             }
-            if next == self.corner {
-                return next;
+            if best.1 == self.corner {
+                match self.higher_than_plateau(plane, here) {
+                    Some(higher) => best.1 = higher,
+                    None => return self.corner,
+                }
             }
-            self.corner = next;
+            self.corner = best.1;
         }
+    }
+
+    /// Where many planes meet, their corners coincide but for rounding, and a step may gain nothing: looks at all
+    /// corners that are level with the present one and connected with it.
+    fn higher_than_plateau(&mut self, plane: &HalfSpace, height: f64) -> Option<u32> {
+        let vertices = self.body.vertices();
+        let tolerance = PLATEAU * vertices[self.corner as usize].distance(self.body.interior());
+        self.search += 1;
+        self.met[self.corner as usize] = self.search;
+        self.stack.push(self.corner);
+        while let Some(corner) = self.stack.pop() {
+            for next in self.body.vertex_neighbours()[corner as usize] {
+                let candidate = plane.excess(vertices[next as usize]);
+                if candidate > height {
+                    self.stack.clear();
+                    return Some(next);
+                }
+                if candidate >= height - tolerance && self.met[next as usize] != self.search {
+                    self.met[next as usize] = self.search;
+                    self.stack.push(next);
+                }
+            }
+        }
+        None
     }
 }

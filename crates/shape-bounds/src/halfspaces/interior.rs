@@ -16,7 +16,7 @@ const EXCHANGES: usize = 500;
 const PIVOT: f64 = 1e-11;
 
 /// A point strictly inside of all half-spaces.
-pub(super) fn interior_point(half_spaces: &[HalfSpace]) -> Result<DVec3, IntersectionError> {
+pub(crate) fn interior_point(half_spaces: &[HalfSpace]) -> Result<DVec3, IntersectionError> {
     let mean = half_spaces.iter().map(|h| h.point).sum::<DVec3>() / half_spaces.len() as f64;
     let size = half_spaces.iter().map(|h| h.point.distance(mean) + h.margin.abs()).fold(0.0, f64::max);
     let size = if size > 0.0 { size } else { 1.0 };

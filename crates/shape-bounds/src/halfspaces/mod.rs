@@ -10,9 +10,11 @@ mod tests;
 mod vertex;
 
 pub use error::IntersectionError;
+pub(crate) use interior::interior_point;
+pub(crate) use polyhedron::OUTWARD_ULPS;
 pub use polyhedron::Polyhedron;
 
-use crate::hull::{Hull, SolidHull};
+use crate::hull::{Hull, PointsError, SolidHull};
 use crate::predicates::above;
 use crate::sample::HalfSpace;
 use contact_kinematics::Direction;
@@ -56,18 +58,29 @@ impl Intersection {
             let HalfSpace { point, margin, .. } = half_spaces[index];
             return Err(IntersectionError::NotFinite { index, point, margin });
         }
-        let interior = interior::interior_point(half_spaces)?;
+        let interior = interior_point(half_spaces)?;
         let outer = polyhedron::moved_outwards(half_spaces);
         let duals: Vec<DVec3> = outer.iter().map(|h| h.normal.get() / -h.excess(interior)).collect();
-        match Hull::of(&duals) {
+        Ok(Self::from_dual(Hull::of(&duals), half_spaces, &outer, interior))
+    }
+
+    /// The intersection whose polar duals about `interior`, of the half-spaces `outer` moved outwards for rounding, have
+    /// the hull `dual`.
+    pub(crate) fn from_dual(
+        dual: Result<Hull, PointsError>,
+        half_spaces: &[HalfSpace],
+        outer: &[HalfSpace],
+        interior: DVec3,
+    ) -> Self {
+        match dual {
             Ok(Hull::Solid(dual)) if strictly_contains_origin(&dual) => {
-                Ok(Self::Bounded(Polyhedron::from_dual(&dual, &outer, interior)))
+                Self::Bounded(Polyhedron::from_dual(&dual, outer, interior))
             }
-            _ => Ok(Self::Unbounded(Unbounded {
+            _ => Self::Unbounded(Unbounded {
                 half_spaces: half_spaces.to_vec(),
                 interior,
                 directions: recession::unbounded_directions(half_spaces),
-            })),
+            }),
         }
     }
 

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// Planes are moved outwards by this many units of rounding of the largest coordinate: more than the rounding of a
 /// plane's distance (4) and of the computed corners (2 along a normal) together.
-const OUTWARD_ULPS: f64 = 8.0;
+pub(crate) const OUTWARD_ULPS: f64 = 8.0;
 
 /// A corner computed from the planes as given may protrude over its neighbours' planes by this many units of rounding of
 /// the largest coordinate, which is what evaluating the height takes; beyond, the corner of the rounded planes is used.

@@ -90,6 +90,12 @@ impl Builder {
         Self { facets, hint: 0, insertions: 0, rim: Vec::new(), visits: Vec::new(), visible: Vec::new() }
     }
 
+    /// Takes a point that comes later into the hull; false when the hull holds it already.
+    pub(super) fn push(&mut self, point: DVec3) -> bool {
+        let p = self.facets.push_point(point);
+        self.insert(p)
+    }
+
     /// Takes point `p` into the hull; false when the hull holds it already.
     pub(super) fn insert(&mut self, p: u32) -> bool {
         let Some(seen) = self.facets.find_visible(p, self.hint) else { return false };

@@ -42,6 +42,22 @@ impl Facets {
         Self { points, centre, reach, list, free: Vec::new() }
     }
 
+    /// Adds a point. One beyond the reach of all before it widens the filters' error bounds, which are proportional to the
+    /// reach; it at least doubles, so that this is rare.
+    pub(super) fn push_point(&mut self, point: DVec3) -> u32 {
+        self.points.push(point);
+        let seen = (point - self.centre.unwrap_or(DVec3::ZERO)).abs();
+        let factor = (seen / self.reach).max_element();
+        if !(factor <= 1.0) {
+            let factor = 2.0 * factor;
+            self.reach *= factor;
+            for facet in &mut self.list {
+                facet.error *= factor;
+            }
+        }
+        (self.points.len() - 1) as u32
+    }
+
     pub(super) fn corners(&self, facet: u32) -> [DVec3; 3] {
         self.list[facet as usize].vertices.map(|v| self.points[v as usize])
     }

@@ -4,6 +4,7 @@ mod build;
 mod certificate;
 mod error;
 mod facets;
+mod incremental;
 mod locate;
 mod order;
 mod scaling;
@@ -15,6 +16,8 @@ mod walk;
 
 pub use certificate::HullCertificate;
 pub use error::PointsError;
+pub use incremental::IncrementalHull;
+pub(crate) use order::insertion_order;
 pub use solid::SolidHull;
 pub use walk::SupportWalk;
 
@@ -81,6 +84,16 @@ impl Hull {
         match self {
             Self::Solid(solid) => Some(solid),
             _ => None,
+        }
+    }
+
+    /// The corners of the hull of `points`, in order around a polygon.
+    pub(crate) fn corner_points(&self, points: &[DVec3]) -> Vec<DVec3> {
+        match self {
+            Self::Point(i) => vec![points[*i]],
+            Self::Segment(ends) => ends.iter().map(|i| points[*i]).collect(),
+            Self::Polygon(corners) => corners.iter().map(|i| points[*i]).collect(),
+            Self::Solid(solid) => solid.vertices().to_vec(),
         }
     }
 

@@ -17,7 +17,7 @@ const ROUNDS: u32 = 15;
 const ROUND_BITS: u32 = 4;
 
 /// Indices of `points` in the order of insertion.
-pub(super) fn insertion_order(points: &[DVec3]) -> Vec<u32> {
+pub(crate) fn insertion_order(points: &[DVec3]) -> Vec<u32> {
     let (low, high) = bounding_box(points);
     let side = (high - low).max_element();
     let cells = if side > 0.0 { ((1_u64 << BITS) - 1) as f64 / side } else { 0.0 };

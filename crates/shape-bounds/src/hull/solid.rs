@@ -130,6 +130,12 @@ impl SolidHull {
         self.moments().volume
     }
 
+    /// Surface area in m^2.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.moments().area
+    }
+
     /// Support function `max n . y` over the hull, in m.
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {

@@ -159,3 +159,48 @@ fn the_certificate_sees_each_defect() {
     dented.vertices[0] *= 0.2;
     assert!(HullCertificate::of(&dented, &points).concave_edges > 0);
 }
+
+#[test]
+fn one_point_at_a_time_gives_the_hull_of_all() {
+    for kind in InputKind::ALL {
+        for seed in 0..6 {
+            let points = kind.points(90, seed);
+            let mut growing = IncrementalHull::new();
+            for (k, p) in points.iter().enumerate() {
+                growing.insert(*p).unwrap();
+                if k % 30 == 29 {
+                    let hull = growing.hull().unwrap();
+                    let all = Hull::of(&points[..=k]).unwrap();
+                    assert_eq!(hull.dimension(), all.dimension(), "{kind:?}");
+                    if let (Hull::Solid(hull), Hull::Solid(all)) = (hull, all) {
+                        let verdict = HullCertificate::of(&hull.mesh(), &points[..=k]);
+                        assert!(verdict.holds(), "{kind:?} {seed}: {verdict:?}");
+                        let size = points.iter().map(|p| p.distance(points[0])).fold(0.0, f64::max).powi(3);
+                        assert!((hull.volume() - all.volume()).abs() < 1e-13 * size, "{kind:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn points_far_beyond_the_first_ones_are_judged_exactly() {
+    let mut s = Source::new(4);
+    let mut growing = IncrementalHull::new();
+    for k in 0..200 {
+        growing.insert(s.direction() * 1.2_f64.powi(k)).unwrap();
+    }
+    let hull = growing.hull().unwrap();
+    assert!(HullCertificate::of(&hull.solid().unwrap().mesh(), growing.points()).holds());
+}
+
+#[test]
+fn a_bad_point_leaves_a_growing_hull_as_it_was() {
+    let mut growing = IncrementalHull::new();
+    assert_eq!(growing.hull(), Err(PointsError::Empty));
+    growing.insert(DVec3::X).unwrap();
+    assert!(matches!(growing.insert(DVec3::NAN), Err(PointsError::NotFinite { index: 1, .. })));
+    assert!(matches!(growing.insert(DVec3::X * 1e200), Err(PointsError::DynamicRange { .. })));
+    assert_eq!(growing.points(), [DVec3::X]);
+}

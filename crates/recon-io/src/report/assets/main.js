@@ -47,9 +47,8 @@ function facts() {
     } else fact("Upper bound", "unbounded");
   }
   if (departure) {
-    const largest = (list) => list.reduce((m, v) => Math.max(m, v === null ? 0 : v), 0);
-    fact("Largest position error", format(largest(departure.p), 2), "m");
-    fact("Largest rate error", format(largest(departure.w), 2), "rad/s");
+    fact("Largest position error", format(departure.largest.p, 2), "m");
+    fact("Largest rate error", format(departure.largest.w, 2), "rad/s");
   }
 }
 
@@ -200,8 +199,8 @@ function boundsFigure() {
   if (upper) rows.push(["Upper bound", upper.volume, "glass"]);
   volumes(rows, lower, upper);
   byId("bounds-caption").textContent =
-    "The object seen from its own axes. The hull of the contact curves lies inside every convex object that made this log" +
-    (upper ? "; the half-spaces of the palms along the curves leave no room for it outside the upper bound." : ". The contacts leave the object unbounded on some side, so there is no upper bound.");
+    "The object seen from its own axes. Every convex object with these contacts contains the lower bound, the hull of the contact curves" +
+    (upper ? ", and is contained in the upper bound, the room that the palms' planes left to it." : "; the palms' planes leave it unbounded on some side, so there is no upper bound.");
   return made;
 }
 

@@ -1,0 +1,111 @@
+//! Reconstruction of the paper's Fig. 5 motion: cost against error by length of log and by sample rate, for the
+//! estimator that needs no guess and for the paper's own integration from exact initial conditions.
+
+use super::shared::{centre_error, estimate, exact_log};
+use super::{Chart, Drawn};
+use crate::{Axis, Budget, Method, Study, WorkPrecision};
+use recon::contact_kinematics::Ellipsoid;
+use recon::object_dynamics::{SensorLog, SensorNoise, Simulation, ThreePalmScene};
+use recon::observer::{
+    NoiseLevel, PaperMethod, PaperStart, PredictorCorrector, Track, integrate_paper_system,
+};
+
+pub(super) const BY_WINDOW: Chart = Chart {
+    name: "reconstruction-by-window",
+    about: "error and time of the estimator over the length of the log, exact and noisy",
+    draw: by_window,
+};
+pub(super) const BY_RATE: Chart = Chart {
+    name: "reconstruction-by-rate",
+    about: "estimator and the paper's integration over the sample rate",
+    draw: by_rate,
+};
+
+/// Noise of the contact coordinates as a share of the body's size, of the forces as a share of what a palm carries.
+const SIZE: f64 = 2.5;
+const LOAD: f64 = 6.5;
+
+fn by_window(budget: Budget) -> Drawn {
+    let (scene, start) = recon_tests::fig5(9.81);
+    let durations = [1.0, 1.5, 2.0, 3.0, 4.2];
+    let logs = durations.map(|duration| exact_log(&scene, start, duration, 1000.0));
+    let logs = logs.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let noises =
+        [("no noise", 0.0, 0.0), ("0.1 % and 1 % noise", 1e-3, 1e-2), ("1 % and 1 % noise", 1e-2, 1e-2)];
+    let mut noisy: Vec<(&str, f64, SensorLog, &Simulation, Option<NoiseLevel>)> = Vec::new();
+    for ((simulation, log), duration) in logs.iter().zip(durations) {
+        for (name, contact, force) in noises {
+            let noise = SensorNoise { contact: contact * SIZE, force: force * LOAD, torque: 0.0 };
+            let level = (contact > 0.0).then_some(NoiseLevel { contact: noise.contact, force: noise.force });
+            noisy.push((name, duration, log.with_noise(&noise, 1)?, simulation, level));
+        }
+    }
+    let mut study = Study::new();
+    for (name, duration, log, simulation, level) in &noisy {
+        let run = || estimate(&scene, log, *level);
+        study.fallible_case(*name, format!("{duration} s"), run, |found| centre_error(found, simulation));
+    }
+    let chart =
+        WorkPrecision::new("reconstruction-by-window", "Motion from a log, no guess: cost against error")
+            .subtitle(
+                "Fig. 5 scene at 1 kHz, mass and inertia known, all else unknown; points: length of the log",
+            )
+            .axes(Axis::log("largest error of the centre of mass", "m"), Axis::log("cost", "ms a log"))
+            .methods(study.measure(budget, 1.0))
+            .method(
+                Method::recorded("SciPy with CasADi, MuJoCo's log", "best of ten starts at 0.2 s each")
+                    .point("4.2 s", 9e-7, 200.0),
+            );
+    Ok(vec![chart.into()])
+}
+
+fn by_rate(budget: Budget) -> Drawn {
+    let (scene, start) = recon_tests::fig5(9.81);
+    let rates = [25.0, 50.0, 100.0, 200.0, 500.0, 1000.0];
+    let logs =
+        rates.map(|rate| exact_log(&scene, start, 4.2, rate)).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let mut study = Study::new();
+    for ((simulation, log), rate) in logs.iter().zip(rates) {
+        let setting = format!("{rate} Hz");
+        let scene = &scene;
+        study.fallible_case(
+            "momentum form, no guess",
+            setting.clone(),
+            move || estimate(scene, log, None),
+            move |found| centre_error(found, simulation),
+        );
+        for (name, scheme, enforce_constraint) in [
+            ("(35)-(37), Heun", PredictorCorrector::Heun, false),
+            ("(35)-(37), Adams", PredictorCorrector::Adams4, false),
+            ("(35)-(37), Adams, held on (24)", PredictorCorrector::Adams4, true),
+        ] {
+            let method = PaperMethod { scheme, enforce_constraint };
+            let run = move || integrate(scene, log, simulation, method);
+            study.fallible_case(name, setting.clone(), run, move |error: &f64| *error);
+        }
+    }
+    let chart = WorkPrecision::new("reconstruction-by-rate", "Reconstruction over the sample rate: cost against error")
+        .subtitle("Fig. 5 scene, 4.2 s without noise; the integrations are given the exact initial state, the estimator nothing")
+        .axes(Axis::log("largest error of the centre of mass", "m"), Axis::log("cost", "ms a log"))
+        .methods(study.measure(budget, 1.0));
+    Ok(vec![chart.into()])
+}
+
+/// Largest error of the centre of mass by the paper's integration from the exact start; the time includes the
+/// sensitivities that it reports, nine runs more.
+fn integrate(
+    scene: &ThreePalmScene<Ellipsoid>,
+    log: &SensorLog,
+    simulation: &Simulation,
+    method: PaperMethod,
+) -> Result<f64, String> {
+    let track = Track::new(log, scene.mass().mass(), scene.gravity(), None).map_err(|e| e.to_string())?;
+    let now = &simulation.instants[0];
+    let start = PaperStart { radii: now.touch.contacts.map(|c| c.jet.value), R_WO: now.R_WO, w_WO: now.w_WO };
+    let found = integrate_paper_system(&track, scene.mass(), &start, method).map_err(|e| e.to_string())?;
+    if let Some(t) = found.diverged_at {
+        return Err(format!("diverged at {t} s"));
+    }
+    let pairs = found.motion.iter().zip(&simulation.instants);
+    Ok(pairs.map(|(m, now)| m.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max))
+}

@@ -1,0 +1,72 @@
+//! What several diagrams measure alike.
+
+use glam::DVec3;
+use recon::contact_kinematics::SupportFunction;
+use recon::object_dynamics::integrate::Tolerance;
+use recon::object_dynamics::{
+    InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, Simulation, SimulationError,
+    ThreePalmScene,
+};
+use recon::observer::{
+    EstimateError, KnownBody, MotionEstimate, NoiseLevel, Reliability, equivalent_orientations,
+    estimate_motion,
+};
+
+/// A simulation close to rounding, and its log without truth.
+pub(super) fn exact_log<S: SupportFunction>(
+    scene: &ThreePalmScene<S>,
+    start: InitialMotion,
+    duration: f64,
+    rate: f64,
+) -> Result<(Simulation, SensorLog), SimulationError> {
+    let simulation = scene.simulate(start, SampleTimes { duration, rate }, Tolerance::uniform(1e-14))?;
+    let log = simulation.sensor_log(scene)?.without_truth();
+    Ok((simulation, log))
+}
+
+/// Estimate with the scene's mass and inertia known, and the noise where it is stated.
+pub(super) fn estimate<S: SupportFunction>(
+    scene: &ThreePalmScene<S>,
+    log: &SensorLog,
+    noise: Option<NoiseLevel>,
+) -> Result<MotionEstimate, EstimateError> {
+    let known = KnownBody {
+        mass: *scene.mass(),
+        gravity: scene.gravity(),
+        palm_inertias: scene.palm_inertias(),
+        noise,
+    };
+    estimate_motion(log, &known)
+}
+
+/// Largest error of the centre of mass over the log, m.
+pub(super) fn centre_error(estimate: &MotionEstimate, simulation: &Simulation) -> f64 {
+    let pairs = estimate.motion.iter().zip(&simulation.instants);
+    pairs.map(|(m, now)| m.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max)
+}
+
+/// Largest error of a number of the start state, in its own reported standard deviations; the orientation against the
+/// nearest of the four that no data can tell apart.
+pub(super) fn error_in_deviations(estimate: &MotionEstimate, mass: &MassProperties, truth: &Instant) -> f64 {
+    let L = truth.R_WO * (mass.inertia() * (truth.R_WO.inverse() * truth.w_WO));
+    let turns = equivalent_orientations(mass).map(|turn| (estimate.start.R_WO * turn) * truth.R_WO.inverse());
+    let turn =
+        turns.into_iter().fold(truth.R_WO * 0.0, |best, q| if q.w.abs() > best.w.abs() { q } else { best });
+    let parts = [
+        estimate.start.p_WCm - truth.touch.p_WCm,
+        estimate.start.v_WCm - truth.rates.v_WCm,
+        estimate.start.L_WO - L,
+        DVec3::new(turn.x, turn.y, turn.z) * 2.0 * turn.w.signum(),
+    ];
+    (0..12).map(|i| parts[i / 3][i % 3].abs() / estimate.covariance[(i, i)].sqrt()).fold(0.0, f64::max)
+}
+
+/// The first reason not to believe an estimate, if there is one.
+pub(super) fn warning(reliability: &Reliability) -> Option<String> {
+    match reliability {
+        Reliability::Reliable => None,
+        Reliability::Unreliable(reasons) => {
+            Some(reasons.first().map_or_else(String::new, ToString::to_string))
+        }
+    }
+}

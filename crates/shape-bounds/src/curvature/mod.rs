@@ -1,0 +1,87 @@
+//! Bounds tightened by limits on the radii of curvature (paper, section 8).
+//!
+//! Where no principal radius of curvature is below `rho_min`, a ball of that radius rolls freely inside of the body; where
+//! none is above `rho_max`, the body rolls freely inside of a ball of that radius (Blaschke). So the ball of radius
+//! `rho_min` that touches from inside at a contact is in the body, and the one of radius `rho_max` contains it.
+
+mod balls;
+mod circle;
+mod error;
+mod face;
+mod measure;
+mod rounded;
+#[cfg(test)]
+mod tests;
+
+pub use balls::BallIntersection;
+pub use error::CurvatureError;
+pub use rounded::RoundedHull;
+
+use crate::sample::ContactSample;
+use contact_kinematics::{CurvatureRadii, Direction};
+use glam::DVec3;
+
+/// By how much contacts may contradict the limits before it is an error, relative to their size: rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Lower and upper bound of a convex body whose radii of curvature are limited.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvatureBounds {
+    lower: RoundedHull,
+    upper: BallIntersection,
+}
+
+impl CurvatureBounds {
+    /// Bounds from contacts without noise on a body whose principal radii of curvature lie within `radii`.
+    ///
+    /// # Errors
+    /// [`CurvatureError`] for limits that are not `0 <= min <= max < infinity`, values that are not finite, and contacts
+    /// that contradict the limits (a pair of which the one lies outside of the other's outer ball, or inside of its inner
+    /// ball, is named).
+    pub fn from_contacts(contacts: &[ContactSample], radii: CurvatureRadii) -> Result<Self, CurvatureError> {
+        if !(0.0 <= radii.min && radii.min <= radii.max && radii.max.is_finite()) {
+            return Err(CurvatureError::Radii { min: radii.min, max: radii.max });
+        }
+        let centre = |c: &ContactSample, r: f64| c.point - c.normal.get() * r;
+        let inner: Vec<DVec3> = contacts.iter().map(|c| centre(c, radii.min)).collect();
+        let lower = RoundedHull::of(&inner, radii.min)?;
+        let upper = BallIntersection::through_contacts(contacts, radii.max)?;
+        check_inner(contacts, radii.min, &lower)?;
+        Ok(Self { lower, upper })
+    }
+
+    /// The hull of the inner balls: in the body.
+    #[must_use]
+    pub fn lower(&self) -> &RoundedHull {
+        &self.lower
+    }
+
+    /// The intersection of the outer balls: around the body.
+    #[must_use]
+    pub fn upper(&self) -> &BallIntersection {
+        &self.upper
+    }
+
+    /// Support functions `(lower, upper)` in direction `n`, in m.
+    #[must_use]
+    pub fn support(&self, n: Direction) -> (f64, f64) {
+        (self.lower.support(n), self.upper.support(n))
+    }
+}
+
+/// The hull of the inner balls must not reach beyond a contact's plane.
+fn check_inner(contacts: &[ContactSample], radius: f64, lower: &RoundedHull) -> Result<(), CurvatureError> {
+    let size = contacts.iter().map(|c| c.point.abs().max_element()).fold(radius, f64::max);
+    let mut farthest = lower.core_support();
+    for (sample, c) in contacts.iter().enumerate() {
+        let n = c.normal.get();
+        let top = farthest(n);
+        let excess = n.dot(top - c.point) + radius;
+        if excess > ROUNDING * size {
+            let centre = |c: &ContactSample| c.point - c.normal.get() * radius;
+            let other = contacts.iter().position(|c| centre(c) == top).unwrap_or(sample);
+            return Err(CurvatureError::TooRound { sample, other, excess, radius });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,129 @@
+//! The hull of equal balls: hull of the centres plus a ball.
+
+use crate::distance::{farthest_of, nearest};
+use crate::hull::{Hull, PointsError, SolidHull, SupportWalk};
+use crate::integrals::Compensated;
+use contact_kinematics::Direction;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// The convex hull of balls of one radius: all points within that distance of the hull of the centres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoundedHull {
+    core: Hull,
+    /// Corners of the core.
+    corners: Vec<DVec3>,
+    radius: f64,
+}
+
+/// What Steiner's formula takes from a convex core.
+struct Core {
+    volume: f64,
+    area: f64,
+    /// Sum over the edges of length times the angle between the normals of their facets.
+    mean_width: f64,
+}
+
+impl RoundedHull {
+    /// The hull of balls of `radius` (at least zero) about `centres`.
+    ///
+    /// # Errors
+    /// Those of [`Hull::of`].
+    pub fn of(centres: &[DVec3], radius: f64) -> Result<Self, PointsError> {
+        let core = Hull::of(centres)?;
+        let corners = core.corner_points(centres);
+        Ok(Self { core, corners, radius })
+    }
+
+    /// Hull of the centres.
+    #[must_use]
+    pub fn core(&self) -> &Hull {
+        &self.core
+    }
+
+    /// Radius of the balls, in m.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Volume in m^3, by Steiner's formula `V + r S + r^2 / 2 sum(l theta) + 4/3 pi r^3`, exact to rounding.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        let (core, r) = (self.core_measures(), self.radius);
+        core.volume + r * core.area + 0.5 * r * r * core.mean_width + 4.0 / 3.0 * PI * r.powi(3)
+    }
+
+    /// Surface area in m^2: the derivative of the volume with the radius.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        let (core, r) = (self.core_measures(), self.radius);
+        core.area + r * core.mean_width + 4.0 * PI * r * r
+    }
+
+    /// Support function in m.
+    #[must_use]
+    pub fn support(&self, n: Direction) -> f64 {
+        self.corners.iter().map(|c| c.dot(n.get())).fold(f64::NEG_INFINITY, f64::max) + self.radius
+    }
+
+    /// Whether `point` is inside; one outside by a few units of rounding may be admitted.
+    #[must_use]
+    pub fn contains(&self, point: DVec3) -> bool {
+        let found = nearest(point, self.corners[0], self.core_support());
+        let rounding = 4.0 * f64::EPSILON * (point.abs().max_element() + self.radius);
+        found.certified <= self.radius + rounding
+    }
+
+    /// The corner of the core farthest along a direction.
+    pub(super) fn core_support(&self) -> impl FnMut(DVec3) -> DVec3 + '_ {
+        let mut walk = self.core.solid().map(SupportWalk::new);
+        move |d| match &mut walk {
+            Some(walk) => walk.farthest(d),
+            None => farthest_of(&self.corners, d),
+        }
+    }
+
+    fn core_measures(&self) -> Core {
+        match &self.core {
+            Hull::Point(_) => Core { volume: 0.0, area: 0.0, mean_width: 0.0 },
+            // An edge by itself has normals all around; the rim of a plate, half around.
+            Hull::Segment(_) => {
+                let length = self.corners[0].distance(self.corners[1]);
+                Core { volume: 0.0, area: 0.0, mean_width: 2.0 * PI * length }
+            }
+            Hull::Polygon(_) => {
+                let c = &self.corners;
+                let rim: f64 = (0..c.len()).map(|k| c[k].distance(c[(k + 1) % c.len()])).sum();
+                let twice: DVec3 = c.windows(2).skip(1).map(|e| (e[0] - c[0]).cross(e[1] - c[0])).sum();
+                Core { volume: 0.0, area: twice.length(), mean_width: PI * rim }
+            }
+            Hull::Solid(solid) => {
+                let moments = solid.moments();
+                Core { volume: moments.volume, area: moments.area, mean_width: edge_angles(solid) }
+            }
+        }
+    }
+}
+
+/// Sum over the edges of length times exterior angle.
+fn edge_angles(hull: &SolidHull) -> f64 {
+    let normal = |f: usize| {
+        let [a, b, c] = hull.corners(f);
+        (b - a).cross(c - a)
+    };
+    let mut sum = Compensated::default();
+    for (f, neighbours) in hull.neighbours().iter().enumerate() {
+        let (corners, own) = (hull.corners(f), normal(f));
+        for (e, g) in neighbours.iter().enumerate() {
+            if f < *g as usize {
+                let edge = corners[(e + 1) % 3] - corners[e];
+                let other = normal(*g as usize);
+                // The angle by both sine and cosine keeps its digits at nearly flat and nearly folded edges.
+                let angle = own.cross(other).length().atan2(own.dot(other));
+                sum.add(edge.length() * angle);
+            }
+        }
+    }
+    sum.value()
+}

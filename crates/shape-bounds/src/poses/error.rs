@@ -1,0 +1,49 @@
+use super::BodyPose;
+use crate::halfspaces::IntersectionError;
+use contact_kinematics::Direction;
+use thiserror::Error;
+
+/// Why poses above a plane give no bound.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum PoseError {
+    /// A pose that is not finite, or whose quaternion is not of unit length.
+    #[error("run {run}, frame {frame}: pose {pose:?} above the plane at {plane_z} m is not finite and unit")]
+    Pose {
+        /// Which run.
+        run: usize,
+        /// Which frame of it.
+        frame: usize,
+        /// The pose.
+        pose: BodyPose,
+        /// Height of the plane.
+        plane_z: f64,
+    },
+    /// A run too short to tell how rough the motion is.
+    #[error("run {run} has {frames} frames; the roughness of a motion takes at least 3")]
+    ShortRun {
+        /// Which run.
+        run: usize,
+        /// Frames in it.
+        frames: usize,
+    },
+    /// A confidence that is none.
+    #[error("confidence {0}: it must lie between 0.5 and 1, both excluded")]
+    Confidence(f64),
+    /// The noise cannot be judged.
+    #[error("{found} poses touch the plane, {needed} are needed to judge the noise; add runs")]
+    TooFewTouching {
+        /// Touching poses found.
+        found: usize,
+        /// Touching poses needed.
+        needed: usize,
+    },
+    /// The poses leave some direction open.
+    #[error("the poses leave {} directions open; add runs in which other sides face the plane", directions.len())]
+    Open {
+        /// Generators of the open directions.
+        directions: Vec<Direction>,
+    },
+    /// The half-spaces have no intersection.
+    #[error(transparent)]
+    HalfSpaces(#[from] IntersectionError),
+}

@@ -1,0 +1,130 @@
+//! Upper bounds from poses of a body above a plane, as of a tracked object that is dropped on a table.
+//!
+//! Each pose says that the whole body is above the plane: one half-space of the body's frame. Where the body touches the
+//! plane the half-space is tight. Both together tell the noise: a touching half-space that the others cut far below its
+//! own plane contradicts them.
+
+mod error;
+mod level;
+#[cfg(test)]
+mod tests;
+
+pub use error::PoseError;
+
+use crate::halfspaces::{Intersection, Polyhedron};
+use crate::sample::HalfSpace;
+use contact_kinematics::Direction;
+use glam::{DQuat, DVec3};
+
+/// Where a body was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyPose {
+    /// Orientation, body to world.
+    pub R_WO: DQuat,
+    /// Position of the body's origin in the world, in m.
+    pub p_WO: DVec3,
+}
+
+/// The share of a second difference of the position by which a sampled pose may be off: where a motion has a kink, a
+/// straight line between neighbouring frames misses it by up to a quarter.
+const KINK: f64 = 0.25;
+
+/// Bounds from poses above a plane, with the noise level that the data themselves show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseBounds {
+    /// The body is in here, at the stated confidence.
+    pub upper: Polyhedron,
+    /// Margin common to all half-spaces, in m.
+    pub margin: f64,
+    /// Noise at which the share [`TRUSTED`] of the touching poses are consistent with all others, in m.
+    pub consistent_level: f64,
+    /// Poses that were taken for touching the plane.
+    pub touching: usize,
+    /// Touching poses that disagree with the others by more than the margins, as (run, frame).
+    pub outliers: Vec<(usize, usize)>,
+}
+
+/// The share of touching poses that sets the noise level; the rest may be outliers.
+pub const TRUSTED: f64 = 0.98;
+
+/// One pose's half-space and what is known of its error.
+#[derive(Clone, Copy)]
+struct Observation {
+    half_space: HalfSpace,
+    /// Margin from the roughness of the motion.
+    kink: f64,
+    touching: bool,
+    at: (usize, usize),
+}
+
+impl PoseBounds {
+    /// An upper bound of a convex body from `runs` of poses sampled evenly in time, with the body always above the plane of
+    /// height `plane_z` in the world.
+    ///
+    /// The margins hold two parts: a quarter of the largest second difference of the position around a frame, since a
+    /// motion with kinks is not known better between frames; and a level common to all, from the consistency of the
+    /// poses in which the body touches the plane (it is at rest, or is accelerated upwards by more than in flight). The
+    /// body's size is not used. From the level at which 98 % of the touching poses are consistent, the margin for the
+    /// stated `confidence` follows with exponential tails, which tracked contacts show, rather than normal ones.
+    ///
+    /// # Errors
+    /// [`PoseError`] for values that are not finite, runs of fewer than three frames, an impossible confidence, too few
+    /// touching poses to judge, and half-spaces that leave some direction open.
+    pub fn above_plane(runs: &[Vec<BodyPose>], plane_z: f64, confidence: f64) -> Result<Self, PoseError> {
+        let observations = observe(runs, plane_z)?;
+        if !(confidence > 0.5 && confidence < 1.0) {
+            return Err(PoseError::Confidence(confidence));
+        }
+        let touching = observations.iter().filter(|o| o.touching).count();
+        if touching < level::FEWEST {
+            return Err(PoseError::TooFewTouching { found: touching, needed: level::FEWEST });
+        }
+        let consistent_level = level::consistent_level(&observations)?;
+        let tails = (touching as f64 / (1.0 - confidence)).ln() / (1.0 / (1.0 - TRUSTED)).ln();
+        let margin = consistent_level * tails;
+        let upper = intersect(&observations, margin)?;
+        let outliers = level::inconsistent(&observations, &upper, margin);
+        Ok(Self { upper, margin, consistent_level, touching, outliers })
+    }
+}
+
+/// The half-space, in the body's frame, that keeps a body at `pose` above the plane of height `plane_z`.
+#[must_use]
+pub fn half_space_above_plane(pose: &BodyPose, plane_z: f64) -> HalfSpace {
+    let down = -(pose.R_WO.inverse() * DVec3::Z);
+    HalfSpace { point: down * (pose.p_WO.z - plane_z), normal: Direction::new_unchecked(down), margin: 0.0 }
+}
+
+fn observe(runs: &[Vec<BodyPose>], plane_z: f64) -> Result<Vec<Observation>, PoseError> {
+    let mut observations = Vec::new();
+    for (run, poses) in runs.iter().enumerate() {
+        if poses.len() < 3 {
+            return Err(PoseError::ShortRun { run, frames: poses.len() });
+        }
+        let flight = level::flight_scale(poses);
+        for (frame, pose) in poses.iter().enumerate() {
+            let unit = (pose.R_WO.length() - 1.0).abs() < 1e-3;
+            if !(pose.p_WO.is_finite() && plane_z.is_finite() && unit) {
+                return Err(PoseError::Pose { run, frame, pose: *pose, plane_z });
+            }
+            let normalised = BodyPose { R_WO: pose.R_WO.normalize(), ..*pose };
+            observations.push(Observation {
+                half_space: half_space_above_plane(&normalised, plane_z),
+                kink: KINK * level::roughness(poses, frame),
+                touching: level::touches(poses, frame, flight),
+                at: (run, frame),
+            });
+        }
+    }
+    Ok(observations)
+}
+
+/// The half-spaces with `margin` and what their kinks add.
+fn intersect(observations: &[Observation], margin: f64) -> Result<Polyhedron, PoseError> {
+    let moved: Vec<HalfSpace> =
+        observations.iter().map(|o| HalfSpace { margin: margin + o.kink, ..o.half_space }).collect();
+    match Intersection::of(&moved)? {
+        Intersection::Bounded(polyhedron) => Ok(polyhedron),
+        Intersection::Unbounded(open) => Err(PoseError::Open { directions: open.directions().to_vec() }),
+    }
+}

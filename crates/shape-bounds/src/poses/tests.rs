@@ -1,0 +1,96 @@
+use super::*;
+use crate::generators::Source;
+
+/// Runs of a box that falls, hits the plane with some side, rocks and rests, with tracking noise of standard deviation `sd`.
+fn tosses(count: usize, half: DVec3, sd: f64, seed: u64) -> Vec<Vec<BodyPose>> {
+    let mut s = Source::new(seed);
+    (0..count)
+        .map(|_| {
+            let start = s.rotation();
+            // At rest one face is down: turn the box so that its lowest axis points along gravity.
+            let down = start.inverse() * DVec3::NEG_Z;
+            let axis = down.abs().max_position();
+            let face = DVec3::from_array([0, 1, 2].map(|k| if k == axis { down[k].signum() } else { 0.0 }));
+            let rest = start * DQuat::from_rotation_arc(face, down);
+            (0..40)
+                .map(|frame| {
+                    let turned = ((frame as f64 - 12.0) / 14.0).clamp(0.0, 1.0);
+                    let R_WO = start.slerp(rest, turned);
+                    let lowest = (half * (R_WO.inverse() * DVec3::Z).abs()).element_sum();
+                    let frames = (frame as f64).min(12.0);
+                    let z = lowest + 0.0005 * (144.0 - frames * frames);
+                    BodyPose { R_WO, p_WO: DVec3::new(0.0, 0.0, z) + s.normal3() * sd }
+                })
+                .collect()
+        })
+        .collect()
+}
+
+#[test]
+fn a_tossed_box_is_contained_and_its_noise_is_found() {
+    let half = DVec3::new(0.05, 0.04, 0.06);
+    for (seed, sd) in [(1, 5e-5), (2, 1e-4), (3, 2e-4)] {
+        let bounds = PoseBounds::above_plane(&tosses(60, half, sd, seed), 0.0, 0.99).unwrap();
+        let corner = |i: u32| {
+            DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - DVec3::ONE
+        };
+        assert!((0..8).all(|i| bounds.upper.contains(half * corner(i))), "sd {sd}");
+        assert!(bounds.consistent_level < 5.0 * sd, "{sd} {}", bounds.consistent_level);
+        assert!(
+            bounds.upper.volume() < 8.0 * half.element_product() * (1.0 + 60.0 * sd / half.min_element())
+        );
+    }
+}
+
+#[test]
+fn bad_poses_are_named() {
+    let mut runs = tosses(20, DVec3::splat(0.05), 1e-4, 4);
+    runs[3][5].p_WO.z = f64::NAN;
+    let error = PoseBounds::above_plane(&runs, 0.0, 0.95).unwrap_err();
+    assert!(matches!(error, PoseError::Pose { run: 3, frame: 5, .. }), "{error}");
+    let error = PoseBounds::above_plane(&[Vec::new()], 0.0, 0.95).unwrap_err();
+    assert_eq!(error, PoseError::ShortRun { run: 0, frames: 0 });
+    runs[3][5].p_WO.z = 0.3;
+    assert_eq!(PoseBounds::above_plane(&runs, 0.0, 2.0), Err(PoseError::Confidence(2.0)));
+    let error = PoseBounds::above_plane(&runs[..2], 0.0, 0.95).unwrap_err();
+    assert!(matches!(error, PoseError::TooFewTouching { .. } | PoseError::Open { .. }), "{error}");
+}
+
+/// The real cube of `../shared/data/cube_tosses.csv` (edge 0.1048 m), which is not part of this repository.
+#[test]
+fn the_real_cube_is_contained() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/cube_tosses.csv");
+    let Ok(text) = std::fs::read_to_string(path) else {
+        println!("skipped: {path} is not there");
+        return;
+    };
+    let mut runs: Vec<(u32, Vec<BodyPose>)> = Vec::new();
+    for line in text.lines().skip(1) {
+        let [toss, _, w, x, y, z, px, py, pz] =
+            <[f64; 9]>::try_from(line.split(',').map(|c| c.parse().unwrap()).collect::<Vec<f64>>()).unwrap();
+        let pose = BodyPose { R_WO: DQuat::from_xyzw(x, y, z, w), p_WO: DVec3::new(px, py, pz) };
+        match runs.last_mut() {
+            Some((last, run)) if *last == toss as u32 => run.push(pose),
+            _ => runs.push((toss as u32, vec![pose])),
+        }
+    }
+    let runs: Vec<Vec<BodyPose>> = runs.into_iter().map(|(_, run)| run).collect();
+    // The table's height as calibrated; the cube's size is used to judge alone.
+    let table = -1.87e-3;
+    for first in [0, 50, 100] {
+        let bounds = PoseBounds::above_plane(&runs[first..first + 100], table, 0.95).unwrap();
+        let half = 0.0524;
+        let corner = |i: u32| {
+            DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - DVec3::ONE
+        };
+        let ratio = bounds.upper.volume() / (8.0 * half * half * half);
+        println!(
+            "tosses {first}..: margin {:.2} mm, volume {ratio:.3} of the cube's, {} touching, {} outliers",
+            bounds.margin * 1e3,
+            bounds.touching,
+            bounds.outliers.len()
+        );
+        assert!((0..8).all(|i| bounds.upper.contains(corner(i) * half)));
+        assert!((1.0..1.25).contains(&ratio), "{ratio}");
+    }
+}
