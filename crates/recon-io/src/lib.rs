@@ -8,6 +8,7 @@ mod log;
 mod mesh;
 mod number;
 mod output;
+mod planar_figures;
 mod plausibility;
 mod report;
 mod scene;
@@ -23,6 +24,7 @@ pub use log::{
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use output::{AtomicFile, OutputError, OutputFolder};
+pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};
 pub use report::{
     Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
