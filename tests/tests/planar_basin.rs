@@ -1,5 +1,7 @@
 //! How far off a start may be, and which constants can be estimated along.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+
 mod planar_common;
 
 use nalgebra::{SMatrix, SVector};

@@ -1,5 +1,7 @@
 //! Where the planar observer has to say that it does not know.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+
 mod planar_common;
 
 use glam::DVec2;

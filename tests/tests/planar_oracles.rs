@@ -1,5 +1,7 @@
 //! Planar kinematics and simulation against the 40-digit oracle scenes.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+
 mod planar_common;
 
 use planar_common::{number, oracle_file, pair, scene, shape, times};

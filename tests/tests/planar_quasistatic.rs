@@ -1,5 +1,7 @@
 //! Quasistatic reconstruction in the plane, on equilibria computed from the shape alone.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+
 use glam::DVec2;
 use recon::contact_kinematics::planar::*;
 use recon::object_dynamics::planar::*;

@@ -1,5 +1,7 @@
 //! Shape and motion from contacts and palm angles alone.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+
 mod planar_common;
 
 use planar_common::{scene, times};

@@ -1,5 +1,7 @@
 //! Planar shapes and contacts: one suite over every shape.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+
 use contact_kinematics::planar::*;
 use glam::DVec2;
 use proptest::prelude::*;

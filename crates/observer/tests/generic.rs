@@ -1,5 +1,7 @@
 //! The generic observers on a linear problem, where the Kalman filter is exact, and on a pendulum.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+
 use nalgebra::{SMatrix, SVector};
 use observer::*;
 
