@@ -1,5 +1,7 @@
 //! Scenes that the cross-crate tests share.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{
     Ellipsoid, MinkowskiSum, Monomial, Palm, PolynomialSupport, SlopeMotion, SupportFunction,

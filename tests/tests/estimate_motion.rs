@@ -1,5 +1,7 @@
 //! The three-palm estimator on simulated logs: right without a guess, honest about its error, and silent about nothing.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, Palm, SupportFunction};
 use recon::object_dynamics::integrate::Tolerance;

@@ -1,5 +1,7 @@
 //! Where the three-palm estimator stops working: it says so, or what it says holds.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, Palm, PalmError, Sphere, SupportFunction};
 use recon::object_dynamics::integrate::Tolerance;

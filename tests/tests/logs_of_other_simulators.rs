@@ -2,6 +2,8 @@
 //!
 //! Excerpts are in `data/`; the full logs are read where they lie beside the repository, and skipped aloud where not.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 use glam::DVec3;
 use recon::object_dynamics::{MassProperties, SensorLog};
 use recon::observer::{KnownBody, MotionEstimate, estimate_motion};

@@ -1,5 +1,7 @@
 //! The paper's own reconstruction, (35) to (37) from given initial conditions: right on exact data, useless otherwise.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{

@@ -1,6 +1,6 @@
 //! How far off a start may be, and which constants can be estimated along.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
 mod planar_common;
 

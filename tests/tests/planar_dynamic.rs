@@ -1,6 +1,6 @@
 //! Dynamic reconstruction in the plane: the paper's vector fields, the Newton observer, cold starts.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
 mod planar_common;
 

@@ -1,6 +1,6 @@
 //! Where the planar observer has to say that it does not know.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
 mod planar_common;
 

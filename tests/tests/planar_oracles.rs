@@ -1,6 +1,6 @@
 //! Planar kinematics and simulation against the 40-digit oracle scenes.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
 mod planar_common;
 

@@ -1,6 +1,6 @@
 //! Quasistatic reconstruction in the plane, on equilibria computed from the shape alone.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
 use glam::DVec2;
 use recon::contact_kinematics::planar::*;

@@ -1,6 +1,6 @@
 //! Shape and motion from contacts and palm angles alone.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
 mod planar_common;
 

@@ -1,5 +1,7 @@
 //! Simulation against reference numbers of another formulation at 140 bits, and against the laws of mechanics.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::integrate::Tolerance;

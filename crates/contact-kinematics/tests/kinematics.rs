@@ -1,6 +1,8 @@
 //! The paper's kinematics, each equation against an independent one: rates against differences, sensors against shape,
 //! chart-free forms against the paper's chart, and the chart where it fails.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 use contact_kinematics::*;
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;

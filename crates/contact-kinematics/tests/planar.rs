@@ -1,6 +1,6 @@
 //! Planar shapes and contacts: one suite over every shape.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
 use contact_kinematics::planar::*;
 use glam::DVec2;

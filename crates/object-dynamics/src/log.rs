@@ -170,12 +170,14 @@ impl SensorLog {
     }
 
     /// Index of the first sample at which some palm is without contact, with the palm's index from 0.
+    ///
+    /// A palm that carries no force has lost contact, whatever its contact sensor still says: many hold their last
+    /// reading.
     #[must_use]
     pub fn first_contact_loss(&self) -> Option<(usize, usize)> {
-        self.samples
-            .iter()
-            .enumerate()
-            .find_map(|(k, s)| s.palms.iter().position(|p| p.contact.is_none()).map(|palm| (k, palm)))
+        let lost = |palm: &PalmReading| palm.contact.is_none() || palm.force.is_some_and(|f| f <= 0.0);
+        let first = |(k, sample): (usize, &Sample)| sample.palms.iter().position(lost).map(|palm| (k, palm));
+        self.samples.iter().enumerate().find_map(first)
     }
 
     /// The same log without truth: what a robot has.
@@ -250,6 +252,9 @@ mod tests {
         samples[3].palms[1].contact = None;
         let log = SensorLog::new(samples, None).unwrap();
         assert_eq!(log.first_contact_loss(), Some((3, 1)));
+        let mut held = log.samples().to_vec();
+        held[2].palms[2].force = Some(0.0);
+        assert_eq!(SensorLog::new(held, None).unwrap().first_contact_loss(), Some((2, 2)));
         assert_eq!(log.duration(), 4.0);
     }
 }

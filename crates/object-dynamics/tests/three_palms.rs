@@ -1,5 +1,7 @@
 //! Laws that hold for any body on any three palms, and the errors of scenes that cannot be.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 use contact_kinematics::*;
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::integrate::Tolerance;

@@ -1,6 +1,6 @@
 //! The generic observers on a linear problem, where the Kalman filter is exact, and on a pendulum.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, where a panic is the report")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
 use nalgebra::{SMatrix, SVector};
 use observer::*;

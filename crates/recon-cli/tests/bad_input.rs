@@ -1,5 +1,7 @@
 //! Bad input: each kind is a named error with its exit code, without a panic and without half-written output.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
 mod common;
 
 use common::{Scratch, Table, scene, scratch_with_log};

@@ -10,3 +10,8 @@ pub use object_dynamics;
 pub use observer;
 #[doc(inline)]
 pub use shape_bounds;
+
+/// The first use that the README shows must compile and hold.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

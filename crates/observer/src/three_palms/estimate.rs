@@ -15,6 +15,8 @@ use thiserror::Error;
 
 /// Samples that the covariance is computed from, at most: it varies as slowly as the motion.
 const COVARIANCE_SAMPLES: usize = 400;
+/// Samples that the bias by noise is computed from, at most.
+const BIAS_SAMPLES: usize = 200;
 /// Smallest share of the largest information that still counts as information: rounding of `J' J`.
 const RANK_TOLERANCE: f64 = 1e-14;
 /// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
@@ -247,7 +249,7 @@ fn bias(
     {
         return 0.0;
     }
-    let stride = track.len().div_ceil(COVARIANCE_SAMPLES);
+    let stride = track.len().div_ceil(BIAS_SAMPLES);
     let shift = noise_bias(track, mass, scales, estimate, noise, stride);
     shift.map_or(f64::INFINITY, |shift| {
         (0..UNKNOWNS).map(|i| shift[i].abs() / covariance[(i, i)].sqrt()).fold(0.0, f64::max)

@@ -134,6 +134,11 @@ impl fmt::Display for Reason {
                 "the log does not determine the {direction}: standard deviation {:.2e} of its natural size",
                 direction.deviation
             ),
+            Self::Biased { shift } if shift.is_infinite() => write!(
+                f,
+                "the log holds more noise than motion in some direction, so that no average over it leads to the \
+                 truth: move the object faster or for longer, or use better sensors"
+            ),
             Self::Biased { shift } => write!(
                 f,
                 "noise of this size shifts the estimate by {shift:.1} of its standard deviations: the motion is too \

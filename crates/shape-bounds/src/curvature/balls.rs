@@ -94,7 +94,8 @@ impl BallIntersection {
         }
         let direction = (at - self.interior).normalize();
         let hit = self.interior + direction * self.reach(seen, direction);
-        if !(hit.distance_squared(centre) > self.radius * self.radius) {
+        let cut_off = hit.distance_squared(centre) > self.radius * self.radius;
+        if !cut_off {
             // Implied by the others at its own contact.
             return seen;
         }

@@ -87,7 +87,9 @@ impl Circle {
         let reach = 2.0 * self.radius * across.length();
         // On the circle, |y - centre|^2 - rho^2 = |w|^2 - half^2 + reach cos(phi).
         let cosine = (self.half_squared - w.length_squared()) / reach;
-        if !(cosine.abs() < 1.0) {
+        // Not a number where the third centre is on the axis.
+        let crosses = cosine.abs() < 1.0;
+        if !crosses {
             return match (first_out, last_out) {
                 (false, true) => Cut::Leaves(end),
                 (true, false) => Cut::Enters(start),

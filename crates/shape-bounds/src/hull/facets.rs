@@ -48,7 +48,8 @@ impl Facets {
         self.points.push(point);
         let seen = (point - self.centre.unwrap_or(DVec3::ZERO)).abs();
         let factor = (seen / self.reach).max_element();
-        if !(factor <= 1.0) {
+        let within = factor <= 1.0;
+        if !within {
             let factor = 2.0 * factor;
             self.reach *= factor;
             for facet in &mut self.list {

@@ -6,8 +6,9 @@ use super::seed::{Seed, find_seed};
 use super::{Hull, PointsError, SolidHull, scaling};
 use glam::DVec3;
 
-/// A hull to which points are added one by one, at an expected cost of O(log n) to O(sqrt n) a point for points that
-/// arrive along curves, without starting over.
+/// A hull to which points are added one by one without starting over. A point costs the walk to it, O(sqrt n) facets from
+/// afar and few from near, and the facets that it replaces: few for scattered points, a whole fan at the end of a curve that
+/// is being traced.
 ///
 /// Decided by the same exact predicates as [`Hull::of`]: after each point the hull is that of all points so far.
 pub struct IncrementalHull {
