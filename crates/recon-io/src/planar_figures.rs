@@ -73,7 +73,13 @@ impl Frame {
             if low[i] > high[i] {
                 (low[i], high[i]) = (0.0, 1.0);
             }
-            let span = (high[i] - low[i]).max(1e-12 * high[i].abs().max(low[i].abs())).max(f64::MIN_POSITIVE);
+            let size = high[i].abs().max(low[i].abs());
+            if high[i] - low[i] <= 1e-12 * size {
+                // A flat curve gets an axis of its own size, or of one where it is zero.
+                let half = if size > 0.0 { 0.5 * size } else { 0.5 };
+                (low[i], high[i]) = (low[i] - half, high[i] + half);
+            }
+            let span = high[i] - low[i];
             (low[i], high[i]) = (low[i] - 0.05 * span, high[i] + 0.05 * span);
             scale[i] = inner[i] / (high[i] - low[i]);
         }
