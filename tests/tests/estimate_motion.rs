@@ -166,7 +166,7 @@ fn covariance_is_consistent_under_noise() {
     // mean 1 and deviation sqrt(2 / 240) = 0.09 in units of its degrees of freedom; the bounds are five of those wide,
     // since the problem is not quite linear at deviations of 0.08 rad.
     let (scene, start) = f5();
-    let (simulation, clean) = simulate(&scene, start, 3.0, 200.0);
+    let (simulation, clean) = simulate(&scene, start, 4.2, 200.0);
     let noise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };
     let stated = NoiseLevel { contact: noise.contact, force: noise.force };
     let runs = 20;

@@ -1,25 +1,24 @@
 //! Bias by noise: the estimate is a nonlinear function of the data, and noise in impulses and contacts shifts its mean.
 //!
-//! A sum of squares over noisy data is, on average, the sum over exact data plus what the noise adds; the latter is
-//! found by adding noise of the same size once more, and is taken out. How far the minimum moves by that is the bias.
-//! The noise comes in pairs of opposite sign, so that what is linear in it cancels exactly.
+//! Found by adding noise of the same size once more. It comes in pairs of opposite sign, so that what is linear in it
+//! cancels exactly and only the shift is left; as noise of the same size was in the data already, it has already
+//! shifted the estimate by about as much, and by more where noise is most of what there is.
 
 use super::covariance::NoiseLevel;
-use super::momentum::{MomentumProblem, Row, Scales, StartState, UNKNOWNS};
+use super::momentum::{MomentumProblem, Row, Scales, StartState};
 use super::random::Normal;
 use super::track::Track;
-use crate::least_squares::{FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations};
+use crate::least_squares::{FitStatus, LevenbergMarquardt};
 use glam::DVec3;
 use object_dynamics::MassProperties;
 
 /// Pairs of draws.
-const PAIRS: u64 = 4;
+const PAIRS: u64 = 5;
 /// Fits on the thinned track, from the estimate: a few steps away.
 const SOLVER: LevenbergMarquardt =
-    LevenbergMarquardt { iterations: 15, step_tolerance: 1e-6, damping: 1e-4, prior: 0.0 };
+    LevenbergMarquardt { iterations: 15, step_tolerance: 1e-6, damping: 1e-6, prior: 0.0 };
 
-/// Shift of the scaled unknowns by noise; none where the sum without what noise adds has no minimum in reach, so that
-/// the data hold more noise than motion.
+/// Shift of the scaled unknowns by noise; none where as much noise again leads nowhere.
 pub(super) fn noise_bias(
     track: &Track,
     mass: &MassProperties,
@@ -28,49 +27,19 @@ pub(super) fn noise_bias(
     noise: &NoiseLevel,
     stride: usize,
 ) -> Option<Row> {
-    let mut tracks = vec![track.thinned(stride)];
+    let fit = |thin: &Track, start: &StartState| {
+        let fit = SOLVER.fit(&MomentumProblem::new(thin, mass, *scales, f64::INFINITY), *start);
+        (fit.status != FitStatus::Failed).then_some(fit.point)
+    };
+    let base = fit(&track.thinned(stride), estimate)?;
+    let mut shift = Row::zeros();
     for pair in 0..PAIRS {
-        tracks.extend([1.0, -1.0].map(|sign| track.perturbed(noise, sign, pair).thinned(stride)));
-    }
-    let mut problems = tracks.iter().map(|track| MomentumProblem::new(track, mass, *scales, f64::INFINITY));
-    let plain = problems.next()?;
-    let base = SOLVER.fit(&plain, *estimate);
-    let corrected = SOLVER.fit(&Corrected { plain, noisy: problems.collect() }, base.point);
-    let settled = base.status == FitStatus::Converged && corrected.status == FitStatus::Converged;
-    settled.then(|| difference(&base.point, &corrected.point, scales))
-}
-
-/// The plain sum less what one more helping of noise adds to it.
-struct Corrected<'a> {
-    plain: MomentumProblem<'a>,
-    noisy: Vec<MomentumProblem<'a>>,
-}
-
-impl LeastSquares<UNKNOWNS> for Corrected<'_> {
-    type Point = StartState;
-
-    fn linearise(&self, point: &StartState) -> Option<NormalEquations<UNKNOWNS>> {
-        let mut sum = self.plain.linearise(point)?;
-        let plain = sum.clone();
-        for problem in &self.noisy {
-            let noisy = problem.linearise(point)?;
-            let share = 1.0 / self.noisy.len() as f64;
-            sum.information -= (noisy.information - plain.information) * share;
-            sum.gradient -= (noisy.gradient - plain.gradient) * share;
-            sum.cost -= (noisy.cost - plain.cost) * share;
+        for sign in [1.0, -1.0] {
+            let moved = fit(&track.perturbed(noise, sign, pair).thinned(stride), &base)?;
+            shift += difference(&moved, &base, scales) * (0.5 / PAIRS as f64);
         }
-        Some(sum)
     }
-
-    fn cost(&self, point: &StartState) -> Option<f64> {
-        let plain = self.plain.cost(point)?;
-        let noisy = self.noisy.iter().map(|p| p.cost(point)).sum::<Option<f64>>()?;
-        Some(2.0 * plain - noisy / self.noisy.len() as f64)
-    }
-
-    fn retract(&self, point: &StartState, step: &Row) -> StartState {
-        self.plain.retract(point, step)
-    }
+    Some(shift)
 }
 
 fn difference(a: &StartState, b: &StartState, scales: &Scales) -> Row {
