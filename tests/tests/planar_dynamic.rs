@@ -220,9 +220,10 @@ fn interpolation_error_is_estimated() {
         let inputs = planar_samples(&coarse).unwrap();
         for (k, input) in inputs.iter().enumerate().skip(6) {
             let middle = log.samples()[2 * k - 1].forces.unwrap();
-            for i in 0..2 {
-                actual += (input.stages[1].forces[i] - middle[i]).powi(2);
-                stated += input.force_error[i].powi(2);
+            let stage = &input.stages[1];
+            for ((force, truth), error) in stage.forces.iter().zip(middle).zip(input.force_error) {
+                actual += (force - truth).powi(2);
+                stated += error.powi(2);
                 count += 1;
             }
         }

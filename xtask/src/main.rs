@@ -5,6 +5,7 @@ mod cargo;
 mod chart;
 mod metadata;
 mod steps;
+mod study;
 mod verify;
 
 use std::process::ExitCode;
@@ -12,15 +13,18 @@ use std::process::ExitCode;
 const USAGE: &str = "usage:
   cargo xtask verify [--list] [--only STEP].. [--skip STEP].. [--with STEP]..
   cargo xtask chart  [--list] [--quick] [--out FOLDER] [NAME..]
+  cargo xtask study  NAME [ARGUMENT..]
 
 verify  runs the checks of the house; optional steps run only with --with or --only
-chart   draws charts of cost against error and failure sweeps into docs/charts";
+chart   draws charts of cost against error and failure sweeps into docs/charts
+study   runs a long study and writes its table under docs";
 
 fn main() -> ExitCode {
     let mut words = std::env::args().skip(1);
     match words.next().as_deref() {
         Some("verify") => verify::main(words),
         Some("chart") => chart::main(words),
+        Some("study") => study::main(words),
         Some("help" | "--help" | "-h") => {
             println!("{USAGE}");
             ExitCode::SUCCESS

@@ -1,6 +1,6 @@
 //! Monte Carlo study of the planar observers against the Cramer-Rao bound: prints a table in Markdown.
 //!
-//! `cargo run --release -p recon-benches --bin planar_monte_carlo -- [runs] > docs/planar-monte-carlo.md`
+//! `cargo xtask study planar_monte_carlo [RUNS]` writes docs/planar-monte-carlo.md.
 
 use nalgebra::SVector;
 use recon::contact_kinematics::planar::{FourierBody, PairContact};
@@ -186,7 +186,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Mean of `runs` chi-squared variables of 5 degrees of freedom, over 5: normal to good accuracy.
     let band = 1.96 * (2.0 / (5.0 * f64::from(runs))).sqrt();
     println!("# Planar observers against the Cramer-Rao bound\n");
-    println!("Made by `cargo run --release -p recon-benches --bin planar_monte_carlo -- {runs}`.\n");
+    println!("Made by `cargo xtask study planar_monte_carlo {runs}`.\n");
     println!(
         "50 mm object between a pair of palms that turns at 0.2 rad/s (scene S2 of the planar oracles), {runs} seeded runs a cell, no guess: \
          the start comes from the velocity residuals over the first 0.4 s. Radius error: root mean square of both radius \

@@ -40,6 +40,8 @@ pub(crate) enum Command {
     Reconstruct(ReconstructArgs),
     /// Bound a convex object from contact points with outward normals
     Bounds(BoundsArgs),
+    /// Reconstruct a planar object between two hinged palms from a planar log, or the scene of the paper's Fig. 3
+    Planar(PlanarArgs),
     /// Simulate and reconstruct the scene of the paper's Fig. 5, with no input at all
     Demo(DemoArgs),
 }
@@ -103,6 +105,45 @@ pub(crate) struct BoundsArgs {
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
+The log is CSV (planar log, version 1): t, phi1, phi2, s1, s2 and f1, f2 or tau1, tau2. With forces, mass and inertia the
+motion is observed sample by sample; without any of them the shape is fitted to contacts and palm angles alone. Without a
+log the scene of the paper's Fig. 3 is simulated first.
+
+The output folder appears as a whole or not at all: motion.csv, contact_points.csv, summary.json and figures.svg (shape,
+orientation, radius functions and, where the log has the truth, their errors: the paper's Figs. 2b, 2c, 3a, 3b).
+
+Examples:
+  recon planar
+  recon planar log.csv --mass 0.2 --inertia 1.458e-4 --contact-noise 1e-4 -o out
+  recon planar log.csv --contact-noise 1e-4 --order 5 -o out")]
+pub(crate) struct PlanarArgs {
+    /// Planar log (CSV)
+    pub(crate) log: Option<PathBuf>,
+    /// Mass in kg, where it is known
+    #[arg(long, requires = "inertia", value_parser = positive)]
+    pub(crate) mass: Option<f64>,
+    /// Moment of inertia about the centre of mass in kg m^2, where it is known
+    #[arg(long, requires = "mass", value_parser = positive)]
+    pub(crate) inertia: Option<f64>,
+    /// Gravity in m/s^2
+    #[arg(long, default_value_t = 9.81, value_parser = positive)]
+    pub(crate) gravity: f64,
+    /// Standard deviation of the contact readings in m; 0 for exact ones
+    #[arg(long, default_value_t = 0.0, value_parser = not_negative)]
+    pub(crate) contact_noise: f64,
+    /// Standard deviation of the forces in N; 0 for exact ones
+    #[arg(long, default_value_t = 0.0, value_parser = not_negative)]
+    pub(crate) force_noise: f64,
+    /// Highest harmonic of the shape, where it is fitted without forces
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=20))]
+    pub(crate) order: u8,
+    /// Folder to write; an earlier one of recon's is replaced
+    #[arg(short, long, default_value = "recon-planar")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
 Examples:
   recon demo
   recon demo -o somewhere")]
@@ -118,6 +159,24 @@ fn tolerance(text: &str) -> Result<f64, String> {
         Ok(value)
     } else {
         Err("it must lie between 1e-15 and 1e-2".to_owned())
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err("it must be positive and finite".to_owned())
+    }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if value >= 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err("it must be finite and at least 0".to_owned())
     }
 }
 

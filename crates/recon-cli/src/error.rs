@@ -50,6 +50,12 @@ pub(crate) enum CliError {
     Noise(#[source] LogError),
     #[error("the log gives no motion")]
     Estimate(#[from] EstimateError),
+    #[error("the planar log gives no motion")]
+    PlanarEstimate(#[from] recon::observer::planar::PlanarEstimateError),
+    #[error("the planar log gives no estimate: it spans {seconds} s, less than a first estimate needs")]
+    PlanarTooShort { seconds: f64 },
+    #[error("the planar demo cannot be simulated: {0}")]
+    PlanarDemo(String),
     #[error("the contacts give no bounds")]
     Bounds(#[from] BoundsError),
     #[error("the upper bound cannot be cut to a picture")]
@@ -70,7 +76,7 @@ impl CliError {
     /// The code of each kind is told in `recon --help`.
     pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
-            Self::Picture(_) | Self::Mesh(_) | Self::Signals(_) => 1,
+            Self::Picture(_) | Self::Mesh(_) | Self::Signals(_) | Self::PlanarDemo(_) => 1,
             Self::Log(_)
             | Self::Scene(_)
             | Self::Contacts(_)
@@ -81,6 +87,8 @@ impl CliError {
             | Self::Simulation(_)
             | Self::Noise(_)
             | Self::Estimate(_)
+            | Self::PlanarEstimate(_)
+            | Self::PlanarTooShort { .. }
             | Self::Bounds(_) => 3,
             Self::Output(_) | Self::StandardOutput(_) => 5,
             Self::Interrupted => 130,

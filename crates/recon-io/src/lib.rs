@@ -8,6 +8,7 @@ mod log;
 mod mesh;
 mod number;
 mod output;
+mod planar_figures;
 mod plausibility;
 mod report;
 mod scene;
@@ -17,9 +18,13 @@ mod table;
 pub use contacts::{
     ContactPoint, ContactsError, ContactsErrorKind, parse_contacts, read_contacts, write_contacts,
 };
-pub use log::{LogFileError, LogFileErrorKind, parse_log, read_log, write_log};
+pub use log::{
+    LogFileError, LogFileErrorKind, parse_log, parse_planar_log, read_log, read_planar_log, write_log,
+    write_planar_log,
+};
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use output::{AtomicFile, OutputError, OutputFolder};
+pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};
 pub use report::{
     Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,

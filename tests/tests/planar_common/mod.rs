@@ -1,4 +1,5 @@
 //! Planar oracle scenes from `tests/data/planar_oracles.json`.
+#![allow(clippy::unwrap_used, reason = "helpers of tests, where a panic is the report")]
 #![allow(dead_code, reason = "each test file uses its part of the shared scenes")]
 
 use glam::DVec2;

@@ -9,7 +9,7 @@ use glam::DVec2;
 use nalgebra::{SMatrix, SVector};
 
 /// Number of states of the motion: centre of mass, its velocity, angular velocity.
-const MOTION: usize = 5;
+pub(super) const MOTION: usize = 5;
 /// Relative rate of object and palm, as a share of the natural rate, below which the contact offset `d` is taken from the
 /// sensor rather than from the motion. Small enough to cost no information in motion, large against rounding.
 const BLEND_SHARE: f64 = 0.02;

@@ -4,6 +4,7 @@
 
 mod authors;
 mod constants;
+mod doubt;
 mod error;
 mod force_driven;
 mod input;
@@ -17,10 +18,11 @@ mod start;
 
 pub use authors::{AuthorsFields, AuthorsState};
 pub use constants::{Constant, PlanarNominal, Side};
+pub use doubt::Doubt;
 pub use error::PlanarEstimateError;
 pub use force_driven::ForceDriven;
 pub use input::{InputBuilder, PairInput, PairStage, planar_samples};
-pub use observer::{Doubt, PlanarEstimate, PlanarObserver, PlanarObserverOptions, PlanarStartFrom};
+pub use observer::{PlanarEstimate, PlanarObserver, PlanarObserverOptions, PlanarStartFrom};
 pub use quasistatic::{
     HeightFit, QuasistaticError, QuasistaticPath, QuasistaticPoint, height_from_closure,
     quasistatic_reconstruction,

@@ -2,6 +2,7 @@
 
 mod bounds;
 mod demo;
+mod planar;
 mod reconstruct;
 mod simulate;
 
@@ -15,6 +16,7 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
         Command::Simulate(args) => simulate::run(args, console),
         Command::Reconstruct(args) => reconstruct::run(args, console),
         Command::Bounds(args) => bounds::run(args, console),
+        Command::Planar(args) => planar::run(args, console),
         Command::Demo(args) => demo::run(args, console),
     }
 }

@@ -57,13 +57,13 @@ impl Columns {
     }
 }
 
-struct Header {
-    names: Vec<String>,
+pub(super) struct Header {
+    pub(super) names: Vec<String>,
     places: HashMap<String, Vec<usize>>,
 }
 
 impl Header {
-    fn new(record: &csv::StringRecord) -> Self {
+    pub(super) fn new(record: &csv::StringRecord) -> Self {
         let names: Vec<String> =
             record.iter().map(|n| n.trim_start_matches('\u{feff}').trim().to_owned()).collect();
         let mut places: HashMap<String, Vec<usize>> = HashMap::new();
@@ -73,7 +73,7 @@ impl Header {
         Self { names, places }
     }
 
-    fn find(&self, name: String) -> Result<Option<Field>, Kind> {
+    pub(super) fn find(&self, name: String) -> Result<Option<Field>, Kind> {
         match self.places.get(&name).map(Vec::as_slice) {
             None => Ok(None),
             Some(&[index]) => Ok(Some(Field { index, name })),
@@ -81,7 +81,7 @@ impl Header {
         }
     }
 
-    fn need(&self, column: String) -> Result<Field, Kind> {
+    pub(super) fn need(&self, column: String) -> Result<Field, Kind> {
         self.find(column.clone())?.ok_or_else(|| {
             let wanted = plain(&column);
             let similar = self.names.iter().find(|n| plain(n) == wanted).cloned();

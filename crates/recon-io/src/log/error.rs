@@ -1,5 +1,6 @@
 use recon::contact_kinematics::{DirectionError, PalmError};
 use recon::object_dynamics::LogError;
+use recon::object_dynamics::planar::PlanarLogError;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -140,6 +141,14 @@ pub enum LogFileErrorKind {
         line: Option<u64>,
         /// Why.
         source: LogError,
+    },
+    /// The samples do not make a planar log; `line` as above.
+    #[error("{}{source}", line.map_or(String::new(), |line| format!("line {line}: ")))]
+    PlanarSamples {
+        /// Line number.
+        line: Option<u64>,
+        /// Why.
+        source: PlanarLogError,
     },
 }
 

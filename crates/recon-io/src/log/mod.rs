@@ -1,7 +1,8 @@
-//! Sensor logs, version 1, as CSV files.
+//! Sensor logs, version 1, of three palms and planar ones of two, as CSV files.
 
 mod columns;
 mod error;
+mod planar;
 mod read;
 mod write;
 
@@ -9,6 +10,7 @@ mod write;
 mod tests;
 
 pub use error::{LogFileError, LogFileErrorKind};
+pub use planar::{parse_planar_log, read_planar_log, write_planar_log};
 pub use read::{parse_log, read_log};
 pub use write::write_log;
 

@@ -42,7 +42,7 @@ pub fn parse_log(text: impl Read) -> Result<SensorLog, Kind> {
     rows_read.finish()
 }
 
-fn csv_error(error: csv::Error) -> Kind {
+pub(super) fn csv_error(error: csv::Error) -> Kind {
     if !error.is_io_error() {
         return Kind::Csv(error);
     }
@@ -62,10 +62,7 @@ struct Rows {
 
 impl Rows {
     fn push(&mut self, row: &Row, columns: &Columns) -> Result<(), Kind> {
-        if row.record.len() != columns.count {
-            let (expected, found) = (columns.count, row.record.len());
-            return Err(Kind::FieldCount { line: row.line, expected, found });
-        }
+        row.check_count(columns.count)?;
         let t = row.finite(&columns.t)?;
         let palm = |i: usize| row.palm(i + 1, &columns.palms[i]);
         self.samples.push(Sample { t, palms: [palm(0)?, palm(1)?, palm(2)?] });
@@ -88,13 +85,18 @@ impl Rows {
 }
 
 /// One row with its line number.
-struct Row<'a> {
-    record: &'a csv::StringRecord,
-    line: u64,
+pub(super) struct Row<'a> {
+    pub(super) record: &'a csv::StringRecord,
+    pub(super) line: u64,
 }
 
 impl Row<'_> {
-    fn number(&self, field: &Field) -> Result<f64, Kind> {
+    pub(super) fn check_count(&self, expected: usize) -> Result<(), Kind> {
+        let found = self.record.len();
+        if found == expected { Ok(()) } else { Err(Kind::FieldCount { line: self.line, expected, found }) }
+    }
+
+    pub(super) fn number(&self, field: &Field) -> Result<f64, Kind> {
         let text = self.record.get(field.index).unwrap_or_default();
         text.parse().map_err(|_| Kind::NotANumber {
             line: self.line,
@@ -103,20 +105,20 @@ impl Row<'_> {
         })
     }
 
-    fn finite(&self, field: &Field) -> Result<f64, Kind> {
+    pub(super) fn finite(&self, field: &Field) -> Result<f64, Kind> {
         let value = self.number(field)?;
         if value.is_finite() { Ok(value) } else { Err(self.not_finite(field, value)) }
     }
 
-    fn finite_or_none(&self, field: Option<&Field>) -> Result<Option<f64>, Kind> {
+    pub(super) fn finite_or_none(&self, field: Option<&Field>) -> Result<Option<f64>, Kind> {
         field.map(|f| self.finite(f)).transpose()
     }
 
-    fn not_finite(&self, field: &Field, value: f64) -> Kind {
+    pub(super) fn not_finite(&self, field: &Field, value: f64) -> Kind {
         Kind::NotFinite { line: self.line, column: field.name.clone(), value }
     }
 
-    fn vector<const N: usize>(&self, fields: &[Field; N]) -> Result<[f64; N], Kind> {
+    pub(super) fn vector<const N: usize>(&self, fields: &[Field; N]) -> Result<[f64; N], Kind> {
         let mut values = [0.0; N];
         for (value, field) in values.iter_mut().zip(fields) {
             *value = self.finite(field)?;

@@ -1,0 +1,36 @@
+//! Long studies: run by the release build of `recon-benches`; their tables are committed under docs/.
+
+use std::process::ExitCode;
+
+use crate::cargo::{cargo, output, root};
+
+/// Name of a study, the file under docs/ that it writes, and what it is about.
+const STUDIES: [(&str, &str, &str); 2] = [
+    ("planar_monte_carlo", "planar-monte-carlo.md", "planar observers against the Cramer-Rao bound"),
+    ("planar_costs", "planar-costs.md", "cost of the planar observers beside their accuracy"),
+];
+
+/// Runs the study that is named first; what follows is handed to it.
+pub(crate) fn main(mut words: impl Iterator<Item = String>) -> ExitCode {
+    let asked = words.next();
+    let Some((name, file, _)) = STUDIES.iter().find(|(name, ..)| asked.as_deref() == Some(name)) else {
+        eprintln!("give the name of a study:");
+        STUDIES.iter().for_each(|(name, file, about)| eprintln!("  {name}  {about} (docs/{file})"));
+        return ExitCode::from(2);
+    };
+    let mut command = cargo(&format!("run --release --quiet --package recon-benches --bin {name} --"));
+    let path = root().join("docs").join(file);
+    let written = output(command.args(words)).and_then(|table| {
+        std::fs::write(&path, table).map_err(|error| format!("{}: {error}", path.display()))
+    });
+    match written {
+        Ok(()) => {
+            println!("wrote {}", path.display());
+            ExitCode::SUCCESS
+        }
+        Err(complaint) => {
+            eprintln!("{complaint}");
+            ExitCode::FAILURE
+        }
+    }
+}
