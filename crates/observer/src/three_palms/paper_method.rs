@@ -390,7 +390,7 @@ fn advance<const J: usize>(state: &State, rates: &[Rate; J], weights: &[f64; J],
     for (rate, weight) in rates.iter().zip(weights) {
         let weight = h * weight;
         moved.r += rate.r * weight;
-        moved.q = moved.q + rate.q * weight;
+        moved.q += rate.q * weight;
         moved.w += rate.alpha * weight;
     }
     State { q: moved.q.normalize(), ..moved }
