@@ -10,8 +10,10 @@ mod evidence;
 mod momentum;
 mod noise;
 mod paper_method;
+mod paper_system;
 mod quadrature;
 mod random;
+mod sensitivity;
 mod track;
 
 pub use covariance::NoiseLevel;

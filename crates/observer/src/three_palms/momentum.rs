@@ -3,6 +3,7 @@
 //! p_i = 0`, which no derivative of the data enters.
 
 use super::covariance::Linearised;
+use super::sensitivity::{Sensitivity, Turning, cross_matrix, exponential};
 use super::track::{Integrals, Track};
 use crate::least_squares::{LeastSquares, NormalEquations};
 use glam::{DMat3, DQuat, DVec3};
@@ -294,73 +295,6 @@ fn momentum(start: &StartState, [impulse, first_moment, moment]: &[DVec3; 3]) ->
     start.L_WO + *moment - start.p_WCm.cross(*impulse) - start.v_WCm.cross(*first_moment)
 }
 
-/// What the sensitivity of the orientation needs at one time: `theta' = M theta + K (dL0 + impulse x dcm0 + ...)`.
-struct Turning {
-    w: DVec3,
-    /// Inverse inertia in world axes.
-    K: DMat3,
-    /// `K [L]x`.
-    M: DMat3,
-    impulse: DVec3,
-    first_moment: DVec3,
-}
-
-impl Turning {
-    fn new(mass: &MassProperties, q: DQuat, L: DVec3, integrals: &Integrals) -> Self {
-        Self::at(mass, q, L, integrals.impulse, integrals.first_moment)
-    }
-
-    fn at(mass: &MassProperties, q: DQuat, L: DVec3, impulse: DVec3, first_moment: DVec3) -> Self {
-        let R = DMat3::from_quat(q);
-        let K = R * mass.inverse_inertia() * R.transpose();
-        Self { w: K * L, K, M: K * cross_matrix(L), impulse, first_moment }
-    }
-
-    /// Right-hand side of the sensitivity equation, block by block.
-    fn rate(&self, theta: &[DMat3; 4]) -> [DMat3; 4] {
-        [
-            self.M * theta[0] + self.K * cross_matrix(self.impulse),
-            self.M * theta[1] + self.K * cross_matrix(self.first_moment),
-            self.M * theta[2] + self.K,
-            self.M * theta[3],
-        ]
-    }
-}
-
-/// Derivative of the orientation (a rotation vector in world axes) by centre of mass, velocity, angular momentum and
-/// orientation at the start.
-struct Sensitivity([DMat3; 4]);
-
-impl Sensitivity {
-    fn at_start() -> Self {
-        Self([DMat3::ZERO, DMat3::ZERO, DMat3::ZERO, DMat3::IDENTITY])
-    }
-
-    /// One Runge-Kutta step of order 4 of the linear equation `theta' = M theta + S`, as `theta' = w x theta + dw`
-    /// reduces to it.
-    fn advance(&mut self, start: &Turning, middle: &Turning, end: &Turning, h: f64) {
-        let move_by = |theta: &[DMat3; 4], k: &[DMat3; 4], h: f64| -> [DMat3; 4] {
-            std::array::from_fn(|i| theta[i] + k[i] * h)
-        };
-        let k1 = start.rate(&self.0);
-        let k2 = middle.rate(&move_by(&self.0, &k1, 0.5 * h));
-        let k3 = middle.rate(&move_by(&self.0, &k2, 0.5 * h));
-        let k4 = end.rate(&move_by(&self.0, &k3, h));
-        for i in 0..4 {
-            self.0[i] += (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (h / 6.0);
-        }
-    }
-
-    /// `block' v`.
-    fn transposed(&self, block: usize, v: DVec3) -> DVec3 {
-        self.0[block].transpose() * v
-    }
-}
-
-fn cross_matrix(v: DVec3) -> DMat3 {
-    DMat3::from_cols(DVec3::new(0.0, v.z, -v.y), DVec3::new(-v.z, 0.0, v.x), DVec3::new(v.y, -v.x, 0.0))
-}
-
 impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
     type Point = StartState;
 
@@ -404,12 +338,4 @@ impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
             R_WO: (exponential(part(3)) * point.R_WO).normalize(),
         }
     }
-}
-
-/// `exp [v]x` as a quaternion, exact for small `v` too.
-pub(super) fn exponential(v: DVec3) -> DQuat {
-    let angle = v.length();
-    // sin(a/2) / a; the series is exact to rounding below 1e-4.
-    let ratio = if angle < 1e-4 { 0.5 - angle * angle / 48.0 } else { (0.5 * angle).sin() / angle };
-    DQuat::from_xyzw(ratio * v.x, ratio * v.y, ratio * v.z, (0.5 * angle).cos())
 }
