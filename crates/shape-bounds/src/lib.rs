@@ -33,6 +33,8 @@ mod hull;
 mod integrals;
 mod mesh;
 mod noise;
+#[cfg(feature = "parry")]
+mod parry;
 mod planar;
 mod poses;
 mod predicates;

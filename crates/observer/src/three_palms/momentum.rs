@@ -339,3 +339,56 @@ impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::cold_start::scales;
+    use super::*;
+    use contact_kinematics::{Ellipsoid, Palm, SlopeMotion};
+    use object_dynamics::integrate::Tolerance;
+    use object_dynamics::{InitialMotion, SampleTimes, ThreePalmScene};
+
+    /// `2 J' r` is the gradient of the sum of squares, with and without what noise adds, away from the solution and on
+    /// moving palms.
+    #[test]
+    fn derivatives_are_those_of_the_sum_of_squares() {
+        let axes = DVec3::new(1.0, 2.0, 2.5);
+        let mass = MassProperties::uniform_ellipsoid(1.3, axes).unwrap();
+        let palm = |azimuth, phase| {
+            let motion = SlopeMotion::Sinusoid { slope: 1.0, amplitude: 0.08, frequency: 1.7, phase };
+            Palm::new(azimuth, motion).unwrap()
+        };
+        let palms = [palm(0.1, 0.3), palm(2.2, 1.0), palm(4.3, 2.0)];
+        let scene = ThreePalmScene::new(Ellipsoid::new(axes).unwrap(), mass, palms, 9.81).unwrap();
+        let start = InitialMotion { R_WO: DQuat::IDENTITY, w_WO: DVec3::new(0.2, 0.3, -0.4) };
+        let times = SampleTimes { duration: 1.0, rate: 1000.0 };
+        let log =
+            scene.simulate(start, times, Tolerance::uniform(1e-12)).unwrap().sensor_log(&scene).unwrap();
+        let track = Track::new(&log, mass.mass(), scene.gravity(), None).unwrap();
+        let sizes = scales(&track, &mass);
+        let truth = log.truth().unwrap()[0];
+        let point = StartState {
+            p_WCm: truth.p_WCm + DVec3::new(0.1, -0.2, 0.15),
+            v_WCm: truth.v_WCm + DVec3::new(-0.1, 0.05, 0.1),
+            L_WO: mass.inertia() * truth.w_WO * 1.1,
+            R_WO: exponential(DVec3::new(0.2, -0.1, 0.3)) * truth.R_WO,
+        };
+        for noise in [0.0, 0.05] {
+            let problem = MomentumProblem::new(&track, &mass, sizes, f64::INFINITY).unbiased(noise);
+            let normal = problem.linearise(&point).unwrap();
+            assert!((normal.cost - problem.cost(&point).unwrap()).abs() < 1e-12 * normal.cost.abs());
+            for i in 0..UNKNOWNS {
+                let step = |h: f64| Row::from_fn(|j, _| if i == j { h } else { 0.0 });
+                let cost = |h: f64| problem.cost(&problem.retract(&point, &step(h))).unwrap();
+                let slope = (cost(1e-5) - cost(-1e-5)) / 2e-5;
+                // The sensitivities come from Runge-Kutta steps of their own: equal to their order, not to rounding.
+                let error = (slope - 2.0 * normal.gradient[i]).abs();
+                assert!(
+                    error < 1e-6 * normal.information[(i, i)],
+                    "unknown {i}: {slope} {}",
+                    2.0 * normal.gradient[i]
+                );
+            }
+        }
+    }
+}
