@@ -55,10 +55,10 @@ const FOLLOWED_IN_ALL: usize = 12;
 const PRIOR: f64 = 1e-3;
 /// Residual below which a fit is taken as right, in natural velocities: logs of other simulators leave up to 5e-6,
 /// wrong minima of random scenes 1e-4 and more.
-const NEXT_TO_NOTHING: f64 = 1e-5;
+pub(super) const NEXT_TO_NOTHING: f64 = 1e-5;
 /// Multiple of the residual that sensor noise leaves, below which a fit is taken as right: right fits scatter by 12 %
 /// about 1, wrong minima begin at 1.7.
-const EXPLAINED: f64 = 1.4;
+pub(super) const EXPLAINED: f64 = 1.4;
 /// Fits on the way: good enough to start the next from.
 const COARSE: LevenbergMarquardt =
     LevenbergMarquardt { iterations: 25, step_tolerance: 1e-6, damping: 1e-2, prior: 0.0 };

@@ -1,5 +1,5 @@
 use super::bias::noise_bias;
-use super::cold_start::{cold_start, scales};
+use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, scales};
 use super::correlation::{correlation_samples, whiteness};
 use super::covariance::{NoiseLevel, Sampling, propagate};
 use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
@@ -26,8 +26,6 @@ const LARGEST_DEVIATION: f64 = 0.25;
 /// is most of what there is, more of it shifts little: 0.25 was the least seen with errors of five deviations and more,
 /// 0.16 the most where the covariance was right.
 const LARGEST_BIAS: f64 = 0.2;
-/// A residual above this many times of what noise explains, that is smooth over time, is a misfit.
-const MISFIT: f64 = 3.0;
 /// Contact noise, relative to length, whose bias is worth taking out: its square must reach the rounding of the sums.
 const BIASING: f64 = 1e-7;
 /// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
@@ -159,7 +157,7 @@ pub(super) fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<Moti
         bias: bias(track, mass, &scales, &fit.point, &noise, &covariance),
         iterations: fit.iterations,
     };
-    let reliability = judge(&evidence, fit.status);
+    let reliability = judge(&evidence, fit.status, &scales);
     let motion = problem.motion(&fit.point);
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
@@ -217,21 +215,21 @@ fn weakest_direction(covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>) -> WeakDirec
     WeakDirection::new(&direction, spectrum.eigenvalues[last].max(0.0).sqrt())
 }
 
-fn judge(evidence: &Evidence, status: FitStatus) -> Reliability {
+fn judge(evidence: &Evidence, status: FitStatus, scales: &Scales) -> Reliability {
     let mut reasons = Vec::new();
     if status != FitStatus::Converged {
         reasons.push(Reason::NotConverged { iterations: evidence.iterations });
     }
     // NaN counts as unknown.
-    let known = evidence.weakest.deviation <= LARGEST_DEVIATION;
-    if !known {
+    if evidence.weakest.deviation.is_nan() || evidence.weakest.deviation > LARGEST_DEVIATION {
         reasons.push(Reason::Unobservable { direction: evidence.weakest });
     }
     if evidence.bias.is_nan() || evidence.bias > LARGEST_BIAS {
         reasons.push(Reason::Biased { shift: evidence.bias });
     }
-    let misfit = evidence.residual_rms / evidence.noise_explains;
-    if misfit > MISFIT && !known {
+    // More than noise leaves, and more than the lasting errors of good data: what a wrong minimum leaves.
+    let explained = (EXPLAINED * evidence.noise_explains).max(NEXT_TO_NOTHING * scales.velocity);
+    if evidence.residual_rms.is_nan() || evidence.residual_rms > explained {
         reasons.push(Reason::Misfit { residual: evidence.residual_rms, explained: evidence.noise_explains });
     }
     if reasons.is_empty() { Reliability::Reliable } else { Reliability::Unreliable(reasons) }
