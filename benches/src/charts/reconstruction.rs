@@ -21,6 +21,9 @@ pub(super) const BY_RATE: Chart = Chart {
     draw: by_rate,
 };
 
+/// MuJoCo's log of the same scene, every tenth sample; the same result as from all of them.
+const MUJOCO: &str = include_str!("../../../tests/data/mj_A_fig5_thinned.csv");
+
 /// Noise of the contact coordinates as a share of the body's size, of the forces as a share of what a palm carries.
 const SIZE: f64 = 2.5;
 const LOAD: f64 = 6.5;
@@ -40,11 +43,24 @@ fn by_window(budget: Budget) -> Drawn {
             noisy.push((name, duration, log.with_noise(&noise, 1)?, simulation, level));
         }
     }
+    let method = PaperMethod { scheme: PredictorCorrector::Adams4, enforce_constraint: false };
+    let foreign = recon_io::parse_log(MUJOCO.as_bytes())?;
+    let truth = foreign.truth().ok_or("MuJoCo's log has no truth columns")?.to_vec();
     let mut study = Study::new();
     for (name, duration, log, simulation, level) in &noisy {
         let run = || estimate(&scene, log, *level);
         study.fallible_case(*name, format!("{duration} s"), run, |found| centre_error(found, simulation));
     }
+    for ((simulation, log), duration) in logs.iter().zip(durations) {
+        let run = || integrate(&scene, log, simulation, method);
+        study.fallible_case("(35)-(37), Adams, exact start", format!("{duration} s"), run, |error| *error);
+    }
+    study.fallible_case(
+        "MuJoCo's log at 100 Hz",
+        "4.2 s",
+        || estimate(&scene, &foreign, None),
+        |found| found.motion.iter().zip(&truth).map(|(m, t)| m.p_WCm.distance(t.p_WCm)).fold(0.0, f64::max),
+    );
     let chart =
         WorkPrecision::new("reconstruction-by-window", "Motion from a log, no guess: cost against error")
             .subtitle(

@@ -25,6 +25,7 @@ impl PalmTriple {
         // Frobenius norms bound the spectral ones from above by a factor of at most sqrt(3) each.
         let condition = frobenius(n) * frobenius(inverse) / 3.0;
         if condition.is_nan() || condition > LARGEST_CONDITION || !inverse.is_finite() {
+            let condition = if condition.is_nan() { f64::INFINITY } else { condition };
             return Err(PalmError::Parallel { determinant, condition, limit: LARGEST_CONDITION });
         }
         Ok(Self { normals, inverse, condition })

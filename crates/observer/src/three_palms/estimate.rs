@@ -188,7 +188,7 @@ fn scaled_covariance(
     let per_node = stride as f64;
     let sampling = Sampling { per_node, weight: per_node, direct: per_node };
     let result = propagate(&problem, start, &information_inverse(observability), noise, sampling);
-    (result.covariance, result.residual.max(f64::MIN_POSITIVE))
+    (result.covariance, result.residual)
 }
 
 pub(super) fn information_inverse(

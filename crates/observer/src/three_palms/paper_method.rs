@@ -105,6 +105,13 @@ impl PaperReconstruction {
         self.sensitivity.singular_values().max()
     }
 
+    /// Directions of the start of which the last state keeps a trace in double precision.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        let values = self.sensitivity.singular_values();
+        values.iter().filter(|&&v| v > f64::EPSILON * values.max()).count()
+    }
+
     /// Ratio of the largest to the smallest singular value of the sensitivity.
     #[must_use]
     pub fn condition(&self) -> f64 {
