@@ -6,7 +6,10 @@ use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{
     Ellipsoid, MinkowskiSum, Monomial, Palm, PolynomialSupport, SlopeMotion, SupportFunction,
 };
-use recon::object_dynamics::{InitialMotion, MassProperties, ThreePalmScene};
+use recon::object_dynamics::integrate::Tolerance;
+use recon::object_dynamics::{
+    InitialMotion, MassProperties, SampleTimes, SensorLog, Simulation, ThreePalmScene,
+};
 
 /// A general body: an ellipsoid plus a polynomial.
 pub type GeneralBody = MinkowskiSum<Ellipsoid, PolynomialSupport>;
@@ -98,4 +101,21 @@ pub fn relative_energy_drift<S: SupportFunction>(
 ) -> f64 {
     let start = instants[0].energy(scene);
     instants.iter().fold(0.0, |m: f64, now| m.max(((now.energy(scene) - start) / start).abs()))
+}
+
+/// A simulation close to rounding and its log without truth: what a perfect robot would have.
+///
+/// # Panics
+/// When the scene cannot be simulated.
+#[must_use]
+pub fn exact_log<S: SupportFunction>(
+    scene: &ThreePalmScene<S>,
+    start: InitialMotion,
+    duration: f64,
+    rate: f64,
+) -> (Simulation, SensorLog) {
+    let times = SampleTimes { duration, rate };
+    let simulation = scene.simulate(start, times, Tolerance::uniform(1e-14)).unwrap();
+    let log = simulation.sensor_log(scene).unwrap().without_truth();
+    (simulation, log)
 }

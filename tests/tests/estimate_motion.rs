@@ -9,22 +9,10 @@ use recon::object_dynamics::{
     InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation, ThreePalmScene,
 };
 use recon::observer::{KnownBody, MotionEstimate, NoiseLevel, equivalent_orientations, estimate_motion};
-use recon_tests::{f5, g2};
+use recon_tests::{exact_log, f5, g2};
 
 fn known<S: SupportFunction>(scene: &ThreePalmScene<S>, noise: Option<NoiseLevel>) -> KnownBody {
     KnownBody { mass: *scene.mass(), gravity: scene.gravity(), palm_inertias: scene.palm_inertias(), noise }
-}
-
-fn simulate<S: SupportFunction>(
-    scene: &ThreePalmScene<S>,
-    start: InitialMotion,
-    duration: f64,
-    rate: f64,
-) -> (Simulation, SensorLog) {
-    let times = SampleTimes { duration, rate };
-    let simulation = scene.simulate(start, times, Tolerance::uniform(1e-13)).unwrap();
-    let log = simulation.sensor_log(scene).unwrap().without_truth();
-    (simulation, log)
 }
 
 /// Errors of the start state in the order of the covariance; the orientation against the nearest of the equivalent
@@ -58,11 +46,11 @@ fn largest_error(estimate: &MotionEstimate, simulation: &Simulation) -> (f64, f6
 #[test]
 fn exact_logs_are_explained_exactly() {
     let (scene, start) = f5();
-    let (simulation, log) = simulate(&scene, start, 4.2, 1000.0);
+    let (simulation, log) = exact_log(&scene, start, 4.2, 1000.0);
     check_exact(&simulation, &estimate_motion(&log, &known(&scene, None)).unwrap(), 1e-10);
     // Moving palms, full inertia tensor, dented body; rates of the palms from their normals alone.
     let (scene, start) = g2();
-    let (simulation, log) = simulate(&scene, start, 4.0, 1000.0);
+    let (simulation, log) = exact_log(&scene, start, 4.0, 1000.0);
     let estimate = estimate_motion(&log, &known(&scene, None)).unwrap();
     check_exact(&simulation, &estimate, 1e-10);
     let mut samples = log.samples().to_vec();
@@ -89,7 +77,7 @@ fn check_exact(simulation: &Simulation, estimate: &MotionEstimate, tolerance: f6
 #[test]
 fn contact_curves_lie_on_the_body() {
     let (scene, start) = f5();
-    let (_, log) = simulate(&scene, start, 4.2, 1000.0);
+    let (_, log) = exact_log(&scene, start, 4.2, 1000.0);
     let estimate = estimate_motion(&log, &known(&scene, None)).unwrap();
     // The scene starts at the identity, so the frame nearest to the world's axes is the body's own.
     for point in estimate.curves.iter().flat_map(|c| c.points()) {
@@ -104,7 +92,7 @@ fn contact_curves_lie_on_the_body() {
 fn torques_serve_where_forces_were_not_logged() {
     let (scene, start) = g2();
     let scene = scene.with_palm_inertias([0.5, 0.7, 0.4]).unwrap();
-    let (simulation, log) = simulate(&scene, start, 3.0, 1000.0);
+    let (simulation, log) = exact_log(&scene, start, 3.0, 1000.0);
     let mut samples = log.samples().to_vec();
     for palm in samples.iter_mut().flat_map(|s| &mut s.palms) {
         palm.force = None;
@@ -118,7 +106,7 @@ fn torques_serve_where_forces_were_not_logged() {
 fn error_falls_with_fourth_order_in_the_sample_time() {
     let (scene, start) = f5();
     let error = |rate| {
-        let (simulation, log) = simulate(&scene, start, 4.2, rate);
+        let (simulation, log) = exact_log(&scene, start, 4.2, rate);
         largest_error(&estimate_motion(&log, &known(&scene, None)).unwrap(), &simulation).1
     };
     let (coarse, fine) = (error(25.0), error(100.0));
@@ -166,7 +154,7 @@ fn covariance_is_consistent_under_noise() {
     // mean 1 and deviation sqrt(2 / 240) = 0.09 in units of its degrees of freedom; the bounds are five of those wide,
     // since the problem is not quite linear at deviations of 0.08 rad. (Over 4.2 s it is 1.48: docs/limits.md.)
     let (scene, start) = f5();
-    let (simulation, clean) = simulate(&scene, start, 3.0, 200.0);
+    let (simulation, clean) = exact_log(&scene, start, 3.0, 200.0);
     let noise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };
     let stated = NoiseLevel { contact: noise.contact, force: noise.force };
     let runs = 20;

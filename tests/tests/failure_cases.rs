@@ -11,18 +11,7 @@ use recon::object_dynamics::{
 use recon::observer::{
     EstimateError, KnownBody, MotionEstimate, Quantity, Reason, Reliability, TrackError, estimate_motion,
 };
-use recon_tests::{f5, fig5};
-
-fn simulate<S: SupportFunction>(
-    scene: &ThreePalmScene<S>,
-    start: InitialMotion,
-    duration: f64,
-) -> (Simulation, SensorLog) {
-    let times = SampleTimes { duration, rate: 500.0 };
-    let simulation = scene.simulate(start, times, Tolerance::uniform(1e-13)).unwrap();
-    let log = simulation.sensor_log(scene).unwrap().without_truth();
-    (simulation, log)
-}
+use recon_tests::{exact_log, f5, fig5};
 
 fn estimate<S: SupportFunction>(
     scene: &ThreePalmScene<S>,
@@ -55,7 +44,7 @@ const SPIN: InitialMotion = InitialMotion { R_WO: DQuat::IDENTITY, w_WO: DVec3::
 fn a_ball_has_no_orientation_and_that_is_said() {
     let mass = MassProperties::uniform_ellipsoid(1.0, DVec3::ONE).unwrap();
     let scene = ThreePalmScene::new(Sphere::new(1.0).unwrap(), mass, palms(), 9.81).unwrap();
-    let (_, log) = simulate(&scene, SPIN, 3.0);
+    let (_, log) = exact_log(&scene, SPIN, 3.0, 500.0);
     let estimate = estimate(&scene, &log).unwrap();
     assert!(unobservable(&estimate).is_some(), "{:?}", estimate.reliability);
     assert!(estimate.evidence.rank < 12, "{}", estimate.evidence.rank);
@@ -67,7 +56,7 @@ fn a_body_of_revolution_hides_the_turn_about_its_axis() {
     let mass = MassProperties::uniform_ellipsoid(1.0, axes).unwrap();
     let scene = ThreePalmScene::new(Ellipsoid::new(axes).unwrap(), mass, palms(), 9.81).unwrap();
     let start = InitialMotion { R_WO: DQuat::from_rotation_x(0.4), ..SPIN };
-    let (simulation, log) = simulate(&scene, start, 3.0);
+    let (simulation, log) = exact_log(&scene, start, 3.0, 500.0);
     let estimate = estimate(&scene, &log).unwrap();
     assert_eq!(unobservable(&estimate), Some(Quantity::Orientation), "{:?}", estimate.reliability);
     assert_eq!(estimate.evidence.rank, 11);
@@ -82,7 +71,7 @@ fn a_body_at_rest_says_nothing_of_its_orientation() {
     let (scene, _) = f5();
     // F5's palms hold the ellipsoid in balance where its contact normals meet the axis of gravity; it is not at rest at
     // the identity, so take the motion of the first hundredth of a second instead: next to none.
-    let (simulation, log) = simulate(&scene, InitialMotion { w_WO: DVec3::ZERO, ..SPIN }, 0.05);
+    let (simulation, log) = exact_log(&scene, InitialMotion { w_WO: DVec3::ZERO, ..SPIN }, 0.05, 500.0);
     let estimate = estimate(&scene, &log).unwrap();
     let wrong = centre_error(&estimate, &simulation) > 1e-3;
     assert!(!(wrong && estimate.reliability.is_reliable()), "{:?}", estimate.evidence);
@@ -92,7 +81,7 @@ fn a_body_at_rest_says_nothing_of_its_orientation() {
 fn windows_below_the_natural_time_are_right_or_reported() {
     let (scene, start) = f5();
     for duration in [0.02, 0.05, 0.1, 0.2, 0.4] {
-        let (simulation, log) = simulate(&scene, start, duration);
+        let (simulation, log) = exact_log(&scene, start, duration, 500.0);
         let estimate = estimate(&scene, &log).unwrap();
         let error = centre_error(&estimate, &simulation);
         assert!(
@@ -105,7 +94,7 @@ fn windows_below_the_natural_time_are_right_or_reported() {
 #[test]
 fn the_part_in_contact_is_used_and_named() {
     let (scene, start) = fig5(1.0);
-    let (simulation, log) = simulate(&scene, start, 2.0);
+    let (simulation, log) = exact_log(&scene, start, 2.0, 500.0);
     // A log that goes on after contact is lost, as a real one does.
     let mut samples = log.samples().to_vec();
     let last = *samples.last().unwrap();
@@ -126,7 +115,7 @@ fn the_part_in_contact_is_used_and_named() {
 #[test]
 fn logs_that_cannot_be_used_are_named() {
     let (scene, start) = f5();
-    let (_, log) = simulate(&scene, start, 0.1);
+    let (_, log) = exact_log(&scene, start, 0.1, 500.0);
     let change = |f: &dyn Fn(usize, &mut recon::object_dynamics::PalmReading)| {
         let mut samples = log.samples().to_vec();
         for sample in &mut samples {
