@@ -134,6 +134,19 @@ fn a_log_in_millimetres_is_warned_of_and_not_relied_on() {
 }
 
 #[test]
+fn times_in_milliseconds_give_a_verdict_and_no_bounds() {
+    let scratch = scratch_with_log("milliseconds");
+    let mut table = Table::parse(&scratch.read("log.csv"));
+    table.map(&["t"], |t| 1000.0 * t);
+    scratch.write("bad.csv", &table.text());
+    let run = scratch.run(&RECONSTRUCT);
+    assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);
+    let said = run.stdout + &run.stderr;
+    assert!(said.contains("Do not rely on this result") && !said.contains("panicked"), "{said}");
+    assert!(scratch.read("out/motion.csv").starts_with("t,"), "the motion is kept");
+}
+
+#[test]
 fn bad_contacts_are_refused() {
     let scratch = Scratch::new("contacts");
     let check = |text: &str, words: &[&str]| {

@@ -144,6 +144,11 @@ impl fmt::Display for Reason {
                 "noise of this size shifts the estimate by {shift:.1} of its standard deviations: the motion is too \
                  slow or too short for these sensors"
             ),
+            Self::Misfit { residual, explained } if !explained.is_finite() => write!(
+                f,
+                "the motion found leaves {residual:.2e} m/s of the contact condition, beyond what any noise explains: \
+                 check units, frames, mass and inertia"
+            ),
             Self::Misfit { residual, explained } => write!(
                 f,
                 "the motion found leaves {residual:.2e} m/s of the contact condition where sensor noise explains \

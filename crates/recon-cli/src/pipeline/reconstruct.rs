@@ -54,9 +54,24 @@ pub(crate) fn reconstruct(
     warnings.extend(contact_loss(log, used));
     let palms = tracks(log, &estimate)?;
     progress.step("bounding the shape");
-    let BoundsResult { drawn, lower, upper, contradiction, warnings: of_bounds } = bounds(&samples(&palms))?;
+    let bounded = match bounds(&samples(&palms)) {
+        Ok(bounded) => Some(bounded),
+        // Contacts moved by a wrong motion contradict each other; the verdict on the motion says why, and is not lost.
+        Err(error) if !estimate.reliability.is_reliable() => {
+            warnings.push(format!("The contacts give no bounds under this motion ({}).", cause(&error)));
+            None
+        }
+        Err(error) => return Err(error),
+    };
+    let contradiction = bounded.as_ref().map_or(0.0, |b| b.contradiction);
+    let (drawn, lower, upper) = match bounded {
+        Some(BoundsResult { drawn, lower, upper, warnings: of_bounds, .. }) => {
+            warnings.extend(of_bounds);
+            (Some(drawn), lower, upper)
+        }
+        None => (None, None, None),
+    };
     let checks = Checks { implausible: !odd.is_empty(), contradiction, size: size(&palms) };
-    warnings.extend(of_bounds);
     warnings.extend(noise_and_bounds(&estimate, checks.size));
     let axes = log
         .truth()
@@ -72,7 +87,7 @@ pub(crate) fn reconstruct(
         palms,
         motion: estimate.motion.iter().map(state).collect(),
         truth: log.truth().map(|truth| true_motion(&truth[..used], axes)),
-        bounds: Some(drawn),
+        bounds: drawn,
         true_shape: shape,
         evidence: evidence(&estimate, &checks),
         warnings,
@@ -130,6 +145,15 @@ fn contact_loss(log: &SensorLog, used: usize) -> Option<String> {
 fn size(palms: &[PalmTrack; 3]) -> f64 {
     let contacts = palms.iter().flat_map(|p| p.contacts.iter().flatten());
     contacts.map(|c| c.p_OC.length()).fold(0.0, f64::max)
+}
+
+/// The innermost cause of an error, in words.
+fn cause(error: &CliError) -> String {
+    let mut inner: &dyn std::error::Error = error;
+    while let Some(source) = inner.source() {
+        inner = source;
+    }
+    inner.to_string()
 }
 
 /// The bounds take contacts as exact: what to say when they are not.
