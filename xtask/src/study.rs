@@ -5,7 +5,8 @@ use std::process::ExitCode;
 use crate::cargo::{cargo, output, root};
 
 /// Name of a study, the file under docs/ that it writes, and what it is about.
-const STUDIES: [(&str, &str, &str); 2] = [
+const STUDIES: [(&str, &str, &str); 3] = [
+    ("cold_start", "cold-start.md", "three palms: random scenes from no guess"),
     ("planar_monte_carlo", "planar-monte-carlo.md", "planar observers against the Cramer-Rao bound"),
     ("planar_costs", "planar-costs.md", "cost of the planar observers beside their accuracy"),
 ];
