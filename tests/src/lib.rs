@@ -119,3 +119,29 @@ pub fn exact_log<S: SupportFunction>(
     let log = simulation.sensor_log(scene).unwrap().without_truth();
     (simulation, log)
 }
+
+/// A splitmix generator: scenes that do not change with a library's version.
+#[derive(Clone, Debug)]
+pub struct Random(u64);
+
+impl Random {
+    /// A generator with a sequence of its own for each seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// A number between `low` and `high`.
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A vector with each component between `low` and `high`.
+    pub fn vector(&mut self, low: f64, high: f64) -> DVec3 {
+        DVec3::new(self.within(low, high), self.within(low, high), self.within(low, high))
+    }
+}

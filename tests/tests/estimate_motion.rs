@@ -9,7 +9,7 @@ use recon::object_dynamics::{
     InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation, ThreePalmScene,
 };
 use recon::observer::{KnownBody, MotionEstimate, NoiseLevel, equivalent_orientations, estimate_motion};
-use recon_tests::{exact_log, f5, g2};
+use recon_tests::{Random, exact_log, f5, g2};
 
 fn known<S: SupportFunction>(scene: &ThreePalmScene<S>, noise: Option<NoiseLevel>) -> KnownBody {
     KnownBody { mass: *scene.mass(), gravity: scene.gravity(), palm_inertias: scene.palm_inertias(), noise }
@@ -116,7 +116,7 @@ fn error_falls_with_fourth_order_in_the_sample_time() {
 
 #[test]
 fn random_scenes_come_out_right_from_no_guess() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     let mut tried = 0;
     while tried < 12 {
         let axes = random.vector(1.0, 2.5);
@@ -172,22 +172,5 @@ fn covariance_is_consistent_under_noise() {
         assert!((0.55..1.45).contains(&mean), "{mean}");
         // Noise leads the early windows of three runs in twenty to a wrong minimum, which is reported.
         assert!(believed >= 15, "{believed}");
-    }
-}
-
-/// A splitmix generator: scenes that do not change with a library's version.
-struct Random(u64);
-
-impl Random {
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn vector(&mut self, low: f64, high: f64) -> DVec3 {
-        DVec3::new(self.within(low, high), self.within(low, high), self.within(low, high))
     }
 }

@@ -1,10 +1,11 @@
 //! Cold start on random scenes without noise: how many come out right from no guess, and how long they take.
 
-use glam::{DQuat, DVec3};
+use glam::DQuat;
 use recon::contact_kinematics::{Ellipsoid, Palm};
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{InitialMotion, MassProperties, SampleTimes, ThreePalmScene};
 use recon::observer::{KnownBody, estimate_motion};
+use recon_tests::Random;
 use std::time::Instant;
 
 /// Scenes tried; those that lose contact within a second are passed over.
@@ -15,7 +16,7 @@ const RIGHT: f64 = 1e-6;
 type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let (mut tried, mut right, mut reported) = (0, 0, 0);
     let mut times = Vec::new();
     for _ in 0..SCENES {
@@ -69,21 +70,4 @@ fn scene(random: &mut Random) -> Result<Option<(f64, bool, f64)>, Failure> {
     let pairs = estimate.motion.iter().zip(&simulation.instants);
     let error = pairs.map(|(m, now)| m.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max);
     Ok(Some((error, estimate.reliability.is_reliable(), milliseconds)))
-}
-
-/// A splitmix generator: scenes that do not change with a library's version.
-struct Random(u64);
-
-impl Random {
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn vector(&mut self, low: f64, high: f64) -> DVec3 {
-        DVec3::new(self.within(low, high), self.within(low, high), self.within(low, high))
-    }
 }
