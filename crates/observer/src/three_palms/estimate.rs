@@ -111,7 +111,7 @@ pub fn estimate_motion(log: &SensorLog, known: &KnownBody) -> Result<MotionEstim
     estimate_on_track(&track, known)
 }
 
-pub(super) fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate, EstimateError> {
+fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate, EstimateError> {
     let mass = &known.mass;
     let scales = scales(track, mass);
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
