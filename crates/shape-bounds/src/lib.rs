@@ -48,6 +48,6 @@ pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
-pub use noise::{ContactNoise, NoiseError, NoisyContact};
+pub use noise::{ContactNoise, NoiseError, NoisyContact, Outlier, estimate_noise, without_outliers};
 pub use poses::{BodyPose, PoseBounds, PoseError, TRUSTED, half_space_above_plane};
 pub use sample::{ContactError, ContactSample, HalfSpace, NORMAL_TOLERANCE};

@@ -23,6 +23,11 @@ impl<'a> SupportWalk<'a> {
 
     /// The corner farthest along `direction`, which need not be of unit length.
     pub fn farthest(&mut self, direction: DVec3) -> DVec3 {
+        self.hull.vertices()[self.farthest_corner(direction)]
+    }
+
+    /// The same as an index into [`SolidHull::vertices`].
+    pub fn farthest_corner(&mut self, direction: DVec3) -> usize {
         let vertices = self.hull.vertices();
         let mut height = vertices[self.corner as usize].dot(direction);
         loop {
@@ -34,7 +39,7 @@ impl<'a> SupportWalk<'a> {
                 }
             });
             if next == self.corner {
-                return vertices[self.corner as usize];
+                return self.corner as usize;
             }
             self.corner = next;
         }

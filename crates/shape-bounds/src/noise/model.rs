@@ -82,6 +82,39 @@ pub enum NoiseError {
         /// The entry.
         value: f64,
     },
+    /// A contact point with a coordinate that is not finite.
+    #[error("curve {curve}, contact {index}: point ({}, {}, {}) has a coordinate that is not finite", point.x, point.y, point.z)]
+    NotFinite {
+        /// Which curve.
+        curve: usize,
+        /// Which contact of it.
+        index: usize,
+        /// The point as given.
+        point: DVec3,
+    },
+    /// A curve too short to tell its noise.
+    #[error(
+        "curve {curve} has {found} contacts; its noise takes {needed} to be judged: state the noise instead"
+    )]
+    TooFewToJudge {
+        /// Which curve.
+        curve: usize,
+        /// Contacts in it.
+        found: usize,
+        /// Contacts needed.
+        needed: usize,
+    },
+    /// Contacts contradict each other so much that right ones cannot be told from wrong ones.
+    #[error(
+        "at least {outliers} of {contacts} contacts contradict the others by more than their noise explains: the noise \
+         is stated too small, or normals do not point outwards"
+    )]
+    Undecided {
+        /// Contacts that would have to go.
+        outliers: usize,
+        /// Contacts in all.
+        contacts: usize,
+    },
     /// The noise leaves nothing that is certainly in the body.
     #[error("nothing is certainly inside of the body: the noise is as large as the hull of the contacts")]
     NoLowerBound,
@@ -97,4 +130,25 @@ pub enum NoiseError {
     /// The measured contacts have no bounds whatever the noise.
     #[error(transparent)]
     Bounds(#[from] crate::bounds::BoundsError),
+}
+
+impl NoiseError {
+    pub(super) fn check_confidence(confidence: f64) -> Result<(), Self> {
+        if confidence > 0.5 && confidence < 1.0 { Ok(()) } else { Err(Self::Confidence(confidence)) }
+    }
+
+    /// Refuses noise levels that are none and points that are not finite.
+    pub(super) fn check_contacts(curves: &[Vec<NoisyContact>]) -> Result<(), Self> {
+        for (curve, contacts) in curves.iter().enumerate() {
+            for (index, NoisyContact { contact, noise }) in contacts.iter().enumerate() {
+                if let Some((name, value)) = noise.defect() {
+                    return Err(Self::Noise { curve, index, name, value });
+                }
+                if !contact.point.is_finite() {
+                    return Err(Self::NotFinite { curve, index, point: contact.point });
+                }
+            }
+        }
+        Ok(())
+    }
 }

@@ -1,6 +1,7 @@
 use super::*;
 use crate::generators::{AXES, ellipsoid_support, noisy_curves};
 use crate::halfspaces::Intersection;
+use glam::DVec3;
 
 /// Bounds of one simulated noisy run, at noise relative to the ellipsoid's largest semi-axis.
 fn run(count: usize, level: f64, confidence: f64, seed: u64) -> Result<ShapeBounds, NoiseError> {
@@ -94,4 +95,100 @@ fn impossible_noise_and_confidence_are_named() {
     curves[0][5].noise.point.x_axis.y = 1.0;
     let error = ShapeBounds::from_noisy_curves(&curves, 0.9).unwrap_err();
     assert!(matches!(error, NoiseError::Noise { curve: 0, index: 5, name: "point", .. }));
+}
+
+/// Contacts of the ellipsoid measured with noise relative to its largest semi-axis, one in `every` of them wrong by
+/// `wrong` m, turned by `turned` rad.
+fn spoilt(level: f64, every: usize, wrong: f64, turned: f64, seed: u64) -> Vec<Vec<crate::ContactSample>> {
+    let mut source = crate::generators::Source::new(seed ^ 77);
+    let mut curves = noisy_curves(900, level * AXES.x, level, seed);
+    for contact in curves.iter_mut().flatten().step_by(every).skip(1) {
+        contact.point += source.direction() * wrong;
+        let n = contact.normal.get();
+        let axis = source.direction().cross(n);
+        contact.normal = contact_kinematics::Direction::new(n + axis.normalize_or_zero() * turned).unwrap();
+    }
+    curves
+}
+
+/// Estimated over true standard deviations of each curve: point across the surface, point along it, normal.
+fn estimated_over_true(curves: &[Vec<NoisyContact>], level: f64) -> Vec<f64> {
+    let of = |curve: &Vec<NoisyContact>| {
+        let (n, noise) = (curve[0].contact.normal.get(), curve[0].noise);
+        let along = n.any_orthonormal_vector();
+        let point = |u: DVec3| u.dot(noise.point * u).sqrt() / (level * AXES.x);
+        [point(n), point(along), noise.normal / level]
+    };
+    curves.iter().flat_map(of).collect()
+}
+
+#[test]
+fn noise_is_estimated_from_the_contacts_themselves() {
+    for level in [1e-4, 1e-3, 1e-2] {
+        let mut below = 0;
+        for seed in 0..40 {
+            let ratios = estimated_over_true(
+                &estimate_noise(&spoilt(level, 10_000, 0.0, 0.0, seed), 0.95).unwrap(),
+                level,
+            );
+            below += usize::from(ratios.iter().any(|r| *r < 1.0));
+            // Raised by 2.5 standard deviations of 4 to 9 %, which scatter as much again.
+            assert!(ratios.iter().all(|r| (0.85..1.7).contains(r)), "level {level}: {ratios:?}");
+        }
+        // Stated: 5 % of 40; more than 6 of a right estimate have a probability of 0.3 %.
+        assert!(below <= 6, "level {level}: {below}");
+    }
+}
+
+#[test]
+fn outliers_hardly_move_the_estimated_noise() {
+    // With one contact in twenty far off, 15 % of the second differences are: their median is 1.22 times as large.
+    let estimate = estimate_noise(&spoilt(1e-3, 20, 0.3, 0.2, 3), 0.95).unwrap();
+    let ratios = estimated_over_true(&estimate, 1e-3);
+    assert!(ratios.iter().all(|r| (1.0..1.22 * 1.7).contains(r)), "{ratios:?}");
+}
+
+#[test]
+fn bounds_hold_with_estimated_noise_and_planted_outliers() {
+    let mut caught = 0;
+    for seed in 0..20 {
+        let curves = estimate_noise(&spoilt(1e-3, 30, 0.1, 0.1, seed), 0.99).unwrap();
+        let (kept, outliers) = without_outliers(&curves, 0.99).unwrap();
+        let planted =
+            |o: &&Outlier| (o.index + curves[..o.curve].iter().map(Vec::len).sum::<usize>()) % 30 == 0;
+        caught += outliers.iter().filter(planted).count();
+        let innocent = outliers.len() - outliers.iter().filter(planted).count();
+        assert!(innocent <= 2, "seed {seed}: {innocent} of {}", outliers.len());
+        assert!(holds(&ShapeBounds::from_noisy_curves(&kept, 0.95).unwrap()), "seed {seed}");
+    }
+    // Off by 40 and 100 standard deviations.
+    assert_eq!(caught, 20 * 29);
+}
+
+#[test]
+fn clean_contacts_hold_no_outliers() {
+    for (level, seed) in [(0.0, 4), (1e-4, 5), (1e-3, 6), (1e-2, 7)] {
+        let noise = ContactNoise::isotropic(level * AXES.x, level);
+        let curves: Vec<Vec<NoisyContact>> = noisy_curves(600, level * AXES.x, level, seed)
+            .into_iter()
+            .map(|curve| curve.into_iter().map(|contact| NoisyContact { contact, noise }).collect())
+            .collect();
+        let (kept, outliers) = without_outliers(&curves, 0.95).unwrap();
+        assert_eq!(outliers, []);
+        assert!(kept == curves);
+    }
+}
+
+#[test]
+fn contacts_that_contradict_throughout_are_refused() {
+    let noise = ContactNoise::isotropic(1e-6, 1e-6);
+    let inwards = |c: crate::ContactSample| crate::ContactSample { normal: -c.normal, ..c };
+    let curves: Vec<Vec<NoisyContact>> = noisy_curves(300, 0.0, 0.0, 1)
+        .into_iter()
+        .map(|curve| curve.into_iter().map(|c| NoisyContact { contact: inwards(c), noise }).collect())
+        .collect();
+    assert!(matches!(without_outliers(&curves, 0.95), Err(NoiseError::Undecided { contacts: 300, .. })));
+    let short = noisy_curves(60, 0.0, 0.0, 1);
+    let error = estimate_noise(&short, 0.95).unwrap_err();
+    assert_eq!(error, NoiseError::TooFewToJudge { curve: 0, found: 20, needed: 30 });
 }

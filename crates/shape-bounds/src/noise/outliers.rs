@@ -1,0 +1,201 @@
+//! Contacts that contradict the others by more than their noise explains.
+
+use super::model::{NoiseError, NoisyContact};
+use super::quantile;
+use super::roughness::standing_out;
+use crate::hull::{Hull, SupportWalk};
+use glam::DVec3;
+
+/// Contacts against which the suspects are tried to tell which of a contradictory pair is wrong.
+const WITNESSES: usize = 1000;
+/// What exact contacts may contradict each other by, relative to their coordinates: rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// A contact that was left out because it contradicts others or stands out of its own curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outlier {
+    /// Its curve.
+    pub curve: usize,
+    /// Its place in that curve.
+    pub index: usize,
+    /// By how many standard deviations it contradicts another contact, at most, or stands out.
+    pub deviations: f64,
+    /// Share of the other contacts that it contradicts; zero for one that only stands out.
+    pub share: f64,
+}
+
+/// `curves`, each in the order in which it was traced, without the contacts that cannot be right, and these.
+///
+/// First those that stand out of their own curve by more than noise and bending of the curve explain. Then those that
+/// contradict others: two contacts of a convex body do when one lies beyond the other's half-space. Beyond what noise
+/// does, at the stated `confidence` for all pairs together, one of the two is wrong: the one that contradicts more
+/// contacts; both, where the rest does not tell. Leaving a good contact out only widens the bounds, so that they stay
+/// sound either way. Errors of less than about seven standard deviations, at the ends of a curve twelve, may stay unnoticed.
+///
+/// # Errors
+/// [`NoiseError`] for an impossible confidence or noise, a point that is not finite, and when half of the contacts or more
+/// would have to go, so that which are the outliers is not decided.
+pub fn without_outliers(
+    curves: &[Vec<NoisyContact>],
+    confidence: f64,
+) -> Result<(Vec<Vec<NoisyContact>>, Vec<Outlier>), NoiseError> {
+    NoiseError::check_confidence(confidence)?;
+    NoiseError::check_contacts(curves)?;
+    let mut suspects = Suspects::new(curves, confidence);
+    while suspects.drop_worst() {
+        let (outliers, contacts) = (suspects.found.len(), suspects.all.len());
+        if 2 * outliers >= contacts {
+            return Err(NoiseError::Undecided { outliers, contacts });
+        }
+    }
+    let mut alive = suspects.alive.iter();
+    let kept = curves
+        .iter()
+        .map(|curve| {
+            let of_curve = curve.iter().zip(alive.by_ref().take(curve.len()));
+            of_curve.filter(|(_, alive)| **alive).map(|(contact, _)| *contact).collect()
+        })
+        .collect();
+    let mut outliers = suspects.found;
+    outliers.sort_unstable_by_key(|o| (o.curve, o.index));
+    Ok((kept, outliers))
+}
+
+/// All contacts, which of them are left, and what has been found.
+struct Suspects<'a> {
+    all: Vec<&'a NoisyContact>,
+    /// Curve and place of each.
+    places: Vec<(usize, usize)>,
+    alive: Vec<bool>,
+    found: Vec<Outlier>,
+    /// Standard deviations beyond which a pair contradicts.
+    limit: f64,
+}
+
+/// The farthest of points along a direction, over their hull.
+struct Farthest<'a> {
+    walk: Option<SupportWalk<'a>>,
+    hull: &'a Hull,
+    points: &'a [DVec3],
+}
+
+impl<'a> Farthest<'a> {
+    fn of(hull: &'a Hull, points: &'a [DVec3]) -> Self {
+        Self { walk: hull.solid().map(SupportWalk::new), hull, points }
+    }
+
+    fn along(&mut self, n: DVec3) -> usize {
+        if let (Some(walk), Some(solid)) = (&mut self.walk, self.hull.solid()) {
+            return solid.sources()[walk.farthest_corner(n)] as usize;
+        }
+        let height = |k: &usize| self.points[*k].dot(n);
+        (0..self.points.len()).max_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(0)
+    }
+}
+
+/// Two contacts of which the one is beyond the half-space of the other.
+struct Contradiction {
+    pair: [usize; 2],
+    deviations: f64,
+}
+
+impl<'a> Suspects<'a> {
+    fn new(curves: &'a [Vec<NoisyContact>], confidence: f64) -> Self {
+        let all: Vec<_> = curves.iter().flatten().collect();
+        let places =
+            curves.iter().enumerate().flat_map(|(c, curve)| (0..curve.len()).map(move |k| (c, k))).collect();
+        let pairs = (all.len() as f64).powi(2).max(1.0);
+        let limit = quantile::normal(((1.0 - confidence) / pairs).min(0.1));
+        let mut suspects = Self { places, alive: vec![true; all.len()], all, found: Vec::new(), limit };
+        let mut first = 0;
+        for (curve, contacts) in curves.iter().enumerate() {
+            for (index, deviations) in standing_out(contacts, (1.0 - confidence) / curves.len() as f64) {
+                suspects.alive[first + index] = false;
+                suspects.found.push(Outlier { curve, index, deviations, share: 0.0 });
+            }
+            first += contacts.len();
+        }
+        suspects
+    }
+
+    /// Drops contacts until the contradictions that are found now are gone; `false` when there are none.
+    fn drop_worst(&mut self) -> bool {
+        let contradictions = self.contradictions();
+        let mut of: Vec<Vec<usize>> = vec![Vec::new(); self.all.len()];
+        for (k, c) in contradictions.iter().enumerate() {
+            c.pair.iter().for_each(|contact| of[*contact].push(k));
+        }
+        let witnesses = self.witnesses();
+        let count = |c: usize| {
+            let with = witnesses
+                .iter()
+                .filter(|w| self.deviations(c, **w).max(self.deviations(**w, c)) > self.limit);
+            with.count().max(of[c].len())
+        };
+        let counts: Vec<usize> = (0..of.len()).map(|c| if of[c].is_empty() { 0 } else { count(c) }).collect();
+        let mut ranked: Vec<usize> = (0..of.len()).filter(|c| counts[*c] > 0).collect();
+        ranked.sort_unstable_by_key(|c| (std::cmp::Reverse(counts[*c]), *c));
+        let mut open = vec![true; contradictions.len()];
+        for contact in ranked {
+            let left: Vec<usize> = of[contact].iter().copied().filter(|k| open[*k]).collect();
+            let Some(deviations) = left.iter().map(|k| contradictions[*k].deviations).reduce(f64::max) else {
+                // All that it contradicted is gone.
+                continue;
+            };
+            for k in left {
+                let [a, b] = contradictions[k].pair;
+                // Of two that are contradicted by equally many, both go.
+                open[k] = counts[a] == counts[b] && self.alive[a] && self.alive[b];
+            }
+            self.alive[contact] = false;
+            let (curve, index) = self.places[contact];
+            let share = counts[contact] as f64 / witnesses.len().max(counts[contact]) as f64;
+            self.found.push(Outlier { curve, index, deviations, share });
+        }
+        !contradictions.is_empty()
+    }
+
+    /// For each half-space that is left, the farthest point beyond it, if that is too far.
+    fn contradictions(&self) -> Vec<Contradiction> {
+        let left: Vec<usize> = (0..self.all.len()).filter(|c| self.alive[*c]).collect();
+        let points: Vec<_> = left.iter().map(|c| self.all[*c].contact.point).collect();
+        let Ok(hull) = Hull::of(&points) else { return Vec::new() };
+        let mut farthest = Farthest::of(&hull, &points);
+        let mut found = Vec::new();
+        for half_space in &left {
+            let n = self.all[*half_space].contact.normal.get();
+            let point = left[farthest.along(n)];
+            let deviations = self.deviations(*half_space, point);
+            if deviations > self.limit {
+                found.push(Contradiction { pair: [*half_space, point], deviations });
+            }
+        }
+        found
+    }
+
+    /// How far contact `j` lies beyond the half-space of contact `i`, in standard deviations.
+    fn deviations(&self, i: usize, j: usize) -> f64 {
+        let (a, b) = (self.all[i], self.all[j]);
+        let n = a.contact.normal.get();
+        let reach = b.contact.point - a.contact.point;
+        let excess = n.dot(reach);
+        if excess <= 0.0 {
+            return 0.0;
+        }
+        let independent =
+            n.dot((a.noise.point + b.noise.point) * n) + (a.noise.normal * n.cross(reach).length()).powi(2);
+        // Errors of the poses may be correlated in any way: at worst they add.
+        let pose = a.noise.pose_translation
+            + b.noise.pose_translation
+            + a.noise.pose_rotation * a.contact.point.length().max(b.contact.point.length())
+            + b.noise.pose_rotation * b.contact.point.length();
+        let rounding = ROUNDING * (a.contact.point.abs().max_element() + b.contact.point.abs().max_element());
+        excess / (independent.max(0.0).sqrt() + pose + rounding)
+    }
+
+    fn witnesses(&self) -> Vec<usize> {
+        let left: Vec<usize> = (0..self.all.len()).filter(|c| self.alive[*c]).collect();
+        let stride = left.len().div_ceil(WITNESSES).max(1);
+        left.into_iter().step_by(stride).collect()
+    }
+}
