@@ -26,6 +26,7 @@
 mod bounds;
 mod curvature;
 mod distance;
+mod erosion;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
 mod halfspaces;

@@ -25,19 +25,36 @@ impl Polyhedron {
 impl Caps<'_> {
     /// The largest distance from `from` of a point of the polyhedron on or beyond the plane; zero if there is none.
     pub(crate) fn reach(&mut self, plane: &HalfSpace, from: DVec3) -> f64 {
+        let mut reach = 0.0_f64;
+        self.each_corner(plane, |p| reach = reach.max(p.distance(from)));
+        reach
+    }
+
+    /// A ball about the part of the polyhedron on or beyond the plane; `None` if there is none.
+    pub(crate) fn ball(&mut self, plane: &HalfSpace) -> Option<(DVec3, f64)> {
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        self.each_corner(plane, |p| (low, high) = (low.min(p), high.max(p)));
+        if low.x > high.x {
+            return None;
+        }
+        let centre = 0.5 * (low + high);
+        Some((centre, self.reach(plane, centre)))
+    }
+
+    /// The corners of the part of the polyhedron on or beyond the plane.
+    fn each_corner(&mut self, plane: &HalfSpace, mut visit: impl FnMut(DVec3)) {
         let vertices = self.body.vertices();
         let neighbours = self.body.vertex_neighbours();
         let top = self.climb(plane);
         if plane.excess(vertices[top as usize]) < 0.0 {
-            return 0.0;
+            return;
         }
         self.search += 1;
         self.met[top as usize] = self.search;
         self.stack.push(top);
-        let mut reach = 0.0_f64;
         while let Some(corner) = self.stack.pop() {
             let here = vertices[corner as usize];
-            reach = reach.max(here.distance(from));
+            visit(here);
             for next in neighbours[corner as usize] {
                 let there = vertices[next as usize];
                 if plane.excess(there) >= 0.0 {
@@ -48,12 +65,10 @@ impl Caps<'_> {
                 } else {
                     // The edge leaves the cap where it crosses the plane.
                     let (inside, outside) = (plane.excess(here), plane.excess(there));
-                    let crossing = here + (there - here) * (inside / (inside - outside));
-                    reach = reach.max(crossing.distance(from));
+                    visit(here + (there - here) * (inside / (inside - outside)));
                 }
             }
         }
-        reach
     }
 
     /// How far the polyhedron reaches beyond the plane; negative if it stays below.

@@ -1,17 +1,20 @@
-//! Upper bounds from poses of a body above a plane, as of a tracked object that is dropped on a table.
+//! Bounds from poses of a body above a plane, as of a tracked object that is dropped on a table.
 //!
 //! Each pose says that the whole body is above the plane: one half-space of the body's frame. Where the body touches the
 //! plane the half-space is tight. Both together tell the noise: a touching half-space that the others cut far below its
-//! own plane contradicts them.
+//! own plane contradicts them. And where it touches, some point of the body is near the plane, which bounds it from
+//! inside.
 
 mod error;
 mod level;
+mod lower;
 #[cfg(test)]
 mod tests;
 
 pub use error::PoseError;
 
 use crate::halfspaces::{Intersection, Polyhedron};
+use crate::hull::Hull;
 use crate::sample::HalfSpace;
 use contact_kinematics::Direction;
 use glam::{DQuat, DVec3};
@@ -34,6 +37,8 @@ const KINK: f64 = 0.25;
 pub struct PoseBounds {
     /// The body is in here, at the stated confidence.
     pub upper: Polyhedron,
+    /// This is in the body, at the stated confidence; `None` where the touching poses prove nothing inside.
+    pub lower: Option<Hull>,
     /// Margin common to all half-spaces, in m.
     pub margin: f64,
     /// Noise at which the share [`TRUSTED`] of the touching poses are consistent with all others, in m.
@@ -58,7 +63,7 @@ struct Observation {
 }
 
 impl PoseBounds {
-    /// An upper bound of a convex body from `runs` of poses sampled evenly in time, with the body always above the plane of
+    /// Bounds of a convex body from `runs` of poses sampled evenly in time, with the body always above the plane of
     /// height `plane_z` in the world.
     ///
     /// The margins hold two parts: a quarter of the largest second difference of the position around a frame, since a
@@ -84,7 +89,9 @@ impl PoseBounds {
         let margin = consistent_level * tails;
         let upper = intersect(&observations, margin)?;
         let outliers = level::inconsistent(&observations, &upper, margin);
-        Ok(Self { upper, margin, consistent_level, touching, outliers })
+        let inside = lower::certain_points(&observations, &upper, margin);
+        let lower = Hull::of(&inside).ok().filter(|hull| hull.solid().is_some());
+        Ok(Self { upper, lower, margin, consistent_level, touching, outliers })
     }
 }
 

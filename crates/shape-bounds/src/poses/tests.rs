@@ -35,6 +35,9 @@ fn a_tossed_box_is_contained_and_its_noise_is_found() {
             DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - DVec3::ONE
         };
         assert!((0..8).all(|i| bounds.upper.contains(half * corner(i))), "sd {sd}");
+        let lower = bounds.lower.as_ref().unwrap().solid().unwrap();
+        assert!(lower.vertices().iter().all(|v| (v.abs() / half).max_element() <= 1.0), "sd {sd}");
+        assert!(lower.volume() > 0.3 * 8.0 * half.element_product(), "sd {sd}");
         assert!(bounds.consistent_level < 5.0 * sd, "{sd} {}", bounds.consistent_level);
         assert!(
             bounds.upper.volume() < 8.0 * half.element_product() * (1.0 + 60.0 * sd / half.min_element())
@@ -92,5 +95,8 @@ fn the_real_cube_is_contained() {
         );
         assert!((0..8).all(|i| bounds.upper.contains(corner(i) * half)));
         assert!((1.0..1.25).contains(&ratio), "{ratio}");
+        let lower = bounds.lower.as_ref().unwrap().solid().unwrap();
+        println!("  lower bound {:.3} of the cube's volume", lower.volume() / (8.0 * half * half * half));
+        assert!(lower.vertices().iter().all(|v| v.abs().max_element() <= half));
     }
 }
