@@ -38,7 +38,7 @@ pub(crate) enum Command {
     Simulate(SimulateArgs),
     /// Reconstruct motion, contact curves and bounds from a sensor log
     Reconstruct(ReconstructArgs),
-    /// Bound a convex object from contact points with outward normals
+    /// Bound a convex object from contact points with outward normals, or from its poses above a plane
     Bounds(BoundsArgs),
     /// Reconstruct a planar object between two hinged palms from a planar log, or the scene of the paper's Fig. 3
     Planar(PlanarArgs),
@@ -90,14 +90,39 @@ pub(crate) struct ReconstructArgs {
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The contacts are CSV with the columns x, y, z (m) and nx, ny, nz (outward unit normal), in any one frame of the object.
+Contacts are CSV with the columns x, y, z (m) and nx, ny, nz (outward unit normal), in any one frame of the object; a
+column `palm` or `curve` numbers the curves along which they were traced. They are taken as exact unless their noise is
+stated or estimated: then the bounds hold at the stated confidence, and contacts that cannot be right are left out and
+listed.
+
+Poses above a plane are CSV with the columns qw, qx, qy, qz (body to world) and px, py, pz (m, z upwards), sampled evenly; a
+column `toss` or `run` numbers the runs. Their noise is judged from their own consistency.
+
+The output folder appears as a whole or not at all: lower_bound.ply, upper_bound.ply (m) and summary.json.
 
 Examples:
   recon bounds contacts.csv
-  recon bounds contacts.csv -o bounds")]
+  recon bounds contacts.csv --contact-noise 1e-4 --normal-noise 2e-3 --confidence 0.99 -o bounds
+  recon bounds contacts.csv --estimate-noise -o bounds
+  recon bounds tosses.csv --plane-height 0.002 -o bounds")]
 pub(crate) struct BoundsArgs {
-    /// Contact points with outward normals (CSV)
-    pub(crate) contacts: PathBuf,
+    /// Contact points with outward normals, or poses above a plane (CSV)
+    pub(crate) input: PathBuf,
+    /// Standard deviation per axis of the contact points, m
+    #[arg(long, value_name = "M", requires = "normal_noise", value_parser = not_negative)]
+    pub(crate) contact_noise: Option<f64>,
+    /// Standard deviation of the normals about each tangent axis, rad
+    #[arg(long, value_name = "RAD", requires = "contact_noise", value_parser = not_negative)]
+    pub(crate) normal_noise: Option<f64>,
+    /// Judge the noise of contacts by the roughness of their curves
+    #[arg(long, conflicts_with_all = ["contact_noise", "normal_noise"])]
+    pub(crate) estimate_noise: bool,
+    /// Confidence of bounds under noise, between 0.5 and 1 [default: 0.95]
+    #[arg(long, value_parser = confidence)]
+    pub(crate) confidence: Option<f64>,
+    /// Height of the plane below the poses, m [default: 0]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite)]
+    pub(crate) plane_height: Option<f64>,
     /// Folder to write the meshes and summary.json to; an earlier one of recon's is replaced
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
@@ -178,6 +203,20 @@ fn not_negative(text: &str) -> Result<f64, String> {
     } else {
         Err("it must be finite and at least 0".to_owned())
     }
+}
+
+fn confidence(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value > 0.5 && value < 1.0 {
+        Ok(value)
+    } else {
+        Err("it must lie between 0.5 and 1, as 0.95".to_owned())
+    }
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if value.is_finite() { Ok(value) } else { Err("it must be finite".to_owned()) }
 }
 
 #[cfg(test)]

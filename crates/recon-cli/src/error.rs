@@ -1,7 +1,7 @@
 use recon::object_dynamics::{LogError, SceneError as DynamicsError, SimulationError};
 use recon::observer::EstimateError;
-use recon::shape_bounds::{BoundsError, IntersectionError};
-use recon_io::{ContactsError, LogFileError, MeshError, OutputError, SceneError};
+use recon::shape_bounds::{BoundsError, IntersectionError, NoiseError, PoseError};
+use recon_io::{LogFileError, MeshError, OutputError, SceneError, TouchesError};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use thiserror::Error;
@@ -31,8 +31,14 @@ pub(crate) enum CliError {
     Log(#[from] LogFileError),
     #[error("the scene cannot be used")]
     Scene(#[from] SceneError),
-    #[error("the contacts cannot be used")]
-    Contacts(#[from] ContactsError),
+    #[error("the contacts or poses cannot be used")]
+    Touches(#[from] TouchesError),
+    #[error("--{option} is for {meant}, but {} holds {found}", path.display())]
+    Option { option: &'static str, meant: &'static str, found: &'static str, path: PathBuf },
+    #[error("the contacts give no bounds under noise")]
+    NoisyBounds(#[from] NoiseError),
+    #[error("the poses give no bounds")]
+    PoseBounds(#[from] PoseError),
     #[error(
         "mass and inertia of the object are not known; give them in a scene file (--scene) as object.mass and \
          object.principal_moments, object.inertia or object.radii_of_gyration"
@@ -79,7 +85,9 @@ impl CliError {
             Self::Picture(_) | Self::Mesh(_) | Self::Signals(_) | Self::PlanarDemo(_) => 1,
             Self::Log(_)
             | Self::Scene(_)
-            | Self::Contacts(_)
+            | Self::Touches(_)
+            | Self::NoisyBounds(_)
+            | Self::PoseBounds(_)
             | Self::UnknownBody
             | Self::NothingToSimulate { .. }
             | Self::Shape(_)
@@ -90,6 +98,7 @@ impl CliError {
             | Self::PlanarEstimate(_)
             | Self::PlanarTooShort { .. }
             | Self::Bounds(_) => 3,
+            Self::Option { .. } => 2,
             Self::Output(_) | Self::StandardOutput(_) => 5,
             Self::Interrupted => 130,
         })

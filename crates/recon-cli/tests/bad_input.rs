@@ -153,7 +153,7 @@ fn bad_contacts_are_refused() {
         scratch.write("contacts.csv", text);
         refused(&scratch, &["bounds", "contacts.csv", "-o", "out"], 3, words);
     };
-    check("", &["contacts.csv", "holds no contacts"]);
+    check("", &["contacts.csv", "holds no rows"]);
     check("x,y,z,nx,ny\n", &["column `nz` is missing"]);
     check("x,y,z,nx,ny,nz\n1,0,0,1,0,up\n", &["line 2, column `nz`", "`up`"]);
     check("x,y,z,nx,ny,nz\n1,0,0,3,0,0\n", &["line 2", "length 3"]);

@@ -3,7 +3,6 @@
 //! Errors of reading name the file, the line or key, the value and the mend. What is written as a whole appears as a
 //! whole or not at all ([`OutputFolder`], [`AtomicFile`]).
 
-mod contacts;
 mod log;
 mod mesh;
 mod number;
@@ -14,10 +13,8 @@ mod report;
 mod scene;
 mod summary;
 mod table;
+mod touches;
 
-pub use contacts::{
-    ContactPoint, ContactsError, ContactsErrorKind, parse_contacts, read_contacts, write_contacts,
-};
 pub use log::{
     LogFileError, LogFileErrorKind, parse_log, parse_planar_log, read_log, read_planar_log, write_log,
     write_planar_log,
@@ -33,3 +30,7 @@ pub use report::{
 pub use scene::{KnownInertia, Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation};
 pub use summary::summary;
 pub use table::{write_contact_curves, write_motion, write_radius_functions};
+pub use touches::{
+    Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_poses, read_contacts, read_touches,
+    write_contacts,
+};

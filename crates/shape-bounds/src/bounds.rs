@@ -88,6 +88,12 @@ impl ShapeBounds {
         Ok(Self { lower, corners, upper })
     }
 
+    /// Bounds that are made already; `None` for a lower one without volume.
+    pub(crate) fn between(lower: Hull, upper: Intersection) -> Option<Self> {
+        let corners = lower.solid()?.vertices().to_vec();
+        Some(Self { lower, corners, upper })
+    }
+
     /// The hull of the contact points: in the body.
     #[must_use]
     pub fn lower(&self) -> &Hull {

@@ -1,37 +1,85 @@
 use crate::cli::BoundsArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{BoundsResult, bounds, write_bounds_folder};
+use crate::pipeline::{BoundsResult, Noise, bounds, noisy_bounds, pose_bounds, write_bounds_folder};
 use crate::progress::Progress;
-use recon::shape_bounds::ContactSample;
-use recon_io::read_contacts;
+use recon_io::{Touches, read_touches};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
+/// Confidence of bounds under noise where none is asked for.
+const CONFIDENCE: f64 = 0.95;
+
 pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliError> {
     let progress = Progress::new(2, console.is_json());
-    progress.step("reading the contacts");
-    let contacts: Vec<ContactSample> = read_contacts(&args.contacts)?
-        .into_iter()
-        .map(|c| ContactSample { point: c.point, normal: c.normal })
-        .collect();
+    progress.step("reading contacts or poses");
+    let touches = read_touches(&args.input)?;
+    check_options(args, &touches)?;
     progress.step("bounding the shape");
-    let made = bounds(&contacts)?;
-    let figures = figures(&made, contacts.len());
+    let confidence = args.confidence.unwrap_or(CONFIDENCE);
+    let (made, about, what) = match touches {
+        Touches::Poses(runs) => {
+            let count = runs.iter().map(Vec::len).sum::<usize>();
+            let (made, about) = pose_bounds(&runs, args.plane_height.unwrap_or(0.0), confidence)?;
+            (made, about, format!("{count} poses in {} runs", runs.len()))
+        }
+        Touches::Contacts(curves) => {
+            let count = format!("{} contacts", curves.iter().map(Vec::len).sum::<usize>());
+            match noise(args) {
+                Some(noise) => {
+                    let (made, about) = noisy_bounds(&curves, noise, confidence)?;
+                    (made, about, count)
+                }
+                None => (bounds(&curves.concat())?, json!({ "noise": "none" }), count),
+            }
+        }
+    };
+    let figures = figures(&made, &what, &about);
     if let Some(folder) = &args.output {
         write_bounds_folder(folder, &made, &figures)?;
     }
     drop(progress);
-    console.result(&describe(&made, contacts.len()), &figures)?;
+    console.result(&describe(&made, &what, &about), &figures)?;
     let whole = made.lower.is_some() && made.upper.is_some();
     Ok(if whole { Outcome::Done } else { Outcome::WithReservations })
 }
 
-fn figures(made: &BoundsResult, contacts: usize) -> Value {
+/// Refuses options that mean nothing for what is in the file.
+fn check_options(args: &BoundsArgs, touches: &Touches) -> Result<(), CliError> {
+    let (found, meant, given) = match touches {
+        Touches::Poses(_) => (
+            "poses",
+            "contacts",
+            [("contact-noise", args.contact_noise.is_some()), ("estimate-noise", args.estimate_noise)],
+        ),
+        Touches::Contacts(_) => (
+            "contacts without stated noise",
+            "poses and noisy contacts",
+            [
+                ("plane-height", args.plane_height.is_some()),
+                ("confidence", args.confidence.is_some() && noise(args).is_none()),
+            ],
+        ),
+    };
+    match given.iter().find(|(_, given)| *given) {
+        Some((option, _)) => Err(CliError::Option { option, meant, found, path: args.input.clone() }),
+        None => Ok(()),
+    }
+}
+
+fn noise(args: &BoundsArgs) -> Option<Noise> {
+    match (args.contact_noise, args.normal_noise) {
+        (Some(point), Some(normal)) => Some(Noise::Stated { point, normal }),
+        _ => args.estimate_noise.then_some(Noise::Estimated),
+    }
+}
+
+fn figures(made: &BoundsResult, what: &str, about: &Value) -> Value {
     let (lower, upper) = (made.drawn.lower.volume, made.drawn.upper.as_ref().map(|u| u.volume));
     json!({
         "recon": env!("CARGO_PKG_VERSION"),
-        "contacts": contacts,
+        "input": what,
+        "about": about,
         "bounds": {
             "lower_volume_m3": lower,
             "upper_volume_m3": upper,
@@ -42,15 +90,22 @@ fn figures(made: &BoundsResult, contacts: usize) -> Value {
     })
 }
 
-fn describe(made: &BoundsResult, contacts: usize) -> String {
+fn describe(made: &BoundsResult, what: &str, about: &Value) -> String {
     let lower = made.drawn.lower.volume;
     let mut text = String::new();
     for warning in &made.warnings {
         let _ = writeln!(text, "Warning: {warning}");
     }
-    let _ = writeln!(text, "{contacts} contacts\n  lower bound            {lower:.6} m^3");
+    let _ = writeln!(text, "{what}");
+    if let Some(confidence) = about["confidence"].as_f64() {
+        let _ = writeln!(text, "  confidence             {} %", 100.0 * confidence);
+    }
+    if let Some(margin) = about["margin_m"].as_f64() {
+        let _ = writeln!(text, "  margin of the poses    {margin:.6} m");
+    }
+    let _ = writeln!(text, "  lower bound            {lower:.6e} m^3");
     if let Some(upper) = &made.drawn.upper {
-        let _ = writeln!(text, "  upper bound            {:.6} m^3", upper.volume);
+        let _ = writeln!(text, "  upper bound            {:.6e} m^3", upper.volume);
         let _ = writeln!(text, "  lower / upper          {:.4}", lower / upper.volume);
     }
     if let Some(gap) = made.drawn.largest_gap {

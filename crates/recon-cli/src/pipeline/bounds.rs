@@ -28,14 +28,7 @@ pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliErro
     if lower.is_none() {
         warnings.push(flat(whole.lower()).to_owned());
     }
-    if let Intersection::Unbounded(open) = whole.upper() {
-        let d = open.directions().first().map(|d| d.get());
-        let side =
-            d.map_or(String::new(), |d| format!(", for one towards ({:.2}, {:.2}, {:.2})", d.x, d.y, d.z));
-        warnings.push(format!(
-            "The contacts leave the object unbounded on some side{side}: there is no upper bound."
-        ));
-    }
+    warnings.extend(unbounded(&whole));
     let some = thinned(contacts);
     let few = if contacts.len() > some.len() { ShapeBounds::from_contacts(&some).ok() } else { None };
     let few = few.as_ref().unwrap_or(&whole);
@@ -53,6 +46,14 @@ pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliErro
     Ok(BoundsResult { drawn, lower, upper, contradiction: contradiction(&some), warnings })
 }
 
+/// What to say where there is no upper bound.
+pub(super) fn unbounded(bounds: &ShapeBounds) -> Option<String> {
+    let Intersection::Unbounded(open) = bounds.upper() else { return None };
+    let d = open.directions().first().map(|d| d.get());
+    let side = d.map_or(String::new(), |d| format!(", for one towards ({:.2}, {:.2}, {:.2})", d.x, d.y, d.z));
+    Some(format!("The contacts leave the object unbounded on some side{side}: there is no upper bound."))
+}
+
 /// At most [`DRAWN`] contacts, spread evenly.
 fn thinned(contacts: &[ContactSample]) -> Vec<ContactSample> {
     let count = contacts.len().min(DRAWN);
@@ -65,7 +66,8 @@ fn contradiction(contacts: &[ContactSample]) -> f64 {
     contacts.iter().map(beyond).fold(0.0, f64::max)
 }
 
-fn meshes(bounds: &ShapeBounds) -> Result<(Option<TriangleMesh>, Option<TriangleMesh>), CliError> {
+/// Surfaces of the bounds that have a volume.
+pub(super) fn meshes(bounds: &ShapeBounds) -> Result<(Option<TriangleMesh>, Option<TriangleMesh>), CliError> {
     let own = |mesh: recon::shape_bounds::TriangleMesh| TriangleMesh::new(mesh.vertices, mesh.triangles);
     let lower = bounds.lower().solid().map(|solid| own(solid.mesh())).transpose()?;
     let upper = bounds.upper().bounded().map(|polyhedron| own(polyhedron.mesh())).transpose()?;

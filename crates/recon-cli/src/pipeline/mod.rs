@@ -6,9 +6,11 @@ mod evidence;
 mod folder;
 mod reconstruct;
 mod simulate;
+mod sound;
 mod truth;
 
 pub(crate) use bounds::{BoundsResult, bounds};
 pub(crate) use folder::{write_bounds_folder, write_reconstruction_folder};
 pub(crate) use reconstruct::{Reconstruction, reconstruct};
 pub(crate) use simulate::{Simulated, simulate};
+pub(crate) use sound::{Noise, noisy_bounds, pose_bounds};

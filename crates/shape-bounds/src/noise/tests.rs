@@ -154,8 +154,9 @@ fn bounds_hold_with_estimated_noise_and_planted_outliers() {
     for seed in 0..20 {
         let curves = estimate_noise(&spoilt(1e-3, 30, 0.1, 0.1, seed), 0.99).unwrap();
         let (kept, outliers) = without_outliers(&curves, 0.99).unwrap();
-        let planted =
-            |o: &&Outlier| (o.index + curves[..o.curve].iter().map(Vec::len).sum::<usize>()) % 30 == 0;
+        let planted = |o: &&Outlier| {
+            (o.index + curves[..o.curve].iter().map(Vec::len).sum::<usize>()).is_multiple_of(30)
+        };
         caught += outliers.iter().filter(planted).count();
         let innocent = outliers.len() - outliers.iter().filter(planted).count();
         assert!(innocent <= 2, "seed {seed}: {innocent} of {}", outliers.len());

@@ -13,6 +13,7 @@ mod tests;
 
 pub use error::PoseError;
 
+use crate::bounds::{Gap, ShapeBounds};
 use crate::halfspaces::{Intersection, Polyhedron};
 use crate::hull::Hull;
 use crate::sample::HalfSpace;
@@ -92,6 +93,15 @@ impl PoseBounds {
         let inside = lower::certain_points(&observations, &upper, margin);
         let lower = Hull::of(&inside).ok().filter(|hull| hull.solid().is_some());
         Ok(Self { upper, lower, margin, consistent_level, touching, outliers })
+    }
+}
+
+impl PoseBounds {
+    /// The largest gap between the bounds; `None` without a lower bound.
+    #[must_use]
+    pub fn largest_gap(&self) -> Option<Gap> {
+        let upper = Intersection::Bounded(self.upper.clone());
+        ShapeBounds::between(self.lower.clone()?, upper)?.largest_gap()
     }
 }
 

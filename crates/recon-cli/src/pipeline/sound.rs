@@ -1,0 +1,130 @@
+//! Bounds that hold at a stated confidence: from noisy contacts, and from poses above a plane.
+
+use super::bounds::{BoundsResult, meshes, unbounded};
+use crate::error::CliError;
+use recon::shape_bounds::{
+    BodyPose, ContactNoise, ContactSample, NoisyContact, PoseBounds, ShapeBounds, estimate_noise,
+    without_outliers,
+};
+use recon_io::{Bound, Bounds, TriangleMesh};
+use serde_json::{Value, json};
+
+/// Outliers that are named one by one; the rest is counted.
+const NAMED: usize = 5;
+
+/// Where the noise of contacts is known from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Noise {
+    /// Standard deviations of points (m) and normals (rad).
+    Stated { point: f64, normal: f64 },
+    /// The curves themselves.
+    Estimated,
+}
+
+/// Bounds of a convex body from `curves` of noisy contacts, and what is to be said about them.
+pub(crate) fn noisy_bounds(
+    curves: &[Vec<ContactSample>],
+    noise: Noise,
+    confidence: f64,
+) -> Result<(BoundsResult, Value), CliError> {
+    let noisy: Vec<Vec<NoisyContact>> = match noise {
+        Noise::Stated { point, normal } => {
+            let noise = ContactNoise::isotropic(point, normal);
+            let with_noise = |contact: &ContactSample| NoisyContact { contact: *contact, noise };
+            curves.iter().map(|curve| curve.iter().map(with_noise).collect()).collect()
+        }
+        Noise::Estimated => estimate_noise(curves, confidence)?,
+    };
+    let (kept, outliers) = without_outliers(&noisy, confidence)?;
+    let bounds = ShapeBounds::from_noisy_curves(&kept, confidence)?;
+    let mut result = result(&bounds)?;
+    if !outliers.is_empty() {
+        let named: Vec<String> = outliers
+            .iter()
+            .take(NAMED)
+            .map(|o| {
+                format!("contact {} of curve {} ({:.0} deviations)", o.index + 1, o.curve + 1, o.deviations)
+            })
+            .collect();
+        let more = if outliers.len() > NAMED { ", and others" } else { "" };
+        result.warnings.push(format!(
+            "{} contact(s) cannot be right beside the others and are left out: {}{more}.",
+            outliers.len(),
+            named.join(", ")
+        ));
+    }
+    let listed: Vec<Value> = outliers
+        .iter()
+        .map(|o| json!({ "curve": o.curve + 1, "contact": o.index + 1, "deviations": o.deviations }))
+        .collect();
+    let levels: Vec<Value> = noisy.iter().filter_map(|curve| curve.first()).map(level).collect();
+    let how = match noise {
+        Noise::Stated { .. } => "stated",
+        Noise::Estimated => "estimated",
+    };
+    let about = json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed });
+    Ok((result, about))
+}
+
+/// Standard deviations of a contact across and along the surface and of its normal.
+fn level(c: &NoisyContact) -> Value {
+    let n = c.contact.normal.get();
+    let along = n.any_orthonormal_vector();
+    json!({
+        "across_m": n.dot(c.noise.point * n).max(0.0).sqrt(),
+        "along_m": along.dot(c.noise.point * along).max(0.0).sqrt(),
+        "normal_rad": c.noise.normal,
+    })
+}
+
+/// Bounds of a convex body from `runs` of poses above the plane at `height` (m), and what is to be said about them.
+pub(crate) fn pose_bounds(
+    runs: &[Vec<BodyPose>],
+    height: f64,
+    confidence: f64,
+) -> Result<(BoundsResult, Value), CliError> {
+    let made = PoseBounds::above_plane(runs, height, confidence)?;
+    let own = |mesh: recon::shape_bounds::TriangleMesh| TriangleMesh::new(mesh.vertices, mesh.triangles);
+    let solid = made.lower.as_ref().and_then(|lower| lower.solid());
+    let lower = solid.map(|s| own(s.mesh())).transpose()?;
+    let upper = own(made.upper.mesh())?;
+    let mut warnings = Vec::new();
+    if lower.is_none() {
+        warnings.push(format!(
+            "The poses need a margin of {:.3} m to agree with each other, which leaves no lower bound: is the height of the plane right?",
+            made.margin
+        ));
+    }
+    if !made.outliers.is_empty() {
+        warnings.push(format!(
+            "{} pose(s) that touch the plane disagree with the others by more than the margins, the first in run {}, frame {}.",
+            made.outliers.len(),
+            made.outliers[0].0 + 1,
+            made.outliers[0].1 + 1
+        ));
+    }
+    let about = json!({
+        "confidence": confidence,
+        "plane_height_m": height,
+        "margin_m": made.margin,
+        "touching_poses": made.touching,
+        "outliers": made.outliers.iter().map(|(run, frame)| json!({ "run": run + 1, "frame": frame + 1 })).collect::<Vec<_>>(),
+    });
+    let drawn = Bounds {
+        lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: solid.map_or(0.0, |s| s.volume()) },
+        upper: Some(Bound { mesh: upper.clone(), volume: made.upper.volume() }),
+        largest_gap: made.largest_gap().map(|gap| gap.distance),
+    };
+    Ok((BoundsResult { drawn, lower, upper: Some(upper), contradiction: 0.0, warnings }, about))
+}
+
+fn result(bounds: &ShapeBounds) -> Result<BoundsResult, CliError> {
+    let (lower, upper) = meshes(bounds)?;
+    let warnings = unbounded(bounds).into_iter().collect();
+    let drawn = Bounds {
+        lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: bounds.lower_volume() },
+        upper: upper.clone().map(|mesh| Bound { mesh, volume: bounds.upper_volume() }),
+        largest_gap: bounds.largest_gap().map(|gap| gap.distance),
+    };
+    Ok(BoundsResult { drawn, lower, upper, contradiction: 0.0, warnings })
+}

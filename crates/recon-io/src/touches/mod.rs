@@ -1,0 +1,49 @@
+//! What a body's surface was seen to do, as CSV: contact points with normals, or poses above a plane.
+
+mod columns;
+mod contacts;
+mod error;
+mod poses;
+
+pub use contacts::{parse_contacts, read_contacts, write_contacts};
+pub use error::{TouchesError, TouchesErrorKind};
+pub use poses::parse_poses;
+
+use recon::shape_bounds::{BodyPose, ContactSample};
+use std::io::Read;
+use std::path::Path;
+
+/// What bounds of a body can be made from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Touches {
+    /// Contact points with outward normals, one list for each curve, in the order of the file.
+    Contacts(Vec<Vec<ContactSample>>),
+    /// Poses of a body above a plane, one list for each run, in the order of time.
+    Poses(Vec<Vec<BodyPose>>),
+}
+
+/// Reads contacts (columns of [`parse_contacts`]) or poses (columns of [`parse_poses`]), told apart by the header.
+///
+/// # Errors
+/// [`TouchesError`] names the file, the line and the column.
+pub fn read_touches(path: impl AsRef<Path>) -> Result<Touches, TouchesError> {
+    let path = path.as_ref();
+    let in_file = |kind| TouchesError { path: path.to_owned(), kind };
+    let text = read_text(path).map_err(|e| in_file(e.into()))?;
+    let header = text.lines().next().unwrap_or_default();
+    let is_poses = header.split(',').any(|name| name.trim().trim_matches('"') == "qw");
+    let touches = if is_poses {
+        parse_poses(text.as_bytes()).map(Touches::Poses)
+    } else {
+        parse_contacts(text.as_bytes()).map(Touches::Contacts)
+    };
+    touches.map_err(in_file)
+}
+
+/// A whole file as text; bytes that are no text become marks that no number has.
+fn read_text(path: &Path) -> std::io::Result<String> {
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.read_to_end(&mut bytes)?;
+    String::from_utf8(bytes)
+        .map_err(|_| std::io::Error::new(std::io::ErrorKind::InvalidData, "not UTF-8 text"))
+}
