@@ -9,8 +9,9 @@ pub(super) const FEWEST: usize = 50;
 const HALVINGS: usize = 16;
 /// Frames at the end of a run that are taken for rest.
 const RESTING: usize = 5;
-/// A frame touches when it is accelerated upwards by more than this times the acceleration in flight.
-const UPWARDS: f64 = 1.0;
+/// A frame touches when it is accelerated upwards by more than in flight downwards, and by more than so many standard
+/// deviations of the tracking noise.
+const NOISE_DEVIATIONS: f64 = 5.0;
 
 /// The largest second difference of the position at the frame and its neighbours, in m.
 pub(super) fn roughness(poses: &[BodyPose], frame: usize) -> f64 {
@@ -31,12 +32,30 @@ pub(super) fn flight_scale(poses: &[BodyPose]) -> f64 {
     falls.get(falls.len() * 9 / 10).copied().unwrap_or(0.0)
 }
 
-/// Whether the body touches the plane: at rest at the end of its run, or pushed upwards by more than `flight`.
-///
-/// Tracking noise beyond `flight` (gravity times the squared frame time) makes frames in flight look pushed; the level that
-/// they then seem to need is too large, never too small.
-pub(super) fn touches(poses: &[BodyPose], frame: usize, flight: f64) -> bool {
-    frame + RESTING >= poses.len() || (frame > 0 && second_difference(poses, frame).z > UPWARDS * flight)
+/// Standard deviation of the second differences from tracking noise alone, in m: what is seen sideways, where in flight and
+/// at rest nothing pushes, with impacts left to the median.
+pub(super) fn noise_scale(runs: &[Vec<BodyPose>]) -> f64 {
+    let sideways = |poses: &'_ Vec<BodyPose>, k: usize| {
+        let d = second_difference(poses, k);
+        [d.x.abs(), d.y.abs()]
+    };
+    let mut sizes: Vec<f64> = runs
+        .iter()
+        .flat_map(|poses| (1..poses.len() - 1).flat_map(move |k| sideways(poses, k)))
+        .collect();
+    if sizes.is_empty() {
+        return 0.0;
+    }
+    let middle = sizes.len() / 2;
+    // The median of the size of a standard normal is 0.6745.
+    *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745
+}
+
+/// Whether the body touches the plane: at rest at the end of its run, or pushed upwards by more than flight (`flight`) or
+/// noise of standard deviation `noise` would let it seem.
+pub(super) fn touches(poses: &[BodyPose], frame: usize, flight: f64, noise: f64) -> bool {
+    let pushed = flight.max(NOISE_DEVIATIONS * noise);
+    frame + RESTING >= poses.len() || (frame > 0 && second_difference(poses, frame).z > pushed)
 }
 
 /// The smallest level at which the share [`TRUSTED`] of the touching poses are consistent with all poses: the bound,

@@ -113,11 +113,12 @@ pub fn half_space_above_plane(pose: &BodyPose, plane_z: f64) -> HalfSpace {
 }
 
 fn observe(runs: &[Vec<BodyPose>], plane_z: f64) -> Result<Vec<Observation>, PoseError> {
+    if let Some(run) = runs.iter().position(|poses| poses.len() < 3) {
+        return Err(PoseError::ShortRun { run, frames: runs[run].len() });
+    }
+    let noise = level::noise_scale(runs);
     let mut observations = Vec::new();
     for (run, poses) in runs.iter().enumerate() {
-        if poses.len() < 3 {
-            return Err(PoseError::ShortRun { run, frames: poses.len() });
-        }
         let flight = level::flight_scale(poses);
         for (frame, pose) in poses.iter().enumerate() {
             let unit = (pose.R_WO.length() - 1.0).abs() < 1e-3;
@@ -128,7 +129,7 @@ fn observe(runs: &[Vec<BodyPose>], plane_z: f64) -> Result<Vec<Observation>, Pos
             observations.push(Observation {
                 half_space: half_space_above_plane(&normalised, plane_z),
                 kink: KINK * level::roughness(poses, frame),
-                touching: level::touches(poses, frame, flight),
+                touching: level::touches(poses, frame, flight, noise),
                 at: (run, frame),
             });
         }
