@@ -43,7 +43,7 @@ mod sample;
 mod twofold;
 
 pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
-pub use curvature::{BallIntersection, CurvatureBounds, CurvatureError, RoundedHull};
+pub use curvature::{BallIntersection, ConvexMeasures, CurvatureBounds, CurvatureError, RoundedHull};
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;

@@ -1,7 +1,7 @@
 //! Area and vector area of a face on a sphere, as integrals along its edges.
 
 use super::circle::Circle;
-use super::face::Arc;
+use super::surface::Arc;
 use glam::DVec3;
 
 /// Nodes on (0, 1) and weights of Gauss and Legendre's rule with eight points, half of them: the rest by symmetry.

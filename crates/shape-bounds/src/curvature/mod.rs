@@ -7,15 +7,20 @@
 mod balls;
 mod circle;
 mod error;
-mod face;
+mod insert;
 mod measure;
+#[cfg(test)]
+mod oracle;
 mod rounded;
+mod steiner;
+mod surface;
 #[cfg(test)]
 mod tests;
 
 pub use balls::BallIntersection;
 pub use error::CurvatureError;
 pub use rounded::RoundedHull;
+pub use steiner::ConvexMeasures;
 
 use crate::sample::ContactSample;
 use contact_kinematics::{CurvatureRadii, Direction};
