@@ -6,15 +6,13 @@ use super::insert::Builder;
 use super::measure::face_moments;
 use super::steiner::ConvexMeasures;
 use super::surface::{Shape, Surface};
-use crate::hull::{PointsError, insertion_order};
+use super::{ROUNDING, check_contacts};
+use crate::hull::insertion_order;
 use crate::integrals::Compensated;
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;
 use glam::DVec3;
 use std::f64::consts::PI;
-
-/// By how much a contact may be outside of another's ball, relative to the radius, before it is an error: rounding.
-const ROUNDING: f64 = 1e-12;
 
 /// The intersection of balls of one radius, each touching from outside at a known point of the body: an upper bound of a
 /// body that rolls freely inside of such a ball.
@@ -37,18 +35,13 @@ impl BallIntersection {
     /// [`CurvatureError::TooFlat`] names a contact outside of another's ball; [`CurvatureError::Points`] for no contacts or
     /// values that are not finite.
     pub fn through_contacts(contacts: &[ContactSample], radius: f64) -> Result<Self, CurvatureError> {
-        if contacts.is_empty() {
-            return Err(PointsError::Empty.into());
-        }
-        if let Some(index) = contacts.iter().position(|c| !c.point.is_finite()) {
-            return Err(PointsError::NotFinite { index, point: contacts[index].point }.into());
-        }
+        check_contacts(contacts)?;
         if !(radius.is_finite() && radius > 0.0) {
             return Err(CurvatureError::Radii { min: 0.0, max: radius });
         }
         let points: Vec<DVec3> = contacts.iter().map(|c| c.point).collect();
         let centres: Vec<DVec3> = contacts.iter().map(|c| c.point - c.normal.get() * radius).collect();
-        let (all, outside) = Self::build(&centres, &points, radius);
+        let (all, outside) = Self::build(&centres, &points, radius, ROUNDING * radius);
         match outside {
             None => Ok(all),
             Some(Outside { sample, other, excess }) => {
@@ -58,8 +51,14 @@ impl BallIntersection {
     }
 
     /// The intersection of the balls about `centres`, of which there is at least one; `touching[k]` is a point on sphere `k`
-    /// and in all balls. Where that is not so, a point outside of a ball is named, and the surface means nothing.
-    pub(super) fn build(centres: &[DVec3], touching: &[DVec3], radius: f64) -> (Self, Option<Outside>) {
+    /// and in all balls. Where that is not so by more than `tolerance` (m), a point outside of a ball is named, and the surface
+    /// means nothing.
+    pub(super) fn build(
+        centres: &[DVec3],
+        touching: &[DVec3],
+        radius: f64,
+        tolerance: f64,
+    ) -> (Self, Option<Outside>) {
         let interior = touching.iter().sum::<DVec3>() / touching.len() as f64;
         let sources = insertion_order(touching);
         let sorted = sources.iter().map(|k| centres[*k as usize]).collect();
@@ -68,12 +67,12 @@ impl BallIntersection {
             builder.insert(p as u32, touching[*source as usize]);
         }
         let all = Self { interior, sources, surface: builder.surface, skipped: builder.skipped };
-        let outside = all.find_outside(touching);
+        let outside = all.find_outside(touching, tolerance);
         (all, outside)
     }
 
     /// A touching point that is outside of a ball.
-    fn find_outside(&self, touching: &[DVec3]) -> Option<Outside> {
+    fn find_outside(&self, touching: &[DVec3], tolerance: f64) -> Option<Outside> {
         let surface = &self.surface;
         let mut face = 0;
         for (p, source) in self.sources.iter().enumerate() {
@@ -97,7 +96,7 @@ impl BallIntersection {
                 face = surface.face_along(self.interior, direction, face).0;
                 compare(face);
             }
-            if worst.0 > ROUNDING * surface.radius {
+            if worst.0 > tolerance {
                 let other = self.sources[worst.1 as usize] as usize;
                 return Some(Outside { sample: *source as usize, other, excess: worst.0 });
             }
@@ -127,7 +126,7 @@ impl BallIntersection {
         self.interior
     }
 
-    fn faces(&self) -> impl Iterator<Item = u32> + '_ {
+    pub(super) fn faces(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.sources.len() as u32).filter(|k| self.surface.has_face(*k))
     }
 
@@ -190,32 +189,73 @@ impl BallIntersection {
         self.faces().all(|k| point.distance(self.surface.centre(k)) <= self.radius() * (1.0 + ROUNDING))
     }
 
-    /// Support function in m: over faces, arcs and corners, in time O(n).
+    /// Support function in m, in time O(n).
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
-        let (surface, n, rho) = (&self.surface, n.get(), self.surface.radius);
-        let mut best = f64::NEG_INFINITY;
+        self.support_point(n.get()).dot(n.get())
+    }
+
+    /// The point farthest along `d`: of a face, an edge or a corner.
+    pub(super) fn support_point(&self, d: DVec3) -> DVec3 {
+        let n = d.normalize_or_zero();
+        self.extreme_point(
+            |centre| n * self.radius() + centre,
+            |circle| n - circle.axis * n.dot(circle.axis),
+            |p| p.dot(n),
+        )
+    }
+
+    /// The largest distance of a point of the intersection from `point`.
+    pub(super) fn farthest_from(&self, point: DVec3) -> f64 {
+        let away = |from: DVec3| (from - point).normalize_or(DVec3::X);
+        let farthest = self.extreme_point(
+            |centre| centre + away(centre) * self.radius(),
+            |circle| {
+                let w = circle.middle - point;
+                w - circle.axis * w.dot(circle.axis)
+            },
+            |p| p.distance_squared(point),
+        );
+        farthest.distance(point)
+    }
+
+    /// The point of the surface that is best by a measure that has one maximum on each sphere, `top` of its centre, and one on
+    /// each circle, in a direction `across` from its middle.
+    fn extreme_point(
+        &self,
+        top: impl Fn(DVec3) -> DVec3,
+        across: impl Fn(&Circle) -> DVec3,
+        measure: impl Fn(DVec3) -> f64,
+    ) -> DVec3 {
+        let (surface, rho) = (&self.surface, self.surface.radius);
+        let mut best = (f64::NEG_INFINITY, self.interior);
+        let mut compare = |p: DVec3| {
+            let value = measure(p);
+            if value > best.0 {
+                best = (value, p);
+            }
+        };
         let mut arcs = Vec::new();
         for k in self.faces() {
-            let top = surface.centre(k) + n * rho;
+            let top = top(surface.centre(k));
             surface.arcs_of(k, &mut arcs);
             if arcs.iter().all(|arc| !surface.is_outside(arc.other, top)) {
-                return top.dot(n);
+                compare(top);
             }
             for (i, arc) in arcs.iter().enumerate() {
-                best = best.max(arc.start.dot(n));
+                compare(arc.start);
                 let end = arcs[(i + 1) % arcs.len()].start;
                 let circle = Circle::between(surface.centre(k), surface.centre(arc.other), rho);
-                let across = n - circle.axis * n.dot(circle.axis);
+                let across = across(&circle);
                 if across.length_squared() > 0.0 {
                     let highest = circle.middle + across.normalize() * circle.radius;
                     if circle.angle(arc.start, highest) < circle.angle(arc.start, end) {
-                        best = best.max(highest.dot(n));
+                        compare(highest);
                     }
                 }
             }
         }
-        best
+        best.1
     }
 }
 

@@ -19,6 +19,12 @@ pub(super) struct Corner {
     pub(super) mark: u32,
 }
 
+impl Corner {
+    pub(super) fn is_there(&self) -> bool {
+        self.balls[0] != NONE
+    }
+}
+
 /// What the intersection looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Shape {
@@ -116,7 +122,7 @@ impl Surface {
 
     /// The corners that are there.
     pub(super) fn live_corners(&self) -> impl Iterator<Item = &Corner> + '_ {
-        self.corners.iter().filter(|c| c.balls[0] != NONE)
+        self.corners.iter().filter(|c| c.is_there())
     }
 
     /// Balls across the edges of the ball's face, one after the other.
