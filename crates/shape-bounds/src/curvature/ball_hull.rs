@@ -101,7 +101,7 @@ impl BallHull {
                         let (a, b) = (surface.centre(a), surface.centre(b));
                         let circle = Circle::between(b, a, rho);
                         let end = surface.corners[*beyond as usize].at;
-                        add_spindle(a.distance(b), circle.angle(corner.at, end));
+                        add_spindle(a.distance(b), surface.angle(&circle, corner.at, end));
                     }
                 }
             }

@@ -168,13 +168,14 @@ impl BallIntersection {
             let (area, vector) = if arcs.is_empty() {
                 (4.0 * PI * rho * rho, DVec3::ZERO)
             } else {
-                face_moments(&surface.centres, rho, k, &arcs)
+                face_moments(surface, k, &arcs)
             };
             threefold.add(rho * area + (surface.centre(k) - self.interior).dot(vector));
             total.add(area);
             for (i, arc) in arcs.iter().enumerate() {
                 let circle = Circle::between(surface.centre(k), surface.centre(arc.other), rho);
-                let length = circle.radius * circle.angle(arc.start, arcs[(i + 1) % arcs.len()].start);
+                let length =
+                    circle.radius * surface.angle(&circle, arc.start, arcs[(i + 1) % arcs.len()].start);
                 // Each edge is met from both sides.
                 edges.add(0.25 * length * circle.face_angle(rho));
             }
@@ -249,7 +250,7 @@ impl BallIntersection {
                 let across = across(&circle);
                 if across.length_squared() > 0.0 {
                     let highest = circle.middle + across.normalize() * circle.radius;
-                    if circle.angle(arc.start, highest) < circle.angle(arc.start, end) {
+                    if surface.angle(&circle, arc.start, highest) < surface.angle(&circle, arc.start, end) {
                         compare(highest);
                     }
                 }

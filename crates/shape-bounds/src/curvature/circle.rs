@@ -1,7 +1,6 @@
 //! Circles in which two spheres of one radius meet.
 
 use glam::DVec3;
-use std::f64::consts::TAU;
 
 /// The circle of points at distance `radius` from two centres, with its axis from the first to the second.
 #[derive(Clone, Copy)]
@@ -26,13 +25,11 @@ impl Circle {
         }
     }
 
-    /// The angle from `start` to `end`, right-handed about the axis, in (0, tau]; tau if they coincide.
+    /// The angle from `start` to `end`, right-handed about the axis, from -pi to pi.
     pub(super) fn angle(&self, start: DVec3, end: DVec3) -> f64 {
         let (s, e) = (start - self.middle, end - self.middle);
         // Differences keep the digits of short arcs.
-        let sine = self.axis.dot(s.cross(end - start));
-        let angle = sine.atan2(s.dot(e));
-        if angle <= 0.0 { angle + TAU } else { angle }
+        self.axis.dot(s.cross(end - start)).atan2(s.dot(e))
     }
 
     /// The point at `angle` from `start`.

@@ -7,12 +7,17 @@ use glam::DVec3;
 /// How far beyond a ball, relative to the radius, the surface must reach before there is something to cut off.
 const CUT: f64 = 4.0 * f64::EPSILON;
 
+/// How far from a sphere, relative to its radius, a corner may be and still be taken for one on it: rounding.
+const TANGENT: f64 = 64.0 * f64::EPSILON;
+
 /// An edge that the new ball's sphere crosses.
 #[derive(Clone, Copy)]
 struct RimEdge {
     /// The corner that is kept, and which of its edges this is; for an edge that is kept in the middle, the corner at its
     /// other end, which is lost too.
     beyond: (u32, u32),
+    /// The corner at the other end.
+    lost: u32,
     /// The lost corner and its edge, where the edge is kept in the middle.
     comes_back_from: Option<(u32, u32)>,
     /// The faces on both sides, in the direction of the new corner.
@@ -197,7 +202,7 @@ impl Builder {
             } else {
                 2
             };
-            let mut rim = RimEdge { beyond: (beyond, back), comes_back_from: None, from, to };
+            let mut rim = RimEdge { beyond: (beyond, back), lost: corner, comes_back_from: None, from, to };
             let is_lost = mark == lost_mark || (mark != kept_mark && surface.is_outside(p, at));
             if !is_lost {
                 surface.corners[beyond as usize].mark = kept_mark;
@@ -223,8 +228,20 @@ impl Builder {
         let back = across.iter().position(|b| *b == j).unwrap_or(0) as u32;
         self.lost.clear();
         self.rim.clear();
-        self.rim.push(RimEdge { beyond: (corner, edge), comes_back_from: None, from: j, to: i });
-        self.rim.push(RimEdge { beyond: (beyond, back), comes_back_from: None, from: i, to: j });
+        self.rim.push(RimEdge {
+            beyond: (corner, edge),
+            lost: beyond,
+            comes_back_from: None,
+            from: j,
+            to: i,
+        });
+        self.rim.push(RimEdge {
+            beyond: (beyond, back),
+            lost: corner,
+            comes_back_from: None,
+            from: i,
+            to: j,
+        });
     }
 
     /// Puts the face of ball `p`, with a corner on each edge of the rim, in the place of the lost corners; leaves the ball out
@@ -243,7 +260,7 @@ impl Builder {
         }
         self.made.clear();
         for i in 0..self.rim.len() {
-            let RimEdge { beyond, comes_back_from, from, to } = self.rim[i];
+            let RimEdge { beyond, comes_back_from, from, to, .. } = self.rim[i];
             let new = self.add([from, to, p], self.fresh[i]);
             self.made.push(new);
             if comes_back_from.is_none() {
@@ -284,12 +301,31 @@ impl Builder {
             let paired = edge.comes_back_from.is_none_or(|own| {
                 self.rim.iter().any(|e| e.beyond == own && e.comes_back_from == Some(edge.beyond))
             });
-            match self.surface.common_point([edge.from, edge.to, p]) {
-                Some(at) if follows && paired => self.fresh.push(at),
-                _ => return false,
+            if !(follows && paired) {
+                return false;
+            }
+            match self.crossing(edge, p) {
+                Some(at) => self.fresh.push(at),
+                None => return false,
             }
         }
         self.rim.len() > 1
+    }
+
+    /// Where ball `p` crosses an edge of the rim. Where its sphere is so nearly tangent to the edge that rounding moves the
+    /// common point out of the edge, the end of the edge that is nearer to the sphere takes its place.
+    fn crossing(&self, edge: &RimEdge, p: u32) -> Option<DVec3> {
+        let surface = &self.surface;
+        let [lost, kept] = [edge.lost, edge.beyond.0].map(|c| surface.corners[c as usize].at);
+        let at = surface.common_point([edge.from, edge.to, p]);
+        if let Some(at) = at
+            && surface.is_between(at, lost, kept, [edge.from, edge.to])
+        {
+            return Some(at);
+        }
+        let off = |end: DVec3| (end.distance(surface.centre(p)) - surface.radius).abs();
+        let end = if off(lost) < off(kept) { lost } else { kept };
+        (off(end) <= TANGENT * surface.radius).then_some(end)
     }
 
     fn add(&mut self, balls: [u32; 3], at: DVec3) -> u32 {

@@ -1,10 +1,15 @@
 //! The surface of an intersection of equal balls: corners where three spheres meet, with the corners at the other ends of
 //! their three edges. As a graph it is the dual of a triangulated sphere, in which two balls may share several edges.
 
+use super::circle::Circle;
 use glam::DVec3;
+use std::f64::consts::TAU;
 
 /// No corner, or no ball.
 pub(super) const NONE: u32 = u32::MAX;
+
+/// Corners this close, in rad along their edge, may have changed places by rounding.
+const SWAPPED: f64 = 1e-6;
 
 /// A corner, in one cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +95,26 @@ impl Surface {
         (height >= 0.0 && height.is_finite()).then(|| base + middle + n * height.sqrt())
     }
 
+    /// Whether a point of the circle of the balls `a`, `b` lies on the arc from `start` to `end`, right-handed about the axis from
+    /// `b` to `a`.
+    #[inline]
+    pub(super) fn is_between(&self, point: DVec3, start: DVec3, end: DVec3, [a, b]: [u32; 2]) -> bool {
+        let (a, b) = (self.centre(a), self.centre(b));
+        let middle = (a + b) * 0.5;
+        passes(a - b, start - middle, end - start, end - middle, point - middle)
+    }
+
+    /// The angle of an edge, right-handed about the circle's axis: tau for a lens, and below zero, by rounding, where close
+    /// corners have changed places.
+    pub(super) fn angle(&self, circle: &Circle, start: DVec3, end: DVec3) -> f64 {
+        if self.shape != Shape::Net {
+            return TAU;
+        }
+        let angle = circle.angle(start, end);
+        let swapped = angle.abs() < SWAPPED && self.corners.len() > 2;
+        if angle >= 0.0 || swapped { angle } else { angle + TAU }
+    }
+
     /// The next corner anticlockwise around the face of `ball`, and the ball across the edge that leads there.
     #[inline]
     pub(super) fn next_around(&self, ball: u32, corner: u32) -> (u32, u32) {
@@ -153,8 +178,7 @@ impl Surface {
             Shape::Ball(_) => {}
             Shape::Lens(i, j) => {
                 let other = if ball == i { j } else { i };
-                let circle =
-                    super::circle::Circle::between(self.centre(ball), self.centre(other), self.radius);
+                let circle = Circle::between(self.centre(ball), self.centre(other), self.radius);
                 let start = circle.middle + circle.axis.any_orthonormal_vector() * circle.radius;
                 if ball == i || ball == j {
                     arcs.push(Arc { other, start });
