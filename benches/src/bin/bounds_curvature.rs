@@ -1,5 +1,7 @@
 //! Curvature bounds: the chain of bounds on random bodies, what they gain on three curves, and what equal balls cost.
 //!
+//! Bounds: (a) hull, (d) rounded hull, (d+) ball hull, the body, (c+) rounded balls, (c) balls, (b) half-spaces.
+//!
 //! Usage: `bounds_curvature [BODIES]` (10,000 by default). Writes `docs/charts/bounds/curvature.csv` and
 //! `docs/charts/bounds/curvature_timing.csv`.
 
@@ -7,7 +9,9 @@ use cpu_time::ThreadTime;
 use glam::DVec3;
 use recon::contact_kinematics::{CurvatureRadii, Direction};
 use shape_bounds::generators::{AXES, Source, curve_contacts};
-use shape_bounds::{BallIntersection, ContactSample, CurvatureBounds, HalfSpace, Intersection, ShapeBounds};
+use shape_bounds::{
+    BallIntersection, ContactSample, CurvatureBounds, HalfSpace, Intersection, ShapeBounds, SharpBounds,
+};
 use std::fmt::Write as _;
 
 type Failure = Box<dyn std::error::Error>;
@@ -51,46 +55,67 @@ fn chain_holds(seed: u64) -> Result<(bool, usize), Failure> {
     let radii = CurvatureRadii { min: low * low / high, max: high * high / low };
     let plain = ShapeBounds::from_contacts(&contacts)?;
     let tight = CurvatureBounds::from_contacts(&contacts, radii)?;
+    let sharp = SharpBounds::from_contacts(&contacts, radii)?;
     let truth = BALL * axes.element_product();
-    let volumes =
-        [plain.lower_volume(), tight.lower().volume(), truth, tight.upper().volume(), plain.upper_volume()];
+    let volumes = [
+        plain.lower_volume(),
+        tight.lower().volume(),
+        sharp.lower().volume(),
+        truth,
+        sharp.upper().volume(),
+        tight.upper().volume(),
+        plain.upper_volume(),
+    ];
     let mut holds = volumes.windows(2).all(|w| w[0] <= w[1] * (1.0 + ROUNDING));
     for _ in 0..20 {
         let direction = s.direction();
         let n = Direction::new(direction)?;
-        let ((a, b), (d, c)) = (plain.support(n), tight.support(n));
-        holds &= [a, d, support(direction), c, b].windows(2).all(|w| w[0] <= w[1] + ROUNDING * 4.0);
+        let ((a, b), (d, c), (e, f)) = (plain.support(n), tight.support(n), sharp.support(n));
+        holds &= [a, d, e, support(direction), f, c, b].windows(2).all(|w| w[0] <= w[1] + ROUNDING * 4.0);
     }
-    Ok((holds, tight.upper().skipped()))
+    let skipped = tight.upper().skipped() + sharp.lower().skipped() + sharp.upper().core().skipped();
+    Ok((holds, skipped))
 }
 
-/// Volumes relative to the truth on three curves of a thousand contacts in all.
+/// Volumes relative to the truth on three curves of a thousand contacts, in all and each.
 fn gains(bodies: u64, broken: usize, skipped: usize) -> Result<String, Failure> {
     let mut csv = format!(
         "# {bodies} random bodies: {broken} broken chains, {skipped} balls left out\n\
-         seed,hull,rounded_hull,balls,half_spaces,gap_ratio\n"
+         contacts,seed,hull,rounded_hull,ball_hull,rounded_balls,balls,half_spaces,gap_ratio,sharp_gap_ratio\n"
     );
     let radii = CurvatureRadii { min: 0.4, max: 6.25 };
     let truth = BALL * AXES.element_product();
-    let mut ratios = Vec::new();
-    for seed in 0..20 {
-        let contacts = curve_contacts(1000, seed);
-        let plain = ShapeBounds::from_contacts(&contacts)?;
-        let tight = CurvatureBounds::from_contacts(&contacts, radii)?;
-        let (a, b) = (plain.lower_volume() / truth, plain.upper_volume() / truth);
-        let (d, c) = (tight.lower().volume() / truth, tight.upper().volume() / truth);
-        ratios.push((c - d) / (b - a));
-        writeln!(csv, "{seed},{a:.4},{d:.4},{c:.4},{b:.4},{:.4}", (c - d) / (b - a))?;
+    for count in [1000, 3000] {
+        let mut ratios = [Vec::new(), Vec::new()];
+        for seed in 0..20 {
+            let contacts = curve_contacts(count, seed);
+            let plain = ShapeBounds::from_contacts(&contacts)?;
+            let tight = CurvatureBounds::from_contacts(&contacts, radii)?;
+            let sharp = SharpBounds::from_contacts(&contacts, radii)?;
+            let (a, b) = (plain.lower_volume() / truth, plain.upper_volume() / truth);
+            let (d, c) = (tight.lower().volume() / truth, tight.upper().volume() / truth);
+            let (e, f) = (sharp.lower().volume() / truth, sharp.upper().volume() / truth);
+            let both = [(c - d) / (b - a), (f - e) / (b - a)];
+            writeln!(
+                csv,
+                "{count},{seed},{a:.4},{d:.4},{e:.4},{f:.4},{c:.4},{b:.4},{:.4},{:.4}",
+                both[0], both[1]
+            )?;
+            (0..2).for_each(|k| ratios[k].push(both[k]));
+        }
+        for (name, mut ratios) in ["(c)-(d)", "(c+)-(d+)"].into_iter().zip(ratios) {
+            ratios.sort_unstable_by(f64::total_cmp);
+            let [low, median, high] = [0, 10, 19].map(|k| ratios[k]);
+            println!("{count} contacts, {name} to (b)-(a): {low:.3} to {high:.3}, median {median:.3}");
+        }
     }
-    ratios.sort_unstable_by(f64::total_cmp);
-    println!("gap ratio: median {:.3}, largest {:.3}", ratios[ratios.len() / 2], ratios[ratios.len() - 1]);
     Ok(csv)
 }
 
 /// Thread time in ms, the fastest of a few runs, of half-spaces and balls on the same contacts.
 fn timing() -> Result<String, Failure> {
     let mut csv = String::from("n,half_spaces_ms,balls_ms,ratio,balls_left_out\n");
-    for n in [1000, 10_000, 100_000] {
+    for n in [1000, 10_000, 100_000, 1_000_000] {
         let contacts = curve_contacts(n, 1);
         let spaces: Vec<HalfSpace> = contacts.iter().map(ContactSample::half_space).collect();
         let mut best = [f64::INFINITY; 2];

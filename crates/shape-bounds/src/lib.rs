@@ -44,7 +44,10 @@ mod sample;
 mod twofold;
 
 pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
-pub use curvature::{BallIntersection, CurvatureBounds, CurvatureError, RoundedHull};
+pub use curvature::{
+    BallHull, BallIntersection, ConvexMeasures, CurvatureBounds, CurvatureError, RoundedHull,
+    RoundedIntersection, SharpBounds,
+};
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;

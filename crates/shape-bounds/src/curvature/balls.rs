@@ -2,40 +2,30 @@
 
 use super::circle::Circle;
 use super::error::CurvatureError;
-use super::face::{Arc, Clipped, clip};
+use super::insert::Builder;
 use super::measure::face_moments;
-use crate::hull::{PointsError, insertion_order};
+use super::steiner::ConvexMeasures;
+use super::surface::{Shape, Surface};
+use super::{ROUNDING, check_contacts};
+use crate::hull::insertion_order;
 use crate::integrals::Compensated;
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;
 use glam::DVec3;
-
-/// By how much a contact may be outside of another's ball, relative to the radius, before it is an error: rounding.
-const ROUNDING: f64 = 1e-12;
+use std::f64::consts::PI;
 
 /// The intersection of balls of one radius, each touching from outside at a known point of the body: an upper bound of a
 /// body that rolls freely inside of such a ball.
 ///
-/// Balls are inserted one by one; each cuts the faces that it meets along circles. A ball that would cut the surface
+/// Balls are inserted one by one; each cuts off the corners that are outside of it. A ball that would cut the surface
 /// inconsistently, which only rounding can cause, is left out and counted: that leaves the bound valid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BallIntersection {
-    radius: f64,
     interior: DVec3,
-    /// Centres in the caller's order.
-    centres: Vec<DVec3>,
-    faces: Vec<Face>,
+    /// The caller's index of each ball of the surface.
+    sources: Vec<u32>,
+    surface: Surface,
     skipped: usize,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-enum Face {
-    /// The ball does not touch the surface.
-    Hidden,
-    /// The ball is the whole intersection.
-    Whole,
-    /// The face's edges, in order around it.
-    Bounded(Vec<Arc>),
 }
 
 impl BallIntersection {
@@ -45,171 +35,104 @@ impl BallIntersection {
     /// [`CurvatureError::TooFlat`] names a contact outside of another's ball; [`CurvatureError::Points`] for no contacts or
     /// values that are not finite.
     pub fn through_contacts(contacts: &[ContactSample], radius: f64) -> Result<Self, CurvatureError> {
-        if contacts.is_empty() {
-            return Err(PointsError::Empty.into());
-        }
-        if let Some(index) = contacts.iter().position(|c| !c.point.is_finite()) {
-            return Err(PointsError::NotFinite { index, point: contacts[index].point }.into());
-        }
+        check_contacts(contacts)?;
         if !(radius.is_finite() && radius > 0.0) {
             return Err(CurvatureError::Radii { min: 0.0, max: radius });
         }
         let points: Vec<DVec3> = contacts.iter().map(|c| c.point).collect();
-        let centres = contacts.iter().map(|c| c.point - c.normal.get() * radius).collect();
-        Self::build(centres, &points, radius)
+        let centres: Vec<DVec3> = contacts.iter().map(|c| c.point - c.normal.get() * radius).collect();
+        let (all, outside) = Self::build(&centres, &points, radius, ROUNDING * radius);
+        match outside {
+            None => Ok(all),
+            Some(Outside { sample, other, excess }) => {
+                Err(CurvatureError::TooFlat { sample, other, excess, radius })
+            }
+        }
     }
 
-    /// The intersection of balls about `centres`; `touching[k]` is a point on sphere `k` in all balls.
-    fn build(centres: Vec<DVec3>, touching: &[DVec3], radius: f64) -> Result<Self, CurvatureError> {
+    /// The intersection of the balls about `centres`, of which there is at least one; `touching[k]` is a point on sphere `k`
+    /// and in all balls. Where that is not so by more than `tolerance` (m), a point outside of a ball is named, and the surface
+    /// means nothing.
+    pub(super) fn build(
+        centres: &[DVec3],
+        touching: &[DVec3],
+        radius: f64,
+        tolerance: f64,
+    ) -> (Self, Option<Outside>) {
         let interior = touching.iter().sum::<DVec3>() / touching.len() as f64;
-        let order = insertion_order(touching);
-        let faces = vec![Face::Hidden; centres.len()];
-        let mut all = Self { radius, interior, centres, faces, skipped: 0 };
-        all.faces[order[0] as usize] = Face::Whole;
-        let mut hint = order[0];
-        for &p in &order[1..] {
-            hint = all.insert(p, touching[p as usize], hint);
+        let sources = insertion_order(touching);
+        let sorted = sources.iter().map(|k| centres[*k as usize]).collect();
+        let mut builder = Builder::new(sorted, radius, interior);
+        for (p, source) in sources.iter().enumerate().skip(1) {
+            builder.insert(p as u32, touching[*source as usize]);
         }
-        for &p in &order {
-            hint = all.face_along(touching[p as usize], hint);
-            let excess = all.excess_of(hint, touching[p as usize]);
-            if excess > ROUNDING * radius {
-                return Err(CurvatureError::TooFlat {
-                    sample: p as usize,
-                    other: hint as usize,
-                    excess,
-                    radius,
-                });
-            }
-        }
-        Ok(all)
+        let all = Self { interior, sources, surface: builder.surface, skipped: builder.skipped };
+        let outside = all.find_outside(touching, tolerance);
+        (all, outside)
     }
 
-    /// Takes ball `p`, which touches at `at`, into the intersection; returns where the next search starts.
-    fn insert(&mut self, p: u32, at: DVec3, hint: u32) -> u32 {
-        let seen = self.face_along(at, hint);
-        let centre = self.centres[p as usize];
-        if centre == self.centres[seen as usize] {
-            return seen;
-        }
-        let direction = (at - self.interior).normalize();
-        let hit = self.interior + direction * self.reach(seen, direction);
-        let cut_off = hit.distance_squared(centre) > self.radius * self.radius;
-        if !cut_off {
-            // Implied by the others at its own contact.
-            return seen;
-        }
-        if self.faces[seen as usize] == Face::Whole {
-            return self.make_lens(seen, p);
-        }
-        match self.clipped_by(p, seen) {
-            Some((changes, own)) => {
-                for (k, face) in changes {
-                    self.faces[k as usize] = face;
-                }
-                self.faces[p as usize] = Face::Bounded(own);
-                p
-            }
-            None => {
-                self.skipped += 1;
-                seen
-            }
-        }
-    }
-
-    /// The intersection of the first two balls.
-    fn make_lens(&mut self, k: u32, p: u32) -> u32 {
-        let circle = Circle::between(self.centres[k as usize], self.centres[p as usize], self.radius);
-        let start = circle.middle + circle.axis.any_orthonormal_vector() * circle.radius;
-        self.faces[k as usize] = Face::Bounded(vec![Arc { other: p, start }]);
-        self.faces[p as usize] = Face::Bounded(vec![Arc { other: k, start }]);
-        p
-    }
-
-    /// The faces that ball `p` changes, found from face `seen` across cut edges, and the arcs of its own face; `None` when
-    /// the new edges do not close.
-    #[expect(clippy::type_complexity, reason = "two lists that are used once")]
-    fn clipped_by(&self, p: u32, seen: u32) -> Option<(Vec<(u32, Face)>, Vec<Arc>)> {
-        let mut queue = vec![seen];
-        let mut changes = Vec::new();
-        // The new edges as the faces see them: face, from, to.
-        let mut edges: Vec<(u32, DVec3, DVec3)> = Vec::new();
-        let mut next = 0;
-        while next < queue.len() {
-            let k = queue[next];
-            next += 1;
-            let Face::Bounded(arcs) = &self.faces[k as usize] else { return None };
-            let touched = |other| {
-                if !queue.contains(&other) {
-                    queue.push(other);
+    /// A touching point that is outside of a ball.
+    fn find_outside(&self, touching: &[DVec3], tolerance: f64) -> Option<Outside> {
+        let surface = &self.surface;
+        let mut face = 0;
+        for (p, source) in self.sources.iter().enumerate() {
+            let at = touching[*source as usize];
+            let excess = |ball: u32| at.distance(surface.centre(ball)) - surface.radius;
+            let mut worst = (f64::NEG_INFINITY, 0);
+            let mut compare = |ball: u32| {
+                let excess = excess(ball);
+                if excess > worst.0 {
+                    worst = (excess, ball);
                 }
             };
-            match clip(&self.centres, self.radius, k, arcs, p, touched) {
-                Clipped::Kept => {}
-                Clipped::Gone => changes.push((k, Face::Hidden)),
-                Clipped::Cut { arcs, news } => {
-                    edges.extend(news.into_iter().map(|(from, to)| (k, from, to)));
-                    changes.push((k, Face::Bounded(arcs)));
+            if surface.has_face(p as u32) {
+                // A face is what its neighbours leave of its sphere, on which the point is.
+                surface.for_each_neighbour(p as u32, &mut compare);
+            } else {
+                if !surface.has_face(face) {
+                    face = self.any_face();
                 }
-                Clipped::Inconsistent => return None,
+                let direction = (at - self.interior).normalize_or_zero();
+                face = surface.face_along(self.interior, direction, face).0;
+                compare(face);
+            }
+            if worst.0 > tolerance {
+                let other = self.sources[worst.1 as usize] as usize;
+                return Some(Outside { sample: *source as usize, other, excess: worst.0 });
             }
         }
-        // In the new face the edges run the other way: from `to` to `from`, where the next one begins.
-        let &(first, start, _) = edges.first()?;
-        let mut own = Vec::with_capacity(edges.len());
-        let (mut k, mut ends) = (first, start);
-        for _ in 0..edges.len() {
-            let at = edges.iter().position(|e| e.0 == k && e.1 == ends)?;
-            let (_, from, to) = edges[at];
-            own.push(Arc { other: k, start: to });
-            let following = edges.iter().find(|e| e.2 == from)?;
-            (k, ends) = (following.0, following.1);
+        None
+    }
+
+    fn any_face(&self) -> u32 {
+        match self.surface.shape {
+            Shape::Ball(k) | Shape::Lens(k, _) => k,
+            Shape::Net => self.surface.live_corners().next().map_or(0, |c| c.balls[0]),
         }
-        (k == first && ends == start).then_some((changes, own))
-    }
-
-    /// The face that the ray from the interior through `at` meets, by descent over neighbours of the distance to the
-    /// spheres, whose minimum is met there.
-    fn face_along(&self, at: DVec3, start: u32) -> u32 {
-        let direction = (at - self.interior).normalize_or_zero();
-        let mut face = start;
-        let mut reach = self.reach(face, direction);
-        while let Face::Bounded(arcs) = &self.faces[face as usize] {
-            let mut next = face;
-            for arc in arcs {
-                let candidate = self.reach(arc.other, direction);
-                if candidate < reach {
-                    (reach, next) = (candidate, arc.other);
-                }
-            }
-            if next == face {
-                break;
-            }
-            face = next;
-        }
-        face
-    }
-
-    /// Distance from the interior along `direction` to sphere `k`; only compared with others.
-    fn reach(&self, k: u32, direction: DVec3) -> f64 {
-        let b = self.centres[k as usize] - self.interior;
-        let along = b.dot(direction);
-        along + (along * along + self.radius * self.radius - b.length_squared()).max(0.0).sqrt()
-    }
-
-    fn excess_of(&self, k: u32, point: DVec3) -> f64 {
-        point.distance(self.centres[k as usize]) - self.radius
     }
 
     /// Radius of the balls, in m.
     #[must_use]
     pub fn radius(&self) -> f64 {
-        self.radius
+        self.surface.radius
+    }
+
+    pub(super) fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// A point in all balls.
+    pub(super) fn interior(&self) -> DVec3 {
+        self.interior
+    }
+
+    pub(super) fn faces(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.sources.len() as u32).filter(|k| self.surface.has_face(*k))
     }
 
     /// Balls that carry a face, by index into the contacts.
     pub fn face_sources(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.faces.len()).filter(|k| self.faces[*k] != Face::Hidden)
+        self.faces().map(|k| self.sources[k as usize] as usize)
     }
 
     /// Balls left out because rounding made their edges inconsistent; the bound holds without them.
@@ -218,68 +141,130 @@ impl BallIntersection {
         self.skipped
     }
 
-    /// Corners, once for each face at them.
+    /// Corners, where three faces meet.
     pub fn corners(&self) -> impl Iterator<Item = DVec3> + '_ {
-        self.faces
-            .iter()
-            .flat_map(|face| match face {
-                Face::Bounded(arcs) => arcs.as_slice(),
-                _ => &[],
-            })
-            .map(|arc| arc.start)
+        self.surface.live_corners().map(|c| c.at)
     }
 
-    /// Volume in m^3: the sum over the faces of `(rho A + (c - o) . N) / 3` with the face's area `A` and vector area `N`,
-    /// both as integrals along its edges.
+    /// Volume in m^3.
     #[must_use]
     pub fn volume(&self) -> f64 {
-        let mut threefold = Compensated::default();
-        for (k, face) in self.faces.iter().enumerate() {
-            let (area, vector) = match face {
-                Face::Hidden => continue,
-                Face::Whole => (4.0 * std::f64::consts::PI * self.radius * self.radius, DVec3::ZERO),
-                Face::Bounded(arcs) => face_moments(&self.centres, self.radius, k as u32, arcs),
+        self.measures().volume
+    }
+
+    /// Volume, area and mean curvature.
+    ///
+    /// Volume is the sum over the faces of `(rho A + (c - o) . N) / 3` with the face's area `A` and vector area `N`, both as
+    /// integrals along its edges; the mean curvature is that of the faces, `A / rho`, and half of length times angle between
+    /// the faces of each edge.
+    #[must_use]
+    pub fn measures(&self) -> ConvexMeasures {
+        let (surface, rho) = (&self.surface, self.surface.radius);
+        let (mut threefold, mut total, mut edges) =
+            (Compensated::default(), Compensated::default(), Compensated::default());
+        let mut arcs = Vec::new();
+        for k in self.faces() {
+            surface.arcs_of(k, &mut arcs);
+            let (area, vector) = if arcs.is_empty() {
+                (4.0 * PI * rho * rho, DVec3::ZERO)
+            } else {
+                face_moments(surface, k, &arcs)
             };
-            threefold.add(self.radius * area + (self.centres[k] - self.interior).dot(vector));
+            threefold.add(rho * area + (surface.centre(k) - self.interior).dot(vector));
+            total.add(area);
+            for (i, arc) in arcs.iter().enumerate() {
+                let circle = Circle::between(surface.centre(k), surface.centre(arc.other), rho);
+                let length =
+                    circle.radius * surface.angle(&circle, arc.start, arcs[(i + 1) % arcs.len()].start);
+                // Each edge is met from both sides.
+                edges.add(0.25 * length * circle.face_angle(rho));
+            }
         }
-        threefold.value() / 3.0
+        let area = total.value();
+        ConvexMeasures { volume: threefold.value() / 3.0, area, mean_curvature: area / rho + edges.value() }
     }
 
     /// Whether `point` is in all balls, to rounding.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
-        self.face_sources().all(|k| self.excess_of(k as u32, point) <= ROUNDING * self.radius)
+        self.faces().all(|k| point.distance(self.surface.centre(k)) <= self.radius() * (1.0 + ROUNDING))
     }
 
-    /// Support function in m: over faces, arcs and corners, in time O(n).
+    /// Support function in m, in time O(n).
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
-        let n = n.get();
-        let rho = self.radius;
-        let mut best = f64::NEG_INFINITY;
-        for (k, face) in self.faces.iter().enumerate() {
-            let top = self.centres[k] + n * rho;
-            let arcs = match face {
-                Face::Hidden => continue,
-                Face::Whole => return top.dot(n),
-                Face::Bounded(arcs) => arcs,
-            };
-            if arcs.iter().all(|arc| self.excess_of(arc.other, top) <= 0.0) {
-                return top.dot(n);
+        self.support_point(n.get()).dot(n.get())
+    }
+
+    /// The point farthest along `d`: of a face, an edge or a corner.
+    pub(super) fn support_point(&self, d: DVec3) -> DVec3 {
+        let n = d.normalize_or_zero();
+        self.extreme_point(
+            |centre| n * self.radius() + centre,
+            |circle| n - circle.axis * n.dot(circle.axis),
+            |p| p.dot(n),
+        )
+    }
+
+    /// The largest distance of a point of the intersection from `point`.
+    pub(super) fn farthest_from(&self, point: DVec3) -> f64 {
+        let away = |from: DVec3| (from - point).normalize_or(DVec3::X);
+        let farthest = self.extreme_point(
+            |centre| centre + away(centre) * self.radius(),
+            |circle| {
+                let w = circle.middle - point;
+                w - circle.axis * w.dot(circle.axis)
+            },
+            |p| p.distance_squared(point),
+        );
+        farthest.distance(point)
+    }
+
+    /// The point of the surface that is best by a measure that has one maximum on each sphere, `top` of its centre, and one on
+    /// each circle, in a direction `across` from its middle.
+    fn extreme_point(
+        &self,
+        top: impl Fn(DVec3) -> DVec3,
+        across: impl Fn(&Circle) -> DVec3,
+        measure: impl Fn(DVec3) -> f64,
+    ) -> DVec3 {
+        let (surface, rho) = (&self.surface, self.surface.radius);
+        let mut best = (f64::NEG_INFINITY, self.interior);
+        let mut compare = |p: DVec3| {
+            let value = measure(p);
+            if value > best.0 {
+                best = (value, p);
+            }
+        };
+        let mut arcs = Vec::new();
+        for k in self.faces() {
+            let top = top(surface.centre(k));
+            surface.arcs_of(k, &mut arcs);
+            if arcs.iter().all(|arc| !surface.is_outside(arc.other, top)) {
+                compare(top);
             }
             for (i, arc) in arcs.iter().enumerate() {
-                best = best.max(arc.start.dot(n));
+                compare(arc.start);
                 let end = arcs[(i + 1) % arcs.len()].start;
-                let circle = Circle::between(self.centres[k], self.centres[arc.other as usize], rho);
-                let across = n - circle.axis * n.dot(circle.axis);
+                let circle = Circle::between(surface.centre(k), surface.centre(arc.other), rho);
+                let across = across(&circle);
                 if across.length_squared() > 0.0 {
                     let highest = circle.middle + across.normalize() * circle.radius;
-                    if circle.angle(arc.start, highest) < circle.angle(arc.start, end) {
-                        best = best.max(highest.dot(n));
+                    if surface.angle(&circle, arc.start, highest) < surface.angle(&circle, arc.start, end) {
+                        compare(highest);
                     }
                 }
             }
         }
-        best
+        best.1
     }
+}
+
+/// A point that is outside of a ball, by the caller's indices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Outside {
+    pub(super) sample: usize,
+    pub(super) other: usize,
+    /// How far, in m.
+    pub(super) excess: f64,
 }

@@ -45,4 +45,21 @@ pub enum CurvatureError {
         /// The lower limit, in m.
         radius: f64,
     },
+    /// No body within the limits has both of two contacts.
+    #[error(
+        "no body with radii of curvature from {min} m to {max} m has both contact {sample} and contact {other}: the ball of \
+         the smallest radius inside of the one reaches {excess:e} m beyond that of the largest radius at the other"
+    )]
+    Contradicted {
+        /// The contact whose inner ball it is.
+        sample: usize,
+        /// The contact whose outer ball it is.
+        other: usize,
+        /// How far beyond, in m.
+        excess: f64,
+        /// The lower limit, in m.
+        min: f64,
+        /// The upper limit, in m.
+        max: f64,
+    },
 }

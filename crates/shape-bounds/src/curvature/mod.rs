@@ -4,19 +4,31 @@
 //! none is above `rho_max`, the body rolls freely inside of a ball of that radius (Blaschke). So the ball of radius
 //! `rho_min` that touches from inside at a contact is in the body, and the one of radius `rho_max` contains it.
 
+mod ball_hull;
 mod balls;
 mod circle;
 mod error;
-mod face;
+mod insert;
 mod measure;
+#[cfg(test)]
+mod oracle;
 mod rounded;
+mod sharp;
+#[cfg(test)]
+mod sharp_tests;
+mod steiner;
+mod surface;
 #[cfg(test)]
 mod tests;
 
+pub use ball_hull::BallHull;
 pub use balls::BallIntersection;
 pub use error::CurvatureError;
 pub use rounded::RoundedHull;
+pub use sharp::{RoundedIntersection, SharpBounds};
+pub use steiner::ConvexMeasures;
 
+use crate::hull::PointsError;
 use crate::sample::ContactSample;
 use contact_kinematics::{CurvatureRadii, Direction};
 use glam::DVec3;
@@ -66,6 +78,17 @@ impl CurvatureBounds {
     #[must_use]
     pub fn support(&self, n: Direction) -> (f64, f64) {
         (self.lower.support(n), self.upper.support(n))
+    }
+}
+
+/// Whether there are contacts, all of finite coordinates.
+fn check_contacts(contacts: &[ContactSample]) -> Result<(), PointsError> {
+    if contacts.is_empty() {
+        return Err(PointsError::Empty);
+    }
+    match contacts.iter().position(|c| !c.point.is_finite()) {
+        Some(index) => Err(PointsError::NotFinite { index, point: contacts[index].point }),
+        None => Ok(()),
     }
 }
 

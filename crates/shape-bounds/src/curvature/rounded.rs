@@ -1,5 +1,6 @@
 //! The hull of equal balls: hull of the centres plus a ball.
 
+use super::steiner::ConvexMeasures;
 use crate::distance::{farthest_of, nearest};
 use crate::hull::{Hull, PointsError, SolidHull, SupportWalk};
 use crate::integrals::Compensated;
@@ -14,14 +15,6 @@ pub struct RoundedHull {
     /// Corners of the core.
     corners: Vec<DVec3>,
     radius: f64,
-}
-
-/// What Steiner's formula takes from a convex core.
-struct Core {
-    volume: f64,
-    area: f64,
-    /// Sum over the edges of length times the angle between the normals of their facets.
-    mean_width: f64,
 }
 
 impl RoundedHull {
@@ -47,18 +40,22 @@ impl RoundedHull {
         self.radius
     }
 
-    /// Volume in m^3, by Steiner's formula `V + r S + r^2 / 2 sum(l theta) + 4/3 pi r^3`, exact to rounding.
+    /// Volume, area and mean curvature by Steiner's formula, exact to rounding.
     #[must_use]
-    pub fn volume(&self) -> f64 {
-        let (core, r) = (self.core_measures(), self.radius);
-        core.volume + r * core.area + 0.5 * r * r * core.mean_width + 4.0 / 3.0 * PI * r.powi(3)
+    pub fn measures(&self) -> ConvexMeasures {
+        self.core_measures().grown(self.radius)
     }
 
-    /// Surface area in m^2: the derivative of the volume with the radius.
+    /// Volume in m^3.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        self.measures().volume
+    }
+
+    /// Surface area in m^2.
     #[must_use]
     pub fn area(&self) -> f64 {
-        let (core, r) = (self.core_measures(), self.radius);
-        core.area + r * core.mean_width + 4.0 * PI * r * r
+        self.measures().area
     }
 
     /// Support function in m.
@@ -84,23 +81,23 @@ impl RoundedHull {
         }
     }
 
-    fn core_measures(&self) -> Core {
+    fn core_measures(&self) -> ConvexMeasures {
+        let c = &self.corners;
         match &self.core {
-            Hull::Point(_) => Core { volume: 0.0, area: 0.0, mean_width: 0.0 },
+            Hull::Point(_) => ConvexMeasures::default(),
             // An edge by itself has normals all around; the rim of a plate, half around.
             Hull::Segment(_) => {
-                let length = self.corners[0].distance(self.corners[1]);
-                Core { volume: 0.0, area: 0.0, mean_width: 2.0 * PI * length }
+                ConvexMeasures { mean_curvature: PI * c[0].distance(c[1]), ..ConvexMeasures::default() }
             }
             Hull::Polygon(_) => {
-                let c = &self.corners;
                 let rim: f64 = (0..c.len()).map(|k| c[k].distance(c[(k + 1) % c.len()])).sum();
                 let twice: DVec3 = c.windows(2).skip(1).map(|e| (e[0] - c[0]).cross(e[1] - c[0])).sum();
-                Core { volume: 0.0, area: twice.length(), mean_width: PI * rim }
+                ConvexMeasures { volume: 0.0, area: twice.length(), mean_curvature: 0.5 * PI * rim }
             }
             Hull::Solid(solid) => {
                 let moments = solid.moments();
-                Core { volume: moments.volume, area: moments.area, mean_width: edge_angles(solid) }
+                let mean_curvature = 0.5 * edge_angles(solid);
+                ConvexMeasures { volume: moments.volume, area: moments.area, mean_curvature }
             }
         }
     }

@@ -1,0 +1,119 @@
+//! The sharpest bounds that contacts and limits on the radii of curvature give.
+
+use super::ball_hull::BallHull;
+use super::balls::BallIntersection;
+use super::error::CurvatureError;
+use super::steiner::ConvexMeasures;
+use super::{ROUNDING, check_contacts};
+use crate::distance::nearest;
+use crate::sample::ContactSample;
+use contact_kinematics::{CurvatureRadii, Direction};
+use glam::DVec3;
+
+/// The smallest and the largest body with the given contacts and principal radii of curvature within the limits (in the
+/// closure: their own radii reach the limits, and where they reach zero and infinity, edges and flats).
+///
+/// A body with radii from `rho_min` to `rho_max` is `C + B(rho_min)` with `C` an intersection of balls of radius
+/// `rho = rho_max - rho_min`, and the other way round. With `p_k = x_k - rho_min n_k` and `q_k = x_k - rho_max n_k`, `C` has the
+/// points `p_k` and lies in the balls of radius `rho` about the `q_k`. So the ball hull of the `p_k` is the smallest `C`, the
+/// intersection of the balls about the `q_k` the largest one, and both have the contacts: no tighter bounds hold for all
+/// such bodies. Contacts and limits agree just if every `p_j` is within `rho` of every `q_k`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SharpBounds {
+    lower: BallHull,
+    upper: RoundedIntersection,
+}
+
+impl SharpBounds {
+    /// Bounds from contacts without noise on a body whose principal radii of curvature lie within `radii`.
+    ///
+    /// # Errors
+    /// [`CurvatureError`] for limits that are not `0 <= min < max < infinity`, no contacts, values that are not finite, and
+    /// [`CurvatureError::Contradicted`] with a pair of contacts that no body within the limits has.
+    pub fn from_contacts(contacts: &[ContactSample], radii: CurvatureRadii) -> Result<Self, CurvatureError> {
+        let CurvatureRadii { min, max } = radii;
+        if !(0.0 <= min && min < max && max.is_finite()) {
+            return Err(CurvatureError::Radii { min, max });
+        }
+        check_contacts(contacts)?;
+        let inside = |r: f64| contacts.iter().map(|c| c.point - c.normal.get() * r).collect::<Vec<DVec3>>();
+        let (inner, outer) = (inside(min), inside(max));
+        let size = contacts.iter().map(|c| c.point.abs().max_element()).fold(max, f64::max);
+        let contradicted =
+            |sample, other, excess| CurvatureError::Contradicted { sample, other, excess, min, max };
+        let (core, outside) = BallIntersection::build(&outer, &inner, max - min, ROUNDING * size);
+        if let Some(o) = outside {
+            return Err(contradicted(o.sample, o.other, o.excess));
+        }
+        let (dual, outside) = BallIntersection::build(&inner, &outer, max - min, ROUNDING * size);
+        if let Some(o) = outside {
+            return Err(contradicted(o.other, o.sample, o.excess));
+        }
+        Ok(Self { lower: BallHull::of_dual(dual, min), upper: RoundedIntersection { core, margin: min } })
+    }
+
+    /// The smallest body within the limits: in every other.
+    #[must_use]
+    pub fn lower(&self) -> &BallHull {
+        &self.lower
+    }
+
+    /// The largest body within the limits: around every other.
+    #[must_use]
+    pub fn upper(&self) -> &RoundedIntersection {
+        &self.upper
+    }
+
+    /// Support functions `(lower, upper)` in direction `n`, in m.
+    #[must_use]
+    pub fn support(&self, n: Direction) -> (f64, f64) {
+        (self.lower.support(n), self.upper.support(n))
+    }
+}
+
+/// An intersection of equal balls, widened by a ball: its edges and corners are rounded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoundedIntersection {
+    core: BallIntersection,
+    margin: f64,
+}
+
+impl RoundedIntersection {
+    /// The intersection of balls before it is widened.
+    #[must_use]
+    pub fn core(&self) -> &BallIntersection {
+        &self.core
+    }
+
+    /// Radius of the ball by which the intersection is widened, in m.
+    #[must_use]
+    pub fn margin(&self) -> f64 {
+        self.margin
+    }
+
+    /// Volume, area and mean curvature.
+    #[must_use]
+    pub fn measures(&self) -> ConvexMeasures {
+        self.core.measures().grown(self.margin)
+    }
+
+    /// Volume in m^3.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        self.measures().volume
+    }
+
+    /// Support function in m, in time O(n).
+    #[must_use]
+    pub fn support(&self, n: Direction) -> f64 {
+        self.core.support(n) + self.margin
+    }
+
+    /// Whether `point` is inside; one outside by a few units of rounding may be admitted.
+    #[must_use]
+    pub fn contains(&self, point: DVec3) -> bool {
+        let start = self.core.support_point(point - self.core.interior());
+        let found = nearest(point, start, |d| self.core.support_point(d));
+        found.certified <= self.margin + 4.0 * f64::EPSILON * (point.abs().max_element() + self.core.radius())
+    }
+}
