@@ -5,7 +5,12 @@ use std::process::ExitCode;
 use crate::cargo::{cargo, output, root};
 
 /// Name of a study, the file under docs/ that it writes, and what it is about.
-const STUDIES: [(&str, &str, &str); 4] = [
+const STUDIES: [(&str, &str, &str); 5] = [
+    (
+        "bounds_noise",
+        "bounds-noise.md",
+        "bounds of simulated noisy contacts: how often they hold, how tight they are",
+    ),
     ("bounds_tosses", "bounds-tosses.md", "bounds from poses of bodies that MuJoCo tosses onto a table"),
     ("cold_start", "cold-start.md", "three palms: random scenes from no guess"),
     ("planar_monte_carlo", "planar-monte-carlo.md", "planar observers against the Cramer-Rao bound"),

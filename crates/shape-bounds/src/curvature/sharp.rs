@@ -1,7 +1,7 @@
 //! The sharpest bounds that contacts and limits on the radii of curvature give.
 
 use super::ball_hull::BallHull;
-use super::balls::BallIntersection;
+use super::balls::{BallIntersection, Outside};
 use super::error::CurvatureError;
 use super::steiner::ConvexMeasures;
 use super::{ROUNDING, check_contacts};
@@ -50,6 +50,27 @@ impl SharpBounds {
             return Err(contradicted(o.other, o.sample, o.excess));
         }
         Ok(Self { lower: BallHull::of_dual(dual, min), upper: RoundedIntersection { core, margin: min } })
+    }
+
+    /// Bounds of a body that has balls of radius `inside` (m) about `inner`, and of which the points that are centres of such
+    /// balls of radius `min` lie within `reach` (m) of each of `outer`; all `inner` are within `reach` of all `outer`, too.
+    ///
+    /// # Errors
+    /// [`CurvatureError::Contradicted`] names a pair that is not.
+    pub(crate) fn around(
+        inner: &[DVec3],
+        outer: &[DVec3],
+        reach: f64,
+        inside: f64,
+        radii: CurvatureRadii,
+    ) -> Result<Self, CurvatureError> {
+        let CurvatureRadii { min, max } = radii;
+        let (core, outside) = BallIntersection::build(outer, inner, reach, 0.0);
+        if let Some(Outside { sample, other, excess }) = outside {
+            return Err(CurvatureError::Contradicted { sample, other, excess, min, max });
+        }
+        let (dual, _) = BallIntersection::build(inner, outer, reach, f64::INFINITY);
+        Ok(Self { lower: BallHull::of_dual(dual, inside), upper: RoundedIntersection { core, margin: min } })
     }
 
     /// The smallest body within the limits: in every other.

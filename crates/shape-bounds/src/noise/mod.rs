@@ -1,6 +1,7 @@
 //! Bounds that hold at a stated confidence when contacts are measured with noise.
 
 mod consistency;
+mod curvature;
 mod lower;
 mod model;
 mod outliers;

@@ -127,6 +127,9 @@ pub enum NoiseError {
         /// Radius of the largest region tried.
         reach: f64,
     },
+    /// Limits on the radii of curvature that are none, or that contacts contradict by more than their noise.
+    #[error(transparent)]
+    Curvature(#[from] crate::curvature::CurvatureError),
     /// The measured contacts have no bounds whatever the noise.
     #[error(transparent)]
     Bounds(#[from] crate::bounds::BoundsError),

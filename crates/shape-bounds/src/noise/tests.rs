@@ -1,19 +1,21 @@
 use super::*;
+use crate::curvature::{CurvatureError, SharpBounds};
 use crate::generators::{AXES, ellipsoid_support, noisy_curves};
 use crate::halfspaces::Intersection;
+use contact_kinematics::CurvatureRadii;
 use glam::DVec3;
 
 /// Bounds of one simulated noisy run, at noise relative to the ellipsoid's largest semi-axis.
 fn run(count: usize, level: f64, confidence: f64, seed: u64) -> Result<ShapeBounds, NoiseError> {
     let (point, normal) = (level * AXES.x, level);
-    let curves: Vec<Vec<NoisyContact>> = noisy_curves(count, point, normal, seed)
-        .into_iter()
-        .map(|curve| {
-            let noise = ContactNoise::isotropic(point, normal);
-            curve.into_iter().map(|contact| NoisyContact { contact, noise }).collect()
-        })
-        .collect();
+    let curves = with_noise(noisy_curves(count, point, normal, seed), point, normal);
     ShapeBounds::from_noisy_curves(&curves, confidence)
+}
+
+fn with_noise(curves: Vec<Vec<crate::ContactSample>>, point: f64, normal: f64) -> Vec<Vec<NoisyContact>> {
+    let noise = ContactNoise::isotropic(point, normal);
+    let noisy = |contact| NoisyContact { contact, noise };
+    curves.into_iter().map(|curve| curve.into_iter().map(noisy).collect()).collect()
 }
 
 /// Whether the true ellipsoid lies between the bounds; exact for it, but for rounding.
@@ -51,11 +53,7 @@ fn without_noise_the_bounds_are_the_plain_ones() {
 #[test]
 fn averages_tighten_the_bounds() {
     // The same contacts without their order along the curve: each stands alone in its curve.
-    let noise = ContactNoise::isotropic(2.5e-3, 1e-3);
-    let ordered: Vec<Vec<NoisyContact>> = noisy_curves(600, 2.5e-3, 1e-3, 1)
-        .into_iter()
-        .map(|curve| curve.into_iter().map(|contact| NoisyContact { contact, noise }).collect())
-        .collect();
+    let ordered = with_noise(noisy_curves(600, 2.5e-3, 1e-3, 1), 2.5e-3, 1e-3);
     let single: Vec<Vec<NoisyContact>> = ordered.iter().flatten().map(|c| vec![*c]).collect();
     let gap = |curves: &[Vec<NoisyContact>]| {
         let bounds = ShapeBounds::from_noisy_curves(curves, 0.95).unwrap();
@@ -169,11 +167,7 @@ fn bounds_hold_with_estimated_noise_and_planted_outliers() {
 #[test]
 fn clean_contacts_hold_no_outliers() {
     for (level, seed) in [(0.0, 4), (1e-4, 5), (1e-3, 6), (1e-2, 7)] {
-        let noise = ContactNoise::isotropic(level * AXES.x, level);
-        let curves: Vec<Vec<NoisyContact>> = noisy_curves(600, level * AXES.x, level, seed)
-            .into_iter()
-            .map(|curve| curve.into_iter().map(|contact| NoisyContact { contact, noise }).collect())
-            .collect();
+        let curves = with_noise(noisy_curves(600, level * AXES.x, level, seed), level * AXES.x, level);
         let (kept, outliers) = without_outliers(&curves, 0.95).unwrap();
         assert_eq!(outliers, []);
         assert!(kept == curves);
@@ -192,4 +186,44 @@ fn contacts_that_contradict_throughout_are_refused() {
     let short = noisy_curves(60, 0.0, 0.0, 1);
     let error = estimate_noise(&short, 0.95).unwrap_err();
     assert_eq!(error, NoiseError::TooFewToJudge { curve: 0, found: 20, needed: 30 });
+}
+
+/// Limits on the radii of curvature of the ellipsoid, some per cent wider than its own.
+const RADII: CurvatureRadii = CurvatureRadii { min: 0.38, max: 6.5 };
+
+#[test]
+fn limits_on_the_curvature_tighten_the_bounds_under_noise_and_they_hold() {
+    for seed in 0..10 {
+        let curves = with_noise(noisy_curves(600, 2.5e-3, 1e-3, seed), 2.5e-3, 1e-3);
+        let sharp = SharpBounds::from_noisy_curves(&curves, RADII, 0.95).unwrap();
+        let mut source = crate::generators::Source::new(seed);
+        for _ in 0..500 {
+            let n = contact_kinematics::Direction::new(source.direction()).unwrap();
+            let (lower, upper) = sharp.support(n);
+            let truth = ellipsoid_support(n.get());
+            assert!(lower <= truth && truth <= upper, "seed {seed}: {lower} {truth} {upper}");
+        }
+        let plain = ShapeBounds::from_noisy_curves(&curves, 0.95).unwrap();
+        let sharp_gap = sharp.upper().volume() - sharp.lower().volume();
+        let plain_gap = plain.upper_volume() - plain.lower_volume();
+        assert!(sharp_gap < 0.75 * plain_gap, "seed {seed}: {sharp_gap} {plain_gap}");
+    }
+}
+
+#[test]
+fn limits_that_noisy_contacts_contradict_are_named() {
+    let curves = with_noise(noisy_curves(600, 2.5e-4, 1e-4, 3), 2.5e-4, 1e-4);
+    let with = |min, max| SharpBounds::from_noisy_curves(&curves, CurvatureRadii { min, max }, 0.95);
+    for (min, max) in [(0.38, 3.0), (0.8, 6.5)] {
+        let Err(NoiseError::Curvature(CurvatureError::Contradicted { sample, other, .. })) = with(min, max)
+        else {
+            panic!("{min} {max}");
+        };
+        assert!(sample < 600 && other < 600);
+    }
+    assert!(matches!(with(2.0, 1.0), Err(NoiseError::Curvature(CurvatureError::Radii { .. }))));
+    // Centres of the inner balls are worse known than the balls are large.
+    let vague = with_noise(noisy_curves(600, 0.25, 0.0, 3), 0.25, 0.0);
+    let found = SharpBounds::from_noisy_curves(&vague, CurvatureRadii { min: 0.1, max: 6.5 }, 0.95);
+    assert!(matches!(found, Err(NoiseError::NoLowerBound)), "{found:?}");
 }

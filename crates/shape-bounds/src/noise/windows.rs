@@ -14,6 +14,8 @@ const LONGEST: usize = 128;
 /// The mean of a run of contacts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
+    /// Its first contact, counted over all curves.
+    pub(super) first: usize,
     /// Mean point.
     pub(super) point: DVec3,
     /// Length of the mean normal, at most 1.
@@ -43,12 +45,14 @@ pub(super) fn windows(curves: &[Vec<NoisyContact>]) -> Vec<Vec<Window>> {
     while length <= longest {
         let stride = (length / 2).max(1);
         let mut list = Vec::new();
+        let mut before = 0;
         for curve in curves {
             let mut start = 0;
             while start + length <= curve.len() {
-                list.extend(Window::mean(&curve[start..start + length]));
+                list.extend(Window::mean(before + start, &curve[start..start + length]));
                 start += stride;
             }
+            before += curve.len();
         }
         lists.push(list);
         length *= 2;
@@ -57,8 +61,8 @@ pub(super) fn windows(curves: &[Vec<NoisyContact>]) -> Vec<Vec<Window>> {
 }
 
 impl Window {
-    /// The mean of `run`; `None` if its normals cancel.
-    fn mean(run: &[NoisyContact]) -> Option<Self> {
+    /// The mean of `run`, which begins at contact `first`; `None` if its normals cancel.
+    fn mean(first: usize, run: &[NoisyContact]) -> Option<Self> {
         let weight = 1.0 / run.len() as f64;
         let mean = |of: &dyn Fn(&NoisyContact) -> f64| run.iter().map(of).sum::<f64>() * weight;
         let point = run.iter().map(|c| c.contact.point).sum::<DVec3>() * weight;
@@ -73,6 +77,7 @@ impl Window {
         let covariance =
             run.iter().map(|c| c.noise.point).fold(DMat3::ZERO, |sum, m| sum + m) * (weight * weight);
         Some(Self {
+            first,
             point,
             shrink: normal.length(),
             normal: direction,

@@ -39,10 +39,8 @@ pub(super) fn noise_scale(runs: &[Vec<BodyPose>]) -> f64 {
         let d = second_difference(poses, k);
         [d.x.abs(), d.y.abs()]
     };
-    let mut sizes: Vec<f64> = runs
-        .iter()
-        .flat_map(|poses| (1..poses.len() - 1).flat_map(move |k| sideways(poses, k)))
-        .collect();
+    let mut sizes: Vec<f64> =
+        runs.iter().flat_map(|poses| (1..poses.len() - 1).flat_map(move |k| sideways(poses, k))).collect();
     if sizes.is_empty() {
         return 0.0;
     }
