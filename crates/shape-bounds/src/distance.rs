@@ -5,15 +5,15 @@
 
 use glam::DVec3;
 
-/// The part of the squared distance by which the certified distance may fall short before the iteration stops.
-const RELATIVE: f64 = 1e-14;
+/// The part of the distance by which the certified distance may fall short before the iteration stops.
+const RELATIVE: f64 = 1e-13;
 /// Iterations at most; some ten suffice for a polytope.
 const ITERATIONS: usize = 200;
 
 /// The nearest point of a body, as far as found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Nearest {
-    /// A point of the body.
+    /// A point of the body; its distance is at least the true one.
     pub(crate) point: DVec3,
     /// Unit vector from the body to the query; zero if the query is in the body.
     pub(crate) direction: DVec3,
@@ -37,51 +37,62 @@ pub(crate) fn nearest(query: DVec3, start: DVec3, mut support: impl FnMut(DVec3)
         if certified > best.certified {
             best = Nearest { point: closest + query, direction, certified };
         }
-        if distance - certified <= RELATIVE * distance || simplex.contains(&candidate) {
+        if distance - best.certified <= RELATIVE * distance {
             break;
         }
         simplex.push(candidate);
-        let Some(next) = reduce(&mut simplex) else {
-            return Nearest { point: query, direction: DVec3::ZERO, certified: 0.0 };
-        };
+        let mut next = reduce(&mut simplex);
         if next.length_squared() >= closest.length_squared() {
-            break;
+            // Corners that nearly coincide make the simplex degenerate. The segment from the nearest point so far to the
+            // candidate holds a nearer one, unless rounding is all that is left.
+            simplex = vec![closest, candidate];
+            next = reduce(&mut simplex);
+            if next.length_squared() >= closest.length_squared() {
+                break;
+            }
         }
         closest = next;
     }
     Nearest { point: closest + query, ..best }
 }
 
-/// The point of the simplex nearest to the origin, with the simplex cut down to the corners that carry it; `None` if
-/// the origin is inside.
-fn reduce(simplex: &mut Vec<DVec3>) -> Option<DVec3> {
+/// The point of the simplex nearest to the origin, with the simplex cut down to the corners that carry it.
+///
+/// Points are means of corners with weights of at least zero, so that they are in the simplex however degenerate it is.
+fn reduce(simplex: &mut Vec<DVec3>) -> DVec3 {
     let (point, kept) = match simplex[..] {
         [a, b] => on_segment(a, b),
         [a, b, c] => on_triangle(a, b, c),
-        [a, b, c, d] => {
-            if holds_origin([a, b, c, d]) {
-                return None;
-            }
-            [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]
-                .into_iter()
-                .map(|face| {
-                    let (point, kept) = on_triangle(simplex[face[0]], simplex[face[1]], simplex[face[2]]);
-                    (point, kept.into_iter().map(|k| face[k]).collect())
-                })
-                .min_by(|x: &(DVec3, Vec<usize>), y| x.0.length_squared().total_cmp(&y.0.length_squared()))?
-        }
+        [a, b, c, d] => on_tetrahedron([a, b, c, d]),
         _ => (simplex[0], vec![0]),
     };
     *simplex = kept.into_iter().map(|k| simplex[k]).collect();
-    Some(point)
+    point
 }
 
-fn holds_origin([a, b, c, d]: [DVec3; 4]) -> bool {
-    let side = |p: DVec3, q: DVec3, r: DVec3, s: DVec3| {
-        let normal = (q - p).cross(r - p);
-        normal.dot(-p) * normal.dot(s - p) > 0.0
-    };
-    side(a, b, c, d) && side(a, b, d, c) && side(a, c, d, b) && side(b, c, d, a)
+fn on_tetrahedron(corners: [DVec3; 4]) -> (DVec3, Vec<usize>) {
+    let [a, b, c, d] = corners;
+    let volume = |p: DVec3, q: DVec3, r: DVec3, s: DVec3| (q - p).cross(r - p).dot(s - p);
+    let origin = DVec3::ZERO;
+    let weights =
+        [volume(origin, b, d, c), volume(origin, a, c, d), volume(origin, a, d, b), volume(origin, a, b, c)];
+    let inside = mean(corners, weights).map(|point| (point, vec![0, 1, 2, 3]));
+    let faces = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]].into_iter().map(|face| {
+        let (point, kept) = on_triangle(corners[face[0]], corners[face[1]], corners[face[2]]);
+        (point, kept.into_iter().map(|k| face[k]).collect())
+    });
+    nearer(faces.chain(inside)).unwrap_or((a, vec![0]))
+}
+
+fn on_triangle(a: DVec3, b: DVec3, c: DVec3) -> (DVec3, Vec<usize>) {
+    let normal = (b - a).cross(c - a);
+    let weight = |p: DVec3, q: DVec3| p.cross(q).dot(normal);
+    let inside = mean([a, b, c], [weight(b, c), weight(c, a), weight(a, b)]);
+    let edges = [([a, b], [0, 1]), ([b, c], [1, 2]), ([c, a], [2, 0])].into_iter().map(|([p, q], names)| {
+        let (point, kept) = on_segment(p, q);
+        (point, kept.into_iter().map(|k| names[k]).collect::<Vec<_>>())
+    });
+    nearer(edges.chain(inside.map(|point| (point, vec![0, 1, 2])))).unwrap_or((a, vec![0]))
 }
 
 fn on_segment(a: DVec3, b: DVec3) -> (DVec3, Vec<usize>) {
@@ -97,20 +108,16 @@ fn on_segment(a: DVec3, b: DVec3) -> (DVec3, Vec<usize>) {
     }
 }
 
-fn on_triangle(a: DVec3, b: DVec3, c: DVec3) -> (DVec3, Vec<usize>) {
-    let normal = (b - a).cross(c - a);
-    let inside = |p: DVec3, q: DVec3| (q - p).cross(-p).dot(normal) > 0.0;
-    if normal != DVec3::ZERO && inside(a, b) && inside(b, c) && inside(c, a) {
-        return (normal * (a.dot(normal) / normal.length_squared()), vec![0, 1, 2]);
-    }
-    [([a, b], [0, 1]), ([b, c], [1, 2]), ([c, a], [2, 0])]
-        .into_iter()
-        .map(|([p, q], names)| {
-            let (point, kept) = on_segment(p, q);
-            (point, kept.into_iter().map(|k| names[k]).collect::<Vec<_>>())
-        })
-        .min_by(|x, y| x.0.length_squared().total_cmp(&y.0.length_squared()))
-        .unwrap_or((a, vec![0]))
+/// The mean with weights that are all of one sign; `None` where they are not, or all zero.
+fn mean<const N: usize>(corners: [DVec3; N], weights: [f64; N]) -> Option<DVec3> {
+    let sum: f64 = weights.iter().sum();
+    let shares = weights.map(|w| w / sum);
+    let valid = shares.iter().all(|w| *w >= 0.0);
+    valid.then(|| corners.iter().zip(shares).map(|(c, w)| *c * w).sum())
+}
+
+fn nearer(found: impl Iterator<Item = (DVec3, Vec<usize>)>) -> Option<(DVec3, Vec<usize>)> {
+    found.min_by(|x, y| x.0.length_squared().total_cmp(&y.0.length_squared()))
 }
 
 /// The first of `points` that is farthest along `d`.
@@ -165,6 +172,29 @@ mod tests {
                 let reached = found.point.distance(query);
                 assert!(reached - found.certified <= 1e-12 * size, "{kind:?} {reached} {found:?}");
             }
+        }
+    }
+
+    #[test]
+    fn corners_that_nearly_coincide_do_not_mislead() {
+        let mut s = Source::new(5);
+        let spread = |s: &mut Source, p: DVec3| p + s.normal3() * 10.0_f64.powf(s.between(-16.0, -11.0));
+        let points: Vec<DVec3> = InputKind::Curves
+            .points(300, 2)
+            .iter()
+            .flat_map(|p| [(); 6].map(|()| spread(&mut s, *p)))
+            .collect();
+        let Ok(crate::Hull::Solid(hull)) = crate::Hull::of(&points) else { panic!("flat") };
+        for _ in 0..2000 {
+            let middle = points[s.below(points.len())].lerp(points[s.below(points.len())], s.unit());
+            let query = middle * s.between(1.0, 3.0);
+            let found = nearest(query, points[s.below(points.len())], |d| support(&points, d));
+            let reached = found.point.distance(query);
+            assert!(reached - found.certified <= 1e-11, "{query} {reached} {found:?}");
+            assert!(reached >= hull.excess(query) - 1e-11, "{query} {reached} {}", hull.excess(query));
+            let height =
+                points.iter().map(|p| (*p - query).dot(found.direction)).fold(f64::NEG_INFINITY, f64::max);
+            assert!((height + found.certified).abs() < 1e-14 || reached < 1e-11, "{height} {found:?}");
         }
     }
 }
