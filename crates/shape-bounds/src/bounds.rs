@@ -4,7 +4,7 @@ mod incremental;
 
 pub use incremental::IncrementalBounds;
 
-use crate::distance::{farthest_of, nearest};
+use crate::distance::{Nearest, farthest_of, nearest, nearest_beyond};
 use crate::halfspaces::{Intersection, IntersectionError};
 use crate::hull::{Hull, PointsError, SupportWalk};
 use crate::sample::{ContactSample, HalfSpace};
@@ -14,6 +14,9 @@ use thiserror::Error;
 
 /// Contacts that a body in space needs at least for bounds with a volume.
 const FEWEST: usize = 4;
+
+/// Corners at which the search for the largest gap begins.
+const FIRST_CORNERS: usize = 100;
 
 /// Why contacts give no bounds.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -140,28 +143,58 @@ impl ShapeBounds {
     #[must_use]
     pub fn gaps(&self) -> Vec<Gap> {
         let Some(upper) = self.upper.bounded() else { return Vec::new() };
-        let mut walk = self.lower.solid().map(SupportWalk::new);
-        let mut farthest = |d: DVec3| match &mut walk {
-            Some(walk) => walk.farthest(d),
-            None => farthest_of(&self.corners, d),
-        };
+        let mut farthest = self.farthest();
         let mut start = self.corners[0];
         let mut gaps = Vec::with_capacity(upper.vertices().len());
         for outer in upper.vertices() {
             let found = nearest(*outer, start, &mut farthest);
             start = farthest(*outer - found.point);
-            if let Ok(direction) = Direction::new(found.direction) {
-                gaps.push(Gap { direction, outer: *outer, inner: found.point, distance: found.certified });
-            }
+            gaps.extend(Gap::new(*outer, &found));
         }
         gaps
     }
 
     /// The largest gap: its distance is the Hausdorff distance of the bounds, because the distance to a convex set is a
     /// convex function, which is largest at a corner. `None` when the upper bound is unbounded or the gap is zero.
+    ///
+    /// Much faster than [`Self::gaps`]: a corner is given up once a point of the lower bound is nearer than the largest
+    /// gap so far.
     #[must_use]
     pub fn largest_gap(&self) -> Option<Gap> {
-        self.gaps().into_iter().max_by(|x, y| x.distance.total_cmp(&y.distance))
+        let corners = self.upper.bounded()?.vertices();
+        let mut farthest = self.farthest();
+        let mut start = self.corners[0];
+        let mut largest: Option<Gap> = None;
+        // A few corners from everywhere first, so that the others are given up early.
+        let few = corners.iter().step_by(corners.len().div_ceil(FIRST_CORNERS));
+        for outer in few.chain(corners) {
+            let enough = largest.map_or(0.0, |gap| gap.distance);
+            if outer.distance(start) <= enough {
+                continue;
+            }
+            let found = nearest_beyond(*outer, start, enough, &mut farthest);
+            start = found.point;
+            if found.certified > enough {
+                largest = Gap::new(*outer, &found).or(largest);
+            }
+        }
+        largest
+    }
+
+    /// The corner of the lower bound farthest along a direction.
+    fn farthest(&self) -> impl FnMut(DVec3) -> DVec3 + '_ {
+        let mut walk = self.lower.solid().map(SupportWalk::new);
+        move |d| match &mut walk {
+            Some(walk) => walk.farthest(d),
+            None => farthest_of(&self.corners, d),
+        }
+    }
+}
+
+impl Gap {
+    fn new(outer: DVec3, found: &Nearest) -> Option<Self> {
+        let direction = Direction::new(found.direction).ok()?;
+        Some(Self { direction, outer, inner: found.point, distance: found.certified })
     }
 }
 

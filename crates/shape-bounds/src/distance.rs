@@ -22,13 +22,23 @@ pub(crate) struct Nearest {
 }
 
 /// Nearest point to `query` of the body whose farthest point along `d` is `support(d)`; `start` is any of its points.
-pub(crate) fn nearest(query: DVec3, start: DVec3, mut support: impl FnMut(DVec3) -> DVec3) -> Nearest {
+pub(crate) fn nearest(query: DVec3, start: DVec3, support: impl FnMut(DVec3) -> DVec3) -> Nearest {
+    nearest_beyond(query, start, 0.0, support)
+}
+
+/// The same, given up as soon as a point of the body is found that is no further than `enough`: then that point is returned.
+pub(crate) fn nearest_beyond(
+    query: DVec3,
+    start: DVec3,
+    enough: f64,
+    mut support: impl FnMut(DVec3) -> DVec3,
+) -> Nearest {
     let mut simplex = vec![start - query];
     let mut closest = simplex[0];
     let mut best = Nearest { point: start, direction: DVec3::ZERO, certified: 0.0 };
     for _ in 0..ITERATIONS {
         let distance = closest.length();
-        if distance == 0.0 {
+        if distance <= enough {
             break;
         }
         let direction = -closest / distance;

@@ -106,3 +106,16 @@ fn a_contradictory_contact_is_not_taken() {
     );
     assert_eq!(growing.bounds().unwrap(), before);
 }
+
+#[test]
+fn the_largest_gap_is_the_largest_of_the_field() {
+    for seed in 0..8 {
+        for contacts in [curve_contacts(400, seed), ellipsoid_contacts(60, seed)] {
+            let bounds = ShapeBounds::from_contacts(&contacts).unwrap();
+            let of_field = bounds.gaps().into_iter().map(|gap| gap.distance).fold(0.0, f64::max);
+            let found = bounds.largest_gap().unwrap();
+            assert!((found.distance - of_field).abs() <= 1e-12 * of_field, "{found:?} {of_field}");
+            assert!((found.outer.distance(found.inner) - of_field).abs() <= 1e-12 * of_field);
+        }
+    }
+}
