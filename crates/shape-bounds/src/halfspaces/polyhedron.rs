@@ -168,7 +168,7 @@ fn corners(dual: &SolidHull, half_spaces: &[HalfSpace], interior: DVec3, toleran
         .map(|f| {
             let t = triangles[f];
             let planes = t.map(|v| &half_spaces[v as usize]);
-            let corner = common_point(planes);
+            let corner = common_point(planes, tolerance);
             let on_planes = planes.iter().all(|h| h.excess(corner).abs() <= tolerance);
             let consistent = on_planes
                 && dual.neighbours()[f].iter().enumerate().all(|(edge, g)| {
