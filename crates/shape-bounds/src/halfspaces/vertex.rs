@@ -4,12 +4,14 @@ use crate::sample::HalfSpace;
 use crate::twofold::{Twofold, cross_of_differences};
 use glam::DVec3;
 
-/// A corner is refined where errors of unit size in its planes may move it by more than this: at most 1e-13 of the size,
+/// A corner is refined where errors of unit size in its planes may move it by more than this: at most 1e-12 of the size,
 /// for what evaluating the planes takes, is let pass.
-const WELL_CONDITIONED: f64 = 100.0;
+const WELL_CONDITIONED: f64 = 1000.0;
 /// Refinements at most. The inverse has some correct digits, or the planes have no point in common to speak of; so one or
 /// two steps are enough.
 const STEPS: usize = 4;
+/// A step below this many times the tolerance is the last: what it leaves is smaller by the accuracy of the inverse.
+const CONVERGED: f64 = 100.0;
 
 /// The inverse of the system of three planes, as columns: `y = x_i + first m_i + second d_j + third d_k`.
 ///
@@ -57,8 +59,8 @@ pub(super) fn common_point(planes: [&HalfSpace; 3], tolerance: f64) -> DVec3 {
     let offset_j = j.normal.get().dot(j.point - i.point) + (j.margin - i.margin);
     let offset_k = k.normal.get().dot(k.point - i.point) + (k.margin - i.margin);
     let point = i.point + inverse.apply([i.margin, offset_j, offset_k]);
-    let good = inverse.condition() <= WELL_CONDITIONED
-        && planes.iter().all(|h| h.excess(point).abs() <= tolerance);
+    let good =
+        inverse.condition() <= WELL_CONDITIONED && planes.iter().all(|h| h.excess(point).abs() <= tolerance);
     if good { point } else { refined(planes, &inverse, point, tolerance) }
 }
 
@@ -70,7 +72,7 @@ fn refined(planes: [&HalfSpace; 3], inverse: &Inverse, start: DVec3, tolerance: 
         let [i, j, k] = planes.map(|h| excess(h, point));
         let step = inverse.apply([i.value(), j.minus(i), k.minus(i)]);
         point -= step;
-        if step.abs().max_element() <= tolerance {
+        if step.abs().max_element() <= CONVERGED * tolerance {
             break;
         }
     }

@@ -40,32 +40,24 @@ fn bounding_box(points: &[DVec3]) -> (DVec3, DVec3) {
     points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
 }
 
-/// Hilbert index of a cell (Skilling, "Programming the Hilbert curve", 2004).
+/// Hilbert index of a cell (Skilling, "Programming the Hilbert curve", 2004), without branches, which would be guessed wrongly
+/// half of the time.
 fn hilbert(mut x: [u32; 3]) -> u64 {
-    let mut q = 1_u32 << (BITS - 1);
-    while q > 1 {
-        let p = q - 1;
-        for i in 0..3 {
-            if x[i] & q != 0 {
-                x[0] ^= p;
-            } else {
-                let t = (x[0] ^ x[i]) & p;
-                x[0] ^= t;
-                x[i] ^= t;
-            }
+    // All ones where bit `b` of `c` is set.
+    let mask = |c: u32, b: u32| 0_u32.wrapping_sub(c >> b & 1);
+    for b in (1..BITS).rev() {
+        let p = (1_u32 << b) - 1;
+        x[0] ^= p & mask(x[0], b);
+        for i in 1..3 {
+            let set = mask(x[i], b);
+            let t = (x[0] ^ x[i]) & p & !set;
+            x[0] ^= t | (p & set);
+            x[i] ^= t;
         }
-        q >>= 1;
     }
     x[1] ^= x[0];
     x[2] ^= x[1];
-    let mut t = 0;
-    let mut q = 1_u32 << (BITS - 1);
-    while q > 1 {
-        if x[2] & q != 0 {
-            t ^= q - 1;
-        }
-        q >>= 1;
-    }
+    let t = (1..BITS).rev().fold(0, |t, b| t ^ ((1 << b) - 1) & mask(x[2], b));
     x.iter().enumerate().fold(0, |key, (i, c)| key | spread(c ^ t) << (2 - i))
 }
 

@@ -8,17 +8,14 @@ use glam::DVec3;
 #[derive(Clone, Debug)]
 pub struct SupportWalk<'a> {
     hull: &'a SolidHull,
-    /// For each corner, one facet at it.
-    facet_at: Vec<u32>,
     corner: u32,
 }
 
 impl<'a> SupportWalk<'a> {
-    /// Prepares the climb in time O(n).
+    /// A climb that starts anywhere.
     #[must_use]
     pub fn new(hull: &'a SolidHull) -> Self {
-        let facet_at = hull.facet_at_each_vertex();
-        Self { hull, facet_at, corner: 0 }
+        Self { hull, corner: 0 }
     }
 
     /// The corner farthest along `direction`, which need not be of unit length.
@@ -27,7 +24,7 @@ impl<'a> SupportWalk<'a> {
         let mut height = vertices[self.corner as usize].dot(direction);
         loop {
             let mut next = self.corner;
-            self.hull.for_each_neighbour(self.corner, self.facet_at[self.corner as usize], |v| {
+            self.hull.for_each_neighbour(self.corner, |v| {
                 let candidate = vertices[v as usize].dot(direction);
                 if candidate > height {
                     (height, next) = (candidate, v);
