@@ -23,8 +23,8 @@ pub struct SolidHull {
 }
 
 impl SolidHull {
-    /// `order` maps the builder's points to the caller's.
-    pub(super) fn from_builder(builder: &Builder, order: &[u32], points: &[DVec3]) -> Self {
+    /// `order` maps the builder's points to the caller's, of which they are the multiple by `scale`, a power of two.
+    pub(super) fn from_builder(builder: &Builder, order: &[u32], scale: f64) -> Self {
         let list = &builder.facets.list;
         let mut facet_number = vec![NONE; list.len()];
         let mut vertex_number = vec![NONE; order.len()];
@@ -39,7 +39,7 @@ impl SolidHull {
                 let slot = &mut vertex_number[v as usize];
                 if *slot == NONE {
                     *slot = vertices.len() as u32;
-                    vertices.push(points[order[v as usize] as usize]);
+                    vertices.push(builder.facets.points[v as usize] / scale);
                     sources.push(order[v as usize]);
                     facet_at.push(count);
                 }
