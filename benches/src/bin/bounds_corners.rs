@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn corner_errors(body: &Polyhedron) -> (Vec<f64>, f64) {
     let mut faces_at = vec![Vec::with_capacity(3); body.vertices().len()];
     for face in 0..body.face_count() {
-        body.face(face).iter().for_each(|v| faces_at[*v as usize].push(face));
+        body.face(face).for_each(|v| faces_at[v as usize].push(face));
     }
     let mut s = Source::new(2);
     let mut residual = 0.0_f64;

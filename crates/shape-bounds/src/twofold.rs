@@ -4,30 +4,70 @@ use glam::DVec3;
 
 /// A sum `high + low` of two numbers that do not overlap.
 #[derive(Clone, Copy)]
-struct Twofold {
+pub(crate) struct Twofold {
     high: f64,
     low: f64,
 }
 
+impl From<f64> for Twofold {
+    fn from(high: f64) -> Self {
+        Self { high, low: 0.0 }
+    }
+}
+
 impl Twofold {
     /// `a - b`, exactly.
-    fn difference(a: f64, b: f64) -> Self {
+    #[inline]
+    pub(crate) fn difference(a: f64, b: f64) -> Self {
         let high = a - b;
         let v = high - a;
         Self { high, low: (a - (high - v)) - (b + v) }
     }
 
+    /// `a b`, exactly (Dekker 1971): for numbers between 2^-400 and 2^400 in size, or zero.
+    #[inline]
+    fn product(a: f64, b: f64) -> Self {
+        // 2^27 + 1 splits 53 bits into two halves whose products are exact.
+        let split = |x: f64| {
+            let c = 134_217_729.0 * x;
+            let high = c - (c - x);
+            (high, x - high)
+        };
+        let high = a * b;
+        let ((ah, al), (bh, bl)) = (split(a), split(b));
+        Self { high, low: ((ah * bh - high) + ah * bl + al * bh) + al * bl }
+    }
+
     /// The product, to about 2^-104.
-    fn times(self, other: Self) -> Self {
-        let high = self.high * other.high;
-        let low = self.high.mul_add(other.high, -high) + (self.high * other.low + self.low * other.high);
-        Self { high, low }
+    #[inline]
+    pub(crate) fn times(self, other: Self) -> Self {
+        let Self { high, low } = Self::product(self.high, other.high);
+        Self { high, low: low + (self.high * other.low + self.low * other.high) }
+    }
+
+    /// The sum, to about 2^-104 of the larger of the two.
+    #[inline]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        let sum = Self::difference(self.high, -other.high);
+        Self { high: sum.high, low: sum.low + (self.low + other.low) }.normalised()
     }
 
     /// The difference, rounded to one number.
-    fn minus(self, other: Self) -> f64 {
+    #[inline]
+    pub(crate) fn minus(self, other: Self) -> f64 {
         let d = Self::difference(self.high, other.high);
         d.high + (d.low + (self.low - other.low))
+    }
+
+    #[inline]
+    pub(crate) fn value(self) -> f64 {
+        self.high + self.low
+    }
+
+    #[inline]
+    fn normalised(self) -> Self {
+        let high = self.high + self.low;
+        Self { high, low: self.low - (high - self.high) }
     }
 }
 

@@ -74,7 +74,7 @@ impl Intersection {
     ) -> Self {
         match dual {
             Ok(Hull::Solid(dual)) if strictly_contains_origin(&dual) => {
-                Self::Bounded(Polyhedron::from_dual(&dual, outer, interior))
+                Self::Bounded(Polyhedron::from_dual(dual, outer, interior))
             }
             _ => Self::Unbounded(Unbounded {
                 half_spaces: half_spaces.to_vec(),

@@ -18,13 +18,9 @@ const CONSISTENT_ULPS: f64 = 4.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polyhedron {
     interior: DVec3,
+    /// The hull of the polar duals: its corners are the faces, its facets the corners.
+    dual: SolidHull,
     vertices: Vec<DVec3>,
-    /// For each corner, those at the other ends of its three edges.
-    vertex_neighbours: Vec<[u32; 3]>,
-    /// Where each face begins in `face_vertices`, and the end.
-    face_starts: Vec<u32>,
-    face_vertices: Vec<u32>,
-    face_sources: Vec<u32>,
     /// The half-space of each face, with the outward rounding in its margin.
     half_spaces: Vec<HalfSpace>,
     redundant: Vec<u32>,
@@ -33,25 +29,13 @@ pub struct Polyhedron {
 impl Polyhedron {
     /// The polyhedron of `all` half-spaces whose polar duals about `interior` have the hull `dual`. The half-spaces are
     /// those of the duals, already moved outwards.
-    pub(super) fn from_dual(dual: &SolidHull, all: &[HalfSpace], interior: DVec3) -> Self {
+    pub(super) fn from_dual(dual: SolidHull, all: &[HalfSpace], interior: DVec3) -> Self {
         let half_spaces: Vec<HalfSpace> = dual.sources().iter().map(|k| all[*k as usize]).collect();
-        let vertices = corners(dual, &half_spaces, interior, CONSISTENT_ULPS * rounding_unit(all));
-        let (face_starts, face_vertices) = faces_around_vertices(dual);
+        let vertices = corners(&dual, &half_spaces, interior, CONSISTENT_ULPS * rounding_unit(all));
         let mut used = vec![false; all.len()];
         dual.sources().iter().for_each(|k| used[*k as usize] = true);
         let redundant = (0..all.len() as u32).filter(|k| !used[*k as usize]).collect();
-        let face_sources = dual.sources().to_vec();
-        let vertex_neighbours = dual.neighbours().to_vec();
-        Self {
-            interior,
-            vertices,
-            vertex_neighbours,
-            face_starts,
-            face_vertices,
-            face_sources,
-            half_spaces,
-            redundant,
-        }
+        Self { interior, dual, vertices, half_spaces, redundant }
     }
 
     /// A point strictly inside, in m.
@@ -66,26 +50,26 @@ impl Polyhedron {
         &self.vertices
     }
 
+    /// For each corner, those at the other ends of its three edges.
     pub(crate) fn vertex_neighbours(&self) -> &[[u32; 3]] {
-        &self.vertex_neighbours
+        self.dual.neighbours()
     }
 
     /// Number of faces.
     #[must_use]
     pub fn face_count(&self) -> usize {
-        self.face_sources.len()
+        self.half_spaces.len()
     }
 
     /// Corners of a face as indices into [`Self::vertices`], anticlockwise from outside.
-    #[must_use]
-    pub fn face(&self, face: usize) -> &[u32] {
-        &self.face_vertices[self.face_starts[face] as usize..self.face_starts[face + 1] as usize]
+    pub fn face(&self, face: usize) -> impl Iterator<Item = u32> + '_ {
+        self.dual.facets_around(face as u32)
     }
 
     /// For each face, the index of the half-space that it lies on.
     #[must_use]
     pub fn face_sources(&self) -> &[u32] {
-        &self.face_sources
+        self.dual.sources()
     }
 
     /// For each face, its half-space with the margin that makes up for rounding.
@@ -139,8 +123,9 @@ impl Polyhedron {
 
     fn fans(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         (0..self.face_count()).flat_map(|f| {
-            let face = self.face(f);
-            face[1..].windows(2).map(|edge| [face[0], edge[0], edge[1]])
+            let mut face = self.face(f);
+            let (first, mut previous) = (face.next().unwrap_or(0), face.next().unwrap_or(0));
+            face.map(move |v| [first, std::mem::replace(&mut previous, v), v])
         })
     }
 }
@@ -168,7 +153,7 @@ fn corners(dual: &SolidHull, half_spaces: &[HalfSpace], interior: DVec3, toleran
         .map(|f| {
             let t = triangles[f];
             let planes = t.map(|v| &half_spaces[v as usize]);
-            let corner = common_point(planes);
+            let corner = common_point(planes, tolerance);
             let on_planes = planes.iter().all(|h| h.excess(corner).abs() <= tolerance);
             let consistent = on_planes
                 && dual.neighbours()[f].iter().enumerate().all(|(edge, g)| {
@@ -179,24 +164,4 @@ fn corners(dual: &SolidHull, half_spaces: &[HalfSpace], interior: DVec3, toleran
             if consistent { corner } else { interior + polar_corner(dual.corners(f)) }
         })
         .collect()
-}
-
-/// For each vertex of a hull, the facets around it, anticlockwise from outside, as starts and one list.
-fn faces_around_vertices(hull: &SolidHull) -> (Vec<u32>, Vec<u32>) {
-    let first = hull.facet_at_each_vertex();
-    let mut starts = Vec::with_capacity(first.len() + 1);
-    let mut around = Vec::with_capacity(3 * hull.triangles().len());
-    for (v, start) in first.iter().enumerate() {
-        starts.push(around.len() as u32);
-        let mut facet = *start;
-        loop {
-            around.push(facet);
-            facet = hull.next_around(v as u32, facet).0;
-            if facet == *start {
-                break;
-            }
-        }
-    }
-    starts.push(around.len() as u32);
-    (starts, around)
 }

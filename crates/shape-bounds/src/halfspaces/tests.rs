@@ -42,12 +42,12 @@ fn faces_are_plane_closed_and_anticlockwise() {
     // Each edge of a face belongs to one other face in the opposite sense.
     let mut edges = std::collections::HashSet::new();
     for f in 0..body.face_count() {
-        let face = body.face(f);
+        let face: Vec<u32> = body.face(f).collect();
         for k in 0..face.len() {
             assert!(edges.insert((face[k], face[(k + 1) % face.len()])));
         }
         let plane = spaces[body.face_sources()[f] as usize];
-        for v in face {
+        for v in &face {
             let height = plane.excess(body.vertices()[*v as usize]);
             assert!((0.0..1e-12).contains(&height), "{height}");
         }

@@ -1,24 +1,90 @@
 //! Corners of an intersection of half-spaces, computed in two ways.
 
 use crate::sample::HalfSpace;
-use crate::twofold::cross_of_differences;
+use crate::twofold::{Twofold, cross_of_differences};
 use glam::DVec3;
 
-/// The point common to three planes that may be as close to parallel as neighbouring samples of a dense curve are.
+/// A corner is refined where errors of unit size in its planes may move it by more than this: at most 1e-12 of the size,
+/// for what evaluating the planes takes, is let pass.
+const WELL_CONDITIONED: f64 = 1000.0;
+/// Refinements at most. The inverse has some correct digits, or the planes have no point in common to speak of; so one or
+/// two steps are enough.
+const STEPS: usize = 4;
+/// A step below this many times the tolerance is the last: what it leaves is smaller by the accuracy of the inverse.
+const CONVERGED: f64 = 100.0;
+
+/// The inverse of the system of three planes, as columns: `y = x_i + first m_i + second d_j + third d_k`.
 ///
 /// With `y = x_i + t`, the rows are `n_i`, `n_j - n_i`, `n_k - n_i` and the right-hand sides `m_i`,
 /// `n_j . (x_j - x_i) + m_j - m_i` and likewise for `k`: differences of neighbouring data, in which nothing cancels that
-/// is not small itself. The plain system loses all digits that the planes have in common. Not finite where the planes
-/// have no common point.
-pub(super) fn common_point([i, j, k]: [&HalfSpace; 3]) -> DVec3 {
-    let n = i.normal.get();
-    let (a, b) = (j.normal.get() - n, k.normal.get() - n);
+/// is not small itself. The plain system loses all digits that the planes have in common.
+struct Inverse {
+    first: DVec3,
+    second: DVec3,
+    third: DVec3,
+}
+
+impl Inverse {
+    /// Not finite where the planes have no common point.
+    #[inline]
+    fn of([i, j, k]: [&HalfSpace; 3]) -> Self {
+        let n = i.normal.get();
+        let (a, b) = (j.normal.get() - n, k.normal.get() - n);
+        let across = a.cross(b);
+        let scale = 1.0 / n.dot(across);
+        Self { first: across * scale, second: b.cross(n) * scale, third: n.cross(a) * scale }
+    }
+
+    #[inline]
+    fn apply(&self, [i, j, k]: [f64; 3]) -> DVec3 {
+        self.first * i + self.second * j + self.third * k
+    }
+
+    /// How far errors of unit size in the planes move the corner, at most.
+    #[inline]
+    fn condition(&self) -> f64 {
+        self.first.length() + 2.0 * (self.second.length() + self.third.length())
+    }
+}
+
+/// The point common to three planes that may be as close to parallel as neighbouring samples of a dense curve are, to
+/// rounding of the point and of the planes' heights at it, `tolerance`; not finite where they have none.
+///
+/// Where the planes determine the point badly, it is refined with residuals in twofold precision: then it is the point common
+/// to the planes as given, to rounding, as long as the inverse has one correct digit.
+#[inline]
+pub(super) fn common_point(planes: [&HalfSpace; 3], tolerance: f64) -> DVec3 {
+    let [i, j, k] = planes;
+    let inverse = Inverse::of(planes);
     let offset_j = j.normal.get().dot(j.point - i.point) + (j.margin - i.margin);
     let offset_k = k.normal.get().dot(k.point - i.point) + (k.margin - i.margin);
-    let across = a.cross(b);
-    let determinant = n.dot(across);
-    let numerator = across * i.margin + b.cross(n) * offset_j + n.cross(a) * offset_k;
-    i.point + numerator / determinant
+    let point = i.point + inverse.apply([i.margin, offset_j, offset_k]);
+    let good =
+        inverse.condition() <= WELL_CONDITIONED && planes.iter().all(|h| h.excess(point).abs() <= tolerance);
+    if good { point } else { refined(planes, &inverse, point, tolerance) }
+}
+
+/// Steps of Newton's method until they are below rounding.
+#[cold]
+fn refined(planes: [&HalfSpace; 3], inverse: &Inverse, start: DVec3, tolerance: f64) -> DVec3 {
+    let mut point = start;
+    for _ in 0..STEPS {
+        let [i, j, k] = planes.map(|h| excess(h, point));
+        let step = inverse.apply([i.value(), j.minus(i), k.minus(i)]);
+        point -= step;
+        if step.abs().max_element() <= CONVERGED * tolerance {
+            break;
+        }
+    }
+    point
+}
+
+/// [`HalfSpace::excess`] in twofold precision.
+fn excess(h: &HalfSpace, y: DVec3) -> Twofold {
+    let n = h.normal.get();
+    (0..3).fold(Twofold::from(-h.margin), |sum, axis| {
+        sum.plus(Twofold::difference(y[axis], h.point[axis]).times(Twofold::from(n[axis])))
+    })
 }
 
 /// The polar of the plane through three dual points, as seen from the centre of the duality.

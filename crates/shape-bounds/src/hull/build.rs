@@ -23,6 +23,8 @@ struct Visit {
     first: u32,
     done: u32,
     edges: u32,
+    /// Heights of the point over the facets across the edges, which are fetched together: memory is what takes the time.
+    heights: [f64; 3],
 }
 
 /// A hull that grows by one point at a time.
@@ -116,7 +118,7 @@ impl Builder {
         self.visible.clear();
         self.facets.list[seen as usize].mark = visible_mark;
         self.visible.push(seen);
-        self.visits.push(Visit { facet: seen, first: 0, done: 0, edges: 3 });
+        self.visit(seen, 0, 3, q);
         while let Some(visit) = self.visits.last_mut() {
             if visit.done == visit.edges {
                 self.visits.pop();
@@ -124,6 +126,7 @@ impl Builder {
             }
             let facet = visit.facet;
             let edge = (visit.first + visit.done) % 3;
+            let height = visit.heights[visit.done as usize];
             visit.done += 1;
             let beyond = self.facets.list[facet as usize].neighbours[edge as usize];
             let mark = self.facets.list[beyond as usize].mark;
@@ -131,10 +134,10 @@ impl Builder {
                 continue;
             }
             let back = self.edge_towards(beyond, facet, edge);
-            if mark != hidden_mark && self.facets.is_visible(beyond, p, q) {
+            if mark != hidden_mark && self.facets.is_visible_at(beyond, p, height) {
                 self.facets.list[beyond as usize].mark = visible_mark;
                 self.visible.push(beyond);
-                self.visits.push(Visit { facet: beyond, first: back + 1, done: 0, edges: 2 });
+                self.visit(beyond, back + 1, 2, q);
             } else {
                 self.facets.list[beyond as usize].mark = hidden_mark;
                 let vertices = self.facets.list[facet as usize].vertices;
@@ -142,6 +145,16 @@ impl Builder {
                 self.rim.push(RimEdge { facet: beyond, edge: back, from, to });
             }
         }
+    }
+
+    /// Begins with the edges of a facet, `edges` of them from `first` on.
+    #[inline]
+    fn visit(&mut self, facet: u32, first: u32, edges: u32, q: DVec3) {
+        let neighbours = self.facets.list[facet as usize].neighbours;
+        let heights = [0, 1, 2].map(|k| {
+            if k < edges { self.facets.height(neighbours[((first + k) % 3) as usize], q) } else { 0.0 }
+        });
+        self.visits.push(Visit { facet, first, done: 0, edges, heights });
     }
 
     /// Which edge of `beyond` is edge `edge` of `facet`. Two facets may share more than one edge, so the vertices decide.

@@ -123,8 +123,13 @@ impl Facets {
     /// Whether point `p` is strictly outside of the facet's plane; exact. `q` is the point from the centre.
     #[inline]
     pub(super) fn is_visible(&self, facet: u32, p: u32, q: DVec3) -> bool {
+        self.is_visible_at(facet, p, self.height(facet, q))
+    }
+
+    /// [`Self::is_visible`] for a height that is known.
+    #[inline]
+    pub(super) fn is_visible_at(&self, facet: u32, p: u32, height: f64) -> bool {
         let error = self.list[facet as usize].error;
-        let height = self.height(facet, q);
         if height > error {
             true
         } else if height < -error {

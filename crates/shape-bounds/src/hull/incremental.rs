@@ -97,7 +97,7 @@ impl IncrementalHull {
             State::Flat => Hull::of(&self.points),
             State::Solid(builder) => {
                 let order: Vec<u32> = (0..self.points.len() as u32).collect();
-                Ok(Hull::Solid(SolidHull::from_builder(builder, &order, &self.points)))
+                Ok(Hull::Solid(SolidHull::from_builder(builder, &order, 1.0)))
             }
         }
     }

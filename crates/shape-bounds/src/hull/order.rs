@@ -10,6 +10,8 @@ use glam::DVec3;
 /// Bits of the Hilbert index per axis. Two thousand cells along a side would do for surfaces; curves of a million
 /// points need the finer grid.
 const BITS: u32 = 19;
+/// Cells whose Hilbert indices are computed together.
+const LANES: usize = 8;
 /// Rounds at most, so that round and Hilbert index fit one `u64`.
 const ROUNDS: u32 = 15;
 /// Each round is 2^4 times as large as all before it: measured to be a quarter faster than doubling for a million
@@ -21,17 +23,21 @@ pub(crate) fn insertion_order(points: &[DVec3]) -> Vec<u32> {
     let (low, high) = bounding_box(points);
     let side = (high - low).max_element();
     let cells = if side > 0.0 { ((1_u64 << BITS) - 1) as f64 / side } else { 0.0 };
-    let mut keyed: Vec<(u64, u32)> = points
-        .iter()
-        .enumerate()
-        .map(|(i, p)| {
+    let mut keyed: Vec<(u64, u32)> = Vec::with_capacity(points.len());
+    for (chunk, points) in points.chunks(LANES).enumerate() {
+        let mut lanes = [[0; LANES]; 3];
+        for (lane, p) in points.iter().enumerate() {
             let cell = (*p - low) * cells;
-            let level = random_bits(i as u64).trailing_zeros() / ROUND_BITS;
+            (0..3).for_each(|axis| lanes[axis][lane] = cell[axis] as u32);
+        }
+        transpose(&mut lanes);
+        keyed.extend((0..points.len()).map(|lane| {
+            let i = (chunk * LANES + lane) as u32;
+            let level = random_bits(u64::from(i)).trailing_zeros() / ROUND_BITS;
             let round = ROUNDS - level.min(ROUNDS);
-            let key = u64::from(round) << (3 * BITS) | hilbert([cell.x as u32, cell.y as u32, cell.z as u32]);
-            (key, i as u32)
-        })
-        .collect();
+            (u64::from(round) << (3 * BITS) | interleaved(lanes.map(|axis| axis[lane])), i)
+        }));
+    }
     keyed.sort_unstable();
     keyed.into_iter().map(|(_, i)| i).collect()
 }
@@ -40,33 +46,42 @@ fn bounding_box(points: &[DVec3]) -> (DVec3, DVec3) {
     points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
 }
 
-/// Hilbert index of a cell (Skilling, "Programming the Hilbert curve", 2004).
-fn hilbert(mut x: [u32; 3]) -> u64 {
-    let mut q = 1_u32 << (BITS - 1);
-    while q > 1 {
-        let p = q - 1;
-        for i in 0..3 {
-            if x[i] & q != 0 {
-                x[0] ^= p;
-            } else {
-                let t = (x[0] ^ x[i]) & p;
-                x[0] ^= t;
-                x[i] ^= t;
+/// Hilbert indices of cells, bit by bit on their three axes (Skilling, "Programming the Hilbert curve", 2004): without
+/// branches, which would be guessed wrongly half of the time, and for several cells at once, in the processor's vectors.
+fn transpose(cells: &mut [[u32; LANES]; 3]) {
+    // All ones where bit `b` of `c` is set.
+    let mask = |c: u32, b: u32| 0_u32.wrapping_sub(c >> b & 1);
+    let [x, y, z] = cells;
+    for b in (1..BITS).rev() {
+        let p = (1_u32 << b) - 1;
+        for lane in 0..LANES {
+            let mut first = x[lane] ^ (p & mask(x[lane], b));
+            for other in [&mut y[lane], &mut z[lane]] {
+                let set = mask(*other, b);
+                let t = (first ^ *other) & p & !set;
+                first ^= t | (p & set);
+                *other ^= t;
             }
+            x[lane] = first;
         }
-        q >>= 1;
     }
-    x[1] ^= x[0];
-    x[2] ^= x[1];
-    let mut t = 0;
-    let mut q = 1_u32 << (BITS - 1);
-    while q > 1 {
-        if x[2] & q != 0 {
-            t ^= q - 1;
+    for lane in 0..LANES {
+        y[lane] ^= x[lane];
+        z[lane] ^= y[lane];
+        // Each bit is the parity of those above it.
+        let mut t = z[lane] >> 1;
+        for shift in [1, 2, 4, 8, 16] {
+            t ^= t >> shift;
         }
-        q >>= 1;
+        x[lane] ^= t;
+        y[lane] ^= t;
+        z[lane] ^= t;
     }
-    x.iter().enumerate().fold(0, |key, (i, c)| key | spread(c ^ t) << (2 - i))
+}
+
+/// The Hilbert index whose bits are those of three words in turn.
+fn interleaved([x, y, z]: [u32; 3]) -> u64 {
+    spread(x) << 2 | spread(y) << 1 | spread(z)
 }
 
 /// The bits of `x` with two zeros between each and the next.
@@ -85,6 +100,11 @@ mod tests {
 
     #[test]
     fn neighbours_on_the_hilbert_curve_share_a_face() {
+        let hilbert = |cell: [u32; 3]| {
+            let mut lanes = cell.map(|c| [c; LANES]);
+            transpose(&mut lanes);
+            interleaved(lanes.map(|axis| axis[0]))
+        };
         let mut cells = Vec::new();
         for x in 0..8 {
             for y in 0..8 {

@@ -18,35 +18,38 @@ pub struct SolidHull {
     sources: Vec<u32>,
     triangles: Vec<[u32; 3]>,
     neighbours: Vec<[u32; 3]>,
+    /// For each corner, one of the facets at it.
+    facet_at: Vec<u32>,
 }
 
 impl SolidHull {
-    /// `order` maps the builder's points to the caller's.
-    pub(super) fn from_builder(builder: &Builder, order: &[u32], points: &[DVec3]) -> Self {
+    /// `order` maps the builder's points to the caller's, of which they are the multiple by `scale`, a power of two.
+    pub(super) fn from_builder(builder: &Builder, order: &[u32], scale: f64) -> Self {
         let list = &builder.facets.list;
         let mut facet_number = vec![NONE; list.len()];
         let mut vertex_number = vec![NONE; order.len()];
-        let (mut vertices, mut sources) = (Vec::new(), Vec::new());
+        let (mut vertices, mut sources, mut facet_at) = (Vec::new(), Vec::new(), Vec::new());
         let mut count = 0;
         for (facet, number) in list.iter().zip(&mut facet_number) {
             if facet.vertices[0] == NONE {
                 continue;
             }
             *number = count;
-            count += 1;
             for v in facet.vertices {
                 let slot = &mut vertex_number[v as usize];
                 if *slot == NONE {
                     *slot = vertices.len() as u32;
-                    vertices.push(points[order[v as usize] as usize]);
+                    vertices.push(builder.facets.points[v as usize] / scale);
                     sources.push(order[v as usize]);
+                    facet_at.push(count);
                 }
             }
+            count += 1;
         }
         let alive = || list.iter().filter(|f| f.vertices[0] != NONE);
         let triangles = alive().map(|f| f.vertices.map(|v| vertex_number[v as usize])).collect();
         let neighbours = alive().map(|f| f.neighbours.map(|g| facet_number[g as usize])).collect();
-        Self { vertices, sources, triangles, neighbours }
+        Self { vertices, sources, triangles, neighbours, facet_at }
     }
 
     /// Corners in m.
@@ -73,18 +76,9 @@ impl SolidHull {
         &self.neighbours
     }
 
-    /// For each corner, one of the facets at it.
-    pub(crate) fn facet_at_each_vertex(&self) -> Vec<u32> {
-        let mut facet_at = vec![NONE; self.vertices.len()];
-        for (f, t) in self.triangles.iter().enumerate() {
-            t.iter().for_each(|v| facet_at[*v as usize] = f as u32);
-        }
-        facet_at
-    }
-
     /// The next facet anticlockwise around corner `vertex`, and the corner that comes before it around `facet`.
     #[inline]
-    pub(crate) fn next_around(&self, vertex: u32, facet: u32) -> (u32, u32) {
+    fn next_around(&self, vertex: u32, facet: u32) -> (u32, u32) {
         let t = self.triangles[facet as usize];
         let corner = if t[0] == vertex {
             0
@@ -97,9 +91,19 @@ impl SolidHull {
         (self.neighbours[facet as usize][(corner + 2) % 3], t[(corner + 2) % 3])
     }
 
-    /// Calls `visit` with each corner that shares an edge with `vertex`; `start` is a facet at it.
+    /// The facets around corner `vertex`, anticlockwise from outside.
+    pub(crate) fn facets_around(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+        let first = self.facet_at[vertex as usize];
+        std::iter::successors(Some(first), move |facet| {
+            let next = self.next_around(vertex, *facet).0;
+            (next != first).then_some(next)
+        })
+    }
+
+    /// Calls `visit` with each corner that shares an edge with `vertex`.
     #[inline]
-    pub(crate) fn for_each_neighbour(&self, vertex: u32, start: u32, mut visit: impl FnMut(u32)) {
+    pub(crate) fn for_each_neighbour(&self, vertex: u32, mut visit: impl FnMut(u32)) {
+        let start = self.facet_at[vertex as usize];
         let mut facet = start;
         loop {
             let (next, neighbour) = self.next_around(vertex, facet);

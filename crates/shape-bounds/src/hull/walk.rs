@@ -12,8 +12,6 @@ const PLATEAU: f64 = 1e-13;
 #[derive(Clone, Debug)]
 pub struct SupportWalk<'a> {
     hull: &'a SolidHull,
-    /// For each corner, one facet at it.
-    facet_at: Vec<u32>,
     corner: u32,
     /// Height, per length of the direction, by which corners are still level, m.
     level: f64,
@@ -27,11 +25,10 @@ impl<'a> SupportWalk<'a> {
     /// Prepares the climb in time O(n).
     #[must_use]
     pub fn new(hull: &'a SolidHull) -> Self {
-        let facet_at = hull.facet_at_each_vertex();
         let vertices = hull.vertices();
         let size = vertices.iter().map(|v| v.distance(vertices[0])).fold(0.0, f64::max);
         let met = vec![0; vertices.len()];
-        Self { hull, facet_at, corner: 0, level: PLATEAU * size, met, search: 0, stack: Vec::new() }
+        Self { hull, corner: 0, level: PLATEAU * size, met, search: 0, stack: Vec::new() }
     }
 
     /// The corner farthest along `direction`, which need not be of unit length.
@@ -48,7 +45,7 @@ impl<'a> SupportWalk<'a> {
         let mut height = height_of(self.corner);
         loop {
             let mut next = self.corner;
-            self.hull.for_each_neighbour(self.corner, self.facet_at[self.corner as usize], |v| {
+            self.hull.for_each_neighbour(self.corner, |v| {
                 let candidate = height_of(v);
                 if candidate > height {
                     (height, next) = (candidate, v);
@@ -66,7 +63,7 @@ impl<'a> SupportWalk<'a> {
 
     /// A corner above `height` next to those that are level with the present one and connected with it.
     fn higher_than_plateau(&mut self, height: f64, direction: DVec3) -> Option<(u32, f64)> {
-        let Self { hull, facet_at, met, stack, .. } = self;
+        let Self { hull, met, stack, .. } = self;
         let vertices = hull.vertices();
         let lowest = height - self.level * direction.length();
         self.search += 1;
@@ -74,7 +71,7 @@ impl<'a> SupportWalk<'a> {
         stack.push(self.corner);
         let mut higher = None;
         while let (Some(corner), None) = (stack.pop(), higher) {
-            hull.for_each_neighbour(corner, facet_at[corner as usize], |v| {
+            hull.for_each_neighbour(corner, |v| {
                 let candidate = (vertices[v as usize] - vertices[0]).dot(direction);
                 if candidate > height {
                     higher = Some((v, candidate));
