@@ -39,9 +39,7 @@ pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliErro
         upper: upper
             .clone()
             .map(|all| Bound { mesh: few_upper.unwrap_or(all), volume: whole.upper_volume() }),
-        // Fewer contacts give wider bounds, so theirs is no less; for dense curves the cost of all grows faster than
-        // their square.
-        largest_gap: few.largest_gap().map(|gap| gap.distance),
+        largest_gap: whole.largest_gap().map(|gap| gap.distance),
     };
     Ok(BoundsResult { drawn, lower, upper, contradiction: contradiction(&some), warnings })
 }
