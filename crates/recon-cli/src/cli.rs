@@ -93,7 +93,7 @@ pub(crate) struct ReconstructArgs {
 Contacts are CSV with the columns x, y, z (m) and nx, ny, nz (outward unit normal), in any one frame of the object; a
 column `palm` or `curve` numbers the curves along which they were traced. They are taken as exact unless their noise is
 stated or estimated: then the bounds hold at the stated confidence, and contacts that cannot be right are left out and
-listed.
+listed. Limits on the radii of curvature tighten the bounds; their meshes are then within a thousandth of the size.
 
 Poses above a plane are CSV with the columns qw, qx, qy, qz (body to world) and px, py, pz (m, z upwards), sampled evenly; a
 column `toss` or `run` numbers the runs. Their noise is judged from their own consistency.
@@ -104,6 +104,7 @@ Examples:
   recon bounds contacts.csv
   recon bounds contacts.csv --contact-noise 1e-4 --normal-noise 2e-3 --confidence 0.99 -o bounds
   recon bounds contacts.csv --estimate-noise -o bounds
+  recon bounds contacts.csv --rho-min 0.02 --rho-max 0.2 -o bounds
   recon bounds tosses.csv --plane-height 0.002 -o bounds")]
 pub(crate) struct BoundsArgs {
     /// Contact points with outward normals, or poses above a plane (CSV)
@@ -120,6 +121,12 @@ pub(crate) struct BoundsArgs {
     /// Confidence of bounds under noise, between 0.5 and 1 [default: 0.95]
     #[arg(long, value_parser = confidence)]
     pub(crate) confidence: Option<f64>,
+    /// Smallest radius of curvature that the object has anywhere, m [default: 0 where the largest is given]
+    #[arg(long, value_name = "M", requires = "rho_max", value_parser = not_negative)]
+    pub(crate) rho_min: Option<f64>,
+    /// Largest radius of curvature that the object has anywhere, m
+    #[arg(long, value_name = "M", value_parser = positive)]
+    pub(crate) rho_max: Option<f64>,
     /// Height of the plane below the poses, m [default: 0]
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) plane_height: Option<f64>,

@@ -1,6 +1,8 @@
 use recon::object_dynamics::{LogError, SceneError as DynamicsError, SimulationError};
 use recon::observer::EstimateError;
-use recon::shape_bounds::{BoundsError, IntersectionError, NoiseError, PoseError};
+use recon::shape_bounds::{
+    BoundsError, CurvatureError, EnclosureError, IntersectionError, NoiseError, PoseError,
+};
 use recon_io::{LogFileError, MeshError, OutputError, SceneError, TouchesError};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -37,6 +39,10 @@ pub(crate) enum CliError {
     Option { option: &'static str, meant: &'static str, found: &'static str, path: PathBuf },
     #[error("the contacts give no bounds under noise")]
     NoisyBounds(#[from] NoiseError),
+    #[error("the contacts and the limits on the curvature give no bounds")]
+    Curvature(#[from] CurvatureError),
+    #[error("the bounds have no meshes")]
+    Enclosure(#[from] EnclosureError),
     #[error("the poses give no bounds")]
     PoseBounds(#[from] PoseError),
     #[error(
@@ -82,12 +88,17 @@ impl CliError {
     /// The code of each kind is told in `recon --help`.
     pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
-            Self::Picture(_) | Self::Mesh(_) | Self::Signals(_) | Self::PlanarDemo(_) => 1,
+            Self::Picture(_)
+            | Self::Enclosure(_)
+            | Self::Mesh(_)
+            | Self::Signals(_)
+            | Self::PlanarDemo(_) => 1,
             Self::Log(_)
             | Self::Scene(_)
             | Self::Touches(_)
             | Self::NoisyBounds(_)
             | Self::PoseBounds(_)
+            | Self::Curvature(_)
             | Self::UnknownBody
             | Self::NothingToSimulate { .. }
             | Self::Shape(_)

@@ -66,6 +66,30 @@ fn noise_is_stated_or_estimated_and_a_wrong_contact_left_out() {
     }
 }
 
+#[test]
+fn limits_on_the_curvature_tighten_the_bounds() {
+    let scratch = Scratch::new("curvature");
+    scratch.write("clean.csv", &sphere_contacts(0.0, 0.0)).write("noisy.csv", &sphere_contacts(1e-4, 0.2));
+    let sphere = 4.0 / 3.0 * PI;
+    let plain = volumes(&bounds(&scratch, &["clean.csv"]));
+    let limits = ["--rho-min", "0.8", "--rho-max", "1.3"];
+    let sharp = volumes(&bounds(&scratch, &[&["clean.csv", "-o", "out"], &limits[..]].concat()));
+    assert!(plain[0] < sharp[0] && sharp[0] < sphere && sphere < sharp[1] && sharp[1] < plain[1]);
+    for name in ["lower_bound.ply", "upper_bound.ply"] {
+        assert!(scratch.path().join("out").join(name).is_file(), "{name}");
+    }
+    let noisy = volumes(&bounds(&scratch, &[&["noisy.csv", "--estimate-noise"], &limits[..]].concat()));
+    assert!(noisy[0] < sphere && sphere < noisy[1], "{noisy:?}");
+    let refused = |limits: &[&str], code: i32, words: &[&str]| {
+        let run = scratch.run(&[&["bounds", "clean.csv"], limits].concat());
+        assert_eq!(run.code, Some(code), "{}{}", run.stdout, run.stderr);
+        assert!(words.iter().all(|word| run.stderr.contains(word)), "{}", run.stderr);
+    };
+    refused(&["--rho-min", "2", "--rho-max", "1"], 3, &["from 2 m to 1 m", "must be ordered"]);
+    refused(&["--rho-min", "0.8", "--rho-max", "0.9"], 3, &["both contact", "from 0.8 m to 0.9 m"]);
+    refused(&["--rho-min", "0.8"], 2, &["--rho-max"]);
+}
+
 /// Poses of a box of half sides `half` that falls and comes to rest on a face in each of many tosses, above the plane
 /// z = 0.1.
 fn tosses(half: [f64; 3]) -> String {

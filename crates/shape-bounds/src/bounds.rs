@@ -91,6 +91,11 @@ impl ShapeBounds {
         Ok(Self { lower, corners, upper })
     }
 
+    /// The lower bound of one and the upper bound of the other.
+    pub(crate) fn outermost(inside: Self, around: Self) -> Self {
+        Self { lower: inside.lower, corners: inside.corners, upper: around.upper }
+    }
+
     /// Bounds that are made already; `None` for a lower one without volume.
     pub(crate) fn between(lower: Hull, upper: Intersection) -> Option<Self> {
         let corners = lower.solid()?.vertices().to_vec();

@@ -26,6 +26,7 @@
 mod bounds;
 mod curvature;
 mod distance;
+mod enclosure;
 mod erosion;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
@@ -48,6 +49,7 @@ pub use curvature::{
     BallHull, BallIntersection, ConvexMeasures, CurvatureBounds, CurvatureError, RoundedHull,
     RoundedIntersection, SharpBounds,
 };
+pub use enclosure::EnclosureError;
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;

@@ -1,8 +1,11 @@
 use crate::cli::BoundsArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{BoundsResult, Noise, bounds, noisy_bounds, pose_bounds, write_bounds_folder};
+use crate::pipeline::{
+    BoundsResult, Noise, bounds, noisy_bounds, pose_bounds, sharp_bounds, write_bounds_folder,
+};
 use crate::progress::Progress;
+use recon::contact_kinematics::CurvatureRadii;
 use recon_io::{Touches, read_touches};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -25,13 +28,12 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
         }
         Touches::Contacts(curves) => {
             let count = format!("{} contacts", curves.iter().map(Vec::len).sum::<usize>());
-            match noise(args) {
-                Some(noise) => {
-                    let (made, about) = noisy_bounds(&curves, noise, confidence)?;
-                    (made, about, count)
-                }
-                None => (bounds(&curves.concat())?, json!({ "noise": "none" }), count),
-            }
+            let (made, about) = match (radii(args), noise(args)) {
+                (Some(radii), noise) => sharp_bounds(&curves, radii, noise.map(|n| (n, confidence)))?,
+                (None, Some(noise)) => noisy_bounds(&curves, noise, confidence)?,
+                (None, None) => (bounds(&curves.concat())?, json!({ "noise": "none" })),
+            };
+            (made, about, count)
         }
     };
     let figures = figures(&made, &what, &about);
@@ -47,22 +49,25 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
 /// Refuses options that mean nothing for what is in the file.
 fn check_options(args: &BoundsArgs, touches: &Touches) -> Result<(), CliError> {
     let (found, meant, given) = match touches {
-        Touches::Poses(_) => (
-            "poses",
-            "contacts",
-            [("contact-noise", args.contact_noise.is_some()), ("estimate-noise", args.estimate_noise)],
-        ),
-        Touches::Contacts(_) => (
-            "contacts without stated noise",
-            "poses and noisy contacts",
-            [
-                ("plane-height", args.plane_height.is_some()),
-                ("confidence", args.confidence.is_some() && noise(args).is_none()),
-            ],
-        ),
+        Touches::Poses(_) => {
+            let option = [
+                (args.contact_noise.is_some(), "contact-noise"),
+                (args.estimate_noise, "estimate-noise"),
+                (args.rho_max.is_some(), "rho-max"),
+            ];
+            ("poses", "contacts", option.into_iter().find(|(given, _)| *given))
+        }
+        Touches::Contacts(_) => {
+            let option = [
+                (args.plane_height.is_some(), "plane-height"),
+                (args.confidence.is_some() && noise(args).is_none(), "confidence"),
+            ];
+            let found = "contacts without stated noise";
+            (found, "poses and noisy contacts", option.into_iter().find(|(given, _)| *given))
+        }
     };
-    match given.iter().find(|(_, given)| *given) {
-        Some((option, _)) => Err(CliError::Option { option, meant, found, path: args.input.clone() }),
+    match given {
+        Some((_, option)) => Err(CliError::Option { option, meant, found, path: args.input.clone() }),
         None => Ok(()),
     }
 }
@@ -72,6 +77,10 @@ fn noise(args: &BoundsArgs) -> Option<Noise> {
         (Some(point), Some(normal)) => Some(Noise::Stated { point, normal }),
         _ => args.estimate_noise.then_some(Noise::Estimated),
     }
+}
+
+fn radii(args: &BoundsArgs) -> Option<CurvatureRadii> {
+    args.rho_max.map(|max| CurvatureRadii { min: args.rho_min.unwrap_or(0.0), max })
 }
 
 fn figures(made: &BoundsResult, what: &str, about: &Value) -> Value {

@@ -13,4 +13,4 @@ pub(crate) use bounds::{BoundsResult, bounds};
 pub(crate) use folder::{write_bounds_folder, write_reconstruction_folder};
 pub(crate) use reconstruct::{Reconstruction, reconstruct};
 pub(crate) use simulate::{Simulated, simulate};
-pub(crate) use sound::{Noise, noisy_bounds, pose_bounds};
+pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};

@@ -2,15 +2,18 @@
 
 use super::bounds::{BoundsResult, meshes, unbounded};
 use crate::error::CliError;
+use recon::contact_kinematics::CurvatureRadii;
 use recon::shape_bounds::{
-    BodyPose, ContactNoise, ContactSample, NoisyContact, PoseBounds, ShapeBounds, estimate_noise,
-    without_outliers,
+    BodyPose, ContactNoise, ContactSample, NoisyContact, Outlier, PoseBounds, ShapeBounds, SharpBounds,
+    estimate_noise, without_outliers,
 };
 use recon_io::{Bound, Bounds, TriangleMesh};
 use serde_json::{Value, json};
 
 /// Outliers that are named one by one; the rest is counted.
 const NAMED: usize = 5;
+/// How far meshes of curved bounds may be from them, as a share of the size.
+const MESH_TOLERANCE: f64 = 1e-3;
 
 /// Where the noise of contacts is known from.
 #[derive(Clone, Copy, Debug)]
@@ -27,43 +30,84 @@ pub(crate) fn noisy_bounds(
     noise: Noise,
     confidence: f64,
 ) -> Result<(BoundsResult, Value), CliError> {
-    let noisy: Vec<Vec<NoisyContact>> = match noise {
+    let Cleaned { kept, warning, about } = cleaned(curves, noise, confidence)?;
+    let bounds = ShapeBounds::from_noisy_curves(&kept, confidence)?;
+    let (lower, upper) = meshes(&bounds)?;
+    let drawn = Bounds {
+        lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: bounds.lower_volume() },
+        upper: upper.clone().map(|mesh| Bound { mesh, volume: bounds.upper_volume() }),
+        largest_gap: bounds.largest_gap().map(|gap| gap.distance),
+    };
+    let warnings = warning.into_iter().chain(unbounded(&bounds)).collect();
+    Ok((BoundsResult { drawn, lower, upper, contradiction: 0.0, warnings }, about))
+}
+
+/// Bounds of a convex body with radii of curvature within `radii`, from exact contacts or from noisy ones at a confidence.
+pub(crate) fn sharp_bounds(
+    curves: &[Vec<ContactSample>],
+    radii: CurvatureRadii,
+    noise: Option<(Noise, f64)>,
+) -> Result<(BoundsResult, Value), CliError> {
+    let (bounds, warning, mut about) = match noise {
+        Some((noise, confidence)) => {
+            let Cleaned { kept, warning, about } = cleaned(curves, noise, confidence)?;
+            (SharpBounds::from_noisy_curves(&kept, radii, confidence)?, warning, about)
+        }
+        None => (SharpBounds::from_contacts(&curves.concat(), radii)?, None, json!({ "noise": "none" })),
+    };
+    let tolerance = MESH_TOLERANCE * bounds.upper().volume().cbrt();
+    about["radii_of_curvature_m"] = json!([radii.min, radii.max]);
+    about["mesh_tolerance_m"] = json!(tolerance);
+    let polytopes = bounds.polytopes(tolerance)?;
+    let (lower, upper) = meshes(&polytopes)?;
+    let drawn = Bounds {
+        lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: bounds.lower().volume() },
+        upper: upper.clone().map(|mesh| Bound { mesh, volume: bounds.upper().volume() }),
+        largest_gap: polytopes.largest_gap().map(|gap| gap.distance),
+    };
+    let warnings = warning.into_iter().collect();
+    Ok((BoundsResult { drawn, lower, upper, contradiction: 0.0, warnings }, about))
+}
+
+/// Contacts with their noise, without outliers.
+struct Cleaned {
+    kept: Vec<Vec<NoisyContact>>,
+    warning: Option<String>,
+    about: Value,
+}
+
+fn cleaned(curves: &[Vec<ContactSample>], noise: Noise, confidence: f64) -> Result<Cleaned, CliError> {
+    let (how, noisy): (_, Vec<Vec<NoisyContact>>) = match noise {
         Noise::Stated { point, normal } => {
             let noise = ContactNoise::isotropic(point, normal);
             let with_noise = |contact: &ContactSample| NoisyContact { contact: *contact, noise };
-            curves.iter().map(|curve| curve.iter().map(with_noise).collect()).collect()
+            ("stated", curves.iter().map(|curve| curve.iter().map(with_noise).collect()).collect())
         }
-        Noise::Estimated => estimate_noise(curves, confidence)?,
+        Noise::Estimated => ("estimated", estimate_noise(curves, confidence)?),
     };
     let (kept, outliers) = without_outliers(&noisy, confidence)?;
-    let bounds = ShapeBounds::from_noisy_curves(&kept, confidence)?;
-    let mut result = result(&bounds)?;
-    if !outliers.is_empty() {
-        let named: Vec<String> = outliers
-            .iter()
-            .take(NAMED)
-            .map(|o| {
-                format!("contact {} of curve {} ({:.0} deviations)", o.index + 1, o.curve + 1, o.deviations)
-            })
-            .collect();
-        let more = if outliers.len() > NAMED { ", and others" } else { "" };
-        result.warnings.push(format!(
-            "{} contact(s) cannot be right beside the others and are left out: {}{more}.",
-            outliers.len(),
-            named.join(", ")
-        ));
-    }
     let listed: Vec<Value> = outliers
         .iter()
         .map(|o| json!({ "curve": o.curve + 1, "contact": o.index + 1, "deviations": o.deviations }))
         .collect();
     let levels: Vec<Value> = noisy.iter().filter_map(|curve| curve.first()).map(level).collect();
-    let how = match noise {
-        Noise::Stated { .. } => "stated",
-        Noise::Estimated => "estimated",
-    };
     let about = json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed });
-    Ok((result, about))
+    Ok(Cleaned { kept, warning: left_out(&outliers), about })
+}
+
+fn left_out(outliers: &[Outlier]) -> Option<String> {
+    let name = |o: &Outlier| {
+        format!("contact {} of curve {} ({:.0} deviations)", o.index + 1, o.curve + 1, o.deviations)
+    };
+    let named: Vec<String> = outliers.iter().take(NAMED).map(name).collect();
+    let more = if outliers.len() > NAMED { ", and others" } else { "" };
+    (!outliers.is_empty()).then(|| {
+        format!(
+            "{} contact(s) cannot be right beside the others and are left out: {}{more}.",
+            outliers.len(),
+            named.join(", ")
+        )
+    })
 }
 
 /// Standard deviations of a contact across and along the surface and of its normal.
@@ -116,15 +160,4 @@ pub(crate) fn pose_bounds(
         largest_gap: made.largest_gap().map(|gap| gap.distance),
     };
     Ok((BoundsResult { drawn, lower, upper: Some(upper), contradiction: 0.0, warnings }, about))
-}
-
-fn result(bounds: &ShapeBounds) -> Result<BoundsResult, CliError> {
-    let (lower, upper) = meshes(bounds)?;
-    let warnings = unbounded(bounds).into_iter().collect();
-    let drawn = Bounds {
-        lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: bounds.lower_volume() },
-        upper: upper.clone().map(|mesh| Bound { mesh, volume: bounds.upper_volume() }),
-        largest_gap: bounds.largest_gap().map(|gap| gap.distance),
-    };
-    Ok(BoundsResult { drawn, lower, upper, contradiction: 0.0, warnings })
 }

@@ -4,6 +4,8 @@ use super::balls::BallIntersection;
 use super::circle::Circle;
 use super::steiner::ConvexMeasures;
 use super::surface::{Corner, Shape};
+use crate::bounds::ShapeBounds;
+use crate::enclosure::{EnclosureError, enclose};
 use crate::integrals::Compensated;
 use contact_kinematics::Direction;
 use glam::DVec3;
@@ -48,6 +50,21 @@ impl BallHull {
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
         self.dual.radius() + self.margin - self.dual.support(-n)
+    }
+
+    /// The point farthest along `n`, in time O(n).
+    #[must_use]
+    pub fn support_point(&self, n: Direction) -> DVec3 {
+        // Support points of the hull and of its dual in the opposite direction are one radius apart.
+        self.dual.support_point(-n.get()) + n.get() * (self.dual.radius() + self.margin)
+    }
+
+    /// Polytopes inside and around that are no further than `tolerance` (m) from each other.
+    ///
+    /// # Errors
+    /// [`EnclosureError`].
+    pub fn enclosure(&self, tolerance: f64) -> Result<ShapeBounds, EnclosureError> {
+        enclose(tolerance, |n| self.support_point(n))
     }
 
     /// Whether `point` is inside, to rounding of the largest radius; in time O(n).

@@ -7,6 +7,8 @@ use super::measure::face_moments;
 use super::steiner::ConvexMeasures;
 use super::surface::{Shape, Surface};
 use super::{ROUNDING, check_contacts};
+use crate::bounds::ShapeBounds;
+use crate::enclosure::{EnclosureError, enclose};
 use crate::hull::insertion_order;
 use crate::integrals::Compensated;
 use crate::sample::ContactSample;
@@ -194,6 +196,14 @@ impl BallIntersection {
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
         self.support_point(n.get()).dot(n.get())
+    }
+
+    /// Polytopes inside and around that are no further than `tolerance` (m) from each other.
+    ///
+    /// # Errors
+    /// [`EnclosureError`].
+    pub fn enclosure(&self, tolerance: f64) -> Result<ShapeBounds, EnclosureError> {
+        enclose(tolerance, |n| self.support_point(n.get()))
     }
 
     /// The point farthest along `d`: of a face, an edge or a corner.

@@ -10,6 +10,9 @@ const CUT: f64 = 4.0 * f64::EPSILON;
 /// How far from a sphere, relative to its radius, a corner may be and still be taken for one on it: rounding.
 const TANGENT: f64 = 64.0 * f64::EPSILON;
 
+/// Balls whose centres are closer than this part of the radius are the same but for rounding.
+const TWIN: f64 = 1e-12;
+
 /// An edge that the new ball's sphere crosses.
 #[derive(Clone, Copy)]
 struct RimEdge {
@@ -99,6 +102,7 @@ impl Builder {
             Shape::Net => match self.find_cut(p, at) {
                 Cut::Nowhere => {}
                 Cut::Inconsistent => self.skipped += 1,
+                Cut::Corner(corner) | Cut::Edge(corner, _) if self.is_twin(p, corner) => {}
                 Cut::Corner(corner) => {
                     self.collect_lost(p, corner);
                     self.replace_lost(p);
@@ -109,6 +113,14 @@ impl Builder {
                 }
             },
         }
+    }
+
+    /// Whether ball `p` is one of the balls at the corner but for rounding: what it cuts off is rounding, too.
+    fn is_twin(&self, p: u32, corner: u32) -> bool {
+        let limit = TWIN * self.surface.radius;
+        let centre = self.surface.centre(p);
+        let balls = self.surface.corners[corner as usize].balls;
+        balls.iter().any(|b| self.surface.centre(*b).distance_squared(centre) < limit * limit)
     }
 
     /// The face that is cut by ball `p` where the ray from the interior through `at` leaves the intersection; `None` when

@@ -1,7 +1,9 @@
 //! The hull of equal balls: hull of the centres plus a ball.
 
 use super::steiner::ConvexMeasures;
+use crate::bounds::ShapeBounds;
 use crate::distance::{farthest_of, nearest};
+use crate::enclosure::{EnclosureError, enclose};
 use crate::hull::{Hull, PointsError, SolidHull, SupportWalk};
 use crate::integrals::Compensated;
 use contact_kinematics::Direction;
@@ -62,6 +64,15 @@ impl RoundedHull {
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
         self.corners.iter().map(|c| c.dot(n.get())).fold(f64::NEG_INFINITY, f64::max) + self.radius
+    }
+
+    /// Polytopes inside and around that are no further than `tolerance` (m) from each other.
+    ///
+    /// # Errors
+    /// [`EnclosureError`].
+    pub fn enclosure(&self, tolerance: f64) -> Result<ShapeBounds, EnclosureError> {
+        let mut core = self.core_support();
+        enclose(tolerance, |n| core(n.get()) + n.get() * self.radius)
     }
 
     /// Whether `point` is inside; one outside by a few units of rounding may be admitted.

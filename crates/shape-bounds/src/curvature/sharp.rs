@@ -5,7 +5,9 @@ use super::balls::{BallIntersection, Outside};
 use super::error::CurvatureError;
 use super::steiner::ConvexMeasures;
 use super::{ROUNDING, check_contacts};
+use crate::bounds::ShapeBounds;
 use crate::distance::nearest;
+use crate::enclosure::{EnclosureError, enclose};
 use crate::sample::ContactSample;
 use contact_kinematics::{CurvatureRadii, Direction};
 use glam::DVec3;
@@ -85,6 +87,15 @@ impl SharpBounds {
         &self.upper
     }
 
+    /// Polytopes as bounds: one inside of the lower bound, one around the upper one, each no further than `tolerance` (m) from
+    /// it. For meshes, and for the gap.
+    ///
+    /// # Errors
+    /// [`EnclosureError`].
+    pub fn polytopes(&self, tolerance: f64) -> Result<ShapeBounds, EnclosureError> {
+        Ok(ShapeBounds::outermost(self.lower.enclosure(tolerance)?, self.upper.enclosure(tolerance)?))
+    }
+
     /// Support functions `(lower, upper)` in direction `n`, in m.
     #[must_use]
     pub fn support(&self, n: Direction) -> (f64, f64) {
@@ -122,6 +133,14 @@ impl RoundedIntersection {
     #[must_use]
     pub fn volume(&self) -> f64 {
         self.measures().volume
+    }
+
+    /// Polytopes inside and around that are no further than `tolerance` (m) from each other.
+    ///
+    /// # Errors
+    /// [`EnclosureError`].
+    pub fn enclosure(&self, tolerance: f64) -> Result<ShapeBounds, EnclosureError> {
+        enclose(tolerance, |n| self.core.support_point(n.get()) + n.get() * self.margin)
     }
 
     /// Support function in m, in time O(n).

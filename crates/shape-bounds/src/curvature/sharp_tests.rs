@@ -152,3 +152,24 @@ fn the_sharp_gap_on_three_curves_is_below_half() {
         assert!(ratio < 0.5, "seed {seed}: {ratio}");
     }
 }
+
+#[test]
+fn contacts_that_coincide_but_for_rounding_change_nothing() {
+    let radii = CurvatureRadii { min: 0.8, max: 1.3 };
+    let mut s = crate::generators::Source::new(8);
+    let single: Vec<ContactSample> = (0..200)
+        .map(|_| s.direction())
+        .map(|n| ContactSample { point: n, normal: Direction::new(n).unwrap() })
+        .collect();
+    let nudged = |c: &ContactSample, s: &mut crate::generators::Source| {
+        let n = c.point + s.normal3() * 10.0_f64.powf(s.between(-17.0, -15.5));
+        ContactSample { point: n, normal: Direction::new_unchecked(n) }
+    };
+    let double: Vec<ContactSample> =
+        single.iter().map(|c| nudged(c, &mut s)).chain(single.iter().copied()).collect();
+    let [one, two] = [single, double].map(|contacts| SharpBounds::from_contacts(&contacts, radii).unwrap());
+    for (a, b) in [(one.lower().volume(), two.lower().volume()), (one.upper().volume(), two.upper().volume())]
+    {
+        assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
+    }
+}
