@@ -1,14 +1,16 @@
 //! Both bounds of a convex body from its contacts, and the gap between them.
 
+mod gap;
 mod incremental;
 
+pub use gap::Gap;
 pub use incremental::IncrementalBounds;
 
-use crate::distance::{farthest_of, nearest};
 use crate::halfspaces::{Intersection, IntersectionError};
-use crate::hull::{Hull, PointsError, SupportWalk};
+use crate::hull::{Hull, PointsError};
 use crate::sample::{ContactSample, HalfSpace};
 use contact_kinematics::Direction;
+use gap::GapSearch;
 use glam::DVec3;
 use thiserror::Error;
 
@@ -41,19 +43,6 @@ pub struct ShapeBounds {
     lower: Hull,
     corners: Vec<DVec3>,
     upper: Intersection,
-}
-
-/// Where, and how far, the bounds are apart.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gap {
-    /// Direction, in the body's frame, in which the upper bound exceeds the lower one.
-    pub direction: Direction,
-    /// The point of the upper bound.
-    pub outer: DVec3,
-    /// The nearest point of the lower bound.
-    pub inner: DVec3,
-    /// Their distance in m.
-    pub distance: f64,
 }
 
 impl ShapeBounds {
@@ -133,29 +122,21 @@ impl ShapeBounds {
     /// Gaps below rounding have no direction and are left out.
     #[must_use]
     pub fn gaps(&self) -> Vec<Gap> {
-        let Some(upper) = self.upper.bounded() else { return Vec::new() };
-        let mut walk = self.lower.solid().map(SupportWalk::new);
-        let mut farthest = |d: DVec3| match &mut walk {
-            Some(walk) => walk.farthest(d),
-            None => farthest_of(&self.corners, d),
-        };
-        let mut start = self.corners[0];
-        let mut gaps = Vec::with_capacity(upper.vertices().len());
-        for outer in upper.vertices() {
-            let found = nearest(*outer, start, &mut farthest);
-            start = farthest(*outer - found.point);
-            if let Ok(direction) = Direction::new(found.direction) {
-                gaps.push(Gap { direction, outer: *outer, inner: found.point, distance: found.certified });
-            }
-        }
-        gaps
+        let Some(mut search) = self.gap_search() else { return Vec::new() };
+        (0..self.upper.bounded().map_or(0, |upper| upper.vertices().len()))
+            .filter_map(|corner| search.at_corner(corner))
+            .collect()
+    }
+
+    fn gap_search(&self) -> Option<GapSearch<'_>> {
+        Some(GapSearch::new(self.upper.bounded()?, &self.lower, &self.corners))
     }
 
     /// The largest gap: its distance is the Hausdorff distance of the bounds, because the distance to a convex set is a
     /// convex function, which is largest at a corner. `None` when the upper bound is unbounded or the gap is zero.
     #[must_use]
     pub fn largest_gap(&self) -> Option<Gap> {
-        self.gaps().into_iter().max_by(|x, y| x.distance.total_cmp(&y.distance))
+        self.gap_search()?.largest()
     }
 }
 

@@ -113,6 +113,12 @@ fn on_triangle(a: DVec3, b: DVec3, c: DVec3) -> (DVec3, Vec<usize>) {
         .unwrap_or((a, vec![0]))
 }
 
+/// Distance of `query` from a triangle, which may be flat.
+pub(crate) fn distance_to_triangle(query: DVec3, corners: [DVec3; 3]) -> f64 {
+    let [a, b, c] = corners.map(|p| p - query);
+    on_triangle(a, b, c).0.length()
+}
+
 /// The first of `points` that is farthest along `d`.
 pub(crate) fn farthest_of(points: &[DVec3], d: DVec3) -> DVec3 {
     let mut best = (DVec3::ZERO, f64::NEG_INFINITY);

@@ -26,6 +26,7 @@
 mod bounds;
 mod curvature;
 mod distance;
+mod faceted;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
 mod halfspaces;
@@ -33,6 +34,7 @@ mod hull;
 mod integrals;
 mod mesh;
 mod noise;
+mod palms;
 #[cfg(feature = "parry")]
 mod parry;
 mod planar;
@@ -47,10 +49,12 @@ pub use curvature::{
     BallHull, BallIntersection, ConvexMeasures, CurvatureBounds, CurvatureError, RoundedHull,
     RoundedIntersection, SharpBounds,
 };
+pub use faceted::FacetError;
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
 pub use noise::{ContactNoise, NoiseError, NoisyContact};
+pub use palms::{PalmContact, PalmError, PalmIntersection};
 pub use poses::{BodyPose, PoseBounds, PoseError, TRUSTED, half_space_above_plane};
 pub use sample::{ContactError, ContactSample, HalfSpace, NORMAL_TOLERANCE};

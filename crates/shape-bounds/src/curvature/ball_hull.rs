@@ -4,6 +4,8 @@ use super::balls::BallIntersection;
 use super::circle::Circle;
 use super::steiner::ConvexMeasures;
 use super::surface::{Corner, Shape};
+use crate::bounds::ShapeBounds;
+use crate::faceted::{FacetError, faceted_by_support};
 use crate::integrals::Compensated;
 use contact_kinematics::Direction;
 use glam::DVec3;
@@ -58,6 +60,18 @@ impl BallHull {
     pub fn contains(&self, point: DVec3) -> bool {
         let limit = self.dual.radius() + self.margin;
         self.dual.farthest_from(point) <= limit * (1.0 + 4.0 * f64::EPSILON)
+    }
+
+    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
+    /// bracket of its volume.
+    ///
+    /// # Errors
+    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
+    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
+        faceted_by_support(
+            |d| d * (self.dual.radius() + self.margin) + self.dual.support_point(-d),
+            tolerance,
+        )
     }
 
     /// Volume in m^3.

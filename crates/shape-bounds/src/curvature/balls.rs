@@ -7,6 +7,8 @@ use super::measure::face_moments;
 use super::steiner::ConvexMeasures;
 use super::surface::{Shape, Surface};
 use super::{ROUNDING, check_contacts};
+use crate::bounds::ShapeBounds;
+use crate::faceted::{FacetError, faceted_by_support};
 use crate::hull::insertion_order;
 use crate::integrals::Compensated;
 use crate::sample::ContactSample;
@@ -182,6 +184,15 @@ impl BallIntersection {
         }
         let area = total.value();
         ConvexMeasures { volume: threefold.value() / 3.0, area, mean_curvature: area / rho + edges.value() }
+    }
+
+    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
+    /// bracket of its volume.
+    ///
+    /// # Errors
+    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
+    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
+        faceted_by_support(|d| self.support_point(d), tolerance)
     }
 
     /// Whether `point` is in all balls, to rounding.

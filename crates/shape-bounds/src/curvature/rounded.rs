@@ -1,7 +1,9 @@
 //! The hull of equal balls: hull of the centres plus a ball.
 
 use super::steiner::ConvexMeasures;
+use crate::bounds::ShapeBounds;
 use crate::distance::{farthest_of, nearest};
+use crate::faceted::{FacetError, faceted_by_support};
 use crate::hull::{Hull, PointsError, SolidHull, SupportWalk};
 use crate::integrals::Compensated;
 use contact_kinematics::Direction;
@@ -56,6 +58,15 @@ impl RoundedHull {
     #[must_use]
     pub fn area(&self) -> f64 {
         self.measures().area
+    }
+
+    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
+    /// bracket of its volume.
+    ///
+    /// # Errors
+    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
+    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
+        faceted_by_support(|d| farthest_of(&self.corners, d) + d * self.radius, tolerance)
     }
 
     /// Support function in m.

@@ -5,7 +5,9 @@ use super::balls::BallIntersection;
 use super::error::CurvatureError;
 use super::steiner::ConvexMeasures;
 use super::{ROUNDING, check_contacts};
+use crate::bounds::ShapeBounds;
 use crate::distance::nearest;
+use crate::faceted::{FacetError, faceted_by_support};
 use crate::sample::ContactSample;
 use contact_kinematics::{CurvatureRadii, Direction};
 use glam::DVec3;
@@ -107,6 +109,15 @@ impl RoundedIntersection {
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
         self.core.support(n) + self.margin
+    }
+
+    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
+    /// bracket of its volume.
+    ///
+    /// # Errors
+    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
+    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
+        faceted_by_support(|d| self.core.support_point(d) + d * self.margin, tolerance)
     }
 
     /// Whether `point` is inside; one outside by a few units of rounding may be admitted.
