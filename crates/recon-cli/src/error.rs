@@ -1,7 +1,7 @@
 use recon::object_dynamics::{LogError, SceneError as DynamicsError, SimulationError};
 use recon::observer::EstimateError;
 use recon::shape_bounds::{
-    BoundsError, CurvatureError, EnclosureError, IntersectionError, NoiseError, PoseError,
+    BoundsError, CurvatureError, FacetError, IntersectionError, NoiseError, PoseError,
 };
 use recon_io::{LogFileError, MeshError, OutputError, SceneError, TouchesError};
 use std::path::PathBuf;
@@ -42,7 +42,7 @@ pub(crate) enum CliError {
     #[error("the contacts and the limits on the curvature give no bounds")]
     Curvature(#[from] CurvatureError),
     #[error("the bounds have no meshes")]
-    Enclosure(#[from] EnclosureError),
+    Facets(#[from] FacetError),
     #[error("the poses give no bounds")]
     PoseBounds(#[from] PoseError),
     #[error(
@@ -88,11 +88,7 @@ impl CliError {
     /// The code of each kind is told in `recon --help`.
     pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
-            Self::Picture(_)
-            | Self::Enclosure(_)
-            | Self::Mesh(_)
-            | Self::Signals(_)
-            | Self::PlanarDemo(_) => 1,
+            Self::Picture(_) | Self::Facets(_) | Self::Mesh(_) | Self::Signals(_) | Self::PlanarDemo(_) => 1,
             Self::Log(_)
             | Self::Scene(_)
             | Self::Touches(_)

@@ -1,22 +1,21 @@
 //! Both bounds of a convex body from its contacts, and the gap between them.
 
+mod gap;
 mod incremental;
 
+pub use gap::Gap;
 pub use incremental::IncrementalBounds;
 
-use crate::distance::{Nearest, farthest_of, nearest, nearest_beyond};
 use crate::halfspaces::{Intersection, IntersectionError};
-use crate::hull::{Hull, PointsError, SupportWalk};
+use crate::hull::{Hull, PointsError};
 use crate::sample::{ContactSample, HalfSpace};
 use contact_kinematics::Direction;
+use gap::GapSearch;
 use glam::DVec3;
 use thiserror::Error;
 
 /// Contacts that a body in space needs at least for bounds with a volume.
 const FEWEST: usize = 4;
-
-/// Corners at which the search for the largest gap begins.
-const FIRST_CORNERS: usize = 100;
 
 /// Why contacts give no bounds.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -44,19 +43,6 @@ pub struct ShapeBounds {
     lower: Hull,
     corners: Vec<DVec3>,
     upper: Intersection,
-}
-
-/// Where, and how far, the bounds are apart.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gap {
-    /// Direction, in the body's frame, in which the upper bound exceeds the lower one.
-    pub direction: Direction,
-    /// The point of the upper bound.
-    pub outer: DVec3,
-    /// The nearest point of the lower bound.
-    pub inner: DVec3,
-    /// Their distance in m.
-    pub distance: f64,
 }
 
 impl ShapeBounds {
@@ -147,59 +133,21 @@ impl ShapeBounds {
     /// Gaps below rounding have no direction and are left out.
     #[must_use]
     pub fn gaps(&self) -> Vec<Gap> {
-        let Some(upper) = self.upper.bounded() else { return Vec::new() };
-        let mut farthest = self.farthest();
-        let mut start = self.corners[0];
-        let mut gaps = Vec::with_capacity(upper.vertices().len());
-        for outer in upper.vertices() {
-            let found = nearest(*outer, start, &mut farthest);
-            start = farthest(*outer - found.point);
-            gaps.extend(Gap::new(*outer, &found));
-        }
-        gaps
+        let Some(mut search) = self.gap_search() else { return Vec::new() };
+        (0..self.upper.bounded().map_or(0, |upper| upper.vertices().len()))
+            .filter_map(|corner| search.at_corner(corner))
+            .collect()
+    }
+
+    fn gap_search(&self) -> Option<GapSearch<'_>> {
+        Some(GapSearch::new(self.upper.bounded()?, &self.lower, &self.corners))
     }
 
     /// The largest gap: its distance is the Hausdorff distance of the bounds, because the distance to a convex set is a
     /// convex function, which is largest at a corner. `None` when the upper bound is unbounded or the gap is zero.
-    ///
-    /// Much faster than [`Self::gaps`]: a corner is given up once a point of the lower bound is nearer than the largest
-    /// gap so far.
     #[must_use]
     pub fn largest_gap(&self) -> Option<Gap> {
-        let corners = self.upper.bounded()?.vertices();
-        let mut farthest = self.farthest();
-        let mut start = self.corners[0];
-        let mut largest: Option<Gap> = None;
-        // A few corners from everywhere first, so that the others are given up early.
-        let few = corners.iter().step_by(corners.len().div_ceil(FIRST_CORNERS));
-        for outer in few.chain(corners) {
-            let enough = largest.map_or(0.0, |gap| gap.distance);
-            if outer.distance(start) <= enough {
-                continue;
-            }
-            let found = nearest_beyond(*outer, start, enough, &mut farthest);
-            start = found.point;
-            if found.certified > enough {
-                largest = Gap::new(*outer, &found).or(largest);
-            }
-        }
-        largest
-    }
-
-    /// The corner of the lower bound farthest along a direction.
-    fn farthest(&self) -> impl FnMut(DVec3) -> DVec3 + '_ {
-        let mut walk = self.lower.solid().map(SupportWalk::new);
-        move |d| match &mut walk {
-            Some(walk) => walk.farthest(d),
-            None => farthest_of(&self.corners, d),
-        }
-    }
-}
-
-impl Gap {
-    fn new(outer: DVec3, found: &Nearest) -> Option<Self> {
-        let direction = Direction::new(found.direction).ok()?;
-        Some(Self { direction, outer, inner: found.point, distance: found.certified })
+        self.gap_search()?.largest()
     }
 }
 

@@ -22,23 +22,13 @@ pub(crate) struct Nearest {
 }
 
 /// Nearest point to `query` of the body whose farthest point along `d` is `support(d)`; `start` is any of its points.
-pub(crate) fn nearest(query: DVec3, start: DVec3, support: impl FnMut(DVec3) -> DVec3) -> Nearest {
-    nearest_beyond(query, start, 0.0, support)
-}
-
-/// The same, given up as soon as a point of the body is found that is no further than `enough`: then that point is returned.
-pub(crate) fn nearest_beyond(
-    query: DVec3,
-    start: DVec3,
-    enough: f64,
-    mut support: impl FnMut(DVec3) -> DVec3,
-) -> Nearest {
+pub(crate) fn nearest(query: DVec3, start: DVec3, mut support: impl FnMut(DVec3) -> DVec3) -> Nearest {
     let mut simplex = vec![start - query];
     let mut closest = simplex[0];
     let mut best = Nearest { point: start, direction: DVec3::ZERO, certified: 0.0 };
     for _ in 0..ITERATIONS {
         let distance = closest.length();
-        if distance <= enough {
+        if distance == 0.0 {
             break;
         }
         let direction = -closest / distance;
@@ -128,6 +118,12 @@ fn mean<const N: usize>(corners: [DVec3; N], weights: [f64; N]) -> Option<DVec3>
 
 fn nearer(found: impl Iterator<Item = (DVec3, Vec<usize>)>) -> Option<(DVec3, Vec<usize>)> {
     found.min_by(|x, y| x.0.length_squared().total_cmp(&y.0.length_squared()))
+}
+
+/// Distance of `query` from a triangle, which may be flat.
+pub(crate) fn distance_to_triangle(query: DVec3, corners: [DVec3; 3]) -> f64 {
+    let [a, b, c] = corners.map(|p| p - query);
+    on_triangle(a, b, c).0.length()
 }
 
 /// The first of `points` that is farthest along `d`.

@@ -26,8 +26,8 @@
 mod bounds;
 mod curvature;
 mod distance;
-mod enclosure;
 mod erosion;
+mod faceted;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
 mod halfspaces;
@@ -35,6 +35,7 @@ mod hull;
 mod integrals;
 mod mesh;
 mod noise;
+mod palms;
 #[cfg(feature = "parry")]
 mod parry;
 mod planar;
@@ -49,11 +50,12 @@ pub use curvature::{
     BallHull, BallIntersection, ConvexMeasures, CurvatureBounds, CurvatureError, RoundedHull,
     RoundedIntersection, SharpBounds,
 };
-pub use enclosure::EnclosureError;
+pub use faceted::FacetError;
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
 pub use noise::{ContactNoise, NoiseError, NoisyContact, Outlier, estimate_noise, without_outliers};
+pub use palms::{PalmContact, PalmError, PalmIntersection};
 pub use poses::{BodyPose, PoseBounds, PoseError, TRUSTED, half_space_above_plane};
 pub use sample::{ContactError, ContactSample, HalfSpace, NORMAL_TOLERANCE};

@@ -5,7 +5,7 @@ use super::circle::Circle;
 use super::steiner::ConvexMeasures;
 use super::surface::{Corner, Shape};
 use crate::bounds::ShapeBounds;
-use crate::enclosure::{EnclosureError, enclose};
+use crate::faceted::{FacetError, faceted_by_support};
 use crate::integrals::Compensated;
 use contact_kinematics::Direction;
 use glam::DVec3;
@@ -52,21 +52,6 @@ impl BallHull {
         self.dual.radius() + self.margin - self.dual.support(-n)
     }
 
-    /// The point farthest along `n`, in time O(n).
-    #[must_use]
-    pub fn support_point(&self, n: Direction) -> DVec3 {
-        // Support points of the hull and of its dual in the opposite direction are one radius apart.
-        self.dual.support_point(-n.get()) + n.get() * (self.dual.radius() + self.margin)
-    }
-
-    /// Polytopes inside and around that are no further than `tolerance` (m) from each other.
-    ///
-    /// # Errors
-    /// [`EnclosureError`].
-    pub fn enclosure(&self, tolerance: f64) -> Result<ShapeBounds, EnclosureError> {
-        enclose(tolerance, |n| self.support_point(n))
-    }
-
     /// Whether `point` is inside, to rounding of the largest radius; in time O(n).
     ///
     /// The body is the intersection of the balls of radius `rho_max` about all points of the dual, so that the one farthest
@@ -75,6 +60,18 @@ impl BallHull {
     pub fn contains(&self, point: DVec3) -> bool {
         let limit = self.dual.radius() + self.margin;
         self.dual.farthest_from(point) <= limit * (1.0 + 4.0 * f64::EPSILON)
+    }
+
+    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
+    /// bracket of its volume.
+    ///
+    /// # Errors
+    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
+    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
+        faceted_by_support(
+            |d| d * (self.dual.radius() + self.margin) + self.dual.support_point(-d),
+            tolerance,
+        )
     }
 
     /// Volume in m^3.

@@ -8,7 +8,7 @@ use super::steiner::ConvexMeasures;
 use super::surface::{Shape, Surface};
 use super::{ROUNDING, check_contacts};
 use crate::bounds::ShapeBounds;
-use crate::enclosure::{EnclosureError, enclose};
+use crate::faceted::{FacetError, faceted_by_support};
 use crate::hull::insertion_order;
 use crate::integrals::Compensated;
 use crate::sample::ContactSample;
@@ -186,6 +186,15 @@ impl BallIntersection {
         ConvexMeasures { volume: threefold.value() / 3.0, area, mean_curvature: area / rho + edges.value() }
     }
 
+    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
+    /// bracket of its volume.
+    ///
+    /// # Errors
+    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
+    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
+        faceted_by_support(|d| self.support_point(d), tolerance)
+    }
+
     /// Whether `point` is in all balls, to rounding.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
@@ -196,14 +205,6 @@ impl BallIntersection {
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
         self.support_point(n.get()).dot(n.get())
-    }
-
-    /// Polytopes inside and around that are no further than `tolerance` (m) from each other.
-    ///
-    /// # Errors
-    /// [`EnclosureError`].
-    pub fn enclosure(&self, tolerance: f64) -> Result<ShapeBounds, EnclosureError> {
-        enclose(tolerance, |n| self.support_point(n.get()))
     }
 
     /// The point farthest along `d`: of a face, an edge or a corner.

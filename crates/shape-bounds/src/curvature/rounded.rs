@@ -3,7 +3,7 @@
 use super::steiner::ConvexMeasures;
 use crate::bounds::ShapeBounds;
 use crate::distance::{farthest_of, nearest};
-use crate::enclosure::{EnclosureError, enclose};
+use crate::faceted::{FacetError, faceted_by_support};
 use crate::hull::{Hull, PointsError, SolidHull, SupportWalk};
 use crate::integrals::Compensated;
 use contact_kinematics::Direction;
@@ -60,19 +60,19 @@ impl RoundedHull {
         self.measures().area
     }
 
+    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
+    /// bracket of its volume.
+    ///
+    /// # Errors
+    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
+    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
+        faceted_by_support(|d| farthest_of(&self.corners, d) + d * self.radius, tolerance)
+    }
+
     /// Support function in m.
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
         self.corners.iter().map(|c| c.dot(n.get())).fold(f64::NEG_INFINITY, f64::max) + self.radius
-    }
-
-    /// Polytopes inside and around that are no further than `tolerance` (m) from each other.
-    ///
-    /// # Errors
-    /// [`EnclosureError`].
-    pub fn enclosure(&self, tolerance: f64) -> Result<ShapeBounds, EnclosureError> {
-        let mut core = self.core_support();
-        enclose(tolerance, |n| core(n.get()) + n.get() * self.radius)
     }
 
     /// Whether `point` is inside; one outside by a few units of rounding may be admitted.

@@ -7,7 +7,7 @@ use super::steiner::ConvexMeasures;
 use super::{ROUNDING, check_contacts};
 use crate::bounds::ShapeBounds;
 use crate::distance::nearest;
-use crate::enclosure::{EnclosureError, enclose};
+use crate::faceted::{FacetError, faceted_by_support};
 use crate::sample::ContactSample;
 use contact_kinematics::{CurvatureRadii, Direction};
 use glam::DVec3;
@@ -91,9 +91,9 @@ impl SharpBounds {
     /// it. For meshes, and for the gap.
     ///
     /// # Errors
-    /// [`EnclosureError`].
-    pub fn polytopes(&self, tolerance: f64) -> Result<ShapeBounds, EnclosureError> {
-        Ok(ShapeBounds::outermost(self.lower.enclosure(tolerance)?, self.upper.enclosure(tolerance)?))
+    /// [`FacetError`].
+    pub fn polytopes(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
+        Ok(ShapeBounds::outermost(self.lower.faceted(tolerance)?, self.upper.faceted(tolerance)?))
     }
 
     /// Support functions `(lower, upper)` in direction `n`, in m.
@@ -135,18 +135,19 @@ impl RoundedIntersection {
         self.measures().volume
     }
 
-    /// Polytopes inside and around that are no further than `tolerance` (m) from each other.
-    ///
-    /// # Errors
-    /// [`EnclosureError`].
-    pub fn enclosure(&self, tolerance: f64) -> Result<ShapeBounds, EnclosureError> {
-        enclose(tolerance, |n| self.core.support_point(n.get()) + n.get() * self.margin)
-    }
-
     /// Support function in m, in time O(n).
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
         self.core.support(n) + self.margin
+    }
+
+    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
+    /// bracket of its volume.
+    ///
+    /// # Errors
+    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
+    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
+        faceted_by_support(|d| self.core.support_point(d) + d * self.margin, tolerance)
     }
 
     /// Whether `point` is inside; one outside by a few units of rounding may be admitted.

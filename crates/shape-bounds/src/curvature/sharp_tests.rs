@@ -1,6 +1,7 @@
 use super::*;
 use crate::bounds::ShapeBounds;
 use crate::generators::{AXES, Source, curve_contacts, ellipsoid_contacts, ellipsoid_support};
+use crate::hull::HullCertificate;
 use std::f64::consts::PI;
 
 /// Radii of curvature of the test ellipsoid: from c^2 / a to a^2 / c.
@@ -172,4 +173,45 @@ fn contacts_that_coincide_but_for_rounding_change_nothing() {
     {
         assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
     }
+}
+
+/// Meshes of all curved bounds: the inner one in the body and the outer one around it, within the tolerance, closed and
+/// outward, with volumes that enclose the exact one.
+#[test]
+fn polytopes_enclose_every_curved_bound() {
+    let contacts = ellipsoid_contacts(30, 4);
+    let tight = CurvatureBounds::from_contacts(&contacts, RADII).unwrap();
+    let sharp = SharpBounds::from_contacts(&contacts, RADII).unwrap();
+    let tolerance = 2e-2;
+    let faceted = [
+        (tight.lower().faceted(tolerance), tight.lower().volume()),
+        (tight.upper().faceted(tolerance), tight.upper().volume()),
+        (sharp.lower().faceted(tolerance), sharp.lower().volume()),
+        (sharp.upper().faceted(tolerance), sharp.upper().volume()),
+    ];
+    for (which, (polytopes, volume)) in faceted.into_iter().enumerate() {
+        let polytopes = polytopes.unwrap_or_else(|e| panic!("{which}: {e}"));
+        assert!(polytopes.largest_gap().unwrap().distance <= tolerance);
+        let inner = polytopes.lower().solid().unwrap().mesh();
+        let outer = polytopes.upper().bounded().unwrap();
+        let (low, high) = (inner.moments().volume, outer.mesh().moments().volume);
+        assert!(
+            low < volume && volume < high && high - low < 0.06 * volume,
+            "{which}: {low} {volume} {high}"
+        );
+        assert!(HullCertificate::of(&inner, &inner.vertices).holds());
+        let hold = |p: DVec3| match which {
+            0 => tight.lower().contains(p),
+            1 => tight.upper().contains(p),
+            2 => sharp.lower().contains(p),
+            _ => sharp.upper().contains(p),
+        };
+        let centre = polytopes.lower().solid().unwrap().moments().centroid;
+        assert!(inner.vertices.iter().all(|v| hold(centre + (*v - centre) * (1.0 - 1e-12))), "{which}");
+        assert!(outer.vertices().iter().all(|v| !hold(centre + (*v - centre) * (1.0 + 1e-9))), "{which}");
+    }
+    assert!(matches!(tight.upper().faceted(-1.0), Err(crate::FacetError::Tolerance { .. })));
+    // A rod of no thickness has no interior.
+    let rod = RoundedHull::of(&[DVec3::ZERO, DVec3::X], 0.0).unwrap();
+    assert!(matches!(rod.faceted(0.1), Err(crate::FacetError::Bounds(_))));
 }

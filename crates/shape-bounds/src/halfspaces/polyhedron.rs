@@ -66,6 +66,16 @@ impl Polyhedron {
         self.dual.facets_around(face as u32)
     }
 
+    /// The faces at a corner.
+    pub(crate) fn faces_at(&self, corner: usize) -> [u32; 3] {
+        self.dual.triangles()[corner]
+    }
+
+    /// Calls `visit` with each face that shares an edge with `face`.
+    pub(crate) fn for_each_neighbouring_face(&self, face: u32, visit: impl FnMut(u32)) {
+        self.dual.for_each_neighbour(face, visit);
+    }
+
     /// For each face, the index of the half-space that it lies on.
     #[must_use]
     pub fn face_sources(&self) -> &[u32] {

@@ -204,3 +204,19 @@ fn a_bad_point_leaves_a_growing_hull_as_it_was() {
     assert!(matches!(growing.insert(DVec3::X * 1e200), Err(PointsError::DynamicRange { .. })));
     assert_eq!(growing.points(), [DVec3::X]);
 }
+
+/// Corners nearer to each other than rounding tells their heights apart: the climb must not end among them.
+#[test]
+fn the_climb_passes_clusters_of_near_duplicates() {
+    let mut s = Source::new(12);
+    for kind in [InputKind::NearDuplicates, InputKind::Clusters, InputKind::CubeFaces, InputKind::Lattice] {
+        let points = kind.points(600, 3);
+        let Hull::Solid(hull) = Hull::of(&points).unwrap() else { panic!("{kind:?} is flat") };
+        let mut walk = SupportWalk::new(&hull);
+        for _ in 0..400 {
+            let d = s.direction();
+            let best = hull.vertices().iter().map(|v| v.dot(d)).fold(f64::NEG_INFINITY, f64::max);
+            assert!((walk.farthest(d).dot(d) - best).abs() <= 1e-14, "{kind:?} {d}");
+        }
+    }
+}

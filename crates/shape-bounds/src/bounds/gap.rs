@@ -1,0 +1,133 @@
+//! Where the bounds are apart: distances from the corners of the upper bound to the lower one.
+
+use crate::distance::{distance_to_triangle, farthest_of, nearest};
+use crate::halfspaces::Polyhedron;
+use crate::hull::{Hull, SupportWalk};
+use contact_kinematics::Direction;
+use glam::DVec3;
+
+/// Where, and how far, the bounds are apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// Direction, in the body's frame, in which the upper bound exceeds the lower one.
+    pub direction: Direction,
+    /// The point of the upper bound.
+    pub outer: DVec3,
+    /// The nearest point of the lower bound.
+    pub inner: DVec3,
+    /// Their distance in m.
+    pub distance: f64,
+}
+
+/// Distances from corners of the upper bound. Each search starts where the lower bound supports the planes of its corner: near
+/// the nearest point, so that the climbs over the lower bound are short.
+pub(super) struct GapSearch<'a> {
+    upper: &'a Polyhedron,
+    lower: LowerBound<'a>,
+    /// For each face of the upper bound, the point of the lower bound farthest along its normal, and where that is.
+    supports: Vec<(DVec3, u32)>,
+}
+
+/// Support points of the lower bound.
+enum LowerBound<'a> {
+    Solid(SupportWalk<'a>),
+    /// Without interior: the few corners that there are.
+    Flat(&'a [DVec3]),
+}
+
+impl LowerBound<'_> {
+    fn farthest(&mut self, d: DVec3) -> DVec3 {
+        match self {
+            Self::Solid(walk) => walk.farthest(d),
+            Self::Flat(corners) => farthest_of(corners, d),
+        }
+    }
+
+    /// Where the next climb starts.
+    fn place(&self) -> u32 {
+        match self {
+            Self::Solid(walk) => walk.corner(),
+            Self::Flat(_) => 0,
+        }
+    }
+
+    fn go_to(&mut self, place: u32) {
+        if let Self::Solid(walk) = self {
+            walk.start_at(place);
+        }
+    }
+}
+
+impl<'a> GapSearch<'a> {
+    /// Prepares the search between `upper` and the hull `lower` with these `corners`.
+    pub(super) fn new(upper: &'a Polyhedron, lower: &'a Hull, corners: &'a [DVec3]) -> Self {
+        let lower = match lower.solid() {
+            Some(solid) => LowerBound::Solid(SupportWalk::new(solid)),
+            None => LowerBound::Flat(corners),
+        };
+        let mut search = Self { upper, lower, supports: Vec::new() };
+        search.find_supports();
+        search
+    }
+
+    /// The support points of all faces, from face to neighbouring face, so that each climb is short.
+    fn find_supports(&mut self) {
+        let unknown = (DVec3::ZERO, u32::MAX);
+        self.supports = vec![unknown; self.upper.face_count()];
+        let mut queue = Vec::with_capacity(self.upper.face_count());
+        for first in 0..self.upper.face_count() as u32 {
+            if self.supports[first as usize].1 == u32::MAX {
+                self.support_face(first);
+                queue.push(first);
+            }
+            while let Some(face) = queue.pop() {
+                let upper = self.upper;
+                upper.for_each_neighbouring_face(face, |next| {
+                    if self.supports[next as usize].1 == u32::MAX {
+                        self.lower.go_to(self.supports[face as usize].1);
+                        self.support_face(next);
+                        queue.push(next);
+                    }
+                });
+            }
+        }
+    }
+
+    fn support_face(&mut self, face: u32) {
+        let normal = self.upper.face_half_spaces()[face as usize].normal.get();
+        let point = self.lower.farthest(normal);
+        self.supports[face as usize] = (point, self.lower.place());
+    }
+
+    /// The gap at a corner; `None` where it is below rounding and has no direction.
+    pub(super) fn at_corner(&mut self, corner: usize) -> Option<Gap> {
+        let outer = self.upper.vertices()[corner];
+        let (start, place) = self.supports[self.upper.faces_at(corner)[0] as usize];
+        self.lower.go_to(place);
+        let found = nearest(outer, start, |d| self.lower.farthest(d));
+        let direction = Direction::new(found.direction).ok()?;
+        Some(Gap { direction, outer, inner: found.point, distance: found.certified })
+    }
+
+    /// The gap is at most this: the distance to a triangle whose corners are in the lower bound.
+    fn at_most(&self, corner: usize) -> f64 {
+        let triangle = self.upper.faces_at(corner).map(|f| self.supports[f as usize].0);
+        distance_to_triangle(self.upper.vertices()[corner], triangle)
+    }
+
+    /// The largest gap: corners in the order of how large theirs can be, until no other can be larger.
+    pub(super) fn largest(&mut self) -> Option<Gap> {
+        let mut order: Vec<(f64, u32)> =
+            (0..self.upper.vertices().len()).map(|v| (self.at_most(v), v as u32)).collect();
+        order.sort_unstable_by(|x, y| y.0.total_cmp(&x.0));
+        let mut best: Option<Gap> = None;
+        for (at_most, corner) in order {
+            if best.is_some_and(|gap| gap.distance >= at_most) {
+                break;
+            }
+            let gap = self.at_corner(corner as usize);
+            best = best.into_iter().chain(gap).max_by(|x, y| x.distance.total_cmp(&y.distance));
+        }
+        best
+    }
+}

@@ -1,0 +1,90 @@
+//! Polytopes inside and outside of a curved convex body, within a tolerance of each other.
+
+use crate::bounds::{BoundsError, Gap, ShapeBounds};
+use crate::sample::ContactSample;
+use contact_kinematics::Direction;
+use glam::DVec3;
+use std::collections::HashSet;
+use thiserror::Error;
+
+/// Facets at most. Their number grows as area over radius of curvature and tolerance.
+const MOST: usize = 400_000;
+/// Rounds at most: each divides the gaps by about four, so that this is far beyond the digits that there are.
+const ROUNDS: usize = 60;
+
+/// Corners this close to each other, relative to the tolerance, are at one place.
+const SAME_PLACE: f64 = 1e-3;
+
+/// Why a curved body has no polytopes around it.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum FacetError {
+    /// A tolerance that is not positive and finite.
+    #[error("tolerance is {value} m; it must be positive and finite")]
+    Tolerance {
+        /// The tolerance as given.
+        value: f64,
+    },
+    /// The body has no interior, or rounding decides.
+    #[error(transparent)]
+    Bounds(#[from] BoundsError),
+    /// The body has no end in some direction.
+    #[error("the bound has no end in some direction: touch the body from more sides")]
+    Unbounded,
+    /// Too many facets would be needed.
+    #[error(
+        "{facets} facets leave a gap of {gap:e} m, and more than {MOST} are not made; allow more than {tolerance:e} m"
+    )]
+    TooFine {
+        /// The tolerance as given, in m.
+        tolerance: f64,
+        /// Facets so far.
+        facets: usize,
+        /// What they leave, in m.
+        gap: f64,
+    },
+}
+
+/// Polytopes inside and outside of a convex body, no further apart than `tolerance` (Hausdorff distance, m). `start` are contacts
+/// of the body, and `touch` gives another one, at which it is touched where a gap is.
+pub(crate) fn faceted(
+    start: Vec<ContactSample>,
+    tolerance: f64,
+    touch: impl Fn(&Gap) -> ContactSample,
+) -> Result<ShapeBounds, FacetError> {
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        return Err(FacetError::Tolerance { value: tolerance });
+    }
+    let mut contacts = start;
+    let mut gap = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let bounds = ShapeBounds::from_contacts(&contacts)?;
+        if bounds.upper().bounded().is_none() {
+            return Err(FacetError::Unbounded);
+        }
+        // Where more than three planes meet, several corners are at one place: one touch there is enough.
+        let mut places = HashSet::new();
+        let place = |g: &Gap| (g.outer / (SAME_PLACE * tolerance)).round().to_array().map(f64::to_bits);
+        let wide: Vec<Gap> =
+            bounds.gaps().into_iter().filter(|g| g.distance > tolerance && places.insert(place(g))).collect();
+        if wide.is_empty() {
+            return Ok(bounds);
+        }
+        gap = wide.iter().map(|g| g.distance).fold(0.0, f64::max);
+        if contacts.len() + wide.len() > MOST {
+            break;
+        }
+        contacts.extend(wide.iter().map(&touch));
+    }
+    Err(FacetError::TooFine { tolerance, facets: contacts.len(), gap })
+}
+
+/// [`faceted`] for a body that is known by its support points.
+pub(crate) fn faceted_by_support(
+    support: impl Fn(DVec3) -> DVec3,
+    tolerance: f64,
+) -> Result<ShapeBounds, FacetError> {
+    let touch = |normal: Direction| ContactSample { point: support(normal.get()), normal };
+    let axes = [Direction::X, Direction::Y, Direction::Z];
+    let start = axes.into_iter().flat_map(|d| [touch(d), touch(-d)]).collect();
+    faceted(start, tolerance, |gap| touch(gap.direction))
+}
