@@ -77,7 +77,7 @@ fn jacobians_agree_with_differences() {
     let (object, motion, start) = scene("S2_rotating_pair");
     let run = simulate_prescribed(&object, &motion, start, &times(100.0, 0.4), 1e-13).unwrap();
     let log = log(&run);
-    let inputs = planar_samples(&log).unwrap();
+    let inputs = planar_samples(&log, 0.02).unwrap();
     let scale = NaturalScale::from_sample(&log.samples()[0], object.gravity).unwrap();
     let constants = [
         Constant::Mass,
@@ -217,7 +217,7 @@ fn interpolation_error_is_estimated() {
         let run = simulate_prescribed(&object, &motion, start, &times(200.0, 0.9), 1e-13).unwrap();
         let log = log(&run);
         let coarse = PlanarLog::new(log.samples().iter().copied().step_by(2).collect(), None).unwrap();
-        let inputs = planar_samples(&coarse).unwrap();
+        let inputs = planar_samples(&coarse, 0.0).unwrap();
         for (k, input) in inputs.iter().enumerate().skip(6) {
             let middle = log.samples()[2 * k - 1].forces.unwrap();
             let stage = &input.stages[1];

@@ -13,10 +13,6 @@ pub(super) const MOTION: usize = 5;
 /// Relative rate of object and palm, as a share of the natural rate, below which the contact offset `d` is taken from the
 /// sensor rather than from the motion. Small enough to cost no information in motion, large against rounding.
 const BLEND_SHARE: f64 = 0.02;
-/// Standard deviation of an interval's force change under white noise of one: `63/256 sqrt(252)`, the middle of the newest of
-/// five equal intervals.
-const CHANGE_PER_NOISE: f64 = 3.91;
-
 /// State `(cm, v, omega0)` and, after it, constants to be estimated; driven by forces, with the contacts as output.
 ///
 /// `cm' = v`, `m v' = m g + f_1 n_1 + f_2 n_2`, `I0 omega0' = -f_1 d_1 - f_2 d_2`, where rigid contact gives
@@ -261,13 +257,8 @@ impl Side {
     }
 }
 
-/// Error of the mean force over an interval from its interpolation: the middle counts for two thirds in Simpson's rule,
-/// and half of that here, because the errors of neighbouring intervals largely cancel (measured by the consistency of the
-/// estimates at 100 Hz with exact forces, docs/planar-monte-carlo.md). None where the change that it is taken from may be noise.
-fn interpolation_error(input: &PairInput, palm: usize, force_deviation: f64) -> f64 {
-    let significant = input.force_change[palm] > 3.0 * CHANGE_PER_NOISE * force_deviation;
-    if significant { input.force_error[palm] / 3.0 } else { 0.0 }
-}
+/// Weight of the middle of an interval in Simpson's rule: its share of the error of the mean force.
+const MIDDLE_WEIGHT: f64 = 2.0 / 3.0;
 
 /// Stage of an interval at fraction 0, 1/2 or 1.
 fn at(input: &PairInput, fraction: f64) -> &PairStage {
@@ -314,22 +305,29 @@ impl<const N: usize> Model<N, 2> for ForceDriven<N> {
     }
 
     /// Noise of the forces, the error of their interpolation, and noise of the contacts as far as they enter `d`; one
-    /// reading counts for one interval.
+    /// reading counts for one interval. Errors of interpolation count as independent, which is too much over many intervals
+    /// (they are the derivative of something bounded), and matters only where they exceed the sensors' noise.
     fn process_noise(&self, x: &SVector<f64, N>, input: &PairInput) -> Option<SMatrix<f64, N, N>> {
         let PlanarNominal { contact_deviation, force_deviation, .. } = self.nominal;
         if self.exact || contact_deviation <= 0.0 && force_deviation <= 0.0 {
             return None;
         }
-        let (mass, inertia) = self.mass_and_inertia(x);
+        // What enters during an interval acts on average from its middle on, and the flow carries it to the end.
+        let half = 0.5 * input.dt;
+        let middle = &input.stages[1];
+        let x = x + self.rate(&input.stages[0], x) * half;
+        let (_, slope) = self.rate_linearised(middle, &x);
+        let (mass, inertia) = self.mass_and_inertia(&x);
         let mut q = SMatrix::<f64, N, N>::zeros();
-        for side in [0, 1].map(|palm| self.side(x, &input.stages[0], palm)) {
-            let step =
-                input.dt * force_deviation.hypot(interpolation_error(input, side.palm, force_deviation));
+        for side in [0, 1].map(|palm| self.side(&x, middle, palm)) {
+            let interpolation = MIDDLE_WEIGHT * input.force_error[side.palm];
+            let step = input.dt * force_deviation.hypot(interpolation);
             let mut kick = SVector::<f64, N>::zeros();
             kick[2] = step * side.n.x / mass;
             kick[3] = step * side.n.y / mass;
             kick[4] = -step * side.d / inertia;
-            q += kick * kick.transpose();
+            kick += slope * kick * half;
+            q.ger(1.0, &kick, &kick, 1.0);
             let share = self.blend * self.blend / side.denominator;
             q[(4, 4)] += (input.dt * side.force * share * contact_deviation / inertia).powi(2);
         }

@@ -10,6 +10,7 @@ mod force_driven;
 mod input;
 mod observer;
 mod palm_series;
+mod polynomial;
 mod quasistatic;
 mod scale;
 mod shape_fit;

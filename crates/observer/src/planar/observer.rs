@@ -50,6 +50,8 @@ pub struct PlanarObserverOptions {
     /// Standard deviation of each estimated constant before the first sample, in its own unit; none for its
     /// natural size (a factor of 2.7 of mass and inertia, a gain of one, a bias of the weight, an offset of the size).
     pub constant_deviation: Option<f64>,
+    /// Moments of inertia of the palms about the hinge, kg m^2, for logs with torques in place of forces.
+    pub palm_inertias: [f64; 2],
 }
 
 impl Default for PlanarObserverOptions {
@@ -61,6 +63,7 @@ impl Default for PlanarObserverOptions {
             arrival: Arrival::Carry(1.0),
             start: PlanarStartFrom::Nothing,
             constant_deviation: None,
+            palm_inertias: [0.0; 2],
         }
     }
 }
@@ -118,11 +121,20 @@ impl<const N: usize> PlanarObserver<N> {
                 return Err(PlanarEstimateError::Value { what, value, needed: "positive and finite" });
             }
         }
+        for value in options.palm_inertias {
+            if !(value >= 0.0 && value.is_finite()) {
+                let needed = "finite and at least 0";
+                return Err(PlanarEstimateError::Value { what: "palm inertia", value, needed });
+            }
+        }
+        let builder = InputBuilder::new()
+            .with_force_deviation(nominal.force_deviation)
+            .with_palm_inertias(options.palm_inertias);
         Ok(Self {
             nominal,
             constants: constants.to_vec(),
             options,
-            builder: InputBuilder::new(),
+            builder,
             waiting: Vec::new(),
             scale: None,
             newton: None,
@@ -158,14 +170,11 @@ impl<const N: usize> PlanarObserver<N> {
             self.scale = Some(NaturalScale::from_sample(sample, self.nominal.gravity)?);
         }
         let waiting = &mut self.waiting;
-        self.builder.push(sample, |input| waiting.push(input))?;
+        self.builder.push(sample, |input| InputBuilder::place(waiting, input))?;
         if self.newton.is_some() {
-            let mut last = None;
-            while !self.waiting.is_empty() {
-                let input = self.waiting.remove(0);
-                last = self.advance(input);
-            }
-            return Ok(last);
+            let Some(newest) = self.waiting.pop() else { return Ok(None) };
+            self.amend();
+            return Ok(self.advance(newest));
         }
         let (Some(window), Some(first)) = (self.window(), self.waiting.first()) else { return Ok(None) };
         let collected = sample.t - first.t;
@@ -262,6 +271,15 @@ impl<const N: usize> PlanarObserver<N> {
         // The prior is centred where the iteration starts; far out in its tails that costs a share of 1e-6 of the information.
         start.state = fit.states[0];
         Ok((start, true))
+    }
+
+    /// Gives the inputs that hindsight has improved to the window; none is waiting afterwards.
+    fn amend(&mut self) {
+        let Some(newton) = &mut self.newton else { return };
+        for (back, input) in self.waiting.drain(..).rev().enumerate() {
+            let sample = newton.model().sample(input);
+            newton.amend(back, sample);
+        }
     }
 
     fn advance(&mut self, input: PairInput) -> Option<PlanarEstimate<N>> {
