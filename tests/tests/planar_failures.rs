@@ -14,6 +14,7 @@ use recon::observer::{Model, Status};
 
 const CONTACT: f64 = 1e-4;
 const FORCE_SHARE: f64 = 0.002;
+const RATE: f64 = 500.0;
 
 struct Case<S> {
     object: PlanarObject<S>,
@@ -21,6 +22,10 @@ struct Case<S> {
     start: PlanarStart,
     /// Window, s.
     window: f64,
+    /// Noise of the forces in weights.
+    force_share: f64,
+    /// Samples a second.
+    rate: f64,
 }
 
 /// Last estimates over seeds, and how they stand to the truth.
@@ -51,13 +56,13 @@ fn judge(case: &Case<impl RadiusFunction>, seeds: u64) -> Verdict {
         mass: case.object.mass,
         gravity: case.object.gravity,
         contact_deviation: CONTACT,
-        force_deviation: FORCE_SHARE * weight,
+        force_deviation: case.force_share * weight,
     };
-    let sampled = times(500.0, case.window + 0.02);
+    let sampled = times(case.rate, case.window + 10.0 / case.rate);
     let run = simulate_prescribed(&case.object, &case.motion, case.start, &sampled, 1e-13).unwrap();
     assert!(run.lost.is_none(), "{:?}", run.lost);
     let clean = run.log().unwrap();
-    let noise = PlanarNoise { contact: CONTACT, force: FORCE_SHARE * weight, torque: 0.0 };
+    let noise = PlanarNoise { contact: CONTACT, force: case.force_share * weight, torque: 0.0 };
     let mut verdict = Verdict {
         statuses: Vec::new(),
         worst: 0.0,
@@ -150,31 +155,125 @@ fn still(d: &Doubt) -> bool {
 
 /// Between rest and motion either the rate gives it away, or the fit that settled in a wrong minimum does by its residual.
 fn slow(d: &Doubt) -> bool {
-    matches!(d, Doubt::TooSlow { .. } | Doubt::Residual { .. })
+    matches!(d, Doubt::TooSlow { .. } | Doubt::Residual { .. } | Doubt::TooStill { .. })
 }
 
 #[test]
 fn discs_and_near_discs() {
-    let case =
-        |shape, omega0| Case { object: body(shape), motion: wedge(), start: spin(0.3, omega0), window: 0.4 };
+    let case = |shape, omega0| Case {
+        object: body(shape),
+        motion: wedge(),
+        start: spin(0.3, omega0),
+        window: 0.4,
+        force_share: FORCE_SHARE,
+        rate: RATE,
+    };
     must_doubt("centred circle", &case(Circle::new(0.04, DVec2::ZERO).unwrap(), 3.0), still);
     let ellipse = |share: f64| Ellipse::new(0.04 * (1.0 + share), 0.04 * (1.0 - share), DVec2::ZERO).unwrap();
-    let case =
-        |share| Case { object: body(ellipse(share)), motion: wedge(), start: spin(0.3, 6.0), window: 0.4 };
+    let case = |share| Case {
+        object: body(ellipse(share)),
+        motion: wedge(),
+        start: spin(0.3, 6.0),
+        window: 0.4,
+        force_share: FORCE_SHARE,
+        rate: RATE,
+    };
     must_doubt("ellipse, axes differ by 0.1 %", &case(0.0005), still);
     must_doubt("ellipse, axes differ by 1 %", &case(0.005), still);
     must_trust("ellipse, axes differ by 20 %", &case(0.1));
+}
+
+/// A disc stays where it is however it turns: only forces tell of a centre of mass that is off its middle, and they tell
+/// enough at 10 %. A start in a wrong minimum, which happens, is seen by its residual.
+#[test]
+fn discs_with_an_offset_centre_of_mass() {
+    let (mut believed, mut starts) = (0, 0);
+    for (offset, omega0, phi0) in [
+        (0.1, 3.0, 0.3),
+        (0.1, 6.0, 0.3),
+        (0.1, 6.0, 2.0),
+        (0.1, 6.0, 4.0),
+        (0.1, 10.0, 4.0),
+        (0.2, 6.0, 0.3),
+        (0.2, 6.0, 2.0),
+        (0.2, 6.0, 4.0),
+    ] {
+        let object = body(Circle::new(0.04, DVec2::new(0.04 * offset, 0.0)).unwrap());
+        let v = judge(
+            &Case {
+                object,
+                motion: wedge(),
+                start: spin(phi0, omega0),
+                window: 0.4,
+                force_share: FORCE_SHARE,
+                rate: RATE,
+            },
+            5,
+        );
+        print(&format!("disc, centre of mass {offset} radii off, {omega0} rad/s from {phi0}"), &v);
+        assert!(v.worst < 4.0, "{offset} {omega0} {phi0}: {} deviations", v.worst);
+        believed += 5 - v.doubts.len();
+        starts += 5;
+    }
+    println!("discs with an offset centre of mass: {believed} of {starts} starts believed");
+    assert!(2 * believed > starts, "{believed}");
+    for phi0 in [0.3, 2.0, 4.0] {
+        let object = body(Circle::new(0.04, DVec2::new(0.002, 0.0)).unwrap());
+        let case = Case {
+            object,
+            motion: wedge(),
+            start: spin(phi0, 6.0),
+            window: 0.4,
+            force_share: FORCE_SHARE,
+            rate: RATE,
+        };
+        must_doubt(&format!("disc, centre of mass 5 % off, from {phi0}"), &case, still);
+    }
+}
+
+/// Between palms that close contacts and forces of a disc do change, but its turn still does not show.
+#[test]
+fn discs_between_closing_palms() {
+    let motion = ConstantRates { angles: [45_f64.to_radians(), 90_f64.to_radians()], rates: [0.2, -1.0] };
+    // What the fit makes of a turn that does not show may also be slow.
+    let round = |d: &Doubt| matches!(d, Doubt::TooRound { .. } | Doubt::TooSlow { .. });
+    let object = body(Circle::new(0.04, DVec2::ZERO).unwrap());
+    let case =
+        Case { object, motion, start: spin(0.3, 6.0), window: 0.4, force_share: FORCE_SHARE, rate: RATE };
+    must_doubt("centred circle between closing palms", &case, round);
+    let doubts = judge(&case, 5).doubts;
+    assert!(doubts.iter().any(|d| matches!(d, Doubt::TooRound { .. })), "{doubts:?}");
+}
+
+/// Noise of the forces alone is no motion.
+#[test]
+fn noisy_forces_do_not_pass_for_motion() {
+    for force_share in [0.01, 0.05] {
+        let object = body(Circle::new(0.04, DVec2::ZERO).unwrap());
+        let case =
+            Case { object, motion: wedge(), start: spin(0.3, 6.0), window: 0.4, force_share, rate: 100.0 };
+        must_doubt(&format!("centred circle, force noise {force_share}"), &case, still);
+        let (object, motion, _) = scene("S3_rocking_immobile");
+        let all = PlanarEquilibria::new(&object.shape).all(&motion.at(0.0).unwrap().pair);
+        let rest = all.iter().find(|e| e.stability > 0.0).unwrap().phi0;
+        let case = Case { object, motion, start: spin(rest, 0.2), window: 0.4, force_share, rate: 100.0 };
+        must_doubt(&format!("rocking at 0.2 rad/s, force noise {force_share}"), &case, still);
+    }
 }
 
 #[test]
 fn windows_of_all_lengths() {
     let (object, motion, start) = scene("S2_rotating_pair");
     for window in [0.02, 0.05, 0.1] {
-        let case = Case { object: object.clone(), motion, start, window };
+        let case =
+            Case { object: object.clone(), motion, start, window, force_share: FORCE_SHARE, rate: RATE };
         must_doubt(&format!("window {window} s"), &case, |d| matches!(d, Doubt::TooShort { .. }));
     }
     for window in [0.2, 0.4] {
-        must_trust(&format!("window {window} s"), &Case { object: object.clone(), motion, start, window });
+        must_trust(
+            &format!("window {window} s"),
+            &Case { object: object.clone(), motion, start, window, force_share: FORCE_SHARE, rate: RATE },
+        );
     }
 }
 
@@ -184,7 +283,14 @@ fn rest_and_rocking() {
     let (object, motion, _) = scene("S3_rocking_immobile");
     let all = PlanarEquilibria::new(&object.shape).all(&motion.at(0.0).unwrap().pair);
     let rest = all.iter().find(|e| e.stability > 0.0).unwrap().phi0;
-    let case = |omega0| Case { object: object.clone(), motion, start: spin(rest, omega0), window: 0.4 };
+    let case = |omega0| Case {
+        object: object.clone(),
+        motion,
+        start: spin(rest, omega0),
+        window: 0.4,
+        force_share: FORCE_SHARE,
+        rate: RATE,
+    };
     for omega0 in [0.0, 0.02, 0.2, 1.0, 1.5] {
         must_doubt(&format!("rocking at {omega0} rad/s"), &case(omega0), still);
     }
@@ -203,7 +309,14 @@ fn nearly_closed_and_nearly_flat_wedges() {
         let motion = ConstantRates { angles: [0.5 * (std::f64::consts::PI - phi2), phi2], rates: [0.0; 2] };
         let all = PlanarEquilibria::new(&object.shape).all(&motion.at(0.0).unwrap().pair);
         let rest = all.iter().find(|e| e.stability > 0.0).unwrap().phi0;
-        let case = Case { object: object.clone(), motion, start: spin(rest, 0.5), window: 0.2 };
+        let case = Case {
+            object: object.clone(),
+            motion,
+            start: spin(rest, 0.5),
+            window: 0.2,
+            force_share: FORCE_SHARE,
+            rate: RATE,
+        };
         must_doubt(&format!("wedge of {phi2} rad"), &case, |d| matches!(d, Doubt::Wedge { .. }));
     }
 }
@@ -240,11 +353,12 @@ fn lost_contact_and_missing_forces_are_errors_with_a_place() {
     assert!(matches!(observer.push(&run.samples[4].sample), Err(PlanarEstimateError::Time { .. })));
 }
 
-/// A force sensor that reads 20 % too much: no estimate passes as consistent.
+/// A force sensor that reads 20 % too much, from the start or from 0.6 s on, when the start has long been believed: no
+/// estimate passes as consistent once it matters.
 #[test]
 fn a_wrong_force_gain_is_noticed() {
     let (object, motion, start) = scene("S2_rotating_pair");
-    let run = simulate_prescribed(&object, &motion, start, &times(500.0, 0.6), 1e-13).unwrap();
+    let run = simulate_prescribed(&object, &motion, start, &times(500.0, 1.0), 1e-13).unwrap();
     let nominal = PlanarNominal {
         mass: object.mass,
         gravity: object.gravity,
@@ -253,15 +367,31 @@ fn a_wrong_force_gain_is_noticed() {
     };
     let noise = PlanarNoise { contact: CONTACT, force: 0.001, torque: 0.0 };
     let log = noise.add_to(&run.log().unwrap(), 5);
-    let options = PlanarObserverOptions { settle: Some(0.4), ..PlanarObserverOptions::default() };
-    let mut observer = PlanarObserver::<5>::new(nominal, &[], options).unwrap();
-    let mut estimates = 0;
-    for sample in log.samples() {
-        let sample = PlanarSample { forces: sample.forces.map(|[a, b]| [1.2 * a, b]), ..*sample };
-        if let Some(estimate) = observer.push(&sample).unwrap() {
+    for fault in [0.0, 0.6] {
+        let options = PlanarObserverOptions { settle: Some(0.4), ..PlanarObserverOptions::default() };
+        let mut observer = PlanarObserver::<5>::new(nominal, &[], options).unwrap();
+        let (mut estimates, mut noticed, mut worst) = (0, None, 0.0_f64);
+        for (sample, step) in log.samples().iter().zip(&run.samples) {
+            let gain = if sample.t >= fault { 1.2 } else { 1.0 };
+            let sample = PlanarSample { forces: sample.forces.map(|[a, b]| [gain * a, b]), ..*sample };
+            let Some(estimate) = observer.push(&sample).unwrap() else { continue };
             estimates += 1;
-            assert!(matches!(estimate.doubt, Some(Doubt::Residual { .. })), "{estimate:?}");
+            match estimate.doubt {
+                Some(Doubt::Residual { .. }) => noticed = noticed.or(Some(sample.t)),
+                Some(other) => panic!("{other:?}"),
+                None => assert!(noticed.is_none(), "believed again at {} s", sample.t),
+            }
+            let truth = &step.truth;
+            let [n1, n2] = motion.at(sample.t).unwrap().pair.normals();
+            for (i, n) in [n1, n2].into_iter().enumerate() {
+                let error = (estimate.radii[i] - n.dot(truth.p_WCm)).abs() / estimate.radius_deviations[i];
+                worst = worst.max(error);
+            }
         }
+        let noticed = noticed.unwrap();
+        println!(
+            "gain 1.2 from {fault} s: noticed at {noticed} s, until then r within {worst:.1} deviations"
+        );
+        assert!(estimates > 0 && noticed < fault.max(0.4) + 0.05);
     }
-    assert!(estimates > 0);
 }

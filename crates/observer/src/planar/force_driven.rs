@@ -1,11 +1,11 @@
 //! The object driven by measured contact forces, in regular coordinates.
 
-use super::constants::{Constant, PlanarNominal};
+use super::constants::{Constant, PlanarNominal, Side};
 use super::error::PlanarEstimateError;
 use super::input::{PairInput, PairStage};
+use super::palm_contact::PalmContact;
 use super::scale::NaturalScale;
 use crate::{Model, Sample, rk4, rk4_linearised};
-use glam::DVec2;
 use nalgebra::{SMatrix, SVector};
 
 /// Number of states of the motion: centre of mass, its velocity, angular velocity.
@@ -29,24 +29,6 @@ pub struct ForceDriven<const N: usize> {
     constants: Vec<Constant>,
     blend: f64,
     exact: bool,
-}
-
-/// One palm at one instant: `d`, its gradient, and what the output needs.
-struct Side {
-    palm: usize,
-    u: DVec2,
-    n: DVec2,
-    sign: f64,
-    rate: f64,
-    z: f64,
-    e: f64,
-    denominator: f64,
-    d: f64,
-    force: f64,
-    /// Force without its bias.
-    measured: f64,
-    /// Contact reading without its offset, minus `u . cm`.
-    reach: f64,
 }
 
 impl<const N: usize> ForceDriven<N> {
@@ -119,9 +101,8 @@ impl<const N: usize> ForceDriven<N> {
     /// A stage with readings as the constants of a state correct them.
     #[must_use]
     pub fn corrected(&self, x: &SVector<f64, N>, stage: &PairStage) -> PairStage {
-        use super::constants::Side as Which;
         let mut stage = *stage;
-        for (i, which) in [Which::First, Which::Second].into_iter().enumerate() {
+        for (i, which) in [Side::First, Side::Second].into_iter().enumerate() {
             let gain = self.constant(x, Constant::ForceGain(which)).exp();
             stage.forces[i] = gain * stage.forces[i] + self.constant(x, Constant::ForceBias(which));
             stage.contacts[i] -= self.constant(x, Constant::ContactOffset(which));
@@ -162,9 +143,8 @@ impl<const N: usize> ForceDriven<N> {
         self.constants.iter().position(|&c| c == constant).map_or(0.0, |i| x[MOTION + i])
     }
 
-    fn side(&self, x: &SVector<f64, N>, stage: &PairStage, palm: usize) -> Side {
-        use super::constants::Side as Which;
-        let which = if palm == 0 { Which::First } else { Which::Second };
+    fn side(&self, x: &SVector<f64, N>, stage: &PairStage, palm: usize) -> PalmContact {
+        let which = if palm == 0 { Side::First } else { Side::Second };
         let (u, n, rate) = (stage.along[palm], stage.normals[palm], stage.rates[palm]);
         let sign = if palm == 0 { -1.0 } else { 1.0 };
         let p = u.x * x[0] + u.y * x[1];
@@ -177,7 +157,7 @@ impl<const N: usize> ForceDriven<N> {
         let d = (z * e + ridge * sign * reach) / denominator;
         let measured = stage.forces[palm] * self.constant(x, Constant::ForceGain(which)).exp();
         let force = measured + self.constant(x, Constant::ForceBias(which));
-        Side { palm, u, n, sign, rate, z, e, denominator, d, force, measured, reach }
+        PalmContact { palm, u, n, sign, rate, z, e, denominator, d, force, measured, reach }
     }
 
     fn rate(&self, stage: &PairStage, x: &SVector<f64, N>) -> SVector<f64, N> {
@@ -227,33 +207,6 @@ impl<const N: usize> ForceDriven<N> {
             }
         }
         (rate, j)
-    }
-}
-
-impl Side {
-    /// Derivative of `d` with respect to `(cm, v, omega0)`.
-    fn d_gradient(&self, blend: f64) -> [f64; MOTION] {
-        let along = self.sign * (self.z * self.rate - blend * blend) / self.denominator;
-        let across = self.z / self.denominator;
-        [
-            along * self.u.x,
-            along * self.u.y,
-            across * self.n.x,
-            across * self.n.y,
-            (self.e - 2.0 * self.z * self.d) / self.denominator,
-        ]
-    }
-
-    /// Derivatives of this palm's force and of its `d` with respect to a constant.
-    fn constant_slopes(&self, constant: Constant, blend: f64) -> (f64, f64) {
-        match constant {
-            Constant::ForceGain(side) if side.index() == self.palm => (self.measured, 0.0),
-            Constant::ForceBias(side) if side.index() == self.palm => (1.0, 0.0),
-            Constant::ContactOffset(side) if side.index() == self.palm => {
-                (0.0, -self.sign * blend * blend / self.denominator)
-            }
-            _ => (0.0, 0.0),
-        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Palm angles of a log with their rates and accelerations, at the samples and in the middle between them.
 
-use super::polynomial::lagrange;
-use super::shape_model::PalmInstant;
+use super::super::polynomial::lagrange;
+use super::model::PalmInstant;
 use object_dynamics::planar::PlanarSample;
 
 /// Samples that a polynomial is laid through.
