@@ -217,7 +217,7 @@ fn panels(log: &PlanarLog, made: &Reconstruction) -> Vec<FigurePanel> {
     };
     let over = |pick: &dyn Fn(&Row) -> f64| made.rows.iter().map(|r| [r.t, pick(r)]).collect::<Vec<_>>();
     let shape = [0, 1].map(|i| FigureCurve {
-        name: format!("contacts of palm {}", i + 1),
+        name: format!("palm {}", i + 1),
         points: made.rows.iter().map(|r| r.points[i].to_array()).collect(),
         dots: true,
     });
@@ -231,14 +231,15 @@ fn panels(log: &PlanarLog, made: &Reconstruction) -> Vec<FigurePanel> {
         panel("Orientation", "phi0 in rad", vec![line("observed", over(&|r| r.phi0))]),
         panel(
             "Radius functions at the contacts",
-            "m",
+            "r in m",
             vec![line("r1", over(&|r| r.radii[0])), line("r2", over(&|r| r.radii[1]))],
         ),
     ];
     let Some(truth) = log.truth() else { return panels };
     let first = truth[0].phi0;
     let rows: Vec<_> = log.samples().iter().zip(truth).collect();
-    panels[1].curves.push(line("true", rows.iter().map(|(s, t)| [s.t, t.phi0 - first]).collect()));
+    // Below the observed one, which begins later.
+    panels[1].curves.insert(0, line("true", rows.iter().map(|(s, t)| [s.t, t.phi0 - first]).collect()));
     let errors = made.rows.iter().filter_map(|r| {
         let k = rows.partition_point(|(s, _)| s.t < r.t);
         let (sample, truth) = rows.get(k)?;
