@@ -5,7 +5,7 @@
 mod planar_common;
 
 use nalgebra::{SMatrix, SVector};
-use planar_common::{scene, times};
+use planar_common::{last_estimate, scene, times};
 use recon::contact_kinematics::planar::PairContact;
 use recon::object_dynamics::planar::*;
 use recon::observer::planar::*;
@@ -261,12 +261,8 @@ fn torques_of_palms_with_inertia() {
     let errors = |log: &PlanarLog, contact: f64, palm_inertias: [f64; 2]| {
         let options =
             PlanarObserverOptions { settle: Some(0.4), palm_inertias, ..PlanarObserverOptions::default() };
-        let mut observer = PlanarObserver::<5>::new(nominal(&object, contact, 0.0), &[], options).unwrap();
-        let mut last = None;
-        for sample in log.samples() {
-            last = observer.push(sample).unwrap().or(last);
-        }
-        let last: PlanarEstimate<5> = last.unwrap();
+        let observer = PlanarObserver::<5>::new(nominal(&object, contact, 0.0), &[], options).unwrap();
+        let last = last_estimate(observer, log.samples().iter().copied());
         let truth = run.samples.last().unwrap();
         let palms = motion.at(truth.sample.t).unwrap();
         let r = PairContact::new(&object.shape, &palms.pair, truth.truth.phi0).jets.map(|j| j.r);
