@@ -3,7 +3,7 @@
 use super::error::PlanarEstimateError;
 use crate::Arrival;
 
-/// Where a [`PlanarObserver`] starts: `(cm, v, omega0)` at the first sample, in SI units.
+/// Where a [`PlanarObserver`](super::PlanarObserver) starts: `(cm, v, omega0)` at the first sample, in SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PlanarStartFrom {
     /// No guess: the velocity residuals from nine neutral starts, then a batch fit.
@@ -15,7 +15,7 @@ pub enum PlanarStartFrom {
     Motion([f64; 5]),
 }
 
-/// How a [`PlanarObserver`] works; the default needs no guess and chooses its window from the scene.
+/// How a [`PlanarObserver`](super::PlanarObserver) works; the default needs no guess and chooses its window from the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanarObserverOptions {
     /// Length of the window in s; none for six natural times.
