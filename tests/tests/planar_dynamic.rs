@@ -5,7 +5,7 @@
 mod planar_common;
 
 use nalgebra::{SMatrix, SVector};
-use planar_common::{scene, times};
+use planar_common::{last_estimate, scene, times};
 use recon::contact_kinematics::planar::PairContact;
 use recon::object_dynamics::planar::*;
 use recon::observer::planar::*;
@@ -77,7 +77,7 @@ fn jacobians_agree_with_differences() {
     let (object, motion, start) = scene("S2_rotating_pair");
     let run = simulate_prescribed(&object, &motion, start, &times(100.0, 0.4), 1e-13).unwrap();
     let log = log(&run);
-    let inputs = planar_samples(&log).unwrap();
+    let inputs = planar_samples(&log, 0.02).unwrap();
     let scale = NaturalScale::from_sample(&log.samples()[0], object.gravity).unwrap();
     let constants = [
         Constant::Mass,
@@ -217,7 +217,7 @@ fn interpolation_error_is_estimated() {
         let run = simulate_prescribed(&object, &motion, start, &times(200.0, 0.9), 1e-13).unwrap();
         let log = log(&run);
         let coarse = PlanarLog::new(log.samples().iter().copied().step_by(2).collect(), None).unwrap();
-        let inputs = planar_samples(&coarse).unwrap();
+        let inputs = planar_samples(&coarse, 0.0).unwrap();
         for (k, input) in inputs.iter().enumerate().skip(6) {
             let middle = log.samples()[2 * k - 1].forces.unwrap();
             let stage = &input.stages[1];
@@ -231,4 +231,53 @@ fn interpolation_error_is_estimated() {
     let (actual, stated) = (f64::sqrt(actual / f64::from(count)), f64::sqrt(stated / f64::from(count)));
     println!("interpolation error of the forces at 100 Hz: {actual:.2e} N, stated {stated:.2e} N");
     assert!(actual < 3.0 * stated && stated < 3.0 * actual, "{actual} {stated}");
+}
+
+/// Heavy palms that swing, torques in the log in place of forces: with their inertia the observer finds the motion, and
+/// without it the readings contradict each other.
+#[test]
+fn torques_of_palms_with_inertia() {
+    let (object, _, start) = scene("S2_rotating_pair");
+    let motion = HarmonicPalms {
+        centres: [0.8, 1.5],
+        amplitudes: [0.05, 0.08],
+        frequencies: [5.0, 7.0],
+        phases: [0.3, 1.0],
+    };
+    let inertias = [4e-4, 3e-4];
+    let run = simulate_prescribed(&object, &motion, start, &times(1000.0, 0.6), 1e-13).unwrap();
+    assert!(run.lost.is_none());
+    let clean = log(&run);
+    let loaded = clean.samples().iter().map(|s| {
+        let state = motion.at(s.t).unwrap();
+        let ([f1, f2], [s1, s2]) = (s.forces.unwrap(), s.contacts.map(Option::unwrap));
+        let a = state.motion.accelerations;
+        // Ground-referenced motors: I_1 A_1 = tau_1 - f_1 s_1, I_2 A_2 = tau_2 + f_2 s_2.
+        let torques = [inertias[0] * a[0] + f1 * s1, inertias[1] * a[1] - f2 * s2];
+        PlanarSample { forces: None, torques: Some(torques), ..*s }
+    });
+    let exact = PlanarLog::new(loaded.collect(), None).unwrap();
+    let noisy = PlanarNoise { contact: 1e-4, ..PlanarNoise::default() }.add_to(&exact, 3);
+    let errors = |log: &PlanarLog, contact: f64, palm_inertias: [f64; 2]| {
+        let options =
+            PlanarObserverOptions { settle: Some(0.4), palm_inertias, ..PlanarObserverOptions::default() };
+        let observer = PlanarObserver::<5>::new(nominal(&object, contact, 0.0), &[], options).unwrap();
+        let last = last_estimate(observer, log.samples().iter().copied());
+        let truth = run.samples.last().unwrap();
+        let palms = motion.at(truth.sample.t).unwrap();
+        let r = PairContact::new(&object.shape, &palms.pair, truth.truth.phi0).jets.map(|j| j.r);
+        let worst = (0..2).map(|i| (last.radii[i] - r[i]).abs()).fold(0.0, f64::max);
+        (worst, last.doubt, last.radius_deviations)
+    };
+    let (worst, ..) = errors(&exact, 0.0, inertias);
+    println!("palms with inertia, exact torques: error in r {:.1e} mm", 1e3 * worst);
+    assert!(worst < 1e-8, "{worst:e}");
+    let (worst, doubt, deviations) = errors(&noisy, 1e-4, inertias);
+    println!("palms with inertia, 0.1 mm: error in r {:.1e} mm, deviations {deviations:?}", 1e3 * worst);
+    assert!(doubt.is_none() && worst < 4.0 * deviations[0].max(deviations[1]), "{worst:e} {doubt:?}");
+    let (worst, doubt, _) = errors(&noisy, 1e-4, [0.0; 2]);
+    println!("the same, taken as massless: error in r {:.1e} mm, {doubt:?}", 1e3 * worst);
+    assert!(matches!(doubt, Some(Doubt::Residual { .. })), "{doubt:?}");
+    let negative = PlanarObserverOptions { palm_inertias: [0.0, -1.0], ..PlanarObserverOptions::default() };
+    assert!(PlanarObserver::<5>::new(nominal(&object, 0.0, 0.0), &[], negative).is_err());
 }

@@ -5,8 +5,7 @@
 mod planar_common;
 
 use glam::DVec2;
-use nalgebra::SVector;
-use planar_common::{scene, times};
+use planar_common::{last_estimate, scene, state, times};
 use recon::contact_kinematics::planar::*;
 use recon::object_dynamics::planar::*;
 use recon::observer::planar::*;
@@ -14,6 +13,7 @@ use recon::observer::{Model, Status};
 
 const CONTACT: f64 = 1e-4;
 const FORCE_SHARE: f64 = 0.002;
+const RATE: f64 = 500.0;
 
 struct Case<S> {
     object: PlanarObject<S>,
@@ -21,6 +21,15 @@ struct Case<S> {
     start: PlanarStart,
     /// Window, s.
     window: f64,
+    /// Noise of the forces in weights.
+    force_share: f64,
+    /// Samples a second.
+    rate: f64,
+}
+
+/// A case with the usual noise and sampling.
+fn case_of<S>(object: PlanarObject<S>, motion: ConstantRates, start: PlanarStart, window: f64) -> Case<S> {
+    Case { object, motion, start, window, force_share: FORCE_SHARE, rate: RATE }
 }
 
 /// Last estimates over seeds, and how they stand to the truth.
@@ -51,13 +60,13 @@ fn judge(case: &Case<impl RadiusFunction>, seeds: u64) -> Verdict {
         mass: case.object.mass,
         gravity: case.object.gravity,
         contact_deviation: CONTACT,
-        force_deviation: FORCE_SHARE * weight,
+        force_deviation: case.force_share * weight,
     };
-    let sampled = times(500.0, case.window + 0.02);
+    let sampled = times(case.rate, case.window + 10.0 / case.rate);
     let run = simulate_prescribed(&case.object, &case.motion, case.start, &sampled, 1e-13).unwrap();
     assert!(run.lost.is_none(), "{:?}", run.lost);
     let clean = run.log().unwrap();
-    let noise = PlanarNoise { contact: CONTACT, force: FORCE_SHARE * weight, torque: 0.0 };
+    let noise = PlanarNoise { contact: CONTACT, force: case.force_share * weight, torque: 0.0 };
     let mut verdict = Verdict {
         statuses: Vec::new(),
         worst: 0.0,
@@ -78,15 +87,10 @@ fn judge(case: &Case<impl RadiusFunction>, seeds: u64) -> Verdict {
             settle: Some(case.window),
             ..PlanarObserverOptions::default()
         };
-        let mut observer = PlanarObserver::<5>::new(nominal, &[], options).unwrap();
-        let mut last = None;
-        for sample in log.samples() {
-            last = observer.push(sample).unwrap().or(last);
-        }
-        let estimate = last.unwrap();
+        let observer = PlanarObserver::<5>::new(nominal, &[], options).unwrap();
+        let estimate = last_estimate(observer, log.samples().iter().copied());
         let truth = run.samples.last().unwrap().truth;
-        let (p, v) = (truth.p_WCm, truth.v_WCm);
-        let error = estimate.state - SVector::<f64, 5>::new(p.x, p.y, v.x, v.y, truth.omega0);
+        let error = estimate.state - state(&truth);
         let deviations = estimate.report.deviations();
         let worst = error.iter().zip(&deviations).map(|(e, d)| e.abs() / d).fold(0.0, f64::max);
         verdict.worst = verdict.worst.max(worst);
@@ -150,31 +154,89 @@ fn still(d: &Doubt) -> bool {
 
 /// Between rest and motion either the rate gives it away, or the fit that settled in a wrong minimum does by its residual.
 fn slow(d: &Doubt) -> bool {
-    matches!(d, Doubt::TooSlow { .. } | Doubt::Residual { .. })
+    matches!(d, Doubt::TooSlow { .. } | Doubt::Residual { .. } | Doubt::TooStill { .. })
 }
 
 #[test]
 fn discs_and_near_discs() {
-    let case =
-        |shape, omega0| Case { object: body(shape), motion: wedge(), start: spin(0.3, omega0), window: 0.4 };
+    let case = |shape, omega0| case_of(body(shape), wedge(), spin(0.3, omega0), 0.4);
     must_doubt("centred circle", &case(Circle::new(0.04, DVec2::ZERO).unwrap(), 3.0), still);
     let ellipse = |share: f64| Ellipse::new(0.04 * (1.0 + share), 0.04 * (1.0 - share), DVec2::ZERO).unwrap();
-    let case =
-        |share| Case { object: body(ellipse(share)), motion: wedge(), start: spin(0.3, 6.0), window: 0.4 };
+    let case = |share| case_of(body(ellipse(share)), wedge(), spin(0.3, 6.0), 0.4);
     must_doubt("ellipse, axes differ by 0.1 %", &case(0.0005), still);
     must_doubt("ellipse, axes differ by 1 %", &case(0.005), still);
     must_trust("ellipse, axes differ by 20 %", &case(0.1));
+}
+
+/// A disc stays where it is however it turns: only forces tell of a centre of mass that is off its middle, and they tell
+/// enough at 10 %. A start in a wrong minimum, which happens, is seen by its residual.
+#[test]
+fn discs_with_an_offset_centre_of_mass() {
+    let (mut believed, mut starts) = (0, 0);
+    for (offset, omega0, phi0) in [
+        (0.1, 3.0, 0.3),
+        (0.1, 6.0, 0.3),
+        (0.1, 6.0, 2.0),
+        (0.1, 6.0, 4.0),
+        (0.1, 10.0, 4.0),
+        (0.2, 6.0, 0.3),
+        (0.2, 6.0, 2.0),
+        (0.2, 6.0, 4.0),
+    ] {
+        let object = body(Circle::new(0.04, DVec2::new(0.04 * offset, 0.0)).unwrap());
+        let v = judge(&case_of(object, wedge(), spin(phi0, omega0), 0.4), 5);
+        print(&format!("disc, centre of mass {offset} radii off, {omega0} rad/s from {phi0}"), &v);
+        assert!(v.worst < 4.0, "{offset} {omega0} {phi0}: {} deviations", v.worst);
+        believed += 5 - v.doubts.len();
+        starts += 5;
+    }
+    println!("discs with an offset centre of mass: {believed} of {starts} starts believed");
+    assert!(2 * believed > starts, "{believed}");
+    for phi0 in [0.3, 2.0, 4.0] {
+        let object = body(Circle::new(0.04, DVec2::new(0.002, 0.0)).unwrap());
+        let case = case_of(object, wedge(), spin(phi0, 6.0), 0.4);
+        must_doubt(&format!("disc, centre of mass 5 % off, from {phi0}"), &case, still);
+    }
+}
+
+/// Between palms that close contacts and forces of a disc do change, but its turn still does not show.
+#[test]
+fn discs_between_closing_palms() {
+    let motion = ConstantRates { angles: [45_f64.to_radians(), 90_f64.to_radians()], rates: [0.2, -1.0] };
+    // What the fit makes of a turn that does not show may also be slow.
+    let round = |d: &Doubt| matches!(d, Doubt::TooRound { .. } | Doubt::TooSlow { .. });
+    let object = body(Circle::new(0.04, DVec2::ZERO).unwrap());
+    let case = case_of(object, motion, spin(0.3, 6.0), 0.4);
+    must_doubt("centred circle between closing palms", &case, round);
+    let doubts = judge(&case, 5).doubts;
+    assert!(doubts.iter().any(|d| matches!(d, Doubt::TooRound { .. })), "{doubts:?}");
+}
+
+/// Noise of the forces alone is no motion.
+#[test]
+fn noisy_forces_do_not_pass_for_motion() {
+    for force_share in [0.01, 0.05] {
+        let object = body(Circle::new(0.04, DVec2::ZERO).unwrap());
+        let usual = case_of(object, wedge(), spin(0.3, 6.0), 0.4);
+        let case = Case { force_share, rate: 100.0, ..usual };
+        must_doubt(&format!("centred circle, force noise {force_share}"), &case, still);
+        let (object, motion, _) = scene("S3_rocking_immobile");
+        let all = PlanarEquilibria::new(&object.shape).all(&motion.at(0.0).unwrap().pair);
+        let rest = all.iter().find(|e| e.stability > 0.0).unwrap().phi0;
+        let case = Case { force_share, rate: 100.0, ..case_of(object, motion, spin(rest, 0.2), 0.4) };
+        must_doubt(&format!("rocking at 0.2 rad/s, force noise {force_share}"), &case, still);
+    }
 }
 
 #[test]
 fn windows_of_all_lengths() {
     let (object, motion, start) = scene("S2_rotating_pair");
     for window in [0.02, 0.05, 0.1] {
-        let case = Case { object: object.clone(), motion, start, window };
+        let case = case_of(object.clone(), motion, start, window);
         must_doubt(&format!("window {window} s"), &case, |d| matches!(d, Doubt::TooShort { .. }));
     }
     for window in [0.2, 0.4] {
-        must_trust(&format!("window {window} s"), &Case { object: object.clone(), motion, start, window });
+        must_trust(&format!("window {window} s"), &case_of(object.clone(), motion, start, window));
     }
 }
 
@@ -184,7 +246,7 @@ fn rest_and_rocking() {
     let (object, motion, _) = scene("S3_rocking_immobile");
     let all = PlanarEquilibria::new(&object.shape).all(&motion.at(0.0).unwrap().pair);
     let rest = all.iter().find(|e| e.stability > 0.0).unwrap().phi0;
-    let case = |omega0| Case { object: object.clone(), motion, start: spin(rest, omega0), window: 0.4 };
+    let case = |omega0| case_of(object.clone(), motion, spin(rest, omega0), 0.4);
     for omega0 in [0.0, 0.02, 0.2, 1.0, 1.5] {
         must_doubt(&format!("rocking at {omega0} rad/s"), &case(omega0), still);
     }
@@ -203,65 +265,7 @@ fn nearly_closed_and_nearly_flat_wedges() {
         let motion = ConstantRates { angles: [0.5 * (std::f64::consts::PI - phi2), phi2], rates: [0.0; 2] };
         let all = PlanarEquilibria::new(&object.shape).all(&motion.at(0.0).unwrap().pair);
         let rest = all.iter().find(|e| e.stability > 0.0).unwrap().phi0;
-        let case = Case { object: object.clone(), motion, start: spin(rest, 0.5), window: 0.2 };
+        let case = case_of(object.clone(), motion, spin(rest, 0.5), 0.2);
         must_doubt(&format!("wedge of {phi2} rad"), &case, |d| matches!(d, Doubt::Wedge { .. }));
     }
-}
-
-#[test]
-fn lost_contact_and_missing_forces_are_errors_with_a_place() {
-    let (object, motion, start) = scene("S2_rotating_pair");
-    let run = simulate_prescribed(&object, &motion, start, &times(500.0, 0.5), 1e-13).unwrap();
-    let nominal = PlanarNominal {
-        mass: object.mass,
-        gravity: object.gravity,
-        contact_deviation: CONTACT,
-        force_deviation: 0.0,
-    };
-    let make = || PlanarObserver::<5>::new(nominal, &[], PlanarObserverOptions::default()).unwrap();
-    let mut observer = make();
-    let mut failure = None;
-    for (k, s) in run.samples.iter().enumerate() {
-        let mut sample = s.sample;
-        if k >= 230 {
-            sample.contacts[1] = None;
-        }
-        if let Err(error) = observer.push(&sample) {
-            failure = Some((k, error));
-            break;
-        }
-    }
-    let (k, error) = failure.unwrap();
-    assert_eq!((k, error), (230, PlanarEstimateError::LostContact { palm: 2, t: run.samples[230].sample.t }));
-    let without = PlanarSample { forces: None, torques: None, ..run.samples[0].sample };
-    assert_eq!(make().push(&without), Err(PlanarEstimateError::NoForces { t: 0.0 }));
-    let mut observer = make();
-    observer.push(&run.samples[5].sample).unwrap();
-    assert!(matches!(observer.push(&run.samples[4].sample), Err(PlanarEstimateError::Time { .. })));
-}
-
-/// A force sensor that reads 20 % too much: no estimate passes as consistent.
-#[test]
-fn a_wrong_force_gain_is_noticed() {
-    let (object, motion, start) = scene("S2_rotating_pair");
-    let run = simulate_prescribed(&object, &motion, start, &times(500.0, 0.6), 1e-13).unwrap();
-    let nominal = PlanarNominal {
-        mass: object.mass,
-        gravity: object.gravity,
-        contact_deviation: CONTACT,
-        force_deviation: 0.001,
-    };
-    let noise = PlanarNoise { contact: CONTACT, force: 0.001, torque: 0.0 };
-    let log = noise.add_to(&run.log().unwrap(), 5);
-    let options = PlanarObserverOptions { settle: Some(0.4), ..PlanarObserverOptions::default() };
-    let mut observer = PlanarObserver::<5>::new(nominal, &[], options).unwrap();
-    let mut estimates = 0;
-    for sample in log.samples() {
-        let sample = PlanarSample { forces: sample.forces.map(|[a, b]| [1.2 * a, b]), ..*sample };
-        if let Some(estimate) = observer.push(&sample).unwrap() {
-            estimates += 1;
-            assert!(matches!(estimate.doubt, Some(Doubt::Residual { .. })), "{estimate:?}");
-        }
-    }
-    assert!(estimates > 0);
 }

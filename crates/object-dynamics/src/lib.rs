@@ -8,12 +8,14 @@ mod mass;
 #[cfg(feature = "noise")]
 mod noise;
 pub mod planar;
+mod series;
 mod three_palms;
 
 pub use log::{LogError, PalmReading, Sample, SensorLog, TrueState};
 pub use mass::{MassError, MassProperties, PrincipalInertia};
 #[cfg(feature = "noise")]
 pub use noise::SensorNoise;
+pub use series::SeriesError;
 pub use three_palms::{
     Accelerations, End, InitialMotion, Instant, MaximalState, MultiplierSolution, SampleTimes, SceneError,
     Simulation, SimulationError, ThreePalmScene,

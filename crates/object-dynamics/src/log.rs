@@ -1,5 +1,6 @@
 //! What the palms sensed, in memory. File formats live elsewhere.
 
+use crate::series::{SeriesError, check_lengths, check_order};
 use contact_kinematics::{Direction, DirectionError};
 use glam::{DQuat, DVec3};
 use thiserror::Error;
@@ -51,12 +52,9 @@ pub struct TrueState {
 /// Why samples are not a log.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum LogError {
-    /// Fewer than two samples.
-    #[error("log has {found} sample(s); at least 2 are needed")]
-    TooShort {
-        /// How many there are.
-        found: usize,
-    },
+    /// Too few samples, out of order, or with truth of another length.
+    #[error(transparent)]
+    Series(#[from] SeriesError),
     /// A time is not a number.
     #[error("t of sample {sample} is {value}; it must be finite")]
     TimeNotFinite {
@@ -64,18 +62,6 @@ pub enum LogError {
         sample: usize,
         /// As given.
         value: f64,
-    },
-    /// Time does not increase.
-    #[error(
-        "t of sample {sample} is {time} s, not above {previous} s before it; sort the log and drop repeats"
-    )]
-    TimeNotIncreasing {
-        /// Index from 0.
-        sample: usize,
-        /// Its time.
-        time: f64,
-        /// The time before.
-        previous: f64,
     },
     /// A reading is NaN or infinite.
     #[error("{what} of palm {palm} at sample {sample} (t = {time} s) is {value}; it must be finite")]
@@ -113,14 +99,6 @@ pub enum LogError {
         /// Why.
         source: DirectionError,
     },
-    /// Truth does not match the samples.
-    #[error("truth has {found} rows for {expected} samples")]
-    TruthLength {
-        /// Number of samples.
-        expected: usize,
-        /// Number of truth rows.
-        found: usize,
-    },
 }
 
 impl SensorLog {
@@ -131,22 +109,13 @@ impl SensorLog {
     /// # Errors
     /// [`LogError`] names the first sample that cannot be used.
     pub fn new(samples: Vec<Sample>, truth: Option<Vec<TrueState>>) -> Result<Self, LogError> {
-        if samples.len() < 2 {
-            return Err(LogError::TooShort { found: samples.len() });
-        }
+        check_lengths(samples.len(), truth.as_ref().map(Vec::len))?;
         let largest_force =
             samples.iter().flat_map(|s| s.palms.iter().filter_map(|p| p.force)).fold(0.0_f64, f64::max);
         for (index, sample) in samples.iter().enumerate() {
             check_sample(index, sample, largest_force)?;
-            if index > 0 && sample.t <= samples[index - 1].t {
-                let previous = samples[index - 1].t;
-                return Err(LogError::TimeNotIncreasing { sample: index, time: sample.t, previous });
-            }
-        }
-        if let Some(rows) = &truth
-            && rows.len() != samples.len()
-        {
-            return Err(LogError::TruthLength { expected: samples.len(), found: rows.len() });
+            let previous = index.checked_sub(1).map(|before| samples[before].t);
+            check_order(index, previous, sample.t)?;
         }
         Ok(Self { samples, truth })
     }
@@ -229,10 +198,19 @@ mod tests {
 
     #[test]
     fn bad_logs_are_named() {
-        assert!(matches!(SensorLog::new(vec![], None), Err(LogError::TooShort { found: 0 })));
-        assert!(matches!(SensorLog::new(vec![sample(0.0, 1.0)], None), Err(LogError::TooShort { found: 1 })));
+        assert!(matches!(
+            SensorLog::new(vec![], None),
+            Err(LogError::Series(SeriesError::TooShort { found: 0 }))
+        ));
+        assert!(matches!(
+            SensorLog::new(vec![sample(0.0, 1.0)], None),
+            Err(LogError::Series(SeriesError::TooShort { found: 1 }))
+        ));
         let repeated = vec![sample(0.0, 1.0), sample(0.0, 1.0)];
-        assert!(matches!(SensorLog::new(repeated, None), Err(LogError::TimeNotIncreasing { sample: 1, .. })));
+        assert!(matches!(
+            SensorLog::new(repeated, None),
+            Err(LogError::Series(SeriesError::TimeNotIncreasing { sample: 1, .. }))
+        ));
         let not_a_number = vec![sample(0.0, 1.0), sample(f64::NAN, 1.0)];
         assert!(matches!(SensorLog::new(not_a_number, None), Err(LogError::TimeNotFinite { sample: 1, .. })));
         let force = vec![sample(0.0, 1.0), sample(1.0, f64::INFINITY)];
@@ -243,7 +221,7 @@ mod tests {
             Err(LogError::NegativeForce { palm: 1, sample: 1, .. })
         ));
         let truth = SensorLog::new(vec![sample(0.0, 1.0), sample(1.0, 1.0)], Some(vec![]));
-        assert!(matches!(truth, Err(LogError::TruthLength { expected: 2, found: 0 })));
+        assert!(matches!(truth, Err(LogError::Series(SeriesError::TruthLength { expected: 2, found: 0 }))));
     }
 
     #[test]

@@ -148,6 +148,31 @@ fn forgetting_leaves_exactly_the_window() {
 }
 
 /// Two position-like states of which only the sum is measured: the difference is named and stays uncertain.
+/// An input that becomes known only later: put right in the window, it is as if it had been right from the start.
+#[test]
+fn an_amended_sample_counts_as_if_it_had_been_so_from_the_start() {
+    let samples = samples(30);
+    let (start, covariance) = start();
+    for noise in [true, false] {
+        let options = NewtonOptions { window: 10, steps: 1, damping: 0.0, arrival: Arrival::Carry(1.0) };
+        let mut observer = NewtonObserver::new(Linear { noise }, options, start).unwrap();
+        let mut last = None;
+        for k in 0..samples.len() {
+            let early = Sample { input: V3::repeat(0.3), ..samples[k] };
+            if k > 0 {
+                assert!(observer.amend(0, samples[k - 1]));
+            }
+            last = Some(observer.push(early));
+        }
+        assert!(observer.amend(0, samples[29]) && !observer.amend(10, samples[0]));
+        let before = last.unwrap().state;
+        let estimate = observer.step().unwrap();
+        let (state, _) = *kalman(&samples, start.state, covariance, noise).last().unwrap();
+        assert!((estimate.state - state).amax() < 1e-10, "noise {noise}: {}", estimate.state - state);
+        assert!((before - state).amax() > 0.1);
+    }
+}
+
 #[test]
 fn an_unobservable_direction_is_named() {
     struct Sum;

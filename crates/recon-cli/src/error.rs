@@ -64,8 +64,14 @@ pub(crate) enum CliError {
     Estimate(#[from] EstimateError),
     #[error("the planar log gives no motion")]
     PlanarEstimate(#[from] recon::observer::planar::PlanarEstimateError),
-    #[error("the planar log gives no estimate: it spans {seconds} s, less than a first estimate needs")]
-    PlanarTooShort { seconds: f64 },
+    #[error(
+        "the planar log gives no estimate: it spans {seconds} s, and a first one needs {needed} s for an object of about {length} m (lengths are in metres, times in seconds)"
+    )]
+    PlanarTooShort { seconds: f64, needed: f64, length: f64 },
+    #[error(
+        "without forces, mass and inertia the shape is fitted to noisy contacts: give --contact-noise in m"
+    )]
+    PlanarNoise,
     #[error("the planar demo cannot be simulated: {0}")]
     PlanarDemo(String),
     #[error("the contacts give no bounds")]
@@ -104,6 +110,7 @@ impl CliError {
             | Self::Estimate(_)
             | Self::PlanarEstimate(_)
             | Self::PlanarTooShort { .. }
+            | Self::PlanarNoise
             | Self::Bounds(_) => 3,
             Self::Option { .. } => 2,
             Self::Output(_) | Self::StandardOutput(_) => 5,

@@ -44,7 +44,16 @@ fn bad_input_is_refused() {
     let scratch = Scratch::new("planar-bad");
     scratch.write("flat.csv", "t,phi1,phi2,s1,s2\n0,0.7,1.5,1,1\n1,0.7,4,1,1\n");
     scratch.write("word.csv", "t,phi1,phi2,s1,s2\n0,0.7,1.5,one,1\n1,0.7,1.5,1,1\n");
+    let rows = (0..20).map(|k| format!("{},45,90,2000,2100,1,1\n", 0.01 * f64::from(k)));
+    let degrees: String = rows.collect();
+    scratch.write("degrees.csv", &format!("t,phi1,phi2,s1,s2,f1,f2\n{degrees}"));
+    let millimetres = degrees.replace(",45,90,", ",0.7,1.6,");
+    scratch.write("millimetres.csv", &format!("t,phi1,phi2,s1,s2,f1,f2\n{millimetres}"));
+    let known = |file| vec!["planar", file, "--mass", "1", "--inertia", "1"];
     for (arguments, code, words) in [
+        (known("degrees.csv"), 3, "radians"),
+        (known("millimetres.csv"), 3, "object of about 2110"),
+        (vec!["planar", "millimetres.csv"], 3, "--contact-noise"),
         (vec!["planar", "none.csv"], 3, "none.csv"),
         (vec!["planar", "flat.csv", "--contact-noise", "1e-3"], 3, "line 3"),
         (vec!["planar", "word.csv", "--contact-noise", "1e-3"], 3, "`one` is not a number"),

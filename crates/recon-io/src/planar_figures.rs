@@ -30,7 +30,16 @@ pub struct FigurePanel {
 
 const SIZE: [f64; 2] = [460.0, 330.0];
 const MARGIN: [f64; 4] = [64.0, 30.0, 16.0, 44.0];
-const COLOURS: [&str; 4] = ["#1b6ca8", "#c0392b", "#2e8b57", "#8e44ad"];
+/// Colours of the curves, of text, of axes and of the ground, on a light and on a dark screen.
+const STYLE: &str = "\
+.ground{fill:#fff}.text{fill:#222}.tick{fill:#555;font-size:10px}.axis{stroke:#555;fill:none}.grid{stroke:#e4e4e4}
+.c0{color:#1b6ca8}.c1{color:#c0392b}.c2{color:#2e8b57}.c3{color:#8e44ad}
+@media (prefers-color-scheme:dark){
+.ground{fill:#15181c}.text{fill:#e6e6e6}.tick{fill:#a8a8a8}.axis{stroke:#a8a8a8}.grid{stroke:#2b3036}
+.c0{color:#6cb6ef}.c1{color:#ff8a7a}.c2{color:#6fd39a}.c3{color:#cf9bea}}";
+const COLOURS: usize = 4;
+/// Width of a character in the legend, px: generous for a proportional font of 12 px.
+const CHARACTER: f64 = 7.0;
 
 /// Writes panels two in a row.
 ///
@@ -43,7 +52,8 @@ pub fn write_figures(panels: &[FigurePanel], mut to: impl Write) -> io::Result<(
         to,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"12\">"
     )?;
-    writeln!(to, "<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>")?;
+    writeln!(to, "<style>{STYLE}</style>")?;
+    writeln!(to, "<rect class=\"ground\" width=\"{width}\" height=\"{height}\"/>")?;
     for (k, panel) in panels.iter().enumerate() {
         let (x, y) = ((k % 2) as f64 * SIZE[0], (k / 2) as f64 * SIZE[1]);
         writeln!(to, "<g transform=\"translate({x} {y})\">\n{}</g>", draw(panel))?;
@@ -85,6 +95,10 @@ impl Frame {
         }
         if panel.equal {
             scale = [scale[0].min(scale[1]); 2];
+            for i in 0..2 {
+                // In the middle of the axis that is longer than it needs to be.
+                low[i] -= 0.5 * (inner[i] / scale[i] - (high[i] - low[i]));
+            }
         }
         Self { low, scale }
     }
@@ -100,86 +114,108 @@ fn draw(panel: &FigurePanel) -> String {
     let frame = Frame::new(panel);
     let mut out = String::new();
     let (right, bottom) = (SIZE[0] - MARGIN[2], SIZE[1] - MARGIN[3]);
+    let title = escape(&panel.title);
     let _ = writeln!(
         out,
-        "<text x=\"{}\" y=\"18\" font-weight=\"bold\">{}</text>",
-        MARGIN[0],
-        escape(&panel.title)
-    );
-    let _ = writeln!(
-        out,
-        "<path d=\"M{} {} V{bottom} H{right}\" fill=\"none\" stroke=\"#555\"/>",
-        MARGIN[0], MARGIN[1]
-    );
-    let _ = writeln!(
-        out,
-        "<text x=\"{right}\" y=\"{}\" text-anchor=\"end\">{}</text>",
-        bottom + 34.0,
-        escape(&panel.axes[0])
-    );
-    let _ = writeln!(
-        out,
-        "<text transform=\"translate(14 {}) rotate(-90)\" text-anchor=\"end\">{}</text>",
-        MARGIN[1],
-        escape(&panel.axes[1])
+        "<text class=\"text\" x=\"{}\" y=\"18\" font-weight=\"bold\">{title}</text>",
+        MARGIN[0]
     );
     ticks(&frame, &mut out);
+    let _ = writeln!(out, "<path class=\"axis\" d=\"M{} {} V{bottom} H{right}\"/>", MARGIN[0], MARGIN[1]);
+    let [across, up] = [0, 1].map(|i| escape(&panel.axes[i]));
+    let _ = writeln!(
+        out,
+        "<text class=\"text\" x=\"{right}\" y=\"{}\" text-anchor=\"end\">{across}</text>",
+        bottom + 34.0
+    );
+    let _ = writeln!(
+        out,
+        "<text class=\"text\" transform=\"translate(14 {}) rotate(-90)\" text-anchor=\"end\">{up}</text>",
+        MARGIN[1]
+    );
     for (k, curve) in panel.curves.iter().enumerate() {
-        let colour = COLOURS[k % COLOURS.len()];
-        let places: Vec<[f64; 2]> = curve
-            .points
-            .iter()
-            .filter(|p| p.iter().all(|v| v.is_finite()))
-            .map(|&p| frame.place(p))
-            .collect();
-        if curve.dots {
-            for [x, y] in places {
-                let _ = writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"1.2\" fill=\"{colour}\"/>");
-            }
-        } else {
-            let path: Vec<String> = places.iter().map(|[x, y]| format!("{x},{y}")).collect();
-            let _ = writeln!(
-                out,
-                "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.4\"/>",
-                path.join(" ")
-            );
-        }
-        let y = MARGIN[1] + 4.0 + 15.0 * k as f64;
+        draw_curve(curve, k % COLOURS, &frame, &mut out);
+    }
+    // Names in the line of the title, where no curve runs, the last one outermost.
+    let mut x = right;
+    for (k, curve) in panel.curves.iter().enumerate().rev() {
+        let (name, colour) = (escape(&curve.name), k % COLOURS);
         let _ = writeln!(
             out,
-            "<text x=\"{right}\" y=\"{y}\" text-anchor=\"end\" fill=\"{colour}\">{}</text>",
-            escape(&curve.name)
+            "<text class=\"c{colour}\" fill=\"currentColor\" x=\"{x}\" y=\"18\" text-anchor=\"end\">{name}</text>"
         );
+        x -= CHARACTER * curve.name.chars().count() as f64 + 10.0;
     }
     out
 }
 
-/// Five numbers along each axis.
+fn draw_curve(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut String) {
+    let finite = curve.points.iter().filter(|p| p.iter().all(|v| v.is_finite()));
+    let places = finite.map(|&p| frame.place(p));
+    if curve.dots {
+        let _ = writeln!(out, "<g class=\"c{colour}\" fill=\"currentColor\">");
+        for [x, y] in places {
+            let _ = writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"1.2\"/>");
+        }
+        let _ = writeln!(out, "</g>");
+    } else {
+        let path: Vec<String> = places.map(|[x, y]| format!("{x},{y}")).collect();
+        let _ = writeln!(
+            out,
+            "<polyline class=\"c{colour}\" points=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1.4\"/>",
+            path.join(" ")
+        );
+    }
+}
+
+/// Lines at round numbers, at most six an axis.
 fn ticks(frame: &Frame, out: &mut String) {
     let inner = [SIZE[0] - MARGIN[0] - MARGIN[2], SIZE[1] - MARGIN[1] - MARGIN[3]];
-    for k in 0..5 {
-        let share = f64::from(k) / 4.0;
-        for axis in 0..2 {
-            let value = frame.low[axis] + share * inner[axis] / frame.scale[axis];
-            let text = label(value, inner[axis] / frame.scale[axis]);
-            let (x, y) = if axis == 0 {
-                (MARGIN[0] + share * inner[0], SIZE[1] - MARGIN[3] + 16.0)
+    let (right, bottom) = (SIZE[0] - MARGIN[2], SIZE[1] - MARGIN[3]);
+    for axis in 0..2 {
+        let span = inner[axis] / frame.scale[axis];
+        let step = round_step(span / 6.0);
+        let first = (frame.low[axis] / step).ceil();
+        for k in 0..=6 {
+            let value = (first + f64::from(k)) * step;
+            if value > frame.low[axis] + span {
+                break;
+            }
+            let mut point = frame.low;
+            point[axis] = value;
+            let [x, y] = frame.place(point);
+            let text = label(value, step);
+            let _ = if axis == 0 {
+                writeln!(
+                    out,
+                    "<path class=\"grid\" d=\"M{x} {} V{bottom}\"/><text class=\"tick\" x=\"{x}\" y=\"{}\" text-anchor=\"middle\">{text}</text>",
+                    MARGIN[1],
+                    bottom + 16.0
+                )
             } else {
-                (MARGIN[0] - 5.0, SIZE[1] - MARGIN[3] - share * inner[1] + 4.0)
+                writeln!(
+                    out,
+                    "<path class=\"grid\" d=\"M{} {y} H{right}\"/><text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{text}</text>",
+                    MARGIN[0],
+                    MARGIN[0] - 5.0,
+                    y + 4.0
+                )
             };
-            let anchor = if axis == 0 { "middle" } else { "end" };
-            let _ = writeln!(
-                out,
-                "<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" fill=\"#555\" font-size=\"10\">{text}</text>"
-            );
         }
     }
 }
 
-fn label(value: f64, span: f64) -> String {
-    let rounded = on_scale(value, span, 2);
+/// The smallest of 1, 2, 5 times a power of ten that is not below `least`.
+fn round_step(least: f64) -> f64 {
+    let power = 10_f64.powf(least.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|step| *step >= least).unwrap_or(least)
+}
+
+/// A multiple of `step` without the digits below it.
+fn label(value: f64, step: f64) -> String {
+    let rounded = on_scale(value, step, 1);
     if rounded != 0.0 && !(1e-3..1e4).contains(&rounded.abs()) {
-        format!("{rounded:.1e}")
+        format!("{rounded:e}")
     } else {
         format!("{rounded}")
     }

@@ -3,8 +3,12 @@
 #![allow(dead_code, reason = "each test file uses its part of the shared scenes")]
 
 use glam::DVec2;
+use nalgebra::SVector;
 use recon::contact_kinematics::planar::{Ellipse, FourierBody, RadiusBounds, RadiusFunction, RadiusJet};
-use recon::object_dynamics::planar::{ConstantRates, PlanarMass, PlanarObject, PlanarStart};
+use recon::object_dynamics::planar::{
+    ConstantRates, PlanarMass, PlanarObject, PlanarSample, PlanarStart, PlanarTruth,
+};
+use recon::observer::planar::{PlanarEstimate, PlanarObserver};
 use serde_json::Value;
 
 /// Shape of a scene.
@@ -73,4 +77,19 @@ pub(crate) fn scene(name: &str) -> (PlanarObject<Shape>, ConstantRates, PlanarSt
 pub(crate) fn times(rate: f64, duration: f64) -> Vec<f64> {
     let count = (duration * rate).round() as u32;
     (0..=count).map(|k| f64::from(k) / rate).collect()
+}
+
+/// `(cm, v, omega0)` of the truth.
+pub(crate) fn state(truth: &PlanarTruth) -> SVector<f64, 5> {
+    let (p, v) = (truth.p_WCm, truth.v_WCm);
+    SVector::<f64, 5>::new(p.x, p.y, v.x, v.y, truth.omega0)
+}
+
+/// What an observer says at the last of some samples.
+pub(crate) fn last_estimate<const N: usize>(
+    mut observer: PlanarObserver<N>,
+    samples: impl IntoIterator<Item = PlanarSample>,
+) -> PlanarEstimate<N> {
+    let estimates = samples.into_iter().filter_map(|sample| observer.push(&sample).unwrap());
+    estimates.last().unwrap()
 }

@@ -82,7 +82,9 @@ pub enum ShapeError {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum PalmPairError {
     /// The wedge between the palms is closed or flat.
-    #[error("angle between the palms is {phi2} rad; it must lie strictly between 0 and pi")]
+    #[error(
+        "angle between the palms is {phi2} rad; it must lie strictly between 0 and pi (angles are in radians)"
+    )]
     Wedge {
         /// Angle of palm 2 against palm 1, in rad.
         phi2: f64,

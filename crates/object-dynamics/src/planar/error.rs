@@ -1,5 +1,6 @@
 //! What can go wrong in a planar simulation or with a planar log.
 
+use crate::SeriesError;
 use crate::integrate::IntegrationError;
 use contact_kinematics::planar::PalmPairError;
 use thiserror::Error;
@@ -34,11 +35,18 @@ pub enum PlanarSimulationError {
 /// Why samples are not a planar log.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum PlanarLogError {
-    /// Fewer than two samples.
-    #[error("planar log has {found} sample(s); at least 2 are needed")]
-    TooShort {
-        /// How many there are.
-        found: usize,
+    /// Too few samples, out of order, or with truth of another length.
+    #[error(transparent)]
+    Series(#[from] SeriesError),
+    /// A normal contact force pulls.
+    #[error("force of palm {palm} at sample {sample} is {value} N; a palm cannot pull")]
+    NegativeForce {
+        /// 1 or 2.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// As given, N.
+        value: f64,
     },
     /// A reading is not a number.
     #[error("{what} of sample {sample} is {value}; it must be finite")]
@@ -50,18 +58,6 @@ pub enum PlanarLogError {
         /// As given.
         value: f64,
     },
-    /// Time does not increase.
-    #[error(
-        "t of sample {sample} is {time} s, not above {previous} s before it; sort the log and drop repeats"
-    )]
-    TimeNotIncreasing {
-        /// Index from 0.
-        sample: usize,
-        /// As given, s.
-        time: f64,
-        /// Of the sample before, s.
-        previous: f64,
-    },
     /// The wedge is closed or flat.
     #[error("sample {sample}: {source}")]
     Palms {
@@ -69,13 +65,5 @@ pub enum PlanarLogError {
         sample: usize,
         /// Why.
         source: PalmPairError,
-    },
-    /// Truth does not match the samples.
-    #[error("truth has {found} rows for {expected} samples")]
-    TruthLength {
-        /// Number of samples.
-        expected: usize,
-        /// Number of truth rows.
-        found: usize,
     },
 }

@@ -1,6 +1,7 @@
 //! What two planar palms sensed, in memory.
 
 use super::error::PlanarLogError;
+use crate::series::{check_lengths, check_order};
 use contact_kinematics::planar::{PalmPair, PalmPairError};
 use glam::DVec2;
 
@@ -52,24 +53,17 @@ impl PlanarSample {
 impl PlanarLog {
     /// Checks the samples and takes them.
     ///
+    /// A force may be negative by noise; only one that is negative beyond a tenth of the largest is refused.
+    ///
     /// # Errors
     /// [`PlanarLogError`] names the first sample that cannot be used.
     pub fn new(samples: Vec<PlanarSample>, truth: Option<Vec<PlanarTruth>>) -> Result<Self, PlanarLogError> {
-        if samples.len() < 2 {
-            return Err(PlanarLogError::TooShort { found: samples.len() });
-        }
-        let mut previous = f64::NEG_INFINITY;
+        check_lengths(samples.len(), truth.as_ref().map(Vec::len))?;
+        let largest_force = samples.iter().filter_map(|s| s.forces).flatten().fold(0.0_f64, f64::max);
         for (index, sample) in samples.iter().enumerate() {
-            check_sample(index, sample)?;
-            if sample.t <= previous {
-                return Err(PlanarLogError::TimeNotIncreasing { sample: index, time: sample.t, previous });
-            }
-            previous = sample.t;
-        }
-        if let Some(rows) = &truth
-            && rows.len() != samples.len()
-        {
-            return Err(PlanarLogError::TruthLength { expected: samples.len(), found: rows.len() });
+            check_sample(index, sample, largest_force)?;
+            let previous = index.checked_sub(1).map(|before| samples[before].t);
+            check_order(index, previous, sample.t)?;
         }
         Ok(Self { samples, truth })
     }
@@ -102,7 +96,7 @@ impl PlanarLog {
     }
 }
 
-fn check_sample(sample: usize, row: &PlanarSample) -> Result<(), PlanarLogError> {
+fn check_sample(sample: usize, row: &PlanarSample, largest_force: f64) -> Result<(), PlanarLogError> {
     let pair = |name: [&'static str; 2], values: Option<[f64; 2]>| {
         let values = values.map(|v| v.map(Some)).unwrap_or_default();
         [(name[0], values[0]), (name[1], values[1])]
@@ -115,6 +109,11 @@ fn check_sample(sample: usize, row: &PlanarSample) -> Result<(), PlanarLogError>
     for (what, reading) in readings {
         if let Some(value) = reading.filter(|v| !v.is_finite()) {
             return Err(PlanarLogError::NotFinite { what, sample, value });
+        }
+    }
+    for (i, value) in row.forces.into_iter().flatten().enumerate() {
+        if value < -0.1 * largest_force {
+            return Err(PlanarLogError::NegativeForce { palm: i + 1, sample, value });
         }
     }
     row.palms().map(|_| ()).map_err(|source| PlanarLogError::Palms { sample, source })

@@ -61,7 +61,7 @@ impl PlanarRun {
     /// The run as a log with truth.
     ///
     /// # Errors
-    /// [`PlanarLogError::TooShort`] when contact broke before the second sample.
+    /// [`SeriesError::TooShort`](crate::SeriesError) when contact broke before the second sample.
     pub fn log(&self) -> Result<PlanarLog, PlanarLogError> {
         let truth = self.samples.iter().map(|s| s.truth).collect();
         PlanarLog::new(self.samples.iter().map(|s| s.sample).collect(), Some(truth))

@@ -13,6 +13,8 @@ pub use batch::{BatchOptions, BatchSolution, solve_batch, solve_batch_from};
 pub use ekf::{EkfEstimate, ExtendedKalmanFilter};
 pub use model::{Model, Sample};
 pub use newton::{Arrival, NewtonEstimate, NewtonObserver, NewtonOptions};
+#[cfg(feature = "palms")]
+pub(crate) use report::direction_words;
 pub use report::{ObserverError, Report, Status, describe_direction};
 pub use rk4::{rk4, rk4_linearised};
 pub use window::Start;

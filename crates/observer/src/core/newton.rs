@@ -177,6 +177,13 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> NewtonObserver<Mo, N, M> {
         }
     }
 
+    /// Puts another sample in the place of the one `back` samples before the newest, as when its input becomes known better
+    /// in hindsight; the next step takes it into account. False, and no change, where the window does not reach so far back.
+    pub fn amend(&mut self, back: usize, sample: Sample<Mo::Input, M>) -> bool {
+        let slot = self.samples.len().checked_sub(back + 1).and_then(|k| self.samples.get_mut(k));
+        slot.map(|old| *old = sample).is_some()
+    }
+
     /// Whether the next sample pushes the oldest one out of the window.
     #[must_use]
     pub fn is_full(&self) -> bool {

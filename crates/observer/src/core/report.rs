@@ -106,14 +106,19 @@ impl<const N: usize> Report<N> {
 /// A direction in state space in words: components above 0.25, largest first, the sign such that the first is positive.
 #[must_use]
 pub fn describe_direction<const N: usize>(direction: &SVector<f64, N>, names: &[&'static str; N]) -> String {
-    let mut order: [usize; N] = std::array::from_fn(|i| i);
+    direction_words(direction.as_slice(), |i| names[i])
+}
+
+/// As [`describe_direction`], for any number of states.
+pub(crate) fn direction_words<T: std::fmt::Display>(direction: &[f64], name: impl Fn(usize) -> T) -> String {
+    let mut order: Vec<usize> = (0..direction.len()).collect();
     order.sort_by(|&i, &j| direction[j].abs().total_cmp(&direction[i].abs()));
     let sign = order.first().map_or(1.0, |&i| direction[i].signum());
     let parts: Vec<String> = order
         .iter()
         .enumerate()
         .filter(|&(place, &i)| place == 0 || direction[i].abs() > 0.25)
-        .map(|(_, &i)| format!("{} ({:.2})", names[i], sign * direction[i]))
+        .map(|(_, &i)| format!("{} ({:.2})", name(i), sign * direction[i]))
         .collect();
     parts.join(", ")
 }

@@ -1,11 +1,11 @@
 //! The object driven by measured contact forces, in regular coordinates.
 
-use super::constants::{Constant, PlanarNominal};
+use super::constants::{Constant, PlanarNominal, Side};
 use super::error::PlanarEstimateError;
 use super::input::{PairInput, PairStage};
+use super::palm_contact::PalmContact;
 use super::scale::NaturalScale;
 use crate::{Model, Sample, rk4, rk4_linearised};
-use glam::DVec2;
 use nalgebra::{SMatrix, SVector};
 
 /// Number of states of the motion: centre of mass, its velocity, angular velocity.
@@ -13,10 +13,6 @@ pub(super) const MOTION: usize = 5;
 /// Relative rate of object and palm, as a share of the natural rate, below which the contact offset `d` is taken from the
 /// sensor rather than from the motion. Small enough to cost no information in motion, large against rounding.
 const BLEND_SHARE: f64 = 0.02;
-/// Standard deviation of an interval's force change under white noise of one: `63/256 sqrt(252)`, the middle of the newest of
-/// five equal intervals.
-const CHANGE_PER_NOISE: f64 = 3.91;
-
 /// State `(cm, v, omega0)` and, after it, constants to be estimated; driven by forces, with the contacts as output.
 ///
 /// `cm' = v`, `m v' = m g + f_1 n_1 + f_2 n_2`, `I0 omega0' = -f_1 d_1 - f_2 d_2`, where rigid contact gives
@@ -33,24 +29,6 @@ pub struct ForceDriven<const N: usize> {
     constants: Vec<Constant>,
     blend: f64,
     exact: bool,
-}
-
-/// One palm at one instant: `d`, its gradient, and what the output needs.
-struct Side {
-    palm: usize,
-    u: DVec2,
-    n: DVec2,
-    sign: f64,
-    rate: f64,
-    z: f64,
-    e: f64,
-    denominator: f64,
-    d: f64,
-    force: f64,
-    /// Force without its bias.
-    measured: f64,
-    /// Contact reading without its offset, minus `u . cm`.
-    reach: f64,
 }
 
 impl<const N: usize> ForceDriven<N> {
@@ -123,9 +101,8 @@ impl<const N: usize> ForceDriven<N> {
     /// A stage with readings as the constants of a state correct them.
     #[must_use]
     pub fn corrected(&self, x: &SVector<f64, N>, stage: &PairStage) -> PairStage {
-        use super::constants::Side as Which;
         let mut stage = *stage;
-        for (i, which) in [Which::First, Which::Second].into_iter().enumerate() {
+        for (i, which) in [Side::First, Side::Second].into_iter().enumerate() {
             let gain = self.constant(x, Constant::ForceGain(which)).exp();
             stage.forces[i] = gain * stage.forces[i] + self.constant(x, Constant::ForceBias(which));
             stage.contacts[i] -= self.constant(x, Constant::ContactOffset(which));
@@ -166,9 +143,8 @@ impl<const N: usize> ForceDriven<N> {
         self.constants.iter().position(|&c| c == constant).map_or(0.0, |i| x[MOTION + i])
     }
 
-    fn side(&self, x: &SVector<f64, N>, stage: &PairStage, palm: usize) -> Side {
-        use super::constants::Side as Which;
-        let which = if palm == 0 { Which::First } else { Which::Second };
+    fn side(&self, x: &SVector<f64, N>, stage: &PairStage, palm: usize) -> PalmContact {
+        let which = if palm == 0 { Side::First } else { Side::Second };
         let (u, n, rate) = (stage.along[palm], stage.normals[palm], stage.rates[palm]);
         let sign = if palm == 0 { -1.0 } else { 1.0 };
         let p = u.x * x[0] + u.y * x[1];
@@ -181,7 +157,7 @@ impl<const N: usize> ForceDriven<N> {
         let d = (z * e + ridge * sign * reach) / denominator;
         let measured = stage.forces[palm] * self.constant(x, Constant::ForceGain(which)).exp();
         let force = measured + self.constant(x, Constant::ForceBias(which));
-        Side { palm, u, n, sign, rate, z, e, denominator, d, force, measured, reach }
+        PalmContact { palm, u, n, sign, rate, z, e, denominator, d, force, measured, reach }
     }
 
     fn rate(&self, stage: &PairStage, x: &SVector<f64, N>) -> SVector<f64, N> {
@@ -234,40 +210,8 @@ impl<const N: usize> ForceDriven<N> {
     }
 }
 
-impl Side {
-    /// Derivative of `d` with respect to `(cm, v, omega0)`.
-    fn d_gradient(&self, blend: f64) -> [f64; MOTION] {
-        let along = self.sign * (self.z * self.rate - blend * blend) / self.denominator;
-        let across = self.z / self.denominator;
-        [
-            along * self.u.x,
-            along * self.u.y,
-            across * self.n.x,
-            across * self.n.y,
-            (self.e - 2.0 * self.z * self.d) / self.denominator,
-        ]
-    }
-
-    /// Derivatives of this palm's force and of its `d` with respect to a constant.
-    fn constant_slopes(&self, constant: Constant, blend: f64) -> (f64, f64) {
-        match constant {
-            Constant::ForceGain(side) if side.index() == self.palm => (self.measured, 0.0),
-            Constant::ForceBias(side) if side.index() == self.palm => (1.0, 0.0),
-            Constant::ContactOffset(side) if side.index() == self.palm => {
-                (0.0, -self.sign * blend * blend / self.denominator)
-            }
-            _ => (0.0, 0.0),
-        }
-    }
-}
-
-/// Error of the mean force over an interval from its interpolation: the middle counts for two thirds in Simpson's rule,
-/// and half of that here, because the errors of neighbouring intervals largely cancel (measured by the consistency of the
-/// estimates at 100 Hz with exact forces, docs/planar-monte-carlo.md). None where the change that it is taken from may be noise.
-fn interpolation_error(input: &PairInput, palm: usize, force_deviation: f64) -> f64 {
-    let significant = input.force_change[palm] > 3.0 * CHANGE_PER_NOISE * force_deviation;
-    if significant { input.force_error[palm] / 3.0 } else { 0.0 }
-}
+/// Weight of the middle of an interval in Simpson's rule: its share of the error of the mean force.
+const MIDDLE_WEIGHT: f64 = 2.0 / 3.0;
 
 /// Stage of an interval at fraction 0, 1/2 or 1.
 fn at(input: &PairInput, fraction: f64) -> &PairStage {
@@ -314,22 +258,29 @@ impl<const N: usize> Model<N, 2> for ForceDriven<N> {
     }
 
     /// Noise of the forces, the error of their interpolation, and noise of the contacts as far as they enter `d`; one
-    /// reading counts for one interval.
+    /// reading counts for one interval. Errors of interpolation count as independent, which is too much over many intervals
+    /// (they are the derivative of something bounded), and matters only where they exceed the sensors' noise.
     fn process_noise(&self, x: &SVector<f64, N>, input: &PairInput) -> Option<SMatrix<f64, N, N>> {
         let PlanarNominal { contact_deviation, force_deviation, .. } = self.nominal;
         if self.exact || contact_deviation <= 0.0 && force_deviation <= 0.0 {
             return None;
         }
-        let (mass, inertia) = self.mass_and_inertia(x);
+        // What enters during an interval acts on average from its middle on, and the flow carries it to the end.
+        let half = 0.5 * input.dt;
+        let middle = &input.stages[1];
+        let x = x + self.rate(&input.stages[0], x) * half;
+        let (_, slope) = self.rate_linearised(middle, &x);
+        let (mass, inertia) = self.mass_and_inertia(&x);
         let mut q = SMatrix::<f64, N, N>::zeros();
-        for side in [0, 1].map(|palm| self.side(x, &input.stages[0], palm)) {
-            let step =
-                input.dt * force_deviation.hypot(interpolation_error(input, side.palm, force_deviation));
+        for side in [0, 1].map(|palm| self.side(&x, middle, palm)) {
+            let interpolation = MIDDLE_WEIGHT * input.force_error[side.palm];
+            let step = input.dt * force_deviation.hypot(interpolation);
             let mut kick = SVector::<f64, N>::zeros();
             kick[2] = step * side.n.x / mass;
             kick[3] = step * side.n.y / mass;
             kick[4] = -step * side.d / inertia;
-            q += kick * kick.transpose();
+            kick += slope * kick * half;
+            q.ger(1.0, &kick, &kick, 1.0);
             let share = self.blend * self.blend / side.denominator;
             q[(4, 4)] += (input.dt * side.force * share * contact_deviation / inertia).powi(2);
         }

@@ -1,14 +1,15 @@
 //! From a log to what drives the flow: palms, forces and contacts at the ends and in the middle of each interval.
 
 use super::error::PlanarEstimateError;
+use super::polynomial::{Fit, Row, curvatures, interpolate, value};
 use contact_kinematics::planar::PalmPair;
 use glam::DVec2;
 use object_dynamics::planar::{PlanarLog, PlanarSample};
 
-/// Samples that a polynomial is laid through. Four would match the order of the integrator, `h^4`; six keep the
-/// interpolation's share of the error small at 100 Hz too, where the contacts of a 50 mm object change by a third of a
-/// radian of their fastest harmonic in one interval.
-const NODES: usize = 6;
+/// Samples that a polynomial is laid through at most, half of them on either side of an interval once they are there. Four would
+/// match the order of the integrator, `h^4`. At 100 Hz, where the contacts of a 50 mm object change by a third of a radian of
+/// their fastest harmonic in one interval, six leave an error of the forces that is seen beside contact noise of 0.1 mm.
+const NODES: usize = 10;
 
 /// Palms and readings at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,45 +35,51 @@ pub struct PairInput {
     pub dt: f64,
     /// Start, middle and end.
     pub stages: [PairStage; 3],
-    /// How much the interpolated forces in the middle change when the oldest sample is left out, N.
-    pub force_change: [f64; 2],
-    /// Error of these forces for exact readings, N: the change above times its ratio to the change before it, as in a
-    /// geometric series.
+    /// Error of the forces in the middle, N, as interpolation of exact readings leaves it.
     pub force_error: [f64; 2],
 }
 
-/// Readings of one sample in the order that is interpolated: `P1, P2, f1, f2, s1, s2`.
-#[derive(Clone, Copy, Debug)]
-struct Row {
-    t: f64,
-    values: [f64; 6],
-}
-
-/// Turns samples into inputs as they come. The first five wait for the sixth, so that the polynomial through six samples
-/// covers them too; after that each sample yields its input at once.
+/// Turns samples into inputs as they come. The first ones wait until the polynomial has all its samples; after that each
+/// sample yields the input of the interval that it ends, and with it, better than before, those of the intervals before it
+/// that have not yet as many samples behind them as in front.
 #[derive(Clone, Debug, Default)]
 pub struct InputBuilder {
     rows: Vec<Row>,
+    /// Motor torques of the rows, where forces follow from them.
+    torques: Vec<Option<[f64; 2]>>,
     palm_inertias: [f64; 2],
-    before: Option<PairStage>,
+    force_deviation: f64,
+    started: bool,
 }
 
 impl InputBuilder {
+    /// Samples behind an interval from which on its input does not change any more.
+    pub const LAG: usize = NODES / 2 - 1;
+
     /// A builder that takes forces from the log, or from torques with massless palms.
     #[must_use]
     pub fn new() -> Self {
-        Self { rows: Vec::with_capacity(NODES + 1), ..Self::default() }
+        let (rows, torques) = (Vec::with_capacity(NODES + 1), Vec::with_capacity(NODES + 1));
+        Self { rows, torques, ..Self::default() }
     }
 
-    /// Palms with moments of inertia (kg m^2): `f_1 = (tau_1 - I_1 A_1) / s_1`, `f_2 = (I_2 A_2 - tau_2) / s_2`. The
-    /// palms' accelerations come from the differences of three angles, hence of first order where they change.
+    /// Palms with moments of inertia (kg m^2): `f_1 = (tau_1 - I_1 A_1) / s_1`, `f_2 = (I_2 A_2 - tau_2) / s_2`, with the
+    /// accelerations of the polynomial through the palms' angles.
     #[must_use]
     pub fn with_palm_inertias(mut self, inertias: [f64; 2]) -> Self {
         self.palm_inertias = inertias;
         self
     }
 
-    /// Takes a sample and hands on the inputs that are complete.
+    /// Force readings with noise of this standard deviation (N): the polynomial takes no more of them than tell more than noise.
+    #[must_use]
+    pub fn with_force_deviation(mut self, deviation: f64) -> Self {
+        self.force_deviation = deviation;
+        self
+    }
+
+    /// Takes a sample and hands on the inputs that are complete, in the order of time. An input whose time has been seen
+    /// takes the place of the earlier one; [`place`](Self::place) does that.
     ///
     /// # Errors
     /// [`PlanarEstimateError`]: lost contact, no forces, no lever arm, time that does not increase, a closed wedge.
@@ -81,19 +88,49 @@ impl InputBuilder {
         sample: &PlanarSample,
         mut sink: impl FnMut(PairInput),
     ) -> Result<(), PlanarEstimateError> {
+        if self.take(sample)? {
+            let first = if self.started { NODES / 2 } else { 0 };
+            self.started = true;
+            self.inputs(first..NODES, &mut sink)?;
+        }
+        Ok(())
+    }
+
+    /// Takes a sample; whether the polynomial has all its rows.
+    fn take(&mut self, sample: &PlanarSample) -> Result<bool, PlanarEstimateError> {
         let row = self.row(sample)?;
         if self.rows.len() == NODES {
             self.rows.remove(0);
+            self.torques.remove(0);
         }
         self.rows.push(row);
-        if self.rows.len() < NODES {
-            return Ok(());
-        }
-        let first_time = self.before.is_none();
-        for end in if first_time { 0..NODES } else { NODES - 1..NODES } {
-            sink(self.interval(end)?);
+        self.torques.push(if sample.forces.is_some() { None } else { sample.torques });
+        Ok(self.rows.len() == NODES)
+    }
+
+    /// Inputs of the intervals that end at the rows `ends`.
+    fn inputs(
+        &mut self,
+        ends: std::ops::Range<usize>,
+        sink: &mut impl FnMut(PairInput),
+    ) -> Result<(), PlanarEstimateError> {
+        self.forces_of_torques()?;
+        let fits = [2, 3].map(|i| Fit::new(&self.rows, i, self.force_deviation));
+        let mut start = self.stage(self.rows[ends.start.saturating_sub(1)].t)?;
+        for end in ends {
+            let input = self.interval(start, end, &fits)?;
+            start = input.stages[2];
+            sink(input);
         }
         Ok(())
+    }
+
+    /// Puts an input into a list in the order of time: in the place of the one with the same time, or at the end.
+    pub fn place(inputs: &mut Vec<PairInput>, input: PairInput) {
+        match inputs.iter_mut().rev().take(NODES).find(|old| old.t == input.t) {
+            Some(old) => *old = input,
+            None => inputs.push(input),
+        }
     }
 
     fn row(&self, sample: &PlanarSample) -> Result<Row, PlanarEstimateError> {
@@ -107,86 +144,59 @@ impl InputBuilder {
         for (i, contact) in sample.contacts.iter().enumerate() {
             s[i] = contact.ok_or(PlanarEstimateError::LostContact { palm: i + 1, t })?;
         }
-        let angles = [sample.angles[0], sample.angles[0] + sample.angles[1]];
+        // Refused at once rather than when the polynomial is complete.
+        let [p1, p2] = sample.palms().map_err(|source| PlanarEstimateError::Palms { t, source })?.angles();
         let forces = match (sample.forces, sample.torques) {
             (Some(f), _) => f,
-            (None, Some(torques)) => self.forces_of_torques(t, angles, torques, s)?,
+            (None, Some(torques)) => force_of_torque(t, torques, [0.0; 2], s)?,
             (None, None) => return Err(PlanarEstimateError::NoForces { t }),
         };
-        Ok(Row { t, values: [angles[0], angles[1], forces[0], forces[1], s[0], s[1]] })
+        Ok(Row { t, values: [p1, p2, forces[0], forces[1], s[0], s[1]] })
     }
 
-    fn forces_of_torques(
+    /// Forces of all rows with torques, with the palms' accelerations as the present polynomial has them.
+    fn forces_of_torques(&mut self) -> Result<(), PlanarEstimateError> {
+        if self.palm_inertias == [0.0; 2] {
+            return Ok(());
+        }
+        for k in 0..self.rows.len() {
+            let Some(torques) = self.torques[k] else { continue };
+            let Row { t, values } = self.rows[k];
+            let [a, b] = curvatures(&self.rows, t);
+            let inertial = [self.palm_inertias[0] * a, self.palm_inertias[1] * b];
+            let forces = force_of_torque(t, torques, inertial, [values[4], values[5]])?;
+            self.rows[k].values[2..4].copy_from_slice(&forces);
+        }
+        Ok(())
+    }
+
+    /// The interval that ends at row `end` and begins with `first`; of no length for row 0.
+    fn interval(
         &self,
-        t: f64,
-        angles: [f64; 2],
-        torques: [f64; 2],
-        s: [f64; 2],
-    ) -> Result<[f64; 2], PlanarEstimateError> {
-        let mut forces = [0.0; 2];
-        for i in 0..2 {
-            let inertial = self.palm_inertias[i] * self.acceleration(t, angles, i);
-            let lever = if i == 0 { s[0] } else { -s[1] };
-            forces[i] = (torques[i] - inertial) / lever;
-            if !forces[i].is_finite() {
-                return Err(PlanarEstimateError::NoLever { palm: i + 1, t, distance: s[i] });
-            }
-        }
-        Ok(forces)
-    }
-
-    fn acceleration(&self, t: f64, angles: [f64; 2], palm: usize) -> f64 {
-        let [.., a, b] = self.rows.as_slice() else { return 0.0 };
-        let (early, late) = (b.t - a.t, t - b.t);
-        let rise = (angles[palm] - b.values[palm]) / late - (b.values[palm] - a.values[palm]) / early;
-        rise / (0.5 * (early + late))
-    }
-
-    /// The interval that ends at row `end`; of no length for row 0.
-    fn interval(&mut self, end: usize) -> Result<PairInput, PlanarEstimateError> {
+        first: PairStage,
+        end: usize,
+        fits: &[Fit; 2],
+    ) -> Result<PairInput, PlanarEstimateError> {
         let t = self.rows[end].t;
-        let last = self.stage(t)?;
-        let start_t = if end == 0 { t } else { self.rows[end - 1].t };
-        let first = match self.before {
-            Some(stage) if end > 0 => stage,
-            _ => last,
-        };
-        let middle = if end == 0 { last } else { self.stage(0.5 * (start_t + t))? };
-        self.before = Some(last);
-        let middle_t = 0.5 * (start_t + t);
-        let changes = [2, 3].map(|i| if end == 0 { [0.0; 2] } else { self.changes(i, middle_t) });
-        let force_change = changes.map(|[last, _]| last);
-        let force_error =
-            changes.map(|[last, before]| if before > last { last * last / before } else { last });
-        Ok(PairInput { t, dt: t - start_t, stages: [first, middle, last], force_change, force_error })
-    }
-
-    /// Changes of the interpolated value `i` at `t` when the oldest row is left out, and when the next one is too: by
-    /// Newton's form, the highest divided difference times the distances to the other rows.
-    fn changes(&self, i: usize, t: f64) -> [f64; 2] {
-        [0, 1].map(|oldest| {
-            let rows = &self.rows[oldest..];
-            let spread =
-                |own: f64| -> f64 { rows.iter().filter(|row| row.t != own).map(|row| own - row.t).product() };
-            let difference: f64 = rows.iter().map(|row| row.values[i] / spread(row.t)).sum();
-            let reach: f64 = rows[1..].iter().map(|row| t - row.t).product();
-            (difference * reach).abs()
-        })
-    }
-
-    /// Polynomial through the rows, values and (for the palms) rates, at time `t`.
-    fn stage(&self, t: f64) -> Result<PairStage, PlanarEstimateError> {
-        let (mut value, mut slope) = ([0.0; 6], [0.0; 2]);
-        for (k, row) in self.rows.iter().enumerate() {
-            let (weight, rise) = self.lagrange(k, t);
-            for (sum, v) in value.iter_mut().zip(row.values) {
-                *sum += weight * v;
-            }
-            // Angles relative to the first row: the weights of a slope add up to zero, and large angles would cancel.
-            for (i, sum) in slope.iter_mut().enumerate() {
-                *sum += rise * (row.values[i] - self.rows[0].values[i]);
-            }
+        if end == 0 {
+            return Ok(PairInput { t, dt: 0.0, stages: [first; 3], force_error: [0.0; 2] });
         }
+        let start_t = self.rows[end - 1].t;
+        let middle_t = 0.5 * (start_t + t);
+        let mut middle = self.stage(middle_t)?;
+        let mut force_error = [0.0; 2];
+        for (i, fit) in fits.iter().enumerate() {
+            let rows = fit.rows(&self.rows, end);
+            middle.forces[i] = value(rows, 2 + i, middle_t);
+            force_error[i] = fit.error(rows, middle_t);
+        }
+        let stages = [first, middle, self.stage(t)?];
+        Ok(PairInput { t, dt: t - start_t, stages, force_error })
+    }
+
+    /// Polynomial through the rows at time `t`.
+    fn stage(&self, t: f64) -> Result<PairStage, PlanarEstimateError> {
+        let (value, slope) = interpolate(&self.rows, t);
         let pair = PalmPair::from_absolute(value[0], value[1])
             .map_err(|source| PlanarEstimateError::Palms { t, source })?;
         Ok(PairStage {
@@ -197,36 +207,43 @@ impl InputBuilder {
             contacts: [value[4], value[5]],
         })
     }
-
-    /// Lagrange polynomial of row `k` and its derivative at `t`.
-    fn lagrange(&self, k: usize, t: f64) -> (f64, f64) {
-        let own = self.rows[k].t;
-        let (mut weight, mut rise) = (1.0, 0.0);
-        for (j, row) in self.rows.iter().enumerate().filter(|&(j, _)| j != k) {
-            let step = own - row.t;
-            let others: f64 = self
-                .rows
-                .iter()
-                .enumerate()
-                .filter(|&(i, _)| i != k && i != j)
-                .map(|(_, other)| (t - other.t) / (own - other.t))
-                .product();
-            weight *= (t - row.t) / step;
-            rise += others / step;
-        }
-        (weight, rise)
-    }
 }
 
-/// Inputs of a whole log.
+/// Contact forces of motor torques, less what moves the palms themselves.
+fn force_of_torque(
+    t: f64,
+    torques: [f64; 2],
+    inertial: [f64; 2],
+    s: [f64; 2],
+) -> Result<[f64; 2], PlanarEstimateError> {
+    let mut forces = [0.0; 2];
+    for i in 0..2 {
+        let lever = if i == 0 { s[0] } else { -s[1] };
+        forces[i] = (torques[i] - inertial[i]) / lever;
+        if !forces[i].is_finite() {
+            return Err(PlanarEstimateError::NoLever { palm: i + 1, t, distance: s[i] });
+        }
+    }
+    Ok(forces)
+}
+
+/// Inputs of a whole log, each as good as the samples on both sides of it make it: a filter that is fed with them as they
+/// come runs [`InputBuilder::LAG`] samples late.
 ///
 /// # Errors
-/// As [`InputBuilder::push`]; [`crate::ObserverError::TooFewSamples`] for fewer than six samples.
-pub fn planar_samples(log: &PlanarLog) -> Result<Vec<PairInput>, PlanarEstimateError> {
+/// As [`InputBuilder::push`]; [`crate::ObserverError::TooFewSamples`] for fewer samples than the polynomial needs.
+pub fn planar_samples(log: &PlanarLog, force_deviation: f64) -> Result<Vec<PairInput>, PlanarEstimateError> {
     let mut inputs = Vec::with_capacity(log.samples().len());
-    let mut builder = InputBuilder::new();
+    let mut builder = InputBuilder::new().with_force_deviation(force_deviation);
     for sample in log.samples() {
-        builder.push(sample, |input| inputs.push(input))?;
+        if builder.take(sample)? {
+            // Each interval once, when as many samples have come after it as before; those near the ends as they are.
+            let first = if inputs.is_empty() { 0 } else { NODES / 2 };
+            builder.inputs(first..NODES / 2 + 1, &mut |input| inputs.push(input))?;
+        }
+    }
+    if !inputs.is_empty() {
+        builder.inputs(NODES / 2 + 1..NODES, &mut |input| inputs.push(input))?;
     }
     if inputs.is_empty() {
         let found = log.samples().len();

@@ -6,23 +6,27 @@ mod authors;
 mod constants;
 mod doubt;
 mod error;
+mod estimate;
 mod force_driven;
 mod input;
 mod observer;
-mod palm_series;
+mod options;
+mod palm_contact;
+mod polynomial;
 mod quasistatic;
 mod scale;
 mod shape_fit;
-mod shape_model;
 mod start;
 
 pub use authors::{AuthorsFields, AuthorsState};
 pub use constants::{Constant, PlanarNominal, Side};
 pub use doubt::Doubt;
 pub use error::PlanarEstimateError;
+pub use estimate::PlanarEstimate;
 pub use force_driven::ForceDriven;
 pub use input::{InputBuilder, PairInput, PairStage, planar_samples};
-pub use observer::{PlanarEstimate, PlanarObserver, PlanarObserverOptions, PlanarStartFrom};
+pub use observer::PlanarObserver;
+pub use options::{PlanarObserverOptions, PlanarStartFrom};
 pub use quasistatic::{
     HeightFit, QuasistaticError, QuasistaticPath, QuasistaticPoint, height_from_closure,
     quasistatic_reconstruction,

@@ -1,16 +1,17 @@
 //! From a stream of planar samples to motion, orientation and shape, with or without a guess.
 
 use super::constants::{Constant, PlanarNominal};
-use super::doubt::{Doubt, doubt, doubtful, prior_deviations};
+use super::doubt::{Doubt, doubt, doubt_along, doubtful, prior_deviations};
 use super::error::PlanarEstimateError;
+use super::estimate::{PlanarEstimate, turns};
 use super::force_driven::{ForceDriven, MOTION};
 use super::input::{InputBuilder, PairInput};
+use super::options::{PlanarObserverOptions, PlanarStartFrom};
 use super::scale::NaturalScale;
 use super::start::{neutral_start, residual_start};
 use crate::{
     Arrival, BatchOptions, Model, NewtonObserver, NewtonOptions, Report, Sample, Start, solve_batch_from,
 };
-use glam::DVec2;
 use nalgebra::SVector;
 use object_dynamics::planar::PlanarSample;
 
@@ -21,70 +22,6 @@ const WINDOW_TIMES: f64 = 6.0;
 const FEWEST_SAMPLES: usize = 8;
 /// Most samples in a window, which bounds memory and time per sample.
 const MOST_SAMPLES: usize = 4000;
-
-/// Where a [`PlanarObserver`] starts: `(cm, v, omega0)` at the first sample, in SI units.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum PlanarStartFrom {
-    /// No guess: the velocity residuals from nine neutral starts, then a batch fit.
-    #[default]
-    Nothing,
-    /// A guess of any quality: the velocity residuals from there, then a batch fit.
-    Guess([f64; 5]),
-    /// A motion that is nearly right: Newton steps begin there.
-    Motion([f64; 5]),
-}
-
-/// How a [`PlanarObserver`] works; the default needs no guess and chooses its window from the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlanarObserverOptions {
-    /// Length of the window in s; none for six natural times.
-    pub window: Option<f64>,
-    /// Time in s before the first estimate; none for the length of the window.
-    pub settle: Option<f64>,
-    /// Newton steps a sample.
-    pub steps: usize,
-    /// What becomes of samples that leave the window.
-    pub arrival: Arrival,
-    /// Where it starts.
-    pub start: PlanarStartFrom,
-    /// Standard deviation of each estimated constant before the first sample, in its own unit; none for its
-    /// natural size (a factor of 2.7 of mass and inertia, a gain of one, a bias of the weight, an offset of the size).
-    pub constant_deviation: Option<f64>,
-}
-
-impl Default for PlanarObserverOptions {
-    fn default() -> Self {
-        Self {
-            window: None,
-            settle: None,
-            steps: 1,
-            arrival: Arrival::Carry(1.0),
-            start: PlanarStartFrom::Nothing,
-            constant_deviation: None,
-        }
-    }
-}
-
-/// What is known at one sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlanarEstimate<const N: usize> {
-    /// Time, s.
-    pub t: f64,
-    /// State `(cm, v, omega0, constants)`.
-    pub state: SVector<f64, N>,
-    /// Orientation against the first sample, rad: the body's axes are those of the world at the first sample.
-    pub phi0: f64,
-    /// Radius functions `r_i = n_i . cm` at the contacts, m.
-    pub radii: [f64; 2],
-    /// Their standard deviations, m.
-    pub radius_deviations: [f64; 2],
-    /// Contact points in body axes from the centre of mass, m: the shape, point by point.
-    pub contact_points: [DVec2; 2],
-    /// Evidence.
-    pub report: Report<N>,
-    /// Why the linear covariance was not believed, where it was not; the report then claims no more than natural sizes.
-    pub doubt: Option<Doubt>,
-}
 
 /// Estimates motion and shape from a stream of samples with `N - 5` constants as states.
 pub struct PlanarObserver<const N: usize> {
@@ -113,16 +50,15 @@ impl<const N: usize> PlanarObserver<N> {
     ) -> Result<Self, PlanarEstimateError> {
         let unit = NaturalScale { length: 1.0, gravity: 1.0 };
         ForceDriven::<N>::new(nominal, unit, constants)?;
-        for (what, value) in [("window", options.window), ("settling time", options.settle)] {
-            if let Some(value) = value.filter(|v| !(*v > 0.0 && v.is_finite())) {
-                return Err(PlanarEstimateError::Value { what, value, needed: "positive and finite" });
-            }
-        }
+        options.check()?;
+        let builder = InputBuilder::new()
+            .with_force_deviation(nominal.force_deviation)
+            .with_palm_inertias(options.palm_inertias);
         Ok(Self {
             nominal,
             constants: constants.to_vec(),
             options,
-            builder: InputBuilder::new(),
+            builder,
             waiting: Vec::new(),
             scale: None,
             newton: None,
@@ -158,14 +94,11 @@ impl<const N: usize> PlanarObserver<N> {
             self.scale = Some(NaturalScale::from_sample(sample, self.nominal.gravity)?);
         }
         let waiting = &mut self.waiting;
-        self.builder.push(sample, |input| waiting.push(input))?;
+        self.builder.push(sample, |input| InputBuilder::place(waiting, input))?;
         if self.newton.is_some() {
-            let mut last = None;
-            while !self.waiting.is_empty() {
-                let input = self.waiting.remove(0);
-                last = self.advance(input);
-            }
-            return Ok(last);
+            let Some(newest) = self.waiting.pop() else { return Ok(None) };
+            self.amend();
+            return Ok(self.advance(newest));
         }
         let (Some(window), Some(first)) = (self.window(), self.waiting.first()) else { return Ok(None) };
         let collected = sample.t - first.t;
@@ -264,6 +197,15 @@ impl<const N: usize> PlanarObserver<N> {
         Ok((start, true))
     }
 
+    /// Gives the inputs that hindsight has improved to the window; none is waiting afterwards.
+    fn amend(&mut self) {
+        let Some(newton) = &mut self.newton else { return };
+        for (back, input) in self.waiting.drain(..).rev().enumerate() {
+            let sample = newton.model().sample(input);
+            newton.amend(back, sample);
+        }
+    }
+
     fn advance(&mut self, input: PairInput) -> Option<PlanarEstimate<N>> {
         let newton = self.newton.as_mut()?;
         let first_turn = turns(newton).next().unwrap_or(0.0);
@@ -273,15 +215,15 @@ impl<const N: usize> PlanarObserver<N> {
         }
         let estimate = newton.push(sample);
         let mut report = estimate.report;
-        let mut reason = None;
-        if self.options.arrival == Arrival::Forget
-            && !matches!(self.options.start, PlanarStartFrom::Motion(_))
-            && let (Some(newton), Some(scale)) = (&self.newton, self.scale)
-        {
-            reason = doubt(newton, &report, &scale);
-            if reason.is_some() {
-                report = doubtful(report, &estimate.state, &input.stages[2], &scale);
-            }
+        let (newton, scale) = (self.newton.as_ref()?, self.scale?);
+        // A window that forgets can lose what it knew; a given motion is taken at its word until readings contradict it.
+        let forgets = self.options.arrival == Arrival::Forget;
+        let reason = match self.options.start {
+            PlanarStartFrom::Nothing | PlanarStartFrom::Guess(_) if forgets => doubt(newton, &report, &scale),
+            _ => doubt_along(newton, &report),
+        };
+        if reason.is_some() {
+            report = doubtful(report, &estimate.state, &input.stages[2], &scale);
         }
         self.estimate(estimate.state, report, reason)
     }
@@ -292,44 +234,6 @@ impl<const N: usize> PlanarObserver<N> {
         report: Report<N>,
         doubt: Option<Doubt>,
     ) -> Option<PlanarEstimate<N>> {
-        let newton = self.newton.as_ref()?;
-        let input = newton.samples().last()?.input;
-        let phi0 = self.base + turns(newton).sum::<f64>();
-        let stage = &input.stages[2];
-        let cm = DVec2::new(state[0], state[1]);
-        let radii = stage.normals.map(|n| n.dot(cm));
-        let p = report.covariance.fixed_view::<2, 2>(0, 0);
-        let radius_deviations = stage.normals.map(|n| {
-            let n = SVector::<f64, 2>::new(n.x, n.y);
-            n.dot(&(p * n)).max(0.0).sqrt()
-        });
-        let d = newton.model().contact_offsets(&state, stage);
-        // Outward normal -n_i; the tangents in the world are -u_1 and u_2.
-        let along = [stage.along[0] * -d[0], stage.along[1] * d[1]];
-        let back = DVec2::from_angle(-phi0);
-        let contact_points = [0, 1].map(|i| back.rotate(along[i] - stage.normals[i] * radii[i]));
-        Some(PlanarEstimate {
-            t: input.t,
-            state,
-            phi0,
-            radii,
-            radius_deviations,
-            contact_points,
-            report,
-            doubt,
-        })
+        PlanarEstimate::new(self.newton.as_ref()?, self.base, state, report, doubt)
     }
-}
-
-/// Turn over each interval of the window, by the trapezoid rule with end correction: error of order `h^5` an interval.
-fn turns<const N: usize>(newton: &NewtonObserver<ForceDriven<N>, N, 2>) -> impl Iterator<Item = f64> {
-    let model = newton.model();
-    let mut before: Option<(f64, f64)> = None;
-    newton.trajectory().zip(newton.samples()).filter_map(move |(x, sample)| {
-        let here = (x[4], model.angular_acceleration(x, &sample.input.stages[2]));
-        let h = sample.input.dt;
-        let turn = before.map(|b| h * (0.5 * (b.0 + here.0) + h / 12.0 * (b.1 - here.1)));
-        before = Some(here);
-        turn
-    })
 }

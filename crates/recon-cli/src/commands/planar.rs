@@ -86,7 +86,8 @@ fn observe(args: &PlanarArgs, log: &PlanarLog, mass: PlanarMass) -> Result<Recon
     let samples = log.samples();
     let seconds = samples[samples.len() - 1].t - samples[0].t;
     // A short log still gives a result: the first estimate comes at half of it, if that is long enough to be believed.
-    let time = NaturalScale::from_sample(&samples[0], args.gravity)?.time();
+    let scale = NaturalScale::from_sample(&samples[0], args.gravity)?;
+    let time = scale.time();
     let settle = (STARTING_TIMES * time).min((0.5 * seconds).max(SHORTEST_TIMES * time));
     let options = PlanarObserverOptions { settle: Some(settle), ..Default::default() };
     let mut observer = PlanarObserver::<5>::new(nominal, &[], options)?;
@@ -107,14 +108,15 @@ fn observe(args: &PlanarArgs, log: &PlanarLog, mass: PlanarMass) -> Result<Recon
             Err(error) => return Err(error.into()),
         }
     }
-    let last = last.ok_or(CliError::PlanarTooShort { seconds })?;
+    let last = last.ok_or(CliError::PlanarTooShort { seconds, needed: settle, length: scale.length })?;
     if let Some(doubt) = last.doubt {
         warnings.push(format!("not to be relied on: {doubt:?}"));
     }
     let figures = json!({
         "method": "Newton observer, forces measured",
         "window_s": observer.window(),
-        "natural_time_s": observer.scale().map(|s| s.time()),
+        "natural_time_s": time,
+        "natural_length_m": scale.length,
         "status": format!("{:?}", last.report.status),
         "residual": last.report.residual,
         "rank": last.report.rank,
@@ -127,6 +129,9 @@ fn observe(args: &PlanarArgs, log: &PlanarLog, mass: PlanarMass) -> Result<Recon
 }
 
 fn fit(args: &PlanarArgs, log: &PlanarLog) -> Result<Reconstruction, CliError> {
+    if args.contact_noise <= 0.0 {
+        return Err(CliError::PlanarNoise);
+    }
     let options = ShapeFitOptions {
         order: usize::from(args.order),
         contact_deviation: args.contact_noise,
@@ -217,7 +222,7 @@ fn panels(log: &PlanarLog, made: &Reconstruction) -> Vec<FigurePanel> {
     };
     let over = |pick: &dyn Fn(&Row) -> f64| made.rows.iter().map(|r| [r.t, pick(r)]).collect::<Vec<_>>();
     let shape = [0, 1].map(|i| FigureCurve {
-        name: format!("contacts of palm {}", i + 1),
+        name: format!("palm {}", i + 1),
         points: made.rows.iter().map(|r| r.points[i].to_array()).collect(),
         dots: true,
     });
@@ -231,14 +236,15 @@ fn panels(log: &PlanarLog, made: &Reconstruction) -> Vec<FigurePanel> {
         panel("Orientation", "phi0 in rad", vec![line("observed", over(&|r| r.phi0))]),
         panel(
             "Radius functions at the contacts",
-            "m",
+            "r in m",
             vec![line("r1", over(&|r| r.radii[0])), line("r2", over(&|r| r.radii[1]))],
         ),
     ];
     let Some(truth) = log.truth() else { return panels };
     let first = truth[0].phi0;
     let rows: Vec<_> = log.samples().iter().zip(truth).collect();
-    panels[1].curves.push(line("true", rows.iter().map(|(s, t)| [s.t, t.phi0 - first]).collect()));
+    // Below the observed one, which begins later.
+    panels[1].curves.insert(0, line("true", rows.iter().map(|(s, t)| [s.t, t.phi0 - first]).collect()));
     let errors = made.rows.iter().filter_map(|r| {
         let k = rows.partition_point(|(s, _)| s.t < r.t);
         let (sample, truth) = rows.get(k)?;
@@ -265,7 +271,15 @@ fn describe(args: &PlanarArgs, made: &Reconstruction) -> String {
     let last = made.rows.last().map_or(f64::NAN, |r| r.t);
     let first = made.rows.first().map_or(f64::NAN, |r| r.t);
     text += &format!("{} estimates from t = {first} s to {last} s\n", made.rows.len());
-    for key in ["method", "status", "residual", "window_s", "gyration_squared_m2", "radius_deviation_m"] {
+    for key in [
+        "method",
+        "status",
+        "residual",
+        "natural_length_m",
+        "window_s",
+        "gyration_squared_m2",
+        "radius_deviation_m",
+    ] {
         if let Some(value) = made.figures.get(key) {
             text += &format!("  {key:<22} {value}\n");
         }

@@ -114,9 +114,9 @@ fn sample(row: &Row, columns: &Columns) -> Result<PlanarSample, Kind> {
 fn sample_of(error: &PlanarLogError) -> Option<usize> {
     match *error {
         PlanarLogError::NotFinite { sample, .. }
-        | PlanarLogError::TimeNotIncreasing { sample, .. }
+        | PlanarLogError::NegativeForce { sample, .. }
         | PlanarLogError::Palms { sample, .. } => Some(sample),
-        PlanarLogError::TooShort { .. } | PlanarLogError::TruthLength { .. } => None,
+        PlanarLogError::Series(series) => series.sample(),
     }
 }
 
@@ -180,6 +180,8 @@ mod tests {
         assert!(flat.contains("line 3") && flat.contains("between 0 and pi"), "{flat}");
         let back = text(parse(&GOOD.replace("0.001", "-1")).unwrap_err());
         assert!(back.contains("line 3") && back.contains("-1"), "{back}");
+        let pull = text(parse(&GOOD.replace("0.7,1,nan", "0.7,-1,nan")).unwrap_err());
+        assert!(pull.contains("line 3") && pull.contains("palm 1") && pull.contains("cannot pull"), "{pull}");
         assert!(matches!(parse(""), Err(Kind::Empty)));
         assert!(matches!(
             parse("t,phi1,phi2,s1,s2\n1,2\n"),

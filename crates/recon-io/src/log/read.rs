@@ -179,11 +179,10 @@ impl Row<'_> {
 fn sample_of(error: &LogError) -> Option<usize> {
     match *error {
         LogError::TimeNotFinite { sample, .. }
-        | LogError::TimeNotIncreasing { sample, .. }
         | LogError::ReadingNotFinite { sample, .. }
         | LogError::NegativeForce { sample, .. }
         | LogError::Normal { sample, .. } => Some(sample),
-        LogError::TooShort { .. } | LogError::TruthLength { .. } => None,
+        LogError::Series(series) => series.sample(),
     }
 }
 

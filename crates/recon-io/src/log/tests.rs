@@ -2,7 +2,7 @@ use super::{LogFileErrorKind as Kind, parse_log, write_log};
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 use recon::contact_kinematics::PalmFrame;
-use recon::object_dynamics::{LogError, PalmReading, Sample, SensorLog, TrueState};
+use recon::object_dynamics::{LogError, PalmReading, Sample, SensorLog, SeriesError, TrueState};
 
 /// A log as text: two samples of three palms 120 degrees apart, edited cell by cell in the tests below.
 struct Table {
@@ -91,7 +91,10 @@ fn bad_cells_are_named_by_line_and_column() {
     assert!(matches!(at(1, "nz_3", "1.5"), Kind::Normal { line: 3, palm: 3, .. }));
     assert!(matches!(
         at(1, "t", "0"),
-        Kind::Samples { line: Some(3), source: LogError::TimeNotIncreasing { sample: 1, .. } }
+        Kind::Samples {
+            line: Some(3),
+            source: LogError::Series(SeriesError::TimeNotIncreasing { sample: 1, .. })
+        }
     ));
     assert!(matches!(
         at(0, "f_2", "-5"),
@@ -134,9 +137,15 @@ fn too_little_is_named() {
     assert!(matches!(parse_log("\n\n".as_bytes()), Err(Kind::Empty)));
     let mut table = Table::good();
     table.rows.truncate(1);
-    assert!(matches!(table.parse(), Err(Kind::Samples { source: LogError::TooShort { found: 1 }, .. })));
+    assert!(matches!(
+        table.parse(),
+        Err(Kind::Samples { source: LogError::Series(SeriesError::TooShort { found: 1 }), .. })
+    ));
     table.rows.clear();
-    assert!(matches!(table.parse(), Err(Kind::Samples { source: LogError::TooShort { found: 0 }, .. })));
+    assert!(matches!(
+        table.parse(),
+        Err(Kind::Samples { source: LogError::Series(SeriesError::TooShort { found: 0 }), .. })
+    ));
 }
 
 #[test]

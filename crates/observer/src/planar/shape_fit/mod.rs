@@ -1,13 +1,19 @@
 //! Shape and motion from contacts and palm angles alone: no forces, no mass.
 
+mod evidence;
+mod integrate;
+mod model;
+mod palm_series;
+
 use super::error::PlanarEstimateError;
-use super::palm_series::palm_series;
 use super::scale::NaturalScale;
-use super::shape_model::{Contacts, PalmInstant, reaction};
 use crate::{ObserverError, Status};
 use contact_kinematics::planar::{FourierBody, ShapeError};
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use integrate::Normal;
+use model::PalmInstant;
+use nalgebra::{DMatrix, DVector};
 use object_dynamics::planar::{PlanarLog, PlanarSample};
+use palm_series::palm_series;
 
 /// Parameters before the Fourier coefficients: angular velocity, logarithm of the squared radius of gyration.
 const MOTION: usize = 2;
@@ -28,8 +34,6 @@ const GROWTH: f64 = 1.5;
 const FIRST_NOISE: f64 = 0.01;
 /// Levenberg-Marquardt iterations per window.
 const ITERATIONS: usize = 30;
-/// Residual beyond which the noise does not explain the data.
-const CONSISTENT_RESIDUAL: f64 = 3.0;
 /// Chi-squared above the best at which a start is given up: wide while the window is short, 3 standard deviations at the end.
 const EARLY_MARGIN: f64 = 25.0;
 const FINAL_MARGIN: f64 = 9.0;
@@ -96,15 +100,6 @@ struct Problem<'a> {
     options: ShapeFitOptions,
     centre: DVector<f64>,
     deviations: DVector<f64>,
-}
-
-/// Normal equations about a point, in units of the prior's deviations; the prior is not in them.
-struct Normal {
-    matrix: DMatrix<f64>,
-    vector: DVector<f64>,
-    squares: f64,
-    motion: Vec<[f64; 2]>,
-    radii: Vec<[f64; 2]>,
 }
 
 /// Estimates shape and motion from contacts and palm angles alone: the finite-dimensional alternative to torques.
@@ -209,83 +204,6 @@ impl<'a> Problem<'a> {
         out
     }
 
-    /// Integrates over `count` samples; none where the motion leaves the numbers.
-    fn normal(&self, x: &DVector<f64>, count: usize, noise: f64) -> Option<Normal> {
-        let parameters = x.len();
-        let mut out = Normal {
-            matrix: DMatrix::zeros(parameters, parameters),
-            vector: DVector::zeros(parameters),
-            squares: 0.0,
-            motion: Vec::with_capacity(count),
-            radii: Vec::with_capacity(count),
-        };
-        let mut contacts = Contacts::new(self.options.order);
-        let mut state = State { values: [0.0, x[0]], by: DMatrix::zeros(parameters, 2) };
-        state.by[(0, 1)] = self.deviations[0];
-        let mut rows = DMatrix::zeros(parameters, 2);
-        for k in 0..count {
-            if k > 0 {
-                let h = self.samples[k].t - self.samples[k - 1].t;
-                let stages = [self.palms[2 * k - 2], self.palms[2 * k - 1], self.palms[2 * k]];
-                state = self.step(&state, x, h, &stages, &mut contacts);
-            }
-            contacts.set(&x.as_slice()[MOTION..], &self.palms[2 * k], state.values[0], state.values[1]);
-            let here = reaction(&self.palms[2 * k], self.options.gravity, x[1].exp(), &contacts.values);
-            for i in 0..2 {
-                let measured = self.samples[k].contacts[i]?;
-                let residual = (measured - here.contacts[i]) / noise;
-                out.squares += residual * residual;
-                let gradient = &here.contacts_by[i];
-                let by_phi = gradient.dot(&contacts.by_phi);
-                for j in 0..parameters {
-                    let own = if j < MOTION { 0.0 } else { contacts.by_coefficient(gradient, j - MOTION) };
-                    rows[(j, i)] = (own * self.deviations[j] + by_phi * state.by[(j, 0)]) / noise;
-                }
-                out.vector.axpy(residual, &rows.column(i), 1.0);
-            }
-            out.matrix.gemm(1.0, &rows, &rows.transpose(), 1.0);
-            out.motion.push(state.values);
-            out.radii.push([contacts.values[0], contacts.values[3]]);
-        }
-        out.squares.is_finite().then_some(out)
-    }
-
-    /// Rates of the state and of its sensitivities (in units of the prior's deviations).
-    fn rate(&self, state: &State, x: &DVector<f64>, palms: &PalmInstant, contacts: &mut Contacts) -> State {
-        contacts.set(&x.as_slice()[MOTION..], palms, state.values[0], state.values[1]);
-        let gyration = x[1].exp();
-        let here = reaction(palms, self.options.gravity, gyration, &contacts.values);
-        let by_phi = here.by_contact.dot(&contacts.by_phi);
-        let by_omega = here.by_contact[6];
-        let by = DMatrix::from_fn(x.len(), 2, |j, part| {
-            if part == 0 {
-                return state.by[(j, 1)];
-            }
-            let own = match j {
-                0 => 0.0,
-                1 => here.by_gyration * gyration,
-                _ => contacts.by_coefficient(&here.by_contact, j - MOTION),
-            };
-            own * self.deviations[j] + by_phi * state.by[(j, 0)] + by_omega * state.by[(j, 1)]
-        });
-        State { values: [state.values[1], here.alpha], by }
-    }
-
-    fn step(
-        &self,
-        state: &State,
-        x: &DVector<f64>,
-        h: f64,
-        stages: &[PalmInstant; 3],
-        contacts: &mut Contacts,
-    ) -> State {
-        let k1 = self.rate(state, x, &stages[0], contacts);
-        let k2 = self.rate(&state.moved(&k1, 0.5 * h), x, &stages[1], contacts);
-        let k3 = self.rate(&state.moved(&k2, 0.5 * h), x, &stages[1], contacts);
-        let k4 = self.rate(&state.moved(&k3, h), x, &stages[2], contacts);
-        state.moved(&k1, h / 6.0).moved(&k2, h / 3.0).moved(&k3, h / 3.0).moved(&k4, h / 6.0)
-    }
-
     fn prior_offset(&self, x: &DVector<f64>) -> DVector<f64> {
         (&self.centre - x).component_div(&self.deviations)
     }
@@ -326,99 +244,4 @@ impl<'a> Problem<'a> {
         }
         (x, current)
     }
-
-    /// Evidence about the best of `finals`. Others that explain the data as well widen the covariance: the linear one knows
-    /// only its own valley.
-    fn finish(&self, finals: &[Candidate], iterations: usize) -> ShapeFit {
-        let x = finals.first().map_or(&self.centre, |best| &best.1);
-        let all = self.samples.len();
-        let count = x.len();
-        let normal = self.normal(x, all, self.options.contact_deviation);
-        let (matrix, squares, motion, radii) = match normal {
-            Some(n) => (n.matrix, n.squares, n.motion, n.radii),
-            None => (DMatrix::zeros(count, count), f64::NAN, Vec::new(), Vec::new()),
-        };
-        let eigen = SymmetricEigen::new(matrix);
-        let lowest = eigen.eigenvalues.imin();
-        let inner = eigen.eigenvalues.map(|v| 1.0 / (1.0 + v.max(0.0)));
-        let scaled = &eigen.eigenvectors * DMatrix::from_diagonal(&inner) * eigen.eigenvectors.transpose();
-        let mut covariance =
-            DMatrix::from_fn(count, count, |i, j| scaled[(i, j)] * self.deviations[i] * self.deviations[j]);
-        for (_, rival) in finals.iter().skip(1) {
-            let away = rival - x;
-            covariance += &away * away.transpose();
-        }
-        // Some direction is free, and the search over many starts has then fitted noise along it (as a disc's turn rate to the
-        // strongest ripple): nothing beyond the prior is claimed.
-        if eigen.eigenvalues[lowest] < 1.0 {
-            let away = &self.centre - x;
-            covariance = DMatrix::from_diagonal(&self.deviations.component_mul(&self.deviations));
-            covariance += &away * away.transpose();
-        }
-        let residual = (squares / (2 * all) as f64).sqrt();
-        let smallest_information = eigen.eigenvalues[lowest].max(0.0);
-        let status = if !residual.is_finite() {
-            Status::Diverged
-        } else if smallest_information < 1.0 {
-            Status::NotObservable
-        } else if residual > CONSISTENT_RESIDUAL {
-            Status::Inconsistent
-        } else {
-            Status::Converged
-        };
-        let deviation = |j: usize| covariance[(j, j)].sqrt();
-        let gyration = x[1].exp();
-        let harmonics = |part: usize| (1..=self.options.order).map(move |k| 2 * k + part);
-        let mut cosines = vec![x[2]];
-        cosines.extend(harmonics(1).map(|j| x[j]));
-        let mut sines = vec![0.0];
-        sines.extend(harmonics(2).map(|j| x[j]));
-        ShapeFit {
-            cosines,
-            sines,
-            gyration_squared: (gyration, gyration * deviation(1)),
-            omega0: (x[0], deviation(0)),
-            motion,
-            radii,
-            residual,
-            status,
-            smallest_information,
-            direction: describe(&eigen.eigenvectors.column(lowest).into_owned()),
-            iterations,
-            covariance,
-        }
-    }
-}
-
-/// State `(phi0, omega0)` and its sensitivities, one row a parameter.
-struct State {
-    values: [f64; 2],
-    by: DMatrix<f64>,
-}
-
-impl State {
-    fn moved(&self, rate: &State, h: f64) -> State {
-        let mut by = self.by.clone();
-        by.zip_apply(&rate.by, |a, b| *a += h * b);
-        State { values: [0, 1].map(|i| self.values[i] + h * rate.values[i]), by }
-    }
-}
-
-fn name(j: usize) -> String {
-    match j {
-        0 => "angular velocity".to_owned(),
-        1 => "log squared radius of gyration".to_owned(),
-        2 => "mean radius".to_owned(),
-        _ => format!("{} of harmonic {}", if j % 2 == 1 { "cosine" } else { "sine" }, (j - 1) / 2),
-    }
-}
-
-fn describe(direction: &DVector<f64>) -> String {
-    let mut order: Vec<usize> = (0..direction.len()).collect();
-    order.sort_by(|&i, &j| direction[j].abs().total_cmp(&direction[i].abs()));
-    let sign = direction[order[0]].signum();
-    let large = order.iter().enumerate().filter(|&(place, &j)| place == 0 || direction[j].abs() > 0.25);
-    let parts: Vec<String> =
-        large.map(|(_, &j)| format!("{} ({:.2})", name(j), sign * direction[j])).collect();
-    parts.join(", ")
 }

@@ -1,17 +1,20 @@
 //! Quasistatic reconstruction in closed form: slow palms, no forces, no masses.
 
-use contact_kinematics::planar::{PalmPair, PalmPairError};
+mod closure;
+mod error;
+mod quadrature;
+
+pub use closure::{HeightFit, height_from_closure};
+pub use error::QuasistaticError;
+
+use contact_kinematics::planar::PalmPair;
 use glam::DVec2;
-use object_dynamics::integrate::find_root;
 use object_dynamics::planar::{PlanarLog, PlanarSample};
-use thiserror::Error;
+use quadrature::line_integral;
 
 /// Height of the centre of mass over the meeting point of the lines of force, as a share of the contact distances, below
 /// which the turn of the object cannot be computed: it is divided by its square.
 const SMALLEST_HEIGHT: f64 = 1e-6;
-/// Change of the closure over the bracket, in rad, below which it says nothing about the height.
-const SMALLEST_CLOSURE: f64 = 1e-9;
-
 /// One instant of a quasistatic reconstruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuasistaticPoint {
@@ -46,68 +49,6 @@ pub struct QuasistaticPath {
     /// Largest ratio of the object's turn to the palms' turn over one interval, and the sample at its end. It grows without
     /// bound towards a fold.
     pub gain: (f64, usize),
-}
-
-/// Height of the centre of mass from the closure of the orientation on a loop of the palms.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeightFit {
-    /// Height of the centre of mass at the first sample, m.
-    pub height: f64,
-    /// Change of the closure with the height, rad/m. The deviation of the height is that of the closing orientation over this.
-    pub sensitivity: f64,
-}
-
-/// Why a quasistatic reconstruction cannot be made.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum QuasistaticError {
-    /// Fewer than four samples.
-    #[error("{found} sample(s) given, at least 4 are needed")]
-    TooFewSamples {
-        /// How many there are.
-        found: usize,
-    },
-    /// A palm has no contact.
-    #[error("palm {palm} has no contact at sample {sample}")]
-    LostContact {
-        /// 1 or 2.
-        palm: usize,
-        /// Index from 0.
-        sample: usize,
-    },
-    /// The wedge is closed or flat.
-    #[error("sample {sample}: {source}")]
-    Palms {
-        /// Index from 0.
-        sample: usize,
-        /// Why.
-        source: PalmPairError,
-    },
-    /// The centre of mass is where the lines of force meet, as in a centred disc: the orientation cannot be seen.
-    #[error(
-        "at sample {sample} the centre of mass is {lever:.3e} m from where the lines of force meet; the turn of the object cannot be seen there"
-    )]
-    NoLever {
-        /// Index from 0.
-        sample: usize,
-        /// Lever in m.
-        lever: f64,
-    },
-    /// The palms do not come back to where they started.
-    #[error("palms end {distance:.3e} rad from where they started; closure needs a loop")]
-    NoLoop {
-        /// Distance in rad.
-        distance: f64,
-    },
-    /// The loop does not say where the centre of mass is.
-    #[error(
-        "closure changes from {low:.3e} to {high:.3e} rad over the bracket; give another bracket or a loop on which the angle between the palms changes"
-    )]
-    NoClosure {
-        /// Closure at the lower height, rad.
-        low: f64,
-        /// Closure at the upper height, rad.
-        high: f64,
-    },
 }
 
 /// Palms and contacts of one sample and what follows from them alone.
@@ -244,64 +185,4 @@ fn assemble(
 /// Difference of the two accounts of the turn from their weighted parts; zero where one palm has no say.
 fn share_difference(first: f64, second: f64, share: f64) -> f64 {
     if share <= 1e-6 || share >= 1.0 - 1e-6 { 0.0 } else { first / share - second / (1.0 - share) }
-}
-
-/// Height of the centre of mass at the first sample for which the orientation closes on a loop of the palms, between two
-/// heights (m).
-///
-/// On a loop that ends where it began the object is back in the same equilibrium, if it stayed on one stable branch. The
-/// height enters the closure only weakly, and not at all while the angle between the palms is constant.
-///
-/// # Errors
-/// [`QuasistaticError`]: no loop, no closure within the bracket, or what [`quasistatic_reconstruction`] refuses.
-pub fn height_from_closure(log: &PlanarLog, bracket: [f64; 2]) -> Result<HeightFit, QuasistaticError> {
-    let samples = log.samples();
-    let (first, last) = (samples[0].angles, samples[samples.len() - 1].angles);
-    let distance = (first[0] - last[0]).hypot(first[1] - last[1]);
-    let path: f64 = samples
-        .windows(2)
-        .map(|w| (w[1].angles[0] - w[0].angles[0]).hypot(w[1].angles[1] - w[0].angles[1]))
-        .sum();
-    if distance.is_nan() || distance > 1e-6 * path {
-        return Err(QuasistaticError::NoLoop { distance });
-    }
-    let closure = |height: f64| {
-        quasistatic_reconstruction(log, height).map(|p| p.points.last().map_or(f64::NAN, |p| p.phi0))
-    };
-    let (low, high) = (closure(bracket[0])?, closure(bracket[1])?);
-    let size = bracket[0].abs().max(bracket[1].abs());
-    let root = find_root(|h| closure(h).unwrap_or(f64::NAN), bracket[0], bracket[1], 1e-12 * size);
-    let height = match root {
-        Ok(height) if (high - low).abs() > SMALLEST_CLOSURE => height,
-        _ => return Err(QuasistaticError::NoClosure { low, high }),
-    };
-    let step = 1e-4 * (bracket[1] - bracket[0]);
-    let sensitivity = (closure(height + step)? - closure(height - step)?) / (2.0 * step);
-    Ok(HeightFit { height, sensitivity })
-}
-
-/// Integral of `f dg` over each interval between samples: cubics through the four nearest samples, three-point Gauss rule.
-fn line_integral(f: &[f64], g: &[f64]) -> Vec<f64> {
-    let gauss = 0.5 * 0.6_f64.sqrt();
-    let rule = [(0.5 - gauss, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + gauss, 5.0 / 18.0)];
-    (0..f.len() - 1)
-        .map(|k| {
-            let from = k.saturating_sub(1).min(f.len() - 4);
-            let at = (k - from) as f64;
-            let part = |(u, weight): (f64, f64)| {
-                weight * cubic(&f[from..from + 4], at + u).0 * cubic(&g[from..from + 4], at + u).1
-            };
-            rule.into_iter().map(part).sum()
-        })
-        .collect()
-}
-
-/// Cubic through four values at 0, 1, 2, 3, and its slope, at `u`; Newton's forward differences.
-fn cubic(v: &[f64], u: f64) -> (f64, f64) {
-    let d1 = v[1] - v[0];
-    let d2 = v[2] - 2.0 * v[1] + v[0];
-    let d3 = v[3] - 3.0 * (v[2] - v[1]) - v[0];
-    let value = v[0] + u * (d1 + (u - 1.0) / 2.0 * (d2 + (u - 2.0) / 3.0 * d3));
-    let slope = d1 + (2.0 * u - 1.0) / 2.0 * d2 + (3.0 * u * u - 6.0 * u + 2.0) / 6.0 * d3;
-    (value, slope)
 }
