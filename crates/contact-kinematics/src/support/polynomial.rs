@@ -5,8 +5,11 @@ use glam::{DMat3, DVec3};
 
 /// Highest degree accepted: at degree 32 the curvature bounds below take about a second.
 const LARGEST_DEGREE: u32 = 32;
-/// Grid spacing times degree in [`PolynomialSupport::curvature_radii`]: the slack is this share of the largest radius.
-const SPACING_TIMES_DEGREE: f64 = 0.05;
+/// Grid spacings times degree in [`PolynomialSupport::curvature_radii`], tried in turn: the slack is half the square of
+/// these, as a share of the largest radius.
+const SPACINGS_TIMES_DEGREE: [f64; 2] = [0.25, 0.05];
+/// Slack, as a share of the smallest radius, with which the coarser grid will do.
+const ENOUGH: f64 = 0.05;
 
 /// One term `coefficient n_x^i n_y^j n_z^k` of a polynomial on the unit sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +74,15 @@ impl PolynomialSupport {
                 super::harmonic::push_harmonic(&mut terms, l, index, coefficient);
             }
         }
+        // Harmonics share monomials: each is evaluated once. The sort is stable, so sums have a fixed order.
+        terms.sort_by_key(|term| term.powers);
+        terms.dedup_by(|later, first| {
+            let same = later.powers == first.powers;
+            if same {
+                first.coefficient += later.coefficient;
+            }
+            same
+        });
         Self::new(terms)
     }
 
@@ -110,14 +122,30 @@ impl SupportFunction for PolynomialSupport {
         self.terms.iter().map(|term| term.coefficient * powers(term)).sum()
     }
 
-    /// A certificate, not a sample: along any great circle the normal curvature radius is a trigonometric polynomial
-    /// of at most the degree `k` of `h`, so by Bernstein's inequality its slope is at most `k M`, with `M` the largest
-    /// absolute radius. A grid that leaves no normal further than `delta` away therefore errs by at most `delta k M`,
-    /// and `M` itself is at most its grid value over `1 - delta k`.
+    /// A certificate, not a sample: along any great circle, in a direction carried along in parallel, the normal
+    /// curvature radius is a trigonometric polynomial of at most the degree `k` of `h`, so by Bernstein's inequality its
+    /// second derivative is at most `k^2 M`, with `M` the largest absolute radius. At the place and in the direction
+    /// where it is extreme its slope vanishes, so a grid that leaves no normal further than `delta` away errs by at most
+    /// `(delta k)^2 M / 2`, and `M` itself is at most its grid value over `1 - (delta k)^2 / 2`.
     fn curvature_radii(&self) -> CurvatureRadii {
+        let mut radii = CurvatureRadii { min: f64::NEG_INFINITY, max: f64::INFINITY };
+        for spacing in SPACINGS_TIMES_DEGREE {
+            let (min, max, slack) = self.radii_on_grid(spacing);
+            radii = CurvatureRadii { min: min - slack, max: max + slack };
+            if slack <= ENOUGH * min.abs() {
+                break;
+            }
+        }
+        radii
+    }
+}
+
+impl PolynomialSupport {
+    /// Smallest and largest radius on a grid whose spacing times the degree is at most `spacing`, and the slack.
+    fn radii_on_grid(&self, spacing: f64) -> (f64, f64, f64) {
         let degree = f64::from(self.degree.max(1));
         // Cube faces with `cells`^2 cells each: the half diagonal of a cell, sqrt(2) / cells, bounds the angle.
-        let cells = (2f64.sqrt() * degree / SPACING_TIMES_DEGREE).ceil() as u32;
+        let cells = (2f64.sqrt() * degree / spacing).ceil() as u32;
         let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
         for face in 0..6 {
             for i in 0..cells {
@@ -128,9 +156,8 @@ impl SupportFunction for PolynomialSupport {
                 }
             }
         }
-        let share = 2f64.sqrt() / f64::from(cells) * degree;
-        let slack = share * min.abs().max(max.abs()) / (1.0 - share);
-        CurvatureRadii { min: min - slack, max: max + slack }
+        let share = 0.5 * (2f64.sqrt() / f64::from(cells) * degree).powi(2);
+        (min, max, share * min.abs().max(max.abs()) / (1.0 - share))
     }
 }
 
