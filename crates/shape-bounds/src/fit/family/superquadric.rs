@@ -1,0 +1,314 @@
+use super::{Model, write};
+use contact_kinematics::{CurvatureRadii, Direction, ShapeError, SupportFunction, SupportJet};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::DVector;
+
+/// Exponents are kept this far within (0, 2), where the surface is a box or a double pyramid.
+const EDGE: f64 = 0.1;
+/// Shares of the norm below this are taken for this in second derivatives, which have no bound there.
+const SMALLEST_SHARE: f64 = 1e-6;
+
+/// A convex superquadric: `((|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1)) = 1` about its centre and in its own
+/// axes (Barr, "Superquadrics and angle-preserving transformations", 1981, equation (2.8)).
+///
+/// The left side is a power of a norm, two nested norms of exponents `2/e1` and `2/e2`, so the support function is the
+/// dual norm, nested likewise, with exponents `q = 2 / (2 - e)`: closed form with all derivatives. With both exponents 1 it
+/// is an ellipsoid; below 1 it tends to a box, above to a double pyramid. Unless both are 1, radii of curvature are zero
+/// or infinite in places, so [`contact_kinematics::check_convex`] refuses it as a body for dynamics.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Superquadric {
+    centre: DVec3,
+    semi_axes: DVec3,
+    rotation: DQuat,
+    exponents: [f64; 2],
+}
+
+impl Superquadric {
+    /// From centre (m), semi-axes (m), the rotation of its own axes into the body's, and the exponents `e1`, `e2`.
+    ///
+    /// # Errors
+    /// [`ShapeError::Length`] for lengths that are not positive and finite, [`ShapeError::Coefficient`] for exponents
+    /// (index 0 and 1) outside of 0.1 to 1.9.
+    pub fn new(
+        centre: DVec3,
+        semi_axes: DVec3,
+        rotation: DQuat,
+        exponents: [f64; 2],
+    ) -> Result<Self, ShapeError> {
+        for (what, value) in
+            ["semi-axis x", "semi-axis y", "semi-axis z"].into_iter().zip(semi_axes.to_array())
+        {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ShapeError::Length { what, value });
+            }
+        }
+        if !(centre.is_finite() && rotation.is_finite()) {
+            return Err(ShapeError::Length { what: "centre or rotation", value: f64::NAN });
+        }
+        for (index, value) in exponents.into_iter().enumerate() {
+            if !(EDGE..=2.0 - EDGE).contains(&value) {
+                return Err(ShapeError::Coefficient { index, value });
+            }
+        }
+        Ok(Self { centre, semi_axes, rotation: rotation.normalize(), exponents })
+    }
+
+    /// Centre in m.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        self.centre
+    }
+
+    /// Semi-axes `a`, `b`, `c` in m.
+    #[must_use]
+    pub fn semi_axes(&self) -> DVec3 {
+        self.semi_axes
+    }
+
+    /// Turns its own axes into the body's.
+    #[must_use]
+    pub fn rotation(&self) -> DQuat {
+        self.rotation
+    }
+
+    /// `e1` (along the third axis) and `e2` (around it).
+    #[must_use]
+    pub fn exponents(&self) -> [f64; 2] {
+        self.exponents
+    }
+
+    fn norm(&self, n: DVec3) -> Nested {
+        Nested::at(self.semi_axes * (self.rotation.inverse() * n), self.exponents.map(|e| 2.0 / (2.0 - e)))
+    }
+
+    fn jet_of(&self, n: DVec3, norm: &Nested) -> SupportJet {
+        let turn = DMat3::from_quat(self.rotation) * DMat3::from_diagonal(self.semi_axes);
+        SupportJet {
+            value: norm.value + self.centre.dot(n),
+            point: turn * norm.gradient + self.centre,
+            hessian: turn * norm.hessian * turn.transpose(),
+        }
+    }
+}
+
+impl SupportFunction for Superquadric {
+    /// Where a face is flat or an edge sharp, the Hessian is large or small but finite: shares of the norm below 1e-6
+    /// count as 1e-6.
+    fn jet(&self, n: Direction) -> SupportJet {
+        self.jet_of(n.get(), &self.norm(n.get()))
+    }
+
+    /// Those of the ellipsoid if both exponents are 1, else zero and infinity.
+    fn curvature_radii(&self) -> CurvatureRadii {
+        if self.exponents == [1.0, 1.0] {
+            let (short, long) = (self.semi_axes.min_element(), self.semi_axes.max_element());
+            CurvatureRadii { min: short * short / long, max: long * long / short }
+        } else {
+            CurvatureRadii { min: 0.0, max: f64::INFINITY }
+        }
+    }
+}
+
+/// `|(|(s1, s2)|_q2, s3)|_q1` with derivatives.
+struct Nested {
+    value: f64,
+    gradient: DVec3,
+    hessian: DMat3,
+    /// Derivatives of the gradient by `q1` and `q2`.
+    by_exponents: [DVec3; 2],
+}
+
+/// A norm of two components: value, gradient, second derivatives, and what its exponent does.
+struct Norm2 {
+    value: f64,
+    first: [f64; 2],
+    /// Second derivatives: both diagonal entries and the mixed one.
+    second: [f64; 3],
+    /// Derivative of the logarithm of the value by the exponent.
+    by_exponent: f64,
+    /// Derivative of each first derivative by the exponent.
+    first_by_exponent: [f64; 2],
+}
+
+impl Norm2 {
+    fn at(s: [f64; 2], q: f64) -> Self {
+        let largest = s[0].abs().max(s[1].abs()).max(f64::MIN_POSITIVE);
+        let scaled = s.map(|v| v.abs() / largest);
+        let value = largest * (scaled[0].powf(q) + scaled[1].powf(q)).powf(1.0 / q);
+        let share = s.map(|v| v.abs() / value);
+        let logarithm = share.map(|t| if t > 0.0 { t.ln() } else { 0.0 });
+        let power = share.map(|t| t.powf(q - 1.0));
+        let first = [power[0] * s[0].signum(), power[1] * s[1].signum()];
+        let by_exponent =
+            (power[0] * share[0] * logarithm[0] + power[1] * share[1] * logarithm[1]) / q;
+        let own = [0, 1].map(|i| {
+            (q - 1.0) / value * (share[i].max(SMALLEST_SHARE).powf(q - 2.0) - power[i] * power[i])
+        });
+        let mixed = (1.0 - q) / value * first[0] * first[1];
+        let first_by_exponent = [0, 1].map(|i| first[i] * (logarithm[i] - (q - 1.0) * by_exponent));
+        Self { value, first, second: [own[0], own[1], mixed], by_exponent, first_by_exponent }
+    }
+}
+
+impl Norm2 {
+    /// What stands for the norm where both components vanish: the size `least` and no slope.
+    fn at_zero(least: f64, q: f64) -> Self {
+        let own = (q - 1.0) / least * SMALLEST_SHARE.powf(q - 2.0);
+        Self {
+            value: least,
+            first: [0.0; 2],
+            second: [own, own, 0.0],
+            by_exponent: 0.0,
+            first_by_exponent: [0.0; 2],
+        }
+    }
+}
+
+impl Nested {
+    fn at(s: DVec3, q: [f64; 2]) -> Self {
+        // At the pole the inner norm vanishes; a share of 1e-12 of the outer one stands for it.
+        let least = 1e-12 * s.abs().max_element();
+        let mut inner = Norm2::at([s.x, s.y], q[1]);
+        if inner.value < least {
+            inner = Norm2::at_zero(least, q[1]);
+        }
+        let outer_norm = Norm2::at([inner.value, s.z], q[0]);
+        let [nw, nz] = outer_norm.first;
+        let [nww, nzz, nwz] = outer_norm.second;
+        let [wx, wy] = inner.first;
+        let [wxx, wyy, wxy] = inner.second;
+        let xy = nww * wx * wy + nw * wxy;
+        let hessian = DMat3::from_cols(
+            DVec3::new(nww * wx * wx + nw * wxx, xy, nwz * wx),
+            DVec3::new(xy, nww * wy * wy + nw * wyy, nwz * wy),
+            DVec3::new(nwz * wx, nwz * wy, nzz),
+        );
+        let [qw, qz] = outer_norm.first_by_exponent;
+        let grown = inner.value * inner.by_exponent;
+        let [gx, gy] = inner.first_by_exponent;
+        Self {
+            value: outer_norm.value,
+            gradient: DVec3::new(nw * wx, nw * wy, nz),
+            hessian,
+            by_exponents: [
+                DVec3::new(qw * wx, qw * wy, qz),
+                DVec3::new(nww * grown * wx + nw * gx, nww * grown * wy + nw * gy, nwz * grown),
+            ],
+        }
+    }
+}
+
+/// Centre, semi-axes, rotation vector (steps compose from the left) and exponents.
+pub(in crate::fit) struct SuperquadricModel;
+
+impl SuperquadricModel {
+    pub(in crate::fit) fn body(theta: &DVector<f64>) -> Result<Superquadric, ShapeError> {
+        let three = |i: usize| DVec3::new(theta[i], theta[i + 1], theta[i + 2]);
+        Superquadric::new(
+            three(0),
+            three(3),
+            DQuat::from_scaled_axis(three(6)),
+            [theta[9], theta[10]],
+        )
+    }
+
+    pub(in crate::fit) fn parameters(body: &Superquadric) -> DVector<f64> {
+        let mut theta = DVector::zeros(11);
+        for (i, v) in [body.centre, body.semi_axes, body.rotation.to_scaled_axis()].into_iter().enumerate() {
+            v.to_array().into_iter().enumerate().for_each(|(j, c)| theta[3 * i + j] = c);
+        }
+        theta[9] = body.exponents[0];
+        theta[10] = body.exponents[1];
+        theta
+    }
+}
+
+impl Model for SuperquadricModel {
+    fn count(&self) -> usize {
+        11
+    }
+
+    fn jet(&self, theta: &DVector<f64>, n: Direction, columns: Option<&mut [DVec3]>) -> Option<SupportJet> {
+        let body = Self::body(theta).ok()?;
+        let n = n.get();
+        let norm = body.norm(n);
+        let jet = body.jet_of(n, &norm);
+        if columns.is_none() {
+            return Some(jet);
+        }
+        let turn = body.rotation;
+        let local = turn.inverse() * n;
+        let own = jet.point - body.centre;
+        // y_j = a_j N_j(s), s_i = a_i m_i.
+        let by_axis = |i: usize| {
+            let second = norm.hessian.col(i) * local[i];
+            turn * (DVec3::AXES[i] * norm.gradient[i] + body.semi_axes * second)
+        };
+        // x = R y(R'n): a turn w of R moves x by w x x and the normal, seen by y, by -w x n.
+        let by_turn = |axis: DVec3| axis.cross(own) - jet.hessian * axis.cross(n);
+        // dq / de = q^2 / 2.
+        let by_exponent = |i: usize| {
+            let q = 2.0 / (2.0 - body.exponents[i]);
+            turn * (body.semi_axes * norm.by_exponents[i]) * (0.5 * q * q)
+        };
+        let [x, y, z] = DVec3::AXES;
+        write(
+            columns,
+            [x, y, z, by_axis(0), by_axis(1), by_axis(2), by_turn(x), by_turn(y), by_turn(z), by_exponent(0), by_exponent(1)],
+        );
+        Some(jet)
+    }
+
+    /// Semi-axes lose no more than nine tenths in a step, and exponents stay in range.
+    fn moved(&self, theta: &DVector<f64>, step: &DVector<f64>) -> DVector<f64> {
+        let mut next = theta + step;
+        for i in 3..6 {
+            next[i] = next[i].max(0.1 * theta[i]);
+        }
+        let vector = |v: &DVector<f64>| DQuat::from_scaled_axis(DVec3::new(v[6], v[7], v[8]));
+        let turned = (vector(step) * vector(theta)).normalize().to_scaled_axis();
+        turned.to_array().into_iter().enumerate().for_each(|(j, c)| next[6 + j] = c);
+        for i in 9..11 {
+            next[i] = next[i].clamp(EDGE, 2.0 - EDGE);
+        }
+        next
+    }
+
+    fn scales(&self, size: f64) -> DVector<f64> {
+        DVector::from_fn(11, |i, _| if i < 6 { size } else { 1.0 })
+    }
+
+    fn name(&self, parameter: usize) -> String {
+        [
+            "centre x", "centre y", "centre z", "semi-axis 1", "semi-axis 2", "semi-axis 3", "turn about x",
+            "turn about y", "turn about z", "exponent e1", "exponent e2",
+        ][parameter]
+            .to_owned()
+    }
+
+    fn ball(&self, centre: DVec3, radius: f64) -> DVector<f64> {
+        let mut theta = DVector::zeros(11);
+        centre.to_array().into_iter().enumerate().for_each(|(j, c)| theta[j] = c);
+        (3..6).for_each(|i| theta[i] = radius);
+        (9..11).for_each(|i| theta[i] = 1.0);
+        theta
+    }
+}
+
+impl Superquadric {
+    /// The superquadric of the same axes whose third axis is the ellipsoid's axis `special`, turned about it by `turn`.
+    pub(in crate::fit) fn from_ellipsoid(body: &super::SkewEllipsoid, special: usize, turn: f64) -> Option<Self> {
+        let axes = [(special + 1) % 3, (special + 2) % 3, special];
+        let frame = DMat3::from_quat(body.rotation());
+        let rotation = DQuat::from_mat3(&DMat3::from_cols(
+            frame.col(axes[0]),
+            frame.col(axes[1]),
+            frame.col(axes[2]),
+        ));
+        let lengths = DVec3::from_array(axes.map(|i| body.semi_axes()[i]));
+        // Turned by an eighth, both axes across have the same length.
+        let mean = 0.5 * (lengths.x + lengths.y);
+        let lengths = if turn == 0.0 { lengths } else { DVec3::new(mean, mean, lengths.z) };
+        Self::new(body.centre(), lengths, rotation * DQuat::from_rotation_z(turn), [1.0, 1.0]).ok()
+    }
+}

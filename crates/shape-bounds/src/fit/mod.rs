@@ -1,0 +1,381 @@
+//! Shapes of few parameters fitted to contacts.
+//!
+//! A contact gives a point `x` and an outward normal `n`. For a body with support function `h`, `x = grad h(n)`: three
+//! equations in the shape's parameters, linear in those of a ball and of spherical harmonics, and free of the search for
+//! a foot point that a fit to points alone needs. Both `x` and `n` are measured; the error of the normal enters through
+//! the Hessian of `h`, see `solve`.
+
+mod choose;
+mod convex;
+mod error;
+mod family;
+mod incremental;
+pub(crate) mod information;
+mod nnls;
+mod report;
+mod solve;
+#[cfg(test)]
+mod tests;
+
+pub use choose::{Candidate, ShapeChoice};
+pub use error::FitError;
+pub use family::{SkewEllipsoid, Superquadric};
+pub use incremental::IncrementalFit;
+pub use report::{FitStatistics, ShapeFit};
+
+use crate::noise::NoisyContact;
+use contact_kinematics::{
+    CurvatureRadii, Direction, PolynomialSupport, Sphere, SupportFunction, SupportJet, Translated,
+};
+use family::{EllipsoidModel, HarmonicModel, Model, SphereModel, SuperquadricModel};
+use glam::DVec3;
+use information::SquareRoot;
+use nalgebra::DVector;
+use solve::{Solution, assemble, solve};
+use std::fmt;
+
+/// Families of shapes, by what their parameters are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ShapeFamily {
+    /// A ball: centre and radius, 4 parameters.
+    Sphere,
+    /// An ellipsoid, the general bounded quadric: 9 parameters.
+    Ellipsoid,
+    /// A convex superquadric: 11 parameters.
+    Superquadric,
+    /// A support function of spherical harmonics up to a degree: `(degree + 1)^2` parameters.
+    Harmonics {
+        /// The highest degree, 0 to 32; degree 1 is a ball.
+        degree: usize,
+    },
+}
+
+impl fmt::Display for ShapeFamily {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sphere => f.write_str("sphere"),
+            Self::Ellipsoid => f.write_str("ellipsoid"),
+            Self::Superquadric => f.write_str("superquadric"),
+            Self::Harmonics { degree } => write!(f, "harmonics to degree {degree}"),
+        }
+    }
+}
+
+impl ShapeFamily {
+    /// Number of parameters.
+    #[must_use]
+    pub fn parameters(self) -> usize {
+        match self {
+            Self::Sphere => 4,
+            Self::Ellipsoid => 9,
+            Self::Superquadric => 11,
+            Self::Harmonics { degree } => (degree + 1) * (degree + 1),
+        }
+    }
+
+    /// The model, or `None` for a degree that is not accepted.
+    fn model(self) -> Option<Box<dyn Model>> {
+        Some(match self {
+            Self::Sphere => Box::new(SphereModel),
+            Self::Ellipsoid => Box::new(EllipsoidModel),
+            Self::Superquadric => Box::new(SuperquadricModel),
+            Self::Harmonics { degree } => Box::new(HarmonicModel::new(degree).ok()?),
+        })
+    }
+}
+
+/// A fitted body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FittedBody {
+    /// A ball.
+    Sphere(Translated<Sphere>),
+    /// An ellipsoid.
+    Ellipsoid(SkewEllipsoid),
+    /// A superquadric.
+    Superquadric(Superquadric),
+    /// A polynomial support function, certified convex.
+    Harmonics(PolynomialSupport),
+}
+
+impl FittedBody {
+    fn support(&self) -> &dyn SupportFunction {
+        match self {
+            Self::Sphere(body) => body,
+            Self::Ellipsoid(body) => body,
+            Self::Superquadric(body) => body,
+            Self::Harmonics(body) => body,
+        }
+    }
+}
+
+impl SupportFunction for FittedBody {
+    fn jet(&self, n: Direction) -> SupportJet {
+        self.support().jet(n)
+    }
+    fn value(&self, n: Direction) -> f64 {
+        self.support().value(n)
+    }
+    fn curvature_radii(&self) -> CurvatureRadii {
+        self.support().curvature_radii()
+    }
+}
+
+/// Whether the stated noise is known, or only how it is shared out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NoiseLevel {
+    /// Standard deviations are as stated.
+    #[default]
+    Stated,
+    /// Standard deviations are right but for one common factor, which is estimated from the residuals.
+    Estimated,
+}
+
+/// What a fit is asked to keep to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FitOptions {
+    /// Whether the noise is known.
+    pub noise_level: NoiseLevel,
+    /// Lower limit of the radii of curvature of a harmonic shape in m; `None` for a hundredth of the size of the data
+    /// (the largest distance of a contact from their mean).
+    pub smallest_radius: Option<f64>,
+}
+
+impl ShapeFit {
+    /// The shape of a family that the contacts make likeliest.
+    ///
+    /// # Errors
+    /// [`FitError`] for bad values, too few contacts, contacts that leave a parameter open (all normals in one plane, one
+    /// short arc), and no convergence.
+    pub fn of(contacts: &[NoisyContact], family: ShapeFamily, options: &FitOptions) -> Result<Self, FitError> {
+        let data = Data::check(contacts, options)?;
+        let model = data.model(family, contacts.len())?;
+        let model = model.as_ref();
+        let solution = match family {
+            ShapeFamily::Superquadric => superquadric(model, contacts, &data)?,
+            _ => {
+                let start = ball(model, contacts, &data);
+                solve(model, start, contacts, data.size).map_err(|e| e.into_error(model, family, data.size))?
+            }
+        };
+        Self::finish(model, family, contacts, solution, &data)
+    }
+}
+
+/// What is common to all fits of the same contacts.
+#[derive(Clone, Copy, Debug)]
+struct Data {
+    size: f64,
+    centre: DVec3,
+    noise_level: NoiseLevel,
+    smallest_radius: f64,
+}
+
+impl Data {
+    fn check(contacts: &[NoisyContact], options: &FitOptions) -> Result<Self, FitError> {
+        for (index, contact) in contacts.iter().enumerate() {
+            check_contact(index, contact)?;
+        }
+        let centre =
+            contacts.iter().map(|c| c.contact.point).sum::<DVec3>() / contacts.len().max(1) as f64;
+        let size = contacts.iter().map(|c| c.contact.point.distance(centre)).fold(0.0, f64::max);
+        if contacts.len() > 1 && (size == 0.0 || !size.is_finite()) {
+            return Err(FitError::NoExtent { found: contacts.len() });
+        }
+        let smallest_radius = options.smallest_radius.unwrap_or(0.01 * size);
+        if !(smallest_radius >= 0.0 && smallest_radius.is_finite()) {
+            return Err(FitError::Radius(smallest_radius));
+        }
+        Ok(Self { size, centre, noise_level: options.noise_level, smallest_radius })
+    }
+
+    fn model(&self, family: ShapeFamily, found: usize) -> Result<Box<dyn Model>, FitError> {
+        let needed = family.parameters().div_ceil(3);
+        if found < needed.max(2) {
+            return Err(FitError::TooFew { family, found, needed: needed.max(2) });
+        }
+        match (family.model(), family) {
+            (Some(model), _) => Ok(model),
+            (None, ShapeFamily::Harmonics { degree }) => Err(FitError::Shape(
+                HarmonicModel::new(degree).err().unwrap_or(contact_kinematics::ShapeError::Degree {
+                    index: 0,
+                    degree: u32::try_from(degree).unwrap_or(u32::MAX),
+                    limit: 32,
+                }),
+            )),
+            (None, _) => Err(FitError::NoFamily),
+        }
+    }
+}
+
+fn check_contact(index: usize, contact: &NoisyContact) -> Result<(), FitError> {
+    let point = contact.contact.point;
+    if !point.is_finite() {
+        return Err(FitError::NotFinite { index, point });
+    }
+    let noise = &contact.noise;
+    if !(noise.normal >= 0.0 && noise.normal.is_finite()) {
+        return Err(FitError::Noise { index, name: "normal", value: noise.normal });
+    }
+    if noise.pose_translation != 0.0 || noise.pose_rotation != 0.0 {
+        return Err(FitError::PoseNoise { index });
+    }
+    let matrix = nalgebra::Matrix3::from_fn(|i, j| noise.point.col(j)[i]);
+    if matrix.iter().any(|v| !v.is_finite()) || matrix.cholesky().is_none() {
+        let value = matrix.diagonal().min();
+        return Err(FitError::Noise { index, name: "point", value });
+    }
+    Ok(())
+}
+
+/// The ball nearest to the contacts in unweighted least squares, in the parameters of `model`: where every fit starts.
+fn ball(model: &dyn Model, contacts: &[NoisyContact], data: &Data) -> DVector<f64> {
+    let mut root = SquareRoot::new(4);
+    for contact in contacts {
+        let (x, n) = (contact.contact.point - data.centre, contact.contact.normal.get());
+        for i in 0..3 {
+            let axis = DVec3::AXES[i];
+            root.insert(&mut [axis.x, axis.y, axis.z, n[i], x[i]]);
+        }
+    }
+    // Where all normals agree, centre and radius cannot be told apart.
+    let found = root.solve(0.0).unwrap_or_else(|| DVector::zeros(4));
+    // A radius that is not positive, or a ball far away, is no start for the others; the size of the data is.
+    let centre = DVec3::new(found[0], found[1], found[2]);
+    let near = found[3] > 0.01 * data.size && found[3] < 100.0 * data.size;
+    let (centre, radius) = if near { (centre, found[3]) } else { (DVec3::ZERO, data.size) };
+    model.ball(data.centre + centre, radius)
+}
+
+/// A superquadric may have its first exponent along any of the ellipsoid's axes, and its second about axes that are turned
+/// by an eighth: of the six starts the likeliest result is kept.
+fn superquadric(model: &dyn Model, contacts: &[NoisyContact], data: &Data) -> Result<Solution, FitError> {
+    let family = ShapeFamily::Superquadric;
+    let start = ball(&EllipsoidModel, contacts, data);
+    let ellipsoid = solve(&EllipsoidModel, start, contacts, data.size)
+        .map_err(|e| e.into_error(&EllipsoidModel, ShapeFamily::Ellipsoid, data.size))?;
+    let body = EllipsoidModel::body(&ellipsoid.theta)?;
+    let mut best: Result<Solution, FitError> = Err(FitError::NotConverged { family, iterations: 0 });
+    for special in 0..3 {
+        for turn in [0.0, std::f64::consts::FRAC_PI_4] {
+            let Some(start) = Superquadric::from_ellipsoid(&body, special, turn) else { continue };
+            let start = SuperquadricModel::parameters(&start);
+            match (solve(model, start, contacts, data.size), &best) {
+                (Ok(found), Ok(known)) if likelihood(&found) >= likelihood(known) => {}
+                (Ok(found), _) => best = Ok(found),
+                (Err(reason), Err(_)) => best = Err(reason.into_error(model, family, data.size)),
+                (Err(_), Ok(_)) => {}
+            }
+        }
+    }
+    best
+}
+
+/// Minus twice the logarithm of the likelihood, but for a constant.
+fn likelihood(solution: &Solution) -> f64 {
+    solution.system.chi_squared + log_determinants(solution)
+}
+
+fn log_determinants(solution: &Solution) -> f64 {
+    solution.system.contacts.iter().map(|c| c.log_determinant).sum()
+}
+
+fn undetermined(model: &(impl Model + ?Sized), family: ShapeFamily, root: &SquareRoot, size: f64) -> FitError {
+    let known = root.knowledge(&model.scales(size));
+    FitError::Undetermined {
+        family,
+        rank: known.map_or(0, |k| k.rank),
+        parameters: model.count(),
+        condition: known.map_or(f64::INFINITY, |k| k.condition),
+        weakest: known.map_or_else(String::new, |k| model.name(k.weakest_parameter)),
+        deviation: known.map_or(f64::INFINITY, |k| k.weakest_deviation),
+    }
+}
+
+impl ShapeFit {
+    /// Covariance, statistics and body of a solution.
+    fn finish(
+        model: &dyn Model,
+        family: ShapeFamily,
+        contacts: &[NoisyContact],
+        mut solution: Solution,
+        data: &Data,
+    ) -> Result<Self, FitError> {
+        let open = |root: &SquareRoot| undetermined(model, family, root, data.size);
+        let mut active_constraints = 0;
+        let body = match family {
+            ShapeFamily::Sphere => {
+                let theta = &solution.theta;
+                let offset = DVec3::new(theta[0], theta[1], theta[2]);
+                FittedBody::Sphere(Translated { body: Sphere::new(theta[3])?, offset })
+            }
+            ShapeFamily::Ellipsoid => {
+                let theta = EllipsoidModel::with_positive_diagonal(&solution.theta);
+                if theta != solution.theta {
+                    solution.system = assemble(model, &theta, contacts, None).ok_or_else(|| open(&solution.system.root))?;
+                    solution.theta = theta;
+                }
+                FittedBody::Ellipsoid(EllipsoidModel::body(&solution.theta)?)
+            }
+            ShapeFamily::Superquadric => FittedBody::Superquadric(SuperquadricModel::body(&solution.theta)?),
+            ShapeFamily::Harmonics { degree } => {
+                let held = convex::hold(degree, &solution.theta, &solution.system.root, data.smallest_radius)?;
+                if held.active > 0 {
+                    active_constraints = held.active;
+                    solution.system =
+                        assemble(model, &held.theta, contacts, None).ok_or_else(|| open(&solution.system.root))?;
+                    solution.theta = held.theta;
+                }
+                FittedBody::Harmonics(held.body)
+            }
+        };
+        let root = &solution.system.root;
+        let known = root.knowledge(&model.scales(data.size)).ok_or_else(|| open(root))?;
+        let covariance = root.covariance().ok_or_else(|| open(root))?;
+        let equations = 3 * contacts.len();
+        let degrees_of_freedom = equations - model.count();
+        let noise_factor = match data.noise_level {
+            NoiseLevel::Stated => 1.0,
+            NoiseLevel::Estimated => {
+                (solution.system.chi_squared / degrees_of_freedom.max(1) as f64).sqrt()
+            }
+        };
+        if known.rank < model.count() || known.weakest_deviation * noise_factor > 1.0 {
+            return Err(open(root));
+        }
+        Ok(Self {
+            family,
+            body,
+            covariance: covariance * noise_factor.powi(2),
+            statistics: FitStatistics {
+                chi_squared: solution.system.chi_squared,
+                degrees_of_freedom,
+                residual: residual(model, &solution, contacts),
+                worst: worst(&solution),
+                noise_factor,
+                condition: known.condition,
+                weakest_deviation: known.weakest_deviation * noise_factor,
+                active_constraints,
+                iterations: solution.iterations,
+            },
+            information_criterion: choose::criterion(&solution, data, model.count()),
+            names: (0..model.count()).map(|i| model.name(i)).collect(),
+            parameters: solution.theta,
+        })
+    }
+}
+
+/// Root mean square of `x^ - x(n)` per axis.
+fn residual(model: &dyn Model, solution: &Solution, contacts: &[NoisyContact]) -> f64 {
+    let square: f64 = contacts
+        .iter()
+        .zip(&solution.system.contacts)
+        .filter_map(|(c, own)| Some((c, model.jet(&solution.theta, own.normal, None)?)))
+        .map(|(c, jet)| c.contact.point.distance_squared(jet.point))
+        .sum();
+    (square / (3 * contacts.len().max(1)) as f64).sqrt()
+}
+
+fn worst(solution: &Solution) -> (usize, f64) {
+    let squares = solution.system.contacts.iter().map(|c| c.residual.norm_squared());
+    squares.enumerate().fold((0, 0.0), |worst, own| if own.1 > worst.1 { own } else { worst })
+}
