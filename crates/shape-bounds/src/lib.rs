@@ -46,8 +46,8 @@ mod twofold;
 pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
 pub use curvature::{BallIntersection, CurvatureBounds, CurvatureError, RoundedHull};
 pub use fit::{
-    Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel, ShapeChoice, ShapeFamily,
-    ShapeFit, SkewEllipsoid, Superquadric,
+    Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel, ShapeChoice,
+    ShapeFamily, ShapeFit, SkewEllipsoid, Superquadric,
 };
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};

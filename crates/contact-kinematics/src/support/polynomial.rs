@@ -86,6 +86,12 @@ impl PolynomialSupport {
         Self::new(terms)
     }
 
+    /// Its terms.
+    #[must_use]
+    pub fn terms(&self) -> &[Monomial] {
+        &self.terms
+    }
+
     /// Degree of the polynomial.
     #[must_use]
     pub fn degree(&self) -> u32 {
@@ -96,12 +102,16 @@ impl PolynomialSupport {
 impl SupportFunction for PolynomialSupport {
     fn jet(&self, n: Direction) -> SupportJet {
         let n = n.get();
+        let mut powers = [DVec3::ONE; LARGEST_DEGREE as usize + 1];
+        for i in 1..=self.degree as usize {
+            powers[i] = powers[i - 1] * n;
+        }
         let (mut value, mut point, mut hessian) = (0.0, DVec3::ZERO, DMat3::ZERO);
         let mut isotropic = 0.0;
         let mut radial = DVec3::ZERO;
         let mut along = 0.0;
         for term in &self.terms {
-            let (p, gradient, second) = monomial(term, n);
+            let (p, gradient, second) = monomial(term, &powers);
             let degree = f64::from(term.powers.iter().sum::<u32>());
             // |u|^k with k = 1 - d: gradient k u, Hessian k 1 + k (k - 2) u u' at |u| = 1.
             let k = 1.0 - degree;
@@ -176,15 +186,15 @@ fn power(x: f64, exponent: u32) -> f64 {
     x.powi(i32::try_from(exponent).unwrap_or(i32::MAX))
 }
 
-/// Value, gradient and Hessian of one term as a plain polynomial.
-fn monomial(term: &Monomial, n: DVec3) -> (f64, DVec3, DMat3) {
+/// Value, gradient and Hessian of one term as a plain polynomial, from the powers of the components of the normal.
+fn monomial(term: &Monomial, powers: &[DVec3]) -> (f64, DVec3, DMat3) {
     // Per axis: n^p, p n^(p-1), p (p-1) n^(p-2).
     let axis = |i: usize| {
-        let (x, p) = (n[i], term.powers[i]);
-        let q = f64::from(p);
-        let first = if p > 0 { q * power(x, p - 1) } else { 0.0 };
-        let second = if p > 1 { q * (q - 1.0) * power(x, p - 2) } else { 0.0 };
-        [power(x, p), first, second]
+        let p = term.powers[i] as usize;
+        let q = p as f64;
+        let first = if p > 0 { q * powers[p - 1][i] } else { 0.0 };
+        let second = if p > 1 { q * (q - 1.0) * powers[p - 2][i] } else { 0.0 };
+        [powers[p][i], first, second]
     };
     let (a, b, c) = (axis(0), axis(1), axis(2));
     let k = term.coefficient;

@@ -81,7 +81,8 @@ pub(super) fn hold(
 
 /// Normals with their tangents where the shape's radius is below `target` and no neighbour's is smaller.
 fn violations(body: &PolynomialSupport, grid: &Grid, target: f64) -> Vec<(Direction, DVec3)> {
-    let least: Vec<(f64, DVec3)> = grid.normals.iter().map(|n| least_radius(body.jet(*n).hessian, *n)).collect();
+    let least: Vec<(f64, DVec3)> =
+        grid.normals.iter().map(|n| least_radius(body.jet(*n).hessian, *n)).collect();
     let rounding = 1e-7 * target.abs();
     (0..least.len())
         .filter(|&i| least[i].0 < target - rounding)

@@ -31,7 +31,9 @@ pub enum FitError {
         found: usize,
     },
     /// The stated noise of a contact is no covariance with full rank.
-    #[error("contact {index}: noise `{name}` is {value}; a weight needs a covariance of the point above zero")]
+    #[error(
+        "contact {index}: noise `{name}` is {value}; a weight needs a covariance of the point above zero"
+    )]
     Noise {
         /// Which contact.
         index: usize,
@@ -70,7 +72,9 @@ pub enum FitError {
         deviation: f64,
     },
     /// The iteration did not come to rest.
-    #[error("{family}: no convergence in {iterations} iterations; the contacts are not those of such a shape")]
+    #[error(
+        "{family}: no convergence in {iterations} iterations; the contacts are not those of such a shape"
+    )]
     NotConverged {
         /// What was to be fitted.
         family: ShapeFamily,

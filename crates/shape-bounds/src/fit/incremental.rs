@@ -1,7 +1,7 @@
 //! A fit that takes one contact at a time.
 
 use super::information::SquareRoot;
-use super::solve::{assemble, linearise, solve};
+use super::solve::{assemble, iterate, linearise};
 use super::{Data, FitError, FitOptions, ShapeFamily, ShapeFit, check_contact};
 use crate::noise::NoisyContact;
 use glam::DVec3;
@@ -57,7 +57,8 @@ impl IncrementalFit {
     pub fn insert(&mut self, contact: NoisyContact) -> Result<Option<DVector<f64>>, FitError> {
         check_contact(self.contacts.len(), &contact)?;
         self.contacts.push(contact);
-        let due = self.linear.as_ref().is_none_or(|l| self.contacts.len() as f64 > GROWTH * l.contacts as f64);
+        let due =
+            self.linear.as_ref().is_none_or(|l| self.contacts.len() as f64 > GROWTH * l.contacts as f64);
         if due {
             // Contacts that determine nothing yet are no error here; `fit` says what is missing.
             self.linear = self.relinearised().ok();
@@ -79,7 +80,15 @@ impl IncrementalFit {
         let model = self.family.model()?;
         let linear = self.linear.as_mut()?;
         let mut columns = vec![DVec3::ZERO; model.count()];
-        let own = linearise(model.as_ref(), &linear.at, contact, contact.contact.normal, &mut columns)?;
+        let body = model.body(&linear.at)?;
+        let own = linearise(
+            model.as_ref(),
+            &linear.at,
+            body.as_ref(),
+            contact,
+            contact.contact.normal,
+            &mut columns,
+        )?;
         own.insert(&columns, &mut linear.root, &mut vec![0.0; columns.len() + 1]);
         let step = linear.root.solve(0.0)?;
         let size = extent(&self.contacts);
@@ -93,7 +102,7 @@ impl IncrementalFit {
             Some(linear) => {
                 let data = Data::check(&self.contacts, &self.options)?;
                 let model = data.model(self.family, self.contacts.len())?;
-                match solve(model.as_ref(), linear.at.clone(), &self.contacts, data.size) {
+                match iterate(model.as_ref(), linear.at.clone(), &self.contacts, data.size) {
                     Ok(found) => {
                         return Ok(Linear {
                             at: found.theta,
@@ -120,7 +129,7 @@ impl IncrementalFit {
         let model = data.model(self.family, self.contacts.len())?;
         let start = self.linear.as_ref().and_then(|l| Some(model.moved(&l.at, &l.root.solve(0.0)?)));
         if let Some(start) = start
-            && let Ok(found) = solve(model.as_ref(), start, &self.contacts, data.size)
+            && let Ok(found) = iterate(model.as_ref(), start, &self.contacts, data.size)
         {
             return ShapeFit::finish(model.as_ref(), self.family, &self.contacts, found, &data);
         }

@@ -25,7 +25,11 @@ impl SquareRoot {
                 continue;
             }
             let own = &mut self.rows[i];
-            let length = own[i].hypot(row[i]);
+            let length = (own[i] * own[i] + row[i] * row[i]).sqrt();
+            if length == 0.0 {
+                // Squares that underflow: too small beside anything to count.
+                continue;
+            }
             let (c, s) = (own[i] / length, row[i] / length);
             own[i] = length;
             for j in i + 1..=self.count {

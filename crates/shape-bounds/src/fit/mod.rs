@@ -146,7 +146,11 @@ impl ShapeFit {
     /// # Errors
     /// [`FitError`] for bad values, too few contacts, contacts that leave a parameter open (all normals in one plane, one
     /// short arc), and no convergence.
-    pub fn of(contacts: &[NoisyContact], family: ShapeFamily, options: &FitOptions) -> Result<Self, FitError> {
+    pub fn of(
+        contacts: &[NoisyContact],
+        family: ShapeFamily,
+        options: &FitOptions,
+    ) -> Result<Self, FitError> {
         let data = Data::check(contacts, options)?;
         let model = data.model(family, contacts.len())?;
         let model = model.as_ref();
@@ -154,7 +158,8 @@ impl ShapeFit {
             ShapeFamily::Superquadric => superquadric(model, contacts, &data)?,
             _ => {
                 let start = ball(model, contacts, &data);
-                solve(model, start, contacts, data.size).map_err(|e| e.into_error(model, family, data.size))?
+                solve(model, vec![start], contacts, data.size)
+                    .map_err(|e| e.into_error(model, family, data.size))?
             }
         };
         Self::finish(model, family, contacts, solution, &data)
@@ -175,8 +180,7 @@ impl Data {
         for (index, contact) in contacts.iter().enumerate() {
             check_contact(index, contact)?;
         }
-        let centre =
-            contacts.iter().map(|c| c.contact.point).sum::<DVec3>() / contacts.len().max(1) as f64;
+        let centre = contacts.iter().map(|c| c.contact.point).sum::<DVec3>() / contacts.len().max(1) as f64;
         let size = contacts.iter().map(|c| c.contact.point.distance(centre)).fold(0.0, f64::max);
         if contacts.len() > 1 && (size == 0.0 || !size.is_finite()) {
             return Err(FitError::NoExtent { found: contacts.len() });
@@ -247,39 +251,34 @@ fn ball(model: &dyn Model, contacts: &[NoisyContact], data: &Data) -> DVector<f6
 }
 
 /// A superquadric may have its first exponent along any of the ellipsoid's axes, and its second about axes that are turned
-/// by an eighth: of the six starts the likeliest result is kept.
+/// by an eighth: the best of six starts is kept.
 fn superquadric(model: &dyn Model, contacts: &[NoisyContact], data: &Data) -> Result<Solution, FitError> {
     let family = ShapeFamily::Superquadric;
     let start = ball(&EllipsoidModel, contacts, data);
-    let ellipsoid = solve(&EllipsoidModel, start, contacts, data.size)
+    let ellipsoid = solve(&EllipsoidModel, vec![start], contacts, data.size)
         .map_err(|e| e.into_error(&EllipsoidModel, ShapeFamily::Ellipsoid, data.size))?;
     let body = EllipsoidModel::body(&ellipsoid.theta)?;
-    let mut best: Result<Solution, FitError> = Err(FitError::NotConverged { family, iterations: 0 });
+    let mut starts = Vec::new();
     for special in 0..3 {
         for turn in [0.0, std::f64::consts::FRAC_PI_4] {
-            let Some(start) = Superquadric::from_ellipsoid(&body, special, turn) else { continue };
-            let start = SuperquadricModel::parameters(&start);
-            match (solve(model, start, contacts, data.size), &best) {
-                (Ok(found), Ok(known)) if likelihood(&found) >= likelihood(known) => {}
-                (Ok(found), _) => best = Ok(found),
-                (Err(reason), Err(_)) => best = Err(reason.into_error(model, family, data.size)),
-                (Err(_), Ok(_)) => {}
-            }
+            let start = Superquadric::from_ellipsoid(&body, special, turn);
+            starts.extend(start.as_ref().map(SuperquadricModel::parameters));
         }
     }
-    best
+    solve(model, starts, contacts, data.size).map_err(|e| e.into_error(model, family, data.size))
 }
 
-/// Minus twice the logarithm of the likelihood, but for a constant.
-fn likelihood(solution: &Solution) -> f64 {
-    solution.system.chi_squared + log_determinants(solution)
-}
-
+/// Of all covariances of residuals.
 fn log_determinants(solution: &Solution) -> f64 {
     solution.system.contacts.iter().map(|c| c.log_determinant).sum()
 }
 
-fn undetermined(model: &(impl Model + ?Sized), family: ShapeFamily, root: &SquareRoot, size: f64) -> FitError {
+fn undetermined(
+    model: &(impl Model + ?Sized),
+    family: ShapeFamily,
+    root: &SquareRoot,
+    size: f64,
+) -> FitError {
     let known = root.knowledge(&model.scales(size));
     FitError::Undetermined {
         family,
@@ -311,18 +310,20 @@ impl ShapeFit {
             ShapeFamily::Ellipsoid => {
                 let theta = EllipsoidModel::with_positive_diagonal(&solution.theta);
                 if theta != solution.theta {
-                    solution.system = assemble(model, &theta, contacts, None).ok_or_else(|| open(&solution.system.root))?;
+                    solution.system =
+                        assemble(model, &theta, contacts, None).ok_or_else(|| open(&solution.system.root))?;
                     solution.theta = theta;
                 }
                 FittedBody::Ellipsoid(EllipsoidModel::body(&solution.theta)?)
             }
             ShapeFamily::Superquadric => FittedBody::Superquadric(SuperquadricModel::body(&solution.theta)?),
             ShapeFamily::Harmonics { degree } => {
-                let held = convex::hold(degree, &solution.theta, &solution.system.root, data.smallest_radius)?;
+                let held =
+                    convex::hold(degree, &solution.theta, &solution.system.root, data.smallest_radius)?;
                 if held.active > 0 {
                     active_constraints = held.active;
-                    solution.system =
-                        assemble(model, &held.theta, contacts, None).ok_or_else(|| open(&solution.system.root))?;
+                    solution.system = assemble(model, &held.theta, contacts, None)
+                        .ok_or_else(|| open(&solution.system.root))?;
                     solution.theta = held.theta;
                 }
                 FittedBody::Harmonics(held.body)
@@ -335,21 +336,18 @@ impl ShapeFit {
         let degrees_of_freedom = equations - model.count();
         let noise_factor = match data.noise_level {
             NoiseLevel::Stated => 1.0,
-            NoiseLevel::Estimated => {
-                (solution.system.chi_squared / degrees_of_freedom.max(1) as f64).sqrt()
-            }
+            NoiseLevel::Estimated => (solution.system.chi_squared / degrees_of_freedom.max(1) as f64).sqrt(),
         };
         if known.rank < model.count() || known.weakest_deviation * noise_factor > 1.0 {
             return Err(open(root));
         }
         Ok(Self {
             family,
-            body,
             covariance: covariance * noise_factor.powi(2),
             statistics: FitStatistics {
                 chi_squared: solution.system.chi_squared,
                 degrees_of_freedom,
-                residual: residual(model, &solution, contacts),
+                residual: residual(&body, &solution, contacts),
                 worst: worst(&solution),
                 noise_factor,
                 condition: known.condition,
@@ -360,17 +358,17 @@ impl ShapeFit {
             information_criterion: choose::criterion(&solution, data, model.count()),
             names: (0..model.count()).map(|i| model.name(i)).collect(),
             parameters: solution.theta,
+            body,
         })
     }
 }
 
 /// Root mean square of `x^ - x(n)` per axis.
-fn residual(model: &dyn Model, solution: &Solution, contacts: &[NoisyContact]) -> f64 {
+fn residual(body: &FittedBody, solution: &Solution, contacts: &[NoisyContact]) -> f64 {
     let square: f64 = contacts
         .iter()
         .zip(&solution.system.contacts)
-        .filter_map(|(c, own)| Some((c, model.jet(&solution.theta, own.normal, None)?)))
-        .map(|(c, jet)| c.contact.point.distance_squared(jet.point))
+        .map(|(c, own)| c.contact.point.distance_squared(body.point(own.normal)))
         .sum();
     (square / (3 * contacts.len().max(1)) as f64).sqrt()
 }

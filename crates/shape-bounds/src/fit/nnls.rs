@@ -37,9 +37,9 @@ fn nonnegative(e: &DMatrix<f64>, f: &DVector<f64>) -> Option<(DVector<f64>, DVec
             for (k, j) in passive.iter().enumerate() {
                 u[*j] += step * (z[k] - u[*j]);
             }
-            let least = (0..passive.len()).filter(|k| z[*k] <= 0.0).min_by(|a, b| {
-                u[passive[*a]].total_cmp(&u[passive[*b]])
-            })?;
+            let least = (0..passive.len())
+                .filter(|k| z[*k] <= 0.0)
+                .min_by(|a, b| u[passive[*a]].total_cmp(&u[passive[*b]]))?;
             u[passive[least]] = 0.0;
             passive.retain(|j| u[*j] > 0.0);
             if passive.is_empty() {

@@ -88,7 +88,7 @@ impl ShapeFit {
     pub fn support_deviation(&self, n: Direction) -> f64 {
         let mut columns = vec![DVec3::ZERO; self.parameters.len()];
         let model = self.family.model();
-        let Some(_) = model.and_then(|m| m.jet(&self.parameters, n, Some(&mut columns))) else {
+        let Some(_) = model.and_then(|m| m.columns(&self.parameters, n, &mut columns)) else {
             return f64::INFINITY;
         };
         // h(n) = n . x(n), and n is held.

@@ -4,7 +4,7 @@ use super::FitError;
 use super::family::Model;
 use super::information::SquareRoot;
 use crate::noise::NoisyContact;
-use contact_kinematics::{Direction, SupportJet};
+use contact_kinematics::{Direction, SupportFunction, SupportJet};
 use glam::{DMat3, DVec3};
 use nalgebra::{DVector, Matrix3, Vector3};
 
@@ -25,8 +25,8 @@ const NORMAL_STEPS: usize = 30;
 const HALVINGS: usize = 12;
 /// Least cosine of the turn from the measured to the true normal; what needs more is no measurement.
 const LEAST_COSINE: f64 = 0.5;
-/// A step of that search, in rad, that is rounding.
-const NORMAL_STILL: f64 = 1e-12;
+/// A step of that search, in rad, whose square is rounding: the residual is carried from there to first order.
+const NORMAL_STILL: f64 = 1e-8;
 
 /// A contact against a model at some parameters: `residual = x^ - x(n)` carried to the true normal, and its weight.
 pub(super) struct Linearised {
@@ -50,12 +50,14 @@ pub(super) struct Linearised {
 pub(super) fn linearise(
     model: &(impl Model + ?Sized),
     theta: &DVector<f64>,
+    body: &dyn SupportFunction,
     contact: &NoisyContact,
     start: Direction,
     columns: &mut [DVec3],
 ) -> Option<Linearised> {
-    let normal = true_normal(model, theta, contact, start)?;
-    let jet = model.jet(theta, normal, Some(columns))?;
+    let normal = true_normal(body, contact, start);
+    let jet = body.jet(normal);
+    model.columns(theta, normal, columns)?;
     let (whitening, log_determinant) = whiten(&jet, contact)?;
     let turn = contact.contact.normal.get() - normal.get();
     let residual = whitening * vector(contact.contact.point - jet.point - jet.hessian * turn);
@@ -63,15 +65,10 @@ pub(super) fn linearise(
 }
 
 /// Newton's method, without the third derivatives, with halved steps.
-fn true_normal(
-    model: &(impl Model + ?Sized),
-    theta: &DVector<f64>,
-    contact: &NoisyContact,
-    start: Direction,
-) -> Option<Direction> {
+fn true_normal(body: &dyn SupportFunction, contact: &NoisyContact, start: Direction) -> Direction {
     let variance = contact.noise.normal.powi(2);
     if variance == 0.0 {
-        return Some(contact.contact.normal);
+        return contact.contact.normal;
     }
     let (point, measured) = (contact.contact.point, contact.contact.normal.get());
     let weight = contact.noise.point.inverse();
@@ -80,7 +77,7 @@ fn true_normal(
         variance * e.dot(weight * e) + measured.distance_squared(n)
     };
     let mut normal = start;
-    let mut jet = model.jet(theta, normal, None)?;
+    let mut jet = body.jet(normal);
     let mut value = misfit(&jet, normal.get());
     for _ in 0..NORMAL_STEPS {
         let n = normal.get();
@@ -90,10 +87,11 @@ fn true_normal(
         let mut share = 1.0;
         let found = (0..HALVINGS).find_map(|_| {
             let next = Direction::new(n + step * share).ok()?;
-            let next_jet = model.jet(theta, next, None).filter(|_| next.get().dot(measured) > LEAST_COSINE)?;
-            let next_value = misfit(&next_jet, next.get());
             share *= 0.5;
-            (next_value < value).then_some((next, next_jet, next_value))
+            let next_jet = body.jet(next);
+            let next_value = misfit(&next_jet, next.get());
+            let near = next.get().dot(measured) > LEAST_COSINE;
+            (near && next_value < value).then_some((next, next_jet, next_value))
         });
         let Some(found) = found else { break };
         (normal, jet, value) = found;
@@ -101,7 +99,7 @@ fn true_normal(
             break;
         }
     }
-    Some(normal)
+    normal
 }
 
 fn whiten(jet: &SupportJet, contact: &NoisyContact) -> Option<(Matrix3<f64>, f64)> {
@@ -147,13 +145,14 @@ pub(super) fn assemble(
     before: Option<&System>,
 ) -> Option<System> {
     let count = model.count();
+    let body = model.body(theta)?;
     let mut root = SquareRoot::new(count);
     let (mut columns, mut row) = (vec![DVec3::ZERO; count], vec![0.0; count + 1]);
     let mut linearised = Vec::with_capacity(contacts.len());
     let mut chi_squared = 0.0;
     for (k, contact) in contacts.iter().enumerate() {
         let start = before.map_or(contact.contact.normal, |system| system.contacts[k].normal);
-        let own = linearise(model, theta, contact, start, &mut columns)?;
+        let own = linearise(model, theta, body.as_ref(), contact, start, &mut columns)?;
         own.insert(&columns, &mut root, &mut row);
         chi_squared += own.residual.norm_squared();
         linearised.push(own);
@@ -177,26 +176,33 @@ pub(super) enum Unsolved {
 
 /// The likeliest parameters.
 ///
-/// First with the normals taken as exact, which is a smooth problem from any start; near its solution, with the true
-/// normals eliminated. Started far off, the search for a true normal can end on the wrong side of the body.
+/// First with the normals taken as exact, which is a smooth problem from any start; from the best of its solutions, with
+/// the true normals eliminated. Started far off, the search for a true normal can end on the wrong side of the body.
 pub(super) fn solve(
     model: &(impl Model + ?Sized),
-    start: DVector<f64>,
+    starts: Vec<DVector<f64>>,
     contacts: &[NoisyContact],
     size: f64,
 ) -> Result<Solution, Unsolved> {
     let mut exact = contacts.to_vec();
     exact.iter_mut().for_each(|c| c.noise.normal = 0.0);
-    let near = match iterate(model, start.clone(), &exact, size) {
-        Ok(found) => found.theta,
-        Err(Unsolved::Singular(system)) => return Err(Unsolved::Singular(system)),
-        Err(Unsolved::NotConverged(_)) => start,
-    };
-    iterate(model, near, contacts, size)
+    let mut best: Result<Solution, Unsolved> = Err(Unsolved::NotConverged(0));
+    for start in starts {
+        let found = iterate(model, start, &exact, size);
+        let better = match (&found, &best) {
+            (Ok(found), Ok(known)) => found.system.chi_squared < known.system.chi_squared,
+            (Err(Unsolved::NotConverged(_)), _) | (Err(_), Ok(_)) => false,
+            _ => true,
+        };
+        if better {
+            best = found;
+        }
+    }
+    iterate(model, best?.theta, contacts, size)
 }
 
 /// Levenberg's and Marquardt's iteration on the likelihood.
-fn iterate(
+pub(super) fn iterate(
     model: &(impl Model + ?Sized),
     start: DVector<f64>,
     contacts: &[NoisyContact],
@@ -205,7 +211,9 @@ fn iterate(
     let scales = model.scales(size);
     let mut theta = start;
     let (mut damping, mut deficient) = (0.0, 0);
-    let Some(mut system) = assemble(model, &theta, contacts, None) else { return Err(Unsolved::NotConverged(0)) };
+    let Some(mut system) = assemble(model, &theta, contacts, None) else {
+        return Err(Unsolved::NotConverged(0));
+    };
     for iterations in 1..=ITERATIONS {
         if damping > 0.0 || system.root.solve(0.0).is_none() {
             let open = system.root.knowledge(&scales).is_none_or(|known| known.rank < model.count());
@@ -225,9 +233,8 @@ fn iterate(
             return Ok(Solution { theta, system, iterations });
         }
         let next = model.moved(&theta, &step);
-        let renewed = assemble(model, &next, contacts, Some(&system)).filter(|renewed| {
-            renewed.chi_squared <= system.chi_squared * (1.0 + 1e-12) || relative <= 1e-10
-        });
+        let renewed = assemble(model, &next, contacts, Some(&system))
+            .filter(|renewed| renewed.chi_squared <= system.chi_squared * (1.0 + 1e-12) || relative <= 1e-10);
         match renewed {
             Some(renewed) => {
                 (theta, system) = (next, renewed);
@@ -242,7 +249,12 @@ fn iterate(
 }
 
 impl Unsolved {
-    pub(super) fn into_error(self, model: &(impl Model + ?Sized), family: super::ShapeFamily, size: f64) -> FitError {
+    pub(super) fn into_error(
+        self,
+        model: &(impl Model + ?Sized),
+        family: super::ShapeFamily,
+        size: f64,
+    ) -> FitError {
         match self {
             Self::Singular(system) => super::undetermined(model, family, &system.root, size),
             Self::NotConverged(iterations) => FitError::NotConverged { family, iterations },

@@ -136,8 +136,11 @@ impl Model for EllipsoidModel {
         9
     }
 
-    fn jet(&self, theta: &DVector<f64>, n: Direction, columns: Option<&mut [DVec3]>) -> Option<SupportJet> {
-        let centre = DVec3::new(theta[0], theta[1], theta[2]);
+    fn body(&self, theta: &DVector<f64>) -> Option<Box<dyn SupportFunction>> {
+        Some(Box::new(Self::body(theta).ok()?))
+    }
+
+    fn columns(&self, theta: &DVector<f64>, n: Direction, columns: &mut [DVec3]) -> Option<()> {
         let l = triangle(theta);
         let n = n.get();
         let inner = l.transpose() * n;
@@ -147,21 +150,14 @@ impl Model for EllipsoidModel {
         if value.is_nan() || value <= 1e-9 * size {
             return None;
         }
-        let own = l * inner / value;
-        if let Some(columns) = columns {
-            columns[..3].copy_from_slice(&[DVec3::X, DVec3::Y, DVec3::Z]);
-            // x = L w / |w|, w = L'n; dL = e_row e_col', dw = n_row e_col.
-            let unit = inner / value;
-            for (k, (row, column)) in ENTRIES.iter().enumerate() {
-                let turned = l.col(*column) * n[*row] - l * unit * (n[*row] * unit[*column]);
-                columns[3 + k] = DVec3::AXES[*row] * unit[*column] + turned / value;
-            }
+        columns[..3].copy_from_slice(&DVec3::AXES);
+        // x = L w / |w|, w = L'n; dL = e_row e_col', dw = n_row e_col.
+        let unit = inner / value;
+        for (k, (row, column)) in ENTRIES.iter().enumerate() {
+            let turned = l.col(*column) * n[*row] - l * unit * (n[*row] * unit[*column]);
+            columns[3 + k] = DVec3::AXES[*row] * unit[*column] + turned / value;
         }
-        Some(SupportJet {
-            value: value + centre.dot(n),
-            point: own + centre,
-            hessian: (l * l.transpose() - outer(own, own)) * (1.0 / value),
-        })
+        Some(())
     }
 
     fn name(&self, parameter: usize) -> String {
@@ -175,8 +171,6 @@ impl Model for EllipsoidModel {
     }
 
     fn ball(&self, centre: DVec3, radius: f64) -> DVector<f64> {
-        DVector::from_column_slice(&[
-            centre.x, centre.y, centre.z, radius, 0.0, radius, 0.0, 0.0, radius,
-        ])
+        DVector::from_column_slice(&[centre.x, centre.y, centre.z, radius, 0.0, radius, 0.0, 0.0, radius])
     }
 }

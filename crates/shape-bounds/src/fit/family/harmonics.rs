@@ -1,12 +1,16 @@
 use super::Model;
-use contact_kinematics::{Direction, PolynomialSupport, ShapeError, SupportFunction, SupportJet};
+use contact_kinematics::{Direction, Monomial, PolynomialSupport, ShapeError, SupportFunction};
 use glam::{DMat3, DVec3};
 use nalgebra::DVector;
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
 /// Coefficients of real orthonormal spherical harmonics up to a degree, all in m: linear.
 pub(in crate::fit) struct HarmonicModel {
+    degree: usize,
     basis: Vec<PolynomialSupport>,
+    /// For each harmonic its monomials: place in [`monomials`] and coefficient.
+    sums: Vec<Vec<(usize, f64)>>,
 }
 
 impl HarmonicModel {
@@ -21,7 +25,16 @@ impl HarmonicModel {
                 basis.push(PolynomialSupport::from_harmonics(&rows)?);
             }
         }
-        Ok(Self { basis })
+        let places: HashMap<[usize; 3], usize> =
+            monomials(degree).enumerate().map(|(place, powers)| (powers, place)).collect();
+        let sums = basis
+            .iter()
+            .map(|harmonic| {
+                let place = |t: &Monomial| Some((*places.get(&t.powers.map(|p| p as usize))?, t.coefficient));
+                harmonic.terms().iter().filter_map(place).collect()
+            })
+            .collect();
+        Ok(Self { degree, basis, sums })
     }
 
     /// The support function with coefficients `theta`.
@@ -47,18 +60,17 @@ impl Model for HarmonicModel {
         self.basis.len()
     }
 
-    fn jet(&self, theta: &DVector<f64>, n: Direction, mut columns: Option<&mut [DVec3]>) -> Option<SupportJet> {
-        let mut sum = SupportJet { value: 0.0, point: DVec3::ZERO, hessian: DMat3::ZERO };
-        for (k, harmonic) in self.basis.iter().enumerate() {
-            let jet = harmonic.jet(n);
-            sum.value += jet.value * theta[k];
-            sum.point += jet.point * theta[k];
-            sum.hessian += jet.hessian * theta[k];
-            if let Some(columns) = &mut columns {
-                columns[k] = jet.point;
-            }
+    fn body(&self, theta: &DVector<f64>) -> Option<Box<dyn SupportFunction>> {
+        Some(Box::new(Self::body(theta).ok()?))
+    }
+
+    fn columns(&self, _theta: &DVector<f64>, n: Direction, columns: &mut [DVec3]) -> Option<()> {
+        // Harmonics share monomials: each of those is evaluated once.
+        let points: Vec<DVec3> = each_point(self.degree, n.get());
+        for (column, sum) in columns.iter_mut().zip(&self.sums) {
+            *column = sum.iter().map(|(place, coefficient)| points[*place] * *coefficient).sum();
         }
-        Some(sum)
+        Some(())
     }
 
     fn name(&self, parameter: usize) -> String {
@@ -75,4 +87,26 @@ impl Model for HarmonicModel {
         }
         theta
     }
+}
+
+/// Powers of x, y, z of all monomials up to a degree.
+fn monomials(degree: usize) -> impl Iterator<Item = [usize; 3]> {
+    (0..=degree)
+        .flat_map(move |i| (0..=degree - i).flat_map(move |j| (0..=degree - i - j).map(move |k| [i, j, k])))
+}
+
+/// Gradient at the unit vector `n` of the 1-homogeneous extension of each monomial, in the order of [`monomials`].
+fn each_point(degree: usize, n: DVec3) -> Vec<DVec3> {
+    let mut powers = vec![DVec3::ONE; degree + 1];
+    for i in 1..=degree {
+        powers[i] = powers[i - 1] * n;
+    }
+    let slope = |axis: usize, p: usize| if p > 0 { p as f64 * powers[p - 1][axis] } else { 0.0 };
+    monomials(degree)
+        .map(|[i, j, k]| {
+            let (x, y, z) = (powers[i].x, powers[j].y, powers[k].z);
+            let gradient = DVec3::new(slope(0, i) * y * z, x * slope(1, j) * z, x * y * slope(2, k));
+            gradient + n * ((1.0 - (i + j + k) as f64) * x * y * z)
+        })
+        .collect()
 }

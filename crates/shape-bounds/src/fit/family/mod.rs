@@ -13,7 +13,7 @@ pub(super) use harmonics::HarmonicModel;
 pub(super) use sphere::SphereModel;
 pub(super) use superquadric::SuperquadricModel;
 
-use contact_kinematics::{Direction, SupportJet};
+use contact_kinematics::{Direction, SupportFunction};
 use glam::DVec3;
 use nalgebra::DVector;
 
@@ -22,9 +22,11 @@ pub(super) trait Model {
     /// Number of parameters.
     fn count(&self) -> usize;
 
-    /// Support function at `n`; `columns`, if given, receives the derivative of the surface point with normal `n` by each
-    /// parameter. `None` where the parameters are no body.
-    fn jet(&self, theta: &DVector<f64>, n: Direction, columns: Option<&mut [DVec3]>) -> Option<SupportJet>;
+    /// The body; `None` where the parameters are none.
+    fn body(&self, theta: &DVector<f64>) -> Option<Box<dyn SupportFunction>>;
+
+    /// Derivative of the surface point with normal `n` by each parameter; `None` where the parameters are no body.
+    fn columns(&self, theta: &DVector<f64>, n: Direction, columns: &mut [DVec3]) -> Option<()>;
 
     /// The parameters after a step in the coordinates in which the derivatives are taken.
     fn moved(&self, theta: &DVector<f64>, step: &DVector<f64>) -> DVector<f64> {
@@ -43,11 +45,9 @@ pub(super) trait Model {
     fn ball(&self, centre: DVec3, radius: f64) -> DVector<f64>;
 }
 
-/// Writes `values` to `columns`, if there are any.
-fn write(columns: Option<&mut [DVec3]>, values: impl IntoIterator<Item = DVec3>) {
-    if let Some(columns) = columns {
-        columns.iter_mut().zip(values).for_each(|(column, value)| *column = value);
-    }
+/// Writes `values` to `columns`.
+fn write(columns: &mut [DVec3], values: impl IntoIterator<Item = DVec3>) {
+    columns.iter_mut().zip(values).for_each(|(column, value)| *column = value);
 }
 
 fn outer(a: DVec3, b: DVec3) -> glam::DMat3 {

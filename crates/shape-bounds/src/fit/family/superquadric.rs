@@ -139,11 +139,9 @@ impl Norm2 {
         let logarithm = share.map(|t| if t > 0.0 { t.ln() } else { 0.0 });
         let power = share.map(|t| t.powf(q - 1.0));
         let first = [power[0] * s[0].signum(), power[1] * s[1].signum()];
-        let by_exponent =
-            (power[0] * share[0] * logarithm[0] + power[1] * share[1] * logarithm[1]) / q;
-        let own = [0, 1].map(|i| {
-            (q - 1.0) / value * (share[i].max(SMALLEST_SHARE).powf(q - 2.0) - power[i] * power[i])
-        });
+        let by_exponent = (power[0] * share[0] * logarithm[0] + power[1] * share[1] * logarithm[1]) / q;
+        let own = [0, 1]
+            .map(|i| (q - 1.0) / value * (share[i].max(SMALLEST_SHARE).powf(q - 2.0) - power[i] * power[i]));
         let mixed = (1.0 - q) / value * first[0] * first[1];
         let first_by_exponent = [0, 1].map(|i| first[i] * (logarithm[i] - (q - 1.0) * by_exponent));
         Self { value, first, second: [own[0], own[1], mixed], by_exponent, first_by_exponent }
@@ -204,12 +202,7 @@ pub(in crate::fit) struct SuperquadricModel;
 impl SuperquadricModel {
     pub(in crate::fit) fn body(theta: &DVector<f64>) -> Result<Superquadric, ShapeError> {
         let three = |i: usize| DVec3::new(theta[i], theta[i + 1], theta[i + 2]);
-        Superquadric::new(
-            three(0),
-            three(3),
-            DQuat::from_scaled_axis(three(6)),
-            [theta[9], theta[10]],
-        )
+        Superquadric::new(three(0), three(3), DQuat::from_scaled_axis(three(6)), [theta[9], theta[10]])
     }
 
     pub(in crate::fit) fn parameters(body: &Superquadric) -> DVector<f64> {
@@ -228,14 +221,15 @@ impl Model for SuperquadricModel {
         11
     }
 
-    fn jet(&self, theta: &DVector<f64>, n: Direction, columns: Option<&mut [DVec3]>) -> Option<SupportJet> {
+    fn body(&self, theta: &DVector<f64>) -> Option<Box<dyn SupportFunction>> {
+        Some(Box::new(Self::body(theta).ok()?))
+    }
+
+    fn columns(&self, theta: &DVector<f64>, n: Direction, columns: &mut [DVec3]) -> Option<()> {
         let body = Self::body(theta).ok()?;
         let n = n.get();
         let norm = body.norm(n);
         let jet = body.jet_of(n, &norm);
-        if columns.is_none() {
-            return Some(jet);
-        }
         let turn = body.rotation;
         let local = turn.inverse() * n;
         let own = jet.point - body.centre;
@@ -254,9 +248,21 @@ impl Model for SuperquadricModel {
         let [x, y, z] = DVec3::AXES;
         write(
             columns,
-            [x, y, z, by_axis(0), by_axis(1), by_axis(2), by_turn(x), by_turn(y), by_turn(z), by_exponent(0), by_exponent(1)],
+            [
+                x,
+                y,
+                z,
+                by_axis(0),
+                by_axis(1),
+                by_axis(2),
+                by_turn(x),
+                by_turn(y),
+                by_turn(z),
+                by_exponent(0),
+                by_exponent(1),
+            ],
         );
-        Some(jet)
+        Some(())
     }
 
     /// Semi-axes lose no more than nine tenths in a step, and exponents stay in range.
@@ -280,8 +286,17 @@ impl Model for SuperquadricModel {
 
     fn name(&self, parameter: usize) -> String {
         [
-            "centre x", "centre y", "centre z", "semi-axis 1", "semi-axis 2", "semi-axis 3", "turn about x",
-            "turn about y", "turn about z", "exponent e1", "exponent e2",
+            "centre x",
+            "centre y",
+            "centre z",
+            "semi-axis 1",
+            "semi-axis 2",
+            "semi-axis 3",
+            "turn about x",
+            "turn about y",
+            "turn about z",
+            "exponent e1",
+            "exponent e2",
         ][parameter]
             .to_owned()
     }
@@ -297,14 +312,15 @@ impl Model for SuperquadricModel {
 
 impl Superquadric {
     /// The superquadric of the same axes whose third axis is the ellipsoid's axis `special`, turned about it by `turn`.
-    pub(in crate::fit) fn from_ellipsoid(body: &super::SkewEllipsoid, special: usize, turn: f64) -> Option<Self> {
+    pub(in crate::fit) fn from_ellipsoid(
+        body: &super::SkewEllipsoid,
+        special: usize,
+        turn: f64,
+    ) -> Option<Self> {
         let axes = [(special + 1) % 3, (special + 2) % 3, special];
         let frame = DMat3::from_quat(body.rotation());
-        let rotation = DQuat::from_mat3(&DMat3::from_cols(
-            frame.col(axes[0]),
-            frame.col(axes[1]),
-            frame.col(axes[2]),
-        ));
+        let rotation =
+            DQuat::from_mat3(&DMat3::from_cols(frame.col(axes[0]), frame.col(axes[1]), frame.col(axes[2])));
         let lengths = DVec3::from_array(axes.map(|i| body.semi_axes()[i]));
         // Turned by an eighth, both axes across have the same length.
         let mean = 0.5 * (lengths.x + lengths.y);

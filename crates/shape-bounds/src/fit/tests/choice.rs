@@ -18,7 +18,6 @@ fn rate(body: impl Fn(&mut Source) -> Box<dyn SupportFunction>, expected: ShapeF
         let normals = scattered(80, &mut s);
         let contacts = measured(&body, normals, 2e-3, 2e-3, &mut s);
         let choice = ShapeFit::choose(&contacts, &families, &FitOptions::default()).unwrap();
-        if choice.best.family() != expected { eprintln!("{seed} {expected} {:?} chi {} {:?}", choice.best.family(), choice.best.statistics().chi_squared, choice.candidates); }
         hits += u64::from(choice.best.family() == expected);
     }
     hits as f64 / runs as f64
@@ -29,7 +28,7 @@ fn the_true_family_is_chosen() {
     let ball = |s: &mut Source| -> Box<dyn SupportFunction> {
         Box::new(Translated { body: Sphere::new(s.between(0.5, 2.0)).unwrap(), offset: s.normal3() })
     };
-    let runs = 20;
+    let runs = 10;
     assert!(rate(ball, ShapeFamily::Sphere, runs) >= 0.9);
     assert!(rate(|s| Box::new(random_ellipsoid(s)), ShapeFamily::Ellipsoid, runs) >= 0.9);
     assert!(rate(|s| Box::new(superquadric_body(s)), ShapeFamily::Superquadric, runs) >= 0.9);

@@ -36,7 +36,10 @@ pub(super) fn measured(
 }
 
 /// Exact contacts with a stated noise that is small against the body.
-pub(super) fn exact(body: &dyn SupportFunction, normals: impl IntoIterator<Item = DVec3>) -> Vec<NoisyContact> {
+pub(super) fn exact(
+    body: &dyn SupportFunction,
+    normals: impl IntoIterator<Item = DVec3>,
+) -> Vec<NoisyContact> {
     let mut contacts = measured(body, normals, 0.0, 0.0, &mut Source::new(0));
     contacts.iter_mut().for_each(|c| c.noise = ContactNoise::isotropic(1e-3, 1e-3));
     contacts

@@ -22,20 +22,27 @@ fn derivatives_by_parameters_and_normal_agree_with_differences() {
         for _ in 0..50 {
             let n = Direction::new(s.direction()).unwrap();
             let mut columns = vec![DVec3::ZERO; count];
-            let jet = model.jet(&theta, n, Some(&mut columns)).unwrap();
+            model.columns(&theta, n, &mut columns).unwrap();
+            let jet = model.body(&theta).unwrap().jet(n);
             for (i, column) in columns.iter().enumerate() {
                 let mut step = DVector::zeros(count);
                 let h = 1e-6;
                 step[i] = h;
-                let plus = model.jet(&model.moved(&theta, &step), n, None).unwrap().point;
-                let minus = model.jet(&model.moved(&theta, &-step), n, None).unwrap().point;
+                let plus = model.body(&model.moved(&theta, &step)).unwrap().point(n);
+                let minus = model.body(&model.moved(&theta, &-step)).unwrap().point(n);
                 let slope = (plus - minus) / (2.0 * h);
                 assert!((slope - *column).length() < 1e-6, "{} {slope} {column}", model.name(i));
             }
             for axis in DVec3::AXES {
-                let at = |h: f64| model.jet(&theta, Direction::new(n.get() + axis * h).unwrap(), None).unwrap().point;
+                let body = model.body(&theta).unwrap();
+                let at = |h: f64| body.point(Direction::new(n.get() + axis * h).unwrap());
                 let slope = (at(1e-6) - at(-1e-6)) / 2e-6;
-                assert!((slope - jet.hessian * axis).length() < 1e-4, "{} {slope} {}", model.name(0), jet.hessian * axis);
+                assert!(
+                    (slope - jet.hessian * axis).length() < 1e-4,
+                    "{} {slope} {}",
+                    model.name(0),
+                    jet.hessian * axis
+                );
             }
             assert!((jet.point.dot(n.get()) - jet.value).abs() < 1e-12);
         }

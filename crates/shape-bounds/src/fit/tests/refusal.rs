@@ -15,17 +15,27 @@ fn contacts_that_leave_a_parameter_open_are_refused() {
             DVec3::new(cos, sin, 0.0)
         })
     };
-    match fit(&exact(&body, circle(60, 6.28)), ShapeFamily::Ellipsoid) {
+    match fit(&exact(&body, circle(60, std::f64::consts::TAU)), ShapeFamily::Ellipsoid) {
         Err(FitError::Undetermined { rank: 8, parameters: 9, weakest, .. }) => assert_eq!(weakest, "axes zz"),
         other => panic!("{other:?}"),
     }
     for family in [ShapeFamily::Superquadric, ShapeFamily::Harmonics { degree: 2 }] {
-        assert!(matches!(fit(&exact(&body, circle(60, 6.28)), family), Err(FitError::Undetermined { .. })), "{family}");
+        assert!(
+            matches!(
+                fit(&exact(&body, circle(60, std::f64::consts::TAU)), family),
+                Err(FitError::Undetermined { .. })
+            ),
+            "{family}"
+        );
     }
     // One short arc, with noise: of full rank, but far less certain than the size.
     let mut s = Source::new(31);
-    let arc = measured(&body, circle(60, 0.05).map(|n| (n + DVec3::Z * 0.01).normalize()), 1e-3, 1e-3, &mut s);
-    assert!(matches!(fit(&arc, ShapeFamily::Ellipsoid), Err(FitError::Undetermined { .. } | FitError::NotConverged { .. })));
+    let arc =
+        measured(&body, circle(60, 0.05).map(|n| (n + DVec3::Z * 0.01).normalize()), 1e-3, 1e-3, &mut s);
+    assert!(matches!(
+        fit(&arc, ShapeFamily::Ellipsoid),
+        Err(FitError::Undetermined { .. } | FitError::NotConverged { .. })
+    ));
     // The same arc does determine a ball.
     let ball = Sphere::new(1.2).unwrap();
     let arc = measured(&ball, circle(60, 0.3), 1e-4, 1e-4, &mut s);
@@ -52,7 +62,9 @@ fn harmonics_are_held_convex_and_nearer_to_the_truth() {
         let data = Data::check(&contacts, &FitOptions::default()).unwrap();
         let model = family.model().unwrap();
         let start = ball(model.as_ref(), &contacts, &data);
-        let Ok(free) = solve(model.as_ref(), start, &contacts, data.size) else { panic!("no free fit") };
+        let Ok(free) = solve(model.as_ref(), vec![start], &contacts, data.size) else {
+            panic!("no free fit")
+        };
         let limit = 0.1;
         let convex = convex::hold(4, &free.theta, &free.system.root, limit).unwrap();
         assert!(convex.body.curvature_radii().min >= limit);
@@ -81,9 +93,15 @@ fn bad_values_are_named() {
     };
     assert!(matches!(with(&|c| c.contact.point.y = f64::NAN), FitError::NotFinite { index: 7, .. }));
     assert!(matches!(with(&|c| c.noise.normal = -1.0), FitError::Noise { index: 7, name: "normal", .. }));
-    assert!(matches!(with(&|c| c.noise.point = DMat3::ZERO), FitError::Noise { index: 7, name: "point", .. }));
+    assert!(matches!(
+        with(&|c| c.noise.point = DMat3::ZERO),
+        FitError::Noise { index: 7, name: "point", .. }
+    ));
     assert!(matches!(with(&|c| c.noise.pose_rotation = 1e-3), FitError::PoseNoise { index: 7 }));
-    assert!(matches!(fit(&good[..1], ShapeFamily::Sphere), Err(FitError::TooFew { found: 1, needed: 2, .. })));
+    assert!(matches!(
+        fit(&good[..1], ShapeFamily::Sphere),
+        Err(FitError::TooFew { found: 1, needed: 2, .. })
+    ));
     assert!(matches!(fit(&[good[0]; 5], ShapeFamily::Sphere), Err(FitError::NoExtent { found: 5 })));
     assert!(matches!(
         fit(&good, ShapeFamily::Harmonics { degree: 40 }),
