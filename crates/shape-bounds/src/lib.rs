@@ -36,7 +36,7 @@ mod mesh;
 mod noise;
 #[cfg(feature = "parry")]
 mod parry;
-mod planar;
+pub mod planar;
 mod poses;
 mod predicates;
 mod random;

@@ -123,7 +123,11 @@ fn an_unknown_noise_level_is_estimated() {
         sum += fit.statistics().noise_factor.powi(2);
     }
     // A variance of 2 / (141 * 50).
-    assert!((sum / 50.0 / 9e-6 - 1.0).abs() < 4.0 * (2.0 / (141.0 * 50.0)).sqrt(), "{}", sum / 50.0 / 9e-6);
+    assert!(
+        (sum / 50.0 / 9e-6 - 1.0).abs() < 4.0 * (2.0_f64 / (141.0 * 50.0)).sqrt(),
+        "{}",
+        sum / 50.0 / 9e-6
+    );
 }
 
 #[test]
