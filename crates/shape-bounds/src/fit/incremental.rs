@@ -1,7 +1,8 @@
 //! A fit that takes one contact at a time.
 
 use super::information::SquareRoot;
-use super::solve::{assemble, iterate, linearise};
+use super::levenberg::{Problem, iterate};
+use super::solve::{Spatial, linearise};
 use super::{Data, FitError, FitOptions, ShapeFamily, ShapeFit, check_contact};
 use crate::noise::NoisyContact;
 use glam::DVec3;
@@ -102,7 +103,8 @@ impl IncrementalFit {
             Some(linear) => {
                 let data = Data::check(&self.contacts, &self.options)?;
                 let model = data.model(self.family, self.contacts.len())?;
-                match iterate(model.as_ref(), linear.at.clone(), &self.contacts, data.size) {
+                let problem = Spatial { model: model.as_ref(), contacts: &self.contacts, size: data.size };
+                match iterate(&problem, linear.at.clone()) {
                     Ok(found) => {
                         return Ok(Linear {
                             at: found.theta,
@@ -116,7 +118,8 @@ impl IncrementalFit {
         };
         let open = FitError::NotConverged { family: self.family, iterations: 0 };
         let model = self.family.model().ok_or_else(|| open.clone())?;
-        let system = assemble(model.as_ref(), &fit.parameters, &self.contacts, None).ok_or(open)?;
+        let problem = Spatial { model: model.as_ref(), contacts: &self.contacts, size: 1.0 };
+        let system = problem.assemble(&fit.parameters, None).ok_or(open)?;
         Ok(Linear { at: fit.parameters, root: system.root, contacts: self.contacts.len() })
     }
 
@@ -129,7 +132,8 @@ impl IncrementalFit {
         let model = data.model(self.family, self.contacts.len())?;
         let start = self.linear.as_ref().and_then(|l| Some(model.moved(&l.at, &l.root.solve(0.0)?)));
         if let Some(start) = start
-            && let Ok(found) = iterate(model.as_ref(), start, &self.contacts, data.size)
+            && let Ok(found) =
+                iterate(&Spatial { model: model.as_ref(), contacts: &self.contacts, size: data.size }, start)
         {
             return ShapeFit::finish(model.as_ref(), self.family, &self.contacts, found, &data);
         }

@@ -11,7 +11,8 @@ mod error;
 mod family;
 mod incremental;
 pub(crate) mod information;
-mod nnls;
+pub(crate) mod levenberg;
+pub(crate) mod nnls;
 mod report;
 mod solve;
 #[cfg(test)]
@@ -30,8 +31,9 @@ use contact_kinematics::{
 use family::{EllipsoidModel, HarmonicModel, Model, SphereModel, SuperquadricModel};
 use glam::DVec3;
 use information::SquareRoot;
+use levenberg::Problem;
 use nalgebra::DVector;
-use solve::{Solution, assemble, solve};
+use solve::{Solution, Spatial, into_error, solve};
 use std::fmt;
 
 /// Families of shapes, by what their parameters are.
@@ -158,8 +160,8 @@ impl ShapeFit {
             ShapeFamily::Superquadric => superquadric(model, contacts, &data)?,
             _ => {
                 let start = ball(model, contacts, &data);
-                solve(model, vec![start], contacts, data.size)
-                    .map_err(|e| e.into_error(model, family, data.size))?
+                let problem = Spatial { model, contacts, size: data.size };
+                solve(&problem, vec![start]).map_err(|e| into_error(e, model, family, data.size))?
             }
         };
         Self::finish(model, family, contacts, solution, &data)
@@ -255,8 +257,9 @@ fn ball(model: &dyn Model, contacts: &[NoisyContact], data: &Data) -> DVector<f6
 fn superquadric(model: &dyn Model, contacts: &[NoisyContact], data: &Data) -> Result<Solution, FitError> {
     let family = ShapeFamily::Superquadric;
     let start = ball(&EllipsoidModel, contacts, data);
-    let ellipsoid = solve(&EllipsoidModel, vec![start], contacts, data.size)
-        .map_err(|e| e.into_error(&EllipsoidModel, ShapeFamily::Ellipsoid, data.size))?;
+    let problem = Spatial { model: &EllipsoidModel, contacts, size: data.size };
+    let ellipsoid = solve(&problem, vec![start])
+        .map_err(|e| into_error(e, &EllipsoidModel, ShapeFamily::Ellipsoid, data.size))?;
     let body = EllipsoidModel::body(&ellipsoid.theta)?;
     let mut starts = Vec::new();
     for special in 0..3 {
@@ -265,7 +268,8 @@ fn superquadric(model: &dyn Model, contacts: &[NoisyContact], data: &Data) -> Re
             starts.extend(start.as_ref().map(SuperquadricModel::parameters));
         }
     }
-    solve(model, starts, contacts, data.size).map_err(|e| e.into_error(model, family, data.size))
+    let problem = Spatial { model, contacts, size: data.size };
+    solve(&problem, starts).map_err(|e| into_error(e, model, family, data.size))
 }
 
 /// Of all covariances of residuals.
@@ -300,6 +304,7 @@ impl ShapeFit {
         data: &Data,
     ) -> Result<Self, FitError> {
         let open = |root: &SquareRoot| undetermined(model, family, root, data.size);
+        let problem = Spatial { model, contacts, size: data.size };
         let mut active_constraints = 0;
         let body = match family {
             ShapeFamily::Sphere => {
@@ -311,7 +316,7 @@ impl ShapeFit {
                 let theta = EllipsoidModel::with_positive_diagonal(&solution.theta);
                 if theta != solution.theta {
                     solution.system =
-                        assemble(model, &theta, contacts, None).ok_or_else(|| open(&solution.system.root))?;
+                        problem.assemble(&theta, None).ok_or_else(|| open(&solution.system.root))?;
                     solution.theta = theta;
                 }
                 FittedBody::Ellipsoid(EllipsoidModel::body(&solution.theta)?)
@@ -322,8 +327,8 @@ impl ShapeFit {
                     convex::hold(degree, &solution.theta, &solution.system.root, data.smallest_radius)?;
                 if held.active > 0 {
                     active_constraints = held.active;
-                    solution.system = assemble(model, &held.theta, contacts, None)
-                        .ok_or_else(|| open(&solution.system.root))?;
+                    solution.system =
+                        problem.assemble(&held.theta, None).ok_or_else(|| open(&solution.system.root))?;
                     solution.theta = held.theta;
                 }
                 FittedBody::Harmonics(held.body)

@@ -53,7 +53,7 @@ fn nonnegative(e: &DMatrix<f64>, f: &DVector<f64>) -> Option<(DVector<f64>, DVec
 
 /// The shortest `x` with `G x >= h`, and how many of the inequalities hold it; `None` if there is none (Lawson and Hanson,
 /// algorithm 23.27).
-pub(super) fn least_distance(g: &DMatrix<f64>, h: &DVector<f64>) -> Option<(DVector<f64>, usize)> {
+pub(crate) fn least_distance(g: &DMatrix<f64>, h: &DVector<f64>) -> Option<(DVector<f64>, usize)> {
     let (rows, columns) = g.shape();
     // Inequalities of unit length, so that the test of optimality is even-handed.
     let lengths: Vec<f64> = (0..rows).map(|i| g.row(i).norm().max(f64::MIN_POSITIVE)).collect();

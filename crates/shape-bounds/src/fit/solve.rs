@@ -1,25 +1,14 @@
 //! Nonlinear least squares over contacts whose points and normals are both uncertain.
 
-use super::FitError;
 use super::family::Model;
 use super::information::SquareRoot;
+use super::levenberg::{self, Problem, System, best_of, iterate};
+use super::{FitError, ShapeFamily};
 use crate::noise::NoisyContact;
 use contact_kinematics::{Direction, SupportFunction, SupportJet};
 use glam::{DMat3, DVec3};
 use nalgebra::{DVector, Matrix3, Vector3};
 
-/// Iterations before a fit is given up; a handful suffices near a solution.
-const ITERATIONS: usize = 200;
-/// A step this small, in standard deviations, changes nothing.
-const STILL: f64 = 1e-7;
-/// A predicted improvement this small, relative to the sum of squares, is rounding of it ...
-const FLAT: f64 = 1e-14;
-/// ... and this small is so if the step did not bring it about.
-const STALLED: f64 = 1e-9;
-/// A step this small, relative to the sizes of the parameters, is rounding.
-const ROUNDING: f64 = 1e-14;
-/// Iterations with equations that leave a combination open before the contacts are blamed, and not the start.
-const DEFICIENT: usize = 12;
 /// Steps of the search for a contact's true normal, and halvings of one that goes too far.
 const NORMAL_STEPS: usize = 30;
 const HALVINGS: usize = 12;
@@ -130,134 +119,74 @@ impl Linearised {
     }
 }
 
-/// All contacts linearised at the same parameters.
-pub(super) struct System {
-    pub(super) root: SquareRoot,
-    pub(super) contacts: Vec<Linearised>,
-    pub(super) chi_squared: f64,
+/// Contacts against a family.
+pub(super) struct Spatial<'a, M: ?Sized> {
+    pub(super) model: &'a M,
+    pub(super) contacts: &'a [NoisyContact],
+    pub(super) size: f64,
 }
 
-/// Linearises all contacts; the search for their true normals starts from those of `before`, or from those measured.
-pub(super) fn assemble(
-    model: &(impl Model + ?Sized),
-    theta: &DVector<f64>,
-    contacts: &[NoisyContact],
-    before: Option<&System>,
-) -> Option<System> {
-    let count = model.count();
-    let body = model.body(theta)?;
-    let mut root = SquareRoot::new(count);
-    let (mut columns, mut row) = (vec![DVec3::ZERO; count], vec![0.0; count + 1]);
-    let mut linearised = Vec::with_capacity(contacts.len());
-    let mut chi_squared = 0.0;
-    for (k, contact) in contacts.iter().enumerate() {
-        let start = before.map_or(contact.contact.normal, |system| system.contacts[k].normal);
-        let own = linearise(model, theta, body.as_ref(), contact, start, &mut columns)?;
-        own.insert(&columns, &mut root, &mut row);
-        chi_squared += own.residual.norm_squared();
-        linearised.push(own);
+impl<M: Model + ?Sized> Problem for Spatial<'_, M> {
+    type Contact = Linearised;
+
+    /// The search for the true normals starts from those of `before`, or from those measured.
+    fn assemble(
+        &self,
+        theta: &DVector<f64>,
+        before: Option<&System<Linearised>>,
+    ) -> Option<System<Linearised>> {
+        let count = self.model.count();
+        let body = self.model.body(theta)?;
+        let mut root = SquareRoot::new(count);
+        let (mut columns, mut row) = (vec![DVec3::ZERO; count], vec![0.0; count + 1]);
+        let mut contacts = Vec::with_capacity(self.contacts.len());
+        let mut chi_squared = 0.0;
+        for (k, contact) in self.contacts.iter().enumerate() {
+            let start = before.map_or(contact.contact.normal, |system| system.contacts[k].normal);
+            let own = linearise(self.model, theta, body.as_ref(), contact, start, &mut columns)?;
+            own.insert(&columns, &mut root, &mut row);
+            chi_squared += own.residual.norm_squared();
+            contacts.push(own);
+        }
+        Some(System { root, contacts, chi_squared })
     }
-    Some(System { root, contacts: linearised, chi_squared })
+
+    fn moved(&self, theta: &DVector<f64>, step: &DVector<f64>) -> DVector<f64> {
+        self.model.moved(theta, step)
+    }
+
+    fn scales(&self) -> DVector<f64> {
+        self.model.scales(self.size)
+    }
 }
 
-/// Where an iteration came to rest.
-pub(super) struct Solution {
-    pub(super) theta: DVector<f64>,
-    pub(super) system: System,
-    pub(super) iterations: usize,
-}
-
-/// Why an iteration did not come to rest.
-pub(super) enum Unsolved {
-    /// The equations leave a combination open even for rounding's sake.
-    Singular(System),
-    NotConverged(usize),
-}
+/// Where a fit in space came to rest.
+pub(super) type Solution = levenberg::Solution<Linearised>;
+type Unsolved = levenberg::Unsolved<Linearised>;
 
 /// The likeliest parameters.
 ///
 /// First with the normals taken as exact, which is a smooth problem from any start; from the best of its solutions, with
 /// the true normals eliminated. Started far off, the search for a true normal can end on the wrong side of the body.
-pub(super) fn solve(
-    model: &(impl Model + ?Sized),
+pub(super) fn solve<M: Model + ?Sized>(
+    problem: &Spatial<'_, M>,
     starts: Vec<DVector<f64>>,
-    contacts: &[NoisyContact],
-    size: f64,
 ) -> Result<Solution, Unsolved> {
-    let mut exact = contacts.to_vec();
+    let mut exact = problem.contacts.to_vec();
     exact.iter_mut().for_each(|c| c.noise.normal = 0.0);
-    let mut best: Result<Solution, Unsolved> = Err(Unsolved::NotConverged(0));
-    for start in starts {
-        let found = iterate(model, start, &exact, size);
-        let better = match (&found, &best) {
-            (Ok(found), Ok(known)) => found.system.chi_squared < known.system.chi_squared,
-            (Err(Unsolved::NotConverged(_)), _) | (Err(_), Ok(_)) => false,
-            _ => true,
-        };
-        if better {
-            best = found;
-        }
-    }
-    iterate(model, best?.theta, contacts, size)
+    let near = best_of(&Spatial { contacts: &exact, ..*problem }, starts)?;
+    iterate(problem, near.theta)
 }
 
-/// Levenberg's and Marquardt's iteration on the likelihood.
-pub(super) fn iterate(
+/// What a failed iteration says of the contacts.
+pub(super) fn into_error(
+    failure: Unsolved,
     model: &(impl Model + ?Sized),
-    start: DVector<f64>,
-    contacts: &[NoisyContact],
+    family: ShapeFamily,
     size: f64,
-) -> Result<Solution, Unsolved> {
-    let scales = model.scales(size);
-    let mut theta = start;
-    let (mut damping, mut deficient) = (0.0, 0);
-    let Some(mut system) = assemble(model, &theta, contacts, None) else {
-        return Err(Unsolved::NotConverged(0));
-    };
-    for iterations in 1..=ITERATIONS {
-        if damping > 0.0 || system.root.solve(0.0).is_none() {
-            let open = system.root.knowledge(&scales).is_none_or(|known| known.rank < model.count());
-            deficient += usize::from(open);
-            if deficient > DEFICIENT {
-                return Err(Unsolved::Singular(system));
-            }
-        }
-        let Some(step) = system.root.solve(damping) else {
-            damping = (damping * 10.0).max(1e-9);
-            continue;
-        };
-        let deviations = (system.root.triangle() * &step).norm();
-        let relative = step.component_div(&scales).amax();
-        let improvement = deviations.powi(2) / system.chi_squared.max(f64::MIN_POSITIVE);
-        if damping == 0.0 && (deviations <= STILL || relative <= ROUNDING || improvement <= FLAT) {
-            return Ok(Solution { theta, system, iterations });
-        }
-        let next = model.moved(&theta, &step);
-        let renewed = assemble(model, &next, contacts, Some(&system))
-            .filter(|renewed| renewed.chi_squared <= system.chi_squared * (1.0 + 1e-12) || relative <= 1e-10);
-        match renewed {
-            Some(renewed) => {
-                (theta, system) = (next, renewed);
-                damping = if damping < 1e-7 { 0.0 } else { damping * 0.1 };
-            }
-            None if improvement <= STALLED => return Ok(Solution { theta, system, iterations }),
-            None if damping > 1e9 => return Err(Unsolved::NotConverged(iterations)),
-            None => damping = (damping * 10.0).max(1e-6),
-        }
-    }
-    Err(Unsolved::NotConverged(ITERATIONS))
-}
-
-impl Unsolved {
-    pub(super) fn into_error(
-        self,
-        model: &(impl Model + ?Sized),
-        family: super::ShapeFamily,
-        size: f64,
-    ) -> FitError {
-        match self {
-            Self::Singular(system) => super::undetermined(model, family, &system.root, size),
-            Self::NotConverged(iterations) => FitError::NotConverged { family, iterations },
-        }
+) -> FitError {
+    match failure {
+        Unsolved::Singular(system) => super::undetermined(model, family, &system.root, size),
+        Unsolved::NotConverged(iterations) => FitError::NotConverged { family, iterations },
     }
 }

@@ -62,7 +62,9 @@ fn harmonics_are_held_convex_and_nearer_to_the_truth() {
         let data = Data::check(&contacts, &FitOptions::default()).unwrap();
         let model = family.model().unwrap();
         let start = ball(model.as_ref(), &contacts, &data);
-        let Ok(free) = solve(model.as_ref(), vec![start], &contacts, data.size) else {
+        let Ok(free) =
+            solve(&Spatial { model: model.as_ref(), contacts: &contacts, size: data.size }, vec![start])
+        else {
             panic!("no free fit")
         };
         let limit = 0.1;

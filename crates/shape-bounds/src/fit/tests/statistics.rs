@@ -42,14 +42,22 @@ fn consistency(
     };
     let mut clean = at_truth(&normals, &mut s, (0.0, 0.0));
     clean.iter_mut().for_each(|c| c.noise = ContactNoise::isotropic(noise.0, noise.1));
-    let bound = assemble(model.as_ref(), truth, &clean, None).unwrap().root.covariance().unwrap();
+    let bound = Spatial { model: model.as_ref(), contacts: &clean, size: 1.0 }
+        .assemble(truth, None)
+        .unwrap()
+        .root
+        .covariance()
+        .unwrap();
     let mut nees = 0.0;
     let mut square = DMatrix::zeros(parameters, parameters);
     for _ in 0..runs {
         let contacts = at_truth(&normals, &mut s, noise);
         let data = Data::check(&contacts, &FitOptions::default()).unwrap();
         let start = truth.clone();
-        let found = solve(model.as_ref(), vec![start], &contacts, data.size).ok().unwrap();
+        let found =
+            solve(&Spatial { model: model.as_ref(), contacts: &contacts, size: data.size }, vec![start])
+                .ok()
+                .unwrap();
         let fit = ShapeFit::finish(model.as_ref(), family, &contacts, found, &data).unwrap();
         assert_eq!(fit.statistics().active_constraints, 0);
         let error = fit.parameters() - truth;

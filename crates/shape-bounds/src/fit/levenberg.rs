@@ -1,0 +1,126 @@
+//! Levenberg's and Marquardt's iteration, for contacts in the plane and in space.
+
+use super::information::SquareRoot;
+use nalgebra::DVector;
+
+/// Iterations before a fit is given up; a handful suffices near a solution.
+const ITERATIONS: usize = 200;
+/// A step this small, in standard deviations, changes nothing.
+const STILL: f64 = 1e-7;
+/// A predicted improvement this small, relative to the sum of squares, is rounding of it ...
+const FLAT: f64 = 1e-14;
+/// ... and this small is so if the step did not bring it about.
+const STALLED: f64 = 1e-9;
+/// A step this small, relative to the sizes of the parameters, is rounding.
+const ROUNDING: f64 = 1e-14;
+/// Iterations with equations that leave a combination open before the contacts are blamed, and not the start.
+const DEFICIENT: usize = 12;
+
+/// All contacts linearised at the same parameters.
+pub(crate) struct System<C> {
+    pub(crate) root: SquareRoot,
+    pub(crate) contacts: Vec<C>,
+    pub(crate) chi_squared: f64,
+}
+
+/// A sum of squares over contacts.
+pub(crate) trait Problem {
+    /// A contact, linearised.
+    type Contact;
+
+    /// Linearises all contacts at `theta`, with what is known from `before`; `None` where the parameters are no body.
+    fn assemble(
+        &self,
+        theta: &DVector<f64>,
+        before: Option<&System<Self::Contact>>,
+    ) -> Option<System<Self::Contact>>;
+
+    /// The parameters after a step.
+    fn moved(&self, theta: &DVector<f64>, step: &DVector<f64>) -> DVector<f64>;
+
+    /// Natural sizes of the parameters.
+    fn scales(&self) -> DVector<f64>;
+}
+
+/// Where an iteration came to rest.
+pub(crate) struct Solution<C> {
+    pub(crate) theta: DVector<f64>,
+    pub(crate) system: System<C>,
+    pub(crate) iterations: usize,
+}
+
+/// Why an iteration did not come to rest.
+pub(crate) enum Unsolved<C> {
+    /// The equations leave a combination open.
+    Singular(System<C>),
+    /// No rest within so many iterations.
+    NotConverged(usize),
+}
+
+/// Levenberg's and Marquardt's iteration on the likelihood.
+pub(crate) fn iterate<P: Problem>(
+    problem: &P,
+    start: DVector<f64>,
+) -> Result<Solution<P::Contact>, Unsolved<P::Contact>> {
+    let scales = problem.scales();
+    let mut theta = start;
+    let (mut damping, mut deficient) = (0.0, 0);
+    let Some(mut system) = problem.assemble(&theta, None) else {
+        return Err(Unsolved::NotConverged(0));
+    };
+    for iterations in 1..=ITERATIONS {
+        if damping > 0.0 || system.root.solve(0.0).is_none() {
+            let open = system.root.knowledge(&scales).is_none_or(|known| known.rank < scales.len());
+            deficient += usize::from(open);
+            if deficient > DEFICIENT {
+                return Err(Unsolved::Singular(system));
+            }
+        }
+        let Some(step) = system.root.solve(damping) else {
+            damping = (damping * 10.0).max(1e-9);
+            continue;
+        };
+        let deviations = (system.root.triangle() * &step).norm();
+        let relative = step.component_div(&scales).amax();
+        let improvement = deviations.powi(2) / system.chi_squared.max(f64::MIN_POSITIVE);
+        if damping == 0.0 && (deviations <= STILL || relative <= ROUNDING || improvement <= FLAT) {
+            return Ok(Solution { theta, system, iterations });
+        }
+        let next = problem.moved(&theta, &step);
+        let renewed = problem
+            .assemble(&next, Some(&system))
+            .filter(|renewed| renewed.chi_squared <= system.chi_squared * (1.0 + 1e-12) || relative <= 1e-10);
+        match renewed {
+            Some(renewed) => {
+                (theta, system) = (next, renewed);
+                damping = if damping < 1e-7 { 0.0 } else { damping * 0.1 };
+            }
+            None if improvement <= STALLED => return Ok(Solution { theta, system, iterations }),
+            None if damping > 1e9 => return Err(Unsolved::NotConverged(iterations)),
+            None => damping = (damping * 10.0).max(1e-6),
+        }
+    }
+    Err(Unsolved::NotConverged(ITERATIONS))
+}
+
+/// The best of several starts.
+pub(crate) fn best_of<P: Problem>(
+    problem: &P,
+    starts: Vec<DVector<f64>>,
+) -> Result<Solution<P::Contact>, Unsolved<P::Contact>> {
+    let mut best = Err(Unsolved::NotConverged(0));
+    for start in starts {
+        let found = iterate(problem, start);
+        let better = match (&found, &best) {
+            (Ok(Solution { system: found, .. }), Ok(Solution { system: known, .. })) => {
+                found.chi_squared < known.chi_squared
+            }
+            (Err(Unsolved::NotConverged(_)), _) | (Err(_), Ok(_)) => false,
+            _ => true,
+        };
+        if better {
+            best = found;
+        }
+    }
+    best
+}
