@@ -24,6 +24,7 @@
 //! All lengths are in m, all coordinates in the body's frame.
 
 mod bounds;
+mod concave;
 mod curvature;
 mod distance;
 mod fit;
@@ -44,6 +45,7 @@ mod sample;
 mod twofold;
 
 pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
+pub use concave::{AlphaError, AlphaShape, HermiteSurface, SurfaceError};
 pub use curvature::{BallIntersection, CurvatureBounds, CurvatureError, RoundedHull};
 pub use fit::{
     Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel, ShapeChoice,

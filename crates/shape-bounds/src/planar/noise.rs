@@ -30,7 +30,8 @@ impl ContactNoise {
         let limit = (xx * yy).sqrt() * (1.0 + 1e-9);
         // NaN fails every comparison.
         let fine = xx >= 0.0 && yy >= 0.0 && limit.is_finite() && xy.abs() <= limit && yx.abs() <= limit;
-        (!fine).then(|| ("point", [xx, yy, xy, yx].into_iter().find(|v| !(*v >= 0.0)).unwrap_or(xy)))
+        (!fine)
+            .then(|| ("point", [xx, yy, xy, yx].into_iter().find(|v| v.is_nan() || *v < 0.0).unwrap_or(xy)))
     }
 }
 
