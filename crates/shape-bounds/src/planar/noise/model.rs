@@ -1,7 +1,8 @@
 //! How uncertain contacts in the plane are.
 
-use super::ContactSample;
+use crate::planar::{BoundsError, ContactSample};
 use glam::DMat2;
+use thiserror::Error;
 
 /// How uncertain one measured contact is: normal noise, standard deviations.
 ///
@@ -22,7 +23,7 @@ impl ContactNoise {
     }
 
     /// The first entry that is not a standard deviation or covariance.
-    pub(super) fn defect(&self) -> Option<(&'static str, f64)> {
+    pub(in crate::planar) fn defect(&self) -> Option<(&'static str, f64)> {
         if !(self.normal.is_finite() && self.normal >= 0.0) {
             return Some(("normal", self.normal));
         }
@@ -42,4 +43,39 @@ pub struct NoisyContact {
     pub contact: ContactSample,
     /// How far it may be from the truth.
     pub noise: ContactNoise,
+}
+
+/// Why noisy contacts give no bounds.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum NoiseError {
+    /// A confidence that is none.
+    #[error("confidence {0}: it must lie between 0.5 and 1, both excluded")]
+    Confidence(f64),
+    /// A noise level that is negative, not finite or not a covariance.
+    #[error("curve {curve}, contact {index}: noise `{name}` has the entry {value}, which is not possible")]
+    Noise {
+        /// Which curve.
+        curve: usize,
+        /// Which contact of it.
+        index: usize,
+        /// Which field.
+        name: &'static str,
+        /// The entry.
+        value: f64,
+    },
+    /// The noise leaves nothing that is certainly in the body.
+    #[error("nothing is certainly inside of the body: the noise is as large as the hull of the contacts")]
+    NoLowerBound,
+    /// With normals as uncertain as stated, no finite region certainly contains the body.
+    #[error(
+        "nothing finite certainly contains the body: normals are too uncertain, or leave some directions open \
+         (tried regions up to {reach} m)"
+    )]
+    NoUpperBound {
+        /// Radius of the largest region tried.
+        reach: f64,
+    },
+    /// The measured contacts have no bounds whatever the noise.
+    #[error(transparent)]
+    Bounds(#[from] BoundsError),
 }
