@@ -1,7 +1,7 @@
 //! A fit that takes one contact at a time.
 
 use super::information::SquareRoot;
-use super::levenberg::{Problem, iterate};
+use super::levenberg::{ITERATIONS, Problem, iterate};
 use super::solve::{Spatial, linearise};
 use super::{Data, FitError, FitOptions, ShapeFamily, ShapeFit, check_contact};
 use crate::noise::NoisyContact;
@@ -104,7 +104,7 @@ impl IncrementalFit {
                 let data = Data::check(&self.contacts, &self.options)?;
                 let model = data.model(self.family, self.contacts.len())?;
                 let problem = Spatial { model: model.as_ref(), contacts: &self.contacts, size: data.size };
-                match iterate(&problem, linear.at.clone()) {
+                match iterate(&problem, linear.at.clone(), ITERATIONS) {
                     Ok(found) => {
                         return Ok(Linear {
                             at: found.theta,
@@ -132,8 +132,11 @@ impl IncrementalFit {
         let model = data.model(self.family, self.contacts.len())?;
         let start = self.linear.as_ref().and_then(|l| Some(model.moved(&l.at, &l.root.solve(0.0)?)));
         if let Some(start) = start
-            && let Ok(found) =
-                iterate(&Spatial { model: model.as_ref(), contacts: &self.contacts, size: data.size }, start)
+            && let Ok(found) = iterate(
+                &Spatial { model: model.as_ref(), contacts: &self.contacts, size: data.size },
+                start,
+                ITERATIONS,
+            )
         {
             return ShapeFit::finish(model.as_ref(), self.family, &self.contacts, found, &data);
         }

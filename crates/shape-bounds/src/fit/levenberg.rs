@@ -4,7 +4,9 @@ use super::information::SquareRoot;
 use nalgebra::DVector;
 
 /// Iterations before a fit is given up; a handful suffices near a solution.
-const ITERATIONS: usize = 200;
+pub(crate) const ITERATIONS: usize = 200;
+/// Iterations with normals taken as exact.
+const APPROACH: usize = 40;
 /// A step this small, in standard deviations, changes nothing.
 const STILL: f64 = 1e-7;
 /// A predicted improvement this small, relative to the sum of squares, is rounding of it ...
@@ -53,22 +55,23 @@ pub(crate) struct Solution<C> {
 pub(crate) enum Unsolved<C> {
     /// The equations leave a combination open.
     Singular(System<C>),
-    /// No rest within so many iterations.
-    NotConverged(usize),
+    /// No rest; where it was after so many iterations, or `None` if the start was no body.
+    NotConverged(usize, Option<Solution<C>>),
 }
 
 /// Levenberg's and Marquardt's iteration on the likelihood.
 pub(crate) fn iterate<P: Problem>(
     problem: &P,
     start: DVector<f64>,
+    limit: usize,
 ) -> Result<Solution<P::Contact>, Unsolved<P::Contact>> {
     let scales = problem.scales();
     let mut theta = start;
     let (mut damping, mut deficient) = (0.0, 0);
     let Some(mut system) = problem.assemble(&theta, None) else {
-        return Err(Unsolved::NotConverged(0));
+        return Err(Unsolved::NotConverged(0, None));
     };
-    for iterations in 1..=ITERATIONS {
+    for iterations in 1..=limit {
         if damping > 0.0 || system.root.solve(0.0).is_none() {
             let open = system.root.knowledge(&scales).is_none_or(|known| known.rank < scales.len());
             deficient += usize::from(open);
@@ -96,31 +99,33 @@ pub(crate) fn iterate<P: Problem>(
                 damping = if damping < 1e-7 { 0.0 } else { damping * 0.1 };
             }
             None if improvement <= STALLED => return Ok(Solution { theta, system, iterations }),
-            None if damping > 1e9 => return Err(Unsolved::NotConverged(iterations)),
+            None if damping > 1e9 => {
+                return Err(Unsolved::NotConverged(iterations, Some(Solution { theta, system, iterations })));
+            }
             None => damping = (damping * 10.0).max(1e-6),
         }
     }
-    Err(Unsolved::NotConverged(ITERATIONS))
+    let iterations = limit;
+    Err(Unsolved::NotConverged(iterations, Some(Solution { theta, system, iterations })))
 }
 
-/// The best of several starts.
+/// Parameters near the best solution that several starts lead to. A start that is not at rest after [`APPROACH`] iterations
+/// counts as far as it came: with normals taken as exact, a surface with flats and edges is a rough problem.
 pub(crate) fn best_of<P: Problem>(
     problem: &P,
     starts: Vec<DVector<f64>>,
-) -> Result<Solution<P::Contact>, Unsolved<P::Contact>> {
-    let mut best = Err(Unsolved::NotConverged(0));
+) -> Result<DVector<f64>, Unsolved<P::Contact>> {
+    let mut best: Option<Solution<P::Contact>> = None;
+    let mut failure = Unsolved::NotConverged(0, None);
     for start in starts {
-        let found = iterate(problem, start);
-        let better = match (&found, &best) {
-            (Ok(Solution { system: found, .. }), Ok(Solution { system: known, .. })) => {
-                found.chi_squared < known.chi_squared
+        match iterate(problem, start, APPROACH) {
+            Ok(found) | Err(Unsolved::NotConverged(_, Some(found))) => {
+                if best.as_ref().is_none_or(|known| found.system.chi_squared < known.system.chi_squared) {
+                    best = Some(found);
+                }
             }
-            (Err(Unsolved::NotConverged(_)), _) | (Err(_), Ok(_)) => false,
-            _ => true,
-        };
-        if better {
-            best = found;
+            Err(other) => failure = other,
         }
     }
-    best
+    best.map(|found| found.theta).ok_or(failure)
 }

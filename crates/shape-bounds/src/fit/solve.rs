@@ -2,7 +2,7 @@
 
 use super::family::Model;
 use super::information::SquareRoot;
-use super::levenberg::{self, Problem, System, best_of, iterate};
+use super::levenberg::{self, ITERATIONS, Problem, System, best_of, iterate};
 use super::{FitError, ShapeFamily};
 use crate::noise::NoisyContact;
 use contact_kinematics::{Direction, SupportFunction, SupportJet};
@@ -175,7 +175,7 @@ pub(super) fn solve<M: Model + ?Sized>(
     let mut exact = problem.contacts.to_vec();
     exact.iter_mut().for_each(|c| c.noise.normal = 0.0);
     let near = best_of(&Spatial { contacts: &exact, ..*problem }, starts)?;
-    iterate(problem, near.theta)
+    iterate(problem, near, ITERATIONS)
 }
 
 /// What a failed iteration says of the contacts.
@@ -187,6 +187,6 @@ pub(super) fn into_error(
 ) -> FitError {
     match failure {
         Unsolved::Singular(system) => super::undetermined(model, family, &system.root, size),
-        Unsolved::NotConverged(iterations) => FitError::NotConverged { family, iterations },
+        Unsolved::NotConverged(iterations, _) => FitError::NotConverged { family, iterations },
     }
 }

@@ -16,7 +16,7 @@ pub use family::{FittedOutline, TurnedEllipse};
 
 use super::{NoisyContact, noise::ContactNoise};
 use crate::fit::information::SquareRoot;
-use crate::fit::levenberg::{Problem, Solution, best_of, iterate};
+use crate::fit::levenberg::{ITERATIONS, Problem, Solution, best_of, iterate};
 use crate::fit::{FitOptions, FitStatistics, NoiseLevel};
 use contact_kinematics::planar::{RadiusBounds, RadiusFunction, RadiusJet};
 use family::model;
@@ -111,7 +111,7 @@ impl OutlineFit {
         let plane = |contacts| Plane { model: model.as_ref(), contacts, size };
         // Normals as exact first: a smooth problem from any start.
         let solution = best_of(&plane(&exact), vec![model.circle(centre, size)])
-            .and_then(|near| iterate(&plane(contacts), near.theta));
+            .and_then(|near| iterate(&plane(contacts), near, ITERATIONS));
         let solution = solution.map_err(|e| solve::into_error(e, model.as_ref(), family, size))?;
         Self::finish(&plane(contacts), family, solution, limit, options.noise_level)
     }

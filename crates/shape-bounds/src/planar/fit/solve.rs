@@ -195,6 +195,6 @@ pub(super) fn into_error(
 ) -> FitError {
     match failure {
         Unsolved::Singular(system) => undetermined(model, family, &system.root, size),
-        Unsolved::NotConverged(iterations) => FitError::NotConverged { family, iterations },
+        Unsolved::NotConverged(iterations, _) => FitError::NotConverged { family, iterations },
     }
 }
