@@ -49,13 +49,17 @@ impl Truth {
                 let axes = DVec3::new(1.0, 0.8, 1.4);
                 Box::new(Superquadric::new(s.normal3() * 0.2, axes, s.rotation(), [0.8, 1.25])?)
             }
-            Self::Harmonics => {
+            // Drawn again until it is convex.
+            Self::Harmonics => loop {
                 let mut rows = vec![vec![3.5], vec![0.1, -0.1, 0.05]];
                 for l in 2..=4usize {
                     rows.push((0..=2 * l).map(|_| s.normal() * 0.25 / (l * l) as f64).collect());
                 }
-                Box::new(PolynomialSupport::from_harmonics(&rows)?)
-            }
+                let body = PolynomialSupport::from_harmonics(&rows)?;
+                if body.curvature_radii().min > 0.1 {
+                    break Box::new(body);
+                }
+            },
             Self::RoundedBox => {
                 let core =
                     Superquadric::new(DVec3::ZERO, DVec3::new(0.8, 0.6, 1.0), s.rotation(), [0.4, 0.4])?;

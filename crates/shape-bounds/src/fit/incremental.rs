@@ -13,6 +13,10 @@ const GROWTH: f64 = 1.5;
 /// ... or when the estimate has moved from it by this much, relative to the natural sizes of the parameters.
 const MOVED: f64 = 0.02;
 
+/// As long as the contacts determine nothing, every one is tried up to so many times the parameters, then every fifth more.
+const PATIENCE: usize = 2;
+const RETRY: f64 = 1.2;
+
 /// Contacts so far, and the triangle of the equations linearised at one estimate.
 ///
 /// A contact costs O(p^2): its three rows are rotated into the triangle. The weights, the true normals and, for ellipsoid
@@ -23,6 +27,8 @@ pub struct IncrementalFit {
     options: FitOptions,
     contacts: Vec<NoisyContact>,
     linear: Option<Linear>,
+    /// Contacts when a fit was last tried in vain.
+    tried: usize,
 }
 
 struct Linear {
@@ -35,7 +41,7 @@ impl IncrementalFit {
     /// A fit from no contacts.
     #[must_use]
     pub fn new(family: ShapeFamily, options: FitOptions) -> Self {
-        Self { family, options, contacts: Vec::new(), linear: None }
+        Self { family, options, contacts: Vec::new(), linear: None, tried: 0 }
     }
 
     /// Contacts so far.
@@ -58,9 +64,14 @@ impl IncrementalFit {
     pub fn insert(&mut self, contact: NoisyContact) -> Result<Option<DVector<f64>>, FitError> {
         check_contact(self.contacts.len(), &contact)?;
         self.contacts.push(contact);
-        let due =
-            self.linear.as_ref().is_none_or(|l| self.contacts.len() as f64 > GROWTH * l.contacts as f64);
+        let count = self.contacts.len();
+        let few = count <= PATIENCE * self.family.parameters();
+        if self.linear.is_none() && !few && (count as f64) < RETRY * self.tried as f64 {
+            return Ok(None);
+        }
+        let due = self.linear.as_ref().is_none_or(|l| count as f64 > GROWTH * l.contacts as f64);
         if due {
+            self.tried = count;
             // Contacts that determine nothing yet are no error here; `fit` says what is missing.
             self.linear = self.relinearised().ok();
             return Ok(self.linear.as_ref().map(|l| l.at.clone()));

@@ -2,6 +2,7 @@
 
 mod ellipsoid;
 mod harmonics;
+mod norm;
 mod sphere;
 mod superquadric;
 

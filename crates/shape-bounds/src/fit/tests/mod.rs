@@ -10,6 +10,7 @@ use crate::generators::Source;
 use crate::noise::ContactNoise;
 use crate::sample::ContactSample;
 use glam::{DMat3, DQuat};
+use nalgebra::DVector;
 
 /// Contacts at `normals` of a body, points off by `point` (m per axis) and normals by `angle` (rad per tangent axis), with
 /// that noise stated.
