@@ -29,8 +29,8 @@ mod timing;
 pub mod charts;
 
 pub use diagram::{
-    Axis, ChartError, Diagram, Goal, Judged, Method, Outcome, Point, Scale, Subject, Sweep, Verdict,
-    WorkPrecision, WrittenChart,
+    Axis, ChartError, Diagram, Goal, Judged, Method, Outcome, Outlines, Point, Scale, Stroke, Subject, Sweep,
+    Verdict, WorkPrecision, WrittenChart,
 };
 pub use machine::machine_line;
 pub use timing::{Budget, SideBySide, Study, Timing};

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use crate::cargo::{cargo, output, root};
 
 /// Name of a study, the file under docs/ that it writes, and what it is about.
-const STUDIES: [(&str, &str, &str); 5] = [
+const STUDIES: &[(&str, &str, &str)] = &[
     (
         "bounds_noise",
         "bounds-noise.md",
@@ -15,6 +15,11 @@ const STUDIES: [(&str, &str, &str); 5] = [
     ("cold_start", "cold-start.md", "three palms: random scenes from no guess"),
     ("planar_monte_carlo", "planar-monte-carlo.md", "planar observers against the Cramer-Rao bound"),
     ("planar_costs", "planar-costs.md", "cost of the planar observers beside their accuracy"),
+    (
+        "shape_fits",
+        "shape-fits.md",
+        "shapes fitted to contacts against the Cramer-Rao bound, and their choice",
+    ),
 ];
 
 /// Runs the study that is named first; what follows is handed to it.

@@ -7,6 +7,7 @@ mod fig5_simulation;
 mod mujoco;
 mod near_sphere;
 mod parallel_palms;
+mod planar_bounds;
 mod reconstruction;
 mod shared;
 
@@ -35,6 +36,7 @@ pub const ALL: &[Chart] = &[
     parallel_palms::CHART,
     near_sphere::CHART,
     contact_loss::CHART,
+    planar_bounds::CHART,
 ];
 
 #[cfg(test)]

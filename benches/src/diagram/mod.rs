@@ -6,6 +6,7 @@ mod csv;
 mod drawing;
 mod error;
 mod files;
+mod outline;
 mod style;
 mod sweep;
 mod work_precision;
@@ -15,6 +16,7 @@ use std::path::Path;
 pub use axis::{Axis, Scale};
 pub use error::ChartError;
 pub use files::WrittenChart;
+pub use outline::{Outlines, Stroke};
 pub use sweep::{Judged, Subject, Sweep, Verdict};
 pub use work_precision::{Goal, Method, Outcome, Point, WorkPrecision};
 
@@ -25,6 +27,8 @@ pub enum Diagram {
     WorkPrecision(WorkPrecision),
     /// Error against a parameter, with verdicts.
     Sweep(Sweep),
+    /// Outlines in the plane.
+    Outlines(Outlines),
 }
 
 impl Diagram {
@@ -34,6 +38,7 @@ impl Diagram {
         match self {
             Self::WorkPrecision(chart) => &chart.name,
             Self::Sweep(sweep) => &sweep.name,
+            Self::Outlines(outlines) => &outlines.name,
         }
     }
 
@@ -48,6 +53,7 @@ impl Diagram {
         let (csv, drawing) = match self {
             Self::WorkPrecision(chart) => (chart.csv(), chart.drawing()?),
             Self::Sweep(sweep) => (sweep.csv(), sweep.drawing()?),
+            Self::Outlines(outlines) => (outlines.csv(), outlines.drawing()?),
         };
         let scene = backend::scene(&drawing);
         let svg = backend::svg(&scene);

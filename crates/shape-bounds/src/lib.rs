@@ -24,10 +24,12 @@
 //! All lengths are in m, all coordinates in the body's frame.
 
 mod bounds;
+mod concave;
 mod curvature;
 mod distance;
 mod erosion;
 mod faceted;
+mod fit;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
 mod halfspaces;
@@ -38,7 +40,7 @@ mod noise;
 mod palms;
 #[cfg(feature = "parry")]
 mod parry;
-mod planar;
+pub mod planar;
 mod poses;
 mod predicates;
 mod random;
@@ -46,11 +48,16 @@ mod sample;
 mod twofold;
 
 pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
+pub use concave::{AlphaError, AlphaShape, HermiteSurface, SurfaceError};
 pub use curvature::{
     BallHull, BallIntersection, ConvexMeasures, CurvatureBounds, CurvatureError, RoundedHull,
     RoundedIntersection, SharpBounds,
 };
 pub use faceted::FacetError;
+pub use fit::{
+    Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel, ShapeChoice,
+    ShapeFamily, ShapeFit, SkewEllipsoid, Superquadric,
+};
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;

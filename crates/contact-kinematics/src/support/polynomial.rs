@@ -5,8 +5,11 @@ use glam::{DMat3, DVec3};
 
 /// Highest degree accepted: at degree 32 the curvature bounds below take about a second.
 const LARGEST_DEGREE: u32 = 32;
-/// Grid spacing times degree in [`PolynomialSupport::curvature_radii`]: the slack is this share of the largest radius.
-const SPACING_TIMES_DEGREE: f64 = 0.05;
+/// Grid spacings times degree in [`PolynomialSupport::curvature_radii`], tried in turn: the slack is half the square of
+/// these, as a share of the largest radius.
+const SPACINGS_TIMES_DEGREE: [f64; 2] = [0.25, 0.05];
+/// Slack, as a share of the smallest radius, with which the coarser grid will do.
+const ENOUGH: f64 = 0.05;
 
 /// One term `coefficient n_x^i n_y^j n_z^k` of a polynomial on the unit sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +74,22 @@ impl PolynomialSupport {
                 super::harmonic::push_harmonic(&mut terms, l, index, coefficient);
             }
         }
+        // Harmonics share monomials: each is evaluated once. The sort is stable, so sums have a fixed order.
+        terms.sort_by_key(|term| term.powers);
+        terms.dedup_by(|later, first| {
+            let same = later.powers == first.powers;
+            if same {
+                first.coefficient += later.coefficient;
+            }
+            same
+        });
         Self::new(terms)
+    }
+
+    /// Its terms.
+    #[must_use]
+    pub fn terms(&self) -> &[Monomial] {
+        &self.terms
     }
 
     /// Degree of the polynomial.
@@ -84,12 +102,16 @@ impl PolynomialSupport {
 impl SupportFunction for PolynomialSupport {
     fn jet(&self, n: Direction) -> SupportJet {
         let n = n.get();
+        let mut powers = [DVec3::ONE; LARGEST_DEGREE as usize + 1];
+        for i in 1..=self.degree as usize {
+            powers[i] = powers[i - 1] * n;
+        }
         let (mut value, mut point, mut hessian) = (0.0, DVec3::ZERO, DMat3::ZERO);
         let mut isotropic = 0.0;
         let mut radial = DVec3::ZERO;
         let mut along = 0.0;
         for term in &self.terms {
-            let (p, gradient, second) = monomial(term, n);
+            let (p, gradient, second) = monomial(term, &powers);
             let degree = f64::from(term.powers.iter().sum::<u32>());
             // |u|^k with k = 1 - d: gradient k u, Hessian k 1 + k (k - 2) u u' at |u| = 1.
             let k = 1.0 - degree;
@@ -110,14 +132,30 @@ impl SupportFunction for PolynomialSupport {
         self.terms.iter().map(|term| term.coefficient * powers(term)).sum()
     }
 
-    /// A certificate, not a sample: along any great circle the normal curvature radius is a trigonometric polynomial
-    /// of at most the degree `k` of `h`, so by Bernstein's inequality its slope is at most `k M`, with `M` the largest
-    /// absolute radius. A grid that leaves no normal further than `delta` away therefore errs by at most `delta k M`,
-    /// and `M` itself is at most its grid value over `1 - delta k`.
+    /// A certificate, not a sample: along any great circle, in a direction carried along in parallel, the normal
+    /// curvature radius is a trigonometric polynomial of at most the degree `k` of `h`, so by Bernstein's inequality its
+    /// second derivative is at most `k^2 M`, with `M` the largest absolute radius. At the place and in the direction
+    /// where it is extreme its slope vanishes, so a grid that leaves no normal further than `delta` away errs by at most
+    /// `(delta k)^2 M / 2`, and `M` itself is at most its grid value over `1 - (delta k)^2 / 2`.
     fn curvature_radii(&self) -> CurvatureRadii {
+        let mut radii = CurvatureRadii { min: f64::NEG_INFINITY, max: f64::INFINITY };
+        for spacing in SPACINGS_TIMES_DEGREE {
+            let (min, max, slack) = self.radii_on_grid(spacing);
+            radii = CurvatureRadii { min: min - slack, max: max + slack };
+            if slack <= ENOUGH * min.abs() {
+                break;
+            }
+        }
+        radii
+    }
+}
+
+impl PolynomialSupport {
+    /// Smallest and largest radius on a grid whose spacing times the degree is at most `spacing`, and the slack.
+    fn radii_on_grid(&self, spacing: f64) -> (f64, f64, f64) {
         let degree = f64::from(self.degree.max(1));
         // Cube faces with `cells`^2 cells each: the half diagonal of a cell, sqrt(2) / cells, bounds the angle.
-        let cells = (2f64.sqrt() * degree / SPACING_TIMES_DEGREE).ceil() as u32;
+        let cells = (2f64.sqrt() * degree / spacing).ceil() as u32;
         let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
         for face in 0..6 {
             for i in 0..cells {
@@ -128,9 +166,8 @@ impl SupportFunction for PolynomialSupport {
                 }
             }
         }
-        let share = 2f64.sqrt() / f64::from(cells) * degree;
-        let slack = share * min.abs().max(max.abs()) / (1.0 - share);
-        CurvatureRadii { min: min - slack, max: max + slack }
+        let share = 0.5 * (2f64.sqrt() / f64::from(cells) * degree).powi(2);
+        (min, max, share * min.abs().max(max.abs()) / (1.0 - share))
     }
 }
 
@@ -149,15 +186,15 @@ fn power(x: f64, exponent: u32) -> f64 {
     x.powi(i32::try_from(exponent).unwrap_or(i32::MAX))
 }
 
-/// Value, gradient and Hessian of one term as a plain polynomial.
-fn monomial(term: &Monomial, n: DVec3) -> (f64, DVec3, DMat3) {
+/// Value, gradient and Hessian of one term as a plain polynomial, from the powers of the components of the normal.
+fn monomial(term: &Monomial, powers: &[DVec3]) -> (f64, DVec3, DMat3) {
     // Per axis: n^p, p n^(p-1), p (p-1) n^(p-2).
     let axis = |i: usize| {
-        let (x, p) = (n[i], term.powers[i]);
-        let q = f64::from(p);
-        let first = if p > 0 { q * power(x, p - 1) } else { 0.0 };
-        let second = if p > 1 { q * (q - 1.0) * power(x, p - 2) } else { 0.0 };
-        [power(x, p), first, second]
+        let p = term.powers[i] as usize;
+        let q = p as f64;
+        let first = if p > 0 { q * powers[p - 1][i] } else { 0.0 };
+        let second = if p > 1 { q * (q - 1.0) * powers[p - 2][i] } else { 0.0 };
+        [powers[p][i], first, second]
     };
     let (a, b, c) = (axis(0), axis(1), axis(2));
     let k = term.coefficient;

@@ -104,6 +104,24 @@ fn curvature_bounds_of_an_ellipsoid_are_attained() {
 }
 
 #[test]
+fn curvature_bounds_of_an_egg_are_tight() {
+    // h = 1 + 0.1 z^2 + 0.06 z^3. Across the axis the radius is h - z h'(z), along a meridian h + h'' by angle.
+    let egg = PolynomialSupport::egg(1.0, 0.1, 0.06).unwrap();
+    let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
+    for i in 0..=100_000 {
+        let z = -1.0 + 2e-5 * f64::from(i);
+        let (first, second) = (0.2 * z + 0.18 * z * z, 0.2 + 0.36 * z);
+        let across = 1.0 + 0.1 * z * z + 0.06 * z.powi(3) - z * first;
+        let along = across + (1.0 - z * z) * second;
+        (min, max) = (min.min(across).min(along), max.max(across).max(along));
+    }
+    let bounds = egg.curvature_radii();
+    assert!(bounds.min <= min && max <= bounds.max, "{bounds:?} {min} {max}");
+    // The slack asked for is a twentieth of the smallest radius.
+    assert!(min - bounds.min <= 0.051 * min && bounds.max - max <= 0.051 * min, "{bounds:?} {min} {max}");
+}
+
+#[test]
 fn harmonics_are_orthonormal() {
     // Quadrature on a fine cube grid would do; a product of Legendre polynomials along the axis is exact enough:
     // Y_20 = sqrt(5 / 16 pi) (3 z^2 - 1), Y_1-1 = sqrt(3 / 4 pi) y, Y_33 = sqrt(35 / 32 pi) x (x^2 - 3 y^2).

@@ -1,5 +1,43 @@
-//! Bounds in the plane.
+//! The same in the plane: bounds on a convex outline from contact points and outward normals.
+//!
+//! The names are those of the bounds in space; what differs is that areas stand for volumes, half-planes for half-spaces
+//! and discs for balls. The plane has closed forms that space lacks, so this is a module of its own.
+//!
+//! ```
+//! use glam::DVec2;
+//! use shape_bounds::planar::{ContactSample, ShapeBounds};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A unit disc, touched at six places.
+//! let turn = |k: u32| DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / 6.0);
+//! let contacts = ContactSample::from_raw((0..6).map(|k| (turn(k), turn(k))))?;
+//! let bounds = ShapeBounds::from_contacts(&contacts)?;
+//! assert!(bounds.lower_area() < std::f64::consts::PI && std::f64::consts::PI < bounds.upper_area());
+//! # Ok(())
+//! # }
+//! ```
 
+mod bounds;
 mod chain;
+mod curvature;
+mod direction;
+mod distance;
+mod fit;
+mod halfplanes;
+mod hull;
+mod noise;
+mod polygon;
+mod sample;
+#[cfg(test)]
+mod tests;
 
+pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
 pub(crate) use chain::convex_corners;
+pub use curvature::{CurvatureBounds, CurvatureError, Disc, DiscIntersection, RoundedHull, Side};
+pub use direction::{Direction, DirectionError};
+pub use fit::{FitError, FittedOutline, OutlineChoice, OutlineFamily, OutlineFit, TurnedEllipse};
+pub use halfplanes::{Intersection, IntersectionError, Region, Unbounded};
+pub use hull::{Hull, HullPolygon, IncrementalHull, PointsError};
+pub use noise::{ContactNoise, NoiseError, NoisyContact};
+pub use polygon::ConvexPolygon;
+pub use sample::{ContactError, ContactSample, HalfPlane};

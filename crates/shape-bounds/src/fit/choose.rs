@@ -1,0 +1,96 @@
+//! Which family: no more parameters than the contacts call for.
+
+use super::solve::Solution;
+use super::{Data, FitError, FitOptions, NoiseLevel, ShapeFamily, ShapeFit, log_determinants};
+use crate::noise::NoisyContact;
+
+/// A family that was tried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// The family.
+    pub family: ShapeFamily,
+    /// Its information criterion, or why it has no fit.
+    pub outcome: Result<f64, FitError>,
+}
+
+/// The chosen shape and what it was chosen from.
+#[derive(Clone, Debug)]
+pub struct ShapeChoice {
+    /// The fit with the smallest information criterion.
+    pub best: ShapeFit,
+    /// All families in the order given.
+    pub candidates: Vec<Candidate>,
+}
+
+impl ShapeFamily {
+    /// Sphere, ellipsoid, superquadric and harmonics of degree 2 to 8, as far as there are three equations for each
+    /// parameter.
+    #[must_use]
+    pub fn candidates(contacts: usize) -> Vec<Self> {
+        let mut families = vec![Self::Sphere, Self::Ellipsoid, Self::Superquadric];
+        families.extend((2..=8).map(|degree| Self::Harmonics { degree }));
+        families.retain(|family| family.parameters() <= contacts);
+        families
+    }
+}
+
+impl ShapeFit {
+    /// The family of the smallest Bayesian information criterion (Schwarz 1978):
+    /// `-2 ln L + p ln(3 N)` for `p` parameters and `3 N` equations.
+    ///
+    /// Schwarz's and not Akaike's criterion, because the question is which description is true and no larger than need
+    /// be: as contacts come in, the chance of choosing a family with needless parameters goes to zero with the former
+    /// and stays at a constant with the latter. `L` is the likelihood of the points given the measured normals, with the
+    /// determinants of the covariances, so that a family is not rewarded for strong curvature, through which errors of
+    /// normals could explain any residual.
+    ///
+    /// Families that cannot be fitted are reported and left out. That the best is good is not implied: see
+    /// [`super::FitStatistics::chi_squared`].
+    ///
+    /// # Errors
+    /// [`FitError::NoFamily`] for none, and the last family's error if none can be fitted.
+    pub fn choose(
+        contacts: &[NoisyContact],
+        families: &[ShapeFamily],
+        options: &FitOptions,
+    ) -> Result<ShapeChoice, FitError> {
+        let mut best: Option<Self> = None;
+        let mut candidates = Vec::with_capacity(families.len());
+        let mut failure = FitError::NoFamily;
+        for &family in families {
+            let outcome = match Self::of(contacts, family, options) {
+                Ok(fit) => {
+                    let own = fit.information_criterion;
+                    if best.as_ref().is_none_or(|known| own < known.information_criterion) {
+                        best = Some(fit);
+                    }
+                    Ok(own)
+                }
+                Err(error) => {
+                    failure = error.clone();
+                    Err(error)
+                }
+            };
+            candidates.push(Candidate { family, outcome });
+        }
+        best.map(|best| ShapeChoice { best, candidates }).ok_or(failure)
+    }
+}
+
+/// What rounding leaves of an exact fit, relative to the size of the data.
+const ROUNDING: f64 = 1e-14;
+
+pub(super) fn criterion(solution: &Solution, data: &Data, parameters: usize) -> f64 {
+    let equations = (3 * solution.system.contacts.len()) as f64;
+    let chi_squared = solution.system.chi_squared;
+    let misfit = match data.noise_level {
+        NoiseLevel::Stated => chi_squared,
+        // The factor of the noise is fitted as well, which profiles the likelihood. Exact data would make it zero.
+        NoiseLevel::Estimated => {
+            let weight: f64 = solution.system.contacts.iter().map(|c| c.whitening.norm_squared()).sum();
+            let floor = weight * (ROUNDING * data.size).powi(2);
+            equations * (chi_squared.max(floor) / equations).ln()
+        }
+    };
+    misfit + log_determinants(solution) + parameters as f64 * equations.ln()
+}

@@ -1,0 +1,62 @@
+use super::*;
+
+/// How often each family is chosen in seeded runs.
+fn rate(body: impl Fn(&mut Source) -> Box<dyn SupportFunction>, expected: ShapeFamily, runs: u64) -> f64 {
+    let families = [
+        ShapeFamily::Sphere,
+        ShapeFamily::Ellipsoid,
+        ShapeFamily::Superquadric,
+        ShapeFamily::Harmonics { degree: 2 },
+        ShapeFamily::Harmonics { degree: 3 },
+        ShapeFamily::Harmonics { degree: 4 },
+        ShapeFamily::Harmonics { degree: 5 },
+    ];
+    let mut hits = 0;
+    for seed in 0..runs {
+        let mut s = Source::new(seed);
+        let body = body(&mut s);
+        let normals = scattered(80, &mut s);
+        let contacts = measured(&body, normals, 2e-3, 2e-3, &mut s);
+        let choice = ShapeFit::choose(&contacts, &families, &FitOptions::default()).unwrap();
+        hits += u64::from(choice.best.family() == expected);
+    }
+    hits as f64 / runs as f64
+}
+
+#[test]
+fn the_true_family_is_chosen() {
+    let ball = |s: &mut Source| -> Box<dyn SupportFunction> {
+        Box::new(Translated { body: Sphere::new(s.between(0.5, 2.0)).unwrap(), offset: s.normal3() })
+    };
+    let runs = 10;
+    assert!(rate(ball, ShapeFamily::Sphere, runs) >= 0.9);
+    assert!(rate(|s| Box::new(random_ellipsoid(s)), ShapeFamily::Ellipsoid, runs) >= 0.9);
+    assert!(rate(|s| Box::new(superquadric_body(s)), ShapeFamily::Superquadric, runs) >= 0.9);
+    assert!(rate(|s| Box::new(harmonic_body(s)), ShapeFamily::Harmonics { degree: 4 }, runs) >= 0.9);
+}
+
+#[test]
+fn families_that_cannot_be_fitted_are_named_and_left_out() {
+    let mut s = Source::new(3);
+    let body = random_ellipsoid(&mut s);
+    let contacts = exact(&body, scattered(4, &mut s));
+    let families = [ShapeFamily::Sphere, ShapeFamily::Harmonics { degree: 6 }];
+    let choice = ShapeFit::choose(&contacts, &families, &FitOptions::default()).unwrap();
+    assert_eq!(choice.best.family(), ShapeFamily::Sphere);
+    assert!(matches!(choice.candidates[1].outcome, Err(FitError::TooFew { found: 4, needed: 17, .. })));
+    assert_eq!(ShapeFit::choose(&contacts, &[], &FitOptions::default()).unwrap_err(), FitError::NoFamily);
+}
+
+/// Found by the study: with the normals taken as exact, the right start does not come to rest, and a wrong one does.
+#[test]
+fn a_superquadric_that_a_smooth_start_does_not_reach_is_found() {
+    let mut s = Source::new(1068);
+    let centre = s.normal3() * 0.2;
+    s.rotation();
+    let body = Superquadric::new(centre, DVec3::new(1.0, 0.8, 1.4), s.rotation(), [0.8, 1.25]).unwrap();
+    let normals = scattered(100, &mut s);
+    let contacts = measured(&body, normals, 1e-3, 1e-3, &mut s);
+    let fit = ShapeFit::of(&contacts, ShapeFamily::Superquadric, &FitOptions::default()).unwrap();
+    // Chi-squared of 289 degrees of freedom is above 1.4 times that with a probability of 1e-5.
+    assert!(fit.statistics().chi_squared < 1.4 * 289.0, "{}", fit.statistics().chi_squared);
+}

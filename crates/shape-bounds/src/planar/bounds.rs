@@ -1,0 +1,247 @@
+//! Both bounds of a convex outline from its contacts, and the gap between them.
+
+use super::distance::nearest_around;
+use super::halfplanes::{OUTWARD_ULPS, interior_point};
+use super::{
+    ContactSample, Direction, HalfPlane, Hull, IncrementalHull, Intersection, IntersectionError, PointsError,
+};
+use glam::DVec2;
+use thiserror::Error;
+
+/// Contacts that a body in the plane needs at least for bounds with an area.
+const FEWEST: usize = 3;
+/// A dual is kept while its centre is at least this deep inside of every half-plane, relative to the size of the data.
+const DEEP: f64 = 1e-3;
+
+/// Why contacts give no bounds.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum BoundsError {
+    /// Too few contacts.
+    #[error("{found} contacts: bounds in the plane need at least {needed}")]
+    TooFew {
+        /// Contacts given.
+        found: usize,
+        /// Contacts needed.
+        needed: usize,
+    },
+    /// The contact points have no hull.
+    #[error("lower bound: {0}")]
+    Points(#[from] PointsError),
+    /// The half-planes have no intersection.
+    #[error("upper bound: {0}")]
+    HalfPlanes(#[from] IntersectionError),
+}
+
+/// Lower bound (hull of the contact points) and upper bound (intersection of the half-planes) of a convex outline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeBounds {
+    lower: Hull,
+    corners: Vec<DVec2>,
+    upper: Intersection,
+}
+
+/// Where, and how far, the bounds are apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// Direction in which the upper bound exceeds the lower one.
+    pub direction: Direction,
+    /// The point of the upper bound.
+    pub outer: DVec2,
+    /// The nearest point of the lower bound.
+    pub inner: DVec2,
+    /// Their distance in m.
+    pub distance: f64,
+}
+
+impl ShapeBounds {
+    /// Bounds from contacts on a convex body.
+    ///
+    /// # Errors
+    /// [`BoundsError`] for fewer than three contacts, values that are not finite, and contacts that contradict each other
+    /// (a smallest contradictory set is named).
+    pub fn from_contacts(contacts: &[ContactSample]) -> Result<Self, BoundsError> {
+        Self::check(contacts)?;
+        let points: Vec<DVec2> = contacts.iter().map(|c| c.point).collect();
+        let half_planes: Vec<HalfPlane> = contacts.iter().map(ContactSample::half_plane).collect();
+        Self::from_parts(&points, &half_planes)
+    }
+
+    pub(super) fn check(contacts: &[ContactSample]) -> Result<(), BoundsError> {
+        if contacts.len() < FEWEST {
+            return Err(BoundsError::TooFew { found: contacts.len(), needed: FEWEST });
+        }
+        match contacts.iter().position(|c| !c.point.is_finite()) {
+            Some(index) => Err(PointsError::NotFinite { index, point: contacts[index].point }.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// Bounds from points that are in the body and half-planes that contain it.
+    pub(super) fn from_parts(points: &[DVec2], half_planes: &[HalfPlane]) -> Result<Self, BoundsError> {
+        let lower = Hull::of(points)?;
+        let upper = Intersection::of(half_planes)?;
+        let corners = lower.corner_points(points);
+        Ok(Self { lower, corners, upper })
+    }
+
+    /// The hull of the contact points: in the body.
+    #[must_use]
+    pub fn lower(&self) -> &Hull {
+        &self.lower
+    }
+
+    /// The intersection of the half-planes: around the body.
+    #[must_use]
+    pub fn upper(&self) -> &Intersection {
+        &self.upper
+    }
+
+    /// Area of the lower bound in m^2; zero for a hull without interior.
+    #[must_use]
+    pub fn lower_area(&self) -> f64 {
+        self.lower.polygon().map_or(0.0, |polygon| polygon.shape().area())
+    }
+
+    /// Area of the upper bound in m^2; infinite when it is unbounded.
+    #[must_use]
+    pub fn upper_area(&self) -> f64 {
+        self.upper.bounded().map_or(f64::INFINITY, |region| region.shape().area())
+    }
+
+    /// Support functions `(lower, upper)` in direction `n`, in m; the upper one is infinite everywhere if the upper bound
+    /// has no end anywhere.
+    #[must_use]
+    pub fn support(&self, n: Direction) -> (f64, f64) {
+        let lower = self.corners.iter().map(|v| v.dot(n.get())).fold(f64::NEG_INFINITY, f64::max);
+        (lower, self.upper.bounded().map_or(f64::INFINITY, |region| region.shape().support(n)))
+    }
+
+    /// For each corner of the upper bound, its nearest point of the lower one: the gap as a field. Empty when the upper
+    /// bound is unbounded.
+    ///
+    /// Gaps below rounding have no direction and are left out.
+    #[must_use]
+    pub fn gaps(&self) -> Vec<Gap> {
+        let Some(upper) = self.upper.bounded() else { return Vec::new() };
+        let outer = upper.shape().vertices();
+        let gap = |(outer, inner): (&DVec2, DVec2)| {
+            let direction = Direction::new(*outer - inner).ok()?;
+            Some(Gap { direction, outer: *outer, inner, distance: outer.distance(inner) })
+        };
+        outer.iter().zip(nearest_around(&self.corners, outer)).filter_map(gap).collect()
+    }
+
+    /// The largest gap: its distance is the Hausdorff distance of the bounds, because the distance to a convex set is
+    /// largest at a corner. `None` when the upper bound is unbounded or the gap is zero.
+    #[must_use]
+    pub fn largest_gap(&self) -> Option<Gap> {
+        self.gaps().into_iter().max_by(|x, y| x.distance.total_cmp(&y.distance))
+    }
+}
+
+/// Bounds that take one contact at a time: a new point into the hull, a new half-plane into the hull of the polar duals.
+#[derive(Default)]
+pub struct IncrementalBounds {
+    lower: IncrementalHull,
+    half_planes: Vec<HalfPlane>,
+    dual: Option<Dual>,
+}
+
+struct Dual {
+    centre: DVec2,
+    /// Largest coordinate that the outward rounding was made for.
+    largest: f64,
+    outer: Vec<HalfPlane>,
+    hull: IncrementalHull,
+}
+
+impl IncrementalBounds {
+    /// Bounds from no contacts.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes a contact.
+    ///
+    /// # Errors
+    /// [`BoundsError`] for a contact that is not finite or contradicts those before (a smallest contradictory set is
+    /// named); it is then not taken.
+    pub fn insert(&mut self, contact: &ContactSample) -> Result<(), BoundsError> {
+        if !contact.point.is_finite() {
+            let index = self.half_planes.len();
+            return Err(PointsError::NotFinite { index, point: contact.point }.into());
+        }
+        self.half_planes.push(contact.half_plane());
+        if let Err(error) = self.update_dual() {
+            self.half_planes.pop();
+            return Err(error);
+        }
+        self.lower.insert(contact.point)?;
+        Ok(())
+    }
+
+    fn update_dual(&mut self) -> Result<(), BoundsError> {
+        if let (Some(dual), Some(last)) = (&mut self.dual, self.half_planes.last())
+            && dual.has_room_for(last)
+        {
+            return dual.take(last);
+        }
+        self.dual = Some(Dual::start(&self.half_planes)?);
+        Ok(())
+    }
+
+    /// Contacts so far.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.half_planes.len()
+    }
+
+    /// Whether there are no contacts yet.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.half_planes.is_empty()
+    }
+
+    /// The bounds as they are now, in time O(n).
+    ///
+    /// # Errors
+    /// [`BoundsError::TooFew`] before the third contact.
+    pub fn bounds(&self) -> Result<ShapeBounds, BoundsError> {
+        let found = self.half_planes.len();
+        let Some(dual) = self.dual.as_ref().filter(|_| found >= FEWEST) else {
+            return Err(BoundsError::TooFew { found, needed: FEWEST });
+        };
+        let lower = self.lower.hull()?;
+        let corners = lower.corner_points(self.lower.points());
+        let Dual { centre, outer, hull, .. } = dual;
+        let upper = Intersection::from_dual(hull.hull(), &self.half_planes, outer, hull.points(), *centre);
+        Ok(ShapeBounds { lower, corners, upper })
+    }
+}
+
+impl Dual {
+    fn start(half_planes: &[HalfPlane]) -> Result<Self, BoundsError> {
+        let centre = interior_point(half_planes)?;
+        // Room to grow: rounding is provided for coordinates of twice the size.
+        let largest = 2.0 * half_planes.iter().map(|h| h.point.abs().max_element()).fold(0.0, f64::max);
+        let mut dual = Self { centre, largest, outer: Vec::new(), hull: IncrementalHull::new() };
+        for h in half_planes {
+            dual.take(h)?;
+        }
+        Ok(dual)
+    }
+
+    fn has_room_for(&self, half_plane: &HalfPlane) -> bool {
+        let size = half_plane.point.abs().max_element();
+        size <= self.largest && -half_plane.excess(self.centre) >= DEEP * self.largest
+    }
+
+    fn take(&mut self, half_plane: &HalfPlane) -> Result<(), BoundsError> {
+        let margin = half_plane.margin + OUTWARD_ULPS * f64::EPSILON * self.largest;
+        let outer = HalfPlane { margin, ..*half_plane };
+        self.hull.insert(outer.normal.get() / -outer.excess(self.centre))?;
+        self.outer.push(outer);
+        Ok(())
+    }
+}

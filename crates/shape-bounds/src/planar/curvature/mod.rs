@@ -1,0 +1,85 @@
+//! Bounds tightened by limits on the radius of curvature, and by palms that are arcs.
+//!
+//! Where no radius of curvature is below `rho_min`, a disc of that radius rolls freely inside of the outline; where none is
+//! above `rho_max`, the body rolls freely inside of a disc of that radius (Blaschke). A concave circular palm that touches
+//! the body is such a disc without any limit on curvature.
+
+mod discs;
+mod error;
+mod rounded;
+
+pub use discs::{Disc, DiscIntersection, Side};
+pub use error::CurvatureError;
+pub use rounded::RoundedHull;
+
+use super::{ContactSample, Direction};
+use contact_kinematics::planar::RadiusBounds;
+use glam::DVec2;
+
+/// By how much contacts may contradict the limits before it is an error, relative to their size: rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Lower and upper bound of a convex outline whose radius of curvature is limited.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvatureBounds {
+    lower: RoundedHull,
+    upper: DiscIntersection,
+}
+
+impl CurvatureBounds {
+    /// Bounds from contacts without noise on a body whose radius of curvature lies within `radii`.
+    ///
+    /// # Errors
+    /// [`CurvatureError`] for limits that are not `0 <= min <= max < infinity`, values that are not finite, and contacts
+    /// that contradict the limits (a pair of which the one lies outside of the other's outer disc, or in whose plane the
+    /// other's inner disc does not fit, is named).
+    pub fn from_contacts(contacts: &[ContactSample], radii: RadiusBounds) -> Result<Self, CurvatureError> {
+        if !(0.0 <= radii.min && radii.min <= radii.max && radii.max.is_finite()) {
+            return Err(CurvatureError::Radii { min: radii.min, max: radii.max });
+        }
+        let centre = |c: &ContactSample, r: f64| c.point - c.normal.get() * r;
+        let inner: Vec<DVec2> = contacts.iter().map(|c| centre(c, radii.min)).collect();
+        let lower = RoundedHull::of(&inner, radii.min)?;
+        check(contacts, radii, &inner)?;
+        let outer: Vec<Disc> =
+            contacts.iter().map(|c| Disc { centre: centre(c, radii.max), radius: radii.max }).collect();
+        Ok(Self { lower, upper: DiscIntersection::of(&outer, &[])? })
+    }
+
+    /// The hull of the inner discs: in the body.
+    #[must_use]
+    pub fn lower(&self) -> &RoundedHull {
+        &self.lower
+    }
+
+    /// The intersection of the outer discs: around the body.
+    #[must_use]
+    pub fn upper(&self) -> &DiscIntersection {
+        &self.upper
+    }
+
+    /// Support functions `(lower, upper)` in direction `n`, in m.
+    #[must_use]
+    pub fn support(&self, n: Direction) -> (f64, f64) {
+        (self.lower.support(n), self.upper.support(n))
+    }
+}
+
+/// Whether every inner disc is within every half-plane, and every contact within every outer disc.
+fn check(contacts: &[ContactSample], radii: RadiusBounds, inner: &[DVec2]) -> Result<(), CurvatureError> {
+    let size = contacts.iter().map(|c| c.point.abs().max_element()).fold(radii.max, f64::max);
+    for (sample, c) in contacts.iter().enumerate() {
+        let n = c.normal.get();
+        for (other, d) in contacts.iter().enumerate() {
+            let excess = n.dot(inner[other] - c.point) + radii.min;
+            if excess > ROUNDING * size {
+                return Err(CurvatureError::TooRound { sample, other, excess, radius: radii.min });
+            }
+            let excess = c.point.distance(d.point - d.normal.get() * radii.max) - radii.max;
+            if excess > ROUNDING * size {
+                return Err(CurvatureError::TooFlat { sample, other, excess, radius: radii.max });
+            }
+        }
+    }
+    Ok(())
+}

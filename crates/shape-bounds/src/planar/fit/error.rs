@@ -1,0 +1,92 @@
+use super::OutlineFamily;
+use contact_kinematics::planar::ShapeError;
+use glam::DVec2;
+use thiserror::Error;
+
+/// Why contacts give no fitted outline.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum FitError {
+    /// Fewer equations than parameters.
+    #[error("{family}: {found} contacts give {} equations; at least {needed} contacts are needed", 2 * found)]
+    TooFew {
+        /// What was to be fitted.
+        family: OutlineFamily,
+        /// Contacts given.
+        found: usize,
+        /// Contacts needed.
+        needed: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("contact {index}: point ({}, {}) has a coordinate that is not finite", point.x, point.y)]
+    NotFinite {
+        /// Which contact.
+        index: usize,
+        /// The point as given.
+        point: DVec2,
+    },
+    /// All contact points coincide, so that there is no length to measure by.
+    #[error("all {found} contact points coincide: there is no size to fit")]
+    NoExtent {
+        /// Contacts given.
+        found: usize,
+    },
+    /// The stated noise of a contact is no covariance with full rank.
+    #[error(
+        "contact {index}: noise `{name}` is {value}; a weight needs a covariance of the point above zero"
+    )]
+    Noise {
+        /// Which contact.
+        index: usize,
+        /// Which field.
+        name: &'static str,
+        /// The entry at fault.
+        value: f64,
+    },
+    /// The contacts leave a combination of parameters open.
+    #[error(
+        "{family}: the contacts determine {rank} of {parameters} parameters (condition {condition:.1e}); the least \
+         determined, mostly {weakest}, has a standard deviation of {deviation:.1e} sizes of the data; touch elsewhere \
+         or fit fewer parameters"
+    )]
+    Undetermined {
+        /// What was to be fitted.
+        family: OutlineFamily,
+        /// Combinations that are determined, but for rounding.
+        rank: usize,
+        /// Parameters of the family.
+        parameters: usize,
+        /// Condition number of the least-squares problem in scaled parameters.
+        condition: f64,
+        /// The parameter with the largest share in the least determined combination.
+        weakest: String,
+        /// Standard deviation of that combination, relative to the size of the data.
+        deviation: f64,
+    },
+    /// The iteration did not come to rest.
+    #[error(
+        "{family}: no convergence in {iterations} iterations; the contacts are not those of such a shape"
+    )]
+    NotConverged {
+        /// What was to be fitted.
+        family: OutlineFamily,
+        /// Iterations made.
+        iterations: usize,
+    },
+    /// No convex outline of the family has radii of curvature as large as asked for.
+    #[error("{family}: no body has all radii of curvature above {radius:e} m and comes near the contacts")]
+    NoConvexBody {
+        /// What was to be fitted.
+        family: OutlineFamily,
+        /// The limit, in m.
+        radius: f64,
+    },
+    /// An option that is none.
+    #[error("smallest radius of curvature {0} m: it must be finite and at least zero")]
+    Radius(f64),
+    /// No family to choose from.
+    #[error("no family to choose from")]
+    NoFamily,
+    /// The fitted numbers are no shape.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+}

@@ -1,0 +1,282 @@
+//! Outlines of few parameters fitted to contacts: the twin of the fits in space, which say more.
+//!
+//! A contact gives a point `x` and the direction `theta` of its outward normal. For an outline with radius function `r`,
+//! `x = r n + r' n'`: two equations in the shape's parameters. Both are measured; the error of the normal enters through
+//! the radius of curvature.
+
+mod convex;
+mod error;
+mod family;
+mod solve;
+#[cfg(test)]
+mod tests;
+
+pub use error::FitError;
+pub use family::{FittedOutline, TurnedEllipse};
+
+use super::{NoisyContact, noise::ContactNoise};
+use crate::fit::information::SquareRoot;
+use crate::fit::levenberg::{ITERATIONS, Problem, Solution, best_of, iterate};
+use crate::fit::{FitOptions, FitStatistics, NoiseLevel};
+use contact_kinematics::planar::{RadiusBounds, RadiusFunction, RadiusJet};
+use family::model;
+use glam::DVec2;
+use nalgebra::{DMatrix, DVector};
+use solve::{Linearised, Plane};
+use std::fmt;
+
+/// Families of outlines, by what their parameters are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum OutlineFamily {
+    /// A disc: centre and radius, 3 parameters.
+    Circle,
+    /// An ellipse with any axes: 5 parameters.
+    Ellipse,
+    /// A radius function of waves up to an order: `2 order + 1` parameters.
+    Fourier {
+        /// The highest order, at least 1; order 1 is a disc.
+        order: usize,
+    },
+}
+
+impl fmt::Display for OutlineFamily {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Circle => f.write_str("circle"),
+            Self::Ellipse => f.write_str("ellipse"),
+            Self::Fourier { order } => write!(f, "waves to order {order}"),
+        }
+    }
+}
+
+impl OutlineFamily {
+    /// Number of parameters.
+    #[must_use]
+    pub fn parameters(self) -> usize {
+        match self {
+            Self::Circle => 3,
+            Self::Ellipse => 5,
+            Self::Fourier { order } => 2 * order.max(1) + 1,
+        }
+    }
+
+    /// Circle, ellipse and waves of order 2 to 12, as far as there are two equations for each parameter.
+    #[must_use]
+    pub fn candidates(contacts: usize) -> Vec<Self> {
+        let mut families = vec![Self::Circle, Self::Ellipse];
+        families.extend((2..=12).map(|order| Self::Fourier { order }));
+        families.retain(|family| family.parameters() <= contacts);
+        families
+    }
+}
+
+/// An outline fitted to contacts.
+#[derive(Clone, Debug)]
+pub struct OutlineFit {
+    family: OutlineFamily,
+    body: FittedOutline,
+    parameters: DVector<f64>,
+    covariance: DMatrix<f64>,
+    statistics: FitStatistics,
+    information_criterion: f64,
+}
+
+/// The chosen outline and what it was chosen from.
+#[derive(Clone, Debug)]
+pub struct OutlineChoice {
+    /// The fit with the smallest information criterion.
+    pub best: OutlineFit,
+    /// All families in the order given, each with its criterion or why it has no fit.
+    pub candidates: Vec<(OutlineFamily, Result<f64, FitError>)>,
+}
+
+impl OutlineFit {
+    /// The outline of a family that the contacts make likeliest.
+    ///
+    /// # Errors
+    /// [`FitError`] for bad values, too few contacts, contacts that leave a parameter open, and no convergence.
+    pub fn of(
+        contacts: &[NoisyContact],
+        family: OutlineFamily,
+        options: &FitOptions,
+    ) -> Result<Self, FitError> {
+        let (centre, size) = check(contacts, family)?;
+        let limit = options.smallest_radius.unwrap_or(0.01 * size);
+        if !(limit >= 0.0 && limit.is_finite()) {
+            return Err(FitError::Radius(limit));
+        }
+        let model = model(family);
+        let mut exact = contacts.to_vec();
+        exact.iter_mut().for_each(|c| c.noise.normal = 0.0);
+        let plane = |contacts| Plane { model: model.as_ref(), contacts, size };
+        // Normals as exact first: a smooth problem from any start.
+        let solution = best_of(&plane(&exact), vec![model.circle(centre, size)])
+            .and_then(|near| iterate(&plane(contacts), near, ITERATIONS));
+        let solution = solution.map_err(|e| solve::into_error(e, model.as_ref(), family, size))?;
+        Self::finish(&plane(contacts), family, solution, limit, options.noise_level)
+    }
+
+    /// The family of the smallest Bayesian information criterion; see [`crate::ShapeFit::choose`].
+    ///
+    /// # Errors
+    /// [`FitError::NoFamily`] for none, and the last family's error if none can be fitted.
+    pub fn choose(
+        contacts: &[NoisyContact],
+        families: &[OutlineFamily],
+        options: &FitOptions,
+    ) -> Result<OutlineChoice, FitError> {
+        let mut best: Option<Self> = None;
+        let mut candidates = Vec::with_capacity(families.len());
+        let mut failure = FitError::NoFamily;
+        for &family in families {
+            let fit = Self::of(contacts, family, options);
+            candidates.push((family, fit.as_ref().map(|f| f.information_criterion).map_err(Clone::clone)));
+            match fit {
+                Ok(fit) => {
+                    let own = fit.information_criterion;
+                    if best.as_ref().is_none_or(|known| own < known.information_criterion) {
+                        best = Some(fit);
+                    }
+                }
+                Err(error) => failure = error,
+            }
+        }
+        best.map(|best| OutlineChoice { best, candidates }).ok_or(failure)
+    }
+
+    fn finish(
+        problem: &Plane<'_>,
+        family: OutlineFamily,
+        mut solution: Solution<Linearised>,
+        limit: f64,
+        noise_level: NoiseLevel,
+    ) -> Result<Self, FitError> {
+        let count = problem.model.count();
+        let open = |root: &SquareRoot| solve::undetermined(problem.model, family, root, problem.size);
+        let mut active_constraints = 0;
+        if let OutlineFamily::Fourier { .. } = family {
+            let held = convex::hold(family, &solution.theta, &solution.system.root, limit)?;
+            if held.1 > 0 {
+                solution.system =
+                    problem.assemble(&held.0, None).ok_or_else(|| open(&solution.system.root))?;
+                (solution.theta, active_constraints) = held;
+            }
+        }
+        let root = &solution.system.root;
+        let known = root.knowledge(&problem.scales()).ok_or_else(|| open(root))?;
+        let covariance = root.covariance().ok_or_else(|| open(root))?;
+        let chi_squared = solution.system.chi_squared;
+        let equations = 2 * problem.contacts.len();
+        let degrees_of_freedom = equations - count;
+        let noise_factor = match noise_level {
+            NoiseLevel::Stated => 1.0,
+            NoiseLevel::Estimated => (chi_squared / degrees_of_freedom.max(1) as f64).sqrt(),
+        };
+        if known.rank < count || known.weakest_deviation * noise_factor > 1.0 {
+            return Err(open(root));
+        }
+        let body = family::outline(family, &solution.theta)?;
+        Ok(Self {
+            family,
+            covariance: covariance * noise_factor.powi(2),
+            statistics: FitStatistics {
+                chi_squared,
+                degrees_of_freedom,
+                residual: solve::residual(&body, &solution, problem.contacts),
+                worst: solve::worst(&solution),
+                noise_factor,
+                condition: known.condition,
+                weakest_deviation: known.weakest_deviation * noise_factor,
+                active_constraints,
+                iterations: solution.iterations,
+            },
+            information_criterion: solve::criterion(&solution, noise_level, problem.size),
+            parameters: solution.theta,
+            body,
+        })
+    }
+
+    /// The family.
+    #[must_use]
+    pub fn family(&self) -> OutlineFamily {
+        self.family
+    }
+
+    /// The outline; it is a radius function like any other body.
+    #[must_use]
+    pub fn body(&self) -> &FittedOutline {
+        &self.body
+    }
+
+    /// The parameters in m. Circle: centre, radius. Ellipse: centre, and the rows of the lower triangle `L` with
+    /// `r = c . n + |L' n|`. Waves: `a_0, a_1, b_1, a_2, b_2, ...`.
+    #[must_use]
+    pub fn parameters(&self) -> &DVector<f64> {
+        &self.parameters
+    }
+
+    /// Covariance of the parameters: the inverse of the Fisher information at the estimate.
+    #[must_use]
+    pub fn covariance(&self) -> &DMatrix<f64> {
+        &self.covariance
+    }
+
+    /// Residuals and what the contacts determine.
+    #[must_use]
+    pub fn statistics(&self) -> &FitStatistics {
+        &self.statistics
+    }
+
+    /// Bayesian information criterion, smaller is better.
+    #[must_use]
+    pub fn information_criterion(&self) -> f64 {
+        self.information_criterion
+    }
+
+    /// Standard deviation of the radius function at the normal direction `theta` (rad), in m.
+    #[must_use]
+    pub fn radius_deviation(&self, theta: f64) -> f64 {
+        let mut columns = vec![DVec2::ZERO; self.parameters.len()];
+        if model(self.family).columns(&self.parameters, theta, &mut columns).is_none() {
+            return f64::INFINITY;
+        }
+        let n = DVec2::from_angle(theta);
+        let slope = DVector::from_iterator(columns.len(), columns.iter().map(|c| c.dot(n)));
+        slope.dot(&(&self.covariance * &slope)).max(0.0).sqrt()
+    }
+}
+
+impl RadiusFunction for OutlineFit {
+    fn jet(&self, theta: f64) -> RadiusJet {
+        self.body.jet(theta)
+    }
+    fn radius_bounds(&self) -> RadiusBounds {
+        self.body.radius_bounds()
+    }
+}
+
+/// Centre and size of usable contacts.
+fn check(contacts: &[NoisyContact], family: OutlineFamily) -> Result<(DVec2, f64), FitError> {
+    for (index, NoisyContact { contact, noise }) in contacts.iter().enumerate() {
+        if !contact.point.is_finite() {
+            return Err(FitError::NotFinite { index, point: contact.point });
+        }
+        let ContactNoise { point, .. } = noise;
+        if let Some((name, value)) = noise.defect() {
+            return Err(FitError::Noise { index, name, value });
+        }
+        if point.determinant() <= 0.0 {
+            return Err(FitError::Noise { index, name: "point", value: point.determinant() });
+        }
+    }
+    let needed = family.parameters().div_ceil(2).max(2);
+    if contacts.len() < needed {
+        return Err(FitError::TooFew { family, found: contacts.len(), needed });
+    }
+    let centre = contacts.iter().map(|c| c.contact.point).sum::<DVec2>() / contacts.len() as f64;
+    let size = contacts.iter().map(|c| c.contact.point.distance(centre)).fold(0.0, f64::max);
+    if size == 0.0 || !size.is_finite() {
+        return Err(FitError::NoExtent { found: contacts.len() });
+    }
+    Ok((centre, size))
+}

@@ -1,0 +1,286 @@
+//! The planar bounds against theory: exactness, closed forms, the chain of bounds, and typed refusals.
+
+use super::*;
+use crate::generators::Source;
+use crate::predicates::turn;
+use contact_kinematics::planar::{Ellipse, RadiusBounds, RadiusFunction};
+use glam::DVec2;
+use std::f64::consts::{PI, TAU};
+
+fn ellipse() -> Ellipse {
+    Ellipse::new(2.0, 1.0, DVec2::new(0.3, -0.2)).unwrap()
+}
+
+fn contacts(body: &dyn RadiusFunction, angles: impl IntoIterator<Item = f64>) -> Vec<ContactSample> {
+    let contact =
+        |angle: f64| ContactSample { point: body.point(angle), normal: Direction::from_angle(angle) };
+    angles.into_iter().map(contact).collect()
+}
+
+fn scattered(count: usize, s: &mut Source) -> Vec<f64> {
+    (0..count).map(|_| s.between(0.0, TAU)).collect()
+}
+
+/// Points of kinds that break hulls: lattices, lines, near-duplicates, far offsets, thin and circular sets.
+fn points(kind: u32, count: usize, s: &mut Source) -> Vec<DVec2> {
+    let any = |s: &mut Source| DVec2::new(s.normal(), s.normal());
+    (0..count)
+        .map(|i| match kind {
+            0 => any(s),
+            1 => DVec2::new(s.below(5) as f64, s.below(5) as f64),
+            2 => DVec2::new(1.0, 0.3) * s.normal() + DVec2::new(0.1, 0.7),
+            3 => DVec2::from_angle((i / 3) as f64) + any(s) * 1e-16,
+            4 => any(s) + DVec2::new(1e8, -1e8),
+            5 => any(s) * DVec2::new(1.0, 1e-12),
+            6 => DVec2::from_angle(TAU * i as f64 / count as f64),
+            7 => DVec2::new(s.normal(), 0.5),
+            _ => DVec2::from_angle(s.unit() * 1e-6) * 1e-200,
+        })
+        .collect()
+}
+
+fn assert_exact(points: &[DVec2], hull: &Hull) {
+    match hull {
+        Hull::Point(i) => assert!(points.iter().all(|p| *p == points[*i])),
+        Hull::Segment([i, j]) => assert!(points.iter().all(|p| turn(points[*i], points[*j], *p) == 0.0)),
+        Hull::Polygon(polygon) => {
+            let corners = polygon.shape().vertices();
+            let tiny = corners.iter().all(|c| c.length() < 1e-100);
+            let scale = if tiny { 2f64.powi(664) } else { 1.0 };
+            let at = |k: usize| corners[k % corners.len()] * scale;
+            for k in 0..corners.len() {
+                assert!(turn(at(k), at(k + 1), at(k + 2)) > 0.0);
+                assert_eq!(corners[k], points[polygon.sources()[k] as usize]);
+            }
+            for p in points {
+                assert!((0..corners.len()).all(|k| turn(at(k), at(k + 1), *p * scale) >= 0.0));
+            }
+        }
+    }
+}
+
+#[test]
+fn hulls_are_exact_on_every_kind_of_input_and_incremental_ones_agree() {
+    let mut s = Source::new(1);
+    for round in 0..900 {
+        let kind = round % 9;
+        let count = 1 + s.below(120);
+        let points = points(kind, count, &mut s);
+        let hull = Hull::of(&points).unwrap();
+        assert_exact(&points, &hull);
+        if kind == 7 && count > 1 {
+            assert_eq!(hull.dimension(), 1);
+        }
+        if kind == 8 {
+            continue;
+        }
+        let mut incremental = IncrementalHull::new();
+        for p in &points {
+            incremental.insert(*p).unwrap();
+        }
+        let other = incremental.hull().unwrap();
+        assert_exact(&points, &other);
+        assert_eq!(other.dimension(), hull.dimension());
+        if let (Some(a), Some(b)) = (hull.polygon(), other.polygon()) {
+            assert!(
+                (a.shape().area() - b.shape().area()).abs() <= 1e-12 * a.shape().area().max(1e-30) + 1e-12
+            );
+            assert_eq!(a.shape().vertices().len(), b.shape().vertices().len());
+        }
+    }
+}
+
+#[test]
+fn a_square_has_its_area_redundant_lines_are_named_and_open_directions_described() {
+    let plane = |angle: f64, margin: f64| HalfPlane {
+        point: DVec2::ZERO,
+        normal: Direction::from_angle(angle),
+        margin,
+    };
+    let mut planes: Vec<HalfPlane> = (0..4).map(|k| plane(f64::from(k) * PI / 2.0, 1.0)).collect();
+    planes.push(plane(PI / 4.0, 2.0));
+    let region = Intersection::of(&planes).unwrap();
+    let region = region.bounded().unwrap();
+    assert!((region.shape().area() - 4.0).abs() < 1e-13);
+    assert_eq!(region.redundant(), [4]);
+    let Intersection::Unbounded(open) = Intersection::of(&planes[..2]).unwrap() else { panic!("bounded") };
+    let mut found: Vec<DVec2> = open.directions().iter().map(|d| d.get()).collect();
+    found.sort_by(|a, b| a.x.total_cmp(&b.x));
+    assert!(
+        found.len() == 2
+            && found[0].distance(DVec2::NEG_X) < 1e-15
+            && found[1].distance(DVec2::NEG_Y) < 1e-15
+    );
+    assert!((open.within_square(DVec2::ZERO, 3.0).unwrap().shape().area() - 16.0).abs() < 1e-12);
+    // A strip is open both ways, a half-plane also inwards.
+    let strip = [planes[0], planes[2]];
+    let Intersection::Unbounded(open) = Intersection::of(&strip).unwrap() else { panic!("bounded") };
+    assert!(!open.directions().is_empty());
+    assert!(open.directions().iter().all(|d| d.get().x.abs() < 1e-15));
+    let Intersection::Unbounded(open) = Intersection::of(&planes[..1]).unwrap() else { panic!("bounded") };
+    assert!(open.directions().iter().any(|d| d.get().distance(DVec2::NEG_X) < 1e-15));
+}
+
+#[test]
+fn contradictions_name_a_smallest_conflicting_set() {
+    let mut s = Source::new(2);
+    for _ in 0..200 {
+        let mut planes: Vec<HalfPlane> =
+            contacts(&ellipse(), scattered(20, &mut s)).iter().map(ContactSample::half_plane).collect();
+        let at = s.below(20);
+        planes[at].margin = -6.0;
+        match Intersection::of(&planes) {
+            Err(IntersectionError::Contradiction { conflict, deficit }) => {
+                assert!(conflict.contains(&at) && conflict.len() <= 3 && deficit > 0.0);
+                for left_out in 0..conflict.len() {
+                    let mut rest = conflict.clone();
+                    rest.remove(left_out);
+                    let rest: Vec<HalfPlane> = rest.iter().map(|k| planes[*k]).collect();
+                    assert!(Intersection::of(&rest).is_ok());
+                }
+            }
+            Ok(Intersection::Unbounded(_)) => {}
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+#[test]
+fn bounds_hold_the_body_between_them() {
+    for seed in 0..500 {
+        let mut s = Source::new(seed);
+        let count = 3 + s.below(57);
+        let body = ellipse();
+        let samples = contacts(&body, scattered(count, &mut s));
+        let bounds = ShapeBounds::from_contacts(&samples).unwrap();
+        let mut incremental = IncrementalBounds::new();
+        samples.iter().for_each(|c| incremental.insert(c).unwrap());
+        let stepwise = incremental.bounds().unwrap();
+        assert!((stepwise.lower_area() - bounds.lower_area()).abs() < 1e-12);
+        let curved = CurvatureBounds::from_contacts(&samples, RadiusBounds { min: 0.5, max: 4.0 }).unwrap();
+        for angle in scattered(20, &mut s) {
+            let n = Direction::from_angle(angle);
+            let truth = body.point(angle).dot(n.get());
+            let ((a, b), (d, c)) = (bounds.support(n), curved.support(n));
+            let chain = [a, d, truth, c, b];
+            assert!(chain.windows(2).all(|w| w[0] <= w[1] + 1e-12), "{chain:?}");
+            assert!((stepwise.support(n).1 - b).abs() < 1e-9 || b > 1e3);
+        }
+        let truth = 2.0 * PI;
+        let areas =
+            [bounds.lower_area(), curved.lower().area(), truth, curved.upper().area(), bounds.upper_area()];
+        assert!(areas.windows(2).all(|w| w[0] <= w[1] * (1.0 + 1e-12)), "{areas:?}");
+        if let Some(region) = bounds.upper().bounded() {
+            assert!(samples.iter().all(|c| region.excess(c.point) <= 0.0));
+            // The gap as found by the walk is the one found by trying all edges.
+            let Some(hull) = bounds.lower().polygon() else { continue };
+            for gap in bounds.gaps() {
+                let nearest = hull
+                    .shape()
+                    .edges()
+                    .map(|(a, b)| distance::on_segment(a, b, gap.outer).distance(gap.outer));
+                let nearest = nearest.fold(f64::INFINITY, f64::min);
+                assert!((nearest - gap.distance).abs() < 1e-12, "{nearest} {}", gap.distance);
+            }
+        }
+    }
+}
+
+#[test]
+fn both_bounds_converge_with_the_square_of_the_spacing() {
+    let errors = |count: usize| {
+        let angles = (0..count).map(|k| TAU * k as f64 / count as f64);
+        let bounds = ShapeBounds::from_contacts(&contacts(&ellipse(), angles)).unwrap();
+        [
+            2.0 * PI - bounds.lower_area(),
+            bounds.upper_area() - 2.0 * PI,
+            bounds.largest_gap().unwrap().distance,
+        ]
+    };
+    let (coarse, fine) = (errors(50), errors(400));
+    for k in 0..3 {
+        let order = (coarse[k] / fine[k]).log2() / 3.0;
+        assert!((order - 2.0).abs() < 0.05, "{order}");
+    }
+}
+
+#[test]
+fn lens_reuleaux_triangle_and_stadium_have_their_areas() {
+    for distance in [1.9, 1.0, 1e-3, 1e-6] {
+        let centre = |x: f64| Disc { centre: DVec2::new(x, 5.0), radius: 1.0 };
+        let lens = DiscIntersection::of(&[centre(0.0), centre(distance)], &[]).unwrap();
+        let expected = 2.0 * (distance / 2.0).acos() - distance / 2.0 * (4.0 - distance * distance).sqrt();
+        assert!((lens.area() - expected).abs() < 1e-13, "{distance}");
+    }
+    let side = DVec2::from_angle(PI / 3.0);
+    let corners = [DVec2::ZERO, DVec2::X, side];
+    let reuleaux: Vec<Disc> = corners.iter().map(|c| Disc { centre: *c, radius: 1.0 }).collect();
+    let reuleaux = DiscIntersection::of(&reuleaux, &[]).unwrap();
+    assert!((reuleaux.area() - 0.5 * (PI - 3f64.sqrt())).abs() < 1e-15 * 10.0);
+    assert_eq!(reuleaux.sides().len(), 3);
+    // Half a disc, from a concave and a flat palm; and two discs of which one holds the other.
+    let flat = HalfPlane { point: DVec2::ZERO, normal: Direction::from_angle(0.3), margin: 0.0 };
+    let disc = Disc { centre: DVec2::ZERO, radius: 2.0 };
+    let half = DiscIntersection::of(&[disc], &[flat]).unwrap();
+    assert!((half.area() - 2.0 * PI).abs() < 1e-14 && half.sides().len() == 2);
+    let larger = Disc { centre: DVec2::X, radius: 4.0 };
+    assert!((DiscIntersection::of(&[larger, disc], &[]).unwrap().area() - 4.0 * PI).abs() < 1e-14);
+    // Steiner: a segment of length 3 grown by 0.5.
+    let stadium = RoundedHull::of(&[DVec2::ZERO, DVec2::new(3.0, 0.0)], 0.5).unwrap();
+    assert!((stadium.area() - (3.0 + PI * 0.25)).abs() < 1e-15 * 10.0);
+    assert!((stadium.perimeter() - (6.0 + PI)).abs() < 1e-15 * 10.0);
+}
+
+#[test]
+fn discs_of_any_radii_agree_with_counting_points() {
+    let mut s = Source::new(5);
+    for _ in 0..20 {
+        let discs: Vec<Disc> = (0..6)
+            .map(|_| Disc { centre: DVec2::new(s.normal(), s.normal()) * 0.4, radius: s.between(0.9, 3.0) })
+            .collect();
+        let planes = [HalfPlane {
+            point: DVec2::new(0.3, 0.1),
+            normal: Direction::from_angle(s.unit() * TAU),
+            margin: 0.3,
+        }];
+        let Ok(body) = DiscIntersection::of(&discs, &planes) else { continue };
+        let side = 400;
+        let cell = 8.0 / f64::from(side);
+        let at = |k: i32| (f64::from(k) + 0.5) * cell - 4.0;
+        let inside =
+            (0..side * side).filter(|k| body.contains(DVec2::new(at(k % side), at(k / side)))).count();
+        // The outline is below 20 m long: so many cells may be wrong, most of which cancel.
+        assert!((inside as f64 * cell * cell - body.area()).abs() < 0.02, "{}", body.area());
+    }
+}
+
+#[test]
+fn curvature_limits_that_the_contacts_contradict_name_the_contacts() {
+    let samples = contacts(&ellipse(), (0..40).map(|k| TAU * f64::from(k) / 40.0));
+    let of = |min, max| CurvatureBounds::from_contacts(&samples, RadiusBounds { min, max }).unwrap_err();
+    assert!(matches!(of(0.9, 4.0), CurvatureError::TooRound { .. }));
+    assert!(matches!(of(0.1, 2.0), CurvatureError::TooFlat { .. }));
+    assert!(matches!(of(2.0, 1.0), CurvatureError::Radii { .. }));
+    let apart = [0.0, 5.0].map(|x| Disc { centre: DVec2::new(x, 0.0), radius: 1.0 });
+    assert!(matches!(DiscIntersection::of(&apart, &[]), Err(CurvatureError::Empty { count: 2 })));
+    let bad = Disc { centre: DVec2::ZERO, radius: f64::NAN };
+    assert!(matches!(DiscIntersection::of(&[bad], &[]), Err(CurvatureError::Disc { index: 0, .. })));
+}
+
+#[test]
+fn bad_input_is_named() {
+    let raw = |p: DVec2, n: DVec2| ContactSample::from_raw([(DVec2::X, DVec2::X), (p, n)]).unwrap_err();
+    assert!(matches!(raw(DVec2::NAN, DVec2::X), ContactError::Point { index: 1, .. }));
+    assert!(matches!(
+        raw(DVec2::X, DVec2::X * 1.1),
+        ContactError::Normal { index: 1, reason: DirectionError::NotUnit { .. } }
+    ));
+    assert!(matches!(Direction::new(DVec2::ZERO), Err(DirectionError::Zero)));
+    assert!(matches!(Hull::of(&[]), Err(PointsError::Empty)));
+    assert!(matches!(Hull::of(&[DVec2::new(1e300, 1e-300)]), Err(PointsError::DynamicRange { .. })));
+    let two = contacts(&ellipse(), [0.0, 1.0]);
+    assert!(matches!(ShapeBounds::from_contacts(&two), Err(BoundsError::TooFew { found: 2, needed: 3 })));
+    let mut incremental = IncrementalHull::new();
+    assert!(matches!(incremental.insert(DVec2::INFINITY), Err(PointsError::NotFinite { index: 0, .. })));
+    assert!(matches!(incremental.insert(DVec2::splat(1e200)), Err(PointsError::DynamicRange { .. })));
+}
