@@ -214,6 +214,7 @@ impl BallIntersection {
             |centre| n * self.radius() + centre,
             |circle| n - circle.axis * n.dot(circle.axis),
             |p| p.dot(n),
+            |_| n,
         )
     }
 
@@ -227,17 +228,19 @@ impl BallIntersection {
                 w - circle.axis * w.dot(circle.axis)
             },
             |p| p.distance_squared(point),
+            |p| p - point,
         );
         farthest.distance(point)
     }
 
     /// The point of the surface that is best by a measure that has one maximum on each sphere, `top` of its centre, and one on
-    /// each circle, in a direction `across` from its middle.
+    /// each circle, in a direction `across` from its middle; it rises along its `gradient`.
     fn extreme_point(
         &self,
         top: impl Fn(DVec3) -> DVec3,
         across: impl Fn(&Circle) -> DVec3,
         measure: impl Fn(DVec3) -> f64,
+        gradient: impl Fn(DVec3) -> DVec3,
     ) -> DVec3 {
         let (surface, rho) = (&self.surface, self.surface.radius);
         let mut best = (f64::NEG_INFINITY, self.interior);
@@ -257,6 +260,15 @@ impl BallIntersection {
             for (i, arc) in arcs.iter().enumerate() {
                 compare(arc.start);
                 let end = arcs[(i + 1) % arcs.len()].start;
+                // An edge of less than half a circle has its best point inside just if the measure rises from its start and
+                // falls to its end: two products in the place of two angles.
+                let (a, b) = (surface.centre(k), surface.centre(arc.other));
+                let (axis, middle) = (b - a, (a + b) * 0.5);
+                let rises = |p: DVec3| gradient(p).dot(axis.cross(p - middle)) > 0.0;
+                let is_short = axis.cross(arc.start - middle).dot(end - middle) > 0.0;
+                if is_short && !(rises(arc.start) && !rises(end)) {
+                    continue;
+                }
                 let circle = Circle::between(surface.centre(k), surface.centre(arc.other), rho);
                 let across = across(&circle);
                 if across.length_squared() > 0.0 {
