@@ -5,7 +5,11 @@ use std::process::ExitCode;
 use crate::cargo::{cargo, output, root};
 
 /// Name of a study, the file under docs/ that it writes, and what it is about.
-const STUDIES: [(&str, &str, &str); 3] = [
+const STUDIES: [(&str, &str, &str); 7] = [
+    ("bounds_corners", "charts/bounds/corners.csv", "corners of half-spaces against rational arithmetic"),
+    ("bounds_curvature", "charts/bounds/curvature.csv", "bounds from limits on the radii of curvature"),
+    ("bounds_incremental", "charts/bounds/incremental.csv", "bounds kept up to date, contact by contact"),
+    ("bounds_timing", "charts/bounds/timing.csv", "hull and half-spaces beside parry3d, Qhull and CGAL"),
     ("cold_start", "cold-start.md", "three palms: random scenes from no guess"),
     ("planar_monte_carlo", "planar-monte-carlo.md", "planar observers against the Cramer-Rao bound"),
     ("planar_costs", "planar-costs.md", "cost of the planar observers beside their accuracy"),
