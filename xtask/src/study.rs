@@ -6,6 +6,10 @@ use crate::cargo::{cargo, output, root};
 
 /// Name of a study, the file under docs/ that it writes, and what it is about.
 const STUDIES: &[(&str, &str, &str)] = &[
+    ("bounds_corners", "charts/bounds/corners.csv", "corners of half-spaces against rational arithmetic"),
+    ("bounds_curvature", "charts/bounds/curvature.csv", "bounds from limits on the radii of curvature"),
+    ("bounds_incremental", "charts/bounds/incremental.csv", "bounds kept up to date, contact by contact"),
+    ("bounds_timing", "charts/bounds/timing.csv", "hull and half-spaces beside parry3d, Qhull and CGAL"),
     (
         "bounds_noise",
         "bounds-noise.md",

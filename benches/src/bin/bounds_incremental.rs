@@ -1,27 +1,24 @@
 //! What one more contact costs when both bounds are kept up to date, beside starting over.
 //!
 //! Usage: `bounds_incremental [CONTACTS]` (10,000 by default): three curves traced side by side, and contacts all over an
-//! ellipsoid in random order. Writes `docs/charts/bounds/incremental.csv`.
+//! ellipsoid in random order. Prints the table `docs/charts/bounds/incremental.csv`.
 
 use cpu_time::ThreadTime;
 use shape_bounds::generators::{curve_contacts, ellipsoid_contacts};
 use shape_bounds::{ContactSample, IncrementalBounds, ShapeBounds};
-use std::fmt::Write as _;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let count: usize = std::env::args().nth(1).map_or(Ok(10_000), |a| a.parse())?;
-    let mut csv = String::from("input,contacts,microseconds_per_contact,microseconds_to_start_over\n");
+    println!("input,contacts,microseconds_per_contact,microseconds_to_start_over");
     for (name, contacts) in
         [("curves", curve_contacts(count, 1)), ("scattered", ellipsoid_contacts(count, 1))]
     {
-        study(name, &contacts, &mut csv)?;
+        study(name, &contacts)?;
     }
-    std::fs::create_dir_all("docs/charts/bounds")?;
-    std::fs::write("docs/charts/bounds/incremental.csv", csv)?;
     Ok(())
 }
 
-fn study(name: &str, contacts: &[ContactSample], csv: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+fn study(name: &str, contacts: &[ContactSample]) -> Result<(), Box<dyn std::error::Error>> {
     let mut growing = IncrementalBounds::new();
     let mut next = 100;
     let mut begin = 0;
@@ -33,9 +30,7 @@ fn study(name: &str, contacts: &[ContactSample], csv: &mut String) -> Result<(),
             let over = ThreadTime::now();
             std::hint::black_box(ShapeBounds::from_contacts(&contacts[..=k])?);
             let over = over.elapsed().as_secs_f64() * 1e6;
-            let line = format!("{name},{next},{each:.3},{over:.1}");
-            println!("{line}");
-            writeln!(csv, "{line}")?;
+            println!("{name},{next},{each:.3},{over:.1}");
             (begin, next) = (k + 1, next * 10);
             start = ThreadTime::now();
         }

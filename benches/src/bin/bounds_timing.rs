@@ -1,14 +1,13 @@
 //! Times hull and half-space intersection beside parry3d, Qhull (through SciPy) and CGAL, in one run on one core.
 //!
 //! Usage: `bounds_timing [LARGEST]` (1,000,000 by default), with `BOUNDS_CGAL` naming the compiled
-//! `benches/peers/bounds_cgal.cpp` if there is one. Writes `docs/charts/bounds/timing.csv`: thread time in ms, the
+//! `benches/peers/bounds_cgal.cpp` if there is one. Prints the table `docs/charts/bounds/timing.csv`: thread time in ms, the
 //! fastest of a few repeats; empty where a peer is absent, not tried at that size, or beyond the time limit.
 
 use cpu_time::ThreadTime;
 use glam::DVec3;
 use shape_bounds::generators::{InputKind, curve_contacts};
 use shape_bounds::{HalfSpace, Hull, Intersection};
-use std::fmt::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -23,13 +22,7 @@ fn main() -> Result<(), Failure> {
     let folder = std::env::temp_dir().join(format!("bounds-timing-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
     let file = folder.join("input");
-    let mut csv = String::from("input,n,ours_ms,parry_ms,qhull_ms,cgal_ms,cgal_constructed_ms\n");
-    let mut record = |line: String| -> Result<(), Failure> {
-        println!("{line}");
-        writeln!(csv, "{line}")?;
-        std::fs::create_dir_all("docs/charts/bounds")?;
-        Ok(std::fs::write("docs/charts/bounds/timing.csv", &csv)?)
-    };
+    println!("input,n,ours_ms,parry_ms,qhull_ms,cgal_ms,cgal_constructed_ms");
     for n in [100, 1000, 10_000, 100_000, 1_000_000].into_iter().filter(|n| *n <= largest) {
         for kind in [
             InputKind::Curves,
@@ -43,9 +36,9 @@ fn main() -> Result<(), Failure> {
             if (sections && n != 100_000) || (kind == InputKind::Duplicates && n == 1_000_000) {
                 continue;
             }
-            record(hull_line(kind, n, &file)?)?;
+            println!("{}", hull_line(kind, n, &file)?);
         }
-        record(half_space_line(n, &file)?)?;
+        println!("{}", half_space_line(n, &file)?);
     }
     std::fs::remove_dir_all(&folder)?;
     Ok(())

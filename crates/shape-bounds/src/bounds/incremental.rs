@@ -22,8 +22,6 @@ struct Dual {
     centre: DVec3,
     /// Largest coordinate that the outward rounding was made for.
     largest: f64,
-    /// The half-spaces, moved outwards.
-    outer: Vec<HalfSpace>,
     hull: IncrementalHull,
 }
 
@@ -90,7 +88,8 @@ impl IncrementalBounds {
         };
         let lower = self.lower.hull()?;
         let corners = lower.corner_points(self.lower.points());
-        let upper = Intersection::from_dual(dual.hull.hull(), &self.half_spaces, &dual.outer, dual.centre);
+        let upper =
+            Intersection::from_dual(dual.hull.hull(), &self.half_spaces, dual.outwards(), dual.centre);
         Ok(ShapeBounds { lower, corners, upper })
     }
 }
@@ -100,7 +99,7 @@ impl Dual {
         let centre = interior_point(half_spaces)?;
         // Room to grow: rounding is provided for coordinates of twice the size.
         let largest = 2.0 * half_spaces.iter().map(|h| h.point.abs().max_element()).fold(0.0, f64::max);
-        let mut dual = Self { centre, largest, outer: Vec::new(), hull: IncrementalHull::new() };
+        let mut dual = Self { centre, largest, hull: IncrementalHull::new() };
         for h in half_spaces {
             dual.take(h)?;
         }
@@ -113,11 +112,14 @@ impl Dual {
         size <= self.largest && -half_space.excess(self.centre) >= DEEP * self.largest
     }
 
+    /// How far half-spaces are moved outwards for rounding, in m.
+    fn outwards(&self) -> f64 {
+        OUTWARD_ULPS * f64::EPSILON * self.largest
+    }
+
     fn take(&mut self, half_space: &HalfSpace) -> Result<(), BoundsError> {
-        let margin = half_space.margin + OUTWARD_ULPS * f64::EPSILON * self.largest;
-        let outer = HalfSpace { margin, ..*half_space };
+        let outer = half_space.moved(self.outwards());
         self.hull.insert(outer.normal.get() / -outer.excess(self.centre))?;
-        self.outer.push(outer);
         Ok(())
     }
 }

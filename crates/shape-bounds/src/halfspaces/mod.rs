@@ -59,22 +59,23 @@ impl Intersection {
             return Err(IntersectionError::NotFinite { index, point, margin });
         }
         let interior = interior_point(half_spaces)?;
-        let outer = polyhedron::moved_outwards(half_spaces);
-        let duals: Vec<DVec3> = outer.iter().map(|h| h.normal.get() / -h.excess(interior)).collect();
-        Ok(Self::from_dual(Hull::of(&duals), half_spaces, &outer, interior))
+        let outwards = polyhedron::outward_rounding(half_spaces);
+        let duals: Vec<DVec3> =
+            half_spaces.iter().map(|h| h.normal.get() / -h.moved(outwards).excess(interior)).collect();
+        Ok(Self::from_dual(Hull::of(&duals), half_spaces, outwards, interior))
     }
 
-    /// The intersection whose polar duals about `interior`, of the half-spaces `outer` moved outwards for rounding, have
-    /// the hull `dual`.
+    /// The intersection whose polar duals about `interior`, of the half-spaces moved `outwards` (m) for rounding, have the hull
+    /// `dual`.
     pub(crate) fn from_dual(
         dual: Result<Hull, PointsError>,
         half_spaces: &[HalfSpace],
-        outer: &[HalfSpace],
+        outwards: f64,
         interior: DVec3,
     ) -> Self {
         match dual {
             Ok(Hull::Solid(dual)) if strictly_contains_origin(&dual) => {
-                Self::Bounded(Polyhedron::from_dual(dual, outer, interior))
+                Self::Bounded(Polyhedron::from_dual(dual, half_spaces, outwards, interior))
             }
             _ => Self::Unbounded(Unbounded {
                 half_spaces: half_spaces.to_vec(),

@@ -14,6 +14,9 @@ pub(crate) const OUTWARD_ULPS: f64 = 8.0;
 /// the largest coordinate, which is what evaluating the height takes; beyond, the corner of the rounded planes is used.
 const CONSISTENT_ULPS: f64 = 4.0;
 
+/// Facets whose data are fetched together, so that memory is waited for once.
+const BATCH: usize = 16;
+
 /// A bounded intersection of half-spaces with its corners and faces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polyhedron {
@@ -27,10 +30,10 @@ pub struct Polyhedron {
 }
 
 impl Polyhedron {
-    /// The polyhedron of `all` half-spaces whose polar duals about `interior` have the hull `dual`. The half-spaces are
-    /// those of the duals, already moved outwards.
-    pub(super) fn from_dual(dual: SolidHull, all: &[HalfSpace], interior: DVec3) -> Self {
-        let half_spaces: Vec<HalfSpace> = dual.sources().iter().map(|k| all[*k as usize]).collect();
+    /// The polyhedron of `all` half-spaces, moved `outwards` (m), whose polar duals about `interior` have the hull `dual`.
+    pub(super) fn from_dual(dual: SolidHull, all: &[HalfSpace], outwards: f64, interior: DVec3) -> Self {
+        let half_spaces: Vec<HalfSpace> =
+            dual.sources().iter().map(|k| all[*k as usize].moved(outwards)).collect();
         let vertices = corners(&dual, &half_spaces, interior, CONSISTENT_ULPS * rounding_unit(all));
         let mut used = vec![false; all.len()];
         dual.sources().iter().for_each(|k| used[*k as usize] = true);
@@ -145,10 +148,9 @@ fn rounding_unit(half_spaces: &[HalfSpace]) -> f64 {
     f64::EPSILON * half_spaces.iter().map(|h| h.point.abs().max_element()).fold(0.0, f64::max)
 }
 
-/// `half_spaces` moved outwards by more than all rounding in what follows.
-pub(super) fn moved_outwards(half_spaces: &[HalfSpace]) -> Vec<HalfSpace> {
-    let by = OUTWARD_ULPS * rounding_unit(half_spaces);
-    half_spaces.iter().map(|h| HalfSpace { margin: h.margin + by, ..*h }).collect()
+/// How far planes are moved outwards, in m: by more than all rounding in what follows.
+pub(super) fn outward_rounding(half_spaces: &[HalfSpace]) -> f64 {
+    OUTWARD_ULPS * rounding_unit(half_spaces)
 }
 
 /// The corner of each facet of the dual.
@@ -159,19 +161,30 @@ pub(super) fn moved_outwards(half_spaces: &[HalfSpace]) -> Vec<HalfSpace> {
 /// where the rounded planes have chosen other neighbours, it protrudes.
 fn corners(dual: &SolidHull, half_spaces: &[HalfSpace], interior: DVec3, tolerance: f64) -> Vec<DVec3> {
     let triangles = dual.triangles();
-    (0..triangles.len())
-        .map(|f| {
-            let t = triangles[f];
-            let planes = t.map(|v| &half_spaces[v as usize]);
+    let mut corners = Vec::with_capacity(triangles.len());
+    let mut across: Vec<[HalfSpace; 3]> = Vec::with_capacity(BATCH);
+    for first in (0..triangles.len()).step_by(BATCH) {
+        let batch = first..(first + BATCH).min(triangles.len());
+        across.clear();
+        across.extend(batch.clone().map(|f| neighbours_across(dual, f).map(|v| half_spaces[v as usize])));
+        for (f, across) in batch.zip(&across) {
+            let planes = triangles[f].map(|v| &half_spaces[v as usize]);
             let corner = common_point(planes, tolerance);
-            let on_planes = planes.iter().all(|h| h.excess(corner).abs() <= tolerance);
-            let consistent = on_planes
-                && dual.neighbours()[f].iter().enumerate().all(|(edge, g)| {
-                    let [a, b, c] = triangles[*g as usize];
-                    let opposite = a ^ b ^ c ^ t[edge] ^ t[(edge + 1) % 3];
-                    half_spaces[opposite as usize].excess(corner) <= tolerance
-                });
-            if consistent { corner } else { interior + polar_corner(dual.corners(f)) }
-        })
-        .collect()
+            let consistent = planes.iter().all(|h| h.excess(corner).abs() <= tolerance)
+                && across.iter().all(|h| h.excess(corner) <= tolerance);
+            corners.push(if consistent { corner } else { interior + polar_corner(dual.corners(f)) });
+        }
+    }
+    corners
+}
+
+/// The third corners of the facets across the edges of a facet.
+#[inline]
+fn neighbours_across(dual: &SolidHull, facet: usize) -> [u32; 3] {
+    let t = dual.triangles()[facet];
+    let neighbours = dual.neighbours()[facet];
+    [0, 1, 2].map(|edge| {
+        let [a, b, c] = dual.triangles()[neighbours[edge] as usize];
+        a ^ b ^ c ^ t[edge] ^ t[(edge + 1) % 3]
+    })
 }

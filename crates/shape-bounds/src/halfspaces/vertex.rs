@@ -10,8 +10,9 @@ const WELL_CONDITIONED: f64 = 1000.0;
 /// Refinements at most. The inverse has some correct digits, or the planes have no point in common to speak of; so one or
 /// two steps are enough.
 const STEPS: usize = 4;
-/// A step below this many times the tolerance is the last: what it leaves is smaller by the accuracy of the inverse.
-const CONVERGED: f64 = 100.0;
+/// A step below this many times the tolerance is the last: what it leaves, at most 1e-11 of the size, is
+/// smaller by the accuracy of the inverse.
+const CONVERGED: f64 = 1e4;
 
 /// The inverse of the system of three planes, as columns: `y = x_i + first m_i + second d_j + third d_k`.
 ///
