@@ -8,6 +8,7 @@ use crate::cargo::{cargo, output, root};
 const STUDIES: &[(&str, &str, &str)] = &[
     ("bounds_corners", "charts/bounds/corners.csv", "corners of half-spaces against rational arithmetic"),
     ("bounds_curvature", "charts/bounds/curvature.csv", "bounds from limits on the radii of curvature"),
+    ("bounds_fuzz", "charts/bounds/fuzz.csv", "the hull on every kind of input, judged by exact predicates"),
     ("bounds_incremental", "charts/bounds/incremental.csv", "bounds kept up to date, contact by contact"),
     ("bounds_timing", "charts/bounds/timing.csv", "hull and half-spaces beside parry3d, Qhull and CGAL"),
     (
