@@ -266,7 +266,7 @@ impl BallIntersection {
                 let (axis, middle) = (b - a, (a + b) * 0.5);
                 let rises = |p: DVec3| gradient(p).dot(axis.cross(p - middle)) > 0.0;
                 let is_short = axis.cross(arc.start - middle).dot(end - middle) > 0.0;
-                if is_short && !(rises(arc.start) && !rises(end)) {
+                if is_short && (!rises(arc.start) || rises(end)) {
                     continue;
                 }
                 let circle = Circle::between(surface.centre(k), surface.centre(arc.other), rho);
