@@ -17,7 +17,7 @@ mod three_palms;
 pub use core::{
     Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Model, NewtonEstimate,
     NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start, Status, describe_direction, rk4,
-    rk4_linearised, solve_batch, solve_batch_from,
+    rk4_linearised, solve_batch, solve_batch_along, solve_batch_from,
 };
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]

@@ -8,6 +8,7 @@ mod curves;
 mod estimate;
 mod evidence;
 mod momentum;
+mod most_probable;
 mod noise;
 mod paper_method;
 mod paper_system;

@@ -10,7 +10,7 @@ mod model;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use blocks::block_inputs;
+pub(crate) use blocks::{Block, block_inputs, blocks};
 pub(crate) use constants::{BODY, Constant, Parameters};
 pub(crate) use inertia::inertia_of_numbers;
 pub(crate) use input::{NodeInput, PalmTouch, PalmWrench, Touch, Wrench};
