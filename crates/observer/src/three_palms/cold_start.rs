@@ -77,7 +77,7 @@ pub(super) fn scales(track: &Track, mass: &MassProperties) -> Scales {
     Scales { length, velocity: length * rate, momentum: moment * rate }
 }
 
-fn natural_time(track: &Track, length: f64) -> f64 {
+pub(super) fn natural_time(track: &Track, length: f64) -> f64 {
     let g = track.gravity.length();
     if g > 0.0 { (length / g).sqrt() } else { track.duration() / 4.0 }
 }

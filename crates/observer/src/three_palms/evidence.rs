@@ -114,6 +114,11 @@ pub enum Reason {
         /// Largest shift of an unknown, in its standard deviations.
         shift: f64,
     },
+    /// Contacts and forces had to be corrected by more than their noise.
+    Inconsistent {
+        /// Chi-squared over its degrees of freedom; about 1 when all is as stated.
+        misfit: f64,
+    },
     /// The motion found leaves more than noise.
     Misfit {
         /// Root mean square of the contact residuals, m/s.
@@ -144,6 +149,12 @@ impl fmt::Display for Reason {
                 "noise of this size shifts the estimate by {shift:.1} of its standard deviations: the motion is too \
                  slow or too short for these sensors"
             ),
+            Self::Inconsistent { misfit } => write!(
+                f,
+                "contacts and forces had to be corrected by {:.2} times their noise: a wrong motion, a wrong constant of \
+                 body or sensors (a force gain, say), or more noise than was stated",
+                misfit.sqrt()
+            ),
             Self::Misfit { residual, explained } if !explained.is_finite() => write!(
                 f,
                 "the motion found leaves {residual:.2e} m/s of the contact condition, beyond what any noise explains: \
@@ -159,6 +170,14 @@ impl fmt::Display for Reason {
 }
 
 impl Reliability {
+    /// One more reason.
+    pub(super) fn add(&mut self, reason: Reason) {
+        match self {
+            Self::Reliable => *self = Self::Unreliable(vec![reason]),
+            Self::Unreliable(reasons) => reasons.push(reason),
+        }
+    }
+
     /// Whether the estimate may be believed to within its covariance.
     #[must_use]
     pub fn is_reliable(&self) -> bool {

@@ -14,6 +14,7 @@ mod paper_method;
 mod paper_system;
 mod quadrature;
 mod random;
+mod refine;
 mod sensitivity;
 #[allow(dead_code, reason = "wip")]
 mod state_space;

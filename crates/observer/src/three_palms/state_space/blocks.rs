@@ -113,7 +113,13 @@ pub(crate) fn block_inputs(track: &Track, blocks: &[Block], reach: f64) -> Vec<N
             let before = k.saturating_sub(1);
             let (from, here) = (touches[before], touches[k]);
             let duration = t[k] - t[before];
-            NodeInput { duration, halves: halves(&series, t[before], duration, &from, &here), from, here }
+            NodeInput {
+                duration,
+                halves: halves(&series, t[before], duration, &from, &here),
+                correction: DVec3::ZERO,
+                from,
+                here,
+            }
         })
         .collect()
 }
@@ -178,7 +184,12 @@ fn touch(track: &Track, block: &Block) -> Touch {
         sum.smooth_arm = sum.arm[0];
         sum
     });
-    Touch { palms, samples: count, spacing: track.duration() / (track.len() - 1).max(1) as f64, slide_variance: [0.0; 3] }
+    Touch {
+        palms,
+        samples: count,
+        spacing: track.duration() / (track.len() - 1).max(1) as f64,
+        slide_variance: [0.0; 3],
+    }
 }
 
 /// Arms for derivatives, forces and torques with their rates: at each node a parabola fitted to the nodes within `reach`
@@ -189,7 +200,7 @@ fn smoothed(t: &[f64], touches: Vec<Touch>, reach: f64) -> Vec<Touch> {
         let from = |j: usize| (t[j] - t[k]) / reach;
         let start = (0..k).rev().take_while(|&j| from(j) >= -1.0).last().unwrap_or(k);
         let end = (k + 1..t.len()).take_while(|&j| from(j) <= 1.0).last().unwrap_or(k);
-        let powers = |j: usize| Vector3::new(1.0, from(j), from(j) * from(j)) ;
+        let powers = |j: usize| Vector3::new(1.0, from(j), from(j) * from(j));
         let weigh = |j: usize| powers(j) * touches[j].samples;
         let normal: Matrix3<f64> = (start..=end).map(|j| weigh(j) * powers(j).transpose()).sum();
         // Fewer than four nodes in reach: nothing is smoothed.

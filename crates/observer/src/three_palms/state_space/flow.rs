@@ -102,6 +102,15 @@ impl<'a, const N: usize> Step<'a, N> {
         SVector::from_fn(|i, _| if i < MOTION_STATES { blocks[i / 3][i % 3] } else { x[i] })
     }
 
+    /// Wrench over the first half or the whole, without the noise that the estimate has found in it.
+    fn adjusted(&self, part: usize) -> Wrench {
+        let wrench = self.wrenches[part];
+        let (share, s) =
+            if part == 0 { (0.5, 0.5 * self.input.duration) } else { (1.0, self.input.duration) };
+        let impulse = self.input.correction * share;
+        Wrench { impulse: wrench.impulse + impulse, first: wrench.first + impulse * (0.5 * s), ..wrench }
+    }
+
     /// Derivative of the end by the start.
     pub(super) fn transition(&self, constants: &[Constant]) -> SMatrix<f64, N, N> {
         let h = self.input.duration;
@@ -127,8 +136,9 @@ impl<'a, const N: usize> Step<'a, N> {
             let mut impulse = change.impulse / mass;
             let mut travel = (change.impulse * h - change.first) / mass;
             if *constant == Constant::LogMass {
-                impulse = -self.wrenches[1].impulse / mass;
-                travel = -(self.wrenches[1].impulse * h - self.wrenches[1].first) / mass;
+                let wrench = self.adjusted(1);
+                impulse = -wrench.impulse / mass;
+                travel = -(wrench.impulse * h - wrench.first) / mass;
             }
             v.set_column(MOTION_STATES + j, &impulse.into());
             p.set_column(MOTION_STATES + j, &travel.into());
@@ -180,7 +190,7 @@ impl<'a, const N: usize> Step<'a, N> {
         constants: &[Constant],
     ) -> Columns<N> {
         let Motion { p, v, .. } = self.motion;
-        let (wrench, g, mass) = (&self.wrenches[part], self.model.gravity, self.parameters.mass);
+        let (wrench, g, mass) = (self.adjusted(part), self.model.gravity, self.parameters.mass);
         let mut L = Columns::<N>::zeros();
         // -dp x impulse = impulse x dp.
         put(&mut L, 0, cross_matrix(wrench.impulse));
@@ -238,8 +248,11 @@ impl<'a, const N: usize> Step<'a, N> {
         let K = Turn::new(&self.parameters, self.motion.q, self.motion.L).K;
         let held = held(self.input);
         // Of the mean contact over the interval.
-        let of_contact =
-            if h > 0.0 { self.model.noise.contact * self.model.noise.contact * self.input.from.spacing / h } else { 0.0 };
+        let of_contact = if h > 0.0 {
+            self.model.noise.contact * self.model.noise.contact * self.input.from.spacing / h
+        } else {
+            0.0
+        };
         // White noise over an interval: its mean moves the path by half the interval, and what is left of the path's
         // variance, h^2 / 3 - h^2 / 4, is independent of the mean.
         let mut add = |variance: f64, velocity: DVec3, momentum: DVec3| {

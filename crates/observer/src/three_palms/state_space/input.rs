@@ -100,6 +100,9 @@ pub(crate) struct NodeInput {
     pub(crate) duration: f64,
     /// Integrals over the first and the second half of that time, by palm.
     pub(crate) halves: [[PalmWrench; 3]; 2],
+    /// What the estimate before this one adds to the impulse of the whole interval, N s, for derivatives: noise in them
+    /// passes for information, and it is the same noise that the estimate weighs.
+    pub(crate) correction: DVec3,
     /// Touch at the node before; that of the first node is its own.
     pub(crate) from: Touch,
     /// Touch at this node.

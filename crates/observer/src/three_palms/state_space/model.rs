@@ -110,6 +110,17 @@ impl<const N: usize> ThreePalmModel<N> {
         &self.constants
     }
 
+    /// Impulse that leads from one state to another beside what was measured, N s.
+    pub(crate) fn missing_impulse(
+        &self,
+        from: &SVector<f64, N>,
+        to: &SVector<f64, N>,
+        input: &NodeInput,
+    ) -> DVec3 {
+        let reached = unpack(&self.advance(from, input)).v;
+        (unpack(to).v - reached) * self.parameters(to).mass
+    }
+
     /// Natural rate, 1/s.
     pub(crate) fn natural_rate(&self) -> f64 {
         self.scales.velocity / self.scales.length
@@ -162,7 +173,13 @@ impl<const N: usize> ThreePalmModel<N> {
     }
 
     /// Derivative of `axis . w` by the states.
-    fn turning_row(&self, axis: DVec3, motion: &Motion, parameters: &Parameters, turn: &Turn) -> SVector<f64, N> {
+    fn turning_row(
+        &self,
+        axis: DVec3,
+        motion: &Motion,
+        parameters: &Parameters,
+        turn: &Turn,
+    ) -> SVector<f64, N> {
         // dw = (K [L]x - [w]x) theta + K (dL - dI w).
         let by_L = turn.K * axis;
         let by_motion = [DVec3::ZERO, DVec3::ZERO, by_L, by_L.cross(motion.L) - axis.cross(turn.w)];

@@ -73,8 +73,7 @@ fn the_true_motion_is_a_solution_to_high_order() {
         let cut = blocks(track.len(), stride);
         let (mut flow, mut output): (f64, f64) = (0.0, 0.0);
         for (k, input) in block_inputs(&track, &cut, 0.06).iter().enumerate().skip(1) {
-            let at =
-                |k: usize| model.state(&truth(&run, &mass, cut[k].node()), &base);
+            let at = |k: usize| model.state(&truth(&run, &mass, cut[k].node()), &base);
             flow =
                 flow.max(model.difference(&model.advance(&at(k - 1), input), &at(k)).amax() / input.duration);
             for condition in model.conditions(&at(k), &input.here) {
