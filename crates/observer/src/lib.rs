@@ -22,7 +22,8 @@ pub use core::{
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
 pub use three_palms::{
-    EstimateError, Evidence, KnownBody, MotionEstimate, MotionState, NoiseLevel, PaperError, PaperMethod,
-    PaperReconstruction, PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState,
-    Track, TrackError, WeakDirection, equivalent_orientations, estimate_motion, integrate_paper_system,
+    BodyEstimate, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate, MotionState,
+    NoiseLevel, PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, Quantity,
+    Reason, Reliability, Scales, StartState, Track, TrackError, UnknownBody, WeakDirection,
+    equivalent_orientations, estimate_body, estimate_motion, integrate_paper_system,
 };

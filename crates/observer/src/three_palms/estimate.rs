@@ -20,7 +20,7 @@ const COVARIANCE_SAMPLES: usize = 400;
 /// Samples that the bias by noise is computed from, at most.
 const BIAS_SAMPLES: usize = 200;
 /// Smallest share of the largest information that still counts as information: rounding of `J' J`.
-const RANK_TOLERANCE: f64 = 1e-14;
+pub(super) const RANK_TOLERANCE: f64 = 1e-14;
 /// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
 /// linearisation that its covariance comes from does not reach that far.
 const LARGEST_DEVIATION: f64 = 0.25;
@@ -29,13 +29,13 @@ const LARGEST_DEVIATION: f64 = 0.25;
 /// 0.16 the most where the covariance was right.
 const LARGEST_BIAS: f64 = 0.2;
 /// Contact noise, relative to length, whose bias is worth taking out: its square must reach the rounding of the sums.
-const BIASING: f64 = 1e-7;
+pub(super) const BIASING: f64 = 1e-7;
 /// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
 const NOISE_FLOOR: f64 = 1e-12;
 
 /// Chi-squared over its degrees of freedom beyond which noise does not explain an estimate. With hundreds of degrees it
 /// scatters by a few percent about 0.85 to 1; noise levels that are read off the data are good to 5 %.
-const LARGEST_MISFIT: f64 = 1.4;
+pub(super) const LARGEST_MISFIT: f64 = 1.4;
 
 /// What is known beside the log.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -216,7 +216,7 @@ fn noisy_estimate(
     Ok(MotionEstimate { start: states[0], motion, curves, radii, covariance, evidence, reliability })
 }
 
-fn floored(noise: NoiseLevel, track: &Track, scales: &Scales) -> NoiseLevel {
+pub(super) fn floored(noise: NoiseLevel, track: &Track, scales: &Scales) -> NoiseLevel {
     let weight = track.mass * track.gravity.length();
     NoiseLevel {
         contact: noise.contact.max(NOISE_FLOOR * scales.length),
@@ -266,7 +266,7 @@ fn weakest_direction(covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>) -> WeakDirec
     WeakDirection::new(&direction, spectrum.eigenvalues[last].max(0.0).sqrt())
 }
 
-fn judge(evidence: &Evidence, status: FitStatus, scales: &Scales) -> Reliability {
+pub(super) fn judge(evidence: &Evidence, status: FitStatus, scales: &Scales) -> Reliability {
     let mut reasons = Vec::new();
     if status != FitStatus::Converged {
         reasons.push(Reason::NotConverged { iterations: evidence.iterations });

@@ -1,6 +1,7 @@
 use super::covariance::NoiseLevel;
 use super::momentum::Row;
 use glam::DVec3;
+use nalgebra::SVector;
 use std::fmt;
 
 /// What an estimate rests on.
@@ -45,6 +46,10 @@ pub enum Quantity {
     AngularMomentum,
     /// Orientation of the principal axes.
     Orientation,
+    /// Mass.
+    Mass,
+    /// Inertia tensor.
+    Inertia,
 }
 
 /// The combination of unknowns that the data determine worst, named by its largest part.
@@ -72,6 +77,19 @@ impl WeakDirection {
         };
         Self { quantity, axis: block(largest).normalize_or_zero(), deviation }
     }
+
+    /// Names a unit vector of the scaled unknowns of a body of which nothing is known.
+    pub(super) fn of_body(direction: &SVector<f64, 16>, deviation: f64) -> Self {
+        let inertia = direction.fixed_rows::<6>(10).norm();
+        let block = |k: usize| DVec3::new(direction[3 * k], direction[3 * k + 1], direction[3 * k + 2]);
+        let motion = (0..3).fold(0.0, |m: f64, k| m.max(block(k).length()));
+        if motion < inertia.max(direction[9].abs()) {
+            let quantity = if inertia > direction[9].abs() { Quantity::Inertia } else { Quantity::Mass };
+            return Self { quantity, axis: DVec3::ZERO, deviation };
+        }
+        let row = Row::from_fn(|i, _| if i < 9 { direction[i] } else { 0.0 });
+        Self::new(&row, deviation)
+    }
 }
 
 impl fmt::Display for WeakDirection {
@@ -81,7 +99,12 @@ impl fmt::Display for WeakDirection {
             Quantity::Velocity => ("velocity", "along"),
             Quantity::AngularMomentum => ("angular velocity", "about"),
             Quantity::Orientation => ("orientation", "about"),
+            Quantity::Mass => ("mass", ""),
+            Quantity::Inertia => ("inertia tensor", ""),
         };
+        if self.axis == DVec3::ZERO {
+            return f.write_str(name);
+        }
         let DVec3 { x, y, z } = self.axis;
         write!(f, "{name} {preposition} ({x:.2}, {y:.2}, {z:.2})")
     }

@@ -19,6 +19,7 @@ mod sensitivity;
 #[allow(dead_code, reason = "wip")]
 mod state_space;
 mod track;
+mod unknown_body;
 
 pub use covariance::NoiseLevel;
 pub use estimate::{EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion};
@@ -28,3 +29,4 @@ pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
 pub use track::{Track, TrackError};
+pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body};

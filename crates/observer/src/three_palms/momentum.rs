@@ -110,7 +110,7 @@ impl<'a> MomentumProblem<'a> {
         Kinematics {
             v: start.v_WCm + velocity,
             p: start.p_WCm + start.v_WCm * t + position,
-            L: momentum(start, &[impulse, first_moment, moment]),
+            L: momentum(start, &[impulse, first_moment, moment, DVec3::ZERO]),
         }
     }
 
@@ -370,8 +370,8 @@ fn flow(here: &Turning, force: DVec3) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
     flow
 }
 
-/// `L0 + moment - cm0 x impulse - v0 x first_moment` from `[impulse, first moment, moment]`.
-fn momentum(start: &StartState, [impulse, first_moment, moment]: &[DVec3; 3]) -> DVec3 {
+/// `L0 + moment - cm0 x impulse - v0 x first_moment` from `[impulse, first moment, moment, ..]`.
+pub(super) fn momentum(start: &StartState, [impulse, first_moment, moment, _]: &[DVec3; 4]) -> DVec3 {
     start.L_WO + *moment - start.p_WCm.cross(*impulse) - start.v_WCm.cross(*first_moment)
 }
 

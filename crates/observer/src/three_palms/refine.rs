@@ -14,8 +14,9 @@ use object_dynamics::MassProperties;
 const NODES_PER_NATURAL_TIME: f64 = 32.0;
 /// Natural times over which contacts are smoothed, on either side, where derivatives are taken.
 const SMOOTHED_NATURAL_TIMES: f64 = 0.125;
-/// Deviation of the orientation at the start where a choice of body axes, and no measurement, fixes it.
-const CHOSEN: f64 = 1e-6;
+/// Deviation of the orientation at the start where a choice of body axes, and no measurement, fixes it: in relative
+/// contact noise, so that it is small against what is measured and yet lets sums of both keep their digits.
+const CHOSEN: f64 = 0.1;
 
 /// The most probable motion with the model that it obeys.
 pub(super) struct Refined<const N: usize> {
@@ -87,7 +88,7 @@ pub(super) fn refine<const N: usize>(
     let mut prior = Start::guess(states[0]);
     if axes_chosen {
         for axis in 9..12 {
-            prior.information[(axis, axis)] = 1.0 / (CHOSEN * CHOSEN);
+            prior.information[(axis, axis)] = (CHOSEN * model.relative_noise()).powi(-2);
         }
     }
     let solution = most_probable(&model, &inputs, &states, &prior)?;
