@@ -24,6 +24,7 @@ pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Normal
 pub use three_palms::{
     BodyEstimate, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate, MotionState,
     NoiseLevel, PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, Quantity,
-    Reason, Reliability, Scales, StartState, Track, TrackError, UnknownBody, WeakDirection,
-    equivalent_orientations, estimate_body, estimate_motion, integrate_paper_system,
+    Reason, Reliability, Scales, SensorConstant, SensorEstimate, SensorPriors, StartState, Track, TrackError,
+    UnknownBody, WeakDirection, equivalent_orientations, estimate_body, estimate_motion,
+    estimate_motion_and_sensors, integrate_paper_system,
 };

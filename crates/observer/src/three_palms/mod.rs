@@ -1,6 +1,5 @@
 //! Three palms in space.
 
-mod bias;
 mod cold_start;
 mod correlation;
 mod covariance;
@@ -16,7 +15,7 @@ mod quadrature;
 mod random;
 mod refine;
 mod sensitivity;
-#[allow(dead_code, reason = "wip")]
+mod sensors;
 mod state_space;
 mod track;
 mod unknown_body;
@@ -28,5 +27,6 @@ pub use momentum::{MotionState, Scales, StartState};
 pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
+pub use sensors::{SensorConstant, SensorEstimate, SensorPriors, estimate_motion_and_sensors};
 pub use track::{Track, TrackError};
 pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body};

@@ -14,4 +14,4 @@ pub(crate) use blocks::{Block, block_inputs, blocks};
 pub(crate) use constants::{BODY, Constant, Parameters};
 pub(crate) use inertia::{inertia_of_numbers, inertia_slope, numbers_of_inertia};
 pub(crate) use input::{NodeInput, Touch};
-pub(crate) use model::ThreePalmModel;
+pub(crate) use model::{MOTION_STATES, ThreePalmModel};
