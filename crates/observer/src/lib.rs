@@ -17,12 +17,14 @@ mod three_palms;
 pub use core::{
     Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Model, NewtonEstimate,
     NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start, Status, describe_direction, rk4,
-    rk4_linearised, solve_batch, solve_batch_from,
+    rk4_linearised, solve_batch, solve_batch_along, solve_batch_from,
 };
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
 pub use three_palms::{
-    EstimateError, Evidence, KnownBody, MotionEstimate, MotionState, NoiseLevel, PaperError, PaperMethod,
-    PaperReconstruction, PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState,
-    Track, TrackError, WeakDirection, equivalent_orientations, estimate_motion, integrate_paper_system,
+    BodyEstimate, CurveUncertainty, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate,
+    MotionState, NoiseLevel, PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector,
+    Quantity, Reason, Reliability, Scales, SensorConstant, SensorEstimate, SensorPriors, StartState, Track,
+    TrackError, UnknownBody, WeakDirection, equivalent_orientations, estimate_body, estimate_motion,
+    estimate_motion_and_sensors, integrate_paper_system,
 };

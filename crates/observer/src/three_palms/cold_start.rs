@@ -42,9 +42,9 @@ struct Round {
 }
 
 /// Factor by which the window grows.
-const GROWTH: f64 = 1.35;
+pub(super) const GROWTH: f64 = 1.35;
 /// Samples per natural time while the window grows: enough for the Runge-Kutta steps and for the shape of the motion.
-const SAMPLES_PER_NATURAL_TIME: f64 = 24.0;
+pub(super) const SAMPLES_PER_NATURAL_TIME: f64 = 24.0;
 /// Weight of the contact normals' common point against static balance: it decides the height alone.
 const NORMALS_WEIGHT: f64 = 0.01;
 /// Candidates that are followed beyond the first window before the outcome is looked at.
@@ -77,7 +77,7 @@ pub(super) fn scales(track: &Track, mass: &MassProperties) -> Scales {
     Scales { length, velocity: length * rate, momentum: moment * rate }
 }
 
-fn natural_time(track: &Track, length: f64) -> f64 {
+pub(super) fn natural_time(track: &Track, length: f64) -> f64 {
     let g = track.gravity.length();
     if g > 0.0 { (length / g).sqrt() } else { track.duration() / 4.0 }
 }
@@ -212,7 +212,7 @@ fn sort(candidates: &mut Vec<Fit<StartState, UNKNOWNS>>) {
 
 /// A body at rest: the centre of mass where the contact wrench balances, at the height where the contact normals pass
 /// each other most closely (they meet there for a ball).
-fn rest_state(track: &Track, window: f64) -> StartState {
+pub(super) fn rest_state(track: &Track, window: f64) -> StartState {
     let end = track.t.partition_point(|&t| t <= window).max(1);
     let mut matrix = DMat3::ZERO;
     let mut rhs = DVec3::ZERO;
@@ -239,7 +239,7 @@ fn rest_state(track: &Track, window: f64) -> StartState {
 }
 
 /// The velocity with the given parts along the palms' normals; zero for palms that do not determine one.
-fn from_normal_speeds(node: &Node, speeds: DVec3) -> DVec3 {
+pub(super) fn from_normal_speeds(node: &Node, speeds: DVec3) -> DVec3 {
     PalmTriple::new(node.palms.map(|p| p.frame.n)).map_or(DVec3::ZERO, |palms| palms.solve(speeds))
 }
 

@@ -1,6 +1,5 @@
 //! Three palms in space.
 
-mod bias;
 mod cold_start;
 mod correlation;
 mod covariance;
@@ -8,19 +7,27 @@ mod curves;
 mod estimate;
 mod evidence;
 mod momentum;
+mod most_probable;
 mod noise;
 mod paper_method;
 mod paper_system;
 mod quadrature;
 mod random;
+mod refine;
 mod sensitivity;
+mod sensors;
+mod state_space;
 mod track;
+mod unknown_body;
 
 pub use covariance::NoiseLevel;
+pub use curves::CurveUncertainty;
 pub use estimate::{EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion};
 pub use evidence::{Evidence, Quantity, Reason, Reliability, WeakDirection};
 pub use momentum::{MotionState, Scales, StartState};
 pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
+pub use sensors::{SensorConstant, SensorEstimate, SensorPriors, estimate_motion_and_sensors};
 pub use track::{Track, TrackError};
+pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body};

@@ -3,12 +3,13 @@
 //! p_i = 0`, which no derivative of the data enters.
 
 use super::covariance::Linearised;
-use super::sensitivity::{Sensitivity, Turning, cross_matrix, exponential};
+use super::sensitivity::{Sensitivity, Turning, cross_matrix, exponential, logarithm};
 use super::track::{Integrals, Track};
 use crate::least_squares::{LeastSquares, NormalEquations};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 use object_dynamics::MassProperties;
+use std::ops::Range;
 
 /// Number of unknowns: centre of mass, velocity, angular momentum, orientation.
 pub(super) const UNKNOWNS: usize = 12;
@@ -68,8 +69,6 @@ pub(super) struct MomentumProblem<'a> {
     mass: &'a MassProperties,
     scales: Scales,
     end: usize,
-    /// Variance of a contact coordinate whose effect is taken out of the sums, m^2.
-    variance: f64,
 }
 
 /// The part of a sample that follows from the start state and the orientation.
@@ -83,16 +82,7 @@ impl<'a> MomentumProblem<'a> {
     /// Of the samples up to `window` seconds after the start.
     pub(super) fn new(track: &'a Track, mass: &'a MassProperties, scales: Scales, window: f64) -> Self {
         let end = track.t.partition_point(|&t| t <= window + 1e-12).max(2).min(track.t.len());
-        Self { track, mass, scales, end, variance: 0.0 }
-    }
-
-    /// The same with the bias by contact noise of deviation `noise` (m) taken out.
-    ///
-    /// The residual holds the noise times the sliding rate of the body over the palm, so a plain sum of squares is
-    /// smaller for a body that turns less. What noise adds on average, `noise^2 |(w - w_P) x n|^2`, is subtracted, with
-    /// its derivatives.
-    pub(super) fn unbiased(self, noise: f64) -> Self {
-        Self { variance: noise * noise, ..self }
+        Self { track, mass, scales, end }
     }
 
     /// Derivatives of the residuals by the contact coordinates `(s1, s2)` of palm `i` at sample `k`, rad/s: the rates
@@ -109,22 +99,34 @@ impl<'a> MomentumProblem<'a> {
         Kinematics {
             v: start.v_WCm + velocity,
             p: start.p_WCm + start.v_WCm * t + position,
-            L: momentum(start, &[impulse, first_moment, moment]),
+            L: momentum(start, &[impulse, first_moment, moment, DVec3::ZERO]),
         }
     }
 
     /// Walks the orientation along the track: calls `visit(k, q, middle)` at each sample, with the orientation there
     /// and at the middle of the step that led to it.
-    fn walk(&self, start: &StartState, mut visit: impl FnMut(usize, DQuat, DQuat)) {
+    fn walk(&self, start: &StartState, visit: impl FnMut(usize, DQuat, DQuat)) {
+        self.walk_part(start, start.R_WO, 0..self.end, visit);
+    }
+
+    /// The same over some of the samples, with the orientation `q` at the first of them.
+    fn walk_part(
+        &self,
+        start: &StartState,
+        q: DQuat,
+        samples: Range<usize>,
+        mut visit: impl FnMut(usize, DQuat, DQuat),
+    ) {
         let inverse = self.mass.inverse_inertia();
         let rate = |q: DQuat, L: DVec3| {
             let w = inverse * (q.inverse() * L);
             q * DQuat::from_xyzw(0.5 * w.x, 0.5 * w.y, 0.5 * w.z, 0.0)
         };
-        let mut q = start.R_WO.normalize();
-        let mut L = start.L_WO;
-        visit(0, q, q);
-        for k in 1..self.end {
+        let first = samples.start;
+        let mut q = q.normalize();
+        let mut L = self.kinematics(start, first).L;
+        visit(first, q, q);
+        for k in first + 1..samples.end {
             let h = self.track.t[k] - self.track.t[k - 1];
             let middle_L = momentum(start, &self.track.middle[k - 1]);
             let end_L = self.kinematics(start, k).L;
@@ -137,6 +139,73 @@ impl<'a> MomentumProblem<'a> {
             L = end_L;
             visit(k, q, q3);
         }
+    }
+
+    /// Motion at every sample, through given states at some of them (`nodes`, ascending, the first and the last sample
+    /// among them): between two of them as the data say, with what is then missing at the second spread evenly.
+    pub(super) fn motion_through(&self, nodes: &[usize], states: &[StartState]) -> Vec<MotionState> {
+        let times: Vec<f64> = self.track.times().collect();
+        let mut all = Vec::with_capacity(self.end);
+        for (pair, ends) in nodes.windows(2).zip(states.windows(2)) {
+            let (from, to) = (pair[0], pair[1]);
+            let start = self.start_through(from, &ends[0]);
+            let mut part = Vec::with_capacity(to - from + 1);
+            self.walk_part(&start, ends[0].R_WO, from..to + 1, |k, q, _| {
+                let at = self.kinematics(&start, k);
+                part.push(StartState { p_WCm: at.p, v_WCm: at.v, L_WO: at.L, R_WO: q });
+            });
+            let Some(reached) = part.last().copied() else { continue };
+            let missing = (
+                ends[1].p_WCm - reached.p_WCm,
+                ends[1].v_WCm - reached.v_WCm,
+                ends[1].L_WO - reached.L_WO,
+                logarithm(ends[1].R_WO * reached.R_WO.inverse()),
+            );
+            // Each node belongs to the interval after it, the last to the one before.
+            let count = if to + 1 == self.end { part.len() } else { part.len() - 1 };
+            for (j, state) in part.iter().take(count).enumerate() {
+                let k = from + j;
+                let share = (self.track.t[k] - self.track.t[from]) / (self.track.t[to] - self.track.t[from]);
+                let q = exponential(missing.3 * share) * state.R_WO;
+                let L = state.L_WO + missing.2 * share;
+                all.push(MotionState {
+                    t: times[k],
+                    p_WCm: state.p_WCm + missing.0 * share,
+                    R_WO: q,
+                    v_WCm: state.v_WCm + missing.1 * share,
+                    w_WO: q * (self.mass.inverse_inertia() * (q.inverse() * L)),
+                });
+            }
+        }
+        all
+    }
+
+    /// The start, orientation apart, from which the data lead through a state at sample `k`.
+    fn start_through(&self, k: usize, state: &StartState) -> StartState {
+        let t = self.track.t[k];
+        let Integrals { impulse, first_moment, moment, velocity, position, .. } = self.track.integrals[k];
+        let v_WCm = state.v_WCm - velocity;
+        let p_WCm = state.p_WCm - v_WCm * t - position;
+        let L_WO = state.L_WO - moment + p_WCm.cross(impulse) + v_WCm.cross(first_moment);
+        StartState { p_WCm, v_WCm, L_WO, R_WO: state.R_WO }
+    }
+
+    /// Root mean square of the contact conditions along a motion, and what contact noise of the given deviation leaves of
+    /// it, m/s.
+    pub(super) fn residuals_along(&self, motion: &[MotionState], noise: f64) -> (Vec<[f64; 3]>, f64) {
+        let mut expected = 0.0;
+        let residuals = motion
+            .iter()
+            .enumerate()
+            .map(|(k, m)| {
+                std::array::from_fn(|i| {
+                    let [a, b] = self.by_contact(k, i, m.w_WO);
+                    expected += noise * noise * (a * a + b * b);
+                    self.residual(k, i, &Kinematics { v: m.v_WCm, p: m.p_WCm, L: DVec3::ZERO }, m.w_WO)
+                })
+            })
+            .collect();
+        (residuals, (expected / (3 * motion.len().max(1)) as f64).sqrt())
     }
 
     /// Contact condition of palm `i` at sample `k`, m/s.
@@ -209,21 +278,6 @@ impl<'a> MomentumProblem<'a> {
         [here.w.cross(n), n, by_L, by_L.cross(at.L) + a.cross(here.w)]
     }
 
-    /// Derivatives of `axis . w` by the scaled unknowns.
-    fn turning_row(&self, axis: DVec3, at: &Kinematics, here: &Turning, theta: &Sensitivity) -> Row {
-        let by_L = here.K * axis;
-        // axis . (K (L x theta) - w x theta).
-        let by_theta = by_L.cross(at.L) - axis.cross(here.w);
-        let by_start = [
-            by_L.cross(here.impulse) + theta.transposed(0, by_theta),
-            by_L.cross(here.first_moment) + theta.transposed(1, by_theta),
-            by_L + theta.transposed(2, by_theta),
-            theta.transposed(3, by_theta),
-        ];
-        let scale = self.scales.by_block();
-        Row::from_fn(|j, _| by_start[j / 3][j % 3] * scale[j / 3])
-    }
-
     /// The same by the scaled unknowns: `dp = dcm0 + t dv0`, `dL = dL0 + impulse x dcm0 + first_moment x dv0`.
     fn row(&self, k: usize, by_state: &[DVec3; 4], here: &Turning, theta: &Sensitivity) -> Row {
         let [by_p, by_v, by_L, by_theta] = *by_state;
@@ -290,8 +344,8 @@ fn flow(here: &Turning, force: DVec3) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
     flow
 }
 
-/// `L0 + moment - cm0 x impulse - v0 x first_moment` from `[impulse, first moment, moment]`.
-fn momentum(start: &StartState, [impulse, first_moment, moment]: &[DVec3; 3]) -> DVec3 {
+/// `L0 + moment - cm0 x impulse - v0 x first_moment` from `[impulse, first moment, moment, ..]`.
+pub(super) fn momentum(start: &StartState, [impulse, first_moment, moment, _]: &[DVec3; 4]) -> DVec3 {
     start.L_WO + *moment - start.p_WCm.cross(*impulse) - start.v_WCm.cross(*first_moment)
 }
 
@@ -304,12 +358,6 @@ impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
             for i in 0..3 {
                 let row = self.row(k, &self.by_state(k, i, at, here), here, theta);
                 normal.add(&row, self.residual(k, i, at, here.w));
-                if self.variance > 0.0 {
-                    let frame = &self.track.nodes[k].palms[i].frame;
-                    let [first, second] = self.by_contact(k, i, here.w);
-                    normal.subtract(&self.turning_row(-frame.t2, at, here, theta), first, self.variance);
-                    normal.subtract(&self.turning_row(frame.t1, at, here, theta), second, self.variance);
-                }
             }
         });
         normal.cost.is_finite().then_some(normal)
@@ -321,9 +369,7 @@ impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
             let at = self.kinematics(point, k);
             let w = q * (self.mass.inverse_inertia() * (q.inverse() * at.L));
             for i in 0..3 {
-                let [first, second] = self.by_contact(k, i, w);
-                cost +=
-                    self.residual(k, i, &at, w).powi(2) - self.variance * (first * first + second * second);
+                cost += self.residual(k, i, &at, w).powi(2);
             }
         });
         cost.is_finite().then_some(cost)
@@ -348,7 +394,7 @@ mod tests {
     use object_dynamics::integrate::Tolerance;
     use object_dynamics::{InitialMotion, SampleTimes, ThreePalmScene};
 
-    /// `2 J' r` is the gradient of the sum of squares, with and without what noise adds, away from the solution and on
+    /// `2 J' r` is the gradient of the sum of squares, away from the solution and on
     /// moving palms.
     #[test]
     fn derivatives_are_those_of_the_sum_of_squares() {
@@ -373,8 +419,8 @@ mod tests {
             L_WO: mass.inertia() * truth.w_WO * 1.1,
             R_WO: exponential(DVec3::new(0.2, -0.1, 0.3)) * truth.R_WO,
         };
-        for noise in [0.0, 0.05] {
-            let problem = MomentumProblem::new(&track, &mass, sizes, f64::INFINITY).unbiased(noise);
+        {
+            let problem = MomentumProblem::new(&track, &mass, sizes, f64::INFINITY);
             let normal = problem.linearise(&point).unwrap();
             assert!((normal.cost - problem.cost(&point).unwrap()).abs() < 1e-12 * normal.cost.abs());
             for i in 0..UNKNOWNS {

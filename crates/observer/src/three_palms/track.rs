@@ -65,8 +65,10 @@ pub(super) struct Integrals {
     pub(super) moment: DVec3,
     pub(super) velocity: DVec3,
     pub(super) position: DVec3,
-    /// Rates of impulse, first moment and moment: for interpolation between samples.
-    rates: [DVec3; 3],
+    /// `-d moment / d(1 / mass)`: integral of the travel by the impulses of a unit mass, times the force.
+    pub(super) curl: DVec3,
+    /// Rates of impulse, first moment, moment and curl: for interpolation between samples.
+    rates: [DVec3; 4],
 }
 
 /// The part of a log in contact with all palms, prepared for the momentum form.
@@ -75,8 +77,8 @@ pub struct Track {
     pub(super) t: Vec<f64>,
     pub(super) nodes: Vec<Node>,
     pub(super) integrals: Vec<Integrals>,
-    /// Impulse, first moment and moment half-way between each node and the next.
-    pub(super) middle: Vec<[DVec3; 3]>,
+    /// Impulse, first moment, moment and curl half-way between each node and the next.
+    pub(super) middle: Vec<[DVec3; 4]>,
     pub(super) mass: f64,
     pub(super) gravity: DVec3,
     start: f64,
@@ -137,6 +139,8 @@ impl Track {
             travel.iter().zip(&t).map(|(x, t)| 0.5 * gravity * *t * *t + *x / mass).collect();
         let moment_rate: Vec<DVec3> = (0..t.len()).map(|k| torque[k] - position[k].cross(force[k])).collect();
         let moment = running_integral(&t, &moment_rate, DVec3::ZERO);
+        let curl_rate: Vec<DVec3> = (0..t.len()).map(|k| travel[k].cross(force[k])).collect();
+        let curl = running_integral(&t, &curl_rate, DVec3::ZERO);
         let integrals: Vec<Integrals> = (0..t.len())
             .map(|k| Integrals {
                 impulse: impulse[k],
@@ -144,11 +148,31 @@ impl Track {
                 moment: moment[k],
                 velocity: gravity * t[k] + impulse[k] / mass,
                 position: position[k],
-                rates: [force[k], timed[k], moment_rate[k]],
+                curl: curl[k],
+                rates: [force[k], timed[k], moment_rate[k], curl_rate[k]],
             })
             .collect();
         let middle = (1..t.len()).map(|k| interpolate(&t, &integrals, 0.5 * (t[k - 1] + t[k]), k)).collect();
         Self { t, nodes, integrals, middle, mass, gravity, start }
+    }
+
+    /// The same track, thinned or not, for a body of another mass, kg.
+    pub(super) fn of_mass(&self, mass: f64) -> Self {
+        let excess = 1.0 / mass - 1.0 / self.mass;
+        let mut all = self.clone();
+        all.mass = mass;
+        for (k, x) in all.integrals.iter_mut().enumerate() {
+            let fall = 0.5 * self.gravity * self.t[k] * self.t[k];
+            let scale = self.mass / mass;
+            x.velocity += excess * x.impulse;
+            x.position = fall + (x.position - fall) * scale;
+            x.moment -= excess * x.curl;
+            x.rates[2] -= excess * x.rates[3];
+        }
+        for x in &mut all.middle {
+            x[2] -= excess * x[3];
+        }
+        all
     }
 
     /// Other contacts and forces at the same times.
@@ -244,12 +268,12 @@ fn sum(term: impl Fn(usize) -> DVec3) -> DVec3 {
     term(0) + term(1) + term(2)
 }
 
-/// Cubic Hermite interpolation of impulse, first moment and moment between samples `next - 1` and `next`.
-fn interpolate(t: &[f64], integrals: &[Integrals], at: f64, next: usize) -> [DVec3; 3] {
+/// Cubic Hermite interpolation of impulse, first moment, moment and curl between samples `next - 1` and `next`.
+fn interpolate(t: &[f64], integrals: &[Integrals], at: f64, next: usize) -> [DVec3; 4] {
     let (a, b) = (&integrals[next - 1], &integrals[next]);
     let h = t[next] - t[next - 1];
     let s = (at - t[next - 1]) / h;
-    let values = |x: &Integrals| [x.impulse, x.first_moment, x.moment];
+    let values = |x: &Integrals| [x.impulse, x.first_moment, x.moment, x.curl];
     let (va, vb) = (values(a), values(b));
     let (s2, s3) = (s * s, s * s * s);
     std::array::from_fn(|i| {

@@ -1,0 +1,271 @@
+//! Inputs of the state-space model from a track: a node for every few samples.
+
+use super::input::{NodeInput, PalmTouch, PalmWrench, Touch, Wrench};
+use crate::three_palms::quadrature::running_integral;
+use crate::three_palms::track::Track;
+use glam::DVec3;
+use nalgebra::{Matrix3, Vector3};
+use std::ops::{Add, Mul, Range};
+
+/// Running integrals for one palm at one time, with the first moment about the start of the track.
+#[derive(Clone, Copy, Default)]
+struct Running {
+    force: Wrench,
+    unit: Wrench,
+}
+
+impl Add for Running {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { force: self.force + other.force, unit: self.unit + other.unit }
+    }
+}
+
+impl Mul<f64> for Running {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        Self { force: self.force * factor, unit: self.unit * factor }
+    }
+}
+
+/// Integrals of one palm and their rates at every sample.
+struct Series<'a> {
+    t: &'a [f64],
+    rates: Vec<Running>,
+    integrals: Vec<Running>,
+}
+
+impl<'a> Series<'a> {
+    fn new(track: &'a Track, palm: usize) -> Self {
+        let one = |(node, &t): (&crate::three_palms::track::Node, &f64)| {
+            let n = node.palms[palm].frame.n;
+            let unit = Wrench { impulse: n, first: n * t, torque: node.p_WC[palm].cross(n) };
+            Running { force: unit * node.forces[palm], unit }
+        };
+        let rates: Vec<Running> = track.nodes.iter().zip(&track.t).map(one).collect();
+        let integrals = running_integral(&track.t, &rates, Running::default());
+        Self { t: &track.t, rates, integrals }
+    }
+
+    /// Cubic Hermite interpolation between samples.
+    fn at(&self, time: f64) -> Running {
+        let next = self.t.partition_point(|&t| t < time).clamp(1, self.t.len() - 1);
+        let (a, b) = (next - 1, next);
+        let h = self.t[b] - self.t[a];
+        let s = (time - self.t[a]) / h;
+        let (s2, s3) = (s * s, s * s * s);
+        self.integrals[a] * (2.0 * s3 - 3.0 * s2 + 1.0)
+            + self.rates[a] * (h * (s3 - 2.0 * s2 + s))
+            + self.integrals[b] * (3.0 * s2 - 2.0 * s3)
+            + self.rates[b] * (h * (s3 - s2))
+    }
+}
+
+/// The samples of one block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Block {
+    /// First sample.
+    pub(crate) start: usize,
+    /// Samples before and after the one in the middle, where the node stands.
+    pub(crate) reach: usize,
+}
+
+impl Block {
+    /// Sample of the node.
+    pub(crate) fn node(&self) -> usize {
+        self.start + self.reach
+    }
+
+    fn samples(&self) -> Range<usize> {
+        self.start..self.start + 2 * self.reach + 1
+    }
+}
+
+/// Cuts samples into blocks of about `stride`: an odd number in each, so that the node is the mean time of its block and
+/// no acceleration (forces are noisy) is needed to bring the mean to the node. The first and the last sample stand alone:
+/// there the motion is wanted.
+pub(crate) fn blocks(samples: usize, stride: usize) -> Vec<Block> {
+    let reach = stride.saturating_sub(1) / 2;
+    let single = |start: usize| Block { start, reach: 0 };
+    let mut all = vec![single(0)];
+    let last = samples.saturating_sub(1);
+    let mut start = 1;
+    while start < last {
+        let reach = reach.min((last - start - 1) / 2);
+        all.push(Block { start, reach });
+        start += 2 * reach + 1;
+    }
+    if last > 0 {
+        all.push(single(last));
+    }
+    all
+}
+
+/// Inputs of the nodes of some blocks. Contacts in derivatives, and forces and torques in the curvature of the motion over
+/// a block, are smoothed over `reach` seconds on either side.
+pub(crate) fn block_inputs(track: &Track, blocks: &[Block], reach: f64) -> Vec<NodeInput> {
+    let t: Vec<f64> = blocks.iter().map(|b| track.t[b.node()]).collect();
+    let touches: Vec<Touch> = blocks.iter().map(|block| touch(track, block)).collect();
+    let touches = smoothed(&t, touches, reach);
+    let series: [Series<'_>; 3] = std::array::from_fn(|palm| Series::new(track, palm));
+    (0..blocks.len())
+        .map(|k| {
+            let before = k.saturating_sub(1);
+            let (from, here) = (touches[before], touches[k]);
+            let duration = t[k] - t[before];
+            NodeInput {
+                duration,
+                halves: halves(&series, t[before], duration, &from, &here),
+                correction: DVec3::ZERO,
+                from,
+                here,
+            }
+        })
+        .collect()
+}
+
+fn halves(
+    series: &[Series<'_>; 3],
+    start: f64,
+    duration: f64,
+    from: &Touch,
+    here: &Touch,
+) -> [[PalmWrench; 3]; 2] {
+    if duration <= 0.0 {
+        return [[PalmWrench::default(); 3]; 2];
+    }
+    let half = 0.5 * duration;
+    std::array::from_fn(|part| {
+        let begin = start + part as f64 * half;
+        std::array::from_fn(|i| {
+            let (a, b) = (series[i].at(begin), series[i].at(begin + half));
+            let change = b + a * -1.0;
+            // The first moment about the start of the half.
+            let moved = |w: Wrench| Wrench { first: w.first - w.impulse * begin, ..w };
+            let rise = here.palms[i].force[0] - from.palms[i].force[0];
+            let arm = 0.5 * (from.palms[i].arm[0] + here.palms[i].arm[0]);
+            let size = 0.5 * rise.dot(from.palms[i].frame.n);
+            let rate = Wrench { impulse: 0.5 * rise, first: rise * (0.25 * half), torque: -arm * size };
+            PalmWrench { force: moved(change.force), unit: moved(change.unit), rate }
+        })
+    })
+}
+
+/// Means and moments over a block.
+fn touch(track: &Track, block: &Block) -> Touch {
+    let (at, count) = (block.node(), block.samples().len() as f64);
+    let share = 1.0 / count;
+    let palms = std::array::from_fn(|i| {
+        let palm = &track.nodes[at].palms[i];
+        let zero = [DVec3::ZERO; 3];
+        let mut sum = PalmTouch {
+            frame: palm.frame,
+            rate: palm.rate,
+            normal: zero,
+            arm: zero,
+            smooth_arm: DVec3::ZERO,
+            own_share: 1.0,
+            lift: 0.0,
+            force: [DVec3::ZERO; 2],
+            torque: [DVec3::ZERO; 2],
+        };
+        for k in block.samples() {
+            let (node, u) = (&track.nodes[k], track.t[k] - track.t[at]);
+            let n = node.palms[i].frame.n;
+            let arm = n.cross(node.p_WC[i]);
+            for (power, weight) in [share, share * u, share * 0.5 * u * u].into_iter().enumerate() {
+                sum.normal[power] += n * weight;
+                sum.arm[power] += arm * weight;
+            }
+            sum.lift += node.lift[i] * share;
+            sum.force[0] += n * (node.forces[i] * share);
+            sum.torque[0] -= arm * (node.forces[i] * share);
+        }
+        sum.smooth_arm = sum.arm[0];
+        sum
+    });
+    Touch {
+        palms,
+        samples: count,
+        spacing: track.duration() / (track.len() - 1).max(1) as f64,
+        slide_variance: [0.0; 3],
+    }
+}
+
+/// Arms for derivatives, forces and torques with their rates: at each node a parabola fitted to the nodes within `reach`
+/// seconds.
+fn smoothed(t: &[f64], touches: Vec<Touch>, reach: f64) -> Vec<Touch> {
+    let mut all = touches.clone();
+    let samples: Vec<f64> = touches.iter().map(|touch| touch.samples).collect();
+    for (k, touch) in all.iter_mut().enumerate() {
+        let Some(parabola) = Parabola::new(t, &samples, k, reach) else { continue };
+        for (i, palm) in touch.palms.iter_mut().enumerate() {
+            palm.smooth_arm = parabola.value(|j| touches[j].palms[i].arm[0]);
+            palm.own_share = parabola.weights[k - parabola.start][0];
+            palm.force = parabola.value_and_slope(|j| touches[j].palms[i].force[0]);
+            palm.torque = parabola.value_and_slope(|j| touches[j].palms[i].torque[0]);
+        }
+    }
+    all
+}
+
+/// Replaces the arms in derivatives by smoothed ones of contacts that an estimate has adjusted.
+///
+/// A derivative must not hold the noise that it is multiplied with: not that of its own condition, and, since noise of the
+/// forces ties neighbouring conditions together, not that of its neighbours.
+pub(crate) fn set_adjusted_arms<'a>(
+    inputs: impl Iterator<Item = &'a mut NodeInput>,
+    t: &[f64],
+    adjusted: &[[DVec3; 3]],
+    reach: f64,
+) {
+    let mut before: Option<[DVec3; 3]> = None;
+    let mut inputs: Vec<&mut NodeInput> = inputs.collect();
+    let samples: Vec<f64> = inputs.iter().map(|input| input.here.samples).collect();
+    for (k, input) in inputs.iter_mut().enumerate() {
+        let parabola = Parabola::new(t, &samples, k, reach);
+        let arms: [DVec3; 3] = std::array::from_fn(|i| {
+            parabola.as_ref().map_or(adjusted[k][i], |parabola| parabola.value(|j| adjusted[j][i]))
+        });
+        for (touch, arms) in [(&mut input.here, arms), (&mut input.from, before.unwrap_or(arms))] {
+            for (palm, arm) in touch.palms.iter_mut().zip(arms) {
+                (palm.smooth_arm, palm.own_share) = (arm, 0.0);
+            }
+        }
+        before = Some(arms);
+    }
+}
+
+/// Weights of a least-squares parabola through the nodes about one of them.
+struct Parabola {
+    start: usize,
+    /// Weights for value, slope times `reach`, and curvature at the node.
+    weights: Vec<Vector3<f64>>,
+    reach: f64,
+}
+
+impl Parabola {
+    /// None with fewer than four nodes in reach.
+    fn new(t: &[f64], samples: &[f64], k: usize, reach: f64) -> Option<Self> {
+        let from = |j: usize| (t[j] - t[k]) / reach;
+        let start = (0..k).rev().take_while(|&j| from(j) >= -1.0).last().unwrap_or(k);
+        let end = (k + 1..t.len()).take_while(|&j| from(j) <= 1.0).last().unwrap_or(k);
+        let powers = |j: usize| Vector3::new(1.0, from(j), from(j) * from(j));
+        let weigh = |j: usize| powers(j) * samples[j];
+        let normal: Matrix3<f64> = (start..=end).map(|j| weigh(j) * powers(j).transpose()).sum();
+        let inverse = (end >= start + 3).then(|| normal.try_inverse()).flatten()?;
+        Some(Self { start, weights: (start..=end).map(|j| inverse * weigh(j)).collect(), reach })
+    }
+
+    fn sum(&self, row: usize, part: &impl Fn(usize) -> DVec3) -> DVec3 {
+        self.weights.iter().zip(self.start..).map(|(w, j)| part(j) * w[row]).sum()
+    }
+
+    fn value(&self, part: impl Fn(usize) -> DVec3) -> DVec3 {
+        self.sum(0, &part)
+    }
+
+    fn value_and_slope(&self, part: impl Fn(usize) -> DVec3) -> [DVec3; 2] {
+        [self.sum(0, &part), self.sum(1, &part) / self.reach]
+    }
+}

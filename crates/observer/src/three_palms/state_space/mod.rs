@@ -1,0 +1,17 @@
+//! Three palms as a [`Model`](crate::Model): the momentum form in state space, with constants of body and sensors as
+//! states where they are unknown.
+
+mod blocks;
+mod constants;
+mod flow;
+mod inertia;
+mod input;
+mod model;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use blocks::{Block, block_inputs, blocks, set_adjusted_arms};
+pub(crate) use constants::{BODY, Constant, Parameters};
+pub(crate) use inertia::{inertia_of_numbers, inertia_slope, numbers_of_inertia};
+pub(crate) use input::{NodeInput, Touch};
+pub(crate) use model::{MOTION_STATES, ThreePalmModel};
