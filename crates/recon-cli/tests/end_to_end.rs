@@ -138,3 +138,25 @@ fn loss_of_contact_ends_a_simulation_and_is_said_in_a_reconstruction() {
     );
     assert_eq!(Table::parse(&scratch.read("out/motion.csv")).rows.len(), 1259);
 }
+
+#[test]
+fn bounds_from_a_noisy_log_have_margins() {
+    let scratch = Scratch::new("noisy");
+    let text = scene().replace("sample_rate = 50.0", "sample_rate = 200.0");
+    scratch.write("scene.toml", &text);
+    scratch.write("noisy.toml", &(text + "\n[sensors]\ncontact_std = 1e-3\nforce_std = 0.05\n"));
+    let volumes = |name: &str| {
+        let scene = format!("{name}.toml");
+        assert_eq!(scratch.run(&["simulate", &scene, "-o", "log.csv"]).code, Some(0));
+        let run = scratch.run(&["reconstruct", "log.csv", "--scene", &scene, "-o", name, "--json"]);
+        assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+        let summary: Value = serde_json::from_str(&run.stdout).unwrap();
+        let warned = summary["warnings"].to_string().contains("at 95 % confidence");
+        assert_eq!(warned, name == "noisy", "{summary:#}");
+        ["lower_volume_m3", "upper_volume_m3"].map(|key| summary["bounds"][key].as_f64().unwrap())
+    };
+    let ([lower, upper], [noisy_lower, noisy_upper]) = (volumes("scene"), volumes("noisy"));
+    let volume = 4.0 / 3.0 * std::f64::consts::PI * 5.0;
+    assert!(0.3 * lower < noisy_lower && noisy_lower < lower && lower < volume, "{lower} {noisy_lower}");
+    assert!(volume < upper && upper < noisy_upper && noisy_upper < 2.0 * upper, "{upper} {noisy_upper}");
+}

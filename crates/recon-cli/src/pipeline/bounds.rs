@@ -52,6 +52,11 @@ pub(super) fn unbounded(bounds: &ShapeBounds) -> Option<String> {
     Some(format!("The contacts leave the object unbounded on some side{side}: there is no upper bound."))
 }
 
+/// How far the worst contact lies beyond the half-space of another, m, among [`DRAWN`] of them.
+pub(super) fn contradiction_among(contacts: &[ContactSample]) -> f64 {
+    contradiction(&thinned(contacts))
+}
+
 /// At most [`DRAWN`] contacts, spread evenly.
 fn thinned(contacts: &[ContactSample]) -> Vec<ContactSample> {
     let count = contacts.len().min(DRAWN);

@@ -1,6 +1,7 @@
-use super::bounds::{BoundsResult, bounds};
+use super::bounds::{BoundsResult, bounds, contradiction_among};
 use super::evidence::{Checks, evidence, verdict};
 use super::simulate::known_body;
+use super::sound::curve_bounds;
 use super::truth::{axes_of_estimate, true_motion, true_shape};
 use crate::error::CliError;
 use crate::progress::Progress;
@@ -15,6 +16,9 @@ use recon_io::{
 
 /// Contact noise above this share of the object's size is worth a warning beside the bounds.
 const NOTABLE_NOISE: f64 = 1e-6;
+
+/// Confidence of bounds from noisy contacts.
+const CONFIDENCE: f64 = 0.95;
 
 /// Everything that was reconstructed from a log.
 pub(crate) struct Reconstruction {
@@ -54,7 +58,8 @@ pub(crate) fn reconstruct(
     warnings.extend(contact_loss(log, used));
     let palms = tracks(log, &estimate)?;
     progress.step("bounding the shape");
-    let bounded = match bounds(&samples(&palms)) {
+    let size = size(&palms);
+    let bounded = match bounds_of(&estimate, &palms, size) {
         Ok(bounded) => Some(bounded),
         // Contacts moved by a wrong motion contradict each other; the verdict on the motion says why, and is not lost.
         Err(error) if !estimate.reliability.is_reliable() => {
@@ -71,8 +76,7 @@ pub(crate) fn reconstruct(
         }
         None => (None, None, None),
     };
-    let checks = Checks { implausible: !odd.is_empty(), contradiction, size: size(&palms) };
-    warnings.extend(noise_and_bounds(&estimate, checks.size));
+    let checks = Checks { implausible: !odd.is_empty(), contradiction, size };
     let axes = log
         .truth()
         .map_or(DQuat::IDENTITY, |truth| axes_of_estimate(&mass, estimate.start.R_WO, truth[0].R_WO));
@@ -156,12 +160,29 @@ fn cause(error: &CliError) -> String {
     inner.to_string()
 }
 
-/// The bounds take contacts as exact: what to say when they are not.
-fn noise_and_bounds(estimate: &MotionEstimate, size: f64) -> Option<String> {
+/// Bounds that hold at [`CONFIDENCE`] where contacts are noisy and it is known how much, else bounds from exact contacts, with
+/// what to say about them.
+fn bounds_of(estimate: &MotionEstimate, palms: &[PalmTrack; 3], size: f64) -> Result<BoundsResult, CliError> {
     let noise = estimate.evidence.noise.contact;
-    (noise > NOTABLE_NOISE * size).then(|| {
-        format!("The bounds take every contact as exact, but contact positions are noisy by {noise:.1e} m: the object may pass the bounds by a few times that.")
-    })
+    if noise <= NOTABLE_NOISE * size {
+        return bounds(&samples(palms));
+    }
+    let why = match curve_bounds(estimate, CONFIDENCE) {
+        Ok(mut sound) => {
+            sound.contradiction = contradiction_among(&samples(palms));
+            sound.warnings.push(format!(
+                "Contacts are noisy by {noise:.1e} m: the bounds have margins with which they hold at {:.0} % confidence.",
+                100.0 * CONFIDENCE
+            ));
+            return Ok(sound);
+        }
+        Err(error) => cause(&error),
+    };
+    let mut exact = bounds(&samples(palms))?;
+    exact.warnings.push(format!(
+        "The bounds take every contact as exact, but contact positions are noisy by {noise:.1e} m: the object may pass the bounds by a few times that. With margins there are none: {why}."
+    ));
+    Ok(exact)
 }
 
 /// A message as a sentence of its own.

@@ -2,7 +2,9 @@
 
 use super::bounds::{BoundsResult, meshes, unbounded};
 use crate::error::CliError;
+use glam::DMat3;
 use recon::contact_kinematics::CurvatureRadii;
+use recon::observer::MotionEstimate;
 use recon::shape_bounds::{
     BodyPose, ContactNoise, ContactSample, NoisyContact, Outlier, PoseBounds, ShapeBounds, SharpBounds,
     estimate_noise, without_outliers,
@@ -32,14 +34,7 @@ pub(crate) fn noisy_bounds(
 ) -> Result<(BoundsResult, Value), CliError> {
     let Cleaned { kept, warning, about } = cleaned(curves, noise, confidence)?;
     let bounds = ShapeBounds::from_noisy_curves(&kept, confidence)?;
-    let (lower, upper) = meshes(&bounds)?;
-    let drawn = Bounds {
-        lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: bounds.lower_volume() },
-        upper: upper.clone().map(|mesh| Bound { mesh, volume: bounds.upper_volume() }),
-        largest_gap: bounds.largest_gap().map(|gap| gap.distance),
-    };
-    let warnings = warning.into_iter().chain(unbounded(&bounds)).collect();
-    Ok((BoundsResult { drawn, lower, upper, contradiction: 0.0, warnings }, about))
+    Ok((finished(&bounds, warning)?, about))
 }
 
 /// Bounds of a convex body with radii of curvature within `radii`, from exact contacts or from noisy ones at a confidence.
@@ -67,6 +62,50 @@ pub(crate) fn sharp_bounds(
     };
     let warnings = warning.into_iter().collect();
     Ok((BoundsResult { drawn, lower, upper, contradiction: 0.0, warnings }, about))
+}
+
+/// Bounds of the body of a motion estimate, from the uncertainty of its contact curves.
+pub(crate) fn curve_bounds(estimate: &MotionEstimate, confidence: f64) -> Result<BoundsResult, CliError> {
+    let mut curves = [const { Vec::new() }; 3];
+    let times: Vec<f64> = estimate.motion.iter().map(|m| m.t).collect();
+    for known in &estimate.uncertainty {
+        let k = times.partition_point(|t| *t < known.t).min(times.len() - 1);
+        for (i, curve) in curves.iter_mut().enumerate() {
+            let Some(point) = estimate.curves[i].points().get(k) else { continue };
+            // Errors of the motion are alike along a curve: nothing is gained on them by averaging.
+            let noise = ContactNoise {
+                point: DMat3::ZERO,
+                normal: 0.0,
+                pose_translation: largest_deviation(known.points[i]),
+                pose_rotation: largest_deviation(known.normals[i]),
+            };
+            curve.push(NoisyContact {
+                contact: ContactSample { point: point.beta_O, normal: point.n_O },
+                noise,
+            });
+        }
+    }
+    let bounds = ShapeBounds::from_noisy_curves(&curves, confidence)?;
+    finished(&bounds, None)
+}
+
+/// No less than the largest standard deviation along any direction: a symmetric matrix has no eigenvalue above its largest
+/// sum of absolute values in a row.
+fn largest_deviation(m: DMat3) -> f64 {
+    let rows = [m.x_axis, m.y_axis, m.z_axis].map(|row| row.abs().element_sum());
+    rows.into_iter().fold(0.0, f64::max).sqrt()
+}
+
+/// Meshes and figures of bounds.
+fn finished(bounds: &ShapeBounds, warning: Option<String>) -> Result<BoundsResult, CliError> {
+    let (lower, upper) = meshes(bounds)?;
+    let drawn = Bounds {
+        lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: bounds.lower_volume() },
+        upper: upper.clone().map(|mesh| Bound { mesh, volume: bounds.upper_volume() }),
+        largest_gap: bounds.largest_gap().map(|gap| gap.distance),
+    };
+    let warnings = warning.into_iter().chain(unbounded(bounds)).collect();
+    Ok(BoundsResult { drawn, lower, upper, contradiction: 0.0, warnings })
 }
 
 /// Contacts with their noise, without outliers.
