@@ -1,7 +1,7 @@
 use recon::object_dynamics::{LogError, SceneError as DynamicsError, SimulationError};
 use recon::observer::EstimateError;
-use recon::shape_bounds::{BoundsError, IntersectionError};
-use recon_io::{ContactsError, LogFileError, MeshError, OutputError, SceneError};
+use recon::shape_bounds::{BoundsError, EllipsoidFitError, IntersectionError};
+use recon_io::{ContactsError, ExportError, LogFileError, MeshError, OutputError, SceneError};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use thiserror::Error;
@@ -62,6 +62,10 @@ pub(crate) enum CliError {
     Picture(#[from] IntersectionError),
     #[error("a bound is not a mesh")]
     Mesh(#[from] MeshError),
+    #[error("the object cannot be exported")]
+    Export(#[from] ExportError),
+    #[error("no ellipsoid can be exported (--export-shape inner exports the bound)")]
+    Ellipsoid(#[from] EllipsoidFitError),
     #[error("the result cannot be written")]
     Output(#[from] OutputError),
     #[error("standard output cannot be written")]
@@ -89,7 +93,9 @@ impl CliError {
             | Self::Estimate(_)
             | Self::PlanarEstimate(_)
             | Self::PlanarTooShort { .. }
-            | Self::Bounds(_) => 3,
+            | Self::Bounds(_)
+            | Self::Export(_)
+            | Self::Ellipsoid(_) => 3,
             Self::Output(_) | Self::StandardOutput(_) => 5,
             Self::Interrupted => 130,
         })

@@ -4,6 +4,7 @@
 //! whole or not at all ([`OutputFolder`], [`AtomicFile`]).
 
 mod contacts;
+mod export;
 mod log;
 mod mesh;
 mod number;
@@ -18,6 +19,7 @@ mod table;
 pub use contacts::{
     ContactPoint, ContactsError, ContactsErrorKind, parse_contacts, read_contacts, write_contacts,
 };
+pub use export::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
 pub use log::{
     LogFileError, LogFileErrorKind, parse_log, parse_planar_log, read_log, read_planar_log, write_log,
     write_planar_log,

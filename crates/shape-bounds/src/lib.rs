@@ -26,6 +26,7 @@
 mod bounds;
 mod curvature;
 mod distance;
+mod ellipsoid_fit;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
 mod halfspaces;
@@ -44,6 +45,7 @@ mod twofold;
 
 pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
 pub use curvature::{BallIntersection, CurvatureBounds, CurvatureError, RoundedHull};
+pub use ellipsoid_fit::{EllipsoidFit, EllipsoidFitError};
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;

@@ -6,7 +6,7 @@ use crate::error::CliError;
 use crate::progress::Progress;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame};
-use recon::object_dynamics::SensorLog;
+use recon::object_dynamics::{MassProperties, SensorLog};
 use recon::observer::{EstimateError, KnownBody, MotionEstimate, NoiseLevel, TrackError, estimate_motion};
 use recon::shape_bounds::ContactSample;
 use recon_io::{
@@ -23,6 +23,12 @@ pub(crate) struct Reconstruction {
     pub(crate) lower: Option<TriangleMesh>,
     /// Surface of the upper bound from all contacts.
     pub(crate) upper: Option<TriangleMesh>,
+    /// Mass and inertia in the body axes of the estimate.
+    pub(crate) mass: MassProperties,
+    /// All contacts, body axes.
+    pub(crate) contacts: Vec<ContactSample>,
+    /// Noise of the contact positions, m.
+    pub(crate) contact_noise: f64,
 }
 
 impl Reconstruction {
@@ -54,7 +60,8 @@ pub(crate) fn reconstruct(
     warnings.extend(contact_loss(log, used));
     let palms = tracks(log, &estimate)?;
     progress.step("bounding the shape");
-    let bounded = match bounds(&samples(&palms)) {
+    let contacts = samples(&palms);
+    let bounded = match bounds(&contacts) {
         Ok(bounded) => Some(bounded),
         // Contacts moved by a wrong motion contradict each other; the verdict on the motion says why, and is not lost.
         Err(error) if !estimate.reliability.is_reliable() => {
@@ -92,7 +99,8 @@ pub(crate) fn reconstruct(
         evidence: evidence(&estimate, &checks),
         warnings,
     };
-    Ok(Reconstruction { data, lower, upper })
+    let contact_noise = estimate.evidence.noise.contact;
+    Ok(Reconstruction { data, lower, upper, mass, contacts, contact_noise })
 }
 
 fn noise(scene: &Scene) -> Option<NoiseLevel> {
