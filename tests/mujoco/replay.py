@@ -18,9 +18,10 @@ import mujoco
 import numpy as np
 
 STEP = 1e-4
-STIFFNESS, DAMPING, IMPEDANCE = 1e7, 6e3, 0.1
+STIFFNESS, DAMPING, IMPEDANCE = 1e6, 2e3, 0.1
 SETTLING = 0.05
 BROAD = 20.0
+ARMATURE = 1e12
 
 
 def table(path):
@@ -55,13 +56,13 @@ class Palm:
         self.rates = np.gradient(angles, self.t) if rates is None else rates
 
     def at(self, t):
-        """Angle and rate, by cubic interpolation."""
+        """Angle, rate and acceleration, by cubic interpolation."""
         k = int(np.clip(np.searchsorted(self.t, t) - 1, 0, len(self.t) - 2))
         h = self.t[k + 1] - self.t[k]
         s = (t - self.t[k]) / h
         a, b, u, v = self.angles[k], self.angles[k + 1], h * self.rates[k], h * self.rates[k + 1]
         c2, c3 = 3 * (b - a) - 2 * u - v, 2 * (a - b) + u + v
-        return a + s * (u + s * (c2 + s * c3)), (u + s * (2 * c2 + 3 * s * c3)) / h
+        return a + s * (u + s * (c2 + s * c3)), (u + s * (2 * c2 + 3 * s * c3)) / h, (2 * c2 + 6 * s * c3) / h**2
 
 
 def build(path, palms, gravity, mesh_dir):
@@ -79,7 +80,7 @@ def build(path, palms, gravity, mesh_dir):
         if palm.turns:
             # Planes cannot move in MuJoCo, so this is the top of a box.
             body.mass, body.inertia, body.explicitinertial = 1.0, [1, 1, 1], True
-            body.add_joint(name=f"hinge_{number}", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[1, 0, 0], armature=1e12)
+            body.add_joint(name=f"hinge_{number}", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[1, 0, 0], armature=ARMATURE)
             kind, size, place = mujoco.mjtGeom.mjGEOM_BOX, [BROAD, BROAD, BROAD], [0, 0, -BROAD]
         else:
             kind, size, place = mujoco.mjtGeom.mjGEOM_PLANE, [0, 0, 1], [0, 0, 0]
@@ -94,7 +95,8 @@ def set_palms(data, palms, t):
         if not palm.turns:
             continue
         joint = data.joint(f"hinge_{number}")
-        joint.qpos[0], joint.qvel[0] = palm.at(t)
+        joint.qpos[0], joint.qvel[0], acceleration = palm.at(t)
+        joint.qfrc_applied[0] = ARMATURE * acceleration
 
 
 def set_start(data, motion):

@@ -117,7 +117,17 @@ fn quadric(contacts: &[ContactSample], mean: DVec3, size: f64) -> Result<(DMat3,
     let mut right = DVector::zeros(3 * contacts.len());
     for (k, contact) in contacts.iter().enumerate() {
         let y = (contact.point - mean) / size;
-        let on = [y.x * y.x, y.y * y.y, y.z * y.z, 2.0 * y.x * y.y, 2.0 * y.x * y.z, 2.0 * y.y * y.z, y.x, y.y, y.z];
+        let on = [
+            y.x * y.x,
+            y.y * y.y,
+            y.z * y.z,
+            2.0 * y.x * y.y,
+            2.0 * y.x * y.z,
+            2.0 * y.y * y.z,
+            y.x,
+            y.y,
+            y.z,
+        ];
         rows.row_mut(3 * k).copy_from_slice(&on);
         right[3 * k] = 1.0;
         let n = contact.normal.get();
@@ -145,9 +155,8 @@ fn quadric(contacts: &[ContactSample], mean: DVec3, size: f64) -> Result<(DMat3,
         return Err(EllipsoidFitError::Undetermined { pivot });
     }
     let projected = factors.q().transpose() * right;
-    let mut solution = triangle
-        .solve_upper_triangular(&projected)
-        .ok_or(EllipsoidFitError::Undetermined { pivot })?;
+    let mut solution =
+        triangle.solve_upper_triangular(&projected).ok_or(EllipsoidFitError::Undetermined { pivot })?;
     factors.p().inv_permute_rows(&mut solution);
     let u = solution;
     let matrix = DMat3::from_cols(

@@ -72,6 +72,7 @@ fn fit(made: &Reconstruction) -> Result<EllipsoidFit, CliError> {
 
 fn ellipsoid(fit: &EllipsoidFit) -> (ExportShape, String) {
     let EllipsoidFit { centre, semi_axes, orientation, misfit } = *fit;
-    let words = format!("It collides with the ellipsoid through its contacts, which they miss by {misfit:.1e} m.");
+    let words =
+        format!("It collides with the ellipsoid through its contacts, which they miss by {misfit:.1e} m.");
     (ExportShape::Ellipsoid { centre, orientation, semi_axes }, words)
 }

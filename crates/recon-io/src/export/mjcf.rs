@@ -14,7 +14,11 @@ pub(super) fn write(model: &ObjectModel, to: &mut dyn Write) -> io::Result<()> {
         let [dxx, dxy, dxz, dyy, dyz, dzz] = upper(deviations.inertia);
         let (mass, inertia) = (numbers(&[deviations.mass]), numbers(&[dxx, dyy, dzz, dxy, dxz, dyz]));
         writeln!(to, "<custom>")?;
-        writeln!(to, "  {}", comment("Standard deviations; those of the inertia in the order of fullinertia."))?;
+        writeln!(
+            to,
+            "  {}",
+            comment("Standard deviations; those of the inertia in the order of fullinertia.")
+        )?;
         writeln!(to, "  <numeric name=\"{name}_mass_std\" data=\"{mass}\"/>")?;
         writeln!(to, "  <numeric name=\"{name}_inertia_std\" data=\"{inertia}\"/>\n</custom>")?;
     }

@@ -11,7 +11,10 @@ fn model(shape: ExportShape) -> ObjectModel {
         name: "object".to_owned(),
         notes: vec!["a -- b --- <c>".to_owned()],
         mass: MassProperties::new(1.3, inertia).unwrap(),
-        deviations: Some(MassDeviations { mass: 0.01, inertia: DMat3::from_diagonal(DVec3::new(1e-3, 2e-3, 3e-3)) }),
+        deviations: Some(MassDeviations {
+            mass: 0.01,
+            inertia: DMat3::from_diagonal(DVec3::new(1e-3, 2e-3, 3e-3)),
+        }),
         shape,
         seen: vec![("inner".to_owned(), tetrahedron())],
         start: None,
@@ -20,7 +23,11 @@ fn model(shape: ExportShape) -> ObjectModel {
 
 fn ellipsoid() -> ExportShape {
     let orientation = DQuat::from_rotation_z(0.3);
-    ExportShape::Ellipsoid { centre: DVec3::new(0.1, 0.0, 0.0), orientation, semi_axes: DVec3::new(1.0, 2.0, 2.5) }
+    ExportShape::Ellipsoid {
+        centre: DVec3::new(0.1, 0.0, 0.0),
+        orientation,
+        semi_axes: DVec3::new(1.0, 2.0, 2.5),
+    }
 }
 
 fn text<'a>(files: &'a [ExportedFile], name: &str) -> &'a str {
@@ -60,9 +67,12 @@ fn the_mesh_of_an_ellipsoid_is_closed_and_near_it() {
     let semi_axes = DVec3::new(1.0, 2.0, 2.5);
     let mesh = surface::ellipsoid(DVec3::ZERO, DQuat::IDENTITY, semi_axes);
     surface::check("ellipsoid", &mesh).unwrap();
-    let solid =
-        recon::shape_bounds::TriangleMesh { vertices: mesh.vertices.clone(), triangles: mesh.triangles.clone() };
-    let missing = 1.0 - solid.moments().volume / (4.0 / 3.0 * std::f64::consts::PI * semi_axes.element_product());
+    let solid = recon::shape_bounds::TriangleMesh {
+        vertices: mesh.vertices.clone(),
+        triangles: mesh.triangles.clone(),
+    };
+    let missing =
+        1.0 - solid.moments().volume / (4.0 / 3.0 * std::f64::consts::PI * semi_axes.element_product());
     assert!(missing > 0.0 && missing < 5e-3, "{missing}");
     // The middle of a facet is inside by at most 1 - cos(2.65 degrees), the angle being half its longest edge.
     for t in &mesh.triangles {
