@@ -4,7 +4,7 @@ use super::model::{Model, Sample};
 use super::newton::check_start;
 use super::report::{ObserverError, Report, Status};
 use super::window::{Start, Window};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// Residual beyond which a converged solution is not explained by the noise; see the Newton observer.
 const CONSISTENT_RESIDUAL: f64 = 3.0;
@@ -37,6 +37,13 @@ pub struct BatchSolution<const N: usize> {
     pub states: Vec<SVector<f64, N>>,
     /// Evidence; its covariance belongs to the first state.
     pub report: Report<N>,
+    /// Covariance of the state at each sample; that of the first also stands in the report.
+    pub covariances: Vec<SMatrix<f64, N, N>>,
+    /// Chi-squared of the fit: squared residuals of outputs and process noise in units of their deviations. With all as
+    /// stated it has as many degrees of freedom as there are measured channels beyond the `N` states.
+    pub chi_squared: f64,
+    /// Output channels that were measured.
+    pub channels: usize,
     /// Linearisations made.
     pub iterations: usize,
 }
@@ -87,18 +94,18 @@ pub fn solve_batch_from<Mo: Model<N, M>, const N: usize, const M: usize>(
     while iterations < options.iterations && !settled {
         iterations += 1;
         let information = window.information(&scales);
-        let step = window.step(&information, damping);
+        let step = window.step(model, &information, damping);
         settled = step.component_div(&scales).amax() <= options.step_tolerance;
         if free_noise {
-            window.apply(step);
+            window.apply(model, step);
             window.linearise(model, samples.iter());
             continue;
         }
-        let (before, first) = (window.cost(), *window.state(0));
-        window.roll_out(model, samples.iter(), first + step);
+        let (before, first) = (window.cost(model), *window.state(0));
+        window.roll_out(model, samples.iter(), model.retract(&first, &step));
         window.linearise(model, samples.iter());
         // At the minimum the cost is flat to rounding: a rise of that size is no failure.
-        if window.cost() <= before * (1.0 + 1e-12) {
+        if window.cost(model) <= before * (1.0 + 1e-12) {
             damping = if damping > 1e-3 { damping / DAMPING_FACTOR } else { 0.0 };
         } else {
             damping = (damping * DAMPING_FACTOR).max(information.largest() * 1e-6);
@@ -120,6 +127,10 @@ pub fn solve_batch_from<Mo: Model<N, M>, const N: usize, const M: usize>(
     } else {
         Status::Converged
     };
-    let report = information.report(status, samples.len(), residual, information.covariance());
-    Ok(BatchSolution { states: window.states().copied().collect(), report, iterations })
+    let covariance = information.covariance();
+    let report = information.report(status, samples.len(), residual, covariance);
+    let states = window.states().copied().collect();
+    let covariances = window.covariances(covariance);
+    let chi_squared = window.data_cost() + window.noise_cost();
+    Ok(BatchSolution { states, covariances, chi_squared, channels: window.channels(), report, iterations })
 }

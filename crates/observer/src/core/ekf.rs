@@ -56,7 +56,8 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> ExtendedKalmanFilter<Mo, N
         }
         self.samples += 1;
         let (y, h) = self.model.output(&self.state, &sample.input);
-        let before = self.state;
+        // One step from where the outputs were linearised, built up channel by channel.
+        let mut step = SVector::<f64, N>::zeros();
         for channel in (0..M).filter(|&c| sample.information[c] > 0.0) {
             let row = h.row(channel).transpose();
             let noise = 1.0 / sample.information[channel];
@@ -64,12 +65,13 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> ExtendedKalmanFilter<Mo, N
             // Positive: the noise variance is, and the covariance is kept semidefinite.
             let variance = row.dot(&ph) + noise;
             let gain = ph / variance;
-            let residual = sample.measured[channel] - y[channel] - row.dot(&(self.state - before));
-            self.state += gain * residual;
+            let residual = sample.measured[channel] - y[channel] - row.dot(&step);
+            step += gain * residual;
             let keep = SMatrix::identity() - gain * row.transpose();
             self.covariance = keep * self.covariance * keep.transpose() + gain * gain.transpose() * noise;
             self.innovation += INNOVATION_MEMORY * (residual * residual / variance - self.innovation);
         }
+        self.state = self.model.retract(&self.state, &step);
         self.covariance = (self.covariance + self.covariance.transpose()) * 0.5;
     }
 

@@ -29,6 +29,18 @@ pub trait Model<const N: usize, const M: usize> {
         self.flow(x, input).0
     }
 
+    /// The state moved by a step. Override it, with [`Self::difference`], for states that are no vector space: the
+    /// `N` numbers then store a point of the manifold (a rotation vector, say), and steps, derivatives, covariances and
+    /// scales belong to its tangent space at that point.
+    fn retract(&self, x: &SVector<f64, N>, step: &SVector<f64, N>) -> SVector<f64, N> {
+        x + step
+    }
+
+    /// The step that leads from `from` to `to`: the inverse of [`Self::retract`].
+    fn difference(&self, to: &SVector<f64, N>, from: &SVector<f64, N>) -> SVector<f64, N> {
+        to - from
+    }
+
     /// Natural size of each state: the yardstick of ranks, conditions and of what counts as observed.
     fn scales(&self) -> SVector<f64, N>;
 

@@ -172,7 +172,7 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> NewtonObserver<Mo, N, M> {
             if keep > 0.0 && self.window.linearised() < 2 {
                 self.window.linearise(&self.model, self.samples.iter());
             }
-            self.window.drop_first(keep);
+            self.window.drop_first(&self.model, keep);
             self.samples.pop_front();
         }
     }
@@ -211,15 +211,15 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> NewtonObserver<Mo, N, M> {
         for _ in 0..self.options.steps {
             self.window.linearise(&self.model, self.samples.iter());
             let scaled = self.window.information(&self.scales);
-            step = self.window.step(&scaled, self.options.damping);
+            step = self.window.step(&self.model, &scaled, self.options.damping);
             let free_noise = self
                 .samples
                 .back()
                 .is_some_and(|s| self.model.process_noise(self.window.state(0), &s.input).is_some());
             if free_noise {
-                self.window.apply(step);
+                self.window.apply(&self.model, step);
             } else {
-                let first = self.window.state(0) + step;
+                let first = self.model.retract(self.window.state(0), &step);
                 self.window.roll_out(&self.model, self.samples.iter(), first);
             }
             information = Some(scaled);

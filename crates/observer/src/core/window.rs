@@ -45,7 +45,21 @@ struct Node<const N: usize, const M: usize> {
     vector: SVector<f64, N>,
 }
 
-/// Knowledge of the first state: cost `d' L d / 2 - v' d` with `d = x - at`.
+impl<const N: usize, const M: usize> Node<N, M> {
+    /// Covariance here, all data considered, from that of the node before.
+    fn carried(&self, before: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+        let p = match &self.noise {
+            Some((gain, q)) => {
+                let a = gain * self.transition;
+                a * before * a.transpose() + gain * q
+            }
+            None => self.transition * before * self.transition.transpose(),
+        };
+        (p + p.transpose()) * 0.5
+    }
+}
+
+/// Knowledge of the first state: cost `d' L d / 2 - v' d`, `d` the step that leads to it from `at`.
 #[derive(Clone, Copy)]
 struct Prior<const N: usize> {
     at: SVector<f64, N>,
@@ -54,14 +68,13 @@ struct Prior<const N: usize> {
 }
 
 impl<const N: usize> Prior<N> {
-    /// Negative gradient of the cost at `x`.
-    fn pull(&self, x: &SVector<f64, N>) -> SVector<f64, N> {
-        self.vector - self.information * (x - self.at)
+    /// Negative gradient of the cost after a step.
+    fn pull(&self, d: &SVector<f64, N>) -> SVector<f64, N> {
+        self.vector - self.information * d
     }
 
-    /// Twice the cost at `x`, up to a constant.
-    fn cost(&self, x: &SVector<f64, N>) -> f64 {
-        let d = x - self.at;
+    /// Twice the cost after a step, up to a constant.
+    fn cost(&self, d: &SVector<f64, N>) -> f64 {
         d.dot(&(self.information * d - self.vector * 2.0))
     }
 }
@@ -76,6 +89,7 @@ pub(super) struct Window<const N: usize, const M: usize> {
     nodes: VecDeque<Node<N, M>>,
     prior: Prior<N>,
     data_cost: f64,
+    noise_cost: f64,
     channels: usize,
     /// Number of nodes, from the oldest on, that the last linearisation covered.
     linearised: usize,
@@ -84,7 +98,14 @@ pub(super) struct Window<const N: usize, const M: usize> {
 impl<const N: usize, const M: usize> Window<N, M> {
     pub(super) fn new(start: &Start<N>, capacity: usize) -> Self {
         let prior = Prior { at: start.state, information: start.information, vector: SVector::zeros() };
-        Self { nodes: VecDeque::with_capacity(capacity), prior, data_cost: 0.0, channels: 0, linearised: 0 }
+        Self {
+            nodes: VecDeque::with_capacity(capacity),
+            prior,
+            data_cost: 0.0,
+            noise_cost: 0.0,
+            channels: 0,
+            linearised: 0,
+        }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -107,8 +128,23 @@ impl<const N: usize, const M: usize> Window<N, M> {
     }
 
     /// Twice the cost at the point of the last linearisation, process noise apart.
-    pub(super) fn cost(&self) -> f64 {
-        self.data_cost + self.prior.cost(&self.nodes[0].at)
+    pub(super) fn cost<Mo: Model<N, M>>(&self, model: &Mo) -> f64 {
+        self.data_cost + self.prior.cost(&model.difference(&self.nodes[0].at, &self.prior.at))
+    }
+
+    /// Twice the cost of the outputs at the point of the last linearisation.
+    pub(super) fn data_cost(&self) -> f64 {
+        self.data_cost
+    }
+
+    /// Twice the cost of the process noise that the last [`Self::apply`] found.
+    pub(super) fn noise_cost(&self) -> f64 {
+        self.noise_cost
+    }
+
+    /// Channels measured, as of the last linearisation.
+    pub(super) fn channels(&self) -> usize {
+        self.channels
     }
 
     /// Root mean square residual at the last linearisation, in units of the noise.
@@ -169,7 +205,7 @@ impl<const N: usize, const M: usize> Window<N, M> {
             node.at = x;
             if let Some(previous) = before {
                 let (end, transition) = model.flow(&previous, &sample.input);
-                (node.defect, node.transition) = (end - x, transition);
+                (node.defect, node.transition) = (model.difference(&end, &x), transition);
                 node.noise = model.process_noise(&previous, &sample.input).map(|q| (SMatrix::identity(), q));
             }
             let (y, h) = model.output(&x, &sample.input);
@@ -215,22 +251,32 @@ impl<const N: usize, const M: usize> Window<N, M> {
     }
 
     /// Gauss-Newton step of the first state, damped by `damping` in natural units.
-    pub(super) fn step(&self, information: &ScaledInformation<N>, damping: f64) -> SVector<f64, N> {
+    pub(super) fn step<Mo: Model<N, M>>(
+        &self,
+        model: &Mo,
+        information: &ScaledInformation<N>,
+        damping: f64,
+    ) -> SVector<f64, N> {
         let first = &self.nodes[0];
-        information.solve(&(first.vector + self.prior.pull(&first.at)), damping)
+        let from_prior = model.difference(&first.at, &self.prior.at);
+        information.solve(&(first.vector + self.prior.pull(&from_prior)), damping)
     }
 
     /// Applies a step of the first state to all states by the linear model, process noise at its best value.
-    pub(super) fn apply(&mut self, step: SVector<f64, N>) {
+    pub(super) fn apply<Mo: Model<N, M>>(&mut self, model: &Mo, step: SVector<f64, N>) {
         let mut delta = step;
+        self.noise_cost = 0.0;
         for (k, node) in self.nodes.iter_mut().enumerate() {
             if k > 0 {
                 delta = node.transition * delta + node.defect;
                 if let Some((gain, q)) = &node.noise {
                     delta = gain * (delta + q * node.vector);
+                    // The noise is Q times the slope of the cost-to-go, and costs slope' Q slope.
+                    let slope = node.vector - node.information * delta;
+                    self.noise_cost += slope.dot(&(q * slope));
                 }
             }
-            node.x = node.at + delta;
+            node.x = model.retract(&node.at, &delta);
         }
     }
 
@@ -238,20 +284,26 @@ impl<const N: usize, const M: usize> Window<N, M> {
     pub(super) fn last_covariance(&self, first: SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
         let mut p = first;
         for node in self.nodes.iter().skip(1) {
-            match &node.noise {
-                Some((gain, q)) => {
-                    let a = gain * node.transition;
-                    p = a * p * a.transpose() + gain * q;
-                }
-                None => p = node.transition * p * node.transition.transpose(),
-            }
+            p = node.carried(&p);
         }
-        (p + p.transpose()) * 0.5
+        p
+    }
+
+    /// Covariances of all states, oldest first, from that of the first.
+    pub(super) fn covariances(&self, first: SMatrix<f64, N, N>) -> Vec<SMatrix<f64, N, N>> {
+        let mut p = first;
+        let one = |(k, node): (usize, &Node<N, M>)| {
+            if k > 0 {
+                p = node.carried(&p);
+            }
+            p
+        };
+        self.nodes.iter().enumerate().map(one).collect()
     }
 
     /// Drops the first sample. What it and the prior said is carried to the next one, weakened by `keep` (one: all of
     /// it, zero: none), as linearised last.
-    pub(super) fn drop_first(&mut self, keep: f64) {
+    pub(super) fn drop_first<Mo: Model<N, M>>(&mut self, model: &Mo, keep: f64) {
         let Some(first) = self.nodes.pop_front() else { return };
         self.linearised = self.linearised.saturating_sub(1);
         let Some(next) = self.nodes.front() else { return };
@@ -260,7 +312,8 @@ impl<const N: usize, const M: usize> Window<N, M> {
         if let Some(backward) = backward {
             let known = self.prior.information + first.own_information;
             let mut information = backward.transpose() * known * backward;
-            let mut vector = backward.transpose() * (first.own_vector + self.prior.pull(&first.at));
+            let mut vector = backward.transpose()
+                * (first.own_vector + self.prior.pull(&model.difference(&first.at, &self.prior.at)));
             if let Some((_, q)) = &next.noise {
                 let weaken = (SMatrix::identity() + information * q).try_inverse();
                 let weaken = weaken.unwrap_or_else(SMatrix::identity);

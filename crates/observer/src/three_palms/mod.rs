@@ -14,6 +14,8 @@ mod paper_system;
 mod quadrature;
 mod random;
 mod sensitivity;
+#[allow(dead_code, reason = "wip")]
+mod state_space;
 mod track;
 
 pub use covariance::NoiseLevel;

@@ -78,3 +78,13 @@ pub(super) fn exponential(v: DVec3) -> DQuat {
     let ratio = if angle < 1e-4 { 0.5 - angle * angle / 48.0 } else { (0.5 * angle).sin() / angle };
     DQuat::from_xyzw(ratio * v.x, ratio * v.y, ratio * v.z, (0.5 * angle).cos())
 }
+
+/// The rotation vector of a unit quaternion, of length at most pi: `exponential` undone.
+pub(super) fn logarithm(q: DQuat) -> DVec3 {
+    let q = if q.w < 0.0 { -q } else { q };
+    let v = DVec3::new(q.x, q.y, q.z);
+    let sine = v.length();
+    // angle / sin(angle / 2); the series is exact to rounding below 1e-4.
+    let ratio = if sine < 1e-4 { 2.0 + sine * sine / 3.0 } else { 2.0 * sine.atan2(q.w) / sine };
+    v * ratio
+}

@@ -1,0 +1,297 @@
+//! One interval of the motion with its derivative and its noise.
+
+use super::constants::{Constant, Parameters};
+use super::input::{NodeInput, PalmWrench, Wrench};
+use super::model::{Condition, MOTION_STATES, Motion, ThreePalmModel, Turn};
+use crate::three_palms::sensitivity::{cross_matrix, logarithm};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::{Matrix3, SMatrix, SVector};
+
+type Columns<const N: usize> = SMatrix<f64, 3, N>;
+
+/// The motion over an interval from a given state.
+pub(super) struct Step<'a, const N: usize> {
+    model: &'a ThreePalmModel<N>,
+    input: &'a NodeInput,
+    motion: Motion,
+    parameters: Parameters,
+    conditions: [Condition<N>; 3],
+    /// Corrections of the contacts by offset and foot, world, m.
+    shifts: [DVec3; 3],
+    /// Wrench over the first half and over the whole.
+    wrenches: [Wrench; 2],
+    /// Angular momentum and orientation at the middle and at the end.
+    later: [(DVec3, DQuat); 2],
+}
+
+impl<'a, const N: usize> Step<'a, N> {
+    pub(super) fn new(
+        model: &'a ThreePalmModel<N>,
+        motion: Motion,
+        parameters: Parameters,
+        conditions: [Condition<N>; 3],
+        input: &'a NodeInput,
+    ) -> Self {
+        let of_contact = model.noise.contact * model.noise.contact / input.from.samples;
+        let shifts = std::array::from_fn(|i| {
+            let frame = &input.from.palms[i].frame;
+            let foot = -of_contact * conditions[i].value / conditions[i].variance;
+            let shift = |axis: usize| foot * conditions[i].by_contact[axis] + parameters.offsets[i][axis];
+            shift(0) * frame.t1 + shift(1) * frame.t2
+        });
+        let half = input.duration * 0.5;
+        let [first, second] = input.halves.each_ref().map(|palms| total(&parameters, palms, &shifts));
+        let wrenches = [first, first.then(half, second)];
+        let mut step = Self {
+            model,
+            input,
+            motion,
+            parameters,
+            conditions,
+            shifts,
+            wrenches,
+            later: [(motion.L, motion.q); 2],
+        };
+        let middle_L = step.momentum(half, &first);
+        let end_L = step.momentum(input.duration, &step.wrenches[1]);
+        let (middle, end) = step.turned(middle_L, end_L);
+        step.later = [(middle_L, middle), (end_L, end)];
+        step
+    }
+
+    /// Angular momentum after the time `s`. What the fall between the first order of the path adds is taken for a force
+    /// that changes linearly: an error of fifth order.
+    fn momentum(&self, s: f64, wrench: &Wrench) -> DVec3 {
+        let Motion { p, v, L, .. } = self.motion;
+        let second = wrench.first * s - wrench.impulse * (s * s / 6.0);
+        L + wrench.torque
+            - p.cross(wrench.impulse)
+            - v.cross(wrench.first)
+            - 0.5 * self.model.gravity.cross(second)
+            - wrench.impulse.cross(wrench.first) / self.parameters.mass
+    }
+
+    /// Runge-Kutta step of order 4 of the orientation: at the middle and at the end.
+    fn turned(&self, middle_L: DVec3, end_L: DVec3) -> (DQuat, DQuat) {
+        let h = self.input.duration;
+        let rate = |q: DQuat, L: DVec3| {
+            let w = self.parameters.inverse_inertia * (q.inverse() * L);
+            q * DQuat::from_xyzw(0.5 * w.x, 0.5 * w.y, 0.5 * w.z, 0.0)
+        };
+        let q = self.motion.q;
+        let k1 = rate(q, self.motion.L);
+        let k2 = rate((q + k1 * (0.5 * h)).normalize(), middle_L);
+        let middle = (q + k2 * (0.5 * h)).normalize();
+        let k3 = rate(middle, middle_L);
+        let k4 = rate((q + k3 * h).normalize(), end_L);
+        (middle, (q + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0)).normalize())
+    }
+
+    /// State at the end; the constants are those of the start `x`.
+    pub(super) fn end(&self, x: &SVector<f64, N>) -> SVector<f64, N> {
+        let Motion { p, v, .. } = self.motion;
+        let (h, g, mass) = (self.input.duration, self.model.gravity, self.parameters.mass);
+        let wrench = &self.wrenches[1];
+        let (L, q) = self.later[1];
+        let blocks = [
+            p + v * h + 0.5 * g * h * h + (wrench.impulse * h - wrench.first) / mass,
+            v + g * h + wrench.impulse / mass,
+            L,
+            logarithm(q),
+        ];
+        SVector::from_fn(|i, _| if i < MOTION_STATES { blocks[i / 3][i % 3] } else { x[i] })
+    }
+
+    /// Derivative of the end by the start.
+    pub(super) fn transition(&self, constants: &[Constant]) -> SMatrix<f64, N, N> {
+        let h = self.input.duration;
+        let changes: Vec<[Wrench; 2]> = constants.iter().map(|&c| self.by_constant(c)).collect();
+        let identity = DMat3::IDENTITY;
+        let [mut p, mut v] = [Columns::<N>::zeros(); 2];
+        put(&mut p, 0, identity);
+        put(&mut p, 1, identity * h);
+        put(&mut v, 1, identity);
+        let mut slopes = Vec::with_capacity(3);
+        let mut start_L = Columns::<N>::zeros();
+        put(&mut start_L, 2, identity);
+        slopes.push(self.turning_slope(self.motion.q, self.motion.L, &start_L, constants));
+        let mut end_L = start_L;
+        for (part, s) in [(0, 0.5 * h), (1, h)] {
+            end_L = self.momentum_slope(part, s, &changes, constants);
+            let (L, q) = self.later[part];
+            slopes.push(self.turning_slope(q, L, &end_L, constants));
+        }
+        let theta = advance(&slopes, h);
+        let mass = self.parameters.mass;
+        for (j, (constant, [_, change])) in constants.iter().zip(&changes).enumerate() {
+            let mut impulse = change.impulse / mass;
+            let mut travel = (change.impulse * h - change.first) / mass;
+            if *constant == Constant::LogMass {
+                impulse = -self.wrenches[1].impulse / mass;
+                travel = -(self.wrenches[1].impulse * h - self.wrenches[1].first) / mass;
+            }
+            v.set_column(MOTION_STATES + j, &impulse.into());
+            p.set_column(MOTION_STATES + j, &travel.into());
+        }
+        let mut all = SMatrix::<f64, N, N>::identity();
+        for (block, rows) in [p, v, end_L, theta].iter().enumerate() {
+            all.fixed_rows_mut::<3>(3 * block).copy_from(rows);
+        }
+        all
+    }
+
+    /// Change of the wrench over the first half and over the whole with a constant.
+    fn by_constant(&self, constant: Constant) -> [Wrench; 2] {
+        let of = |halves: &dyn Fn(&[PalmWrench; 3]) -> Wrench| {
+            let [first, second] = self.input.halves.each_ref().map(halves);
+            [first, first.then(0.5 * self.input.duration, second)]
+        };
+        let turned = |wrench: Wrench, shift: DVec3| Wrench {
+            torque: wrench.torque + shift.cross(wrench.impulse),
+            ..wrench
+        };
+        match constant {
+            Constant::LogMass | Constant::Inertia(_) => [Wrench::default(); 2],
+            Constant::ForceGain(i) => {
+                of(&|palms| turned(palms[i].force + palms[i].rate * self.parameters.delay, self.shifts[i]))
+            }
+            Constant::ForceBias(i) => of(&|palms| turned(palms[i].unit, self.shifts[i])),
+            Constant::ForceDelay => of(&|palms| {
+                let one = |i: usize| turned(palms[i].rate, self.shifts[i]) * self.parameters.gains[i];
+                one(0) + one(1) + one(2)
+            }),
+            Constant::ContactOffset(i, axis) => {
+                let frame = &self.input.from.palms[i].frame;
+                let along = [frame.t1, frame.t2][axis];
+                of(&|palms| Wrench {
+                    torque: along.cross(reported(&self.parameters, &palms[i], i).impulse),
+                    ..Wrench::default()
+                })
+            }
+        }
+    }
+
+    /// Derivative of the angular momentum after the time `s`; `part` is the first half or the whole.
+    fn momentum_slope(
+        &self,
+        part: usize,
+        s: f64,
+        changes: &[[Wrench; 2]],
+        constants: &[Constant],
+    ) -> Columns<N> {
+        let Motion { p, v, .. } = self.motion;
+        let (wrench, g, mass) = (&self.wrenches[part], self.model.gravity, self.parameters.mass);
+        let mut L = Columns::<N>::zeros();
+        // -dp x impulse = impulse x dp.
+        put(&mut L, 0, cross_matrix(wrench.impulse));
+        put(&mut L, 1, cross_matrix(wrench.first));
+        put(&mut L, 2, DMat3::IDENTITY);
+        for (j, (constant, change)) in constants.iter().zip(changes).enumerate() {
+            let change = &change[part];
+            let second = change.first * s - change.impulse * (s * s / 6.0);
+            let mut slope =
+                change.torque - p.cross(change.impulse) - v.cross(change.first) - 0.5 * g.cross(second);
+            if *constant == Constant::LogMass {
+                slope += wrench.impulse.cross(wrench.first) / mass;
+            }
+            L.set_column(MOTION_STATES + j, &slope.into());
+        }
+        // The foot of the contact depends on the state before.
+        let of_contact = self.model.noise.contact * self.model.noise.contact / self.input.from.samples;
+        for i in 0..3 {
+            let (condition, frame) = (&self.conditions[i], &self.input.from.palms[i].frame);
+            let impulse: DVec3 = self.input.halves[..=part]
+                .iter()
+                .map(|palms| reported(&self.parameters, &palms[i], i).impulse)
+                .sum();
+            let along = condition.by_contact[0] * frame.t1 + condition.by_contact[1] * frame.t2;
+            let kick: SVector<f64, 3> = (along.cross(impulse) * (-of_contact / condition.variance)).into();
+            L.ger(1.0, &kick, &condition.row, 1.0);
+        }
+        L
+    }
+
+    /// `M` and `S` of `theta' = M theta + S` at one time.
+    fn turning_slope(
+        &self,
+        q: DQuat,
+        L: DVec3,
+        by_L: &Columns<N>,
+        constants: &[Constant],
+    ) -> (Matrix3<f64>, Columns<N>) {
+        let turn = Turn::new(&self.parameters, q, L);
+        let mut source = *by_L;
+        for (j, constant) in constants.iter().enumerate() {
+            if let Constant::Inertia(number) = *constant {
+                let change: SVector<f64, 3> = turn.by_inertia(&self.parameters, number).into();
+                let mut column = source.column_mut(MOTION_STATES + j);
+                column += change;
+            }
+        }
+        (Matrix3::from(turn.K * cross_matrix(L)), Matrix3::from(turn.K) * source)
+    }
+
+    /// Covariance of what noise of forces and contacts adds over the interval.
+    pub(super) fn noise(&self) -> SMatrix<f64, N, N> {
+        let mut q = SMatrix::<f64, MOTION_STATES, MOTION_STATES>::zeros();
+        let h = self.input.duration;
+        let K = Turn::new(&self.parameters, self.motion.q, self.motion.L).K;
+        let mut add = |variance: f64, velocity: DVec3, momentum: DVec3| {
+            let blocks = [velocity * (0.5 * h), velocity, momentum, K * momentum * (0.5 * h)];
+            let kick = SVector::<f64, MOTION_STATES>::from_fn(|i, _| blocks[i / 3][i % 3]);
+            q.ger(variance, &kick, &kick, 1.0);
+        };
+        for i in 0..3 {
+            let palm = &self.input.from.palms[i];
+            let n = palm.normal[0];
+            let of_force =
+                (self.model.noise.force * self.parameters.gains[i]).powi(2) * h * self.input.spacing;
+            let lever = -0.5 * (palm.arm[0] + self.input.here.palms[i].arm[0]) - self.motion.p.cross(n);
+            add(of_force, n / self.parameters.mass, lever);
+            let of_contact = self.model.noise.contact * self.model.noise.contact / self.input.from.samples;
+            let impulse: DVec3 =
+                self.input.halves.iter().map(|palms| reported(&self.parameters, &palms[i], i).impulse).sum();
+            let [a, b] = self.conditions[i].by_contact;
+            let size = a.hypot(b);
+            let (a, b) = if size > 0.0 { (a / size, b / size) } else { (1.0, 0.0) };
+            let known = of_contact * size * size / self.conditions[i].variance;
+            let (t1, t2) = (palm.frame.t1, palm.frame.t2);
+            add(of_contact * (1.0 - known).max(0.0), DVec3::ZERO, (a * t1 + b * t2).cross(impulse));
+            add(of_contact, DVec3::ZERO, (a * t2 - b * t1).cross(impulse));
+        }
+        let mut all = SMatrix::<f64, N, N>::zeros();
+        all.fixed_view_mut::<MOTION_STATES, MOTION_STATES>(0, 0).copy_from(&q);
+        all
+    }
+}
+
+/// The wrench of one palm with its constants.
+fn reported(parameters: &Parameters, palm: &PalmWrench, i: usize) -> Wrench {
+    (palm.force + palm.rate * parameters.delay) * parameters.gains[i] + palm.unit * parameters.biases[i]
+}
+
+/// The wrench of all palms about contacts that are shifted.
+fn total(parameters: &Parameters, palms: &[PalmWrench; 3], shifts: &[DVec3; 3]) -> Wrench {
+    (0..3).fold(Wrench::default(), |sum, i| {
+        let wrench = reported(parameters, &palms[i], i);
+        sum + Wrench { torque: wrench.torque + shifts[i].cross(wrench.impulse), ..wrench }
+    })
+}
+
+fn put<const N: usize>(columns: &mut Columns<N>, block: usize, value: DMat3) {
+    for (j, column) in [value.x_axis, value.y_axis, value.z_axis].into_iter().enumerate() {
+        columns.set_column(3 * block + j, &column.into());
+    }
+}
+
+/// One Runge-Kutta step of order 4 of `theta' = M theta + S` from the unit matrix, with slopes at start, middle, end.
+fn advance<const N: usize>(slopes: &[(Matrix3<f64>, Columns<N>)], h: f64) -> Columns<N> {
+    let mut theta = Columns::<N>::zeros();
+    put(&mut theta, 3, DMat3::IDENTITY);
+    let [(m0, s0), (m1, s1), (m2, s2)] = slopes else { return theta };
+    let k1 = m0 * theta + s0;
+    let k2 = m1 * (theta + k1 * (0.5 * h)) + s1;
+    let k3 = m1 * (theta + k2 * (0.5 * h)) + s1;
+    let k4 = m2 * (theta + k3 * h) + s2;
+    theta + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0)
+}

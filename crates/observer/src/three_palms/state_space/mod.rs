@@ -1,0 +1,17 @@
+//! Three palms as a [`Model`](crate::Model): the momentum form in state space, with constants of body and sensors as
+//! states where they are unknown.
+
+mod blocks;
+mod constants;
+mod flow;
+mod inertia;
+mod input;
+mod model;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use blocks::block_inputs;
+pub(crate) use constants::{BODY, Constant, Parameters};
+pub(crate) use inertia::inertia_of_numbers;
+pub(crate) use input::{NodeInput, PalmTouch, PalmWrench, Touch, Wrench};
+pub(crate) use model::{MOTION_STATES, ThreePalmModel};
