@@ -75,14 +75,13 @@ fn mujoco_repeats_the_log_on_moving_palms() {
         return;
     }
     let scratch = Scratch::new("replay-moving");
-    let swing = |slope: &str, phase: f64| {
-        format!("{slope}, sinusoid = {{ amplitude = 0.05, frequency = 2.5, phase = {phase:?} }} }}")
-    };
     let mut scene =
         common::scene().replace("duration = 4.2", "duration = 2.0").replace("rate = 50.0", "rate = 200.0");
-    for (azimuth, phase) in [("270.0", 0.0), ("30.0", 1.0), ("150.0", 2.0)] {
+    for (azimuth, frequency, phase) in [("270.0", 3.0, 0.0), ("30.0", 2.0, 1.0), ("150.0", 2.5, 2.0)] {
         let still = format!("azimuth_deg = {azimuth}, slope_deg = 60.0");
-        scene = scene.replace(&format!("{still} }}"), &swing(&still, phase));
+        let swing =
+            format!("sinusoid = {{ amplitude = 0.05, frequency = {frequency:?}, phase = {phase:?} }}");
+        scene = scene.replace(&format!("{still} }}"), &format!("{still}, {swing} }}"));
     }
     assert_eq!(scene.matches("sinusoid").count(), 3);
     scratch.write("scene.toml", &scene);
