@@ -13,7 +13,7 @@ use object_dynamics::MassProperties;
 /// The search, round by round. Bodies near rest come first; then the log read backwards, whose first windows have other
 /// noise; then other first windows, since far below one natural time the data determine little and far above it the
 /// motion has left the neighbourhood of rest; then bodies that spin, at heights about that of rest.
-const ROUNDS: [Round; 12] = [
+pub(super) const ROUNDS: [Round; 12] = [
     Round { window: 1.5, height: 1.0, spin: 0.0, backwards: false },
     Round { window: 1.5, height: 1.0, spin: 0.0, backwards: true },
     Round { window: 3.0, height: 1.0, spin: 0.0, backwards: false },
@@ -30,25 +30,25 @@ const ROUNDS: [Round; 12] = [
 
 /// One family of starts.
 #[derive(Clone, Copy)]
-struct Round {
+pub(super) struct Round {
     /// First window in units of the natural time `sqrt(length / g)`, or of a quarter of a short log.
-    window: f64,
+    pub(super) window: f64,
     /// Height of the centre of mass as a share of the one that static balance suggests.
     height: f64,
     /// Angular velocity in natural units, about each axis in both senses.
     spin: f64,
     /// Whether the windows grow from the end of the log.
-    backwards: bool,
+    pub(super) backwards: bool,
 }
 
 /// Factor by which the window grows.
-const GROWTH: f64 = 1.35;
+pub(super) const GROWTH: f64 = 1.35;
 /// Samples per natural time while the window grows: enough for the Runge-Kutta steps and for the shape of the motion.
-const SAMPLES_PER_NATURAL_TIME: f64 = 24.0;
+pub(super) const SAMPLES_PER_NATURAL_TIME: f64 = 24.0;
 /// Weight of the contact normals' common point against static balance: it decides the height alone.
 const NORMALS_WEIGHT: f64 = 0.01;
 /// Candidates that are followed beyond the first window before the outcome is looked at.
-const FOLLOWED: usize = 4;
+pub(super) const FOLLOWED: usize = 4;
 /// Candidates of a round that are followed in all.
 const FOLLOWED_IN_ALL: usize = 12;
 /// Share of the mean information that holds a candidate near its start in the first windows.
@@ -60,8 +60,11 @@ pub(super) const NEXT_TO_NOTHING: f64 = 1e-5;
 /// about 1, wrong minima begin at 1.7.
 pub(super) const EXPLAINED: f64 = 1.4;
 /// Fits on the way: good enough to start the next from.
-const COARSE: LevenbergMarquardt =
+pub(super) const COARSE: LevenbergMarquardt =
     LevenbergMarquardt { iterations: 25, step_tolerance: 1e-6, damping: 1e-2, prior: 0.0 };
+
+/// Fits of the first window.
+pub(super) const FIRST: LevenbergMarquardt = LevenbergMarquardt { prior: PRIOR, ..COARSE };
 
 /// Natural sizes of the track's scene.
 pub(super) fn scales(track: &Track, mass: &MassProperties) -> Scales {
@@ -77,7 +80,7 @@ pub(super) fn scales(track: &Track, mass: &MassProperties) -> Scales {
     Scales { length, velocity: length * rate, momentum: moment * rate }
 }
 
-fn natural_time(track: &Track, length: f64) -> f64 {
+pub(super) fn natural_time(track: &Track, length: f64) -> f64 {
     let g = track.gravity.length();
     if g > 0.0 { (length / g).sqrt() } else { track.duration() / 4.0 }
 }
@@ -122,42 +125,44 @@ pub(super) fn cold_start(
     found
 }
 
-struct Search<'a> {
-    track: &'a Track,
-    mass: &'a MassProperties,
-    scales: Scales,
-    noise: NoiseLevel,
-    sampling: Sampling,
+pub(super) struct Search<'a> {
+    pub(super) track: &'a Track,
+    pub(super) mass: &'a MassProperties,
+    pub(super) scales: Scales,
+    pub(super) noise: NoiseLevel,
+    pub(super) sampling: Sampling,
 }
 
 impl Search<'_> {
-    fn problem(&self, window: f64) -> MomentumProblem<'_> {
+    pub(super) fn problem(&self, window: f64) -> MomentumProblem<'_> {
         MomentumProblem::new(self.track, self.mass, self.scales, window)
     }
 
     /// Fits of the first window from the starts of a round, best first.
     fn candidates(&self, window: f64, round: Round) -> Vec<Fit<StartState, UNKNOWNS>> {
-        let solver = LevenbergMarquardt { prior: PRIOR, ..COARSE };
         let problem = self.problem(window);
+        let starts = self.starts(window, round);
+        let mut fits: Vec<_> = starts.into_iter().map(|start| FIRST.fit(&problem, start)).collect();
+        sort(&mut fits);
+        fits
+    }
+
+    /// The starts of a round.
+    pub(super) fn starts(&self, window: f64, round: Round) -> Vec<StartState> {
         let mut rest = rest_state(self.track, window);
         rest.p_WCm.z *= round.height;
         let axes = self.mass.principal().axes.inverse();
         let orientations = orientations().into_iter().map(|R_WI| R_WI * axes);
-        let starts: Vec<StartState> = if round.spin == 0.0 {
-            orientations.map(|R_WO| StartState { R_WO, ..rest }).collect()
-        } else {
-            let rate = round.spin * self.scales.velocity / self.scales.length;
-            let turns =
-                [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis * rate, axis * -rate]);
-            let basic: Vec<DQuat> = orientations.take(BASIC_ORIENTATIONS).collect();
-            turns
-                .flat_map(|w_WO| basic.iter().map(move |&R_WO| (w_WO, R_WO)))
-                .map(|(w_WO, R_WO)| self.spinning(StartState { R_WO, ..rest }, w_WO))
-                .collect()
-        };
-        let mut fits: Vec<_> = starts.into_iter().map(|start| solver.fit(&problem, start)).collect();
-        sort(&mut fits);
-        fits
+        if round.spin == 0.0 {
+            return orientations.map(|R_WO| StartState { R_WO, ..rest }).collect();
+        }
+        let rate = round.spin * self.scales.velocity / self.scales.length;
+        let turns = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis * rate, axis * -rate]);
+        let basic: Vec<DQuat> = orientations.take(BASIC_ORIENTATIONS).collect();
+        turns
+            .flat_map(|w_WO| basic.iter().map(move |&R_WO| (w_WO, R_WO)))
+            .map(|(w_WO, R_WO)| self.spinning(StartState { R_WO, ..rest }, w_WO))
+            .collect()
     }
 
     /// The state with an angular velocity, and the velocity that keeps its contacts.
@@ -195,7 +200,7 @@ impl Search<'_> {
     }
 
     /// Whether what is left of the data is noise, or next to nothing: then no other minimum can be better to speak of.
-    fn explains(&self, fit: &Fit<StartState, UNKNOWNS>) -> bool {
+    pub(super) fn explains(&self, fit: &Fit<StartState, UNKNOWNS>) -> bool {
         let inverse = information_inverse(&Observability::new(&fit.normal.information));
         let problem = self.problem(f64::INFINITY);
         let noise = propagate(&problem, &fit.point, &inverse, &self.noise, self.sampling).residual;
@@ -205,14 +210,14 @@ impl Search<'_> {
     }
 }
 
-fn sort(candidates: &mut Vec<Fit<StartState, UNKNOWNS>>) {
+pub(super) fn sort(candidates: &mut Vec<Fit<StartState, UNKNOWNS>>) {
     candidates.retain(|c| c.status != FitStatus::Failed);
     candidates.sort_by(|a, b| a.normal.cost.total_cmp(&b.normal.cost));
 }
 
 /// A body at rest: the centre of mass where the contact wrench balances, at the height where the contact normals pass
 /// each other most closely (they meet there for a ball).
-fn rest_state(track: &Track, window: f64) -> StartState {
+pub(super) fn rest_state(track: &Track, window: f64) -> StartState {
     let end = track.t.partition_point(|&t| t <= window).max(1);
     let mut matrix = DMat3::ZERO;
     let mut rhs = DVec3::ZERO;

@@ -16,6 +16,7 @@ mod random;
 mod sensitivity;
 #[allow(dead_code, reason = "wip")]
 mod state_space;
+mod streaming;
 mod track;
 
 pub use covariance::NoiseLevel;
@@ -25,4 +26,5 @@ pub use momentum::{MotionState, Scales, StartState};
 pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
+pub use streaming::{MotionStream, StreamError, StreamEstimate, StreamOptions, StreamStage};
 pub use track::{Track, TrackError};
