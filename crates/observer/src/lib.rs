@@ -22,7 +22,7 @@ pub use core::{
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
 pub use three_palms::{
-    EstimateError, Evidence, KnownBody, MotionEstimate, MotionState, MotionStream, NoiseLevel, PaperError, PaperMethod,
+    Closure, EstimateError, Evidence, KnownBody, MotionEstimate, MotionState, MotionStream, NoForceError, NoForceEstimate, NoForceEvidence, NoiseLevel, KnownTouch, TouchShape, estimate_without_forces, PaperError, PaperMethod,
     PaperReconstruction, PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState, StreamError, StreamEstimate, StreamOptions, StreamStage,
     Track, TrackError, WeakDirection, equivalent_orientations, estimate_motion, integrate_paper_system,
 };

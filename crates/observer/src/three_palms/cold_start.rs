@@ -258,7 +258,7 @@ const BASIC_ORIENTATIONS: usize = 6;
 
 /// Orientations of principal axes, spread over all that differ: turns by pi about a principal axis change nothing, so
 /// the 24 turns of a cube leave 6, and each is taken as it is and turned by 45 degrees about each axis.
-fn orientations() -> Vec<DQuat> {
+pub(super) fn orientations() -> Vec<DQuat> {
     let third =
         |k: i32| DQuat::from_axis_angle(DVec3::ONE.normalize(), f64::from(k) * std::f64::consts::TAU / 3.0);
     let quarter = std::f64::consts::FRAC_PI_2;

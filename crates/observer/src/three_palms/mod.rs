@@ -8,6 +8,7 @@ mod curves;
 mod estimate;
 mod evidence;
 mod momentum;
+mod no_force;
 mod noise;
 mod paper_method;
 mod paper_system;
@@ -23,6 +24,9 @@ pub use covariance::NoiseLevel;
 pub use estimate::{EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion};
 pub use evidence::{Evidence, Quantity, Reason, Reliability, WeakDirection};
 pub use momentum::{MotionState, Scales, StartState};
+pub use no_force::{
+    Closure, KnownTouch, NoForceError, NoForceEstimate, NoForceEvidence, TouchShape, estimate_without_forces,
+};
 pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };

@@ -7,7 +7,7 @@ use object_dynamics::{PalmReading, Sample, SensorLog};
 use thiserror::Error;
 
 /// Fewest samples that an estimate is made from.
-const FEWEST_SAMPLES: usize = 8;
+pub(super) const FEWEST_SAMPLES: usize = 8;
 /// Shortest lever of a palm's torque that a force is taken from, as a share of the contact's distance.
 const SHORTEST_LEVER: f64 = 1e-3;
 /// Rotational acceleration of a palm, rad/s^2, below which its own inertia does not enter its torque to speak of.
@@ -327,7 +327,8 @@ fn interpolate(t: &[f64], integrals: &[Integrals], at: f64, next: usize) -> [DVe
     })
 }
 
-fn palm_states(
+/// Frames, rates and accelerations of palm `i`, at times `t` since `start`.
+pub(super) fn palm_states(
     i: usize,
     start: f64,
     t: &[f64],

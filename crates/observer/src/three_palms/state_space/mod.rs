@@ -12,6 +12,6 @@ mod tests;
 
 pub(crate) use blocks::block_inputs;
 pub(crate) use constants::{BODY, Constant, Parameters};
-pub(crate) use inertia::inertia_of_numbers;
+pub(crate) use inertia::{INERTIA_NUMBERS, inertia_of_numbers, numbers_of_inertia};
 pub(crate) use input::{NodeInput, PalmTouch, PalmWrench, Touch, Wrench};
 pub(crate) use model::{MOTION_STATES, ThreePalmModel};
