@@ -122,12 +122,26 @@ const LARGEST_DAMPING: f64 = 1e12;
 impl LevenbergMarquardt {
     /// Minimises the cost from `start`.
     pub fn fit<const P: usize, L: LeastSquares<P>>(&self, problem: &L, start: L::Point) -> Fit<L::Point, P> {
-        let Some(mut normal) = problem.linearise(&start) else {
-            let normal = NormalEquations::default();
-            return Fit { point: start, normal, status: FitStatus::Failed, iterations: 1, damping: self.damping };
-        };
-        let mut point = start;
-        let mut damping = self.damping;
+        match problem.linearise(&start) {
+            Some(normal) => {
+                let (status, damping) = (FitStatus::OutOfIterations, self.damping);
+                self.resume(problem, Fit { point: start, normal, status, iterations: 1, damping })
+            }
+            None => {
+                let normal = NormalEquations::default();
+                let (status, damping) = (FitStatus::Failed, self.damping);
+                Fit { point: start, normal, status, iterations: 1, damping }
+            }
+        }
+    }
+
+    /// Goes on from where a fit of the same problem ended, with as many linearisations again.
+    pub fn resume<const P: usize, L: LeastSquares<P>>(
+        &self,
+        problem: &L,
+        from: Fit<L::Point, P>,
+    ) -> Fit<L::Point, P> {
+        let Fit { mut point, mut normal, mut damping, .. } = from;
         // The prior pulls towards the start: `travelled` is where the point is from it, in the scaled unknowns.
         let mut travelled = SVector::<f64, P>::zeros();
         let mut iterations = 1;

@@ -23,6 +23,6 @@ pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Normal
 #[cfg(feature = "palms")]
 pub use three_palms::{
     Closure, EstimateError, Evidence, KnownBody, MotionEstimate, MotionState, MotionStream, NoForceError, NoForceEstimate, NoForceEvidence, NoiseLevel, KnownTouch, TouchShape, estimate_without_forces, PaperError, PaperMethod,
-    PaperReconstruction, PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState, StreamError, StreamEstimate, StreamOptions, StreamStage,
+    PaperReconstruction, PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage,
     Track, TrackError, WeakDirection, equivalent_orientations, estimate_motion, integrate_paper_system,
 };

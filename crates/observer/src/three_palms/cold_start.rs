@@ -34,9 +34,9 @@ pub(super) struct Round {
     /// First window in units of the natural time `sqrt(length / g)`, or of a quarter of a short log.
     pub(super) window: f64,
     /// Height of the centre of mass as a share of the one that static balance suggests.
-    height: f64,
+    pub(super) height: f64,
     /// Angular velocity in natural units, about each axis in both senses.
-    spin: f64,
+    pub(super) spin: f64,
     /// Whether the windows grow from the end of the log.
     pub(super) backwards: bool,
 }

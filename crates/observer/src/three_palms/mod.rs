@@ -30,5 +30,5 @@ pub use no_force::{
 pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
-pub use streaming::{MotionStream, StreamError, StreamEstimate, StreamOptions, StreamStage};
+pub use streaming::{MotionStream, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 pub use track::{Track, TrackError};

@@ -1,7 +1,7 @@
 use crate::three_palms::covariance::NoiseLevel;
 use crate::three_palms::momentum::MotionState;
 use crate::three_palms::track::TrackError;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use nalgebra::SMatrix;
 use object_dynamics::MassProperties;
 use thiserror::Error;
@@ -14,8 +14,8 @@ const FEWEST: usize = 2;
 /// What a stream must know beforehand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreamOptions {
-    /// Mass and inertia.
-    pub mass: MassProperties,
+    /// Mass and inertia, where they are known; else they are estimated along.
+    pub mass: Option<MassProperties>,
     /// Acceleration of free fall, world, m/s^2.
     pub gravity: DVec3,
     /// Moments of inertia of the palms about their axes, kg m^2: needed only for torques of moving palms.
@@ -53,6 +53,8 @@ pub struct StreamEstimate {
     /// Covariance of centre of mass (m), velocity (m/s), angular momentum (kg m^2/s) and orientation (rotation vector,
     /// world axes, rad), three each; while no motion is found, that of knowing nothing but the sizes.
     pub covariance: SMatrix<f64, 12, 12>,
+    /// Mass and inertia where they are estimated; none before a motion is found.
+    pub body: Option<StreamBody>,
     /// How it stands.
     pub stage: StreamStage,
     /// Mean squared innovation of the latest hundred contact conditions over what is expected: about one when all is as
@@ -60,6 +62,20 @@ pub struct StreamEstimate {
     pub innovation: f64,
     /// Palms that are without contact at this sample.
     pub lost: [bool; 3],
+}
+
+/// Mass and inertia as estimated so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StreamBody {
+    /// kg.
+    pub mass: f64,
+    /// Its standard deviation, kg.
+    pub mass_deviation: f64,
+    /// Inertia tensor about the centre of mass, kg m^2, in body axes: those that were the world's at the first sample
+    /// of the search.
+    pub inertia: DMat3,
+    /// Standard deviations of its entries, kg m^2.
+    pub inertia_deviation: DMat3,
 }
 
 /// How a stream's estimate stands.

@@ -2,7 +2,11 @@
 
 use crate::core::{Arrival, Model, NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start};
 use crate::three_palms::momentum::StartState;
-use crate::three_palms::state_space::{NodeInput, Parameters, ThreePalmModel};
+use super::estimate::StreamBody;
+use crate::three_palms::state_space::{
+    BODY, INERTIA_NUMBERS, MOTION_STATES, NodeInput, Parameters, ThreePalmModel, inertia_of_numbers,
+};
+use glam::{DMat3, DVec3};
 use nalgebra::{SMatrix, SVector};
 
 /// Blocks in the window: what comes before is carried along as a quadratic cost.
@@ -26,6 +30,40 @@ pub(super) struct Tracked<const N: usize> {
     pub(super) motion: StartState,
     pub(super) parameters: Parameters,
     pub(super) report: Report<N>,
+}
+
+impl<const N: usize> Tracked<N> {
+    /// Mass and inertia, where they are states; both or none are.
+    pub(super) fn body(&self) -> Option<StreamBody> {
+        if N < MOTION_STATES + BODY.len() {
+            return None;
+        }
+        let Parameters { mass, inertia, .. } = self.parameters;
+        let covariance = |i: usize, j: usize| self.report.covariance[(MOTION_STATES + i, MOTION_STATES + j)];
+        // By differences: the tensor is quadratic and exponential in its numbers, which are of the order of one.
+        let slopes: [DMat3; INERTIA_NUMBERS] = std::array::from_fn(|k| {
+            let moved = |h: f64| {
+                let mut numbers = inertia;
+                numbers[k] += h;
+                inertia_of_numbers(&numbers)
+            };
+            (moved(1e-6) - moved(-1e-6)) * 5e5
+        });
+        let deviation = |row: usize, column: usize| {
+            let slope = |k: usize| slopes[k].col(column)[row];
+            let terms = (0..INERTIA_NUMBERS)
+                .flat_map(|k| (0..INERTIA_NUMBERS).map(move |l| (k, l)))
+                .map(|(k, l)| slope(k) * covariance(1 + k, 1 + l) * slope(l));
+            terms.sum::<f64>().max(0.0).sqrt()
+        };
+        let column = |j: usize| DVec3::new(deviation(0, j), deviation(1, j), deviation(2, j));
+        Some(StreamBody {
+            mass,
+            mass_deviation: mass * covariance(0, 0).max(0.0).sqrt(),
+            inertia: inertia_of_numbers(&inertia),
+            inertia_deviation: DMat3::from_cols(column(0), column(1), column(2)),
+        })
+    }
 }
 
 impl<const N: usize> Tracker<N> {
@@ -81,7 +119,7 @@ impl<const N: usize> Tracker<N> {
 }
 
 /// A node as the observer takes it: all conditions shall be zero, those of palms without contact do not count.
-fn sample(input: NodeInput, touching: &[bool; 3]) -> Sample<NodeInput, 3> {
+pub(super) fn sample(input: NodeInput, touching: &[bool; 3]) -> Sample<NodeInput, 3> {
     let information = SVector::<f64, 3>::from_fn(|i, _| if touching[i] { 1.0 } else { 0.0 });
     Sample { input, measured: SVector::zeros(), information }
 }
