@@ -22,7 +22,9 @@ pub use core::{
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
 pub use three_palms::{
-    Closure, EstimateError, Evidence, KnownBody, MotionEstimate, MotionState, MotionStream, NoForceError, NoForceEstimate, NoForceEvidence, NoiseLevel, KnownTouch, TouchShape, estimate_without_forces, PaperError, PaperMethod,
-    PaperReconstruction, PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage,
-    Track, TrackError, WeakDirection, equivalent_orientations, estimate_motion, integrate_paper_system,
+    Closure, EstimateError, Evidence, KnownBody, KnownTouch, MotionEstimate, MotionState, MotionStream,
+    NoForceError, NoForceEstimate, NoForceEvidence, NoiseLevel, PaperError, PaperMethod, PaperReconstruction,
+    PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState, StreamBody,
+    StreamError, StreamEstimate, StreamOptions, StreamStage, TouchShape, Track, TrackError, WeakDirection,
+    equivalent_orientations, estimate_motion, estimate_without_forces, integrate_paper_system,
 };

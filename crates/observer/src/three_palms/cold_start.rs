@@ -200,13 +200,19 @@ impl Search<'_> {
     }
 
     /// Whether what is left of the data is noise, or next to nothing: then no other minimum can be better to speak of.
-    pub(super) fn explains(&self, fit: &Fit<StartState, UNKNOWNS>) -> bool {
+    fn explains(&self, fit: &Fit<StartState, UNKNOWNS>) -> bool {
+        self.judge(fit).0
+    }
+
+    /// The same, and the largest standard deviation that noise leaves to a direction of the unknowns, in natural sizes.
+    pub(super) fn judge(&self, fit: &Fit<StartState, UNKNOWNS>) -> (bool, f64) {
         let inverse = information_inverse(&Observability::new(&fit.normal.information));
         let problem = self.problem(f64::INFINITY);
-        let noise = propagate(&problem, &fit.point, &inverse, &self.noise, self.sampling).residual;
+        let noise = propagate(&problem, &fit.point, &inverse, &self.noise, self.sampling);
         let rms = fit.normal.rms();
-        rms < EXPLAINED * noise
-            || fit.status == FitStatus::Converged && rms < NEXT_TO_NOTHING * self.scales.velocity
+        let explained = rms < EXPLAINED * noise.residual
+            || fit.status == FitStatus::Converged && rms < NEXT_TO_NOTHING * self.scales.velocity;
+        (explained, Observability::new(&noise.covariance).eigenvalues[UNKNOWNS - 1].max(0.0).sqrt())
     }
 }
 

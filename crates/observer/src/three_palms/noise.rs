@@ -16,7 +16,10 @@ pub(super) fn noise_level(track: &Track) -> NoiseLevel {
     };
     let mut forces: Vec<f64> =
         (0..3).flat_map(|i| differences(track.nodes.iter().map(|n| n.forces[i]).collect())).collect();
-    NoiseLevel { contact: roughness((0..6).map(|c| contact(c / 2, c % 2).collect())), force: deviation(&mut forces) }
+    NoiseLevel {
+        contact: roughness((0..6).map(|c| contact(c / 2, c % 2).collect())),
+        force: deviation(&mut forces),
+    }
 }
 
 /// Standard deviation of the white noise that is common to some series.

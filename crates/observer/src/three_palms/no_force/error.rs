@@ -30,7 +30,9 @@ pub enum NoForceError {
         value: f64,
     },
     /// The log spans less than the motion needs to show itself.
-    #[error("the log spans {seconds} s of contact; at least {needed:.2} s are needed for a body of this size")]
+    #[error(
+        "the log spans {seconds} s of contact; at least {needed:.2} s are needed for a body of this size"
+    )]
     TooShort {
         /// Time in contact, s.
         seconds: f64,

@@ -40,7 +40,8 @@ pub(super) struct TouchProblem<'a> {
 impl<'a> TouchProblem<'a> {
     /// Of the nodes up to `window` seconds.
     pub(super) fn new(nodes: &'a Nodes, gravity: DVec3, length: f64, window: f64) -> Self {
-        let end = nodes.t.partition_point(|&t| t <= window + 1e-12).saturating_sub(2).clamp(1, nodes.means.len());
+        let end =
+            nodes.t.partition_point(|&t| t <= window + 1e-12).saturating_sub(2).clamp(1, nodes.means.len());
         Self { nodes, gravity, length, end, one_sided: false }
     }
 
@@ -123,8 +124,9 @@ impl LeastSquares<UNKNOWNS> for TouchProblem<'_> {
         let residuals = self.residuals(point)?;
         let mut slopes = Vec::with_capacity(UNKNOWNS);
         for i in 0..UNKNOWNS {
-            let moved =
-                |h: f64| self.residuals(&self.retract(point, &Row::from_fn(|j, _| if i == j { h } else { 0.0 })));
+            let moved = |h: f64| {
+                self.residuals(&self.retract(point, &Row::from_fn(|j, _| if i == j { h } else { 0.0 })))
+            };
             let ahead = moved(DIFFERENCE)?;
             let (behind, apart) = if self.one_sided {
                 (residuals.clone(), DIFFERENCE)

@@ -20,7 +20,8 @@ const COARSE: LevenbergMarquardt =
     LevenbergMarquardt { iterations: 12, step_tolerance: 1e-5, damping: 1e-2, prior: 1e-5 };
 
 /// Fits as the window grows: few steps each, the data of the next window lead on.
-const FOLLOWING: LevenbergMarquardt = LevenbergMarquardt { iterations: 15, damping: 1e-5, prior: 0.0, ..COARSE };
+const FOLLOWING: LevenbergMarquardt =
+    LevenbergMarquardt { iterations: 15, damping: 1e-5, prior: 0.0, ..COARSE };
 
 pub(super) type Candidate = Fit<Guess, UNKNOWNS>;
 

@@ -97,7 +97,9 @@ impl TouchSeries {
         let mean = |node: usize| -> Contacts {
             let begin = node * stride - half;
             std::array::from_fn(|i| {
-                std::array::from_fn(|axis| (0..=stride).map(|j| weight(j) * self.contacts[begin + j][i][axis]).sum())
+                std::array::from_fn(|axis| {
+                    (0..=stride).map(|j| weight(j) * self.contacts[begin + j][i][axis]).sum()
+                })
             })
         };
         let curved = (0..=stride).map(|j| 0.5 * weight(j) * (j as f64 / stride as f64 - 0.5).powi(2)).sum();

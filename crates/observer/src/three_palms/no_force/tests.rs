@@ -42,8 +42,7 @@ fn general(duration: f64, rate: f64) -> (Simulation, SensorLog, Guess) {
     let (simulation, log) = run(body, inertia, duration, rate);
     let mut shape = FreeEllipsoid::numbers(AXES, DQuat::IDENTITY);
     shape[6..].copy_from_slice(&OFFSET.to_array());
-    let truth =
-        Guess { w: simulation.instants[0].w_WO, shape, inertia: numbers_of_inertia(inertia) };
+    let truth = Guess { w: simulation.instants[0].w_WO, shape, inertia: numbers_of_inertia(inertia) };
     (simulation, log, truth)
 }
 

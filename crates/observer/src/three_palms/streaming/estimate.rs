@@ -31,7 +31,11 @@ impl StreamOptions {
     pub(super) fn stride(&self) -> Result<usize, StreamError> {
         let positive = |what, value: f64| {
             let fine = value > 0.0 && value.is_finite();
-            if fine { Ok(()) } else { Err(StreamError::Option { what, value, needed: "positive and finite" }) }
+            if fine {
+                Ok(())
+            } else {
+                Err(StreamError::Option { what, value, needed: "positive and finite" })
+            }
         };
         positive("sample rate", self.sample_rate)?;
         positive("noise of contact positions", self.noise.contact)?;

@@ -28,7 +28,8 @@ impl Front {
     pub(super) fn advance(&mut self, body: &Falling, next: &Reading) {
         let h = next.t - self.at.t;
         let StartState { p_WCm, v_WCm, L_WO, R_WO } = self.state;
-        let force = |r: &Reading| -> DVec3 { (0..3).map(|i| r.node.forces[i] * r.node.palms[i].frame.n).sum() };
+        let force =
+            |r: &Reading| -> DVec3 { (0..3).map(|i| r.node.forces[i] * r.node.palms[i].frame.n).sum() };
         let torque = |r: &Reading, p: DVec3| -> DVec3 {
             (0..3).map(|i| (r.node.p_WC[i] - p).cross(r.node.forces[i] * r.node.palms[i].frame.n)).sum()
         };

@@ -2,6 +2,7 @@
 
 use super::search::Trial;
 use super::tracker::Tracker;
+use crate::least_squares::Fit;
 use crate::three_palms::momentum::Scales;
 use crate::three_palms::state_space::NodeInput;
 use crate::three_palms::track::Track;
@@ -33,5 +34,5 @@ pub(super) trait Kind<const N: usize> {
     /// The problem on the data so far.
     fn trial<'a>(&'a self, data: &'a Gathered, scales: Scales) -> Self::Trial<'a>;
     /// The observer that begins where the search ended.
-    fn tracker(&self, found: &Self::Point, scales: Scales) -> Option<Tracker<N>>;
+    fn tracker(&self, found: &Fit<Self::Point, N>, scales: Scales) -> Option<Tracker<N>>;
 }

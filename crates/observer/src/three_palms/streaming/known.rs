@@ -1,9 +1,9 @@
 //! A body of known mass and inertia: its 12 states, and the search for its motion.
 
 use super::kind::{Gathered, Kind};
-use super::search::Trial;
-use super::tracker::Tracker;
-use crate::core::Start;
+use super::search::{Trial, Verdict};
+use super::tracker::{Tracker, loose_information};
+use crate::core::{Model, Start};
 use crate::least_squares::Fit;
 use crate::three_palms::cold_start::{self, Round, Search, natural_time};
 use crate::three_palms::covariance::{NoiseLevel, Sampling};
@@ -15,6 +15,9 @@ use object_dynamics::MassProperties;
 
 /// Shortest track that a motion is taken from, in natural times.
 const SHORTEST: f64 = 3.0;
+
+/// Standard deviation of the worst known direction, in natural sizes, with which a motion is taken.
+const LARGEST_DEVIATION: f64 = 0.15;
 
 /// A known body.
 pub(super) struct Known {
@@ -37,14 +40,17 @@ impl Kind<UNKNOWNS> for Known {
 
     fn trial<'a>(&'a self, data: &'a Gathered, scales: Scales) -> KnownTrial<'a> {
         let (noise, mass) = (self.noise, &self.mass);
-        KnownTrial { search: Search { track: &data.track, mass, scales, noise, sampling: sampling(data.stride) } }
+        KnownTrial {
+            search: Search { track: &data.track, mass, scales, noise, sampling: sampling(data.stride) },
+        }
     }
 
-    fn tracker(&self, found: &StartState, scales: Scales) -> Option<Tracker<UNKNOWNS>> {
+    fn tracker(&self, found: &Fit<StartState, UNKNOWNS>, scales: Scales) -> Option<Tracker<UNKNOWNS>> {
         let parameters = Parameters::new(&self.mass);
         let model = ThreePalmModel::new(parameters, &[], self.gravity, self.noise, scales)?;
-        let start = Start::guess(model.state(found, &parameters));
-        Tracker::new(model, start).ok()
+        let state = model.state(&found.point, &parameters);
+        let information = loose_information(found, &model.scales());
+        Tracker::new(model, Start { state, information }).ok()
     }
 }
 
@@ -85,7 +91,8 @@ impl Trial<UNKNOWNS> for KnownTrial<'_> {
         self.search.problem(window)
     }
 
-    fn explains(&self, fit: &Fit<StartState, UNKNOWNS>) -> bool {
-        self.search.explains(fit)
+    fn judge(&self, fit: &Fit<StartState, UNKNOWNS>) -> Verdict {
+        let (explains, deviation) = self.search.judge(fit);
+        Verdict::new(explains, deviation, LARGEST_DEVIATION)
     }
 }

@@ -114,8 +114,11 @@ impl Pieces {
             &self.raw[middle],
             &self.raw[(middle + 1).min(self.raw.len() - 1)],
         );
-        let frame = PalmFrame::from_normal(here.palms[i].normal)
-            .map_err(|source| TrackError::Palm { palm: i + 1, t: here.t, source })?;
+        let frame = PalmFrame::from_normal(here.palms[i].normal).map_err(|source| TrackError::Palm {
+            palm: i + 1,
+            t: here.t,
+            source,
+        })?;
         // Times increase, so this is above zero.
         let time = after.t - before.t;
         let rate = |s: &Sample| s.palms[i].rate;

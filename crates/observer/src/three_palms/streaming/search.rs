@@ -6,6 +6,12 @@ use crate::three_palms::cold_start::{COARSE, FIRST, FOLLOWED, GROWTH, ROUNDS, Ro
 /// Steps that a candidate gets on each window, at most.
 const STEPS: usize = 25;
 
+/// Growth of the data after which a fit that is open is looked at again.
+const PATIENCE: f64 = 1.15;
+
+/// Share of the cost below which another step is not worth it.
+const SMALL_GAIN: f64 = 1e-3;
+
 /// What is searched for: `P` unknowns on the data so far.
 pub(super) trait Trial<const P: usize> {
     type Point: Copy;
@@ -23,8 +29,32 @@ pub(super) trait Trial<const P: usize> {
     fn starts(&self, round: Round, window: f64) -> Vec<Self::Point>;
     /// The fit of the data up to a time.
     fn problem(&self, window: f64) -> Self::Problem<'_>;
-    /// Whether a fit of all data leaves noise alone.
-    fn explains(&self, fit: &Fit<Self::Point, P>) -> bool;
+    /// What a fit of all data is worth.
+    fn judge(&self, fit: &Fit<Self::Point, P>) -> Verdict;
+}
+
+/// What a fit is worth.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Verdict {
+    /// It leaves noise alone, and little room for another one.
+    Taken,
+    /// It leaves noise alone, but so may others: more data must tell.
+    Open,
+    /// It leaves more than noise.
+    Refused,
+}
+
+impl Verdict {
+    /// Of a fit that explains the data or not, whose worst known direction has a deviation, in natural sizes. A body that
+    /// hardly moves is explained by many motions; then the deviation is large.
+    pub(super) fn new(explains: bool, deviation: f64, largest: f64) -> Self {
+        // What is not a number is not known.
+        match (explains, deviation < largest) {
+            (false, _) => Self::Refused,
+            (true, true) => Self::Taken,
+            (true, false) => Self::Open,
+        }
+    }
 }
 
 /// A search that is as far as its samples.
@@ -40,18 +70,53 @@ enum Stage<Point, const P: usize> {
     /// Fits the first window.
     First { window: f64, starts: Vec<Point>, fits: Vec<Fit<Point, P>>, work: Option<Work<Point, P>> },
     /// Follows the best as windows grow.
-    Following { fits: Vec<Fit<Point, P>>, work: Work<Point, P>, first: f64, window: f64 },
+    Following(Following<Point, P>),
+}
+
+/// Candidates that are followed, one after the other.
+struct Following<Point, const P: usize> {
+    fits: Vec<Fit<Point, P>>,
+    work: Work<Point, P>,
+    /// First window, s.
+    first: f64,
+    /// Window of the work, s.
+    window: f64,
+    /// Data beyond the window, as a factor, that are worth a larger one.
+    patience: f64,
 }
 
 /// A candidate under way: its fit, and the steps it had on this window. None before the first.
 struct Work<Point, const P: usize> {
     fit: Fit<Point, P>,
     steps: usize,
+    /// Share of the cost that the last step saved.
+    gain: f64,
 }
 
 impl<Point, const P: usize> Work<Point, P> {
     fn done(&self) -> bool {
-        self.steps >= STEPS || (self.steps > 0 && self.fit.status != FitStatus::OutOfIterations)
+        let small = self.gain < SMALL_GAIN || self.fit.status != FitStatus::OutOfIterations;
+        self.steps >= STEPS || (self.steps > 0 && small)
+    }
+
+    /// Of a candidate that is not to be worked on before the window grows.
+    fn rested(fit: Fit<Point, P>) -> Self {
+        Self { fit, steps: STEPS, gain: 0.0 }
+    }
+
+    /// After the next step.
+    fn stepped(self, solver: &LevenbergMarquardt, problem: &impl LeastSquares<P, Point = Point>) -> Self
+    where
+        Point: Clone,
+    {
+        let solver = LevenbergMarquardt { iterations: 2, damping: self.fit.damping, ..*solver };
+        let before = self.fit.normal.cost;
+        if self.steps == 0 {
+            let fit = solver.fit(problem, self.fit.point);
+            return Self { fit, steps: 1, gain: 1.0 };
+        }
+        let fit = solver.resume(problem, self.fit);
+        Self { gain: 1.0 - fit.normal.cost / before.max(f64::MIN_POSITIVE), fit, steps: self.steps + 1 }
     }
 }
 
@@ -65,12 +130,12 @@ impl<Point: Copy, const P: usize> StreamSearch<Point, P> {
         self.rounds
     }
 
-    /// One step: at most two linearisations of the data so far. Returns the point that explains them, once there is one.
-    pub(super) fn step<T: Trial<P, Point = Point>>(&mut self, trial: &T) -> Option<Point> {
+    /// One step: at most two linearisations of the data so far. Returns the fit that explains them, once there is one.
+    pub(super) fn step<T: Trial<P, Point = Point>>(&mut self, trial: &T) -> Option<Fit<Point, P>> {
         let (stage, found) = match std::mem::replace(&mut self.stage, Stage::Waiting) {
             Stage::Waiting => (self.begin(trial), None),
             Stage::First { window, starts, fits, work } => (first(trial, window, starts, fits, work), None),
-            Stage::Following { fits, work, first, window } => follow(trial, fits, work, first, window),
+            Stage::Following(following) => follow(trial, following),
         };
         self.stage = stage;
         found
@@ -103,7 +168,7 @@ fn first<T: Trial<P>, const P: usize>(
             fits.push(work.fit);
             None
         }
-        Some(work) => Some(Work { fit: one_step(&FIRST, &work.fit).resume(&problem, work.fit), steps: work.steps + 1 }),
+        Some(work) => Some(work.stepped(&FIRST, &problem)),
         None => None,
     };
     if work.is_some() {
@@ -111,52 +176,54 @@ fn first<T: Trial<P>, const P: usize>(
     }
     if let Some(start) = starts.pop() {
         let fit = LevenbergMarquardt { iterations: 2, ..FIRST }.fit(&problem, start);
-        return Stage::First { window, starts, fits, work: Some(Work { fit, steps: 1 }) };
+        return Stage::First { window, starts, fits, work: Some(Work { fit, steps: 1, gain: 1.0 }) };
     }
     fits.retain(|fit| fit.status != FitStatus::Failed);
     fits.sort_by(|a, b| a.normal.cost.total_cmp(&b.normal.cost));
     fits.truncate(FOLLOWED);
     fits.reverse();
     match fits.pop() {
-        Some(fit) => Stage::Following { fits, work: Work { fit, steps: STEPS }, first: window, window },
+        Some(fit) => {
+            let work = Work::rested(fit);
+            Stage::Following(Following { fits, work, first: window, window, patience: 1.0 })
+        }
         None => Stage::Waiting,
     }
 }
 
 fn follow<T: Trial<P>, const P: usize>(
     trial: &T,
-    mut fits: Vec<Fit<T::Point, P>>,
-    work: Work<T::Point, P>,
-    first: f64,
-    window: f64,
-) -> (Stage<T::Point, P>, Option<T::Point>) {
+    following: Following<T::Point, P>,
+) -> (Stage<T::Point, P>, Option<Fit<T::Point, P>>) {
+    let Following { mut fits, work, first, window, patience } = following;
+    let duration = trial.duration();
     if !work.done() {
-        let problem = trial.problem(window);
-        let solver = one_step(&COARSE, &work.fit);
-        let fit = if work.steps == 0 {
-            solver.fit(&problem, work.fit.point)
-        } else {
-            solver.resume(&problem, work.fit)
-        };
-        let work = Work { fit, steps: work.steps + 1 };
-        return (Stage::Following { fits, work, first, window }, None);
+        let work = work.stepped(&COARSE, &trial.problem(window));
+        return (Stage::Following(Following { fits, work, first, window, patience }), None);
     }
-    if window < trial.duration() {
-        let window = (window * GROWTH).min(trial.duration());
-        return (Stage::Following { fits, work: Work { steps: 0, ..work }, first, window }, None);
+    let short = duration < trial.shortest() * trial.natural_time();
+    if duration > window * patience {
+        let window = (window * GROWTH).min(duration);
+        let work = Work { steps: 0, ..work };
+        return (Stage::Following(Following { fits, work, first, window, patience: 1.0 }), None);
     }
-    if trial.duration() < trial.shortest() * trial.natural_time() {
+    if short || patience > 1.0 {
         // Waits for more data.
-        return (Stage::Following { fits, work, first, window }, None);
+        return (Stage::Following(Following { fits, work, first, window, patience }), None);
     }
-    if work.fit.status != FitStatus::Failed && trial.explains(&work.fit) {
-        return (Stage::Waiting, Some(work.fit.point));
-    }
-    match fits.pop() {
-        Some(fit) => {
-            (Stage::Following { fits, work: Work { fit, steps: STEPS }, first, window: first }, None)
+    let verdict =
+        if work.fit.status == FitStatus::Failed { Verdict::Refused } else { trial.judge(&work.fit) };
+    match (verdict, fits.pop()) {
+        (Verdict::Taken, _) => (Stage::Waiting, Some(work.fit)),
+        (Verdict::Open, last) => {
+            fits.extend(last);
+            (Stage::Following(Following { fits, work, first, window, patience: PATIENCE }), None)
         }
-        None => (Stage::Waiting, None),
+        (Verdict::Refused, Some(fit)) => {
+            let work = Work::rested(fit);
+            (Stage::Following(Following { fits, work, first, window: first, patience: 1.0 }), None)
+        }
+        (Verdict::Refused, None) => (Stage::Waiting, None),
     }
 }
 
@@ -164,9 +231,4 @@ fn follow<T: Trial<P>, const P: usize>(
 fn forwards(round: usize) -> Round {
     let rounds = ROUNDS.into_iter().filter(|r| !r.backwards);
     rounds.cycle().nth(round % ROUNDS.len()).unwrap_or(ROUNDS[0])
-}
-
-/// The next step of a fit.
-fn one_step<Point, const P: usize>(of: &LevenbergMarquardt, fit: &Fit<Point, P>) -> LevenbergMarquardt {
-    LevenbergMarquardt { iterations: 2, damping: fit.damping, ..*of }
 }

@@ -16,7 +16,7 @@ use object_dynamics::Sample;
 use std::collections::VecDeque;
 
 /// Longest track that a cold start works on, s; then it begins anew with later data.
-const LONGEST_SEARCH: f64 = 5.0;
+const LONGEST_SEARCH: f64 = 6.0;
 /// Fewest nodes that a cold start begins with.
 const FEWEST: usize = 8;
 /// Mean squared innovation, over what is expected, beyond which model and data contradict each other. A hundred channels
@@ -34,6 +34,8 @@ pub(super) struct Stream<K: Kind<N>, const N: usize> {
     search: StreamSearch<K::Point, N>,
     scales: Option<Scales>,
     tracking: Option<Tracking<N>>,
+    /// A motion that was found since, and has not caught up with the newest node.
+    next: Option<Tracking<N>>,
     touching: [bool; 3],
 }
 
@@ -43,6 +45,19 @@ struct Tracking<const N: usize> {
     /// Nodes that the tracker has not taken yet.
     nodes: VecDeque<(NodeInput, [bool; 3])>,
     latest: Option<Latest>,
+}
+
+impl<const N: usize> Tracking<N> {
+    /// Takes the tracker through the next node; a state once it has taken the newest.
+    fn advance(&mut self) -> Option<Tracked<N>> {
+        let (input, touching) = self.nodes.pop_front()?;
+        let tracked = self.tracker.take(input, touching);
+        self.nodes.is_empty().then_some(tracked)
+    }
+
+    fn contradicted(&self) -> bool {
+        self.tracker.innovation() > CONTRADICTION
+    }
 }
 
 /// The latest node that the tracker has taken, and the motion since.
@@ -65,6 +80,7 @@ impl<K: Kind<N>, const N: usize> Stream<K, N> {
             search: StreamSearch::new(),
             scales: None,
             tracking: None,
+            next: None,
             touching: [true; 3],
             stride,
             options,
@@ -95,9 +111,14 @@ impl<K: Kind<N>, const N: usize> Stream<K, N> {
             input.from = before.here;
         }
         self.before = Some(input);
-        match &mut self.tracking {
-            Some(tracking) => tracking.nodes.push_back((input, piece.touching)),
-            None => self.gather(piece, first, input),
+        for tracking in self.tracking.iter_mut().chain(&mut self.next) {
+            tracking.nodes.push_back((input, piece.touching));
+        }
+        // A motion that is contradicted is followed while another one is searched for.
+        if self.next.is_none() && self.tracking.as_ref().is_none_or(Tracking::contradicted) {
+            self.gather(piece, first, input);
+        } else {
+            self.restart();
         }
     }
 
@@ -136,34 +157,37 @@ impl<K: Kind<N>, const N: usize> Stream<K, N> {
         self.search = StreamSearch::new();
     }
 
-    /// What is to be done between the ends of blocks.
+    /// What is to be done between the ends of blocks: one thing a sample, what is most urgent first.
     fn work(&mut self) {
-        if self.tracking.is_some() {
-            self.track();
-            return;
+        if self.tracking.as_ref().is_some_and(|t| !t.nodes.is_empty()) {
+            let tracked = self.tracking.as_mut().and_then(Tracking::advance);
+            let latest = tracked.and_then(|tracked| self.follow(&tracked));
+            if let (Some(tracking), Some(latest)) = (&mut self.tracking, latest) {
+                tracking.latest = Some(latest);
+            }
+        } else if let Some(mut next) = self.next.take() {
+            match next.advance() {
+                // What contradicts its own data was the wrong motion.
+                Some(_) if next.contradicted() => self.restart(),
+                Some(tracked) => {
+                    next.latest = self.follow(&tracked);
+                    self.tracking = Some(next);
+                }
+                None => self.next = Some(next),
+            }
+        } else {
+            self.search();
         }
+    }
+
+    fn search(&mut self) {
         let Some(gathered) = self.gathered.as_ref().filter(|g| g.track.len() >= FEWEST) else { return };
         let scales = self.scales.unwrap_or_else(|| self.kind.scales(&gathered.track));
         self.scales = (self.search.rounds() > 0).then_some(scales);
         let Some(found) = self.search.step(&self.kind.trial(gathered, scales)) else { return };
         let Some(tracker) = self.kind.tracker(&found, scales) else { return };
         let nodes = self.gathered.take().map(|g| g.nodes).unwrap_or_default();
-        self.tracking = Some(Tracking { tracker, nodes, latest: None });
-    }
-
-    /// Takes the tracker through the next node.
-    fn track(&mut self) {
-        let Some(Tracking { tracker, nodes, .. }) = &mut self.tracking else { return };
-        let Some((input, touching)) = nodes.pop_front() else { return };
-        if !nodes.is_empty() {
-            tracker.catch_up(input, touching);
-            return;
-        }
-        let tracked = tracker.take(input, touching);
-        let latest = self.follow(&tracked);
-        if let Some(tracking) = &mut self.tracking {
-            tracking.latest = latest;
-        }
+        self.next = Some(Tracking { tracker, nodes, latest: None });
     }
 
     /// The motion from the latest node, one block before the newest piece's end, to the newest sample.
@@ -180,7 +204,11 @@ impl<K: Kind<N>, const N: usize> Stream<K, N> {
             front.advance(&body, next);
         }
         Some(Latest {
-            covariance: tracked.report.covariance.fixed_view::<MOTION_STATES, MOTION_STATES>(0, 0).into_owned(),
+            covariance: tracked
+                .report
+                .covariance
+                .fixed_view::<MOTION_STATES, MOTION_STATES>(0, 0)
+                .into_owned(),
             observed: tracked.report.rank == N,
             found: tracked.body(),
             body,
@@ -193,7 +221,7 @@ impl<K: Kind<N>, const N: usize> Stream<K, N> {
         let Some(tracking) = &self.tracking else { return self.from_rest(reading, lost) };
         let Some(latest) = &tracking.latest else { return self.from_rest(reading, lost) };
         let innovation = tracking.tracker.innovation();
-        let stage = if innovation > CONTRADICTION {
+        let stage = if tracking.contradicted() {
             StreamStage::Contradicted
         } else if latest.observed {
             StreamStage::Tracking

@@ -1,8 +1,9 @@
 //! The observer of the motion, node by node, with a test of its innovations.
 
-use crate::core::{Arrival, Model, NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start};
-use crate::three_palms::momentum::StartState;
 use super::estimate::StreamBody;
+use crate::core::{Arrival, Model, NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start};
+use crate::least_squares::Fit;
+use crate::three_palms::momentum::StartState;
 use crate::three_palms::state_space::{
     BODY, INERTIA_NUMBERS, MOTION_STATES, NodeInput, Parameters, ThreePalmModel, inertia_of_numbers,
 };
@@ -11,9 +12,15 @@ use nalgebra::{SMatrix, SVector};
 
 /// Blocks in the window: what comes before is carried along as a quadratic cost.
 pub(super) const WINDOW: usize = 12;
+/// Weight that what was known keeps from node to node: errors of linearisations long ago fade in some 40 s at 50 nodes a
+/// second. The motion itself is forgotten in a second or two anyway, since forces are noisy.
+const MEMORY_OF_NODES: f64 = 0.9995;
 /// Weight of a new channel in the running mean of normalised innovations: a memory of about a hundred, two thirds of a
 /// second at 50 blocks a second.
 const MEMORY: f64 = 0.01;
+/// Deviations to which the fit of the search is believed when its data are gone through again, with noise where it
+/// enters. Data are counted once, and an eighth of that again.
+const LOOSE: f64 = 3.0;
 /// Damping of a step: as a prior that knows the natural sizes, it keeps what is not observed from running away.
 const DAMPING: f64 = 1.0;
 /// A channel's squared innovation counts up to this many expected ones: an outlier alone is no evidence.
@@ -68,14 +75,13 @@ impl<const N: usize> Tracked<N> {
 
 impl<const N: usize> Tracker<N> {
     pub(super) fn new(model: ThreePalmModel<N>, start: Start<N>) -> Result<Self, ObserverError> {
-        let options =
-            NewtonOptions { window: WINDOW, steps: 1, damping: DAMPING, arrival: Arrival::Carry(1.0) };
+        let options = NewtonOptions {
+            window: WINDOW,
+            steps: 1,
+            damping: DAMPING,
+            arrival: Arrival::Carry(MEMORY_OF_NODES),
+        };
         Ok(Self { observer: NewtonObserver::new(model, options, start)?, innovation: 1.0 })
-    }
-
-    /// Takes a node of the past along the motion that was started from: what it says is gathered, nothing moves.
-    pub(super) fn catch_up(&mut self, input: NodeInput, touching: [bool; 3]) {
-        self.observer.append(sample(input, &touching));
     }
 
     /// Takes a node; conditions of palms without contact are not looked at.
@@ -116,6 +122,15 @@ impl<const N: usize> Tracker<N> {
             self.innovation += MEMORY * (square - self.innovation);
         }
     }
+}
+
+/// The information of a fit, believed to [`LOOSE`] of its deviations; `scales` are the natural sizes of its unknowns.
+pub(super) fn loose_information<Point, const N: usize>(
+    fit: &Fit<Point, N>,
+    scales: &SVector<f64, N>,
+) -> SMatrix<f64, N, N> {
+    let share = 1.0 / (LOOSE * fit.normal.rms()).powi(2);
+    SMatrix::from_fn(|i, j| fit.normal.information[(i, j)] * share / (scales[i] * scales[j]))
 }
 
 /// A node as the observer takes it: all conditions shall be zero, those of palms without contact do not count.

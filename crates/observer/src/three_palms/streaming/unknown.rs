@@ -4,8 +4,8 @@
 
 use super::kind::{Gathered, Kind};
 use super::known::sampling;
-use super::search::Trial;
-use super::tracker::{Tracker, sample};
+use super::search::{Trial, Verdict};
+use super::tracker::{Tracker, loose_information, sample};
 use crate::core::{ExtendedKalmanFilter, Model, Start};
 use crate::least_squares::{Fit, LeastSquares, NormalEquations};
 use crate::three_palms::cold_start::{EXPLAINED, Round, Search, natural_time, scales};
@@ -29,8 +29,8 @@ const SPIN: f64 = 0.5;
 /// Deviation to which the choice of body axes is held, rad.
 const HELD: f64 = 1e-4;
 
-/// Deviations of a fit that the test of its innovations starts from: those of the fit know nothing of process noise.
-const LOOSE: f64 = 5.0;
+/// Standard deviation of the worst known state, in natural sizes, with which a motion is taken.
+const LARGEST_DEVIATION: f64 = 0.03;
 /// Nodes after which innovations are looked at.
 const CHECKED: usize = 30;
 
@@ -45,8 +45,7 @@ pub(super) struct Unknown {
 /// A uniform ball of the scene's size that weighs what the palms carry in the mean over the first nodes.
 fn ball(track: &Track, gravity: DVec3, nodes: usize) -> Option<MassProperties> {
     let used = &track.nodes[..nodes.clamp(1, track.nodes.len())];
-    let force =
-        used.iter().flat_map(|n| (0..3).map(|i| n.forces[i] * n.palms[i].frame.n)).sum::<DVec3>();
+    let force = used.iter().flat_map(|n| (0..3).map(|i| n.forces[i] * n.palms[i].frame.n)).sum::<DVec3>();
     let mass = force.length() / used.len() as f64 / gravity.length();
     let mean = used[0].p_WC.iter().sum::<DVec3>() / 3.0;
     let radius = used[0].p_WC.iter().map(|c| c.distance(mean)).sum::<f64>() / 3.0;
@@ -72,12 +71,9 @@ impl Kind<STATES> for Unknown {
         UnknownTrial { kind: self, data, scales }
     }
 
-    fn tracker(&self, found: &State, scales: Scales) -> Option<Tracker<STATES>> {
+    fn tracker(&self, found: &Fit<State, STATES>, scales: Scales) -> Option<Tracker<STATES>> {
         let model = self.model(scales, self.noise)?;
-        let mut start = Start::guess(*found);
-        for axis in 9..12 {
-            start.information[(axis, axis)] = 1.0 / (HELD * HELD);
-        }
+        let start = believed(found, &model);
         Tracker::new(model, start).ok()
     }
 }
@@ -88,6 +84,15 @@ impl Unknown {
         let base = Parameters::new(&MassProperties::uniform_ellipsoid(1.0, DVec3::ONE).ok()?);
         ThreePalmModel::new(base, &BODY, self.gravity, noise, scales)
     }
+}
+
+/// What a fit says, loosely, with the choice of body axes held.
+fn believed(fit: &Fit<State, STATES>, model: &ThreePalmModel<STATES>) -> Start<STATES> {
+    let mut information = loose_information(fit, &model.scales());
+    for axis in 9..12 {
+        information[(axis, axis)] = 1.0 / (HELD * HELD);
+    }
+    Start { state: fit.point, information }
 }
 
 /// Body and motion on the data so far.
@@ -139,9 +144,11 @@ impl Trial<STATES> for UnknownTrial<'_> {
                 let mut starts = search.starts(window, Round { height, spin, ..round });
                 // A ball looks the same in all orientations.
                 starts.dedup_by(|a, b| a.L_WO.distance(b.L_WO) <= 1e-9 * b.L_WO.length());
-                all.extend(starts.iter().map(|start| {
-                    model.state(&StartState { R_WO: DQuat::IDENTITY, ..*start }, &parameters)
-                }));
+                all.extend(
+                    starts.iter().map(|start| {
+                        model.state(&StartState { R_WO: DQuat::IDENTITY, ..*start }, &parameters)
+                    }),
+                );
             }
         }
         all.reverse();
@@ -157,29 +164,25 @@ impl Trial<STATES> for UnknownTrial<'_> {
         BodyProblem { nodes: &self.data.nodes, end: end.count().max(2), model: self.noiseless() }
     }
 
-    /// A filter is taken through all nodes from the point found, believed to [`LOOSE`] of its deviations: its
+    /// A filter is taken through all nodes from the point found, believed loosely: its
     /// innovations must be those of the noise.
-    fn explains(&self, fit: &Fit<State, STATES>) -> bool {
-        let Some(model) = self.kind.model(self.scales, self.kind.noise) else { return false };
+    fn judge(&self, fit: &Fit<State, STATES>) -> Verdict {
+        let Some(model) = self.kind.model(self.scales, self.kind.noise) else { return Verdict::Refused };
         let natural = model.scales();
-        let share = 1.0 / (LOOSE * fit.normal.rms()).powi(2);
-        let mut information = SMatrix::from_fn(|i, j| {
-            fit.normal.information[(i, j)] * share / (natural[i] * natural[j])
-        });
-        for axis in 9..12 {
-            information[(axis, axis)] = 1.0 / (HELD * HELD);
-        }
-        let Ok(mut filter) = ExtendedKalmanFilter::new(model, &Start { state: fit.point, information }) else {
-            return false;
+        let start = believed(fit, &model);
+        let Ok(mut filter) = ExtendedKalmanFilter::new(model, &start) else {
+            return Verdict::Refused;
         };
-        let mut worst: f64 = 0.0;
+        let (mut worst, mut deviation): (f64, f64) = (0.0, f64::INFINITY);
         for (k, (input, touching)) in self.data.nodes.iter().enumerate() {
             filter.push(&sample(*input, touching));
             if (k + 1) % CHECKED == 0 || k + 1 == self.data.nodes.len() {
-                worst = worst.max(filter.estimate().report.residual);
+                let report = filter.estimate().report;
+                worst = worst.max(report.residual);
+                deviation = report.deviations().component_div(&natural).amax();
             }
         }
-        worst < EXPLAINED
+        Verdict::new(worst < EXPLAINED, deviation, LARGEST_DEVIATION)
     }
 }
 
