@@ -17,14 +17,15 @@ mod three_palms;
 pub use core::{
     Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Model, NewtonEstimate,
     NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start, Status, describe_direction, rk4,
-    rk4_linearised, solve_batch, solve_batch_from,
+    rk4_linearised, solve_batch, solve_batch_along, solve_batch_from,
 };
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
 pub use three_palms::{
-    Closure, EstimateError, Evidence, KnownBody, KnownTouch, MotionEstimate, MotionState, MotionStream,
-    NoForceError, NoForceEstimate, NoForceEvidence, NoiseLevel, PaperError, PaperMethod, PaperReconstruction,
-    PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState, StreamBody,
-    StreamError, StreamEstimate, StreamOptions, StreamStage, TouchShape, Track, TrackError, WeakDirection,
-    equivalent_orientations, estimate_motion, estimate_without_forces, integrate_paper_system,
+    BodyEstimate, Closure, EstimateError, Evidence, IdentifiedBody, KnownBody, KnownTouch, MotionEstimate,
+    MotionState, MotionStream, NoForceError, NoForceEstimate, NoForceEvidence, NoiseLevel, PaperError,
+    PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales,
+    StartState, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage, TouchShape, Track,
+    TrackError, UnknownBody, WeakDirection, equivalent_orientations, estimate_body, estimate_motion,
+    estimate_without_forces, integrate_paper_system,
 };

@@ -65,6 +65,27 @@ pub fn solve_batch<Mo: Model<N, M>, const N: usize, const M: usize>(
     solve_batch_from(model, samples, start, start.state, options)
 }
 
+/// As [`solve_batch`], with an iteration that begins at the given `states`, one for each sample: for systems that the flow
+/// alone leads astray from any start. Without process noise only the first of them counts.
+///
+/// # Errors
+/// As [`solve_batch`], and [`ObserverError::TooFewSamples`] for fewer states than samples.
+pub fn solve_batch_along<Mo: Model<N, M>, const N: usize, const M: usize>(
+    model: &Mo,
+    samples: &[Sample<Mo::Input, M>],
+    start: &Start<N>,
+    states: &[SVector<f64, N>],
+    options: &BatchOptions,
+) -> Result<BatchSolution<N>, ObserverError> {
+    if states.len() < samples.len() {
+        return Err(ObserverError::TooFewSamples { found: states.len(), needed: samples.len() });
+    }
+    check(samples, start)?;
+    let mut window = Window::new(start, samples.len());
+    window.set_states(states);
+    iterate(model, samples, window, options)
+}
+
 /// As [`solve_batch`], with an iteration that begins at `first` rather than at the mean of the prior.
 ///
 /// # Errors
@@ -76,17 +97,33 @@ pub fn solve_batch_from<Mo: Model<N, M>, const N: usize, const M: usize>(
     first: SVector<f64, N>,
     options: &BatchOptions,
 ) -> Result<BatchSolution<N>, ObserverError> {
-    if samples.len() < 2 {
-        return Err(ObserverError::TooFewSamples { found: samples.len(), needed: 2 });
-    }
-    check_start(start)?;
-    let scales = model.scales();
+    check(samples, start)?;
     let mut window = Window::new(start, samples.len());
     for sample in samples {
         window.append(model, &sample.input);
     }
     window.roll_out(model, samples.iter(), first);
-    let free_noise = model.process_noise(&first, &samples[1].input).is_some();
+    iterate(model, samples, window, options)
+}
+
+fn check<I, const N: usize, const M: usize>(
+    samples: &[Sample<I, M>],
+    start: &Start<N>,
+) -> Result<(), ObserverError> {
+    if samples.len() < 2 {
+        return Err(ObserverError::TooFewSamples { found: samples.len(), needed: 2 });
+    }
+    check_start(start)
+}
+
+fn iterate<Mo: Model<N, M>, const N: usize, const M: usize>(
+    model: &Mo,
+    samples: &[Sample<Mo::Input, M>],
+    mut window: Window<N, M>,
+    options: &BatchOptions,
+) -> Result<BatchSolution<N>, ObserverError> {
+    let scales = model.scales();
+    let free_noise = model.process_noise(window.state(0), &samples[1].input).is_some();
     let mut damping = options.damping;
     let mut iterations = 1;
     window.linearise(model, samples.iter());

@@ -9,7 +9,7 @@ mod report;
 mod rk4;
 mod window;
 
-pub use batch::{BatchOptions, BatchSolution, solve_batch, solve_batch_from};
+pub use batch::{BatchOptions, BatchSolution, solve_batch, solve_batch_along, solve_batch_from};
 pub use ekf::{EkfEstimate, ExtendedKalmanFilter};
 pub use model::{Model, Sample};
 pub use newton::{Arrival, NewtonEstimate, NewtonObserver, NewtonOptions};

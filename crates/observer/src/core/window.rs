@@ -46,6 +46,21 @@ struct Node<const N: usize, const M: usize> {
 }
 
 impl<const N: usize, const M: usize> Node<N, M> {
+    fn new(x: SVector<f64, N>) -> Self {
+        let zero = SMatrix::zeros();
+        Self {
+            x,
+            at: x,
+            transition: zero,
+            defect: SVector::zeros(),
+            noise: None,
+            own_information: zero,
+            own_vector: SVector::zeros(),
+            information: zero,
+            vector: SVector::zeros(),
+        }
+    }
+
     /// Covariance here, all data considered, from that of the node before.
     fn carried(&self, before: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
         let p = match &self.noise {
@@ -160,18 +175,13 @@ impl<const N: usize, const M: usize> Window<N, M> {
     /// Appends a sample; its state follows from the last one by the flow.
     pub(super) fn append<Mo: Model<N, M>>(&mut self, model: &Mo, input: &Mo::Input) {
         let x = self.nodes.back().map_or(self.prior.at, |last| model.advance(&last.x, input));
-        let zero = SMatrix::zeros();
-        self.nodes.push_back(Node {
-            x,
-            at: x,
-            transition: zero,
-            defect: SVector::zeros(),
-            noise: None,
-            own_information: zero,
-            own_vector: SVector::zeros(),
-            information: zero,
-            vector: SVector::zeros(),
-        });
+        self.nodes.push_back(Node::new(x));
+    }
+
+    /// Nodes at the given states, in place of all that there were.
+    pub(super) fn set_states(&mut self, states: &[SVector<f64, N>]) {
+        self.nodes.clear();
+        self.nodes.extend(states.iter().map(|&x| Node::new(x)));
     }
 
     /// Sets the first state and lets the flow fill in the others.

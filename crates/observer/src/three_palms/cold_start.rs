@@ -250,7 +250,7 @@ pub(super) fn rest_state(track: &Track, window: f64) -> StartState {
 }
 
 /// The velocity with the given parts along the palms' normals; zero for palms that do not determine one.
-fn from_normal_speeds(node: &Node, speeds: DVec3) -> DVec3 {
+pub(super) fn from_normal_speeds(node: &Node, speeds: DVec3) -> DVec3 {
     PalmTriple::new(node.palms.map(|p| p.frame.n)).map_or(DVec3::ZERO, |palms| palms.solve(speeds))
 }
 

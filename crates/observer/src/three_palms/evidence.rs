@@ -1,6 +1,7 @@
 use super::covariance::NoiseLevel;
 use super::momentum::Row;
 use glam::DVec3;
+use nalgebra::SVector;
 use std::fmt;
 
 /// What an estimate rests on.
@@ -45,6 +46,10 @@ pub enum Quantity {
     AngularMomentum,
     /// Orientation of the principal axes.
     Orientation,
+    /// Mass.
+    Mass,
+    /// Inertia tensor.
+    Inertia,
 }
 
 /// The combination of unknowns that the data determine worst, named by its largest part.
@@ -72,6 +77,19 @@ impl WeakDirection {
         };
         Self { quantity, axis: block(largest).normalize_or_zero(), deviation }
     }
+
+    /// Names a unit vector of the scaled unknowns of a body of which nothing is known.
+    pub(super) fn of_body(direction: &SVector<f64, 16>, deviation: f64) -> Self {
+        let inertia = direction.fixed_rows::<6>(10).norm();
+        let block = |k: usize| DVec3::new(direction[3 * k], direction[3 * k + 1], direction[3 * k + 2]);
+        let motion = (0..3).fold(0.0, |m: f64, k| m.max(block(k).length()));
+        if motion < inertia.max(direction[9].abs()) {
+            let quantity = if inertia > direction[9].abs() { Quantity::Inertia } else { Quantity::Mass };
+            return Self { quantity, axis: DVec3::ZERO, deviation };
+        }
+        let row = Row::from_fn(|i, _| if i < 9 { direction[i] } else { 0.0 });
+        Self::new(&row, deviation)
+    }
 }
 
 impl fmt::Display for WeakDirection {
@@ -81,7 +99,12 @@ impl fmt::Display for WeakDirection {
             Quantity::Velocity => ("velocity", "along"),
             Quantity::AngularMomentum => ("angular velocity", "about"),
             Quantity::Orientation => ("orientation", "about"),
+            Quantity::Mass => ("mass", ""),
+            Quantity::Inertia => ("inertia tensor", ""),
         };
+        if self.axis == DVec3::ZERO {
+            return f.write_str(name);
+        }
         let DVec3 { x, y, z } = self.axis;
         write!(f, "{name} {preposition} ({x:.2}, {y:.2}, {z:.2})")
     }
@@ -114,6 +137,11 @@ pub enum Reason {
         /// Largest shift of an unknown, in its standard deviations.
         shift: f64,
     },
+    /// Contacts and forces had to be corrected by more than their noise.
+    Inconsistent {
+        /// Chi-squared over its degrees of freedom; about 1 when all is as stated.
+        misfit: f64,
+    },
     /// The motion found leaves more than noise.
     Misfit {
         /// Root mean square of the contact residuals, m/s.
@@ -144,6 +172,12 @@ impl fmt::Display for Reason {
                 "noise of this size shifts the estimate by {shift:.1} of its standard deviations: the motion is too \
                  slow or too short for these sensors"
             ),
+            Self::Inconsistent { misfit } => write!(
+                f,
+                "contacts and forces had to be corrected by {:.2} times their noise: a wrong motion, a wrong constant of \
+                 body or sensors (a force gain, say), or more noise than was stated",
+                misfit.sqrt()
+            ),
             Self::Misfit { residual, explained } if !explained.is_finite() => write!(
                 f,
                 "the motion found leaves {residual:.2e} m/s of the contact condition, beyond what any noise explains: \
@@ -159,6 +193,14 @@ impl fmt::Display for Reason {
 }
 
 impl Reliability {
+    /// One more reason.
+    pub(super) fn add(&mut self, reason: Reason) {
+        match self {
+            Self::Reliable => *self = Self::Unreliable(vec![reason]),
+            Self::Unreliable(reasons) => reasons.push(reason),
+        }
+    }
+
     /// Whether the estimate may be believed to within its covariance.
     #[must_use]
     pub fn is_reliable(&self) -> bool {

@@ -8,17 +8,20 @@ mod curves;
 mod estimate;
 mod evidence;
 mod momentum;
+mod most_probable;
 mod no_force;
 mod noise;
 mod paper_method;
 mod paper_system;
 mod quadrature;
 mod random;
+mod refine;
 mod sensitivity;
 #[allow(dead_code, reason = "wip")]
 mod state_space;
 mod streaming;
 mod track;
+mod unknown_body;
 
 pub use covariance::NoiseLevel;
 pub use estimate::{EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion};
@@ -32,3 +35,4 @@ pub use paper_method::{
 };
 pub use streaming::{MotionStream, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 pub use track::{Track, TrackError};
+pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body};

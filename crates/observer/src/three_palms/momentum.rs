@@ -3,12 +3,13 @@
 //! p_i = 0`, which no derivative of the data enters.
 
 use super::covariance::Linearised;
-use super::sensitivity::{Sensitivity, Turning, cross_matrix, exponential};
+use super::sensitivity::{Sensitivity, Turning, cross_matrix, exponential, logarithm};
 use super::track::{Integrals, Track};
 use crate::least_squares::{LeastSquares, NormalEquations};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 use object_dynamics::MassProperties;
+use std::ops::Range;
 
 /// Number of unknowns: centre of mass, velocity, angular momentum, orientation.
 pub(super) const UNKNOWNS: usize = 12;
@@ -109,22 +110,34 @@ impl<'a> MomentumProblem<'a> {
         Kinematics {
             v: start.v_WCm + velocity,
             p: start.p_WCm + start.v_WCm * t + position,
-            L: momentum(start, &[impulse, first_moment, moment]),
+            L: momentum(start, &[impulse, first_moment, moment, DVec3::ZERO]),
         }
     }
 
     /// Walks the orientation along the track: calls `visit(k, q, middle)` at each sample, with the orientation there
     /// and at the middle of the step that led to it.
-    fn walk(&self, start: &StartState, mut visit: impl FnMut(usize, DQuat, DQuat)) {
+    fn walk(&self, start: &StartState, visit: impl FnMut(usize, DQuat, DQuat)) {
+        self.walk_part(start, start.R_WO, 0..self.end, visit);
+    }
+
+    /// The same over some of the samples, with the orientation `q` at the first of them.
+    fn walk_part(
+        &self,
+        start: &StartState,
+        q: DQuat,
+        samples: Range<usize>,
+        mut visit: impl FnMut(usize, DQuat, DQuat),
+    ) {
         let inverse = self.mass.inverse_inertia();
         let rate = |q: DQuat, L: DVec3| {
             let w = inverse * (q.inverse() * L);
             q * DQuat::from_xyzw(0.5 * w.x, 0.5 * w.y, 0.5 * w.z, 0.0)
         };
-        let mut q = start.R_WO.normalize();
-        let mut L = start.L_WO;
-        visit(0, q, q);
-        for k in 1..self.end {
+        let first = samples.start;
+        let mut q = q.normalize();
+        let mut L = self.kinematics(start, first).L;
+        visit(first, q, q);
+        for k in first + 1..samples.end {
             let h = self.track.t[k] - self.track.t[k - 1];
             let middle_L = momentum(start, &self.track.middle[k - 1]);
             let end_L = self.kinematics(start, k).L;
@@ -137,6 +150,73 @@ impl<'a> MomentumProblem<'a> {
             L = end_L;
             visit(k, q, q3);
         }
+    }
+
+    /// Motion at every sample, through given states at some of them (`nodes`, ascending, the first and the last sample
+    /// among them): between two of them as the data say, with what is then missing at the second spread evenly.
+    pub(super) fn motion_through(&self, nodes: &[usize], states: &[StartState]) -> Vec<MotionState> {
+        let times: Vec<f64> = self.track.times().collect();
+        let mut all = Vec::with_capacity(self.end);
+        for (pair, ends) in nodes.windows(2).zip(states.windows(2)) {
+            let (from, to) = (pair[0], pair[1]);
+            let start = self.start_through(from, &ends[0]);
+            let mut part = Vec::with_capacity(to - from + 1);
+            self.walk_part(&start, ends[0].R_WO, from..to + 1, |k, q, _| {
+                let at = self.kinematics(&start, k);
+                part.push(StartState { p_WCm: at.p, v_WCm: at.v, L_WO: at.L, R_WO: q });
+            });
+            let Some(reached) = part.last().copied() else { continue };
+            let missing = (
+                ends[1].p_WCm - reached.p_WCm,
+                ends[1].v_WCm - reached.v_WCm,
+                ends[1].L_WO - reached.L_WO,
+                logarithm(ends[1].R_WO * reached.R_WO.inverse()),
+            );
+            // Each node belongs to the interval after it, the last to the one before.
+            let count = if to + 1 == self.end { part.len() } else { part.len() - 1 };
+            for (j, state) in part.iter().take(count).enumerate() {
+                let k = from + j;
+                let share = (self.track.t[k] - self.track.t[from]) / (self.track.t[to] - self.track.t[from]);
+                let q = exponential(missing.3 * share) * state.R_WO;
+                let L = state.L_WO + missing.2 * share;
+                all.push(MotionState {
+                    t: times[k],
+                    p_WCm: state.p_WCm + missing.0 * share,
+                    R_WO: q,
+                    v_WCm: state.v_WCm + missing.1 * share,
+                    w_WO: q * (self.mass.inverse_inertia() * (q.inverse() * L)),
+                });
+            }
+        }
+        all
+    }
+
+    /// The start, orientation apart, from which the data lead through a state at sample `k`.
+    fn start_through(&self, k: usize, state: &StartState) -> StartState {
+        let t = self.track.t[k];
+        let Integrals { impulse, first_moment, moment, velocity, position, .. } = self.track.integrals[k];
+        let v_WCm = state.v_WCm - velocity;
+        let p_WCm = state.p_WCm - v_WCm * t - position;
+        let L_WO = state.L_WO - moment + p_WCm.cross(impulse) + v_WCm.cross(first_moment);
+        StartState { p_WCm, v_WCm, L_WO, R_WO: state.R_WO }
+    }
+
+    /// Root mean square of the contact conditions along a motion, and what contact noise of the given deviation leaves of
+    /// it, m/s.
+    pub(super) fn residuals_along(&self, motion: &[MotionState], noise: f64) -> (Vec<[f64; 3]>, f64) {
+        let mut expected = 0.0;
+        let residuals = motion
+            .iter()
+            .enumerate()
+            .map(|(k, m)| {
+                std::array::from_fn(|i| {
+                    let [a, b] = self.by_contact(k, i, m.w_WO);
+                    expected += noise * noise * (a * a + b * b);
+                    self.residual(k, i, &Kinematics { v: m.v_WCm, p: m.p_WCm, L: DVec3::ZERO }, m.w_WO)
+                })
+            })
+            .collect();
+        (residuals, (expected / (3 * motion.len().max(1)) as f64).sqrt())
     }
 
     /// Contact condition of palm `i` at sample `k`, m/s.
@@ -290,8 +370,8 @@ fn flow(here: &Turning, force: DVec3) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
     flow
 }
 
-/// `L0 + moment - cm0 x impulse - v0 x first_moment` from `[impulse, first moment, moment]`.
-fn momentum(start: &StartState, [impulse, first_moment, moment]: &[DVec3; 3]) -> DVec3 {
+/// `L0 + moment - cm0 x impulse - v0 x first_moment` from `[impulse, first moment, moment, ..]`.
+pub(super) fn momentum(start: &StartState, [impulse, first_moment, moment, _]: &[DVec3; 4]) -> DVec3 {
     start.L_WO + *moment - start.p_WCm.cross(*impulse) - start.v_WCm.cross(*first_moment)
 }
 

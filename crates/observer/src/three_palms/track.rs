@@ -84,18 +84,23 @@ pub(super) struct Integrals {
     pub(super) moment: DVec3,
     pub(super) velocity: DVec3,
     pub(super) position: DVec3,
-    /// Rates of impulse, first moment and moment: for interpolation between samples.
-    rates: [DVec3; 3],
+    /// `-d moment / d(1 / mass)`: integral of the travel by the impulses of a unit mass, times the force.
+    pub(super) curl: DVec3,
+    /// Rates of impulse, first moment, moment and curl: for interpolation between samples.
+    rates: [DVec3; 4],
 }
 
 impl Integrals {
-    /// Impulse, first moment and moment a while after these, which belong to the time `t0`, from those that begin here.
-    fn after(&self, t0: f64, local: &[DVec3; 3]) -> [DVec3; 3] {
-        let [impulse, first_moment, moment] = *local;
+    /// Impulse, first moment, moment and curl a while after these, which belong to the time `t0` of a body of `mass` under
+    /// `gravity`, from those that begin here.
+    fn after(&self, t0: f64, mass: f64, gravity: DVec3, local: &[DVec3; 4]) -> [DVec3; 4] {
+        let [impulse, first_moment, moment, curl] = *local;
+        let travel = (self.position - 0.5 * gravity * t0 * t0) * mass;
         [
             self.impulse + impulse,
             self.first_moment + impulse * t0 + first_moment,
             self.moment + moment - self.position.cross(impulse) - self.velocity.cross(first_moment),
+            self.curl + curl + travel.cross(impulse) + self.impulse.cross(first_moment),
         ]
     }
 }
@@ -106,8 +111,8 @@ pub struct Track {
     pub(super) t: Vec<f64>,
     pub(super) nodes: Vec<Node>,
     pub(super) integrals: Vec<Integrals>,
-    /// Impulse, first moment and moment half-way between each node and the next.
-    pub(super) middle: Vec<[DVec3; 3]>,
+    /// Impulse, first moment, moment and curl half-way between each node and the next.
+    pub(super) middle: Vec<[DVec3; 4]>,
     pub(super) mass: f64,
     pub(super) gravity: DVec3,
     start: f64,
@@ -159,6 +164,8 @@ impl Track {
             travel.iter().zip(&t).map(|(x, t)| 0.5 * gravity * *t * *t + *x / mass).collect();
         let moment_rate: Vec<DVec3> = (0..t.len()).map(|k| torque[k] - position[k].cross(force[k])).collect();
         let moment = running_integral(&t, &moment_rate, DVec3::ZERO);
+        let curl_rate: Vec<DVec3> = (0..t.len()).map(|k| travel[k].cross(force[k])).collect();
+        let curl = running_integral(&t, &curl_rate, DVec3::ZERO);
         let integrals: Vec<Integrals> = (0..t.len())
             .map(|k| Integrals {
                 impulse: impulse[k],
@@ -166,11 +173,31 @@ impl Track {
                 moment: moment[k],
                 velocity: gravity * t[k] + impulse[k] / mass,
                 position: position[k],
-                rates: [force[k], timed[k], moment_rate[k]],
+                curl: curl[k],
+                rates: [force[k], timed[k], moment_rate[k], curl_rate[k]],
             })
             .collect();
         let middle = (1..t.len()).map(|k| interpolate(&t, &integrals, 0.5 * (t[k - 1] + t[k]), k)).collect();
         Self { t, nodes, integrals, middle, mass, gravity, start }
+    }
+
+    /// The same track, thinned or not, for a body of another mass, kg.
+    pub(super) fn of_mass(&self, mass: f64) -> Self {
+        let excess = 1.0 / mass - 1.0 / self.mass;
+        let mut all = self.clone();
+        all.mass = mass;
+        for (k, x) in all.integrals.iter_mut().enumerate() {
+            let fall = 0.5 * self.gravity * self.t[k] * self.t[k];
+            let scale = self.mass / mass;
+            x.velocity += excess * x.impulse;
+            x.position = fall + (x.position - fall) * scale;
+            x.moment -= excess * x.curl;
+            x.rates[2] -= excess * x.rates[3];
+        }
+        for x in &mut all.middle {
+            x[2] -= excess * x[3];
+        }
+        all
     }
 
     /// Other contacts and forces at the same times.
@@ -223,19 +250,22 @@ impl Track {
         let u = piece.t[k];
         let next = piece.t.partition_point(|&t| t < 0.5 * u).clamp(1, piece.t.len() - 1);
         let halfway = interpolate(&piece.t, &piece.integrals, 0.5 * u, next);
-        self.middle.push(base.after(t0, &halfway));
-        let [impulse, first_moment, moment] =
-            base.after(t0, &[local.impulse, local.first_moment, local.moment]);
+        let (mass, gravity) = (self.mass, self.gravity);
+        self.middle.push(base.after(t0, mass, gravity, &halfway));
+        let local_values = [local.impulse, local.first_moment, local.moment, local.curl];
+        let [impulse, first_moment, moment, curl] = base.after(t0, mass, gravity, &local_values);
         let force = local.rates[0];
         let position = base.position + base.velocity * u + local.position;
         let turning = local.rates[2] - (base.position + base.velocity * u).cross(force);
+        let travel = (position - 0.5 * gravity * (t0 + u) * (t0 + u)) * mass;
         self.integrals.push(Integrals {
             impulse,
             first_moment,
             moment,
             velocity: base.velocity + local.velocity,
             position,
-            rates: [force, force * (t0 + u), turning],
+            curl,
+            rates: [force, force * (t0 + u), turning, travel.cross(force)],
         });
         self.t.push(t0 + u);
         self.nodes.push(node);
@@ -311,12 +341,12 @@ fn sum(term: impl Fn(usize) -> DVec3) -> DVec3 {
     term(0) + term(1) + term(2)
 }
 
-/// Cubic Hermite interpolation of impulse, first moment and moment between samples `next - 1` and `next`.
-fn interpolate(t: &[f64], integrals: &[Integrals], at: f64, next: usize) -> [DVec3; 3] {
+/// Cubic Hermite interpolation of impulse, first moment, moment and curl between samples `next - 1` and `next`.
+fn interpolate(t: &[f64], integrals: &[Integrals], at: f64, next: usize) -> [DVec3; 4] {
     let (a, b) = (&integrals[next - 1], &integrals[next]);
     let h = t[next] - t[next - 1];
     let s = (at - t[next - 1]) / h;
-    let values = |x: &Integrals| [x.impulse, x.first_moment, x.moment];
+    let values = |x: &Integrals| [x.impulse, x.first_moment, x.moment, x.curl];
     let (va, vb) = (values(a), values(b));
     let (s2, s3) = (s * s, s * s * s);
     std::array::from_fn(|i| {

@@ -4,6 +4,7 @@ use super::input::{NodeInput, PalmTouch, PalmWrench, Touch, Wrench};
 use crate::three_palms::quadrature::running_integral;
 use crate::three_palms::track::Track;
 use glam::DVec3;
+use nalgebra::{Matrix3, Vector3};
 use std::ops::{Add, Mul, Range};
 
 /// Running integrals for one palm at one time, with the first moment about the start of the track.
@@ -60,36 +61,62 @@ impl<'a> Series<'a> {
     }
 }
 
-/// Nodes at every `stride`-th sample and at the last one, each with the samples that are nearest to it.
-pub(crate) fn block_inputs(track: &Track, stride: usize) -> Vec<NodeInput> {
-    let stride = stride.max(1);
-    let last = track.len() - 1;
-    let mut at: Vec<usize> = (0..last).step_by(stride).collect();
-    // No interval of less than half a block at the end.
-    if at.len() > 1 && at.last().is_some_and(|k| 2 * (last - k) < stride) {
-        at.pop();
+/// The samples of one block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Block {
+    /// First sample.
+    pub(crate) start: usize,
+    /// Samples before and after the one in the middle, where the node stands.
+    pub(crate) reach: usize,
+}
+
+impl Block {
+    /// Sample of the node.
+    pub(crate) fn node(&self) -> usize {
+        self.start + self.reach
     }
-    at.push(last);
-    let middle = |k: usize| (at[k] + at[k + 1]).div_ceil(2);
-    let touches: Vec<Touch> = (0..at.len())
-        .map(|k| {
-            let start = if k == 0 { 0 } else { middle(k - 1) };
-            let end = if k + 1 == at.len() { last + 1 } else { middle(k) };
-            touch(track, at[k], start..end)
-        })
-        .collect();
-    let touches = with_rates(track, &at, touches);
+
+    fn samples(&self) -> Range<usize> {
+        self.start..self.start + 2 * self.reach + 1
+    }
+}
+
+/// Cuts samples into blocks of about `stride`: an odd number in each, so that the node is the mean time of its block and
+/// no acceleration (forces are noisy) is needed to bring the mean to the node. The first and the last sample stand alone:
+/// there the motion is wanted.
+pub(crate) fn blocks(samples: usize, stride: usize) -> Vec<Block> {
+    let reach = stride.saturating_sub(1) / 2;
+    let single = |start: usize| Block { start, reach: 0 };
+    let mut all = vec![single(0)];
+    let last = samples.saturating_sub(1);
+    let mut start = 1;
+    while start < last {
+        let reach = reach.min((last - start - 1) / 2);
+        all.push(Block { start, reach });
+        start += 2 * reach + 1;
+    }
+    if last > 0 {
+        all.push(single(last));
+    }
+    all
+}
+
+/// Inputs of the nodes of some blocks. Contacts in derivatives, and forces and torques in the curvature of the motion over
+/// a block, are smoothed over `reach` seconds on either side.
+pub(crate) fn block_inputs(track: &Track, blocks: &[Block], reach: f64) -> Vec<NodeInput> {
+    let t: Vec<f64> = blocks.iter().map(|b| track.t[b.node()]).collect();
+    let touches: Vec<Touch> = blocks.iter().map(|block| touch(track, block)).collect();
+    let touches = smoothed(&t, touches, reach);
     let series: [Series<'_>; 3] = std::array::from_fn(|palm| Series::new(track, palm));
-    let spacing = track.duration() / last as f64;
-    (0..at.len())
+    (0..blocks.len())
         .map(|k| {
-            let (from, here) = (touches[k.saturating_sub(1)], touches[k]);
-            let start = track.t[at[k.saturating_sub(1)]];
-            let duration = track.t[at[k]] - start;
+            let before = k.saturating_sub(1);
+            let (from, here) = (touches[before], touches[k]);
+            let duration = t[k] - t[before];
             NodeInput {
                 duration,
-                spacing,
-                halves: halves(&series, start, duration, &from, &here),
+                halves: halves(&series, t[before], duration, &from, &here),
+                correction: DVec3::ZERO,
                 from,
                 here,
             }
@@ -124,9 +151,10 @@ fn halves(
     })
 }
 
-/// Means and moments over a block about the sample `at`.
-fn touch(track: &Track, at: usize, block: Range<usize>) -> Touch {
-    let share = 1.0 / block.len() as f64;
+/// Means and moments over a block.
+fn touch(track: &Track, block: &Block) -> Touch {
+    let (at, count) = (block.node(), block.samples().len() as f64);
+    let share = 1.0 / count;
     let palms = std::array::from_fn(|i| {
         let palm = &track.nodes[at].palms[i];
         let zero = [DVec3::ZERO; 3];
@@ -135,11 +163,13 @@ fn touch(track: &Track, at: usize, block: Range<usize>) -> Touch {
             rate: palm.rate,
             normal: zero,
             arm: zero,
+            smooth_arm: DVec3::ZERO,
+            own_share: 1.0,
             lift: 0.0,
             force: [DVec3::ZERO; 2],
             torque: [DVec3::ZERO; 2],
         };
-        for k in block.clone() {
+        for k in block.samples() {
             let (node, u) = (&track.nodes[k], track.t[k] - track.t[at]);
             let n = node.palms[i].frame.n;
             let arm = n.cross(node.p_WC[i]);
@@ -151,31 +181,40 @@ fn touch(track: &Track, at: usize, block: Range<usize>) -> Touch {
             sum.force[0] += n * (node.forces[i] * share);
             sum.torque[0] -= arm * (node.forces[i] * share);
         }
+        sum.smooth_arm = sum.arm[0];
         sum
     });
-    Touch { palms, samples: block.len() as f64 }
+    Touch {
+        palms,
+        samples: count,
+        spacing: track.duration() / (track.len() - 1).max(1) as f64,
+        slide_variance: [0.0; 3],
+    }
 }
 
-/// Forces and torques at the nodes, and their rates, from the blocks' means.
-fn with_rates(track: &Track, at: &[usize], touches: Vec<Touch>) -> Vec<Touch> {
-    // Mean time of a block: the normal is a unit vector.
-    let centre = |k: usize| {
-        let palm = &touches[k].palms[0];
-        track.t[at[k]] + palm.normal[1].dot(palm.normal[0])
-    };
+/// Arms for derivatives, forces and torques with their rates: at each node a parabola fitted to the nodes within `reach`
+/// seconds.
+fn smoothed(t: &[f64], touches: Vec<Touch>, reach: f64) -> Vec<Touch> {
     let mut all = touches.clone();
     for (k, touch) in all.iter_mut().enumerate() {
-        let (before, after) = (k.saturating_sub(1), (k + 1).min(at.len() - 1));
-        let time = centre(after) - centre(before);
-        if time > 0.0 {
-            let late = centre(k) - track.t[at[k]];
-            for (i, palm) in touch.palms.iter_mut().enumerate() {
-                let (a, b) = (&touches[before].palms[i], &touches[after].palms[i]);
-                palm.force[1] = (b.force[0] - a.force[0]) / time;
-                palm.torque[1] = (b.torque[0] - a.torque[0]) / time;
-                palm.force[0] -= palm.force[1] * late;
-                palm.torque[0] -= palm.torque[1] * late;
-            }
+        let from = |j: usize| (t[j] - t[k]) / reach;
+        let start = (0..k).rev().take_while(|&j| from(j) >= -1.0).last().unwrap_or(k);
+        let end = (k + 1..t.len()).take_while(|&j| from(j) <= 1.0).last().unwrap_or(k);
+        let powers = |j: usize| Vector3::new(1.0, from(j), from(j) * from(j));
+        let weigh = |j: usize| powers(j) * touches[j].samples;
+        let normal: Matrix3<f64> = (start..=end).map(|j| weigh(j) * powers(j).transpose()).sum();
+        // Fewer than four nodes in reach: nothing is smoothed.
+        let Some(inverse) = (end >= start + 3).then(|| normal.try_inverse()).flatten() else { continue };
+        // Rows of value and slope.
+        let weights: Vec<Vector3<f64>> = (start..=end).map(|j| inverse * weigh(j)).collect();
+        for (i, palm) in touch.palms.iter_mut().enumerate() {
+            let sum = |row: usize, part: &dyn Fn(&PalmTouch) -> DVec3| -> DVec3 {
+                weights.iter().zip(start..).map(|(w, j)| part(&touches[j].palms[i]) * w[row]).sum()
+            };
+            palm.smooth_arm = sum(0, &|p| p.arm[0]);
+            palm.own_share = weights[k - start][0];
+            palm.force = [sum(0, &|p| p.force[0]), sum(1, &|p| p.force[0]) / reach];
+            palm.torque = [sum(0, &|p| p.torque[0]), sum(1, &|p| p.torque[0]) / reach];
         }
     }
     all

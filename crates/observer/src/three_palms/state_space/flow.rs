@@ -32,10 +32,10 @@ impl<'a, const N: usize> Step<'a, N> {
         conditions: [Condition<N>; 3],
         input: &'a NodeInput,
     ) -> Self {
-        let of_contact = model.noise.contact * model.noise.contact / input.from.samples;
+        let held = held(input);
         let shifts = std::array::from_fn(|i| {
             let frame = &input.from.palms[i].frame;
-            let foot = -of_contact * conditions[i].value / conditions[i].variance;
+            let foot = held * conditions[i].foot;
             let shift = |axis: usize| foot * conditions[i].by_contact[axis] + parameters.offsets[i][axis];
             shift(0) * frame.t1 + shift(1) * frame.t2
         });
@@ -102,6 +102,15 @@ impl<'a, const N: usize> Step<'a, N> {
         SVector::from_fn(|i, _| if i < MOTION_STATES { blocks[i / 3][i % 3] } else { x[i] })
     }
 
+    /// Wrench over the first half or the whole, without the noise that the estimate has found in it.
+    fn adjusted(&self, part: usize) -> Wrench {
+        let wrench = self.wrenches[part];
+        let (share, s) =
+            if part == 0 { (0.5, 0.5 * self.input.duration) } else { (1.0, self.input.duration) };
+        let impulse = self.input.correction * share;
+        Wrench { impulse: wrench.impulse + impulse, first: wrench.first + impulse * (0.5 * s), ..wrench }
+    }
+
     /// Derivative of the end by the start.
     pub(super) fn transition(&self, constants: &[Constant]) -> SMatrix<f64, N, N> {
         let h = self.input.duration;
@@ -127,8 +136,9 @@ impl<'a, const N: usize> Step<'a, N> {
             let mut impulse = change.impulse / mass;
             let mut travel = (change.impulse * h - change.first) / mass;
             if *constant == Constant::LogMass {
-                impulse = -self.wrenches[1].impulse / mass;
-                travel = -(self.wrenches[1].impulse * h - self.wrenches[1].first) / mass;
+                let wrench = self.adjusted(1);
+                impulse = -wrench.impulse / mass;
+                travel = -(wrench.impulse * h - wrench.first) / mass;
             }
             v.set_column(MOTION_STATES + j, &impulse.into());
             p.set_column(MOTION_STATES + j, &travel.into());
@@ -180,7 +190,7 @@ impl<'a, const N: usize> Step<'a, N> {
         constants: &[Constant],
     ) -> Columns<N> {
         let Motion { p, v, .. } = self.motion;
-        let (wrench, g, mass) = (&self.wrenches[part], self.model.gravity, self.parameters.mass);
+        let (wrench, g, mass) = (self.adjusted(part), self.model.gravity, self.parameters.mass);
         let mut L = Columns::<N>::zeros();
         // -dp x impulse = impulse x dp.
         put(&mut L, 0, cross_matrix(wrench.impulse));
@@ -197,7 +207,7 @@ impl<'a, const N: usize> Step<'a, N> {
             L.set_column(MOTION_STATES + j, &slope.into());
         }
         // The foot of the contact depends on the state before.
-        let of_contact = self.model.noise.contact * self.model.noise.contact / self.input.from.samples;
+        let held = held(self.input);
         for i in 0..3 {
             let (condition, frame) = (&self.conditions[i], &self.input.from.palms[i].frame);
             let impulse: DVec3 = self.input.halves[..=part]
@@ -205,7 +215,7 @@ impl<'a, const N: usize> Step<'a, N> {
                 .map(|palms| reported(&self.parameters, &palms[i], i).impulse)
                 .sum();
             let along = condition.by_contact[0] * frame.t1 + condition.by_contact[1] * frame.t2;
-            let kick: SVector<f64, 3> = (along.cross(impulse) * (-of_contact / condition.variance)).into();
+            let kick: SVector<f64, 3> = (along.cross(impulse) * (held * condition.foot_slope)).into();
             L.ger(1.0, &kick, &condition.row, 1.0);
         }
         L
@@ -236,33 +246,52 @@ impl<'a, const N: usize> Step<'a, N> {
         let mut q = SMatrix::<f64, MOTION_STATES, MOTION_STATES>::zeros();
         let h = self.input.duration;
         let K = Turn::new(&self.parameters, self.motion.q, self.motion.L).K;
+        let held = held(self.input);
+        // Of the mean contact over the interval.
+        let of_contact = if h > 0.0 {
+            self.model.noise.contact * self.model.noise.contact * self.input.from.spacing / h
+        } else {
+            0.0
+        };
+        // White noise over an interval: its mean moves the path by half the interval, and what is left of the path's
+        // variance, h^2 / 3 - h^2 / 4, is independent of the mean.
         let mut add = |variance: f64, velocity: DVec3, momentum: DVec3| {
-            let blocks = [velocity * (0.5 * h), velocity, momentum, K * momentum * (0.5 * h)];
-            let kick = SVector::<f64, MOTION_STATES>::from_fn(|i, _| blocks[i / 3][i % 3]);
-            q.ger(variance, &kick, &kick, 1.0);
+            let rates = [velocity, K * momentum];
+            for (path, size) in [(0.5 * h, 1.0), (h / 12f64.sqrt(), 0.0)] {
+                let blocks = [rates[0] * path, velocity * size, momentum * size, rates[1] * path];
+                let kick = SVector::<f64, MOTION_STATES>::from_fn(|i, _| blocks[i / 3][i % 3]);
+                q.ger(variance, &kick, &kick, 1.0);
+            }
         };
         for i in 0..3 {
             let palm = &self.input.from.palms[i];
             let n = palm.normal[0];
             let of_force =
-                (self.model.noise.force * self.parameters.gains[i]).powi(2) * h * self.input.spacing;
+                (self.model.noise.force * self.parameters.gains[i]).powi(2) * h * self.input.from.spacing;
             let lever = -0.5 * (palm.arm[0] + self.input.here.palms[i].arm[0]) - self.motion.p.cross(n);
             add(of_force, n / self.parameters.mass, lever);
-            let of_contact = self.model.noise.contact * self.model.noise.contact / self.input.from.samples;
             let impulse: DVec3 =
                 self.input.halves.iter().map(|palms| reported(&self.parameters, &palms[i], i).impulse).sum();
             let [a, b] = self.conditions[i].by_contact;
             let size = a.hypot(b);
             let (a, b) = if size > 0.0 { (a / size, b / size) } else { (1.0, 0.0) };
-            let known = of_contact * size * size / self.conditions[i].variance;
+            let known = -held * held * self.conditions[i].foot_slope * size * size;
             let (t1, t2) = (palm.frame.t1, palm.frame.t2);
-            add(of_contact * (1.0 - known).max(0.0), DVec3::ZERO, (a * t1 + b * t2).cross(impulse));
+            add((of_contact - known).max(0.0), DVec3::ZERO, (a * t1 + b * t2).cross(impulse));
             add(of_contact, DVec3::ZERO, (a * t2 - b * t1).cross(impulse));
         }
         let mut all = SMatrix::<f64, N, N>::zeros();
         all.fixed_view_mut::<MOTION_STATES, MOTION_STATES>(0, 0).copy_from(&q);
         all
     }
+}
+
+/// Share of the interval that the contacts of the block at its start are taken to act for: as long as the block lasts,
+/// from its node on. (The half before the node has acted already; the delay by half a block is the price of a noise that
+/// is independent from interval to interval.)
+fn held(input: &NodeInput) -> f64 {
+    let block = input.from.samples * input.from.spacing;
+    if block < input.duration { block / input.duration } else { 1.0 }
 }
 
 /// The wrench of one palm with its constants.

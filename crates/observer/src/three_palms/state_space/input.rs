@@ -67,6 +67,11 @@ pub(crate) struct PalmTouch {
     pub(crate) normal: [DVec3; 3],
     /// Moments of `n x c`, m.
     pub(crate) arm: [DVec3; 3],
+    /// Mean of `n x c` for derivatives, m: the same, or smoothed over neighbours. Noise in a derivative passes for
+    /// information.
+    pub(crate) smooth_arm: DVec3,
+    /// Share that the block itself has in it.
+    pub(crate) own_share: f64,
     /// Mean of `p = -s2 rate`, m/s.
     pub(crate) lift: f64,
     /// Force as reported times the normal at the node, N, and its rate.
@@ -81,6 +86,11 @@ pub(crate) struct Touch {
     pub(crate) palms: [PalmTouch; 3],
     /// Samples in the block.
     pub(crate) samples: f64,
+    /// Time from sample to sample, s.
+    pub(crate) spacing: f64,
+    /// Variance, by palm, of the rate at which the body turns against it, as far as the present estimate knows it,
+    /// (rad/s)^2: contact noise enters the condition times that rate, so this much more of it than the estimate says.
+    pub(crate) slide_variance: [f64; 3],
 }
 
 /// Input of the state-space model at one node.
@@ -88,10 +98,11 @@ pub(crate) struct Touch {
 pub(crate) struct NodeInput {
     /// Time since the node before, s; zero at the first.
     pub(crate) duration: f64,
-    /// Time from sample to sample, s.
-    pub(crate) spacing: f64,
     /// Integrals over the first and the second half of that time, by palm.
     pub(crate) halves: [[PalmWrench; 3]; 2],
+    /// What the estimate before this one adds to the impulse of the whole interval, N s, for derivatives: noise in them
+    /// passes for information, and it is the same noise that the estimate weighs.
+    pub(crate) correction: DVec3,
     /// Touch at the node before; that of the first node is its own.
     pub(crate) from: Touch,
     /// Touch at this node.

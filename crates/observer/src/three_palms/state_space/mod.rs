@@ -10,8 +10,8 @@ mod model;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use blocks::block_inputs;
+pub(crate) use blocks::{Block, block_inputs, blocks};
 pub(crate) use constants::{BODY, Constant, Parameters};
-pub(crate) use inertia::{INERTIA_NUMBERS, inertia_of_numbers, numbers_of_inertia};
-pub(crate) use input::{NodeInput, PalmTouch, PalmWrench, Touch, Wrench};
+pub(crate) use inertia::{INERTIA_NUMBERS, inertia_of_numbers, inertia_slope, numbers_of_inertia};
+pub(crate) use input::{NodeInput, Touch};
 pub(crate) use model::{MOTION_STATES, ThreePalmModel};

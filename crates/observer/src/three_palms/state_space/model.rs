@@ -13,7 +13,7 @@
 use super::constants::{Constant, Parameters};
 use super::flow::Step;
 use super::inertia::inertia_slope;
-use super::input::{NodeInput, Touch};
+use super::input::{NodeInput, PalmTouch, Touch};
 use crate::core::Model;
 use crate::three_palms::covariance::NoiseLevel;
 use crate::three_palms::momentum::{Scales, StartState};
@@ -26,6 +26,9 @@ pub(crate) const MOTION_STATES: usize = 12;
 /// Deviation of a block's contact condition below which nothing is believed, as a share of the natural velocity: sums of
 /// a dozen products of rounded numbers.
 const CONDITION_FLOOR: f64 = 1e-14;
+/// Standard deviations that a contact is moved by at most. No noise moves one farther; a motion that is not yet right
+/// would, without bounds where a palm hardly slides.
+const FARTHEST_FOOT: f64 = 5.0;
 
 /// Motion at a node.
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +70,11 @@ pub(super) struct Condition<const N: usize> {
     pub(super) by_contact: [f64; 2],
     /// Its variance by contact noise, (m/s)^2.
     pub(super) variance: f64,
+    /// Correction of the contact, over `by_contact`, m s: the foot of the measured contact on the line of the condition,
+    /// as far as noise can have moved it.
+    pub(super) foot: f64,
+    /// Derivative of that by `value`.
+    pub(super) foot_slope: f64,
 }
 
 /// The model: constants of body and sensors that are known, a list of those that are states, and the noise.
@@ -102,6 +110,27 @@ impl<const N: usize> ThreePalmModel<N> {
         &self.constants
     }
 
+    /// Impulse that leads from one state to another beside what was measured, N s.
+    pub(crate) fn missing_impulse(
+        &self,
+        from: &SVector<f64, N>,
+        to: &SVector<f64, N>,
+        input: &NodeInput,
+    ) -> DVec3 {
+        let reached = unpack(&self.advance(from, input)).v;
+        (unpack(to).v - reached) * self.parameters(to).mass
+    }
+
+    /// Natural rate, 1/s.
+    pub(crate) fn natural_rate(&self) -> f64 {
+        self.scales.velocity / self.scales.length
+    }
+
+    /// Contact noise over the natural length.
+    pub(crate) fn relative_noise(&self) -> f64 {
+        self.noise.contact / self.scales.length
+    }
+
     /// The state with a motion and constants.
     pub(crate) fn state(&self, start: &StartState, parameters: &Parameters) -> SVector<f64, N> {
         let blocks = [start.p_WCm, start.v_WCm, start.L_WO, logarithm(start.R_WO.normalize())];
@@ -123,6 +152,46 @@ impl<const N: usize> ThreePalmModel<N> {
     /// The constants in a state.
     pub(crate) fn parameters(&self, x: &SVector<f64, N>) -> Parameters {
         self.base.with(self.constants.iter().copied().zip(x.iter().skip(MOTION_STATES).copied()))
+    }
+
+    /// Variances of the rates at which the body turns against each palm, from a state's covariance.
+    pub(crate) fn slide_variances(
+        &self,
+        x: &SVector<f64, N>,
+        covariance: &SMatrix<f64, N, N>,
+        touch: &Touch,
+    ) -> [f64; 3] {
+        let (motion, parameters) = (unpack(x), self.parameters(x));
+        let turn = Turn::new(&parameters, motion.q, motion.L);
+        touch.palms.each_ref().map(|palm| {
+            let along = |axis: DVec3| {
+                let row = self.turning_row(axis, &motion, &parameters, &turn);
+                row.dot(&(covariance * row)).max(0.0)
+            };
+            along(palm.frame.t1) + along(palm.frame.t2)
+        })
+    }
+
+    /// Derivative of `axis . w` by the states.
+    fn turning_row(
+        &self,
+        axis: DVec3,
+        motion: &Motion,
+        parameters: &Parameters,
+        turn: &Turn,
+    ) -> SVector<f64, N> {
+        // dw = (K [L]x - [w]x) theta + K (dL - dI w).
+        let by_L = turn.K * axis;
+        let by_motion = [DVec3::ZERO, DVec3::ZERO, by_L, by_L.cross(motion.L) - axis.cross(turn.w)];
+        SVector::from_fn(|j, _| {
+            if j < MOTION_STATES {
+                return by_motion[j / 3][j % 3];
+            }
+            match self.constants[j - MOTION_STATES] {
+                Constant::Inertia(number) => by_L.dot(turn.by_inertia(parameters, number)),
+                _ => 0.0,
+            }
+        })
     }
 
     /// Angular velocity in a state, world axes, rad/s.
@@ -152,7 +221,8 @@ impl<const N: usize> ThreePalmModel<N> {
         let (frame, n) = (&palm.frame, palm.normal[0]);
         let [o1, o2] = parameters.offsets[i];
         // n x t1 = t2, n x t2 = -t1.
-        let arm = palm.arm[0] + o1 * frame.t2 - o2 * frame.t1;
+        let offset = o1 * frame.t2 - o2 * frame.t1;
+        let arm = palm.arm[0] + offset;
         let curved: f64 =
             (0..2).map(|k| palm.normal[k + 1].dot(rates.u[k]) - palm.arm[k + 1].dot(rates.w[k])).sum();
         let value =
@@ -160,25 +230,38 @@ impl<const N: usize> ThreePalmModel<N> {
         let by_contact = [-turn.w.dot(frame.t2), turn.w.dot(frame.t1) - palm.rate];
         let of_contact = self.noise.contact * self.noise.contact / touch.samples;
         let floor = CONDITION_FLOOR * self.scales.velocity;
-        let variance =
-            of_contact * (by_contact[0] * by_contact[0] + by_contact[1] * by_contact[1]) + floor * floor;
-        let foot = -of_contact * value / variance;
-        let adjusted = arm + foot * (by_contact[0] * frame.t2 - by_contact[1] * frame.t1);
-        // de = n . dv + (w x n) . dp - a . dw, a = n x (c - p), dw = (K [L]x - [w]x) theta + K (dL - dI w).
+        let square = by_contact[0] * by_contact[0] + by_contact[1] * by_contact[1] + touch.slide_variance[i];
+        // The force at a node counts half before it and half after: as noise, to neither.
+        let half = 0.5 * self.noise.force * touch.spacing;
+        let a = arm - n.cross(motion.p);
+        let by_impulse = |other: &PalmTouch| {
+            let lever = other.normal[0].cross(motion.p) - other.arm[0];
+            n.dot(other.normal[0]) / parameters.mass - a.dot(turn.K * lever)
+        };
+        let jitter: f64 = touch.palms.iter().map(|other| (half * by_impulse(other)).powi(2)).sum();
+        let variance = of_contact * square + jitter + floor * floor;
+        let farthest = FARTHEST_FOOT / variance.sqrt();
+        let near = (value / variance).abs() <= farthest;
+        let foot_slope = if near { -of_contact / variance } else { 0.0 };
+        let foot = -of_contact * (value / variance).clamp(-farthest, farthest);
+        // The part of the arm's noise that the condition itself holds is taken out with the foot.
+        let own = foot * palm.own_share;
+        let adjusted = palm.smooth_arm + offset + own * (by_contact[0] * frame.t2 - by_contact[1] * frame.t1);
+        // de = n . dv + (w x n) . dp - a . dw, a = n x (c - p).
         let a = adjusted - n.cross(motion.p);
-        let by_L = -(turn.K * a);
-        let by_motion = [turn.w.cross(n), n, by_L, by_L.cross(motion.L) + a.cross(turn.w)];
-        let row = SVector::from_fn(|j, _| {
-            if j < MOTION_STATES {
-                return by_motion[j / 3][j % 3];
+        let mut row = self.turning_row(-a, motion, parameters, turn);
+        for axis in 0..3 {
+            row[axis] = turn.w.cross(n)[axis];
+            row[3 + axis] = n[axis];
+        }
+        for (j, constant) in self.constants.iter().enumerate() {
+            if let Constant::ContactOffset(palm, axis) = *constant
+                && palm == i
+            {
+                row[MOTION_STATES + j] = by_contact[axis];
             }
-            match self.constants[j - MOTION_STATES] {
-                Constant::Inertia(number) => by_L.dot(turn.by_inertia(parameters, number)),
-                Constant::ContactOffset(palm, axis) if palm == i => by_contact[axis],
-                _ => 0.0,
-            }
-        });
-        Condition { value, row, by_contact, variance }
+        }
+        Condition { value, row, by_contact, variance, foot, foot_slope }
     }
 
     fn step<'a>(&'a self, x: &SVector<f64, N>, input: &'a NodeInput) -> Step<'a, N> {

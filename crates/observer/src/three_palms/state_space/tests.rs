@@ -1,5 +1,6 @@
 //! The model against exact logs: its flow and output at the truth, its derivatives against differences.
 
+use super::model::MOTION_STATES;
 use super::*;
 use crate::core::Model;
 use crate::three_palms::cold_start::scales;
@@ -70,10 +71,10 @@ fn the_true_motion_is_a_solution_to_high_order() {
     let errors = |stride: usize| {
         let model = model(&mass, &track, 0.0);
         let base = Parameters::new(&mass);
+        let cut = blocks(track.len(), stride);
         let (mut flow, mut output): (f64, f64) = (0.0, 0.0);
-        for (k, input) in block_inputs(&track, stride).iter().enumerate().skip(1) {
-            let at =
-                |k: usize| model.state(&truth(&run, &mass, (k * stride).min(run.instants.len() - 1)), &base);
+        for (k, input) in block_inputs(&track, &cut, 0.06).iter().enumerate().skip(1) {
+            let at = |k: usize| model.state(&truth(&run, &mass, cut[k].node()), &base);
             flow =
                 flow.max(model.difference(&model.advance(&at(k - 1), input), &at(k)).amax() / input.duration);
             for condition in model.conditions(&at(k), &input.here) {
@@ -82,7 +83,7 @@ fn the_true_motion_is_a_solution_to_high_order() {
         }
         (flow, output)
     };
-    let ((fine_flow, fine_output), (coarse_flow, coarse_output)) = (errors(10), errors(40));
+    let ((fine_flow, fine_output), (coarse_flow, coarse_output)) = (errors(11), errors(41));
     // Steps of order 4 with one order to spare; means of blocks to second order in their length.
     let orders = ((coarse_flow / fine_flow).log2() / 2.0, (coarse_output / fine_output).log2() / 2.0);
     println!("{coarse_flow:e} {fine_flow:e} {coarse_output:e} {fine_output:e}");
@@ -96,7 +97,8 @@ fn the_true_motion_is_a_solution_to_high_order() {
 fn derivatives_are_those_of_differences() {
     let (mass, run, track) = moving_scene();
     let model = model(&mass, &track, 1e-3);
-    let inputs = block_inputs(&track.thinned(20), 1);
+    let thin = track.thinned(20);
+    let inputs = block_inputs(&thin, &blocks(thin.len(), 1), 0.06);
     let mut parameters = Parameters::new(&mass);
     parameters.gains = [1.02, 0.97, 1.01];
     parameters.biases = [0.1, -0.05, 0.02];

@@ -8,9 +8,6 @@ use thiserror::Error;
 
 /// Blocks a second: as many as the motion needs, whatever the sensors' rate.
 const BLOCKS_PER_SECOND: f64 = 50.0;
-/// Fewest samples in a block.
-const FEWEST: usize = 2;
-
 /// What a stream must know beforehand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreamOptions {
@@ -27,7 +24,7 @@ pub struct StreamOptions {
 }
 
 impl StreamOptions {
-    /// Samples in a block: even, so that halves of blocks end at samples.
+    /// Samples in a block: odd, so that its node is its mean time.
     pub(super) fn stride(&self) -> Result<usize, StreamError> {
         let positive = |what, value: f64| {
             let fine = value > 0.0 && value.is_finite();
@@ -44,8 +41,7 @@ impl StreamOptions {
             let value = self.gravity.length();
             return Err(StreamError::Option { what: "gravity", value, needed: "finite" });
         }
-        let samples = (self.sample_rate / BLOCKS_PER_SECOND / 2.0).round() as usize * 2;
-        Ok(samples.max(FEWEST))
+        Ok((self.sample_rate / BLOCKS_PER_SECOND / 2.0) as usize * 2 + 1)
     }
 }
 

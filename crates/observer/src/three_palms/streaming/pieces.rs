@@ -81,7 +81,7 @@ impl Pieces {
         let t = self.newest(long).map(|r| r.t - start).collect();
         let nodes = self.newest(long).map(|r| r.node).collect();
         // The block about the node.
-        let block = self.newest(long).skip(self.stride / 2).take(self.stride);
+        let block = self.newest(long).skip(self.stride - self.stride / 2).take(self.stride);
         let touching = block.fold([true; 3], |all, r| std::array::from_fn(|i| all[i] && r.touching[i]));
         Some(Piece { track: Track::assemble(t, nodes, mass, gravity, start), touching })
     }

@@ -8,7 +8,7 @@ use super::search::StreamSearch;
 use super::tracker::{Tracked, Tracker};
 use crate::three_palms::cold_start::rest_state;
 use crate::three_palms::momentum::Scales;
-use crate::three_palms::state_space::{MOTION_STATES, NodeInput, block_inputs};
+use crate::three_palms::state_space::{Block, MOTION_STATES, NodeInput, block_inputs};
 use crate::three_palms::track::Track;
 use glam::DMat3;
 use nalgebra::{SMatrix, SVector};
@@ -103,7 +103,12 @@ impl<K: Kind<N>, const N: usize> Stream<K, N> {
 
     /// A block is complete.
     fn node(&mut self, piece: &Piece) {
-        let inputs = block_inputs(&piece.track, self.stride);
+        let half = self.stride / 2;
+        let single = |start: usize| Block { start, reach: 0 };
+        let cut =
+            [single(0), Block { start: self.stride - half, reach: half }, single(2 * self.stride)];
+        // Three nodes: nothing is smoothed.
+        let inputs = block_inputs(&piece.track, &cut, 0.0);
         let (Some(first), Some(middle)) = (inputs.first(), inputs.get(1)) else { return };
         let mut input = *middle;
         if let Some(before) = &self.before {

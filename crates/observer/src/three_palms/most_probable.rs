@@ -1,0 +1,67 @@
+//! The most probable motion: states, constants and data adjusted together, over all nodes of a log.
+
+use super::state_space::{NodeInput, ThreePalmModel, Touch};
+use crate::core::{BatchOptions, BatchSolution, ObserverError, Sample, Start, Status, solve_batch_along};
+use nalgebra::SVector;
+
+/// Linearisations at most, in each of the two passes.
+const ITERATIONS: usize = 15;
+/// Length of a step at which the iteration has settled, in relative contact noise.
+const STEP_TOLERANCE: f64 = 0.01;
+/// Deviation, in natural units, of the turning rates in the first pass: the start is not better known.
+const FIRST_SLIDE: f64 = 0.1;
+/// Passes: each takes from the one before what derivatives and weights must not take from noisy data.
+const PASSES: usize = 3;
+
+/// Gauss-Newton on the whole motion, relinearised at the adjusted data: Gauss-Helmert estimation in linear time.
+///
+/// In two passes: the noise of a contact condition depends on how fast the body turns against the palm, and its
+/// expectation on how well that is known. The second pass takes it from the first.
+pub(super) fn most_probable<const N: usize>(
+    model: &ThreePalmModel<N>,
+    inputs: &[NodeInput],
+    states: &[SVector<f64, N>],
+    prior: &Start<N>,
+) -> Result<BatchSolution<N>, ObserverError> {
+    let rate = model.natural_rate();
+    let mut samples: Vec<Sample<NodeInput, 3>> = inputs
+        .iter()
+        // The contact condition is zero, and the model gives it in standard deviations.
+        .map(|&input| Sample { input, measured: SVector::zeros(), information: SVector::repeat(1.0) })
+        .collect();
+    set_slides(&mut samples, |_, _| [(FIRST_SLIDE * rate).powi(2); 3]);
+    let options = BatchOptions {
+        iterations: ITERATIONS,
+        step_tolerance: STEP_TOLERANCE * model.relative_noise(),
+        damping: 0.0,
+    };
+    let mut found = solve_batch_along(model, &samples, prior, states, &options)?;
+    let mut iterations = found.iterations;
+    for _ in 1..PASSES {
+        if found.report.status == Status::Diverged {
+            return Ok(found);
+        }
+        set_slides(&mut samples, |k, touch| {
+            model.slide_variances(&found.states[k], &found.covariances[k], touch)
+        });
+        for (sample, states) in samples.iter_mut().skip(1).zip(found.states.windows(2)) {
+            sample.input.correction = model.missing_impulse(&states[0], &states[1], &sample.input);
+        }
+        found = solve_batch_along(model, &samples, prior, &found.states, &options)?;
+        iterations += found.iterations;
+    }
+    Ok(BatchSolution { iterations, ..found })
+}
+
+fn set_slides(samples: &mut [Sample<NodeInput, 3>], slide: impl Fn(usize, &Touch) -> [f64; 3]) {
+    for k in 0..samples.len() {
+        let variance = slide(k, &samples[k].input.here);
+        samples[k].input.here.slide_variance = variance;
+        if let Some(next) = samples.get_mut(k + 1) {
+            next.input.from.slide_variance = variance;
+        }
+    }
+    if let [first, ..] = samples {
+        first.input.from.slide_variance = first.input.here.slide_variance;
+    }
+}

@@ -1,0 +1,96 @@
+//! From a fit of the contact conditions to the most probable motion.
+
+use super::cold_start::natural_time;
+use super::covariance::NoiseLevel;
+use super::momentum::{MomentumProblem, Scales, StartState};
+use super::most_probable::most_probable;
+use super::state_space::{Constant, Parameters, ThreePalmModel, block_inputs, blocks};
+use super::track::Track;
+use crate::core::{BatchSolution, ObserverError, Start, Status};
+use nalgebra::SVector;
+use object_dynamics::MassProperties;
+
+/// Nodes in one natural time: more of them take time and tell no more.
+const NODES_PER_NATURAL_TIME: f64 = 32.0;
+/// Natural times over which contacts are smoothed, on either side, where derivatives are taken.
+const SMOOTHED_NATURAL_TIMES: f64 = 0.125;
+/// Deviation of the orientation at the start where a choice of body axes, and no measurement, fixes it: in relative
+/// contact noise, so that it is small against what is measured and yet lets sums of both keep their digits.
+const CHOSEN: f64 = 0.1;
+
+/// The most probable motion with the model that it obeys.
+pub(super) struct Refined<const N: usize> {
+    pub(super) model: ThreePalmModel<N>,
+    pub(super) solution: BatchSolution<N>,
+    /// Samples at which the states stand.
+    pub(super) nodes: Vec<usize>,
+}
+
+impl<const N: usize> Refined<N> {
+    /// Chi-squared over its degrees of freedom.
+    pub(super) fn misfit(&self, unknowns: usize) -> f64 {
+        self.solution.chi_squared / (self.solution.channels.saturating_sub(unknowns).max(1)) as f64
+    }
+
+    /// Motion at the nodes.
+    pub(super) fn states(&self) -> Vec<StartState> {
+        self.solution.states.iter().map(|x| self.model.motion(x)).collect()
+    }
+
+    /// Whether it may be used at all.
+    pub(super) fn settled(&self) -> bool {
+        matches!(self.solution.report.status, Status::Converged | Status::Inconsistent)
+    }
+}
+
+/// What the model is made of beside the track.
+#[derive(Clone, Copy)]
+pub(super) struct Setting<'a> {
+    pub(super) scales: Scales,
+    pub(super) noise: NoiseLevel,
+    pub(super) constants: &'a [Constant],
+    /// Whether the body axes are chosen, so that the orientation at the start is.
+    pub(super) axes_chosen: bool,
+}
+
+/// Refines a motion that starts with `start`. `mass` and `parameters` belong to it; constants among the states may change.
+pub(super) fn refine<const N: usize>(
+    track: &Track,
+    mass: &MassProperties,
+    parameters: Parameters,
+    start: &StartState,
+    setting: &Setting<'_>,
+) -> Result<Refined<N>, ObserverError> {
+    let Setting { scales, noise, constants, axes_chosen } = *setting;
+    let natural = natural_time(track, scales.length);
+    let spacing = track.duration() / (track.len() - 1).max(1) as f64;
+    let stride = (natural / NODES_PER_NATURAL_TIME / spacing).round().max(1.0) as usize;
+    let cut = blocks(track.len(), stride);
+    let inputs = block_inputs(track, &cut, SMOOTHED_NATURAL_TIMES * natural);
+    let model = ThreePalmModel::<N>::new(parameters, constants, track.gravity, noise, scales).ok_or(
+        ObserverError::Value {
+            what: "number of states",
+            value: N as f64,
+            needed: "that of motion and constants",
+        },
+    )?;
+    let motion = MomentumProblem::new(track, mass, scales, f64::INFINITY).motion(start);
+    let nodes: Vec<usize> = cut.iter().map(super::state_space::Block::node).collect();
+    let states: Vec<SVector<f64, N>> = nodes
+        .iter()
+        .map(|&k| {
+            let m = &motion[k];
+            let L_WO = m.R_WO * (mass.inertia() * (m.R_WO.inverse() * m.w_WO));
+            let state = StartState { p_WCm: m.p_WCm, v_WCm: m.v_WCm, L_WO, R_WO: m.R_WO };
+            model.state(&state, &parameters)
+        })
+        .collect();
+    let mut prior = Start::guess(states[0]);
+    if axes_chosen {
+        for axis in 9..12 {
+            prior.information[(axis, axis)] = (CHOSEN * model.relative_noise()).powi(-2);
+        }
+    }
+    let solution = most_probable(&model, &inputs, &states, &prior)?;
+    Ok(Refined { model, solution, nodes })
+}

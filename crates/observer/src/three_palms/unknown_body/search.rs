@@ -1,0 +1,145 @@
+//! A start that needs no guess, for a body of which nothing is known.
+//!
+//! The mean force carries the weight, static balance places the centre of mass, and the inertia begins as a ball's: the
+//! orientation is no unknown, so that there is nothing else to try but heights, spins and first windows.
+
+use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem};
+use crate::least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Observability};
+use crate::three_palms::cold_start::{
+    EXPLAINED, GROWTH, NEXT_TO_NOTHING, SAMPLES_PER_NATURAL_TIME, from_normal_speeds, natural_time,
+    rest_state,
+};
+use crate::three_palms::covariance::{NoiseLevel, Sampling, propagate};
+use crate::three_palms::estimate::information_inverse;
+use crate::three_palms::momentum::{MomentumProblem, Scales};
+use crate::three_palms::state_space::numbers_of_inertia;
+use crate::three_palms::track::{Track, smoothing_variance};
+use glam::{DMat3, DQuat, DVec3};
+
+/// Families of starts, tried in this order until one explains the data: first window in natural times, height as a share
+/// of the one that static balance suggests, and spin in natural units.
+const ROUNDS: [(f64, &[f64], f64); 8] = [
+    (2.0, &[1.0], 0.0),
+    (2.0, &[0.8, 1.2], 0.0),
+    (4.0, &[1.0, 0.8, 1.2], 0.0),
+    (1.0, &[1.0, 0.8, 1.2], 0.0),
+    (2.0, &[1.0], 0.4),
+    (4.0, &[1.0], 0.4),
+    (2.0, &[0.8, 1.2], 0.4),
+    (2.0, &[1.0], 0.8),
+];
+/// Mean squared radius of gyration of the ball that the inertia begins with, in squared natural lengths.
+const BALL: f64 = 0.4;
+/// Share of the mean information that holds the unknowns while the windows grow.
+const PRIOR: f64 = 1e-3;
+const COARSE: LevenbergMarquardt =
+    LevenbergMarquardt { iterations: 25, step_tolerance: 1e-6, damping: 1e-2, prior: PRIOR };
+/// The last fit of a search, with nothing held.
+const FREE: LevenbergMarquardt =
+    LevenbergMarquardt { iterations: 60, step_tolerance: 1e-8, damping: 1e-3, prior: 0.0 };
+
+/// The mass that the mean force carries, kg: the momentum changes little against the weight's impulse.
+pub(super) fn mass_of_weight(track: &Track) -> Option<f64> {
+    let g = track.gravity;
+    let impulse = track.integrals.last()?.impulse;
+    let mass = -impulse.dot(g) / (g.length_squared() * track.duration());
+    (mass > 0.0 && mass.is_finite()).then_some(mass)
+}
+
+/// The best fits of a thinned track found, best first.
+pub(super) fn search(track: &Track, scales: Scales, noise: NoiseLevel) -> Vec<Fit<BodyPoint, BODY_UNKNOWNS>> {
+    let natural = natural_time(track, scales.length);
+    let spacing = track.duration() / (track.len() - 1) as f64;
+    let stride = (natural / SAMPLES_PER_NATURAL_TIME / spacing).floor().max(1.0) as usize;
+    let sampling = Sampling { per_node: stride as f64, weight: 1.0, direct: smoothing_variance(stride / 2) };
+    let thin = track.thinned(stride);
+    let mut found = Vec::new();
+    for (window, heights, spin) in ROUNDS {
+        let first = (window * natural).min(track.duration());
+        for &height in heights {
+            for w_WO in spins(spin * scales.velocity / scales.length) {
+                found.extend(follow(&thin, scales, first, begin(&thin, scales, first, height, w_WO)));
+                found.sort_by(|a, b| a.normal.cost.total_cmp(&b.normal.cost));
+                if found.first().is_some_and(|best| explains(&thin, scales, &noise, sampling, best)) {
+                    return found;
+                }
+            }
+        }
+    }
+    found
+}
+
+fn spins(rate: f64) -> Vec<DVec3> {
+    if rate == 0.0 {
+        return vec![DVec3::ZERO];
+    }
+    [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis * rate, axis * -rate]).collect()
+}
+
+fn begin(track: &Track, scales: Scales, window: f64, height: f64, w_WO: DVec3) -> BodyPoint {
+    let mut start = rest_state(track, window);
+    start.p_WCm.z *= height;
+    let inertia = DMat3::from_diagonal(DVec3::splat(BALL * track.mass * scales.length * scales.length));
+    let node = &track.nodes[0];
+    let carried = |i: usize| w_WO.dot(node.palms[i].frame.n.cross(node.p_WC[i] - start.p_WCm)) - node.lift[i];
+    start.v_WCm = from_normal_speeds(node, DVec3::new(carried(0), carried(1), carried(2)));
+    start.L_WO = inertia * w_WO;
+    start.R_WO = DQuat::IDENTITY;
+    BodyPoint { start, log_mass: track.mass.ln(), inertia: numbers_of_inertia(inertia) }
+}
+
+fn follow(
+    track: &Track,
+    scales: Scales,
+    first: f64,
+    start: BodyPoint,
+) -> Option<Fit<BodyPoint, BODY_UNKNOWNS>> {
+    let mut point = start;
+    let mut window = first;
+    loop {
+        let fit = COARSE.fit(&BodyProblem::new(track, scales, window), point);
+        if fit.status == FitStatus::Failed {
+            return None;
+        }
+        point = fit.point;
+        if window >= track.duration() {
+            break;
+        }
+        window = (window * GROWTH).min(track.duration());
+    }
+    let fit = FREE.fit(&BodyProblem::new(track, scales, f64::INFINITY), point);
+    (fit.status != FitStatus::Failed).then_some(fit)
+}
+
+/// Whether what is left of the data is noise, or next to nothing.
+fn explains(
+    track: &Track,
+    scales: Scales,
+    noise: &NoiseLevel,
+    sampling: Sampling,
+    fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
+) -> bool {
+    let rms = fit.normal.rms();
+    if rms < NEXT_TO_NOTHING * scales.velocity {
+        return true;
+    }
+    let Some(mass) = fit.point.mass() else { return false };
+    let track = track.of_mass(mass.mass());
+    let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
+    let Some(normal) = problem.linearise(&fit.point.start) else { return false };
+    let inverse = information_inverse(&Observability::new(&normal.information));
+    rms < EXPLAINED * propagate(&problem, &fit.point.start, &inverse, noise, sampling).residual
+}
+
+/// Natural sizes for a body whose mass is that of its weight.
+pub(super) fn scales_of_ball(track: &Track) -> Option<Scales> {
+    let ball = |length: f64| {
+        object_dynamics::MassProperties::from_principal(
+            track.mass,
+            DVec3::splat(BALL * track.mass * length * length),
+        )
+        .ok()
+    };
+    let length = crate::three_palms::cold_start::scales(track, &ball(1.0)?).length;
+    Some(crate::three_palms::cold_start::scales(track, &ball(length)?))
+}
