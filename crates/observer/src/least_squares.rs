@@ -30,14 +30,6 @@ impl<const P: usize> NormalEquations<P> {
         self.count += 1;
     }
 
-    /// Takes the expected effect of noise out of the sums: `variance` times the square of a term with derivatives
-    /// `row`, of which a residual holds the product with unit noise.
-    pub fn subtract(&mut self, row: &SVector<f64, P>, term: f64, variance: f64) {
-        self.information.ger(-variance, row, row, 1.0);
-        self.gradient.axpy(-variance * term, row, 1.0);
-        self.cost -= variance * term * term;
-    }
-
     /// Root mean square of the residuals.
     #[must_use]
     pub fn rms(&self) -> f64 {

@@ -22,10 +22,14 @@ pub use core::{
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
 pub use three_palms::{
-    BodyEstimate, Closure, EstimateError, Evidence, IdentifiedBody, KnownBody, KnownTouch, MotionEstimate,
-    MotionState, MotionStream, NoForceError, NoForceEstimate, NoForceEvidence, NoiseLevel, PaperError,
-    PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, Quantity, Reason, Reliability, Scales,
-    StartState, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage, TouchShape, Track,
-    TrackError, UnknownBody, WeakDirection, equivalent_orientations, estimate_body, estimate_motion,
-    estimate_without_forces, integrate_paper_system,
+    BodyEstimate, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate, MotionState,
+    NoiseLevel, PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, Quantity,
+    Reason, Reliability, Scales, SensorConstant, SensorEstimate, SensorPriors, StartState, Track, TrackError,
+    UnknownBody, WeakDirection, equivalent_orientations, estimate_body, estimate_motion,
+    estimate_motion_and_sensors, integrate_paper_system,
+};
+#[cfg(feature = "palms")]
+pub use three_palms::{
+    Closure, KnownTouch, MotionStream, NoForceError, NoForceEstimate, NoForceEvidence, StreamBody,
+    StreamError, StreamEstimate, StreamOptions, StreamStage, TouchShape, estimate_without_forces,
 };

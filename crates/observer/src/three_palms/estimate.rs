@@ -1,12 +1,11 @@
-use super::bias::noise_bias;
 use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, scales};
 use super::correlation::{correlation_samples, whiteness};
 use super::covariance::{NoiseLevel, Sampling, propagate};
 use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
 use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNKNOWNS};
 use super::noise::noise_level;
-use super::refine::{Setting, refine};
-use super::state_space::Parameters;
+use super::refine::{Refined, Setting, refine};
+use super::state_space::{Constant, Parameters};
 use super::track::{Track, TrackError};
 use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
 use contact_kinematics::{ContactCurve, CurveError};
@@ -17,19 +16,13 @@ use thiserror::Error;
 
 /// Samples that the covariance is computed from, at most: it varies as slowly as the motion.
 const COVARIANCE_SAMPLES: usize = 400;
-/// Samples that the bias by noise is computed from, at most.
-const BIAS_SAMPLES: usize = 200;
 /// Smallest share of the largest information that still counts as information: rounding of `J' J`.
 pub(super) const RANK_TOLERANCE: f64 = 1e-14;
 /// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
 /// linearisation that its covariance comes from does not reach that far.
 const LARGEST_DEVIATION: f64 = 0.25;
-/// Shift by as much noise again, in standard deviations, above which the covariance is not to be trusted. Where noise
-/// is most of what there is, more of it shifts little: 0.25 was the least seen with errors of five deviations and more,
-/// 0.16 the most where the covariance was right.
-const LARGEST_BIAS: f64 = 0.2;
-/// Contact noise, relative to length, whose bias is worth taking out: its square must reach the rounding of the sums.
-pub(super) const BIASING: f64 = 1e-7;
+/// Contact noise, relative to length, above which data are worth adjusting: below it, plain least squares is as good.
+pub(super) const WORTH_ADJUSTING: f64 = 1e-7;
 /// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
 const NOISE_FLOOR: f64 = 1e-12;
 
@@ -123,8 +116,9 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
     let found = cold_start(track, mass, noise);
     let best = found.into_iter().next().ok_or(EstimateError::NoFit)?;
-    if noise.contact > BIASING * scales.length {
-        return noisy_estimate(track, known, scales, noise, &best);
+    if noise.contact > WORTH_ADJUSTING * scales.length {
+        let setting = Setting { scales, noise, constants: &[], deviations: &[], axes_chosen: false };
+        return noisy_estimate::<UNKNOWNS>(track, known, &setting, &best).map(|(estimate, _)| estimate);
     }
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
     let solver = LevenbergMarquardt { iterations: 60, step_tolerance: 1e-11, damping: 1e-9, prior: 0.0 };
@@ -156,7 +150,6 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
         smallest_information: eigenvalues[0],
         weakest,
         noise,
-        bias: bias(track, mass, &scales, &fit.point, &noise, &covariance),
         iterations: fit.iterations,
     };
     let reliability = judge(&evidence, fit.status, &scales);
@@ -167,31 +160,32 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
     Ok(MotionEstimate { start: fit.point, motion, curves, radii, covariance, evidence, reliability })
 }
 
-/// The most probable motion, from the best fit of the contact conditions on a thinned track.
-fn noisy_estimate(
+/// The most probable motion, from the best fit of the contact conditions on a thinned track; constants among the states
+/// are estimated with it.
+fn noisy_estimate<const N: usize>(
     track: &Track,
     known: &KnownBody,
-    scales: Scales,
-    noise: NoiseLevel,
+    setting: &Setting<'_>,
     best: &Fit<StartState, UNKNOWNS>,
-) -> Result<MotionEstimate, EstimateError> {
-    let mass = &known.mass;
-    let setting = Setting { scales, noise, constants: &[], axes_chosen: false };
+) -> Result<(MotionEstimate, Refined<N>), EstimateError> {
+    let (mass, scales, noise) = (&known.mass, setting.scales, setting.noise);
     let start = StartState { R_WO: nearest_to_identity(mass, best.point.R_WO), ..best.point };
-    let refined = refine::<UNKNOWNS>(track, mass, Parameters::new(mass), &start, &setting)
-        .map_err(|_| EstimateError::NoFit)?;
+    let refined =
+        refine::<N>(track, mass, Parameters::new(mass), &start, setting).map_err(|_| EstimateError::NoFit)?;
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
     let states = refined.states();
     let motion = problem.motion_through(&refined.nodes, &states);
     let (residuals, predicted) = problem.residuals_along(&motion, noise.contact);
     let rms = (residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (3 * residuals.len()) as f64).sqrt();
-    let misfit = refined.misfit(UNKNOWNS);
+    let misfit = refined.misfit(N);
     let observability = Observability::new(&best.normal.information);
     let eigenvalues = observability.eigenvalues;
     let largest = eigenvalues[UNKNOWNS - 1];
     let covariance = refined.solution.covariances[0];
     let by_block = scales.by_block();
-    let scaled = SMatrix::from_fn(|i, j| covariance[(i, j)] / (by_block[i / 3] * by_block[j / 3]));
+    let scaled = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|i, j| {
+        covariance[(i, j)] / (by_block[i / 3] * by_block[j / 3])
+    });
     let evidence = Evidence {
         samples: track.len(),
         duration: track.duration(),
@@ -203,17 +197,34 @@ fn noisy_estimate(
         smallest_information: eigenvalues[0],
         weakest: weakest_direction(&scaled),
         noise,
-        bias: 0.0,
         iterations: refined.solution.iterations,
     };
     let status = if refined.settled() { FitStatus::Converged } else { FitStatus::Stalled };
     let mut reliability = judge(&evidence, status, &scales);
-    if !(misfit < LARGEST_MISFIT) {
+    if misfit.is_nan() || misfit > LARGEST_MISFIT {
         reliability.add(Reason::Inconsistent { misfit });
     }
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
-    Ok(MotionEstimate { start: states[0], motion, curves, radii, covariance, evidence, reliability })
+    let covariance = covariance.fixed_view::<UNKNOWNS, UNKNOWNS>(0, 0).into_owned();
+    let estimate =
+        MotionEstimate { start: states[0], motion, curves, radii, covariance, evidence, reliability };
+    Ok((estimate, refined))
+}
+
+/// As [`estimate_on_track`], with constants of the sensors among the states.
+pub(super) fn estimate_with_constants<const N: usize>(
+    track: &Track,
+    known: &KnownBody,
+    constants: &[Constant],
+    deviations: &[f64],
+) -> Result<(MotionEstimate, Refined<N>), EstimateError> {
+    let scales = scales(track, &known.mass);
+    let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
+    let noise = NoiseLevel { contact: noise.contact.max(WORTH_ADJUSTING * scales.length), ..noise };
+    let best = cold_start(track, &known.mass, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
+    let setting = Setting { scales, noise, constants, deviations, axes_chosen: false };
+    noisy_estimate(track, known, &setting, &best)
 }
 
 pub(super) fn floored(noise: NoiseLevel, track: &Track, scales: &Scales) -> NoiseLevel {
@@ -275,36 +286,12 @@ pub(super) fn judge(evidence: &Evidence, status: FitStatus, scales: &Scales) -> 
     if evidence.weakest.deviation.is_nan() || evidence.weakest.deviation > LARGEST_DEVIATION {
         reasons.push(Reason::Unobservable { direction: evidence.weakest });
     }
-    if evidence.bias.is_nan() || evidence.bias > LARGEST_BIAS {
-        reasons.push(Reason::Biased { shift: evidence.bias });
-    }
     // More than noise leaves, and more than the lasting errors of good data: what a wrong minimum leaves.
     let explained = (EXPLAINED * evidence.noise_explains).max(NEXT_TO_NOTHING * scales.velocity);
     if evidence.residual_rms.is_nan() || evidence.residual_rms > explained {
         reasons.push(Reason::Misfit { residual: evidence.residual_rms, explained: evidence.noise_explains });
     }
     if reasons.is_empty() { Reliability::Reliable } else { Reliability::Unreliable(reasons) }
-}
-
-/// Largest shift by noise in standard deviations; infinite where noise of this size leads the fit nowhere.
-fn bias(
-    track: &Track,
-    mass: &MassProperties,
-    scales: &Scales,
-    estimate: &StartState,
-    noise: &NoiseLevel,
-    covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>,
-) -> f64 {
-    if noise.contact.max(noise.force / (track.mass * track.gravity.length()) * scales.length)
-        < BIASING * scales.length
-    {
-        return 0.0;
-    }
-    let stride = track.len().div_ceil(BIAS_SAMPLES);
-    let shift = noise_bias(track, mass, scales, estimate, noise, stride);
-    shift.map_or(f64::INFINITY, |shift| {
-        (0..UNKNOWNS).map(|i| shift[i].abs() / covariance[(i, i)].sqrt()).fold(0.0, f64::max)
-    })
 }
 
 fn unscale(

@@ -28,9 +28,6 @@ pub struct Evidence {
     pub weakest: WeakDirection,
     /// Sensor noise that the covariance is computed from.
     pub noise: NoiseLevel,
-    /// Largest shift of an unknown by noise, in its own standard deviations: what averages do not remove. Zero where
-    /// the noise is too small to shift anything.
-    pub bias: f64,
     /// Linearisations in the last fit.
     pub iterations: usize,
 }
@@ -132,11 +129,6 @@ pub enum Reason {
         /// Which.
         direction: WeakDirection,
     },
-    /// Noise shifts the estimate by more than its covariance covers.
-    Biased {
-        /// Largest shift of an unknown, in its standard deviations.
-        shift: f64,
-    },
     /// Contacts and forces had to be corrected by more than their noise.
     Inconsistent {
         /// Chi-squared over its degrees of freedom; about 1 when all is as stated.
@@ -161,16 +153,6 @@ impl fmt::Display for Reason {
                 f,
                 "the log does not determine the {direction}: standard deviation {:.2e} of its natural size",
                 direction.deviation
-            ),
-            Self::Biased { shift } if shift.is_infinite() => write!(
-                f,
-                "the log holds more noise than motion in some direction, so that no average over it leads to the \
-                 truth: move the object faster or for longer, or use better sensors"
-            ),
-            Self::Biased { shift } => write!(
-                f,
-                "noise of this size shifts the estimate by {shift:.1} of its standard deviations: the motion is too \
-                 slow or too short for these sensors"
             ),
             Self::Inconsistent { misfit } => write!(
                 f,

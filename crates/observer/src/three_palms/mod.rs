@@ -1,6 +1,5 @@
 //! Three palms in space.
 
-mod bias;
 mod cold_start;
 mod correlation;
 mod covariance;
@@ -17,7 +16,7 @@ mod quadrature;
 mod random;
 mod refine;
 mod sensitivity;
-#[allow(dead_code, reason = "wip")]
+mod sensors;
 mod state_space;
 mod streaming;
 mod track;
@@ -33,6 +32,7 @@ pub use no_force::{
 pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
+pub use sensors::{SensorConstant, SensorEstimate, SensorPriors, estimate_motion_and_sensors};
 pub use streaming::{MotionStream, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 pub use track::{Track, TrackError};
 pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body};

@@ -69,8 +69,6 @@ pub(super) struct MomentumProblem<'a> {
     mass: &'a MassProperties,
     scales: Scales,
     end: usize,
-    /// Variance of a contact coordinate whose effect is taken out of the sums, m^2.
-    variance: f64,
 }
 
 /// The part of a sample that follows from the start state and the orientation.
@@ -84,16 +82,7 @@ impl<'a> MomentumProblem<'a> {
     /// Of the samples up to `window` seconds after the start.
     pub(super) fn new(track: &'a Track, mass: &'a MassProperties, scales: Scales, window: f64) -> Self {
         let end = track.t.partition_point(|&t| t <= window + 1e-12).max(2).min(track.t.len());
-        Self { track, mass, scales, end, variance: 0.0 }
-    }
-
-    /// The same with the bias by contact noise of deviation `noise` (m) taken out.
-    ///
-    /// The residual holds the noise times the sliding rate of the body over the palm, so a plain sum of squares is
-    /// smaller for a body that turns less. What noise adds on average, `noise^2 |(w - w_P) x n|^2`, is subtracted, with
-    /// its derivatives.
-    pub(super) fn unbiased(self, noise: f64) -> Self {
-        Self { variance: noise * noise, ..self }
+        Self { track, mass, scales, end }
     }
 
     /// Derivatives of the residuals by the contact coordinates `(s1, s2)` of palm `i` at sample `k`, rad/s: the rates
@@ -289,21 +278,6 @@ impl<'a> MomentumProblem<'a> {
         [here.w.cross(n), n, by_L, by_L.cross(at.L) + a.cross(here.w)]
     }
 
-    /// Derivatives of `axis . w` by the scaled unknowns.
-    fn turning_row(&self, axis: DVec3, at: &Kinematics, here: &Turning, theta: &Sensitivity) -> Row {
-        let by_L = here.K * axis;
-        // axis . (K (L x theta) - w x theta).
-        let by_theta = by_L.cross(at.L) - axis.cross(here.w);
-        let by_start = [
-            by_L.cross(here.impulse) + theta.transposed(0, by_theta),
-            by_L.cross(here.first_moment) + theta.transposed(1, by_theta),
-            by_L + theta.transposed(2, by_theta),
-            theta.transposed(3, by_theta),
-        ];
-        let scale = self.scales.by_block();
-        Row::from_fn(|j, _| by_start[j / 3][j % 3] * scale[j / 3])
-    }
-
     /// The same by the scaled unknowns: `dp = dcm0 + t dv0`, `dL = dL0 + impulse x dcm0 + first_moment x dv0`.
     fn row(&self, k: usize, by_state: &[DVec3; 4], here: &Turning, theta: &Sensitivity) -> Row {
         let [by_p, by_v, by_L, by_theta] = *by_state;
@@ -384,12 +358,6 @@ impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
             for i in 0..3 {
                 let row = self.row(k, &self.by_state(k, i, at, here), here, theta);
                 normal.add(&row, self.residual(k, i, at, here.w));
-                if self.variance > 0.0 {
-                    let frame = &self.track.nodes[k].palms[i].frame;
-                    let [first, second] = self.by_contact(k, i, here.w);
-                    normal.subtract(&self.turning_row(-frame.t2, at, here, theta), first, self.variance);
-                    normal.subtract(&self.turning_row(frame.t1, at, here, theta), second, self.variance);
-                }
             }
         });
         normal.cost.is_finite().then_some(normal)
@@ -401,9 +369,7 @@ impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
             let at = self.kinematics(point, k);
             let w = q * (self.mass.inverse_inertia() * (q.inverse() * at.L));
             for i in 0..3 {
-                let [first, second] = self.by_contact(k, i, w);
-                cost +=
-                    self.residual(k, i, &at, w).powi(2) - self.variance * (first * first + second * second);
+                cost += self.residual(k, i, &at, w).powi(2);
             }
         });
         cost.is_finite().then_some(cost)
@@ -428,7 +394,7 @@ mod tests {
     use object_dynamics::integrate::Tolerance;
     use object_dynamics::{InitialMotion, SampleTimes, ThreePalmScene};
 
-    /// `2 J' r` is the gradient of the sum of squares, with and without what noise adds, away from the solution and on
+    /// `2 J' r` is the gradient of the sum of squares, away from the solution and on
     /// moving palms.
     #[test]
     fn derivatives_are_those_of_the_sum_of_squares() {
@@ -453,8 +419,8 @@ mod tests {
             L_WO: mass.inertia() * truth.w_WO * 1.1,
             R_WO: exponential(DVec3::new(0.2, -0.1, 0.3)) * truth.R_WO,
         };
-        for noise in [0.0, 0.05] {
-            let problem = MomentumProblem::new(&track, &mass, sizes, f64::INFINITY).unbiased(noise);
+        {
+            let problem = MomentumProblem::new(&track, &mass, sizes, f64::INFINITY);
             let normal = problem.linearise(&point).unwrap();
             assert!((normal.cost - problem.cost(&point).unwrap()).abs() < 1e-12 * normal.cost.abs());
             for i in 0..UNKNOWNS {

@@ -4,7 +4,7 @@ use super::cold_start::natural_time;
 use super::covariance::NoiseLevel;
 use super::momentum::{MomentumProblem, Scales, StartState};
 use super::most_probable::most_probable;
-use super::state_space::{Constant, Parameters, ThreePalmModel, block_inputs, blocks};
+use super::state_space::{Constant, MOTION_STATES, Parameters, ThreePalmModel, block_inputs, blocks};
 use super::track::Track;
 use crate::core::{BatchSolution, ObserverError, Start, Status};
 use nalgebra::SVector;
@@ -17,6 +17,8 @@ const SMOOTHED_NATURAL_TIMES: f64 = 0.125;
 /// Deviation of the orientation at the start where a choice of body axes, and no measurement, fixes it: in relative
 /// contact noise, so that it is small against what is measured and yet lets sums of both keep their digits.
 const CHOSEN: f64 = 0.1;
+/// Deviation of a constant that is known, in natural sizes and relative contact noise: likewise.
+const KNOWN: f64 = 0.01;
 
 /// The most probable motion with the model that it obeys.
 pub(super) struct Refined<const N: usize> {
@@ -49,6 +51,8 @@ pub(super) struct Setting<'a> {
     pub(super) scales: Scales,
     pub(super) noise: NoiseLevel,
     pub(super) constants: &'a [Constant],
+    /// Prior deviations of the constants; those beyond the end of the list have none.
+    pub(super) deviations: &'a [f64],
     /// Whether the body axes are chosen, so that the orientation at the start is.
     pub(super) axes_chosen: bool,
 }
@@ -61,7 +65,7 @@ pub(super) fn refine<const N: usize>(
     start: &StartState,
     setting: &Setting<'_>,
 ) -> Result<Refined<N>, ObserverError> {
-    let Setting { scales, noise, constants, axes_chosen } = *setting;
+    let Setting { scales, noise, constants, deviations, axes_chosen } = *setting;
     let natural = natural_time(track, scales.length);
     let spacing = track.duration() / (track.len() - 1).max(1) as f64;
     let stride = (natural / NODES_PER_NATURAL_TIME / spacing).round().max(1.0) as usize;
@@ -86,6 +90,11 @@ pub(super) fn refine<const N: usize>(
         })
         .collect();
     let mut prior = Start::guess(states[0]);
+    let least = KNOWN * model.relative_noise();
+    for (k, (constant, deviation)) in constants.iter().zip(deviations).enumerate() {
+        let deviation = deviation.max(least * constant.scale(&scales));
+        prior.information[(MOTION_STATES + k, MOTION_STATES + k)] = deviation.powi(-2);
+    }
     if axes_chosen {
         for axis in 9..12 {
             prior.information[(axis, axis)] = (CHOSEN * model.relative_noise()).powi(-2);

@@ -1,6 +1,5 @@
 //! The model against exact logs: its flow and output at the truth, its derivatives against differences.
 
-use super::model::MOTION_STATES;
 use super::*;
 use crate::core::Model;
 use crate::three_palms::cold_start::scales;

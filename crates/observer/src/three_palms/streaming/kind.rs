@@ -18,12 +18,12 @@ pub(super) struct Gathered {
     pub(super) stride: usize,
 }
 
-/// A body, known or not, of which `N` numbers are estimated.
-pub(super) trait Kind<const N: usize> {
+/// A body, known or not, of which `N` numbers are estimated and `P` are searched for.
+pub(super) trait Kind<const N: usize, const P: usize> {
     /// What a search finds.
     type Point: Copy;
     /// The search's problem.
-    type Trial<'a>: Trial<N, Point = Self::Point>
+    type Trial<'a>: Trial<P, Point = Self::Point>
     where
         Self: 'a;
 
@@ -34,5 +34,5 @@ pub(super) trait Kind<const N: usize> {
     /// The problem on the data so far.
     fn trial<'a>(&'a self, data: &'a Gathered, scales: Scales) -> Self::Trial<'a>;
     /// The observer that begins where the search ended.
-    fn tracker(&self, found: &Fit<Self::Point, N>, scales: Scales) -> Option<Tracker<N>>;
+    fn tracker(&self, found: &Fit<Self::Point, P>, scales: Scales) -> Option<Tracker<N>>;
 }

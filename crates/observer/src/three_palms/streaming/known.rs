@@ -26,7 +26,7 @@ pub(super) struct Known {
     pub(super) gravity: DVec3,
 }
 
-impl Kind<UNKNOWNS> for Known {
+impl Kind<UNKNOWNS, UNKNOWNS> for Known {
     type Point = StartState;
     type Trial<'a> = KnownTrial<'a>;
 

@@ -16,6 +16,7 @@ mod tests;
 pub use estimate::{StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 
 use super::momentum::UNKNOWNS;
+use super::unknown_body::BODY_UNKNOWNS;
 use known::Known;
 use object_dynamics::Sample;
 use stream::Stream;
@@ -35,8 +36,8 @@ use unknown::Unknown;
 pub struct MotionStream(Inner);
 
 enum Inner {
-    Known(Box<Stream<Known, UNKNOWNS>>),
-    Unknown(Box<Stream<Unknown, { unknown::STATES }>>),
+    Known(Box<Stream<Known, UNKNOWNS, UNKNOWNS>>),
+    Unknown(Box<Stream<Unknown, { unknown::STATES }, BODY_UNKNOWNS>>),
 }
 
 impl MotionStream {

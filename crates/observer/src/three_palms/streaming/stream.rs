@@ -23,15 +23,15 @@ const FEWEST: usize = 8;
 /// have a deviation of 0.14 about one; linearisation adds to it.
 const CONTRADICTION: f64 = 2.5;
 
-/// A stream of which `N` numbers are estimated.
-pub(super) struct Stream<K: Kind<N>, const N: usize> {
+/// A stream of which `N` numbers are estimated; `P` are searched for.
+pub(super) struct Stream<K: Kind<N, P>, const N: usize, const P: usize> {
     kind: K,
     options: StreamOptions,
     stride: usize,
     pieces: Pieces,
     gathered: Option<Gathered>,
     before: Option<NodeInput>,
-    search: StreamSearch<K::Point, N>,
+    search: StreamSearch<K::Point, P>,
     scales: Option<Scales>,
     tracking: Option<Tracking<N>>,
     /// A motion that was found since, and has not caught up with the newest node.
@@ -69,7 +69,7 @@ struct Latest {
     front: Front,
 }
 
-impl<K: Kind<N>, const N: usize> Stream<K, N> {
+impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
     pub(super) fn new(kind: K, options: StreamOptions) -> Result<Self, StreamError> {
         let stride = options.stride()?;
         Ok(Self {
@@ -105,8 +105,7 @@ impl<K: Kind<N>, const N: usize> Stream<K, N> {
     fn node(&mut self, piece: &Piece) {
         let half = self.stride / 2;
         let single = |start: usize| Block { start, reach: 0 };
-        let cut =
-            [single(0), Block { start: self.stride - half, reach: half }, single(2 * self.stride)];
+        let cut = [single(0), Block { start: self.stride - half, reach: half }, single(2 * self.stride)];
         // Three nodes: nothing is smoothed.
         let inputs = block_inputs(&piece.track, &cut, 0.0);
         let (Some(first), Some(middle)) = (inputs.first(), inputs.get(1)) else { return };
@@ -223,8 +222,8 @@ impl<K: Kind<N>, const N: usize> Stream<K, N> {
 
     fn estimate(&self, reading: &Reading) -> StreamEstimate {
         let lost = self.touching.map(|touches| !touches);
-        let Some(tracking) = &self.tracking else { return self.from_rest(reading, lost) };
-        let Some(latest) = &tracking.latest else { return self.from_rest(reading, lost) };
+        let Some(tracking) = &self.tracking else { return self.at_rest(reading, lost) };
+        let Some(latest) = &tracking.latest else { return self.at_rest(reading, lost) };
         let innovation = tracking.tracker.innovation();
         let stage = if tracking.contradicted() {
             StreamStage::Contradicted
@@ -244,7 +243,7 @@ impl<K: Kind<N>, const N: usize> Stream<K, N> {
     }
 
     /// Before a motion is found: the body at rest where the contact wrench balances, known to its own size.
-    fn from_rest(&self, reading: &Reading, lost: [bool; 3]) -> StreamEstimate {
+    fn at_rest(&self, reading: &Reading, lost: [bool; 3]) -> StreamEstimate {
         let rounds = self.search.rounds();
         let stage = if rounds == 0 { StreamStage::Gathering } else { StreamStage::Searching { rounds } };
         let (mass, gravity) = (self.kind.nominal_mass(), self.options.gravity);

@@ -20,7 +20,7 @@ const MEMORY_OF_NODES: f64 = 0.9995;
 const MEMORY: f64 = 0.01;
 /// Deviations to which the fit of the search is believed when its data are gone through again, with noise where it
 /// enters. Data are counted once, and an eighth of that again.
-const LOOSE: f64 = 3.0;
+pub(super) const LOOSE: f64 = 3.0;
 /// Damping of a step: as a prior that knows the natural sizes, it keeps what is not observed from running away.
 const DAMPING: f64 = 1.0;
 /// A channel's squared innovation counts up to this many expected ones: an outlier alone is no evidence.

@@ -6,7 +6,7 @@ use super::search::{mass_of_weight, scales_of_ball, search};
 use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
 use crate::three_palms::correlation::whiteness;
 use crate::three_palms::estimate::{
-    BIASING, EstimateError, LARGEST_MISFIT, MotionEstimate, RANK_TOLERANCE, floored, judge,
+    EstimateError, LARGEST_MISFIT, MotionEstimate, RANK_TOLERANCE, WORTH_ADJUSTING, floored, judge,
 };
 use crate::three_palms::evidence::{Evidence, Reason, WeakDirection};
 use crate::three_palms::momentum::{MomentumProblem, Scales, StartState};
@@ -78,7 +78,7 @@ pub fn estimate_body(log: &SensorLog, known: &UnknownBody) -> Result<BodyEstimat
     let scales = scales_of_ball(&track).ok_or(EstimateError::NoFit)?;
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
     let mut fit = search(&track, scales, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
-    if noise.contact <= BIASING * scales.length {
+    if noise.contact <= WORTH_ADJUSTING * scales.length {
         let solver = LevenbergMarquardt { iterations: 60, step_tolerance: 1e-11, damping: 1e-9, prior: 0.0 };
         fit = solver.fit(&BodyProblem::new(&track, scales, f64::INFINITY), fit.point);
     }
@@ -96,10 +96,11 @@ fn finish(
     // Covariances are proportional to the noise squared: logs with next to none are weighed as if they had some.
     let faint = (FAINTEST * scales.length / noise.contact).max(1.0);
     let weighed = NoiseLevel { contact: noise.contact * faint, force: noise.force * faint };
-    let setting = Setting { scales, noise: weighed, constants: constants(), axes_chosen: true };
+    let setting =
+        Setting { scales, noise: weighed, constants: constants(), deviations: &[], axes_chosen: true };
     let refined = refine::<STATES>(&track, &mass, Parameters::new(&mass), &fit.point.start, &setting)
         .map_err(|_| EstimateError::NoFit)?;
-    let adjusted = noise.contact > BIASING * scales.length;
+    let adjusted = noise.contact > WORTH_ADJUSTING * scales.length;
     let (mass, start) = if adjusted { of_state(&refined)? } else { (mass, fit.point.start) };
     let track = track.of_mass(mass.mass());
     let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
@@ -137,14 +138,13 @@ fn finish(
         smallest_information: eigenvalues[0],
         weakest,
         noise,
-        bias: 0.0,
         iterations: fit.iterations + refined.solution.iterations,
     };
     let settled = if adjusted { refined.settled() } else { fit.status == FitStatus::Converged };
     let status = if settled { FitStatus::Converged } else { FitStatus::Stalled };
     let mut reliability = judge(&evidence, status, &scales);
     let misfit = refined.misfit(BODY_UNKNOWNS);
-    if adjusted && !(misfit < LARGEST_MISFIT) {
+    if adjusted && (misfit.is_nan() || misfit > LARGEST_MISFIT) {
         reliability.add(Reason::Inconsistent { misfit });
     }
     let PrincipalFrame { body, axes, covariance } = frame;
