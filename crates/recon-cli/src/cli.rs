@@ -69,7 +69,8 @@ pub(crate) struct SimulateArgs {
 #[derive(Args, Debug)]
 #[command(after_help = "\
 The log is CSV (sensor log, version 1): t, and for each palm i the contact s1_i, s2_i, the normal nx_i, ny_i, nz_i and
-the force f_i or torque tau_i. The scene gives gravity, mass and inertia. No initial guess is needed.
+the force f_i or torque tau_i. The scene gives gravity, mass and inertia; with --identify mass and inertia are estimated
+along, and those of the scene are not looked at. No initial guess is needed.
 
 The output folder appears as a whole or not at all: motion.csv, contact_curves.csv, radius_functions.csv, summary.json,
 lower_bound.ply, upper_bound.ply and report.html, which opens in any browser. With --export it holds the object for
@@ -77,7 +78,7 @@ simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer 
 
 Examples:
   recon reconstruct log.csv --scene scene.toml -o out
-  recon reconstruct log.csv --scene scene.toml -o out --export mjcf,urdf
+  recon reconstruct log.csv --scene scene.toml -o out --identify --export mjcf,urdf
   recon reconstruct log.csv --scene scene.toml -o out --json | jq .bounds")]
 pub(crate) struct ReconstructArgs {
     /// Sensor log (CSV)
@@ -88,6 +89,9 @@ pub(crate) struct ReconstructArgs {
     /// Folder to write; an earlier one of recon's is replaced
     #[arg(short, long, default_value = "recon-out")]
     pub(crate) output: PathBuf,
+    /// Estimate mass and inertia too, with their deviations
+    #[arg(long)]
+    pub(crate) identify: bool,
     /// Write the object for simulators too, in these formats
     #[arg(long, value_delimiter = ',', value_name = "FORMATS")]
     pub(crate) export: Vec<ExportAs>,

@@ -35,7 +35,7 @@ pub(crate) enum CliError {
     Contacts(#[from] ContactsError),
     #[error(
         "mass and inertia of the object are not known; give them in a scene file (--scene) as object.mass and \
-         object.principal_moments, object.inertia or object.radii_of_gyration"
+         object.principal_moments, object.inertia or object.radii_of_gyration, or have them estimated (--identify)"
     )]
     UnknownBody,
     #[error("{} has no [simulation]: give shape, palms and duration there, as in the scene that `recon demo` writes", path.display())]

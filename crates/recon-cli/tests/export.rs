@@ -53,6 +53,37 @@ fn an_ellipsoid_is_exported_as_one_with_its_bounds_beside_it() {
     assert_eq!(refused.code, Some(2), "{}", refused.stderr);
 }
 
+/// Mass and inertia are estimated; the exported numbers and their deviations are those of the summary.
+#[test]
+fn an_identified_body_is_exported_with_its_deviations() {
+    let scratch = scratch_with_log("identify");
+    // Nothing of the body is told.
+    let blind = common::scene();
+    let blind: Vec<_> =
+        blind.lines().filter(|l| !l.starts_with("mass =") && !l.starts_with("principal_moments")).collect();
+    scratch.write("blind.toml", &(blind.join("\n") + "\n"));
+    let arguments = ["reconstruct", "log.csv", "--scene", "blind.toml", "-o", "out", "--export", "mjcf,urdf"];
+    let refused = scratch.run(&arguments);
+    assert!(refused.code == Some(3) && refused.stderr.contains("--identify"), "{}", refused.stderr);
+    let run = scratch.run(&[&arguments[..], &["--identify"]].concat());
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let summary: Value = serde_json::from_str(&scratch.read("out/summary.json")).unwrap();
+    let value = |key: &str| summary["evidence"][key]["value"].as_f64().unwrap();
+    // At 50 Hz the quadrature of the readings is good to some 1e-5.
+    assert!((value("mass") - 1.0).abs() < 1e-4, "{summary:#}");
+    for (key, moment) in [("moment_x", 1.0), ("moment_y", 1.45), ("moment_z", 2.05)] {
+        assert!((value(key) - moment).abs() < 1e-3, "{key} {summary:#}");
+    }
+    let mjcf = scratch.read("out/object.xml");
+    let (_, after) = mjcf.split_once(r#"name="object_mass_std" data=""#).unwrap();
+    let exported: f64 = after.split_once('"').unwrap().0.parse().unwrap();
+    assert!(
+        (exported / value("std_mass") - 1.0).abs() < 1e-12 && mjcf.contains("object_inertia_std"),
+        "{mjcf}"
+    );
+    assert!(scratch.read("out/object.urdf").contains("Standard deviations"));
+}
+
 /// MuJoCo's contacts sink in by (1 - d) / d a / k = 9 x 10 / 1e6, about 1e-5 m, and the motion of Fig. 5 amplifies errors
 /// of the start up to 240-fold over its 4.2 s: 2.4e-3 m. Forces change by about 10 N a metre: 2.4e-2 N.
 #[test]

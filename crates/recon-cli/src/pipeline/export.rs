@@ -3,8 +3,10 @@
 use super::Reconstruction;
 use crate::cli::{ExportAs, ShapeAs};
 use crate::error::CliError;
+use glam::DMat3;
+use recon::observer::IdentifiedBody;
 use recon::shape_bounds::EllipsoidFit;
-use recon_io::{ExportError, ExportFormat, ExportShape, ExportedFile, ObjectModel};
+use recon_io::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
 
 /// Misfit up to which contacts are those of an ellipsoid: this share of its size, and this many deviations of the
 /// contacts' noise. What is left then matters to no simulator.
@@ -32,12 +34,25 @@ pub(crate) fn exported(
         name: "object".to_owned(),
         notes: [made.data.title.clone(), made.data.verdict.text.clone(), words].into(),
         mass: made.mass,
-        deviations: None,
+        deviations: made.identified.as_ref().map(deviations),
         shape,
         seen: seen.collect(),
         start: made.data.motion.first().copied(),
     };
     Ok(model.files(&formats.iter().map(format).collect::<Vec<_>>())?)
+}
+
+/// Deviations of the tensor's entries in principal axes. Off the diagonal they are those of the axes' directions; where
+/// two moments are equal these are open, and what is off the diagonal is as uncertain as the moments are.
+fn deviations(body: &IdentifiedBody) -> MassDeviations {
+    let (moments, of) = (body.mass.principal().moments, body.moment_deviations);
+    let off = |a: usize, b: usize, axis: usize| {
+        let turned = (moments[a] - moments[b]).abs() * body.axis_deviations[axis];
+        if turned.is_finite() { turned } else { of[a].max(of[b]) }
+    };
+    let (xy, xz, yz) = (off(0, 1, 2), off(0, 2, 1), off(1, 2, 0));
+    let inertia = DMat3::from_cols_array(&[of.x, xy, xz, xy, of.y, yz, xz, yz, of.z]);
+    MassDeviations { mass: body.mass_deviation, inertia }
 }
 
 /// The shape, and what it is in words.

@@ -7,7 +7,10 @@ use crate::progress::Progress;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::{MassProperties, SensorLog};
-use recon::observer::{EstimateError, KnownBody, MotionEstimate, NoiseLevel, TrackError, estimate_motion};
+use recon::observer::{
+    EstimateError, IdentifiedBody, KnownBody, MotionEstimate, NoiseLevel, TrackError, UnknownBody,
+    estimate_body, estimate_motion,
+};
 use recon::shape_bounds::ContactSample;
 use recon_io::{
     Level, MotionState, PalmContact, PalmTrack, ReportData, Scene, TriangleMesh, implausibilities,
@@ -25,6 +28,8 @@ pub(crate) struct Reconstruction {
     pub(crate) upper: Option<TriangleMesh>,
     /// Mass and inertia in the body axes of the estimate.
     pub(crate) mass: MassProperties,
+    /// The same with deviations where they were estimated.
+    pub(crate) identified: Option<IdentifiedBody>,
     /// All contacts, body axes.
     pub(crate) contacts: Vec<ContactSample>,
     /// Noise of the contact positions, m.
@@ -43,19 +48,14 @@ pub(crate) fn reconstruct(
     log: &SensorLog,
     scene: &Scene,
     title: &str,
+    identify: bool,
     progress: &Progress,
 ) -> Result<Reconstruction, CliError> {
-    let mass = known_body(scene)?;
+    let known = if identify { None } else { Some(known_body(scene)?) };
     let odd = implausibilities(log, scene);
     let mut warnings: Vec<String> = odd.iter().map(|w| sentence(&w.to_string())).collect();
     progress.step("estimating the motion");
-    let known = KnownBody {
-        mass,
-        gravity: DVec3::new(0.0, 0.0, -scene.gravity),
-        palm_inertias: scene.palm_inertia,
-        noise: noise(scene),
-    };
-    let estimate = estimate_motion(&log.without_truth(), &known)?;
+    let (mass, identified, estimate) = estimated(&log.without_truth(), scene, known)?;
     let used = estimate.motion.len();
     warnings.extend(contact_loss(log, used));
     let palms = tracks(log, &estimate)?;
@@ -78,11 +78,13 @@ pub(crate) fn reconstruct(
         }
         None => (None, None, None),
     };
-    let checks = Checks { implausible: !odd.is_empty(), contradiction, size: size(&palms) };
+    let checks = Checks { implausible: !odd.is_empty(), contradiction, size: size(&palms), identified };
     warnings.extend(noise_and_bounds(&estimate, checks.size));
-    let axes = log
-        .truth()
-        .map_or(DQuat::IDENTITY, |truth| axes_of_estimate(&mass, estimate.start.R_WO, truth[0].R_WO));
+    let axes = log.truth().map_or(DQuat::IDENTITY, |truth| match identified {
+        None => axes_of_estimate(&mass, estimate.start.R_WO, truth[0].R_WO),
+        // Axes that were found need not be those of the truth: turns are compared from the first sample on.
+        Some(_) => truth[0].R_WO.inverse() * estimate.start.R_WO,
+    });
     let shape = match (&scene.simulation, log.truth()) {
         (Some(simulation), Some(_)) => Some(true_shape(simulation, axes)?),
         _ => None,
@@ -100,7 +102,24 @@ pub(crate) fn reconstruct(
         warnings,
     };
     let contact_noise = estimate.evidence.noise.contact;
-    Ok(Reconstruction { data, lower, upper, mass, contacts, contact_noise })
+    Ok(Reconstruction { data, lower, upper, mass, identified, contacts, contact_noise })
+}
+
+/// Body and motion; the body with its deviations where it is not known.
+fn estimated(
+    log: &SensorLog,
+    scene: &Scene,
+    known: Option<MassProperties>,
+) -> Result<(MassProperties, Option<IdentifiedBody>, MotionEstimate), CliError> {
+    let gravity = DVec3::new(0.0, 0.0, -scene.gravity);
+    let (palm_inertias, noise) = (scene.palm_inertia, noise(scene));
+    Ok(match known {
+        Some(mass) => (mass, None, estimate_motion(log, &KnownBody { mass, gravity, palm_inertias, noise })?),
+        None => {
+            let found = estimate_body(log, &UnknownBody { gravity, palm_inertias, noise })?;
+            (found.body.mass, Some(found.body), found.motion)
+        }
+    })
 }
 
 fn noise(scene: &Scene) -> Option<NoiseLevel> {

@@ -105,11 +105,6 @@ impl<const N: usize> ThreePalmModel<N> {
         })
     }
 
-    /// The constants that are states, in the order of the states.
-    pub(crate) fn constants(&self) -> &[Constant] {
-        &self.constants
-    }
-
     /// Impulse that leads from one state to another beside what was measured, N s.
     pub(crate) fn missing_impulse(
         &self,
@@ -192,12 +187,6 @@ impl<const N: usize> ThreePalmModel<N> {
                 _ => 0.0,
             }
         })
-    }
-
-    /// Angular velocity in a state, world axes, rad/s.
-    pub(crate) fn angular_velocity(&self, x: &SVector<f64, N>) -> DVec3 {
-        let Motion { q, L, .. } = unpack(x);
-        Turn::new(&self.parameters(x), q, L).w
     }
 
     /// The contact conditions of all palms over a block.
