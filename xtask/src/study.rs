@@ -5,9 +5,10 @@ use std::process::ExitCode;
 use crate::cargo::{cargo, output, root};
 
 /// Name of a study, the file under docs/ that it writes, and what it is about.
-const STUDIES: [(&str, &str, &str); 5] = [
+const STUDIES: [(&str, &str, &str); 6] = [
     ("cold_start", "cold-start.md", "three palms: random scenes from no guess"),
     ("no_force", "no-force.md", "three palms without force sensors: random scenes from no guess"),
+    ("three_palms_monte_carlo", "three-palms-monte-carlo.md", "three palms against the Cramer-Rao bound"),
     ("planar_monte_carlo", "planar-monte-carlo.md", "planar observers against the Cramer-Rao bound"),
     ("planar_costs", "planar-costs.md", "cost of the planar observers beside their accuracy"),
     ("streaming", "streaming.md", "three palms sample by sample over a minute: time and accuracy"),

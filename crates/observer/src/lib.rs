@@ -22,10 +22,10 @@ pub use core::{
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
 pub use three_palms::{
-    BodyEstimate, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate, MotionState,
-    NoiseLevel, PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, Quantity,
-    Reason, Reliability, Scales, SensorConstant, SensorEstimate, SensorPriors, StartState, Track, TrackError,
-    UnknownBody, WeakDirection, equivalent_orientations, estimate_body, estimate_motion,
+    BodyEstimate, CurveUncertainty, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate,
+    MotionState, NoiseLevel, PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector,
+    Quantity, Reason, Reliability, Scales, SensorConstant, SensorEstimate, SensorPriors, StartState, Track,
+    TrackError, UnknownBody, WeakDirection, equivalent_orientations, estimate_body, estimate_motion,
     estimate_motion_and_sensors, integrate_paper_system,
 };
 #[cfg(feature = "palms")]

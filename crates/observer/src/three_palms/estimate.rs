@@ -1,6 +1,7 @@
 use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, scales};
 use super::correlation::{correlation_samples, whiteness};
 use super::covariance::{NoiseLevel, Sampling, propagate};
+use super::curves::CurveUncertainty;
 use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
 use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNKNOWNS};
 use super::noise::noise_level;
@@ -9,7 +10,7 @@ use super::state_space::{Constant, Parameters};
 use super::track::{Track, TrackError};
 use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
 use contact_kinematics::{ContactCurve, CurveError};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use nalgebra::SMatrix;
 use object_dynamics::{MassProperties, SensorLog};
 use thiserror::Error;
@@ -26,6 +27,9 @@ pub(super) const WORTH_ADJUSTING: f64 = 1e-7;
 /// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
 const NOISE_FLOOR: f64 = 1e-12;
 
+/// Shift by as much noise again, in standard deviations, above which the covariance is not to be trusted: 0.5 was the least
+/// seen with errors of five deviations and more, 0.05 to 0.25 where the covariance was right with room to spare.
+const LARGEST_BIAS: f64 = 0.4;
 /// Chi-squared over its degrees of freedom beyond which noise does not explain an estimate. With hundreds of degrees it
 /// scatters by a few percent about 0.85 to 1; noise levels that are read off the data are good to 5 %.
 pub(super) const LARGEST_MISFIT: f64 = 1.4;
@@ -82,6 +86,9 @@ pub struct MotionEstimate {
     pub curves: [ContactCurve; 3],
     /// Radius function values at the contacts, m: one triple a sample.
     pub radii: Vec<[f64; 3]>,
+    /// Uncertainty of the curves at some of the samples, where data were adjusted; empty for logs without noise to speak
+    /// of.
+    pub uncertainty: Vec<CurveUncertainty>,
     /// Covariance of the start: centre of mass (m), velocity (m/s), angular momentum (kg m^2/s), orientation (rotation
     /// vector in world axes, rad), three each.
     pub covariance: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
@@ -150,6 +157,7 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
         smallest_information: eigenvalues[0],
         weakest,
         noise,
+        bias: 0.0,
         iterations: fit.iterations,
     };
     let reliability = judge(&evidence, fit.status, &scales);
@@ -157,7 +165,17 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
     let covariance = unscale(&covariance, &scales);
-    Ok(MotionEstimate { start: fit.point, motion, curves, radii, covariance, evidence, reliability })
+    let uncertainty = Vec::new();
+    Ok(MotionEstimate {
+        start: fit.point,
+        motion,
+        curves,
+        radii,
+        uncertainty,
+        covariance,
+        evidence,
+        reliability,
+    })
 }
 
 /// The most probable motion, from the best fit of the contact conditions on a thinned track; constants among the states
@@ -197,6 +215,7 @@ fn noisy_estimate<const N: usize>(
         smallest_information: eigenvalues[0],
         weakest: weakest_direction(&scaled),
         noise,
+        bias: refined.shift,
         iterations: refined.solution.iterations,
     };
     let status = if refined.settled() { FitStatus::Converged } else { FitStatus::Stalled };
@@ -207,8 +226,10 @@ fn noisy_estimate<const N: usize>(
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
     let covariance = covariance.fixed_view::<UNKNOWNS, UNKNOWNS>(0, 0).into_owned();
+    let uncertainty = super::curves::uncertainty(track, &refined, DQuat::IDENTITY);
+    let start = states[0];
     let estimate =
-        MotionEstimate { start: states[0], motion, curves, radii, covariance, evidence, reliability };
+        MotionEstimate { start, motion, curves, radii, uncertainty, covariance, evidence, reliability };
     Ok((estimate, refined))
 }
 
@@ -285,6 +306,9 @@ pub(super) fn judge(evidence: &Evidence, status: FitStatus, scales: &Scales) -> 
     // NaN counts as unknown.
     if evidence.weakest.deviation.is_nan() || evidence.weakest.deviation > LARGEST_DEVIATION {
         reasons.push(Reason::Unobservable { direction: evidence.weakest });
+    }
+    if evidence.bias.is_nan() || evidence.bias > LARGEST_BIAS {
+        reasons.push(Reason::Biased { shift: evidence.bias });
     }
     // More than noise leaves, and more than the lasting errors of good data: what a wrong minimum leaves.
     let explained = (EXPLAINED * evidence.noise_explains).max(NEXT_TO_NOTHING * scales.velocity);

@@ -28,6 +28,9 @@ pub struct Evidence {
     pub weakest: WeakDirection,
     /// Sensor noise that the covariance is computed from.
     pub noise: NoiseLevel,
+    /// Largest shift of an unknown by as much noise again, in its own standard deviations: what averages do not remove.
+    /// Zero where the noise is too small to shift anything.
+    pub bias: f64,
     /// Linearisations in the last fit.
     pub iterations: usize,
 }
@@ -129,6 +132,11 @@ pub enum Reason {
         /// Which.
         direction: WeakDirection,
     },
+    /// Noise shifts the estimate by more than its covariance covers.
+    Biased {
+        /// Largest shift of an unknown, in its standard deviations.
+        shift: f64,
+    },
     /// Contacts and forces had to be corrected by more than their noise.
     Inconsistent {
         /// Chi-squared over its degrees of freedom; about 1 when all is as stated.
@@ -153,6 +161,16 @@ impl fmt::Display for Reason {
                 f,
                 "the log does not determine the {direction}: standard deviation {:.2e} of its natural size",
                 direction.deviation
+            ),
+            Self::Biased { shift } if shift.is_infinite() => write!(
+                f,
+                "with as much noise again the estimate leads nowhere: move the object faster or for longer, or use better \
+                 sensors"
+            ),
+            Self::Biased { shift } => write!(
+                f,
+                "as much noise again shifts the estimate by {shift:.1} of its standard deviations: the motion is too slow \
+                 or too short for these sensors"
             ),
             Self::Inconsistent { misfit } => write!(
                 f,

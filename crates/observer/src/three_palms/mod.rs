@@ -23,6 +23,7 @@ mod track;
 mod unknown_body;
 
 pub use covariance::NoiseLevel;
+pub use curves::CurveUncertainty;
 pub use estimate::{EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion};
 pub use evidence::{Evidence, Quantity, Reason, Reliability, WeakDirection};
 pub use momentum::{MotionState, Scales, StartState};

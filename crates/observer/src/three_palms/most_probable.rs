@@ -1,6 +1,6 @@
 //! The most probable motion: states, constants and data adjusted together, over all nodes of a log.
 
-use super::state_space::{NodeInput, ThreePalmModel, Touch};
+use super::state_space::{NodeInput, ThreePalmModel, Touch, set_adjusted_arms};
 use crate::core::{BatchOptions, BatchSolution, ObserverError, Sample, Start, Status, solve_batch_along};
 use nalgebra::SVector;
 
@@ -22,7 +22,15 @@ pub(super) fn most_probable<const N: usize>(
     inputs: &[NodeInput],
     states: &[SVector<f64, N>],
     prior: &Start<N>,
+    reach: f64,
 ) -> Result<BatchSolution<N>, ObserverError> {
+    let t: Vec<f64> = inputs
+        .iter()
+        .scan(0.0, |t, input| {
+            *t += input.duration;
+            Some(*t)
+        })
+        .collect();
     let rate = model.natural_rate();
     let mut samples: Vec<Sample<NodeInput, 3>> = inputs
         .iter()
@@ -47,6 +55,9 @@ pub(super) fn most_probable<const N: usize>(
         for (sample, states) in samples.iter_mut().skip(1).zip(found.states.windows(2)) {
             sample.input.correction = model.missing_impulse(&states[0], &states[1], &sample.input);
         }
+        let adjusted: Vec<_> =
+            samples.iter().zip(&found.states).map(|(s, x)| model.adjusted_arms(x, &s.input.here)).collect();
+        set_adjusted_arms(samples.iter_mut().map(|s| &mut s.input), &t, &adjusted, reach);
         found = solve_batch_along(model, &samples, prior, &found.states, &options)?;
         iterations += found.iterations;
     }

@@ -14,6 +14,11 @@ impl Normal {
         (((z ^ (z >> 31)) >> 11) + 1) as f64 / (1u64 << 53) as f64
     }
 
+    /// A generator of its own sequence for each seed.
+    pub(super) fn seeded(seed: u64) -> Self {
+        Self(seed)
+    }
+
     pub(super) fn draw(&mut self) -> f64 {
         let (a, b) = (self.uniform(), self.uniform());
         (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos()

@@ -4,9 +4,10 @@ use super::cold_start::natural_time;
 use super::covariance::NoiseLevel;
 use super::momentum::{MomentumProblem, Scales, StartState};
 use super::most_probable::most_probable;
-use super::state_space::{Constant, MOTION_STATES, Parameters, ThreePalmModel, block_inputs, blocks};
+use super::random::Normal;
+use super::state_space::{Block, Constant, MOTION_STATES, Parameters, ThreePalmModel, block_inputs, blocks};
 use super::track::Track;
-use crate::core::{BatchSolution, ObserverError, Start, Status};
+use crate::core::{BatchSolution, Model, ObserverError, Start, Status};
 use nalgebra::SVector;
 use object_dynamics::MassProperties;
 
@@ -26,6 +27,9 @@ pub(super) struct Refined<const N: usize> {
     pub(super) solution: BatchSolution<N>,
     /// Samples at which the states stand.
     pub(super) nodes: Vec<usize>,
+    /// Largest shift of a state at the start by noise, in its deviations; infinite where as much noise again leads
+    /// nowhere.
+    pub(super) shift: f64,
 }
 
 impl<const N: usize> Refined<N> {
@@ -79,7 +83,7 @@ pub(super) fn refine<const N: usize>(
         },
     )?;
     let motion = MomentumProblem::new(track, mass, scales, f64::INFINITY).motion(start);
-    let nodes: Vec<usize> = cut.iter().map(super::state_space::Block::node).collect();
+    let nodes: Vec<usize> = cut.iter().map(Block::node).collect();
     let states: Vec<SVector<f64, N>> = nodes
         .iter()
         .map(|&k| {
@@ -100,6 +104,57 @@ pub(super) fn refine<const N: usize>(
             prior.information[(axis, axis)] = (CHOSEN * model.relative_noise()).powi(-2);
         }
     }
-    let solution = most_probable(&model, &inputs, &states, &prior)?;
-    Ok(Refined { model, solution, nodes })
+    let solution = most_probable(&model, &inputs, &states, &prior, SMOOTHED_NATURAL_TIMES * natural)?;
+    let mut refined = Refined { model, solution, nodes, shift: 0.0 };
+    if refined.settled() {
+        let shift = shift_by_noise(track, &refined, &cut, SMOOTHED_NATURAL_TIMES * natural, &prior, &noise);
+        refined.shift = shift.unwrap_or(f64::INFINITY);
+    }
+    Ok(refined)
+}
+
+/// Largest shift of a state at the start, in its deviations, by as much noise again.
+///
+/// Where noise is much of what there is, the estimate is a curved function of it, and the mean of the estimates is not the
+/// truth. Noise of the same size is added once more, in a pair of opposite signs: what is linear in it cancels, and what
+/// is left is about what the noise in the data has done already. None where the noise leads nowhere.
+fn shift_by_noise<const N: usize>(
+    track: &Track,
+    refined: &Refined<N>,
+    cut: &[Block],
+    reach: f64,
+    prior: &Start<N>,
+    noise: &NoiseLevel,
+) -> Option<f64> {
+    let states = &refined.solution.states;
+    let mut sum = SVector::<f64, N>::zeros();
+    for sign in [1.0, -1.0] {
+        let inputs = block_inputs(&track.perturbed(noise, sign, 1), cut, reach);
+        let moved = most_probable(&refined.model, &inputs, states, prior, reach).ok()?;
+        if moved.report.status != Status::Converged && moved.report.status != Status::Inconsistent {
+            return None;
+        }
+        sum += refined.model.difference(&moved.states[0], &states[0]) * 0.5;
+    }
+    let variances = refined.solution.covariances[0].diagonal();
+    Some(sum.iter().zip(variances.iter()).map(|(s, v)| s.abs() / v.sqrt()).fold(0.0, f64::max))
+}
+
+impl Track {
+    /// The track with white noise added to contacts and forces; the same seed and opposite signs give opposite noise.
+    fn perturbed(&self, noise: &NoiseLevel, sign: f64, seed: u64) -> Self {
+        let mut random = Normal::seeded(seed);
+        let mut draw = |deviation: f64| sign * deviation * random.draw();
+        let mut nodes = self.nodes.clone();
+        for node in &mut nodes {
+            for i in 0..3 {
+                let (s1, s2) = (draw(noise.contact), draw(noise.contact));
+                let frame = node.palms[i].frame;
+                node.p_WC[i] += s1 * frame.t1 + s2 * frame.t2;
+                node.lift[i] -= s2 * node.palms[i].rate;
+                node.forces[i] += draw(noise.force);
+            }
+        }
+        self.with_nodes(nodes)
+    }
 }

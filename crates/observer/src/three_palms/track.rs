@@ -200,6 +200,11 @@ impl Track {
         all
     }
 
+    /// Other contacts and forces at the same times.
+    pub(super) fn with_nodes(&self, nodes: Vec<Node>) -> Self {
+        Self::assemble(self.t.clone(), nodes, self.mass, self.gravity, self.start)
+    }
+
     /// Every `stride`-th sample, with the integrals of all of them and contacts smoothed over the samples left out.
     pub(super) fn thinned(&self, stride: usize) -> Self {
         let stride = stride.max(1);

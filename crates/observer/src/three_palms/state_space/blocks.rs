@@ -196,26 +196,76 @@ fn touch(track: &Track, block: &Block) -> Touch {
 /// seconds.
 fn smoothed(t: &[f64], touches: Vec<Touch>, reach: f64) -> Vec<Touch> {
     let mut all = touches.clone();
+    let samples: Vec<f64> = touches.iter().map(|touch| touch.samples).collect();
     for (k, touch) in all.iter_mut().enumerate() {
+        let Some(parabola) = Parabola::new(t, &samples, k, reach) else { continue };
+        for (i, palm) in touch.palms.iter_mut().enumerate() {
+            palm.smooth_arm = parabola.value(|j| touches[j].palms[i].arm[0]);
+            palm.own_share = parabola.weights[k - parabola.start][0];
+            palm.force = parabola.value_and_slope(|j| touches[j].palms[i].force[0]);
+            palm.torque = parabola.value_and_slope(|j| touches[j].palms[i].torque[0]);
+        }
+    }
+    all
+}
+
+/// Replaces the arms in derivatives by smoothed ones of contacts that an estimate has adjusted.
+///
+/// A derivative must not hold the noise that it is multiplied with: not that of its own condition, and, since noise of the
+/// forces ties neighbouring conditions together, not that of its neighbours.
+pub(crate) fn set_adjusted_arms<'a>(
+    inputs: impl Iterator<Item = &'a mut NodeInput>,
+    t: &[f64],
+    adjusted: &[[DVec3; 3]],
+    reach: f64,
+) {
+    let mut before: Option<[DVec3; 3]> = None;
+    let mut inputs: Vec<&mut NodeInput> = inputs.collect();
+    let samples: Vec<f64> = inputs.iter().map(|input| input.here.samples).collect();
+    for (k, input) in inputs.iter_mut().enumerate() {
+        let parabola = Parabola::new(t, &samples, k, reach);
+        let arms: [DVec3; 3] = std::array::from_fn(|i| {
+            parabola.as_ref().map_or(adjusted[k][i], |parabola| parabola.value(|j| adjusted[j][i]))
+        });
+        for (touch, arms) in [(&mut input.here, arms), (&mut input.from, before.unwrap_or(arms))] {
+            for (palm, arm) in touch.palms.iter_mut().zip(arms) {
+                (palm.smooth_arm, palm.own_share) = (arm, 0.0);
+            }
+        }
+        before = Some(arms);
+    }
+}
+
+/// Weights of a least-squares parabola through the nodes about one of them.
+struct Parabola {
+    start: usize,
+    /// Weights for value, slope times `reach`, and curvature at the node.
+    weights: Vec<Vector3<f64>>,
+    reach: f64,
+}
+
+impl Parabola {
+    /// None with fewer than four nodes in reach.
+    fn new(t: &[f64], samples: &[f64], k: usize, reach: f64) -> Option<Self> {
         let from = |j: usize| (t[j] - t[k]) / reach;
         let start = (0..k).rev().take_while(|&j| from(j) >= -1.0).last().unwrap_or(k);
         let end = (k + 1..t.len()).take_while(|&j| from(j) <= 1.0).last().unwrap_or(k);
         let powers = |j: usize| Vector3::new(1.0, from(j), from(j) * from(j));
-        let weigh = |j: usize| powers(j) * touches[j].samples;
+        let weigh = |j: usize| powers(j) * samples[j];
         let normal: Matrix3<f64> = (start..=end).map(|j| weigh(j) * powers(j).transpose()).sum();
-        // Fewer than four nodes in reach: nothing is smoothed.
-        let Some(inverse) = (end >= start + 3).then(|| normal.try_inverse()).flatten() else { continue };
-        // Rows of value and slope.
-        let weights: Vec<Vector3<f64>> = (start..=end).map(|j| inverse * weigh(j)).collect();
-        for (i, palm) in touch.palms.iter_mut().enumerate() {
-            let sum = |row: usize, part: &dyn Fn(&PalmTouch) -> DVec3| -> DVec3 {
-                weights.iter().zip(start..).map(|(w, j)| part(&touches[j].palms[i]) * w[row]).sum()
-            };
-            palm.smooth_arm = sum(0, &|p| p.arm[0]);
-            palm.own_share = weights[k - start][0];
-            palm.force = [sum(0, &|p| p.force[0]), sum(1, &|p| p.force[0]) / reach];
-            palm.torque = [sum(0, &|p| p.torque[0]), sum(1, &|p| p.torque[0]) / reach];
-        }
+        let inverse = (end >= start + 3).then(|| normal.try_inverse()).flatten()?;
+        Some(Self { start, weights: (start..=end).map(|j| inverse * weigh(j)).collect(), reach })
     }
-    all
+
+    fn sum(&self, row: usize, part: &impl Fn(usize) -> DVec3) -> DVec3 {
+        self.weights.iter().zip(self.start..).map(|(w, j)| part(j) * w[row]).sum()
+    }
+
+    fn value(&self, part: impl Fn(usize) -> DVec3) -> DVec3 {
+        self.sum(0, &part)
+    }
+
+    fn value_and_slope(&self, part: impl Fn(usize) -> DVec3) -> [DVec3; 2] {
+        [self.sum(0, &part), self.sum(1, &part) / self.reach]
+    }
 }

@@ -105,6 +105,16 @@ impl<const N: usize> ThreePalmModel<N> {
         })
     }
 
+    /// The arms `n x c` of a block with its contacts at the feet, for a state.
+    pub(crate) fn adjusted_arms(&self, x: &SVector<f64, N>, touch: &Touch) -> [DVec3; 3] {
+        let conditions = self.conditions(x, touch);
+        std::array::from_fn(|i| {
+            let (palm, condition) = (&touch.palms[i], &conditions[i]);
+            let [first, second] = condition.by_contact;
+            palm.arm[0] + condition.foot * (first * palm.frame.t2 - second * palm.frame.t1)
+        })
+    }
+
     /// Impulse that leads from one state to another beside what was measured, N s.
     pub(crate) fn missing_impulse(
         &self,
@@ -119,6 +129,11 @@ impl<const N: usize> ThreePalmModel<N> {
     /// Natural rate, 1/s.
     pub(crate) fn natural_rate(&self) -> f64 {
         self.scales.velocity / self.scales.length
+    }
+
+    /// Variance of a contact coordinate, m^2.
+    pub(crate) fn contact_variance(&self) -> f64 {
+        self.noise.contact * self.noise.contact
     }
 
     /// Contact noise over the natural length.
@@ -232,7 +247,7 @@ impl<const N: usize> ThreePalmModel<N> {
         let farthest = FARTHEST_FOOT / variance.sqrt();
         let near = (value / variance).abs() <= farthest;
         let foot_slope = if near { -of_contact / variance } else { 0.0 };
-        let foot = -of_contact * (value / variance).clamp(-farthest, farthest);
+        let foot = -of_contact * (value / variance).max(-farthest).min(farthest);
         // The part of the arm's noise that the condition itself holds is taken out with the foot.
         let own = foot * palm.own_share;
         let adjusted = palm.smooth_arm + offset + own * (by_contact[0] * frame.t2 - by_contact[1] * frame.t1);

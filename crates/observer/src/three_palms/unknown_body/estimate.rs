@@ -138,6 +138,7 @@ fn finish(
         smallest_information: eigenvalues[0],
         weakest,
         noise,
+        bias: if adjusted { refined.shift } else { 0.0 },
         iterations: fit.iterations + refined.solution.iterations,
     };
     let settled = if adjusted { refined.settled() } else { fit.status == FitStatus::Converged };
@@ -158,6 +159,7 @@ fn finish(
         motion: turned,
         curves: contact_curves,
         radii,
+        uncertainty: if adjusted { curves::uncertainty(&track, &refined, axes) } else { Vec::new() },
         covariance,
         evidence,
         reliability,
