@@ -18,6 +18,7 @@ const STUDIES: &[(&str, &str, &str)] = &[
     ),
     ("bounds_tosses", "bounds-tosses.md", "bounds from poses of bodies that MuJoCo tosses onto a table"),
     ("cold_start", "cold-start.md", "three palms: random scenes from no guess"),
+    ("no_force", "no-force.md", "three palms without force sensors: random scenes from no guess"),
     ("three_palms_monte_carlo", "three-palms-monte-carlo.md", "three palms against the Cramer-Rao bound"),
     ("planar_monte_carlo", "planar-monte-carlo.md", "planar observers against the Cramer-Rao bound"),
     ("planar_costs", "planar-costs.md", "cost of the planar observers beside their accuracy"),
@@ -26,6 +27,7 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "shape-fits.md",
         "shapes fitted to contacts against the Cramer-Rao bound, and their choice",
     ),
+    ("streaming", "streaming.md", "three palms sample by sample over a minute: time and accuracy"),
 ];
 
 /// Runs the study that is named first; what follows is handed to it.

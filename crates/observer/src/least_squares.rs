@@ -76,6 +76,8 @@ pub struct Fit<Point, const P: usize> {
     pub status: FitStatus,
     /// Linearisations used.
     pub iterations: usize,
+    /// Damping of the next step, if there were one: with it a fit of few iterations can be continued.
+    pub damping: f64,
 }
 
 /// Levenberg-Marquardt with damping by a multiple of the identity in the scaled unknowns.
@@ -112,12 +114,26 @@ const LARGEST_DAMPING: f64 = 1e12;
 impl LevenbergMarquardt {
     /// Minimises the cost from `start`.
     pub fn fit<const P: usize, L: LeastSquares<P>>(&self, problem: &L, start: L::Point) -> Fit<L::Point, P> {
-        let Some(mut normal) = problem.linearise(&start) else {
-            let normal = NormalEquations::default();
-            return Fit { point: start, normal, status: FitStatus::Failed, iterations: 1 };
-        };
-        let mut point = start;
-        let mut damping = self.damping;
+        match problem.linearise(&start) {
+            Some(normal) => {
+                let (status, damping) = (FitStatus::OutOfIterations, self.damping);
+                self.resume(problem, Fit { point: start, normal, status, iterations: 1, damping })
+            }
+            None => {
+                let normal = NormalEquations::default();
+                let (status, damping) = (FitStatus::Failed, self.damping);
+                Fit { point: start, normal, status, iterations: 1, damping }
+            }
+        }
+    }
+
+    /// Goes on from where a fit of the same problem ended, with as many linearisations again.
+    pub fn resume<const P: usize, L: LeastSquares<P>>(
+        &self,
+        problem: &L,
+        from: Fit<L::Point, P>,
+    ) -> Fit<L::Point, P> {
+        let Fit { mut point, mut normal, mut damping, .. } = from;
         // The prior pulls towards the start: `travelled` is where the point is from it, in the scaled unknowns.
         let mut travelled = SVector::<f64, P>::zeros();
         let mut iterations = 1;
@@ -129,7 +145,7 @@ impl LevenbergMarquardt {
             if self.prior == 0.0
                 && decrement(&normal) * normal.count as f64 <= NOTHING_TO_GAIN * normal.cost.abs()
             {
-                return Fit { point, normal, status: FitStatus::Converged, iterations };
+                return Fit { point, normal, status: FitStatus::Converged, iterations, damping };
             }
             let mut accepted = false;
             while damping < LARGEST_DAMPING {
@@ -147,7 +163,7 @@ impl LevenbergMarquardt {
                     damping = (damping * 0.1).max(1e-15);
                 }
                 if small {
-                    return self.finish(problem, point, normal, iterations);
+                    return self.finish(problem, point, normal, iterations, damping);
                 }
                 if accepted {
                     break;
@@ -155,13 +171,13 @@ impl LevenbergMarquardt {
                 damping = (damping * 10.0).max(1e-10);
             }
             if !accepted {
-                return self.finish(problem, point, normal, iterations);
+                return self.finish(problem, point, normal, iterations, damping);
             }
             let Some(next) = problem.linearise(&point) else { break };
             normal = next;
             iterations += 1;
         }
-        Fit { point, normal, status: FitStatus::OutOfIterations, iterations }
+        Fit { point, normal, status: FitStatus::OutOfIterations, iterations, damping }
     }
 
     fn finish<const P: usize, L: LeastSquares<P>>(
@@ -170,6 +186,7 @@ impl LevenbergMarquardt {
         point: L::Point,
         last: NormalEquations<P>,
         iterations: usize,
+        damping: f64,
     ) -> Fit<L::Point, P> {
         let normal = problem.linearise(&point).unwrap_or(last);
         let arrived = undamped(&normal).is_some_and(|step| {
@@ -178,7 +195,7 @@ impl LevenbergMarquardt {
         });
         let minimum = self.prior > 0.0 || arrived;
         let status = if minimum { FitStatus::Converged } else { FitStatus::Stalled };
-        Fit { point, normal, status, iterations: iterations + 1 }
+        Fit { point, normal, status, iterations: iterations + 1, damping }
     }
 }
 

@@ -28,3 +28,8 @@ pub use three_palms::{
     TrackError, UnknownBody, WeakDirection, equivalent_orientations, estimate_body, estimate_motion,
     estimate_motion_and_sensors, integrate_paper_system,
 };
+#[cfg(feature = "palms")]
+pub use three_palms::{
+    Closure, KnownTouch, MotionStream, NoForceError, NoForceEstimate, NoForceEvidence, StreamBody,
+    StreamError, StreamEstimate, StreamOptions, StreamStage, TouchShape, estimate_without_forces,
+};

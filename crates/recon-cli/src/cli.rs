@@ -1,6 +1,6 @@
 //! What can be asked for on the command line.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 const EXIT_CODES: &str = "\
@@ -69,13 +69,16 @@ pub(crate) struct SimulateArgs {
 #[derive(Args, Debug)]
 #[command(after_help = "\
 The log is CSV (sensor log, version 1): t, and for each palm i the contact s1_i, s2_i, the normal nx_i, ny_i, nz_i and
-the force f_i or torque tau_i. The scene gives gravity, mass and inertia. No initial guess is needed.
+the force f_i or torque tau_i. The scene gives gravity, mass and inertia; with --identify mass and inertia are estimated
+along, and those of the scene are not looked at. No initial guess is needed.
 
 The output folder appears as a whole or not at all: motion.csv, contact_curves.csv, radius_functions.csv, summary.json,
-lower_bound.ply, upper_bound.ply and report.html, which opens in any browser.
+lower_bound.ply, upper_bound.ply and report.html, which opens in any browser. With --export it holds the object for
+simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer to.
 
 Examples:
   recon reconstruct log.csv --scene scene.toml -o out
+  recon reconstruct log.csv --scene scene.toml -o out --identify --export mjcf,urdf
   recon reconstruct log.csv --scene scene.toml -o out --json | jq .bounds")]
 pub(crate) struct ReconstructArgs {
     /// Sensor log (CSV)
@@ -86,6 +89,37 @@ pub(crate) struct ReconstructArgs {
     /// Folder to write; an earlier one of recon's is replaced
     #[arg(short, long, default_value = "recon-out")]
     pub(crate) output: PathBuf,
+    /// Estimate mass and inertia too, with their deviations
+    #[arg(long)]
+    pub(crate) identify: bool,
+    /// Write the object for simulators too, in these formats
+    #[arg(long, value_delimiter = ',', value_name = "FORMATS")]
+    pub(crate) export: Vec<ExportAs>,
+    /// Shape of the exported object
+    #[arg(long, default_value = "auto", requires = "export")]
+    pub(crate) export_shape: ShapeAs,
+}
+
+/// A format of an exported object.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub(crate) enum ExportAs {
+    /// MuJoCo (object.xml)
+    Mjcf,
+    /// ROS and others (object.urdf)
+    Urdf,
+}
+
+/// What an exported object collides with.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub(crate) enum ShapeAs {
+    /// The ellipsoid through the contacts where they are those of one, else the inner bound
+    Auto,
+    /// The ellipsoid that fits the contacts best, whether they are those of one or not
+    Ellipsoid,
+    /// The inner bound: the hull of all contacts
+    Inner,
+    /// The outer bound: what all contacts leave of space
+    Outer,
 }
 
 #[derive(Args, Debug)]

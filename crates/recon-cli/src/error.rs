@@ -1,9 +1,9 @@
 use recon::object_dynamics::{LogError, SceneError as DynamicsError, SimulationError};
 use recon::observer::EstimateError;
 use recon::shape_bounds::{
-    BoundsError, CurvatureError, FacetError, IntersectionError, NoiseError, PoseError,
+    BoundsError, CurvatureError, EllipsoidFitError, FacetError, IntersectionError, NoiseError, PoseError,
 };
-use recon_io::{LogFileError, MeshError, OutputError, SceneError, TouchesError};
+use recon_io::{ExportError, LogFileError, MeshError, OutputError, SceneError, TouchesError};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use thiserror::Error;
@@ -47,7 +47,7 @@ pub(crate) enum CliError {
     PoseBounds(#[from] PoseError),
     #[error(
         "mass and inertia of the object are not known; give them in a scene file (--scene) as object.mass and \
-         object.principal_moments, object.inertia or object.radii_of_gyration"
+         object.principal_moments, object.inertia or object.radii_of_gyration, or have them estimated (--identify)"
     )]
     UnknownBody,
     #[error("{} has no [simulation]: give shape, palms and duration there, as in the scene that `recon demo` writes", path.display())]
@@ -80,6 +80,10 @@ pub(crate) enum CliError {
     Picture(#[from] IntersectionError),
     #[error("a bound is not a mesh")]
     Mesh(#[from] MeshError),
+    #[error("the object cannot be exported")]
+    Export(#[from] ExportError),
+    #[error("no ellipsoid can be exported (--export-shape inner exports the bound)")]
+    Ellipsoid(#[from] EllipsoidFitError),
     #[error("the result cannot be written")]
     Output(#[from] OutputError),
     #[error("standard output cannot be written")]
@@ -111,6 +115,8 @@ impl CliError {
             | Self::PlanarEstimate(_)
             | Self::PlanarTooShort { .. }
             | Self::PlanarNoise
+            | Self::Export(_)
+            | Self::Ellipsoid(_)
             | Self::Bounds(_) => 3,
             Self::Option { .. } => 2,
             Self::Output(_) | Self::StandardOutput(_) => 5,

@@ -3,6 +3,7 @@
 //! Errors of reading name the file, the line or key, the value and the mend. What is written as a whole appears as a
 //! whole or not at all ([`OutputFolder`], [`AtomicFile`]).
 
+mod export;
 mod log;
 mod mesh;
 mod number;
@@ -15,6 +16,7 @@ mod summary;
 mod table;
 mod touches;
 
+pub use export::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
 pub use log::{
     LogFileError, LogFileErrorKind, parse_log, parse_planar_log, read_log, read_planar_log, write_log,
     write_planar_log,

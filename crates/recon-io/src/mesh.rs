@@ -1,6 +1,7 @@
 //! Triangle meshes as PLY files.
 
 use glam::DVec3;
+use std::f64::consts::{PI, TAU};
 use std::io::{self, BufWriter, Write};
 use thiserror::Error;
 
@@ -53,6 +54,38 @@ impl TriangleMesh {
         }
         Ok(Self { vertices, triangles })
     }
+
+    /// The closed surface of the points that `at` gives for unit vectors, on a net of `rows` by `columns` between the
+    /// poles; degenerate triangles at the poles are left out.
+    #[must_use]
+    pub fn net(rows: u32, columns: u32, at: impl Fn(DVec3) -> DVec3) -> Self {
+        let point = |row: u32, column: u32| {
+            let (polar, around) =
+                (PI * f64::from(row) / f64::from(rows), TAU * f64::from(column) / f64::from(columns));
+            at(DVec3::new(polar.sin() * around.cos(), polar.sin() * around.sin(), polar.cos()))
+        };
+        let index = |row: u32, column: u32| match row {
+            0 => 0,
+            last if last == rows => 1,
+            _ => 2 + (row - 1) * columns + column % columns,
+        };
+        let places = || (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+        let mut vertices = vec![point(0, 0), point(rows, 0)];
+        vertices.extend(places().filter(|(row, _)| *row > 0).map(|(row, column)| point(row, column)));
+        let mut triangles = Vec::new();
+        for (row, column) in places() {
+            let [a, b, c, d] = [
+                index(row, column),
+                index(row + 1, column),
+                index(row + 1, column + 1),
+                index(row, column + 1),
+            ];
+            triangles.extend(
+                [[a, b, c], [a, c, d]].into_iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]),
+            );
+        }
+        Self { vertices, triangles }
+    }
 }
 
 /// Writes a mesh as binary little-endian PLY with double precision, which MeshLab, Blender, Open3D and trimesh open.
@@ -94,6 +127,22 @@ mod tests {
             TriangleMesh::new(vec![DVec3::X, DVec3::NAN], vec![]),
             Err(MeshError::NotFinite { vertex: 1, .. })
         ));
+    }
+
+    #[test]
+    fn net_is_closed_and_turned_outwards() {
+        let mesh = TriangleMesh::net(36, 72, |unit| unit);
+        // Every edge is passed once in each direction.
+        let mut edges = std::collections::HashMap::new();
+        for t in &mesh.triangles {
+            for k in 0..3 {
+                *edges.entry((t[k], t[(k + 1) % 3])).or_insert(0) += 1;
+            }
+        }
+        assert!(edges.iter().all(|(&(a, b), &count)| count == 1 && edges.get(&(b, a)) == Some(&1)));
+        let solid = recon::shape_bounds::TriangleMesh { vertices: mesh.vertices, triangles: mesh.triangles };
+        let missing = 4.0 / 3.0 * PI - solid.moments().volume;
+        assert!(missing > 0.0 && missing < 0.03, "{missing}");
     }
 
     #[test]

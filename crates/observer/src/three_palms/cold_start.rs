@@ -13,7 +13,7 @@ use object_dynamics::MassProperties;
 /// The search, round by round. Bodies near rest come first; then the log read backwards, whose first windows have other
 /// noise; then other first windows, since far below one natural time the data determine little and far above it the
 /// motion has left the neighbourhood of rest; then bodies that spin, at heights about that of rest.
-const ROUNDS: [Round; 12] = [
+pub(super) const ROUNDS: [Round; 12] = [
     Round { window: 1.5, height: 1.0, spin: 0.0, backwards: false },
     Round { window: 1.5, height: 1.0, spin: 0.0, backwards: true },
     Round { window: 3.0, height: 1.0, spin: 0.0, backwards: false },
@@ -30,15 +30,15 @@ const ROUNDS: [Round; 12] = [
 
 /// One family of starts.
 #[derive(Clone, Copy)]
-struct Round {
+pub(super) struct Round {
     /// First window in units of the natural time `sqrt(length / g)`, or of a quarter of a short log.
-    window: f64,
+    pub(super) window: f64,
     /// Height of the centre of mass as a share of the one that static balance suggests.
-    height: f64,
+    pub(super) height: f64,
     /// Angular velocity in natural units, about each axis in both senses.
-    spin: f64,
+    pub(super) spin: f64,
     /// Whether the windows grow from the end of the log.
-    backwards: bool,
+    pub(super) backwards: bool,
 }
 
 /// Factor by which the window grows.
@@ -48,7 +48,7 @@ pub(super) const SAMPLES_PER_NATURAL_TIME: f64 = 24.0;
 /// Weight of the contact normals' common point against static balance: it decides the height alone.
 const NORMALS_WEIGHT: f64 = 0.01;
 /// Candidates that are followed beyond the first window before the outcome is looked at.
-const FOLLOWED: usize = 4;
+pub(super) const FOLLOWED: usize = 4;
 /// Candidates of a round that are followed in all.
 const FOLLOWED_IN_ALL: usize = 12;
 /// Share of the mean information that holds a candidate near its start in the first windows.
@@ -60,8 +60,11 @@ pub(super) const NEXT_TO_NOTHING: f64 = 1e-5;
 /// about 1, wrong minima begin at 1.7.
 pub(super) const EXPLAINED: f64 = 1.4;
 /// Fits on the way: good enough to start the next from.
-const COARSE: LevenbergMarquardt =
+pub(super) const COARSE: LevenbergMarquardt =
     LevenbergMarquardt { iterations: 25, step_tolerance: 1e-6, damping: 1e-2, prior: 0.0 };
+
+/// Fits of the first window.
+pub(super) const FIRST: LevenbergMarquardt = LevenbergMarquardt { prior: PRIOR, ..COARSE };
 
 /// Natural sizes of the track's scene.
 pub(super) fn scales(track: &Track, mass: &MassProperties) -> Scales {
@@ -122,42 +125,44 @@ pub(super) fn cold_start(
     found
 }
 
-struct Search<'a> {
-    track: &'a Track,
-    mass: &'a MassProperties,
-    scales: Scales,
-    noise: NoiseLevel,
-    sampling: Sampling,
+pub(super) struct Search<'a> {
+    pub(super) track: &'a Track,
+    pub(super) mass: &'a MassProperties,
+    pub(super) scales: Scales,
+    pub(super) noise: NoiseLevel,
+    pub(super) sampling: Sampling,
 }
 
 impl Search<'_> {
-    fn problem(&self, window: f64) -> MomentumProblem<'_> {
+    pub(super) fn problem(&self, window: f64) -> MomentumProblem<'_> {
         MomentumProblem::new(self.track, self.mass, self.scales, window)
     }
 
     /// Fits of the first window from the starts of a round, best first.
     fn candidates(&self, window: f64, round: Round) -> Vec<Fit<StartState, UNKNOWNS>> {
-        let solver = LevenbergMarquardt { prior: PRIOR, ..COARSE };
         let problem = self.problem(window);
+        let starts = self.starts(window, round);
+        let mut fits: Vec<_> = starts.into_iter().map(|start| FIRST.fit(&problem, start)).collect();
+        sort(&mut fits);
+        fits
+    }
+
+    /// The starts of a round.
+    pub(super) fn starts(&self, window: f64, round: Round) -> Vec<StartState> {
         let mut rest = rest_state(self.track, window);
         rest.p_WCm.z *= round.height;
         let axes = self.mass.principal().axes.inverse();
         let orientations = orientations().into_iter().map(|R_WI| R_WI * axes);
-        let starts: Vec<StartState> = if round.spin == 0.0 {
-            orientations.map(|R_WO| StartState { R_WO, ..rest }).collect()
-        } else {
-            let rate = round.spin * self.scales.velocity / self.scales.length;
-            let turns =
-                [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis * rate, axis * -rate]);
-            let basic: Vec<DQuat> = orientations.take(BASIC_ORIENTATIONS).collect();
-            turns
-                .flat_map(|w_WO| basic.iter().map(move |&R_WO| (w_WO, R_WO)))
-                .map(|(w_WO, R_WO)| self.spinning(StartState { R_WO, ..rest }, w_WO))
-                .collect()
-        };
-        let mut fits: Vec<_> = starts.into_iter().map(|start| solver.fit(&problem, start)).collect();
-        sort(&mut fits);
-        fits
+        if round.spin == 0.0 {
+            return orientations.map(|R_WO| StartState { R_WO, ..rest }).collect();
+        }
+        let rate = round.spin * self.scales.velocity / self.scales.length;
+        let turns = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis * rate, axis * -rate]);
+        let basic: Vec<DQuat> = orientations.take(BASIC_ORIENTATIONS).collect();
+        turns
+            .flat_map(|w_WO| basic.iter().map(move |&R_WO| (w_WO, R_WO)))
+            .map(|(w_WO, R_WO)| self.spinning(StartState { R_WO, ..rest }, w_WO))
+            .collect()
     }
 
     /// The state with an angular velocity, and the velocity that keeps its contacts.
@@ -196,16 +201,22 @@ impl Search<'_> {
 
     /// Whether what is left of the data is noise, or next to nothing: then no other minimum can be better to speak of.
     fn explains(&self, fit: &Fit<StartState, UNKNOWNS>) -> bool {
+        self.judge(fit).0
+    }
+
+    /// The same, and the largest standard deviation that noise leaves to a direction of the unknowns, in natural sizes.
+    pub(super) fn judge(&self, fit: &Fit<StartState, UNKNOWNS>) -> (bool, f64) {
         let inverse = information_inverse(&Observability::new(&fit.normal.information));
         let problem = self.problem(f64::INFINITY);
-        let noise = propagate(&problem, &fit.point, &inverse, &self.noise, self.sampling).residual;
+        let noise = propagate(&problem, &fit.point, &inverse, &self.noise, self.sampling);
         let rms = fit.normal.rms();
-        rms < EXPLAINED * noise
-            || fit.status == FitStatus::Converged && rms < NEXT_TO_NOTHING * self.scales.velocity
+        let explained = rms < EXPLAINED * noise.residual
+            || fit.status == FitStatus::Converged && rms < NEXT_TO_NOTHING * self.scales.velocity;
+        (explained, Observability::new(&noise.covariance).eigenvalues[UNKNOWNS - 1].max(0.0).sqrt())
     }
 }
 
-fn sort(candidates: &mut Vec<Fit<StartState, UNKNOWNS>>) {
+pub(super) fn sort(candidates: &mut Vec<Fit<StartState, UNKNOWNS>>) {
     candidates.retain(|c| c.status != FitStatus::Failed);
     candidates.sort_by(|a, b| a.normal.cost.total_cmp(&b.normal.cost));
 }
@@ -253,7 +264,7 @@ const BASIC_ORIENTATIONS: usize = 6;
 
 /// Orientations of principal axes, spread over all that differ: turns by pi about a principal axis change nothing, so
 /// the 24 turns of a cube leave 6, and each is taken as it is and turned by 45 degrees about each axis.
-fn orientations() -> Vec<DQuat> {
+pub(super) fn orientations() -> Vec<DQuat> {
     let third =
         |k: i32| DQuat::from_axis_angle(DVec3::ONE.normalize(), f64::from(k) * std::f64::consts::TAU / 3.0);
     let quarter = std::f64::consts::FRAC_PI_2;

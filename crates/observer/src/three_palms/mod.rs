@@ -8,6 +8,7 @@ mod estimate;
 mod evidence;
 mod momentum;
 mod most_probable;
+mod no_force;
 mod noise;
 mod paper_method;
 mod paper_system;
@@ -17,6 +18,7 @@ mod refine;
 mod sensitivity;
 mod sensors;
 mod state_space;
+mod streaming;
 mod track;
 mod unknown_body;
 
@@ -25,9 +27,13 @@ pub use curves::CurveUncertainty;
 pub use estimate::{EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion};
 pub use evidence::{Evidence, Quantity, Reason, Reliability, WeakDirection};
 pub use momentum::{MotionState, Scales, StartState};
+pub use no_force::{
+    Closure, KnownTouch, NoForceError, NoForceEstimate, NoForceEvidence, TouchShape, estimate_without_forces,
+};
 pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
 pub use sensors::{SensorConstant, SensorEstimate, SensorPriors, estimate_motion_and_sensors};
+pub use streaming::{MotionStream, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 pub use track::{Track, TrackError};
 pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body};

@@ -14,10 +14,18 @@ pub(super) fn noise_level(track: &Track) -> NoiseLevel {
     let contact = |i: usize, axis: usize| {
         track.nodes.iter().map(move |n| n.palms[i].frame.sensor_from_contact(n.p_WC[i])[axis])
     };
-    let mut rough: Vec<f64> = (0..6).flat_map(|c| differences(contact(c / 2, c % 2).collect())).collect();
     let mut forces: Vec<f64> =
         (0..3).flat_map(|i| differences(track.nodes.iter().map(|n| n.forces[i]).collect())).collect();
-    NoiseLevel { contact: deviation(&mut rough), force: deviation(&mut forces) }
+    NoiseLevel {
+        contact: roughness((0..6).map(|c| contact(c / 2, c % 2).collect())),
+        force: deviation(&mut forces),
+    }
+}
+
+/// Standard deviation of the white noise that is common to some series.
+pub(super) fn roughness(series: impl Iterator<Item = Vec<f64>>) -> f64 {
+    let mut rough: Vec<f64> = series.flat_map(differences).collect();
+    deviation(&mut rough)
 }
 
 fn differences(values: Vec<f64>) -> Vec<f64> {

@@ -3,11 +3,11 @@
 use super::quadrature::{derivative, running_integral};
 use contact_kinematics::{PalmError, PalmFrame, PalmState};
 use glam::DVec3;
-use object_dynamics::{PalmReading, SensorLog};
+use object_dynamics::{PalmReading, Sample, SensorLog};
 use thiserror::Error;
 
 /// Fewest samples that an estimate is made from.
-const FEWEST_SAMPLES: usize = 8;
+pub(super) const FEWEST_SAMPLES: usize = 8;
 /// Shortest lever of a palm's torque that a force is taken from, as a share of the contact's distance.
 const SHORTEST_LEVER: f64 = 1e-3;
 /// Rotational acceleration of a palm, rad/s^2, below which its own inertia does not enter its torque to speak of.
@@ -56,9 +56,28 @@ pub(super) struct Node {
     pub(super) lift: [f64; 3],
 }
 
+impl Node {
+    /// Of a sample in contact with all palms, which stand and turn as given.
+    pub(super) fn new(
+        sample: &Sample,
+        palms: [PalmState; 3],
+        palm_inertias: Option<[f64; 3]>,
+    ) -> Result<Self, TrackError> {
+        let s = sample.palms.map(|p| p.contact.unwrap_or_default());
+        let p_WC = std::array::from_fn(|i| palms[i].frame.contact_from_sensor(s[i]));
+        let lift = std::array::from_fn(|i| -s[i][1] * palms[i].rate);
+        let mut forces = [0.0; 3];
+        for i in 0..3 {
+            forces[i] = force(&sample.palms[i], s[i], &palms[i], palm_inertias.map(|inertias| inertias[i]))
+                .ok_or(TrackError::NoForce { palm: i + 1, t: sample.t })?;
+        }
+        Ok(Self { palms, p_WC, forces, lift })
+    }
+}
+
 /// Integrals from the start of the track, at one time. With the mass known, momentum is affine in the unknowns:
 /// `v = v0 + velocity`, `p_WCm = cm0 + v0 t + position`, `L = L0 + moment - cm0 x impulse - v0 x first_moment`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Integrals {
     pub(super) impulse: DVec3,
     pub(super) first_moment: DVec3,
@@ -69,6 +88,21 @@ pub(super) struct Integrals {
     pub(super) curl: DVec3,
     /// Rates of impulse, first moment, moment and curl: for interpolation between samples.
     rates: [DVec3; 4],
+}
+
+impl Integrals {
+    /// Impulse, first moment, moment and curl a while after these, which belong to the time `t0` of a body of `mass` under
+    /// `gravity`, from those that begin here.
+    fn after(&self, t0: f64, mass: f64, gravity: DVec3, local: &[DVec3; 4]) -> [DVec3; 4] {
+        let [impulse, first_moment, moment, curl] = *local;
+        let travel = (self.position - 0.5 * gravity * t0 * t0) * mass;
+        [
+            self.impulse + impulse,
+            self.first_moment + impulse * t0 + first_moment,
+            self.moment + moment - self.position.cross(impulse) - self.velocity.cross(first_moment),
+            self.curl + curl + travel.cross(impulse) + self.impulse.cross(first_moment),
+        ]
+    }
 }
 
 /// The part of a log in contact with all palms, prepared for the momentum form.
@@ -112,22 +146,13 @@ impl Track {
         }
         let mut nodes = Vec::with_capacity(end);
         for (k, sample) in samples.iter().enumerate() {
-            let states = [palms[0][k], palms[1][k], palms[2][k]];
-            let s = sample.palms.map(|p| p.contact.unwrap_or_default());
-            let p_WC = std::array::from_fn(|i| states[i].frame.contact_from_sensor(s[i]));
-            let lift = std::array::from_fn(|i| -s[i][1] * states[i].rate);
-            let mut forces = [0.0; 3];
-            for i in 0..3 {
-                forces[i] =
-                    force(&sample.palms[i], s[i], &states[i], palm_inertias.map(|inertias| inertias[i]))
-                        .ok_or(TrackError::NoForce { palm: i + 1, t: sample.t })?;
-            }
-            nodes.push(Node { palms: states, p_WC, forces, lift });
+            nodes.push(Node::new(sample, [palms[0][k], palms[1][k], palms[2][k]], palm_inertias)?);
         }
         Ok(Self::assemble(t, nodes, mass, gravity, start))
     }
 
-    fn assemble(t: Vec<f64>, nodes: Vec<Node>, mass: f64, gravity: DVec3, start: f64) -> Self {
+    /// Of nodes at times since `start`.
+    pub(super) fn assemble(t: Vec<f64>, nodes: Vec<Node>, mass: f64, gravity: DVec3, start: f64) -> Self {
         let force: Vec<DVec3> = nodes.iter().map(|n| sum(|i| n.forces[i] * n.palms[i].frame.n)).collect();
         let torque: Vec<DVec3> =
             nodes.iter().map(|n| sum(|i| n.p_WC[i].cross(n.forces[i] * n.palms[i].frame.n))).collect();
@@ -196,6 +221,54 @@ impl Track {
             })
             .collect();
         Self { t, nodes, integrals, middle, mass: self.mass, gravity: self.gravity, start: self.start }
+    }
+
+    /// A track without nodes, with room for some, that [`Self::extend`] makes longer.
+    pub(super) fn growing(mass: f64, gravity: DVec3, start: f64, room: usize) -> Self {
+        Self {
+            t: Vec::with_capacity(room),
+            nodes: Vec::with_capacity(room),
+            integrals: Vec::with_capacity(room),
+            middle: Vec::with_capacity(room),
+            mass,
+            gravity,
+            start,
+        }
+    }
+
+    /// Appends node `k` of a short track, with its contacts smoothed over `reach` samples on either side; the short
+    /// track begins where this one ends so far. What [`Self::thinned`] gives of the whole, piece by piece.
+    pub(super) fn extend(&mut self, piece: &Self, k: usize, reach: usize) {
+        let node = piece.smoothed(k, reach);
+        let local = &piece.integrals[k];
+        let (Some(&t0), Some(&base)) = (self.t.last(), self.integrals.last()) else {
+            self.t.push(0.0);
+            self.nodes.push(node);
+            self.integrals.push(Integrals { rates: local.rates, ..Integrals::default() });
+            return;
+        };
+        let u = piece.t[k];
+        let next = piece.t.partition_point(|&t| t < 0.5 * u).clamp(1, piece.t.len() - 1);
+        let halfway = interpolate(&piece.t, &piece.integrals, 0.5 * u, next);
+        let (mass, gravity) = (self.mass, self.gravity);
+        self.middle.push(base.after(t0, mass, gravity, &halfway));
+        let local_values = [local.impulse, local.first_moment, local.moment, local.curl];
+        let [impulse, first_moment, moment, curl] = base.after(t0, mass, gravity, &local_values);
+        let force = local.rates[0];
+        let position = base.position + base.velocity * u + local.position;
+        let turning = local.rates[2] - (base.position + base.velocity * u).cross(force);
+        let travel = (position - 0.5 * gravity * (t0 + u) * (t0 + u)) * mass;
+        self.integrals.push(Integrals {
+            impulse,
+            first_moment,
+            moment,
+            velocity: base.velocity + local.velocity,
+            position,
+            curl,
+            rates: [force, force * (t0 + u), turning, travel.cross(force)],
+        });
+        self.t.push(t0 + u);
+        self.nodes.push(node);
     }
 
     /// The same samples with time running backwards: frictionless motion obeys the same laws with all velocities
@@ -284,7 +357,8 @@ fn interpolate(t: &[f64], integrals: &[Integrals], at: f64, next: usize) -> [DVe
     })
 }
 
-fn palm_states(
+/// Frames, rates and accelerations of palm `i`, at times `t` since `start`.
+pub(super) fn palm_states(
     i: usize,
     start: f64,
     t: &[f64],

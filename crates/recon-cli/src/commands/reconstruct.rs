@@ -1,7 +1,7 @@
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{Reconstruction, reconstruct, write_reconstruction_folder};
+use crate::pipeline::{Reconstruction, exported, reconstruct, write_reconstruction_folder};
 use crate::progress::Progress;
 use recon_io::{Scene, read_log};
 use serde_json::Value;
@@ -14,9 +14,11 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     progress.step("reading the log");
     let log = read_log(&args.log)?;
     let name = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
-    let made = reconstruct(&log, &scene, &name, &progress)?;
+    let made = reconstruct(&log, &scene, &name, args.identify, &progress)?;
     progress.step("writing the results");
-    let figures = write_reconstruction_folder(&args.output, &made, &[])?;
+    let files = exported(&made, &args.export, args.export_shape)?;
+    let extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
+    let figures = write_reconstruction_folder(&args.output, &made, &extras)?;
     drop(progress);
     tell(console, &made, figures, &args.output)
 }

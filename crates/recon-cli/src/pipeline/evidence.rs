@@ -1,10 +1,12 @@
 //! The estimator's evidence in words and numbers for people.
 
-use recon::observer::{MotionEstimate, Reliability};
+use recon::observer::{IdentifiedBody, MotionEstimate, Reliability};
 use recon_io::{Evidence, EvidenceValue, Level, Verdict};
 
 /// Unknowns of the estimate: centre of mass, velocity, angular momentum, orientation.
 const UNKNOWNS: usize = 12;
+/// With mass and inertia, in axes of which the orientation at the start is a choice.
+const UNKNOWNS_WITH_BODY: usize = 16;
 
 /// Contacts that contradict each other by more than this share of the object's size are not those of a convex object
 /// in the motion found.
@@ -20,9 +22,15 @@ pub(crate) struct Checks {
     pub(crate) contradiction: f64,
     /// Size of the object, m.
     pub(crate) size: f64,
+    /// Mass and inertia where they were estimated.
+    pub(crate) identified: Option<IdentifiedBody>,
 }
 
 impl Checks {
+    fn unknowns(&self) -> usize {
+        if self.identified.is_some() { UNKNOWNS_WITH_BODY } else { UNKNOWNS }
+    }
+
     fn contradicts(&self) -> bool {
         // A contradiction that is not a number is one.
         self.contradiction.is_nan() || self.contradiction > LARGEST_CONTRADICTION * self.size
@@ -60,7 +68,9 @@ pub(crate) fn verdict(estimate: &MotionEstimate, checks: &Checks) -> Verdict {
         return Verdict { level: Level::Bad, text };
     }
     let text = format!(
-        "The fit settled, and the log determines all {UNKNOWNS} unknowns of the motion; the least certain is the {}.",
+        "The fit settled, and the log determines all {} unknowns of the motion{}; the least certain is the {}.",
+        checks.unknowns(),
+        if checks.identified.is_some() { ", mass and inertia" } else { "" },
         estimate.evidence.weakest
     );
     Verdict { level: Level::Good, text }
@@ -74,7 +84,8 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
         EvidenceValue::Number(variance.sqrt())
     };
     let misfit = e.residual_rms / e.noise_explains;
-    let known = if e.rank == UNKNOWNS { Level::Good } else { Level::Bad };
+    let unknowns = checks.unknowns();
+    let known = if e.rank == unknowns { Level::Good } else { Level::Bad };
     let misfit_level = if misfit > 3.0 { Level::Caution } else { Level::Good };
     // What is smooth but below the noise harms nobody.
     let white = if e.whiteness < 0.3 && misfit > 1.0 { Level::Caution } else { Level::Good };
@@ -88,7 +99,7 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
         meaning: meaning.to_owned(),
         level,
     };
-    vec![
+    let mut rows = vec![
         row(
             "samples",
             "Samples used",
@@ -100,7 +111,7 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
         row(
             "rank",
             "Rank",
-            EvidenceValue::Text(format!("{} of {UNKNOWNS}", e.rank)),
+            EvidenceValue::Text(format!("{} of {unknowns}", e.rank)),
             "",
             "Combinations of the unknowns that the log determines at all.",
             known,
@@ -201,5 +212,20 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
             "Linearisations until the fit settled.",
             neutral,
         ),
-    ]
+    ];
+    if let Some(body) = &checks.identified {
+        let moments = body.mass.principal().moments;
+        let mut add = |key: &str, name: &str, value, unit: &str, meaning: &str| {
+            rows.push(row(key, name, number(value), unit, meaning, neutral));
+        };
+        add("mass", "Mass", body.mass.mass(), "kg", "As estimated from the log.");
+        add("std_mass", "Uncertainty of the mass", body.mass_deviation, "kg", "Standard deviation.");
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let (key, title) = (format!("moment_{name}"), format!("Principal moment {name}"));
+            add(&key, &title, moments[axis], "kg m^2", "As estimated from the log, about the body's axis.");
+            let (key, title) = (format!("std_moment_{name}"), format!("Uncertainty of moment {name}"));
+            add(&key, &title, body.moment_deviations[axis], "kg m^2", "Standard deviation.");
+        }
+    }
+    rows
 }

@@ -11,13 +11,13 @@ use std::io::{self, Write};
 use std::path::Path;
 
 /// A further file of a folder: its name and its contents.
-pub(crate) type Extra<'a> = (&'a str, Vec<u8>);
+pub(crate) type Extra = (String, Vec<u8>);
 
 /// Writes everything about a reconstruction; returns the summary.
 pub(crate) fn write_reconstruction_folder(
     target: &Path,
     made: &Reconstruction,
-    extras: &[Extra<'_>],
+    extras: &[Extra],
 ) -> Result<Value, CliError> {
     let data = &made.data;
     let figures = summary(data);

@@ -3,6 +3,7 @@
 mod body;
 mod bounds;
 mod evidence;
+mod export;
 mod folder;
 mod reconstruct;
 mod simulate;
@@ -10,6 +11,7 @@ mod sound;
 mod truth;
 
 pub(crate) use bounds::{BoundsResult, bounds};
+pub(crate) use export::exported;
 pub(crate) use folder::{write_bounds_folder, write_reconstruction_folder};
 pub(crate) use reconstruct::{Reconstruction, reconstruct};
 pub(crate) use simulate::{Simulated, simulate};

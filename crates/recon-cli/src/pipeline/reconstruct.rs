@@ -7,8 +7,11 @@ use crate::error::CliError;
 use crate::progress::Progress;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame};
-use recon::object_dynamics::SensorLog;
-use recon::observer::{EstimateError, KnownBody, MotionEstimate, NoiseLevel, TrackError, estimate_motion};
+use recon::object_dynamics::{MassProperties, SensorLog};
+use recon::observer::{
+    EstimateError, IdentifiedBody, KnownBody, MotionEstimate, NoiseLevel, TrackError, UnknownBody,
+    estimate_body, estimate_motion,
+};
 use recon::shape_bounds::ContactSample;
 use recon_io::{
     Level, MotionState, PalmContact, PalmTrack, ReportData, Scene, TriangleMesh, implausibilities,
@@ -27,6 +30,14 @@ pub(crate) struct Reconstruction {
     pub(crate) lower: Option<TriangleMesh>,
     /// Surface of the upper bound from all contacts.
     pub(crate) upper: Option<TriangleMesh>,
+    /// Mass and inertia in the body axes of the estimate.
+    pub(crate) mass: MassProperties,
+    /// The same with deviations where they were estimated.
+    pub(crate) identified: Option<IdentifiedBody>,
+    /// All contacts, body axes.
+    pub(crate) contacts: Vec<ContactSample>,
+    /// Noise of the contact positions, m.
+    pub(crate) contact_noise: f64,
 }
 
 impl Reconstruction {
@@ -41,25 +52,21 @@ pub(crate) fn reconstruct(
     log: &SensorLog,
     scene: &Scene,
     title: &str,
+    identify: bool,
     progress: &Progress,
 ) -> Result<Reconstruction, CliError> {
-    let mass = known_body(scene)?;
+    let known = if identify { None } else { Some(known_body(scene)?) };
     let odd = implausibilities(log, scene);
     let mut warnings: Vec<String> = odd.iter().map(|w| sentence(&w.to_string())).collect();
     progress.step("estimating the motion");
-    let known = KnownBody {
-        mass,
-        gravity: DVec3::new(0.0, 0.0, -scene.gravity),
-        palm_inertias: scene.palm_inertia,
-        noise: noise(scene),
-    };
-    let estimate = estimate_motion(&log.without_truth(), &known)?;
+    let (mass, identified, estimate) = estimated(&log.without_truth(), scene, known)?;
     let used = estimate.motion.len();
     warnings.extend(contact_loss(log, used));
     let palms = tracks(log, &estimate)?;
     progress.step("bounding the shape");
+    let contacts = samples(&palms);
     let size = size(&palms);
-    let bounded = match bounds_of(&estimate, &palms, size) {
+    let bounded = match bounds_of(&estimate, &contacts, size) {
         Ok(bounded) => Some(bounded),
         // Contacts moved by a wrong motion contradict each other; the verdict on the motion says why, and is not lost.
         Err(error) if !estimate.reliability.is_reliable() => {
@@ -76,10 +83,12 @@ pub(crate) fn reconstruct(
         }
         None => (None, None, None),
     };
-    let checks = Checks { implausible: !odd.is_empty(), contradiction, size };
-    let axes = log
-        .truth()
-        .map_or(DQuat::IDENTITY, |truth| axes_of_estimate(&mass, estimate.start.R_WO, truth[0].R_WO));
+    let checks = Checks { implausible: !odd.is_empty(), contradiction, size, identified };
+    let axes = log.truth().map_or(DQuat::IDENTITY, |truth| match identified {
+        None => axes_of_estimate(&mass, estimate.start.R_WO, truth[0].R_WO),
+        // Axes that were found need not be those of the truth: turns are compared from the first sample on.
+        Some(_) => truth[0].R_WO.inverse() * estimate.start.R_WO,
+    });
     let shape = match (&scene.simulation, log.truth()) {
         (Some(simulation), Some(_)) => Some(true_shape(simulation, axes)?),
         _ => None,
@@ -96,7 +105,25 @@ pub(crate) fn reconstruct(
         evidence: evidence(&estimate, &checks),
         warnings,
     };
-    Ok(Reconstruction { data, lower, upper })
+    let contact_noise = estimate.evidence.noise.contact;
+    Ok(Reconstruction { data, lower, upper, mass, identified, contacts, contact_noise })
+}
+
+/// Body and motion; the body with its deviations where it is not known.
+fn estimated(
+    log: &SensorLog,
+    scene: &Scene,
+    known: Option<MassProperties>,
+) -> Result<(MassProperties, Option<IdentifiedBody>, MotionEstimate), CliError> {
+    let gravity = DVec3::new(0.0, 0.0, -scene.gravity);
+    let (palm_inertias, noise) = (scene.palm_inertia, noise(scene));
+    Ok(match known {
+        Some(mass) => (mass, None, estimate_motion(log, &KnownBody { mass, gravity, palm_inertias, noise })?),
+        None => {
+            let found = estimate_body(log, &UnknownBody { gravity, palm_inertias, noise })?;
+            (found.body.mass, Some(found.body), found.motion)
+        }
+    })
 }
 
 fn noise(scene: &Scene) -> Option<NoiseLevel> {
@@ -162,14 +189,18 @@ fn cause(error: &CliError) -> String {
 
 /// Bounds that hold at [`CONFIDENCE`] where contacts are noisy and it is known how much, else bounds from exact contacts, with
 /// what to say about them.
-fn bounds_of(estimate: &MotionEstimate, palms: &[PalmTrack; 3], size: f64) -> Result<BoundsResult, CliError> {
+fn bounds_of(
+    estimate: &MotionEstimate,
+    contacts: &[ContactSample],
+    size: f64,
+) -> Result<BoundsResult, CliError> {
     let noise = estimate.evidence.noise.contact;
     if noise <= NOTABLE_NOISE * size {
-        return bounds(&samples(palms));
+        return bounds(contacts);
     }
     let why = match curve_bounds(estimate, CONFIDENCE) {
         Ok(mut sound) => {
-            sound.contradiction = contradiction_among(&samples(palms));
+            sound.contradiction = contradiction_among(contacts);
             sound.warnings.push(format!(
                 "Contacts are noisy by {noise:.1e} m: the bounds have margins with which they hold at {:.0} % confidence.",
                 100.0 * CONFIDENCE
@@ -178,7 +209,7 @@ fn bounds_of(estimate: &MotionEstimate, palms: &[PalmTrack; 3], size: f64) -> Re
         }
         Err(error) => cause(&error),
     };
-    let mut exact = bounds(&samples(palms))?;
+    let mut exact = bounds(contacts)?;
     exact.warnings.push(format!(
         "The bounds take every contact as exact, but contact positions are noisy by {noise:.1e} m: the object may pass the bounds by a few times that. With margins there are none: {why}."
     ));

@@ -12,6 +12,6 @@ mod tests;
 
 pub(crate) use blocks::{Block, block_inputs, blocks, set_adjusted_arms};
 pub(crate) use constants::{BODY, Constant, Parameters};
-pub(crate) use inertia::{inertia_of_numbers, inertia_slope, numbers_of_inertia};
+pub(crate) use inertia::{INERTIA_NUMBERS, inertia_of_numbers, inertia_slope, numbers_of_inertia};
 pub(crate) use input::{NodeInput, Touch};
 pub(crate) use model::{MOTION_STATES, ThreePalmModel};

@@ -39,7 +39,7 @@ const FREE: LevenbergMarquardt =
     LevenbergMarquardt { iterations: 60, step_tolerance: 1e-8, damping: 1e-3, prior: 0.0 };
 
 /// The mass that the mean force carries, kg: the momentum changes little against the weight's impulse.
-pub(super) fn mass_of_weight(track: &Track) -> Option<f64> {
+pub(crate) fn mass_of_weight(track: &Track) -> Option<f64> {
     let g = track.gravity;
     let impulse = track.integrals.last()?.impulse;
     let mass = -impulse.dot(g) / (g.length_squared() * track.duration());
@@ -69,14 +69,14 @@ pub(super) fn search(track: &Track, scales: Scales, noise: NoiseLevel) -> Vec<Fi
     found
 }
 
-fn spins(rate: f64) -> Vec<DVec3> {
+pub(crate) fn spins(rate: f64) -> Vec<DVec3> {
     if rate == 0.0 {
         return vec![DVec3::ZERO];
     }
     [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis * rate, axis * -rate]).collect()
 }
 
-fn begin(track: &Track, scales: Scales, window: f64, height: f64, w_WO: DVec3) -> BodyPoint {
+pub(crate) fn begin(track: &Track, scales: Scales, window: f64, height: f64, w_WO: DVec3) -> BodyPoint {
     let mut start = rest_state(track, window);
     start.p_WCm.z *= height;
     let inertia = DMat3::from_diagonal(DVec3::splat(BALL * track.mass * scales.length * scales.length));
@@ -132,7 +132,7 @@ fn explains(
 }
 
 /// Natural sizes for a body whose mass is that of its weight.
-pub(super) fn scales_of_ball(track: &Track) -> Option<Scales> {
+pub(crate) fn scales_of_ball(track: &Track) -> Option<Scales> {
     let ball = |length: f64| {
         object_dynamics::MassProperties::from_principal(
             track.mass,

@@ -1,0 +1,16 @@
+//! No force sensors: motion, shape and inertia over mass from contacts and palm poses alone.
+
+mod closure;
+mod error;
+mod estimate;
+mod problem;
+mod search;
+mod series;
+mod shape;
+
+#[cfg(test)]
+mod tests;
+
+pub use closure::Closure;
+pub use error::NoForceError;
+pub use estimate::{KnownTouch, NoForceEstimate, NoForceEvidence, TouchShape, estimate_without_forces};

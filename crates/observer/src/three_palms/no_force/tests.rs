@@ -1,0 +1,132 @@
+use super::estimate::{Scene, entries};
+use super::problem::{Guess, Row, TouchProblem, UNKNOWNS, uniform};
+use super::series::TouchSeries;
+use super::shape::FreeEllipsoid;
+use super::*;
+use crate::three_palms::state_space::{inertia_of_numbers, numbers_of_inertia};
+use contact_kinematics::{Ellipsoid, Palm, SlopeMotion, Sphere, SupportFunction, Translated};
+use glam::{DMat3, DQuat, DVec3};
+use object_dynamics::integrate::Tolerance;
+use object_dynamics::{
+    InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation, ThreePalmScene,
+};
+
+const AXES: DVec3 = DVec3::new(1.0, 2.0, 2.5);
+const OFFSET: DVec3 = DVec3::new(0.1, -0.05, 0.12);
+
+fn palms() -> [Palm; 3] {
+    let palm = |azimuth, slope, amplitude, frequency, phase| {
+        Palm::new(azimuth, SlopeMotion::Sinusoid { slope, amplitude, frequency, phase }).unwrap()
+    };
+    [palm(0.1, 0.9, 0.08, 1.7, 0.3), palm(2.0, 1.05, 0.1, 2.1, 1.0), palm(4.3, 1.0, 0.06, 1.3, 2.0)]
+}
+
+fn run<S: SupportFunction>(body: S, inertia: DMat3, duration: f64, rate: f64) -> (Simulation, SensorLog) {
+    let mass = MassProperties::new(1.7, inertia * 1.7).unwrap();
+    let scene = ThreePalmScene::new(body, mass, palms(), 9.81).unwrap();
+    let start = InitialMotion { R_WO: DQuat::IDENTITY, w_WO: DVec3::new(0.2, 0.3, -0.4) };
+    let simulation =
+        scene.simulate(start, SampleTimes { duration, rate }, Tolerance::uniform(1e-12)).unwrap();
+    let log = simulation.sensor_log(&scene).unwrap().without_truth();
+    let mut samples = log.samples().to_vec();
+    for palm in samples.iter_mut().flat_map(|s| &mut s.palms) {
+        (palm.force, palm.torque) = (None, None);
+    }
+    (simulation, SensorLog::new(samples, None).unwrap())
+}
+
+/// A body whose inertia is not that of its shape.
+fn general(duration: f64, rate: f64) -> (Simulation, SensorLog, Guess) {
+    let inertia = DMat3::from_cols_array(&[2.1, 0.08, -0.05, 0.08, 1.5, 0.06, -0.05, 0.06, 1.1]);
+    let body = Translated { body: Ellipsoid::new(AXES).unwrap(), offset: OFFSET };
+    let (simulation, log) = run(body, inertia, duration, rate);
+    let mut shape = FreeEllipsoid::numbers(AXES, DQuat::IDENTITY);
+    shape[6..].copy_from_slice(&OFFSET.to_array());
+    let truth = Guess { w: simulation.instants[0].w_WO, shape, inertia: numbers_of_inertia(inertia) };
+    (simulation, log, truth)
+}
+
+const KNOWN: KnownTouch = KnownTouch { gravity: DVec3::new(0.0, 0.0, -9.81), contact_noise: None };
+
+#[test]
+fn the_true_motion_leaves_nothing_to_fourth_order() {
+    let (_, log, truth) = general(2.0, 1000.0);
+    let series = TouchSeries::new(&log).unwrap();
+    let rms = |stride: usize| {
+        let nodes = series.nodes(stride);
+        let problem = TouchProblem::new(&nodes, KNOWN.gravity, 2.0, f64::INFINITY);
+        let r = problem.residuals(&truth).unwrap();
+        (r.iter().map(|r| r * r).sum::<f64>() / r.len() as f64).sqrt()
+    };
+    let (fine, coarse) = (rms(10), rms(40));
+    assert!((coarse / fine).log2() / 2.0 > 3.5 && fine < 1e-6, "{fine:e} {coarse:e}");
+}
+
+#[test]
+fn motion_shape_and_inertia_come_from_contacts_alone() {
+    let (simulation, log, truth) = general(3.0, 500.0);
+    let estimate = estimate_without_forces(&log, &KNOWN).unwrap();
+    // What the steps of the integration leave at 2 x 24 nodes in a natural time, over 3 s.
+    assert!((estimate.shape.semi_axes - AXES).length() < 1e-8, "{:?}", estimate.shape);
+    assert!((estimate.shape.centre - OFFSET).length() < 1e-8, "{:?}", estimate.shape);
+    let inertia = estimate.inertia_per_mass - inertia_of_numbers(&truth.inertia);
+    assert!(inertia.to_cols_array().iter().all(|v| v.abs() < 1e-8), "{inertia}");
+    let last = estimate.motion.last().unwrap();
+    let now = simulation.instants.iter().min_by(|a, b| (a.t - last.t).abs().total_cmp(&(b.t - last.t).abs()));
+    assert!((last.p_WCm - now.unwrap().touch.p_WCm).length() < 1e-7);
+    assert!((last.w_WO - now.unwrap().w_WO).length() < 1e-7);
+    assert_eq!(estimate.evidence.rank, UNKNOWNS);
+    // The curves cross; what is left at the crossings is of second order in the angle, 0.03^2 x 2.5 m at most.
+    let closure = estimate.evidence.closure.unwrap();
+    assert!(closure.pairs > 20 && closure.distance_rms < 2e-3, "{closure:?}");
+}
+
+/// The unknowns as the covariance has them.
+fn found(estimate: &NoForceEstimate) -> Row {
+    let TouchShape { centre, orientation, semi_axes } = estimate.shape;
+    let mut shape = FreeEllipsoid::numbers(semi_axes, orientation);
+    shape[6..].copy_from_slice(&centre.to_array());
+    let inertia = numbers_of_inertia(estimate.inertia_per_mass);
+    entries(&Guess { w: estimate.motion[0].w_WO, shape, inertia })
+}
+
+/// Squared errors over their covariance have mean 18 and, over 30 runs, a deviation of sqrt(2 18 / 30) = 1.1: four of
+/// those. The noise is 0.1 % of the size.
+#[test]
+fn covariance_is_true_under_noise() {
+    let (_, clean, truth) = general(3.0, 500.0);
+    let noise = 2.5e-3;
+    let (mut sum, runs) = (0.0, 30);
+    for seed in 0..runs {
+        let level = SensorNoise { contact: noise, force: 0.0, torque: 0.0 };
+        let series = TouchSeries::new(&clean.with_noise(&level, seed).unwrap()).unwrap();
+        let scene = Scene { series: &series, gravity: KNOWN.gravity, length: 2.0, noise };
+        let estimate = scene.estimate(&series.nodes(8), truth).unwrap();
+        let error = found(&estimate) - entries(&truth);
+        sum += error.dot(&estimate.covariance.cholesky().unwrap().solve(&error));
+        let rms = estimate.evidence.residual_rms / estimate.evidence.noise_explains;
+        assert!((0.9..1.1).contains(&rms), "{rms}");
+        let closure = estimate.evidence.closure.unwrap();
+        // Pairs share samples, so their sum scatters more than the count suggests.
+        assert!((0.7..1.4).contains(&(closure.distance_rms / closure.noise_explains)), "{closure:?}");
+    }
+    let mean = sum / runs as f64;
+    assert!((18.0 - 4.4..18.0 + 4.4).contains(&mean), "{mean}");
+}
+
+#[test]
+fn what_contacts_do_not_determine_is_refused_in_words() {
+    let ball = run(Sphere::new(2.0).unwrap(), uniform(DVec3::splat(2.0), DQuat::IDENTITY), 2.0, 200.0).1;
+    match estimate_without_forces(&ball, &KNOWN) {
+        Err(NoForceError::NotDetermined { words, deviation }) => {
+            assert!(!words.is_empty() && deviation > 0.25, "{words} {deviation}");
+        }
+        other => panic!("{other:?}"),
+    }
+    let (_, log, _) = general(0.6, 200.0);
+    assert!(matches!(estimate_without_forces(&log, &KNOWN), Err(NoForceError::TooShort { .. })));
+    let floating = KnownTouch { gravity: DVec3::ZERO, ..KNOWN };
+    assert!(matches!(estimate_without_forces(&log, &floating), Err(NoForceError::Gravity { .. })));
+    let odd = KnownTouch { contact_noise: Some(-1.0), ..KNOWN };
+    assert_eq!(estimate_without_forces(&log, &odd).unwrap_err(), NoForceError::Noise { value: -1.0 });
+}

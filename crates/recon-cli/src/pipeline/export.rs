@@ -1,0 +1,93 @@
+//! The reconstructed object as a model for simulators.
+
+use super::Reconstruction;
+use crate::cli::{ExportAs, ShapeAs};
+use crate::error::CliError;
+use glam::DMat3;
+use recon::observer::IdentifiedBody;
+use recon::shape_bounds::EllipsoidFit;
+use recon_io::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
+
+/// Misfit up to which contacts are those of an ellipsoid: this share of its size, and this many deviations of the
+/// contacts' noise. What is left then matters to no simulator.
+const ELLIPSOIDAL: (f64, f64) = (1e-4, 5.0);
+/// Contacts that the ellipsoid is fitted to, at most.
+const FITTED: usize = 3000;
+
+/// The files of the object in the given formats; none without formats.
+pub(crate) fn exported(
+    made: &Reconstruction,
+    formats: &[ExportAs],
+    shape: ShapeAs,
+) -> Result<Vec<ExportedFile>, CliError> {
+    if formats.is_empty() {
+        return Ok(Vec::new());
+    }
+    let format = |format: &ExportAs| match format {
+        ExportAs::Mjcf => ExportFormat::Mjcf,
+        ExportAs::Urdf => ExportFormat::Urdf,
+    };
+    let (shape, words) = chosen(made, shape)?;
+    let seen = [("inner", &made.lower), ("outer", &made.upper)];
+    let seen = seen.into_iter().filter_map(|(name, mesh)| Some((name.to_owned(), mesh.clone()?)));
+    let model = ObjectModel {
+        name: "object".to_owned(),
+        notes: [made.data.title.clone(), made.data.verdict.text.clone(), words].into(),
+        mass: made.mass,
+        deviations: made.identified.as_ref().map(deviations),
+        shape,
+        seen: seen.collect(),
+        start: made.data.motion.first().copied(),
+    };
+    Ok(model.files(&formats.iter().map(format).collect::<Vec<_>>())?)
+}
+
+/// Deviations of the tensor's entries in principal axes. Off the diagonal they are those of the axes' directions; where
+/// two moments are equal these are open, and what is off the diagonal is as uncertain as the moments are.
+fn deviations(body: &IdentifiedBody) -> MassDeviations {
+    let (moments, of) = (body.mass.principal().moments, body.moment_deviations);
+    let off = |a: usize, b: usize, axis: usize| {
+        let turned = (moments[a] - moments[b]).abs() * body.axis_deviations[axis];
+        if turned.is_finite() { turned } else { of[a].max(of[b]) }
+    };
+    let (xy, xz, yz) = (off(0, 1, 2), off(0, 2, 1), off(1, 2, 0));
+    let inertia = DMat3::from_cols_array(&[of.x, xy, xz, xy, of.y, yz, xz, yz, of.z]);
+    MassDeviations { mass: body.mass_deviation, inertia }
+}
+
+/// The shape, and what it is in words.
+fn chosen(made: &Reconstruction, shape: ShapeAs) -> Result<(ExportShape, String), CliError> {
+    let bound = |name: &'static str| {
+        let (mesh, reason) = match name {
+            "inner" => (&made.lower, "the contacts span no volume"),
+            _ => (&made.upper, "the contacts leave the object unbounded on some side"),
+        };
+        let mesh = mesh.clone().ok_or(ExportError::NoBound { name, reason })?;
+        let words = format!("It collides with the {name} bound.");
+        Ok((ExportShape::Mesh { name: name.to_owned(), mesh }, words))
+    };
+    match shape {
+        ShapeAs::Inner => bound("inner"),
+        ShapeAs::Outer => bound("outer"),
+        ShapeAs::Ellipsoid => Ok(ellipsoid(&fit(made)?)),
+        ShapeAs::Auto => match fit(made) {
+            Ok(fit) if fit.misfit <= ELLIPSOIDAL.0 * fit.semi_axes.z + ELLIPSOIDAL.1 * made.contact_noise => {
+                Ok(ellipsoid(&fit))
+            }
+            _ => bound("inner"),
+        },
+    }
+}
+
+fn fit(made: &Reconstruction) -> Result<EllipsoidFit, CliError> {
+    let step = made.contacts.len().div_ceil(FITTED).max(1);
+    let some: Vec<_> = made.contacts.iter().step_by(step).copied().collect();
+    Ok(EllipsoidFit::new(&some)?)
+}
+
+fn ellipsoid(fit: &EllipsoidFit) -> (ExportShape, String) {
+    let EllipsoidFit { centre, semi_axes, orientation, misfit } = *fit;
+    let words =
+        format!("It collides with the ellipsoid through its contacts, which they miss by {misfit:.1e} m.");
+    (ExportShape::Ellipsoid { centre, orientation, semi_axes }, words)
+}
