@@ -1,7 +1,7 @@
 use recon::object_dynamics::{LogError, SceneError as DynamicsError, SimulationError};
 use recon::observer::EstimateError;
 use recon::shape_bounds::{
-    BoundsError, CurvatureError, EllipsoidFitError, FacetError, IntersectionError, NoiseError, PoseError,
+    BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
 };
 use recon_io::{ExportError, LogFileError, MeshError, OutputError, SceneError, TouchesError};
 use std::path::PathBuf;
@@ -83,7 +83,7 @@ pub(crate) enum CliError {
     #[error("the object cannot be exported")]
     Export(#[from] ExportError),
     #[error("no ellipsoid can be exported (--export-shape inner exports the bound)")]
-    Ellipsoid(#[from] EllipsoidFitError),
+    Ellipsoid(#[from] FitError),
     #[error("the result cannot be written")]
     Output(#[from] OutputError),
     #[error("standard output cannot be written")]

@@ -139,6 +139,19 @@ impl ShapeBounds {
             .collect()
     }
 
+    /// Those of [`Self::gaps`] that are above `least` (m): much cheaper where few are.
+    pub(crate) fn gaps_above(&self, least: f64) -> Vec<Gap> {
+        let Some(mut search) = self.gap_search() else { return Vec::new() };
+        let corners = self.upper.bounded().map_or(0, |upper| upper.vertices().len());
+        let mut gaps = Vec::new();
+        for corner in 0..corners {
+            if search.at_most(corner) > least {
+                gaps.extend(search.at_corner(corner).filter(|gap| gap.distance > least));
+            }
+        }
+        gaps
+    }
+
     fn gap_search(&self) -> Option<GapSearch<'_>> {
         Some(GapSearch::new(self.upper.bounded()?, &self.lower, &self.corners))
     }

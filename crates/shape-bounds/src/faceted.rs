@@ -65,7 +65,7 @@ pub(crate) fn faceted(
         let mut places = HashSet::new();
         let place = |g: &Gap| (g.outer / (SAME_PLACE * tolerance)).round().to_array().map(f64::to_bits);
         let wide: Vec<Gap> =
-            bounds.gaps().into_iter().filter(|g| g.distance > tolerance && places.insert(place(g))).collect();
+            bounds.gaps_above(tolerance).into_iter().filter(|g| places.insert(place(g))).collect();
         if wide.is_empty() {
             return Ok(bounds);
         }

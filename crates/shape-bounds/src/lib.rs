@@ -27,7 +27,6 @@ mod bounds;
 mod concave;
 mod curvature;
 mod distance;
-mod ellipsoid_fit;
 mod erosion;
 mod faceted;
 mod fit;
@@ -54,7 +53,6 @@ pub use curvature::{
     BallHull, BallIntersection, ConvexMeasures, CurvatureBounds, CurvatureError, RoundedHull,
     RoundedIntersection, SharpBounds,
 };
-pub use ellipsoid_fit::{EllipsoidFit, EllipsoidFitError};
 pub use faceted::FacetError;
 pub use fit::{
     Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel, ShapeChoice,

@@ -4,8 +4,11 @@ use super::Reconstruction;
 use crate::cli::{ExportAs, ShapeAs};
 use crate::error::CliError;
 use glam::DMat3;
+use recon::contact_kinematics::SupportFunction;
 use recon::observer::IdentifiedBody;
-use recon::shape_bounds::EllipsoidFit;
+use recon::shape_bounds::{
+    ContactNoise, FitOptions, FittedBody, NoiseLevel, NoisyContact, ShapeFamily, ShapeFit, SkewEllipsoid,
+};
 use recon_io::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
 
 /// Misfit up to which contacts are those of an ellipsoid: this share of its size, and this many deviations of the
@@ -71,23 +74,47 @@ fn chosen(made: &Reconstruction, shape: ShapeAs) -> Result<(ExportShape, String)
         ShapeAs::Outer => bound("outer"),
         ShapeAs::Ellipsoid => Ok(ellipsoid(&fit(made)?)),
         ShapeAs::Auto => match fit(made) {
-            Ok(fit) if fit.misfit <= ELLIPSOIDAL.0 * fit.semi_axes.z + ELLIPSOIDAL.1 * made.contact_noise => {
-                Ok(ellipsoid(&fit))
-            }
+            Ok(fit) if fit.is_good(made.contact_noise) => Ok(ellipsoid(&fit)),
             _ => bound("inner"),
         },
     }
 }
 
+/// The likeliest ellipsoid, and how far contacts are from its points with the same normals, root mean square, m.
+struct EllipsoidFit {
+    body: SkewEllipsoid,
+    misfit: f64,
+}
+
+impl EllipsoidFit {
+    fn is_good(&self, contact_noise: f64) -> bool {
+        self.misfit <= ELLIPSOIDAL.0 * self.body.semi_axes().max_element() + ELLIPSOIDAL.1 * contact_noise
+    }
+}
+
 fn fit(made: &Reconstruction) -> Result<EllipsoidFit, CliError> {
     let step = made.contacts.len().div_ceil(FITTED).max(1);
-    let some: Vec<_> = made.contacts.iter().step_by(step).copied().collect();
-    Ok(EllipsoidFit::new(&some)?)
+    let size = made.contacts.iter().map(|c| c.point.length()).fold(f64::MIN_POSITIVE, f64::max);
+    // Only the share of points and normals in the noise matters: its size is estimated.
+    let noise = ContactNoise::isotropic(size, 1.0);
+    let some: Vec<_> =
+        made.contacts.iter().step_by(step).map(|c| NoisyContact { contact: *c, noise }).collect();
+    let options = FitOptions { noise_level: NoiseLevel::Estimated, ..FitOptions::default() };
+    let fit = ShapeFit::of(&some, ShapeFamily::Ellipsoid, &options)?;
+    let FittedBody::Ellipsoid(body) = fit.body() else {
+        // The family that was asked for is the one that is fitted.
+        return Err(ExportError::NoBound { name: "ellipsoid", reason: "the fit is no ellipsoid" }.into());
+    };
+    let off = |c: &NoisyContact| body.jet(c.contact.normal).point.distance_squared(c.contact.point);
+    let misfit = (some.iter().map(off).sum::<f64>() / some.len() as f64).sqrt();
+    Ok(EllipsoidFit { body: *body, misfit })
 }
 
 fn ellipsoid(fit: &EllipsoidFit) -> (ExportShape, String) {
-    let EllipsoidFit { centre, semi_axes, orientation, misfit } = *fit;
-    let words =
-        format!("It collides with the ellipsoid through its contacts, which they miss by {misfit:.1e} m.");
+    let words = format!(
+        "It collides with the ellipsoid through its contacts, which they miss by {:.1e} m.",
+        fit.misfit
+    );
+    let (centre, orientation, semi_axes) = (fit.body.centre(), fit.body.rotation(), fit.body.semi_axes());
     (ExportShape::Ellipsoid { centre, orientation, semi_axes }, words)
 }

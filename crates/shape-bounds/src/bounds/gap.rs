@@ -110,7 +110,7 @@ impl<'a> GapSearch<'a> {
     }
 
     /// The gap is at most this: the distance to a triangle whose corners are in the lower bound.
-    fn at_most(&self, corner: usize) -> f64 {
+    pub(super) fn at_most(&self, corner: usize) -> f64 {
         let triangle = self.upper.faces_at(corner).map(|f| self.supports[f as usize].0);
         distance_to_triangle(self.upper.vertices()[corner], triangle)
     }
