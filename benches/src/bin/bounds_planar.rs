@@ -48,11 +48,11 @@ fn contacts(angles: impl IntoIterator<Item = f64>) -> Result<Vec<ContactSample>,
 }
 
 /// Thread time in ms, the fastest of three.
-fn fastest(mut work: impl FnMut() -> Result<(), Failure>) -> Result<f64, Failure> {
+fn fastest<T>(mut work: impl FnMut() -> Result<T, Failure>) -> Result<f64, Failure> {
     let mut best = f64::INFINITY;
     for _ in 0..3 {
         let start = ThreadTime::now();
-        work()?;
+        std::hint::black_box(work()?);
         best = best.min(start.elapsed().as_secs_f64() * 1e3);
     }
     Ok(best)
@@ -64,8 +64,8 @@ fn timing(csv: &mut String) -> Result<(), Failure> {
         let samples = contacts((0..n).map(|_| s.between(0.0, TAU)))?;
         let points: Vec<DVec2> = samples.iter().map(|c| c.point).collect();
         let planes: Vec<_> = samples.iter().map(ContactSample::half_plane).collect();
-        let hull = fastest(|| Ok(drop(std::hint::black_box(Hull::of(&points)?))))?;
-        let region = fastest(|| Ok(drop(std::hint::black_box(Intersection::of(&planes)?))))?;
+        let hull = fastest(|| Ok(Hull::of(&points)?))?;
+        let region = fastest(|| Ok(Intersection::of(&planes)?))?;
         writeln!(csv, "hull ms,{n},{hull:.3}\nhalf-planes ms,{n},{region:.3}")?;
         if n <= 10_000 {
             let start = ThreadTime::now();
@@ -81,8 +81,7 @@ fn timing(csv: &mut String) -> Result<(), Failure> {
         }
         if n <= 1_000 {
             let radii = RadiusBounds { min: 0.5, max: 4.0 };
-            let discs =
-                fastest(|| Ok(drop(std::hint::black_box(CurvatureBounds::from_contacts(&samples, radii)?))))?;
+            let discs = fastest(|| Ok(CurvatureBounds::from_contacts(&samples, radii)?))?;
             writeln!(csv, "discs ms,{n},{discs:.3}")?;
         }
     }

@@ -1,7 +1,7 @@
 //! Outlines in the plane, true to scale.
 
 use super::csv::{number, row};
-use super::drawing::{Curve, Drawing, LegendItem};
+use super::drawing::{Curve, Drawing, LegendItem, Place};
 use super::style::{Marker, Style};
 use super::{Axis, files::check_name};
 use crate::ChartError;
@@ -20,13 +20,21 @@ pub enum Stroke {
     Points,
 }
 
+/// One outline: its label, its points in order, and how it is drawn.
+#[derive(Clone, Debug, PartialEq)]
+struct Outline {
+    label: String,
+    points: Vec<Place>,
+    stroke: Stroke,
+}
+
 /// Outlines in the plane with one scale for both axes, in m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outlines {
     pub(super) name: String,
     title: String,
     subtitle: String,
-    outlines: Vec<(String, Vec<(f64, f64)>, Stroke)>,
+    outlines: Vec<Outline>,
 }
 
 impl Outlines {
@@ -39,7 +47,7 @@ impl Outlines {
     /// Adds an outline, in order around it.
     #[must_use]
     pub fn outline(mut self, label: impl Into<String>, points: Vec<(f64, f64)>, stroke: Stroke) -> Self {
-        self.outlines.push((label.into(), points, stroke));
+        self.outlines.push(Outline { label: label.into(), points, stroke });
         self
     }
 
@@ -47,7 +55,7 @@ impl Outlines {
     #[must_use]
     pub fn csv(&self) -> String {
         let mut text = row(["outline", "x [m]", "y [m]"]);
-        for (label, points, _) in &self.outlines {
+        for Outline { label, points, .. } in &self.outlines {
             for (x, y) in points {
                 text += &row([label, &number(*x), &number(*y)]);
             }
@@ -60,7 +68,7 @@ impl Outlines {
         let axis = |name| Axis::linear(name, "m");
         let mut drawing = Drawing::new(&self.title, &self.subtitle, &axis("x"), &axis("y"));
         let mut legend = Vec::new();
-        for (index, (label, points, stroke)) in self.outlines.iter().enumerate() {
+        for (index, Outline { label, points, stroke }) in self.outlines.iter().enumerate() {
             let dots = *stroke == Stroke::Points;
             let style = Style::of_method(index);
             let style = match stroke {

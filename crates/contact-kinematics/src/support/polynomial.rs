@@ -7,8 +7,8 @@ use glam::{DMat3, DVec3};
 const LARGEST_DEGREE: u32 = 32;
 /// Grid spacings times degree in [`PolynomialSupport::curvature_radii`], tried in turn: the slack is half the square of
 /// these, as a share of the largest radius.
-const SPACINGS_TIMES_DEGREE: [f64; 2] = [0.25, 0.05];
-/// Slack, as a share of the smallest radius, with which the coarser grid will do.
+const SPACINGS_TIMES_DEGREE: [f64; 3] = [0.25, 0.1, 0.05];
+/// Slack, as a share of the smallest radius, with which a coarser grid will do.
 const ENOUGH: f64 = 0.05;
 
 /// One term `coefficient n_x^i n_y^j n_z^k` of a polynomial on the unit sphere.

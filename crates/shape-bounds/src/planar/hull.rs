@@ -156,7 +156,7 @@ fn check(points: &[DVec2]) -> Result<f64, PointsError> {
     Ok(power(exponent))
 }
 
-/// A hull that takes one point at a time, in time proportional to its corners.
+/// A hull that takes one point at a time: O(log n) for a point inside, and a copy of the corners for one outside.
 #[derive(Clone, Debug, Default)]
 pub struct IncrementalHull {
     points: Vec<DVec2>,
@@ -202,13 +202,38 @@ impl IncrementalHull {
         Ok(self.extend(index as u32))
     }
 
+    /// An edge with the point strictly on its right: by bisection in the fan of the first corner, exact.
+    fn seen_edge(&self, point: DVec2) -> Option<usize> {
+        let count = self.corners.len();
+        let at = |k: usize| self.points[self.corners[k % count] as usize];
+        let sees = |k: usize| turn(at(k), at(k + 1), point) < 0.0;
+        let side = |k: usize| turn(at(0), at(k), point);
+        let (first, last) = (side(1), side(count - 1));
+        if first < 0.0 {
+            return Some(0);
+        }
+        if last > 0.0 {
+            return Some(count - 1);
+        }
+        if first == 0.0 || last == 0.0 {
+            // On the line of an edge of the first corner.
+            return (0..count).find(|k| sees(*k));
+        }
+        // Left of the way to corner `low`, right of that to corner `high`.
+        let (mut low, mut high) = (1, count - 1);
+        while high - low > 1 {
+            let middle = usize::midpoint(low, high);
+            if side(middle) >= 0.0 { low = middle } else { high = middle }
+        }
+        sees(low).then_some(low)
+    }
+
     /// Replaces the run of edges that see the point. An edge sees a point on its right, or beyond its end on its line.
     fn extend(&mut self, index: u32) -> bool {
         let count = self.corners.len();
         let at = |k: usize| self.points[self.corners[k % count] as usize];
         let point = self.points[index as usize];
-        let sees = |k: usize| turn(at(k), at(k + 1), point) < 0.0;
-        let Some(seen) = (0..count).find(|k| sees(*k)) else { return false };
+        let Some(seen) = self.seen_edge(point) else { return false };
         // The run that holds `seen`, backwards and forwards. Edges on whose line the point lies join it, so that the
         // corners left are strict.
         let joins = |k: usize| turn(at(k), at(k + 1), point) <= 0.0;
