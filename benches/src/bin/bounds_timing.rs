@@ -1,6 +1,6 @@
 //! Times hull and half-space intersection beside parry3d, Qhull (through SciPy) and CGAL, in one run on one core.
 //!
-//! Usage: `bounds_timing [LARGEST]` (1,000,000 by default), with `BOUNDS_CGAL` naming the compiled
+//! Usage: `bounds_timing [LARGEST [INPUT]]` (1,000,000 and all inputs by default), with `BOUNDS_CGAL` naming the compiled
 //! `benches/peers/bounds_cgal.cpp` if there is one. Prints the table `docs/charts/bounds/timing.csv`: thread time in ms, the
 //! fastest of a few repeats; empty where a peer is absent, not tried at that size, or beyond the time limit.
 
@@ -19,6 +19,8 @@ type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
     let largest: usize = std::env::args().nth(1).map_or(Ok(1_000_000), |a| a.parse())?;
+    let only = std::env::args().nth(2);
+    let wanted = |name: &str| only.as_deref().is_none_or(|o| o == name);
     let folder = std::env::temp_dir().join(format!("bounds-timing-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
     let file = folder.join("input");
@@ -33,12 +35,17 @@ fn main() -> Result<(), Failure> {
         ] {
             // The sections make peers run for minutes, or hours.
             let sections = matches!(kind, InputKind::TiltedSections | InputKind::Sections);
-            if (sections && n != 100_000) || (kind == InputKind::Duplicates && n == 1_000_000) {
+            if !wanted(&format!("{kind:?}"))
+                || (sections && n != 100_000)
+                || (kind == InputKind::Duplicates && n == 1_000_000)
+            {
                 continue;
             }
             println!("{}", hull_line(kind, n, &file)?);
         }
-        println!("{}", half_space_line(n, &file)?);
+        if wanted("HalfSpaces") {
+            println!("{}", half_space_line(n, &file)?);
+        }
     }
     std::fs::remove_dir_all(&folder)?;
     Ok(())

@@ -67,7 +67,7 @@ impl ContactSample {
 /// Point and margin are kept apart, rather than summed to one offset, because neighbouring half-spaces of a dense curve
 /// differ by less than the rounding of such a sum.
 ///
-/// One to a cache line, because memory is what large intersections wait for.
+/// One to a cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 pub struct HalfSpace {

@@ -273,7 +273,7 @@ impl BallIntersection {
                 let across = across(&circle);
                 if across.length_squared() > 0.0 {
                     let highest = circle.middle + across.normalize() * circle.radius;
-                    if surface.angle(&circle, arc.start, highest) < surface.angle(&circle, arc.start, end) {
+                    if surface.angle(&circle, arc.start, highest) <= surface.angle(&circle, arc.start, end) {
                         compare(highest);
                     }
                 }

@@ -100,6 +100,9 @@ fn measures_of_a_ball_and_of_a_lens() {
             1.0,
             1e-12,
         );
+        // Its edge is the farthest across the line of the centres.
+        let rim = lens.0.support(Direction::Y);
+        assert!((rim - (1.0 - half * half).sqrt()).abs() < 1e-15, "{d}: {rim}");
         let found = lens.0.measures();
         let area = 4.0 * PI * (1.0 - half);
         let edge = 2.0 * PI * (1.0 - half * half).sqrt();
