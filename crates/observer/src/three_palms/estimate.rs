@@ -125,7 +125,14 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
     let found = cold_start(track, mass, noise);
     let best = found.into_iter().next().ok_or(EstimateError::NoFit)?;
     if noise.contact > WORTH_ADJUSTING * scales.length {
-        let setting = Setting { scales, noise, constants: &[], deviations: &[], axes_chosen: false };
+        let setting = Setting {
+            scales,
+            noise,
+            constants: &[],
+            deviations: &[],
+            shift_wanted: true,
+            axes_chosen: false,
+        };
         return noisy_estimate::<UNKNOWNS>(track, known, &setting, &best).map(|(estimate, _)| estimate);
     }
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
@@ -245,7 +252,7 @@ pub(super) fn estimate_with_constants<const N: usize>(
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
     let noise = NoiseLevel { contact: noise.contact.max(WORTH_ADJUSTING * scales.length), ..noise };
     let best = cold_start(track, &known.mass, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
-    let setting = Setting { scales, noise, constants, deviations, axes_chosen: false };
+    let setting = Setting { scales, noise, constants, deviations, shift_wanted: true, axes_chosen: false };
     noisy_estimate(track, known, &setting, &best)
 }
 
