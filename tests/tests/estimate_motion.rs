@@ -151,13 +151,13 @@ fn random_scenes_come_out_right_from_no_guess() {
 #[test]
 fn covariance_is_consistent_under_noise() {
     // Contact noise 0.1 % of the size, force noise 1 % of what a palm carries. The errors of a run hang together: their
-    // twelve squares are worth about the three weakest directions, 60 independent ones over 20 runs, whose mean has a
-    // deviation of sqrt(2 / 60) = 0.18. The band is 95 % wide.
+    // twelve squares are worth about the three weakest directions, 24 independent ones over 8 runs, whose mean has a
+    // deviation of sqrt(2 / 24) = 0.29. The band is two of those wide.
     let (scene, start) = f5();
     let noise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };
     let stated = NoiseLevel { contact: noise.contact, force: noise.force };
-    let runs = 20;
-    for (duration, level) in [(3.0, Some(stated)), (4.2, Some(stated)), (4.2, None)] {
+    let runs = 8;
+    for (duration, level) in [(3.0, Some(stated)), (4.2, None)] {
         let (simulation, clean) = exact_log(&scene, start, duration, 200.0);
         let (mut sum, mut worst): (f64, f64) = (0.0, 0.0);
         for seed in 0..runs {
@@ -170,7 +170,7 @@ fn covariance_is_consistent_under_noise() {
         }
         let mean = sum / f64::from(12 * runs as u32);
         println!("{duration} s, noise {level:?}: {mean:.3}, largest {:.2} deviations", worst.sqrt());
-        assert!((0.65..1.35).contains(&mean), "{duration} s: {mean}");
+        assert!((0.42..1.58).contains(&mean), "{duration} s: {mean}");
         assert!(worst < 25.0, "{duration} s: {} deviations", worst.sqrt());
     }
 }

@@ -9,7 +9,8 @@ use recon::object_dynamics::{
     InitialMotion, MassProperties, SampleTimes, SensorLog, Simulation, ThreePalmScene,
 };
 use recon::observer::{
-    EstimateError, KnownBody, MotionEstimate, Quantity, Reason, Reliability, TrackError, estimate_motion,
+    EstimateError, KnownBody, MotionEstimate, Quantity, Reason, Reliability, TrackError, UnknownBody,
+    estimate_body, estimate_motion,
 };
 use recon_tests::{exact_log, f5, fig5};
 
@@ -165,5 +166,21 @@ fn parallel_palms_are_right_or_reported() {
         let estimate = estimate(&scene, &log.without_truth()).unwrap();
         let error = centre_error(&estimate, &simulation);
         assert!(error < 1e-6 || !estimate.reliability.is_reliable(), "{degrees} degrees: {error:e}");
+    }
+}
+
+#[test]
+fn bodies_that_hide_their_inertia_are_reported() {
+    // Nothing is known of them: a ball, and a body of revolution whose axis is the vertical's neighbour.
+    for (axes, R_WO) in
+        [(DVec3::ONE, DQuat::IDENTITY), (DVec3::new(1.0, 1.0, 1.8), DQuat::from_rotation_x(0.4))]
+    {
+        let mass = MassProperties::uniform_ellipsoid(1.0, axes).unwrap();
+        let scene = ThreePalmScene::new(Ellipsoid::new(axes).unwrap(), mass, palms(), 9.81).unwrap();
+        let (_, log) = exact_log(&scene, InitialMotion { R_WO, ..SPIN }, 1.5, 200.0);
+        let unknown = UnknownBody { gravity: scene.gravity(), palm_inertias: None, noise: None };
+        let Ok(estimate) = estimate_body(&log, &unknown) else { continue };
+        assert!(!estimate.motion.reliability.is_reliable(), "{axes}: {:?}", estimate.body);
+        assert!(estimate.motion.evidence.rank < 16, "{axes}: {}", estimate.motion.evidence.rank);
     }
 }

@@ -5,7 +5,7 @@
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::{PalmReading, SensorLog, SensorNoise, ThreePalmScene};
 use recon::observer::{
-    KnownBody, NoiseLevel, Reliability, SensorPriors, estimate_motion, estimate_motion_and_sensors,
+    KnownBody, NoiseLevel, Reason, Reliability, SensorPriors, estimate_motion, estimate_motion_and_sensors,
 };
 use recon_tests::{exact_log, f5, g2};
 
@@ -27,25 +27,26 @@ fn changed(log: &SensorLog, change: impl Fn(usize, &mut PalmReading)) -> SensorL
 #[test]
 fn a_wrong_force_gain_is_reported_by_the_chi_squared_test() {
     let (scene, start) = f5();
-    let (_, log) = exact_log(&scene, start, 3.0, 500.0);
+    let (_, log) = exact_log(&scene, start, 3.0, 200.0);
     let log = log.with_noise(&NOISE, 1).unwrap();
     assert!(estimate_motion(&log, &known(&scene)).unwrap().reliability.is_reliable());
-    for gain in [0.95, 1.05] {
-        let wrong = changed(&log, |i, palm| {
-            if i == 1 {
-                palm.force = palm.force.map(|f| f * gain);
-            }
-        });
-        let estimate = estimate_motion(&wrong, &known(&scene)).unwrap();
-        println!("gain {gain}: {:?}", estimate.reliability);
-        assert!(matches!(estimate.reliability, Reliability::Unreliable(_)), "gain {gain} in silence");
-    }
+    let wrong = changed(&log, |i, palm| {
+        if i == 1 {
+            palm.force = palm.force.map(|f| f * 1.05);
+        }
+    });
+    let estimate = estimate_motion(&wrong, &known(&scene)).unwrap();
+    let Reliability::Unreliable(reasons) = &estimate.reliability else { panic!("believed") };
+    assert!(
+        reasons.iter().any(|r| matches!(r, Reason::Inconsistent { misfit } if *misfit > 1.4)),
+        "{reasons:?}"
+    );
 }
 
 #[test]
 fn gains_and_biases_are_found_within_their_deviations() {
     let (scene, start) = g2();
-    let (_, log) = exact_log(&scene, start, 4.0, 500.0);
+    let (_, log) = exact_log(&scene, start, 4.0, 250.0);
     let gains = [1.03, 0.97, 1.02];
     let biases = [0.1, -0.2, 0.05];
     let wrong = changed(&log.with_noise(&NOISE, 3).unwrap(), |i, palm| {
@@ -66,9 +67,9 @@ fn gains_and_biases_are_found_within_their_deviations() {
 #[test]
 fn a_delay_of_the_forces_is_found() {
     let (scene, start) = g2();
-    let (_, log) = exact_log(&scene, start, 4.0, 500.0);
-    // Forces reported two samples, 4 ms, late.
-    let late = 2;
+    let (_, log) = exact_log(&scene, start, 4.0, 250.0);
+    // Forces reported one sample, 4 ms, late.
+    let late = 1;
     let noisy = log.with_noise(&NOISE, 4).unwrap();
     let mut samples = noisy.samples().to_vec();
     for k in (late..samples.len()).rev() {

@@ -50,7 +50,7 @@ fn deviations_of_mass_and_inertia_are_true() {
     let stated = NoiseLevel { contact: noise.contact, force: noise.force };
     let (scene, start) = g2();
     let (simulation, clean) = exact_log(&scene, start, 4.0, 200.0);
-    let runs = 10;
+    let runs = 6;
     let (mut sum, mut count) = (0.0, 0);
     for seed in 0..runs {
         let log = clean.with_noise(&noise, seed).unwrap();
@@ -67,7 +67,7 @@ fn deviations_of_mass_and_inertia_are_true() {
         sum += squares.iter().sum::<f64>();
         assert!(squares.iter().all(|s| *s < 25.0), "{squares:?}");
     }
-    // Seven numbers a run that hang together, worth about four: 40 squares, deviation sqrt(2 / 40) = 0.22.
+    // Seven numbers a run that hang together, worth about four: 24 squares, deviation sqrt(2 / 24) = 0.29.
     let mean = sum / count as f64;
-    assert!((0.5..1.5).contains(&mean), "{mean}");
+    assert!((0.42..1.58).contains(&mean), "{mean}");
 }

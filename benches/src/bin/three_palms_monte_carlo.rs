@@ -42,7 +42,7 @@ struct Setting {
 }
 
 fn main() -> Result<(), Failure> {
-    let runs: u64 = std::env::args().nth(1).map_or(Ok(10), |word| word.parse())?;
+    let runs: u64 = std::env::args().nth(1).map_or(Ok(5), |word| word.parse())?;
     println!("# Three-palm estimators against the Cramer-Rao bound\n");
     println!(
         "Made by `cargo xtask study three_palms_monte_carlo`; {runs} runs a row, seeds 0 to {}.\n",
@@ -182,7 +182,7 @@ fn estimate<S: SupportFunction>(
     let clock = Instant::now();
     if unknown {
         let known = UnknownBody { gravity: scene.gravity(), palm_inertias: None, noise };
-        let found = estimate_body(log, &known)?;
+        let Ok(found) = estimate_body(log, &known) else { return Ok(refused(13, clock)) };
         let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
         let (mut errors, mut covariance) = motion_errors(scene, &found.motion, now, 9);
         let body = &found.body;
@@ -198,11 +198,19 @@ fn estimate<S: SupportFunction>(
         Ok(outcome(errors, covariance, found.motion.reliability.is_reliable(), milliseconds))
     } else {
         let known = KnownBody { mass: *scene.mass(), gravity: scene.gravity(), palm_inertias: None, noise };
-        let found = estimate_motion(log, &known)?;
+        let Ok(found) = estimate_motion(log, &known) else { return Ok(refused(12, clock)) };
         let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
         let (errors, covariance) = motion_errors(scene, &found, now, 12);
         Ok(outcome(errors, covariance, found.reliability.is_reliable(), milliseconds))
     }
+}
+
+/// No estimate is a warning too.
+fn refused(count: usize, clock: Instant) -> Estimated {
+    let infinite = vec![f64::INFINITY; count];
+    let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
+    let outcome = Outcome { errors: infinite.clone(), deviations: infinite, reliable: false, milliseconds };
+    (outcome, vec![vec![0.0; count]; count])
 }
 
 fn outcome(errors: Vec<f64>, covariance: Vec<Vec<f64>>, reliable: bool, milliseconds: f64) -> Estimated {

@@ -20,8 +20,9 @@ const COVARIANCE_SAMPLES: usize = 400;
 /// Smallest share of the largest information that still counts as information: rounding of `J' J`.
 pub(super) const RANK_TOLERANCE: f64 = 1e-14;
 /// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
-/// linearisation that its covariance comes from does not reach that far.
-const LARGEST_DEVIATION: f64 = 0.25;
+/// linearisation that its covariance comes from does not reach that far. Errors of five deviations without another
+/// warning were seen from 0.106 on, none below 0.09.
+const LARGEST_DEVIATION: f64 = 0.1;
 /// Contact noise, relative to length, above which data are worth adjusting: below it, plain least squares is as good.
 pub(super) const WORTH_ADJUSTING: f64 = 1e-7;
 /// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
@@ -124,7 +125,14 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
     let found = cold_start(track, mass, noise);
     let best = found.into_iter().next().ok_or(EstimateError::NoFit)?;
     if noise.contact > WORTH_ADJUSTING * scales.length {
-        let setting = Setting { scales, noise, constants: &[], deviations: &[], axes_chosen: false };
+        let setting = Setting {
+            scales,
+            noise,
+            constants: &[],
+            deviations: &[],
+            shift_wanted: true,
+            axes_chosen: false,
+        };
         return noisy_estimate::<UNKNOWNS>(track, known, &setting, &best).map(|(estimate, _)| estimate);
     }
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
@@ -244,7 +252,7 @@ pub(super) fn estimate_with_constants<const N: usize>(
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
     let noise = NoiseLevel { contact: noise.contact.max(WORTH_ADJUSTING * scales.length), ..noise };
     let best = cold_start(track, &known.mass, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
-    let setting = Setting { scales, noise, constants, deviations, axes_chosen: false };
+    let setting = Setting { scales, noise, constants, deviations, shift_wanted: true, axes_chosen: false };
     noisy_estimate(track, known, &setting, &best)
 }
 

@@ -57,6 +57,8 @@ pub(super) struct Setting<'a> {
     pub(super) constants: &'a [Constant],
     /// Prior deviations of the constants; those beyond the end of the list have none.
     pub(super) deviations: &'a [f64],
+    /// Whether the shift by noise is wanted: it costs two more estimates.
+    pub(super) shift_wanted: bool,
     /// Whether the body axes are chosen, so that the orientation at the start is.
     pub(super) axes_chosen: bool,
 }
@@ -69,7 +71,7 @@ pub(super) fn refine<const N: usize>(
     start: &StartState,
     setting: &Setting<'_>,
 ) -> Result<Refined<N>, ObserverError> {
-    let Setting { scales, noise, constants, deviations, axes_chosen } = *setting;
+    let Setting { scales, noise, constants, deviations, shift_wanted, axes_chosen } = *setting;
     let natural = natural_time(track, scales.length);
     let spacing = track.duration() / (track.len() - 1).max(1) as f64;
     let stride = (natural / NODES_PER_NATURAL_TIME / spacing).round().max(1.0) as usize;
@@ -106,7 +108,7 @@ pub(super) fn refine<const N: usize>(
     }
     let solution = most_probable(&model, &inputs, &states, &prior, SMOOTHED_NATURAL_TIMES * natural)?;
     let mut refined = Refined { model, solution, nodes, shift: 0.0 };
-    if refined.settled() {
+    if shift_wanted && refined.settled() {
         let shift = shift_by_noise(track, &refined, &cut, SMOOTHED_NATURAL_TIMES * natural, &prior, &noise);
         refined.shift = shift.unwrap_or(f64::INFINITY);
     }

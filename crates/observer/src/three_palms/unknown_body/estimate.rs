@@ -93,14 +93,20 @@ fn finish(
 ) -> Result<BodyEstimate, EstimateError> {
     let mass = fit.point.mass().ok_or(EstimateError::NoFit)?;
     let track = track.of_mass(mass.mass());
+    let adjusted = noise.contact > WORTH_ADJUSTING * scales.length;
     // Covariances are proportional to the noise squared: logs with next to none are weighed as if they had some.
     let faint = (FAINTEST * scales.length / noise.contact).max(1.0);
     let weighed = NoiseLevel { contact: noise.contact * faint, force: noise.force * faint };
-    let setting =
-        Setting { scales, noise: weighed, constants: constants(), deviations: &[], axes_chosen: true };
+    let setting = Setting {
+        scales,
+        noise: weighed,
+        constants: constants(),
+        deviations: &[],
+        shift_wanted: adjusted,
+        axes_chosen: true,
+    };
     let refined = refine::<STATES>(&track, &mass, Parameters::new(&mass), &fit.point.start, &setting)
         .map_err(|_| EstimateError::NoFit)?;
-    let adjusted = noise.contact > WORTH_ADJUSTING * scales.length;
     let (mass, start) = if adjusted { of_state(&refined)? } else { (mass, fit.point.start) };
     let track = track.of_mass(mass.mass());
     let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
