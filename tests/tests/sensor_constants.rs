@@ -46,7 +46,7 @@ fn a_wrong_force_gain_is_reported_by_the_chi_squared_test() {
 #[test]
 fn gains_and_biases_are_found_within_their_deviations() {
     let (scene, start) = g2();
-    let (_, log) = exact_log(&scene, start, 4.0, 250.0);
+    let (_, log) = exact_log(&scene, start, 4.0, 500.0);
     let gains = [1.03, 0.97, 1.02];
     let biases = [0.1, -0.2, 0.05];
     let wrong = changed(&log.with_noise(&NOISE, 3).unwrap(), |i, palm| {
