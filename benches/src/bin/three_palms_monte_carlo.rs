@@ -12,6 +12,7 @@ use recon::observer::{
     estimate_motion,
 };
 use recon_tests::{f5, g2};
+use std::ops::Range;
 use std::time::Instant;
 
 type Failure = Box<dyn std::error::Error>;
@@ -42,11 +43,13 @@ struct Setting {
 }
 
 fn main() -> Result<(), Failure> {
-    let runs: u64 = std::env::args().nth(1).map_or(Ok(5), |word| word.parse())?;
+    let mut words = std::env::args().skip(1);
+    let runs: u64 = words.next().map_or(Ok(5), |word| word.parse())?;
+    let first: u64 = words.next().map_or(Ok(1000), |word| word.parse())?;
     println!("# Three-palm estimators against the Cramer-Rao bound\n");
     println!(
-        "Made by `cargo xtask study three_palms_monte_carlo`; {runs} runs a row, seeds 0 to {}.\n",
-        runs - 1
+        "Made by `cargo xtask study three_palms_monte_carlo {runs} {first}`; {runs} runs a row, seeds {first} to {}.\n",
+        first + runs - 1
     );
     println!(
         "Scenes `F5` (immobile palms) and `G2` (palms that swing, full inertia tensor); contact noise relative to a size of \
@@ -64,22 +67,22 @@ fn main() -> Result<(), Failure> {
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
     let (scene, start) = f5();
-    rows("F5", &scene, start, runs)?;
+    rows("F5", &scene, start, first..first + runs)?;
     let (scene, start) = g2();
-    rows("G2", &scene, start, runs)
+    rows("G2", &scene, start, first..first + runs)
 }
 
 fn rows<S: SupportFunction>(
     name: &str,
     scene: &ThreePalmScene<S>,
     start: InitialMotion,
-    runs: u64,
+    seeds: Range<u64>,
 ) -> Result<(), Failure> {
     for unknown in [false, true] {
         for noise in [1e-3, 1e-2] {
             for rate in [1000.0, 100.0] {
                 for window in [0.5, 1.0, 2.0, 4.0] {
-                    row(name, scene, start, Setting { noise, rate, window, unknown }, runs)?;
+                    row(name, scene, start, Setting { noise, rate, window, unknown }, &seeds)?;
                 }
             }
         }
@@ -92,7 +95,7 @@ fn row<S: SupportFunction>(
     scene: &ThreePalmScene<S>,
     start: InitialMotion,
     setting: Setting,
-    runs: u64,
+    seeds: &Range<u64>,
 ) -> Result<(), Failure> {
     let Setting { noise, rate, window, unknown } = setting;
     let times = SampleTimes { duration: window, rate };
@@ -102,7 +105,7 @@ fn row<S: SupportFunction>(
     let now = &simulation.instants[0];
     let bound = estimate(scene, &clean, level, unknown, now)?;
     let mut outcomes = Vec::new();
-    for seed in 0..runs {
+    for seed in seeds.clone() {
         outcomes.push(estimate(scene, &clean.with_noise(&level, seed)?, level, unknown, now)?);
     }
     let sizes = sizes(scene, unknown);
@@ -116,8 +119,9 @@ fn row<S: SupportFunction>(
     let body = if unknown { "unknown" } else { "known" };
     let reported = outcomes.len() - relied.len();
     println!(
-        "| {name} | {body} | {:.1} % | {rate} | {window} | {ratio} | {square} | {band} | {reported} of {runs} | {silent} | {:.0} |",
+        "| {name} | {body} | {:.1} % | {rate} | {window} | {ratio} | {square} | {band} | {reported} of {} | {silent} | {:.0} |",
         100.0 * noise,
+        outcomes.len(),
         times[times.len() / 2],
     );
     Ok(())

@@ -79,7 +79,7 @@ pub fn estimate_body(log: &SensorLog, known: &UnknownBody) -> Result<BodyEstimat
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
     let mut fit = search(&track, scales, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
     if noise.contact <= WORTH_ADJUSTING * scales.length {
-        let solver = LevenbergMarquardt { iterations: 60, step_tolerance: 1e-11, damping: 1e-9, prior: 0.0 };
+        let solver = LevenbergMarquardt { iterations: 300, step_tolerance: 1e-11, damping: 1e-9, prior: 0.0 };
         fit = solver.fit(&BodyProblem::new(&track, scales, f64::INFINITY), fit.point);
     }
     finish(&track, scales, noise, &fit)
