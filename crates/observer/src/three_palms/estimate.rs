@@ -29,7 +29,8 @@ pub(super) const WORTH_ADJUSTING: f64 = 1e-7;
 const NOISE_FLOOR: f64 = 1e-12;
 
 /// Shift by as much noise again, in standard deviations, above which the covariance is not to be trusted: 0.5 was the least
-/// seen with errors of five deviations and more, 0.05 to 0.25 where the covariance was right with room to spare.
+/// seen with errors of five deviations and more in a first set of runs, 0.05 to 0.25 where the covariance was right with room
+/// to spare. In a second set one run in 2560 passed; at 0.3 good runs would be doubted.
 const LARGEST_BIAS: f64 = 0.4;
 /// Chi-squared over its degrees of freedom beyond which noise does not explain an estimate. With hundreds of degrees it
 /// scatters by a few percent about 0.85 to 1; noise levels that are read off the data are good to 5 %.
@@ -228,6 +229,7 @@ fn noisy_estimate<const N: usize>(
     };
     let status = if refined.settled() { FitStatus::Converged } else { FitStatus::Stalled };
     let mut reliability = judge(&evidence, status, &scales);
+    reliability.check_length(track, &scales);
     if misfit.is_nan() || misfit > LARGEST_MISFIT {
         reliability.add(Reason::Inconsistent { misfit });
     }

@@ -1,5 +1,7 @@
+use super::cold_start::natural_time;
 use super::covariance::NoiseLevel;
-use super::momentum::Row;
+use super::momentum::{Row, Scales};
+use super::track::Track;
 use glam::DVec3;
 use nalgebra::SVector;
 use std::fmt;
@@ -142,6 +144,13 @@ pub enum Reason {
         /// Chi-squared over its degrees of freedom; about 1 when all is as stated.
         misfit: f64,
     },
+    /// The log is noisy and short beside the time in which the body falls its own length.
+    TooShort {
+        /// Length of the log, s.
+        duration: f64,
+        /// Length that is needed, s.
+        needed: f64,
+    },
     /// The motion found leaves more than noise.
     Misfit {
         /// Root mean square of the contact residuals, m/s.
@@ -178,6 +187,10 @@ impl fmt::Display for Reason {
                  body or sensors (a force gain, say), or more noise than was stated",
                 misfit.sqrt()
             ),
+            Self::TooShort { duration, needed } => write!(
+                f,
+                "{duration:.2} s of noisy data are too short for a body of this size: at least {needed:.2} s are needed"
+            ),
             Self::Misfit { residual, explained } if !explained.is_finite() => write!(
                 f,
                 "the motion found leaves {residual:.2e} m/s of the contact condition, beyond what any noise explains: \
@@ -192,7 +205,18 @@ impl fmt::Display for Reason {
     }
 }
 
+/// Natural times that a noisy log must last at least: over less, the motion is hardly more than its start.
+const SHORTEST: f64 = 2.0;
+
 impl Reliability {
+    /// Refuses to rely on a noisy log that is too short.
+    pub(super) fn check_length(&mut self, track: &Track, scales: &Scales) {
+        let (duration, needed) = (track.duration(), SHORTEST * natural_time(track, scales.length));
+        if duration < needed {
+            self.add(Reason::TooShort { duration, needed });
+        }
+    }
+
     /// One more reason.
     pub(super) fn add(&mut self, reason: Reason) {
         match self {

@@ -154,6 +154,9 @@ fn finish(
     if adjusted && (misfit.is_nan() || misfit > LARGEST_MISFIT) {
         reliability.add(Reason::Inconsistent { misfit });
     }
+    if adjusted {
+        reliability.check_length(&track, &scales);
+    }
     let PrincipalFrame { body, axes, covariance } = frame;
     // From the axes of the world at the start to the principal ones.
     let turned: Vec<_> =
