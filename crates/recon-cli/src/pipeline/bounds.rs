@@ -1,6 +1,6 @@
 use crate::error::CliError;
 use recon::shape_bounds::{ContactSample, Hull, Intersection, ShapeBounds};
-use recon_io::{Bound, Bounds, TriangleMesh};
+use recon_io::{Bound, Bounds, MeshError, TriangleMesh};
 
 /// Most contacts that the bounds of a picture are made from: about 6000 triangles a body.
 const DRAWN: usize = 1500;
@@ -69,9 +69,13 @@ fn contradiction(contacts: &[ContactSample]) -> f64 {
     contacts.iter().map(beyond).fold(0.0, f64::max)
 }
 
+/// A surface as the writer of meshes takes it.
+pub(super) fn own(mesh: recon::shape_bounds::TriangleMesh) -> Result<TriangleMesh, MeshError> {
+    TriangleMesh::new(mesh.vertices, mesh.triangles)
+}
+
 /// Surfaces of the bounds that have a volume.
 pub(super) fn meshes(bounds: &ShapeBounds) -> Result<(Option<TriangleMesh>, Option<TriangleMesh>), CliError> {
-    let own = |mesh: recon::shape_bounds::TriangleMesh| TriangleMesh::new(mesh.vertices, mesh.triangles);
     let lower = bounds.lower().solid().map(|solid| own(solid.mesh())).transpose()?;
     let upper = bounds.upper().bounded().map(|polyhedron| own(polyhedron.mesh())).transpose()?;
     Ok((lower, upper))

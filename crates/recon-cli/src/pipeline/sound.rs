@@ -1,6 +1,6 @@
 //! Bounds that hold at a stated confidence: from noisy contacts, and from poses above a plane.
 
-use super::bounds::{BoundsResult, meshes, unbounded};
+use super::bounds::{BoundsResult, meshes, own, unbounded};
 use crate::error::CliError;
 use glam::DMat3;
 use recon::contact_kinematics::CurvatureRadii;
@@ -9,7 +9,7 @@ use recon::shape_bounds::{
     BodyPose, ContactNoise, ContactSample, NoisyContact, Outlier, PoseBounds, ShapeBounds, SharpBounds,
     estimate_noise, without_outliers,
 };
-use recon_io::{Bound, Bounds, TriangleMesh};
+use recon_io::{Bound, Bounds};
 use serde_json::{Value, json};
 
 /// Outliers that are named one by one; the rest is counted.
@@ -167,7 +167,6 @@ pub(crate) fn pose_bounds(
     confidence: f64,
 ) -> Result<(BoundsResult, Value), CliError> {
     let made = PoseBounds::above_plane(runs, height, confidence)?;
-    let own = |mesh: recon::shape_bounds::TriangleMesh| TriangleMesh::new(mesh.vertices, mesh.triangles);
     let solid = made.lower.as_ref().and_then(|lower| lower.solid());
     let lower = solid.map(|s| own(s.mesh())).transpose()?;
     let upper = own(made.upper.mesh())?;
