@@ -5,7 +5,7 @@ mod curvature;
 mod lower;
 mod model;
 mod outliers;
-mod quantile;
+pub(crate) mod quantile;
 mod roughness;
 #[cfg(test)]
 mod tests;

@@ -4,14 +4,19 @@
 ///
 /// From the tail bound `Q(z) < phi(z) / z`, which at the small probabilities used here is a few per cent above the tail
 /// itself, that is a few thousandths of a standard deviation.
-pub(super) fn normal(alpha: f64) -> f64 {
+pub(crate) fn normal(alpha: f64) -> f64 {
     solve(alpha, |z| (-z * z / 2.0).exp() / (z * TAU_ROOT))
 }
 
 /// `r` such that the length of a vector of three independent standard normals exceeds it with probability at most
 /// `alpha`: `P = 2 Q(r) + sqrt(2 / pi) r exp(-r^2 / 2)`, with the same bound on `Q`.
-pub(super) fn length3(alpha: f64) -> f64 {
+pub(crate) fn length3(alpha: f64) -> f64 {
     solve(alpha, |r| 2.0 * (-r * r / 2.0).exp() * (1.0 / r + r) / TAU_ROOT)
+}
+
+/// Length that a vector of two independent standard normals exceeds with probability `alpha`: exact (Rayleigh).
+pub(crate) fn length2(alpha: f64) -> f64 {
+    (-2.0 * alpha.ln()).sqrt()
 }
 
 /// Square root of 2 pi.
@@ -43,5 +48,7 @@ mod tests {
             let excess = length3(alpha) - table.sqrt();
             assert!((0.0..0.06).contains(&excess), "{alpha}: {excess}");
         }
+        // Square root of the quantile of chi-square with two degrees of freedom.
+        assert!((length2(1e-2).powi(2) - 9.210_340_372).abs() < 1e-8);
     }
 }

@@ -1,7 +1,7 @@
 //! What is certainly inside: hulls of noisy points, eroded.
 
-use super::quantile;
 use super::windows::Window;
+use crate::noise::quantile;
 use crate::planar::{Direction, HalfPlane, Hull, Intersection};
 use glam::DVec2;
 
@@ -9,7 +9,7 @@ use glam::DVec2;
 /// probability `alpha` at most: the hull with each edge moved in by the larger margin of its ends.
 pub(super) fn certain_points(lists: &[Vec<Window>], alpha: f64) -> Vec<DVec2> {
     let count: usize = lists.iter().map(Vec::len).sum();
-    let quantile = quantile::length(alpha / (2 * count.max(1)) as f64);
+    let quantile = quantile::length2(alpha / (2 * count.max(1)) as f64);
     lists.iter().flat_map(|list| eroded(list, quantile)).collect()
 }
 

@@ -3,7 +3,6 @@
 
 mod lower;
 mod model;
-mod quantile;
 #[cfg(test)]
 mod tests;
 mod upper;

@@ -1,7 +1,8 @@
 //! What certainly contains the body: half-planes, inflated.
 
+use super::NoiseError;
 use super::windows::Window;
-use super::{NoiseError, quantile};
+use crate::noise::quantile;
 use crate::planar::{ConvexPolygon, HalfPlane, Intersection, Region};
 use glam::DVec2;
 
@@ -23,7 +24,7 @@ struct Quantiles {
 pub(super) fn certain_half_planes(lists: &[Vec<Window>], alpha: f64) -> Result<Vec<HalfPlane>, NoiseError> {
     let windows: Vec<Window> = lists.iter().flatten().copied().collect();
     let each = alpha / (4 * windows.len().max(1)) as f64;
-    let quantiles = Quantiles { normal: quantile::normal(each), length: quantile::length(each) };
+    let quantiles = Quantiles { normal: quantile::normal(each), length: quantile::length2(each) };
     let (mut half_planes, mut region) = prove_region(&windows, &quantiles)?;
     for _ in 0..ROUNDS {
         half_planes = windows
