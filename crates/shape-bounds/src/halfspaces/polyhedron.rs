@@ -32,6 +32,7 @@ pub struct Polyhedron {
 impl Polyhedron {
     /// The polyhedron of `all` half-spaces, moved `outwards` (m), whose polar duals about `interior` have the hull `dual`.
     pub(super) fn from_dual(dual: SolidHull, all: &[HalfSpace], outwards: f64, interior: DVec3) -> Self {
+        let dual = dual.with_facets_along_corners();
         let half_spaces: Vec<HalfSpace> =
             dual.sources().iter().map(|k| all[*k as usize].moved(outwards)).collect();
         let vertices = corners(&dual, &half_spaces, interior, CONSISTENT_ULPS * rounding_unit(all));
@@ -169,10 +170,9 @@ fn corners(dual: &SolidHull, half_spaces: &[HalfSpace], interior: DVec3, toleran
         across.extend(batch.clone().map(|f| neighbours_across(dual, f).map(|v| half_spaces[v as usize])));
         for (f, across) in batch.zip(&across) {
             let planes = triangles[f].map(|v| &half_spaces[v as usize]);
-            let corner = common_point(planes, tolerance);
-            let consistent = planes.iter().all(|h| h.excess(corner).abs() <= tolerance)
-                && across.iter().all(|h| h.excess(corner) <= tolerance);
-            corners.push(if consistent { corner } else { interior + polar_corner(dual.corners(f)) });
+            let corner = common_point(planes, tolerance)
+                .filter(|corner| across.iter().all(|h| h.excess(*corner) <= tolerance));
+            corners.push(corner.unwrap_or_else(|| interior + polar_corner(dual.corners(f))));
         }
     }
     corners

@@ -1,12 +1,12 @@
 //! Corners of an intersection of half-spaces, computed in two ways.
 
+use crate::predicates::UNIT_ROUNDOFF;
 use crate::sample::HalfSpace;
 use crate::twofold::{Twofold, cross_of_differences};
 use glam::DVec3;
 
-/// A corner is refined where errors of unit size in its planes may move it by more than this: at most 1e-12 of the size,
-/// for what evaluating the planes takes, is let pass.
-const WELL_CONDITIONED: f64 = 1000.0;
+/// A corner whose bound on its error is below this many tolerances, about 1e-12 of the size, needs no refinement.
+const GOOD: f64 = 1000.0;
 /// Refinements at most. The inverse has some correct digits, or the planes have no point in common to speak of; so one or
 /// two steps are enough.
 const STEPS: usize = 4;
@@ -23,6 +23,9 @@ struct Inverse {
     first: DVec3,
     second: DVec3,
     third: DVec3,
+    /// Sizes of the second and the third row, and of both divided by the determinant.
+    rows: [f64; 2],
+    ratio: f64,
 }
 
 impl Inverse {
@@ -33,7 +36,9 @@ impl Inverse {
         let (a, b) = (j.normal.get() - n, k.normal.get() - n);
         let across = a.cross(b);
         let scale = 1.0 / n.dot(across);
-        Self { first: across * scale, second: b.cross(n) * scale, third: n.cross(a) * scale }
+        let rows = [size(a), size(b)];
+        let ratio = rows[0] * rows[1] * scale.abs();
+        Self { first: across * scale, second: b.cross(n) * scale, third: n.cross(a) * scale, rows, ratio }
     }
 
     #[inline]
@@ -41,28 +46,59 @@ impl Inverse {
         self.first * i + self.second * j + self.third * k
     }
 
-    /// How far errors of unit size in the planes move the corner, at most.
+    /// Bound on the rounding of the common point `x_i + t` where the planes' points are `d` from `x_i`.
+    ///
+    /// With `e` the unit roundoff, rows `a`, `b` and `r = |a| |b| / |det|`: products and determinant are off by at most
+    /// `3 e |a| |b|` and `6 e |a| |b|`, the rows by `e |a|` and `e |b|`, the sums by three roundings; in all 20 e r |t|.
+    /// Right-hand sides are off by `4 e |d|`, which the columns, of at most `r / |a|` and `r / |b|`, take to the point.
     #[inline]
-    fn condition(&self) -> f64 {
-        self.first.length() + 2.0 * (self.second.length() + self.third.length())
+    fn rounding(&self, t: DVec3, [d, e]: [DVec3; 2]) -> f64 {
+        let [a, b] = self.rows;
+        UNIT_ROUNDOFF * self.ratio * (20.0 * size(t) + 4.0 * (size(d) / a + size(e) / b))
+    }
+}
+
+/// The sum of the sizes of the coordinates: at least the length.
+#[inline]
+fn size(v: DVec3) -> f64 {
+    v.x.abs() + v.y.abs() + v.z.abs()
+}
+
+/// The same planes, in the same cyclic order, the two with the closest normals first: their difference is then a row.
+#[inline]
+fn closest_first([i, j, k]: [&HalfSpace; 3]) -> [&HalfSpace; 3] {
+    let apart = |a: &HalfSpace, b: &HalfSpace| size(a.normal.get() - b.normal.get());
+    let (ij, jk, ki) = (apart(i, j), apart(j, k), apart(k, i));
+    if ij <= jk && ij <= ki {
+        [i, j, k]
+    } else if jk <= ki {
+        [j, k, i]
+    } else {
+        [k, i, j]
     }
 }
 
 /// The point common to three planes that may be as close to parallel as neighbouring samples of a dense curve are, to
-/// rounding of the point and of the planes' heights at it, `tolerance`; not finite where they have none.
+/// rounding of the point and of the planes' heights at it, `tolerance`; none where they have none, to that accuracy.
 ///
 /// Where the planes determine the point badly, it is refined with residuals in twofold precision: then it is the point common
 /// to the planes as given, to rounding, as long as the inverse has one correct digit.
 #[inline]
-pub(super) fn common_point(planes: [&HalfSpace; 3], tolerance: f64) -> DVec3 {
+pub(super) fn common_point(planes: [&HalfSpace; 3], tolerance: f64) -> Option<DVec3> {
+    let planes = closest_first(planes);
     let [i, j, k] = planes;
     let inverse = Inverse::of(planes);
-    let offset_j = j.normal.get().dot(j.point - i.point) + (j.margin - i.margin);
-    let offset_k = k.normal.get().dot(k.point - i.point) + (k.margin - i.margin);
-    let point = i.point + inverse.apply([i.margin, offset_j, offset_k]);
-    let good =
-        inverse.condition() <= WELL_CONDITIONED && planes.iter().all(|h| h.excess(point).abs() <= tolerance);
-    if good { point } else { refined(planes, &inverse, point, tolerance) }
+    let (d, e) = (j.point - i.point, k.point - i.point);
+    let offset_j = j.normal.get().dot(d) + (j.margin - i.margin);
+    let offset_k = k.normal.get().dot(e) + (k.margin - i.margin);
+    let t = inverse.apply([i.margin, offset_j, offset_k]);
+    let point = i.point + t;
+    let common = |point: DVec3| planes.iter().all(|h| h.excess(point).abs() <= tolerance);
+    if inverse.rounding(t, [d, e]) <= GOOD * tolerance && common(point) {
+        return Some(point);
+    }
+    let point = refined(planes, &inverse, point, tolerance);
+    common(point).then_some(point)
 }
 
 /// Steps of Newton's method until they are below rounding.

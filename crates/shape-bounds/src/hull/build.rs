@@ -1,7 +1,7 @@
 //! The incremental hull.
 
 use super::facets::{Facets, NONE};
-use super::order::insertion_order;
+use super::order::InsertionOrder;
 use super::seed::{Seed, find_seed, strict_centre};
 use glam::DVec3;
 
@@ -57,19 +57,19 @@ pub(super) fn build(points: &[DVec3]) -> Built {
         Seed::Plane { axis } => return Built::Plane { axis },
         Seed::Space(corners) => corners,
     };
-    let order = insertion_order(points);
-    let sorted = order.iter().map(|i| points[*i as usize]).collect();
+    let InsertionOrder { along, places } = InsertionOrder::of(points);
+    let sorted = along.iter().map(|i| points[*i as usize]).collect();
     let mut positions = [0; 4];
-    for (at, i) in order.iter().enumerate() {
+    for (at, i) in along.iter().enumerate() {
         if let Some(k) = corners.iter().position(|c| *c == *i as usize) {
             positions[k] = at as u32;
         }
     }
     let mut builder = Builder::from_simplex(sorted, positions);
-    for p in 0..order.len() as u32 {
-        builder.insert(p);
+    for place in places {
+        builder.insert(place);
     }
-    Built::Space(Box::new(builder), order)
+    Built::Space(Box::new(builder), along)
 }
 
 impl Builder {

@@ -22,7 +22,7 @@ pub(super) struct Facet {
     pub(super) mark: u32,
 }
 
-/// Facets and the points they connect, in insertion order.
+/// Facets and the points they connect.
 pub(super) struct Facets {
     pub(super) points: Vec<DVec3>,
     /// A point strictly inside the first simplex, when one can be represented.

@@ -74,7 +74,7 @@ impl Hull {
                 let flat: Vec<DVec2> = working.iter().map(|p| drop_axis(*p, axis)).collect();
                 Self::Polygon(convex_corners(&flat).into_iter().map(|i| i as usize).collect())
             }
-            Built::Space(builder, order) => Self::Solid(SolidHull::from_builder(&builder, &order, scale)),
+            Built::Space(builder, sources) => Self::Solid(SolidHull::from_builder(&builder, &sources, scale)),
         })
     }
 

@@ -12,14 +12,48 @@ use glam::DVec3;
 const BITS: u32 = 19;
 /// Cells whose Hilbert indices are computed together.
 const LANES: usize = 8;
-/// Rounds at most, so that round and Hilbert index fit one `u64`.
+/// Rounds at most.
 const ROUNDS: u32 = 15;
 /// Each round is 2^4 times as large as all before it: measured to be a quarter faster than doubling for a million
 /// points, because the hull is swept through memory less often.
 const ROUND_BITS: u32 = 4;
 
+/// Points along a curve that fills space, and the order in which they are inserted.
+pub(super) struct InsertionOrder {
+    /// Indices of the points along the Hilbert curve.
+    pub(super) along: Vec<u32>,
+    /// Places on the curve in the order of insertion.
+    pub(super) places: Vec<u32>,
+}
+
+impl InsertionOrder {
+    pub(super) fn of(points: &[DVec3]) -> Self {
+        let round = |i: u32| {
+            let level = random_bits(u64::from(i)).trailing_zeros() / ROUND_BITS;
+            (ROUNDS - level.min(ROUNDS)) as usize
+        };
+        let along = along_hilbert_curve(points);
+        let mut next = [0; ROUNDS as usize + 2];
+        along.iter().for_each(|i| next[round(*i) + 1] += 1);
+        (0..=ROUNDS as usize).for_each(|r| next[r + 1] += next[r]);
+        let mut places = vec![0; points.len()];
+        for (place, i) in along.iter().enumerate() {
+            let at = &mut next[round(*i)];
+            places[*at] = place as u32;
+            *at += 1;
+        }
+        Self { along, places }
+    }
+}
+
 /// Indices of `points` in the order of insertion.
 pub(crate) fn insertion_order(points: &[DVec3]) -> Vec<u32> {
+    let InsertionOrder { along, places } = InsertionOrder::of(points);
+    places.into_iter().map(|place| along[place as usize]).collect()
+}
+
+/// Indices of points along the Hilbert curve.
+fn along_hilbert_curve(points: &[DVec3]) -> Vec<u32> {
     let (low, high) = bounding_box(points);
     let side = (high - low).max_element();
     let cells = if side > 0.0 { ((1_u64 << BITS) - 1) as f64 / side } else { 0.0 };
@@ -31,12 +65,10 @@ pub(crate) fn insertion_order(points: &[DVec3]) -> Vec<u32> {
             (0..3).for_each(|axis| lanes[axis][lane] = cell[axis] as u32);
         }
         transpose(&mut lanes);
-        keyed.extend((0..points.len()).map(|lane| {
-            let i = (chunk * LANES + lane) as u32;
-            let level = random_bits(u64::from(i)).trailing_zeros() / ROUND_BITS;
-            let round = ROUNDS - level.min(ROUNDS);
-            (u64::from(round) << (3 * BITS) | interleaved(lanes.map(|axis| axis[lane])), i)
-        }));
+        keyed.extend(
+            (0..points.len())
+                .map(|lane| (interleaved(lanes.map(|axis| axis[lane])), (chunk * LANES + lane) as u32)),
+        );
     }
     keyed.sort_unstable();
     keyed.into_iter().map(|(_, i)| i).collect()

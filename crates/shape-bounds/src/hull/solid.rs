@@ -24,31 +24,64 @@ pub struct SolidHull {
 
 impl SolidHull {
     /// `order` maps the builder's points to the caller's, of which they are the multiple by `scale`, a power of two.
+    ///
+    /// Corners keep the order of the builder's points, in which neighbours are close to each other; facets keep that of
+    /// the builder's list.
     pub(super) fn from_builder(builder: &Builder, order: &[u32], scale: f64) -> Self {
         let list = &builder.facets.list;
-        let mut facet_number = vec![NONE; list.len()];
-        let mut vertex_number = vec![NONE; order.len()];
-        let (mut vertices, mut sources, mut facet_at) = (Vec::new(), Vec::new(), Vec::new());
+        let mut numbers = vec![NONE; list.len()];
+        let mut used = vec![false; order.len()];
         let mut count = 0;
-        for (facet, number) in list.iter().zip(&mut facet_number) {
-            if facet.vertices[0] == NONE {
-                continue;
+        for (facet, number) in list.iter().zip(&mut numbers) {
+            if facet.vertices[0] != NONE {
+                facet.vertices.iter().for_each(|v| used[*v as usize] = true);
+                *number = count;
+                count += 1;
             }
-            *number = count;
-            for v in facet.vertices {
-                let slot = &mut vertex_number[v as usize];
-                if *slot == NONE {
-                    *slot = vertices.len() as u32;
-                    vertices.push(builder.facets.points[v as usize] / scale);
-                    sources.push(order[v as usize]);
-                    facet_at.push(count);
-                }
-            }
-            count += 1;
         }
-        let alive = || list.iter().filter(|f| f.vertices[0] != NONE);
-        let triangles = alive().map(|f| f.vertices.map(|v| vertex_number[v as usize])).collect();
-        let neighbours = alive().map(|f| f.neighbours.map(|g| facet_number[g as usize])).collect();
+        let mut corner_number = vec![NONE; order.len()];
+        let (mut vertices, mut sources) = (Vec::new(), Vec::new());
+        for (v, used) in used.into_iter().enumerate() {
+            if used {
+                corner_number[v] = vertices.len() as u32;
+                vertices.push(builder.facets.points[v] / scale);
+                sources.push(order[v]);
+            }
+        }
+        let mut facet_at = vec![NONE; vertices.len()];
+        let (mut triangles, mut neighbours) =
+            (Vec::with_capacity(count as usize), Vec::with_capacity(count as usize));
+        for (facet, number) in list.iter().zip(&numbers) {
+            if *number != NONE {
+                let triangle = facet.vertices.map(|v| corner_number[v as usize]);
+                triangle.iter().for_each(|v| facet_at[*v as usize] = *number);
+                triangles.push(triangle);
+                neighbours.push(facet.neighbours.map(|g| numbers[g as usize]));
+            }
+        }
+        Self { vertices, sources, triangles, neighbours, facet_at }
+    }
+
+    /// The same hull with facets numbered by the first of their corners, so that whoever goes through them finds the corners
+    /// in the cache. The order of the builder is that of insertion and reuse.
+    pub(crate) fn with_facets_along_corners(self) -> Self {
+        let Self { vertices, sources, triangles, neighbours, mut facet_at } = self;
+        let first = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]) as usize;
+        let mut next = vec![0; vertices.len() + 1];
+        triangles.iter().for_each(|t| next[first(t) + 1] += 1);
+        (0..vertices.len()).for_each(|v| next[v + 1] += next[v]);
+        let (mut numbers, mut old) = (vec![0; triangles.len()], vec![0; triangles.len()]);
+        for (facet, triangle) in triangles.iter().enumerate() {
+            let number = &mut next[first(triangle)];
+            numbers[facet] = *number;
+            old[*number as usize] = facet as u32;
+            *number += 1;
+        }
+        let (triangles, neighbours) = old
+            .iter()
+            .map(|f| (triangles[*f as usize], neighbours[*f as usize].map(|g| numbers[g as usize])))
+            .unzip();
+        facet_at.iter_mut().for_each(|facet| *facet = numbers[*facet as usize]);
         Self { vertices, sources, triangles, neighbours, facet_at }
     }
 
