@@ -1,6 +1,7 @@
 //! Intersections of half-spaces: the outer bound of a convex body (paper, section 8).
 
 mod caps;
+mod corners;
 mod error;
 mod interior;
 mod polyhedron;

@@ -1,4 +1,4 @@
-use super::vertex::{common_point, polar_corner};
+use super::corners::corners;
 use crate::hull::SolidHull;
 use crate::integrals::{SolidMoments, solid_moments};
 use crate::mesh::TriangleMesh;
@@ -13,9 +13,6 @@ pub(crate) const OUTWARD_ULPS: f64 = 8.0;
 /// A corner computed from the planes as given may protrude over its neighbours' planes by this many units of rounding of
 /// the largest coordinate, which is what evaluating the height takes; beyond, the corner of the rounded planes is used.
 const CONSISTENT_ULPS: f64 = 4.0;
-
-/// Facets whose data are fetched together, so that memory is waited for once.
-const BATCH: usize = 16;
 
 /// A bounded intersection of half-spaces with its corners and faces.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,10 +29,10 @@ pub struct Polyhedron {
 impl Polyhedron {
     /// The polyhedron of `all` half-spaces, moved `outwards` (m), whose polar duals about `interior` have the hull `dual`.
     pub(super) fn from_dual(dual: SolidHull, all: &[HalfSpace], outwards: f64, interior: DVec3) -> Self {
-        let dual = dual.with_facets_along_corners();
+        let mut dual = dual.with_facets_along_corners();
         let half_spaces: Vec<HalfSpace> =
             dual.sources().iter().map(|k| all[*k as usize].moved(outwards)).collect();
-        let vertices = corners(&dual, &half_spaces, interior, CONSISTENT_ULPS * rounding_unit(all));
+        let vertices = corners(&mut dual, &half_spaces, interior, CONSISTENT_ULPS * rounding_unit(all));
         let mut used = vec![false; all.len()];
         dual.sources().iter().for_each(|k| used[*k as usize] = true);
         let redundant = (0..all.len() as u32).filter(|k| !used[*k as usize]).collect();
@@ -152,39 +149,4 @@ fn rounding_unit(half_spaces: &[HalfSpace]) -> f64 {
 /// How far planes are moved outwards, in m: by more than all rounding in what follows.
 pub(super) fn outward_rounding(half_spaces: &[HalfSpace]) -> f64 {
     OUTWARD_ULPS * rounding_unit(half_spaces)
-}
-
-/// The corner of each facet of the dual.
-///
-/// The planes of the duals are those of the half-spaces but for rounding, and the combinatorics of the dual hull is
-/// exact for them: their corners are consistent to rounding, but where planes are nearly parallel they may slide far along
-/// them. The corner computed from the half-spaces as given is exact in that direction too, where it is a corner at all:
-/// where the rounded planes have chosen other neighbours, it protrudes.
-fn corners(dual: &SolidHull, half_spaces: &[HalfSpace], interior: DVec3, tolerance: f64) -> Vec<DVec3> {
-    let triangles = dual.triangles();
-    let mut corners = Vec::with_capacity(triangles.len());
-    let mut across: Vec<[HalfSpace; 3]> = Vec::with_capacity(BATCH);
-    for first in (0..triangles.len()).step_by(BATCH) {
-        let batch = first..(first + BATCH).min(triangles.len());
-        across.clear();
-        across.extend(batch.clone().map(|f| neighbours_across(dual, f).map(|v| half_spaces[v as usize])));
-        for (f, across) in batch.zip(&across) {
-            let planes = triangles[f].map(|v| &half_spaces[v as usize]);
-            let corner = common_point(planes, tolerance)
-                .filter(|corner| across.iter().all(|h| h.excess(*corner) <= tolerance));
-            corners.push(corner.unwrap_or_else(|| interior + polar_corner(dual.corners(f))));
-        }
-    }
-    corners
-}
-
-/// The third corners of the facets across the edges of a facet.
-#[inline]
-fn neighbours_across(dual: &SolidHull, facet: usize) -> [u32; 3] {
-    let t = dual.triangles()[facet];
-    let neighbours = dual.neighbours()[facet];
-    [0, 1, 2].map(|edge| {
-        let [a, b, c] = dual.triangles()[neighbours[edge] as usize];
-        a ^ b ^ c ^ t[edge] ^ t[(edge + 1) % 3]
-    })
 }

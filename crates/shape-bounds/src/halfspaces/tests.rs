@@ -74,6 +74,26 @@ fn corners_of_dense_curves_lie_in_every_half_space() {
 }
 
 #[test]
+fn where_thousands_of_planes_nearly_meet_each_corner_is_common_to_its_planes() {
+    // The planes of a curve of a third of a million contacts turn about a cusp of their envelope here: rounding of the
+    // duals joins planes that are no neighbours.
+    let cusp = DVec3::new(0.188_16, 2.135_94, -0.315_16);
+    let spaces: Vec<HalfSpace> = curve_contacts(1_000_000, 1)
+        .iter()
+        .map(ContactSample::half_space)
+        .enumerate()
+        .filter_map(|(k, h)| (k % 97 == 0 || h.excess(cusp).abs() < 1e-5).then_some(h))
+        .collect();
+    let body = polyhedron(&spaces);
+    for v in 0..body.vertices().len() {
+        let planes = body.faces_at(v).map(|f| &body.face_half_spaces()[f as usize]);
+        let exact = super::vertex::common_point(planes, 1e-14).unwrap();
+        let distance = body.vertices()[v].distance(exact);
+        assert!(distance < 1e-12 * AXES.max_element(), "corner {v}: {distance}");
+    }
+}
+
+#[test]
 fn no_contact_is_cut_off_by_exact_arithmetic() {
     for (seed, count) in [(1, 30), (2, 300), (3, 3000), (4, 20_000)] {
         for contacts in [curve_contacts(count, seed), ellipsoid_contacts(count, seed)] {

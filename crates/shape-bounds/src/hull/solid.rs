@@ -124,6 +124,39 @@ impl SolidHull {
         (self.neighbours[facet as usize][(corner + 2) % 3], t[(corner + 2) % 3])
     }
 
+    /// Replaces the edge `edge` of `facet` by the other diagonal of the two facets at it, unless that is an edge already. The
+    /// diagonal is the second edge of `facet` then.
+    pub(crate) fn flip(&mut self, facet: u32, edge: usize) -> bool {
+        let (f, g) = (facet as usize, self.neighbours[facet as usize][edge]);
+        let [a, b, c] = [0, 1, 2].map(|k| self.triangles[f][(edge + k) % 3]);
+        let Some(back) = (0..3).find(|k| self.neighbours[g as usize][*k] == facet) else { return false };
+        let d = self.triangles[g as usize][(back + 2) % 3];
+        let mut met = false;
+        self.for_each_neighbour(c, |v| met |= v == d);
+        // Two facets that share two edges lie at a corner of two facets, which is none.
+        if met || self.triangles[g as usize][back] != b {
+            return false;
+        }
+        let [beyond_bc, beyond_ca] = [1, 2].map(|k| self.neighbours[f][(edge + k) % 3]);
+        let [beyond_ad, beyond_db] = [1, 2].map(|k| self.neighbours[g as usize][(back + k) % 3]);
+        self.triangles[f] = [a, d, c];
+        self.neighbours[f] = [beyond_ad, g, beyond_ca];
+        self.triangles[g as usize] = [d, b, c];
+        self.neighbours[g as usize] = [beyond_db, beyond_bc, facet];
+        for (beyond, old, new) in [(beyond_ad, g, facet), (beyond_bc, facet, g)] {
+            // By corners, since two facets may share more than one edge with a third.
+            let corner = if new == facet { d } else { c };
+            let t = self.triangles[beyond as usize];
+            if let Some(k) = (0..3).find(|k| self.neighbours[beyond as usize][*k] == old && t[*k] == corner) {
+                self.neighbours[beyond as usize][k] = new;
+            }
+        }
+        for (corner, facet) in [(a, facet), (b, g), (c, facet), (d, facet)] {
+            self.facet_at[corner as usize] = facet;
+        }
+        true
+    }
+
     /// The facets around corner `vertex`, anticlockwise from outside.
     pub(crate) fn facets_around(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
         let first = self.facet_at[vertex as usize];

@@ -220,3 +220,45 @@ fn the_climb_passes_clusters_of_near_duplicates() {
         }
     }
 }
+
+#[test]
+fn four_flips_restore_the_surface_and_no_edge_is_made_twice() {
+    let points = InputKind::Sphere.points(40, 5);
+    let Hull::Solid(hull) = Hull::of(&points).unwrap() else { panic!("flat") };
+    let rotated = |mut t: [u32; 3]| {
+        let first = (0..3).min_by_key(|k| t[*k]).unwrap();
+        t.rotate_left(first);
+        t
+    };
+    let mut flipped = 0;
+    for facet in 0..hull.triangles().len() as u32 {
+        for edge in 0..3 {
+            let mut other = hull.clone();
+            if !other.flip(facet, edge) {
+                continue;
+            }
+            flipped += 1;
+            assert!(is_closed(&other), "facet {facet}, edge {edge}");
+            assert!((0..3).all(|_| other.flip(facet, 1)));
+            assert!(is_closed(&other));
+            let same =
+                hull.triangles().iter().zip(other.triangles()).all(|(a, b)| rotated(*a) == rotated(*b));
+            assert!(same, "facet {facet}, edge {edge}");
+        }
+    }
+    assert!(flipped > hull.triangles().len());
+    let tetrahedron = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let Hull::Solid(mut hull) = Hull::of(&tetrahedron).unwrap() else { panic!("flat") };
+    assert!((0..4).all(|facet| (0..3).all(|edge| !hull.flip(facet, edge))));
+}
+
+/// Whether each edge has the facet across it that has it in the other sense, and each corner a facet at it.
+fn is_closed(hull: &SolidHull) -> bool {
+    let edges = |f: usize| (0..3).map(move |k| (hull.triangles()[f][k], hull.triangles()[f][(k + 1) % 3]));
+    let facets = 0..hull.triangles().len();
+    let matched = facets.clone().all(|f| {
+        edges(f).zip(hull.neighbours()[f]).all(|((a, b), g)| edges(g as usize).any(|e| e == (b, a)))
+    });
+    let around = (0..hull.vertices().len() as u32).map(|v| hull.facets_around(v).count()).sum::<usize>();
+    matched && around == 3 * hull.triangles().len()
+}
