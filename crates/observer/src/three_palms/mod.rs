@@ -1,5 +1,6 @@
 //! Three palms in space.
 
+mod alternatives;
 mod cold_start;
 mod correlation;
 mod covariance;

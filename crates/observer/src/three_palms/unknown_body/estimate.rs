@@ -8,7 +8,7 @@ use crate::three_palms::correlation::whiteness;
 use crate::three_palms::estimate::{
     EstimateError, LARGEST_MISFIT, MotionEstimate, RANK_TOLERANCE, WORTH_ADJUSTING, floored, judge,
 };
-use crate::three_palms::evidence::{Evidence, Reason, WeakDirection};
+use crate::three_palms::evidence::{Evidence, Reason, WeakDirection, too_short};
 use crate::three_palms::momentum::{MomentumProblem, Scales, StartState};
 use crate::three_palms::noise::noise_level;
 use crate::three_palms::refine::{Refined, Setting, refine};
@@ -97,16 +97,13 @@ fn finish(
     // Covariances are proportional to the noise squared: logs with next to none are weighed as if they had some.
     let faint = (FAINTEST * scales.length / noise.contact).max(1.0);
     let weighed = NoiseLevel { contact: noise.contact * faint, force: noise.force * faint };
-    let setting = Setting {
-        scales,
-        noise: weighed,
-        constants: constants(),
-        deviations: &[],
-        shift_wanted: adjusted,
-        axes_chosen: true,
-    };
-    let refined = refine::<STATES>(&track, &mass, Parameters::new(&mass), &fit.point.start, &setting)
+    let setting =
+        Setting { scales, noise: weighed, constants: constants(), deviations: &[], axes_chosen: true };
+    let mut refined = refine::<STATES>(&track, &mass, Parameters::new(&mass), &fit.point.start, &setting)
         .map_err(|_| EstimateError::NoFit)?;
+    if adjusted && !too_short(&track, &scales) {
+        refined.widen(&track, &weighed);
+    }
     let (mass, start) = if adjusted { of_state(&refined)? } else { (mass, fit.point.start) };
     let track = track.of_mass(mass.mass());
     let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
@@ -144,6 +141,7 @@ fn finish(
         smallest_information: eigenvalues[0],
         weakest,
         noise,
+        log_odds: f64::INFINITY,
         bias: if adjusted { refined.shift } else { 0.0 },
         iterations: fit.iterations + refined.solution.iterations,
     };
