@@ -24,6 +24,8 @@ const FORCE: f64 = 6.5;
 const WITHIN_REACH: f64 = 0.1;
 /// Factor by which the noise is made small where the bound is taken: it is then that of the linearised model at the truth.
 const SMALL: f64 = 0.01;
+/// Ratio to the bound beyond which there is no number in the table: some run led nowhere.
+const FAR: f64 = 10.0;
 /// A failure is an error beyond this many of its deviations without a warning.
 const SILENT: f64 = 5.0;
 
@@ -190,7 +192,11 @@ fn format(row: &Row, runs: &[Estimated], bound: &Estimated, counted: &[usize]) -
     let (of_relied, of_all) =
         (Statistics::new(&relied, bound, counted), Statistics::new(&there, bound, counted));
     let dash = || "-".to_owned();
-    let ratio = |s: &Option<Statistics>| s.as_ref().map_or_else(dash, |s| format!("{:.2}", s.ratio));
+    let ratio = |s: &Option<Statistics>| match s {
+        None => dash(),
+        Some(s) if s.ratio < FAR => format!("{:.2}", s.ratio),
+        Some(_) => format!("> {FAR}"),
+    };
     let (square, band) = of_relied.as_ref().map_or_else(
         || (dash(), dash()),
         |s| {

@@ -1,5 +1,6 @@
 use super::alternatives::{Chosen, further_starts, is_small, leaves_room, most_credible};
 use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, scales};
+use super::convexity::largest_violation;
 use super::correlation::{correlation_samples, whiteness};
 use super::covariance::{NoiseLevel, Sampling, propagate};
 use super::curves::CurveUncertainty;
@@ -234,6 +235,7 @@ fn noisy_estimate<const N: usize>(
     let radii = super::curves::radii(track, &motion);
     let covariance = covariance.fixed_view::<UNKNOWNS, UNKNOWNS>(0, 0).into_owned();
     let uncertainty = super::curves::uncertainty(track, &refined, DQuat::IDENTITY);
+    reliability.check_convexity(largest_violation(track, &refined.nodes, &motion, &uncertainty));
     let start = states[0];
     let estimate =
         MotionEstimate { start, motion, curves, radii, uncertainty, covariance, evidence, reliability };

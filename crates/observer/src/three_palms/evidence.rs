@@ -152,6 +152,11 @@ pub enum Reason {
         /// Chi-squared over its degrees of freedom; about 1 when all is as stated.
         misfit: f64,
     },
+    /// With this motion contacts lie outside the tangent planes of other contacts: no convex body does that.
+    NotConvex {
+        /// The farthest, in standard deviations.
+        deviations: f64,
+    },
     /// The log is noisy and short beside the time in which the body falls its own length.
     TooShort {
         /// Length of the log, s.
@@ -195,6 +200,11 @@ impl fmt::Display for Reason {
                  for longer, or use better sensors",
                 log_odds.exp()
             ),
+            Self::NotConvex { deviations } => write!(
+                f,
+                "with this motion contacts lie up to {deviations:.1} standard deviations outside planes that the body \
+                 touches elsewhere: a wrong motion, or a body that is not convex"
+            ),
             Self::Inconsistent { misfit } => write!(
                 f,
                 "contacts and forces had to be corrected by {:.2} times their noise: a wrong motion, a wrong constant of \
@@ -222,6 +232,9 @@ impl fmt::Display for Reason {
 /// Natural times that a noisy log must last at least: over less, the motion is hardly more than its start.
 const SHORTEST: f64 = 2.0;
 
+/// Standard deviations by which a contact may lie outside a tangent plane: beyond the largest of some ten thousand pairs.
+const LARGEST_VIOLATION: f64 = 6.0;
+
 /// Whether a noisy log is too short to rely on.
 pub(super) fn too_short(track: &Track, scales: &Scales) -> bool {
     track.duration() < SHORTEST * natural_time(track, scales.length)
@@ -233,6 +246,13 @@ impl Reliability {
         let (duration, needed) = (track.duration(), SHORTEST * natural_time(track, scales.length));
         if too_short(track, scales) {
             self.add(Reason::TooShort { duration, needed });
+        }
+    }
+
+    /// Refuses to rely on a motion that leaves no room for a convex body.
+    pub(super) fn check_convexity(&mut self, violation: f64) {
+        if violation.is_nan() || violation > LARGEST_VIOLATION {
+            self.add(Reason::NotConvex { deviations: violation });
         }
     }
 

@@ -2,6 +2,7 @@
 
 mod alternatives;
 mod cold_start;
+mod convexity;
 mod correlation;
 mod covariance;
 mod curves;
@@ -20,6 +21,8 @@ mod sensitivity;
 mod sensors;
 mod state_space;
 mod streaming;
+#[cfg(test)]
+mod test_scenes;
 mod track;
 mod unknown_body;
 

@@ -4,6 +4,7 @@ use super::principal::{PrincipalFrame, principal_frame};
 use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem, MASS, constants};
 use super::search::{mass_of_weight, scales_of_ball, search};
 use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
+use crate::three_palms::convexity::largest_violation;
 use crate::three_palms::correlation::whiteness;
 use crate::three_palms::estimate::{
     EstimateError, LARGEST_MISFIT, MotionEstimate, RANK_TOLERANCE, WORTH_ADJUSTING, floored, judge,
@@ -161,12 +162,14 @@ fn finish(
         motion.into_iter().map(|m| crate::three_palms::MotionState { R_WO: m.R_WO * axes, ..m }).collect();
     let contact_curves = curves::contact_curves(&track, &turned)?;
     let radii = curves::radii(&track, &turned);
+    let uncertainty = if adjusted { curves::uncertainty(&track, &refined, axes) } else { Vec::new() };
+    reliability.check_convexity(largest_violation(&track, &refined.nodes, &turned, &uncertainty));
     let motion = MotionEstimate {
         start: StartState { R_WO: axes, ..start },
         motion: turned,
         curves: contact_curves,
         radii,
-        uncertainty: if adjusted { curves::uncertainty(&track, &refined, axes) } else { Vec::new() },
+        uncertainty,
         covariance,
         evidence,
         reliability,
