@@ -390,9 +390,7 @@ impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
 mod tests {
     use super::super::cold_start::scales;
     use super::*;
-    use contact_kinematics::{Ellipsoid, Palm, SlopeMotion};
-    use object_dynamics::integrate::Tolerance;
-    use object_dynamics::{InitialMotion, SampleTimes, ThreePalmScene};
+    use crate::three_palms::test_scenes::on_swinging_palms;
 
     /// `2 J' r` is the gradient of the sum of squares, away from the solution and on
     /// moving palms.

@@ -258,9 +258,7 @@ mod tests {
     use super::*;
     use crate::three_palms::cold_start::scales;
     use crate::three_palms::state_space::numbers_of_inertia;
-    use contact_kinematics::{Ellipsoid, Palm, SlopeMotion};
-    use object_dynamics::integrate::Tolerance;
-    use object_dynamics::{InitialMotion, SampleTimes, ThreePalmScene};
+    use crate::three_palms::test_scenes::on_swinging_palms;
 
     /// The gradient is that of the sum of squares, far from the solution, on moving palms, at a mass that is not the
     /// track's; and at the truth nothing is left.
