@@ -69,6 +69,8 @@ fn kind(reason: &Reason) -> &'static str {
         Reason::NotConverged { .. } => "the fit did not settle",
         Reason::Unobservable { .. } => "the log does not determine a direction of the unknowns",
         Reason::Biased { .. } => "shifted by noise",
+        Reason::Ambiguous { .. } => "another motion fits as well",
+        Reason::NotConvex { .. } => "no convex body moves like that",
         Reason::Inconsistent { .. } => "data and motion disagree",
         Reason::TooShort { .. } => "too short for its noise",
         Reason::Misfit { .. } => "more is left than noise explains",

@@ -42,6 +42,10 @@ pub struct BatchSolution<const N: usize> {
     /// Chi-squared of the fit: squared residuals of outputs and process noise in units of their deviations. With all as
     /// stated it has as many degrees of freedom as there are measured channels beyond the `N` states.
     pub chi_squared: f64,
+    /// Logarithm of the determinant of the information about states and process noise, the latter relative to what is
+    /// known of it beforehand. Chi-squared, this, and the logarithms of the outputs' variances are minus twice the
+    /// logarithm of the probability mass about the solution, up to a constant (Laplace).
+    pub log_determinant: f64,
     /// Output channels that were measured.
     pub channels: usize,
     /// Linearisations made.
@@ -169,5 +173,14 @@ fn iterate<Mo: Model<N, M>, const N: usize, const M: usize>(
     let states = window.states().copied().collect();
     let covariances = window.covariances(covariance);
     let chi_squared = window.data_cost() + window.noise_cost();
-    Ok(BatchSolution { states, covariances, chi_squared, channels: window.channels(), report, iterations })
+    let log_determinant = window.log_determinant();
+    Ok(BatchSolution {
+        states,
+        covariances,
+        chi_squared,
+        log_determinant,
+        channels: window.channels(),
+        report,
+        iterations,
+    })
 }

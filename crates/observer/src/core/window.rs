@@ -299,6 +299,15 @@ impl<const N: usize, const M: usize> Window<N, M> {
         p
     }
 
+    /// Logarithm of the determinant of the information about all states, those of the process noise relative to what is
+    /// known of it beforehand.
+    pub(super) fn log_determinant(&self) -> f64 {
+        let first = log_determinant(self.nodes[0].information + self.prior.information);
+        // The gain is (I + Q L)^-1.
+        let of_noise = |node: &Node<N, M>| node.noise.map_or(0.0, |(gain, _)| log_determinant(gain));
+        first - self.nodes.iter().map(of_noise).sum::<f64>()
+    }
+
     /// Covariances of all states, oldest first, from that of the first.
     pub(super) fn covariances(&self, first: SMatrix<f64, N, N>) -> Vec<SMatrix<f64, N, N>> {
         let mut p = first;
@@ -335,4 +344,22 @@ impl<const N: usize, const M: usize> Window<N, M> {
         }
         self.prior = prior;
     }
+}
+
+/// Logarithm of the absolute value of a determinant, by elimination with row pivots.
+fn log_determinant<const N: usize>(mut a: SMatrix<f64, N, N>) -> f64 {
+    let mut sum = 0.0;
+    for k in 0..N {
+        let pivot = (k..N).fold(k, |best, i| if a[(i, k)].abs() > a[(best, k)].abs() { i } else { best });
+        a.swap_rows(k, pivot);
+        sum += a[(k, k)].abs().ln();
+        let row = a.row(k) / a[(k, k)];
+        for i in k + 1..N {
+            let factor = a[(i, k)];
+            for j in k + 1..N {
+                a[(i, j)] -= factor * row[j];
+            }
+        }
+    }
+    sum
 }

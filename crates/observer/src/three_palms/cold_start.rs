@@ -50,7 +50,7 @@ const NORMALS_WEIGHT: f64 = 0.01;
 /// Candidates that are followed beyond the first window before the outcome is looked at.
 pub(super) const FOLLOWED: usize = 4;
 /// Candidates of a round that are followed in all.
-const FOLLOWED_IN_ALL: usize = 12;
+pub(super) const FOLLOWED_IN_ALL: usize = 12;
 /// Share of the mean information that holds a candidate near its start in the first windows.
 const PRIOR: f64 = 1e-3;
 /// Residual below which a fit is taken as right, in natural velocities: logs of other simulators leave up to 5e-6,
@@ -96,8 +96,7 @@ pub(super) fn cold_start(
 ) -> Vec<Fit<StartState, UNKNOWNS>> {
     let scales = scales(track, mass);
     let natural = natural_time(track, scales.length);
-    let spacing = track.duration() / (track.len() - 1) as f64;
-    let stride = (natural / SAMPLES_PER_NATURAL_TIME / spacing).floor().max(1.0) as usize;
+    let stride = stride_of(track, scales.length);
     let sampling = Sampling { per_node: stride as f64, weight: 1.0, direct: smoothing_variance(stride / 2) };
     let thin = track.thinned(stride);
     let backwards = thin.reversed();
@@ -125,6 +124,12 @@ pub(super) fn cold_start(
     found
 }
 
+/// Samples of a track for one node of the search.
+pub(super) fn stride_of(track: &Track, length: f64) -> usize {
+    let spacing = track.duration() / (track.len() - 1) as f64;
+    (natural_time(track, length) / SAMPLES_PER_NATURAL_TIME / spacing).floor().max(1.0) as usize
+}
+
 pub(super) struct Search<'a> {
     pub(super) track: &'a Track,
     pub(super) mass: &'a MassProperties,
@@ -139,7 +144,7 @@ impl Search<'_> {
     }
 
     /// Fits of the first window from the starts of a round, best first.
-    fn candidates(&self, window: f64, round: Round) -> Vec<Fit<StartState, UNKNOWNS>> {
+    pub(super) fn candidates(&self, window: f64, round: Round) -> Vec<Fit<StartState, UNKNOWNS>> {
         let problem = self.problem(window);
         let starts = self.starts(window, round);
         let mut fits: Vec<_> = starts.into_iter().map(|start| FIRST.fit(&problem, start)).collect();

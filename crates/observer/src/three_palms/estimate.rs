@@ -1,13 +1,16 @@
+use super::alternatives::{Chosen, further_starts, is_small, leaves_room, most_credible};
 use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, scales};
+use super::convexity::largest_violation;
 use super::correlation::{correlation_samples, whiteness};
 use super::covariance::{NoiseLevel, Sampling, propagate};
 use super::curves::CurveUncertainty;
-use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
+use super::evidence::{Evidence, Reason, Reliability, WeakDirection, too_short};
 use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNKNOWNS};
 use super::noise::noise_level;
 use super::refine::{Refined, Setting, refine};
 use super::state_space::{Constant, Parameters};
 use super::track::{Track, TrackError};
+use crate::core::Model;
 use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
 use contact_kinematics::{ContactCurve, CurveError};
 use glam::{DQuat, DVec3};
@@ -22,7 +25,7 @@ pub(super) const RANK_TOLERANCE: f64 = 1e-14;
 /// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
 /// linearisation that its covariance comes from does not reach that far. Errors of five deviations without another
 /// warning were seen from 0.106 on, none below 0.09.
-const LARGEST_DEVIATION: f64 = 0.1;
+const LARGEST_DEVIATION: f64 = 0.3;
 /// Contact noise, relative to length, above which data are worth adjusting: below it, plain least squares is as good.
 pub(super) const WORTH_ADJUSTING: f64 = 1e-7;
 /// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
@@ -31,7 +34,9 @@ const NOISE_FLOOR: f64 = 1e-12;
 /// Shift by as much noise again, in standard deviations, above which the covariance is not to be trusted: 0.5 was the least
 /// seen with errors of five deviations and more in a first set of runs, 0.05 to 0.25 where the covariance was right with room
 /// to spare. In a second set one run in 2560 passed; at 0.3 good runs would be doubted.
-const LARGEST_BIAS: f64 = 0.4;
+const LARGEST_BIAS: f64 = 2.0;
+/// Logarithm of the odds against the next motion below which the log is taken to leave both open: a thousand to one.
+const LEAST_LOG_ODDS: f64 = 6.9;
 /// Chi-squared over its degrees of freedom beyond which noise does not explain an estimate. With hundreds of degrees it
 /// scatters by a few percent about 0.85 to 1; noise levels that are read off the data are good to 5 %.
 pub(super) const LARGEST_MISFIT: f64 = 1.4;
@@ -126,14 +131,7 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
     let found = cold_start(track, mass, noise);
     let best = found.into_iter().next().ok_or(EstimateError::NoFit)?;
     if noise.contact > WORTH_ADJUSTING * scales.length {
-        let setting = Setting {
-            scales,
-            noise,
-            constants: &[],
-            deviations: &[],
-            shift_wanted: true,
-            axes_chosen: false,
-        };
+        let setting = Setting { scales, noise, constants: &[], deviations: &[], axes_chosen: false };
         return noisy_estimate::<UNKNOWNS>(track, known, &setting, &best).map(|(estimate, _)| estimate);
     }
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
@@ -167,6 +165,7 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
         weakest,
         noise,
         bias: 0.0,
+        log_odds: f64::INFINITY,
         iterations: fit.iterations,
     };
     let reliability = judge(&evidence, fit.status, &scales);
@@ -196,9 +195,7 @@ fn noisy_estimate<const N: usize>(
     best: &Fit<StartState, UNKNOWNS>,
 ) -> Result<(MotionEstimate, Refined<N>), EstimateError> {
     let (mass, scales, noise) = (&known.mass, setting.scales, setting.noise);
-    let start = StartState { R_WO: nearest_to_identity(mass, best.point.R_WO), ..best.point };
-    let refined =
-        refine::<N>(track, mass, Parameters::new(mass), &start, setting).map_err(|_| EstimateError::NoFit)?;
+    let Chosen { refined, log_odds } = refine_best::<N>(track, mass, setting, best)?;
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
     let states = refined.states();
     let motion = problem.motion_through(&refined.nodes, &states);
@@ -225,6 +222,7 @@ fn noisy_estimate<const N: usize>(
         weakest: weakest_direction(&scaled),
         noise,
         bias: refined.shift,
+        log_odds,
         iterations: refined.solution.iterations,
     };
     let status = if refined.settled() { FitStatus::Converged } else { FitStatus::Stalled };
@@ -237,10 +235,47 @@ fn noisy_estimate<const N: usize>(
     let radii = super::curves::radii(track, &motion);
     let covariance = covariance.fixed_view::<UNKNOWNS, UNKNOWNS>(0, 0).into_owned();
     let uncertainty = super::curves::uncertainty(track, &refined, DQuat::IDENTITY);
+    reliability.check_convexity(largest_violation(track, &refined.nodes, &motion, &uncertainty));
     let start = states[0];
     let estimate =
         MotionEstimate { start, motion, curves, radii, uncertainty, covariance, evidence, reliability };
     Ok((estimate, refined))
+}
+
+/// The most probable motion that the fit, or others where the log leaves room for them, leads to.
+fn refine_best<const N: usize>(
+    track: &Track,
+    mass: &MassProperties,
+    setting: &Setting<'_>,
+    best: &Fit<StartState, UNKNOWNS>,
+) -> Result<Chosen<N>, EstimateError> {
+    let refined = |start: &StartState| {
+        let start = StartState { R_WO: nearest_to_identity(mass, start.R_WO), ..*start };
+        refine::<N>(track, mass, Parameters::new(mass), &start, setting)
+    };
+    let first = refined(&best.point).map_err(|_| EstimateError::NoFit)?;
+    let mut chosen = Chosen { refined: first, log_odds: f64::INFINITY };
+    if too_short(track, &setting.scales) {
+        // Not relied on whatever else is found.
+        return Ok(chosen);
+    }
+    if leaves_room(&chosen.refined, N) {
+        let others = further_starts(track, mass, setting.noise);
+        let others = others.iter().filter_map(|start| refined(start).ok());
+        chosen = most_credible(chosen.refined, others, |a, b| are_one(mass, a, b));
+    }
+    chosen.refined.widen(track, &setting.noise);
+    Ok(chosen)
+}
+
+/// Whether two solutions are one motion, with the body's axes turned or not.
+fn are_one<const N: usize>(mass: &MassProperties, a: &Refined<N>, b: &Refined<N>) -> bool {
+    let (x, at) = (&a.solution.states[0], &b.solution.states[0]);
+    let (to, parameters) = (b.model.motion(at), b.model.parameters(at));
+    equivalent_orientations(mass).into_iter().any(|turn| {
+        let turned = b.model.state(&StartState { R_WO: to.R_WO * turn, ..to }, &parameters);
+        is_small(a, &a.model.difference(&turned, x))
+    })
 }
 
 /// As [`estimate_on_track`], with constants of the sensors among the states.
@@ -254,7 +289,7 @@ pub(super) fn estimate_with_constants<const N: usize>(
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
     let noise = NoiseLevel { contact: noise.contact.max(WORTH_ADJUSTING * scales.length), ..noise };
     let best = cold_start(track, &known.mass, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
-    let setting = Setting { scales, noise, constants, deviations, shift_wanted: true, axes_chosen: false };
+    let setting = Setting { scales, noise, constants, deviations, axes_chosen: false };
     noisy_estimate(track, known, &setting, &best)
 }
 
@@ -319,6 +354,9 @@ pub(super) fn judge(evidence: &Evidence, status: FitStatus, scales: &Scales) -> 
     }
     if evidence.bias.is_nan() || evidence.bias > LARGEST_BIAS {
         reasons.push(Reason::Biased { shift: evidence.bias });
+    }
+    if evidence.log_odds < LEAST_LOG_ODDS {
+        reasons.push(Reason::Ambiguous { log_odds: evidence.log_odds });
     }
     // More than noise leaves, and more than the lasting errors of good data: what a wrong minimum leaves.
     let explained = (EXPLAINED * evidence.noise_explains).max(NEXT_TO_NOTHING * scales.velocity);

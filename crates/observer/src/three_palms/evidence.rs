@@ -33,6 +33,9 @@ pub struct Evidence {
     /// Largest shift of an unknown by as much noise again, in its own standard deviations: what averages do not remove.
     /// Zero where the noise is too small to shift anything.
     pub bias: f64,
+    /// Logarithm of how many times more probable this motion is than the next that was found; infinite where there is none,
+    /// or where noise leaves no room for one.
+    pub log_odds: f64,
     /// Linearisations in the last fit.
     pub iterations: usize,
 }
@@ -139,10 +142,20 @@ pub enum Reason {
         /// Largest shift of an unknown, in its standard deviations.
         shift: f64,
     },
+    /// Another motion explains the log about as well.
+    Ambiguous {
+        /// Logarithm of how many times more probable the estimate is.
+        log_odds: f64,
+    },
     /// Contacts and forces had to be corrected by more than their noise.
     Inconsistent {
         /// Chi-squared over its degrees of freedom; about 1 when all is as stated.
         misfit: f64,
+    },
+    /// With this motion contacts lie outside the tangent planes of other contacts: no convex body does that.
+    NotConvex {
+        /// The farthest, in standard deviations.
+        deviations: f64,
     },
     /// The log is noisy and short beside the time in which the body falls its own length.
     TooShort {
@@ -181,6 +194,17 @@ impl fmt::Display for Reason {
                 "as much noise again shifts the estimate by {shift:.1} of its standard deviations: the motion is too slow \
                  or too short for these sensors"
             ),
+            Self::Ambiguous { log_odds } => write!(
+                f,
+                "another motion explains the log about as well (this one is {:.1} times more probable): move the object \
+                 for longer, or use better sensors",
+                log_odds.exp()
+            ),
+            Self::NotConvex { deviations } => write!(
+                f,
+                "with this motion contacts lie up to {deviations:.1} standard deviations outside planes that the body \
+                 touches elsewhere: a wrong motion, or a body that is not convex"
+            ),
             Self::Inconsistent { misfit } => write!(
                 f,
                 "contacts and forces had to be corrected by {:.2} times their noise: a wrong motion, a wrong constant of \
@@ -208,12 +232,27 @@ impl fmt::Display for Reason {
 /// Natural times that a noisy log must last at least: over less, the motion is hardly more than its start.
 const SHORTEST: f64 = 2.0;
 
+/// Standard deviations by which a contact may lie outside a tangent plane: beyond the largest of some ten thousand pairs.
+const LARGEST_VIOLATION: f64 = 6.0;
+
+/// Whether a noisy log is too short to rely on.
+pub(super) fn too_short(track: &Track, scales: &Scales) -> bool {
+    track.duration() < SHORTEST * natural_time(track, scales.length)
+}
+
 impl Reliability {
     /// Refuses to rely on a noisy log that is too short.
     pub(super) fn check_length(&mut self, track: &Track, scales: &Scales) {
         let (duration, needed) = (track.duration(), SHORTEST * natural_time(track, scales.length));
-        if duration < needed {
+        if too_short(track, scales) {
             self.add(Reason::TooShort { duration, needed });
+        }
+    }
+
+    /// Refuses to rely on a motion that leaves no room for a convex body.
+    pub(super) fn check_convexity(&mut self, violation: f64) {
+        if violation.is_nan() || violation > LARGEST_VIOLATION {
+            self.add(Reason::NotConvex { deviations: violation });
         }
     }
 

@@ -1,6 +1,8 @@
 //! Three palms in space.
 
+mod alternatives;
 mod cold_start;
+mod convexity;
 mod correlation;
 mod covariance;
 mod curves;
@@ -19,6 +21,8 @@ mod sensitivity;
 mod sensors;
 mod state_space;
 mod streaming;
+#[cfg(test)]
+mod test_scenes;
 mod track;
 mod unknown_body;
 

@@ -10,8 +10,19 @@ const ITERATIONS: usize = 15;
 const STEP_TOLERANCE: f64 = 0.01;
 /// Deviation, in natural units, of the turning rates in the first pass: the start is not better known.
 const FIRST_SLIDE: f64 = 0.1;
+/// Root mean square residual, in deviations, from which a pass that did not settle leads nowhere.
+const HOPELESS: f64 = 10.0;
 /// Passes: each takes from the one before what derivatives and weights must not take from noisy data.
 const PASSES: usize = 3;
+
+/// A motion and how probable it is.
+pub(super) struct MostProbable<const N: usize> {
+    pub(super) solution: BatchSolution<N>,
+    /// Minus twice the logarithm of the probability mass about the motion, up to a constant that all motions of a log share
+    /// (Laplace's approximation). Chi-squared alone does not compare motions: noise counts for less in one that leaves it
+    /// more room, so that wrong minima with a smaller chi-squared than the truth are common in short logs.
+    pub(super) improbability: f64,
+}
 
 /// Gauss-Newton on the whole motion, relinearised at the adjusted data: Gauss-Helmert estimation in linear time.
 ///
@@ -23,7 +34,7 @@ pub(super) fn most_probable<const N: usize>(
     states: &[SVector<f64, N>],
     prior: &Start<N>,
     reach: f64,
-) -> Result<BatchSolution<N>, ObserverError> {
+) -> Result<MostProbable<N>, ObserverError> {
     let t: Vec<f64> = inputs
         .iter()
         .scan(0.0, |t, input| {
@@ -46,8 +57,9 @@ pub(super) fn most_probable<const N: usize>(
     let mut found = solve_batch_along(model, &samples, prior, states, &options)?;
     let mut iterations = found.iterations;
     for _ in 1..PASSES {
-        if found.report.status == Status::Diverged {
-            return Ok(found);
+        let lost = found.report.status == Status::Moving && found.report.residual > HOPELESS;
+        if lost || found.report.status == Status::Diverged {
+            return Ok(MostProbable { solution: found, improbability: f64::INFINITY });
         }
         set_slides(&mut samples, |k, touch| {
             model.slide_variances(&found.states[k], &found.covariances[k], touch)
@@ -61,7 +73,10 @@ pub(super) fn most_probable<const N: usize>(
         found = solve_batch_along(model, &samples, prior, &found.states, &options)?;
         iterations += found.iterations;
     }
-    Ok(BatchSolution { iterations, ..found })
+    let of_outputs: f64 =
+        samples.iter().zip(&found.states).map(|(s, x)| model.log_variances(x, &s.input.here)).sum();
+    let improbability = found.chi_squared + found.log_determinant + of_outputs;
+    Ok(MostProbable { solution: BatchSolution { iterations, ..found }, improbability })
 }
 
 fn set_slides(samples: &mut [Sample<NodeInput, 3>], slide: impl Fn(usize, &Touch) -> [f64; 3]) {

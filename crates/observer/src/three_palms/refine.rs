@@ -3,7 +3,7 @@
 use super::cold_start::natural_time;
 use super::covariance::NoiseLevel;
 use super::momentum::{MomentumProblem, Scales, StartState};
-use super::most_probable::most_probable;
+use super::most_probable::{MostProbable, most_probable};
 use super::random::Normal;
 use super::state_space::{Block, Constant, MOTION_STATES, Parameters, ThreePalmModel, block_inputs, blocks};
 use super::track::Track;
@@ -21,15 +21,26 @@ const CHOSEN: f64 = 0.1;
 /// Deviation of a constant that is known, in natural sizes and relative contact noise: likewise.
 const KNOWN: f64 = 0.01;
 
+/// Pairs of noise that the covariance is widened by, where one pair says that it is too narrow.
+const PAIRS: u64 = 4;
+/// Shift by one pair of noise, in deviations, below which the covariance stands: its square is what a number's variance
+/// would grow by.
+const NEGLIGIBLE_SHIFT: f64 = 0.1;
+
 /// The most probable motion with the model that it obeys.
 pub(super) struct Refined<const N: usize> {
     pub(super) model: ThreePalmModel<N>,
     pub(super) solution: BatchSolution<N>,
+    /// Minus twice the logarithm of the probability mass about the motion, up to a constant that all motions of a log share.
+    pub(super) improbability: f64,
     /// Samples at which the states stand.
     pub(super) nodes: Vec<usize>,
     /// Largest shift of a state at the start by noise, in its deviations; infinite where as much noise again leads
     /// nowhere.
     pub(super) shift: f64,
+    cut: Vec<Block>,
+    reach: f64,
+    prior: Start<N>,
 }
 
 impl<const N: usize> Refined<N> {
@@ -45,8 +56,70 @@ impl<const N: usize> Refined<N> {
 
     /// Whether it may be used at all.
     pub(super) fn settled(&self) -> bool {
-        matches!(self.solution.report.status, Status::Converged | Status::Inconsistent)
+        usable(self.solution.report.status)
     }
+
+    /// Widens the covariances by what noise does beyond first order, and notes how much that is.
+    ///
+    /// Where noise is much of what there is, the estimate is a curved function of it. Noise of the same size is added once
+    /// more, in pairs of opposite signs: what is linear in it cancels from the mean of a pair, and what is left, `q`, is about
+    /// what the noise in the data has done already. The mean of `q q'` is the square of the bias and the variance of what is
+    /// quadratic in the noise: what the covariance of the linearised estimate lacks.
+    pub(super) fn widen(&mut self, track: &Track, noise: &NoiseLevel) {
+        if !self.settled() {
+            return;
+        }
+        let mut found = Vec::new();
+        for seed in 1..=PAIRS {
+            let Some(means) = self.mean_of_pair(track, noise, seed) else { break };
+            found.push(means);
+            if seed == 1 {
+                self.shift = self.largest_shift(&found);
+                if self.shift < NEGLIGIBLE_SHIFT {
+                    return;
+                }
+            }
+        }
+        if found.len() < PAIRS as usize {
+            self.shift = f64::INFINITY;
+            return;
+        }
+        self.shift = self.largest_shift(&found);
+        for means in &found {
+            for (covariance, q) in self.solution.covariances.iter_mut().zip(means) {
+                covariance.ger(1.0 / PAIRS as f64, q, q, 1.0);
+            }
+        }
+    }
+
+    /// Root mean square over pairs of the shift of a state at the start, in its deviations: the largest.
+    fn largest_shift(&self, found: &[Vec<SVector<f64, N>>]) -> f64 {
+        let variances = self.solution.covariances[0].diagonal();
+        let squares = found.iter().map(|means| means[0].component_mul(&means[0])).sum::<SVector<f64, N>>();
+        let mean = squares / found.len() as f64;
+        mean.iter().zip(variances.iter()).map(|(s, v)| (s / v).sqrt()).fold(0.0, f64::max)
+    }
+
+    /// Mean shifts of all states by a pair of opposite noise. None where the noise leads nowhere.
+    fn mean_of_pair(&self, track: &Track, noise: &NoiseLevel, seed: u64) -> Option<Vec<SVector<f64, N>>> {
+        let states = &self.solution.states;
+        let mut mean = vec![SVector::<f64, N>::zeros(); states.len()];
+        for sign in [1.0, -1.0] {
+            let inputs = block_inputs(&track.perturbed(noise, sign, seed), &self.cut, self.reach);
+            let moved = most_probable(&self.model, &inputs, states, &self.prior, self.reach).ok()?.solution;
+            if !usable(moved.report.status) {
+                return None;
+            }
+            for (mean, (to, from)) in mean.iter_mut().zip(moved.states.iter().zip(states)) {
+                *mean += self.model.difference(to, from) * 0.5;
+            }
+        }
+        Some(mean)
+    }
+}
+
+fn usable(status: Status) -> bool {
+    matches!(status, Status::Converged | Status::Inconsistent)
 }
 
 /// What the model is made of beside the track.
@@ -57,8 +130,6 @@ pub(super) struct Setting<'a> {
     pub(super) constants: &'a [Constant],
     /// Prior deviations of the constants; those beyond the end of the list have none.
     pub(super) deviations: &'a [f64],
-    /// Whether the shift by noise is wanted: it costs two more estimates.
-    pub(super) shift_wanted: bool,
     /// Whether the body axes are chosen, so that the orientation at the start is.
     pub(super) axes_chosen: bool,
 }
@@ -71,7 +142,7 @@ pub(super) fn refine<const N: usize>(
     start: &StartState,
     setting: &Setting<'_>,
 ) -> Result<Refined<N>, ObserverError> {
-    let Setting { scales, noise, constants, deviations, shift_wanted, axes_chosen } = *setting;
+    let Setting { scales, noise, constants, deviations, axes_chosen } = *setting;
     let natural = natural_time(track, scales.length);
     let spacing = track.duration() / (track.len() - 1).max(1) as f64;
     let stride = (natural / NODES_PER_NATURAL_TIME / spacing).round().max(1.0) as usize;
@@ -106,40 +177,9 @@ pub(super) fn refine<const N: usize>(
             prior.information[(axis, axis)] = (CHOSEN * model.relative_noise()).powi(-2);
         }
     }
-    let solution = most_probable(&model, &inputs, &states, &prior, SMOOTHED_NATURAL_TIMES * natural)?;
-    let mut refined = Refined { model, solution, nodes, shift: 0.0 };
-    if shift_wanted && refined.settled() {
-        let shift = shift_by_noise(track, &refined, &cut, SMOOTHED_NATURAL_TIMES * natural, &prior, &noise);
-        refined.shift = shift.unwrap_or(f64::INFINITY);
-    }
-    Ok(refined)
-}
-
-/// Largest shift of a state at the start, in its deviations, by as much noise again.
-///
-/// Where noise is much of what there is, the estimate is a curved function of it, and the mean of the estimates is not the
-/// truth. Noise of the same size is added once more, in a pair of opposite signs: what is linear in it cancels, and what
-/// is left is about what the noise in the data has done already. None where the noise leads nowhere.
-fn shift_by_noise<const N: usize>(
-    track: &Track,
-    refined: &Refined<N>,
-    cut: &[Block],
-    reach: f64,
-    prior: &Start<N>,
-    noise: &NoiseLevel,
-) -> Option<f64> {
-    let states = &refined.solution.states;
-    let mut sum = SVector::<f64, N>::zeros();
-    for sign in [1.0, -1.0] {
-        let inputs = block_inputs(&track.perturbed(noise, sign, 1), cut, reach);
-        let moved = most_probable(&refined.model, &inputs, states, prior, reach).ok()?;
-        if moved.report.status != Status::Converged && moved.report.status != Status::Inconsistent {
-            return None;
-        }
-        sum += refined.model.difference(&moved.states[0], &states[0]) * 0.5;
-    }
-    let variances = refined.solution.covariances[0].diagonal();
-    Some(sum.iter().zip(variances.iter()).map(|(s, v)| s.abs() / v.sqrt()).fold(0.0, f64::max))
+    let reach = SMOOTHED_NATURAL_TIMES * natural;
+    let MostProbable { solution, improbability } = most_probable(&model, &inputs, &states, &prior, reach)?;
+    Ok(Refined { model, solution, improbability, nodes, shift: 0.0, cut, reach, prior })
 }
 
 impl Track {

@@ -182,6 +182,16 @@ impl<const N: usize> ThreePalmModel<N> {
         })
     }
 
+    /// Sum of the logarithms of the variances of the conditions, as distances of the contacts from their lines.
+    pub(crate) fn log_variances(&self, x: &SVector<f64, N>, touch: &Touch) -> f64 {
+        let conditions = self.conditions(x, touch);
+        let log = |(condition, slide): (&Condition<N>, f64)| {
+            let [a, b] = condition.by_contact;
+            (condition.variance / (a * a + b * b + slide)).ln()
+        };
+        conditions.iter().zip(touch.slide_variance).map(log).sum()
+    }
+
     /// Derivative of `axis . w` by the states.
     fn turning_row(
         &self,

@@ -4,11 +4,12 @@ use super::principal::{PrincipalFrame, principal_frame};
 use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem, MASS, constants};
 use super::search::{mass_of_weight, scales_of_ball, search};
 use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
+use crate::three_palms::convexity::largest_violation;
 use crate::three_palms::correlation::whiteness;
 use crate::three_palms::estimate::{
     EstimateError, LARGEST_MISFIT, MotionEstimate, RANK_TOLERANCE, WORTH_ADJUSTING, floored, judge,
 };
-use crate::three_palms::evidence::{Evidence, Reason, WeakDirection};
+use crate::three_palms::evidence::{Evidence, Reason, WeakDirection, too_short};
 use crate::three_palms::momentum::{MomentumProblem, Scales, StartState};
 use crate::three_palms::noise::noise_level;
 use crate::three_palms::refine::{Refined, Setting, refine};
@@ -97,16 +98,13 @@ fn finish(
     // Covariances are proportional to the noise squared: logs with next to none are weighed as if they had some.
     let faint = (FAINTEST * scales.length / noise.contact).max(1.0);
     let weighed = NoiseLevel { contact: noise.contact * faint, force: noise.force * faint };
-    let setting = Setting {
-        scales,
-        noise: weighed,
-        constants: constants(),
-        deviations: &[],
-        shift_wanted: adjusted,
-        axes_chosen: true,
-    };
-    let refined = refine::<STATES>(&track, &mass, Parameters::new(&mass), &fit.point.start, &setting)
+    let setting =
+        Setting { scales, noise: weighed, constants: constants(), deviations: &[], axes_chosen: true };
+    let mut refined = refine::<STATES>(&track, &mass, Parameters::new(&mass), &fit.point.start, &setting)
         .map_err(|_| EstimateError::NoFit)?;
+    if adjusted && !too_short(&track, &scales) {
+        refined.widen(&track, &weighed);
+    }
     let (mass, start) = if adjusted { of_state(&refined)? } else { (mass, fit.point.start) };
     let track = track.of_mass(mass.mass());
     let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
@@ -144,6 +142,7 @@ fn finish(
         smallest_information: eigenvalues[0],
         weakest,
         noise,
+        log_odds: f64::INFINITY,
         bias: if adjusted { refined.shift } else { 0.0 },
         iterations: fit.iterations + refined.solution.iterations,
     };
@@ -163,12 +162,14 @@ fn finish(
         motion.into_iter().map(|m| crate::three_palms::MotionState { R_WO: m.R_WO * axes, ..m }).collect();
     let contact_curves = curves::contact_curves(&track, &turned)?;
     let radii = curves::radii(&track, &turned);
+    let uncertainty = if adjusted { curves::uncertainty(&track, &refined, axes) } else { Vec::new() };
+    reliability.check_convexity(largest_violation(&track, &refined.nodes, &turned, &uncertainty));
     let motion = MotionEstimate {
         start: StartState { R_WO: axes, ..start },
         motion: turned,
         curves: contact_curves,
         radii,
-        uncertainty: if adjusted { curves::uncertainty(&track, &refined, axes) } else { Vec::new() },
+        uncertainty,
         covariance,
         evidence,
         reliability,

@@ -258,27 +258,14 @@ mod tests {
     use super::*;
     use crate::three_palms::cold_start::scales;
     use crate::three_palms::state_space::numbers_of_inertia;
-    use contact_kinematics::{Ellipsoid, Palm, SlopeMotion};
-    use object_dynamics::integrate::Tolerance;
-    use object_dynamics::{InitialMotion, SampleTimes, ThreePalmScene};
+    use crate::three_palms::test_scenes::on_swinging_palms;
 
     /// The gradient is that of the sum of squares, far from the solution, on moving palms, at a mass that is not the
     /// track's; and at the truth nothing is left.
     #[test]
     fn derivatives_are_those_of_the_sum_of_squares() {
-        let axes = DVec3::new(1.0, 2.0, 2.5);
-        let mass = MassProperties::uniform_ellipsoid(1.3, axes).unwrap();
-        let palm = |azimuth, phase| {
-            let motion = SlopeMotion::Sinusoid { slope: 1.0, amplitude: 0.08, frequency: 1.7, phase };
-            Palm::new(azimuth, motion).unwrap()
-        };
-        let palms = [palm(0.1, 0.3), palm(2.2, 1.0), palm(4.3, 2.0)];
-        let scene = ThreePalmScene::new(Ellipsoid::new(axes).unwrap(), mass, palms, 9.81).unwrap();
-        let start = InitialMotion { R_WO: DQuat::IDENTITY, w_WO: DVec3::new(0.2, 0.3, -0.4) };
-        let times = SampleTimes { duration: 1.0, rate: 1000.0 };
-        let log =
-            scene.simulate(start, times, Tolerance::uniform(1e-12)).unwrap().sensor_log(&scene).unwrap();
-        let track = Track::new(&log, 1.0, scene.gravity(), None).unwrap();
+        let (log, mass, gravity) = on_swinging_palms();
+        let track = Track::new(&log, 1.0, gravity, None).unwrap();
         let sizes = scales(&track, &mass);
         let now = log.truth().unwrap()[0];
         let L_WO = mass.inertia() * now.w_WO;

@@ -1,0 +1,236 @@
+//! Monte Carlo study of the three-palm estimators against the Cramer-Rao bound: prints a table in Markdown.
+//!
+//! `cargo xtask study three_palms_monte_carlo [RUNS [FIRST_SEED [WORD...]]]` writes docs/three-palms-monte-carlo.md. Words
+//! choose rows: `F5` or `G2`, `known` or `unknown`, and `noise=0.01`, `rate=1000`, `window=2`.
+
+mod estimates;
+mod statistics;
+
+use estimates::{Estimated, estimate};
+use recon::contact_kinematics::SupportFunction;
+use recon::object_dynamics::{InitialMotion, SampleTimes, SensorNoise, ThreePalmScene, integrate::Tolerance};
+use recon_tests::{f5, g2};
+use statistics::Statistics;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// Size of the objects, m, that contact noise is relative to, and mean force, N, that force noise is relative to.
+const SIZE: f64 = 2.5;
+const FORCE: f64 = 6.5;
+/// Share of its natural size below which a number's bound must be for it to be counted. The bound is local: it holds where
+/// an error of a few deviations leaves the motion's equations linear, and natural sizes are where they are not at all.
+const WITHIN_REACH: f64 = 0.1;
+/// Factor by which the noise is made small where the bound is taken: it is then that of the linearised model at the truth.
+const SMALL: f64 = 0.01;
+/// Ratio to the bound beyond which there is no number in the table: some run led nowhere.
+const FAR: f64 = 10.0;
+/// A failure is an error beyond this many of its deviations without a warning.
+const SILENT: f64 = 5.0;
+
+/// One row of the table.
+#[derive(Clone, Copy)]
+struct Row {
+    scene: &'static str,
+    unknown: bool,
+    noise: f64,
+    rate: f64,
+    window: f64,
+}
+
+impl Row {
+    fn all() -> Vec<Self> {
+        let mut all = Vec::new();
+        for scene in ["F5", "G2"] {
+            for unknown in [false, true] {
+                for noise in [1e-3, 1e-2] {
+                    for rate in [1000.0, 100.0] {
+                        let windows = [0.5, 1.0, 2.0, 4.0];
+                        all.extend(windows.map(|window| Self { scene, unknown, noise, rate, window }));
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    fn body(&self) -> &'static str {
+        if self.unknown { "unknown" } else { "known" }
+    }
+
+    /// Whether a word of the command line allows this row.
+    fn allowed(&self, word: &str) -> Result<bool, Failure> {
+        let number = match word.split_once('=') {
+            None if ["F5", "G2"].contains(&word) => return Ok(word == self.scene),
+            None if ["known", "unknown"].contains(&word) => return Ok(word == self.body()),
+            Some(("noise", value)) => (self.noise, value),
+            Some(("rate", value)) => (self.rate, value),
+            Some(("window", value)) => (self.window, value),
+            _ => {
+                let needed = "F5, G2, known, unknown, or a number for noise=, rate=, window=";
+                return Err(format!("{word}: a word that chooses rows must be {needed}").into());
+            }
+        };
+        Ok(number.1.parse::<f64>()? == number.0)
+    }
+}
+
+fn main() -> Result<(), Failure> {
+    let mut words = std::env::args().skip(1);
+    let runs: u64 = words.next().map_or(Ok(5), |word| word.parse())?;
+    let first: u64 = words.next().map_or(Ok(1000), |word| word.parse())?;
+    let words: Vec<String> = words.collect();
+    let mut rows = Vec::new();
+    for row in Row::all() {
+        let allowed: Result<Vec<bool>, Failure> = words.iter().map(|word| row.allowed(word)).collect();
+        if allowed?.into_iter().all(|yes| yes) {
+            rows.push(row);
+        }
+    }
+    introduce(runs, first, &words);
+    for line in in_parallel(&rows, |row| line(row, first..first + runs))? {
+        println!("{line}");
+    }
+    Ok(())
+}
+
+fn introduce(runs: u64, first: u64, words: &[String]) {
+    let command = [&[runs.to_string(), first.to_string()], words].concat().join(" ");
+    println!("# Three-palm estimators against the Cramer-Rao bound\n");
+    println!(
+        "Made by `cargo xtask study three_palms_monte_carlo {command}`; {runs} runs a row, seeds {first} to {}.\n",
+        first + runs - 1
+    );
+    println!(
+        "Scenes `F5` (immobile palms) and `G2` (palms that swing, full inertia tensor); contact noise relative to a size of \
+         {SIZE} m, force noise 1 % of {FORCE} N; cold start, no guess.\n"
+    );
+    println!(
+        "Compared are, of a known body, the 12 numbers of the state at the start; of an unknown one centre of mass, \
+         velocity, angular momentum, mass and principal moments. Counted are the numbers whose bound is below {WITHIN_REACH} of \
+         their natural size: the bound is a local one, and beyond that the equations are not linear over a few deviations. \
+         RMSE / bound: geometric mean over these numbers, over runs that are relied on, and over all runs with an estimate. \
+         Error^2 / variance: mean over the same, relied on, with its 95 % band (numbers of one run hang together: the band \
+         allows for it); below 1 the covariance is on the safe side. Reported: runs that come with a warning. Silent: runs \
+         with an error beyond {SILENT} deviations and no warning. Time: median of processor time.\n"
+    );
+    println!(
+        "| scene | body | contact noise | rate Hz | window s | numbers | RMSE / bound | of all runs | error^2 / variance | 95 % band | reported | silent | ms |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+}
+
+/// The lines of the rows in their order, made by as many threads as there are processors.
+fn in_parallel(
+    rows: &[Row],
+    line: impl Fn(&Row) -> Result<String, Failure> + Sync,
+) -> Result<Vec<String>, Failure> {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut done = Vec::new();
+        while let Some((k, row)) =
+            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|k| Some((k, rows.get(k)?)))
+        {
+            done.push((k, line(row)));
+        }
+        done
+    };
+    let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let done = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().map(|worker| worker.join()).collect::<Result<Vec<_>, _>>()
+    })
+    .map_err(|_| "a worker ended early")?;
+    let mut lines: Vec<(usize, Result<String, Failure>)> = done.into_iter().flatten().collect();
+    lines.sort_by_key(|(k, _)| *k);
+    lines.into_iter().map(|(_, line)| line).collect()
+}
+
+fn line(row: &Row, seeds: Range<u64>) -> Result<String, Failure> {
+    if row.scene == "F5" {
+        let (scene, start) = f5();
+        line_of(&scene, start, row, seeds)
+    } else {
+        let (scene, start) = g2();
+        line_of(&scene, start, row, seeds)
+    }
+}
+
+fn line_of<S: SupportFunction>(
+    scene: &ThreePalmScene<S>,
+    start: InitialMotion,
+    row: &Row,
+    seeds: Range<u64>,
+) -> Result<String, Failure> {
+    let Row { noise, rate, window, unknown, .. } = *row;
+    let times = SampleTimes { duration: window, rate };
+    let simulation = scene.simulate(start, times, Tolerance::uniform(1e-13))?;
+    let clean = simulation.sensor_log(scene)?.without_truth();
+    let level = |factor: f64| SensorNoise {
+        contact: factor * noise * SIZE,
+        force: factor * 0.01 * FORCE,
+        torque: 0.0,
+    };
+    let now = &simulation.instants[0];
+    let bound = estimate(scene, &clean, level(SMALL), unknown, now).scaled(1.0 / SMALL);
+    let mut runs = Vec::new();
+    for seed in seeds {
+        let log = clean.with_noise(&level(1.0), seed)?;
+        runs.push(estimate(scene, &log, level(1.0), unknown, now));
+    }
+    let sizes = sizes(scene, unknown);
+    let counted: Vec<usize> =
+        (0..sizes.len()).filter(|&i| bound.deviations[i] < WITHIN_REACH * sizes[i]).collect();
+    Ok(format(row, &runs, &bound, &counted))
+}
+
+fn format(row: &Row, runs: &[Estimated], bound: &Estimated, counted: &[usize]) -> String {
+    let relied: Vec<&Estimated> = runs.iter().filter(|run| run.reliable).collect();
+    let there: Vec<&Estimated> = runs.iter().filter(|run| run.exists()).collect();
+    let silent = relied.iter().filter(|run| run.worst() > SILENT).count();
+    let (of_relied, of_all) =
+        (Statistics::new(&relied, bound, counted), Statistics::new(&there, bound, counted));
+    let dash = || "-".to_owned();
+    let ratio = |s: &Option<Statistics>| match s {
+        None => dash(),
+        Some(s) if s.ratio < FAR => format!("{:.2}", s.ratio),
+        Some(_) => format!("> {FAR}"),
+    };
+    let (square, band) = of_relied.as_ref().map_or_else(
+        || (dash(), dash()),
+        |s| {
+            let band = format!("{:.2} to {:.2}", (1.0 - s.half_band).max(0.0), 1.0 + s.half_band);
+            (format!("{:.2}", s.square), band)
+        },
+    );
+    let mut times: Vec<f64> = runs.iter().map(|run| run.milliseconds).collect();
+    times.sort_by(f64::total_cmp);
+    let Row { scene, noise, rate, window, .. } = row;
+    format!(
+        "| {scene} | {} | {:.1} % | {rate} | {window} | {} | {} | {} | {square} | {band} | {} of {} | {silent} | {:.0} |",
+        row.body(),
+        100.0 * noise,
+        counted.len(),
+        ratio(&of_relied),
+        ratio(&of_all),
+        runs.len() - relied.len(),
+        runs.len(),
+        times.get(times.len() / 2).copied().unwrap_or_default(),
+    )
+}
+
+/// Natural sizes of the numbers compared.
+fn sizes<S: SupportFunction>(scene: &ThreePalmScene<S>, unknown: bool) -> Vec<f64> {
+    let length = 0.8 * SIZE;
+    let rate = (9.81 / length).sqrt();
+    let moment = scene.mass().principal().moments.element_sum() / 3.0;
+    let mut all: Vec<f64> = [length, length * rate, moment * rate].into_iter().flat_map(|s| [s; 3]).collect();
+    if unknown {
+        all.push(scene.mass().mass());
+        all.extend([moment; 3]);
+    } else {
+        all.extend([1.0; 3]);
+    }
+    all
+}

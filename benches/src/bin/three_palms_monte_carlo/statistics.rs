@@ -1,0 +1,41 @@
+//! Errors of many runs against a bound.
+
+use crate::estimates::Estimated;
+
+/// Errors of some runs, of the numbers that are counted.
+pub(crate) struct Statistics {
+    /// Root mean square error over the bound, geometric mean over the numbers.
+    pub(crate) ratio: f64,
+    /// Mean square of errors over deviations.
+    pub(crate) square: f64,
+    /// Half of the band about 1 in which that lies with 95 %.
+    pub(crate) half_band: f64,
+}
+
+impl Statistics {
+    /// None without runs or numbers.
+    pub(crate) fn new(runs: &[&Estimated], bound: &Estimated, counted: &[usize]) -> Option<Self> {
+        if runs.is_empty() || counted.is_empty() {
+            return None;
+        }
+        let count = runs.len() as f64;
+        let mean = |i: usize| runs.iter().map(|o| o.errors[i].powi(2)).sum::<f64>() / count;
+        let logs: f64 = counted.iter().map(|&i| 0.5 * (mean(i) / bound.deviations[i].powi(2)).ln()).sum();
+        let squares: f64 = counted
+            .iter()
+            .map(|&i| runs.iter().map(|o| (o.errors[i] / o.deviations[i]).powi(2)).sum::<f64>() / count)
+            .sum();
+        // The sum of squares of numbers with correlations C has the variance 2 |C|^2.
+        let d = counted.len() as f64;
+        let correlation: f64 = counted
+            .iter()
+            .flat_map(|&i| counted.iter().map(move |&j| (i, j)))
+            .map(|(i, j)| (bound.covariance[i][j] / (bound.deviations[i] * bound.deviations[j])).powi(2))
+            .sum();
+        Some(Self {
+            ratio: (logs / d).exp(),
+            square: squares / d,
+            half_band: 1.96 * (2.0 * correlation / count).sqrt() / d,
+        })
+    }
+}
