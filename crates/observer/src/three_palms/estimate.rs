@@ -1,17 +1,20 @@
-use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, scales};
+use super::cold_start::{
+    EXPLAINED, NEXT_TO_NOTHING, SAMPLES_PER_NATURAL_TIME, cold_start, natural_time, scales,
+};
 use super::correlation::{correlation_samples, whiteness};
-use super::covariance::{NoiseLevel, Sampling, propagate};
+use super::covariance::{Linearised, NoiseLevel, Sampling, propagate_to};
 use super::curves::CurveUncertainty;
 use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
 use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNKNOWNS};
 use super::noise::noise_level;
+use super::polish::polish_all;
 use super::refine::{Refined, Setting, refine};
 use super::state_space::{Constant, Parameters};
 use super::track::{Track, TrackError};
-use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
+use crate::least_squares::{Fit, FitStatus, Observability};
 use contact_kinematics::{ContactCurve, CurveError};
 use glam::{DQuat, DVec3};
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 use object_dynamics::{MassProperties, SensorLog};
 use thiserror::Error;
 
@@ -136,22 +139,30 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
         };
         return noisy_estimate::<UNKNOWNS>(track, known, &setting, &best).map(|(estimate, _)| estimate);
     }
+    clean_estimate(track, known, scales, noise, best.point)
+}
+
+/// The least-squares motion of a log with next to no noise, from a start that is near.
+fn clean_estimate(
+    track: &Track,
+    known: &KnownBody,
+    scales: Scales,
+    noise: NoiseLevel,
+    near: StartState,
+) -> Result<MotionEstimate, EstimateError> {
+    let mass = &known.mass;
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
-    let solver = LevenbergMarquardt { iterations: 60, step_tolerance: 1e-11, damping: 1e-9, prior: 0.0 };
-    let mut fit = solver.fit(&problem, best.point);
-    if fit.status == FitStatus::Failed {
-        return Err(EstimateError::NoFit);
-    }
+    let stride = stride(track, &scales);
+    let thin = track.thinned(stride);
+    let thin_problem = MomentumProblem::new(&thin, mass, scales, f64::INFINITY);
+    let mut fit = polish_all(&problem, &thin_problem, stride, near).ok_or(EstimateError::NoFit)?;
     fit.point.R_WO = nearest_to_identity(mass, fit.point.R_WO);
-    let residuals = problem.residuals(&fit.point);
+    let motion = problem.motion(&fit.point);
+    let (residuals, _) = problem.residuals_along(&motion, noise.contact);
+    let rms = root_mean_square(&residuals);
     let observability = Observability::new(&fit.normal.information);
-    let (covariance, predicted) =
-        scaled_covariance(track, known, &scales, &fit.point, &observability, &noise);
-    let rms = (residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (3 * residuals.len()) as f64).sqrt();
-    // What noise does not explain is a lasting error of sensors or model: as many independent ones as there are
-    // correlation times in the log.
-    let excess = (rms * rms - predicted * predicted).max(0.0) * correlation_samples(&residuals);
-    let covariance = covariance + information_inverse(&observability) * excess + unknown(&observability);
+    let (steps, rows) = thin_problem.linearised(&fit.point);
+    let (covariance, predicted) = clean_covariance(&steps, &rows, &observability, &noise, stride, &residuals);
     let weakest = weakest_direction(&covariance);
     let eigenvalues = observability.eigenvalues;
     let largest = eigenvalues[UNKNOWNS - 1];
@@ -170,7 +181,6 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
         iterations: fit.iterations,
     };
     let reliability = judge(&evidence, fit.status, &scales);
-    let motion = problem.motion(&fit.point);
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
     let covariance = unscale(&covariance, &scales);
@@ -203,7 +213,7 @@ fn noisy_estimate<const N: usize>(
     let states = refined.states();
     let motion = problem.motion_through(&refined.nodes, &states);
     let (residuals, predicted) = problem.residuals_along(&motion, noise.contact);
-    let rms = (residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (3 * residuals.len()) as f64).sqrt();
+    let rms = root_mean_square(&residuals);
     let misfit = refined.misfit(N);
     let observability = Observability::new(&best.normal.information);
     let eigenvalues = observability.eigenvalues;
@@ -266,28 +276,41 @@ pub(super) fn floored(noise: NoiseLevel, track: &Track, scales: &Scales) -> Nois
     }
 }
 
-/// Covariance of the scaled unknowns from sensor noise, and the residual that the noise explains.
-fn scaled_covariance(
-    track: &Track,
-    known: &KnownBody,
-    scales: &Scales,
-    start: &StartState,
-    observability: &Observability<UNKNOWNS>,
-    noise: &NoiseLevel,
-) -> (SMatrix<f64, UNKNOWNS, UNKNOWNS>, f64) {
-    let stride = track.len().div_ceil(COVARIANCE_SAMPLES);
-    let thin = track.thinned(stride);
-    let problem = MomentumProblem::new(&thin, &known.mass, *scales, f64::INFINITY);
-    let per_node = stride as f64;
-    let sampling = Sampling { per_node, weight: per_node, direct: per_node };
-    let result = propagate(&problem, start, &information_inverse(observability), noise, sampling);
-    (result.covariance, result.residual)
+/// Samples of a log with next to no noise for one at which derivatives are taken.
+pub(super) fn stride(track: &Track, scales: &Scales) -> usize {
+    let nodes = SAMPLES_PER_NATURAL_TIME * track.duration() / natural_time(track, scales.length);
+    let nodes = nodes.min(COVARIANCE_SAMPLES as f64).max(1.0);
+    // The line through the last two nodes needs two.
+    ((track.len() as f64 / nodes) as usize).clamp(1, track.len() / 2)
 }
 
-pub(super) fn information_inverse(
-    observability: &Observability<UNKNOWNS>,
-) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
-    let floor = RANK_TOLERANCE * observability.eigenvalues[UNKNOWNS - 1];
+/// Covariance of the scaled unknowns of a fit to a log with next to no noise, and the residual that the noise explains.
+///
+/// What noise does not explain is a lasting error of sensors or model: as many independent ones as there are correlation
+/// times in the log.
+pub(super) fn clean_covariance<const P: usize>(
+    steps: &[Linearised],
+    rows: &[[SVector<f64, P>; 3]],
+    observability: &Observability<P>,
+    noise: &NoiseLevel,
+    stride: usize,
+    residuals: &[[f64; 3]],
+) -> (SMatrix<f64, P, P>, f64) {
+    let per_node = stride as f64;
+    let sampling = Sampling { per_node, weight: per_node, direct: per_node };
+    let inverse = information_inverse(observability);
+    let from_noise = propagate_to(steps, rows, &inverse, noise, sampling);
+    let lasting = root_mean_square(residuals).powi(2) - from_noise.residual.powi(2);
+    let excess = lasting.max(0.0) * correlation_samples(residuals);
+    (from_noise.covariance + inverse * excess + unknown(observability), from_noise.residual)
+}
+
+pub(super) fn root_mean_square(residuals: &[[f64; 3]]) -> f64 {
+    (residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (3 * residuals.len()) as f64).sqrt()
+}
+
+pub(super) fn information_inverse<const P: usize>(observability: &Observability<P>) -> SMatrix<f64, P, P> {
+    let floor = RANK_TOLERANCE * observability.eigenvalues[P - 1];
     // Directions without information get the inverse of the floor: a variance that is plainly no knowledge.
     let inverse = observability.eigenvalues.map(|v| 1.0 / v.max(floor).max(f64::MIN_POSITIVE));
     observability.directions * SMatrix::from_diagonal(&inverse) * observability.directions.transpose()
@@ -295,8 +318,8 @@ pub(super) fn information_inverse(
 
 /// Unit variance, in natural sizes, of the directions that the data say nothing of in double precision: there noise is
 /// carried to the unknowns by zero over zero.
-fn unknown(observability: &Observability<UNKNOWNS>) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
-    let floor = RANK_TOLERANCE * observability.eigenvalues[UNKNOWNS - 1];
+fn unknown<const P: usize>(observability: &Observability<P>) -> SMatrix<f64, P, P> {
+    let floor = RANK_TOLERANCE * observability.eigenvalues[P - 1];
     let variance = observability.eigenvalues.map(|v| if v > floor { 0.0 } else { 1.0 });
     observability.directions * SMatrix::from_diagonal(&variance) * observability.directions.transpose()
 }

@@ -12,6 +12,7 @@ mod no_force;
 mod noise;
 mod paper_method;
 mod paper_system;
+mod polish;
 mod quadrature;
 mod random;
 mod refine;

@@ -3,14 +3,16 @@
 use super::principal::{PrincipalFrame, principal_frame};
 use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem, MASS, constants};
 use super::search::{mass_of_weight, scales_of_ball, search};
-use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
+use crate::least_squares::{Fit, FitStatus, Observability};
 use crate::three_palms::correlation::whiteness;
 use crate::three_palms::estimate::{
-    EstimateError, LARGEST_MISFIT, MotionEstimate, RANK_TOLERANCE, WORTH_ADJUSTING, floored, judge,
+    EstimateError, LARGEST_MISFIT, MotionEstimate, RANK_TOLERANCE, WORTH_ADJUSTING, clean_covariance,
+    floored, judge, root_mean_square, stride,
 };
 use crate::three_palms::evidence::{Evidence, Reason, WeakDirection};
-use crate::three_palms::momentum::{MomentumProblem, Scales, StartState};
+use crate::three_palms::momentum::{MomentumProblem, MotionState, Scales, StartState};
 use crate::three_palms::noise::noise_level;
+use crate::three_palms::polish::{Conditions, polish_all};
 use crate::three_palms::refine::{Refined, Setting, refine};
 use crate::three_palms::state_space::Parameters;
 use crate::three_palms::track::Track;
@@ -21,9 +23,6 @@ use object_dynamics::{MassProperties, SensorLog};
 
 /// States of the model: motion, mass and inertia.
 const STATES: usize = 19;
-
-/// Least relative contact noise that the data are adjusted with: below it, blocks of samples are not exact enough.
-const FAINTEST: f64 = 1e-5;
 
 /// What is known beside the log of a body of which nothing is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,103 +76,171 @@ pub fn estimate_body(log: &SensorLog, known: &UnknownBody) -> Result<BodyEstimat
     let track = track.of_mass(weight);
     let scales = scales_of_ball(&track).ok_or(EstimateError::NoFit)?;
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
-    let mut fit = search(&track, scales, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
-    if noise.contact <= WORTH_ADJUSTING * scales.length {
-        let solver = LevenbergMarquardt { iterations: 300, step_tolerance: 1e-11, damping: 1e-9, prior: 0.0 };
-        fit = solver.fit(&BodyProblem::new(&track, scales, f64::INFINITY), fit.point);
+    let found = search(&track, scales, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
+    if noise.contact > WORTH_ADJUSTING * scales.length {
+        adjusted_estimate(&track, scales, noise, &found)
+    } else {
+        clean_estimate(&track, scales, noise, found.point)
     }
-    finish(&track, scales, noise, &fit)
 }
 
-fn finish(
+/// What an estimate is put together from.
+struct Found<'a> {
+    scales: Scales,
+    /// Mass, in axes of the world at the start.
+    mass: MassProperties,
+    start: StartState,
+    motion: Vec<MotionState>,
+    residuals: Vec<[f64; 3]>,
+    /// Residual that noise explains, m/s.
+    predicted: f64,
+    /// Covariance of the 16 unknowns.
+    covariance: SMatrix<f64, BODY_UNKNOWNS, BODY_UNKNOWNS>,
+    observability: Observability<BODY_UNKNOWNS>,
+    noise: NoiseLevel,
+    iterations: usize,
+    status: FitStatus,
+    /// The adjustment of the data, where there was one.
+    refined: Option<&'a Refined<STATES>>,
+}
+
+/// The least-squares body and motion of a log with next to no noise, from a start that is near.
+fn clean_estimate(
+    track: &Track,
+    scales: Scales,
+    noise: NoiseLevel,
+    near: BodyPoint,
+) -> Result<BodyEstimate, EstimateError> {
+    let stride = stride(track, &scales);
+    let thin = track.thinned(stride);
+    let problem = BodyProblem::new(track, scales, f64::INFINITY);
+    let thin_problem = BodyProblem::new(&thin, scales, f64::INFINITY);
+    let fit = polish_all(&problem, &thin_problem, stride, near).ok_or(EstimateError::NoFit)?;
+    let mass = fit.point.mass().ok_or(EstimateError::NoFit)?;
+    let track = track.of_mass(mass.mass());
+    let start = fit.point.start;
+    let motion = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
+    let moved = motion.motion(&start);
+    let (residuals, _) = motion.residuals_along(&moved, noise.contact);
+    let observability = Observability::new(&fit.normal.information);
+    let thin_of_mass = thin.of_mass(mass.mass());
+    let (steps, _) = MomentumProblem::new(&thin_of_mass, &mass, scales, f64::INFINITY).linearised(&start);
+    let rows = thin_problem.slopes(&fit.point).ok_or(EstimateError::NoFit)?;
+    let (scaled, predicted) = clean_covariance(&steps, &rows, &observability, &noise, stride, &residuals);
+    let sizes = problem.sizes();
+    let found = Found {
+        scales,
+        mass,
+        start,
+        motion: moved,
+        residuals,
+        predicted,
+        covariance: SMatrix::from_fn(|i, j| scaled[(i, j)] * sizes[i] * sizes[j]),
+        observability,
+        noise,
+        iterations: fit.iterations,
+        status: fit.status,
+        refined: None,
+    };
+    assemble(&track, found)
+}
+
+/// The most probable body and motion, data adjusted with them.
+fn adjusted_estimate(
     track: &Track,
     scales: Scales,
     noise: NoiseLevel,
     fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
 ) -> Result<BodyEstimate, EstimateError> {
     let mass = fit.point.mass().ok_or(EstimateError::NoFit)?;
-    let track = track.of_mass(mass.mass());
-    let adjusted = noise.contact > WORTH_ADJUSTING * scales.length;
-    // Covariances are proportional to the noise squared: logs with next to none are weighed as if they had some.
-    let faint = (FAINTEST * scales.length / noise.contact).max(1.0);
-    let weighed = NoiseLevel { contact: noise.contact * faint, force: noise.force * faint };
     let setting = Setting {
         scales,
-        noise: weighed,
+        noise,
         constants: constants(),
         deviations: &[],
-        shift_wanted: adjusted,
+        shift_wanted: true,
         axes_chosen: true,
     };
+    let track = track.of_mass(mass.mass());
     let refined = refine::<STATES>(&track, &mass, Parameters::new(&mass), &fit.point.start, &setting)
         .map_err(|_| EstimateError::NoFit)?;
-    let (mass, start) = if adjusted { of_state(&refined)? } else { (mass, fit.point.start) };
+    let (mass, start) = of_state(&refined)?;
     let track = track.of_mass(mass.mass());
     let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
-    let motion = if adjusted {
-        problem.motion_through(&refined.nodes, &refined.states())
-    } else {
-        problem.motion(&start)
-    };
+    let motion = problem.motion_through(&refined.nodes, &refined.states());
     let (residuals, predicted) = problem.residuals_along(&motion, noise.contact);
-    let rms = (residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (3 * residuals.len()) as f64).sqrt();
-    // Without noise to speak of, what is left are lasting errors: as in the fit of a known body.
-    let excess = if adjusted { 1.0 } else { (rms / predicted).powi(2).max(1.0) };
-    let covariance = body_covariance(&refined, excess / (faint * faint));
+    let status = if refined.settled() { FitStatus::Converged } else { FitStatus::Stalled };
+    let found = Found {
+        scales,
+        mass,
+        start,
+        motion,
+        residuals,
+        predicted,
+        covariance: body_covariance(&refined),
+        observability: Observability::new(&fit.normal.information),
+        noise,
+        iterations: fit.iterations + refined.solution.iterations,
+        status,
+        refined: Some(&refined),
+    };
+    assemble(&track, found)
+}
+
+fn assemble(track: &Track, found: Found<'_>) -> Result<BodyEstimate, EstimateError> {
+    let evidence = evidence(track, &found);
+    let Found { scales, mass, start, motion, covariance, status, refined, .. } = found;
+    let mut reliability = judge(&evidence, status, &scales);
+    if let Some(refined) = refined {
+        let misfit = refined.misfit(BODY_UNKNOWNS);
+        if misfit.is_nan() || misfit > LARGEST_MISFIT {
+            reliability.add(Reason::Inconsistent { misfit });
+        }
+        reliability.check_length(track, &scales);
+    }
     let frame = principal_frame(&mass, &covariance).ok_or(EstimateError::NoFit)?;
-    let observability = Observability::new(&fit.normal.information);
-    let eigenvalues = observability.eigenvalues;
+    let PrincipalFrame { body, axes, covariance } = frame;
+    // From the axes of the world at the start to the principal ones.
+    let turned: Vec<_> = motion.into_iter().map(|m| MotionState { R_WO: m.R_WO * axes, ..m }).collect();
+    let motion = MotionEstimate {
+        start: StartState { R_WO: axes, ..start },
+        curves: curves::contact_curves(track, &turned)?,
+        radii: curves::radii(track, &turned),
+        motion: turned,
+        uncertainty: refined.map_or_else(Vec::new, |r| curves::uncertainty(track, r, axes)),
+        covariance,
+        evidence,
+        reliability,
+    };
+    Ok(BodyEstimate { body, motion })
+}
+
+fn evidence(track: &Track, found: &Found<'_>) -> Evidence {
+    let eigenvalues = found.observability.eigenvalues;
     let largest = eigenvalues[BODY_UNKNOWNS - 1];
-    let sizes = BodyProblem::new(&track, scales, f64::INFINITY).sizes();
+    let sizes = BodyProblem::new(track, found.scales, f64::INFINITY).sizes();
     let scaled = SMatrix::<f64, BODY_UNKNOWNS, BODY_UNKNOWNS>::from_fn(|i, j| {
-        covariance[(i, j)] / (sizes[i] * sizes[j])
+        found.covariance[(i, j)] / (sizes[i] * sizes[j])
     });
     let spectrum = Observability::new(&scaled);
     let weakest = WeakDirection::of_body(
         &spectrum.directions.column(BODY_UNKNOWNS - 1).into_owned(),
         spectrum.eigenvalues[BODY_UNKNOWNS - 1].max(0.0).sqrt(),
     );
-    let evidence = Evidence {
+    Evidence {
         samples: track.len(),
         duration: track.duration(),
-        residual_rms: rms,
-        noise_explains: predicted,
-        whiteness: whiteness(&residuals),
+        residual_rms: root_mean_square(&found.residuals),
+        noise_explains: found.predicted,
+        whiteness: whiteness(&found.residuals),
         rank: eigenvalues.iter().filter(|&&v| v > RANK_TOLERANCE * largest).count(),
         condition: (largest / eigenvalues[0].max(0.0)).sqrt(),
         smallest_information: eigenvalues[0],
         weakest,
-        noise,
-        bias: if adjusted { refined.shift } else { 0.0 },
-        iterations: fit.iterations + refined.solution.iterations,
-    };
-    let settled = if adjusted { refined.settled() } else { fit.status == FitStatus::Converged };
-    let status = if settled { FitStatus::Converged } else { FitStatus::Stalled };
-    let mut reliability = judge(&evidence, status, &scales);
-    let misfit = refined.misfit(BODY_UNKNOWNS);
-    if adjusted && (misfit.is_nan() || misfit > LARGEST_MISFIT) {
-        reliability.add(Reason::Inconsistent { misfit });
+        noise: found.noise,
+        bias: found.refined.map_or(0.0, |refined| refined.shift),
+        iterations: found.iterations,
     }
-    if adjusted {
-        reliability.check_length(&track, &scales);
-    }
-    let PrincipalFrame { body, axes, covariance } = frame;
-    // From the axes of the world at the start to the principal ones.
-    let turned: Vec<_> =
-        motion.into_iter().map(|m| crate::three_palms::MotionState { R_WO: m.R_WO * axes, ..m }).collect();
-    let contact_curves = curves::contact_curves(&track, &turned)?;
-    let radii = curves::radii(&track, &turned);
-    let motion = MotionEstimate {
-        start: StartState { R_WO: axes, ..start },
-        motion: turned,
-        curves: contact_curves,
-        radii,
-        uncertainty: if adjusted { curves::uncertainty(&track, &refined, axes) } else { Vec::new() },
-        covariance,
-        evidence,
-        reliability,
-    };
-    Ok(BodyEstimate { body, motion })
 }
 
 /// Mass, in axes of the world at the start, and the start of the motion in the first state.
@@ -186,8 +253,8 @@ fn of_state(refined: &Refined<STATES>) -> Result<(MassProperties, StartState), E
 }
 
 /// Covariance of the 16 unknowns: the orientation at the start is chosen and drops out.
-fn body_covariance(refined: &Refined<STATES>, factor: f64) -> SMatrix<f64, BODY_UNKNOWNS, BODY_UNKNOWNS> {
+fn body_covariance(refined: &Refined<STATES>) -> SMatrix<f64, BODY_UNKNOWNS, BODY_UNKNOWNS> {
     let all = &refined.solution.covariances[0];
     let place = |i: usize| if i < MASS { i } else { i + 3 };
-    SMatrix::from_fn(|i, j| factor * all[(place(i), place(j))])
+    SMatrix::from_fn(|i, j| all[(place(i), place(j))])
 }
