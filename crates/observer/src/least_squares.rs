@@ -110,11 +110,10 @@ const NOTHING_TO_GAIN: f64 = 1e-6;
 pub(crate) const STILL_A_MINIMUM: f64 = 0.01;
 /// Damping at which a step is too short to matter.
 pub(crate) const LARGEST_DAMPING: f64 = 1e12;
-/// Damping after a step that failed at none, and factor of the first raise; each raise in a row is twice the one before.
-pub(crate) const LEAST_RAISED: f64 = 1e-10;
+/// Least damping, below which a step is undamped in double precision, and factor of the first raise; each raise in a row is
+/// twice the one before.
+pub(crate) const LEAST_DAMPING: f64 = 1e-15;
 pub(crate) const RAISE: f64 = 4.0;
-/// Damping below which a step is undamped in double precision.
-const LEAST_DAMPING: f64 = 1e-15;
 
 /// Damping after a step that gained a share of what the linear model promised: a tenth where the model is good, and the
 /// same where it is not (Nielsen's rule, with a larger fall).
@@ -173,7 +172,7 @@ impl LevenbergMarquardt {
             while damping < LARGEST_DAMPING {
                 let shift = (damping + self.prior) * mean + f64::MIN_POSITIVE;
                 let Some(step) = solve_shifted(&normal.information, shift, &gradient) else {
-                    damping = (damping * raise).max(LEAST_RAISED);
+                    damping = (damping * raise).max(LEAST_DAMPING);
                     continue;
                 };
                 let moved = problem.retract(&point, &step);
@@ -195,7 +194,7 @@ impl LevenbergMarquardt {
                 if accepted {
                     break;
                 }
-                damping = (damping * raise).max(LEAST_RAISED);
+                damping = (damping * raise).max(LEAST_DAMPING);
                 raise *= 2.0;
             }
             if !accepted {

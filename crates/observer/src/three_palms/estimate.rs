@@ -1,8 +1,7 @@
-use super::cold_start::{
-    EXPLAINED, NEXT_TO_NOTHING, SAMPLES_PER_NATURAL_TIME, cold_start, natural_time, scales,
-};
-use super::correlation::{correlation_samples, whiteness};
-use super::covariance::{Linearised, NoiseLevel, Sampling, propagate_to};
+use super::clean::{RANK_TOLERANCE, clean_covariance, root_mean_square, stride};
+use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, fit_near, scales};
+use super::correlation::whiteness;
+use super::covariance::NoiseLevel;
 use super::curves::CurveUncertainty;
 use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
 use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNKNOWNS};
@@ -14,14 +13,10 @@ use super::track::{Track, TrackError};
 use crate::least_squares::{Fit, FitStatus, Observability};
 use contact_kinematics::{ContactCurve, CurveError};
 use glam::{DQuat, DVec3};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SMatrix;
 use object_dynamics::{MassProperties, SensorLog};
 use thiserror::Error;
 
-/// Samples that the covariance is computed from, at most: it varies as slowly as the motion.
-const COVARIANCE_SAMPLES: usize = 400;
-/// Smallest share of the largest information that still counts as information: rounding of `J' J`.
-pub(super) const RANK_TOLERANCE: f64 = 1e-14;
 /// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
 /// linearisation that its covariance comes from does not reach that far. Errors of five deviations without another
 /// warning were seen from 0.106 on, none below 0.09.
@@ -114,20 +109,44 @@ pub struct MotionEstimate {
 /// [`EstimateError`] when the log cannot be used at all; an estimate that should not be believed is returned with
 /// [`Reliability::Unreliable`] and its reasons.
 pub fn estimate_motion(log: &SensorLog, known: &KnownBody) -> Result<MotionEstimate, EstimateError> {
+    let track = track(log, known)?;
+    let scales = scales(&track, &known.mass);
+    let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
+    let best = cold_start(&track, &known.mass, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
+    estimate_near(&track, known, scales, noise, &best)
+}
+
+/// As [`estimate_motion`] from a start that is known to be near, without a search: the minimum that it lies above.
+///
+/// # Errors
+/// As [`estimate_motion`].
+pub fn estimate_motion_from(
+    log: &SensorLog,
+    known: &KnownBody,
+    near: &StartState,
+) -> Result<MotionEstimate, EstimateError> {
+    let track = track(log, known)?;
+    let scales = scales(&track, &known.mass);
+    let best = fit_near(&track, &known.mass, scales, *near).ok_or(EstimateError::NoFit)?;
+    let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
+    estimate_near(&track, known, scales, noise, &best)
+}
+
+fn track(log: &SensorLog, known: &KnownBody) -> Result<Track, EstimateError> {
     if !known.gravity.is_finite() {
         return Err(EstimateError::Gravity { gravity: known.gravity });
     }
-    let track = Track::new(log, known.mass.mass(), known.gravity, known.palm_inertias)
-        .map_err(EstimateError::Track)?;
-    estimate_on_track(&track, known)
+    Track::new(log, known.mass.mass(), known.gravity, known.palm_inertias).map_err(EstimateError::Track)
 }
 
-fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate, EstimateError> {
-    let mass = &known.mass;
-    let scales = scales(track, mass);
-    let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
-    let found = cold_start(track, mass, noise);
-    let best = found.into_iter().next().ok_or(EstimateError::NoFit)?;
+/// The estimate that a fit of the thinned track leads to.
+fn estimate_near(
+    track: &Track,
+    known: &KnownBody,
+    scales: Scales,
+    noise: NoiseLevel,
+    best: &Fit<StartState, UNKNOWNS>,
+) -> Result<MotionEstimate, EstimateError> {
     if noise.contact > WORTH_ADJUSTING * scales.length {
         let setting = Setting {
             scales,
@@ -137,7 +156,7 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
             shift_wanted: true,
             axes_chosen: false,
         };
-        return noisy_estimate::<UNKNOWNS>(track, known, &setting, &best).map(|(estimate, _)| estimate);
+        return noisy_estimate::<UNKNOWNS>(track, known, &setting, best).map(|(estimate, _)| estimate);
     }
     clean_estimate(track, known, scales, noise, best.point)
 }
@@ -274,54 +293,6 @@ pub(super) fn floored(noise: NoiseLevel, track: &Track, scales: &Scales) -> Nois
         contact: noise.contact.max(NOISE_FLOOR * scales.length),
         force: noise.force.max(NOISE_FLOOR * weight),
     }
-}
-
-/// Samples of a log with next to no noise for one at which derivatives are taken.
-pub(super) fn stride(track: &Track, scales: &Scales) -> usize {
-    let nodes = SAMPLES_PER_NATURAL_TIME * track.duration() / natural_time(track, scales.length);
-    let nodes = nodes.min(COVARIANCE_SAMPLES as f64).max(1.0);
-    // The line through the last two nodes needs two.
-    ((track.len() as f64 / nodes) as usize).clamp(1, track.len() / 2)
-}
-
-/// Covariance of the scaled unknowns of a fit to a log with next to no noise, and the residual that the noise explains.
-///
-/// What noise does not explain is a lasting error of sensors or model: as many independent ones as there are correlation
-/// times in the log.
-pub(super) fn clean_covariance<const P: usize>(
-    steps: &[Linearised],
-    rows: &[[SVector<f64, P>; 3]],
-    observability: &Observability<P>,
-    noise: &NoiseLevel,
-    stride: usize,
-    residuals: &[[f64; 3]],
-) -> (SMatrix<f64, P, P>, f64) {
-    let per_node = stride as f64;
-    let sampling = Sampling { per_node, weight: per_node, direct: per_node };
-    let inverse = information_inverse(observability);
-    let from_noise = propagate_to(steps, rows, &inverse, noise, sampling);
-    let lasting = root_mean_square(residuals).powi(2) - from_noise.residual.powi(2);
-    let excess = lasting.max(0.0) * correlation_samples(residuals);
-    (from_noise.covariance + inverse * excess + unknown(observability), from_noise.residual)
-}
-
-pub(super) fn root_mean_square(residuals: &[[f64; 3]]) -> f64 {
-    (residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (3 * residuals.len()) as f64).sqrt()
-}
-
-pub(super) fn information_inverse<const P: usize>(observability: &Observability<P>) -> SMatrix<f64, P, P> {
-    let floor = RANK_TOLERANCE * observability.eigenvalues[P - 1];
-    // Directions without information get the inverse of the floor: a variance that is plainly no knowledge.
-    let inverse = observability.eigenvalues.map(|v| 1.0 / v.max(floor).max(f64::MIN_POSITIVE));
-    observability.directions * SMatrix::from_diagonal(&inverse) * observability.directions.transpose()
-}
-
-/// Unit variance, in natural sizes, of the directions that the data say nothing of in double precision: there noise is
-/// carried to the unknowns by zero over zero.
-fn unknown<const P: usize>(observability: &Observability<P>) -> SMatrix<f64, P, P> {
-    let floor = RANK_TOLERANCE * observability.eigenvalues[P - 1];
-    let variance = observability.eigenvalues.map(|v| if v > floor { 0.0 } else { 1.0 });
-    observability.directions * SMatrix::from_diagonal(&variance) * observability.directions.transpose()
 }
 
 fn weakest_direction(covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>) -> WeakDirection {

@@ -1,5 +1,6 @@
 //! Three palms in space.
 
+mod clean;
 mod cold_start;
 mod correlation;
 mod covariance;
@@ -25,7 +26,9 @@ mod unknown_body;
 
 pub use covariance::NoiseLevel;
 pub use curves::CurveUncertainty;
-pub use estimate::{EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion};
+pub use estimate::{
+    EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion, estimate_motion_from,
+};
 pub use evidence::{Evidence, Quantity, Reason, Reliability, WeakDirection};
 pub use momentum::{MotionState, Scales, StartState};
 pub use no_force::{
@@ -37,4 +40,4 @@ pub use paper_method::{
 pub use sensors::{SensorConstant, SensorEstimate, SensorPriors, estimate_motion_and_sensors};
 pub use streaming::{MotionStream, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 pub use track::{Track, TrackError};
-pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body};
+pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body, estimate_body_from};

@@ -1,7 +1,7 @@
 //! The last digits of a fit: residuals of every sample, derivatives of a few, and steps that follow curved valleys.
 
 use crate::least_squares::{
-    Fit, FitStatus, LARGEST_DAMPING, LEAST_RAISED, LeastSquares, NormalEquations, RAISE, STILL_A_MINIMUM,
+    Fit, FitStatus, LARGEST_DAMPING, LEAST_DAMPING, LeastSquares, NormalEquations, RAISE, STILL_A_MINIMUM,
     decrement, lowered, nothing_to_gain, solve_shifted, undamped,
 };
 use nalgebra::{SMatrix, SVector};
@@ -76,7 +76,7 @@ pub(super) fn polish<const P: usize, C: Conditions<P>>(
         };
         let saved = here.normal.cost - next.cost;
         point = moved;
-        damping = if damping > LEAST_RAISED { lowered(damping, share) } else { 0.0 };
+        damping = if damping > LEAST_DAMPING { lowered(damping, share) } else { 0.0 };
         let minimum = length < SHORT && saved <= WORTH_A_STEP * here.normal.cost;
         if length < STEP_TOLERANCE || minimum {
             return end(point, here.normal, FitStatus::Converged, damping);
@@ -163,7 +163,7 @@ impl<C> Interpolated<'_, C> {
                     return Some((moved, Trial { cost, residuals }, (normal.cost - cost) / promised));
                 }
             }
-            *damping = (*damping * raise).max(LEAST_RAISED);
+            *damping = (*damping * raise).max(LEAST_DAMPING);
             raise *= 2.0;
         }
         None

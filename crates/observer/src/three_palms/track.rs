@@ -295,10 +295,12 @@ impl Track {
         if reach < 2 {
             return node;
         }
-        for i in 0..3 {
-            node.p_WC[i] = (0..=2 * reach)
-                .map(|j| smoothing_weight(reach, j as f64 - reach as f64) * self.nodes[k + j - reach].p_WC[i])
-                .sum();
+        node.p_WC = [DVec3::ZERO; 3];
+        for (j, near) in self.nodes[k - reach..=k + reach].iter().enumerate() {
+            let weight = smoothing_weight(reach, j as f64 - reach as f64);
+            for i in 0..3 {
+                node.p_WC[i] += weight * near.p_WC[i];
+            }
         }
         node
     }
@@ -367,6 +369,18 @@ pub(super) fn palm_states(
     readings: &[&PalmReading],
 ) -> Result<Vec<PalmState>, TrackError> {
     let normals: Vec<DVec3> = readings.iter().map(|r| r.normal.get()).collect();
+    // A palm that stands still, as most do, has one frame.
+    let still = normals.windows(2).all(|pair| pair[0] == pair[1]);
+    if let (true, Some((first, &t0))) =
+        (still && readings.iter().all(|r| r.rate.is_none()), readings.iter().zip(t).next())
+    {
+        let frame = PalmFrame::from_normal(first.normal).map_err(|source| TrackError::Palm {
+            palm: i + 1,
+            t: start + t0,
+            source,
+        })?;
+        return Ok(vec![PalmState { frame, rate: 0.0, acceleration: 0.0 }; t.len()]);
+    }
     let mut frames = Vec::with_capacity(t.len());
     for (reading, t) in readings.iter().zip(t) {
         let frame = PalmFrame::from_normal(reading.normal);

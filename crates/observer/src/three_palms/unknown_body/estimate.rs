@@ -2,22 +2,22 @@
 
 use super::principal::{PrincipalFrame, principal_frame};
 use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem, MASS, constants};
-use super::search::{mass_of_weight, scales_of_ball, search};
+use super::search::{fit_near, mass_of_weight, scales_of_ball, search};
 use crate::least_squares::{Fit, FitStatus, Observability};
+use crate::three_palms::clean::{RANK_TOLERANCE, clean_covariance, root_mean_square, stride};
 use crate::three_palms::correlation::whiteness;
 use crate::three_palms::estimate::{
-    EstimateError, LARGEST_MISFIT, MotionEstimate, RANK_TOLERANCE, WORTH_ADJUSTING, clean_covariance,
-    floored, judge, root_mean_square, stride,
+    EstimateError, LARGEST_MISFIT, MotionEstimate, WORTH_ADJUSTING, floored, judge,
 };
 use crate::three_palms::evidence::{Evidence, Reason, WeakDirection};
 use crate::three_palms::momentum::{MomentumProblem, MotionState, Scales, StartState};
 use crate::three_palms::noise::noise_level;
 use crate::three_palms::polish::{Conditions, polish_all};
 use crate::three_palms::refine::{Refined, Setting, refine};
-use crate::three_palms::state_space::Parameters;
+use crate::three_palms::state_space::{Parameters, numbers_of_inertia};
 use crate::three_palms::track::Track;
 use crate::three_palms::{NoiseLevel, curves};
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use nalgebra::SMatrix;
 use object_dynamics::{MassProperties, SensorLog};
 
@@ -68,6 +68,36 @@ pub struct BodyEstimate {
 /// [`EstimateError`] when the log cannot be used at all; an estimate that should not be believed is returned with
 /// [`Reliability::Unreliable`](crate::Reliability) and its reasons.
 pub fn estimate_body(log: &SensorLog, known: &UnknownBody) -> Result<BodyEstimate, EstimateError> {
+    let (track, scales) = track(log, known)?;
+    let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
+    let found = search(&track, scales, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
+    estimate_near(&track, scales, noise, &found)
+}
+
+/// As [`estimate_body`] from a body and a start of its motion that are known to be near, without a search: the minimum that
+/// they lie above.
+///
+/// # Errors
+/// As [`estimate_body`].
+pub fn estimate_body_from(
+    log: &SensorLog,
+    known: &UnknownBody,
+    mass: &MassProperties,
+    near: &StartState,
+) -> Result<BodyEstimate, EstimateError> {
+    let (track, scales) = track(log, known)?;
+    let R = DMat3::from_quat(near.R_WO);
+    let near = BodyPoint {
+        start: StartState { R_WO: DQuat::IDENTITY, ..*near },
+        log_mass: mass.mass().ln(),
+        inertia: numbers_of_inertia(R * mass.inertia() * R.transpose()),
+    };
+    let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
+    let found = fit_near(&track, scales, near).ok_or(EstimateError::NoFit)?;
+    estimate_near(&track, scales, noise, &found)
+}
+
+fn track(log: &SensorLog, known: &UnknownBody) -> Result<(Track, Scales), EstimateError> {
     if !(known.gravity.is_finite() && known.gravity.length() > 0.0) {
         return Err(EstimateError::Gravity { gravity: known.gravity });
     }
@@ -75,12 +105,20 @@ pub fn estimate_body(log: &SensorLog, known: &UnknownBody) -> Result<BodyEstimat
     let weight = mass_of_weight(&track).ok_or(EstimateError::NoFit)?;
     let track = track.of_mass(weight);
     let scales = scales_of_ball(&track).ok_or(EstimateError::NoFit)?;
-    let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
-    let found = search(&track, scales, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
+    Ok((track, scales))
+}
+
+/// The estimate that a fit of the thinned track leads to.
+fn estimate_near(
+    track: &Track,
+    scales: Scales,
+    noise: NoiseLevel,
+    found: &Fit<BodyPoint, BODY_UNKNOWNS>,
+) -> Result<BodyEstimate, EstimateError> {
     if noise.contact > WORTH_ADJUSTING * scales.length {
-        adjusted_estimate(&track, scales, noise, &found)
+        adjusted_estimate(track, scales, noise, found)
     } else {
-        clean_estimate(&track, scales, noise, found.point)
+        clean_estimate(track, scales, noise, found.point)
     }
 }
 

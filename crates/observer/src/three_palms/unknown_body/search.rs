@@ -5,12 +5,13 @@
 
 use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem};
 use crate::least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Observability};
+use crate::three_palms::clean::information_inverse;
 use crate::three_palms::cold_start::{
-    EXPLAINED, GROWTH, NEXT_TO_NOTHING, SAMPLES_PER_NATURAL_TIME, SEARCHED_PER_NATURAL_TIME, continuing,
-    from_normal_speeds, natural_time, rest_state, stride,
+    EXPLAINED, GROWTH, SAMPLES_PER_NATURAL_TIME, SEARCHED_PER_NATURAL_TIME, continuing, from_normal_speeds,
+    natural_time, next_to_nothing, rest_state, stride,
 };
 use crate::three_palms::covariance::{NoiseLevel, Sampling, propagate};
-use crate::three_palms::estimate::information_inverse;
+
 use crate::three_palms::momentum::{MomentumProblem, Scales};
 use crate::three_palms::polish::polish;
 use crate::three_palms::state_space::numbers_of_inertia;
@@ -32,7 +33,7 @@ const BALL: f64 = 0.4;
 /// Share of the mean information that holds the unknowns while the windows grow.
 const PRIOR: f64 = 1e-3;
 const COARSE: LevenbergMarquardt =
-    LevenbergMarquardt { iterations: 25, step_tolerance: 1e-6, damping: 1e-2, prior: PRIOR };
+    LevenbergMarquardt { iterations: 10, step_tolerance: 1e-6, damping: 1e-2, prior: PRIOR };
 /// Steps of the last fit of a search, with nothing held.
 const STEPS: usize = 60;
 
@@ -74,6 +75,17 @@ pub(super) fn search(track: &Track, scales: Scales, noise: NoiseLevel) -> Vec<Fi
         }
     }
     found
+}
+
+/// The fit of the thinned track from a point that is near.
+pub(super) fn fit_near(
+    track: &Track,
+    scales: Scales,
+    near: BodyPoint,
+) -> Option<Fit<BodyPoint, BODY_UNKNOWNS>> {
+    let thin = track.thinned(stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME));
+    let all = BodyProblem::new(&thin, scales, f64::INFINITY);
+    polish(&all, &all, 1, near, STEPS)
 }
 
 pub(crate) fn spins(rate: f64) -> Vec<DVec3> {
@@ -124,8 +136,7 @@ fn explains(
     sampling: Sampling,
     fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
 ) -> bool {
-    let rms = fit.normal.rms();
-    if rms < NEXT_TO_NOTHING * scales.velocity {
+    if next_to_nothing(fit, &scales) {
         return true;
     }
     let Some(mass) = fit.point.mass() else { return false };
@@ -133,7 +144,7 @@ fn explains(
     let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
     let Some(normal) = problem.linearise(&fit.point.start) else { return false };
     let inverse = information_inverse(&Observability::new(&normal.information));
-    rms < EXPLAINED * propagate(&problem, &fit.point.start, &inverse, noise, sampling).residual
+    fit.normal.rms() < EXPLAINED * propagate(&problem, &fit.point.start, &inverse, noise, sampling).residual
 }
 
 /// Natural sizes for a body whose mass is that of its weight.
