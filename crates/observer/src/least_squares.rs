@@ -1,4 +1,9 @@
 //! Nonlinear least squares with few unknowns and many residuals, on a manifold if need be.
+//!
+//! The steps of [`solve_batch`](crate::solve_batch) are damped too, in a loop of its own: there a trial is a whole trajectory that
+//! is rolled out and linearised in place, its cost comes with the linearisation, and with process noise full steps are taken
+//! without a trial. What the two loops have in common, "less damping after a gain, more after none", is shorter than an
+//! interface that would serve both.
 
 use nalgebra::{Cholesky, SMatrix, SVector, SymmetricEigen};
 
@@ -80,11 +85,12 @@ pub struct Fit<Point, const P: usize> {
     pub damping: f64,
 }
 
-/// Levenberg-Marquardt with damping by a multiple of the identity in the scaled unknowns.
+/// Levenberg-Marquardt with damping by a multiple of the identity in the scaled unknowns, which follows the share of the
+/// promised gain that a step has brought.
 ///
-/// Stops when a step is shorter than `step_tolerance` (in units of the natural sizes), or when an undamped step would
-/// move the unknowns by less than a thousandth of the deviation that the residuals leave them. It ends at a local
-/// minimum: whether that is the right one is the caller's business.
+/// Stops when an undamped step is shorter than `step_tolerance` (in units of the natural sizes), when one so short brings no
+/// gain, or when an undamped step would move the unknowns by less than a thousandth of the deviation that the residuals leave
+/// them. It ends at a local minimum: whether that is the right one is the caller's business.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LevenbergMarquardt {
     /// Most linearisations.

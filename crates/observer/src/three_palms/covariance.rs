@@ -99,7 +99,7 @@ fn spread<const P: usize>(
     let mut spread = SMatrix::<f64, P, P>::zeros();
     for (k, (here, rows)) in steps.iter().zip(rows).enumerate().rev() {
         if let Some(transition) = transitions.get(k) {
-            adjoint = adjoint * transition;
+            adjoint *= transition;
         }
         // Each sample holds its reading until the next.
         let hold = here.step / per_node;

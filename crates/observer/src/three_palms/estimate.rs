@@ -1,5 +1,5 @@
 use super::clean::{RANK_TOLERANCE, clean_covariance, root_mean_square, stride};
-use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, fit_near, scales};
+use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, fit_near, scales, unexplained};
 use super::correlation::whiteness;
 use super::covariance::NoiseLevel;
 use super::curves::CurveUncertainty;
@@ -156,7 +156,11 @@ fn estimate_near(
             shift_wanted: true,
             axes_chosen: false,
         };
-        return noisy_estimate::<UNKNOWNS>(track, known, &setting, best).map(|(estimate, _)| estimate);
+        let (mut estimate, _) = noisy_estimate::<UNKNOWNS>(track, known, &setting, best)?;
+        if let Some(reason) = unexplained(track, &known.mass, &noise, best) {
+            estimate.reliability.add(reason);
+        }
+        return Ok(estimate);
     }
     clean_estimate(track, known, scales, noise, best.point)
 }

@@ -21,6 +21,7 @@ mod sensitivity;
 mod sensors;
 mod state_space;
 mod streaming;
+mod through;
 mod track;
 mod unknown_body;
 

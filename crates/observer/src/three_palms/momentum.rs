@@ -4,7 +4,7 @@
 
 use super::covariance::Linearised;
 use super::polish::Conditions;
-use super::sensitivity::{Sensitivity, Turning, cross_matrix, exponential, logarithm};
+use super::sensitivity::{Sensitivity, Turning, cross_matrix, exponential};
 use super::track::{Integrals, Node, Track};
 use crate::least_squares::{LeastSquares, NormalEquations};
 use glam::{DMat3, DQuat, DVec3};
@@ -66,17 +66,17 @@ impl Scales {
 
 /// Least squares of the contact conditions over the first samples of a track.
 pub(super) struct MomentumProblem<'a> {
-    track: &'a Track,
-    mass: &'a MassProperties,
+    pub(super) track: &'a Track,
+    pub(super) mass: &'a MassProperties,
     scales: Scales,
-    end: usize,
+    pub(super) end: usize,
 }
 
 /// The part of a sample that follows from the start state and the orientation.
-struct Kinematics {
-    v: DVec3,
-    p: DVec3,
-    L: DVec3,
+pub(super) struct Kinematics {
+    pub(super) v: DVec3,
+    pub(super) p: DVec3,
+    pub(super) L: DVec3,
 }
 
 impl<'a> MomentumProblem<'a> {
@@ -88,13 +88,13 @@ impl<'a> MomentumProblem<'a> {
 
     /// Derivatives of the residuals by the contact coordinates `(s1, s2)` of palm `i` at sample `k`, rad/s: the rates
     /// at which the body turns against the palm about its tangents.
-    fn by_contact(&self, k: usize, i: usize, w: DVec3) -> [f64; 2] {
+    pub(super) fn by_contact(&self, k: usize, i: usize, w: DVec3) -> [f64; 2] {
         let palm = &self.track.nodes[k].palms[i];
         // -w . (n x t1) = -w . t2; -w . (n x t2) = w . t1; and the palm's own speed: p = -rate s2.
         [-w.dot(palm.frame.t2), w.dot(palm.frame.t1) - palm.rate]
     }
 
-    fn kinematics(&self, start: &StartState, k: usize) -> Kinematics {
+    pub(super) fn kinematics(&self, start: &StartState, k: usize) -> Kinematics {
         let t = self.track.t[k];
         let Integrals { impulse, first_moment, moment, velocity, position, .. } = self.track.integrals[k];
         Kinematics {
@@ -111,7 +111,7 @@ impl<'a> MomentumProblem<'a> {
     }
 
     /// The same over some of the samples, with the orientation `q` at the first of them.
-    fn walk_part(
+    pub(super) fn walk_part(
         &self,
         start: &StartState,
         q: DQuat,
@@ -142,75 +142,8 @@ impl<'a> MomentumProblem<'a> {
         }
     }
 
-    /// Motion at every sample, through given states at some of them (`nodes`, ascending, the first and the last sample
-    /// among them): between two of them as the data say, with what is then missing at the second spread evenly.
-    pub(super) fn motion_through(&self, nodes: &[usize], states: &[StartState]) -> Vec<MotionState> {
-        let times: Vec<f64> = self.track.times().collect();
-        let mut all = Vec::with_capacity(self.end);
-        for (pair, ends) in nodes.windows(2).zip(states.windows(2)) {
-            let (from, to) = (pair[0], pair[1]);
-            let start = self.start_through(from, &ends[0]);
-            let mut part = Vec::with_capacity(to - from + 1);
-            self.walk_part(&start, ends[0].R_WO, from..to + 1, |k, q, _| {
-                let at = self.kinematics(&start, k);
-                part.push(StartState { p_WCm: at.p, v_WCm: at.v, L_WO: at.L, R_WO: q });
-            });
-            let Some(reached) = part.last().copied() else { continue };
-            let missing = (
-                ends[1].p_WCm - reached.p_WCm,
-                ends[1].v_WCm - reached.v_WCm,
-                ends[1].L_WO - reached.L_WO,
-                logarithm(ends[1].R_WO * reached.R_WO.inverse()),
-            );
-            // Each node belongs to the interval after it, the last to the one before.
-            let count = if to + 1 == self.end { part.len() } else { part.len() - 1 };
-            for (j, state) in part.iter().take(count).enumerate() {
-                let k = from + j;
-                let share = (self.track.t[k] - self.track.t[from]) / (self.track.t[to] - self.track.t[from]);
-                let q = exponential(missing.3 * share) * state.R_WO;
-                let L = state.L_WO + missing.2 * share;
-                all.push(MotionState {
-                    t: times[k],
-                    p_WCm: state.p_WCm + missing.0 * share,
-                    R_WO: q,
-                    v_WCm: state.v_WCm + missing.1 * share,
-                    w_WO: q * (self.mass.inverse_inertia() * (q.conjugate() * L)),
-                });
-            }
-        }
-        all
-    }
-
-    /// The start, orientation apart, from which the data lead through a state at sample `k`.
-    fn start_through(&self, k: usize, state: &StartState) -> StartState {
-        let t = self.track.t[k];
-        let Integrals { impulse, first_moment, moment, velocity, position, .. } = self.track.integrals[k];
-        let v_WCm = state.v_WCm - velocity;
-        let p_WCm = state.p_WCm - v_WCm * t - position;
-        let L_WO = state.L_WO - moment + p_WCm.cross(impulse) + v_WCm.cross(first_moment);
-        StartState { p_WCm, v_WCm, L_WO, R_WO: state.R_WO }
-    }
-
-    /// Root mean square of the contact conditions along a motion, and what contact noise of the given deviation leaves of
-    /// it, m/s.
-    pub(super) fn residuals_along(&self, motion: &[MotionState], noise: f64) -> (Vec<[f64; 3]>, f64) {
-        let mut expected = 0.0;
-        let residuals = motion
-            .iter()
-            .enumerate()
-            .map(|(k, m)| {
-                std::array::from_fn(|i| {
-                    let [a, b] = self.by_contact(k, i, m.w_WO);
-                    expected += noise * noise * (a * a + b * b);
-                    self.residual(k, i, &Kinematics { v: m.v_WCm, p: m.p_WCm, L: DVec3::ZERO }, m.w_WO)
-                })
-            })
-            .collect();
-        (residuals, (expected / (3 * motion.len().max(1)) as f64).sqrt())
-    }
-
     /// Contact condition of palm `i` at sample `k`, m/s.
-    fn residual(&self, k: usize, i: usize, at: &Kinematics, w: DVec3) -> f64 {
+    pub(super) fn residual(&self, k: usize, i: usize, at: &Kinematics, w: DVec3) -> f64 {
         let node = &self.track.nodes[k];
         let n = node.palms[i].frame.n;
         n.dot(at.v) - w.dot(n.cross(node.p_WC[i] - at.p)) + node.lift[i]

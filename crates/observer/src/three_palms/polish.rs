@@ -224,3 +224,83 @@ impl<C> Interpolated<'_, C> {
 fn cost(residuals: &[[f64; 3]]) -> f64 {
     residuals.iter().flatten().map(|e| e * e).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::least_squares::LevenbergMarquardt;
+    use nalgebra::Vector2;
+
+    /// `y = a sin x` in a valley that is `narrow` wide, with the minimum at `(1, a sin 1)`: three residuals a sample, of which
+    /// the samples weigh the valley's walls differently.
+    struct Valley {
+        samples: usize,
+        narrow: f64,
+    }
+
+    impl Valley {
+        fn wall(&self, k: usize) -> f64 {
+            (1.0 + 0.5 * (k as f64 / self.samples as f64).sin()) / self.narrow
+        }
+    }
+
+    impl LeastSquares<2> for Valley {
+        type Point = Vector2<f64>;
+
+        fn linearise(&self, point: &Vector2<f64>) -> Option<NormalEquations<2>> {
+            let mut normal = NormalEquations::default();
+            for (e, rows) in self.conditions(point)?.iter().zip(self.slopes(point)?) {
+                for i in 0..3 {
+                    normal.add(&rows[i], e[i]);
+                }
+            }
+            Some(normal)
+        }
+
+        fn cost(&self, point: &Vector2<f64>) -> Option<f64> {
+            Some(cost(&self.conditions(point)?))
+        }
+
+        fn retract(&self, point: &Vector2<f64>, step: &Vector2<f64>) -> Vector2<f64> {
+            point + step
+        }
+    }
+
+    impl Conditions<2> for Valley {
+        fn conditions(&self, point: &Vector2<f64>) -> Option<Vec<[f64; 3]>> {
+            let off = point.y - 3.0 * point.x.sin();
+            Some((0..self.samples).map(|k| [self.wall(k) * off, point.x - 1.0, 0.0]).collect())
+        }
+
+        fn slopes(&self, point: &Vector2<f64>) -> Option<Vec<[Vector2<f64>; 3]>> {
+            let one = |k: usize| {
+                let wall = self.wall(k);
+                [Vector2::new(-3.0 * point.x.cos() * wall, wall), Vector2::x(), Vector2::zeros()]
+            };
+            Some((0..self.samples).map(one).collect())
+        }
+    }
+
+    /// Bent steps need a fraction of the straight ones, whose length the width of the valley sets.
+    #[test]
+    fn a_curved_valley_is_followed_to_its_end() {
+        let valley = Valley { samples: 40, narrow: 1e-3 };
+        let start = Vector2::new(-1.5, 3.0 * f64::sin(-1.5));
+        let bent = polish(&valley, &valley, 1, start, 200).unwrap();
+        assert_eq!(bent.status, FitStatus::Converged);
+        assert!((bent.point - Vector2::new(1.0, 3.0 * 1f64.sin())).norm() < 1e-9, "{}", bent.point);
+        let straight =
+            LevenbergMarquardt { iterations: 10_000, damping: 1e-9, ..LevenbergMarquardt::default() };
+        let straight = straight.fit(&valley, start);
+        assert!(3 * bent.iterations < straight.iterations, "{} {}", bent.iterations, straight.iterations);
+    }
+
+    /// Derivatives at every 13th sample lead to the same point, in a log whose samples they do not divide.
+    #[test]
+    fn few_derivatives_lead_to_the_same_point() {
+        let (fine, thin) = (Valley { samples: 400, narrow: 0.1 }, Valley { samples: 31, narrow: 0.1 });
+        let found = polish(&fine, &thin, 13, Vector2::new(0.8, 2.0), 20).unwrap();
+        assert_eq!(found.status, FitStatus::Converged);
+        assert!((found.point - Vector2::new(1.0, 3.0 * 1f64.sin())).norm() < 1e-10, "{}", found.point);
+    }
+}

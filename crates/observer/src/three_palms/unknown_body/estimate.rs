@@ -2,7 +2,7 @@
 
 use super::principal::{PrincipalFrame, principal_frame};
 use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem, MASS, constants};
-use super::search::{fit_near, mass_of_weight, scales_of_ball, search};
+use super::search::{fit_near, mass_of_weight, scales_of_ball, search, unexplained};
 use crate::least_squares::{Fit, FitStatus, Observability};
 use crate::three_palms::clean::{RANK_TOLERANCE, clean_covariance, root_mean_square, stride};
 use crate::three_palms::correlation::whiteness;
@@ -222,7 +222,11 @@ fn adjusted_estimate(
         status,
         refined: Some(&refined),
     };
-    assemble(&track, found)
+    let mut estimate = assemble(&track, found)?;
+    if let Some(reason) = unexplained(&track, scales, &noise, fit) {
+        estimate.motion.reliability.add(reason);
+    }
+    Ok(estimate)
 }
 
 fn assemble(track: &Track, found: Found<'_>) -> Result<BodyEstimate, EstimateError> {

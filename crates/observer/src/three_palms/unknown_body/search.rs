@@ -7,11 +7,12 @@ use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem};
 use crate::least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Observability};
 use crate::three_palms::clean::information_inverse;
 use crate::three_palms::cold_start::{
-    EXPLAINED, GROWTH, SAMPLES_PER_NATURAL_TIME, SEARCHED_PER_NATURAL_TIME, continuing, from_normal_speeds,
-    natural_time, next_to_nothing, rest_state, stride,
+    EXPLAINED, GROWTH, SAMPLES_PER_NATURAL_TIME, SEARCHED_PER_NATURAL_TIME, WRONG, continuing,
+    from_normal_speeds, natural_time, next_to_nothing, rest_state, stride,
 };
 use crate::three_palms::covariance::{NoiseLevel, Sampling, propagate};
 
+use crate::three_palms::evidence::Reason;
 use crate::three_palms::momentum::{MomentumProblem, Scales};
 use crate::three_palms::polish::polish;
 use crate::three_palms::state_space::numbers_of_inertia;
@@ -128,6 +129,21 @@ fn follow(
     polish(&all, &all, 1, fit.point, STEPS)
 }
 
+/// As for a known body: what a fit of the thinned track leaves of noisy data where noise does not explain it.
+pub(super) fn unexplained(
+    track: &Track,
+    scales: Scales,
+    noise: &NoiseLevel,
+    fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
+) -> Option<Reason> {
+    let per_node = stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME);
+    let sampling =
+        Sampling { per_node: per_node as f64, weight: 1.0, direct: smoothing_variance(per_node / 2) };
+    let explained = explained(&track.thinned(per_node), scales, noise, sampling, fit)?;
+    let residual = fit.normal.rms();
+    (residual > WRONG * explained).then_some(Reason::Misfit { residual, explained })
+}
+
 /// Whether what is left of the data is noise, or next to nothing.
 fn explains(
     track: &Track,
@@ -136,15 +152,24 @@ fn explains(
     sampling: Sampling,
     fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
 ) -> bool {
-    if next_to_nothing(fit, &scales) {
-        return true;
-    }
-    let Some(mass) = fit.point.mass() else { return false };
+    let explained = || explained(track, scales, noise, sampling, fit);
+    next_to_nothing(fit, &scales) || explained().is_some_and(|e| fit.normal.rms() < EXPLAINED * e)
+}
+
+/// Residual that noise explains, m/s; none for a body that cannot be.
+fn explained(
+    track: &Track,
+    scales: Scales,
+    noise: &NoiseLevel,
+    sampling: Sampling,
+    fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
+) -> Option<f64> {
+    let mass = fit.point.mass()?;
     let track = track.of_mass(mass.mass());
     let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
-    let Some(normal) = problem.linearise(&fit.point.start) else { return false };
+    let normal = problem.linearise(&fit.point.start)?;
     let inverse = information_inverse(&Observability::new(&normal.information));
-    fit.normal.rms() < EXPLAINED * propagate(&problem, &fit.point.start, &inverse, noise, sampling).residual
+    Some(propagate(&problem, &fit.point.start, &inverse, noise, sampling).residual)
 }
 
 /// Natural sizes for a body whose mass is that of its weight.
