@@ -2,13 +2,16 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, Palm, SupportFunction};
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation, ThreePalmScene,
 };
-use recon::observer::{KnownBody, MotionEstimate, NoiseLevel, equivalent_orientations, estimate_motion};
+use recon::observer::{
+    KnownBody, MotionEstimate, NoiseLevel, StartState, UnknownBody, equivalent_orientations, estimate_body,
+    estimate_body_from, estimate_motion, estimate_motion_from,
+};
 use recon_tests::{Random, exact_log, f5, g2};
 
 fn known<S: SupportFunction>(scene: &ThreePalmScene<S>, noise: Option<NoiseLevel>) -> KnownBody {
@@ -60,6 +63,32 @@ fn exact_logs_are_explained_exactly() {
     // Fourth-order differences of the normals at 1 kHz: rates to 1e-12 times fifth derivatives (of order 40).
     let log = SensorLog::new(samples, None).unwrap();
     check_exact(&simulation, &estimate_motion(&log, &known(&scene, None)).unwrap(), 1e-8);
+}
+
+/// A start nearby saves the search and nothing else, with the body known or unknown.
+#[test]
+fn a_start_nearby_leads_to_the_same_estimate() {
+    let (scene, start) = f5();
+    let (_, log) = exact_log(&scene, start, 2.0, 500.0);
+    let known = known(&scene, None);
+    let found = estimate_motion(&log, &known).unwrap();
+    let near = StartState {
+        p_WCm: found.start.p_WCm + DVec3::new(0.05, -0.04, 0.05),
+        v_WCm: found.start.v_WCm + DVec3::new(-0.05, 0.05, 0.03),
+        L_WO: found.start.L_WO * 1.1,
+        R_WO: DQuat::from_scaled_axis(DVec3::new(0.05, 0.03, -0.05)) * found.start.R_WO,
+    };
+    let again = estimate_motion_from(&log, &known, &near).unwrap();
+    assert!(again.start.p_WCm.distance(found.start.p_WCm) < 1e-10);
+    assert!(again.start.R_WO.angle_between(found.start.R_WO) < 1e-7);
+    let unknown = UnknownBody { gravity: scene.gravity(), palm_inertias: None, noise: None };
+    let found = estimate_body(&log, &unknown).unwrap();
+    let moments = scene.mass().principal().moments * DVec3::new(1.05, 0.97, 1.0);
+    let mass = MassProperties::new(1.05, DMat3::from_diagonal(moments)).unwrap();
+    let near = StartState { R_WO: DQuat::from_rotation_x(0.05) * scene.mass().principal().axes, ..near };
+    let again = estimate_body_from(&log, &unknown, &mass, &near).unwrap();
+    assert!(again.motion.start.p_WCm.distance(found.motion.start.p_WCm) < 1e-9);
+    assert!((again.body.mass.mass() - found.body.mass.mass()).abs() < 1e-9);
 }
 
 fn check_exact(simulation: &Simulation, estimate: &MotionEstimate, tolerance: f64) {

@@ -20,6 +20,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
     ("cold_start", "cold-start.md", "three palms: random scenes from no guess"),
     ("no_force", "no-force.md", "three palms without force sensors: random scenes from no guess"),
     ("three_palms_monte_carlo", "three-palms-monte-carlo.md", "three palms against the Cramer-Rao bound"),
+    (
+        "three_palms_timing",
+        "three-palms-timing.md",
+        "three palms from no guess and from nearby: time and accuracy, beside SciPy",
+    ),
     ("planar_monte_carlo", "planar-monte-carlo.md", "planar observers against the Cramer-Rao bound"),
     ("planar_costs", "planar-costs.md", "cost of the planar observers beside their accuracy"),
     (

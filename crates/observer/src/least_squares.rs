@@ -1,4 +1,9 @@
 //! Nonlinear least squares with few unknowns and many residuals, on a manifold if need be.
+//!
+//! The steps of [`solve_batch`](crate::solve_batch) are damped too, in a loop of its own: there a trial is a whole trajectory that
+//! is rolled out and linearised in place, its cost comes with the linearisation, and with process noise full steps are taken
+//! without a trial. What the two loops have in common, "less damping after a gain, more after none", is shorter than an
+//! interface that would serve both.
 
 use nalgebra::{Cholesky, SMatrix, SVector, SymmetricEigen};
 
@@ -80,11 +85,12 @@ pub struct Fit<Point, const P: usize> {
     pub damping: f64,
 }
 
-/// Levenberg-Marquardt with damping by a multiple of the identity in the scaled unknowns.
+/// Levenberg-Marquardt with damping by a multiple of the identity in the scaled unknowns, which follows the share of the
+/// promised gain that a step has brought.
 ///
-/// Stops when a step is shorter than `step_tolerance` (in units of the natural sizes), or when an undamped step would
-/// move the unknowns by less than a thousandth of the deviation that the residuals leave them. It ends at a local
-/// minimum: whether that is the right one is the caller's business.
+/// Stops when an undamped step is shorter than `step_tolerance` (in units of the natural sizes), when one so short brings no
+/// gain, or when an undamped step would move the unknowns by less than a thousandth of the deviation that the residuals leave
+/// them. It ends at a local minimum: whether that is the right one is the caller's business.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LevenbergMarquardt {
     /// Most linearisations.
@@ -107,9 +113,31 @@ impl Default for LevenbergMarquardt {
 const NOTHING_TO_GAIN: f64 = 1e-6;
 /// Share of the cost that an undamped step may promise at a minimum: rounding alone promises about unknowns over
 /// residuals.
-const STILL_A_MINIMUM: f64 = 0.01;
+pub(crate) const STILL_A_MINIMUM: f64 = 0.01;
 /// Damping at which a step is too short to matter.
-const LARGEST_DAMPING: f64 = 1e12;
+pub(crate) const LARGEST_DAMPING: f64 = 1e12;
+/// Least damping, below which a step is undamped in double precision, and factor of the first raise; each raise in a row is
+/// twice the one before.
+pub(crate) const LEAST_DAMPING: f64 = 1e-15;
+pub(crate) const RAISE: f64 = 4.0;
+
+/// Damping after a step that gained a share of what the linear model promised: a tenth where the model is good, and the
+/// same where it is not (Nielsen's rule, with a larger fall).
+pub(crate) fn lowered(damping: f64, share: f64) -> f64 {
+    let factor = if share > 0.75 {
+        0.1
+    } else if share > 0.25 {
+        0.3
+    } else {
+        2.0
+    };
+    (damping * factor).max(LEAST_DAMPING)
+}
+
+/// Whether an undamped step would move the unknowns by next to nothing of the deviation that the residuals leave them.
+pub(crate) fn nothing_to_gain<const P: usize>(normal: &NormalEquations<P>) -> bool {
+    decrement(normal) * normal.count as f64 <= NOTHING_TO_GAIN * normal.cost.abs()
+}
 
 impl LevenbergMarquardt {
     /// Minimises the cost from `start`.
@@ -142,33 +170,38 @@ impl LevenbergMarquardt {
             let weight = self.prior * mean;
             let gradient = normal.gradient + travelled * weight;
             let cost = normal.cost + weight * travelled.norm_squared();
-            if self.prior == 0.0
-                && decrement(&normal) * normal.count as f64 <= NOTHING_TO_GAIN * normal.cost.abs()
-            {
+            if self.prior == 0.0 && nothing_to_gain(&normal) {
                 return Fit { point, normal, status: FitStatus::Converged, iterations, damping };
             }
             let mut accepted = false;
+            let mut raise = RAISE;
             while damping < LARGEST_DAMPING {
                 let shift = (damping + self.prior) * mean + f64::MIN_POSITIVE;
                 let Some(step) = solve_shifted(&normal.information, shift, &gradient) else {
-                    damping = (damping * 10.0).max(1e-10);
+                    damping = (damping * raise).max(LEAST_DAMPING);
                     continue;
                 };
                 let moved = problem.retract(&point, &step);
                 let arrived = travelled + step;
                 let trial = problem.cost(&moved).map(|c| c + weight * arrived.norm_squared());
+                let gain = trial.map_or(f64::NEG_INFINITY, |trial| cost - trial);
+                // What the linear model promises: -(2 g + (A + w) s) . s with (A + w + damping) s = -g.
+                let promised = damping * mean * step.norm_squared() - gradient.dot(&step);
                 let small = step.norm() < self.step_tolerance;
-                if trial.is_some_and(|trial| trial < cost) {
+                if gain > 0.0 {
                     (point, travelled, accepted) = (moved, arrived, true);
-                    damping = (damping * 0.1).max(1e-15);
+                    damping = lowered(damping, gain / promised);
                 }
-                if small {
+                // A step may be short because it is damped: then there is more to come.
+                let last = || solve_shifted(&normal.information, weight + f64::MIN_POSITIVE, &gradient);
+                if small && (!accepted || last().is_some_and(|step| step.norm() < self.step_tolerance)) {
                     return self.finish(problem, point, normal, iterations, damping);
                 }
                 if accepted {
                     break;
                 }
-                damping = (damping * 10.0).max(1e-10);
+                damping = (damping * raise).max(LEAST_DAMPING);
+                raise *= 2.0;
             }
             if !accepted {
                 return self.finish(problem, point, normal, iterations, damping);
@@ -200,17 +233,17 @@ impl LevenbergMarquardt {
 }
 
 /// The undamped step; none where the information is singular in double precision.
-fn undamped<const P: usize>(normal: &NormalEquations<P>) -> Option<SVector<f64, P>> {
+pub(crate) fn undamped<const P: usize>(normal: &NormalEquations<P>) -> Option<SVector<f64, P>> {
     let shift = normal.information.trace() * f64::EPSILON;
     solve_shifted(&normal.information, shift, &normal.gradient)
 }
 
 /// Fall of the cost that an undamped step promises.
-fn decrement<const P: usize>(normal: &NormalEquations<P>) -> f64 {
+pub(crate) fn decrement<const P: usize>(normal: &NormalEquations<P>) -> f64 {
     undamped(normal).map_or(f64::INFINITY, |step| -step.dot(&normal.gradient))
 }
 
-fn solve_shifted<const P: usize>(
+pub(crate) fn solve_shifted<const P: usize>(
     information: &SMatrix<f64, P, P>,
     shift: f64,
     gradient: &SVector<f64, P>,

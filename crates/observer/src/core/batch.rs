@@ -1,4 +1,7 @@
 //! All samples at once, with Levenberg-Marquardt steps until nothing moves.
+//!
+//! The damping has a loop of its own beside that of [`LevenbergMarquardt`](crate::LevenbergMarquardt): here a trial is a whole
+//! trajectory, rolled out and linearised in place, and with process noise there are no trials.
 
 use super::model::{Model, Sample};
 use super::newton::check_start;

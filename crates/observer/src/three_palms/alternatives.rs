@@ -5,7 +5,8 @@
 //! probable it is than the next tells whether the log decides at all.
 
 use super::cold_start::{
-    COARSE, FOLLOWED_IN_ALL, GROWTH, ROUNDS, Round, Search, natural_time, scales, sort, stride_of,
+    COARSE, FIRST, FOLLOWED_IN_ALL, GROWTH, ROUNDS, Round, SAMPLES_PER_NATURAL_TIME, Search, natural_time,
+    scales, sort, stride,
 };
 use super::covariance::{NoiseLevel, Sampling};
 use super::estimate::{LARGEST_MISFIT, equivalent_orientations};
@@ -38,6 +39,8 @@ pub(super) struct Chosen<const N: usize> {
     pub(super) refined: Refined<N>,
     /// Logarithm of how many times more probable it is than the next; infinite without one.
     pub(super) log_odds: f64,
+    /// Whether it is not the first of them.
+    pub(super) replaced: bool,
 }
 
 /// Whether other motions may explain a log as well as this one, or better.
@@ -57,12 +60,13 @@ pub(super) fn most_credible<const N: usize>(
     others: impl Iterator<Item = Refined<N>>,
     same: impl Fn(&Refined<N>, &Refined<N>) -> bool,
 ) -> Chosen<N> {
-    let mut best = first;
+    let (mut best, mut replaced) = (first, false);
     let mut rivals: Vec<Refined<N>> = Vec::new();
     for other in others {
         // What is not a number is no rival.
         if other.improbability < best.improbability || best.improbability.is_nan() {
             rivals.push(std::mem::replace(&mut best, other));
+            replaced = true;
         } else if other.improbability.is_finite() {
             rivals.push(other);
         }
@@ -72,7 +76,7 @@ pub(super) fn most_credible<const N: usize>(
         .filter(|rival| !same(&best, rival))
         .map(|rival| rival.improbability - best.improbability)
         .fold(f64::INFINITY, f64::min);
-    Chosen { refined: best, log_odds: 0.5 * next }
+    Chosen { refined: best, log_odds: 0.5 * next, replaced }
 }
 
 /// Whether a difference of states at the start is within what noise does.
@@ -85,7 +89,7 @@ pub(super) fn is_small<const N: usize>(refined: &Refined<N>, difference: &nalgeb
 /// that leave least of the contact conditions.
 pub(super) fn further_starts(track: &Track, mass: &MassProperties, noise: NoiseLevel) -> Vec<StartState> {
     let scales = scales(track, mass);
-    let stride = stride_of(track, scales.length);
+    let stride = stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME);
     let sampling = Sampling { per_node: stride as f64, weight: 1.0, direct: smoothing_variance(stride / 2) };
     let natural = natural_time(track, scales.length).min(0.25 * track.duration());
     let thin = track.thinned(stride);
@@ -116,7 +120,9 @@ impl Search<'_> {
     /// Minima that the starts of a round lead to, on the later windows too: noise of the forces adds up in a longer one, so
     /// that a shorter one may have a minimum by the truth where the whole has none. Candidates that meet go on as one.
     fn minima(&self, round: Round, first: f64) -> Vec<Fit<StartState, UNKNOWNS>> {
-        let mut fits = self.one_of_each(self.candidates(first, round));
+        let problem = self.problem(first);
+        let starts = self.starts(first, round).into_iter();
+        let mut fits = self.one_of_each(starts.map(|start| FIRST.fit(&problem, start)).collect());
         fits.truncate(FOLLOWED_IN_ALL);
         let mut found = Vec::new();
         let mut window = first;

@@ -4,7 +4,7 @@
 //! with a memory, through the impulses and moments that the forces are integrated to. Both are carried to the
 //! unknowns by the adjoint of the linearised motion.
 
-use super::momentum::{MomentumProblem, Row, StateRow, UNKNOWNS};
+use super::momentum::{MomentumProblem, StateRow, UNKNOWNS};
 use super::random::Normal;
 use nalgebra::{SMatrix, SVector};
 
@@ -21,8 +21,6 @@ pub struct NoiseLevel {
 
 /// What the linearised motion says at one sample.
 pub(super) struct Linearised {
-    /// Derivatives of the residuals by the scaled unknowns.
-    pub(super) rows: [Row; 3],
     /// Derivatives of the residuals by position, velocity, angular momentum and orientation at the sample.
     pub(super) by_state: [StateRow; 3],
     /// Derivatives of the residuals by the contact coordinates `(s1, s2)`.
@@ -49,8 +47,8 @@ pub(super) struct Sampling {
 }
 
 /// Covariance of the scaled unknowns, and the root mean square of the residuals that noise alone leaves after the fit.
-pub(super) struct Propagated {
-    pub(super) covariance: Square,
+pub(super) struct Propagated<const P: usize> {
+    pub(super) covariance: SMatrix<f64, P, P>,
     pub(super) residual: f64,
 }
 
@@ -61,11 +59,22 @@ pub(super) fn propagate(
     information_inverse: &Square,
     noise: &NoiseLevel,
     sampling: Sampling,
-) -> Propagated {
-    let steps = problem.linearised(start);
+) -> Propagated<UNKNOWNS> {
+    let (steps, rows) = problem.linearised(start);
+    propagate_to(&steps, &rows, information_inverse, noise, sampling)
+}
+
+/// The same for the unknowns whose derivatives are the `rows`: those of the motion, and others beside them.
+pub(super) fn propagate_to<const P: usize>(
+    steps: &[Linearised],
+    rows: &[[SVector<f64, P>; 3]],
+    information_inverse: &SMatrix<f64, P, P>,
+    noise: &NoiseLevel,
+    sampling: Sampling,
+) -> Propagated<P> {
     let transitions: Vec<Square> = steps.windows(2).map(|w| transition(&w[0], &w[1])).collect();
-    let spread = spread(&steps, &transitions, noise, sampling);
-    let residual = residual_after_fit(&steps, &transitions, information_inverse, noise, sampling);
+    let spread = spread(steps, rows, &transitions, noise, sampling);
+    let residual = residual_after_fit(steps, rows, &transitions, information_inverse, noise, sampling);
     Propagated { covariance: information_inverse * spread * information_inverse, residual }
 }
 
@@ -77,24 +86,29 @@ fn transition(here: &Linearised, next: &Linearised) -> Square {
 
 /// `J' S J` with `S` the covariance of the residuals: backwards in time, by the adjoint. Noise at a node moves the
 /// state after it.
-fn spread(steps: &[Linearised], transitions: &[Square], noise: &NoiseLevel, sampling: Sampling) -> Square {
+fn spread<const P: usize>(
+    steps: &[Linearised],
+    rows: &[[SVector<f64, P>; 3]],
+    transitions: &[Square],
+    noise: &NoiseLevel,
+    sampling: Sampling,
+) -> SMatrix<f64, P, P> {
     let Sampling { per_node, weight, direct } = sampling;
     let (vs, vf) = (noise.contact.powi(2), noise.force.powi(2));
-    let mut adjoint = Square::zeros();
-    let mut spread = Square::zeros();
-    for k in (0..steps.len()).rev() {
-        let here = &steps[k];
+    let mut adjoint = SMatrix::<f64, P, UNKNOWNS>::zeros();
+    let mut spread = SMatrix::<f64, P, P>::zeros();
+    for (k, (here, rows)) in steps.iter().zip(rows).enumerate().rev() {
         if let Some(transition) = transitions.get(k) {
             adjoint *= transition;
         }
         // Each sample holds its reading until the next.
         let hold = here.step / per_node;
         for i in 0..3 {
-            let kick: Row = adjoint * here.by_force[i] * hold;
+            let kick: SVector<f64, P> = adjoint * here.by_force[i] * hold;
             spread.ger(vf * per_node, &kick, &kick, 1.0);
             for axis in 0..2 {
-                let at_once: Row = here.rows[i] * here.by_contact[i][axis];
-                let later: Row = adjoint * here.through_torque[i][axis] * hold;
+                let at_once: SVector<f64, P> = rows[i] * here.by_contact[i][axis];
+                let later: SVector<f64, P> = adjoint * here.through_torque[i][axis] * hold;
                 spread.ger(vs * direct, &at_once, &at_once, 1.0);
                 spread.ger(vs * per_node, &later, &later, 1.0);
                 spread.ger(vs * weight, &at_once, &later, 1.0);
@@ -102,7 +116,7 @@ fn spread(steps: &[Linearised], transitions: &[Square], noise: &NoiseLevel, samp
             }
         }
         for i in 0..3 {
-            adjoint += here.rows[i] * here.by_state[i].transpose() * weight;
+            adjoint += rows[i] * here.by_state[i].transpose() * weight;
         }
     }
     spread
@@ -112,10 +126,11 @@ fn spread(steps: &[Linearised], transitions: &[Square], noise: &NoiseLevel, samp
 ///
 /// Drawn and not computed: the noise that forces leave in the motion is fitted away but for about one part in two
 /// hundred, so a difference of two variances would be mostly rounding of the transitions.
-fn residual_after_fit(
+fn residual_after_fit<const P: usize>(
     steps: &[Linearised],
+    rows: &[[SVector<f64, P>; 3]],
     transitions: &[Square],
-    information_inverse: &Square,
+    information_inverse: &SMatrix<f64, P, P>,
     noise: &NoiseLevel,
     sampling: Sampling,
 ) -> f64 {
@@ -123,16 +138,13 @@ fn residual_after_fit(
     let mut lasting = 0.0;
     for _ in 0..DRAWS {
         let smooth = draw_residuals(steps, transitions, noise, sampling, &mut random);
-        let mut gradient = Row::zeros();
-        for (here, e) in steps.iter().zip(&smooth) {
-            for i in 0..3 {
-                gradient.axpy(sampling.weight * e[i], &here.rows[i], 1.0);
-            }
+        let mut gradient = SVector::<f64, P>::zeros();
+        let pairs = || rows.iter().flatten().zip(smooth.iter().flatten());
+        for (row, e) in pairs() {
+            gradient.axpy(sampling.weight * e, row, 1.0);
         }
         let fitted = information_inverse * gradient;
-        let left = steps.iter().zip(&smooth).flat_map(|(here, e)| (0..3).map(move |i| (here, e[i], i)));
-        lasting +=
-            left.map(|(here, e, i)| (e - here.rows[i].dot(&fitted)).powi(2)).sum::<f64>() / f64::from(DRAWS);
+        lasting += pairs().map(|(row, e)| (e - row.dot(&fitted)).powi(2)).sum::<f64>() / f64::from(DRAWS);
     }
     // Contact noise that enters at once is too rough to be fitted away.
     let at_once = noise.contact.powi(2) * sampling.direct / sampling.weight;
@@ -174,6 +186,7 @@ const DRAWS: u32 = 8;
 #[cfg(test)]
 mod tests {
     use super::super::cold_start::scales;
+    use super::super::momentum::Row;
     use super::super::{StartState, Track};
     use super::*;
     use crate::least_squares::{LeastSquares, LevenbergMarquardt};

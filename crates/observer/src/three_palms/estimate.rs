@@ -1,27 +1,25 @@
 use super::alternatives::{Chosen, further_starts, is_small, leaves_room, most_credible};
-use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, scales};
+use super::clean::{RANK_TOLERANCE, clean_covariance, root_mean_square, stride};
+use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, fit_near, scales, unexplained};
 use super::convexity::largest_violation;
-use super::correlation::{correlation_samples, whiteness};
-use super::covariance::{NoiseLevel, Sampling, propagate};
+use super::correlation::whiteness;
+use super::covariance::NoiseLevel;
 use super::curves::CurveUncertainty;
 use super::evidence::{Evidence, Reason, Reliability, WeakDirection, too_short};
 use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNKNOWNS};
 use super::noise::noise_level;
+use super::polish::polish_all;
 use super::refine::{Refined, Setting, refine};
 use super::state_space::{Constant, Parameters};
 use super::track::{Track, TrackError};
 use crate::core::Model;
-use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
+use crate::least_squares::{Fit, FitStatus, Observability};
 use contact_kinematics::{ContactCurve, CurveError};
 use glam::{DQuat, DVec3};
 use nalgebra::SMatrix;
 use object_dynamics::{MassProperties, SensorLog};
 use thiserror::Error;
 
-/// Samples that the covariance is computed from, at most: it varies as slowly as the motion.
-const COVARIANCE_SAMPLES: usize = 400;
-/// Smallest share of the largest information that still counts as information: rounding of `J' J`.
-pub(super) const RANK_TOLERANCE: f64 = 1e-14;
 /// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
 /// linearisation that its covariance comes from does not reach that far. Errors of five deviations without another
 /// warning were seen from 0.106 on, none below 0.09.
@@ -116,40 +114,72 @@ pub struct MotionEstimate {
 /// [`EstimateError`] when the log cannot be used at all; an estimate that should not be believed is returned with
 /// [`Reliability::Unreliable`] and its reasons.
 pub fn estimate_motion(log: &SensorLog, known: &KnownBody) -> Result<MotionEstimate, EstimateError> {
+    let track = track(log, known)?;
+    let scales = scales(&track, &known.mass);
+    let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
+    let best = cold_start(&track, &known.mass, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
+    estimate_near(&track, known, scales, noise, &best)
+}
+
+/// As [`estimate_motion`] from a start that is known to be near, without a search: the minimum that it lies above.
+///
+/// # Errors
+/// As [`estimate_motion`].
+pub fn estimate_motion_from(
+    log: &SensorLog,
+    known: &KnownBody,
+    near: &StartState,
+) -> Result<MotionEstimate, EstimateError> {
+    let track = track(log, known)?;
+    let scales = scales(&track, &known.mass);
+    let best = fit_near(&track, &known.mass, scales, *near).ok_or(EstimateError::NoFit)?;
+    let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
+    estimate_near(&track, known, scales, noise, &best)
+}
+
+fn track(log: &SensorLog, known: &KnownBody) -> Result<Track, EstimateError> {
     if !known.gravity.is_finite() {
         return Err(EstimateError::Gravity { gravity: known.gravity });
     }
-    let track = Track::new(log, known.mass.mass(), known.gravity, known.palm_inertias)
-        .map_err(EstimateError::Track)?;
-    estimate_on_track(&track, known)
+    Track::new(log, known.mass.mass(), known.gravity, known.palm_inertias).map_err(EstimateError::Track)
 }
 
-fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate, EstimateError> {
-    let mass = &known.mass;
-    let scales = scales(track, mass);
-    let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
-    let found = cold_start(track, mass, noise);
-    let best = found.into_iter().next().ok_or(EstimateError::NoFit)?;
+/// The estimate that a fit of the thinned track leads to.
+fn estimate_near(
+    track: &Track,
+    known: &KnownBody,
+    scales: Scales,
+    noise: NoiseLevel,
+    best: &Fit<StartState, UNKNOWNS>,
+) -> Result<MotionEstimate, EstimateError> {
     if noise.contact > WORTH_ADJUSTING * scales.length {
         let setting = Setting { scales, noise, constants: &[], deviations: &[], axes_chosen: false };
-        return noisy_estimate::<UNKNOWNS>(track, known, &setting, &best).map(|(estimate, _)| estimate);
+        return noisy_estimate::<UNKNOWNS>(track, known, &setting, best).map(|(estimate, _)| estimate);
     }
+    clean_estimate(track, known, scales, noise, best.point)
+}
+
+/// The least-squares motion of a log with next to no noise, from a start that is near.
+fn clean_estimate(
+    track: &Track,
+    known: &KnownBody,
+    scales: Scales,
+    noise: NoiseLevel,
+    near: StartState,
+) -> Result<MotionEstimate, EstimateError> {
+    let mass = &known.mass;
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
-    let solver = LevenbergMarquardt { iterations: 60, step_tolerance: 1e-11, damping: 1e-9, prior: 0.0 };
-    let mut fit = solver.fit(&problem, best.point);
-    if fit.status == FitStatus::Failed {
-        return Err(EstimateError::NoFit);
-    }
+    let stride = stride(track, &scales);
+    let thin = track.thinned(stride);
+    let thin_problem = MomentumProblem::new(&thin, mass, scales, f64::INFINITY);
+    let mut fit = polish_all(&problem, &thin_problem, stride, near).ok_or(EstimateError::NoFit)?;
     fit.point.R_WO = nearest_to_identity(mass, fit.point.R_WO);
-    let residuals = problem.residuals(&fit.point);
+    let motion = problem.motion(&fit.point);
+    let (residuals, _) = problem.residuals_along(&motion, noise.contact);
+    let rms = root_mean_square(&residuals);
     let observability = Observability::new(&fit.normal.information);
-    let (covariance, predicted) =
-        scaled_covariance(track, known, &scales, &fit.point, &observability, &noise);
-    let rms = (residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (3 * residuals.len()) as f64).sqrt();
-    // What noise does not explain is a lasting error of sensors or model: as many independent ones as there are
-    // correlation times in the log.
-    let excess = (rms * rms - predicted * predicted).max(0.0) * correlation_samples(&residuals);
-    let covariance = covariance + information_inverse(&observability) * excess + unknown(&observability);
+    let (steps, rows) = thin_problem.linearised(&fit.point);
+    let (covariance, predicted) = clean_covariance(&steps, &rows, &observability, &noise, stride, &residuals);
     let weakest = weakest_direction(&covariance);
     let eigenvalues = observability.eigenvalues;
     let largest = eigenvalues[UNKNOWNS - 1];
@@ -169,7 +199,6 @@ fn estimate_on_track(track: &Track, known: &KnownBody) -> Result<MotionEstimate,
         iterations: fit.iterations,
     };
     let reliability = judge(&evidence, fit.status, &scales);
-    let motion = problem.motion(&fit.point);
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
     let covariance = unscale(&covariance, &scales);
@@ -195,12 +224,12 @@ fn noisy_estimate<const N: usize>(
     best: &Fit<StartState, UNKNOWNS>,
 ) -> Result<(MotionEstimate, Refined<N>), EstimateError> {
     let (mass, scales, noise) = (&known.mass, setting.scales, setting.noise);
-    let Chosen { refined, log_odds } = refine_best::<N>(track, mass, setting, best)?;
+    let Chosen { refined, log_odds, replaced } = refine_best::<N>(track, mass, setting, best)?;
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
     let states = refined.states();
     let motion = problem.motion_through(&refined.nodes, &states);
     let (residuals, predicted) = problem.residuals_along(&motion, noise.contact);
-    let rms = (residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (3 * residuals.len()) as f64).sqrt();
+    let rms = root_mean_square(&residuals);
     let misfit = refined.misfit(N);
     let observability = Observability::new(&best.normal.information);
     let eigenvalues = observability.eigenvalues;
@@ -231,6 +260,10 @@ fn noisy_estimate<const N: usize>(
     if misfit.is_nan() || misfit > LARGEST_MISFIT {
         reliability.add(Reason::Inconsistent { misfit });
     }
+    // With constants of the sensors among the unknowns, what is left before they are found says nothing.
+    if !replaced && setting.constants.is_empty() {
+        unexplained(track, mass, &noise, best).into_iter().for_each(|reason| reliability.add(reason));
+    }
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
     let covariance = covariance.fixed_view::<UNKNOWNS, UNKNOWNS>(0, 0).into_owned();
@@ -254,7 +287,7 @@ fn refine_best<const N: usize>(
         refine::<N>(track, mass, Parameters::new(mass), &start, setting)
     };
     let first = refined(&best.point).map_err(|_| EstimateError::NoFit)?;
-    let mut chosen = Chosen { refined: first, log_odds: f64::INFINITY };
+    let mut chosen = Chosen { refined: first, log_odds: f64::INFINITY, replaced: false };
     if too_short(track, &setting.scales) {
         // Not relied on whatever else is found.
         return Ok(chosen);
@@ -299,41 +332,6 @@ pub(super) fn floored(noise: NoiseLevel, track: &Track, scales: &Scales) -> Nois
         contact: noise.contact.max(NOISE_FLOOR * scales.length),
         force: noise.force.max(NOISE_FLOOR * weight),
     }
-}
-
-/// Covariance of the scaled unknowns from sensor noise, and the residual that the noise explains.
-fn scaled_covariance(
-    track: &Track,
-    known: &KnownBody,
-    scales: &Scales,
-    start: &StartState,
-    observability: &Observability<UNKNOWNS>,
-    noise: &NoiseLevel,
-) -> (SMatrix<f64, UNKNOWNS, UNKNOWNS>, f64) {
-    let stride = track.len().div_ceil(COVARIANCE_SAMPLES);
-    let thin = track.thinned(stride);
-    let problem = MomentumProblem::new(&thin, &known.mass, *scales, f64::INFINITY);
-    let per_node = stride as f64;
-    let sampling = Sampling { per_node, weight: per_node, direct: per_node };
-    let result = propagate(&problem, start, &information_inverse(observability), noise, sampling);
-    (result.covariance, result.residual)
-}
-
-pub(super) fn information_inverse(
-    observability: &Observability<UNKNOWNS>,
-) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
-    let floor = RANK_TOLERANCE * observability.eigenvalues[UNKNOWNS - 1];
-    // Directions without information get the inverse of the floor: a variance that is plainly no knowledge.
-    let inverse = observability.eigenvalues.map(|v| 1.0 / v.max(floor).max(f64::MIN_POSITIVE));
-    observability.directions * SMatrix::from_diagonal(&inverse) * observability.directions.transpose()
-}
-
-/// Unit variance, in natural sizes, of the directions that the data say nothing of in double precision: there noise is
-/// carried to the unknowns by zero over zero.
-fn unknown(observability: &Observability<UNKNOWNS>) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
-    let floor = RANK_TOLERANCE * observability.eigenvalues[UNKNOWNS - 1];
-    let variance = observability.eigenvalues.map(|v| if v > floor { 0.0 } else { 1.0 });
-    observability.directions * SMatrix::from_diagonal(&variance) * observability.directions.transpose()
 }
 
 fn weakest_direction(covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>) -> WeakDirection {

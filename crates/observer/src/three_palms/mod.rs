@@ -1,6 +1,7 @@
 //! Three palms in space.
 
 mod alternatives;
+mod clean;
 mod cold_start;
 mod convexity;
 mod correlation;
@@ -14,6 +15,7 @@ mod no_force;
 mod noise;
 mod paper_method;
 mod paper_system;
+mod polish;
 mod quadrature;
 mod random;
 mod refine;
@@ -23,12 +25,15 @@ mod state_space;
 mod streaming;
 #[cfg(test)]
 mod test_scenes;
+mod through;
 mod track;
 mod unknown_body;
 
 pub use covariance::NoiseLevel;
 pub use curves::CurveUncertainty;
-pub use estimate::{EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion};
+pub use estimate::{
+    EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion, estimate_motion_from,
+};
 pub use evidence::{Evidence, Quantity, Reason, Reliability, WeakDirection};
 pub use momentum::{MotionState, Scales, StartState};
 pub use no_force::{
@@ -40,4 +45,4 @@ pub use paper_method::{
 pub use sensors::{SensorConstant, SensorEstimate, SensorPriors, estimate_motion_and_sensors};
 pub use streaming::{MotionStream, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 pub use track::{Track, TrackError};
-pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body};
+pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body, estimate_body_from};

@@ -3,8 +3,9 @@
 //! p_i = 0`, which no derivative of the data enters.
 
 use super::covariance::Linearised;
-use super::sensitivity::{Sensitivity, Turning, cross_matrix, exponential, logarithm};
-use super::track::{Integrals, Track};
+use super::polish::Conditions;
+use super::sensitivity::{Sensitivity, Turning, cross_matrix, exponential};
+use super::track::{Integrals, Node, Track};
 use crate::least_squares::{LeastSquares, NormalEquations};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
@@ -65,17 +66,17 @@ impl Scales {
 
 /// Least squares of the contact conditions over the first samples of a track.
 pub(super) struct MomentumProblem<'a> {
-    track: &'a Track,
-    mass: &'a MassProperties,
+    pub(super) track: &'a Track,
+    pub(super) mass: &'a MassProperties,
     scales: Scales,
-    end: usize,
+    pub(super) end: usize,
 }
 
 /// The part of a sample that follows from the start state and the orientation.
-struct Kinematics {
-    v: DVec3,
-    p: DVec3,
-    L: DVec3,
+pub(super) struct Kinematics {
+    pub(super) v: DVec3,
+    pub(super) p: DVec3,
+    pub(super) L: DVec3,
 }
 
 impl<'a> MomentumProblem<'a> {
@@ -87,13 +88,13 @@ impl<'a> MomentumProblem<'a> {
 
     /// Derivatives of the residuals by the contact coordinates `(s1, s2)` of palm `i` at sample `k`, rad/s: the rates
     /// at which the body turns against the palm about its tangents.
-    fn by_contact(&self, k: usize, i: usize, w: DVec3) -> [f64; 2] {
+    pub(super) fn by_contact(&self, k: usize, i: usize, w: DVec3) -> [f64; 2] {
         let palm = &self.track.nodes[k].palms[i];
         // -w . (n x t1) = -w . t2; -w . (n x t2) = w . t1; and the palm's own speed: p = -rate s2.
         [-w.dot(palm.frame.t2), w.dot(palm.frame.t1) - palm.rate]
     }
 
-    fn kinematics(&self, start: &StartState, k: usize) -> Kinematics {
+    pub(super) fn kinematics(&self, start: &StartState, k: usize) -> Kinematics {
         let t = self.track.t[k];
         let Integrals { impulse, first_moment, moment, velocity, position, .. } = self.track.integrals[k];
         Kinematics {
@@ -110,7 +111,7 @@ impl<'a> MomentumProblem<'a> {
     }
 
     /// The same over some of the samples, with the orientation `q` at the first of them.
-    fn walk_part(
+    pub(super) fn walk_part(
         &self,
         start: &StartState,
         q: DQuat,
@@ -119,7 +120,7 @@ impl<'a> MomentumProblem<'a> {
     ) {
         let inverse = self.mass.inverse_inertia();
         let rate = |q: DQuat, L: DVec3| {
-            let w = inverse * (q.inverse() * L);
+            let w = inverse * (q.conjugate() * L);
             q * DQuat::from_xyzw(0.5 * w.x, 0.5 * w.y, 0.5 * w.z, 0.0)
         };
         let first = samples.start;
@@ -131,85 +132,18 @@ impl<'a> MomentumProblem<'a> {
             let middle_L = momentum(start, &self.track.middle[k - 1]);
             let end_L = self.kinematics(start, k).L;
             let k1 = rate(q, L);
-            let k2 = rate((q + k1 * (0.5 * h)).normalize(), middle_L);
-            let q3 = (q + k2 * (0.5 * h)).normalize();
+            let k2 = rate(q + k1 * (0.5 * h), middle_L);
+            let q3 = q + k2 * (0.5 * h);
             let k3 = rate(q3, middle_L);
-            let k4 = rate((q + k3 * h).normalize(), end_L);
+            let k4 = rate(q + k3 * h, end_L);
             q = (q + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0)).normalize();
             L = end_L;
-            visit(k, q, q3);
+            visit(k, q, q3.normalize());
         }
-    }
-
-    /// Motion at every sample, through given states at some of them (`nodes`, ascending, the first and the last sample
-    /// among them): between two of them as the data say, with what is then missing at the second spread evenly.
-    pub(super) fn motion_through(&self, nodes: &[usize], states: &[StartState]) -> Vec<MotionState> {
-        let times: Vec<f64> = self.track.times().collect();
-        let mut all = Vec::with_capacity(self.end);
-        for (pair, ends) in nodes.windows(2).zip(states.windows(2)) {
-            let (from, to) = (pair[0], pair[1]);
-            let start = self.start_through(from, &ends[0]);
-            let mut part = Vec::with_capacity(to - from + 1);
-            self.walk_part(&start, ends[0].R_WO, from..to + 1, |k, q, _| {
-                let at = self.kinematics(&start, k);
-                part.push(StartState { p_WCm: at.p, v_WCm: at.v, L_WO: at.L, R_WO: q });
-            });
-            let Some(reached) = part.last().copied() else { continue };
-            let missing = (
-                ends[1].p_WCm - reached.p_WCm,
-                ends[1].v_WCm - reached.v_WCm,
-                ends[1].L_WO - reached.L_WO,
-                logarithm(ends[1].R_WO * reached.R_WO.inverse()),
-            );
-            // Each node belongs to the interval after it, the last to the one before.
-            let count = if to + 1 == self.end { part.len() } else { part.len() - 1 };
-            for (j, state) in part.iter().take(count).enumerate() {
-                let k = from + j;
-                let share = (self.track.t[k] - self.track.t[from]) / (self.track.t[to] - self.track.t[from]);
-                let q = exponential(missing.3 * share) * state.R_WO;
-                let L = state.L_WO + missing.2 * share;
-                all.push(MotionState {
-                    t: times[k],
-                    p_WCm: state.p_WCm + missing.0 * share,
-                    R_WO: q,
-                    v_WCm: state.v_WCm + missing.1 * share,
-                    w_WO: q * (self.mass.inverse_inertia() * (q.inverse() * L)),
-                });
-            }
-        }
-        all
-    }
-
-    /// The start, orientation apart, from which the data lead through a state at sample `k`.
-    fn start_through(&self, k: usize, state: &StartState) -> StartState {
-        let t = self.track.t[k];
-        let Integrals { impulse, first_moment, moment, velocity, position, .. } = self.track.integrals[k];
-        let v_WCm = state.v_WCm - velocity;
-        let p_WCm = state.p_WCm - v_WCm * t - position;
-        let L_WO = state.L_WO - moment + p_WCm.cross(impulse) + v_WCm.cross(first_moment);
-        StartState { p_WCm, v_WCm, L_WO, R_WO: state.R_WO }
-    }
-
-    /// Root mean square of the contact conditions along a motion, and what contact noise of the given deviation leaves of
-    /// it, m/s.
-    pub(super) fn residuals_along(&self, motion: &[MotionState], noise: f64) -> (Vec<[f64; 3]>, f64) {
-        let mut expected = 0.0;
-        let residuals = motion
-            .iter()
-            .enumerate()
-            .map(|(k, m)| {
-                std::array::from_fn(|i| {
-                    let [a, b] = self.by_contact(k, i, m.w_WO);
-                    expected += noise * noise * (a * a + b * b);
-                    self.residual(k, i, &Kinematics { v: m.v_WCm, p: m.p_WCm, L: DVec3::ZERO }, m.w_WO)
-                })
-            })
-            .collect();
-        (residuals, (expected / (3 * motion.len().max(1)) as f64).sqrt())
     }
 
     /// Contact condition of palm `i` at sample `k`, m/s.
-    fn residual(&self, k: usize, i: usize, at: &Kinematics, w: DVec3) -> f64 {
+    pub(super) fn residual(&self, k: usize, i: usize, at: &Kinematics, w: DVec3) -> f64 {
         let node = &self.track.nodes[k];
         let n = node.palms[i].frame.n;
         n.dot(at.v) - w.dot(n.cross(node.p_WC[i] - at.p)) + node.lift[i]
@@ -239,12 +173,14 @@ impl<'a> MomentumProblem<'a> {
 
     /// Residuals in time order, palm by palm, m/s.
     pub(super) fn residuals(&self, start: &StartState) -> Vec<[f64; 3]> {
-        let motion = self.motion(start);
-        let one = |(k, state): (usize, &MotionState)| {
+        let mut all = Vec::with_capacity(self.end);
+        let inverse = self.mass.inverse_inertia();
+        self.walk(start, |k, q, _| {
             let at = self.kinematics(start, k);
-            std::array::from_fn(|i| self.residual(k, i, &at, state.w_WO))
-        };
-        motion.iter().enumerate().map(one).collect()
+            let w = q * (inverse * (q.inverse() * at.L));
+            all.push(std::array::from_fn(|i| self.residual(k, i, &at, w)));
+        });
+        all
     }
 
     /// Calls `visit(k, kinematics, turning, sensitivity)` at every sample.
@@ -268,14 +204,8 @@ impl<'a> MomentumProblem<'a> {
         });
     }
 
-    /// `de = n . dv + (w x n) . dp - a . dw`, `a = n x b`, `dw = (K [L]x - [w]x) theta + K dL`.
     fn by_state(&self, k: usize, i: usize, at: &Kinematics, here: &Turning) -> [DVec3; 4] {
-        let node = &self.track.nodes[k];
-        let n = node.palms[i].frame.n;
-        let a = n.cross(node.p_WC[i] - at.p);
-        // K is symmetric: -a . K x = by_L . x, and by_L . (L x theta) = theta . (by_L x L).
-        let by_L = -(here.K * a);
-        [here.w.cross(n), n, by_L, by_L.cross(at.L) + a.cross(here.w)]
+        by_state(&self.track.nodes[k], i, at.p, at.L, here)
     }
 
     /// The same by the scaled unknowns: `dp = dcm0 + t dv0`, `dL = dL0 + impulse x dcm0 + first_moment x dv0`.
@@ -288,24 +218,26 @@ impl<'a> MomentumProblem<'a> {
             by_L + theta.transposed(2, by_theta),
             theta.transposed(3, by_theta),
         ];
-        let scale = self.scales.by_block();
-        Row::from_fn(|j, _| by_start[j / 3][j % 3] * scale[j / 3])
+        let [length, velocity, momentum, turn] = self.scales.by_block();
+        let [p, v, L, theta] = by_start;
+        stack([p * length, v * velocity, L * momentum, theta * turn])
     }
 
-    /// The linearised motion with its noise inputs, sample by sample.
-    pub(super) fn linearised(&self, start: &StartState) -> Vec<Linearised> {
+    /// The linearised motion with its noise inputs, sample by sample, and the derivatives of the residuals by the scaled
+    /// unknowns.
+    pub(super) fn linearised(&self, start: &StartState) -> (Vec<Linearised>, Vec<[Row; 3]>) {
         let mut all = Vec::with_capacity(self.end);
+        let mut rows = Vec::with_capacity(self.end);
         self.each_turning(start, |k, at, here, theta| {
             let node = &self.track.nodes[k];
             let by_state = std::array::from_fn(|i| self.by_state(k, i, at, here));
-            let rows = std::array::from_fn(|i| self.row(k, &by_state[i], here, theta));
+            rows.push(std::array::from_fn(|i| self.row(k, &by_state[i], here, theta)));
             let step = if k + 1 < self.end { self.track.t[k + 1] - self.track.t[k] } else { 0.0 };
             let force = (0..3).map(|i| node.forces[i] * node.palms[i].frame.n).sum();
             let kick =
                 |velocity: DVec3, momentum: DVec3| stack([DVec3::ZERO, velocity, momentum, DVec3::ZERO]);
             let axes = |i: usize| [node.palms[i].frame.t1, node.palms[i].frame.t2];
             all.push(Linearised {
-                rows,
                 by_state: by_state.map(stack),
                 by_contact: std::array::from_fn(|i| self.by_contact(k, i, here.w)),
                 by_force: std::array::from_fn(|i| {
@@ -319,12 +251,22 @@ impl<'a> MomentumProblem<'a> {
                 step,
             });
         });
-        all
+        (all, rows)
     }
 }
 
-fn stack(blocks: [DVec3; 4]) -> StateRow {
-    StateRow::from_fn(|j, _| blocks[j / 3][j % 3])
+/// Derivatives of the contact condition of palm `i` by position, velocity, angular momentum and orientation:
+/// `de = n . dv + (w x n) . dp - a . dw`, `a = n x b`, `dw = (K [L]x - [w]x) theta + K dL`.
+pub(super) fn by_state(node: &Node, i: usize, p: DVec3, L: DVec3, here: &Turning) -> [DVec3; 4] {
+    let n = node.palms[i].frame.n;
+    let a = n.cross(node.p_WC[i] - p);
+    // K is symmetric: -a . K x = by_L . x, and by_L . (L x theta) = theta . (by_L x L).
+    let by_L = -(here.K * a);
+    [here.w.cross(n), n, by_L, by_L.cross(L) + a.cross(here.w)]
+}
+
+fn stack([a, b, c, d]: [DVec3; 4]) -> StateRow {
+    StateRow::from([a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z])
 }
 
 /// `dp' = dv`, `dL' = F x dp`, `theta' = M theta + K dL`.
@@ -383,6 +325,20 @@ impl LeastSquares<UNKNOWNS> for MomentumProblem<'_> {
             L_WO: point.L_WO + self.scales.momentum * part(2),
             R_WO: (exponential(part(3)) * point.R_WO).normalize(),
         }
+    }
+}
+
+impl Conditions<UNKNOWNS> for MomentumProblem<'_> {
+    fn conditions(&self, point: &StartState) -> Option<Vec<[f64; 3]>> {
+        Some(self.residuals(point))
+    }
+
+    fn slopes(&self, point: &StartState) -> Option<Vec<[Row; 3]>> {
+        let mut all = Vec::with_capacity(self.end);
+        self.each_turning(point, |k, at, here, theta| {
+            all.push(std::array::from_fn(|i| self.row(k, &self.by_state(k, i, at, here), here, theta)));
+        });
+        Some(all)
     }
 }
 

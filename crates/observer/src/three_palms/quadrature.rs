@@ -12,28 +12,52 @@ pub(super) fn running_integral<V>(t: &[f64], f: &[V], zero: V) -> Vec<V>
 where
     V: Copy + Add<Output = V> + Mul<f64, Output = V>,
 {
-    let count = t.len().min(f.len());
-    let width = count.min(STENCIL);
-    let mut sum = zero;
-    let mut integral = Vec::with_capacity(count);
-    let mut known: Option<Weights> = None;
-    for k in 0..count {
-        if k > 0 {
-            let start = (k - 1).saturating_sub((width - 1) / 2).min(count - width);
+    RunningIntegral::new(&t[..t.len().min(f.len())]).of(f, zero)
+}
+
+/// Weights of the running integrals of any data at some times.
+pub(super) struct RunningIntegral {
+    /// For each interval: its first sample, its weights, and its length.
+    intervals: Vec<(usize, usize, f64)>,
+    weights: Vec<Weights>,
+}
+
+impl RunningIntegral {
+    /// At strictly increasing times.
+    pub(super) fn new(t: &[f64]) -> Self {
+        let width = t.len().min(STENCIL);
+        let mut weights: Vec<Weights> = Vec::new();
+        let mut intervals = Vec::with_capacity(t.len());
+        for k in 1..t.len() {
+            let start = (k - 1).saturating_sub((width - 1) / 2).min(t.len() - width);
             let nodes = Stencil::new(&t[start..start + width], k - 1 - start);
-            let weights = match known.filter(|w| w.stencil.is_like(&nodes)) {
-                Some(weights) => weights,
-                None => Weights::new(nodes),
-            };
-            let step = t[k] - t[k - 1];
-            for j in 0..width {
-                sum = sum + f[start + j] * (weights.values[j] * step);
+            if !weights.last().is_some_and(|w| w.stencil.is_like(&nodes)) {
+                weights.push(Weights::new(nodes));
             }
-            known = Some(weights);
+            intervals.push((start, weights.len() - 1, t[k] - t[k - 1]));
         }
-        integral.push(sum);
+        Self { intervals, weights }
     }
-    integral
+
+    /// Of as many values as times.
+    pub(super) fn of<V>(&self, f: &[V], zero: V) -> Vec<V>
+    where
+        V: Copy + Add<Output = V> + Mul<f64, Output = V>,
+    {
+        let mut sum = zero;
+        let mut integral = Vec::with_capacity(f.len());
+        integral.extend(f.first().map(|_| zero));
+        for &(start, weights, step) in &self.intervals {
+            let Weights { stencil, values } = &self.weights[weights];
+            let mut part = zero;
+            for (&value, &weight) in f[start..start + stencil.width].iter().zip(values) {
+                part = part + value * weight;
+            }
+            sum = sum + part * step;
+            integral.push(sum);
+        }
+        integral
+    }
 }
 
 /// Derivative of the local polynomial at every sample.
@@ -43,24 +67,56 @@ where
 {
     let count = t.len().min(f.len());
     let width = count.min(STENCIL - 1);
-    (0..count)
-        .map(|k| {
-            let start = k.saturating_sub(width / 2).min(count - width);
-            let nodes = &t[start..start + width];
-            let at = t[k];
-            let others = |j: usize| (0..width).filter(move |&i| i != j && nodes[i] != at);
-            let mut sum = zero;
-            for (j, &node) in nodes.iter().enumerate() {
-                let weight = if node == at {
-                    others(j).map(|i| 1.0 / (at - nodes[i])).sum::<f64>()
-                } else {
-                    others(j).map(|i| (at - nodes[i]) / (node - nodes[i])).product::<f64>() / (node - at)
-                };
-                sum = sum + f[start + j] * weight;
-            }
-            sum
-        })
-        .collect()
+    let mut known: Option<Slopes> = None;
+    let mut rates = Vec::with_capacity(count);
+    for k in 0..count {
+        let start = k.saturating_sub(width / 2).min(count - width);
+        let here = k - start;
+        if width < 2 {
+            rates.push(zero);
+            continue;
+        }
+        let interval = here.min(width - 2);
+        let stencil = Stencil::new(&t[start..start + width], interval);
+        let slopes = match known.filter(|s| s.here == here && s.stencil.is_like(&stencil)) {
+            Some(slopes) => slopes,
+            None => Slopes::new(stencil, here),
+        };
+        let step = t[start + interval + 1] - t[start + interval];
+        let mut sum = zero;
+        for j in 0..width {
+            sum = sum + f[start + j] * slopes.values[j];
+        }
+        known = Some(slopes);
+        rates.push(sum * (1.0 / step));
+    }
+    rates
+}
+
+/// Derivatives, at one of the nodes, of the Lagrange polynomials of all.
+#[derive(Clone, Copy)]
+struct Slopes {
+    stencil: Stencil,
+    here: usize,
+    values: [f64; STENCIL],
+}
+
+impl Slopes {
+    fn new(stencil: Stencil, here: usize) -> Self {
+        let nodes = &stencil.nodes[..stencil.width];
+        let at = nodes[here];
+        let mut values = [0.0; STENCIL];
+        for (j, &node) in nodes.iter().enumerate() {
+            let others = || (0..nodes.len()).filter(|&i| i != j && i != here).map(|i| nodes[i]);
+            // The nodes are distinct because time increases strictly.
+            values[j] = if j == here {
+                others().map(|other| 1.0 / (at - other)).sum()
+            } else {
+                others().map(|other| (at - other) / (node - other)).product::<f64>() / (node - at)
+            };
+        }
+        Self { stencil, here, values }
+    }
 }
 
 /// Nodes in units of the interval `[0, 1]` that is integrated over.
@@ -72,10 +128,10 @@ struct Stencil {
 
 impl Stencil {
     fn new(t: &[f64], interval: usize) -> Self {
-        let (origin, step) = (t[interval], t[interval + 1] - t[interval]);
+        let (origin, inverse) = (t[interval], 1.0 / (t[interval + 1] - t[interval]));
         let mut nodes = [0.0; STENCIL];
         for (node, t) in nodes.iter_mut().zip(t) {
-            *node = (t - origin) / step;
+            *node = (t - origin) * inverse;
         }
         Self { nodes, width: t.len() }
     }

@@ -22,19 +22,75 @@ impl Turning {
 
     pub(super) fn at(mass: &MassProperties, q: DQuat, L: DVec3, impulse: DVec3, first_moment: DVec3) -> Self {
         let R = DMat3::from_quat(q);
-        let K = R * mass.inverse_inertia() * R.transpose();
-        Self { w: K * L, K, M: K * cross_matrix(L), impulse, first_moment }
+        Self::of(R, mass.inverse_inertia(), L, impulse, first_moment)
     }
 
-    /// Right-hand side of the sensitivity equation, block by block.
-    fn rate(&self, theta: &[DMat3; 4]) -> [DMat3; 4] {
-        [
-            self.M * theta[0] + self.K * cross_matrix(self.impulse),
-            self.M * theta[1] + self.K * cross_matrix(self.first_moment),
-            self.M * theta[2] + self.K,
-            self.M * theta[3],
-        ]
+    pub(super) fn of(
+        R: DMat3,
+        inverse_inertia: DMat3,
+        L: DVec3,
+        impulse: DVec3,
+        first_moment: DVec3,
+    ) -> Self {
+        let K = R * inverse_inertia * R.transpose();
+        Self { w: K * L, K, M: times_cross(K, L), impulse, first_moment }
     }
+}
+
+/// One Runge-Kutta step of order 4 of the linear equation `theta' = M theta + S`, as `theta' = w x theta + dw` reduces to
+/// it, for any number of columns: `theta + G0 (M0 theta + S0) + G1 (M1 theta + S1) + G2 (M2 theta + S2)`, start, middle and
+/// end, where the `G` are what the four stages come to.
+pub(super) struct SensitivityStep {
+    transition: DMat3,
+    /// `G K`, for sources `S = K dL`.
+    through: [DMat3; 3],
+}
+
+impl SensitivityStep {
+    pub(super) fn new(start: &Turning, middle: &Turning, end: &Turning, h: f64) -> Self {
+        let (first, last) = (middle.M * middle.M, end.M * middle.M);
+        let half = 0.5 * h * h;
+        let g0 =
+            (DMat3::IDENTITY + middle.M * h + first * half + last * middle.M * (0.5 * h * half)) * (h / 6.0);
+        let g1 = (DMat3::from_diagonal(DVec3::splat(4.0)) + (middle.M + end.M) * h + last * half) * (h / 6.0);
+        let g2 = h / 6.0;
+        Self {
+            transition: DMat3::IDENTITY + g0 * start.M + g1 * middle.M + end.M * g2,
+            through: [g0 * start.K, g1 * middle.K, end.K * g2],
+        }
+    }
+
+    /// A column whose angular momentum changes by these at start, middle and end.
+    pub(super) fn column(&self, theta: DVec3, by_L: [DVec3; 3]) -> DVec3 {
+        let [a, b, c] = self.through;
+        self.transition * theta + a * by_L[0] + b * by_L[1] + c * by_L[2]
+    }
+
+    /// Columns of centre of mass or velocity at the start, whose angular momenta change by `arms x` them.
+    pub(super) fn crossed(&self, theta: DMat3, arms: [DVec3; 3]) -> DMat3 {
+        let [a, b, c] = self.through;
+        self.transition * theta + times_cross(a, arms[0]) + times_cross(b, arms[1]) + times_cross(c, arms[2])
+    }
+
+    /// Columns of the angular momentum at the start.
+    pub(super) fn turned(&self, theta: DMat3) -> DMat3 {
+        let [a, b, c] = self.through;
+        self.transition * theta + a + b + c
+    }
+
+    /// Columns of the orientation at the start.
+    pub(super) fn carried(&self, theta: DMat3) -> DMat3 {
+        self.transition * theta
+    }
+}
+
+/// `m [v]x`.
+fn times_cross(m: DMat3, v: DVec3) -> DMat3 {
+    DMat3::from_cols(
+        m.y_axis * v.z - m.z_axis * v.y,
+        m.z_axis * v.x - m.x_axis * v.z,
+        m.x_axis * v.y - m.y_axis * v.x,
+    )
 }
 
 /// Derivative of the orientation (a rotation vector in world axes) by centre of mass, velocity, angular momentum and
@@ -46,19 +102,16 @@ impl Sensitivity {
         Self([DMat3::ZERO, DMat3::ZERO, DMat3::ZERO, DMat3::IDENTITY])
     }
 
-    /// One Runge-Kutta step of order 4 of the linear equation `theta' = M theta + S`, as `theta' = w x theta + dw`
-    /// reduces to it.
     pub(super) fn advance(&mut self, start: &Turning, middle: &Turning, end: &Turning, h: f64) {
-        let move_by = |theta: &[DMat3; 4], k: &[DMat3; 4], h: f64| -> [DMat3; 4] {
-            std::array::from_fn(|i| theta[i] + k[i] * h)
-        };
-        let k1 = start.rate(&self.0);
-        let k2 = middle.rate(&move_by(&self.0, &k1, 0.5 * h));
-        let k3 = middle.rate(&move_by(&self.0, &k2, 0.5 * h));
-        let k4 = end.rate(&move_by(&self.0, &k3, h));
-        for i in 0..4 {
-            self.0[i] += (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (h / 6.0);
-        }
+        let step = SensitivityStep::new(start, middle, end, h);
+        let all = [start, middle, end];
+        let [p, v, L, theta] = self.0;
+        self.0 = [
+            step.crossed(p, all.map(|turning| turning.impulse)),
+            step.crossed(v, all.map(|turning| turning.first_moment)),
+            step.turned(L),
+            step.carried(theta),
+        ];
     }
 
     /// `block' v`.

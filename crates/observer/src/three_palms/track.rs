@@ -1,6 +1,6 @@
 //! A sensor log as the estimator sees it: contacts in the world, and running integrals of the contact wrench.
 
-use super::quadrature::{derivative, running_integral};
+use super::quadrature::{RunningIntegral, derivative};
 use contact_kinematics::{PalmError, PalmFrame, PalmState};
 use glam::DVec3;
 use object_dynamics::{PalmReading, Sample, SensorLog};
@@ -157,15 +157,17 @@ impl Track {
         let torque: Vec<DVec3> =
             nodes.iter().map(|n| sum(|i| n.p_WC[i].cross(n.forces[i] * n.palms[i].frame.n))).collect();
         let timed: Vec<DVec3> = force.iter().zip(&t).map(|(f, t)| *f * *t).collect();
-        let impulse = running_integral(&t, &force, DVec3::ZERO);
-        let travel = running_integral(&t, &impulse, DVec3::ZERO);
-        let first_moment = running_integral(&t, &timed, DVec3::ZERO);
+        let running = RunningIntegral::new(&t);
+        let integral = |rates: &[DVec3]| running.of(rates, DVec3::ZERO);
+        let impulse = integral(&force);
+        let travel = integral(&impulse);
+        let first_moment = integral(&timed);
         let position: Vec<DVec3> =
             travel.iter().zip(&t).map(|(x, t)| 0.5 * gravity * *t * *t + *x / mass).collect();
         let moment_rate: Vec<DVec3> = (0..t.len()).map(|k| torque[k] - position[k].cross(force[k])).collect();
-        let moment = running_integral(&t, &moment_rate, DVec3::ZERO);
+        let moment = integral(&moment_rate);
         let curl_rate: Vec<DVec3> = (0..t.len()).map(|k| travel[k].cross(force[k])).collect();
-        let curl = running_integral(&t, &curl_rate, DVec3::ZERO);
+        let curl = integral(&curl_rate);
         let integrals: Vec<Integrals> = (0..t.len())
             .map(|k| Integrals {
                 impulse: impulse[k],
@@ -293,10 +295,12 @@ impl Track {
         if reach < 2 {
             return node;
         }
-        for i in 0..3 {
-            node.p_WC[i] = (0..=2 * reach)
-                .map(|j| smoothing_weight(reach, j as f64 - reach as f64) * self.nodes[k + j - reach].p_WC[i])
-                .sum();
+        node.p_WC = [DVec3::ZERO; 3];
+        for (j, near) in self.nodes[k - reach..=k + reach].iter().enumerate() {
+            let weight = smoothing_weight(reach, j as f64 - reach as f64);
+            for i in 0..3 {
+                node.p_WC[i] += weight * near.p_WC[i];
+            }
         }
         node
     }
@@ -365,6 +369,18 @@ pub(super) fn palm_states(
     readings: &[&PalmReading],
 ) -> Result<Vec<PalmState>, TrackError> {
     let normals: Vec<DVec3> = readings.iter().map(|r| r.normal.get()).collect();
+    // A palm that stands still, as most do, has one frame.
+    let still = normals.windows(2).all(|pair| pair[0] == pair[1]);
+    if let (true, Some((first, &t0))) =
+        (still && readings.iter().all(|r| r.rate.is_none()), readings.iter().zip(t).next())
+    {
+        let frame = PalmFrame::from_normal(first.normal).map_err(|source| TrackError::Palm {
+            palm: i + 1,
+            t: start + t0,
+            source,
+        })?;
+        return Ok(vec![PalmState { frame, rate: 0.0, acceleration: 0.0 }; t.len()]);
+    }
     let mut frames = Vec::with_capacity(t.len());
     for (reading, t) in readings.iter().zip(t) {
         let frame = PalmFrame::from_normal(reading.normal);

@@ -2,29 +2,28 @@
 
 use super::principal::{PrincipalFrame, principal_frame};
 use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem, MASS, constants};
-use super::search::{mass_of_weight, scales_of_ball, search};
-use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
+use super::search::{fit_near, mass_of_weight, scales_of_ball, search, unexplained};
+use crate::least_squares::{Fit, FitStatus, Observability};
+use crate::three_palms::clean::{RANK_TOLERANCE, clean_covariance, root_mean_square, stride};
 use crate::three_palms::convexity::largest_violation;
 use crate::three_palms::correlation::whiteness;
 use crate::three_palms::estimate::{
-    EstimateError, LARGEST_MISFIT, MotionEstimate, RANK_TOLERANCE, WORTH_ADJUSTING, floored, judge,
+    EstimateError, LARGEST_MISFIT, MotionEstimate, WORTH_ADJUSTING, floored, judge,
 };
 use crate::three_palms::evidence::{Evidence, Reason, WeakDirection, too_short};
-use crate::three_palms::momentum::{MomentumProblem, Scales, StartState};
+use crate::three_palms::momentum::{MomentumProblem, MotionState, Scales, StartState};
 use crate::three_palms::noise::noise_level;
+use crate::three_palms::polish::{Conditions, polish_all};
 use crate::three_palms::refine::{Refined, Setting, refine};
-use crate::three_palms::state_space::Parameters;
+use crate::three_palms::state_space::{Parameters, numbers_of_inertia};
 use crate::three_palms::track::Track;
 use crate::three_palms::{NoiseLevel, curves};
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use nalgebra::SMatrix;
 use object_dynamics::{MassProperties, SensorLog};
 
 /// States of the model: motion, mass and inertia.
 const STATES: usize = 19;
-
-/// Least relative contact noise that the data are adjusted with: below it, blocks of samples are not exact enough.
-const FAINTEST: f64 = 1e-5;
 
 /// What is known beside the log of a body of which nothing is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,6 +69,36 @@ pub struct BodyEstimate {
 /// [`EstimateError`] when the log cannot be used at all; an estimate that should not be believed is returned with
 /// [`Reliability::Unreliable`](crate::Reliability) and its reasons.
 pub fn estimate_body(log: &SensorLog, known: &UnknownBody) -> Result<BodyEstimate, EstimateError> {
+    let (track, scales) = track(log, known)?;
+    let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
+    let found = search(&track, scales, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
+    estimate_near(&track, scales, noise, &found)
+}
+
+/// As [`estimate_body`] from a body and a start of its motion that are known to be near, without a search: the minimum that
+/// they lie above.
+///
+/// # Errors
+/// As [`estimate_body`].
+pub fn estimate_body_from(
+    log: &SensorLog,
+    known: &UnknownBody,
+    mass: &MassProperties,
+    near: &StartState,
+) -> Result<BodyEstimate, EstimateError> {
+    let (track, scales) = track(log, known)?;
+    let R = DMat3::from_quat(near.R_WO);
+    let near = BodyPoint {
+        start: StartState { R_WO: DQuat::IDENTITY, ..*near },
+        log_mass: mass.mass().ln(),
+        inertia: numbers_of_inertia(R * mass.inertia() * R.transpose()),
+    };
+    let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
+    let found = fit_near(&track, scales, near).ok_or(EstimateError::NoFit)?;
+    estimate_near(&track, scales, noise, &found)
+}
+
+fn track(log: &SensorLog, known: &UnknownBody) -> Result<(Track, Scales), EstimateError> {
     if !(known.gravity.is_finite() && known.gravity.length() > 0.0) {
         return Err(EstimateError::Gravity { gravity: known.gravity });
     }
@@ -77,104 +106,185 @@ pub fn estimate_body(log: &SensorLog, known: &UnknownBody) -> Result<BodyEstimat
     let weight = mass_of_weight(&track).ok_or(EstimateError::NoFit)?;
     let track = track.of_mass(weight);
     let scales = scales_of_ball(&track).ok_or(EstimateError::NoFit)?;
-    let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
-    let mut fit = search(&track, scales, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
-    if noise.contact <= WORTH_ADJUSTING * scales.length {
-        let solver = LevenbergMarquardt { iterations: 300, step_tolerance: 1e-11, damping: 1e-9, prior: 0.0 };
-        fit = solver.fit(&BodyProblem::new(&track, scales, f64::INFINITY), fit.point);
-    }
-    finish(&track, scales, noise, &fit)
+    Ok((track, scales))
 }
 
-fn finish(
+/// The estimate that a fit of the thinned track leads to.
+fn estimate_near(
+    track: &Track,
+    scales: Scales,
+    noise: NoiseLevel,
+    found: &Fit<BodyPoint, BODY_UNKNOWNS>,
+) -> Result<BodyEstimate, EstimateError> {
+    if noise.contact > WORTH_ADJUSTING * scales.length {
+        adjusted_estimate(track, scales, noise, found)
+    } else {
+        clean_estimate(track, scales, noise, found.point)
+    }
+}
+
+/// What an estimate is put together from.
+struct Found<'a> {
+    scales: Scales,
+    /// Mass, in axes of the world at the start.
+    mass: MassProperties,
+    start: StartState,
+    motion: Vec<MotionState>,
+    residuals: Vec<[f64; 3]>,
+    /// Residual that noise explains, m/s.
+    predicted: f64,
+    /// Covariance of the 16 unknowns.
+    covariance: SMatrix<f64, BODY_UNKNOWNS, BODY_UNKNOWNS>,
+    observability: Observability<BODY_UNKNOWNS>,
+    noise: NoiseLevel,
+    iterations: usize,
+    status: FitStatus,
+    /// The adjustment of the data, where there was one.
+    refined: Option<&'a Refined<STATES>>,
+}
+
+/// The least-squares body and motion of a log with next to no noise, from a start that is near.
+fn clean_estimate(
+    track: &Track,
+    scales: Scales,
+    noise: NoiseLevel,
+    near: BodyPoint,
+) -> Result<BodyEstimate, EstimateError> {
+    let stride = stride(track, &scales);
+    let thin = track.thinned(stride);
+    let problem = BodyProblem::new(track, scales, f64::INFINITY);
+    let thin_problem = BodyProblem::new(&thin, scales, f64::INFINITY);
+    let fit = polish_all(&problem, &thin_problem, stride, near).ok_or(EstimateError::NoFit)?;
+    let mass = fit.point.mass().ok_or(EstimateError::NoFit)?;
+    let track = track.of_mass(mass.mass());
+    let start = fit.point.start;
+    let motion = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
+    let moved = motion.motion(&start);
+    let (residuals, _) = motion.residuals_along(&moved, noise.contact);
+    let observability = Observability::new(&fit.normal.information);
+    let thin_of_mass = thin.of_mass(mass.mass());
+    let (steps, _) = MomentumProblem::new(&thin_of_mass, &mass, scales, f64::INFINITY).linearised(&start);
+    let rows = thin_problem.slopes(&fit.point).ok_or(EstimateError::NoFit)?;
+    let (scaled, predicted) = clean_covariance(&steps, &rows, &observability, &noise, stride, &residuals);
+    let sizes = problem.sizes();
+    let found = Found {
+        scales,
+        mass,
+        start,
+        motion: moved,
+        residuals,
+        predicted,
+        covariance: SMatrix::from_fn(|i, j| scaled[(i, j)] * sizes[i] * sizes[j]),
+        observability,
+        noise,
+        iterations: fit.iterations,
+        status: fit.status,
+        refined: None,
+    };
+    assemble(&track, found)
+}
+
+/// The most probable body and motion, data adjusted with them.
+fn adjusted_estimate(
     track: &Track,
     scales: Scales,
     noise: NoiseLevel,
     fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
 ) -> Result<BodyEstimate, EstimateError> {
     let mass = fit.point.mass().ok_or(EstimateError::NoFit)?;
+    let setting = Setting { scales, noise, constants: constants(), deviations: &[], axes_chosen: true };
     let track = track.of_mass(mass.mass());
-    let adjusted = noise.contact > WORTH_ADJUSTING * scales.length;
-    // Covariances are proportional to the noise squared: logs with next to none are weighed as if they had some.
-    let faint = (FAINTEST * scales.length / noise.contact).max(1.0);
-    let weighed = NoiseLevel { contact: noise.contact * faint, force: noise.force * faint };
-    let setting =
-        Setting { scales, noise: weighed, constants: constants(), deviations: &[], axes_chosen: true };
     let mut refined = refine::<STATES>(&track, &mass, Parameters::new(&mass), &fit.point.start, &setting)
         .map_err(|_| EstimateError::NoFit)?;
-    if adjusted && !too_short(&track, &scales) {
-        refined.widen(&track, &weighed);
+    if !too_short(&track, &scales) {
+        refined.widen(&track, &noise);
     }
-    let (mass, start) = if adjusted { of_state(&refined)? } else { (mass, fit.point.start) };
+    let (mass, start) = of_state(&refined)?;
     let track = track.of_mass(mass.mass());
     let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
-    let motion = if adjusted {
-        problem.motion_through(&refined.nodes, &refined.states())
-    } else {
-        problem.motion(&start)
-    };
+    let motion = problem.motion_through(&refined.nodes, &refined.states());
     let (residuals, predicted) = problem.residuals_along(&motion, noise.contact);
-    let rms = (residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (3 * residuals.len()) as f64).sqrt();
-    // Without noise to speak of, what is left are lasting errors: as in the fit of a known body.
-    let excess = if adjusted { 1.0 } else { (rms / predicted).powi(2).max(1.0) };
-    let covariance = body_covariance(&refined, excess / (faint * faint));
-    let frame = principal_frame(&mass, &covariance).ok_or(EstimateError::NoFit)?;
-    let observability = Observability::new(&fit.normal.information);
-    let eigenvalues = observability.eigenvalues;
-    let largest = eigenvalues[BODY_UNKNOWNS - 1];
-    let sizes = BodyProblem::new(&track, scales, f64::INFINITY).sizes();
-    let scaled = SMatrix::<f64, BODY_UNKNOWNS, BODY_UNKNOWNS>::from_fn(|i, j| {
-        covariance[(i, j)] / (sizes[i] * sizes[j])
-    });
-    let spectrum = Observability::new(&scaled);
-    let weakest = WeakDirection::of_body(
-        &spectrum.directions.column(BODY_UNKNOWNS - 1).into_owned(),
-        spectrum.eigenvalues[BODY_UNKNOWNS - 1].max(0.0).sqrt(),
-    );
-    let evidence = Evidence {
-        samples: track.len(),
-        duration: track.duration(),
-        residual_rms: rms,
-        noise_explains: predicted,
-        whiteness: whiteness(&residuals),
-        rank: eigenvalues.iter().filter(|&&v| v > RANK_TOLERANCE * largest).count(),
-        condition: (largest / eigenvalues[0].max(0.0)).sqrt(),
-        smallest_information: eigenvalues[0],
-        weakest,
+    let status = if refined.settled() { FitStatus::Converged } else { FitStatus::Stalled };
+    let found = Found {
+        scales,
+        mass,
+        start,
+        motion,
+        residuals,
+        predicted,
+        covariance: body_covariance(&refined),
+        observability: Observability::new(&fit.normal.information),
         noise,
-        log_odds: f64::INFINITY,
-        bias: if adjusted { refined.shift } else { 0.0 },
         iterations: fit.iterations + refined.solution.iterations,
+        status,
+        refined: Some(&refined),
     };
-    let settled = if adjusted { refined.settled() } else { fit.status == FitStatus::Converged };
-    let status = if settled { FitStatus::Converged } else { FitStatus::Stalled };
+    let mut estimate = assemble(&track, found)?;
+    if let Some(reason) = unexplained(&track, scales, &noise, fit) {
+        estimate.motion.reliability.add(reason);
+    }
+    Ok(estimate)
+}
+
+fn assemble(track: &Track, found: Found<'_>) -> Result<BodyEstimate, EstimateError> {
+    let evidence = evidence(track, &found);
+    let Found { scales, mass, start, motion, covariance, status, refined, .. } = found;
     let mut reliability = judge(&evidence, status, &scales);
-    let misfit = refined.misfit(BODY_UNKNOWNS);
-    if adjusted && (misfit.is_nan() || misfit > LARGEST_MISFIT) {
-        reliability.add(Reason::Inconsistent { misfit });
+    if let Some(refined) = refined {
+        let misfit = refined.misfit(BODY_UNKNOWNS);
+        if misfit.is_nan() || misfit > LARGEST_MISFIT {
+            reliability.add(Reason::Inconsistent { misfit });
+        }
+        reliability.check_length(track, &scales);
     }
-    if adjusted {
-        reliability.check_length(&track, &scales);
-    }
+    let frame = principal_frame(&mass, &covariance).ok_or(EstimateError::NoFit)?;
     let PrincipalFrame { body, axes, covariance } = frame;
     // From the axes of the world at the start to the principal ones.
-    let turned: Vec<_> =
-        motion.into_iter().map(|m| crate::three_palms::MotionState { R_WO: m.R_WO * axes, ..m }).collect();
-    let contact_curves = curves::contact_curves(&track, &turned)?;
-    let radii = curves::radii(&track, &turned);
-    let uncertainty = if adjusted { curves::uncertainty(&track, &refined, axes) } else { Vec::new() };
-    reliability.check_convexity(largest_violation(&track, &refined.nodes, &turned, &uncertainty));
+    let turned: Vec<_> = motion.into_iter().map(|m| MotionState { R_WO: m.R_WO * axes, ..m }).collect();
+    let uncertainty = refined.map_or_else(Vec::new, |r| curves::uncertainty(track, r, axes));
+    if let Some(refined) = refined {
+        reliability.check_convexity(largest_violation(track, &refined.nodes, &turned, &uncertainty));
+    }
     let motion = MotionEstimate {
         start: StartState { R_WO: axes, ..start },
+        curves: curves::contact_curves(track, &turned)?,
+        radii: curves::radii(track, &turned),
         motion: turned,
-        curves: contact_curves,
-        radii,
         uncertainty,
         covariance,
         evidence,
         reliability,
     };
     Ok(BodyEstimate { body, motion })
+}
+
+fn evidence(track: &Track, found: &Found<'_>) -> Evidence {
+    let eigenvalues = found.observability.eigenvalues;
+    let largest = eigenvalues[BODY_UNKNOWNS - 1];
+    let sizes = BodyProblem::new(track, found.scales, f64::INFINITY).sizes();
+    let scaled = SMatrix::<f64, BODY_UNKNOWNS, BODY_UNKNOWNS>::from_fn(|i, j| {
+        found.covariance[(i, j)] / (sizes[i] * sizes[j])
+    });
+    let spectrum = Observability::new(&scaled);
+    let weakest = WeakDirection::of_body(
+        &spectrum.directions.column(BODY_UNKNOWNS - 1).into_owned(),
+        spectrum.eigenvalues[BODY_UNKNOWNS - 1].max(0.0).sqrt(),
+    );
+    Evidence {
+        samples: track.len(),
+        duration: track.duration(),
+        residual_rms: root_mean_square(&found.residuals),
+        noise_explains: found.predicted,
+        whiteness: whiteness(&found.residuals),
+        rank: eigenvalues.iter().filter(|&&v| v > RANK_TOLERANCE * largest).count(),
+        condition: (largest / eigenvalues[0].max(0.0)).sqrt(),
+        smallest_information: eigenvalues[0],
+        weakest,
+        noise: found.noise,
+        log_odds: f64::INFINITY,
+        bias: found.refined.map_or(0.0, |refined| refined.shift),
+        iterations: found.iterations,
+    }
 }
 
 /// Mass, in axes of the world at the start, and the start of the motion in the first state.
@@ -187,8 +297,8 @@ fn of_state(refined: &Refined<STATES>) -> Result<(MassProperties, StartState), E
 }
 
 /// Covariance of the 16 unknowns: the orientation at the start is chosen and drops out.
-fn body_covariance(refined: &Refined<STATES>, factor: f64) -> SMatrix<f64, BODY_UNKNOWNS, BODY_UNKNOWNS> {
+fn body_covariance(refined: &Refined<STATES>) -> SMatrix<f64, BODY_UNKNOWNS, BODY_UNKNOWNS> {
     let all = &refined.solution.covariances[0];
     let place = |i: usize| if i < MASS { i } else { i + 3 };
-    SMatrix::from_fn(|i, j| factor * all[(place(i), place(j))])
+    SMatrix::from_fn(|i, j| all[(place(i), place(j))])
 }

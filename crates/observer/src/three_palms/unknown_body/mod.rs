@@ -5,6 +5,6 @@ mod principal;
 mod problem;
 mod search;
 
-pub use estimate::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body};
+pub use estimate::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body, estimate_body_from};
 pub(crate) use problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem};
 pub(crate) use search::{begin, mass_of_weight, scales_of_ball, spins};

@@ -3,12 +3,13 @@
 //! The axes of the inertia tensor are the world's at the start, so that the orientation there is no unknown: 16 remain.
 
 use crate::least_squares::{LeastSquares, NormalEquations};
-use crate::three_palms::momentum::{Scales, StartState, momentum};
-use crate::three_palms::sensitivity::cross_matrix;
+use crate::three_palms::momentum::{Scales, StartState, by_state, momentum};
+use crate::three_palms::polish::Conditions;
+use crate::three_palms::sensitivity::{SensitivityStep, Turning};
 use crate::three_palms::state_space::{BODY, Constant, inertia_of_numbers, inertia_slope};
 use crate::three_palms::track::{Integrals, Track};
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::{Matrix3, SMatrix, SVector};
+use nalgebra::SVector;
 use object_dynamics::MassProperties;
 
 /// Unknowns: centre of mass, velocity, angular momentum, mass, inertia.
@@ -16,7 +17,8 @@ pub(crate) const BODY_UNKNOWNS: usize = 16;
 /// Place of the logarithm of the mass among them; the inertia's numbers follow.
 pub(super) const MASS: usize = 9;
 pub(super) type BodyRow = SVector<f64, BODY_UNKNOWNS>;
-type Columns = SMatrix<f64, 3, BODY_UNKNOWNS>;
+/// Mass and inertia.
+const BODY_CONSTANTS: usize = BODY_UNKNOWNS - MASS;
 
 /// A motion's start, orientation apart, and the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,11 +42,11 @@ pub(crate) struct BodyProblem<'a> {
     end: usize,
 }
 
-/// What follows from a point and an orientation at one time.
-struct Turn {
-    K: DMat3,
-    w: DVec3,
-    R: DMat3,
+/// What the sensitivities need at one time: of the orientation, and by mass and inertia the change of the angular momentum
+/// that would turn the body as much.
+struct BodyTurn {
+    turning: Turning,
+    by_body: [DVec3; BODY_CONSTANTS],
 }
 
 /// A point with what does not change over the walk.
@@ -57,10 +59,15 @@ struct Body {
 }
 
 impl Body {
-    fn turn(&self, q: DQuat, L: DVec3) -> Turn {
+    fn turn(&self, q: DQuat, L: DVec3, [impulse, first_moment, _, curl]: &[DVec3; 4]) -> BodyTurn {
         let R = DMat3::from_quat(q);
-        let K = R * self.inverse_inertia * R.transpose();
-        Turn { K, w: K * L, R }
+        let turning = Turning::of(R, self.inverse_inertia, L, *impulse, *first_moment);
+        let w_O = R.transpose() * turning.w;
+        let by_body = std::array::from_fn(|j| match j {
+            0 => *curl * self.inverse_mass,
+            _ => -(R * (self.slopes[j - 1] * w_O)),
+        });
+        BodyTurn { turning, by_body }
     }
 
     /// Angular momentum from the integrals.
@@ -115,7 +122,7 @@ impl<'a> BodyProblem<'a> {
 
     fn walk(&self, point: &BodyPoint, body: &Body, mut visit: impl FnMut(usize, DQuat, (DQuat, DVec3))) {
         let rate = |q: DQuat, L: DVec3| {
-            let w = body.inverse_inertia * (q.inverse() * L);
+            let w = body.inverse_inertia * (q.conjugate() * L);
             q * DQuat::from_xyzw(0.5 * w.x, 0.5 * w.y, 0.5 * w.z, 0.0)
         };
         let mut q = DQuat::IDENTITY;
@@ -126,13 +133,13 @@ impl<'a> BodyProblem<'a> {
             let middle_L = body.momentum(&point.start, &self.track.middle[k - 1]);
             let end_L = self.kinematics(point, body, k).2;
             let k1 = rate(q, L);
-            let k2 = rate((q + k1 * (0.5 * h)).normalize(), middle_L);
-            let q3 = (q + k2 * (0.5 * h)).normalize();
+            let k2 = rate(q + k1 * (0.5 * h), middle_L);
+            let q3 = q + k2 * (0.5 * h);
             let k3 = rate(q3, middle_L);
-            let k4 = rate((q + k3 * h).normalize(), end_L);
+            let k4 = rate(q + k3 * h, end_L);
             q = (q + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0)).normalize();
             L = end_L;
-            visit(k, q, (q3, middle_L));
+            visit(k, q, (q3.normalize(), middle_L));
         }
     }
 
@@ -145,80 +152,92 @@ impl<'a> BodyProblem<'a> {
         })
     }
 
-    /// Derivative of the angular momentum by the unknowns.
-    fn momentum_slope(&self, body: &Body, [impulse, first_moment, _, curl]: &[DVec3; 4]) -> Columns {
-        let mut L = Columns::zeros();
-        put(&mut L, 0, cross_matrix(*impulse));
-        put(&mut L, 1, cross_matrix(*first_moment));
-        put(&mut L, 2, DMat3::IDENTITY);
-        L.set_column(MASS, &(*curl * body.inverse_mass).into());
-        L
+    /// Calls `visit(k, rows, residuals)` at every sample: derivatives of the contact conditions by the scaled unknowns, and
+    /// the conditions, m/s.
+    fn each_row(&self, point: &BodyPoint, body: &Body, mut visit: impl FnMut(usize, [BodyRow; 3], [f64; 3])) {
+        let sizes = self.sizes();
+        let mut theta = BodySensitivity::at_start();
+        let mut before: Option<BodyTurn> = None;
+        self.walk(point, body, |k, q, (middle, middle_L)| {
+            let (v, p, L) = self.kinematics(point, body, k);
+            let Integrals { impulse, first_moment, moment, curl, .. } = self.track.integrals[k];
+            let here = body.turn(q, L, &[impulse, first_moment, moment, curl]);
+            if let Some(before) = &before {
+                let halfway = body.turn(middle, middle_L, &self.track.middle[k - 1]);
+                theta.advance([before, &halfway, &here], self.track.t[k] - self.track.t[k - 1]);
+            }
+            let rows = std::array::from_fn(|i| {
+                let by_state = by_state(&self.track.nodes[k], i, p, L, &here.turning);
+                self.row(k, &by_state, &here, &theta, body).component_mul(&sizes)
+            });
+            visit(k, rows, self.residuals(k, v, p, here.turning.w));
+            before = Some(here);
+        });
     }
 
-    /// `M` and `S` of `theta' = M theta + S`.
-    fn slope(&self, body: &Body, turn: &Turn, L: DVec3, by_L: &Columns) -> (Matrix3<f64>, Columns) {
-        let mut source = *by_L;
-        for (number, slope) in body.slopes.iter().enumerate() {
-            let change = -(turn.R * (*slope * (turn.R.transpose() * turn.w)));
-            source.set_column(MASS + 1 + number, &change.into());
+    /// Derivatives of a contact condition by the unknowns from those by the state: `dp = dcm0 + t dv0 - travel dm / m^2`,
+    /// `dL = dL0 + impulse x dcm0 + first_moment x dv0 + curl dm / m^2`.
+    fn row(
+        &self,
+        k: usize,
+        by_state: &[DVec3; 4],
+        here: &BodyTurn,
+        theta: &BodySensitivity,
+        body: &Body,
+    ) -> BodyRow {
+        let [by_p, by_v, by_L, by_theta] = *by_state;
+        let Turning { impulse, first_moment, .. } = here.turning;
+        let t = self.track.t[k];
+        let through = theta.blocks.map(|block| block.transpose() * by_theta);
+        let p = by_p + by_L.cross(impulse) + through[0];
+        let v = by_v + by_p * t + by_L.cross(first_moment) + through[1];
+        let L = by_L + through[2];
+        let mut row = BodyRow::zeros();
+        row.as_mut_slice()[..9].copy_from_slice(&[p.x, p.y, p.z, v.x, v.y, v.z, L.x, L.y, L.z]);
+        for j in 0..BODY_CONSTANTS {
+            row[MASS + j] = by_theta.dot(theta.columns[j]) + by_L.dot(here.by_body[j]);
         }
-        (Matrix3::from(turn.K * cross_matrix(L)), Matrix3::from(turn.K) * source)
+        row[MASS] -= body.inverse_mass * (by_v.dot(impulse) + by_p.dot(self.travel(k)));
+        row
     }
 }
 
-fn put(columns: &mut Columns, block: usize, value: DMat3) {
-    for (j, column) in [value.x_axis, value.y_axis, value.z_axis].into_iter().enumerate() {
-        columns.set_column(3 * block + j, &column.into());
-    }
+/// Derivatives of the orientation, a rotation vector in world axes, by the unknowns: centre of mass, velocity and angular
+/// momentum at the start, then mass and inertia.
+struct BodySensitivity {
+    blocks: [DMat3; 3],
+    columns: [DVec3; BODY_CONSTANTS],
 }
 
-fn vector(v: DVec3) -> SVector<f64, 3> {
-    v.into()
+impl BodySensitivity {
+    fn at_start() -> Self {
+        Self { blocks: [DMat3::ZERO; 3], columns: [DVec3::ZERO; BODY_CONSTANTS] }
+    }
+
+    fn advance(&mut self, turns: [&BodyTurn; 3], h: f64) {
+        let [start, middle, end] = turns.map(|turn| &turn.turning);
+        let step = SensitivityStep::new(start, middle, end, h);
+        let [p, v, L] = self.blocks;
+        self.blocks = [
+            step.crossed(p, turns.map(|turn| turn.turning.impulse)),
+            step.crossed(v, turns.map(|turn| turn.turning.first_moment)),
+            step.turned(L),
+        ];
+        for (j, column) in self.columns.iter_mut().enumerate() {
+            *column = step.column(*column, turns.map(|turn| turn.by_body[j]));
+        }
+    }
 }
 
 impl LeastSquares<BODY_UNKNOWNS> for BodyProblem<'_> {
     type Point = BodyPoint;
 
     fn linearise(&self, point: &BodyPoint) -> Option<NormalEquations<BODY_UNKNOWNS>> {
-        let body = self.body(point)?;
-        let sizes = self.sizes();
         let mut normal = NormalEquations::default();
-        let mut theta = Columns::zeros();
-        let mut before: Option<(Matrix3<f64>, Columns)> = None;
-        self.walk(point, &body, |k, q, (middle, middle_L)| {
-            let (v, p, L) = self.kinematics(point, &body, k);
-            let turn = body.turn(q, L);
-            let Integrals { impulse, first_moment, moment, curl, .. } = self.track.integrals[k];
-            let by_L = self.momentum_slope(&body, &[impulse, first_moment, moment, curl]);
-            let here = self.slope(&body, &turn, L, &by_L);
-            if let Some((m0, s0)) = &before {
-                let h = self.track.t[k] - self.track.t[k - 1];
-                let halfway = self.momentum_slope(&body, &self.track.middle[k - 1]);
-                let (m1, s1) = self.slope(&body, &body.turn(middle, middle_L), middle_L, &halfway);
-                let k1 = m0 * theta + s0;
-                let k2 = m1 * (theta + k1 * (0.5 * h)) + s1;
-                let k3 = m1 * (theta + k2 * (0.5 * h)) + s1;
-                let k4 = here.0 * (theta + k3 * h) + here.1;
-                theta += (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0);
+        self.each_row(point, &self.body(point)?, |_, rows, residuals| {
+            for (row, residual) in rows.iter().zip(residuals) {
+                normal.add(row, residual);
             }
-            // dw = M theta - w x theta + S.
-            let turning = here.0 * theta - Matrix3::from(cross_matrix(turn.w)) * theta + here.1;
-            let (t, travel) = (self.track.t[k], self.travel(k));
-            let values = self.residuals(k, v, p, turn.w);
-            for i in 0..3 {
-                let node = &self.track.nodes[k];
-                let n = node.palms[i].frame.n;
-                let a = n.cross(node.p_WC[i] - p);
-                let by_p = turn.w.cross(n);
-                let mut row: BodyRow = -(turning.transpose() * vector(a));
-                for axis in 0..3 {
-                    row[axis] += by_p[axis];
-                    row[3 + axis] += n[axis] + t * by_p[axis];
-                }
-                row[MASS] -= body.inverse_mass * (n.dot(impulse) + by_p.dot(travel));
-                normal.add(&row.component_mul(&sizes), values[i]);
-            }
-            before = Some(here);
         });
         normal.cost.is_finite().then_some(normal)
     }
@@ -228,7 +247,7 @@ impl LeastSquares<BODY_UNKNOWNS> for BodyProblem<'_> {
         let mut cost = 0.0;
         self.walk(point, &body, |k, q, _| {
             let (v, p, L) = self.kinematics(point, &body, k);
-            let w = q * (body.inverse_inertia * (q.inverse() * L));
+            let w = q * (body.inverse_inertia * (q.conjugate() * L));
             cost += self.residuals(k, v, p, w).iter().map(|e| e * e).sum::<f64>();
         });
         cost.is_finite().then_some(cost)
@@ -245,6 +264,24 @@ impl LeastSquares<BODY_UNKNOWNS> for BodyProblem<'_> {
         };
         let inertia = std::array::from_fn(|k| point.inertia[k] + step[MASS + 1 + k]);
         BodyPoint { start, log_mass: point.log_mass + step[MASS], inertia }
+    }
+}
+
+impl Conditions<BODY_UNKNOWNS> for BodyProblem<'_> {
+    fn conditions(&self, point: &BodyPoint) -> Option<Vec<[f64; 3]>> {
+        let body = self.body(point)?;
+        let mut all = Vec::with_capacity(self.end);
+        self.walk(point, &body, |k, q, _| {
+            let (v, p, L) = self.kinematics(point, &body, k);
+            all.push(self.residuals(k, v, p, q * (body.inverse_inertia * (q.conjugate() * L))));
+        });
+        Some(all)
+    }
+
+    fn slopes(&self, point: &BodyPoint) -> Option<Vec<[BodyRow; 3]>> {
+        let mut all = Vec::with_capacity(self.end);
+        self.each_row(point, &self.body(point)?, |_, rows, _| all.push(rows));
+        Some(all)
     }
 }
 

@@ -5,27 +5,28 @@
 
 use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem};
 use crate::least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Observability};
+use crate::three_palms::clean::information_inverse;
 use crate::three_palms::cold_start::{
-    EXPLAINED, GROWTH, NEXT_TO_NOTHING, SAMPLES_PER_NATURAL_TIME, from_normal_speeds, natural_time,
-    rest_state,
+    EXPLAINED, GROWTH, SAMPLES_PER_NATURAL_TIME, SEARCHED_PER_NATURAL_TIME, WRONG, continuing,
+    from_normal_speeds, natural_time, next_to_nothing, rest_state, stride,
 };
 use crate::three_palms::covariance::{NoiseLevel, Sampling, propagate};
-use crate::three_palms::estimate::information_inverse;
+
+use crate::three_palms::evidence::Reason;
 use crate::three_palms::momentum::{MomentumProblem, Scales};
+use crate::three_palms::polish::polish;
 use crate::three_palms::state_space::numbers_of_inertia;
 use crate::three_palms::track::{Track, smoothing_variance};
 use glam::{DMat3, DQuat, DVec3};
 
-/// Families of starts, tried in this order until one explains the data: first window in natural times, height as a share
+/// Families of starts, tried in this order until one explains the data: first window in natural times, heights as shares
 /// of the one that static balance suggests, and spin in natural units.
-const ROUNDS: [(f64, &[f64], f64); 8] = [
-    (2.0, &[1.0], 0.0),
-    (2.0, &[0.8, 1.2], 0.0),
+const ROUNDS: [(f64, &[f64], f64); 6] = [
+    (2.0, &[1.0, 0.8, 1.2], 0.0),
     (4.0, &[1.0, 0.8, 1.2], 0.0),
     (1.0, &[1.0, 0.8, 1.2], 0.0),
-    (2.0, &[1.0], 0.4),
+    (2.0, &[1.0, 0.8, 1.2], 0.4),
     (4.0, &[1.0], 0.4),
-    (2.0, &[0.8, 1.2], 0.4),
     (2.0, &[1.0], 0.8),
 ];
 /// Mean squared radius of gyration of the ball that the inertia begins with, in squared natural lengths.
@@ -33,10 +34,9 @@ const BALL: f64 = 0.4;
 /// Share of the mean information that holds the unknowns while the windows grow.
 const PRIOR: f64 = 1e-3;
 const COARSE: LevenbergMarquardt =
-    LevenbergMarquardt { iterations: 25, step_tolerance: 1e-6, damping: 1e-2, prior: PRIOR };
-/// The last fit of a search, with nothing held.
-const FREE: LevenbergMarquardt =
-    LevenbergMarquardt { iterations: 60, step_tolerance: 1e-8, damping: 1e-3, prior: 0.0 };
+    LevenbergMarquardt { iterations: 10, step_tolerance: 1e-6, damping: 1e-2, prior: PRIOR };
+/// Steps of the last fit of a search, with nothing held.
+const STEPS: usize = 60;
 
 /// The mass that the mean force carries, kg: the momentum changes little against the weight's impulse.
 pub(crate) fn mass_of_weight(track: &Track) -> Option<f64> {
@@ -47,26 +47,46 @@ pub(crate) fn mass_of_weight(track: &Track) -> Option<f64> {
 }
 
 /// The best fits of a thinned track found, best first.
+///
+/// All starts of a round are fitted to its first window; then they are followed, the best first, until one explains the data.
 pub(super) fn search(track: &Track, scales: Scales, noise: NoiseLevel) -> Vec<Fit<BodyPoint, BODY_UNKNOWNS>> {
     let natural = natural_time(track, scales.length);
-    let spacing = track.duration() / (track.len() - 1) as f64;
-    let stride = (natural / SAMPLES_PER_NATURAL_TIME / spacing).floor().max(1.0) as usize;
-    let sampling = Sampling { per_node: stride as f64, weight: 1.0, direct: smoothing_variance(stride / 2) };
-    let thin = track.thinned(stride);
-    let mut found = Vec::new();
+    let per_node = stride(track, natural, SAMPLES_PER_NATURAL_TIME);
+    let sampling =
+        Sampling { per_node: per_node as f64, weight: 1.0, direct: smoothing_variance(per_node / 2) };
+    let thin = track.thinned(per_node);
+    let coarse = track.thinned(stride(track, natural, SEARCHED_PER_NATURAL_TIME));
+    let mut found: Vec<Fit<BodyPoint, BODY_UNKNOWNS>> = Vec::new();
     for (window, heights, spin) in ROUNDS {
         let first = (window * natural).min(track.duration());
-        for &height in heights {
-            for w_WO in spins(spin * scales.velocity / scales.length) {
-                found.extend(follow(&thin, scales, first, begin(&thin, scales, first, height, w_WO)));
-                found.sort_by(|a, b| a.normal.cost.total_cmp(&b.normal.cost));
-                if found.first().is_some_and(|best| explains(&thin, scales, &noise, sampling, best)) {
-                    return found;
-                }
+        let problem = BodyProblem::new(&coarse, scales, first);
+        let spins = spins(spin * scales.velocity / scales.length);
+        let starts = heights.iter().flat_map(|&height| spins.iter().map(move |&w_WO| (height, w_WO)));
+        let mut candidates: Vec<_> = starts
+            .map(|(height, w_WO)| COARSE.fit(&problem, begin(&coarse, scales, first, height, w_WO)))
+            .filter(|fit| fit.status != FitStatus::Failed)
+            .collect();
+        candidates.sort_by(|a, b| a.normal.cost.total_cmp(&b.normal.cost));
+        for candidate in candidates {
+            found.extend(follow(&coarse, &thin, scales, first, candidate));
+            found.sort_by(|a, b| a.normal.cost.total_cmp(&b.normal.cost));
+            if found.first().is_some_and(|best| explains(&thin, scales, &noise, sampling, best)) {
+                return found;
             }
         }
     }
     found
+}
+
+/// The fit of the thinned track from a point that is near.
+pub(super) fn fit_near(
+    track: &Track,
+    scales: Scales,
+    near: BodyPoint,
+) -> Option<Fit<BodyPoint, BODY_UNKNOWNS>> {
+    let thin = track.thinned(stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME));
+    let all = BodyProblem::new(&thin, scales, f64::INFINITY);
+    polish(&all, &all, 1, near, STEPS)
 }
 
 pub(crate) fn spins(rate: f64) -> Vec<DVec3> {
@@ -88,27 +108,40 @@ pub(crate) fn begin(track: &Track, scales: Scales, window: f64, height: f64, w_W
     BodyPoint { start, log_mass: track.mass.ln(), inertia: numbers_of_inertia(inertia) }
 }
 
+/// The fit of all nodes of `thin` to which a fit of the first window leads as the windows grow.
 fn follow(
-    track: &Track,
+    coarse: &Track,
+    thin: &Track,
     scales: Scales,
     first: f64,
-    start: BodyPoint,
+    candidate: Fit<BodyPoint, BODY_UNKNOWNS>,
 ) -> Option<Fit<BodyPoint, BODY_UNKNOWNS>> {
-    let mut point = start;
+    let mut fit = candidate;
     let mut window = first;
-    loop {
-        let fit = COARSE.fit(&BodyProblem::new(track, scales, window), point);
+    while window < coarse.duration() {
+        window = (window * GROWTH).min(coarse.duration());
+        fit = continuing(COARSE, &fit).fit(&BodyProblem::new(coarse, scales, window), fit.point);
         if fit.status == FitStatus::Failed {
             return None;
         }
-        point = fit.point;
-        if window >= track.duration() {
-            break;
-        }
-        window = (window * GROWTH).min(track.duration());
     }
-    let fit = FREE.fit(&BodyProblem::new(track, scales, f64::INFINITY), point);
-    (fit.status != FitStatus::Failed).then_some(fit)
+    let all = BodyProblem::new(thin, scales, f64::INFINITY);
+    polish(&all, &all, 1, fit.point, STEPS)
+}
+
+/// As for a known body: what a fit of the thinned track leaves of noisy data where noise does not explain it.
+pub(super) fn unexplained(
+    track: &Track,
+    scales: Scales,
+    noise: &NoiseLevel,
+    fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
+) -> Option<Reason> {
+    let per_node = stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME);
+    let sampling =
+        Sampling { per_node: per_node as f64, weight: 1.0, direct: smoothing_variance(per_node / 2) };
+    let explained = explained(&track.thinned(per_node), scales, noise, sampling, fit)?;
+    let residual = fit.normal.rms();
+    (residual > WRONG * explained).then_some(Reason::Misfit { residual, explained })
 }
 
 /// Whether what is left of the data is noise, or next to nothing.
@@ -119,16 +152,24 @@ fn explains(
     sampling: Sampling,
     fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
 ) -> bool {
-    let rms = fit.normal.rms();
-    if rms < NEXT_TO_NOTHING * scales.velocity {
-        return true;
-    }
-    let Some(mass) = fit.point.mass() else { return false };
+    let explained = || explained(track, scales, noise, sampling, fit);
+    next_to_nothing(fit, &scales) || explained().is_some_and(|e| fit.normal.rms() < EXPLAINED * e)
+}
+
+/// Residual that noise explains, m/s; none for a body that cannot be.
+fn explained(
+    track: &Track,
+    scales: Scales,
+    noise: &NoiseLevel,
+    sampling: Sampling,
+    fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
+) -> Option<f64> {
+    let mass = fit.point.mass()?;
     let track = track.of_mass(mass.mass());
     let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
-    let Some(normal) = problem.linearise(&fit.point.start) else { return false };
+    let normal = problem.linearise(&fit.point.start)?;
     let inverse = information_inverse(&Observability::new(&normal.information));
-    rms < EXPLAINED * propagate(&problem, &fit.point.start, &inverse, noise, sampling).residual
+    Some(propagate(&problem, &fit.point.start, &inverse, noise, sampling).residual)
 }
 
 /// Natural sizes for a body whose mass is that of its weight.
