@@ -1,4 +1,4 @@
-use super::CurvatureError;
+use super::{CurvatureError, arc};
 use crate::planar::{Direction, HalfPlane};
 use glam::DVec2;
 use std::f64::consts::{PI, TAU};
@@ -166,6 +166,16 @@ impl DiscIntersection {
                 0.5 * (chord + radius * radius * less_sine(side.angle))
             })
             .sum()
+    }
+
+    /// Points on the outline, counter-clockwise, at most `step` rad (at least a thousandth) of turning apart.
+    #[must_use]
+    pub fn outline(&self, step: f64) -> Vec<DVec2> {
+        let of_side = |side: &Side| match self.discs.get(side.source) {
+            Some(disc) => arc(side.start, side.angle, step).map(|u| disc.centre + u * disc.radius).collect(),
+            None => vec![side.from, side.to],
+        };
+        self.sides.iter().flat_map(of_side).collect()
     }
 
     /// Support function in direction `n`, in m.
