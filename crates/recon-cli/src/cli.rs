@@ -137,7 +137,8 @@ Contacts in the plane have the columns x, y and nx, ny alone. Areas stand for vo
 corners (lower_bound.csv, upper_bound.csv) for meshes.
 
 Poses above a plane are CSV with the columns qw, qx, qy, qz (body to world) and px, py, pz (m, z upwards), sampled evenly; a
-column `toss` or `run` numbers the runs. Their noise is judged from their own consistency.
+column `toss` or `run` numbers the runs. Their noise is judged from their own consistency, by a rule that is calibrated on
+simulated tosses; --cautious takes wider margins, for a tracker that may be unlike the simulated ones.
 
 The output folder appears as a whole or not at all: lower_bound.ply, upper_bound.ply (m) and summary.json, with --fit
 fitted_shape.ply, with --concave alpha_shape.ply and smooth_surface.ply.
@@ -179,6 +180,12 @@ pub(crate) struct BoundsArgs {
     /// The object need not be convex: bound its hull, and approximate the object itself
     #[arg(long, conflicts_with_all = ["contact_noise", "normal_noise", "estimate_noise", "rho_min", "rho_max", "fit"])]
     pub(crate) concave: bool,
+    /// Radius of the balls that hollow the alpha shape out, m [default: the smallest that leaves it in one piece]
+    #[arg(long, value_name = "M", requires = "concave", value_parser = positive)]
+    pub(crate) alpha: Option<f64>,
+    /// Wider margins for poses of a tracker that may be unlike the simulated ones
+    #[arg(long)]
+    pub(crate) cautious: bool,
     /// Height of the plane below the poses, m [default: 0]
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) plane_height: Option<f64>,

@@ -152,6 +152,10 @@ fn a_waist_is_approximated_inside_of_the_bounds_of_its_hull() {
     let concave = &summary["about"]["concave"];
     let alpha = concave["alpha_volume_m3"].as_f64().unwrap();
     assert!(alpha < volume("lower_volume_m3") && volume("lower_volume_m3") < volume("upper_volume_m3"));
+    // Larger balls leave more: with the size of the body's hollow, about its volume of 3.395 m^3.
+    let wide = bounds(&scratch, &["waist.csv", "--concave", "--alpha", "0.8"]);
+    let wide = wide["about"]["concave"]["alpha_volume_m3"].as_f64().unwrap();
+    assert!(alpha < wide && (3.0..3.45).contains(&wide), "{alpha} {wide}");
     let kept = concave["contacts_kept_for_the_upper_bound"].as_u64().unwrap();
     assert!((50..600).contains(&kept), "{kept}");
     let warnings = summary["warnings"].to_string();

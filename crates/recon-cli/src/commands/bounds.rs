@@ -9,7 +9,7 @@ use crate::pipeline::{
 use crate::progress::Progress;
 use recon::contact_kinematics::CurvatureRadii;
 use recon::contact_kinematics::planar::RadiusBounds;
-use recon::shape_bounds::ContactSample;
+use recon::shape_bounds::{ContactSample, PoseRule};
 use recon_io::{Touches, read_touches};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -30,7 +30,9 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
         }
         Touches::Poses(runs) => {
             let count = runs.iter().map(Vec::len).sum::<usize>();
-            let (made, about) = pose_bounds(&runs, args.plane_height.unwrap_or(0.0), confidence(args))?;
+            let rule = if args.cautious { PoseRule::cautious() } else { PoseRule::default() };
+            let (made, about) =
+                pose_bounds(&runs, args.plane_height.unwrap_or(0.0), confidence(args), &rule)?;
             (made, about, format!("{count} poses in {} runs", runs.len()))
         }
         Touches::Contacts(curves) => {
@@ -50,7 +52,7 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
 
 fn of_contacts(args: &BoundsArgs, curves: &[Vec<ContactSample>]) -> Result<(BoundsResult, Value), CliError> {
     if args.concave {
-        return concave_bounds(&curves.concat());
+        return concave_bounds(&curves.concat(), args.alpha);
     }
     let noise = noise(args).map(|noise| (noise, confidence(args)));
     let (mut made, mut about) = match (radii(args), noise) {
@@ -84,6 +86,7 @@ fn check_options(args: &BoundsArgs, touches: &Touches) -> Result<(), CliError> {
     let exact = noise(args).is_none();
     let pointless = [
         (args.plane_height.is_some(), "plane-height", "poses"),
+        (args.cautious, "cautious", "poses"),
         (args.confidence.is_some() && exact, "confidence", "poses and noisy contacts"),
     ];
     let (found, wrong): (_, Vec<(bool, &str, &str)>) = match touches {

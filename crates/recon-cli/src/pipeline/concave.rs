@@ -11,13 +11,17 @@ const INTERPOLATED: usize = 400;
 /// Cells of its mesh along the longest side.
 const CELLS: usize = 48;
 
-/// Bounds of the hull of a body, and approximations of the body, from exact contacts.
-pub(crate) fn concave_bounds(contacts: &[ContactSample]) -> Result<(BoundsResult, Value), CliError> {
+/// Bounds of the hull of a body, and approximations of the body, from exact contacts; the alpha shape for a radius, or for
+/// the smallest that leaves it in one piece.
+pub(crate) fn concave_bounds(
+    contacts: &[ContactSample],
+    radius: Option<f64>,
+) -> Result<(BoundsResult, Value), CliError> {
     let (bounds, kept) = ShapeBounds::from_concave_contacts(contacts)?;
     let (lower, upper) = meshes(&bounds)?;
     let points: Vec<_> = contacts.iter().map(|c| c.point).collect();
     let alpha = AlphaShape::of(&points)?;
-    let radius = alpha.connecting_radius();
+    let radius = radius.unwrap_or_else(|| alpha.connecting_radius());
     let some: Vec<ContactSample> = (0..contacts.len().min(INTERPOLATED))
         .map(|k| contacts[k * contacts.len() / contacts.len().min(INTERPOLATED)])
         .collect();

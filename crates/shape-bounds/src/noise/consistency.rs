@@ -2,6 +2,7 @@
 
 use super::model::{ContactNoise, NoiseError, NoisyContact};
 use super::quantile;
+use crate::median::{OF_NORMAL, median};
 use crate::sample::ContactSample;
 use glam::{DMat3, DVec3};
 
@@ -10,8 +11,6 @@ use glam::{DMat3, DVec3};
 const ORDERS: std::ops::RangeInclusive<usize> = 2..=5;
 /// Fewest contacts of a curve that its noise is judged from.
 pub(crate) const FEWEST: usize = 30;
-/// Median of the absolute value of a standard normal: the scale of the median, which outliers do not move.
-const MEDIAN: f64 = 0.674_489_75;
 
 /// Contacts with the noise that they themselves show, curve by curve, each in the order in which it was traced.
 ///
@@ -88,11 +87,10 @@ pub(crate) fn deviation(
             })
             .map(f64::abs)
             .collect();
-        let count = sizes.len();
-        let (_, median, _) = sizes.select_nth_unstable_by(count / 2, f64::total_cmp);
+        let (count, middle) = (sizes.len(), median(&mut sizes));
         // The variance of a median of normal deviates is 1.36 / n of theirs; overlapping differences say less.
         let relative = (1.36 * overlap / count as f64).sqrt();
-        *median / (MEDIAN * gain) * (1.0 + z * relative)
+        middle / (OF_NORMAL * gain) * (1.0 + z * relative)
     };
     ORDERS.map(of_order).fold(f64::INFINITY, f64::min)
 }

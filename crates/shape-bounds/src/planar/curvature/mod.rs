@@ -4,6 +4,7 @@
 //! above `rho_max`, the body rolls freely inside of a disc of that radius (Blaschke). A concave circular palm that touches
 //! the body is such a disc without any limit on curvature.
 
+mod conflict;
 mod discs;
 mod error;
 mod rounded;
