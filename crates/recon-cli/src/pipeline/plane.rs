@@ -63,9 +63,9 @@ pub(crate) fn planar_bounds(
     let (kept, mut made) = match (request.radii, request.noise) {
         (Some(radii), _) => (relative_noise(&all), sharp(&all, radii)?),
         (None, Some((noise, confidence))) => {
-            let (kept, outliers, about) = cleaned(curves, noise, confidence)?;
+            let Cleaned { kept, warning, about } = cleaned(curves, noise, confidence)?;
             let mut made = drawn(&ShapeBounds::from_noisy_curves(&kept, confidence)?, about);
-            made.warnings.extend(outliers);
+            made.warnings.extend(warning);
             (kept.concat(), made)
         }
         (None, None) => {
@@ -81,11 +81,14 @@ pub(crate) fn planar_bounds(
     Ok(made)
 }
 
-fn cleaned(
-    curves: &[Vec<ContactSample>],
-    noise: Noise,
-    confidence: f64,
-) -> Result<(Vec<Vec<NoisyContact>>, Option<String>, Value), CliError> {
+/// Contacts with their noise, without outliers.
+struct Cleaned {
+    kept: Vec<Vec<NoisyContact>>,
+    warning: Option<String>,
+    about: Value,
+}
+
+fn cleaned(curves: &[Vec<ContactSample>], noise: Noise, confidence: f64) -> Result<Cleaned, CliError> {
     let (how, noisy): (_, Vec<Vec<NoisyContact>>) = match noise {
         Noise::Stated { point, normal } => {
             let noise = ContactNoise::isotropic(point, normal);
@@ -97,7 +100,7 @@ fn cleaned(
     let (kept, outliers) = without_outliers(&noisy, confidence)?;
     let levels: Vec<Value> = noisy.iter().filter_map(|curve| curve.first()).map(level).collect();
     let about = json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed(&outliers) });
-    Ok((kept, left_out(&outliers), about))
+    Ok(Cleaned { kept, warning: left_out(&outliers), about })
 }
 
 /// Standard deviations of a contact across and along the outline and of its normal.
