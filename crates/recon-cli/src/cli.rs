@@ -129,13 +129,25 @@ column `palm` or `curve` numbers the curves along which they were traced. They a
 stated or estimated: then the bounds hold at the stated confidence, and contacts that cannot be right are left out and
 listed. Limits on the radii of curvature tighten the bounds; their meshes are then within a thousandth of the size.
 
-Poses above a plane are CSV with the columns qw, qx, qy, qz (body to world) and px, py, pz (m, z upwards), sampled evenly; a
-column `toss` or `run` numbers the runs. Their noise is judged from their own consistency.
+With --fit a shape of few parameters is fitted too, and told with its covariance: a family, or auto for the one of the
+smallest information criterion. With --concave the object need not be convex: the bounds are those of its hull, and an
+alpha shape and a smooth surface are written too, which are approximations.
 
-The output folder appears as a whole or not at all: lower_bound.ply, upper_bound.ply (m) and summary.json.
+Contacts in the plane have the columns x, y and nx, ny alone. Areas stand for volumes, and a picture (bounds.svg) and
+corners (lower_bound.csv, upper_bound.csv) for meshes.
+
+Poses above a plane are CSV with the columns qw, qx, qy, qz (body to world) and px, py, pz (m, z upwards), sampled evenly; a
+column `toss` or `run` numbers the runs. Their noise is judged from their own consistency, by a rule that is calibrated on
+simulated tosses; --cautious takes wider margins, for a tracker that may be unlike the simulated ones.
+
+The output folder appears as a whole or not at all: lower_bound.ply, upper_bound.ply (m) and summary.json, with --fit
+fitted_shape.ply, with --concave alpha_shape.ply and smooth_surface.ply.
 
 Examples:
   recon bounds contacts.csv
+  recon bounds contacts.csv --fit auto
+  recon bounds contacts.csv --estimate-noise --fit harmonics:4 -o bounds
+  recon bounds contacts.csv --concave -o bounds
   recon bounds contacts.csv --contact-noise 1e-4 --normal-noise 2e-3 --confidence 0.99 -o bounds
   recon bounds contacts.csv --estimate-noise -o bounds
   recon bounds contacts.csv --rho-min 0.02 --rho-max 0.2 -o bounds
@@ -161,12 +173,52 @@ pub(crate) struct BoundsArgs {
     /// Largest radius of curvature that the object has anywhere, m
     #[arg(long, value_name = "M", value_parser = positive)]
     pub(crate) rho_max: Option<f64>,
+    /// Fit a shape: auto, ball, ellipsoid, superquadric or harmonics:N (degree); in the plane auto, circle, ellipse or
+    /// waves:N (order)
+    #[arg(long, value_name = "FAMILY", value_parser = fit)]
+    pub(crate) fit: Option<FitAs>,
+    /// The object need not be convex: bound its hull, and approximate the object itself
+    #[arg(long, conflicts_with_all = ["contact_noise", "normal_noise", "estimate_noise", "rho_min", "rho_max", "fit"])]
+    pub(crate) concave: bool,
+    /// Radius of the balls that hollow the alpha shape out, m [default: the smallest that leaves it in one piece]
+    #[arg(long, value_name = "M", requires = "concave", value_parser = positive)]
+    pub(crate) alpha: Option<f64>,
+    /// Wider margins for poses of a tracker that may be unlike the simulated ones
+    #[arg(long)]
+    pub(crate) cautious: bool,
     /// Height of the plane below the poses, m [default: 0]
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) plane_height: Option<f64>,
     /// Folder to write the meshes and summary.json to; an earlier one of recon's is replaced
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
+}
+
+/// A family of shapes to fit.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum FitAs {
+    /// That of the smallest information criterion.
+    Auto,
+    Ball,
+    Ellipsoid,
+    Superquadric,
+    /// Spherical harmonics up to a degree.
+    Harmonics(usize),
+    Circle,
+    Ellipse,
+    /// Waves of the radius function up to an order.
+    Waves(usize),
+}
+
+impl FitAs {
+    /// Whether it is one for contacts in space, and one for contacts in the plane.
+    pub(crate) fn is_for(self) -> (bool, bool) {
+        match self {
+            Self::Auto => (true, true),
+            Self::Ball | Self::Ellipsoid | Self::Superquadric | Self::Harmonics(_) => (true, false),
+            Self::Circle | Self::Ellipse | Self::Waves(_) => (false, true),
+        }
+    }
 }
 
 #[derive(Args, Debug)]
@@ -217,6 +269,29 @@ pub(crate) struct DemoArgs {
     /// Folder to write; an earlier one of recon's is replaced
     #[arg(short, long, default_value = "recon-demo")]
     pub(crate) output: PathBuf,
+}
+
+fn fit(text: &str) -> Result<FitAs, String> {
+    let (name, order) = text.split_once(':').map_or((text, None), |(name, order)| (name, Some(order)));
+    let order = |least: usize, most: usize| {
+        let given = order.and_then(|order| order.parse().ok()).filter(|n| (least..=most).contains(n));
+        given.ok_or_else(|| format!("`{name}` needs a number from {least} to {most}, as {name}:4"))
+    };
+    match name {
+        "harmonics" => order(1, 32).map(FitAs::Harmonics),
+        "waves" => order(1, 32).map(FitAs::Waves),
+        _ if text.contains(':') => Err(format!("`{name}` takes no number")),
+        "auto" => Ok(FitAs::Auto),
+        "ball" => Ok(FitAs::Ball),
+        "ellipsoid" => Ok(FitAs::Ellipsoid),
+        "superquadric" => Ok(FitAs::Superquadric),
+        "circle" => Ok(FitAs::Circle),
+        "ellipse" => Ok(FitAs::Ellipse),
+        _ => {
+            Err("give auto, ball, ellipsoid, superquadric, harmonics:N, circle, ellipse or waves:N"
+                .to_owned())
+        }
+    }
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

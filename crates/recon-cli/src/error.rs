@@ -1,7 +1,8 @@
 use recon::object_dynamics::{LogError, SceneError as DynamicsError, SimulationError};
 use recon::observer::EstimateError;
 use recon::shape_bounds::{
-    BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
+    AlphaError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
+    SurfaceError, planar,
 };
 use recon_io::{ExportError, LogFileError, MeshError, OutputError, SceneError, TouchesError};
 use std::path::PathBuf;
@@ -43,6 +44,18 @@ pub(crate) enum CliError {
     Curvature(#[from] CurvatureError),
     #[error("the bounds have no meshes")]
     Facets(#[from] FacetError),
+    #[error("the contacts in the plane give no bounds")]
+    PlanarBounds(#[from] planar::BoundsError),
+    #[error("the contacts in the plane give no bounds under noise")]
+    PlanarNoisyBounds(#[from] planar::NoiseError),
+    #[error("the contacts in the plane and the limits on the curvature give no bounds")]
+    PlanarCurvature(#[from] planar::CurvatureError),
+    #[error("no outline can be fitted to the contacts")]
+    PlanarFit(#[from] planar::FitError),
+    #[error("the contacts have no alpha shape")]
+    Alpha(#[from] AlphaError),
+    #[error("no smooth surface goes through the contacts")]
+    Surface(#[from] SurfaceError),
     #[error("the poses give no bounds")]
     PoseBounds(#[from] PoseError),
     #[error(
@@ -82,8 +95,10 @@ pub(crate) enum CliError {
     Mesh(#[from] MeshError),
     #[error("the object cannot be exported")]
     Export(#[from] ExportError),
-    #[error("no ellipsoid can be exported (--export-shape inner exports the bound)")]
-    Ellipsoid(#[from] FitError),
+    #[error(
+        "no shape can be fitted to the contacts (for an export, --export-shape inner takes the bound instead)"
+    )]
+    Fit(#[from] FitError),
     #[error("the result cannot be written")]
     Output(#[from] OutputError),
     #[error("standard output cannot be written")]
@@ -105,6 +120,12 @@ impl CliError {
             | Self::NoisyBounds(_)
             | Self::PoseBounds(_)
             | Self::Curvature(_)
+            | Self::PlanarBounds(_)
+            | Self::PlanarNoisyBounds(_)
+            | Self::PlanarCurvature(_)
+            | Self::PlanarFit(_)
+            | Self::Alpha(_)
+            | Self::Surface(_)
             | Self::UnknownBody
             | Self::NothingToSimulate { .. }
             | Self::Shape(_)
@@ -116,7 +137,7 @@ impl CliError {
             | Self::PlanarTooShort { .. }
             | Self::PlanarNoise
             | Self::Export(_)
-            | Self::Ellipsoid(_)
+            | Self::Fit(_)
             | Self::Bounds(_) => 3,
             Self::Option { .. } => 2,
             Self::Output(_) | Self::StandardOutput(_) => 5,

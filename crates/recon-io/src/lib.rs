@@ -33,6 +33,6 @@ pub use scene::{KnownInertia, Scene, SceneError, SceneErrorKind, Sensors, Shape,
 pub use summary::summary;
 pub use table::{write_contact_curves, write_motion, write_radius_functions};
 pub use touches::{
-    Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_poses, read_contacts, read_touches,
-    write_contacts,
+    Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,
+    read_contacts, read_touches, write_contacts,
 };

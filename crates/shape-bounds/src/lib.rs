@@ -35,6 +35,7 @@ pub mod generators;
 mod halfspaces;
 mod hull;
 mod integrals;
+mod median;
 mod mesh;
 mod noise;
 mod palms;
@@ -64,5 +65,7 @@ pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
 pub use noise::{ContactNoise, NoiseError, NoisyContact, Outlier, estimate_noise, without_outliers};
 pub use palms::{PalmContact, PalmError, PalmIntersection};
-pub use poses::{BodyPose, PoseBounds, PoseError, TRUSTED, half_space_above_plane};
+pub use poses::{
+    BodyPose, CALIBRATED_RUNS, CONFIDENCES, PoseBounds, PoseError, PoseRule, half_space_above_plane,
+};
 pub use sample::{ContactError, ContactSample, HalfSpace, NORMAL_TOLERANCE};

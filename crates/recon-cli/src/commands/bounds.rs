@@ -1,11 +1,15 @@
-use crate::cli::BoundsArgs;
+use super::plane;
+use crate::cli::{BoundsArgs, FitAs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
-    BoundsResult, Noise, bounds, noisy_bounds, pose_bounds, sharp_bounds, write_bounds_folder,
+    BoundsResult, Noise, PlanarRequest, bounds, concave_bounds, fit_words, fitted_shape, noisy_bounds,
+    pose_bounds, sharp_bounds, write_bounds_folder,
 };
 use crate::progress::Progress;
 use recon::contact_kinematics::CurvatureRadii;
+use recon::contact_kinematics::planar::RadiusBounds;
+use recon::shape_bounds::{ContactSample, PoseRule};
 use recon_io::{Touches, read_touches};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -19,21 +23,21 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
     let touches = read_touches(&args.input)?;
     check_options(args, &touches)?;
     progress.step("bounding the shape");
-    let confidence = args.confidence.unwrap_or(CONFIDENCE);
     let (made, about, what) = match touches {
+        Touches::PlanarContacts(curves) => {
+            drop(progress);
+            return plane::run(args, &curves, &planar_request(args), console);
+        }
         Touches::Poses(runs) => {
             let count = runs.iter().map(Vec::len).sum::<usize>();
-            let (made, about) = pose_bounds(&runs, args.plane_height.unwrap_or(0.0), confidence)?;
+            let rule = if args.cautious { PoseRule::cautious() } else { PoseRule::default() };
+            let (made, about) =
+                pose_bounds(&runs, args.plane_height.unwrap_or(0.0), confidence(args), &rule)?;
             (made, about, format!("{count} poses in {} runs", runs.len()))
         }
         Touches::Contacts(curves) => {
-            let count = format!("{} contacts", curves.iter().map(Vec::len).sum::<usize>());
-            let (made, about) = match (radii(args), noise(args)) {
-                (Some(radii), noise) => sharp_bounds(&curves, radii, noise.map(|n| (n, confidence)))?,
-                (None, Some(noise)) => noisy_bounds(&curves, noise, confidence)?,
-                (None, None) => (bounds(&curves.concat())?, json!({ "noise": "none" })),
-            };
-            (made, about, count)
+            let (made, about) = of_contacts(args, &curves)?;
+            (made, about, format!("{} contacts", curves.iter().map(Vec::len).sum::<usize>()))
         }
     };
     let figures = figures(&made, &what, &about);
@@ -46,28 +50,72 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
     Ok(if whole { Outcome::Done } else { Outcome::WithReservations })
 }
 
+fn of_contacts(args: &BoundsArgs, curves: &[Vec<ContactSample>]) -> Result<(BoundsResult, Value), CliError> {
+    if args.concave {
+        return concave_bounds(&curves.concat(), args.alpha);
+    }
+    let noise = noise(args).map(|noise| (noise, confidence(args)));
+    let (mut made, mut about) = match (radii(args), noise) {
+        (Some(radii), noise) => sharp_bounds(curves, radii, noise)?,
+        (None, Some((noise, confidence))) => noisy_bounds(curves, noise, confidence)?,
+        (None, None) => (bounds(&curves.concat())?, json!({ "noise": "none" })),
+    };
+    if let Some(family) = args.fit {
+        let (report, mesh) = fitted_shape(curves, noise, family)?;
+        about["fit"] = report;
+        made.others.push(("fitted_shape.ply", "shape fitted to the contacts; metres", mesh));
+    }
+    Ok((made, about))
+}
+
+fn planar_request(args: &BoundsArgs) -> PlanarRequest {
+    PlanarRequest {
+        noise: noise(args).map(|noise| (noise, confidence(args))),
+        radii: args.rho_max.map(|max| RadiusBounds { min: args.rho_min.unwrap_or(0.0), max }),
+        fit: args.fit,
+    }
+}
+
+fn confidence(args: &BoundsArgs) -> f64 {
+    args.confidence.unwrap_or(CONFIDENCE)
+}
+
 /// Refuses options that mean nothing for what is in the file.
 fn check_options(args: &BoundsArgs, touches: &Touches) -> Result<(), CliError> {
-    let (found, meant, given) = match touches {
-        Touches::Poses(_) => {
-            let option = [
-                (args.contact_noise.is_some(), "contact-noise"),
-                (args.estimate_noise, "estimate-noise"),
-                (args.rho_max.is_some(), "rho-max"),
-            ];
-            ("poses", "contacts", option.into_iter().find(|(given, _)| *given))
-        }
+    let (in_space, in_plane) = args.fit.map_or((true, true), FitAs::is_for);
+    let exact = noise(args).is_none();
+    let pointless = [
+        (args.plane_height.is_some(), "plane-height", "poses"),
+        (args.cautious, "cautious", "poses"),
+        (args.confidence.is_some() && exact, "confidence", "poses and noisy contacts"),
+    ];
+    let (found, wrong): (_, Vec<(bool, &str, &str)>) = match touches {
+        Touches::Poses(_) => (
+            "poses",
+            vec![
+                (args.contact_noise.is_some(), "contact-noise", "contacts"),
+                (args.estimate_noise, "estimate-noise", "contacts"),
+                (args.rho_max.is_some(), "rho-max", "contacts"),
+                (args.fit.is_some(), "fit", "contacts"),
+                (args.concave, "concave", "contacts"),
+            ],
+        ),
         Touches::Contacts(_) => {
-            let option = [
-                (args.plane_height.is_some(), "plane-height"),
-                (args.confidence.is_some() && noise(args).is_none(), "confidence"),
+            let family = (!in_space, "fit circle, ellipse or waves", "contacts in the plane");
+            let found = if exact { "contacts without stated noise" } else { "contacts" };
+            (found, pointless.into_iter().chain([family]).collect())
+        }
+        Touches::PlanarContacts(_) => {
+            let of_space = [
+                (args.concave, "concave", "contacts in space"),
+                (!in_plane, "fit ball, ellipsoid, superquadric or harmonics", "contacts in space"),
+                (args.rho_max.is_some() && !exact, "rho-max beside noise", "contacts in space"),
             ];
-            let found = "contacts without stated noise";
-            (found, "poses and noisy contacts", option.into_iter().find(|(given, _)| *given))
+            ("contacts in the plane", pointless.into_iter().chain(of_space).collect())
         }
     };
-    match given {
-        Some((_, option)) => Err(CliError::Option { option, meant, found, path: args.input.clone() }),
+    match wrong.into_iter().find(|(given, ..)| *given) {
+        Some((_, option, meant)) => Err(CliError::Option { option, meant, found, path: args.input.clone() }),
         None => Ok(()),
     }
 }
@@ -119,6 +167,12 @@ fn describe(made: &BoundsResult, what: &str, about: &Value) -> String {
     }
     if let Some(gap) = made.drawn.largest_gap {
         let _ = writeln!(text, "  gap, at most           {gap:.6} m");
+    }
+    if let Some(volume) = about["concave"]["alpha_volume_m3"].as_f64() {
+        let _ = writeln!(text, "  alpha shape, about     {volume:.6e} m^3");
+    }
+    if about["fit"].is_object() {
+        text += &fit_words(&about["fit"]);
     }
     text
 }

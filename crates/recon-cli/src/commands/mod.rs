@@ -3,6 +3,7 @@
 mod bounds;
 mod demo;
 mod planar;
+mod plane;
 mod reconstruct;
 mod simulate;
 

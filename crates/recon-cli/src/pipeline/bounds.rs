@@ -13,6 +13,8 @@ pub(crate) struct BoundsResult {
     pub(crate) lower: Option<TriangleMesh>,
     /// Surface of the upper bound; none where it is unbounded.
     pub(crate) upper: Option<TriangleMesh>,
+    /// Further surfaces: file, comment, mesh.
+    pub(crate) others: Vec<(&'static str, &'static str, TriangleMesh)>,
     /// How far the worst contact lies beyond the half-space of another, m: for exact contacts of a convex body at most
     /// rounding, however they were moved.
     pub(crate) contradiction: f64,
@@ -41,7 +43,14 @@ pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliErro
             .map(|all| Bound { mesh: few_upper.unwrap_or(all), volume: whole.upper_volume() }),
         largest_gap: whole.largest_gap().map(|gap| gap.distance),
     };
-    Ok(BoundsResult { drawn, lower, upper, contradiction: contradiction(&some), warnings })
+    Ok(BoundsResult {
+        drawn,
+        lower,
+        upper,
+        others: Vec::new(),
+        contradiction: contradiction(&some),
+        warnings,
+    })
 }
 
 /// What to say where there is no upper bound.

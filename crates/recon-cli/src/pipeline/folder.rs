@@ -48,6 +48,9 @@ pub(crate) fn write_bounds_folder(
         let folder = Folder(OutputFolder::create(target)?);
         folder.write_mesh("lower_bound.ply", "inside the object; metres", made.lower.as_ref())?;
         folder.write_mesh("upper_bound.ply", "around the object; metres", made.upper.as_ref())?;
+        for (name, comment, mesh) in &made.others {
+            folder.write_mesh(name, comment, Some(mesh))?;
+        }
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()
     })

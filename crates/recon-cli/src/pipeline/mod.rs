@@ -2,17 +2,23 @@
 
 mod body;
 mod bounds;
+mod concave;
 mod evidence;
 mod export;
+mod fitted;
 mod folder;
+mod plane;
 mod reconstruct;
 mod simulate;
 mod sound;
 mod truth;
 
 pub(crate) use bounds::{BoundsResult, bounds};
+pub(crate) use concave::concave_bounds;
 pub(crate) use export::exported;
+pub(crate) use fitted::{fit_words, fitted_shape};
 pub(crate) use folder::{write_bounds_folder, write_reconstruction_folder};
+pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};
 pub(crate) use reconstruct::{Reconstruction, reconstruct};
 pub(crate) use simulate::{Simulated, simulate};
 pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};

@@ -6,8 +6,8 @@ use glam::DMat3;
 use recon::contact_kinematics::CurvatureRadii;
 use recon::observer::MotionEstimate;
 use recon::shape_bounds::{
-    BodyPose, ContactNoise, ContactSample, NoisyContact, Outlier, PoseBounds, ShapeBounds, SharpBounds,
-    estimate_noise, without_outliers,
+    BodyPose, ContactNoise, ContactSample, NoisyContact, Outlier, PoseBounds, PoseRule, ShapeBounds,
+    SharpBounds, estimate_noise, without_outliers,
 };
 use recon_io::{Bound, Bounds};
 use serde_json::{Value, json};
@@ -61,7 +61,7 @@ pub(crate) fn sharp_bounds(
         largest_gap: polytopes.largest_gap().map(|gap| gap.distance),
     };
     let warnings = warning.into_iter().collect();
-    Ok((BoundsResult { drawn, lower, upper, contradiction: 0.0, warnings }, about))
+    Ok((BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings }, about))
 }
 
 /// Bounds of the body of a motion estimate, from the uncertainty of its contact curves.
@@ -105,17 +105,21 @@ fn finished(bounds: &ShapeBounds, warning: Option<String>) -> Result<BoundsResul
         largest_gap: bounds.largest_gap().map(|gap| gap.distance),
     };
     let warnings = warning.into_iter().chain(unbounded(bounds)).collect();
-    Ok(BoundsResult { drawn, lower, upper, contradiction: 0.0, warnings })
+    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings })
 }
 
 /// Contacts with their noise, without outliers.
-struct Cleaned {
-    kept: Vec<Vec<NoisyContact>>,
+pub(super) struct Cleaned {
+    pub(super) kept: Vec<Vec<NoisyContact>>,
     warning: Option<String>,
     about: Value,
 }
 
-fn cleaned(curves: &[Vec<ContactSample>], noise: Noise, confidence: f64) -> Result<Cleaned, CliError> {
+pub(super) fn cleaned(
+    curves: &[Vec<ContactSample>],
+    noise: Noise,
+    confidence: f64,
+) -> Result<Cleaned, CliError> {
     let (how, noisy): (_, Vec<Vec<NoisyContact>>) = match noise {
         Noise::Stated { point, normal } => {
             let noise = ContactNoise::isotropic(point, normal);
@@ -125,16 +129,19 @@ fn cleaned(curves: &[Vec<ContactSample>], noise: Noise, confidence: f64) -> Resu
         Noise::Estimated => ("estimated", estimate_noise(curves, confidence)?),
     };
     let (kept, outliers) = without_outliers(&noisy, confidence)?;
-    let listed: Vec<Value> = outliers
-        .iter()
-        .map(|o| json!({ "curve": o.curve + 1, "contact": o.index + 1, "deviations": o.deviations }))
-        .collect();
     let levels: Vec<Value> = noisy.iter().filter_map(|curve| curve.first()).map(level).collect();
-    let about = json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed });
+    let about = json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed(&outliers) });
     Ok(Cleaned { kept, warning: left_out(&outliers), about })
 }
 
-fn left_out(outliers: &[Outlier]) -> Option<String> {
+/// Outliers, counted from 1.
+pub(super) fn listed(outliers: &[Outlier]) -> Value {
+    let one =
+        |o: &Outlier| json!({ "curve": o.curve + 1, "contact": o.index + 1, "deviations": o.deviations });
+    outliers.iter().map(one).collect()
+}
+
+pub(super) fn left_out(outliers: &[Outlier]) -> Option<String> {
     let name = |o: &Outlier| {
         format!("contact {} of curve {} ({:.0} deviations)", o.index + 1, o.curve + 1, o.deviations)
     };
@@ -165,8 +172,9 @@ pub(crate) fn pose_bounds(
     runs: &[Vec<BodyPose>],
     height: f64,
     confidence: f64,
+    rule: &PoseRule,
 ) -> Result<(BoundsResult, Value), CliError> {
-    let made = PoseBounds::above_plane(runs, height, confidence)?;
+    let made = PoseBounds::by_rule(runs, height, confidence, rule)?;
     let solid = made.lower.as_ref().and_then(|lower| lower.solid());
     let lower = solid.map(|s| own(s.mesh())).transpose()?;
     let upper = own(made.upper.mesh())?;
@@ -177,7 +185,8 @@ pub(crate) fn pose_bounds(
             made.margin
         ));
     }
-    if !made.outliers.is_empty() {
+    // Frames beside an impact pass for touching, and a few of them always disagree.
+    if made.outliers.len() as f64 > (1.0 - confidence) * made.touching as f64 {
         warnings.push(format!(
             "{} pose(s) that touch the plane disagree with the others by more than the margins, the first in run {}, frame {}.",
             made.outliers.len(),
@@ -197,5 +206,8 @@ pub(crate) fn pose_bounds(
         upper: Some(Bound { mesh: upper.clone(), volume: made.upper.volume() }),
         largest_gap: made.largest_gap().map(|gap| gap.distance),
     };
-    Ok((BoundsResult { drawn, lower, upper: Some(upper), contradiction: 0.0, warnings }, about))
+    Ok((
+        BoundsResult { drawn, lower, upper: Some(upper), others: Vec::new(), contradiction: 0.0, warnings },
+        about,
+    ))
 }

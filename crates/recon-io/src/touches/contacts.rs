@@ -10,7 +10,7 @@ use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
 /// Largest departure of a normal's length from 1.
-const UNIT_TOLERANCE: f64 = 1e-5;
+pub(super) const UNIT_TOLERANCE: f64 = 1e-5;
 
 const COLUMNS: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 

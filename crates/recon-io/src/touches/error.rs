@@ -1,4 +1,5 @@
 use recon::contact_kinematics::DirectionError;
+use recon::shape_bounds::planar;
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -24,8 +25,8 @@ pub enum TouchesErrorKind {
     Csv(csv::Error),
     /// No row in it.
     #[error(
-        "holds no rows; it needs a header `x,y,z,nx,ny,nz` and one row per contact, or `qw,qx,qy,qz,px,py,pz` and one \
-         row per pose"
+        "holds no rows; it needs a header `x,y,z,nx,ny,nz` (in the plane `x,y,nx,ny`) and one row per contact, or \
+         `qw,qx,qy,qz,px,py,pz` and one row per pose"
     )]
     Empty,
     /// A column is not there.
@@ -53,6 +54,14 @@ pub enum TouchesErrorKind {
         line: u64,
         /// Why.
         source: DirectionError,
+    },
+    /// A normal in the plane is not a unit vector.
+    #[error("line {line}: normal (nx, ny): {source}")]
+    PlanarNormal {
+        /// Line number.
+        line: u64,
+        /// Why.
+        source: planar::DirectionError,
     },
     /// A quaternion is not of unit length.
     #[error("line {line}: the quaternion (qw, qx, qy, qz) has the length {length}, not 1")]

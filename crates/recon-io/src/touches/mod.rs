@@ -1,15 +1,18 @@
-//! What a body's surface was seen to do, as CSV: contact points with normals, or poses above a plane.
+//! What a body's surface was seen to do, as CSV: contact points with normals, in space or in the plane, or poses above a
+//! plane.
 
 mod columns;
 mod contacts;
 mod error;
+mod planar;
 mod poses;
 
 pub use contacts::{parse_contacts, read_contacts, write_contacts};
 pub use error::{TouchesError, TouchesErrorKind};
+pub use planar::parse_planar_contacts;
 pub use poses::parse_poses;
 
-use recon::shape_bounds::{BodyPose, ContactSample};
+use recon::shape_bounds::{BodyPose, ContactSample, planar as flat};
 use std::io::Read;
 use std::path::Path;
 
@@ -18,11 +21,14 @@ use std::path::Path;
 pub enum Touches {
     /// Contact points with outward normals, one list for each curve, in the order of the file.
     Contacts(Vec<Vec<ContactSample>>),
+    /// The same in the plane.
+    PlanarContacts(Vec<Vec<flat::ContactSample>>),
     /// Poses of a body above a plane, one list for each run, in the order of time.
     Poses(Vec<Vec<BodyPose>>),
 }
 
-/// Reads contacts (columns of [`parse_contacts`]) or poses (columns of [`parse_poses`]), told apart by the header.
+/// Reads contacts (columns of [`parse_contacts`]; in the plane, of [`parse_planar_contacts`]) or poses (columns of
+/// [`parse_poses`]), told apart by the header.
 ///
 /// # Errors
 /// [`TouchesError`] names the file, the line and the column.
@@ -34,6 +40,8 @@ pub fn read_touches(path: impl AsRef<Path>) -> Result<Touches, TouchesError> {
     let is_poses = header.split(',').any(|name| name.trim().trim_matches('"') == "qw");
     let touches = if is_poses {
         parse_poses(text.as_bytes()).map(Touches::Poses)
+    } else if planar::is_planar(header) {
+        parse_planar_contacts(text.as_bytes()).map(Touches::PlanarContacts)
     } else {
         parse_contacts(text.as_bytes()).map(Touches::Contacts)
     };

@@ -6,6 +6,7 @@
 
 mod alpha;
 mod cavity;
+mod contour;
 mod delaunay;
 mod error;
 mod surface;

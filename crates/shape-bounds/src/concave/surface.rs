@@ -1,4 +1,6 @@
+use super::contour::zero_surface;
 use super::error::SurfaceError;
+use crate::mesh::TriangleMesh;
 use crate::sample::ContactSample;
 use glam::{DMat3, DVec3};
 use nalgebra::{DMatrix, DVector};
@@ -8,6 +10,8 @@ const MOST: usize = 1000;
 const LEAST: usize = 4;
 /// Contacts nearer than this, relative to the size, are one place.
 const COINCIDENT: f64 = 1e-9;
+/// By how much the box of a mesh is wider than that of the contacts on each side, relative to their size.
+const AROUND: f64 = 0.15;
 /// Steps along a ray, and of Newton's method.
 const RAY_STEPS: usize = 200;
 const NEWTON_STEPS: usize = 60;
@@ -116,6 +120,19 @@ impl HermiteSurface {
             outside = inside;
         }
         None
+    }
+
+    /// Triangles of the surface in a box somewhat wider than the contacts, counter-clockwise seen from outside, on a
+    /// lattice of `cells` (at least 2) along its longest side: off the surface by the square of the spacing.
+    ///
+    /// Far from contacts the surface may leave the box, and is open there.
+    #[must_use]
+    pub fn mesh(&self, cells: usize) -> TriangleMesh {
+        let place = |p: &DVec3| *p * self.size + self.centre;
+        let low = self.points.iter().map(place).fold(DVec3::INFINITY, DVec3::min);
+        let high = self.points.iter().map(place).fold(DVec3::NEG_INFINITY, DVec3::max);
+        let around = DVec3::splat(AROUND * self.size);
+        zero_surface(low - around, high + around, cells.max(2), |y| self.value(y).0)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::model::{ContactNoise, NoiseError, NoisyContact};
 use super::quantile;
+use crate::median::{OF_NORMAL, median};
 use crate::sample::ContactSample;
 use glam::{DMat3, DVec3};
 
@@ -9,9 +10,7 @@ use glam::{DMat3, DVec3};
 /// estimate. Each overestimates the noise by what it leaves of the curve, so that the smallest is right.
 const ORDERS: std::ops::RangeInclusive<usize> = 2..=5;
 /// Fewest contacts of a curve that its noise is judged from.
-const FEWEST: usize = 30;
-/// Median of the absolute value of a standard normal: the scale of the median, which outliers do not move.
-const MEDIAN: f64 = 0.674_489_75;
+pub(crate) const FEWEST: usize = 30;
 
 /// Contacts with the noise that they themselves show, curve by curve, each in the order in which it was traced.
 ///
@@ -28,9 +27,14 @@ pub fn estimate_noise(
     confidence: f64,
 ) -> Result<Vec<Vec<NoisyContact>>, NoiseError> {
     NoiseError::check_confidence(confidence)?;
-    let each = (1.0 - confidence) / (3 * curves.len().max(1)) as f64;
-    let z = quantile::normal(each.min(0.1));
+    let z = raise(confidence, curves.len());
     curves.iter().enumerate().map(|(index, curve)| of_curve(index, curve, z)).collect()
+}
+
+/// By how many of its standard deviations each of three estimates a curve is raised, so that all are above the truth.
+pub(crate) fn raise(confidence: f64, curves: usize) -> f64 {
+    let each = (1.0 - confidence) / (3 * curves.max(1)) as f64;
+    quantile::normal(each.min(0.1))
 }
 
 fn of_curve(index: usize, curve: &[ContactSample], z: f64) -> Result<Vec<NoisyContact>, NoiseError> {
@@ -65,7 +69,7 @@ fn of_curve(index: usize, curve: &[ContactSample], z: f64) -> Result<Vec<NoisyCo
 
 /// Standard deviation of the components of `values` that `components` picks by the normal there; above the true one by
 /// `z` standard deviations of the estimate.
-fn deviation(
+pub(crate) fn deviation(
     values: &[DVec3],
     normals: &[DVec3],
     z: f64,
@@ -83,11 +87,10 @@ fn deviation(
             })
             .map(f64::abs)
             .collect();
-        let count = sizes.len();
-        let (_, median, _) = sizes.select_nth_unstable_by(count / 2, f64::total_cmp);
+        let (count, middle) = (sizes.len(), median(&mut sizes));
         // The variance of a median of normal deviates is 1.36 / n of theirs; overlapping differences say less.
         let relative = (1.36 * overlap / count as f64).sqrt();
-        *median / (MEDIAN * gain) * (1.0 + z * relative)
+        middle / (OF_NORMAL * gain) * (1.0 + z * relative)
     };
     ORDERS.map(of_order).fold(f64::INFINITY, f64::min)
 }

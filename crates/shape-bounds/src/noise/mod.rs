@@ -1,10 +1,10 @@
 //! Bounds that hold at a stated confidence when contacts are measured with noise.
 
-mod consistency;
+pub(crate) mod consistency;
 mod curvature;
 mod lower;
 mod model;
-mod outliers;
+pub(crate) mod outliers;
 pub(crate) mod quantile;
 mod roughness;
 #[cfg(test)]

@@ -41,11 +41,26 @@ pub fn without_outliers(
 ) -> Result<(Vec<Vec<NoisyContact>>, Vec<Outlier>), NoiseError> {
     NoiseError::check_confidence(confidence)?;
     NoiseError::check_contacts(curves)?;
+    judged(curves, confidence)
+        .map_err(|Undecided { outliers, contacts }| NoiseError::Undecided { outliers, contacts })
+}
+
+/// Half of the contacts or more would have to go.
+pub(crate) struct Undecided {
+    pub(crate) outliers: usize,
+    pub(crate) contacts: usize,
+}
+
+/// [`without_outliers`] of values that have been checked.
+pub(crate) fn judged(
+    curves: &[Vec<NoisyContact>],
+    confidence: f64,
+) -> Result<(Vec<Vec<NoisyContact>>, Vec<Outlier>), Undecided> {
     let mut suspects = Suspects::new(curves, confidence);
     while suspects.drop_worst() {
         let (outliers, contacts) = (suspects.found.len(), suspects.all.len());
         if 2 * outliers >= contacts {
-            return Err(NoiseError::Undecided { outliers, contacts });
+            return Err(Undecided { outliers, contacts });
         }
     }
     let mut alive = suspects.alive.iter();

@@ -2,6 +2,7 @@
 
 use super::model::NoisyContact;
 use super::quantile;
+use crate::median::median;
 use glam::DVec3;
 
 /// Median length of a vector of three standard normals.
@@ -78,11 +79,11 @@ impl Series {
     fn new(values: Vec<(DVec3, f64)>) -> Self {
         let bends: Vec<f64> =
             values.windows(3).map(|w| (0.5 * (w[0].0 + w[2].0) - w[1].0).length()).collect();
-        let whole = median(&bends);
+        let whole = median(&mut bends.clone());
         let typical = (0..values.len())
             .map(|k| {
                 let near = k.saturating_sub(REACH + 1)..(k + REACH).min(bends.len());
-                whole.max(median(bends.get(near).unwrap_or_default())) / MEDIAN_LENGTH
+                whole.max(median(&mut bends.get(near).unwrap_or_default().to_vec())) / MEDIAN_LENGTH
             })
             .collect();
         Self { values, typical }
@@ -99,13 +100,4 @@ impl Series {
         let deviation = noise.max(self.typical[k] * (to_a * to_b).abs());
         if deviation > 0.0 { departure / deviation } else { 0.0 }
     }
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    if sorted.is_empty() {
-        return 0.0;
-    }
-    let middle = sorted.len() / 2;
-    *sorted.select_nth_unstable_by(middle, f64::total_cmp).1
 }

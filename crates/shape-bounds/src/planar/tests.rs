@@ -262,7 +262,7 @@ fn curvature_limits_that_the_contacts_contradict_name_the_contacts() {
     assert!(matches!(of(0.1, 2.0), CurvatureError::TooFlat { .. }));
     assert!(matches!(of(2.0, 1.0), CurvatureError::Radii { .. }));
     let apart = [0.0, 5.0].map(|x| Disc { centre: DVec2::new(x, 0.0), radius: 1.0 });
-    assert!(matches!(DiscIntersection::of(&apart, &[]), Err(CurvatureError::Empty { count: 2 })));
+    assert!(matches!(DiscIntersection::of(&apart, &[]), Err(CurvatureError::Empty { count: 2, .. })));
     let bad = Disc { centre: DVec2::ZERO, radius: f64::NAN };
     assert!(matches!(DiscIntersection::of(&[bad], &[]), Err(CurvatureError::Disc { index: 0, .. })));
 }

@@ -29,6 +29,16 @@ pub enum PoseError {
     /// A confidence that is none.
     #[error("confidence {0}: it must lie between 0.5 and 1, both excluded")]
     Confidence(f64),
+    /// A share or factor of a rule that is none.
+    #[error(
+        "the rule's `{name}` is {value}: shares and factors are finite, `trusted` is above 0 and at most 1, factors are above 0 and ordered"
+    )]
+    Rule {
+        /// Which field.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// The noise cannot be judged.
     #[error("{found} poses touch the plane, {needed} are needed to judge the noise; add runs")]
     TooFewTouching {

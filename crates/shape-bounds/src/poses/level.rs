@@ -1,9 +1,10 @@
 //! The noise level of poses above a plane, from their own consistency.
 
-use super::{BodyPose, Observation, PoseError, TRUSTED, intersect};
+use super::{BodyPose, Observation, PoseError, PoseRule, intersect};
 use crate::halfspaces::Polyhedron;
+use crate::median::{OF_NORMAL, median};
 
-/// Touching poses needed for a quantile of 98 %.
+/// Touching poses needed for a share of them to be a quantile, up to 98 %.
 pub(super) const FEWEST: usize = 50;
 /// Halvings of the bracket for the level: a ten-thousandth of the body's size, then a ten-thousandth of that.
 const HALVINGS: usize = 16;
@@ -41,12 +42,7 @@ pub(super) fn noise_scale(runs: &[Vec<BodyPose>]) -> f64 {
     };
     let mut sizes: Vec<f64> =
         runs.iter().flat_map(|poses| (1..poses.len() - 1).flat_map(move |k| sideways(poses, k))).collect();
-    if sizes.is_empty() {
-        return 0.0;
-    }
-    let middle = sizes.len() / 2;
-    // The median of the size of a standard normal is 0.6745.
-    *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745
+    median(&mut sizes) / OF_NORMAL
 }
 
 /// Whether the body touches the plane: at rest at the end of its run, or pushed upwards by more than flight (`flight`) or
@@ -56,15 +52,15 @@ pub(super) fn touches(poses: &[BodyPose], frame: usize, flight: f64, noise: f64)
     frame + RESTING >= poses.len() || (frame > 0 && second_difference(poses, frame).z > pushed)
 }
 
-/// The smallest level at which the share [`TRUSTED`] of the touching poses are consistent with all poses: the bound,
+/// The smallest level at which the trusted share of the touching poses are consistent with all poses: the bound,
 /// inflated by it, reaches as far as the touching half-space deflated by it.
-pub(super) fn consistent_level(observations: &[Observation]) -> Result<f64, PoseError> {
+pub(super) fn consistent_level(observations: &[Observation], rule: &PoseRule) -> Result<f64, PoseError> {
     let size = observations.iter().map(|o| o.half_space.point.length()).fold(0.0, f64::max);
     let consistent = |level: f64| -> Result<bool, PoseError> {
         let bound = intersect(observations, level)?;
         let touching = observations.iter().filter(|o| o.touching).count();
         let wrong = inconsistent(observations, &bound, level).len();
-        Ok(wrong as f64 <= (1.0 - TRUSTED) * touching as f64)
+        Ok(wrong as f64 <= (1.0 - rule.trusted) * touching as f64)
     };
     // At a level of the body's size everything is consistent. Half-spaces that contradict each other, so that nothing is
     // left, are inconsistent too.
@@ -80,7 +76,7 @@ pub(super) fn consistent_level(observations: &[Observation]) -> Result<f64, Pose
     Ok(high)
 }
 
-/// Touching poses that the bound, with this level in its margins, cuts off by more than level and kink.
+/// Touching poses that the bound, with this level in its margins, cuts off by more than level and gap.
 pub(super) fn inconsistent(
     observations: &[Observation],
     bound: &Polyhedron,
@@ -89,7 +85,7 @@ pub(super) fn inconsistent(
     let mut caps = bound.caps();
     observations
         .iter()
-        .filter(|o| o.touching && -caps.height(&o.half_space) > level + o.kink)
+        .filter(|o| o.touching && -caps.height(&o.half_space) > level + o.gap)
         .map(|o| o.at)
         .collect()
 }

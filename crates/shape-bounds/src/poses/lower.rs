@@ -10,7 +10,7 @@ use glam::DVec3;
 /// many vague ones.
 const SHARES: [f64; 5] = [0.05, 0.15, 0.3, 0.5, 0.8];
 
-/// Corners of regions that lie in the body, if no touching half-space is off by more than `margin` and its kink.
+/// Corners of regions that lie in the body, if no touching half-space is off by more than `margin` and its gap.
 ///
 /// A body that touches a plane has a point in the part of the upper bound that is within the margins of the plane. A
 /// ball about that part holds the point.
@@ -20,7 +20,7 @@ pub(super) fn certain_points(observations: &[Observation], upper: &Polyhedron, m
         .iter()
         .filter(|o| o.touching)
         .filter_map(|o| {
-            let touched = HalfSpace { margin: -(margin + o.kink), ..o.half_space };
+            let touched = HalfSpace { margin: -(margin + o.gap), ..o.half_space };
             caps.ball(&touched)
         })
         .collect();

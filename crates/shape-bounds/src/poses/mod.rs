@@ -8,10 +8,12 @@
 mod error;
 mod level;
 mod lower;
+mod rule;
 #[cfg(test)]
 mod tests;
 
 pub use error::PoseError;
+pub use rule::{CALIBRATED_RUNS, CONFIDENCES, PoseRule};
 
 use crate::bounds::{Gap, ShapeBounds};
 use crate::halfspaces::{Intersection, Polyhedron};
@@ -29,10 +31,6 @@ pub struct BodyPose {
     pub p_WO: DVec3,
 }
 
-/// The share of a second difference of the position by which a sampled pose may be off: where a motion has a kink, a
-/// straight line between neighbouring frames misses it by up to a quarter.
-const KINK: f64 = 0.25;
-
 /// Bounds from poses above a plane, with the noise level that the data themselves show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseBounds {
@@ -40,9 +38,11 @@ pub struct PoseBounds {
     pub upper: Polyhedron,
     /// This is in the body, at the stated confidence; `None` where the touching poses prove nothing inside.
     pub lower: Option<Hull>,
+    /// The half-space of each pose with its margin, run by run: they all hold at the stated confidence.
+    pub half_spaces: Vec<Vec<HalfSpace>>,
     /// Margin common to all half-spaces, in m.
     pub margin: f64,
-    /// Noise at which the share [`TRUSTED`] of the touching poses are consistent with all others, in m.
+    /// Noise at which the trusted share of the touching poses are consistent with all others, in m.
     pub consistent_level: f64,
     /// Poses that were taken for touching the plane.
     pub touching: usize,
@@ -50,34 +50,45 @@ pub struct PoseBounds {
     pub outliers: Vec<(usize, usize)>,
 }
 
-/// The share of touching poses that sets the noise level; the rest may be outliers.
-pub const TRUSTED: f64 = 0.98;
-
 /// One pose's half-space and what is known of its error.
 #[derive(Clone, Copy)]
 struct Observation {
     half_space: HalfSpace,
     /// Margin from the roughness of the motion.
     kink: f64,
+    /// How far off the plane a touching body may be at the frame, from the same.
+    gap: f64,
     touching: bool,
     at: (usize, usize),
 }
 
 impl PoseBounds {
     /// Bounds of a convex body from `runs` of poses sampled evenly in time, with the body always above the plane of
-    /// height `plane_z` in the world.
-    ///
-    /// The margins hold two parts: a quarter of the largest second difference of the position around a frame, since a
-    /// motion with kinks is not known better between frames; and a level common to all, from the consistency of the
-    /// poses in which the body touches the plane (it is at rest, or is accelerated upwards by more than in flight). The
-    /// body's size is not used. From the level at which 98 % of the touching poses are consistent, the margin for the
-    /// stated `confidence` follows with exponential tails, which tracked contacts show, rather than normal ones.
+    /// height `plane_z` in the world, by the calibrated rule.
     ///
     /// # Errors
-    /// [`PoseError`] for values that are not finite, runs of fewer than three frames, an impossible confidence, too few
-    /// touching poses to judge, and half-spaces that leave some direction open.
+    /// Those of [`Self::by_rule`].
     pub fn above_plane(runs: &[Vec<BodyPose>], plane_z: f64, confidence: f64) -> Result<Self, PoseError> {
-        let observations = observe(runs, plane_z)?;
+        Self::by_rule(runs, plane_z, confidence, &PoseRule::default())
+    }
+
+    /// [`Self::above_plane`] by a rule of one's own.
+    ///
+    /// The margins hold two parts: a share of the largest second difference of the position around a frame; and a
+    /// multiple of the level, common to all, at which a share of the poses in which the body touches the plane (it is at
+    /// rest, or is accelerated upwards by more than in flight) are consistent with all poses. The body's size is not used.
+    ///
+    /// # Errors
+    /// [`PoseError`] for values that are not finite, runs of fewer than three frames, an impossible confidence or rule,
+    /// too few touching poses to judge, and half-spaces that leave some direction open.
+    pub fn by_rule(
+        runs: &[Vec<BodyPose>],
+        plane_z: f64,
+        confidence: f64,
+        rule: &PoseRule,
+    ) -> Result<Self, PoseError> {
+        rule.check()?;
+        let observations = observe(runs, plane_z, rule)?;
         if !(confidence > 0.5 && confidence < 1.0) {
             return Err(PoseError::Confidence(confidence));
         }
@@ -85,14 +96,14 @@ impl PoseBounds {
         if touching < level::FEWEST {
             return Err(PoseError::TooFewTouching { found: touching, needed: level::FEWEST });
         }
-        let consistent_level = level::consistent_level(&observations)?;
-        let tails = (touching as f64 / (1.0 - confidence)).ln() / (1.0 / (1.0 - TRUSTED)).ln();
-        let margin = consistent_level * tails;
+        let consistent_level = level::consistent_level(&observations, rule)?;
+        let margin = consistent_level * rule.factor(confidence, runs.len());
         let upper = intersect(&observations, margin)?;
         let outliers = level::inconsistent(&observations, &upper, margin);
         let inside = lower::certain_points(&observations, &upper, margin);
         let lower = Hull::of(&inside).ok().filter(|hull| hull.solid().is_some());
-        Ok(Self { upper, lower, margin, consistent_level, touching, outliers })
+        let half_spaces = by_run(&observations, runs, margin);
+        Ok(Self { upper, lower, half_spaces, margin, consistent_level, touching, outliers })
     }
 }
 
@@ -112,7 +123,7 @@ pub fn half_space_above_plane(pose: &BodyPose, plane_z: f64) -> HalfSpace {
     HalfSpace { point: down * (pose.p_WO.z - plane_z), normal: Direction::new_unchecked(down), margin: 0.0 }
 }
 
-fn observe(runs: &[Vec<BodyPose>], plane_z: f64) -> Result<Vec<Observation>, PoseError> {
+fn observe(runs: &[Vec<BodyPose>], plane_z: f64, rule: &PoseRule) -> Result<Vec<Observation>, PoseError> {
     if let Some(run) = runs.iter().position(|poses| poses.len() < 3) {
         return Err(PoseError::ShortRun { run, frames: runs[run].len() });
     }
@@ -125,10 +136,12 @@ fn observe(runs: &[Vec<BodyPose>], plane_z: f64) -> Result<Vec<Observation>, Pos
             if !(pose.p_WO.is_finite() && plane_z.is_finite() && unit) {
                 return Err(PoseError::Pose { run, frame, pose: *pose, plane_z });
             }
+            let roughness = level::roughness(poses, frame);
             let normalised = BodyPose { R_WO: pose.R_WO.normalize(), ..*pose };
             observations.push(Observation {
                 half_space: half_space_above_plane(&normalised, plane_z),
-                kink: KINK * level::roughness(poses, frame),
+                kink: rule.kink * roughness,
+                gap: rule.gap * roughness,
                 touching: level::touches(poses, frame, flight, noise),
                 at: (run, frame),
             });
@@ -137,10 +150,20 @@ fn observe(runs: &[Vec<BodyPose>], plane_z: f64) -> Result<Vec<Observation>, Pos
     Ok(observations)
 }
 
-/// The half-spaces with `margin` and what their kinks add.
+impl Observation {
+    /// The half-space with `margin` and what the kink adds.
+    fn moved(&self, margin: f64) -> HalfSpace {
+        HalfSpace { margin: margin + self.kink, ..self.half_space }
+    }
+}
+
+fn by_run(observations: &[Observation], runs: &[Vec<BodyPose>], margin: f64) -> Vec<Vec<HalfSpace>> {
+    let mut moved = observations.iter().map(|o| o.moved(margin));
+    runs.iter().map(|run| moved.by_ref().take(run.len()).collect()).collect()
+}
+
 fn intersect(observations: &[Observation], margin: f64) -> Result<Polyhedron, PoseError> {
-    let moved: Vec<HalfSpace> =
-        observations.iter().map(|o| HalfSpace { margin: margin + o.kink, ..o.half_space }).collect();
+    let moved: Vec<HalfSpace> = observations.iter().map(|o| o.moved(margin)).collect();
     match Intersection::of(&moved)? {
         Intersection::Bounded(polyhedron) => Ok(polyhedron),
         Intersection::Unbounded(open) => Err(PoseError::Open { directions: open.directions().to_vec() }),

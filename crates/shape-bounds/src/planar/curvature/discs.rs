@@ -1,5 +1,6 @@
-use super::CurvatureError;
-use crate::planar::{Direction, HalfPlane};
+use super::conflict::smallest_conflict;
+use super::{CurvatureError, arc};
+use crate::planar::{Direction, HalfPlane, Intersection};
 use glam::DVec2;
 use std::f64::consts::{PI, TAU};
 
@@ -60,18 +61,21 @@ impl DiscIntersection {
         if discs.is_empty() && count > 0 {
             return Err(CurvatureError::Unbounded { count });
         }
-        let mut own = Self { discs: discs.to_vec(), half_planes: half_planes.to_vec(), sides: Vec::new() };
-        for i in 0..discs.len() {
-            own.cut_circle(i);
-        }
-        for i in 0..half_planes.len() {
-            own.cut_line(i);
-        }
+        let mut own = Self::cut(discs.to_vec(), half_planes.to_vec());
         if own.sides.is_empty() {
-            return Err(CurvatureError::Empty { count });
+            let conflict = smallest_conflict(count, |some| is_empty(discs, half_planes, some));
+            return Err(CurvatureError::Empty { count, conflict });
         }
         own.sides.sort_by(|a, b| a.start.total_cmp(&b.start));
         Ok(own)
+    }
+
+    /// The sides in no order; none where nothing is left.
+    fn cut(discs: Vec<Disc>, half_planes: Vec<HalfPlane>) -> Self {
+        let mut own = Self { discs, half_planes, sides: Vec::new() };
+        (0..own.discs.len()).for_each(|i| own.cut_circle(i));
+        (0..own.half_planes.len()).for_each(|i| own.cut_line(i));
+        own
     }
 
     /// The arcs of circle `i` that are in everything else.
@@ -168,6 +172,16 @@ impl DiscIntersection {
             .sum()
     }
 
+    /// Points on the outline, counter-clockwise, at most `step` rad (at least a thousandth) of turning apart.
+    #[must_use]
+    pub fn outline(&self, step: f64) -> Vec<DVec2> {
+        let of_side = |side: &Side| match self.discs.get(side.source) {
+            Some(disc) => arc(side.start, side.angle, step).map(|u| disc.centre + u * disc.radius).collect(),
+            None => vec![side.from, side.to],
+        };
+        self.sides.iter().flat_map(of_side).collect()
+    }
+
     /// Support function in direction `n`, in m.
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
@@ -190,6 +204,17 @@ impl DiscIntersection {
         self.discs.iter().all(|d| d.centre.distance(point) <= d.radius)
             && self.half_planes.iter().all(|h| h.excess(point) <= 0.0)
     }
+}
+
+/// Whether some of the discs and half-planes have no interior in common.
+fn is_empty(discs: &[Disc], half_planes: &[HalfPlane], some: &[usize]) -> bool {
+    let round: Vec<Disc> = some.iter().filter_map(|k| discs.get(*k)).copied().collect();
+    let flat = some.iter().filter_map(|k| half_planes.get(k.checked_sub(discs.len())?));
+    let flat: Vec<HalfPlane> = flat.copied().collect();
+    if round.is_empty() {
+        return Intersection::of(&flat).is_err_and(|_| !flat.is_empty());
+    }
+    DiscIntersection::cut(round, flat).sides.is_empty()
 }
 
 /// Adds the arc of directions `u` with `u . axis > limit`; false if that is all of them.

@@ -27,11 +27,15 @@ pub enum CurvatureError {
     },
     /// Discs and half-planes that have no point in common, or none at all were given.
     #[error(
-        "{count} discs and half-planes have no interior in common; one of them is wrong, or none was given"
+        "{count} discs and half-planes have no interior in common, already those of the indices {conflict:?} have none: one of \
+         them is wrong, or none was given"
     )]
     Empty {
         /// How many were given.
         count: usize,
+        /// A smallest set of them that contradicts itself, at most three: indices of discs, or the number of discs plus
+        /// that of a half-plane.
+        conflict: Vec<usize>,
     },
     /// Discs and half-planes that have no end in some direction.
     #[error(

@@ -4,6 +4,7 @@
 //! above `rho_max`, the body rolls freely inside of a disc of that radius (Blaschke). A concave circular palm that touches
 //! the body is such a disc without any limit on curvature.
 
+mod conflict;
 mod discs;
 mod error;
 mod rounded;
@@ -12,10 +13,14 @@ pub use discs::{Disc, DiscIntersection, Side};
 pub use error::CurvatureError;
 pub use rounded::RoundedHull;
 
+#[cfg(test)]
+use super::HalfPlane;
 use super::{ContactSample, Direction};
 use contact_kinematics::planar::RadiusBounds;
 use glam::DVec2;
 
+/// Smallest turning between points of an outline that is drawn, in rad.
+const FINEST: f64 = 1e-3;
 /// By how much contacts may contradict the limits before it is an error, relative to their size: rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -82,4 +87,40 @@ fn check(contacts: &[ContactSample], radii: RadiusBounds, inner: &[DVec2]) -> Re
         }
     }
     Ok(())
+}
+
+/// Unit vectors from the angle `from` over `angle` (rad), both ends included, evenly and at most `step` apart.
+fn arc(from: f64, angle: f64, step: f64) -> impl Iterator<Item = DVec2> {
+    let parts = (angle / step.max(FINEST)).ceil().max(1.0) as u32;
+    (0..=parts).map(move |k| DVec2::from_angle(from + angle * f64::from(k) / f64::from(parts)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planar::ConvexPolygon;
+
+    /// Area of a drawn outline; its error falls with the square of the step.
+    fn drawn(points: Vec<DVec2>) -> f64 {
+        ConvexPolygon::new(points).area()
+    }
+
+    #[test]
+    fn outlines_run_once_round_and_are_as_large_as_their_bounds() {
+        let step = 1e-2;
+        let turn = |k: u32| DVec2::from_angle(f64::from(k));
+        let centres: Vec<DVec2> = (0..7).map(|k| turn(k) * DVec2::new(2.0, 1.0)).collect();
+        for count in [1, 2, 3, 7] {
+            let hull = RoundedHull::of(&centres[..count], 0.5).unwrap();
+            let area = drawn(hull.outline(step));
+            assert!((0.0..step * step).contains(&(hull.area() - area)), "{count}: {area} {}", hull.area());
+        }
+        let discs: Vec<Disc> = (0..7).map(|k| Disc { centre: turn(k) * 0.4, radius: 1.5 }).collect();
+        let cut = HalfPlane { point: DVec2::X * 0.7, normal: Direction::from_angle(0.1), margin: 0.0 };
+        for planes in [&[][..], &[cut]] {
+            let bound = DiscIntersection::of(&discs, planes).unwrap();
+            let area = drawn(bound.outline(step));
+            assert!((0.0..step * step).contains(&(bound.area() - area)), "{area} {}", bound.area());
+        }
+    }
 }

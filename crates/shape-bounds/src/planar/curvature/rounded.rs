@@ -1,7 +1,8 @@
+use super::arc;
 use crate::planar::distance::on_segment;
 use crate::planar::{Direction, Hull, PointsError};
 use glam::DVec2;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The hull of discs of equal radius: the hull of their centres, grown by the radius.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +61,28 @@ impl RoundedHull {
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
         self.corners.iter().map(|v| v.dot(n.get())).fold(f64::NEG_INFINITY, f64::max) + self.radius
+    }
+
+    /// Points on the outline, counter-clockwise, at most `step` rad (at least a thousandth) of turning apart.
+    #[must_use]
+    pub fn outline(&self, step: f64) -> Vec<DVec2> {
+        let count = self.corners.len();
+        let edge = |k: usize| self.corners[(k + 1) % count] - self.corners[k % count];
+        let mut points = Vec::new();
+        for (k, corner) in self.corners.iter().enumerate() {
+            // Outward normals of the edges before and after the corner; about a single one, all round.
+            let (from, angle) = if count == 1 {
+                (0.0, TAU)
+            } else {
+                let (before, after) = (edge(k + count - 1), edge(k));
+                let angle = before.angle_to(after);
+                // Half a turn at the end of a segment has either sign, and next to none may be rounded below zero.
+                let angle = if angle < -FRAC_PI_2 { angle + TAU } else { angle.max(0.0) };
+                ((-before.perp()).to_angle(), angle)
+            };
+            points.extend(arc(from, angle, step).map(|u| *corner + u * self.radius));
+        }
+        points
     }
 
     /// Whether the point is inside, but for rounding.

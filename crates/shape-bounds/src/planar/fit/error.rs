@@ -42,6 +42,14 @@ pub enum FitError {
         /// The entry at fault.
         value: f64,
     },
+    /// Errors of the body's pose are common to contacts, and have no place among independent ones.
+    #[error(
+        "contact {index}: errors of the pose are stated; a fit takes errors that are independent from contact to contact"
+    )]
+    PoseNoise {
+        /// Which contact.
+        index: usize,
+    },
     /// The contacts leave a combination of parameters open.
     #[error(
         "{family}: the contacts determine {rank} of {parameters} parameters (condition {condition:.1e}); the least \

@@ -208,6 +208,13 @@ impl OutlineFit {
         &self.body
     }
 
+    /// What each parameter is called.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        let model = model(self.family);
+        (0..self.parameters.len()).map(|i| model.name(i)).collect()
+    }
+
     /// The parameters in m. Circle: centre, radius. Ellipse: centre, and the rows of the lower triangle `L` with
     /// `r = c . n + |L' n|`. Waves: `a_0, a_1, b_1, a_2, b_2, ...`.
     #[must_use]
@@ -264,6 +271,9 @@ fn check(contacts: &[NoisyContact], family: OutlineFamily) -> Result<(DVec2, f64
         let ContactNoise { point, .. } = noise;
         if let Some((name, value)) = noise.defect() {
             return Err(FitError::Noise { index, name, value });
+        }
+        if noise.pose_translation != 0.0 || noise.pose_rotation != 0.0 {
+            return Err(FitError::PoseNoise { index });
         }
         if point.determinant() <= 0.0 {
             return Err(FitError::Noise { index, name: "point", value: point.determinant() });

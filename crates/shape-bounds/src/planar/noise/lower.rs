@@ -24,7 +24,11 @@ fn eroded(list: &[Window], quantile: f64) -> Vec<DVec2> {
             let u = normal.get();
             let margin = [sources[k], sources[(k + 1) % sources.len()]]
                 .iter()
-                .map(|i| quantile * u.dot(list[*i as usize].covariance * u).max(0.0).sqrt())
+                .map(|i| {
+                    let w = &list[*i as usize];
+                    let independent = u.dot(w.covariance * u).max(0.0).sqrt();
+                    quantile * (independent + w.pose_translation + w.pose_rotation * w.point.length())
+                })
                 .fold(0.0, f64::max);
             Some(HalfPlane { point: a, normal, margin: -margin })
         })

@@ -1,14 +1,18 @@
 //! Bounds that hold at a stated confidence when contacts are measured with noise: the twin of those in space, which say
 //! why.
 
+mod consistency;
 mod lower;
 mod model;
+mod outliers;
 #[cfg(test)]
 mod tests;
 mod upper;
 mod windows;
 
+pub use consistency::estimate_noise;
 pub use model::{ContactNoise, NoiseError, NoisyContact};
+pub use outliers::without_outliers;
 
 use super::ShapeBounds;
 use lower::certain_points;
@@ -27,16 +31,8 @@ impl ShapeBounds {
     /// [`NoiseError`] for an impossible confidence or noise, noise that leaves nothing certain inside or nothing finite
     /// certain outside, and contacts that contradict each other by more than the stated noise can explain.
     pub fn from_noisy_curves(curves: &[Vec<NoisyContact>], confidence: f64) -> Result<Self, NoiseError> {
-        if !(confidence > 0.5 && confidence < 1.0) {
-            return Err(NoiseError::Confidence(confidence));
-        }
-        for (curve, contacts) in curves.iter().enumerate() {
-            for (index, contact) in contacts.iter().enumerate() {
-                if let Some((name, value)) = contact.noise.defect() {
-                    return Err(NoiseError::Noise { curve, index, name, value });
-                }
-            }
-        }
+        NoiseError::check_confidence(confidence)?;
+        NoiseError::check_contacts(curves)?;
         let contacts: Vec<_> = curves.iter().flatten().map(|c| c.contact).collect();
         Self::check(&contacts)?;
         let lists = windows(curves);

@@ -88,7 +88,10 @@ impl Window {
         let independent = normal * self.offset_sd + length * self.normal_sd * reach;
         // A normal of unit length is also shortened along the true one, by half the square of its angle.
         let second_order = 0.5 * (length * self.single_normal_sd).powi(2) * reach;
-        let margin = (self.offset + independent + second_order) / self.shrink;
+        // Of two standard normals, where the rotation is one: on the safe side.
+        let pose =
+            normal * self.pose_translation + length * self.pose_rotation * (reach + self.point.length());
+        let margin = (self.offset + independent + second_order + pose) / self.shrink;
         HalfPlane { point: self.point, normal: self.normal, margin }
     }
 }

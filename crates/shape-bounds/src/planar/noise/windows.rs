@@ -18,14 +18,17 @@ pub(super) struct Window {
     pub(super) normal: Direction,
     /// Mean of `n_k . (x_k - point)`: where the mean of the inequalities puts its line.
     pub(super) offset: f64,
-    /// Covariance of the mean point.
+    /// Covariance of the mean point from independent noise.
     pub(super) covariance: DMat2,
-    /// Standard deviation of the line's offset at `point`.
+    /// Standard deviation of the line's offset at `point`, from independent noise.
     pub(super) offset_sd: f64,
-    /// Standard deviation per axis of the mean normal.
+    /// Standard deviation per axis of the mean normal, from independent noise.
     pub(super) normal_sd: f64,
     /// The largest standard deviation of a single normal.
     pub(super) single_normal_sd: f64,
+    /// Mean standard deviations of the pose.
+    pub(super) pose_translation: f64,
+    pub(super) pose_rotation: f64,
 }
 
 /// Windows of each length over `curves`, one list for each length.
@@ -67,6 +70,8 @@ impl Window {
             offset_sd: ((point_variance + turning) * weight).sqrt(),
             normal_sd: (mean(&|c| c.noise.normal.powi(2)) * weight).sqrt(),
             single_normal_sd: run.iter().map(|c| c.noise.normal).fold(0.0, f64::max),
+            pose_translation: mean(&|c| c.noise.pose_translation),
+            pose_rotation: mean(&|c| c.noise.pose_rotation),
         })
     }
 }

@@ -1,0 +1,158 @@
+//! Bounds of an outline in the plane, with what is drawn of them.
+
+use super::fitted::{fitted_outline, relative_noise};
+use super::sound::{Noise, left_out, listed};
+use crate::cli::FitAs;
+use crate::error::CliError;
+use glam::DVec2;
+use recon::contact_kinematics::planar::RadiusBounds;
+use recon::shape_bounds::planar::{
+    ContactNoise, ContactSample, CurvatureBounds, Direction, Intersection, NoisyContact, ShapeBounds,
+    estimate_noise, without_outliers,
+};
+use serde_json::{Value, json};
+use std::f64::consts::TAU;
+
+/// Directions in which the gap is drawn.
+const DIRECTIONS: u32 = 720;
+/// Turning between points of a drawn arc, in rad.
+const STEP: f64 = 0.01;
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlanarRequest {
+    /// Known noise, and the confidence.
+    pub(crate) noise: Option<(Noise, f64)>,
+    /// Limits on the radius of curvature, for exact contacts.
+    pub(crate) radii: Option<RadiusBounds>,
+    /// A shape to fit.
+    pub(crate) fit: Option<FitAs>,
+}
+
+/// Bounds of an outline.
+pub(crate) struct PlanarBounds {
+    /// The contact points that were used.
+    pub(crate) points: Vec<DVec2>,
+    /// Corners, or points along the arcs, of the lower and the upper bound; empty where there is none.
+    pub(crate) outlines: [Vec<DVec2>; 2],
+    /// The fitted outline; empty where none was asked for.
+    pub(crate) fitted: Vec<DVec2>,
+    /// Areas of both bounds in m^2; the second is infinite where the contacts leave a side open.
+    pub(crate) areas: [f64; 2],
+    /// Direction of the normal (rad) and how far the bounds are apart there (m).
+    pub(crate) gaps: Vec<[f64; 2]>,
+    /// What the reader must know.
+    pub(crate) warnings: Vec<String>,
+    /// Noise, limits and fit.
+    pub(crate) about: Value,
+}
+
+impl PlanarBounds {
+    /// The Hausdorff distance of the bounds to the resolution of the directions, m; `None` where a side is open.
+    pub(crate) fn largest_gap(&self) -> Option<f64> {
+        self.gaps.iter().map(|g| g[1]).reduce(f64::max)
+    }
+}
+
+/// Bounds of a convex outline from `curves` of contacts.
+pub(crate) fn planar_bounds(
+    curves: &[Vec<ContactSample>],
+    request: &PlanarRequest,
+) -> Result<PlanarBounds, CliError> {
+    let all = curves.concat();
+    let (kept, mut made) = match (request.radii, request.noise) {
+        (Some(radii), _) => (relative_noise(&all), sharp(&all, radii)?),
+        (None, Some((noise, confidence))) => {
+            let Cleaned { kept, warning, about } = cleaned(curves, noise, confidence)?;
+            let mut made = drawn(&ShapeBounds::from_noisy_curves(&kept, confidence)?, about);
+            made.warnings.extend(warning);
+            (kept.concat(), made)
+        }
+        (None, None) => {
+            (relative_noise(&all), drawn(&ShapeBounds::from_contacts(&all)?, json!({ "noise": "none" })))
+        }
+    };
+    made.points = kept.iter().map(|c| c.contact.point).collect();
+    if let Some(family) = request.fit {
+        let (report, outline) = fitted_outline(&kept, request.noise.is_some(), family)?;
+        made.about["fit"] = report;
+        made.fitted = outline;
+    }
+    Ok(made)
+}
+
+/// Contacts with their noise, without outliers.
+struct Cleaned {
+    kept: Vec<Vec<NoisyContact>>,
+    warning: Option<String>,
+    about: Value,
+}
+
+fn cleaned(curves: &[Vec<ContactSample>], noise: Noise, confidence: f64) -> Result<Cleaned, CliError> {
+    let (how, noisy): (_, Vec<Vec<NoisyContact>>) = match noise {
+        Noise::Stated { point, normal } => {
+            let noise = ContactNoise::isotropic(point, normal);
+            let with_noise = |contact: &ContactSample| NoisyContact { contact: *contact, noise };
+            ("stated", curves.iter().map(|curve| curve.iter().map(with_noise).collect()).collect())
+        }
+        Noise::Estimated => ("estimated", estimate_noise(curves, confidence)?),
+    };
+    let (kept, outliers) = without_outliers(&noisy, confidence)?;
+    let levels: Vec<Value> = noisy.iter().filter_map(|curve| curve.first()).map(level).collect();
+    let about = json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed(&outliers) });
+    Ok(Cleaned { kept, warning: left_out(&outliers), about })
+}
+
+/// Standard deviations of a contact across and along the outline and of its normal.
+fn level(c: &NoisyContact) -> Value {
+    let n = c.contact.normal.get();
+    let deviation = |u: DVec2| u.dot(c.noise.point * u).max(0.0).sqrt();
+    json!({ "across_m": deviation(n), "along_m": deviation(n.perp()), "normal_rad": c.noise.normal })
+}
+
+/// The field of gaps of a pair of support functions; empty where the upper one has no end.
+fn gaps(support: impl Fn(Direction) -> (f64, f64)) -> Vec<[f64; 2]> {
+    let at = |k: u32| {
+        let angle = TAU * f64::from(k) / f64::from(DIRECTIONS);
+        let (lower, upper) = support(Direction::from_angle(angle));
+        [angle, upper - lower]
+    };
+    let all: Vec<[f64; 2]> = (0..=DIRECTIONS).map(at).collect();
+    if all.iter().all(|g| g[1].is_finite()) { all } else { Vec::new() }
+}
+
+fn drawn(bounds: &ShapeBounds, about: Value) -> PlanarBounds {
+    let lower = bounds.lower().polygon().map(|p| p.shape().vertices().to_vec());
+    let upper = bounds.upper().bounded().map(|r| r.shape().vertices().to_vec());
+    let mut warnings = Vec::new();
+    if lower.is_none() {
+        warnings.push("All contacts lie on one line: the lower bound has no area.".to_owned());
+    }
+    if let Intersection::Unbounded(_) = bounds.upper() {
+        warnings.push(
+            "The contacts leave the object unbounded on some side: there is no upper bound.".to_owned(),
+        );
+    }
+    PlanarBounds {
+        points: Vec::new(),
+        outlines: [lower, upper].map(Option::unwrap_or_default),
+        fitted: Vec::new(),
+        areas: [bounds.lower_area(), bounds.upper_area()],
+        gaps: gaps(|n| bounds.support(n)),
+        warnings,
+        about,
+    }
+}
+
+fn sharp(contacts: &[ContactSample], radii: RadiusBounds) -> Result<PlanarBounds, CliError> {
+    let bounds = CurvatureBounds::from_contacts(contacts, radii)?;
+    Ok(PlanarBounds {
+        points: Vec::new(),
+        outlines: [bounds.lower().outline(STEP), bounds.upper().outline(STEP)],
+        fitted: Vec::new(),
+        areas: [bounds.lower().area(), bounds.upper().area()],
+        gaps: gaps(|n| bounds.support(n)),
+        warnings: Vec::new(),
+        about: json!({ "noise": "none", "radii_of_curvature_m": [radii.min, radii.max] }),
+    })
+}
