@@ -12,10 +12,20 @@ pub(super) fn running_integral<V>(t: &[f64], f: &[V], zero: V) -> Vec<V>
 where
     V: Copy + Add<Output = V> + Mul<f64, Output = V>,
 {
+    let mut integral = Vec::with_capacity(t.len().min(f.len()));
+    running_integral_into(t, f, zero, &mut integral);
+    integral
+}
+
+/// The same in place of what `integral` holds.
+pub(super) fn running_integral_into<V>(t: &[f64], f: &[V], zero: V, integral: &mut Vec<V>)
+where
+    V: Copy + Add<Output = V> + Mul<f64, Output = V>,
+{
     let count = t.len().min(f.len());
     let width = count.min(STENCIL);
     let mut sum = zero;
-    let mut integral = Vec::with_capacity(count);
+    integral.clear();
     let mut known: Option<Weights> = None;
     for k in 0..count {
         if k > 0 {
@@ -33,7 +43,6 @@ where
         }
         integral.push(sum);
     }
-    integral
 }
 
 /// Derivative of the local polynomial at every sample.

@@ -181,6 +181,20 @@ impl Track {
         Self { t, nodes, integrals, middle, mass, gravity, start }
     }
 
+    /// Its nodes and times alone become those given: without integrals, which most uses need.
+    pub(super) fn set_nodes(&mut self, nodes: impl Iterator<Item = (f64, Node)> + Clone) {
+        self.start = nodes.clone().next().map_or(0.0, |(t, _)| t);
+        self.t.clear();
+        self.t.extend(nodes.clone().map(|(t, _)| t - self.start));
+        self.nodes.clear();
+        self.nodes.extend(nodes.map(|(_, node)| node));
+    }
+
+    /// A track of the same nodes with its integrals.
+    pub(super) fn integrated(&self) -> Self {
+        self.with_nodes(self.nodes.clone())
+    }
+
     /// The same track, thinned or not, for a body of another mass, kg.
     pub(super) fn of_mass(&self, mass: f64) -> Self {
         let excess = 1.0 / mass - 1.0 / self.mass;

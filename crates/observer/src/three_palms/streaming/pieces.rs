@@ -26,10 +26,13 @@ pub(super) struct Pieces {
     held: [[f64; 2]; 3],
     /// Readings since the last piece ended.
     since: usize,
+    /// Nodes of the latest piece.
+    track: Track,
 }
 
 impl Pieces {
-    pub(super) fn new(stride: usize, palm_inertias: Option<[f64; 3]>) -> Self {
+    /// `mass` and `gravity` are those of the tracks.
+    pub(super) fn new(stride: usize, palm_inertias: Option<[f64; 3]>, mass: f64, gravity: DVec3) -> Self {
         Self {
             stride,
             palm_inertias,
@@ -37,6 +40,7 @@ impl Pieces {
             ready: VecDeque::with_capacity(3 * stride + 2),
             held: [[0.0; 2]; 3],
             since: 0,
+            track: Track::growing(mass, gravity, 0.0, 2 * stride + 1),
         }
     }
 
@@ -69,21 +73,23 @@ impl Pieces {
         self.since
     }
 
-    /// A piece of two blocks, once a block has come since the last one: its middle is the next node. None before the
-    /// first two blocks.
-    pub(super) fn piece(&mut self, mass: f64, gravity: DVec3) -> Option<Piece> {
+    /// A piece of two blocks, once a block has come since the last one: its middle is the next node. The palms that were
+    /// in contact throughout the block about it; none before the first two blocks, and between the ends of blocks.
+    pub(super) fn piece(&mut self) -> Option<[bool; 3]> {
         let long = 2 * self.stride + 1;
         if self.ready.len() < long || self.since < self.stride {
             return None;
         }
         self.since = 0;
-        let start = self.newest(long).next()?.t;
-        let t = self.newest(long).map(|r| r.t - start).collect();
-        let nodes = self.newest(long).map(|r| r.node).collect();
-        // The block about the node.
-        let block = self.newest(long).skip(self.stride - self.stride / 2).take(self.stride);
-        let touching = block.fold([true; 3], |all, r| std::array::from_fn(|i| all[i] && r.touching[i]));
-        Some(Piece { track: Track::assemble(t, nodes, mass, gravity, start), touching })
+        let newest = self.ready.iter().skip(self.ready.len() - long);
+        self.track.set_nodes(newest.clone().map(|r| (r.t, r.node)));
+        let block = newest.skip(self.stride - self.stride / 2).take(self.stride);
+        Some(block.fold([true; 3], |all, r| std::array::from_fn(|i| all[i] && r.touching[i])))
+    }
+
+    /// The latest piece as a track of its own, without integrals.
+    pub(super) fn track(&self) -> &Track {
+        &self.track
     }
 
     fn reading(&mut self, middle: usize) -> Result<Reading, TrackError> {
@@ -135,11 +141,4 @@ impl Pieces {
         };
         Ok(PalmState { frame, rate: rate(here).unwrap_or(turned(before, after) / time), acceleration })
     }
-}
-
-/// Two blocks as a track of its own, with a node in their middle.
-pub(super) struct Piece {
-    pub(super) track: Track,
-    /// Palms that were in contact throughout the block about the node.
-    pub(super) touching: [bool; 3],
 }

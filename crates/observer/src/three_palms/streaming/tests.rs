@@ -4,6 +4,7 @@ use crate::three_palms::covariance::NoiseLevel;
 use crate::three_palms::track::{Track, TrackError};
 use contact_kinematics::{Ellipsoid, Palm, SlopeMotion};
 use glam::{DQuat, DVec3};
+use nalgebra::SVector;
 use object_dynamics::integrate::Tolerance;
 use object_dynamics::{
     InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation, ThreePalmScene,
@@ -72,6 +73,36 @@ fn a_known_body_is_found_and_followed_from_no_guess() {
         assert!(p < 5.0 && v < 5.0, "t = {}: {p} {v}", truth.t);
         // A hundred channels have a deviation of 0.14.
         assert!((0.4..1.8).contains(&estimate.innovation), "{}", estimate.innovation);
+    }
+}
+
+/// Normalised errors of position and velocity over whole logs: one in the mean, from the first motion on.
+#[test]
+fn the_covariance_is_honest_from_the_first_motion_on() {
+    let (scene, simulation, log) = run(7.0, 1000.0);
+    for known in [true, false] {
+        let (mut sum, mut count, mut largest) = (0.0, 0usize, 0.0f64);
+        for seed in 10..13 {
+            let estimates = taken(&mut stream(&scene, NOISE, 1000.0, known), &noisy(&log, seed));
+            for (estimate, truth) in estimates.iter().zip(&simulation.instants).step_by(10) {
+                assert_ne!(estimate.stage, StreamStage::Contradicted);
+                if estimate.stage != StreamStage::Tracking {
+                    continue;
+                }
+                let p = estimate.motion.p_WCm - truth.touch.p_WCm;
+                let v = estimate.motion.v_WCm - truth.rates.v_WCm;
+                let error = SVector::<f64, 6>::from_fn(|i, _| [p, v][i / 3][i % 3]);
+                let six = estimate.covariance.fixed_view::<6, 6>(0, 0).into_owned();
+                let square = error.dot(&six.cholesky().unwrap().solve(&error)) / 6.0;
+                (sum, count, largest) = (sum + square, count + 1, largest.max(square));
+            }
+        }
+        // Errors last for about half a second: some 20 independent samples of 6 numbers, a deviation of 0.13.
+        let mean = sum / count as f64;
+        assert!((0.6..1.4).contains(&mean), "known {known}: {mean}");
+        // Chi-squared of 6 beyond 42 has a chance of 2e-7.
+        assert!(largest < 7.0, "known {known}: {largest}");
+        assert!(count > 400, "{count}");
     }
 }
 
@@ -170,17 +201,20 @@ fn pieces_make_the_track_that_the_whole_log_makes() {
     let (scene, _, log) = run(1.0, 1000.0);
     let mass = scene.mass().mass();
     let whole = Track::new(&log, mass, scene.gravity(), None).unwrap().thinned(21);
-    let mut pieces = Pieces::new(21, None);
+    let mut pieces = Pieces::new(21, None, mass, scene.gravity());
     let mut track: Option<Track> = None;
     for sample in log.samples() {
         pieces.push(sample).unwrap();
-        let Some(piece) = pieces.piece(mass, scene.gravity()) else { continue };
+        if pieces.piece().is_none() {
+            continue;
+        }
+        let piece = pieces.track().integrated();
         let track = track.get_or_insert_with(|| {
             let mut track = Track::growing(mass, scene.gravity(), 0.0, 60);
-            track.extend(&piece.track, 0, 10);
+            track.extend(&piece, 0, 10);
             track
         });
-        track.extend(&piece.track, 21, 10);
+        track.extend(&piece, 21, 10);
     }
     let track = track.unwrap();
     assert!(track.len() >= 45);
