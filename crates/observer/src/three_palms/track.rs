@@ -36,7 +36,7 @@ pub enum TrackError {
     },
     /// Neither a force nor a usable torque.
     #[error(
-        "palm {palm} has no contact force at t = {t} s: the log needs f_{palm}, or tau_{palm} with the palm's moment of inertia and a contact away from its axis"
+        "palm {palm} has no contact force at t = {t} s: the log needs f_{palm}, or tau_{palm} with the palm's moment of inertia and a contact away from its axis; an ellipsoid is found from contacts alone (`estimate_without_forces`, `recon reconstruct --without-forces`)"
     )]
     NoForce {
         /// Palm number from 1.

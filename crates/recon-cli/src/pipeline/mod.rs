@@ -12,7 +12,7 @@ mod truth;
 
 pub(crate) use bounds::{BoundsResult, bounds};
 pub(crate) use export::exported;
-pub(crate) use folder::{write_bounds_folder, write_reconstruction_folder};
-pub(crate) use reconstruct::{Reconstruction, reconstruct};
-pub(crate) use simulate::{Simulated, simulate};
+pub(crate) use folder::{write_bounds_folder, write_reconstruction_folder, write_touch_folder};
+pub(crate) use reconstruct::{NOTABLE_NOISE, Reconstruction, reconstruct};
+pub(crate) use simulate::{Simulated, known_body, simulate};
 pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};
