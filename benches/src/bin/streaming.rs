@@ -23,6 +23,7 @@ const PARTS: usize = 6;
 const REPEATS: usize = 3;
 /// Logs whose errors are told, and their length in s.
 const LOGS: u64 = 20;
+const RANDOM_LOGS: usize = 40;
 const SHORT: f64 = 20.0;
 /// Chi-squared of six numbers that one in a thousand exceeds.
 const RARE: f64 = 22.46;
@@ -170,7 +171,7 @@ fn near_rest(axes: DVec3, seed: u64) -> Result<Option<Case>, Failure> {
 fn random_cases() -> Result<Vec<Case>, Failure> {
     let mut random = Random::new(7);
     let mut cases = Vec::new();
-    while cases.len() < LOGS as usize {
+    while cases.len() < RANDOM_LOGS {
         let axes = random.vector(1.0, 2.5);
         let mut palms = Vec::with_capacity(3);
         for k in 0..3 {

@@ -11,8 +11,8 @@ use crate::three_palms::track::{Track, smoothing_variance};
 use glam::DVec3;
 use object_dynamics::MassProperties;
 
-/// Shortest track that a motion is taken from, in natural times.
-const SHORTEST: f64 = 3.0;
+/// Shortest track that a motion is taken from, in natural times: wrong motions have explained three of them.
+const SHORTEST: f64 = 5.0;
 
 /// A known body.
 pub(super) struct Known {

@@ -33,7 +33,9 @@ const PROBATION: usize = 15;
 const WAITING: usize = 64;
 /// Mean squared innovation, over what is expected, beyond which model and data contradict each other. A hundred channels
 /// have a deviation of 0.14 about one; linearisation adds to it.
-const CONTRADICTION: f64 = 2.5;
+const CONTRADICTION: f64 = 2.0;
+/// The same, below which a contradiction has passed: a wrong motion contradicts its data now more, now less.
+const RECONCILED: f64 = 1.4;
 
 /// A stream of which `N` numbers are estimated; `P` are searched for.
 pub(super) struct Stream<K: Kind<N, P>, const N: usize, const P: usize> {
@@ -65,6 +67,7 @@ struct Tracking<const N: usize> {
     latest: Option<Latest>,
     /// Nodes that were taken by the tracker, and not fitted before.
     fresh: usize,
+    contradicted: bool,
 }
 
 impl<const N: usize> Tracking<N> {
@@ -73,11 +76,10 @@ impl<const N: usize> Tracking<N> {
         let (input, touching) = self.nodes.pop_front()?;
         let tracked = self.tracker.take(input, touching);
         self.fresh += 1;
+        let bound = if self.contradicted { RECONCILED } else { CONTRADICTION };
+        // What is not a number contradicts.
+        self.contradicted = self.tracker.innovation().is_nan() || self.tracker.innovation() > bound;
         self.nodes.is_empty().then_some(tracked)
-    }
-
-    fn contradicted(&self) -> bool {
-        self.tracker.innovation() > CONTRADICTION
     }
 }
 
@@ -139,7 +141,7 @@ impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
             tracking.nodes.push_back((input, touching));
         }
         // A motion that is contradicted is followed while another one is searched for.
-        if self.next.is_none() && self.tracking.as_ref().is_none_or(Tracking::contradicted) {
+        if self.next.is_none() && self.tracking.as_ref().is_none_or(|t| t.contradicted) {
             self.gather(touching, input);
         } else {
             self.restart();
@@ -193,7 +195,7 @@ impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
         } else if let Some(mut next) = self.next.take() {
             match next.advance() {
                 // What contradicts its own data was the wrong motion.
-                Some(_) if next.contradicted() => self.restart(),
+                Some(_) if next.contradicted => self.restart(),
                 Some(_) if next.fresh < PROBATION => self.next = Some(next),
                 Some(tracked) => {
                     next.latest = self.follow(&tracked);
@@ -228,7 +230,13 @@ impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
                 let mut nodes = gathered.nodes.split_off(taken);
                 nodes.reserve(WAITING);
                 let tracker = self.settling.take().and_then(Settling::into_tracker);
-                self.next = tracker.map(|tracker| Tracking { tracker, nodes, latest: None, fresh: 0 });
+                self.next = tracker.map(|tracker| Tracking {
+                    tracker,
+                    nodes,
+                    latest: None,
+                    fresh: 0,
+                    contradicted: false,
+                });
                 self.gathered = None;
             }
         }
@@ -277,7 +285,7 @@ impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
         let Some(tracking) = &self.tracking else { return self.at_rest(reading, lost) };
         let Some(latest) = &tracking.latest else { return self.at_rest(reading, lost) };
         let innovation = tracking.tracker.innovation();
-        let stage = if tracking.contradicted() {
+        let stage = if tracking.contradicted {
             StreamStage::Contradicted
         } else if latest.observed {
             StreamStage::Tracking
