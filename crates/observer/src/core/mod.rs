@@ -5,6 +5,7 @@ mod eigen;
 mod ekf;
 mod model;
 mod newton;
+mod node;
 mod report;
 mod rk4;
 #[cfg(feature = "palms")]

@@ -1,6 +1,7 @@
 //! Gauss-Newton on a stretch of samples: linearise forward, eliminate backward, step forward.
 
 use super::model::{Model, Sample};
+use super::node::{Node, Prior};
 use super::report::ScaledInformation;
 use nalgebra::{SMatrix, SVector};
 use std::collections::VecDeque;
@@ -25,72 +26,6 @@ impl<const N: usize> Start<N> {
     #[must_use]
     pub fn prior(state: SVector<f64, N>, deviations: &SVector<f64, N>) -> Self {
         Self { state, information: SMatrix::from_diagonal(&deviations.map(|d| 1.0 / (d * d))) }
-    }
-}
-
-/// Quadratic model of the cost-to-go from one sample on, and the flow into it.
-#[derive(Clone, Copy)]
-struct Node<const N: usize, const M: usize> {
-    x: SVector<f64, N>,
-    /// Where the rest was linearised; differs from `x` after a step.
-    at: SVector<f64, N>,
-    /// Derivative of the flow from the node before, and that flow's end minus this state.
-    transition: SMatrix<f64, N, N>,
-    defect: SVector<f64, N>,
-    /// `(I + Q L)^-1` and `Q` for the flow into this node, where there is process noise.
-    noise: Option<(SMatrix<f64, N, N>, SMatrix<f64, N, N>)>,
-    own_information: SMatrix<f64, N, N>,
-    own_vector: SVector<f64, N>,
-    information: SMatrix<f64, N, N>,
-    vector: SVector<f64, N>,
-}
-
-impl<const N: usize, const M: usize> Node<N, M> {
-    fn new(x: SVector<f64, N>) -> Self {
-        let zero = SMatrix::zeros();
-        Self {
-            x,
-            at: x,
-            transition: zero,
-            defect: SVector::zeros(),
-            noise: None,
-            own_information: zero,
-            own_vector: SVector::zeros(),
-            information: zero,
-            vector: SVector::zeros(),
-        }
-    }
-
-    /// Covariance here, all data considered, from that of the node before.
-    fn carried(&self, before: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
-        let p = match &self.noise {
-            Some((gain, q)) => {
-                let a = gain * self.transition;
-                a * before * a.transpose() + gain * q
-            }
-            None => self.transition * before * self.transition.transpose(),
-        };
-        (p + p.transpose()) * 0.5
-    }
-}
-
-/// Knowledge of the first state: cost `d' L d / 2 - v' d`, `d` the step that leads to it from `at`.
-#[derive(Clone, Copy)]
-struct Prior<const N: usize> {
-    at: SVector<f64, N>,
-    information: SMatrix<f64, N, N>,
-    vector: SVector<f64, N>,
-}
-
-impl<const N: usize> Prior<N> {
-    /// Negative gradient of the cost after a step.
-    fn pull(&self, d: &SVector<f64, N>) -> SVector<f64, N> {
-        self.vector - self.information * d
-    }
-
-    /// Twice the cost after a step, up to a constant.
-    fn cost(&self, d: &SVector<f64, N>) -> f64 {
-        d.dot(&(self.information * d - self.vector * 2.0))
     }
 }
 

@@ -9,6 +9,7 @@ mod search;
 mod settling;
 mod stream;
 mod tracker;
+mod tracking;
 mod unknown;
 
 #[cfg(test)]

@@ -1,12 +1,13 @@
 //! The stream of one kind of body.
 
-use super::estimate::{StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
+use super::estimate::{StreamError, StreamEstimate, StreamOptions, StreamStage};
 use super::front::{Falling, Front};
 use super::kind::{Gathered, Kind};
 use super::pieces::{Pieces, Reading};
 use super::search::StreamSearch;
 use super::settling::{Settled, Settling};
-use super::tracker::{Tracked, Tracker};
+use super::tracker::Tracked;
+use super::tracking::{Latest, Tracking};
 use crate::three_palms::cold_start::{natural_time, rest_state};
 use crate::three_palms::momentum::Scales;
 use crate::three_palms::refine::SMOOTHED_NATURAL_TIMES;
@@ -31,11 +32,6 @@ const PORTION: usize = 3600;
 const PROBATION: usize = 15;
 /// Room for nodes that wait for the tracker: it takes more than come.
 const WAITING: usize = 64;
-/// Mean squared innovation, over what is expected, beyond which model and data contradict each other. A hundred channels
-/// have a deviation of 0.14 about one; linearisation adds to it.
-const CONTRADICTION: f64 = 2.0;
-/// The same, below which a contradiction has passed: a wrong motion contradicts its data now more, now less.
-const RECONCILED: f64 = 1.4;
 
 /// A stream of which `N` numbers are estimated; `P` are searched for.
 pub(super) struct Stream<K: Kind<N, P>, const N: usize, const P: usize> {
@@ -57,39 +53,6 @@ pub(super) struct Stream<K: Kind<N, P>, const N: usize, const P: usize> {
     /// A motion that was found since, and has not caught up with the newest node.
     next: Option<Tracking<N>>,
     touching: [bool; 3],
-}
-
-/// A motion that was found.
-struct Tracking<const N: usize> {
-    tracker: Tracker<N>,
-    /// Nodes that the tracker has not taken yet.
-    nodes: VecDeque<(NodeInput, [bool; 3])>,
-    latest: Option<Latest>,
-    /// Nodes that were taken by the tracker, and not fitted before.
-    fresh: usize,
-    contradicted: bool,
-}
-
-impl<const N: usize> Tracking<N> {
-    /// Takes the tracker through the next node; a state once it has taken the newest.
-    fn advance(&mut self) -> Option<Tracked<N>> {
-        let (input, touching) = self.nodes.pop_front()?;
-        let tracked = self.tracker.take(input, touching);
-        self.fresh += 1;
-        let bound = if self.contradicted { RECONCILED } else { CONTRADICTION };
-        // What is not a number contradicts.
-        self.contradicted = self.tracker.innovation().is_nan() || self.tracker.innovation() > bound;
-        self.nodes.is_empty().then_some(tracked)
-    }
-}
-
-/// The latest node that the tracker has taken, and the motion since.
-struct Latest {
-    covariance: SMatrix<f64, MOTION_STATES, MOTION_STATES>,
-    observed: bool,
-    body: Falling,
-    found: Option<StreamBody>,
-    front: Front,
 }
 
 impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
@@ -230,13 +193,7 @@ impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
                 let mut nodes = gathered.nodes.split_off(taken);
                 nodes.reserve(WAITING);
                 let tracker = self.settling.take().and_then(Settling::into_tracker);
-                self.next = tracker.map(|tracker| Tracking {
-                    tracker,
-                    nodes,
-                    latest: None,
-                    fresh: 0,
-                    contradicted: false,
-                });
+                self.next = tracker.map(|tracker| Tracking::new(tracker, nodes));
                 self.gathered = None;
             }
         }
