@@ -62,7 +62,8 @@ impl MotionStream {
     /// the very first one.
     ///
     /// # Errors
-    /// [`StreamError::Sample`] for a sample that cannot be used (it is left out).
+    /// [`StreamError::Sample`], [`StreamError::Time`] or [`StreamError::Reading`] for a sample that cannot be used (it is
+    /// left out).
     pub fn push(&mut self, sample: &Sample) -> Result<Option<StreamEstimate>, StreamError> {
         match &mut self.0 {
             Inner::Known(stream) => stream.push(sample),

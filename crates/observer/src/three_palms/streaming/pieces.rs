@@ -1,5 +1,6 @@
 //! From samples to short pieces of a track, one a block, in a buffer of fixed size.
 
+use super::estimate::StreamError;
 use crate::three_palms::track::{Node, Track, TrackError};
 use contact_kinematics::{PalmFrame, PalmState};
 use glam::DVec3;
@@ -45,7 +46,8 @@ impl Pieces {
     }
 
     /// Takes a sample; it becomes a reading when the next one comes.
-    pub(super) fn push(&mut self, sample: &Sample) -> Result<Option<Reading>, TrackError> {
+    pub(super) fn push(&mut self, sample: &Sample) -> Result<Option<Reading>, StreamError> {
+        check(sample, self.raw.back().map_or(f64::NEG_INFINITY, |s| s.t))?;
         if self.raw.len() == 3 {
             self.raw.pop_front();
         }
@@ -54,7 +56,7 @@ impl Pieces {
             1 => return Ok(None),
             count => count - 2,
         };
-        let reading = self.reading(middle)?;
+        let reading = self.reading(middle).map_err(StreamError::Sample)?;
         if self.ready.len() == 3 * self.stride {
             self.ready.pop_front();
         }
@@ -141,4 +143,28 @@ impl Pieces {
         };
         Ok(PalmState { frame, rate: rate(here).unwrap_or(turned(before, after) / time), acceleration })
     }
+}
+
+/// Refuses what is no number, which would spread from here to everything.
+fn check(sample: &Sample, previous: f64) -> Result<(), StreamError> {
+    let t = sample.t;
+    if !(t > previous && t.is_finite()) {
+        return Err(StreamError::Time { t, previous });
+    }
+    for (i, palm) in sample.palms.iter().enumerate() {
+        let [s1, s2] = palm.contact.unwrap_or_default();
+        let readings = [
+            ("contact s1", Some(s1)),
+            ("contact s2", Some(s2)),
+            ("force", palm.force),
+            ("torque", palm.torque),
+            ("rate", palm.rate),
+        ];
+        let wrong =
+            readings.into_iter().find_map(|(what, v)| Some((what, v?)).filter(|(_, v)| !v.is_finite()));
+        if let Some((what, value)) = wrong {
+            return Err(StreamError::Reading { what, palm: i + 1, t, value });
+        }
+    }
+    Ok(())
 }

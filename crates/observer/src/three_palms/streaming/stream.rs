@@ -77,7 +77,7 @@ impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
     }
 
     pub(super) fn push(&mut self, sample: &Sample) -> Result<Option<StreamEstimate>, StreamError> {
-        let Some(reading) = self.pieces.push(sample).map_err(StreamError::Sample)? else { return Ok(None) };
+        let Some(reading) = self.pieces.push(sample)? else { return Ok(None) };
         self.touching = reading.touching;
         if let Some(latest) = self.tracking.as_mut().and_then(|t| t.latest.as_mut()) {
             latest.front.advance(&latest.body, &reading);

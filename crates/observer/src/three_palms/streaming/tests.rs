@@ -197,6 +197,37 @@ fn bad_options_and_samples_are_named() {
 }
 
 #[test]
+fn samples_that_are_no_numbers_or_stand_still_are_left_out() {
+    let (scene, _, log) = run(4.0, 1000.0);
+    let samples = noisy(&log, 1);
+    let clean = taken(&mut stream(&scene, NOISE, 1000.0, true), &samples);
+    let mut stream = stream(&scene, NOISE, 1000.0, true);
+    let mut with_rubbish = Vec::new();
+    for (k, sample) in samples.iter().enumerate() {
+        with_rubbish.extend(stream.push(sample).unwrap());
+        let mut wrong = *sample;
+        wrong.t += 0.5e-3;
+        match k % 4 {
+            0 => wrong.t = sample.t,
+            1 => wrong.t = f64::NAN,
+            2 => wrong.palms[1].contact = Some([0.1, f64::NAN]),
+            _ => wrong.palms[2].force = Some(f64::INFINITY),
+        }
+        let error = stream.push(&wrong).unwrap_err();
+        let time = matches!(error, StreamError::Time { .. });
+        let reading = matches!(error, StreamError::Reading { palm: 2 | 3, .. });
+        assert!(if k % 4 < 2 { time } else { reading }, "{error}");
+    }
+    // As if they had never been.
+    assert_eq!(with_rubbish.len(), clean.len());
+    let (with, without) = (with_rubbish.last().unwrap(), clean.last().unwrap());
+    assert_eq!(
+        (with.motion, with.covariance, with.stage),
+        (without.motion, without.covariance, without.stage)
+    );
+}
+
+#[test]
 fn pieces_make_the_track_that_the_whole_log_makes() {
     let (scene, _, log) = run(1.0, 1000.0);
     let mass = scene.mass().mass();
