@@ -30,6 +30,10 @@ const PATIENCE: f64 = 1.15;
 const PORTION: usize = 3600;
 /// Nodes that a motion must have foretold before it is stated.
 const PROBATION: usize = 15;
+/// Pieces of work in a second: where samples are few, each does more.
+const WORK_PER_SECOND: f64 = 1000.0;
+/// Pieces that a sample does at most: below 10 Hz no motion can be followed.
+const MOST_WORK: f64 = 100.0;
 /// Room for nodes that wait for the tracker: it takes more than come.
 const WAITING: usize = 64;
 
@@ -53,6 +57,8 @@ pub(super) struct Stream<K: Kind<N, P>, const N: usize, const P: usize> {
     /// A motion that was found since, and has not caught up with the newest node.
     next: Option<Tracking<N>>,
     touching: [bool; 3],
+    /// Pieces of work that a sample does.
+    pieces_of_work: usize,
 }
 
 impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
@@ -72,6 +78,7 @@ impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
             next: None,
             touching: [true; 3],
             stride,
+            pieces_of_work: (WORK_PER_SECOND / options.sample_rate).ceil().clamp(1.0, MOST_WORK) as usize,
             options,
         })
     }
@@ -82,9 +89,12 @@ impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
         if let Some(latest) = self.tracking.as_mut().and_then(|t| t.latest.as_mut()) {
             latest.front.advance(&latest.body, &reading);
         }
-        if let Some(touching) = self.pieces.piece() {
+        // The end of a block is work as well.
+        let ended = self.pieces.piece();
+        if let Some(touching) = ended {
             self.node(touching);
-        } else {
+        }
+        for _ in usize::from(ended.is_some())..self.pieces_of_work {
             self.work();
         }
         Ok(Some(self.estimate(&reading)))
@@ -147,7 +157,7 @@ impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
         self.settling = None;
     }
 
-    /// What is to be done between the ends of blocks: one thing a sample, what is most urgent first.
+    /// What is to be done between the ends of blocks: one thing at a time, what is most urgent first.
     fn work(&mut self) {
         if self.tracking.as_ref().is_some_and(|t| !t.nodes.is_empty()) {
             let tracked = self.tracking.as_mut().and_then(Tracking::advance);

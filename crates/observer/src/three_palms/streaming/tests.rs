@@ -196,6 +196,23 @@ fn bad_options_and_samples_are_named() {
     assert!(matches!(failed[0], StreamError::Sample(TrackError::NoForce { palm: 1, .. })), "{failed:?}");
 }
 
+/// Blocks are short then, and each sample does the work of many.
+#[test]
+fn few_samples_a_second_are_followed_too() {
+    for rate in [50.0, 100.0] {
+        let (scene, simulation, log) = run(6.0, rate);
+        let estimates = taken(&mut stream(&scene, NOISE, rate, true), &noisy(&log, 4));
+        assert_eq!(estimates.last().unwrap().stage, StreamStage::Tracking, "{rate}");
+        for (estimate, truth) in estimates.iter().zip(&simulation.instants) {
+            if estimate.stage == StreamStage::Tracking {
+                let p = in_deviations(estimate, 0, estimate.motion.p_WCm.distance(truth.touch.p_WCm));
+                let v = in_deviations(estimate, 1, estimate.motion.v_WCm.distance(truth.rates.v_WCm));
+                assert!(p < 5.0 && v < 5.0, "{rate} Hz, t = {}: {p} {v}", truth.t);
+            }
+        }
+    }
+}
+
 #[test]
 fn samples_that_are_no_numbers_or_stand_still_are_left_out() {
     let (scene, _, log) = run(4.0, 1000.0);
