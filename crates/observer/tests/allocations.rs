@@ -1,5 +1,6 @@
 //! A stream that follows a motion makes and frees nothing.
 
+#![cfg(feature = "palms")]
 #![allow(clippy::unwrap_used, reason = "a helper of tests may panic, as a test may")]
 
 use contact_kinematics::{Ellipsoid, Palm, SlopeMotion};

@@ -114,6 +114,7 @@ pub struct NewtonObserver<Mo: Model<N, M>, const N: usize, const M: usize> {
 
 impl<Mo: Model<N, M>, const N: usize, const M: usize> NewtonObserver<Mo, N, M> {
     /// An observer in whose window there are samples already; none where the options are not usable.
+    #[cfg(feature = "palms")]
     pub(super) fn going_on(
         model: Mo,
         options: NewtonOptions,

@@ -266,6 +266,7 @@ impl<const N: usize, const M: usize> Window<N, M> {
     }
 
     /// Covariance of node `k`, all data considered, from that of the node before.
+    #[cfg(feature = "palms")]
     pub(super) fn next_covariance(&self, k: usize, before: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
         self.nodes[k].carried(before)
     }
