@@ -276,7 +276,8 @@ impl<K: Kind<N, P>, const N: usize, const P: usize> Stream<K, N, P> {
 
     /// Before a motion is found: the body at rest where the contact wrench balances, known to its own size.
     fn at_rest(&self, reading: &Reading, lost: [bool; 3]) -> StreamEstimate {
-        let rounds = self.search.rounds();
+        // A motion that must still foretell some nodes is the outcome of a round.
+        let rounds = self.search.rounds().max(usize::from(self.next.is_some()));
         let stage = if rounds == 0 { StreamStage::Gathering } else { StreamStage::Searching { rounds } };
         let (mass, gravity) = (self.kind.nominal_mass(), self.options.gravity);
         let single = Track::assemble(vec![0.0], vec![reading.node], mass, gravity, reading.t);
