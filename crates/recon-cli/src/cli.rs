@@ -18,6 +18,7 @@ Examples:
   recon demo                                        the paper's Fig. 5, from nothing to a report
   recon simulate scene.toml -o log.csv              a sensor log of a known object
   recon reconstruct log.csv --scene scene.toml -o out   shape, motion and bounds from a log
+  recon follow - --scene scene.toml                 the motion as it becomes known, from a running log
   recon bounds out/contact_curves.csv -o bounds     bounds from contact points and normals alone";
 
 /// Shape, motion and bounds of an unknown smooth convex object, from touch alone.
@@ -38,6 +39,8 @@ pub(crate) enum Command {
     Simulate(SimulateArgs),
     /// Reconstruct motion, contact curves and bounds from a sensor log
     Reconstruct(ReconstructArgs),
+    /// Follow the motion sample by sample, as a log is written or at the pace of reading it
+    Follow(FollowArgs),
     /// Bound a convex object from contact points with outward normals, or from its poses above a plane
     Bounds(BoundsArgs),
     /// Reconstruct a planar object between two hinged palms from a planar log, or the scene of the paper's Fig. 3
@@ -76,9 +79,14 @@ The output folder appears as a whole or not at all: motion.csv, contact_curves.c
 lower_bound.ply, upper_bound.ply and report.html, which opens in any browser. With --export it holds the object for
 simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer to.
 
+With --without-forces the contacts and palm poses alone are fitted with the motion of an ellipsoid, its centre anywhere; mass
+and inertia of the scene are not looked at, and only inertia over mass is found. Then the folder holds motion.csv,
+summary.json and the bounds.
+
 Examples:
   recon reconstruct log.csv --scene scene.toml -o out
   recon reconstruct log.csv --scene scene.toml -o out --identify --export mjcf,urdf
+  recon reconstruct log.csv --scene scene.toml -o out --without-forces
   recon reconstruct log.csv --scene scene.toml -o out --json | jq .bounds")]
 pub(crate) struct ReconstructArgs {
     /// Sensor log (CSV)
@@ -92,12 +100,55 @@ pub(crate) struct ReconstructArgs {
     /// Estimate mass and inertia too, with their deviations
     #[arg(long)]
     pub(crate) identify: bool,
+    /// Use no forces, though the log may have them: for an ellipsoid, on palms without force sensors
+    #[arg(long, conflicts_with_all = ["identify", "export"])]
+    pub(crate) without_forces: bool,
     /// Write the object for simulators too, in these formats
     #[arg(long, value_delimiter = ',', value_name = "FORMATS")]
     pub(crate) export: Vec<ExportAs>,
     /// Shape of the exported object
     #[arg(long, default_value = "auto", requires = "export")]
     pub(crate) export_shape: ShapeAs,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The log is CSV as for `recon reconstruct`, a file or standard input (`-`), taken line by line: a robot may be writing it. The
+scene gives gravity, mass and inertia (with --identify these are estimated along), and the noise of the sensors where no
+option does.
+
+The result is a table (CSV): t, position, orientation, velocity and angular velocity as in motion.csv; std_cm (m) and std_v
+(m/s), standard deviations of all axes together; stage (gathering, searching, tracking, contradicted); innovation, about 1
+where all is as stated; mass (kg) and std_mass. Before a motion is found it is that of a body at rest, known to its size.
+With --json it is one object a line.
+
+Examples:
+  recon follow log.csv --scene scene.toml -o motion.csv
+  robot | recon follow - --scene scene.toml --identify --every 0.02")]
+pub(crate) struct FollowArgs {
+    /// Sensor log (CSV); `-` for standard input
+    pub(crate) log: PathBuf,
+    /// Scene file (TOML)
+    #[arg(short, long)]
+    pub(crate) scene: Option<PathBuf>,
+    /// Estimate mass and inertia too
+    #[arg(long)]
+    pub(crate) identify: bool,
+    /// Standard deviation of s1 and s2, m [default: the scene's sensors.contact_std]
+    #[arg(long, value_name = "M", value_parser = positive)]
+    pub(crate) contact_noise: Option<f64>,
+    /// Standard deviation of f, N [default: the scene's sensors.force_std]
+    #[arg(long, value_name = "N", value_parser = positive)]
+    pub(crate) force_noise: Option<f64>,
+    /// Samples a second [default: those of the log's first samples]
+    #[arg(long, value_name = "HZ", value_parser = positive)]
+    pub(crate) rate: Option<f64>,
+    /// Time between rows of the table, s
+    #[arg(long, value_name = "S", default_value_t = 0.1, value_parser = not_negative)]
+    pub(crate) every: f64,
+    /// File to write [default: standard output]
+    #[arg(short, long)]
+    pub(crate) output: Option<PathBuf>,
 }
 
 /// A format of an exported object.

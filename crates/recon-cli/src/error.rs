@@ -75,6 +75,19 @@ pub(crate) enum CliError {
     Noise(#[source] LogError),
     #[error("the log gives no motion")]
     Estimate(#[from] EstimateError),
+    #[error("the log cannot be followed")]
+    Stream(#[from] recon::observer::StreamError),
+    #[error(
+        "following a motion needs the noise of the sensors: give --contact-noise (m) and --force-noise (N), or \
+         sensors.contact_std and sensors.force_std in the scene"
+    )]
+    StreamNoise,
+    #[error("the log has {found} sample(s); following a motion needs {needed}")]
+    TooFewSamples { found: usize, needed: usize },
+    #[error("contacts alone give no motion")]
+    WithoutForces(#[from] recon::observer::NoForceError),
+    #[error("--without-forces needs a scene file (--scene), for gravity")]
+    NoGravity,
     #[error("the planar log gives no motion")]
     PlanarEstimate(#[from] recon::observer::planar::PlanarEstimateError),
     #[error(
@@ -133,6 +146,11 @@ impl CliError {
             | Self::Simulation(_)
             | Self::Noise(_)
             | Self::Estimate(_)
+            | Self::Stream(_)
+            | Self::StreamNoise
+            | Self::TooFewSamples { .. }
+            | Self::WithoutForces(_)
+            | Self::NoGravity
             | Self::PlanarEstimate(_)
             | Self::PlanarTooShort { .. }
             | Self::PlanarNoise

@@ -12,14 +12,15 @@ mod planar_figures;
 mod plausibility;
 mod report;
 mod scene;
+mod stream;
 mod summary;
 mod table;
 mod touches;
 
 pub use export::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
 pub use log::{
-    LogFileError, LogFileErrorKind, parse_log, parse_planar_log, read_log, read_planar_log, write_log,
-    write_planar_log,
+    LogFileError, LogFileErrorKind, LogReader, parse_log, parse_planar_log, read_log, read_planar_log,
+    write_log, write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use output::{AtomicFile, OutputError, OutputFolder};
@@ -30,6 +31,7 @@ pub use report::{
     ReportError, TrueShape, Verdict, write_report,
 };
 pub use scene::{KnownInertia, Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation};
+pub use stream::{StreamRow, write_stream_header, write_stream_row};
 pub use summary::summary;
 pub use table::{write_contact_curves, write_motion, write_radius_functions};
 pub use touches::{

@@ -5,8 +5,11 @@ mod eigen;
 mod ekf;
 mod model;
 mod newton;
+mod node;
 mod report;
 mod rk4;
+#[cfg(feature = "palms")]
+mod smoother;
 mod window;
 
 pub use batch::{BatchOptions, BatchSolution, solve_batch, solve_batch_along, solve_batch_from};
@@ -17,4 +20,6 @@ pub use newton::{Arrival, NewtonEstimate, NewtonObserver, NewtonOptions};
 pub(crate) use report::direction_words;
 pub use report::{ObserverError, Report, Status, describe_direction};
 pub use rk4::{rk4, rk4_linearised};
+#[cfg(feature = "palms")]
+pub(crate) use smoother::{Portion, Smoother};
 pub use window::Start;

@@ -1,6 +1,7 @@
 //! Gauss-Newton on a stretch of samples: linearise forward, eliminate backward, step forward.
 
 use super::model::{Model, Sample};
+use super::node::{Node, Prior};
 use super::report::ScaledInformation;
 use nalgebra::{SMatrix, SVector};
 use std::collections::VecDeque;
@@ -28,72 +29,6 @@ impl<const N: usize> Start<N> {
     }
 }
 
-/// Quadratic model of the cost-to-go from one sample on, and the flow into it.
-#[derive(Clone, Copy)]
-struct Node<const N: usize, const M: usize> {
-    x: SVector<f64, N>,
-    /// Where the rest was linearised; differs from `x` after a step.
-    at: SVector<f64, N>,
-    /// Derivative of the flow from the node before, and that flow's end minus this state.
-    transition: SMatrix<f64, N, N>,
-    defect: SVector<f64, N>,
-    /// `(I + Q L)^-1` and `Q` for the flow into this node, where there is process noise.
-    noise: Option<(SMatrix<f64, N, N>, SMatrix<f64, N, N>)>,
-    own_information: SMatrix<f64, N, N>,
-    own_vector: SVector<f64, N>,
-    information: SMatrix<f64, N, N>,
-    vector: SVector<f64, N>,
-}
-
-impl<const N: usize, const M: usize> Node<N, M> {
-    fn new(x: SVector<f64, N>) -> Self {
-        let zero = SMatrix::zeros();
-        Self {
-            x,
-            at: x,
-            transition: zero,
-            defect: SVector::zeros(),
-            noise: None,
-            own_information: zero,
-            own_vector: SVector::zeros(),
-            information: zero,
-            vector: SVector::zeros(),
-        }
-    }
-
-    /// Covariance here, all data considered, from that of the node before.
-    fn carried(&self, before: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
-        let p = match &self.noise {
-            Some((gain, q)) => {
-                let a = gain * self.transition;
-                a * before * a.transpose() + gain * q
-            }
-            None => self.transition * before * self.transition.transpose(),
-        };
-        (p + p.transpose()) * 0.5
-    }
-}
-
-/// Knowledge of the first state: cost `d' L d / 2 - v' d`, `d` the step that leads to it from `at`.
-#[derive(Clone, Copy)]
-struct Prior<const N: usize> {
-    at: SVector<f64, N>,
-    information: SMatrix<f64, N, N>,
-    vector: SVector<f64, N>,
-}
-
-impl<const N: usize> Prior<N> {
-    /// Negative gradient of the cost after a step.
-    fn pull(&self, d: &SVector<f64, N>) -> SVector<f64, N> {
-        self.vector - self.information * d
-    }
-
-    /// Twice the cost after a step, up to a constant.
-    fn cost(&self, d: &SVector<f64, N>) -> f64 {
-        d.dot(&(self.information * d - self.vector * 2.0))
-    }
-}
-
 /// Trajectory over the samples of a window, with room for a fixed number of them.
 ///
 /// Minimises, over the states `x_k` and the process noise `w_k`,
@@ -108,6 +43,10 @@ pub(super) struct Window<const N: usize, const M: usize> {
     channels: usize,
     /// Number of nodes, from the oldest on, that the last linearisation covered.
     linearised: usize,
+    /// Information and vector that the node eliminated last hands to the one before it.
+    carried: (SMatrix<f64, N, N>, SVector<f64, N>),
+    /// Step of the node that was moved last.
+    moved: SVector<f64, N>,
 }
 
 impl<const N: usize, const M: usize> Window<N, M> {
@@ -120,6 +59,8 @@ impl<const N: usize, const M: usize> Window<N, M> {
             noise_cost: 0.0,
             channels: 0,
             linearised: 0,
+            carried: (SMatrix::zeros(), SVector::zeros()),
+            moved: SVector::zeros(),
         }
     }
 
@@ -206,53 +147,71 @@ impl<const N: usize, const M: usize> Window<N, M> {
         model: &Mo,
         samples: impl Iterator<Item = &'a Sample<Mo::Input, M>>,
     ) {
-        self.data_cost = 0.0;
-        self.channels = 0;
-        self.linearised = self.nodes.len();
-        let mut before: Option<SVector<f64, N>> = None;
-        for (node, sample) in self.nodes.iter_mut().zip(samples) {
-            let x = node.x;
-            node.at = x;
-            if let Some(previous) = before {
-                let (end, transition) = model.flow(&previous, &sample.input);
-                (node.defect, node.transition) = (model.difference(&end, &x), transition);
-                node.noise = model.process_noise(&previous, &sample.input).map(|q| (SMatrix::identity(), q));
-            }
-            let (y, h) = model.output(&x, &sample.input);
-            node.own_information = SMatrix::zeros();
-            node.own_vector = SVector::zeros();
-            for channel in 0..M {
-                let weight = sample.information[channel];
-                if weight > 0.0 {
-                    let residual = sample.measured[channel] - y[channel];
-                    let row = h.row(channel).transpose();
-                    node.own_information += row * row.transpose() * weight;
-                    node.own_vector += row * (weight * residual);
-                    self.data_cost += weight * residual * residual;
-                    self.channels += 1;
-                }
-            }
-            before = Some(x);
+        for (k, sample) in samples.take(self.nodes.len()).enumerate() {
+            self.linearise_node(model, k, sample);
         }
-        self.eliminate();
+        for k in (0..self.nodes.len()).rev() {
+            self.eliminate_node(k);
+        }
     }
 
-    fn eliminate(&mut self) {
-        let (mut carried_l, mut carried_b) = (SMatrix::zeros(), SVector::zeros());
-        for node in self.nodes.iter_mut().rev() {
-            node.information = node.own_information + carried_l;
-            node.vector = node.own_vector + carried_b;
-            let (mut l, mut b) = (node.information, node.vector - node.information * node.defect);
-            if let Some((gain, q)) = &mut node.noise {
-                // Q and L are positive semidefinite, hence I + Q L has eigenvalues of at least one.
-                let inverse = (SMatrix::identity() + *q * l).try_inverse();
-                *gain = inverse.unwrap_or_else(SMatrix::identity);
-                l *= *gain;
-                b = gain.transpose() * b;
-            }
-            carried_l = node.transition.transpose() * l * node.transition;
-            carried_b = node.transition.transpose() * b;
+    /// Linearises about the present state of node `k`: from the first node to the last.
+    pub(super) fn linearise_node<Mo: Model<N, M>>(
+        &mut self,
+        model: &Mo,
+        k: usize,
+        sample: &Sample<Mo::Input, M>,
+    ) {
+        if k == 0 {
+            (self.data_cost, self.channels) = (0.0, 0);
         }
+        self.linearised = k + 1;
+        let before = k.checked_sub(1).map(|k| self.nodes[k].x);
+        let node = &mut self.nodes[k];
+        let x = node.x;
+        node.at = x;
+        if let Some(previous) = before {
+            let (end, transition) = model.flow(&previous, &sample.input);
+            (node.defect, node.transition) = (model.difference(&end, &x), transition);
+            node.noise = model.process_noise(&previous, &sample.input).map(|q| (SMatrix::identity(), q));
+        }
+        let (y, h) = model.output(&x, &sample.input);
+        node.own_information = SMatrix::zeros();
+        node.own_vector = SVector::zeros();
+        for channel in 0..M {
+            let weight = sample.information[channel];
+            if weight > 0.0 {
+                let residual = sample.measured[channel] - y[channel];
+                let row = h.row(channel).transpose();
+                node.own_information += row * row.transpose() * weight;
+                node.own_vector += row * (weight * residual);
+                self.data_cost += weight * residual * residual;
+                self.channels += 1;
+            }
+        }
+    }
+
+    /// Cost-to-go of node `k` from that of the one after it: from the last node to the first.
+    pub(super) fn eliminate_node(&mut self, k: usize) {
+        if k + 1 >= self.nodes.len() {
+            self.carried = (SMatrix::zeros(), SVector::zeros());
+        }
+        let node = &mut self.nodes[k];
+        node.information = node.own_information + self.carried.0;
+        node.vector = node.own_vector + self.carried.1;
+        if k == 0 {
+            return;
+        }
+        let (mut l, mut b) = (node.information, node.vector - node.information * node.defect);
+        if let Some((gain, q)) = &mut node.noise {
+            // Q and L are positive semidefinite, hence I + Q L has eigenvalues of at least one.
+            let inverse = (SMatrix::identity() + *q * l).try_inverse();
+            *gain = inverse.unwrap_or_else(SMatrix::identity);
+            l *= *gain;
+            b = gain.transpose() * b;
+        }
+        let back = node.transition.transpose();
+        self.carried = (back * l * node.transition, back * b);
     }
 
     /// Information about the first state from the data and the prior, in natural units.
@@ -274,20 +233,27 @@ impl<const N: usize, const M: usize> Window<N, M> {
 
     /// Applies a step of the first state to all states by the linear model, process noise at its best value.
     pub(super) fn apply<Mo: Model<N, M>>(&mut self, model: &Mo, step: SVector<f64, N>) {
-        let mut delta = step;
-        self.noise_cost = 0.0;
-        for (k, node) in self.nodes.iter_mut().enumerate() {
-            if k > 0 {
-                delta = node.transition * delta + node.defect;
-                if let Some((gain, q)) = &node.noise {
-                    delta = gain * (delta + q * node.vector);
-                    // The noise is Q times the slope of the cost-to-go, and costs slope' Q slope.
-                    let slope = node.vector - node.information * delta;
-                    self.noise_cost += slope.dot(&(q * slope));
-                }
-            }
-            node.x = model.retract(&node.at, &delta);
+        for k in 0..self.nodes.len() {
+            self.apply_node(model, k, &step);
         }
+    }
+
+    /// Moves node `k`: from the first node, which takes the step, to the last.
+    pub(super) fn apply_node<Mo: Model<N, M>>(&mut self, model: &Mo, k: usize, step: &SVector<f64, N>) {
+        let node = &mut self.nodes[k];
+        if k == 0 {
+            (self.noise_cost, self.moved) = (0.0, *step);
+        } else {
+            let mut delta = node.transition * self.moved + node.defect;
+            if let Some((gain, q)) = &node.noise {
+                delta = gain * (delta + q * node.vector);
+                // The noise is Q times the slope of the cost-to-go, and costs slope' Q slope.
+                let slope = node.vector - node.information * delta;
+                self.noise_cost += slope.dot(&(q * slope));
+            }
+            self.moved = delta;
+        }
+        node.x = model.retract(&node.at, &self.moved);
     }
 
     /// Carries the covariance of the first state to the last.
@@ -306,6 +272,12 @@ impl<const N: usize, const M: usize> Window<N, M> {
         // The gain is (I + Q L)^-1.
         let of_noise = |node: &Node<N, M>| node.noise.map_or(0.0, |(gain, _)| log_determinant(gain));
         first - self.nodes.iter().map(of_noise).sum::<f64>()
+    }
+
+    /// Covariance of node `k`, all data considered, from that of the node before.
+    #[cfg(feature = "palms")]
+    pub(super) fn next_covariance(&self, k: usize, before: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+        self.nodes[k].carried(before)
     }
 
     /// Covariances of all states, oldest first, from that of the first.

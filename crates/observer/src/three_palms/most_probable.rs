@@ -5,15 +5,15 @@ use crate::core::{BatchOptions, BatchSolution, ObserverError, Sample, Start, Sta
 use nalgebra::SVector;
 
 /// Linearisations at most, in each of the two passes.
-const ITERATIONS: usize = 15;
+pub(super) const ITERATIONS: usize = 15;
 /// Length of a step at which the iteration has settled, in relative contact noise.
-const STEP_TOLERANCE: f64 = 0.01;
+pub(super) const STEP_TOLERANCE: f64 = 0.01;
 /// Deviation, in natural units, of the turning rates in the first pass: the start is not better known.
-const FIRST_SLIDE: f64 = 0.1;
+pub(super) const FIRST_SLIDE: f64 = 0.1;
 /// Root mean square residual, in deviations, from which a pass that did not settle leads nowhere.
 const HOPELESS: f64 = 10.0;
 /// Passes: each takes from the one before what derivatives and weights must not take from noisy data.
-const PASSES: usize = 3;
+pub(super) const PASSES: usize = 3;
 
 /// A motion and how probable it is.
 pub(super) struct MostProbable<const N: usize> {

@@ -12,7 +12,38 @@ pub(super) fn running_integral<V>(t: &[f64], f: &[V], zero: V) -> Vec<V>
 where
     V: Copy + Add<Output = V> + Mul<f64, Output = V>,
 {
-    RunningIntegral::new(&t[..t.len().min(f.len())]).of(f, zero)
+    let mut integral = Vec::with_capacity(t.len().min(f.len()));
+    running_integral_into(t, f, zero, &mut integral);
+    integral
+}
+
+/// The same in place of what `integral` holds.
+pub(super) fn running_integral_into<V>(t: &[f64], f: &[V], zero: V, integral: &mut Vec<V>)
+where
+    V: Copy + Add<Output = V> + Mul<f64, Output = V>,
+{
+    let count = t.len().min(f.len());
+    let mut sum = zero;
+    integral.clear();
+    integral.extend(f.first().filter(|_| count > 0).map(|_| zero));
+    let mut known: Option<Weights> = None;
+    for k in 1..count {
+        let (start, nodes) = stencil_before(&t[..count], k);
+        let weights = match known.filter(|w| w.stencil.is_like(&nodes)) {
+            Some(weights) => weights,
+            None => Weights::new(nodes),
+        };
+        sum = sum + weights.of(&f[start..], zero) * (t[k] - t[k - 1]);
+        integral.push(sum);
+        known = Some(weights);
+    }
+}
+
+/// First sample and stencil of the interval that ends at sample `k`, which is not the first.
+fn stencil_before(t: &[f64], k: usize) -> (usize, Stencil) {
+    let width = t.len().min(STENCIL);
+    let start = (k - 1).saturating_sub((width - 1) / 2).min(t.len() - width);
+    (start, Stencil::new(&t[start..start + width], k - 1 - start))
 }
 
 /// Weights of the running integrals of any data at some times.
@@ -25,12 +56,10 @@ pub(super) struct RunningIntegral {
 impl RunningIntegral {
     /// At strictly increasing times.
     pub(super) fn new(t: &[f64]) -> Self {
-        let width = t.len().min(STENCIL);
         let mut weights: Vec<Weights> = Vec::new();
         let mut intervals = Vec::with_capacity(t.len());
         for k in 1..t.len() {
-            let start = (k - 1).saturating_sub((width - 1) / 2).min(t.len() - width);
-            let nodes = Stencil::new(&t[start..start + width], k - 1 - start);
+            let (start, nodes) = stencil_before(t, k);
             if !weights.last().is_some_and(|w| w.stencil.is_like(&nodes)) {
                 weights.push(Weights::new(nodes));
             }
@@ -48,12 +77,7 @@ impl RunningIntegral {
         let mut integral = Vec::with_capacity(f.len());
         integral.extend(f.first().map(|_| zero));
         for &(start, weights, step) in &self.intervals {
-            let Weights { stencil, values } = &self.weights[weights];
-            let mut part = zero;
-            for (&value, &weight) in f[start..start + stencil.width].iter().zip(values) {
-                part = part + value * weight;
-            }
-            sum = sum + part * step;
+            sum = sum + self.weights[weights].of(&f[start..], zero) * step;
             integral.push(sum);
         }
         integral
@@ -149,6 +173,16 @@ struct Weights {
 }
 
 impl Weights {
+    /// The weighted sum of the first values, as many as the stencil has nodes.
+    #[inline]
+    fn of<V>(&self, values: &[V], zero: V) -> V
+    where
+        V: Copy + Add<Output = V> + Mul<f64, Output = V>,
+    {
+        let weighed = values.iter().zip(&self.values[..self.stencil.width]);
+        weighed.fold(zero, |sum, (&value, &weight)| sum + value * weight)
+    }
+
     /// Integrals over `[0, 1]` of the Lagrange polynomials of the nodes, expanded into powers.
     fn new(stencil: Stencil) -> Self {
         let nodes = &stencil.nodes[..stencil.width];

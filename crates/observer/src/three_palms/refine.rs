@@ -14,7 +14,7 @@ use object_dynamics::MassProperties;
 /// Nodes in one natural time: more of them take time and tell no more.
 const NODES_PER_NATURAL_TIME: f64 = 32.0;
 /// Natural times over which contacts are smoothed, on either side, where derivatives are taken.
-const SMOOTHED_NATURAL_TIMES: f64 = 0.125;
+pub(super) const SMOOTHED_NATURAL_TIMES: f64 = 0.125;
 /// Deviation of the orientation at the start where a choice of body axes, and no measurement, fixes it: in relative
 /// contact noise, so that it is small against what is measured and yet lets sums of both keep their digits.
 const CHOSEN: f64 = 0.1;

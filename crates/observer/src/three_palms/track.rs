@@ -36,7 +36,7 @@ pub enum TrackError {
     },
     /// Neither a force nor a usable torque.
     #[error(
-        "palm {palm} has no contact force at t = {t} s: the log needs f_{palm}, or tau_{palm} with the palm's moment of inertia and a contact away from its axis"
+        "palm {palm} has no contact force at t = {t} s: the log needs f_{palm}, or tau_{palm} with the palm's moment of inertia and a contact away from its axis; an ellipsoid is found from contacts alone (`estimate_without_forces`, `recon reconstruct --without-forces`)"
     )]
     NoForce {
         /// Palm number from 1.
@@ -181,6 +181,20 @@ impl Track {
             .collect();
         let middle = (1..t.len()).map(|k| interpolate(&t, &integrals, 0.5 * (t[k - 1] + t[k]), k)).collect();
         Self { t, nodes, integrals, middle, mass, gravity, start }
+    }
+
+    /// Its nodes and times alone become those given: without integrals, which most uses need.
+    pub(super) fn set_nodes(&mut self, nodes: impl Iterator<Item = (f64, Node)> + Clone) {
+        self.start = nodes.clone().next().map_or(0.0, |(t, _)| t);
+        self.t.clear();
+        self.t.extend(nodes.clone().map(|(t, _)| t - self.start));
+        self.nodes.clear();
+        self.nodes.extend(nodes.map(|(_, node)| node));
+    }
+
+    /// A track of the same nodes with its integrals.
+    pub(super) fn integrated(&self) -> Self {
+        self.with_nodes(self.nodes.clone())
     }
 
     /// The same track, thinned or not, for a body of another mass, kg.

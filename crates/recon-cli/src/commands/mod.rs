@@ -2,10 +2,12 @@
 
 mod bounds;
 mod demo;
+mod follow;
 mod planar;
 mod plane;
 mod reconstruct;
 mod simulate;
+mod without_forces;
 
 use crate::cli::Command;
 use crate::console::Console;
@@ -16,6 +18,7 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
     match command {
         Command::Simulate(args) => simulate::run(args, console),
         Command::Reconstruct(args) => reconstruct::run(args, console),
+        Command::Follow(args) => follow::run(args, console),
         Command::Bounds(args) => bounds::run(args, console),
         Command::Planar(args) => planar::run(args, console),
         Command::Demo(args) => demo::run(args, console),

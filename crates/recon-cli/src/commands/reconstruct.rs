@@ -9,6 +9,9 @@ use std::fmt::Write;
 use std::path::Path;
 
 pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, CliError> {
+    if args.without_forces {
+        return super::without_forces::run(args, console);
+    }
     let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::UnknownBody)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");

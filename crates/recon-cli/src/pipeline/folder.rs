@@ -3,7 +3,7 @@ use super::bounds::BoundsResult;
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
 use recon_io::{
-    OutputFolder, TriangleMesh, summary, write_contact_curves, write_motion, write_ply,
+    MotionState, OutputFolder, TriangleMesh, summary, write_contact_curves, write_motion, write_ply,
     write_radius_functions, write_report,
 };
 use serde_json::Value;
@@ -36,6 +36,25 @@ pub(crate) fn write_reconstruction_folder(
         folder.commit()
     })?;
     Ok(figures)
+}
+
+/// Writes what contacts without forces give.
+pub(crate) fn write_touch_folder(
+    target: &Path,
+    times: &[f64],
+    motion: &[MotionState],
+    bounds: Option<&BoundsResult>,
+    figures: &Value,
+) -> Result<(), CliError> {
+    while_writing(|| {
+        let folder = Folder(OutputFolder::create(target)?);
+        folder.write("motion.csv", |to| write_motion(times, motion, to))?;
+        let (lower, upper) = bounds.map_or((None, None), |b| (b.lower.as_ref(), b.upper.as_ref()));
+        folder.write_mesh("lower_bound.ply", "inside the object; metres, body axes", lower)?;
+        folder.write_mesh("upper_bound.ply", "around the object; metres, body axes", upper)?;
+        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+        folder.commit()
+    })
 }
 
 /// Writes the meshes of bounds and their figures.

@@ -18,7 +18,7 @@ use recon_io::{
 };
 
 /// Contact noise above this share of the object's size is worth a warning beside the bounds.
-const NOTABLE_NOISE: f64 = 1e-6;
+pub(crate) const NOTABLE_NOISE: f64 = 1e-6;
 
 /// Confidence of bounds from noisy contacts.
 const CONFIDENCE: f64 = 0.95;

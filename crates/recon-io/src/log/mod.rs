@@ -4,6 +4,7 @@ mod columns;
 mod error;
 mod planar;
 mod read;
+mod reader;
 mod write;
 
 #[cfg(test)]
@@ -12,6 +13,7 @@ mod tests;
 pub use error::{LogFileError, LogFileErrorKind};
 pub use planar::{parse_planar_log, read_planar_log, write_planar_log};
 pub use read::{parse_log, read_log};
+pub use reader::LogReader;
 pub use write::write_log;
 
 pub(crate) use columns::TRUTH;

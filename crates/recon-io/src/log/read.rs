@@ -62,10 +62,7 @@ struct Rows {
 
 impl Rows {
     fn push(&mut self, row: &Row, columns: &Columns) -> Result<(), Kind> {
-        row.check_count(columns.count)?;
-        let t = row.finite(&columns.t)?;
-        let palm = |i: usize| row.palm(i + 1, &columns.palms[i]);
-        self.samples.push(Sample { t, palms: [palm(0)?, palm(1)?, palm(2)?] });
+        self.samples.push(row.sample(columns)?);
         if let Some(fields) = &columns.truth {
             self.truth.push(row.truth(fields)?);
         }
@@ -94,6 +91,14 @@ impl Row<'_> {
     pub(super) fn check_count(&self, expected: usize) -> Result<(), Kind> {
         let found = self.record.len();
         if found == expected { Ok(()) } else { Err(Kind::FieldCount { line: self.line, expected, found }) }
+    }
+
+    /// The readings, without truth.
+    pub(super) fn sample(&self, columns: &Columns) -> Result<Sample, Kind> {
+        self.check_count(columns.count)?;
+        let t = self.finite(&columns.t)?;
+        let palm = |i: usize| self.palm(i + 1, &columns.palms[i]);
+        Ok(Sample { t, palms: [palm(0)?, palm(1)?, palm(2)?] })
     }
 
     pub(super) fn number(&self, field: &Field) -> Result<f64, Kind> {

@@ -1,8 +1,9 @@
-use super::{LogFileErrorKind as Kind, parse_log, write_log};
+use super::{LogFileErrorKind as Kind, LogReader, parse_log, write_log};
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 use recon::contact_kinematics::PalmFrame;
 use recon::object_dynamics::{LogError, PalmReading, Sample, SensorLog, SeriesError, TrueState};
+use std::io::Cursor;
 
 /// A log as text: two samples of three palms 120 degrees apart, edited cell by cell in the tests below.
 struct Table {
@@ -205,4 +206,31 @@ proptest! {
     fn no_text_makes_it_panic(text in "[t,s12nxyzf_\n\".0-9e -]{0,200}") {
         let _ = parse_log(text.as_bytes());
     }
+}
+
+#[test]
+fn samples_come_one_by_one_as_from_the_whole_log() {
+    let text = |table: &Table| {
+        let lines: Vec<_> =
+            std::iter::once(&table.header).chain(&table.rows).map(|row| row.join(",")).collect();
+        lines.join("\n")
+    };
+    let good = Table::good();
+    let one_by_one: Vec<Sample> =
+        LogReader::new(text(&good).as_bytes()).unwrap().map(Result::unwrap).collect();
+    assert_eq!(one_by_one, good.parse().unwrap().samples());
+    // An error names its line, and ends the samples.
+    let stuck = Table::good().set(1, "t", "0");
+    let mut samples = LogReader::new(Cursor::new(text(&stuck))).unwrap();
+    assert!(samples.next().unwrap().is_ok());
+    let error = samples.next().unwrap().unwrap_err();
+    assert!(
+        matches!(
+            error,
+            Kind::Samples { line: Some(3), source: LogError::Series(SeriesError::TimeNotIncreasing { .. }) }
+        ),
+        "{error}"
+    );
+    assert!(samples.next().is_none());
+    assert!(matches!(LogReader::new("".as_bytes()), Err(Kind::Empty)));
 }

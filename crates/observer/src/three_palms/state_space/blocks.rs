@@ -1,14 +1,14 @@
 //! Inputs of the state-space model from a track: a node for every few samples.
 
 use super::input::{NodeInput, PalmTouch, PalmWrench, Touch, Wrench};
-use crate::three_palms::quadrature::running_integral;
+use crate::three_palms::quadrature::running_integral_into;
 use crate::three_palms::track::Track;
 use glam::DVec3;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::{Add, Mul, Range};
 
 /// Running integrals for one palm at one time, with the first moment about the start of the track.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Running {
     force: Wrench,
     unit: Wrench,
@@ -29,30 +29,37 @@ impl Mul<f64> for Running {
 }
 
 /// Integrals of one palm and their rates at every sample.
-struct Series<'a> {
-    t: &'a [f64],
+#[derive(Debug, Default)]
+struct Series {
     rates: Vec<Running>,
     integrals: Vec<Running>,
 }
 
-impl<'a> Series<'a> {
-    fn new(track: &'a Track, palm: usize) -> Self {
+impl Series {
+    fn new(track: &Track, palm: usize) -> Self {
+        let mut series = Self::default();
+        series.fill(track, palm);
+        series
+    }
+
+    /// Of a track, in place of what there was.
+    fn fill(&mut self, track: &Track, palm: usize) {
         let one = |(node, &t): (&crate::three_palms::track::Node, &f64)| {
             let n = node.palms[palm].frame.n;
             let unit = Wrench { impulse: n, first: n * t, torque: node.p_WC[palm].cross(n) };
             Running { force: unit * node.forces[palm], unit }
         };
-        let rates: Vec<Running> = track.nodes.iter().zip(&track.t).map(one).collect();
-        let integrals = running_integral(&track.t, &rates, Running::default());
-        Self { t: &track.t, rates, integrals }
+        self.rates.clear();
+        self.rates.extend(track.nodes.iter().zip(&track.t).map(one));
+        running_integral_into(&track.t, &self.rates, Running::default(), &mut self.integrals);
     }
 
     /// Cubic Hermite interpolation between samples.
-    fn at(&self, time: f64) -> Running {
-        let next = self.t.partition_point(|&t| t < time).clamp(1, self.t.len() - 1);
+    fn at(&self, t: &[f64], time: f64) -> Running {
+        let next = t.partition_point(|&t| t < time).clamp(1, t.len() - 1);
         let (a, b) = (next - 1, next);
-        let h = self.t[b] - self.t[a];
-        let s = (time - self.t[a]) / h;
+        let h = t[b] - t[a];
+        let s = (time - t[a]) / h;
         let (s2, s3) = (s * s, s * s * s);
         self.integrals[a] * (2.0 * s3 - 3.0 * s2 + 1.0)
             + self.rates[a] * (h * (s3 - 2.0 * s2 + s))
@@ -107,7 +114,7 @@ pub(crate) fn block_inputs(track: &Track, blocks: &[Block], reach: f64) -> Vec<N
     let t: Vec<f64> = blocks.iter().map(|b| track.t[b.node()]).collect();
     let touches: Vec<Touch> = blocks.iter().map(|block| touch(track, block)).collect();
     let touches = smoothed(&t, touches, reach);
-    let series: [Series<'_>; 3] = std::array::from_fn(|palm| Series::new(track, palm));
+    let series: [Series; 3] = std::array::from_fn(|palm| Series::new(track, palm));
     (0..blocks.len())
         .map(|k| {
             let before = k.saturating_sub(1);
@@ -115,7 +122,7 @@ pub(crate) fn block_inputs(track: &Track, blocks: &[Block], reach: f64) -> Vec<N
             let duration = t[k] - t[before];
             NodeInput {
                 duration,
-                halves: halves(&series, t[before], duration, &from, &here),
+                halves: halves(&track.t, &series, t[before], duration, &from, &here),
                 correction: DVec3::ZERO,
                 from,
                 here,
@@ -124,8 +131,36 @@ pub(crate) fn block_inputs(track: &Track, blocks: &[Block], reach: f64) -> Vec<N
         .collect()
 }
 
+/// Inputs of one node after the other, on buffers that are made once.
+#[derive(Debug, Default)]
+pub(crate) struct NodeInputs {
+    series: [Series; 3],
+}
+
+impl NodeInputs {
+    /// Input of the node of block `here`, with the block `from` before it; nothing is smoothed.
+    pub(crate) fn after(&mut self, track: &Track, from: &Block, here: &Block) -> NodeInput {
+        for (palm, series) in self.series.iter_mut().enumerate() {
+            series.fill(track, palm);
+        }
+        let start = track.t[from.node()];
+        let duration = track.t[here.node()] - start;
+        let (from, here) = (touch(track, from), touch(track, here));
+        let halves = halves(&track.t, &self.series, start, duration, &from, &here);
+        NodeInput { duration, halves, correction: DVec3::ZERO, from, here }
+    }
+
+    /// Input of a first node, with nothing before it.
+    pub(crate) fn first(track: &Track, here: &Block) -> NodeInput {
+        let here = touch(track, here);
+        let halves = [[PalmWrench::default(); 3]; 2];
+        NodeInput { duration: 0.0, halves, correction: DVec3::ZERO, from: here, here }
+    }
+}
+
 fn halves(
-    series: &[Series<'_>; 3],
+    t: &[f64],
+    series: &[Series; 3],
     start: f64,
     duration: f64,
     from: &Touch,
@@ -138,7 +173,7 @@ fn halves(
     std::array::from_fn(|part| {
         let begin = start + part as f64 * half;
         std::array::from_fn(|i| {
-            let (a, b) = (series[i].at(begin), series[i].at(begin + half));
+            let (a, b) = (series[i].at(t, begin), series[i].at(t, begin + half));
             let change = b + a * -1.0;
             // The first moment about the start of the half.
             let moved = |w: Wrench| Wrench { first: w.first - w.impulse * begin, ..w };

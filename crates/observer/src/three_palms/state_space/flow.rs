@@ -114,22 +114,26 @@ impl<'a, const N: usize> Step<'a, N> {
     /// Derivative of the end by the start.
     pub(super) fn transition(&self, constants: &[Constant]) -> SMatrix<f64, N, N> {
         let h = self.input.duration;
-        let changes: Vec<[Wrench; 2]> = constants.iter().map(|&c| self.by_constant(c)).collect();
+        // As many as there are constants, of N places: nothing is allocated here.
+        let mut changes = [[Wrench::default(); 2]; N];
+        for (change, &constant) in changes.iter_mut().zip(constants) {
+            *change = self.by_constant(constant);
+        }
         let identity = DMat3::IDENTITY;
         let [mut p, mut v] = [Columns::<N>::zeros(); 2];
         put(&mut p, 0, identity);
         put(&mut p, 1, identity * h);
         put(&mut v, 1, identity);
-        let mut slopes = Vec::with_capacity(3);
         let mut start_L = Columns::<N>::zeros();
         put(&mut start_L, 2, identity);
-        slopes.push(self.turning_slope(self.motion.q, self.motion.L, &start_L, constants));
-        let mut end_L = start_L;
-        for (part, s) in [(0, 0.5 * h), (1, h)] {
-            end_L = self.momentum_slope(part, s, &changes, constants);
-            let (L, q) = self.later[part];
-            slopes.push(self.turning_slope(q, L, &end_L, constants));
-        }
+        let middle_L = self.momentum_slope(0, 0.5 * h, &changes, constants);
+        let end_L = self.momentum_slope(1, h, &changes, constants);
+        let turning = |(L, q): (DVec3, DQuat), by_L: &Columns<N>| self.turning_slope(q, L, by_L, constants);
+        let slopes = [
+            turning((self.motion.L, self.motion.q), &start_L),
+            turning(self.later[0], &middle_L),
+            turning(self.later[1], &end_L),
+        ];
         let theta = advance(&slopes, h);
         let mass = self.parameters.mass;
         for (j, (constant, [_, change])) in constants.iter().zip(&changes).enumerate() {
@@ -314,10 +318,10 @@ fn put<const N: usize>(columns: &mut Columns<N>, block: usize, value: DMat3) {
 }
 
 /// One Runge-Kutta step of order 4 of `theta' = M theta + S` from the unit matrix, with slopes at start, middle, end.
-fn advance<const N: usize>(slopes: &[(Matrix3<f64>, Columns<N>)], h: f64) -> Columns<N> {
+fn advance<const N: usize>(slopes: &[(Matrix3<f64>, Columns<N>); 3], h: f64) -> Columns<N> {
     let mut theta = Columns::<N>::zeros();
     put(&mut theta, 3, DMat3::IDENTITY);
-    let [(m0, s0), (m1, s1), (m2, s2)] = slopes else { return theta };
+    let [(m0, s0), (m1, s1), (m2, s2)] = slopes;
     let k1 = m0 * theta + s0;
     let k2 = m1 * (theta + k1 * (0.5 * h)) + s1;
     let k3 = m1 * (theta + k2 * (0.5 * h)) + s1;

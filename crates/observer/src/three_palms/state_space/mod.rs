@@ -10,7 +10,7 @@ mod model;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use blocks::{Block, block_inputs, blocks, set_adjusted_arms};
+pub(crate) use blocks::{Block, NodeInputs, block_inputs, blocks, set_adjusted_arms};
 pub(crate) use constants::{BODY, Constant, Parameters};
 pub(crate) use inertia::{INERTIA_NUMBERS, inertia_of_numbers, inertia_slope, numbers_of_inertia};
 pub(crate) use input::{NodeInput, Touch};

@@ -107,6 +107,26 @@ pub enum StreamError {
         /// What it has to be.
         needed: &'static str,
     },
+    /// Time stands still, runs backwards, or is no number.
+    #[error("t is {t} s after {previous} s; times must be finite and increase")]
+    Time {
+        /// As given, s.
+        t: f64,
+        /// Of the sample before; not finite for the first one.
+        previous: f64,
+    },
+    /// A reading is no number.
+    #[error("{what} of palm {palm} at t = {t} s is {value}; it must be finite, or absent without contact")]
+    Reading {
+        /// Which.
+        what: &'static str,
+        /// Palm from 1.
+        palm: usize,
+        /// s.
+        t: f64,
+        /// As given.
+        value: f64,
+    },
     /// A sample cannot be used.
     #[error("{0}")]
     Sample(#[source] TrackError),

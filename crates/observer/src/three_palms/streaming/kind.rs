@@ -1,10 +1,9 @@
 //! What differs between bodies that are known and bodies that are not.
 
 use super::search::Trial;
-use super::tracker::Tracker;
-use crate::least_squares::Fit;
+use crate::core::Start;
 use crate::three_palms::momentum::Scales;
-use crate::three_palms::state_space::NodeInput;
+use crate::three_palms::state_space::{NodeInput, ThreePalmModel};
 use crate::three_palms::track::Track;
 use std::collections::VecDeque;
 
@@ -33,6 +32,6 @@ pub(super) trait Kind<const N: usize, const P: usize> {
     fn scales(&self, track: &Track) -> Scales;
     /// The problem on the data so far.
     fn trial<'a>(&'a self, data: &'a Gathered, scales: Scales) -> Self::Trial<'a>;
-    /// The observer that begins where the search ended.
-    fn tracker(&self, found: &Fit<Self::Point, P>, scales: Scales) -> Option<Tracker<N>>;
+    /// The model with the state that the search has found, and what is known of it beforehand.
+    fn begin(&self, found: &Self::Point, scales: Scales) -> Option<(ThreePalmModel<N>, Start<N>)>;
 }

@@ -1,10 +1,8 @@
 //! A body of known mass and inertia: its 12 states, and the search for its motion.
 
 use super::kind::{Gathered, Kind};
-use super::search::{Trial, Verdict};
-use super::tracker::{Tracker, loose_information};
-use crate::core::{Model, Start};
-use crate::least_squares::Fit;
+use super::search::Trial;
+use crate::core::Start;
 use crate::three_palms::cold_start::{self, Round, Search, natural_time};
 use crate::three_palms::covariance::{NoiseLevel, Sampling};
 use crate::three_palms::momentum::{MomentumProblem, Scales, StartState, UNKNOWNS};
@@ -13,11 +11,8 @@ use crate::three_palms::track::{Track, smoothing_variance};
 use glam::DVec3;
 use object_dynamics::MassProperties;
 
-/// Shortest track that a motion is taken from, in natural times.
-const SHORTEST: f64 = 3.0;
-
-/// Standard deviation of the worst known direction, in natural sizes, with which a motion is taken.
-const LARGEST_DEVIATION: f64 = 0.15;
+/// Shortest track that a motion is taken from, in natural times: wrong motions have explained three of them.
+const SHORTEST: f64 = 5.0;
 
 /// A known body.
 pub(super) struct Known {
@@ -45,12 +40,15 @@ impl Kind<UNKNOWNS, UNKNOWNS> for Known {
         }
     }
 
-    fn tracker(&self, found: &Fit<StartState, UNKNOWNS>, scales: Scales) -> Option<Tracker<UNKNOWNS>> {
+    fn begin(
+        &self,
+        found: &StartState,
+        scales: Scales,
+    ) -> Option<(ThreePalmModel<UNKNOWNS>, Start<UNKNOWNS>)> {
         let parameters = Parameters::new(&self.mass);
         let model = ThreePalmModel::new(parameters, &[], self.gravity, self.noise, scales)?;
-        let state = model.state(&found.point, &parameters);
-        let information = loose_information(found, &model.scales());
-        Tracker::new(model, Start { state, information }).ok()
+        let start = Start::guess(model.state(found, &parameters));
+        Some((model, start))
     }
 }
 
@@ -89,10 +87,5 @@ impl Trial<UNKNOWNS> for KnownTrial<'_> {
 
     fn problem(&self, window: f64) -> MomentumProblem<'_> {
         self.search.problem(window)
-    }
-
-    fn judge(&self, fit: &Fit<StartState, UNKNOWNS>) -> Verdict {
-        let (explains, deviation) = self.search.judge(fit);
-        Verdict::new(explains, deviation, LARGEST_DEVIATION)
     }
 }

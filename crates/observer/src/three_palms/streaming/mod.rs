@@ -6,8 +6,10 @@ mod kind;
 mod known;
 mod pieces;
 mod search;
+mod settling;
 mod stream;
 mod tracker;
+mod tracking;
 mod unknown;
 
 #[cfg(test)]
@@ -25,11 +27,13 @@ use unknown::Unknown;
 /// The motion of a body on three palms, sample by sample; mass and inertia are estimated along where they are not known.
 ///
 /// Samples are gathered into blocks; a node of the state-space model stands for each. The cold start of the batch method
-/// runs beside them, one Levenberg-Marquardt step a sample, on the data as they grow. The motion that it finds starts a
-/// windowed Gauss-Newton observer at the *first* node (as a point to linearise at, not as evidence), which is then taken
-/// through all nodes since: its estimate rests on all data, each counted once. From the latest node to the newest
-/// sample the motion follows the measured forces. Memory is bounded, and so is the work of a sample; buffers are made at
-/// the start, and small ones at the end of each block.
+/// runs beside them, one Levenberg-Marquardt step a sample, on the data as they grow. The motion that it finds is adjusted
+/// with states and noise together over all nodes so far, a few nodes a sample: chi-squared tells whether it explains them,
+/// and the covariance what they leave open. While that is much, the motion waits for more data, and a motion is stated
+/// only when it has foretold nodes that it was not fitted to. From there a windowed Gauss-Newton observer goes on, in which
+/// each datum counts once; weights and derivatives are taken at adjusted data there too. From the latest node to the
+/// newest sample the motion follows the measured forces, and the covariance their noise. Memory is bounded (some megabytes
+/// while nothing is found), and so is the work of a sample; once a motion is followed nothing is allocated.
 ///
 /// A palm that loses contact carries no force and gives no condition; the estimate goes on with what is left, and says
 /// so.
@@ -58,7 +62,8 @@ impl MotionStream {
     /// the very first one.
     ///
     /// # Errors
-    /// [`StreamError::Sample`] for a sample that cannot be used (it is left out).
+    /// [`StreamError::Sample`], [`StreamError::Time`] or [`StreamError::Reading`] for a sample that cannot be used (it is
+    /// left out).
     pub fn push(&mut self, sample: &Sample) -> Result<Option<StreamEstimate>, StreamError> {
         match &mut self.0 {
             Inner::Known(stream) => stream.push(sample),

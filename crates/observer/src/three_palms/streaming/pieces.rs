@@ -1,5 +1,6 @@
 //! From samples to short pieces of a track, one a block, in a buffer of fixed size.
 
+use super::estimate::StreamError;
 use crate::three_palms::track::{Node, Track, TrackError};
 use contact_kinematics::{PalmFrame, PalmState};
 use glam::DVec3;
@@ -26,10 +27,13 @@ pub(super) struct Pieces {
     held: [[f64; 2]; 3],
     /// Readings since the last piece ended.
     since: usize,
+    /// Nodes of the latest piece.
+    track: Track,
 }
 
 impl Pieces {
-    pub(super) fn new(stride: usize, palm_inertias: Option<[f64; 3]>) -> Self {
+    /// `mass` and `gravity` are those of the tracks.
+    pub(super) fn new(stride: usize, palm_inertias: Option<[f64; 3]>, mass: f64, gravity: DVec3) -> Self {
         Self {
             stride,
             palm_inertias,
@@ -37,11 +41,13 @@ impl Pieces {
             ready: VecDeque::with_capacity(3 * stride + 2),
             held: [[0.0; 2]; 3],
             since: 0,
+            track: Track::growing(mass, gravity, 0.0, 2 * stride + 1),
         }
     }
 
     /// Takes a sample; it becomes a reading when the next one comes.
-    pub(super) fn push(&mut self, sample: &Sample) -> Result<Option<Reading>, TrackError> {
+    pub(super) fn push(&mut self, sample: &Sample) -> Result<Option<Reading>, StreamError> {
+        check(sample, self.raw.back().map_or(f64::NEG_INFINITY, |s| s.t))?;
         if self.raw.len() == 3 {
             self.raw.pop_front();
         }
@@ -50,7 +56,7 @@ impl Pieces {
             1 => return Ok(None),
             count => count - 2,
         };
-        let reading = self.reading(middle)?;
+        let reading = self.reading(middle).map_err(StreamError::Sample)?;
         if self.ready.len() == 3 * self.stride {
             self.ready.pop_front();
         }
@@ -69,21 +75,23 @@ impl Pieces {
         self.since
     }
 
-    /// A piece of two blocks, once a block has come since the last one: its middle is the next node. None before the
-    /// first two blocks.
-    pub(super) fn piece(&mut self, mass: f64, gravity: DVec3) -> Option<Piece> {
+    /// A piece of two blocks, once a block has come since the last one: its middle is the next node. The palms that were
+    /// in contact throughout the block about it; none before the first two blocks, and between the ends of blocks.
+    pub(super) fn piece(&mut self) -> Option<[bool; 3]> {
         let long = 2 * self.stride + 1;
         if self.ready.len() < long || self.since < self.stride {
             return None;
         }
         self.since = 0;
-        let start = self.newest(long).next()?.t;
-        let t = self.newest(long).map(|r| r.t - start).collect();
-        let nodes = self.newest(long).map(|r| r.node).collect();
-        // The block about the node.
-        let block = self.newest(long).skip(self.stride - self.stride / 2).take(self.stride);
-        let touching = block.fold([true; 3], |all, r| std::array::from_fn(|i| all[i] && r.touching[i]));
-        Some(Piece { track: Track::assemble(t, nodes, mass, gravity, start), touching })
+        let newest = self.ready.iter().skip(self.ready.len() - long);
+        self.track.set_nodes(newest.clone().map(|r| (r.t, r.node)));
+        let block = newest.skip(self.stride - self.stride / 2).take(self.stride);
+        Some(block.fold([true; 3], |all, r| std::array::from_fn(|i| all[i] && r.touching[i])))
+    }
+
+    /// The latest piece as a track of its own, without integrals.
+    pub(super) fn track(&self) -> &Track {
+        &self.track
     }
 
     fn reading(&mut self, middle: usize) -> Result<Reading, TrackError> {
@@ -137,9 +145,26 @@ impl Pieces {
     }
 }
 
-/// Two blocks as a track of its own, with a node in their middle.
-pub(super) struct Piece {
-    pub(super) track: Track,
-    /// Palms that were in contact throughout the block about the node.
-    pub(super) touching: [bool; 3],
+/// Refuses what is no number, which would spread from here to everything.
+fn check(sample: &Sample, previous: f64) -> Result<(), StreamError> {
+    let t = sample.t;
+    if !(t > previous && t.is_finite()) {
+        return Err(StreamError::Time { t, previous });
+    }
+    for (i, palm) in sample.palms.iter().enumerate() {
+        let [s1, s2] = palm.contact.unwrap_or_default();
+        let readings = [
+            ("contact s1", Some(s1)),
+            ("contact s2", Some(s2)),
+            ("force", palm.force),
+            ("torque", palm.torque),
+            ("rate", palm.rate),
+        ];
+        let wrong =
+            readings.into_iter().find_map(|(what, v)| Some((what, v?)).filter(|(_, v)| !v.is_finite()));
+        if let Some((what, value)) = wrong {
+            return Err(StreamError::Reading { what, palm: i + 1, t, value });
+        }
+    }
+    Ok(())
 }

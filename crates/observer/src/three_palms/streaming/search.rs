@@ -6,9 +6,6 @@ use crate::three_palms::cold_start::{COARSE, FIRST, FOLLOWED, GROWTH, ROUNDS, Ro
 /// Steps that a candidate gets on each window, at most.
 const STEPS: usize = 25;
 
-/// Growth of the data after which a fit that is open is looked at again.
-const PATIENCE: f64 = 1.15;
-
 /// Share of the cost below which another step is not worth it.
 const SMALL_GAIN: f64 = 1e-3;
 
@@ -29,32 +26,6 @@ pub(super) trait Trial<const P: usize> {
     fn starts(&self, round: Round, window: f64) -> Vec<Self::Point>;
     /// The fit of the data up to a time.
     fn problem(&self, window: f64) -> Self::Problem<'_>;
-    /// What a fit of all data is worth.
-    fn judge(&self, fit: &Fit<Self::Point, P>) -> Verdict;
-}
-
-/// What a fit is worth.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(super) enum Verdict {
-    /// It leaves noise alone, and little room for another one.
-    Taken,
-    /// It leaves noise alone, but so may others: more data must tell.
-    Open,
-    /// It leaves more than noise.
-    Refused,
-}
-
-impl Verdict {
-    /// Of a fit that explains the data or not, whose worst known direction has a deviation, in natural sizes. A body that
-    /// hardly moves is explained by many motions; then the deviation is large.
-    pub(super) fn new(explains: bool, deviation: f64, largest: f64) -> Self {
-        // What is not a number is not known.
-        match (explains, deviation < largest) {
-            (false, _) => Self::Refused,
-            (true, true) => Self::Taken,
-            (true, false) => Self::Open,
-        }
-    }
 }
 
 /// A search that is as far as its samples.
@@ -71,7 +42,12 @@ enum Stage<Point, const P: usize> {
     First { window: f64, starts: Vec<Point>, fits: Vec<Fit<Point, P>>, work: Option<Work<Point, P>> },
     /// Follows the best as windows grow.
     Following(Following<Point, P>),
+    /// The best so far was handed out.
+    Handed(Following<Point, P>),
 }
+
+/// Where a step leads, and the point that it hands out.
+type Outcome<Point, const P: usize> = (Stage<Point, P>, Option<Point>);
 
 /// Candidates that are followed, one after the other.
 struct Following<Point, const P: usize> {
@@ -81,8 +57,8 @@ struct Following<Point, const P: usize> {
     first: f64,
     /// Window of the work, s.
     window: f64,
-    /// Data beyond the window, as a factor, that are worth a larger one.
-    patience: f64,
+    /// Length of the data, s, before which the window does not grow.
+    until: f64,
 }
 
 /// A candidate under way: its fit, and the steps it had on this window. None before the first.
@@ -130,15 +106,27 @@ impl<Point: Copy, const P: usize> StreamSearch<Point, P> {
         self.rounds
     }
 
-    /// One step: at most two linearisations of the data so far. Returns the fit that explains them, once there is one.
-    pub(super) fn step<T: Trial<P, Point = Point>>(&mut self, trial: &T) -> Option<Fit<Point, P>> {
+    /// One step: at most two linearisations of the data so far. Returns a fit of all of them; a further step, after one, says
+    /// that it was not the right one.
+    pub(super) fn step<T: Trial<P, Point = Point>>(&mut self, trial: &T) -> Option<Point> {
         let (stage, found) = match std::mem::replace(&mut self.stage, Stage::Waiting) {
             Stage::Waiting => (self.begin(trial), None),
             Stage::First { window, starts, fits, work } => (first(trial, window, starts, fits, work), None),
             Stage::Following(following) => follow(trial, following),
+            Stage::Handed(Following { fits, first, .. }) => (next(fits, first), None),
         };
         self.stage = stage;
         found
+    }
+
+    /// Keeps the fit that was handed out, to look at it again when there are more data by that factor.
+    pub(super) fn keep(&mut self, growth: f64) {
+        self.stage = match std::mem::replace(&mut self.stage, Stage::Waiting) {
+            Stage::Handed(following) => {
+                Stage::Following(Following { until: growth * following.window, ..following })
+            }
+            other => other,
+        };
     }
 
     fn begin<T: Trial<P, Point = Point>>(&mut self, trial: &T) -> Stage<Point, P> {
@@ -182,48 +170,43 @@ fn first<T: Trial<P>, const P: usize>(
     fits.sort_by(|a, b| a.normal.cost.total_cmp(&b.normal.cost));
     fits.truncate(FOLLOWED);
     fits.reverse();
-    match fits.pop() {
-        Some(fit) => {
-            let work = Work::rested(fit);
-            Stage::Following(Following { fits, work, first: window, window, patience: 1.0 })
-        }
-        None => Stage::Waiting,
-    }
+    next(fits, window)
 }
 
-fn follow<T: Trial<P>, const P: usize>(
-    trial: &T,
-    following: Following<T::Point, P>,
-) -> (Stage<T::Point, P>, Option<Fit<T::Point, P>>) {
-    let Following { mut fits, work, first, window, patience } = following;
+fn follow<T: Trial<P>, const P: usize>(trial: &T, following: Following<T::Point, P>) -> Outcome<T::Point, P> {
+    let Following { fits, work, first, window, until } = following;
     let duration = trial.duration();
     if !work.done() {
         let work = work.stepped(&COARSE, &trial.problem(window));
-        return (Stage::Following(Following { fits, work, first, window, patience }), None);
+        return (Stage::Following(Following { fits, work, first, window, until }), None);
     }
-    let short = duration < trial.shortest() * trial.natural_time();
-    if duration > window * patience {
+    if duration < until {
+        // Waits for more data.
+        return (Stage::Following(Following { fits, work, first, window, until }), None);
+    }
+    if duration > window {
         let window = (window * GROWTH).min(duration);
         let work = Work { steps: 0, ..work };
-        return (Stage::Following(Following { fits, work, first, window, patience: 1.0 }), None);
+        return (Stage::Following(Following { fits, work, first, window, until }), None);
     }
-    if short || patience > 1.0 {
+    if duration < trial.shortest() * trial.natural_time() {
         // Waits for more data.
-        return (Stage::Following(Following { fits, work, first, window, patience }), None);
+        return (Stage::Following(Following { fits, work, first, window, until }), None);
     }
-    let verdict =
-        if work.fit.status == FitStatus::Failed { Verdict::Refused } else { trial.judge(&work.fit) };
-    match (verdict, fits.pop()) {
-        (Verdict::Taken, _) => (Stage::Waiting, Some(work.fit)),
-        (Verdict::Open, last) => {
-            fits.extend(last);
-            (Stage::Following(Following { fits, work, first, window, patience: PATIENCE }), None)
+    if work.fit.status == FitStatus::Failed {
+        return (next(fits, first), None);
+    }
+    let found = work.fit.point;
+    (Stage::Handed(Following { fits, work, first, window, until }), Some(found))
+}
+
+/// The next candidate of those that are left.
+fn next<Point, const P: usize>(mut fits: Vec<Fit<Point, P>>, first: f64) -> Stage<Point, P> {
+    match fits.pop() {
+        Some(fit) => {
+            Stage::Following(Following { fits, work: Work::rested(fit), first, window: first, until: 0.0 })
         }
-        (Verdict::Refused, Some(fit)) => {
-            let work = Work::rested(fit);
-            (Stage::Following(Following { fits, work, first, window: first, patience: 1.0 }), None)
-        }
-        (Verdict::Refused, None) => (Stage::Waiting, None),
+        None => Stage::Waiting,
     }
 }
 

@@ -4,6 +4,7 @@ use crate::three_palms::covariance::NoiseLevel;
 use crate::three_palms::track::{Track, TrackError};
 use contact_kinematics::{Ellipsoid, Palm, SlopeMotion};
 use glam::{DQuat, DVec3};
+use nalgebra::SVector;
 use object_dynamics::integrate::Tolerance;
 use object_dynamics::{
     InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation, ThreePalmScene,
@@ -72,6 +73,36 @@ fn a_known_body_is_found_and_followed_from_no_guess() {
         assert!(p < 5.0 && v < 5.0, "t = {}: {p} {v}", truth.t);
         // A hundred channels have a deviation of 0.14.
         assert!((0.4..1.8).contains(&estimate.innovation), "{}", estimate.innovation);
+    }
+}
+
+/// Normalised errors of position and velocity over whole logs: one in the mean, from the first motion on.
+#[test]
+fn the_covariance_is_honest_from_the_first_motion_on() {
+    let (scene, simulation, log) = run(7.0, 1000.0);
+    for known in [true, false] {
+        let (mut sum, mut count, mut largest) = (0.0, 0usize, 0.0f64);
+        for seed in 10..13 {
+            let estimates = taken(&mut stream(&scene, NOISE, 1000.0, known), &noisy(&log, seed));
+            for (estimate, truth) in estimates.iter().zip(&simulation.instants).step_by(10) {
+                assert_ne!(estimate.stage, StreamStage::Contradicted);
+                if estimate.stage != StreamStage::Tracking {
+                    continue;
+                }
+                let p = estimate.motion.p_WCm - truth.touch.p_WCm;
+                let v = estimate.motion.v_WCm - truth.rates.v_WCm;
+                let error = SVector::<f64, 6>::from_fn(|i, _| [p, v][i / 3][i % 3]);
+                let six = estimate.covariance.fixed_view::<6, 6>(0, 0).into_owned();
+                let square = error.dot(&six.cholesky().unwrap().solve(&error)) / 6.0;
+                (sum, count, largest) = (sum + square, count + 1, largest.max(square));
+            }
+        }
+        // Errors last for about half a second: some 20 independent samples of 6 numbers, a deviation of 0.13.
+        let mean = sum / count as f64;
+        assert!((0.6..1.4).contains(&mean), "known {known}: {mean}");
+        // Chi-squared of 6 beyond 42 has a chance of 2e-7.
+        assert!(largest < 7.0, "known {known}: {largest}");
+        assert!(count > 400, "{count}");
     }
 }
 
@@ -165,22 +196,73 @@ fn bad_options_and_samples_are_named() {
     assert!(matches!(failed[0], StreamError::Sample(TrackError::NoForce { palm: 1, .. })), "{failed:?}");
 }
 
+/// Blocks are short then, and each sample does the work of many.
+#[test]
+fn few_samples_a_second_are_followed_too() {
+    for rate in [50.0, 100.0] {
+        let (scene, simulation, log) = run(6.0, rate);
+        let estimates = taken(&mut stream(&scene, NOISE, rate, true), &noisy(&log, 4));
+        assert_eq!(estimates.last().unwrap().stage, StreamStage::Tracking, "{rate}");
+        for (estimate, truth) in estimates.iter().zip(&simulation.instants) {
+            if estimate.stage == StreamStage::Tracking {
+                let p = in_deviations(estimate, 0, estimate.motion.p_WCm.distance(truth.touch.p_WCm));
+                let v = in_deviations(estimate, 1, estimate.motion.v_WCm.distance(truth.rates.v_WCm));
+                assert!(p < 5.0 && v < 5.0, "{rate} Hz, t = {}: {p} {v}", truth.t);
+            }
+        }
+    }
+}
+
+#[test]
+fn samples_that_are_no_numbers_or_stand_still_are_left_out() {
+    let (scene, _, log) = run(4.0, 1000.0);
+    let samples = noisy(&log, 1);
+    let clean = taken(&mut stream(&scene, NOISE, 1000.0, true), &samples);
+    let mut stream = stream(&scene, NOISE, 1000.0, true);
+    let mut with_rubbish = Vec::new();
+    for (k, sample) in samples.iter().enumerate() {
+        with_rubbish.extend(stream.push(sample).unwrap());
+        let mut wrong = *sample;
+        wrong.t += 0.5e-3;
+        match k % 4 {
+            0 => wrong.t = sample.t,
+            1 => wrong.t = f64::NAN,
+            2 => wrong.palms[1].contact = Some([0.1, f64::NAN]),
+            _ => wrong.palms[2].force = Some(f64::INFINITY),
+        }
+        let error = stream.push(&wrong).unwrap_err();
+        let time = matches!(error, StreamError::Time { .. });
+        let reading = matches!(error, StreamError::Reading { palm: 2 | 3, .. });
+        assert!(if k % 4 < 2 { time } else { reading }, "{error}");
+    }
+    // As if they had never been.
+    assert_eq!(with_rubbish.len(), clean.len());
+    let (with, without) = (with_rubbish.last().unwrap(), clean.last().unwrap());
+    assert_eq!(
+        (with.motion, with.covariance, with.stage),
+        (without.motion, without.covariance, without.stage)
+    );
+}
+
 #[test]
 fn pieces_make_the_track_that_the_whole_log_makes() {
     let (scene, _, log) = run(1.0, 1000.0);
     let mass = scene.mass().mass();
     let whole = Track::new(&log, mass, scene.gravity(), None).unwrap().thinned(21);
-    let mut pieces = Pieces::new(21, None);
+    let mut pieces = Pieces::new(21, None, mass, scene.gravity());
     let mut track: Option<Track> = None;
     for sample in log.samples() {
         pieces.push(sample).unwrap();
-        let Some(piece) = pieces.piece(mass, scene.gravity()) else { continue };
+        if pieces.piece().is_none() {
+            continue;
+        }
+        let piece = pieces.track().integrated();
         let track = track.get_or_insert_with(|| {
             let mut track = Track::growing(mass, scene.gravity(), 0.0, 60);
-            track.extend(&piece.track, 0, 10);
+            track.extend(&piece, 0, 10);
             track
         });
-        track.extend(&piece.track, 21, 10);
+        track.extend(&piece, 21, 10);
     }
     let track = track.unwrap();
     assert!(track.len() >= 45);

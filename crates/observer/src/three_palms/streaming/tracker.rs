@@ -1,11 +1,10 @@
 //! The observer of the motion, node by node, with a test of its innovations.
 
 use super::estimate::StreamBody;
-use crate::core::{Arrival, Model, NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start};
-use crate::least_squares::Fit;
+use crate::core::{Arrival, Model, NewtonObserver, NewtonOptions, Report, Sample, Smoother};
 use crate::three_palms::momentum::StartState;
 use crate::three_palms::state_space::{
-    BODY, INERTIA_NUMBERS, MOTION_STATES, NodeInput, Parameters, ThreePalmModel, inertia_of_numbers,
+    BODY, INERTIA_NUMBERS, MOTION_STATES, NodeInput, Parameters, ThreePalmModel, Touch, inertia_of_numbers,
 };
 use glam::{DMat3, DVec3};
 use nalgebra::{SMatrix, SVector};
@@ -14,15 +13,14 @@ use nalgebra::{SMatrix, SVector};
 pub(super) const WINDOW: usize = 12;
 /// Weight that what was known keeps from node to node: errors of linearisations long ago fade in some 40 s at 50 nodes a
 /// second. The motion itself is forgotten in a second or two anyway, since forces are noisy.
-const MEMORY_OF_NODES: f64 = 0.9995;
+pub(super) const MEMORY_OF_NODES: f64 = 0.9995;
 /// Weight of a new channel in the running mean of normalised innovations: a memory of about a hundred, two thirds of a
 /// second at 50 blocks a second.
 const MEMORY: f64 = 0.01;
-/// Deviations to which the fit of the search is believed when its data are gone through again, with noise where it
-/// enters. Data are counted once, and an eighth of that again.
-pub(super) const LOOSE: f64 = 3.0;
 /// Damping of a step: as a prior that knows the natural sizes, it keeps what is not observed from running away.
 const DAMPING: f64 = 1.0;
+/// Neighbours on either side over which contacts are smoothed where derivatives are taken: some 0.05 s.
+const SMOOTHED: usize = 2;
 /// A channel's squared innovation counts up to this many expected ones: an outlier alone is no evidence.
 const LARGEST: f64 = 25.0;
 
@@ -30,6 +28,8 @@ const LARGEST: f64 = 25.0;
 pub(super) struct Tracker<const N: usize> {
     observer: NewtonObserver<ThreePalmModel<N>, N, 3>,
     innovation: f64,
+    /// Variances of the rates at which the body turns against the palms at the latest node.
+    slide: [f64; 3],
 }
 
 /// The state at a node, with its evidence.
@@ -74,21 +74,26 @@ impl<const N: usize> Tracked<N> {
 }
 
 impl<const N: usize> Tracker<N> {
-    pub(super) fn new(model: ThreePalmModel<N>, start: Start<N>) -> Result<Self, ObserverError> {
+    /// Goes on from the last nodes of a motion that has settled.
+    pub(super) fn going_on(settled: Smoother<ThreePalmModel<N>, N, 3>) -> Option<Self> {
         let options = NewtonOptions {
             window: WINDOW,
             steps: 1,
             damping: DAMPING,
             arrival: Arrival::Carry(MEMORY_OF_NODES),
         };
-        Ok(Self { observer: NewtonObserver::new(model, options, start)?, innovation: 1.0 })
+        let mut observer = settled.into_observer(options)?;
+        observer.step();
+        let slide = observer.samples().last()?.input.here.slide_variance;
+        Some(Self { observer, innovation: 1.0, slide })
     }
 
     /// Takes a node; conditions of palms without contact are not looked at.
     pub(super) fn take(&mut self, input: NodeInput, touching: [bool; 3]) -> Tracked<N> {
-        let sample = sample(input, &touching);
-        self.test(&sample);
+        let mut sample = sample(input, &touching);
+        self.test(&mut sample);
         let estimate = self.observer.push(sample);
+        self.smooth();
         let model = self.observer.model();
         Tracked {
             motion: model.motion(&estimate.state),
@@ -102,8 +107,39 @@ impl<const N: usize> Tracker<N> {
         self.innovation
     }
 
-    fn test(&mut self, sample: &Sample<NodeInput, 3>) {
+    /// Gives derivatives at the node that now has [`SMOOTHED`] neighbours on either side what they must not take from its
+    /// own noise, as the batch estimate does: contacts adjusted and smoothed, forces adjusted.
+    fn smooth(&mut self) {
+        let (all, model) = (2 * SMOOTHED + 1, self.observer.model());
+        let window = self.observer.samples().len();
+        let Some(first) = window.checked_sub(all + 1) else { return };
+        // One node more, for the force before.
+        let mut nodes = self.observer.trajectory().zip(self.observer.samples()).skip(first);
+        let Some((mut before, _)) = nodes.next() else { return };
+        let mut arms = [DVec3::ZERO; 3];
+        let mut correction = DVec3::ZERO;
+        for (j, (state, sample)) in nodes.enumerate() {
+            let adjusted = model.adjusted_arms(state, &sample.input.here);
+            for (sum, arm) in arms.iter_mut().zip(adjusted) {
+                *sum += arm * parabola_weight(j);
+            }
+            if j == SMOOTHED {
+                correction = model.missing_impulse(before, state, &sample.input);
+            }
+            before = state;
+        }
+        if let Some(sample) = self.observer.sample_mut(SMOOTHED) {
+            sample.input.correction = correction;
+            set_arms(&mut sample.input.here, &arms);
+        }
+        if let Some(next) = self.observer.sample_mut(SMOOTHED - 1) {
+            set_arms(&mut next.input.from, &arms);
+        }
+    }
+
+    fn test(&mut self, sample: &mut Sample<NodeInput, 3>) {
         let Sample { input, information, .. } = sample;
+        input.from.slide_variance = self.slide;
         let Some(before) = self.observer.estimate() else { return };
         if before.report.rank < N {
             return;
@@ -112,6 +148,8 @@ impl<const N: usize> Tracker<N> {
         let (state, transition) = model.flow(&before.state, input);
         let mut covariance = transition * before.report.covariance * transition.transpose();
         covariance += model.process_noise(&before.state, input).unwrap_or_else(SMatrix::zeros);
+        self.slide = model.slide_variances(&state, &covariance, &input.here);
+        input.here.slide_variance = self.slide;
         let (y, h) = model.output(&state, input);
         for i in (0..3).filter(|&i| information[i] > 0.0) {
             let row = h.row(i).transpose();
@@ -124,13 +162,17 @@ impl<const N: usize> Tracker<N> {
     }
 }
 
-/// The information of a fit, believed to [`LOOSE`] of its deviations; `scales` are the natural sizes of its unknowns.
-pub(super) fn loose_information<Point, const N: usize>(
-    fit: &Fit<Point, N>,
-    scales: &SVector<f64, N>,
-) -> SMatrix<f64, N, N> {
-    let share = 1.0 / (LOOSE * fit.normal.rms()).powi(2);
-    SMatrix::from_fn(|i, j| fit.normal.information[(i, j)] * share / (scales[i] * scales[j]))
+/// Weight of neighbour `j` of `2 SMOOTHED + 1` in the value that a parabola through them has in the middle
+/// (A. Savitzky, M. J. E. Golay, Anal. Chem. 36 (1964) 1627). Nodes are taken as evenly spaced.
+fn parabola_weight(j: usize) -> f64 {
+    let (r, j) = (SMOOTHED as f64, j as f64 - SMOOTHED as f64);
+    3.0 * (3.0 * r * r + 3.0 * r - 1.0 - 5.0 * j * j) / ((2.0 * r - 1.0) * (2.0 * r + 1.0) * (2.0 * r + 3.0))
+}
+
+fn set_arms(touch: &mut Touch, arms: &[DVec3; 3]) {
+    for (palm, &arm) in touch.palms.iter_mut().zip(arms) {
+        (palm.smooth_arm, palm.own_share) = (arm, 0.0);
+    }
 }
 
 /// A node as the observer takes it: all conditions shall be zero, those of palms without contact do not count.

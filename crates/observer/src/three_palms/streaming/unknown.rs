@@ -3,11 +3,9 @@
 //! The body axes are the world's at the first node: three of the 19 numbers are a choice, and are held.
 
 use super::kind::{Gathered, Kind};
-use super::search::{Trial, Verdict};
-use super::tracker::{LOOSE, Tracker, sample};
-use crate::core::{ExtendedKalmanFilter, Model, Start};
-use crate::least_squares::Fit;
-use crate::three_palms::cold_start::{self, EXPLAINED, Round, natural_time};
+use super::search::Trial;
+use crate::core::Start;
+use crate::three_palms::cold_start::{self, Round, natural_time};
 use crate::three_palms::covariance::NoiseLevel;
 use crate::three_palms::momentum::Scales;
 use crate::three_palms::state_space::{BODY, MOTION_STATES, Parameters, ThreePalmModel};
@@ -16,7 +14,6 @@ use crate::three_palms::unknown_body::{
     BODY_UNKNOWNS, BodyPoint, BodyProblem, begin, mass_of_weight, scales_of_ball, spins,
 };
 use glam::DVec3;
-use nalgebra::{SMatrix, SVector};
 use object_dynamics::MassProperties;
 
 /// States of the motion, mass and inertia.
@@ -31,10 +28,6 @@ const HEIGHTS: [f64; 3] = [1.0, 0.8, 1.2];
 const SPIN: f64 = 0.5;
 /// Deviation to which the choice of body axes is held, rad.
 const HELD: f64 = 1e-4;
-/// Standard deviation of the worst known state, in natural sizes, with which a motion is taken.
-const LARGEST_DEVIATION: f64 = 0.03;
-/// Nodes after which innovations are looked at.
-const CHECKED: usize = 30;
 
 /// A body of which nothing is known.
 pub(super) struct Unknown {
@@ -62,46 +55,22 @@ impl Kind<STATES, BODY_UNKNOWNS> for Unknown {
     }
 
     fn trial<'a>(&'a self, data: &'a Gathered, scales: Scales) -> UnknownTrial<'a> {
-        UnknownTrial { kind: self, data, scales }
+        UnknownTrial { data, scales }
     }
 
-    fn tracker(&self, found: &Fit<BodyPoint, BODY_UNKNOWNS>, scales: Scales) -> Option<Tracker<STATES>> {
-        let model = self.model(&found.point, scales)?;
-        let start = believed(found, &model)?;
-        Tracker::new(model, start).ok()
-    }
-}
-
-impl Unknown {
-    fn model(&self, point: &BodyPoint, scales: Scales) -> Option<ThreePalmModel<STATES>> {
-        ThreePalmModel::new(Parameters::new(&point.mass()?), &BODY, self.gravity, self.noise, scales)
-    }
-}
-
-/// What a fit says, loosely, with the choice of body axes held.
-fn believed(fit: &Fit<BodyPoint, BODY_UNKNOWNS>, model: &ThreePalmModel<STATES>) -> Option<Start<STATES>> {
-    let natural = model.scales();
-    let share = 1.0 / (LOOSE * fit.normal.rms()).powi(2);
-    // Where an unknown of the search stands among the states.
-    let place = |i: usize| if i < MOTION_UNKNOWNS { i } else { i + STATES - BODY_UNKNOWNS };
-    let mut information = SMatrix::<f64, STATES, STATES>::zeros();
-    for i in 0..BODY_UNKNOWNS {
-        for j in 0..BODY_UNKNOWNS {
-            let (row, column) = (place(i), place(j));
-            information[(row, column)] =
-                fit.normal.information[(i, j)] * share / (natural[row] * natural[column]);
+    fn begin(&self, found: &BodyPoint, scales: Scales) -> Option<(ThreePalmModel<STATES>, Start<STATES>)> {
+        let parameters = Parameters::new(&found.mass()?);
+        let model = ThreePalmModel::new(parameters, &BODY, self.gravity, self.noise, scales)?;
+        let mut start = Start::guess(model.state(&found.start, &parameters));
+        for axis in MOTION_UNKNOWNS..MOTION_STATES {
+            start.information[(axis, axis)] = 1.0 / (HELD * HELD);
         }
+        Some((model, start))
     }
-    for axis in MOTION_UNKNOWNS..MOTION_STATES {
-        information[(axis, axis)] = 1.0 / (HELD * HELD);
-    }
-    let state: SVector<f64, STATES> = model.state(&fit.point.start, &Parameters::new(&fit.point.mass()?));
-    Some(Start { state, information })
 }
 
 /// Body and motion on the data so far.
 pub(super) struct UnknownTrial<'a> {
-    kind: &'a Unknown,
     data: &'a Gathered,
     scales: Scales,
 }
@@ -141,24 +110,5 @@ impl Trial<BODY_UNKNOWNS> for UnknownTrial<'_> {
 
     fn problem(&self, window: f64) -> BodyProblem<'_> {
         BodyProblem::new(&self.data.track, self.scales, window)
-    }
-
-    /// A filter is taken through all nodes from the point found, believed loosely: its innovations must be those of the
-    /// noise.
-    fn judge(&self, fit: &Fit<BodyPoint, BODY_UNKNOWNS>) -> Verdict {
-        let Some(model) = self.kind.model(&fit.point, self.scales) else { return Verdict::Refused };
-        let natural = model.scales();
-        let Some(start) = believed(fit, &model) else { return Verdict::Refused };
-        let Ok(mut filter) = ExtendedKalmanFilter::new(model, &start) else { return Verdict::Refused };
-        let (mut worst, mut deviation): (f64, f64) = (0.0, f64::INFINITY);
-        for (k, (input, touching)) in self.data.nodes.iter().enumerate() {
-            filter.push(&sample(*input, touching));
-            if (k + 1) % CHECKED == 0 || k + 1 == self.data.nodes.len() {
-                let report = filter.estimate().report;
-                worst = worst.max(report.residual);
-                deviation = report.deviations().component_div(&natural).amax();
-            }
-        }
-        Verdict::new(worst < EXPLAINED, deviation, LARGEST_DEVIATION)
     }
 }
