@@ -71,8 +71,8 @@ pub(super) const EXPLAINED: f64 = 1.4;
 /// Least damping that a fit of more data begins with.
 const CONTINUED: f64 = 1e-6;
 /// Multiple of the residual that sensor noise leaves, above which a fit is taken as wrong even if adjusting the data makes up
-/// for it: 1.46 was the most seen with a motion that is right and relied on, 2.8 with one that is wrong.
-pub(super) const WRONG: f64 = 1.7;
+/// for it: 2.0 was the most seen with a motion that is right and relied on, 2.8 with one that is wrong.
+pub(super) const WRONG: f64 = 2.4;
 /// Fits on the way: good enough to start the next from.
 pub(super) const COARSE: LevenbergMarquardt =
     LevenbergMarquardt { iterations: 25, step_tolerance: 1e-6, damping: 1e-2, prior: 0.0 };
