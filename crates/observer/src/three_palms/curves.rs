@@ -16,6 +16,10 @@ pub(super) fn contact_curves(
     track: &Track,
     motion: &[MotionState],
 ) -> Result<[ContactCurve; 3], EstimateError> {
+    // An estimate that left the numbers is none.
+    if !motion.iter().all(|m| m.p_WCm.is_finite() && m.R_WO.is_finite()) {
+        return Err(EstimateError::NoFit);
+    }
     let mut curves = [ContactCurve::default(), ContactCurve::default(), ContactCurve::default()];
     let t: Vec<f64> = motion.iter().map(|m| m.t).collect();
     for (i, curve) in curves.iter_mut().enumerate() {

@@ -21,17 +21,17 @@ use object_dynamics::{MassProperties, SensorLog};
 use thiserror::Error;
 
 /// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
-/// linearisation that its covariance comes from does not reach that far. Errors of five deviations without another
-/// warning were seen from 0.106 on, none below 0.09.
-const LARGEST_DEVIATION: f64 = 0.3;
+/// linearisation that its covariance comes from does not reach that far. An error of five deviations without another warning
+/// was seen at 0.24 (two palms 30 degrees apart), none below 0.2.
+const LARGEST_DEVIATION: f64 = 0.15;
 /// Contact noise, relative to length, above which data are worth adjusting: below it, plain least squares is as good.
 pub(super) const WORTH_ADJUSTING: f64 = 1e-7;
 /// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
 const NOISE_FLOOR: f64 = 1e-12;
 
-/// Shift by as much noise again, in standard deviations, above which the covariance is not to be trusted: 0.5 was the least
-/// seen with errors of five deviations and more in a first set of runs, 0.05 to 0.25 where the covariance was right with room
-/// to spare. In a second set one run in 2560 passed; at 0.3 good runs would be doubted.
+/// Root mean square shift by pairs of as much noise again, in standard deviations, beyond which even the covariance that is
+/// widened by it is not to be trusted: what is quadratic in the noise is then larger than what is linear, and what is beyond
+/// both is not small. Shifts up to 1.9 were seen with errors that the widened covariance covers.
 const LARGEST_BIAS: f64 = 2.0;
 /// Logarithm of the odds against the next motion below which the log is taken to leave both open: a thousand to one.
 const LEAST_LOG_ODDS: f64 = 6.9;
