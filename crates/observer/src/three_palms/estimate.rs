@@ -23,7 +23,9 @@ use thiserror::Error;
 /// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
 /// linearisation that its covariance comes from does not reach that far. An error of five deviations without another warning
 /// was seen at 0.24 (two palms 30 degrees apart), none below 0.2.
-const LARGEST_DEVIATION: f64 = 0.15;
+pub(super) const LARGEST_DEVIATION: f64 = 0.15;
+/// The same where the covariance was not widened by what is beyond first order.
+pub(super) const LARGEST_PLAIN_DEVIATION: f64 = 0.1;
 /// Contact noise, relative to length, above which data are worth adjusting: below it, plain least squares is as good.
 pub(super) const WORTH_ADJUSTING: f64 = 1e-7;
 /// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
@@ -198,7 +200,7 @@ fn clean_estimate(
         log_odds: f64::INFINITY,
         iterations: fit.iterations,
     };
-    let reliability = judge(&evidence, fit.status, &scales);
+    let reliability = judge(&evidence, fit.status, &scales, LARGEST_PLAIN_DEVIATION);
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
     let covariance = unscale(&covariance, &scales);
@@ -255,7 +257,7 @@ fn noisy_estimate<const N: usize>(
         iterations: refined.solution.iterations,
     };
     let status = if refined.settled() { FitStatus::Converged } else { FitStatus::Stalled };
-    let mut reliability = judge(&evidence, status, &scales);
+    let mut reliability = judge(&evidence, status, &scales, LARGEST_DEVIATION);
     reliability.check_length(track, &scales);
     if misfit.is_nan() || misfit > LARGEST_MISFIT {
         reliability.add(Reason::Inconsistent { misfit });
@@ -341,13 +343,18 @@ fn weakest_direction(covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>) -> WeakDirec
     WeakDirection::new(&direction, spectrum.eigenvalues[last].max(0.0).sqrt())
 }
 
-pub(super) fn judge(evidence: &Evidence, status: FitStatus, scales: &Scales) -> Reliability {
+pub(super) fn judge(
+    evidence: &Evidence,
+    status: FitStatus,
+    scales: &Scales,
+    largest_deviation: f64,
+) -> Reliability {
     let mut reasons = Vec::new();
     if status != FitStatus::Converged {
         reasons.push(Reason::NotConverged { iterations: evidence.iterations });
     }
     // NaN counts as unknown.
-    if evidence.weakest.deviation.is_nan() || evidence.weakest.deviation > LARGEST_DEVIATION {
+    if evidence.weakest.deviation.is_nan() || evidence.weakest.deviation > largest_deviation {
         reasons.push(Reason::Unobservable { direction: evidence.weakest });
     }
     if evidence.bias.is_nan() || evidence.bias > LARGEST_BIAS {

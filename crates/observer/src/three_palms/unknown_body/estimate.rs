@@ -8,7 +8,8 @@ use crate::three_palms::clean::{RANK_TOLERANCE, clean_covariance, root_mean_squa
 use crate::three_palms::convexity::largest_violation;
 use crate::three_palms::correlation::whiteness;
 use crate::three_palms::estimate::{
-    EstimateError, LARGEST_MISFIT, MotionEstimate, WORTH_ADJUSTING, floored, judge,
+    EstimateError, LARGEST_DEVIATION, LARGEST_MISFIT, LARGEST_PLAIN_DEVIATION, MotionEstimate,
+    WORTH_ADJUSTING, floored, judge,
 };
 use crate::three_palms::evidence::{Evidence, Reason, WeakDirection, too_short};
 use crate::three_palms::momentum::{MomentumProblem, MotionState, Scales, StartState};
@@ -229,7 +230,8 @@ fn adjusted_estimate(
 fn assemble(track: &Track, found: Found<'_>) -> Result<BodyEstimate, EstimateError> {
     let evidence = evidence(track, &found);
     let Found { scales, mass, start, motion, covariance, status, refined, .. } = found;
-    let mut reliability = judge(&evidence, status, &scales);
+    let limit = if refined.is_some() { LARGEST_DEVIATION } else { LARGEST_PLAIN_DEVIATION };
+    let mut reliability = judge(&evidence, status, &scales, limit);
     if let Some(refined) = refined {
         let misfit = refined.misfit(BODY_UNKNOWNS);
         if misfit.is_nan() || misfit > LARGEST_MISFIT {
