@@ -188,8 +188,8 @@ Contacts in the plane have the columns x, y and nx, ny alone. Areas stand for vo
 corners (lower_bound.csv, upper_bound.csv) for meshes.
 
 Poses above a plane are CSV with the columns qw, qx, qy, qz (body to world) and px, py, pz (m, z upwards), sampled evenly; a
-column `toss` or `run` numbers the runs. Their noise is judged from their own consistency, by a rule that is calibrated on
-simulated tosses; --cautious takes wider margins, for a tracker that may be unlike the simulated ones.
+column `toss` or `run` numbers the runs. Their noise is judged from their own consistency, by a rule that holds on
+simulated tosses with room to spare; --tight takes the narrowest margins that hold there.
 
 The output folder appears as a whole or not at all: lower_bound.ply, upper_bound.ply (m) and summary.json, with --fit
 fitted_shape.ply, with --concave alpha_shape.ply and smooth_surface.ply.
@@ -234,9 +234,9 @@ pub(crate) struct BoundsArgs {
     /// Radius of the balls that hollow the alpha shape out, m [default: the smallest that leaves it in one piece]
     #[arg(long, value_name = "M", requires = "concave", value_parser = positive)]
     pub(crate) alpha: Option<f64>,
-    /// Wider margins for poses of a tracker that may be unlike the simulated ones
+    /// Narrower margins for poses, right for trackers like the simulated ones
     #[arg(long)]
-    pub(crate) cautious: bool,
+    pub(crate) tight: bool,
     /// Height of the plane below the poses, m [default: 0]
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) plane_height: Option<f64>,

@@ -75,6 +75,12 @@ pub(crate) enum CliError {
     Noise(#[source] LogError),
     #[error("the log gives no motion")]
     Estimate(#[from] EstimateError),
+    #[error("the log gives no motion, and is unlike its scene: {odd}")]
+    OddLog {
+        /// What is odd about it.
+        odd: String,
+        source: EstimateError,
+    },
     #[error("the log cannot be followed")]
     Stream(#[from] recon::observer::StreamError),
     #[error(
@@ -146,6 +152,7 @@ impl CliError {
             | Self::Simulation(_)
             | Self::Noise(_)
             | Self::Estimate(_)
+            | Self::OddLog { .. }
             | Self::Stream(_)
             | Self::StreamNoise
             | Self::TooFewSamples { .. }

@@ -143,8 +143,8 @@ fn poses_above_a_plane_bound_the_body_from_both_sides() {
     assert!(volume < upper && upper < 1.3 * volume, "{upper} {volume}");
     let margin = |summary: &Value| summary["about"]["margin_m"].as_f64().unwrap();
     assert!(margin(&summary) < 3e-3);
-    let cautious = bounds(&scratch, &["tosses.csv", "--plane-height", "0.1", "--cautious"]);
-    assert!(volumes(&cautious)[1] > 0.0 && margin(&cautious) != margin(&summary));
+    let tight = bounds(&scratch, &["tosses.csv", "--plane-height", "0.1", "--tight"]);
+    assert!(volumes(&tight)[1] > volume && margin(&tight) != margin(&summary));
     for name in ["lower_bound.ply", "upper_bound.ply"] {
         assert!(scratch.path().join("out").join(name).is_file(), "{name}");
     }
@@ -163,7 +163,7 @@ fn options_and_poses_that_do_not_go_together_are_refused() {
     };
     refused(&["tosses.csv", "--estimate-noise"], 2, &["--estimate-noise", "holds poses"]);
     refused(&["clean.csv", "--plane-height", "0.1"], 2, &["--plane-height", "holds contacts"]);
-    refused(&["clean.csv", "--cautious"], 2, &["--cautious", "holds contacts"]);
+    refused(&["clean.csv", "--tight"], 2, &["--tight", "holds contacts"]);
     refused(&["clean.csv", "--confidence", "0.9"], 2, &["--confidence"]);
     refused(&["clean.csv", "--contact-noise", "1e-3"], 2, &["--normal-noise"]);
     refused(&["tosses.csv", "--confidence", "95"], 2, &["between 0.5 and 1"]);

@@ -108,7 +108,7 @@ pub(crate) fn print(judged: &[Vec<Judged>]) {
     println!(
         "Factors: the smallest margin over level that contains the body in the stated share of the calibration sets, by \
          split conformal inference. Margin and volume of the upper bound over the true one are geometric means over the \
-         calibration sets at 95 %; the smallest volume tells the form that is used. Scarcity: the power of 100 / tosses by which factors must grow \
+         calibration sets at 95 %; the smallest volume tells the form of the tight rule, the first is that of the default. Scarcity: the power of 100 / tosses by which factors must grow \
          to be enough for the same sets cut into fours. Held out: sets of the other \
          families that the factors hold for, with the first tracker and with the worse one.\n"
     );

@@ -1,8 +1,8 @@
-//! The rule that is used: how often it holds, and what its volume is made of.
+//! The tight rule: how often it holds, and what its volume is made of.
 
 use crate::calibration::{shortfall, volume};
 use crate::sets::{Set, Tosses};
-use recon::shape_bounds::{CONFIDENCES, HalfSpace, PoseBounds, PoseError};
+use recon::shape_bounds::{CONFIDENCES, HalfSpace, PoseBounds, PoseError, PoseRule};
 use std::error::Error;
 
 /// Tosses in a cut of a set.
@@ -24,7 +24,7 @@ pub(crate) struct Row {
 
 pub(crate) fn check(set: &Set, tosses: &Tosses) -> Result<Row, Box<dyn Error>> {
     let body = &tosses.body;
-    let [made, sure] = CONFIDENCES.map(|c| PoseBounds::above_plane(&tosses.runs, 0.0, c));
+    let [made, sure] = CONFIDENCES.map(|c| PoseBounds::by_rule(&tosses.runs, 0.0, c, &PoseRule::tight()));
     let (made, sure) = (made?, sure?);
     let half_spaces: Vec<HalfSpace> = made.half_spaces.concat();
     let lower = made.lower.as_ref().and_then(|l| l.solid());
@@ -37,7 +37,7 @@ pub(crate) fn check(set: &Set, tosses: &Tosses) -> Result<Row, Box<dyn Error>> {
     let cut = |count: usize| {
         let mut found = [0, 0];
         for runs in tosses.runs.chunks_exact(count) {
-            match PoseBounds::above_plane(runs, 0.0, CONFIDENCES[0]) {
+            match PoseBounds::by_rule(runs, 0.0, CONFIDENCES[0], &PoseRule::tight()) {
                 Ok(made) => {
                     found[0] += 1;
                     found[1] += usize::from(holds(tosses, &made) == [true, true]);
@@ -65,7 +65,7 @@ fn holds(tosses: &Tosses, made: &PoseBounds) -> [bool; 2] {
 }
 
 pub(crate) fn print(rows: &[Row]) {
-    println!("## The rule that is used\n");
+    println!("## The tight rule\n");
     println!(
         "Sets in which the body lies in the upper bound, and in which it holds the lower one. Volumes over the true one, \
          medians: the half-spaces of the true poses (what the tosses touch at all), those of the tracked poses with the \

@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What a set says about each form and about the rule that is used.
+/// What a set says about each form and about the tight rule.
 fn study(set: &Set, folder: &Path) -> Result<(Vec<Judged>, Row), String> {
     let all = || -> Result<_, Box<dyn Error>> {
         let tosses = set.load(folder)?;

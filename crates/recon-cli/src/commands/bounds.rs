@@ -30,7 +30,7 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
         }
         Touches::Poses(runs) => {
             let count = runs.iter().map(Vec::len).sum::<usize>();
-            let rule = if args.cautious { PoseRule::cautious() } else { PoseRule::default() };
+            let rule = if args.tight { PoseRule::tight() } else { PoseRule::default() };
             let (made, about) =
                 pose_bounds(&runs, args.plane_height.unwrap_or(0.0), confidence(args), &rule)?;
             (made, about, format!("{count} poses in {} runs", runs.len()))
@@ -86,7 +86,7 @@ fn check_options(args: &BoundsArgs, touches: &Touches) -> Result<(), CliError> {
     let exact = noise(args).is_none();
     let pointless = [
         (args.plane_height.is_some(), "plane-height", "poses"),
-        (args.cautious, "cautious", "poses"),
+        (args.tight, "tight", "poses"),
         (args.confidence.is_some() && exact, "confidence", "poses and noisy contacts"),
     ];
     let (found, wrong): (_, Vec<(bool, &str, &str)>) = match touches {

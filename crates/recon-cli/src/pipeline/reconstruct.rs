@@ -59,7 +59,11 @@ pub(crate) fn reconstruct(
     let odd = implausibilities(log, scene);
     let mut warnings: Vec<String> = odd.iter().map(|w| sentence(&w.to_string())).collect();
     progress.step("estimating the motion");
-    let (mass, identified, estimate) = estimated(&log.without_truth(), scene, known)?;
+    let (mass, identified, estimate) =
+        estimated(&log.without_truth(), scene, known).map_err(|error| match (error, odd.first()) {
+            (CliError::Estimate(source), Some(odd)) => CliError::OddLog { odd: odd.to_string(), source },
+            (error, _) => error,
+        })?;
     let used = estimate.motion.len();
     warnings.extend(contact_loss(log, used));
     let palms = tracks(log, &estimate)?;

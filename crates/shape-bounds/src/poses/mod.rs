@@ -64,7 +64,7 @@ struct Observation {
 
 impl PoseBounds {
     /// Bounds of a convex body from `runs` of poses sampled evenly in time, with the body always above the plane of
-    /// height `plane_z` in the world, by the calibrated rule.
+    /// height `plane_z` in the world, by the default rule.
     ///
     /// # Errors
     /// Those of [`Self::by_rule`].
