@@ -6,13 +6,13 @@
 
 use super::cold_start::{
     COARSE, FIRST, FOLLOWED_IN_ALL, GROWTH, ROUNDS, Round, SAMPLES_PER_NATURAL_TIME, Search, natural_time,
-    scales, sort, stride,
+    sampling, scales, sort, stride,
 };
-use super::covariance::{NoiseLevel, Sampling};
+use super::covariance::NoiseLevel;
 use super::estimate::{LARGEST_MISFIT, equivalent_orientations};
 use super::momentum::{Scales, StartState, UNKNOWNS};
 use super::refine::Refined;
-use super::track::{Track, smoothing_variance};
+use super::track::Track;
 use crate::core::Model;
 use crate::least_squares::{Fit, LeastSquares};
 use glam::DQuat;
@@ -90,7 +90,7 @@ pub(super) fn is_small<const N: usize>(refined: &Refined<N>, difference: &nalgeb
 pub(super) fn further_starts(track: &Track, mass: &MassProperties, noise: NoiseLevel) -> Vec<StartState> {
     let scales = scales(track, mass);
     let stride = stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME);
-    let sampling = Sampling { per_node: stride as f64, weight: 1.0, direct: smoothing_variance(stride / 2) };
+    let sampling = sampling(stride);
     let natural = natural_time(track, scales.length).min(0.25 * track.duration());
     let thin = track.thinned(stride);
     let reversed = thin.reversed();
@@ -158,11 +158,5 @@ impl Search<'_> {
         let turned = |turn: &DQuat| 2.0 * (a.R_WO.inverse() * b.R_WO * *turn).xyz().length();
         parts.iter().all(|part| part.length() < tolerance)
             && equivalent_orientations(self.mass).iter().any(|turn| turned(turn) < tolerance)
-    }
-
-    /// Start, in the log read the other way, of the motion that begins like this.
-    fn reversed_end(&self, start: &StartState) -> StartState {
-        let end = self.problem(f64::INFINITY).end(start);
-        StartState { v_WCm: -end.v_WCm, L_WO: -end.L_WO, ..end }
     }
 }

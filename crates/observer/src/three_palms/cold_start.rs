@@ -107,6 +107,11 @@ pub(super) fn stride(track: &Track, natural: f64, nodes: f64) -> usize {
     (natural / nodes / spacing).floor().max(1.0) as usize
 }
 
+/// How the samples of a log enter the nodes of a track with so many of them a node.
+pub(super) fn sampling(per_node: usize) -> Sampling {
+    Sampling { per_node: per_node as f64, weight: 1.0, direct: smoothing_variance(per_node / 2) }
+}
+
 /// A solver for more of the same data: it begins with the damping that the fit of less of them came to.
 pub(super) fn continuing<Point, const P: usize>(
     solver: LevenbergMarquardt,
@@ -128,8 +133,7 @@ pub(super) fn cold_start(
     let scales = scales(track, mass);
     let natural = natural_time(track, scales.length);
     let per_node = stride(track, natural, SAMPLES_PER_NATURAL_TIME);
-    let sampling =
-        Sampling { per_node: per_node as f64, weight: 1.0, direct: smoothing_variance(per_node / 2) };
+    let sampling = sampling(per_node);
     let thin = track.thinned(per_node);
     let searched_per_node = stride(track, natural, SEARCHED_PER_NATURAL_TIME);
     let coarse = track.thinned(searched_per_node);
@@ -148,7 +152,7 @@ pub(super) fn cold_start(
         let last = candidates.len();
         for (number, candidate) in (1..).zip(candidates) {
             let fit = searched.follow(candidate, first);
-            let start = if round.backwards { searched.taken_over(&fit) } else { fit.point };
+            let start = if round.backwards { searched.reversed_end(&fit.point) } else { fit.point };
             found.push(continuing(COARSE, &fit).fit(&forwards.problem(f64::INFINITY), start));
             sort(&mut found);
             let looked_at = number % FOLLOWED == 0 || number == last;
@@ -185,12 +189,9 @@ pub(super) fn unexplained(
 ) -> Option<Reason> {
     let scales = scales(track, mass);
     let per_node = stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME);
-    let sampling =
-        Sampling { per_node: per_node as f64, weight: 1.0, direct: smoothing_variance(per_node / 2) };
     let thin = track.thinned(per_node);
-    let problem = MomentumProblem::new(&thin, mass, scales, f64::INFINITY);
-    let inverse = information_inverse(&Observability::new(&fit.normal.information));
-    let explained = propagate(&problem, &fit.point, &inverse, noise, sampling).residual;
+    let explained =
+        Search { track: &thin, mass, scales, noise: *noise, sampling: sampling(per_node) }.explained(fit);
     let residual = fit.normal.rms();
     (residual > WRONG * explained).then_some(Reason::Misfit { residual, explained })
 }
@@ -260,24 +261,21 @@ impl Search<'_> {
         fit
     }
 
-    /// Where a fit of the log read backwards ends: velocities change their sign.
-    fn taken_over(&self, fit: &Fit<StartState, UNKNOWNS>) -> StartState {
-        let end = self.problem(f64::INFINITY).end(&fit.point);
+    /// Start, in the log read the other way, of the motion that begins like this: velocities change their sign.
+    pub(super) fn reversed_end(&self, start: &StartState) -> StartState {
+        let end = self.problem(f64::INFINITY).end(start);
         StartState { v_WCm: -end.v_WCm, L_WO: -end.L_WO, ..end }
     }
 
     /// Whether what is left of the data is noise, or next to nothing: then no other minimum can be better to speak of.
     fn explains(&self, fit: &Fit<StartState, UNKNOWNS>) -> bool {
-        self.judge(fit).0
+        next_to_nothing(fit, &self.scales) || fit.normal.rms() < EXPLAINED * self.explained(fit)
     }
 
-    /// The same, and the largest standard deviation that noise leaves to a direction of the unknowns, in natural sizes.
-    pub(super) fn judge(&self, fit: &Fit<StartState, UNKNOWNS>) -> (bool, f64) {
+    /// Residual that noise explains, m/s.
+    fn explained(&self, fit: &Fit<StartState, UNKNOWNS>) -> f64 {
         let inverse = information_inverse(&Observability::new(&fit.normal.information));
-        let problem = self.problem(f64::INFINITY);
-        let noise = propagate(&problem, &fit.point, &inverse, &self.noise, self.sampling);
-        let explained = fit.normal.rms() < EXPLAINED * noise.residual || next_to_nothing(fit, &self.scales);
-        (explained, Observability::new(&noise.covariance).eigenvalues[UNKNOWNS - 1].max(0.0).sqrt())
+        propagate(&self.problem(f64::INFINITY), &fit.point, &inverse, &self.noise, self.sampling).residual
     }
 }
 

@@ -3,11 +3,11 @@
 use super::kind::{Gathered, Kind};
 use super::search::Trial;
 use crate::core::Start;
-use crate::three_palms::cold_start::{self, Round, Search, natural_time};
-use crate::three_palms::covariance::{NoiseLevel, Sampling};
+use crate::three_palms::cold_start::{self, Round, Search, natural_time, sampling};
+use crate::three_palms::covariance::NoiseLevel;
 use crate::three_palms::momentum::{MomentumProblem, Scales, StartState, UNKNOWNS};
 use crate::three_palms::state_space::{Parameters, ThreePalmModel};
-use crate::three_palms::track::{Track, smoothing_variance};
+use crate::three_palms::track::Track;
 use glam::DVec3;
 use object_dynamics::MassProperties;
 
@@ -50,11 +50,6 @@ impl Kind<UNKNOWNS, UNKNOWNS> for Known {
         let start = Start::guess(model.state(found, &parameters));
         Some((model, start))
     }
-}
-
-/// How the samples of a log enter the nodes of a track with so many of them a node.
-pub(super) fn sampling(stride: usize) -> Sampling {
-    Sampling { per_node: stride as f64, weight: 1.0, direct: smoothing_variance(stride / 2) }
 }
 
 /// The motion of a known body on the track so far.

@@ -8,15 +8,14 @@ use crate::least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Obs
 use crate::three_palms::clean::information_inverse;
 use crate::three_palms::cold_start::{
     EXPLAINED, GROWTH, SAMPLES_PER_NATURAL_TIME, SEARCHED_PER_NATURAL_TIME, WRONG, continuing,
-    from_normal_speeds, natural_time, next_to_nothing, rest_state, stride,
+    from_normal_speeds, natural_time, next_to_nothing, rest_state, sampling, stride,
 };
 use crate::three_palms::covariance::{NoiseLevel, Sampling, propagate};
-
 use crate::three_palms::evidence::Reason;
 use crate::three_palms::momentum::{MomentumProblem, Scales};
 use crate::three_palms::polish::polish;
 use crate::three_palms::state_space::numbers_of_inertia;
-use crate::three_palms::track::{Track, smoothing_variance};
+use crate::three_palms::track::Track;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Families of starts, tried in this order until one explains the data: first window in natural times, heights as shares
@@ -52,8 +51,7 @@ pub(crate) fn mass_of_weight(track: &Track) -> Option<f64> {
 pub(super) fn search(track: &Track, scales: Scales, noise: NoiseLevel) -> Vec<Fit<BodyPoint, BODY_UNKNOWNS>> {
     let natural = natural_time(track, scales.length);
     let per_node = stride(track, natural, SAMPLES_PER_NATURAL_TIME);
-    let sampling =
-        Sampling { per_node: per_node as f64, weight: 1.0, direct: smoothing_variance(per_node / 2) };
+    let sampling = sampling(per_node);
     let thin = track.thinned(per_node);
     let coarse = track.thinned(stride(track, natural, SEARCHED_PER_NATURAL_TIME));
     let mut found: Vec<Fit<BodyPoint, BODY_UNKNOWNS>> = Vec::new();
@@ -137,8 +135,7 @@ pub(super) fn unexplained(
     fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
 ) -> Option<Reason> {
     let per_node = stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME);
-    let sampling =
-        Sampling { per_node: per_node as f64, weight: 1.0, direct: smoothing_variance(per_node / 2) };
+    let sampling = sampling(per_node);
     let explained = explained(&track.thinned(per_node), scales, noise, sampling, fit)?;
     let residual = fit.normal.rms();
     (residual > WRONG * explained).then_some(Reason::Misfit { residual, explained })
