@@ -274,3 +274,80 @@ fn bad_options_are_named() {
         solve_batch(&Linear { noise: false }, &samples(1), &start().0, &BatchOptions::default()).is_err()
     );
 }
+
+/// Of a linear problem Laplace's approximation is exact: what a batch solution says about its probability mass is the
+/// likelihood of all outputs together, Gaussian with the covariance that prior, process and sensors give them.
+#[test]
+fn the_probability_mass_is_the_likelihood_of_the_outputs() {
+    let samples = samples(12);
+    let of_mass = |deviations: V3| {
+        let start = Start::prior(V3::new(0.3, -0.2, 0.1), &deviations);
+        let solution =
+            solve_batch(&Linear { noise: true }, &samples, &start, &BatchOptions::default()).unwrap();
+        let sensors: f64 =
+            samples.iter().flat_map(|s| s.information.iter()).filter(|&&i| i > 0.0).map(|i| -i.ln()).sum();
+        let prior: f64 = deviations.iter().map(|d| 2.0 * d.ln()).sum();
+        solution.chi_squared + solution.prior_cost + solution.log_determinant + sensors + prior
+    };
+    let of_outputs = |deviations: V3| {
+        let (mut mean, mut p) = (V3::new(0.3, -0.2, 0.1), M3::from_diagonal(&deviations.map(|d| d * d)));
+        // Channel by channel, in the order of time: each conditioned on those before it.
+        let mut likelihood = 0.0;
+        for (k, sample) in samples.iter().enumerate() {
+            if k > 0 {
+                mean = transition() * mean + sample.input;
+                p = transition() * p * transition().transpose() + process();
+            }
+            for c in (0..2).filter(|&c| sample.information[c] > 0.0) {
+                let row = outputs().row(c).transpose();
+                let variance = row.dot(&(p * row)) + 1.0 / sample.information[c];
+                let surprise = sample.measured[c] - row.dot(&mean);
+                likelihood += surprise * surprise / variance + variance.ln();
+                let gain = p * row / variance;
+                mean += gain * surprise;
+                p -= gain * (row.transpose() * p);
+            }
+        }
+        likelihood
+    };
+    for deviations in [V3::new(1.0, 0.5, 0.2), V3::new(0.1, 3.0, 0.02), V3::new(10.0, 10.0, 10.0)] {
+        let (mass, outputs) = (of_mass(deviations), of_outputs(deviations));
+        assert!((mass - outputs).abs() < 1e-9 * outputs.abs().max(1.0), "{mass} {outputs}");
+    }
+}
+
+/// Far along the flank of an arctangent full Gauss-Newton steps lead to and fro, ever farther away; short ones arrive.
+#[test]
+fn steps_to_and_fro_are_shortened() {
+    struct Flank;
+    impl Model<1, 1> for Flank {
+        type Input = ();
+        fn flow(&self, x: &SVector<f64, 1>, (): &()) -> (SVector<f64, 1>, SMatrix<f64, 1, 1>) {
+            (*x, SMatrix::identity())
+        }
+        fn output(&self, x: &SVector<f64, 1>, (): &()) -> (SVector<f64, 1>, SMatrix<f64, 1, 1>) {
+            (x.map(f64::atan), x.map(|x| 1.0 / (1.0 + x * x)))
+        }
+        fn process_noise(&self, _: &SVector<f64, 1>, (): &()) -> Option<SMatrix<f64, 1, 1>> {
+            Some(SMatrix::from_element(1e-12))
+        }
+        fn scales(&self) -> SVector<f64, 1> {
+            SVector::from_element(1.0)
+        }
+        fn names(&self) -> [&'static str; 1] {
+            ["place"]
+        }
+    }
+    let sample =
+        Sample { input: (), measured: SVector::from_element(0.0), information: SVector::from_element(1e4) };
+    let solve = |longest_step: f64| {
+        let options = BatchOptions { iterations: 60, longest_step, ..BatchOptions::default() };
+        solve_batch(&Flank, &[sample; 3], &Start::guess(SVector::from_element(3.0)), &options).unwrap()
+    };
+    // With a longest step from the start, and with none: then the first step that turns back sets one.
+    for longest_step in [0.3, f64::INFINITY] {
+        let found = solve(longest_step);
+        assert!(found.report.status == Status::Converged, "{:?}", found.report);
+        assert!(found.states[0][0].abs() < 1e-9, "{}", found.states[0][0]);
+    }
+}

@@ -5,7 +5,7 @@
 
 use super::model::{Model, Sample};
 use super::newton::check_start;
-use super::report::{ObserverError, Report, Status};
+use super::report::{ObserverError, Report, ScaledInformation, Status};
 use super::window::{Start, Window};
 use nalgebra::{SMatrix, SVector};
 
@@ -15,6 +15,11 @@ const CONSISTENT_RESIDUAL: f64 = 3.0;
 const DAMPING_FACTOR: f64 = 10.0;
 /// Damping above this, in units of the largest eigenvalue, means that no downhill step can be found.
 const DAMPING_LIMIT: f64 = 1e12;
+/// Factor by which the damping of a step that is too long is raised, and its least value in units of the largest eigenvalue.
+const SHORTENING: f64 = 3.0;
+const LEAST_SHORTENING: f64 = 1e-12;
+/// Share of a step's length that the next may have at most after one that went back.
+const TURNED: f64 = 0.5;
 
 /// How [`solve_batch`] works.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,11 +30,15 @@ pub struct BatchOptions {
     pub step_tolerance: f64,
     /// Damping of the first step in natural units of the information; zero starts with Gauss-Newton.
     pub damping: f64,
+    /// Longest step of the first state, in natural scales, with process noise: longer ones are damped until they are not. Far
+    /// from the solution a full step leads out of where the linear model holds, most of all in directions that the data
+    /// hardly determine.
+    pub longest_step: f64,
 }
 
 impl Default for BatchOptions {
     fn default() -> Self {
-        Self { iterations: 50, step_tolerance: 1e-12, damping: 0.0 }
+        Self { iterations: 50, step_tolerance: 1e-12, damping: 0.0, longest_step: f64::INFINITY }
     }
 }
 
@@ -45,8 +54,10 @@ pub struct BatchSolution<const N: usize> {
     /// Chi-squared of the fit: squared residuals of outputs and process noise in units of their deviations. With all as
     /// stated it has as many degrees of freedom as there are measured channels beyond the `N` states.
     pub chi_squared: f64,
+    /// Squared distance of the first state from the prior, in the prior's deviations.
+    pub prior_cost: f64,
     /// Logarithm of the determinant of the information about states and process noise, the latter relative to what is
-    /// known of it beforehand. Chi-squared, this, and the logarithms of the outputs' variances are minus twice the
+    /// known of it beforehand. Chi-squared, the prior's cost, this, and the logarithms of the outputs' variances are minus twice the
     /// logarithm of the probability mass about the solution, up to a constant (Laplace).
     pub log_determinant: f64,
     /// Output channels that were measured.
@@ -58,8 +69,9 @@ pub struct BatchSolution<const N: usize> {
 /// Most probable trajectory through all `samples`, from `start`.
 ///
 /// Without process noise a step is taken only when it lowers the cost, with the damping raised until it does
-/// (Levenberg-Marquardt in natural units); with process noise all states are free and full Gauss-Newton steps are taken.
-/// Stops when the step falls below the tolerance, when the cost cannot be lowered any more, or after the iterations.
+/// (Levenberg-Marquardt in natural units); with process noise all states are free and Gauss-Newton
+/// steps are taken, full ones up to the longest that is allowed; one that goes back where the last came from halves it for the
+/// next. Stops when the step falls below the tolerance, when the cost cannot be lowered any more, or after the iterations.
 ///
 /// # Errors
 /// [`ObserverError`] for fewer than two samples or an unusable start.
@@ -135,11 +147,25 @@ fn iterate<Mo: Model<N, M>, const N: usize, const M: usize>(
     let mut iterations = 1;
     window.linearise(model, samples.iter());
     let mut settled = false;
+    let (mut longest, mut last) = (options.longest_step, SVector::<f64, N>::zeros());
     while iterations < options.iterations && !settled {
         iterations += 1;
         let information = window.information(&scales);
-        let step = window.step(model, &information, damping);
-        settled = step.component_div(&scales).amax() <= options.step_tolerance;
+        let (step, full) = if free_noise {
+            let step = short_step(&window, model, &information, &scales, longest);
+            // There and back again: nothing else says that a step went too far.
+            let turned = step.0.component_div(&scales).dot(&last.component_div(&scales)) < 0.0;
+            longest = if turned {
+                longest.min(TURNED * last.component_div(&scales).amax())
+            } else {
+                (longest / TURNED).min(options.longest_step)
+            };
+            last = step.0;
+            step
+        } else {
+            (window.step(model, &information, damping), true)
+        };
+        settled = full && step.component_div(&scales).amax() <= options.step_tolerance;
         if free_noise {
             window.apply(model, step);
             window.linearise(model, samples.iter());
@@ -181,9 +207,28 @@ fn iterate<Mo: Model<N, M>, const N: usize, const M: usize>(
         states,
         covariances,
         chi_squared,
+        prior_cost: window.prior_cost(model),
         log_determinant,
         channels: window.channels(),
         report,
         iterations,
     })
+}
+
+/// The Gauss-Newton step, damped as far as it takes to make it no longer than `longest`, in natural scales; and whether it is
+/// the full one.
+fn short_step<Mo: Model<N, M>, const N: usize, const M: usize>(
+    window: &Window<N, M>,
+    model: &Mo,
+    information: &ScaledInformation<N>,
+    scales: &SVector<f64, N>,
+    longest: f64,
+) -> (SVector<f64, N>, bool) {
+    let length = |step: &SVector<f64, N>| step.component_div(scales).amax();
+    let (mut step, mut damping) = (window.step(model, information, 0.0), 0.0);
+    while length(&step) > longest && damping < DAMPING_LIMIT * information.largest() {
+        damping = (damping * SHORTENING).max(LEAST_SHORTENING * information.largest());
+        step = window.step(model, information, damping);
+    }
+    (step, damping == 0.0)
 }

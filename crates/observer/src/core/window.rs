@@ -85,7 +85,12 @@ impl<const N: usize, const M: usize> Window<N, M> {
 
     /// Twice the cost at the point of the last linearisation, process noise apart.
     pub(super) fn cost<Mo: Model<N, M>>(&self, model: &Mo) -> f64 {
-        self.data_cost + self.prior.cost(&model.difference(&self.nodes[0].at, &self.prior.at))
+        self.data_cost + self.prior_cost(model)
+    }
+
+    /// Twice the cost of the prior at the point of the last linearisation.
+    pub(super) fn prior_cost<Mo: Model<N, M>>(&self, model: &Mo) -> f64 {
+        self.prior.cost(&model.difference(&self.nodes[0].at, &self.prior.at))
     }
 
     /// Twice the cost of the outputs at the point of the last linearisation.
