@@ -19,9 +19,10 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 /// Size of the objects, m, that contact noise is relative to, and mean force, N, that force noise is relative to.
 const SIZE: f64 = 2.5;
 const FORCE: f64 = 6.5;
-/// Share of its natural size below which a number's bound must be for it to be counted. The bound is local: it holds where
-/// an error of a few deviations leaves the motion's equations linear, and natural sizes are where they are not at all.
-const WITHIN_REACH: f64 = 0.1;
+/// Mean distance of the contacts from their mean, m, as the estimators measure it.
+const LENGTH: f64 = 1.3;
+/// Deviation of the estimators' prior in natural sizes: numbers whose bound is below it are counted.
+const PRIOR: f64 = 1.0;
 /// Factor by which the noise is made small where the bound is taken: it is then that of the linearised model at the truth.
 const SMALL: f64 = 0.01;
 /// Ratio to the bound beyond which there is no number in the table: some run led nowhere.
@@ -108,8 +109,9 @@ fn introduce(runs: u64, first: u64, words: &[String]) {
     );
     println!(
         "Compared are, of a known body, the 12 numbers of the state at the start; of an unknown one centre of mass, \
-         velocity, angular momentum, mass and principal moments. Counted are the numbers whose bound is below {WITHIN_REACH} of \
-         their natural size: the bound is a local one, and beyond that the equations are not linear over a few deviations. \
+         velocity, angular momentum, mass and principal moments. Counted are the numbers whose bound is below the prior of the \
+         estimators: one natural size (orientation: a radian). The bound is that of the data alone: where the prior says \
+         something too, the error can be below it. \
          RMSE / bound: geometric mean over these numbers, over runs that are relied on, and over all runs with an estimate. \
          Error^2 / variance: mean over the same, relied on, with its 95 % band (numbers of one run hang together: the band \
          allows for it); below 1 the covariance is on the safe side. Reported: runs that come with a warning. Silent: runs \
@@ -180,8 +182,7 @@ fn line_of<S: SupportFunction>(
         runs.push(estimate(scene, &log, level(1.0), unknown, now));
     }
     let sizes = sizes(scene, unknown);
-    let counted: Vec<usize> =
-        (0..sizes.len()).filter(|&i| bound.deviations[i] < WITHIN_REACH * sizes[i]).collect();
+    let counted: Vec<usize> = (0..sizes.len()).filter(|&i| bound.deviations[i] < PRIOR * sizes[i]).collect();
     Ok(format(row, &runs, &bound, &counted))
 }
 
@@ -222,10 +223,9 @@ fn format(row: &Row, runs: &[Estimated], bound: &Estimated, counted: &[usize]) -
 
 /// Natural sizes of the numbers compared.
 fn sizes<S: SupportFunction>(scene: &ThreePalmScene<S>, unknown: bool) -> Vec<f64> {
-    let length = 0.8 * SIZE;
-    let rate = (9.81 / length).sqrt();
+    let rate = (9.81 / LENGTH).sqrt();
     let moment = scene.mass().principal().moments.element_sum() / 3.0;
-    let mut all: Vec<f64> = [length, length * rate, moment * rate].into_iter().flat_map(|s| [s; 3]).collect();
+    let mut all: Vec<f64> = [LENGTH, LENGTH * rate, moment * rate].into_iter().flat_map(|s| [s; 3]).collect();
     if unknown {
         all.push(scene.mass().mass());
         all.extend([moment; 3]);

@@ -33,8 +33,8 @@ pub struct Evidence {
     /// Largest shift of an unknown by as much noise again, in its own standard deviations: what averages do not remove.
     /// Zero where the noise is too small to shift anything.
     pub bias: f64,
-    /// Logarithm of how many times more probable this motion is than the next that was found; infinite where there is none,
-    /// or where noise leaves no room for one.
+    /// Logarithm of how many times more probable this motion is than the most probable other one that was found and that needs
+    /// larger corrections of the data; infinite where there is none, or where noise leaves no room for one.
     pub log_odds: f64,
     /// Linearisations in the last fit.
     pub iterations: usize,
@@ -144,7 +144,7 @@ pub enum Reason {
     },
     /// Another motion explains the log about as well.
     Ambiguous {
-        /// Logarithm of how many times more probable the estimate is.
+        /// Logarithm of how many times more probable the estimate is; negative where the other one is.
         log_odds: f64,
     },
     /// Contacts and forces had to be corrected by more than their noise.
@@ -194,6 +194,12 @@ impl fmt::Display for Reason {
                 "as much noise again shifts the estimate by {shift:.1} of its standard deviations: the motion is too slow \
                  or too short for these sensors"
             ),
+            Self::Ambiguous { log_odds } if *log_odds < 0.0 => write!(
+                f,
+                "another motion needs the data corrected by more and is yet the more probable one (log odds {:.0}): move the \
+                 object for longer, or use better sensors",
+                -log_odds
+            ),
             Self::Ambiguous { log_odds } => write!(
                 f,
                 "another motion explains the log about as well (this one is {:.1} times more probable): move the object \
@@ -235,16 +241,11 @@ const SHORTEST: f64 = 2.0;
 /// Standard deviations by which a contact may lie outside a tangent plane: beyond the largest of some ten thousand pairs.
 const LARGEST_VIOLATION: f64 = 6.0;
 
-/// Whether a noisy log is too short to rely on.
-pub(super) fn too_short(track: &Track, scales: &Scales) -> bool {
-    track.duration() < SHORTEST * natural_time(track, scales.length)
-}
-
 impl Reliability {
     /// Refuses to rely on a noisy log that is too short.
     pub(super) fn check_length(&mut self, track: &Track, scales: &Scales) {
         let (duration, needed) = (track.duration(), SHORTEST * natural_time(track, scales.length));
-        if too_short(track, scales) {
+        if duration < needed {
             self.add(Reason::TooShort { duration, needed });
         }
     }

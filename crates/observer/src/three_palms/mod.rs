@@ -1,6 +1,7 @@
 //! Three palms in space.
 
 mod alternatives;
+mod by_body;
 mod clean;
 mod cold_start;
 mod convexity;
@@ -16,6 +17,7 @@ mod noise;
 mod paper_method;
 mod paper_system;
 mod polish;
+mod prior;
 mod quadrature;
 mod random;
 mod refine;

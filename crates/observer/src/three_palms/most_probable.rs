@@ -8,12 +8,17 @@ use nalgebra::SVector;
 pub(super) const ITERATIONS: usize = 15;
 /// Length of a step at which the iteration has settled, in relative contact noise.
 pub(super) const STEP_TOLERANCE: f64 = 0.01;
+/// Longest step of the state at the start, in natural sizes: over more of them nothing is linear. With 0.3 a start that wrong
+/// force gains had led astray did not arrive in time.
+const LONGEST_STEP: f64 = 1.0;
 /// Deviation, in natural units, of the turning rates in the first pass: the start is not better known.
 pub(super) const FIRST_SLIDE: f64 = 0.1;
 /// Root mean square residual, in deviations, from which a pass that did not settle leads nowhere.
 const HOPELESS: f64 = 10.0;
 /// Passes: each takes from the one before what derivatives and weights must not take from noisy data.
 pub(super) const PASSES: usize = 3;
+/// Those that tell motions apart.
+pub(super) const FIRST_PASS: usize = 1;
 
 /// A motion and how probable it is.
 pub(super) struct MostProbable<const N: usize> {
@@ -34,6 +39,7 @@ pub(super) fn most_probable<const N: usize>(
     states: &[SVector<f64, N>],
     prior: &Start<N>,
     reach: f64,
+    passes: usize,
 ) -> Result<MostProbable<N>, ObserverError> {
     let t: Vec<f64> = inputs
         .iter()
@@ -53,10 +59,11 @@ pub(super) fn most_probable<const N: usize>(
         iterations: ITERATIONS,
         step_tolerance: STEP_TOLERANCE * model.relative_noise(),
         damping: 0.0,
+        longest_step: LONGEST_STEP,
     };
     let mut found = solve_batch_along(model, &samples, prior, states, &options)?;
     let mut iterations = found.iterations;
-    for _ in 1..PASSES {
+    for _ in 1..passes {
         let lost = found.report.status == Status::Moving && found.report.residual > HOPELESS;
         if lost || found.report.status == Status::Diverged {
             return Ok(MostProbable { solution: found, improbability: f64::INFINITY });
@@ -75,7 +82,7 @@ pub(super) fn most_probable<const N: usize>(
     }
     let of_outputs: f64 =
         samples.iter().zip(&found.states).map(|(s, x)| model.log_variances(x, &s.input.here)).sum();
-    let improbability = found.chi_squared + found.log_determinant + of_outputs;
+    let improbability = found.chi_squared + found.prior_cost + found.log_determinant + of_outputs;
     Ok(MostProbable { solution: BatchSolution { iterations, ..found }, improbability })
 }
 

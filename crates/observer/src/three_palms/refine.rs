@@ -3,9 +3,10 @@
 use super::cold_start::natural_time;
 use super::covariance::NoiseLevel;
 use super::momentum::{MomentumProblem, Scales, StartState};
-use super::most_probable::{MostProbable, most_probable};
+use super::most_probable::{MostProbable, PASSES, most_probable};
+use super::prior::Beforehand;
 use super::random::Normal;
-use super::state_space::{Block, Constant, MOTION_STATES, Parameters, ThreePalmModel, block_inputs, blocks};
+use super::state_space::{Block, Constant, Parameters, ThreePalmModel, block_inputs, blocks};
 use super::track::Track;
 use crate::core::{BatchSolution, Model, ObserverError, Start, Status};
 use nalgebra::SVector;
@@ -15,12 +16,6 @@ use object_dynamics::MassProperties;
 const NODES_PER_NATURAL_TIME: f64 = 32.0;
 /// Natural times over which contacts are smoothed, on either side, where derivatives are taken.
 pub(super) const SMOOTHED_NATURAL_TIMES: f64 = 0.125;
-/// Deviation of the orientation at the start where a choice of body axes, and no measurement, fixes it: in relative
-/// contact noise, so that it is small against what is measured and yet lets sums of both keep their digits.
-const CHOSEN: f64 = 0.1;
-/// Deviation of a constant that is known, in natural sizes and relative contact noise: likewise.
-const KNOWN: f64 = 0.01;
-
 /// Pairs of noise that the covariance is widened by, where one pair says that it is too narrow.
 const PAIRS: u64 = 4;
 /// Shift by one pair of noise, in deviations, below which the covariance stands: its square is what a number's variance
@@ -47,6 +42,11 @@ impl<const N: usize> Refined<N> {
     /// Chi-squared over its degrees of freedom.
     pub(super) fn misfit(&self, unknowns: usize) -> f64 {
         self.solution.chi_squared / (self.solution.channels.saturating_sub(unknowns).max(1)) as f64
+    }
+
+    /// What it costs to correct the data and the prior for this motion, in squared deviations.
+    pub(super) fn cost(&self) -> f64 {
+        self.solution.chi_squared + self.solution.prior_cost
     }
 
     /// Motion at the nodes.
@@ -106,7 +106,8 @@ impl<const N: usize> Refined<N> {
         let mut mean = vec![SVector::<f64, N>::zeros(); states.len()];
         for sign in [1.0, -1.0] {
             let inputs = block_inputs(&track.perturbed(noise, sign, seed), &self.cut, self.reach);
-            let moved = most_probable(&self.model, &inputs, states, &self.prior, self.reach).ok()?.solution;
+            let moved =
+                most_probable(&self.model, &inputs, states, &self.prior, self.reach, PASSES).ok()?.solution;
             if !usable(moved.report.status) {
                 return None;
             }
@@ -142,12 +143,30 @@ pub(super) fn refine<const N: usize>(
     start: &StartState,
     setting: &Setting<'_>,
 ) -> Result<Refined<N>, ObserverError> {
+    let motion = MomentumProblem::new(track, mass, setting.scales, f64::INFINITY).motion(start);
+    let path: Vec<_> = cut(track, &setting.scales)
+        .iter()
+        .map(|block| {
+            let m = &motion[block.node()];
+            let L_WO = m.R_WO * (mass.inertia() * (m.R_WO.inverse() * m.w_WO));
+            StartState { p_WCm: m.p_WCm, v_WCm: m.v_WCm, L_WO, R_WO: m.R_WO }
+        })
+        .collect();
+    refine_along(track, parameters, &path, setting, PASSES)
+}
+
+/// Refines a motion that is given at the nodes.
+pub(super) fn refine_along<const N: usize>(
+    track: &Track,
+    parameters: Parameters,
+    path: &[StartState],
+    setting: &Setting<'_>,
+    passes: usize,
+) -> Result<Refined<N>, ObserverError> {
     let Setting { scales, noise, constants, deviations, axes_chosen } = *setting;
-    let natural = natural_time(track, scales.length);
-    let spacing = track.duration() / (track.len() - 1).max(1) as f64;
-    let stride = (natural / NODES_PER_NATURAL_TIME / spacing).round().max(1.0) as usize;
-    let cut = blocks(track.len(), stride);
-    let inputs = block_inputs(track, &cut, SMOOTHED_NATURAL_TIMES * natural);
+    let reach = SMOOTHED_NATURAL_TIMES * natural_time(track, scales.length);
+    let cut = cut(track, &scales);
+    let inputs = block_inputs(track, &cut, reach);
     let model = ThreePalmModel::<N>::new(parameters, constants, track.gravity, noise, scales).ok_or(
         ObserverError::Value {
             what: "number of states",
@@ -155,31 +174,24 @@ pub(super) fn refine<const N: usize>(
             needed: "that of motion and constants",
         },
     )?;
-    let motion = MomentumProblem::new(track, mass, scales, f64::INFINITY).motion(start);
     let nodes: Vec<usize> = cut.iter().map(Block::node).collect();
-    let states: Vec<SVector<f64, N>> = nodes
-        .iter()
-        .map(|&k| {
-            let m = &motion[k];
-            let L_WO = m.R_WO * (mass.inertia() * (m.R_WO.inverse() * m.w_WO));
-            let state = StartState { p_WCm: m.p_WCm, v_WCm: m.v_WCm, L_WO, R_WO: m.R_WO };
-            model.state(&state, &parameters)
-        })
-        .collect();
-    let mut prior = Start::guess(states[0]);
-    let least = KNOWN * model.relative_noise();
-    for (k, (constant, deviation)) in constants.iter().zip(deviations).enumerate() {
-        let deviation = deviation.max(least * constant.scale(&scales));
-        prior.information[(MOTION_STATES + k, MOTION_STATES + k)] = deviation.powi(-2);
-    }
-    if axes_chosen {
-        for axis in 9..12 {
-            prior.information[(axis, axis)] = (CHOSEN * model.relative_noise()).powi(-2);
-        }
-    }
-    let reach = SMOOTHED_NATURAL_TIMES * natural;
-    let MostProbable { solution, improbability } = most_probable(&model, &inputs, &states, &prior, reach)?;
+    let states: Vec<SVector<f64, N>> = path.iter().map(|state| model.state(state, &parameters)).collect();
+    let Some(first) = states.first() else {
+        return Err(ObserverError::TooFewSamples { found: 0, needed: nodes.len() });
+    };
+    let known = Beforehand { track, scales, constants, deviations, axes_chosen };
+    let prior = known.prior(&model, first, &parameters);
+    let MostProbable { solution, improbability } =
+        most_probable(&model, &inputs, &states, &prior, reach, passes)?;
     Ok(Refined { model, solution, improbability, nodes, shift: 0.0, cut, reach, prior })
+}
+
+/// The blocks of samples, each with a node in it.
+fn cut(track: &Track, scales: &Scales) -> Vec<Block> {
+    let spacing = track.duration() / (track.len() - 1).max(1) as f64;
+    let natural = natural_time(track, scales.length);
+    let stride = (natural / NODES_PER_NATURAL_TIME / spacing).round().max(1.0) as usize;
+    blocks(track.len(), stride)
 }
 
 impl Track {

@@ -11,7 +11,7 @@ use crate::three_palms::estimate::{
     EstimateError, LARGEST_DEVIATION, LARGEST_MISFIT, LARGEST_PLAIN_DEVIATION, MotionEstimate,
     WORTH_ADJUSTING, floored, judge,
 };
-use crate::three_palms::evidence::{Evidence, Reason, WeakDirection, too_short};
+use crate::three_palms::evidence::{Evidence, Reason, WeakDirection};
 use crate::three_palms::momentum::{MomentumProblem, MotionState, Scales, StartState};
 use crate::three_palms::noise::noise_level;
 use crate::three_palms::polish::{Conditions, polish_all};
@@ -23,8 +23,12 @@ use glam::{DMat3, DQuat, DVec3};
 use nalgebra::SMatrix;
 use object_dynamics::{MassProperties, SensorLog};
 
+/// Largest deviation of a body of which nothing is known, in natural sizes, where noise shifts it by no more than the second
+/// number of its deviations; squared errors were three times their variances where more of both was let pass.
+const LARGEST_STEADY_DEVIATION: f64 = 0.2;
+const STEADY: f64 = 0.5;
 /// States of the model: motion, mass and inertia.
-const STATES: usize = 19;
+pub(crate) const STATES: usize = 19;
 
 /// What is known beside the log of a body of which nothing is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,6 +128,27 @@ fn estimate_near(
     }
 }
 
+/// The most probable body and motion of a noisy log, with no verdict on them.
+pub(crate) fn most_probable_body(track: &Track, noise: NoiseLevel) -> Option<Refined<STATES>> {
+    let track = track.of_mass(mass_of_weight(track)?);
+    let scales = scales_of_ball(&track)?;
+    let found = search(&track, scales, noise).into_iter().next()?;
+    refined_near(&track, scales, noise, &found).ok()
+}
+
+fn refined_near(
+    track: &Track,
+    scales: Scales,
+    noise: NoiseLevel,
+    fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
+) -> Result<Refined<STATES>, EstimateError> {
+    let mass = fit.point.mass().ok_or(EstimateError::NoFit)?;
+    let setting = Setting { scales, noise, constants: constants(), deviations: &[], axes_chosen: true };
+    let track = track.of_mass(mass.mass());
+    refine(&track, &mass, Parameters::new(&mass), &fit.point.start, &setting)
+        .map_err(|_| EstimateError::NoFit)
+}
+
 /// What an estimate is put together from.
 struct Found<'a> {
     scales: Scales,
@@ -192,14 +217,8 @@ fn adjusted_estimate(
     noise: NoiseLevel,
     fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
 ) -> Result<BodyEstimate, EstimateError> {
-    let mass = fit.point.mass().ok_or(EstimateError::NoFit)?;
-    let setting = Setting { scales, noise, constants: constants(), deviations: &[], axes_chosen: true };
-    let track = track.of_mass(mass.mass());
-    let mut refined = refine::<STATES>(&track, &mass, Parameters::new(&mass), &fit.point.start, &setting)
-        .map_err(|_| EstimateError::NoFit)?;
-    if !too_short(&track, &scales) {
-        refined.widen(&track, &noise);
-    }
+    let mut refined = refined_near(track, scales, noise, fit)?;
+    refined.widen(track, &noise);
     let (mass, start) = of_state(&refined)?;
     let track = track.of_mass(mass.mass());
     let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
@@ -230,7 +249,11 @@ fn adjusted_estimate(
 fn assemble(track: &Track, found: Found<'_>) -> Result<BodyEstimate, EstimateError> {
     let evidence = evidence(track, &found);
     let Found { scales, mass, start, motion, covariance, status, refined, .. } = found;
-    let limit = if refined.is_some() { LARGEST_DEVIATION } else { LARGEST_PLAIN_DEVIATION };
+    let limit = match refined {
+        Some(refined) if refined.shift < STEADY => LARGEST_STEADY_DEVIATION,
+        Some(_) => LARGEST_DEVIATION,
+        None => LARGEST_PLAIN_DEVIATION,
+    };
     let mut reliability = judge(&evidence, status, &scales, limit);
     if let Some(refined) = refined {
         let misfit = refined.misfit(BODY_UNKNOWNS);

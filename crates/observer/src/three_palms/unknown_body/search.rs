@@ -8,7 +8,7 @@ use crate::least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Obs
 use crate::three_palms::clean::information_inverse;
 use crate::three_palms::cold_start::{
     EXPLAINED, GROWTH, SAMPLES_PER_NATURAL_TIME, SEARCHED_PER_NATURAL_TIME, WRONG, continuing,
-    from_normal_speeds, natural_time, next_to_nothing, rest_state, sampling, stride,
+    from_normal_speeds, natural_time, next_to_nothing, rest_state, sampling, scales, stride,
 };
 use crate::three_palms::covariance::{NoiseLevel, Sampling, propagate};
 use crate::three_palms::evidence::Reason;
@@ -17,6 +17,7 @@ use crate::three_palms::polish::polish;
 use crate::three_palms::state_space::numbers_of_inertia;
 use crate::three_palms::track::Track;
 use glam::{DMat3, DQuat, DVec3};
+use object_dynamics::MassProperties;
 
 /// Families of starts, tried in this order until one explains the data: first window in natural times, heights as shares
 /// of the one that static balance suggests, and spin in natural units.
@@ -169,15 +170,13 @@ fn explained(
     Some(propagate(&problem, &fit.point.start, &inverse, noise, sampling).residual)
 }
 
+/// The ball that the inertia begins with.
+pub(crate) fn ball(mass: f64, length: f64) -> Option<MassProperties> {
+    MassProperties::from_principal(mass, DVec3::splat(BALL * mass * length * length)).ok()
+}
+
 /// Natural sizes for a body whose mass is that of its weight.
 pub(crate) fn scales_of_ball(track: &Track) -> Option<Scales> {
-    let ball = |length: f64| {
-        object_dynamics::MassProperties::from_principal(
-            track.mass,
-            DVec3::splat(BALL * track.mass * length * length),
-        )
-        .ok()
-    };
-    let length = crate::three_palms::cold_start::scales(track, &ball(1.0)?).length;
-    Some(crate::three_palms::cold_start::scales(track, &ball(length)?))
+    let length = scales(track, &ball(track.mass, 1.0)?).length;
+    Some(scales(track, &ball(track.mass, length)?))
 }
