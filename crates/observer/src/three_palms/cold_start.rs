@@ -3,6 +3,7 @@
 
 use super::clean::information_inverse;
 use super::covariance::{NoiseLevel, Sampling, propagate};
+use super::estimate::WORTH_ADJUSTING;
 use super::evidence::Reason;
 use super::momentum::{MomentumProblem, Scales, StartState, UNKNOWNS};
 use super::track::{Node, Track, smoothing_variance};
@@ -137,21 +138,23 @@ pub(super) fn cold_start(
     let thin = track.thinned(per_node);
     let searched_per_node = stride(track, natural, SEARCHED_PER_NATURAL_TIME);
     let coarse = track.thinned(searched_per_node);
-    let backwards = OnceCell::new();
+    let backwards = [OnceCell::new(), OnceCell::new()];
     let search = |track| Search { track, mass, scales, noise, sampling };
     let forwards = search(&thin);
     let unit = natural.min(0.25 * track.duration());
     let mut found = Vec::new();
-    for round in ROUNDS {
+    for (fine, round) in rounds(&noise, &scales) {
+        let (nodes, per_node) = if fine { (&thin, per_node) } else { (&coarse, searched_per_node) };
         let searched = match round.backwards {
-            true => search(backwards.get_or_init(|| track.reversed().thinned(searched_per_node))),
-            false => search(&coarse),
+            true => search(backwards[usize::from(fine)].get_or_init(|| track.reversed().thinned(per_node))),
+            false => search(nodes),
         };
+        let growing = if fine { COARSE } else { GROWING };
         let first = (round.window * unit).min(track.duration());
         let candidates = searched.candidates(first, round);
         let last = candidates.len();
         for (number, candidate) in (1..).zip(candidates) {
-            let fit = searched.follow(candidate, first);
+            let fit = searched.follow(candidate, first, growing);
             let start = if round.backwards { searched.reversed_end(&fit.point) } else { fit.point };
             found.push(continuing(COARSE, &fit).fit(&forwards.problem(f64::INFINITY), start));
             sort(&mut found);
@@ -163,6 +166,14 @@ pub(super) fn cold_start(
         }
     }
     found
+}
+
+/// Rounds of the search, with few residuals and steps; and, where no noise hides what is right, all of them once more with more
+/// of both (`true`): two palms 15 and 25 degrees apart need them.
+fn rounds(noise: &NoiseLevel, scales: &Scales) -> impl Iterator<Item = (bool, Round)> {
+    let fine = noise.contact <= WORTH_ADJUSTING * scales.length;
+    let of = |fine: bool| ROUNDS.into_iter().map(move |round| (fine, round));
+    of(false).chain(of(true).filter(move |_| fine))
 }
 
 /// The fit of the thinned track from a start that is near.
@@ -251,12 +262,17 @@ impl Search<'_> {
         }
     }
 
-    fn follow(&self, candidate: Fit<StartState, UNKNOWNS>, first: f64) -> Fit<StartState, UNKNOWNS> {
+    fn follow(
+        &self,
+        candidate: Fit<StartState, UNKNOWNS>,
+        first: f64,
+        growing: LevenbergMarquardt,
+    ) -> Fit<StartState, UNKNOWNS> {
         let mut fit = FIRST.resume(&self.problem(first), candidate);
         let mut window = first;
         while window < self.track.duration() {
             window = (window * GROWTH).min(self.track.duration());
-            fit = continuing(GROWING, &fit).fit(&self.problem(window), fit.point);
+            fit = continuing(growing, &fit).fit(&self.problem(window), fit.point);
         }
         fit
     }
