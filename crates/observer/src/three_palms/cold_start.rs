@@ -69,6 +69,9 @@ const HIDDEN: f64 = 0.05;
 /// Multiple of the residual that sensor noise leaves, below which a fit is taken as right: right fits scatter by 12 %
 /// about 1, wrong minima begin at 1.7.
 pub(super) const EXPLAINED: f64 = 1.4;
+/// Natural times from which on a log without noise is searched a second time. Over 2.1 of them a wrong motion was found so that
+/// left next to nothing (two palms 4 degrees apart).
+const LONG_ENOUGH: f64 = 3.0;
 /// Least damping that a fit of more data begins with.
 const CONTINUED: f64 = 1e-6;
 /// Multiple of the residual that sensor noise leaves, above which a fit is taken as wrong even if adjusting the data makes up
@@ -143,7 +146,9 @@ pub(super) fn cold_start(
     let forwards = search(&thin);
     let unit = natural.min(0.25 * track.duration());
     let mut found = Vec::new();
-    for (fine, round) in rounds(&noise, &scales) {
+    // What is left of a short log does not tell right from wrong, however long it is searched.
+    let clean = noise.contact <= WORTH_ADJUSTING * scales.length && track.duration() > LONG_ENOUGH * natural;
+    for (fine, round) in rounds(clean) {
         let (nodes, per_node) = if fine { (&thin, per_node) } else { (&coarse, searched_per_node) };
         let searched = match round.backwards {
             true => search(backwards[usize::from(fine)].get_or_init(|| track.reversed().thinned(per_node))),
@@ -170,10 +175,9 @@ pub(super) fn cold_start(
 
 /// Rounds of the search, with few residuals and steps; and, where no noise hides what is right, all of them once more with more
 /// of both (`true`): two palms 15 and 25 degrees apart need them.
-fn rounds(noise: &NoiseLevel, scales: &Scales) -> impl Iterator<Item = (bool, Round)> {
-    let fine = noise.contact <= WORTH_ADJUSTING * scales.length;
+fn rounds(clean: bool) -> impl Iterator<Item = (bool, Round)> {
     let of = |fine: bool| ROUNDS.into_iter().map(move |round| (fine, round));
-    of(false).chain(of(true).filter(move |_| fine))
+    of(false).chain(of(true).filter(move |_| clean))
 }
 
 /// The fit of the thinned track from a start that is near.
