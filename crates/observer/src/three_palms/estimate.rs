@@ -206,8 +206,7 @@ fn clean_estimate(
         log_odds: f64::INFINITY,
         iterations: fit.iterations,
     };
-    let mut reliability = judge(&evidence, fit.status, &scales, LARGEST_PLAIN_DEVIATION);
-    reliability.check_rest(&evidence, track, &scales);
+    let reliability = judge(&evidence, fit.status, &scales, LARGEST_PLAIN_DEVIATION);
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
     let covariance = unscale(&covariance, &scales);

@@ -1,4 +1,4 @@
-use super::cold_start::{EXPLAINED, natural_time};
+use super::cold_start::natural_time;
 use super::covariance::NoiseLevel;
 use super::momentum::{Row, Scales};
 use super::track::Track;
@@ -219,7 +219,7 @@ impl fmt::Display for Reason {
             ),
             Self::TooShort { duration, needed } => write!(
                 f,
-                "{duration:.2} s of data with errors are too short for a body of this size: at least {needed:.2} s are needed"
+                "{duration:.2} s of noisy data are too short for a body of this size: at least {needed:.2} s are needed"
             ),
             Self::Misfit { residual, explained } if !explained.is_finite() => write!(
                 f,
@@ -247,14 +247,6 @@ impl Reliability {
         let (duration, needed) = (track.duration(), SHORTEST * natural_time(track, scales.length));
         if duration < needed {
             self.add(Reason::TooShort { duration, needed });
-        }
-    }
-
-    /// Refuses to rely on a short log that leaves more than its noise: what would be a lasting error of good data in a long one
-    /// may be a wrong motion. Two palms 4 degrees apart, 0.26 s in contact, left 6e-7 of the natural velocity with one.
-    pub(super) fn check_rest(&mut self, evidence: &Evidence, track: &Track, scales: &Scales) {
-        if evidence.residual_rms > EXPLAINED * evidence.noise_explains {
-            self.check_length(track, scales);
         }
     }
 

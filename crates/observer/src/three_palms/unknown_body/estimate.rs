@@ -261,8 +261,6 @@ fn assemble(track: &Track, found: Found<'_>) -> Result<BodyEstimate, EstimateErr
             reliability.add(Reason::Inconsistent { misfit });
         }
         reliability.check_length(track, &scales);
-    } else {
-        reliability.check_rest(&evidence, track, &scales);
     }
     let frame = principal_frame(&mass, &covariance).ok_or(EstimateError::NoFit)?;
     let PrincipalFrame { body, axes, covariance } = frame;
