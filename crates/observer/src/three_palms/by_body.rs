@@ -6,7 +6,7 @@
 
 use super::cold_start::orientations;
 use super::covariance::NoiseLevel;
-use super::estimate::equivalent_orientations;
+use super::estimate::{equivalent_orientations, nearest_to_identity};
 use super::momentum::StartState;
 use super::refine::Refined;
 use super::sensitivity::exponential;
@@ -46,7 +46,7 @@ pub(super) fn motions_by_body(
         let turned = |other: &DQuat, turn: DQuat| 2.0 * (way.point.inverse() * *other * turn).xyz().length();
         let alike = |other| equivalent_orientations(mass).into_iter().any(|turn| turned(other, turn) < SAME);
         if kept.len() < MOST && !kept.iter().any(alike) {
-            kept.push(way.point);
+            kept.push(nearest_to_identity(mass, way.point));
         }
     }
     let path = found.states();

@@ -387,7 +387,7 @@ fn unscale(
 }
 
 /// Of the orientations `R_WO D` with `D` a half turn about a principal axis, the one with the smallest angle.
-fn nearest_to_identity(mass: &MassProperties, R_WO: glam::DQuat) -> glam::DQuat {
+pub(super) fn nearest_to_identity(mass: &MassProperties, R_WO: glam::DQuat) -> glam::DQuat {
     equivalent_orientations(mass)
         .into_iter()
         .map(|turn| R_WO * turn)
