@@ -57,7 +57,7 @@ const NORMALS_WEIGHT: f64 = 0.01;
 /// Candidates that are followed beyond the first window before what noise explains is looked at.
 pub(super) const FOLLOWED: usize = 4;
 /// Candidates of a round that are followed in all.
-pub(super) const FOLLOWED_IN_ALL: usize = 12;
+const FOLLOWED_IN_ALL: usize = 12;
 /// Share of the mean information that holds a candidate near its start in the first windows.
 const PRIOR: f64 = 1e-3;
 /// Residual below which a fit is taken as right, in natural velocities: logs of other simulators leave up to 5e-6,
@@ -282,7 +282,7 @@ impl Search<'_> {
     }
 
     /// Start, in the log read the other way, of the motion that begins like this: velocities change their sign.
-    pub(super) fn reversed_end(&self, start: &StartState) -> StartState {
+    fn reversed_end(&self, start: &StartState) -> StartState {
         let end = self.problem(f64::INFINITY).end(start);
         StartState { v_WCm: -end.v_WCm, L_WO: -end.L_WO, ..end }
     }
@@ -308,7 +308,7 @@ pub(super) fn next_to_nothing<Point, const P: usize>(fit: &Fit<Point, P>, scales
     }
 }
 
-pub(super) fn sort(candidates: &mut Vec<Fit<StartState, UNKNOWNS>>) {
+fn sort(candidates: &mut Vec<Fit<StartState, UNKNOWNS>>) {
     candidates.retain(|c| c.status != FitStatus::Failed);
     candidates.sort_by(|a, b| a.normal.cost.total_cmp(&b.normal.cost));
 }

@@ -18,7 +18,7 @@ mod tests;
 pub use estimate::{StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 
 use super::momentum::UNKNOWNS;
-use super::unknown_body::BODY_UNKNOWNS;
+use super::unknown_body::{BODY_UNKNOWNS, STATES};
 use known::Known;
 use object_dynamics::Sample;
 use stream::Stream;
@@ -41,7 +41,7 @@ pub struct MotionStream(Inner);
 
 enum Inner {
     Known(Box<Stream<Known, UNKNOWNS, UNKNOWNS>>),
-    Unknown(Box<Stream<Unknown, { unknown::STATES }, BODY_UNKNOWNS>>),
+    Unknown(Box<Stream<Unknown, STATES, BODY_UNKNOWNS>>),
 }
 
 impl MotionStream {

@@ -11,13 +11,11 @@ use crate::three_palms::momentum::Scales;
 use crate::three_palms::state_space::{BODY, MOTION_STATES, Parameters, ThreePalmModel};
 use crate::three_palms::track::Track;
 use crate::three_palms::unknown_body::{
-    BODY_UNKNOWNS, BodyPoint, BodyProblem, begin, mass_of_weight, scales_of_ball, spins,
+    BODY_UNKNOWNS, BodyPoint, BodyProblem, STATES, begin, mass_of_weight, scales_of_ball, spins,
 };
 use glam::DVec3;
 use object_dynamics::MassProperties;
 
-/// States of the motion, mass and inertia.
-pub(super) const STATES: usize = MOTION_STATES + BODY.len();
 /// Unknowns of the search before those of mass and inertia: the orientation is none of them.
 const MOTION_UNKNOWNS: usize = BODY_UNKNOWNS - BODY.len();
 /// Shortest track that body and motion are taken from, in natural times: the inertia shows itself late.

@@ -16,7 +16,7 @@ use crate::three_palms::momentum::{MomentumProblem, MotionState, Scales, StartSt
 use crate::three_palms::noise::noise_level;
 use crate::three_palms::polish::{Conditions, polish_all};
 use crate::three_palms::refine::{Refined, Setting, refine};
-use crate::three_palms::state_space::{Parameters, numbers_of_inertia};
+use crate::three_palms::state_space::{BODY, MOTION_STATES, Parameters, numbers_of_inertia};
 use crate::three_palms::track::Track;
 use crate::three_palms::{NoiseLevel, curves};
 use glam::{DMat3, DQuat, DVec3};
@@ -28,7 +28,7 @@ use object_dynamics::{MassProperties, SensorLog};
 const LARGEST_STEADY_DEVIATION: f64 = 0.2;
 const STEADY: f64 = 0.5;
 /// States of the model: motion, mass and inertia.
-pub(crate) const STATES: usize = 19;
+pub(crate) const STATES: usize = MOTION_STATES + BODY.len();
 
 /// What is known beside the log of a body of which nothing is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
