@@ -203,3 +203,25 @@ fn covariance_is_consistent_under_noise() {
         assert!(worst < 25.0, "{duration} s: {} deviations", worst.sqrt());
     }
 }
+
+#[test]
+fn touch_that_is_far_better_than_the_forces_is_relied_on() {
+    // Contact noise 0.001 %, force noise 1 %: between nodes the motion wanders by more than contacts explain, and nothing is
+    // wrong with that. Bands as above: 24 independent squares over 8 runs.
+    let (scene, start) = g2();
+    let (simulation, clean) = exact_log(&scene, start, 2.0, 500.0);
+    let noise = SensorNoise { contact: 2.5e-5, force: 0.065, torque: 0.0 };
+    let stated = Some(NoiseLevel { contact: noise.contact, force: noise.force });
+    let mut sum = 0.0;
+    for seed in 0..8 {
+        let log = clean.with_noise(&noise, seed).unwrap();
+        let estimate = estimate_motion(&log, &known(&scene, stated)).unwrap();
+        assert!(estimate.reliability.is_reliable(), "seed {seed}: {:?}", estimate.reliability);
+        let left = estimate.evidence.residual_rms / estimate.evidence.noise_explains;
+        assert!((0.8..1.2).contains(&left), "seed {seed}: {left}");
+        let squares = normalised(&estimate, &errors(&estimate, scene.mass(), &simulation.instants[0]));
+        sum += squares.iter().sum::<f64>() / 12.0;
+        assert!(squares.iter().all(|s| *s < 25.0), "seed {seed}: {squares:?}");
+    }
+    assert!((0.42..1.58).contains(&(sum / 8.0)), "{}", sum / 8.0);
+}

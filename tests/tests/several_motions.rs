@@ -6,8 +6,8 @@ use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, Palm, SupportFunction};
 use recon::object_dynamics::{InitialMotion, Instant, MassProperties, SensorNoise, ThreePalmScene};
 use recon::observer::{
-    KnownBody, MotionEstimate, NoiseLevel, Reason, Reliability, UnknownBody, equivalent_orientations,
-    estimate_body, estimate_motion,
+    KnownBody, MotionEstimate, NoiseLevel, Reason, Reliability, StartState, UnknownBody,
+    equivalent_orientations, estimate_body, estimate_motion,
 };
 use recon_tests::{exact_log, f5, g2};
 
@@ -74,6 +74,19 @@ fn odds_without_small_corrections_do_not_win() {
         assert!(found.evidence.log_odds < 0.0, "seed {seed}: {}", found.evidence.log_odds);
         let ambiguous = |r: &Reason| matches!(r, Reason::Ambiguous { log_odds } if *log_odds < 0.0);
         assert!(reasons(&found).iter().any(ambiguous), "seed {seed}: {:?}", found.reliability);
+        // The others are told, each once, those that need the smallest corrections first; they are elsewhere.
+        let corrections: Vec<f64> = found.others.iter().map(|other| other.corrections).collect();
+        assert!(corrections.is_sorted() && corrections[0] > 0.0, "seed {seed}: {corrections:?}");
+        let least = found.others.iter().map(|other| other.log_odds).fold(f64::INFINITY, f64::min);
+        assert_eq!(least, found.evidence.log_odds);
+        for (k, other) in found.others.iter().enumerate() {
+            let apart = |s: &StartState| {
+                let turns = equivalent_orientations(scene.mass()).map(|turn| s.R_WO * turn);
+                turns.into_iter().map(|R| R.angle_between(other.start.R_WO)).fold(f64::INFINITY, f64::min)
+            };
+            assert!(apart(&found.start) > 0.5, "seed {seed}");
+            assert!(found.others[..k].iter().all(|before| apart(&before.start) > 1e-3), "seed {seed}");
+        }
     }
 }
 

@@ -23,10 +23,11 @@ pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Normal
 #[cfg(feature = "palms")]
 pub use three_palms::{
     BodyEstimate, CurveUncertainty, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate,
-    MotionState, NoiseLevel, PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector,
-    Quantity, Reason, Reliability, Scales, SensorConstant, SensorEstimate, SensorPriors, StartState, Track,
-    TrackError, UnknownBody, WeakDirection, equivalent_orientations, estimate_body, estimate_body_from,
-    estimate_motion, estimate_motion_and_sensors, estimate_motion_from, integrate_paper_system,
+    MotionState, NoiseLevel, OtherMotion, PaperError, PaperMethod, PaperReconstruction, PaperStart,
+    PredictorCorrector, Quantity, Reason, Reliability, Scales, SensorConstant, SensorEstimate, SensorPriors,
+    StartState, Track, TrackError, UnknownBody, WeakDirection, equivalent_orientations, estimate_body,
+    estimate_body_from, estimate_motion, estimate_motion_and_sensors, estimate_motion_from,
+    integrate_paper_system,
 };
 #[cfg(feature = "palms")]
 pub use three_palms::{

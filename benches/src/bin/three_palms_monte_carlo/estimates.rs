@@ -5,8 +5,8 @@ use glam::DVec3;
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::{Instant as Now, SensorLog, SensorNoise, ThreePalmScene};
 use recon::observer::{
-    KnownBody, MotionEstimate, NoiseLevel, UnknownBody, equivalent_orientations, estimate_body,
-    estimate_motion,
+    KnownBody, MotionEstimate, NoiseLevel, StartState, UnknownBody, equivalent_orientations, estimate_body,
+    estimate_body_from, estimate_motion, estimate_motion_from,
 };
 
 /// Errors and deviations of one estimate, and whether it is relied on.
@@ -38,39 +38,120 @@ impl Estimated {
     }
 }
 
-/// Estimates from a log and compares with the truth.
-pub(crate) fn estimate<S: SupportFunction>(
-    scene: &ThreePalmScene<S>,
-    log: &SensorLog,
-    noise: SensorNoise,
-    unknown: bool,
-    now: &Now,
-) -> Estimated {
-    let noise = Some(NoiseLevel { contact: noise.contact, force: noise.force });
-    let clock = ThreadTime::now();
-    if unknown {
-        let known = UnknownBody { gravity: scene.gravity(), palm_inertias: None, noise };
-        let Ok(found) = estimate_body(log, &known) else { return refused(13, clock) };
-        let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
-        let (mut errors, mut covariance) = motion_errors(scene, &found.motion, now, 9);
-        let body = &found.body;
-        let moments = body.mass.principal().moments - scene.mass().principal().moments;
-        errors.push(body.mass.mass() - scene.mass().mass());
-        errors.extend(moments.to_array());
-        let deviations: Vec<f64> =
-            std::iter::once(body.mass_deviation).chain(body.moment_deviations.to_array()).collect();
-        for (k, d) in deviations.iter().enumerate() {
-            covariance.iter_mut().for_each(|row| row.push(0.0));
-            covariance.push((0..10 + k).map(|j| if j == 9 + k { d * d } else { 0.0 }).collect());
+/// Another motion that an exact log leaves open.
+pub(crate) struct Other {
+    /// What it is off by.
+    pub(crate) errors: Vec<f64>,
+    /// Squared deviations by which the log has to be corrected for it.
+    pub(crate) corrections: f64,
+}
+
+/// Where an estimate starts.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Begun {
+    /// From no guess.
+    Cold,
+    /// From the true motion and body.
+    AtTruth,
+}
+
+/// What a log is of, and what is known of that.
+pub(crate) struct Experiment<'a, S> {
+    pub(crate) scene: &'a ThreePalmScene<S>,
+    /// The truth at the first sample.
+    pub(crate) now: &'a Now,
+    /// Whether mass and inertia are unknown.
+    pub(crate) unknown: bool,
+}
+
+impl<S: SupportFunction> Experiment<'_, S> {
+    /// Estimates from a log and compares with the truth.
+    pub(crate) fn estimate(&self, log: &SensorLog, noise: SensorNoise, begun: Begun) -> Estimated {
+        let (scene, clock) = (self.scene, ThreadTime::now());
+        if self.unknown {
+            let known = UnknownBody { gravity: scene.gravity(), palm_inertias: None, noise: level(noise) };
+            let found = match begun {
+                Begun::Cold => estimate_body(log, &known),
+                Begun::AtTruth => estimate_body_from(log, &known, scene.mass(), &self.truth()),
+            };
+            let Ok(found) = found else { return refused(13, clock) };
+            let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
+            let mut errors = self.errors(&found.motion.start, 9);
+            let mut covariance = first(&found.motion, 9);
+            let body = &found.body;
+            let moments = body.mass.principal().moments - scene.mass().principal().moments;
+            errors.push(body.mass.mass() - scene.mass().mass());
+            errors.extend(moments.to_array());
+            let deviations: Vec<f64> =
+                std::iter::once(body.mass_deviation).chain(body.moment_deviations.to_array()).collect();
+            for (k, d) in deviations.iter().enumerate() {
+                covariance.iter_mut().for_each(|row| row.push(0.0));
+                covariance.push((0..10 + k).map(|j| if j == 9 + k { d * d } else { 0.0 }).collect());
+            }
+            outcome(errors, covariance, found.motion.reliability.is_reliable(), milliseconds)
+        } else {
+            let found = match begun {
+                Begun::Cold => estimate_motion(log, &self.known(noise)),
+                Begun::AtTruth => estimate_motion_from(log, &self.known(noise), &self.truth()),
+            };
+            let Ok(found) = found else { return refused(12, clock) };
+            let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
+            let errors = self.errors(&found.start, 12);
+            outcome(errors, first(&found, 12), found.reliability.is_reliable(), milliseconds)
         }
-        outcome(errors, covariance, found.motion.reliability.is_reliable(), milliseconds)
-    } else {
-        let known = KnownBody { mass: *scene.mass(), gravity: scene.gravity(), palm_inertias: None, noise };
-        let Ok(found) = estimate_motion(log, &known) else { return refused(12, clock) };
-        let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
-        let (errors, covariance) = motion_errors(scene, &found, now, 12);
-        outcome(errors, covariance, found.reliability.is_reliable(), milliseconds)
     }
+
+    /// Other motions of a known body that an exact log leaves open under noise.
+    pub(crate) fn others(&self, log: &SensorLog, noise: SensorNoise) -> Vec<Other> {
+        if self.unknown {
+            return Vec::new();
+        }
+        let found = estimate_motion(log, &self.known(noise)).map(|found| found.others).unwrap_or_default();
+        found
+            .iter()
+            .map(|other| Other { errors: self.errors(&other.start, 12), corrections: other.corrections })
+            .collect()
+    }
+
+    fn known(&self, noise: SensorNoise) -> KnownBody {
+        let scene = self.scene;
+        KnownBody { mass: *scene.mass(), gravity: scene.gravity(), palm_inertias: None, noise: level(noise) }
+    }
+
+    fn truth(&self) -> StartState {
+        let now = self.now;
+        StartState {
+            p_WCm: now.touch.p_WCm,
+            v_WCm: now.rates.v_WCm,
+            L_WO: now.R_WO * (self.scene.mass().inertia() * (now.R_WO.inverse() * now.w_WO)),
+            R_WO: now.R_WO,
+        }
+    }
+
+    /// Errors of the first `count` numbers of the state at the start.
+    fn errors(&self, start: &StartState, count: usize) -> Vec<f64> {
+        let truth = self.truth();
+        let turns =
+            equivalent_orientations(self.scene.mass()).map(|turn| (start.R_WO * turn) * truth.R_WO.inverse());
+        let turn =
+            turns.into_iter().fold(turns[0], |best, t| if t.w.abs() > best.w.abs() { t } else { best });
+        let parts = [
+            start.p_WCm - truth.p_WCm,
+            start.v_WCm - truth.v_WCm,
+            start.L_WO - truth.L_WO,
+            DVec3::new(turn.x, turn.y, turn.z) * 2.0 * turn.w.signum(),
+        ];
+        (0..count).map(|i| parts[i / 3][i % 3]).collect()
+    }
+}
+
+fn level(noise: SensorNoise) -> Option<NoiseLevel> {
+    Some(NoiseLevel { contact: noise.contact, force: noise.force })
+}
+
+/// Covariance of the first `count` numbers of the state at the start.
+fn first(found: &MotionEstimate, count: usize) -> Vec<Vec<f64>> {
+    (0..count).map(|i| (0..count).map(|j| found.covariance[(i, j)]).collect()).collect()
 }
 
 /// No estimate is a warning too.
@@ -84,26 +165,4 @@ fn refused(count: usize, clock: ThreadTime) -> Estimated {
 fn outcome(errors: Vec<f64>, covariance: Vec<Vec<f64>>, reliable: bool, milliseconds: f64) -> Estimated {
     let deviations = (0..errors.len()).map(|i| covariance[i][i].max(0.0).sqrt()).collect();
     Estimated { errors, deviations, covariance, reliable, milliseconds }
-}
-
-/// Errors of the first `count` numbers of the state at the start, with their covariance.
-fn motion_errors<S: SupportFunction>(
-    scene: &ThreePalmScene<S>,
-    found: &MotionEstimate,
-    now: &Now,
-    count: usize,
-) -> (Vec<f64>, Vec<Vec<f64>>) {
-    let L = now.R_WO * (scene.mass().inertia() * (now.R_WO.inverse() * now.w_WO));
-    let turns =
-        equivalent_orientations(scene.mass()).map(|turn| (found.start.R_WO * turn) * now.R_WO.inverse());
-    let turn = turns.into_iter().fold(turns[0], |best, t| if t.w.abs() > best.w.abs() { t } else { best });
-    let parts = [
-        found.start.p_WCm - now.touch.p_WCm,
-        found.start.v_WCm - now.rates.v_WCm,
-        found.start.L_WO - L,
-        DVec3::new(turn.x, turn.y, turn.z) * 2.0 * turn.w.signum(),
-    ];
-    let errors = (0..count).map(|i| parts[i / 3][i % 3]).collect();
-    let row = |i: usize| (0..count).map(|j| found.covariance[(i, j)]).collect();
-    (errors, (0..count).map(row).collect())
 }

@@ -10,13 +10,16 @@
 //! the smallest corrections is taken, and relied on only where the mass about it is the largest too, by far.
 
 use super::by_body::motions_by_body;
-use super::estimate::LARGEST_MISFIT;
+use super::estimate::EstimateError;
 use super::momentum::StartState;
-use super::most_probable::FIRST_PASS;
-use super::refine::{Refined, Setting, refine_along};
+use super::most_probable::{FIRST_PASS, PASSES};
+use super::orientations::{equivalent_orientations, nearest_to_identity};
+use super::refine::{Refined, Setting, refine, refine_along};
 use super::state_space::Parameters;
 use super::track::Track;
+use super::verdict::LARGEST_MISFIT;
 use crate::core::Model;
+use nalgebra::SVector;
 use object_dynamics::MassProperties;
 
 /// Motions that are refined to the end, at most.
@@ -27,17 +30,59 @@ const ROOM_FOR_OTHERS: f64 = 0.03;
 /// Largest difference of a state, in its deviations, between two solutions that are one motion.
 const SAME_MOTION: f64 = 1.0;
 
+/// A motion that explains a log beside the one that was taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OtherMotion {
+    /// Motion at the first sample; of the orientations that no data can tell apart the one nearest to the motion taken.
+    pub start: StartState,
+    /// By how much more data and prior must be corrected for it, in squared deviations.
+    pub corrections: f64,
+    /// Logarithm of how many times less probable it is; below zero where it is the more probable one.
+    pub log_odds: f64,
+}
+
 /// The motion taken of some.
 pub(super) struct Chosen<const N: usize> {
     pub(super) refined: Refined<N>,
-    /// Logarithm of how many times more probable it is than the most probable of the others; infinite without others.
-    pub(super) log_odds: f64,
-    /// Whether it is not the first of them.
+    /// The others, those that need the smallest corrections first.
+    pub(super) others: Vec<OtherMotion>,
+    /// Whether it is not the one that the search came to.
     pub(super) replaced: bool,
 }
 
+impl<const N: usize> Chosen<N> {
+    /// Logarithm of how many times more probable it is than the most probable of the others; infinite without others.
+    pub(super) fn log_odds(&self) -> f64 {
+        self.others.iter().map(|other| other.log_odds).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The most probable motion that a start, or others where the log leaves room for them, leads to.
+pub(super) fn refine_best<const N: usize>(
+    track: &Track,
+    mass: &MassProperties,
+    setting: &Setting<'_>,
+    start: &StartState,
+) -> Result<Chosen<N>, EstimateError> {
+    let start = StartState { R_WO: nearest_to_identity(mass, start.R_WO), ..*start };
+    let first =
+        refine::<N>(track, mass, Parameters::new(mass), &start, setting).map_err(|_| EstimateError::NoFit)?;
+    let mut chosen = if leaves_room(&first, N) {
+        let same = |a: &Refined<N>, b: &Refined<N>| are_one(mass, a, b);
+        let others = other_motions(track, mass, setting, same);
+        let others = others
+            .iter()
+            .filter_map(|path| refine_along(track, Parameters::new(mass), path, setting, PASSES).ok());
+        least_corrected(mass, first, others)
+    } else {
+        Chosen { refined: first, others: Vec::new(), replaced: false }
+    };
+    chosen.refined.widen(track, &setting.noise);
+    Ok(chosen)
+}
+
 /// Whether other motions may explain a log as well as this one, or better.
-pub(super) fn leaves_room<const N: usize>(refined: &Refined<N>, unknowns: usize) -> bool {
+fn leaves_room<const N: usize>(refined: &Refined<N>, unknowns: usize) -> bool {
     let (variances, sizes) = (refined.solution.covariances[0].diagonal(), refined.model.scales());
     let loose = |(v, s): (&f64, &f64)| v.is_nan() || *v > (ROOM_FOR_OTHERS * s).powi(2);
     let misfit = refined.misfit(unknowns);
@@ -47,11 +92,11 @@ pub(super) fn leaves_room<const N: usize>(refined: &Refined<N>, unknowns: usize)
         || variances.iter().zip(&sizes).any(loose)
 }
 
-/// The motion that needs the smallest corrections, and how probable it is beside those that are not the `same`.
-pub(super) fn least_corrected<const N: usize>(
+/// The motion that needs the smallest corrections, and those that are others than it.
+fn least_corrected<const N: usize>(
+    mass: &MassProperties,
     first: Refined<N>,
     others: impl Iterator<Item = Refined<N>>,
-    same: impl Fn(&Refined<N>, &Refined<N>) -> bool,
 ) -> Chosen<N> {
     let (mut best, mut replaced) = (first, false);
     let mut rivals: Vec<Refined<N>> = Vec::new();
@@ -64,23 +109,53 @@ pub(super) fn least_corrected<const N: usize>(
             rivals.push(other);
         }
     }
-    let next = rivals
-        .iter()
-        .filter(|rival| !same(&best, rival))
-        .map(|rival| rival.improbability - best.improbability)
-        .fold(f64::INFINITY, f64::min);
-    Chosen { refined: best, log_odds: 0.5 * next, replaced }
+    rivals.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+    let mut distinct: Vec<&Refined<N>> = Vec::new();
+    for rival in &rivals {
+        if !are_one(mass, &best, rival) && !distinct.iter().any(|other| are_one(mass, other, rival)) {
+            distinct.push(rival);
+        }
+    }
+    let others = distinct
+        .into_iter()
+        .map(|rival| OtherMotion {
+            start: nearest_to(mass, &best, rival),
+            corrections: rival.cost() - best.cost(),
+            log_odds: 0.5 * (rival.improbability - best.improbability),
+        })
+        .collect();
+    Chosen { refined: best, others, replaced }
+}
+
+/// Start of a motion, of its equivalent orientations the one nearest to that of another.
+fn nearest_to<const N: usize>(mass: &MassProperties, best: &Refined<N>, rival: &Refined<N>) -> StartState {
+    let start = |refined: &Refined<N>| refined.model.motion(&refined.solution.states[0]);
+    let (to, from) = (start(best), start(rival));
+    let angle = |turn: &glam::DQuat| (from.R_WO * *turn).angle_between(to.R_WO);
+    let turns = equivalent_orientations(mass).into_iter();
+    let turn = turns.min_by(|a, b| angle(a).total_cmp(&angle(b))).unwrap_or_default();
+    StartState { R_WO: from.R_WO * turn, ..from }
+}
+
+/// Whether two solutions are one motion, with the body's axes turned or not.
+fn are_one<const N: usize>(mass: &MassProperties, a: &Refined<N>, b: &Refined<N>) -> bool {
+    let (x, at) = (&a.solution.states[0], &b.solution.states[0]);
+    let (to, parameters) = (b.model.motion(at), b.model.parameters(at));
+    equivalent_orientations(mass).into_iter().any(|turn| {
+        let turned = b.model.state(&StartState { R_WO: to.R_WO * turn, ..to }, &parameters);
+        is_small(a, &a.model.difference(&turned, x))
+    })
 }
 
 /// Whether a difference of states at the start is within what noise does.
-pub(super) fn is_small<const N: usize>(refined: &Refined<N>, difference: &nalgebra::SVector<f64, N>) -> bool {
+fn is_small<const N: usize>(refined: &Refined<N>, difference: &SVector<f64, N>) -> bool {
     let variances = refined.solution.covariances[0].diagonal();
     difference.iter().zip(&variances).all(|(d, v)| d * d <= SAME_MOTION * SAME_MOTION * v)
 }
 
 /// Other motions of a known body, at the nodes: what the ways to lie that an unknown body leaves lead to in a first pass, one of
 /// each, at most [`MOST_REFINED`], those first that need the data corrected least.
-pub(super) fn other_motions<const N: usize>(
+fn other_motions<const N: usize>(
     track: &Track,
     mass: &MassProperties,
     setting: &Setting<'_>,

@@ -6,8 +6,8 @@
 
 use super::cold_start::orientations;
 use super::covariance::NoiseLevel;
-use super::estimate::{equivalent_orientations, nearest_to_identity};
 use super::momentum::StartState;
+use super::orientations::{equivalent_orientations, nearest_to_identity};
 use super::refine::Refined;
 use super::sensitivity::exponential;
 use super::state_space::{BODY, MOTION_STATES, numbers_of_inertia};

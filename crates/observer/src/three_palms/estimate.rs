@@ -1,19 +1,19 @@
-use super::alternatives::{Chosen, is_small, least_corrected, leaves_room, other_motions};
+use super::alternatives::{OtherMotion, refine_best};
 use super::clean::{RANK_TOLERANCE, clean_covariance, root_mean_square, stride};
-use super::cold_start::{EXPLAINED, NEXT_TO_NOTHING, cold_start, fit_near, scales, unexplained};
+use super::cold_start::{cold_start, fit_near, scales, unexplained};
 use super::convexity::largest_violation;
 use super::correlation::whiteness;
 use super::covariance::NoiseLevel;
 use super::curves::CurveUncertainty;
 use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
 use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNKNOWNS};
-use super::most_probable::PASSES;
 use super::noise::noise_level;
+use super::orientations::nearest_to_identity;
 use super::polish::polish_all;
-use super::refine::{Refined, Setting, refine, refine_along};
-use super::state_space::{Constant, Parameters};
+use super::refine::{Refined, Setting};
+use super::state_space::Constant;
 use super::track::{Track, TrackError};
-use crate::core::Model;
+use super::verdict::{LARGEST_DEVIATION, LARGEST_MISFIT, LARGEST_PLAIN_DEVIATION, judge};
 use crate::least_squares::{Fit, FitStatus, Observability};
 use contact_kinematics::{ContactCurve, CurveError};
 use glam::{DQuat, DVec3};
@@ -21,31 +21,10 @@ use nalgebra::SMatrix;
 use object_dynamics::{MassProperties, SensorLog};
 use thiserror::Error;
 
-/// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
-/// linearisation that its covariance comes from does not reach that far. An error of five deviations without another warning
-/// was seen at 0.24 (two palms 30 degrees apart), none below 0.2.
-pub(super) const LARGEST_DEVIATION: f64 = 0.15;
-/// The same where the covariance was not widened by what is beyond first order.
-pub(super) const LARGEST_PLAIN_DEVIATION: f64 = 0.1;
 /// Contact noise, relative to length, above which data are worth adjusting: below it, plain least squares is as good.
 pub(super) const WORTH_ADJUSTING: f64 = 1e-7;
 /// No sensor is better than rounding to 12 digits: floor of the noise level, relative to length and force.
 const NOISE_FLOOR: f64 = 1e-12;
-
-/// Root mean square shift by pairs of as much noise again, in standard deviations, beyond which even the covariance that is
-/// widened by it is not to be trusted: what is quadratic in the noise is then larger than what is linear, and what is beyond
-/// both is not small. Shifts up to 1.9 were seen with errors that the widened covariance covers.
-const LARGEST_BIAS: f64 = 2.0;
-/// The same where the search has found other motions, of an estimate whose worst known direction has a deviation beyond the
-/// second number, in natural sizes. In a thousand noisy runs all of finite shift were right that nothing else spoke against.
-const BIAS_AMONG_OTHERS: f64 = 1.5;
-const DEVIATION_AMONG_OTHERS: f64 = 0.06;
-/// Logarithm of the odds against the next motion below which the log is taken to leave both open. By the letter a few would do,
-/// but each motion feels noise of other directions, by which its corrections scatter: in 2560 noisy runs a wrong motion had 16.
-const LEAST_LOG_ODDS: f64 = 20.0;
-/// Chi-squared over its degrees of freedom beyond which noise does not explain an estimate. With hundreds of degrees it
-/// scatters by a few percent about 0.85 to 1; noise levels that are read off the data are good to 5 %.
-pub(super) const LARGEST_MISFIT: f64 = 1.4;
 
 /// What is known beside the log.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,6 +81,9 @@ pub struct MotionEstimate {
     /// Uncertainty of the curves at some of the samples, where data were adjusted; empty for logs without noise to speak
     /// of.
     pub uncertainty: Vec<CurveUncertainty>,
+    /// Other motions that were found where the log leaves room for them, those that need the smallest corrections first. Only
+    /// looked for where mass and inertia are known.
+    pub others: Vec<OtherMotion>,
     /// Covariance of the start: centre of mass (m), velocity (m/s), angular momentum (kg m^2/s), orientation (rotation
     /// vector in world axes, rad), three each.
     pub covariance: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
@@ -183,7 +165,7 @@ fn clean_estimate(
     let mut fit = polish_all(&problem, &thin_problem, stride, near).ok_or(EstimateError::NoFit)?;
     fit.point.R_WO = nearest_to_identity(mass, fit.point.R_WO);
     let motion = problem.motion(&fit.point);
-    let (residuals, _) = problem.residuals_along(&motion, noise.contact);
+    let residuals = problem.residuals_along(&motion);
     let rms = root_mean_square(&residuals);
     let observability = Observability::new(&fit.normal.information);
     let (steps, rows) = thin_problem.linearised(&fit.point);
@@ -210,13 +192,14 @@ fn clean_estimate(
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
     let covariance = unscale(&covariance, &scales);
-    let uncertainty = Vec::new();
+    let (uncertainty, others) = (Vec::new(), Vec::new());
     Ok(MotionEstimate {
         start: fit.point,
         motion,
         curves,
         radii,
         uncertainty,
+        others,
         covariance,
         evidence,
         reliability,
@@ -232,11 +215,14 @@ fn noisy_estimate<const N: usize>(
     best: &Fit<StartState, UNKNOWNS>,
 ) -> Result<(MotionEstimate, Refined<N>), EstimateError> {
     let (mass, scales, noise) = (&known.mass, setting.scales, setting.noise);
-    let Chosen { refined, log_odds, replaced } = refine_best::<N>(track, mass, setting, best)?;
+    let chosen = refine_best::<N>(track, mass, setting, &best.point)?;
+    let (log_odds, others, replaced, refined) =
+        (chosen.log_odds(), chosen.others, chosen.replaced, chosen.refined);
     let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
     let states = refined.states();
     let motion = problem.motion_through(&refined.nodes, &states);
-    let (residuals, predicted) = problem.residuals_along(&motion, noise.contact);
+    let residuals = problem.residuals_along(&motion);
+    let predicted = problem.expected_through(&refined.nodes, &motion, &noise);
     let rms = root_mean_square(&residuals);
     let misfit = refined.misfit(N);
     let observability = Observability::new(&best.normal.information);
@@ -278,44 +264,18 @@ fn noisy_estimate<const N: usize>(
     let uncertainty = super::curves::uncertainty(track, &refined, DQuat::IDENTITY);
     reliability.check_convexity(largest_violation(track, &refined.nodes, &motion, &uncertainty));
     let start = states[0];
-    let estimate =
-        MotionEstimate { start, motion, curves, radii, uncertainty, covariance, evidence, reliability };
-    Ok((estimate, refined))
-}
-
-/// The most probable motion that the fit, or others where the log leaves room for them, leads to.
-fn refine_best<const N: usize>(
-    track: &Track,
-    mass: &MassProperties,
-    setting: &Setting<'_>,
-    best: &Fit<StartState, UNKNOWNS>,
-) -> Result<Chosen<N>, EstimateError> {
-    let refined = |start: &StartState| {
-        let start = StartState { R_WO: nearest_to_identity(mass, start.R_WO), ..*start };
-        refine::<N>(track, mass, Parameters::new(mass), &start, setting)
+    let estimate = MotionEstimate {
+        start,
+        motion,
+        curves,
+        radii,
+        uncertainty,
+        others,
+        covariance,
+        evidence,
+        reliability,
     };
-    let first = refined(&best.point).map_err(|_| EstimateError::NoFit)?;
-    let mut chosen = Chosen { refined: first, log_odds: f64::INFINITY, replaced: false };
-    if leaves_room(&chosen.refined, N) {
-        let same = |a: &Refined<N>, b: &Refined<N>| are_one(mass, a, b);
-        let others = other_motions(track, mass, setting, same);
-        let others = others
-            .iter()
-            .filter_map(|path| refine_along(track, Parameters::new(mass), path, setting, PASSES).ok());
-        chosen = least_corrected(chosen.refined, others, same);
-    }
-    chosen.refined.widen(track, &setting.noise);
-    Ok(chosen)
-}
-
-/// Whether two solutions are one motion, with the body's axes turned or not.
-fn are_one<const N: usize>(mass: &MassProperties, a: &Refined<N>, b: &Refined<N>) -> bool {
-    let (x, at) = (&a.solution.states[0], &b.solution.states[0]);
-    let (to, parameters) = (b.model.motion(at), b.model.parameters(at));
-    equivalent_orientations(mass).into_iter().any(|turn| {
-        let turned = b.model.state(&StartState { R_WO: to.R_WO * turn, ..to }, &parameters);
-        is_small(a, &a.model.difference(&turned, x))
-    })
+    Ok((estimate, refined))
 }
 
 /// As [`estimate_on_track`], with constants of the sensors among the states.
@@ -348,58 +308,10 @@ fn weakest_direction(covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>) -> WeakDirec
     WeakDirection::new(&direction, spectrum.eigenvalues[last].max(0.0).sqrt())
 }
 
-pub(super) fn judge(
-    evidence: &Evidence,
-    status: FitStatus,
-    scales: &Scales,
-    largest_deviation: f64,
-) -> Reliability {
-    let mut reasons = Vec::new();
-    if status != FitStatus::Converged {
-        reasons.push(Reason::NotConverged { iterations: evidence.iterations });
-    }
-    // NaN counts as unknown.
-    if evidence.weakest.deviation.is_nan() || evidence.weakest.deviation > largest_deviation {
-        reasons.push(Reason::Unobservable { direction: evidence.weakest });
-    }
-    let among_others = evidence.log_odds.is_finite() && evidence.weakest.deviation > DEVIATION_AMONG_OTHERS;
-    let largest_bias = if among_others { BIAS_AMONG_OTHERS } else { LARGEST_BIAS };
-    if evidence.bias.is_nan() || evidence.bias > largest_bias {
-        reasons.push(Reason::Biased { shift: evidence.bias });
-    }
-    if evidence.log_odds < LEAST_LOG_ODDS {
-        reasons.push(Reason::Ambiguous { log_odds: evidence.log_odds });
-    }
-    // More than noise leaves, and more than the lasting errors of good data: what a wrong minimum leaves.
-    let explained = (EXPLAINED * evidence.noise_explains).max(NEXT_TO_NOTHING * scales.velocity);
-    if evidence.residual_rms.is_nan() || evidence.residual_rms > explained {
-        reasons.push(Reason::Misfit { residual: evidence.residual_rms, explained: evidence.noise_explains });
-    }
-    if reasons.is_empty() { Reliability::Reliable } else { Reliability::Unreliable(reasons) }
-}
-
 fn unscale(
     covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>,
     scales: &Scales,
 ) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
     let scale = scales.by_block();
     SMatrix::from_fn(|i, j| covariance[(i, j)] * scale[i / 3] * scale[j / 3])
-}
-
-/// Of the orientations `R_WO D` with `D` a half turn about a principal axis, the one with the smallest angle.
-pub(super) fn nearest_to_identity(mass: &MassProperties, R_WO: glam::DQuat) -> glam::DQuat {
-    equivalent_orientations(mass)
-        .into_iter()
-        .map(|turn| R_WO * turn)
-        .max_by(|a, b| a.w.abs().total_cmp(&b.w.abs()))
-        .unwrap_or(R_WO)
-}
-
-/// The four turns `D` of the body axes under which the inertia tensor does not change: identity and half turns about
-/// the principal axes. Motion and contacts are the same for `R_WO` and `R_WO D`; the body's shape is turned with them.
-#[must_use]
-pub fn equivalent_orientations(mass: &MassProperties) -> [glam::DQuat; 4] {
-    let axes = mass.principal().axes;
-    let half = |v: DVec3| axes * glam::DQuat::from_xyzw(v.x, v.y, v.z, 0.0) * axes.inverse();
-    [glam::DQuat::IDENTITY, half(DVec3::X), half(DVec3::Y), half(DVec3::Z)]
 }

@@ -8,12 +8,14 @@ mod convexity;
 mod correlation;
 mod covariance;
 mod curves;
+mod delassus;
 mod estimate;
 mod evidence;
 mod momentum;
 mod most_probable;
 mod no_force;
 mod noise;
+mod orientations;
 mod paper_method;
 mod paper_system;
 mod polish;
@@ -30,17 +32,18 @@ mod test_scenes;
 mod through;
 mod track;
 mod unknown_body;
+mod verdict;
 
+pub use alternatives::OtherMotion;
 pub use covariance::NoiseLevel;
 pub use curves::CurveUncertainty;
-pub use estimate::{
-    EstimateError, KnownBody, MotionEstimate, equivalent_orientations, estimate_motion, estimate_motion_from,
-};
+pub use estimate::{EstimateError, KnownBody, MotionEstimate, estimate_motion, estimate_motion_from};
 pub use evidence::{Evidence, Quantity, Reason, Reliability, WeakDirection};
 pub use momentum::{MotionState, Scales, StartState};
 pub use no_force::{
     Closure, KnownTouch, NoForceError, NoForceEstimate, NoForceEvidence, TouchShape, estimate_without_forces,
 };
+pub use orientations::equivalent_orientations;
 pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };

@@ -27,6 +27,8 @@ pub(super) struct MostProbable<const N: usize> {
     /// (Laplace's approximation). Chi-squared alone does not compare motions: noise counts for less in one that leaves it
     /// more room, so that wrong minima with a smaller chi-squared than the truth are common in short logs.
     pub(super) improbability: f64,
+    /// What chi-squared lacks of its expectation, since turning rates are uncertain: more of them in one motion than in another.
+    pub(super) shortfall: f64,
 }
 
 /// Gauss-Newton on the whole motion, relinearised at the adjusted data: Gauss-Helmert estimation in linear time.
@@ -66,7 +68,7 @@ pub(super) fn most_probable<const N: usize>(
     for _ in 1..passes {
         let lost = found.report.status == Status::Moving && found.report.residual > HOPELESS;
         if lost || found.report.status == Status::Diverged {
-            return Ok(MostProbable { solution: found, improbability: f64::INFINITY });
+            return Ok(MostProbable { solution: found, improbability: f64::INFINITY, shortfall: 0.0 });
         }
         set_slides(&mut samples, |k, touch| {
             model.slide_variances(&found.states[k], &found.covariances[k], touch)
@@ -80,10 +82,13 @@ pub(super) fn most_probable<const N: usize>(
         found = solve_batch_along(model, &samples, prior, &found.states, &options)?;
         iterations += found.iterations;
     }
-    let of_outputs: f64 =
-        samples.iter().zip(&found.states).map(|(s, x)| model.log_variances(x, &s.input.here)).sum();
+    let sum = |of_node: &dyn Fn(&SVector<f64, N>, &Touch) -> f64| -> f64 {
+        samples.iter().zip(&found.states).map(|(s, x)| of_node(x, &s.input.here)).sum()
+    };
+    let of_outputs = sum(&|x, touch| model.log_variances(x, touch));
+    let shortfall = sum(&|x, touch| model.shortfall(x, touch));
     let improbability = found.chi_squared + found.prior_cost + found.log_determinant + of_outputs;
-    Ok(MostProbable { solution: BatchSolution { iterations, ..found }, improbability })
+    Ok(MostProbable { solution: BatchSolution { iterations, ..found }, improbability, shortfall })
 }
 
 fn set_slides(samples: &mut [Sample<NodeInput, 3>], slide: impl Fn(usize, &Touch) -> [f64; 3]) {

@@ -14,6 +14,11 @@ use object_dynamics::MassProperties;
 
 /// Nodes in one natural time: more of them take time and tell no more.
 const NODES_PER_NATURAL_TIME: f64 = 32.0;
+/// Samples at a node, at least, as long as there are so many nodes in a natural time. The force of a sample acts half before it
+/// and half after: between single samples its noise would count as that of two forces, of which it has half the variance, and
+/// chi-squared would be too small, most of all for wrong motions.
+const SAMPLES_PER_NODE: f64 = 3.0;
+const LEAST_PER_NATURAL_TIME: f64 = 12.0;
 /// Natural times over which contacts are smoothed, on either side, where derivatives are taken.
 pub(super) const SMOOTHED_NATURAL_TIMES: f64 = 0.125;
 /// Pairs of noise that the covariance is widened by, where one pair says that it is too narrow.
@@ -28,6 +33,8 @@ pub(super) struct Refined<const N: usize> {
     pub(super) solution: BatchSolution<N>,
     /// Minus twice the logarithm of the probability mass about the motion, up to a constant that all motions of a log share.
     pub(super) improbability: f64,
+    /// What chi-squared lacks of its expectation, since turning rates are uncertain.
+    shortfall: f64,
     /// Samples at which the states stand.
     pub(super) nodes: Vec<usize>,
     /// Largest shift of a state at the start by noise, in its deviations; infinite where as much noise again leads
@@ -44,9 +51,10 @@ impl<const N: usize> Refined<N> {
         self.solution.chi_squared / (self.solution.channels.saturating_sub(unknowns).max(1)) as f64
     }
 
-    /// What it costs to correct the data and the prior for this motion, in squared deviations.
+    /// What it costs to correct the data and the prior for this motion, in squared deviations. Their expectation is the same for
+    /// all motions that noise explains.
     pub(super) fn cost(&self) -> f64 {
-        self.solution.chi_squared + self.solution.prior_cost
+        self.solution.chi_squared + self.shortfall + self.solution.prior_cost
     }
 
     /// Motion at the nodes.
@@ -181,17 +189,19 @@ pub(super) fn refine_along<const N: usize>(
     };
     let known = Beforehand { track, scales, constants, deviations, axes_chosen };
     let prior = known.prior(&model, first, &parameters);
-    let MostProbable { solution, improbability } =
+    let MostProbable { solution, improbability, shortfall } =
         most_probable(&model, &inputs, &states, &prior, reach, passes)?;
-    Ok(Refined { model, solution, improbability, nodes, shift: 0.0, cut, reach, prior })
+    Ok(Refined { model, solution, improbability, shortfall, nodes, shift: 0.0, cut, reach, prior })
 }
 
 /// The blocks of samples, each with a node in it.
 fn cut(track: &Track, scales: &Scales) -> Vec<Block> {
     let spacing = track.duration() / (track.len() - 1).max(1) as f64;
     let natural = natural_time(track, scales.length);
-    let stride = (natural / NODES_PER_NATURAL_TIME / spacing).round().max(1.0) as usize;
-    blocks(track.len(), stride)
+    let samples = natural / spacing;
+    let least = SAMPLES_PER_NODE.min(samples / LEAST_PER_NATURAL_TIME);
+    let stride = (samples / NODES_PER_NATURAL_TIME).max(least).round().max(1.0);
+    blocks(track.len(), stride as usize)
 }
 
 impl Track {

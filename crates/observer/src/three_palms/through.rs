@@ -1,9 +1,11 @@
 //! Motion at every sample from states at some, and what it leaves of the contact conditions.
 
+use super::covariance::NoiseLevel;
+use super::delassus::Push;
 use super::momentum::{Kinematics, MomentumProblem, MotionState, StartState};
 use super::sensitivity::{exponential, logarithm};
 use super::track::Integrals;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 impl MomentumProblem<'_> {
     /// Motion at every sample, through given states at some of them (`nodes`, ascending, the first and the last sample
@@ -55,21 +57,45 @@ impl MomentumProblem<'_> {
         StartState { p_WCm, v_WCm, L_WO, R_WO: state.R_WO }
     }
 
-    /// Root mean square of the contact conditions along a motion, and what contact noise of the given deviation leaves of
-    /// it, m/s.
-    pub(super) fn residuals_along(&self, motion: &[MotionState], noise: f64) -> (Vec<[f64; 3]>, f64) {
-        let mut expected = 0.0;
-        let residuals = motion
-            .iter()
-            .enumerate()
-            .map(|(k, m)| {
-                std::array::from_fn(|i| {
-                    let [a, b] = self.by_contact(k, i, m.w_WO);
-                    expected += noise * noise * (a * a + b * b);
-                    self.residual(k, i, &Kinematics { v: m.v_WCm, p: m.p_WCm, L: DVec3::ZERO }, m.w_WO)
-                })
-            })
-            .collect();
-        (residuals, (expected / (3 * motion.len().max(1)) as f64).sqrt())
+    /// The contact conditions along a motion, m/s.
+    pub(super) fn residuals_along(&self, motion: &[MotionState]) -> Vec<[f64; 3]> {
+        let residual = |k: usize, m: &MotionState| {
+            let at = Kinematics { v: m.v_WCm, p: m.p_WCm, L: DVec3::ZERO };
+            std::array::from_fn(|i| self.residual(k, i, &at, m.w_WO))
+        };
+        motion.iter().enumerate().map(|(k, m)| residual(k, m)).collect()
+    }
+
+    /// Root mean square of what noise leaves of the contact conditions along a motion through some nodes, m/s: that of the
+    /// contacts at each sample, and that of the forces since the node before and until the next.
+    pub(super) fn expected_through(
+        &self,
+        nodes: &[usize],
+        motion: &[MotionState],
+        noise: &NoiseLevel,
+    ) -> f64 {
+        let spacing = self.track.duration() / (self.track.len() - 1).max(1) as f64;
+        let mut sum = 0.0;
+        for (k, m) in motion.iter().enumerate() {
+            let next = nodes.partition_point(|&node| node <= k);
+            let between = match (nodes.get(next.wrapping_sub(1)), nodes.get(next)) {
+                // White noise that is known to come to nothing at both ends: a Brownian bridge.
+                (Some(&from), Some(&to)) => ((k - from) * (to - k)) as f64 / (to - from) as f64,
+                _ => 0.0,
+            };
+            let of_impulse = (noise.force * spacing).powi(2) * between;
+            let R = DMat3::from_quat(m.R_WO);
+            let inverse = R * self.mass.inverse_inertia() * R.transpose();
+            let node = &self.track.nodes[k];
+            let push = |i: usize| Push::new(&node.palms[i].frame, node.p_WC[i], m.p_WCm);
+            let pushes = [push(0), push(1), push(2)];
+            for (i, palm) in pushes.iter().enumerate() {
+                let [a, b] = self.by_contact(k, i, m.w_WO);
+                sum += noise.contact * noise.contact * (a * a + b * b);
+                let by = |other: &Push| palm.speed_by(other, self.mass.mass(), inverse).powi(2);
+                sum += of_impulse * pushes.iter().map(by).sum::<f64>();
+            }
+        }
+        (sum / (3 * motion.len().max(1)) as f64).sqrt()
     }
 }

@@ -16,6 +16,7 @@ use super::inertia::inertia_slope;
 use super::input::{NodeInput, PalmTouch, Touch};
 use crate::core::Model;
 use crate::three_palms::covariance::NoiseLevel;
+use crate::three_palms::delassus::Push;
 use crate::three_palms::momentum::{Scales, StartState};
 use crate::three_palms::sensitivity::{exponential, logarithm};
 use glam::{DMat3, DQuat, DVec3};
@@ -192,6 +193,14 @@ impl<const N: usize> ThreePalmModel<N> {
         conditions.iter().zip(touch.slide_variance).map(log).sum()
     }
 
+    /// What chi-squared lacks at a node of its expectation: a turning rate that is uncertain makes a condition count for less
+    /// than it is worth on the average.
+    pub(crate) fn shortfall(&self, x: &SVector<f64, N>, touch: &Touch) -> f64 {
+        let conditions = self.conditions(x, touch);
+        let of_contact = self.contact_variance() / touch.samples;
+        conditions.iter().zip(touch.slide_variance).map(|(c, slide)| of_contact * slide / c.variance).sum()
+    }
+
     /// Derivative of `axis . w` by the states.
     fn turning_row(
         &self,
@@ -233,9 +242,8 @@ impl<const N: usize> ThreePalmModel<N> {
     ) -> Condition<N> {
         let palm = &touch.palms[i];
         let (frame, n) = (&palm.frame, palm.normal[0]);
-        let [o1, o2] = parameters.offsets[i];
-        // n x t1 = t2, n x t2 = -t1.
-        let offset = o1 * frame.t2 - o2 * frame.t1;
+        let [_, o2] = parameters.offsets[i];
+        let offset = offset(parameters, i, palm);
         let arm = palm.arm[0] + offset;
         let curved: f64 =
             (0..2).map(|k| palm.normal[k + 1].dot(rates.u[k]) - palm.arm[k + 1].dot(rates.w[k])).sum();
@@ -245,15 +253,8 @@ impl<const N: usize> ThreePalmModel<N> {
         let of_contact = self.noise.contact * self.noise.contact / touch.samples;
         let floor = CONDITION_FLOOR * self.scales.velocity;
         let square = by_contact[0] * by_contact[0] + by_contact[1] * by_contact[1] + touch.slide_variance[i];
-        // The force at a node counts half before it and half after: as noise, to neither.
-        let half = 0.5 * self.noise.force * touch.spacing;
-        let a = arm - n.cross(motion.p);
-        let by_impulse = |other: &PalmTouch| {
-            let lever = other.normal[0].cross(motion.p) - other.arm[0];
-            n.dot(other.normal[0]) / parameters.mass - a.dot(turn.K * lever)
-        };
-        let jitter: f64 = touch.palms.iter().map(|other| (half * by_impulse(other)).powi(2)).sum();
-        let variance = of_contact * square + jitter + floor * floor;
+        let variance =
+            of_contact * square + self.between_samples(i, motion, parameters, turn, touch) + floor * floor;
         let farthest = FARTHEST_FOOT / variance.sqrt();
         let near = (value / variance).abs() <= farthest;
         let foot_slope = if near { -of_contact / variance } else { 0.0 };
@@ -276,6 +277,26 @@ impl<const N: usize> ThreePalmModel<N> {
             }
         }
         Condition { value, row, by_contact, variance, foot, foot_slope }
+    }
+
+    /// What a condition varies by since the force at the node acts half before it and half after: as noise it counts to
+    /// neither. It is no more than what noise there is, and keeps a condition from counting for all where a palm hardly slides.
+    fn between_samples(
+        &self,
+        i: usize,
+        motion: &Motion,
+        parameters: &Parameters,
+        turn: &Turn,
+        touch: &Touch,
+    ) -> f64 {
+        let half = 0.5 * self.noise.force * touch.spacing;
+        let push = |i: usize| {
+            let palm = &touch.palms[i];
+            let n = palm.normal[0];
+            Push { normal: n, arm: palm.arm[0] + offset(parameters, i, palm) - n.cross(motion.p) }
+        };
+        let by = |other: usize| push(i).speed_by(&push(other), parameters.mass, turn.K);
+        (0..3).map(|other| (half * by(other)).powi(2)).sum()
     }
 
     fn step<'a>(&'a self, x: &SVector<f64, N>, input: &'a NodeInput) -> Step<'a, N> {
@@ -319,6 +340,12 @@ impl BlockRates {
             w: [dw, ddw],
         }
     }
+}
+
+/// What the offset of a palm's sensor adds to the arm `n x c`: `n x t1 = t2`, `n x t2 = -t1`.
+fn offset(parameters: &Parameters, i: usize, palm: &PalmTouch) -> DVec3 {
+    let [o1, o2] = parameters.offsets[i];
+    o1 * palm.frame.t2 - o2 * palm.frame.t1
 }
 
 pub(super) fn unpack<const N: usize>(x: &SVector<f64, N>) -> Motion {

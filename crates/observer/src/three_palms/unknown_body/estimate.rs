@@ -7,10 +7,7 @@ use crate::least_squares::{Fit, FitStatus, Observability};
 use crate::three_palms::clean::{RANK_TOLERANCE, clean_covariance, root_mean_square, stride};
 use crate::three_palms::convexity::largest_violation;
 use crate::three_palms::correlation::whiteness;
-use crate::three_palms::estimate::{
-    EstimateError, LARGEST_DEVIATION, LARGEST_MISFIT, LARGEST_PLAIN_DEVIATION, MotionEstimate,
-    WORTH_ADJUSTING, floored, judge,
-};
+use crate::three_palms::estimate::{EstimateError, MotionEstimate, WORTH_ADJUSTING, floored};
 use crate::three_palms::evidence::{Evidence, Reason, WeakDirection};
 use crate::three_palms::momentum::{MomentumProblem, MotionState, Scales, StartState};
 use crate::three_palms::noise::noise_level;
@@ -18,6 +15,7 @@ use crate::three_palms::polish::{Conditions, polish_all};
 use crate::three_palms::refine::{Refined, Setting, refine};
 use crate::three_palms::state_space::{BODY, MOTION_STATES, Parameters, numbers_of_inertia};
 use crate::three_palms::track::Track;
+use crate::three_palms::verdict::{LARGEST_DEVIATION, LARGEST_MISFIT, LARGEST_PLAIN_DEVIATION, judge};
 use crate::three_palms::{NoiseLevel, curves};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::SMatrix;
@@ -186,7 +184,7 @@ fn clean_estimate(
     let start = fit.point.start;
     let motion = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
     let moved = motion.motion(&start);
-    let (residuals, _) = motion.residuals_along(&moved, noise.contact);
+    let residuals = motion.residuals_along(&moved);
     let observability = Observability::new(&fit.normal.information);
     let thin_of_mass = thin.of_mass(mass.mass());
     let (steps, _) = MomentumProblem::new(&thin_of_mass, &mass, scales, f64::INFINITY).linearised(&start);
@@ -223,7 +221,8 @@ fn adjusted_estimate(
     let track = track.of_mass(mass.mass());
     let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
     let motion = problem.motion_through(&refined.nodes, &refined.states());
-    let (residuals, predicted) = problem.residuals_along(&motion, noise.contact);
+    let residuals = problem.residuals_along(&motion);
+    let predicted = problem.expected_through(&refined.nodes, &motion, &noise);
     let status = if refined.settled() { FitStatus::Converged } else { FitStatus::Stalled };
     let found = Found {
         scales,
@@ -276,6 +275,7 @@ fn assemble(track: &Track, found: Found<'_>) -> Result<BodyEstimate, EstimateErr
         radii: curves::radii(track, &turned),
         motion: turned,
         uncertainty,
+        others: Vec::new(),
         covariance,
         evidence,
         reliability,
