@@ -1,7 +1,8 @@
 //! Monte Carlo study of the three-palm estimators against the Cramer-Rao bound: prints a table in Markdown.
 //!
 //! `cargo xtask study three_palms_monte_carlo [RUNS [FIRST_SEED [WORD...]]]` writes docs/three-palms-monte-carlo.md. Words
-//! choose rows: `F5` or `G2`, `known` or `unknown`, and `noise=0.01`, `rate=1000`, `window=2`.
+//! choose rows, also such as are not in the table: `F5` or `G2`, `known` or `unknown`, and `noise=0.01`, `rate=1000`,
+//! `window=2`, each as often as one likes.
 
 mod estimates;
 mod statistics;
@@ -41,39 +42,73 @@ struct Row {
 }
 
 impl Row {
-    fn all() -> Vec<Self> {
-        let mut all = Vec::new();
-        for scene in ["F5", "G2"] {
-            for unknown in [false, true] {
-                for noise in [1e-3, 1e-2] {
-                    for rate in [1000.0, 100.0] {
-                        let windows = [0.5, 1.0, 2.0, 4.0];
-                        all.extend(windows.map(|window| Self { scene, unknown, noise, rate, window }));
+    fn body(&self) -> &'static str {
+        if self.unknown { "unknown" } else { "known" }
+    }
+}
+
+/// What the words of the command line choose.
+#[derive(Default)]
+struct Choice {
+    scenes: Vec<&'static str>,
+    unknown: Vec<bool>,
+    noise: Vec<f64>,
+    rate: Vec<f64>,
+    window: Vec<f64>,
+}
+
+impl Choice {
+    fn new(words: &[String]) -> Result<Self, Failure> {
+        let mut choice = Self::default();
+        for word in words {
+            let number = |value: &str| -> Result<f64, Failure> {
+                let number: f64 = value.parse().map_err(|_| format!("{word}: not a number"))?;
+                if number > 0.0 && number.is_finite() {
+                    Ok(number)
+                } else {
+                    Err(format!("{word}: not positive").into())
+                }
+            };
+            match word.split_once('=') {
+                None if word == "F5" => choice.scenes.push("F5"),
+                None if word == "G2" => choice.scenes.push("G2"),
+                None if word == "known" => choice.unknown.push(false),
+                None if word == "unknown" => choice.unknown.push(true),
+                Some(("noise", value)) => choice.noise.push(number(value)?),
+                Some(("rate", value)) => choice.rate.push(number(value)?),
+                Some(("window", value)) => choice.window.push(number(value)?),
+                _ => {
+                    let needed = "F5, G2, known, unknown, or a number for noise=, rate=, window=";
+                    return Err(format!("{word}: a word that chooses rows must be {needed}").into());
+                }
+            }
+        }
+        Ok(choice)
+    }
+
+    /// All rows of what is chosen, and of the table where nothing is.
+    fn rows(&self) -> Vec<Row> {
+        fn or<'a, T>(chosen: &'a [T], table: &'a [T]) -> &'a [T] {
+            if chosen.is_empty() { table } else { chosen }
+        }
+        let mut rows = Vec::new();
+        for &scene in or(&self.scenes, &["F5", "G2"]) {
+            for &unknown in or(&self.unknown, &[false, true]) {
+                for &noise in or(&self.noise, &[1e-3, 1e-2]) {
+                    for &rate in or(&self.rate, &[1000.0, 100.0]) {
+                        let windows = or(&self.window, &[0.5, 1.0, 2.0, 4.0]);
+                        rows.extend(windows.iter().map(|&window| Row {
+                            scene,
+                            unknown,
+                            noise,
+                            rate,
+                            window,
+                        }));
                     }
                 }
             }
         }
-        all
-    }
-
-    fn body(&self) -> &'static str {
-        if self.unknown { "unknown" } else { "known" }
-    }
-
-    /// Whether a word of the command line allows this row.
-    fn allowed(&self, word: &str) -> Result<bool, Failure> {
-        let number = match word.split_once('=') {
-            None if ["F5", "G2"].contains(&word) => return Ok(word == self.scene),
-            None if ["known", "unknown"].contains(&word) => return Ok(word == self.body()),
-            Some(("noise", value)) => (self.noise, value),
-            Some(("rate", value)) => (self.rate, value),
-            Some(("window", value)) => (self.window, value),
-            _ => {
-                let needed = "F5, G2, known, unknown, or a number for noise=, rate=, window=";
-                return Err(format!("{word}: a word that chooses rows must be {needed}").into());
-            }
-        };
-        Ok(number.1.parse::<f64>()? == number.0)
+        rows
     }
 }
 
@@ -82,13 +117,7 @@ fn main() -> Result<(), Failure> {
     let runs: u64 = words.next().map_or(Ok(5), |word| word.parse())?;
     let first: u64 = words.next().map_or(Ok(1000), |word| word.parse())?;
     let words: Vec<String> = words.collect();
-    let mut rows = Vec::new();
-    for row in Row::all() {
-        let allowed: Result<Vec<bool>, Failure> = words.iter().map(|word| row.allowed(word)).collect();
-        if allowed?.into_iter().all(|yes| yes) {
-            rows.push(row);
-        }
-    }
+    let rows = Choice::new(&words)?.rows();
     introduce(runs, first, &words);
     for line in in_parallel(&rows, |row| line(row, first..first + runs))? {
         println!("{line}");
@@ -230,9 +259,10 @@ fn format(row: &Row, outcome: &Outcome) -> String {
     times.sort_by(f64::total_cmp);
     let Row { scene, noise, rate, window, .. } = row;
     format!(
-        "| {scene} | {} | {:.1} % | {rate} | {window} | {} | {} | {} | {} | {doubt} | {square} | {band} | {} of {} | {silent} | {:.0} |",
+        "| {scene} | {} | {} % | {rate} | {window} | {} | {} | {} | {} | {doubt} | {square} | {band} | {} of {} | {silent} | {:.0} |",
         row.body(),
-        100.0 * noise,
+        // As it was given, without the last bits of the product.
+        (1e8 * noise).round() / 1e6,
         counted.len(),
         ratio(&of_relied),
         ratio(&of_all),
