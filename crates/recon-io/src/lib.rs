@@ -12,6 +12,7 @@ mod planar_figures;
 mod plausibility;
 mod report;
 mod scene;
+mod separator;
 mod stream;
 mod summary;
 mod table;

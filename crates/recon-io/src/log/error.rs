@@ -1,3 +1,4 @@
+use crate::separator::advice;
 use recon::contact_kinematics::{DirectionError, PalmError};
 use recon::object_dynamics::LogError;
 use recon::object_dynamics::planar::PlanarLogError;
@@ -27,7 +28,7 @@ pub enum LogFileErrorKind {
     #[error("is empty; a sensor log has a header row and at least two samples")]
     Empty,
     /// A column that every log needs is not there.
-    #[error("column `{column}` is missing{}; found: {found}", hint(similar.as_deref()))]
+    #[error("column `{column}` is missing{}; found: {found}{}", hint(similar.as_deref()), advice(found))]
     MissingColumn {
         /// The name looked for.
         column: String,

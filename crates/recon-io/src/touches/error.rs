@@ -1,3 +1,4 @@
+use crate::separator::advice;
 use recon::contact_kinematics::DirectionError;
 use recon::shape_bounds::planar;
 use std::io;
@@ -30,7 +31,7 @@ pub enum TouchesErrorKind {
     )]
     Empty,
     /// A column is not there.
-    #[error("column `{column}` is missing; found: {found}")]
+    #[error("column `{column}` is missing; found: {found}{}", advice(found))]
     MissingColumn {
         /// The name.
         column: &'static str,
