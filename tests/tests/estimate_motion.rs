@@ -9,8 +9,8 @@ use recon::object_dynamics::{
     InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation, ThreePalmScene,
 };
 use recon::observer::{
-    KnownBody, MotionEstimate, NoiseLevel, StartState, UnknownBody, equivalent_orientations, estimate_body,
-    estimate_body_from, estimate_motion, estimate_motion_from,
+    KnownBody, MotionEstimate, NoiseLevel, StartState, UnknownBody, estimate_body, estimate_body_from,
+    estimate_motion, estimate_motion_from, nearest_turn,
 };
 use recon_tests::{Random, exact_log, f5, g2};
 
@@ -22,8 +22,8 @@ fn known<S: SupportFunction>(scene: &ThreePalmScene<S>, noise: Option<NoiseLevel
 /// ones.
 fn errors(estimate: &MotionEstimate, mass: &MassProperties, truth: &Instant) -> [f64; 12] {
     let L = truth.R_WO * (mass.inertia() * (truth.R_WO.inverse() * truth.w_WO));
-    let turns = equivalent_orientations(mass).map(|turn| (estimate.start.R_WO * turn) * truth.R_WO.inverse());
-    let turn = turns.into_iter().max_by(|a, b| a.w.abs().total_cmp(&b.w.abs())).unwrap();
+    let found = estimate.start.R_WO;
+    let turn = (found * nearest_turn(mass, found, truth.R_WO)) * truth.R_WO.inverse();
     let angle = DVec3::new(turn.x, turn.y, turn.z) * 2.0 * turn.w.signum();
     let parts = [
         estimate.start.p_WCm - truth.touch.p_WCm,

@@ -6,8 +6,8 @@ use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, Palm, SupportFunction};
 use recon::object_dynamics::{InitialMotion, Instant, MassProperties, SensorNoise, ThreePalmScene};
 use recon::observer::{
-    KnownBody, MotionEstimate, NoiseLevel, Reason, Reliability, StartState, UnknownBody,
-    equivalent_orientations, estimate_body, estimate_motion,
+    KnownBody, MotionEstimate, NoiseLevel, Reason, Reliability, StartState, UnknownBody, estimate_body,
+    estimate_motion, nearest_turn,
 };
 use recon_tests::{exact_log, f5, g2};
 
@@ -18,8 +18,8 @@ fn known<S: SupportFunction>(scene: &ThreePalmScene<S>, noise: SensorNoise) -> K
 
 /// Largest error of centre of mass, velocity and orientation at the start, in its own deviations.
 fn worst(found: &MotionEstimate, mass: &MassProperties, now: &Instant) -> f64 {
-    let turns = equivalent_orientations(mass).map(|turn| (found.start.R_WO * turn) * now.R_WO.inverse());
-    let turn = turns.into_iter().fold(turns[0], |best, t| if t.w.abs() > best.w.abs() { t } else { best });
+    let R_WO = found.start.R_WO;
+    let turn = (R_WO * nearest_turn(mass, R_WO, now.R_WO)) * now.R_WO.inverse();
     let parts = [
         (0, found.start.p_WCm - now.touch.p_WCm),
         (3, found.start.v_WCm - now.rates.v_WCm),
@@ -81,8 +81,8 @@ fn odds_without_small_corrections_do_not_win() {
         assert_eq!(least, found.evidence.log_odds);
         for (k, other) in found.others.iter().enumerate() {
             let apart = |s: &StartState| {
-                let turns = equivalent_orientations(scene.mass()).map(|turn| s.R_WO * turn);
-                turns.into_iter().map(|R| R.angle_between(other.start.R_WO)).fold(f64::INFINITY, f64::min)
+                let to = other.start.R_WO;
+                (s.R_WO * nearest_turn(scene.mass(), s.R_WO, to)).angle_between(to)
             };
             assert!(apart(&found.start) > 0.5, "seed {seed}");
             assert!(found.others[..k].iter().all(|before| apart(&before.start) > 1e-3), "seed {seed}");

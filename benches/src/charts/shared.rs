@@ -8,8 +8,7 @@ use recon::object_dynamics::{
     ThreePalmScene,
 };
 use recon::observer::{
-    EstimateError, KnownBody, MotionEstimate, NoiseLevel, Reliability, equivalent_orientations,
-    estimate_motion,
+    EstimateError, KnownBody, MotionEstimate, NoiseLevel, Reliability, estimate_motion, nearest_turn,
 };
 
 /// A simulation close to rounding, and its log without truth.
@@ -49,9 +48,8 @@ pub(super) fn centre_error(estimate: &MotionEstimate, simulation: &Simulation) -
 /// nearest of the four that no data can tell apart.
 pub(super) fn error_in_deviations(estimate: &MotionEstimate, mass: &MassProperties, truth: &Instant) -> f64 {
     let L = truth.R_WO * (mass.inertia() * (truth.R_WO.inverse() * truth.w_WO));
-    let turns = equivalent_orientations(mass).map(|turn| (estimate.start.R_WO * turn) * truth.R_WO.inverse());
-    let turn =
-        turns.into_iter().fold(truth.R_WO * 0.0, |best, q| if q.w.abs() > best.w.abs() { q } else { best });
+    let found = estimate.start.R_WO;
+    let turn = (found * nearest_turn(mass, found, truth.R_WO)) * truth.R_WO.inverse();
     let parts = [
         estimate.start.p_WCm - truth.touch.p_WCm,
         estimate.start.v_WCm - truth.rates.v_WCm,

@@ -27,7 +27,7 @@ pub use three_palms::{
     PredictorCorrector, Quantity, Reason, Reliability, Scales, SensorConstant, SensorEstimate, SensorPriors,
     StartState, Track, TrackError, UnknownBody, WeakDirection, equivalent_orientations, estimate_body,
     estimate_body_from, estimate_motion, estimate_motion_and_sensors, estimate_motion_from,
-    integrate_paper_system,
+    integrate_paper_system, nearest_turn,
 };
 #[cfg(feature = "palms")]
 pub use three_palms::{

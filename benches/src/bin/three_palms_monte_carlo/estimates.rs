@@ -5,8 +5,8 @@ use glam::DVec3;
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::{Instant as Now, SensorLog, SensorNoise, ThreePalmScene};
 use recon::observer::{
-    KnownBody, MotionEstimate, NoiseLevel, StartState, UnknownBody, equivalent_orientations, estimate_body,
-    estimate_body_from, estimate_motion, estimate_motion_from,
+    KnownBody, MotionEstimate, NoiseLevel, StartState, UnknownBody, estimate_body, estimate_body_from,
+    estimate_motion, estimate_motion_from, nearest_turn,
 };
 
 /// Errors and deviations of one estimate, and whether it is relied on.
@@ -47,7 +47,7 @@ pub(crate) struct Other {
 }
 
 /// Where an estimate starts.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) enum Begun {
     /// From no guess.
     Cold,
@@ -131,10 +131,8 @@ impl<S: SupportFunction> Experiment<'_, S> {
     /// Errors of the first `count` numbers of the state at the start.
     fn errors(&self, start: &StartState, count: usize) -> Vec<f64> {
         let truth = self.truth();
-        let turns =
-            equivalent_orientations(self.scene.mass()).map(|turn| (start.R_WO * turn) * truth.R_WO.inverse());
-        let turn =
-            turns.into_iter().fold(turns[0], |best, t| if t.w.abs() > best.w.abs() { t } else { best });
+        let nearest = start.R_WO * nearest_turn(self.scene.mass(), start.R_WO, truth.R_WO);
+        let turn = nearest * truth.R_WO.inverse();
         let parts = [
             start.p_WCm - truth.p_WCm,
             start.v_WCm - truth.v_WCm,

@@ -13,7 +13,7 @@ use super::by_body::motions_by_body;
 use super::estimate::EstimateError;
 use super::momentum::StartState;
 use super::most_probable::{FIRST_PASS, PASSES};
-use super::orientations::{equivalent_orientations, nearest_to_identity};
+use super::orientations::{equivalent_orientations, nearest_to_identity, nearest_turn};
 use super::refine::{Refined, Setting, refine, refine_along};
 use super::state_space::Parameters;
 use super::track::Track;
@@ -131,10 +131,7 @@ fn least_corrected<const N: usize>(
 fn nearest_to<const N: usize>(mass: &MassProperties, best: &Refined<N>, rival: &Refined<N>) -> StartState {
     let start = |refined: &Refined<N>| refined.model.motion(&refined.solution.states[0]);
     let (to, from) = (start(best), start(rival));
-    let angle = |turn: &glam::DQuat| (from.R_WO * *turn).angle_between(to.R_WO);
-    let turns = equivalent_orientations(mass).into_iter();
-    let turn = turns.min_by(|a, b| angle(a).total_cmp(&angle(b))).unwrap_or_default();
-    StartState { R_WO: from.R_WO * turn, ..from }
+    StartState { R_WO: from.R_WO * nearest_turn(mass, from.R_WO, to.R_WO), ..from }
 }
 
 /// Whether two solutions are one motion, with the body's axes turned or not.

@@ -1,8 +1,7 @@
 use super::alternatives::{OtherMotion, refine_best};
-use super::clean::{RANK_TOLERANCE, clean_covariance, root_mean_square, stride};
+use super::clean::{clean_covariance, stride};
 use super::cold_start::{cold_start, fit_near, scales, unexplained};
 use super::convexity::largest_violation;
-use super::correlation::whiteness;
 use super::covariance::NoiseLevel;
 use super::curves::CurveUncertainty;
 use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
@@ -166,28 +165,12 @@ fn clean_estimate(
     fit.point.R_WO = nearest_to_identity(mass, fit.point.R_WO);
     let motion = problem.motion(&fit.point);
     let residuals = problem.residuals_along(&motion);
-    let rms = root_mean_square(&residuals);
     let observability = Observability::new(&fit.normal.information);
     let (steps, rows) = thin_problem.linearised(&fit.point);
     let (covariance, predicted) = clean_covariance(&steps, &rows, &observability, &noise, stride, &residuals);
     let weakest = weakest_direction(&covariance);
-    let eigenvalues = observability.eigenvalues;
-    let largest = eigenvalues[UNKNOWNS - 1];
-    let evidence = Evidence {
-        samples: track.len(),
-        duration: track.duration(),
-        residual_rms: rms,
-        noise_explains: predicted,
-        whiteness: whiteness(&residuals),
-        rank: eigenvalues.iter().filter(|&&v| v > RANK_TOLERANCE * largest).count(),
-        condition: (largest / eigenvalues[0].max(0.0)).sqrt(),
-        smallest_information: eigenvalues[0],
-        weakest,
-        noise,
-        bias: 0.0,
-        log_odds: f64::INFINITY,
-        iterations: fit.iterations,
-    };
+    let evidence =
+        Evidence::new(track, &residuals, predicted, &observability, weakest, noise, fit.iterations);
     let reliability = judge(&evidence, fit.status, &scales, LARGEST_PLAIN_DEVIATION);
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
@@ -223,30 +206,18 @@ fn noisy_estimate<const N: usize>(
     let motion = problem.motion_through(&refined.nodes, &states);
     let residuals = problem.residuals_along(&motion);
     let predicted = problem.expected_through(&refined.nodes, &motion, &noise);
-    let rms = root_mean_square(&residuals);
     let misfit = refined.misfit(N);
     let observability = Observability::new(&best.normal.information);
-    let eigenvalues = observability.eigenvalues;
-    let largest = eigenvalues[UNKNOWNS - 1];
     let covariance = refined.solution.covariances[0];
     let by_block = scales.by_block();
     let scaled = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|i, j| {
         covariance[(i, j)] / (by_block[i / 3] * by_block[j / 3])
     });
+    let (weakest, iterations) = (weakest_direction(&scaled), refined.solution.iterations);
     let evidence = Evidence {
-        samples: track.len(),
-        duration: track.duration(),
-        residual_rms: rms,
-        noise_explains: predicted,
-        whiteness: whiteness(&residuals),
-        rank: eigenvalues.iter().filter(|&&v| v > RANK_TOLERANCE * largest).count(),
-        condition: (largest / eigenvalues[0].max(0.0)).sqrt(),
-        smallest_information: eigenvalues[0],
-        weakest: weakest_direction(&scaled),
-        noise,
         bias: refined.shift,
         log_odds,
-        iterations: refined.solution.iterations,
+        ..Evidence::new(track, &residuals, predicted, &observability, weakest, noise, iterations)
     };
     let status = if refined.settled() { FitStatus::Converged } else { FitStatus::Stalled };
     let mut reliability = judge(&evidence, status, &scales, LARGEST_DEVIATION);
@@ -278,7 +249,7 @@ fn noisy_estimate<const N: usize>(
     Ok((estimate, refined))
 }
 
-/// As [`estimate_on_track`], with constants of the sensors among the states.
+/// As [`estimate_motion`], with constants of the sensors among the states.
 pub(super) fn estimate_with_constants<const N: usize>(
     track: &Track,
     known: &KnownBody,

@@ -1,7 +1,10 @@
+use super::clean::{RANK_TOLERANCE, root_mean_square};
 use super::cold_start::natural_time;
+use super::correlation::whiteness;
 use super::covariance::NoiseLevel;
 use super::momentum::{Row, Scales};
 use super::track::Track;
+use crate::least_squares::Observability;
 use glam::DVec3;
 use nalgebra::SVector;
 use std::fmt;
@@ -38,6 +41,38 @@ pub struct Evidence {
     pub log_odds: f64,
     /// Linearisations in the last fit.
     pub iterations: usize,
+}
+
+impl Evidence {
+    /// Of the residuals along a motion and of what the data say of its `P` unknowns, where the noise shifts nothing and no other
+    /// motion is known.
+    pub(super) fn new<const P: usize>(
+        track: &Track,
+        residuals: &[[f64; 3]],
+        noise_explains: f64,
+        observability: &Observability<P>,
+        weakest: WeakDirection,
+        noise: NoiseLevel,
+        iterations: usize,
+    ) -> Self {
+        let eigenvalues = observability.eigenvalues;
+        let (smallest, largest) = (eigenvalues[0], eigenvalues[P - 1]);
+        Self {
+            samples: track.len(),
+            duration: track.duration(),
+            residual_rms: root_mean_square(residuals),
+            noise_explains,
+            whiteness: whiteness(residuals),
+            rank: eigenvalues.iter().filter(|&&v| v > RANK_TOLERANCE * largest).count(),
+            condition: (largest / smallest.max(0.0)).sqrt(),
+            smallest_information: smallest,
+            weakest,
+            noise,
+            bias: 0.0,
+            log_odds: f64::INFINITY,
+            iterations,
+        }
+    }
 }
 
 /// A part of the state at the first sample.

@@ -43,7 +43,7 @@ pub use momentum::{MotionState, Scales, StartState};
 pub use no_force::{
     Closure, KnownTouch, NoForceError, NoForceEstimate, NoForceEvidence, TouchShape, estimate_without_forces,
 };
-pub use orientations::equivalent_orientations;
+pub use orientations::{equivalent_orientations, nearest_turn};
 pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };

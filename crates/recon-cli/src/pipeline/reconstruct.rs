@@ -2,7 +2,7 @@ use super::bounds::{BoundsResult, bounds, contradiction_among};
 use super::evidence::{Checks, evidence, verdict};
 use super::simulate::known_body;
 use super::sound::curve_bounds;
-use super::truth::{axes_of_estimate, true_motion, true_shape};
+use super::truth::{true_motion, true_shape};
 use crate::error::CliError;
 use crate::progress::Progress;
 use glam::{DQuat, DVec3};
@@ -10,7 +10,7 @@ use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::{MassProperties, SensorLog};
 use recon::observer::{
     EstimateError, IdentifiedBody, KnownBody, MotionEstimate, NoiseLevel, TrackError, UnknownBody,
-    estimate_body, estimate_motion,
+    estimate_body, estimate_motion, nearest_turn,
 };
 use recon::shape_bounds::ContactSample;
 use recon_io::{
@@ -89,7 +89,7 @@ pub(crate) fn reconstruct(
     };
     let checks = Checks { implausible: !odd.is_empty(), contradiction, size, identified };
     let axes = log.truth().map_or(DQuat::IDENTITY, |truth| match identified {
-        None => axes_of_estimate(&mass, estimate.start.R_WO, truth[0].R_WO),
+        None => nearest_turn(&mass, truth[0].R_WO, estimate.start.R_WO),
         // Axes that were found need not be those of the truth: turns are compared from the first sample on.
         Some(_) => truth[0].R_WO.inverse() * estimate.start.R_WO,
     });

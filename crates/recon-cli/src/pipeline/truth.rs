@@ -4,24 +4,13 @@ use super::body::{body, volume};
 use crate::error::CliError;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, SupportFunction};
-use recon::object_dynamics::{MassProperties, TrueState};
-use recon::observer::equivalent_orientations;
+use recon::object_dynamics::TrueState;
 use recon_io::{MotionState, Simulation, TriangleMesh, TrueShape};
 use std::f64::consts::{PI, TAU};
 
 /// Rows and columns of the net of normals on which a true shape is drawn.
 const ROWS: u32 = 36;
 const COLUMNS: u32 = 72;
-
-/// The turn `D` of the true body axes after which they are those of the estimate: `R_WO` estimated is about `R_WO D`
-/// true. No data can tell the four turns apart that leave the inertia as it is.
-pub(crate) fn axes_of_estimate(mass: &MassProperties, estimated: DQuat, truth: DQuat) -> DQuat {
-    let agreement = |turn: &DQuat| estimated.dot(truth * *turn).abs();
-    equivalent_orientations(mass)
-        .into_iter()
-        .max_by(|a, b| agreement(a).total_cmp(&agreement(b)))
-        .unwrap_or(DQuat::IDENTITY)
-}
 
 /// The true motion in the axes of the estimate.
 pub(crate) fn true_motion(states: &[TrueState], axes: DQuat) -> Vec<MotionState> {
@@ -45,20 +34,4 @@ pub(crate) fn true_shape(simulation: &Simulation, axes: DQuat) -> Result<TrueSha
         wireframe: rings.chain(meridians).collect(),
         volume: volume(&simulation.shape),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn half_turns_about_principal_axes_are_taken_back() {
-        let mass = MassProperties::from_principal(1.0, DVec3::new(1.0, 1.45, 2.05)).unwrap();
-        let truth = DQuat::from_scaled_axis(DVec3::new(0.4, -0.2, 1.1));
-        for turn in equivalent_orientations(&mass) {
-            let estimated = truth * turn * DQuat::from_scaled_axis(DVec3::splat(1e-3));
-            let found = truth * axes_of_estimate(&mass, estimated, truth);
-            assert!(found.dot(estimated).abs() > 1.0 - 1e-5);
-        }
-    }
 }

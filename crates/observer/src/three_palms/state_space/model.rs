@@ -295,7 +295,8 @@ impl<const N: usize> ThreePalmModel<N> {
             let n = palm.normal[0];
             Push { normal: n, arm: palm.arm[0] + offset(parameters, i, palm) - n.cross(motion.p) }
         };
-        let by = |other: usize| push(i).speed_by(&push(other), parameters.mass, turn.K);
+        let own = push(i);
+        let by = |other: usize| own.speed_by(&push(other), parameters.mass, turn.K);
         (0..3).map(|other| (half * by(other)).powi(2)).sum()
     }
 

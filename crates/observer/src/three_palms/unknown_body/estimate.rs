@@ -4,9 +4,8 @@ use super::principal::{PrincipalFrame, principal_frame};
 use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem, MASS, constants};
 use super::search::{fit_near, mass_of_weight, scales_of_ball, search, unexplained};
 use crate::least_squares::{Fit, FitStatus, Observability};
-use crate::three_palms::clean::{RANK_TOLERANCE, clean_covariance, root_mean_square, stride};
+use crate::three_palms::clean::{clean_covariance, stride};
 use crate::three_palms::convexity::largest_violation;
-use crate::three_palms::correlation::whiteness;
 use crate::three_palms::estimate::{EstimateError, MotionEstimate, WORTH_ADJUSTING, floored};
 use crate::three_palms::evidence::{Evidence, Reason, WeakDirection};
 use crate::three_palms::momentum::{MomentumProblem, MotionState, Scales, StartState};
@@ -284,8 +283,6 @@ fn assemble(track: &Track, found: Found<'_>) -> Result<BodyEstimate, EstimateErr
 }
 
 fn evidence(track: &Track, found: &Found<'_>) -> Evidence {
-    let eigenvalues = found.observability.eigenvalues;
-    let largest = eigenvalues[BODY_UNKNOWNS - 1];
     let sizes = BodyProblem::new(track, found.scales, f64::INFINITY).sizes();
     let scaled = SMatrix::<f64, BODY_UNKNOWNS, BODY_UNKNOWNS>::from_fn(|i, j| {
         found.covariance[(i, j)] / (sizes[i] * sizes[j])
@@ -295,20 +292,10 @@ fn evidence(track: &Track, found: &Found<'_>) -> Evidence {
         &spectrum.directions.column(BODY_UNKNOWNS - 1).into_owned(),
         spectrum.eigenvalues[BODY_UNKNOWNS - 1].max(0.0).sqrt(),
     );
+    let Found { residuals, predicted, observability, noise, iterations, refined, .. } = found;
     Evidence {
-        samples: track.len(),
-        duration: track.duration(),
-        residual_rms: root_mean_square(&found.residuals),
-        noise_explains: found.predicted,
-        whiteness: whiteness(&found.residuals),
-        rank: eigenvalues.iter().filter(|&&v| v > RANK_TOLERANCE * largest).count(),
-        condition: (largest / eigenvalues[0].max(0.0)).sqrt(),
-        smallest_information: eigenvalues[0],
-        weakest,
-        noise: found.noise,
-        log_odds: f64::INFINITY,
-        bias: found.refined.map_or(0.0, |refined| refined.shift),
-        iterations: found.iterations,
+        bias: refined.map_or(0.0, |refined| refined.shift),
+        ..Evidence::new(track, residuals, *predicted, observability, weakest, *noise, *iterations)
     }
 }
 
