@@ -28,6 +28,9 @@ mod timing;
 
 pub mod charts;
 
+#[cfg(test)]
+mod self_check;
+
 pub use diagram::{
     Axis, ChartError, Diagram, Goal, Judged, Method, Outcome, Outlines, Point, Scale, Stroke, Subject, Sweep,
     Verdict, WorkPrecision, WrittenChart,

@@ -43,7 +43,7 @@ pub(crate) fn main(mut words: impl Iterator<Item = String>) -> ExitCode {
         STUDIES.iter().for_each(|(name, file, about)| eprintln!("  {name}  {about} (docs/{file})"));
         return ExitCode::from(2);
     };
-    let mut command = cargo(&format!("run --release --quiet --package recon-benches --bin {name} --"));
+    let mut command = cargo(&format!("run --release --quiet --package recon-benches --bin study -- {name}"));
     let path = root().join("docs").join(file);
     let written = output(command.args(words)).and_then(|table| {
         std::fs::write(&path, table).map_err(|error| format!("{}: {error}", path.display()))

@@ -1,0 +1,175 @@
+//! The harness on a problem with a known answer: Euler and Runge-Kutta 4 on a pendulum must show orders 1 and 4 on
+//! their chart, and a sweep must tell a silent failure from a reported one.
+
+use std::path::{Path, PathBuf};
+
+use crate::{
+    Axis, Budget, ChartError, Diagram, Method, Outcome, Study, Subject, Sweep, WorkPrecision, WrittenChart,
+};
+
+/// A folder that is gone at the end of the test; `RECON_KEEP_CHARTS=FOLDER` keeps the files for a look.
+struct Folder(PathBuf, bool);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        match std::env::var_os("RECON_KEEP_CHARTS") {
+            Some(folder) => Self(folder.into(), true),
+            None => Self(std::env::temp_dir().join(format!("recon-{name}-{}", std::process::id())), false),
+        }
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        if !self.1 {
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+}
+
+type State = [f64; 2];
+
+/// Angle and rate of a pendulum of unit frequency.
+fn rate([angle, rate]: State) -> State {
+    [rate, -angle.sin()]
+}
+
+fn along(state: State, h: f64, slope: State) -> State {
+    [state[0] + h * slope[0], state[1] + h * slope[1]]
+}
+
+fn euler(state: State, h: f64) -> State {
+    along(state, h, rate(state))
+}
+
+fn runge_kutta_4(state: State, h: f64) -> State {
+    let k1 = rate(state);
+    let k2 = rate(along(state, 0.5 * h, k1));
+    let k3 = rate(along(state, 0.5 * h, k2));
+    let k4 = rate(along(state, h, k3));
+    let mean = [0, 1].map(|i| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0);
+    along(state, h, mean)
+}
+
+const DURATION: f64 = 10.0;
+
+fn run(step: fn(State, f64) -> State, steps: u32) -> State {
+    (0..steps).fold([1.0, 0.0], |state, _| step(state, DURATION / f64::from(steps)))
+}
+
+fn study() -> Vec<Method> {
+    // Its own error is near 1e-14 (order 4 from 1e-12 at a tenth of the steps), far below what the chart shows.
+    let exact = run(runge_kutta_4, 1 << 17);
+    let error = |state: &State| (state[0] - exact[0]).hypot(state[1] - exact[1]);
+    let mut study = Study::new();
+    for doubling in 6..=12 {
+        let steps = 1 << doubling;
+        study.case("Euler", format!("{steps} steps"), move || run(euler, steps), error);
+        study.case("Runge-Kutta 4", format!("{steps} steps"), move || run(runge_kutta_4, steps), error);
+    }
+    study.measure(Budget::quick(), DURATION)
+}
+
+fn errors(method: &Method) -> Vec<f64> {
+    let error = |outcome: &Outcome| match outcome {
+        Outcome::Measured { error, .. } => Some(*error),
+        Outcome::Failed { .. } => None,
+    };
+    method.points().iter().filter_map(|point| error(&point.outcome)).collect()
+}
+
+fn pendulum(methods: Vec<Method>) -> Diagram {
+    WorkPrecision::new("pendulum", "A pendulum over 10 s")
+        .subtitle(
+            "angle and rate at the end against Runge-Kutta 4 with 131072 steps; points: number of steps",
+        )
+        .axes(Axis::log("error of the end state", "rad"), Axis::log("cost", "ms per simulated second"))
+        .methods(methods)
+        .method(
+            Method::recorded("a peer", "an invented figure")
+                .point("1 ms", 1e-3, 0.2)
+                .point("0.1 ms", 1e-5, 2.0),
+        )
+        .goal("peer / 100", 1e-3, 2e-3)
+        .into()
+}
+
+fn sweep() -> Sweep {
+    let mut silent = Subject::new("without a guard");
+    let mut guarded = Subject::new("with a guard");
+    for exponent in 1..=12 {
+        // 1 - cos x loses its digits for small x; the guard knows it, the other one does not.
+        let x = 10.0_f64.powi(-exponent);
+        let error = ((1.0 - x.cos()) / (0.5 * x * x) - 1.0).abs().max(1e-17);
+        silent = silent.estimate(x, error);
+        guarded = match exponent {
+            1..=4 => guarded.estimate(x, 0.5 * error),
+            5..=9 => guarded.warned(x, 0.5 * error, "cancellation"),
+            _ => guarded.refused(x, "no digit left"),
+        };
+    }
+    Sweep::new("cancellation", "1 - cos x towards x = 0", 1e-2)
+        .subtitle("relative error")
+        .axes(Axis::log("x", "rad"), Axis::log("relative error", "1"))
+        .subject(silent)
+        .subject(guarded)
+}
+
+fn assert_written(files: &WrittenChart) {
+    let read = |path: &Path| std::fs::read(path).expect("it was written");
+    assert!(read(&files.png).starts_with(b"\x89PNG"));
+    let svg = String::from_utf8(read(&files.svg)).expect("SVG is text");
+    assert!(svg.contains("<svg") && svg.trim_end().ends_with("</svg>"));
+    assert!(read(&files.csv).iter().filter(|byte| **byte == b'\n').count() > 10);
+    let folder = files.csv.parent().expect("files are in a folder");
+    let left: Vec<_> = std::fs::read_dir(folder).expect("it was made").flatten().map(|e| e.path()).collect();
+    assert!(!left.iter().any(|path| path.extension().is_some_and(|e| e == "part")), "{left:?}");
+}
+
+#[test]
+fn the_chart_of_a_pendulum_shows_orders_one_and_four() {
+    let methods = study();
+    for (method, order) in methods.iter().zip([1.0, 4.0]) {
+        let errors = errors(method);
+        assert_eq!(errors.len(), 7);
+        // The last doubling, where the leading term rules: 5 % is what the next term leaves at this step.
+        let observed = (errors[5] / errors[6]).log2();
+        assert!((observed / order - 1.0).abs() < 0.05, "{}: order {observed}", method.name());
+    }
+    let folder = Folder::new("pendulum");
+    let files = pendulum(methods).save(&folder.0).expect("a temporary folder can be written");
+    assert_written(&files);
+    let csv = std::fs::read_to_string(&files.csv).expect("it was written");
+    assert!(csv.contains("Runge-Kutta 4,4096 steps,") && csv.contains("an invented figure"), "{csv}");
+}
+
+#[test]
+fn a_sweep_shows_what_was_wrong_without_a_warning() {
+    let sweep = sweep();
+    let wrong: Vec<_> = sweep.wrong_without_warning().collect();
+    assert!(!wrong.is_empty() && wrong.iter().all(|(subject, _)| *subject == "without a guard"), "{wrong:?}");
+    let folder = Folder::new("cancellation");
+    let files = Diagram::from(sweep).save(&folder.0).expect("a temporary folder can be written");
+    assert_written(&files);
+    assert!(std::fs::read_to_string(&files.csv).expect("it was written").contains("wrong without a warning"));
+}
+
+#[test]
+fn the_same_figures_give_the_same_files() {
+    let folder = Folder::new("same");
+    let save = |name: &str| Diagram::from(sweep()).save(&folder.0.join(name)).expect("it can be written");
+    let (once, twice) = (save("once"), save("twice"));
+    for (a, b) in [(&once.csv, &twice.csv), (&once.svg, &twice.svg), (&once.png, &twice.png)] {
+        let read = |path: &Path| std::fs::read(path).expect("it was written");
+        assert!(read(a) == read(b), "{} and {} differ", a.display(), b.display());
+    }
+}
+
+#[test]
+fn a_chart_without_a_point_is_an_error_that_says_so() {
+    let folder = Folder::new("empty");
+    let chart = WorkPrecision::new("empty", "").method(Method::new("zero").point("1", 0.0, f64::NAN));
+    let outcome = Diagram::from(chart).save(&folder.0);
+    assert!(matches!(outcome, Err(ChartError::NothingToDraw { left_out: 1, .. })), "{outcome:?}");
+    assert!(!folder.0.exists() || folder.1, "nothing may be written");
+}

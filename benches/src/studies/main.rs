@@ -1,0 +1,73 @@
+//! Studies and charts in one binary, since each one more costs a link of everything: `study NAME ARGUMENTS..`.
+//!
+//! `cargo xtask study` and `cargo xtask chart` call it and know what each one writes.
+
+mod bounds_corners;
+mod bounds_curvature;
+mod bounds_fuzz;
+mod bounds_incremental;
+mod bounds_noise;
+mod bounds_planar;
+mod bounds_timing;
+mod bounds_tosses;
+mod chart;
+mod cold_start;
+mod no_force;
+mod planar_costs;
+mod planar_monte_carlo;
+mod shape_fits;
+mod streaming;
+mod three_palms_monte_carlo;
+mod three_palms_timing;
+
+use std::fmt::Display;
+use std::process::ExitCode;
+
+type Run = fn() -> Result<(), String>;
+
+const STUDIES: &[(&str, Run)] = &[
+    ("bounds_corners", || in_words(bounds_corners::main())),
+    ("bounds_curvature", || in_words(bounds_curvature::main())),
+    ("bounds_fuzz", || in_words(bounds_fuzz::main())),
+    ("bounds_incremental", || in_words(bounds_incremental::main())),
+    ("bounds_noise", || in_words(bounds_noise::main())),
+    ("bounds_planar", || in_words(bounds_planar::main())),
+    ("bounds_timing", || in_words(bounds_timing::main())),
+    ("bounds_tosses", || in_words(bounds_tosses::main())),
+    ("cold_start", || in_words(cold_start::main())),
+    ("no_force", || in_words(no_force::main())),
+    ("planar_costs", || in_words(planar_costs::main())),
+    ("planar_monte_carlo", || in_words(planar_monte_carlo::main())),
+    ("shape_fits", || in_words(shape_fits::main())),
+    ("streaming", || in_words(streaming::main())),
+    ("three_palms_monte_carlo", || in_words(three_palms_monte_carlo::main())),
+    ("three_palms_timing", || in_words(three_palms_timing::main())),
+];
+
+/// What follows the name of the study.
+pub(crate) fn words() -> impl Iterator<Item = String> {
+    std::env::args().skip(2)
+}
+
+fn main() -> ExitCode {
+    let name = std::env::args().nth(1).unwrap_or_default();
+    if name == "chart" {
+        return chart::main();
+    }
+    let Some((_, run)) = STUDIES.iter().find(|(known, _)| *known == name) else {
+        eprintln!("no study is called {name:?}; there are:");
+        STUDIES.iter().for_each(|(known, _)| eprintln!("  {known}"));
+        return ExitCode::from(2);
+    };
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(complaint) => {
+            eprintln!("{name}: {complaint}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn in_words<E: Display>(ran: Result<(), E>) -> Result<(), String> {
+    ran.map_err(|error| error.to_string())
+}

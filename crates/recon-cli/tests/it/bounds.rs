@@ -1,0 +1,189 @@
+//! Bounds from contacts with noise and from poses above a plane.
+
+use crate::common::Scratch;
+use serde_json::Value;
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+
+/// Deterministic numbers that look like noise: within 1 of zero, mean square 1/2.
+fn wobble(k: usize) -> f64 {
+    (k as f64 * 78.233).sin()
+}
+
+/// Contacts along three great-circle-like curves of normals on the unit sphere, off by up to `noise`; contact 41 of curve 2
+/// is off by `wrong`.
+fn sphere_contacts(noise: f64, wrong: f64) -> String {
+    let mut text = String::from("curve,x,y,z,nx,ny,nz\n");
+    for k in 0..900 {
+        let (curve, place) = (k / 300, k % 300);
+        let (s, c) = (TAU * place as f64 / 300.0).sin_cos();
+        let lift = 0.4 * (2.0 * TAU * place as f64 / 300.0).sin();
+        let n = [[c, s, lift], [lift, c, s], [s, lift, c]][curve];
+        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let n = n.map(|x| x / length);
+        let off = |i: usize| noise * wobble(3 * k + i) + if k == 340 && i == 0 { wrong } else { 0.0 };
+        let x: Vec<String> = (0..3).map(|i| (n[i] + off(i)).to_string()).collect();
+        writeln!(text, "{},{},{},{},{}", curve + 1, x.join(","), n[0], n[1], n[2]).unwrap();
+    }
+    text
+}
+
+fn bounds(scratch: &Scratch, arguments: &[&str]) -> Value {
+    let run = scratch.run(&[&["bounds", "--json"], arguments].concat());
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    serde_json::from_str(&run.stdout).unwrap()
+}
+
+fn volumes(summary: &Value) -> [f64; 2] {
+    ["lower_volume_m3", "upper_volume_m3"].map(|name| summary["bounds"][name].as_f64().unwrap())
+}
+
+#[test]
+fn noise_is_stated_or_estimated_and_a_wrong_contact_left_out() {
+    let scratch = Scratch::new("noise");
+    scratch.write("clean.csv", &sphere_contacts(0.0, 0.0)).write("noisy.csv", &sphere_contacts(1e-3, 0.2));
+    let sphere = 4.0 / 3.0 * PI;
+    let [exact_lower, exact_upper] = volumes(&bounds(&scratch, &["clean.csv"]));
+    let stated =
+        bounds(&scratch, &["noisy.csv", "--contact-noise", "1e-3", "--normal-noise", "1e-3", "-o", "out"]);
+    let estimated = bounds(&scratch, &["noisy.csv", "--estimate-noise", "--confidence", "0.99"]);
+    for summary in [&stated, &estimated] {
+        let [lower, upper] = volumes(summary);
+        assert!(lower < exact_lower && exact_lower < sphere, "{lower} {exact_lower}");
+        assert!(sphere < exact_upper && exact_upper < upper, "{exact_upper} {upper}");
+        let outliers = summary["about"]["outliers"].as_array().unwrap();
+        assert!(outliers.iter().any(|o| o["curve"] == 2 && o["contact"] == 41), "{outliers:?}");
+        assert!(summary["warnings"][0].as_str().unwrap().contains("contact 41 of curve 2"));
+    }
+    // The wobble has a mean square of half its square; differences along a curve show it within a factor.
+    let level = estimated["about"]["noise"]["estimated"][0]["across_m"].as_f64().unwrap();
+    assert!((0.5e-3..3e-3).contains(&level), "{level}");
+    for name in ["lower_bound.ply", "upper_bound.ply", "summary.json"] {
+        assert!(scratch.path().join("out").join(name).is_file(), "{name}");
+    }
+}
+
+#[test]
+fn limits_on_the_curvature_tighten_the_bounds() {
+    let scratch = Scratch::new("curvature");
+    scratch.write("clean.csv", &sphere_contacts(0.0, 0.0)).write("noisy.csv", &sphere_contacts(1e-4, 0.2));
+    let sphere = 4.0 / 3.0 * PI;
+    let plain = volumes(&bounds(&scratch, &["clean.csv"]));
+    let limits = ["--rho-min", "0.8", "--rho-max", "1.3"];
+    let sharp = volumes(&bounds(&scratch, &[&["clean.csv", "-o", "out"], &limits[..]].concat()));
+    assert!(plain[0] < sharp[0] && sharp[0] < sphere && sphere < sharp[1] && sharp[1] < plain[1]);
+    for name in ["lower_bound.ply", "upper_bound.ply"] {
+        assert!(scratch.path().join("out").join(name).is_file(), "{name}");
+    }
+    let noisy = volumes(&bounds(&scratch, &[&["noisy.csv", "--estimate-noise"], &limits[..]].concat()));
+    assert!(noisy[0] < sphere && sphere < noisy[1], "{noisy:?}");
+    let refused = |limits: &[&str], code: i32, words: &[&str]| {
+        let run = scratch.run(&[&["bounds", "clean.csv"], limits].concat());
+        assert_eq!(run.code, Some(code), "{}{}", run.stdout, run.stderr);
+        assert!(words.iter().all(|word| run.stderr.contains(word)), "{}", run.stderr);
+    };
+    refused(&["--rho-min", "2", "--rho-max", "1"], 3, &["from 2 m to 1 m", "must be ordered"]);
+    refused(&["--rho-min", "0.8", "--rho-max", "0.9"], 3, &["both contact", "from 0.8 m to 0.9 m"]);
+    refused(&["--rho-min", "0.8"], 2, &["--rho-max"]);
+}
+
+/// Poses of a box of half sides `half` that falls and comes to rest on a face in each of many tosses, above the plane
+/// z = 0.1.
+fn tosses(half: [f64; 3]) -> String {
+    let mut text = String::from("toss,frame,qw,qx,qy,qz,px,py,pz\n");
+    for toss in 0..90_usize {
+        let axis = [wobble(5 * toss), wobble(5 * toss + 1), wobble(5 * toss + 2)];
+        let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+        // Tosses end on all six faces: a quarter or half turn about x or y.
+        let (rest, about) = [(0.0, 0), (0.5, 0), (1.0, 0), (1.5, 0), (0.5, 1), (1.5, 1)][toss % 6];
+        let (s0, c0) = (0.5 * PI * rest).sin_cos();
+        let mut start = [c0, 0.0, 0.0, 0.0];
+        start[1 + about] = s0;
+        for frame in 0..40_usize {
+            let angle = 1.4 * ((14.0 - frame as f64).max(0.0) / 14.0);
+            let (s, c) = (0.5 * angle).sin_cos();
+            let turn = [c, s * axis[0] / length, s * axis[1] / length, s * axis[2] / length];
+            let q = product(turn, start);
+            let lowest: f64 = down(q).iter().zip(half).map(|(d, h)| d.abs() * h).sum();
+            let fall = 0.0005 * (144.0 - (frame as f64).min(12.0).powi(2));
+            let z = 0.1 + lowest + fall + 1e-4 * wobble(toss * 40 + frame);
+            writeln!(text, "{toss},{frame},{},{},{},{},0,0,{z}", q[0], q[1], q[2], q[3]).unwrap();
+        }
+    }
+    text
+}
+
+fn product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    [
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    ]
+}
+
+/// The world's z in the body's frame: the last row of the rotation matrix.
+fn down(q: [f64; 4]) -> [f64; 3] {
+    let [w, x, y, z] = q;
+    [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)]
+}
+
+#[test]
+fn poses_above_a_plane_bound_the_body_from_both_sides() {
+    let scratch = Scratch::new("poses");
+    let half = [0.05, 0.04, 0.06];
+    scratch.write("tosses.csv", &tosses(half));
+    let summary = bounds(&scratch, &["tosses.csv", "--plane-height", "0.1", "-o", "out"]);
+    let [lower, upper] = volumes(&summary);
+    let volume = 8.0 * half.iter().product::<f64>();
+    assert!(0.1 * volume < lower && lower < volume, "{lower} {volume}");
+    assert!(volume < upper && upper < 1.3 * volume, "{upper} {volume}");
+    let margin = |summary: &Value| summary["about"]["margin_m"].as_f64().unwrap();
+    assert!(margin(&summary) < 3e-3);
+    let tight = bounds(&scratch, &["tosses.csv", "--plane-height", "0.1", "--tight"]);
+    assert!(volumes(&tight)[1] > volume && margin(&tight) != margin(&summary));
+    for name in ["lower_bound.ply", "upper_bound.ply"] {
+        assert!(scratch.path().join("out").join(name).is_file(), "{name}");
+    }
+}
+
+#[test]
+fn options_and_poses_that_do_not_go_together_are_refused() {
+    let scratch = Scratch::new("options");
+    let good = tosses([0.05, 0.04, 0.06]);
+    scratch.write("tosses.csv", &good).write("clean.csv", &sphere_contacts(0.0, 0.0));
+    let refused = |arguments: &[&str], code: i32, words: &[&str]| {
+        let run = scratch.run(&[&["bounds", "-o", "out"], arguments].concat());
+        assert_eq!(run.code, Some(code), "{}{}", run.stdout, run.stderr);
+        assert!(words.iter().all(|word| run.stderr.contains(word)), "{}", run.stderr);
+        assert!(!scratch.path().join("out").exists() && run.stdout.is_empty());
+    };
+    refused(&["tosses.csv", "--estimate-noise"], 2, &["--estimate-noise", "holds poses"]);
+    refused(&["clean.csv", "--plane-height", "0.1"], 2, &["--plane-height", "holds contacts"]);
+    refused(&["clean.csv", "--tight"], 2, &["--tight", "holds contacts"]);
+    refused(&["clean.csv", "--confidence", "0.9"], 2, &["--confidence"]);
+    refused(&["clean.csv", "--contact-noise", "1e-3"], 2, &["--normal-noise"]);
+    refused(&["tosses.csv", "--confidence", "95"], 2, &["between 0.5 and 1"]);
+    // With the plane above the body, only a margin of metres makes the poses agree.
+    let run = scratch.run(&["bounds", "tosses.csv", "--plane-height", "1"]);
+    assert_eq!(run.code, Some(4), "{}", run.stderr);
+    assert!(run.stdout.contains("is the height of the plane right?"), "{}", run.stdout);
+    scratch.write("bad.csv", &good.replacen("0,1,", "0,2,", 1));
+    refused(&["bad.csv"], 3, &["line 3", "frame 2 follows frame 0"]);
+    scratch.write("bad.csv", &good.lines().take(60).collect::<Vec<_>>().join("\n"));
+    refused(&["bad.csv", "--plane-height", "0.1"], 3, &["the poses give no bounds"]);
+    let inwards: String = sphere_contacts(0.0, 0.0)
+        .lines()
+        .enumerate()
+        .map(|(k, line)| {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if k > 0 {
+                cells[4..].iter_mut().for_each(|c| *c = (-c.parse::<f64>().unwrap()).to_string());
+            }
+            cells.join(",") + "\n"
+        })
+        .collect();
+    scratch.write("bad.csv", &inwards);
+    refused(&["bad.csv"], 3, &["no point in common"]);
+    refused(&["bad.csv", "--contact-noise", "1e-3", "--normal-noise", "1e-3"], 3, &["point outwards"]);
+}

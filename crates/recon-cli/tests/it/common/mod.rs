@@ -1,0 +1,116 @@
+//! Runs the built command in a folder of the test's own.
+
+#![allow(dead_code, reason = "each test file uses its own part of this")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// A folder of this test's own, removed at its end.
+pub(crate) struct Scratch(PathBuf);
+
+/// What a run left.
+pub(crate) struct Run {
+    pub(crate) code: Option<i32>,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl Scratch {
+    pub(crate) fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("recon-cli-{test}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        &self.0
+    }
+
+    pub(crate) fn write(&self, name: &str, text: &str) -> &Self {
+        fs::write(self.0.join(name), text).unwrap();
+        self
+    }
+
+    pub(crate) fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.0.join(name)).unwrap()
+    }
+
+    /// Names in the folder, sorted, hidden ones included.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let mut names: Vec<_> =
+            fs::read_dir(&self.0).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// The command with arguments, in this folder.
+    pub(crate) fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_recon"));
+        command.args(arguments).current_dir(&self.0).stdin(Stdio::null());
+        command
+    }
+
+    pub(crate) fn run(&self, arguments: &[&str]) -> Run {
+        let Output { status, stdout, stderr } = self.command(arguments).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        Run { code: status.code(), stdout: text(stdout), stderr: text(stderr) }
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The scene of the paper's Fig. 5, sampled at 50 Hz.
+pub(crate) fn scene() -> String {
+    include_str!("../../../scenes/fig5.toml").replace("sample_rate = 1000.0", "sample_rate = 50.0")
+}
+
+/// A folder with that scene and its log.
+pub(crate) fn scratch_with_log(test: &str) -> Scratch {
+    let scratch = Scratch::new(test);
+    scratch.write("scene.toml", &scene());
+    let run = scratch.run(&["simulate", "scene.toml", "-o", "log.csv"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    scratch
+}
+
+/// A CSV table that tests spoil cell by cell.
+pub(crate) struct Table {
+    pub(crate) header: Vec<String>,
+    pub(crate) rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    pub(crate) fn parse(text: &str) -> Self {
+        let mut lines = text.lines().map(|l| l.split(',').map(str::to_owned).collect::<Vec<_>>());
+        Self { header: lines.next().unwrap(), rows: lines.collect() }
+    }
+
+    pub(crate) fn column(&self, name: &str) -> usize {
+        self.header.iter().position(|h| h == name).unwrap()
+    }
+
+    pub(crate) fn set(&mut self, row: usize, column: &str, value: &str) {
+        let place = self.column(column);
+        self.rows[row][place] = value.to_owned();
+    }
+
+    /// Replaces every cell of the columns by a function of it.
+    pub(crate) fn map(&mut self, columns: &[&str], f: impl Fn(f64) -> f64) {
+        for name in columns {
+            let place = self.column(name);
+            for row in &mut self.rows {
+                row[place] = f(row[place].parse().unwrap()).to_string();
+            }
+        }
+    }
+
+    pub(crate) fn text(&self) -> String {
+        std::iter::once(&self.header).chain(&self.rows).map(|row| row.join(",") + "\n").collect()
+    }
+}

@@ -1,0 +1,159 @@
+//! From nothing to a report, and from a log to its motion.
+
+use crate::common::{Scratch, Table, scene, scratch_with_log};
+use serde_json::Value;
+
+const FILES: [&str; 7] = [
+    "contact_curves.csv",
+    "lower_bound.ply",
+    "motion.csv",
+    "radius_functions.csv",
+    "report.html",
+    "summary.json",
+    "upper_bound.ply",
+];
+
+/// Largest difference of two equally named columns of two tables.
+fn difference(a: &Table, b: &Table, column: &str) -> f64 {
+    let values =
+        |t: &Table| -> Vec<f64> { t.rows.iter().map(|r| r[t.column(column)].parse().unwrap()).collect() };
+    values(a).iter().zip(values(b)).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+}
+
+/// To 1e-9 of its size, the ellipsoid of Fig. 5 holds every contact (so it holds their hull) and is held by every
+/// half-space (so it is held by their intersection). Half turns about its axes leave it as it is.
+fn assert_curves_bound_the_ellipsoid(curves: &Table) {
+    let axes = [2.5, 2.0, 1.0];
+    for row in &curves.rows {
+        let values: Vec<f64> = row[2..].iter().map(|cell| cell.parse().unwrap()).collect();
+        let (x, n) = values.split_at(3);
+        let sum = |term: &dyn Fn(usize) -> f64| term(0) + term(1) + term(2);
+        let gauge = sum(&|i| (x[i] / axes[i]).powi(2)).sqrt();
+        assert!(gauge < 1.0 + 1e-9, "contact outside: {row:?}");
+        let support = sum(&|i| (axes[i] * n[i]).powi(2)).sqrt();
+        assert!(sum(&|i| n[i] * x[i]) > support - 2.5e-9, "half-space cuts: {row:?}");
+    }
+}
+
+#[test]
+fn demo_reconstructs_what_it_simulated() {
+    let scratch = Scratch::new("demo");
+    let run = scratch.run(&["demo", "-o", "demo", "--json"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    for name in FILES.iter().chain(&["log.csv", "scene.toml"]) {
+        assert!(scratch.path().join("demo").join(name).is_file(), "{name}");
+    }
+    let summary: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(summary["verdict"]["level"], "good");
+    // The log is exact to its 17 digits, so what is left is rounding and quadrature at 1 kHz.
+    assert!(summary["largest_error"]["position_m"].as_f64().unwrap() < 1e-9);
+    assert!(summary["largest_error"]["angular_velocity_rad_per_s"].as_f64().unwrap() < 1e-9);
+    let (lower, upper) = (
+        &summary["bounds"]["lower_volume_m3"].as_f64().unwrap(),
+        &summary["bounds"]["upper_volume_m3"].as_f64().unwrap(),
+    );
+    let volume = 4.0 / 3.0 * std::f64::consts::PI * 5.0;
+    assert!(*lower < volume && volume < *upper, "{lower} {upper}");
+    assert_curves_bound_the_ellipsoid(&Table::parse(&scratch.read("demo/contact_curves.csv")));
+    let report = scratch.read("demo/report.html");
+    assert!(report.len() < 3_000_000, "{} bytes", report.len());
+    assert_eq!(scratch.names(), ["demo"], "nothing is left beside the folder");
+}
+
+#[test]
+fn motion_has_the_columns_of_the_truth_and_its_values() {
+    let scratch = scratch_with_log("motion");
+    let run = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let (log, motion) =
+        (Table::parse(&scratch.read("log.csv")), Table::parse(&scratch.read("out/motion.csv")));
+    assert_eq!(motion.header.join(","), "t,cmx,cmy,cmz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz");
+    assert_eq!(motion.rows.len(), log.rows.len());
+    // At 50 Hz the quadrature of the readings is good to some 1e-5 of a 2 m, 1 rad/s scene.
+    for column in ["t", "cmx", "cmy", "cmz", "vx", "vy", "vz", "wx", "wy", "wz"] {
+        assert!(difference(&log, &motion, column) < 1e-4, "{column}");
+    }
+    // A second run replaces the first.
+    assert_eq!(scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]).code, Some(0));
+    assert_eq!(scratch.names(), ["log.csv", "out", "scene.toml"]);
+    let curves = scratch.run(&["bounds", "out/contact_curves.csv", "--json"]);
+    let again: Value = serde_json::from_str(&curves.stdout).unwrap();
+    let first: Value = serde_json::from_str(&scratch.read("out/summary.json")).unwrap();
+    for key in ["lower_volume_m3", "upper_volume_m3", "largest_gap_m"] {
+        let [read, made] = [&again, &first].map(|v| v["bounds"][key].as_f64().unwrap());
+        // Reading makes normals unit again, which moves their last bit.
+        assert!((read - made).abs() < 1e-10 * made, "{key}: {read} {made}");
+    }
+}
+
+#[test]
+fn truth_in_the_log_has_no_influence() {
+    let scratch = scratch_with_log("truth");
+    let mut table = Table::parse(&scratch.read("log.csv"));
+    let first_of_truth = table.column("cmx");
+    table.header.truncate(first_of_truth);
+    table.rows.iter_mut().for_each(|row| row.truncate(first_of_truth));
+    scratch.write("blind.csv", &table.text());
+    for (log, out) in [("log.csv", "seeing"), ("blind.csv", "blind")] {
+        assert_eq!(scratch.run(&["reconstruct", log, "--scene", "scene.toml", "-o", out]).code, Some(0));
+    }
+    assert_eq!(scratch.read("seeing/motion.csv"), scratch.read("blind/motion.csv"));
+    let blind: Value = serde_json::from_str(&scratch.read("blind/summary.json")).unwrap();
+    assert!(blind["largest_error"].is_null());
+}
+
+#[test]
+fn loss_of_contact_ends_a_simulation_and_is_said_in_a_reconstruction() {
+    let scratch = Scratch::new("loss");
+    let gentle = scene().replace("gravity = 9.81", "gravity = 1.0").replace("rate = 50.0", "rate = 1000.0");
+    scratch.write("scene.toml", &gentle);
+    let run = scratch.run(&["simulate", "scene.toml", "-o", "log.csv"]);
+    assert_eq!(run.code, Some(4), "{}", run.stderr);
+    // Palm 2 is left at 1.25888 s in the exact dynamics.
+    assert!(
+        run.stdout.contains("t = 1.25888") && run.stdout.contains("palm 2 loses contact"),
+        "{}",
+        run.stdout
+    );
+    // A log that goes on: two samples more, without contact on palm 2.
+    let mut table = Table::parse(&scratch.read("log.csv"));
+    for t in ["1.259", "1.26"] {
+        let mut row = table.rows.last().unwrap().clone();
+        row[table.column("t")] = t.to_owned();
+        table.rows.push(row);
+        let last = table.rows.len() - 1;
+        for (column, value) in [("s1_2", "nan"), ("s2_2", "nan"), ("f_2", "0")] {
+            table.set(last, column, value);
+        }
+    }
+    scratch.write("log.csv", &table.text());
+    let run = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]);
+    assert!(
+        run.stdout.contains("Palm 2 lost contact at t = 1.259 s. The 1259 samples before it are used"),
+        "{}",
+        run.stdout
+    );
+    assert_eq!(Table::parse(&scratch.read("out/motion.csv")).rows.len(), 1259);
+}
+
+#[test]
+fn bounds_from_a_noisy_log_have_margins() {
+    let scratch = Scratch::new("noisy");
+    let text = scene().replace("sample_rate = 50.0", "sample_rate = 200.0");
+    scratch.write("scene.toml", &text);
+    scratch.write("noisy.toml", &(text + "\n[sensors]\ncontact_std = 1e-3\nforce_std = 0.05\n"));
+    let volumes = |name: &str| {
+        let scene = format!("{name}.toml");
+        assert_eq!(scratch.run(&["simulate", &scene, "-o", "log.csv"]).code, Some(0));
+        let run = scratch.run(&["reconstruct", "log.csv", "--scene", &scene, "-o", name, "--json"]);
+        assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+        let summary: Value = serde_json::from_str(&run.stdout).unwrap();
+        let warned = summary["warnings"].to_string().contains("at 95 % confidence");
+        assert_eq!(warned, name == "noisy", "{summary:#}");
+        ["lower_volume_m3", "upper_volume_m3"].map(|key| summary["bounds"][key].as_f64().unwrap())
+    };
+    let ([lower, upper], [noisy_lower, noisy_upper]) = (volumes("scene"), volumes("noisy"));
+    let volume = 4.0 / 3.0 * std::f64::consts::PI * 5.0;
+    assert!(0.3 * lower < noisy_lower && noisy_lower < lower && lower < volume, "{lower} {noisy_lower}");
+    assert!(volume < upper && upper < noisy_upper && noisy_upper < 2.0 * upper, "{upper} {noisy_upper}");
+}

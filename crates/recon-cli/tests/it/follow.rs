@@ -1,0 +1,143 @@
+//! `recon follow` and `recon reconstruct --without-forces`: a noisy log from a file and from a pipe, and bad input.
+
+use crate::common::{Scratch, Table};
+use std::fs::File;
+use std::process::Stdio;
+
+const SCENE: &str = r#"
+gravity = 9.81
+[object]
+mass = 1.3
+principal_moments = [2.665, 1.885, 1.3]
+[sensors]
+contact_std = 2.5e-3
+force_std = 0.065
+[simulation]
+duration = 3.0
+sample_rate = 1000.0
+orientation = [1.0, 0.0, 0.0, 0.0]
+angular_velocity = [0.2, 0.3, -0.4]
+shape = { kind = "ellipsoid", semi_axes = [1.0, 2.0, 2.5] }
+palms = [
+  { azimuth_deg = 6.0, slope_deg = 57.0 },
+  { azimuth_deg = 126.0, slope_deg = 57.0 },
+  { azimuth_deg = 246.0, slope_deg = 57.0 },
+]
+"#;
+
+fn scratch(test: &str) -> (Scratch, Table) {
+    let scratch = Scratch::new(test);
+    scratch.write("scene.toml", SCENE);
+    let run = scratch.run(&["simulate", "scene.toml", "-o", "log.csv"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let log = Table::parse(&scratch.read("log.csv"));
+    (scratch, log)
+}
+
+/// The log without the columns that a test leaves out.
+fn without(log: &Table, stem: &str) -> String {
+    let kept: Vec<usize> = (0..log.header.len()).filter(|&k| !log.header[k].starts_with(stem)).collect();
+    let pick = |row: &Vec<String>| kept.iter().map(|&k| row[k].clone()).collect::<Vec<_>>();
+    Table { header: pick(&log.header), rows: log.rows.iter().map(pick).collect() }.text()
+}
+
+fn number(table: &Table, row: usize, column: &str) -> f64 {
+    table.rows[row][table.column(column)].parse().unwrap()
+}
+
+#[test]
+fn the_motion_is_followed_from_a_file_and_from_a_pipe() {
+    let (scratch, log) = scratch("follow");
+    let run = scratch.run(&["follow", "log.csv", "--scene", "scene.toml", "-o", "motion.csv"]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    assert!(run.stdout.contains("a motion from t = "), "{}", run.stdout);
+    let table = scratch.read("motion.csv");
+    let motion = Table::parse(&table);
+    assert_eq!(motion.rows.len(), 30);
+    assert_eq!(motion.rows[0][motion.column("stage")], "gathering");
+    // Rows stand at multiples of 0.1 s, samples at those of 0.001 s.
+    for (row, stage) in motion.rows.iter().map(|row| row[motion.column("stage")].as_str()).enumerate() {
+        if stage != "tracking" {
+            continue;
+        }
+        let sample = row * 100;
+        assert_eq!(number(&motion, row, "t"), number(&log, sample, "t"));
+        let error = |names: [&str; 3]| {
+            let square = |name| (number(&motion, row, name) - number(&log, sample, name)).powi(2);
+            names.map(square).iter().sum::<f64>().sqrt()
+        };
+        // Five deviations of three numbers together.
+        assert!(error(["cmx", "cmy", "cmz"]) < 5.0 * number(&motion, row, "std_cm"), "row {row}");
+        assert!(error(["vx", "vy", "vz"]) < 5.0 * number(&motion, row, "std_v"), "row {row}");
+    }
+    assert_eq!(motion.rows[29][motion.column("stage")], "tracking");
+
+    let pipe = File::open(scratch.path().join("log.csv")).unwrap();
+    let piped =
+        scratch.command(&["follow", "-", "--scene", "scene.toml"]).stdin(Stdio::from(pipe)).output().unwrap();
+    assert_eq!(piped.status.code(), Some(0));
+    assert_eq!(String::from_utf8(piped.stdout).unwrap(), table);
+
+    let lines = scratch.run(&["follow", "log.csv", "--scene", "scene.toml", "--every", "0.5", "--json"]);
+    let objects: Vec<serde_json::Value> =
+        lines.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(objects.len(), 6);
+    assert_eq!(objects[5]["stage"], "tracking");
+    assert!(objects[0]["innovation"].is_null());
+}
+
+#[test]
+fn a_log_without_forces_gives_the_ellipsoid() {
+    let (scratch, log) = scratch("without-forces");
+    scratch.write("bare.csv", &without(&log, "f_"));
+    let arguments = ["reconstruct", "bare.csv", "--scene", "scene.toml", "--without-forces"];
+    let run = scratch.run(&arguments);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let figures: serde_json::Value = serde_json::from_str(&scratch.read("recon-out/summary.json")).unwrap();
+    for (axis, expected) in [1.0, 2.0, 2.5].into_iter().enumerate() {
+        let found = figures["semi_axes_m"][axis].as_f64().unwrap();
+        // Means over 3 s of contacts noisy by 2.5e-3 m.
+        assert!((found - expected).abs() < 2e-3, "{found} {expected}");
+    }
+    let (lower, upper) = (&figures["bounds"]["lower_volume_m3"], &figures["bounds"]["upper_volume_m3"]);
+    let volume = 4.0 / 3.0 * std::f64::consts::PI * 5.0;
+    // Three seconds of touch leave some side open.
+    assert!(lower.as_f64().unwrap() < volume && upper.as_f64().is_none_or(|upper| upper > volume));
+    let motion = Table::parse(&scratch.read("recon-out/motion.csv"));
+    assert!(motion.rows.len() > 30 && scratch.path().join("recon-out/lower_bound.ply").exists());
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let (scratch, mut log) = scratch("follow-bad");
+    log.rows.truncate(40);
+    scratch.write("log.csv", &log.text());
+    scratch.write("bare.csv", &without(&log, "f_"));
+    scratch.write("one.csv", &log.text().lines().take(2).collect::<Vec<_>>().join("\n"));
+    scratch.write("quiet.toml", &SCENE.replace("force_std = 0.065", ""));
+    log.set(30, "t", "0.001");
+    scratch.write("back.csv", &log.text());
+    let follow = |log, scene| vec!["follow", log, "--scene", scene, "-o", "motion.csv"];
+    let touch = |log, scene| vec!["reconstruct", log, "--scene", scene, "--without-forces"];
+    for (arguments, code, words) in [
+        (vec!["follow", "log.csv"], 3, "--scene"),
+        (follow("log.csv", "quiet.toml"), 3, "--force-noise"),
+        (follow("bare.csv", "scene.toml"), 3, "--without-forces"),
+        (follow("one.csv", "scene.toml"), 3, "1 sample(s)"),
+        (follow("back.csv", "scene.toml"), 3, "line 32"),
+        (follow("none.csv", "scene.toml"), 3, "none.csv"),
+        (vec!["follow", "log.csv", "--scene", "scene.toml", "--rate", "0"], 2, "positive"),
+        (vec!["reconstruct", "log.csv", "--without-forces"], 3, "--scene"),
+        (touch("log.csv", "scene.toml"), 3, "at least"),
+        ([touch("log.csv", "scene.toml"), vec!["--identify"]].concat(), 2, "--identify"),
+    ] {
+        let run = scratch.run(&arguments);
+        assert_eq!(run.code, Some(code), "{arguments:?}: {}{}", run.stdout, run.stderr);
+        assert!(run.stderr.contains(words), "{arguments:?}: {}", run.stderr);
+        assert!(!scratch.path().join("motion.csv").exists() && !scratch.path().join("recon-out").exists());
+    }
+    // Forty samples are no motion, and the table says so.
+    let run = scratch.run(&follow("log.csv", "scene.toml"));
+    assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);
+    assert!(run.stdout.contains("no motion"), "{}", run.stdout);
+}

@@ -1,0 +1,16 @@
+//! The command from outside: what it reads, writes and says.
+//!
+//! One binary: each one more costs a link of everything.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
+mod bad_input;
+mod bounds;
+mod bounds_shapes;
+mod common;
+mod end_to_end;
+mod export;
+mod follow;
+#[cfg(unix)]
+mod interrupted;
+mod planar;

@@ -1,0 +1,24 @@
+//! What crosses crates: reference solutions, logs of other simulators, failures that must be told.
+//!
+//! One binary: each one more costs a link of everything.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
+mod estimate_motion;
+mod failure_cases;
+mod failures_unknown_body;
+mod logs_of_other_simulators;
+mod paper_method;
+mod planar_basin;
+mod planar_common;
+mod planar_constants;
+mod planar_dynamic;
+mod planar_failures;
+mod planar_faults;
+mod planar_oracles;
+mod planar_quasistatic;
+mod planar_shape_fit;
+mod sensor_constants;
+mod several_motions;
+mod simulation_oracle;
+mod unknown_body;

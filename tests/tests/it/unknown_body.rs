@@ -1,0 +1,71 @@
+//! Motion, mass and inertia together, of a body of which nothing is known.
+
+use glam::DVec3;
+use recon::contact_kinematics::SupportFunction;
+use recon::object_dynamics::{InitialMotion, SensorNoise, Simulation, ThreePalmScene};
+use recon::observer::{BodyEstimate, NoiseLevel, UnknownBody, estimate_body};
+use recon_tests::{exact_log, f5, g2};
+
+fn unknown<S: SupportFunction>(scene: &ThreePalmScene<S>, noise: Option<NoiseLevel>) -> UnknownBody {
+    UnknownBody { gravity: scene.gravity(), palm_inertias: None, noise }
+}
+
+fn moments<S: SupportFunction>(scene: &ThreePalmScene<S>) -> DVec3 {
+    scene.mass().principal().moments
+}
+
+fn centre_error(estimate: &BodyEstimate, simulation: &Simulation) -> f64 {
+    let pairs = estimate.motion.motion.iter().zip(&simulation.instants);
+    pairs.map(|(m, now)| m.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max)
+}
+
+fn check_exact<S: SupportFunction>(scene: &ThreePalmScene<S>, start: InitialMotion, duration: f64) {
+    let (simulation, log) = exact_log(scene, start, duration, 1000.0);
+    let estimate = estimate_body(&log, &unknown(scene, None)).unwrap();
+    let mass = estimate.body.mass.mass() / scene.mass().mass() - 1.0;
+    let inertia = (estimate.body.mass.principal().moments - moments(scene)).abs().max_element();
+    let centre = centre_error(&estimate, &simulation);
+    println!(
+        "mass {mass:.1e}, inertia {inertia:.1e}, centre of mass {centre:.1e}, {:?}",
+        estimate.motion.evidence
+    );
+    assert!(estimate.motion.reliability.is_reliable(), "{:?}", estimate.motion.reliability);
+    assert!(mass.abs() < 1e-7 && inertia < 1e-6 && centre < 1e-7, "{mass:e} {inertia:e} {centre:e}");
+    assert_eq!(estimate.motion.evidence.rank, 16);
+}
+
+#[test]
+fn exact_logs_give_mass_and_inertia() {
+    let (scene, start) = f5();
+    check_exact(&scene, start, 4.2);
+    let (scene, start) = g2();
+    check_exact(&scene, start, 4.0);
+}
+
+#[test]
+fn deviations_of_mass_and_inertia_are_true() {
+    let noise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };
+    let stated = NoiseLevel { contact: noise.contact, force: noise.force };
+    let (scene, start) = g2();
+    let (simulation, clean) = exact_log(&scene, start, 4.0, 200.0);
+    let runs = 6;
+    let (mut sum, mut count) = (0.0, 0);
+    for seed in 0..runs {
+        let log = clean.with_noise(&noise, seed).unwrap();
+        let estimate = estimate_body(&log, &unknown(&scene, Some(stated))).unwrap();
+        assert!(estimate.motion.reliability.is_reliable(), "seed {seed}: {:?}", estimate.motion.reliability);
+        let body = &estimate.body;
+        let error = body.mass.principal().moments - moments(&scene);
+        let mut squares = vec![((body.mass.mass() - scene.mass().mass()) / body.mass_deviation).powi(2)];
+        squares.extend((0..3).map(|k| (error[k] / body.moment_deviations[k]).powi(2)));
+        let first = estimate.motion.start.p_WCm - simulation.instants[0].touch.p_WCm;
+        squares.extend((0..3).map(|k| first[k].powi(2) / estimate.motion.covariance[(k, k)]));
+        println!("{seed}: {squares:.2?}");
+        count += squares.len();
+        sum += squares.iter().sum::<f64>();
+        assert!(squares.iter().all(|s| *s < 25.0), "{squares:?}");
+    }
+    // Seven numbers a run that hang together, worth about four: 24 squares, deviation sqrt(2 / 24) = 0.29.
+    let mean = sum / count as f64;
+    assert!((0.42..1.58).contains(&mean), "{mean}");
+}
