@@ -178,14 +178,14 @@ fn random_scenes_come_out_right_from_no_guess() {
 #[test]
 fn covariance_is_consistent_under_noise() {
     // Contact noise 0.1 % of the size, force noise 1 % of what a palm carries. The errors of a run hang together: their
-    // twelve squares are worth about the three weakest directions, 24 independent ones over 8 runs, whose mean has a
-    // deviation of sqrt(2 / 24) = 0.29. The band is two of those wide.
+    // twelve squares are worth about the three weakest directions, 12 independent ones over 4 runs, whose mean has a
+    // deviation of sqrt(2 / 12) = 0.41. The band is two of those wide; the Monte Carlo study has 40 runs a row.
     let (scene, start) = f5();
     let noise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };
     let stated = NoiseLevel { contact: noise.contact, force: noise.force };
-    let runs = 8;
-    for (duration, level) in [(3.0, Some(stated)), (4.2, None)] {
-        let (simulation, clean) = exact_log(&scene, start, duration, 200.0);
+    let runs = 4;
+    for (duration, level) in [(3.0, Some(stated)), (4.0, None)] {
+        let (simulation, clean) = exact_log(&scene, start, duration, 100.0);
         let (mut sum, mut worst): (f64, f64) = (0.0, 0.0);
         for seed in 0..runs {
             let log = clean.with_noise(&noise, seed).unwrap();
@@ -197,7 +197,7 @@ fn covariance_is_consistent_under_noise() {
         }
         let mean = sum / f64::from(12 * runs as u32);
         println!("{duration} s, noise {level:?}: {mean:.3}, largest {:.2} deviations", worst.sqrt());
-        assert!((0.42..1.58).contains(&mean), "{duration} s: {mean}");
+        assert!((0.18..1.82).contains(&mean), "{duration} s: {mean}");
         assert!(worst < 25.0, "{duration} s: {} deviations", worst.sqrt());
     }
 }
@@ -205,13 +205,13 @@ fn covariance_is_consistent_under_noise() {
 #[test]
 fn touch_that_is_far_better_than_the_forces_is_relied_on() {
     // Contact noise 0.001 %, force noise 1 %: between nodes the motion wanders by more than contacts explain, and nothing is
-    // wrong with that. Bands as above: 24 independent squares over 8 runs.
+    // wrong with that. Bands as above: 12 independent squares over 4 runs.
     let (scene, start) = g2();
     let (simulation, clean) = exact_log(&scene, start, 2.0, 500.0);
     let noise = SensorNoise { contact: 2.5e-5, force: 0.065, torque: 0.0 };
     let stated = Some(NoiseLevel { contact: noise.contact, force: noise.force });
     let mut sum = 0.0;
-    for seed in 0..8 {
+    for seed in 0..4 {
         let log = clean.with_noise(&noise, seed).unwrap();
         let estimate = estimate_motion(&log, &known(&scene, stated)).unwrap();
         assert!(estimate.reliability.is_reliable(), "seed {seed}: {:?}", estimate.reliability);
@@ -221,5 +221,5 @@ fn touch_that_is_far_better_than_the_forces_is_relied_on() {
         sum += squares.iter().sum::<f64>() / 12.0;
         assert!(squares.iter().all(|s| *s < 25.0), "seed {seed}: {squares:?}");
     }
-    assert!((0.42..1.58).contains(&(sum / 8.0)), "{}", sum / 8.0);
+    assert!((0.18..1.82).contains(&(sum / 4.0)), "{}", sum / 4.0);
 }

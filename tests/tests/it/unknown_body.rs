@@ -47,8 +47,8 @@ fn deviations_of_mass_and_inertia_are_true() {
     let noise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };
     let stated = NoiseLevel { contact: noise.contact, force: noise.force };
     let (scene, start) = g2();
-    let (simulation, clean) = exact_log(&scene, start, 4.0, 200.0);
-    let runs = 6;
+    let (simulation, clean) = exact_log(&scene, start, 4.0, 100.0);
+    let runs = 3;
     let (mut sum, mut count) = (0.0, 0);
     for seed in 0..runs {
         let log = clean.with_noise(&noise, seed).unwrap();
@@ -65,7 +65,7 @@ fn deviations_of_mass_and_inertia_are_true() {
         sum += squares.iter().sum::<f64>();
         assert!(squares.iter().all(|s| *s < 25.0), "{squares:?}");
     }
-    // Seven numbers a run that hang together, worth about four: 24 squares, deviation sqrt(2 / 24) = 0.29.
+    // Seven numbers a run that hang together, worth about four: 12 squares, deviation sqrt(2 / 12) = 0.41.
     let mean = sum / count as f64;
-    assert!((0.42..1.58).contains(&mean), "{mean}");
+    assert!((0.18..1.82).contains(&mean), "{mean}");
 }

@@ -34,7 +34,7 @@ const STEPS: &[Step] = &[
     step("lint", "clippy over everything, warnings are errors", builds::lint),
     step("docs", "rustdoc, warnings are errors", builds::docs),
     step("tests", "all tests and doctests of the workspace", builds::tests),
-    step("alone", "each core crate passes its tests and lints with its own features only", builds::alone),
+    step("alone", "each core crate and its tests compile and lint with its own features only", builds::alone),
     step("features", "each Cargo feature builds without the others", builds::features),
     optional("hack", "cargo-hack: all combinations of features build", extras::hack),
     optional(
