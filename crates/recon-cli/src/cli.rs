@@ -61,7 +61,7 @@ Examples:
 pub(crate) struct SimulateArgs {
     /// Scene file (TOML)
     pub(crate) scene: PathBuf,
-    /// Sensor log to write (CSV); `-` for standard output
+    /// Sensor log to write (CSV); `-` for standard output, links are followed, pipes and devices written to
     #[arg(short, long)]
     pub(crate) output: PathBuf,
     /// Tolerance of the integration, relative and absolute
@@ -76,7 +76,7 @@ the force f_i or torque tau_i. The scene gives gravity, mass and inertia; with -
 along, and those of the scene are not looked at. No initial guess is needed.
 
 The output folder appears as a whole or not at all: motion.csv, contact_curves.csv, radius_functions.csv, summary.json,
-lower_bound.ply, upper_bound.ply and report.html, which opens in any browser. With --export it holds the object for
+lower_bound.ply, upper_bound.ply, report.html, which opens in any browser, and manifest.json, which lists them. With --export it holds the object for
 simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer to.
 
 With --without-forces the contacts and palm poses alone are fitted with the motion of an ellipsoid, its centre anywhere; mass
@@ -94,9 +94,12 @@ pub(crate) struct ReconstructArgs {
     /// Scene file (TOML)
     #[arg(short, long)]
     pub(crate) scene: Option<PathBuf>,
-    /// Folder to write; an earlier one of recon's is replaced
+    /// Folder to write; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long, default_value = "recon-out")]
     pub(crate) output: PathBuf,
+    /// Write beside files in the folder that recon did not write; these are never replaced or removed
+    #[arg(long)]
+    pub(crate) force: bool,
     /// Estimate mass and inertia too, with their deviations
     #[arg(long)]
     pub(crate) identify: bool,
@@ -146,7 +149,7 @@ pub(crate) struct FollowArgs {
     /// Time between rows of the table, s
     #[arg(long, value_name = "S", default_value_t = 0.1, value_parser = not_negative)]
     pub(crate) every: f64,
-    /// File to write [default: standard output]
+    /// File to write [default: standard output]; links are followed, pipes and devices written to
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
 }
@@ -240,9 +243,12 @@ pub(crate) struct BoundsArgs {
     /// Height of the plane below the poses, m [default: 0]
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) plane_height: Option<f64>,
-    /// Folder to write the meshes and summary.json to; an earlier one of recon's is replaced
+    /// Folder to write the meshes and summary.json to; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
+    /// Write beside files in the folder that recon did not write; these are never replaced or removed
+    #[arg(long, requires = "output")]
+    pub(crate) force: bool,
 }
 
 /// A family of shapes to fit.
@@ -306,9 +312,12 @@ pub(crate) struct PlanarArgs {
     /// Highest harmonic of the shape, where it is fitted without forces
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=20))]
     pub(crate) order: u8,
-    /// Folder to write; an earlier one of recon's is replaced
+    /// Folder to write; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long, default_value = "recon-planar")]
     pub(crate) output: PathBuf,
+    /// Write beside files in the folder that recon did not write; these are never replaced or removed
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 #[derive(Args, Debug)]
@@ -317,9 +326,12 @@ Examples:
   recon demo
   recon demo -o somewhere")]
 pub(crate) struct DemoArgs {
-    /// Folder to write; an earlier one of recon's is replaced
+    /// Folder to write; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long, default_value = "recon-demo")]
     pub(crate) output: PathBuf,
+    /// Write beside files in the folder that recon did not write; these are never replaced or removed
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 fn fit(text: &str) -> Result<FitAs, String> {

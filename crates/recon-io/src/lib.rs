@@ -24,7 +24,9 @@ pub use log::{
     write_log, write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
-pub use output::{AtomicFile, OutputError, OutputFolder};
+pub use output::{
+    AtomicFile, FileTarget, FolderTarget, OutputError, OutputFolder, Summed, is_standard_output,
+};
 pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};
 pub use report::{

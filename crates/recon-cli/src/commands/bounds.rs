@@ -10,14 +10,18 @@ use crate::progress::Progress;
 use recon::contact_kinematics::CurvatureRadii;
 use recon::contact_kinematics::planar::RadiusBounds;
 use recon::shape_bounds::{ContactSample, PoseRule};
-use recon_io::{Touches, read_touches};
+use recon_io::{FolderTarget, Touches, read_touches};
 use serde_json::{Value, json};
 use std::fmt::Write;
+use std::slice;
 
 /// Confidence of bounds under noise where none is asked for.
 const CONFIDENCE: f64 = 0.95;
 
 pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliError> {
+    let inputs = slice::from_ref(&args.input);
+    let target =
+        args.output.as_ref().map(|folder| FolderTarget::new(folder, inputs, args.force)).transpose()?;
     let progress = Progress::new(2, console.is_json());
     progress.step("reading contacts or poses");
     let touches = read_touches(&args.input)?;
@@ -26,7 +30,7 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
     let (made, about, what) = match touches {
         Touches::PlanarContacts(curves) => {
             drop(progress);
-            return plane::run(args, &curves, &planar_request(args), console);
+            return plane::run(&curves, &planar_request(args), target, console);
         }
         Touches::Poses(runs) => {
             let count = runs.iter().map(Vec::len).sum::<usize>();
@@ -41,7 +45,7 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
         }
     };
     let figures = figures(&made, &what, &about);
-    if let Some(folder) = &args.output {
+    if let Some(folder) = target {
         write_bounds_folder(folder, &made, &figures)?;
     }
     drop(progress);

@@ -4,7 +4,7 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{reconstruct, simulate, write_reconstruction_folder};
 use crate::progress::Progress;
-use recon_io::{Scene, SceneError, write_log};
+use recon_io::{FolderTarget, Scene, SceneError, write_log};
 use std::path::Path;
 
 /// The scene of the paper's Fig. 5, with what the paper leaves open filled in.
@@ -13,6 +13,7 @@ const SCENE: &str = include_str!("../../scenes/fig5.toml");
 pub(crate) fn run(args: &DemoArgs, console: &Console) -> Result<Outcome, CliError> {
     let path = Path::new("scene.toml");
     let scene = Scene::parse(SCENE).map_err(|kind| SceneError { path: path.to_owned(), kind })?;
+    let target = FolderTarget::new(&args.output, &[], args.force)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("simulating");
     let simulated = simulate(&scene, path, 1e-12)?;
@@ -22,7 +23,7 @@ pub(crate) fn run(args: &DemoArgs, console: &Console) -> Result<Outcome, CliErro
     let mut log = Vec::new();
     write_log(&simulated.log, &mut log).map_err(CliError::StandardOutput)?;
     let extras = [("scene.toml".to_owned(), SCENE.into()), ("log.csv".to_owned(), log)];
-    let figures = write_reconstruction_folder(&args.output, &made, &extras)?;
+    let figures = write_reconstruction_folder(target, &made, &extras)?;
     drop(progress);
     tell(console, &made, figures, &args.output)
 }

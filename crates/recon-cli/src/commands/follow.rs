@@ -8,13 +8,14 @@ use glam::DVec3;
 use recon::object_dynamics::Sample;
 use recon::observer::{MotionStream, NoiseLevel, StreamEstimate, StreamOptions, StreamStage};
 use recon_io::{
-    AtomicFile, LogFileError, LogReader, OutputError, Scene, write_stream_header, write_stream_row,
+    FileTarget, LogFileError, LogReader, OutputError, Scene, is_standard_output, write_stream_header,
+    write_stream_row,
 };
 use recon_io::{MotionState, StreamRow};
 use serde_json::{Value, json};
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Samples from which the rate is taken where it is not stated.
 const FIRST: usize = 21;
@@ -22,6 +23,9 @@ const FIRST: usize = 21;
 const ROUNDING: f64 = 1e-6;
 
 pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliError> {
+    let output = args.output.as_ref().filter(|path| !is_standard_output(path));
+    let inputs: Vec<_> = [&args.log].into_iter().chain(&args.scene).cloned().collect();
+    let target = output.map(|path| FileTarget::new(path, &inputs)).transpose()?;
     let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::UnknownBody)?;
     let mass = if args.identify { None } else { Some(known_body(&scene)?) };
     let noise = noise(args, &scene).ok_or(CliError::StreamNoise)?;
@@ -37,15 +41,15 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
         },
     };
     let stream = MotionStream::new(options)?;
-    let progress = Progress::new(1, console.is_json() || args.output.is_none());
+    let progress = Progress::new(1, console.is_json() || output.is_none());
     progress.step("following the motion");
-    let followed = match &args.output {
-        Some(target) => while_writing(|| {
-            let mut file = AtomicFile::create(target)?;
+    let followed = match output.zip(target) {
+        Some((path, target)) => while_writing(|| {
+            let mut file = target.begin()?;
             let run = Run { stream, every: args.every, console, json: false };
             let followed = run.all(samples, Checked(&mut file)).map_err(|failure| match failure {
                 Failure::Written(source) => {
-                    OutputError::Io { action: "write", path: target.clone(), source }.into()
+                    OutputError::Io { action: "write", path: path.clone(), source }.into()
                 }
                 Failure::Other(error) => error,
             })?;
@@ -63,7 +67,7 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
         }
     };
     drop(progress);
-    followed.tell(console, args.output.as_deref())
+    followed.tell(console, output.map(PathBuf::as_path))
 }
 
 fn noise(args: &FollowArgs, scene: &Scene) -> Option<NoiseLevel> {

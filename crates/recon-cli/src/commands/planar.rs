@@ -11,7 +11,7 @@ use recon::object_dynamics::planar::{
 use recon::observer::planar::{
     NaturalScale, PlanarNominal, PlanarObserver, PlanarObserverOptions, ShapeFitOptions, fit_shape,
 };
-use recon_io::{FigureCurve, FigurePanel, OutputFolder, read_planar_log, write_figures, write_planar_log};
+use recon_io::{FigureCurve, FigurePanel, FolderTarget, read_planar_log, write_figures, write_planar_log};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
@@ -37,6 +37,7 @@ struct Reconstruction {
 }
 
 pub(crate) fn run(args: &PlanarArgs, console: &Console) -> Result<Outcome, CliError> {
+    let target = FolderTarget::new(&args.output, args.log.as_slice(), args.force)?;
     let progress = Progress::new(2, console.is_json());
     progress.step("reading the log");
     let demo = args.log.is_none().then(demo).transpose()?;
@@ -51,7 +52,7 @@ pub(crate) fn run(args: &PlanarArgs, console: &Console) -> Result<Outcome, CliEr
         Some(mass) => observe(args, &log, mass)?,
         None => fit(args, &log)?,
     };
-    write(args, &log, &made)?;
+    write(target, args.log.is_none(), &log, &made)?;
     drop(progress);
     console.result(&describe(args, &made), &made.figures)?;
     Ok(if made.warnings.is_empty() { Outcome::Done } else { Outcome::WithReservations })
@@ -180,14 +181,19 @@ fn fit(args: &PlanarArgs, log: &PlanarLog) -> Result<Reconstruction, CliError> {
     Ok(Reconstruction { rows, figures, warnings })
 }
 
-fn write(args: &PlanarArgs, log: &PlanarLog, made: &Reconstruction) -> Result<(), CliError> {
+fn write(
+    target: FolderTarget,
+    with_log: bool,
+    log: &PlanarLog,
+    made: &Reconstruction,
+) -> Result<(), CliError> {
     while_writing(|| {
-        let folder = OutputFolder::create(&args.output)?;
+        let mut folder = target.begin()?;
         folder.write("motion.csv", |to| motion(made, to))?;
         folder.write("contact_points.csv", |to| points(made, to))?;
         folder.write("figures.svg", |to| write_figures(&panels(log, made), to))?;
         folder.write("summary.json", |to| writeln!(to, "{:#}", made.figures))?;
-        if args.log.is_none() {
+        if with_log {
             folder.write("log.csv", |to| write_planar_log(log, to))?;
         }
         folder.commit()?;

@@ -1,28 +1,26 @@
 //! `recon bounds` for contacts in the plane.
 
-use crate::cli::BoundsArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::interrupt::while_writing;
 use crate::pipeline::{PlanarBounds, PlanarRequest, fit_words, planar_bounds};
 use glam::DVec2;
 use recon::shape_bounds::planar::ContactSample;
-use recon_io::{FigureCurve, FigurePanel, OutputFolder, write_figures};
+use recon_io::{FigureCurve, FigurePanel, FolderTarget, write_figures};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::{self, Write};
-use std::path::Path;
 
 pub(super) fn run(
-    args: &BoundsArgs,
     curves: &[Vec<ContactSample>],
     request: &PlanarRequest,
+    target: Option<FolderTarget>,
     console: &Console,
 ) -> Result<Outcome, CliError> {
     let made = planar_bounds(curves, request)?;
     let count = curves.iter().map(Vec::len).sum::<usize>();
     let figures = figures(&made, count);
-    if let Some(folder) = &args.output {
+    if let Some(folder) = target {
         write_folder(folder, &made, &figures)?;
     }
     console.result(&describe(&made, count), &figures)?;
@@ -67,9 +65,9 @@ fn describe(made: &PlanarBounds, count: usize) -> String {
     text
 }
 
-fn write_folder(target: &Path, made: &PlanarBounds, figures: &Value) -> Result<(), CliError> {
+fn write_folder(target: FolderTarget, made: &PlanarBounds, figures: &Value) -> Result<(), CliError> {
     while_writing(|| {
-        let folder = OutputFolder::create(target)?;
+        let mut folder = target.begin()?;
         folder.write("bounds.svg", |to| write_figures(&panels(made), to))?;
         for (name, outline) in ["lower_bound.csv", "upper_bound.csv"].into_iter().zip(&made.outlines) {
             if !outline.is_empty() {

@@ -3,7 +3,7 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{Reconstruction, exported, reconstruct, write_reconstruction_folder};
 use crate::progress::Progress;
-use recon_io::{Scene, read_log};
+use recon_io::{FolderTarget, Scene, read_log};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
@@ -13,6 +13,7 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
         return super::without_forces::run(args, console);
     }
     let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::UnknownBody)?;
+    let target = target(args)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");
     let log = read_log(&args.log)?;
@@ -21,9 +22,15 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     progress.step("writing the results");
     let files = exported(&made, &args.export, args.export_shape)?;
     let extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
-    let figures = write_reconstruction_folder(&args.output, &made, &extras)?;
+    let figures = write_reconstruction_folder(target, &made, &extras)?;
     drop(progress);
     tell(console, &made, figures, &args.output)
+}
+
+/// Where the results go.
+pub(super) fn target(args: &ReconstructArgs) -> Result<FolderTarget, CliError> {
+    let inputs: Vec<_> = std::iter::once(&args.log).chain(&args.scene).cloned().collect();
+    Ok(FolderTarget::new(&args.output, &inputs, args.force)?)
 }
 
 /// Prints what came out.

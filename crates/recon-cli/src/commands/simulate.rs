@@ -5,22 +5,27 @@ use crate::interrupt::{Checked, while_writing};
 use crate::pipeline::{Simulated, simulate};
 use crate::progress::Progress;
 use recon::object_dynamics::{End, SensorLog};
-use recon_io::{AtomicFile, OutputError, Scene, write_log};
+use recon_io::{FileTarget, OutputError, Scene, is_standard_output, write_log};
 use serde_json::{Value, json};
 use std::io;
 use std::path::Path;
+use std::slice;
 
 pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, CliError> {
     let scene = Scene::read(&args.scene)?;
-    let to_standard_output = args.output.as_os_str() == "-";
+    let inputs = slice::from_ref(&args.scene);
+    let target = match is_standard_output(&args.output) {
+        true => None,
+        false => Some(FileTarget::new(&args.output, inputs)?),
+    };
     let progress = Progress::new(2, console.is_json());
     progress.step("simulating");
     let simulated = simulate(&scene, &args.scene, args.tolerance)?;
     progress.step("writing the log");
-    if to_standard_output {
-        listened(write_log(&simulated.log, io::stdout().lock()))?;
-    } else {
-        write(&simulated.log, &args.output)?;
+    let to_standard_output = target.is_none();
+    match target {
+        None => listened(write_log(&simulated.log, io::stdout().lock()))?,
+        Some(target) => write(&simulated.log, target, &args.output)?,
     }
     drop(progress);
     let text = describe(&simulated);
@@ -32,12 +37,12 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Cli
     Ok(if simulated.end == End::Completed { Outcome::Done } else { Outcome::WithReservations })
 }
 
-fn write(log: &SensorLog, target: &Path) -> Result<(), CliError> {
+fn write(log: &SensorLog, target: FileTarget, path: &Path) -> Result<(), CliError> {
     while_writing(|| {
-        let mut file = AtomicFile::create(target)?;
+        let mut file = target.begin()?;
         write_log(log, Checked(&mut file)).map_err(|source| OutputError::Io {
             action: "write",
-            path: target.to_owned(),
+            path: path.to_owned(),
             source,
         })?;
         Ok(file.commit()?)

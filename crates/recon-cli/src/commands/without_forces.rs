@@ -16,6 +16,7 @@ use std::error::Error;
 
 pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, CliError> {
     let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::NoGravity)?;
+    let target = super::reconstruct::target(args)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");
     let log = read_log(&args.log)?;
@@ -53,7 +54,7 @@ pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
         .iter()
         .map(|m| MotionState { p_WCm: m.p_WCm, R_WO: m.R_WO, v_WCm: m.v_WCm, w_WO: m.w_WO })
         .collect();
-    write_touch_folder(&args.output, &times, &motion, bounded.as_ref(), &figures)?;
+    write_touch_folder(target, &times, &motion, bounded.as_ref(), &figures)?;
     drop(progress);
     console.result(&describe(args, &found, bounded.as_ref(), &warnings), &figures)?;
     Ok(if bounded.is_some() { Outcome::Done } else { Outcome::WithReservations })

@@ -3,26 +3,25 @@ use super::bounds::BoundsResult;
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
 use recon_io::{
-    MotionState, OutputFolder, TriangleMesh, summary, write_contact_curves, write_motion, write_ply,
-    write_radius_functions, write_report,
+    FolderTarget, MotionState, OutputFolder, TriangleMesh, summary, write_contact_curves, write_motion,
+    write_ply, write_radius_functions, write_report,
 };
 use serde_json::Value;
 use std::io::{self, Write};
-use std::path::Path;
 
 /// A further file of a folder: its name and its contents.
 pub(crate) type Extra = (String, Vec<u8>);
 
 /// Writes everything about a reconstruction; returns the summary.
 pub(crate) fn write_reconstruction_folder(
-    target: &Path,
+    target: FolderTarget,
     made: &Reconstruction,
     extras: &[Extra],
 ) -> Result<Value, CliError> {
     let data = &made.data;
     let figures = summary(data);
     while_writing(|| {
-        let folder = Folder(OutputFolder::create(target)?);
+        let mut folder = Folder(target.begin()?);
         folder.write("motion.csv", |to| write_motion(&data.times, &data.motion, to))?;
         folder.write("contact_curves.csv", |to| write_contact_curves(data, to))?;
         folder.write("radius_functions.csv", |to| write_radius_functions(data, to))?;
@@ -40,14 +39,14 @@ pub(crate) fn write_reconstruction_folder(
 
 /// Writes what contacts without forces give.
 pub(crate) fn write_touch_folder(
-    target: &Path,
+    target: FolderTarget,
     times: &[f64],
     motion: &[MotionState],
     bounds: Option<&BoundsResult>,
     figures: &Value,
 ) -> Result<(), CliError> {
     while_writing(|| {
-        let folder = Folder(OutputFolder::create(target)?);
+        let mut folder = Folder(target.begin()?);
         folder.write("motion.csv", |to| write_motion(times, motion, to))?;
         let (lower, upper) = bounds.map_or((None, None), |b| (b.lower.as_ref(), b.upper.as_ref()));
         folder.write_mesh("lower_bound.ply", "inside the object; metres, body axes", lower)?;
@@ -59,12 +58,12 @@ pub(crate) fn write_touch_folder(
 
 /// Writes the meshes of bounds and their figures.
 pub(crate) fn write_bounds_folder(
-    target: &Path,
+    target: FolderTarget,
     made: &BoundsResult,
     figures: &Value,
 ) -> Result<(), CliError> {
     while_writing(|| {
-        let folder = Folder(OutputFolder::create(target)?);
+        let mut folder = Folder(target.begin()?);
         folder.write_mesh("lower_bound.ply", "inside the object; metres", made.lower.as_ref())?;
         folder.write_mesh("upper_bound.ply", "around the object; metres", made.upper.as_ref())?;
         for (name, comment, mesh) in &made.others {
@@ -80,7 +79,7 @@ struct Folder(OutputFolder);
 
 impl Folder {
     fn write(
-        &self,
+        &mut self,
         name: &str,
         contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), CliError> {
@@ -88,7 +87,7 @@ impl Folder {
         Ok(self.0.write(name, |to| contents(&mut Checked(to)))?)
     }
 
-    fn write_mesh(&self, name: &str, comment: &str, mesh: Option<&TriangleMesh>) -> Result<(), CliError> {
+    fn write_mesh(&mut self, name: &str, comment: &str, mesh: Option<&TriangleMesh>) -> Result<(), CliError> {
         mesh.map_or(Ok(()), |mesh| self.write(name, |to| write_ply(mesh, comment, to)))
     }
 

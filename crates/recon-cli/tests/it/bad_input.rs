@@ -158,7 +158,7 @@ fn folders_that_cannot_be_written_are_named_and_nothing_is_lost() {
         refused(&scratch, &["reconstruct", "log.csv", "--scene", "scene.toml", "-o", target], 5, words);
     };
     reconstruct("log.csv/out", &["log.csv"]);
-    reconstruct("log.csv", &["not written by recon", "name another folder"]);
+    reconstruct("log.csv", &["log.csv exists and is no folder", "name another folder"]);
     if cfg!(target_os = "linux") {
         // Nobody, not even root, makes folders there.
         reconstruct("/proc/recon-out", &["/proc/recon-out"]);
@@ -166,7 +166,7 @@ fn folders_that_cannot_be_written_are_named_and_nothing_is_lost() {
     }
     std::fs::create_dir(scratch.path().join("thesis")).unwrap();
     scratch.write("thesis/years.tex", "of work");
-    reconstruct("thesis", &["thesis exists", "not written by recon"]);
+    reconstruct("thesis", &["thesis holds", "not written by recon", "years.tex"]);
     assert_eq!(scratch.read("thesis/years.tex"), "of work");
 }
 

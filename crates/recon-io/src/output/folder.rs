@@ -1,197 +1,184 @@
+use super::checksum::Summed;
+use super::manifest::{Contents, Entry, MANIFEST, Manifest, STAGE};
+use super::place::{input_in, resolved};
 use super::{OutputError, sibling};
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// The file by which a folder of recon's is known; only such a folder, or an empty one, is replaced.
-const MARK: &str = "summary.json";
+/// Where a folder is to be written, found to be possible before anything is computed.
+#[derive(Clone, Debug)]
+pub struct FolderTarget {
+    /// As the user named it.
+    named: PathBuf,
+    /// Links followed.
+    place: PathBuf,
+    /// What stands there and is not recon's.
+    foreign: Vec<OsString>,
+}
 
-/// A folder that appears under its name only once everything in it is complete and on the disk.
+impl FolderTarget {
+    /// A folder of results named `path`, made from `inputs` (`-` for standard input). What stands there must be recon's
+    /// own and unchanged, as the manifest in the folder tells; with `force` other files may stand beside the results,
+    /// and stay.
+    ///
+    /// # Errors
+    /// [`OutputError`] when an input lies in the folder, something foreign stands there, or it is no folder.
+    pub fn new(path: impl AsRef<Path>, inputs: &[PathBuf], force: bool) -> Result<Self, OutputError> {
+        let named = path.as_ref().to_owned();
+        if named.as_os_str().is_empty() {
+            return Err(OutputError::NoName { path: named });
+        }
+        let place = resolved(&named).map_err(OutputError::io("find", &named))?;
+        let foreign = match Contents::of(&place) {
+            Err(e) if e.kind() == io::ErrorKind::NotADirectory && place.exists() => {
+                return Err(OutputError::NotAFolder { path: named });
+            }
+            contents => contents.map_err(OutputError::io("read", &named))?.foreign,
+        };
+        if let Some(input) = input_in(&place, inputs) {
+            return Err(OutputError::InputWithin { path: named, input: input.to_owned() });
+        }
+        if foreign.is_empty() || force {
+            let foreign = foreign.into_iter().map(|(name, _)| name).collect();
+            return Ok(Self { named, place, foreign });
+        }
+        let words =
+            foreign.iter().take(NAMED).map(|(name, what)| format!("{}{what}", name.to_string_lossy()));
+        let more = foreign.len().saturating_sub(NAMED);
+        let more = (more > 0).then(|| format!("and {more} more"));
+        let names = words.chain(more).collect::<Vec<_>>().join(", ");
+        Err(OutputError::Foreign { path: named, names })
+    }
+
+    /// Begins the folder.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`] when nothing can be created there.
+    pub fn begin(self) -> Result<OutputFolder, OutputError> {
+        let temporary = if self.place.is_dir() {
+            // Within the folder: it may be a file system of its own, and what stands beside results stays untouched.
+            self.place.join(format!("{STAGE}-{}", std::process::id()))
+        } else {
+            let parent = self.place.parent().unwrap_or(Path::new("/"));
+            fs::create_dir_all(parent).map_err(OutputError::io("create", parent))?;
+            sibling(&self.place, "partial")?
+        };
+        fs::create_dir(&temporary).map_err(OutputError::io("create", &self.named))?;
+        Ok(OutputFolder { target: self, temporary, files: Vec::new() })
+    }
+
+    /// What stands there now, apart from the hidden folder of new files.
+    fn contents_beside(&self, temporary: &Path) -> Result<Contents, OutputError> {
+        let mut contents = Contents::of(&self.place).map_err(OutputError::io("read", &self.named))?;
+        contents.foreign.retain(|(name, _)| Some(name.as_os_str()) != temporary.file_name());
+        Ok(contents)
+    }
+}
+
+/// Foreign files that are named one by one.
+const NAMED: usize = 5;
+
+/// A folder whose files appear under their names only once all of them are complete and on the disk.
 ///
-/// Until [`commit`](Self::commit) the files stand in a hidden folder beside it, which is removed when this value is
-/// dropped: after an error, an interruption or a full disk the target is as it was.
+/// Until [`commit`](Self::commit) they stand in a hidden folder, which is removed when this value is dropped: after an
+/// error, an interruption or a full disk the target is as it was.
 #[derive(Debug)]
 pub struct OutputFolder {
-    target: PathBuf,
+    target: FolderTarget,
     temporary: PathBuf,
+    files: Vec<Entry>,
 }
 
 impl OutputFolder {
-    /// Begins a folder that is to stand at `target`.
-    ///
-    /// # Errors
-    /// [`OutputError::Occupied`] when something stands there that recon did not write, and [`OutputError::Io`] when
-    /// nothing can be created beside it.
-    pub fn create(target: impl AsRef<Path>) -> Result<Self, OutputError> {
-        let target = target.as_ref().to_owned();
-        check_replaceable(&target)?;
-        let temporary = sibling(&target, "partial")?;
-        if let Some(parent) = target.parent().filter(|p| !p.as_os_str().is_empty()) {
-            fs::create_dir_all(parent).map_err(OutputError::io("create", parent))?;
-        }
-        fs::create_dir(&temporary).map_err(OutputError::io("create", &target))?;
-        Ok(Self { target, temporary })
-    }
-
-    /// Where the folder is to stand.
-    #[must_use]
-    pub fn target(&self) -> &Path {
-        &self.target
-    }
-
     /// Writes one file of the folder to the disk.
     ///
     /// # Errors
-    /// [`OutputError::Io`] names the file as it would have been called.
+    /// [`OutputError::Io`] names the file as it would have been called; [`OutputError::Collision`] when a file of that
+    /// name stands there that is not recon's to replace.
     pub fn write(
-        &self,
+        &mut self,
         name: &str,
-        contents: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+        contents: impl FnOnce(&mut Summed<BufWriter<File>>) -> io::Result<()>,
     ) -> Result<(), OutputError> {
-        let write = || -> io::Result<()> {
-            let mut writer = BufWriter::new(File::create_new(self.temporary.join(name))?);
+        if self.target.foreign.iter().any(|foreign| foreign == name) {
+            return Err(OutputError::Collision { path: self.target.named.join(name) });
+        }
+        let write = || {
+            let mut writer = Summed::new(BufWriter::new(File::create_new(self.temporary.join(name))?));
             contents(&mut writer)?;
             writer.flush()?;
-            writer.get_ref().sync_all()
+            let (writer, sum) = writer.finish();
+            writer.get_ref().sync_all()?;
+            Ok(sum)
         };
-        write().map_err(OutputError::io("write", &self.target.join(name)))
+        let sum = write().map_err(OutputError::io("write", &self.target.named.join(name)))?;
+        if name != MANIFEST {
+            self.files.push(Entry::new(name, &sum));
+        }
+        Ok(())
     }
 
-    /// Puts the folder in place. A folder that stood there is moved aside first and removed last.
+    /// Puts the files in place, those of an earlier run away, and leaves everything else as it is.
     ///
     /// # Errors
-    /// [`OutputError::Io`]; the earlier folder is then put back.
-    pub fn commit(self) -> Result<(), OutputError> {
-        if !self.target.exists() {
-            return fs::rename(&self.temporary, &self.target)
-                .map_err(OutputError::io("put in place", &self.target));
+    /// [`OutputError`]; what stood there before stands there again.
+    pub fn commit(mut self) -> Result<(), OutputError> {
+        let manifest =
+            Manifest { recon: env!("CARGO_PKG_VERSION").to_owned(), files: std::mem::take(&mut self.files) };
+        self.write(MANIFEST, |to| {
+            serde_json::to_writer_pretty(&mut *to, &manifest)?;
+            writeln!(to)
+        })?;
+        let FolderTarget { named, place, .. } = &self.target;
+        if !self.temporary.starts_with(place) {
+            return fs::rename(&self.temporary, place).map_err(OutputError::io("put in place", named));
         }
-        let old = sibling(&self.target, "old")?;
-        fs::rename(&self.target, &old).map_err(OutputError::io("replace", &self.target))?;
-        if let Err(source) = fs::rename(&self.temporary, &self.target) {
-            // Best effort: the error that matters is the one above.
-            let _ = fs::rename(&old, &self.target);
-            return Err(OutputError::Io { action: "put in place", path: self.target.clone(), source });
+        // Whatever has appeared or changed since the start is not recon's either.
+        let stands = self.target.contents_beside(&self.temporary)?;
+        // The manifest goes first and comes last: without it no half of anything passes for a result.
+        let mut new: Vec<&str> = manifest.files.iter().map(|file| file.name.as_str()).collect();
+        new.push(MANIFEST);
+        if let Some(name) = new.iter().find(|name| stands.foreign.iter().any(|(other, _)| other == **name)) {
+            return Err(OutputError::Collision { path: named.join(name) });
         }
-        fs::remove_dir_all(&old).map_err(OutputError::io("remove", &old))
+        let mut old = stands.own;
+        old.sort_by_key(|name| name != MANIFEST);
+        exchange(&self.temporary, place, &old, &new).map_err(OutputError::io("put results into", named))?;
+        fs::remove_dir_all(&self.temporary).map_err(OutputError::io("remove", &self.temporary))
     }
+}
+
+/// Where files of an earlier run wait until those of the new one are in place.
+const EARLIER: &str = "earlier";
+
+/// Moves the files `old` of `place` into a folder of `stage`, then the files `new` of `stage` into `place`; after an
+/// error all the way back.
+fn exchange(stage: &Path, place: &Path, old: &[String], new: &[&str]) -> io::Result<()> {
+    let aside = stage.join(EARLIER);
+    fs::create_dir(&aside)?;
+    let away = old.iter().map(|name| (place.join(name), aside.join(name)));
+    let moves: Vec<_> = away.chain(new.iter().map(|name| (stage.join(name), place.join(name)))).collect();
+    for (done, (from, to)) in moves.iter().enumerate() {
+        if let Err(error) = fs::rename(from, to) {
+            for (from, to) in moves[..done].iter().rev() {
+                fs::rename(to, from)?;
+            }
+            return Err(error);
+        }
+    }
+    Ok(())
 }
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        // After a commit there is nothing under this name; otherwise there is no one left to tell of a failure.
-        let _ = fs::remove_dir_all(&self.temporary);
-    }
-}
-
-fn check_replaceable(target: &Path) -> Result<(), OutputError> {
-    let occupied = || OutputError::Occupied { path: target.to_owned() };
-    match fs::read_dir(target) {
-        Ok(mut entries) => {
-            if entries.next().is_none() || target.join(MARK).is_file() {
-                Ok(())
-            } else {
-                Err(occupied())
-            }
+        // After a commit there is nothing under this name; otherwise there is no one left to tell of a failure. What
+        // could not be moved back to its place is not removed.
+        let stranded =
+            fs::read_dir(self.temporary.join(EARLIER)).is_ok_and(|mut files| files.next().is_some());
+        if !stranded {
+            let _ = fs::remove_dir_all(&self.temporary);
         }
-        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(()),
-        Err(e) if e.kind() == io::ErrorKind::NotADirectory => Err(occupied()),
-        Err(e) => Err(OutputError::io("read", target)(e)),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::AtomicFile;
-    use super::*;
-
-    /// A folder of this test's own, removed at its end.
-    struct Scratch(PathBuf);
-
-    impl Scratch {
-        fn new(name: &str) -> Self {
-            let path = std::env::temp_dir().join(format!("recon-io-{name}-{}", std::process::id()));
-            fs::create_dir_all(&path).unwrap();
-            Self(path)
-        }
-
-        fn names(&self) -> Vec<String> {
-            let mut names: Vec<_> = fs::read_dir(&self.0)
-                .unwrap()
-                .map(|e| e.unwrap().file_name().into_string().unwrap())
-                .collect();
-            names.sort();
-            names
-        }
-    }
-
-    impl Drop for Scratch {
-        fn drop(&mut self) {
-            let _ = fs::remove_dir_all(&self.0);
-        }
-    }
-
-    fn write_and_commit(target: &Path, text: &str) -> Result<(), OutputError> {
-        let folder = OutputFolder::create(target)?;
-        folder.write(MARK, |w| w.write_all(text.as_bytes()))?;
-        folder.commit()
-    }
-
-    #[test]
-    fn folder_appears_whole_and_replaces_its_own_kind_only() {
-        let scratch = Scratch::new("whole");
-        let target = scratch.0.join("deep/out");
-        write_and_commit(&target, "one").unwrap();
-        write_and_commit(&target, "two").unwrap();
-        assert_eq!(fs::read_to_string(target.join(MARK)).unwrap(), "two");
-        assert_eq!(fs::read_dir(scratch.0.join("deep")).unwrap().count(), 1, "nothing is left beside it");
-        fs::create_dir(scratch.0.join("theirs")).unwrap();
-        fs::write(scratch.0.join("theirs/thesis.tex"), "years").unwrap();
-        let refused = write_and_commit(&scratch.0.join("theirs"), "x");
-        assert!(matches!(refused, Err(OutputError::Occupied { .. })));
-        assert_eq!(fs::read_to_string(scratch.0.join("theirs/thesis.tex")).unwrap(), "years");
-    }
-
-    #[test]
-    fn abandoned_results_leave_nothing() {
-        let scratch = Scratch::new("abandoned");
-        let folder = OutputFolder::create(scratch.0.join("out")).unwrap();
-        folder.write("a.csv", |w| w.write_all(b"half")).unwrap();
-        let full = folder.write("b.csv", |_| Err(io::ErrorKind::StorageFull.into()));
-        assert!(
-            matches!(full, Err(OutputError::Io { action: "write", ref path, .. }) if path.ends_with("out/b.csv"))
-        );
-        assert_eq!(scratch.names().len(), 1);
-        drop(folder);
-        let mut file = AtomicFile::create(scratch.0.join("log.csv")).unwrap();
-        file.write_all(b"half").unwrap();
-        drop(file);
-        assert!(scratch.names().is_empty(), "{:?}", scratch.names());
-    }
-
-    #[test]
-    fn file_replaces_the_old_one_only_when_complete() {
-        let scratch = Scratch::new("file");
-        let target = scratch.0.join("log.csv");
-        fs::write(&target, "old").unwrap();
-        let mut file = AtomicFile::create(&target).unwrap();
-        file.write_all(b"new").unwrap();
-        assert_eq!(fs::read_to_string(&target).unwrap(), "old");
-        file.commit().unwrap();
-        assert_eq!(fs::read_to_string(&target).unwrap(), "new");
-        assert_eq!(scratch.names(), ["log.csv"]);
-    }
-
-    #[test]
-    fn targets_that_cannot_be_are_named() {
-        let scratch = Scratch::new("bad");
-        fs::write(scratch.0.join("file"), "").unwrap();
-        assert!(matches!(OutputFolder::create(scratch.0.join("file")), Err(OutputError::Occupied { .. })));
-        assert!(OutputFolder::create(scratch.0.join("file/out")).is_err());
-        assert!(matches!(
-            OutputFolder::create("/"),
-            Err(OutputError::Occupied { .. } | OutputError::NoName { .. })
-        ));
-        assert!(matches!(AtomicFile::create(&scratch.0), Err(OutputError::Occupied { .. })));
     }
 }

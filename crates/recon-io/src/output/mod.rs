@@ -1,10 +1,17 @@
-//! Results that appear as a whole or not at all.
+//! Results that appear as a whole or not at all, and never in the place of what recon did not write.
 
+mod checksum;
 mod file;
 mod folder;
+mod manifest;
+mod place;
+#[cfg(test)]
+mod tests;
 
-pub use file::AtomicFile;
-pub use folder::OutputFolder;
+pub use checksum::Summed;
+pub use file::{AtomicFile, FileTarget};
+pub use folder::{FolderTarget, OutputFolder};
+pub use place::is_standard_output;
 
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -22,14 +29,68 @@ pub enum OutputError {
         /// Why it failed.
         source: std::io::Error,
     },
-    /// The target is not something that recon wrote, so it is not replaced.
-    #[error("{} exists and was not written by recon, so it is not replaced; name another folder or remove it", path.display())]
-    Occupied {
+    /// The target is a file, and a folder is to be written.
+    #[error("{} exists and is no folder; name another folder", path.display())]
+    NotAFolder {
         /// The target.
         path: PathBuf,
     },
-    /// The target has no name of its own, as `..` or `/` has not.
-    #[error("{} cannot be the name of a result; name a file or folder to be made", path.display())]
+    /// The target is a folder, and a file is to be written.
+    #[error("{} is a folder; name a file in it", path.display())]
+    IsFolder {
+        /// The target.
+        path: PathBuf,
+    },
+    /// The target is a disk.
+    #[error("{} is a block device, and what it holds would be lost; name a file", path.display())]
+    BlockDevice {
+        /// The target.
+        path: PathBuf,
+    },
+    /// Something stands in the folder that is not recon's to replace.
+    #[error(
+        "{} holds what was not written by recon, or was changed since: {names}; name another folder, move these away, or \
+         give --force to write beside them (no such file is ever replaced or removed)",
+        path.display()
+    )]
+    Foreign {
+        /// The target.
+        path: PathBuf,
+        /// What stands there.
+        names: String,
+    },
+    /// A file of a result would have to take the place of one that is not recon's.
+    #[error(
+        "{} was not written by recon, or was changed since, so it is not replaced, --force or not; move it away or name \
+         another folder",
+        path.display()
+    )]
+    Collision {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The target is an input.
+    #[error("{} is the input {}, which would be lost; name another file", path.display(), input.display())]
+    Input {
+        /// The target.
+        path: PathBuf,
+        /// As it was given.
+        input: PathBuf,
+    },
+    /// An input lies in the target.
+    #[error(
+        "the input {} lies in the folder {}, where results take the place of files; name another folder",
+        input.display(),
+        path.display()
+    )]
+    InputWithin {
+        /// The target.
+        path: PathBuf,
+        /// As it was given.
+        input: PathBuf,
+    },
+    /// The target has no name of its own.
+    #[error("`{}` cannot be the name of a result; name a file or folder to be made", path.display())]
     NoName {
         /// The target.
         path: PathBuf,
