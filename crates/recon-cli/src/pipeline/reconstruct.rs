@@ -77,6 +77,13 @@ pub(crate) fn reconstruct(
                 .to_owned(),
         );
     }
+    let noise = estimate.evidence.noise.contact;
+    if bounded.is_some() && noise > NOTABLE_NOISE * size {
+        warnings.push(format!(
+            "Contacts are noisy by {noise:.1e} m: the bounds have margins with which they hold at {:.0} % confidence.",
+            100.0 * CONFIDENCE
+        ));
+    }
     let contradiction = contradiction_among(&contacts);
     let (drawn, lower, upper) = match bounded {
         Some(BoundsResult { drawn, lower, upper, warnings: of_bounds, .. }) => {
@@ -85,7 +92,8 @@ pub(crate) fn reconstruct(
         }
         None => (None, None, None),
     };
-    let checks = Checks { implausible: !odd.is_empty(), contradiction, size, identified };
+    let bounds_at = drawn.is_some().then_some(CONFIDENCE);
+    let checks = Checks { implausible: !odd.is_empty(), contradiction, size, identified, bounds_at };
     let axes = log.truth().map_or(DQuat::IDENTITY, |truth| match identified {
         None => nearest_turn(&mass, truth[0].R_WO, estimate.start.R_WO),
         // Axes that were found need not be those of the truth: turns are compared from the first sample on.

@@ -1,6 +1,6 @@
 //! Bounds that hold at a stated confidence: from noisy contacts, and from poses above a plane.
 
-use super::bounds::{BoundsResult, meshes, own};
+use super::bounds::{BoundsResult, drawn_surfaces, meshes, own};
 use crate::error::CliError;
 use glam::DMat3;
 use recon::contact_kinematics::{CurvatureRadii, CurvePoint};
@@ -61,7 +61,7 @@ pub(crate) fn sharp_bounds(
         largest_gap: polytopes.largest_gap().map(|gap| gap.distance),
     };
     let warnings = warning.into_iter().collect();
-    Ok((BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings }, about))
+    Ok((BoundsResult { drawn, lower, upper, others: Vec::new(), warnings }, about))
 }
 
 /// Bounds of the body of a motion estimate that hold at `confidence` for all that the estimate knows to be uncertain: the noise
@@ -112,12 +112,13 @@ fn finished(bounds: &CertainBounds, warning: Option<String>) -> Result<BoundsRes
     let solid = bounds.lower.as_ref().and_then(|lower| lower.solid());
     let lower = solid.map(|solid| own(solid.mesh())).transpose()?;
     let upper = bounds.upper.as_ref().map(|upper| own(upper.mesh())).transpose()?;
+    let (few_lower, few_upper) = drawn_surfaces(solid, bounds.upper.as_ref())?;
     let drawn = Bounds {
         lower: Bound {
-            mesh: lower.clone().unwrap_or_default(),
+            mesh: few_lower.unwrap_or_default(),
             volume: solid.map_or(0.0, |solid| solid.volume()),
         },
-        upper: upper.clone().map(|mesh| Bound {
+        upper: few_upper.map(|mesh| Bound {
             mesh,
             volume: bounds.upper.as_ref().map_or(f64::INFINITY, |upper| upper.volume()),
         }),
@@ -136,7 +137,7 @@ fn finished(bounds: &CertainBounds, warning: Option<String>) -> Result<BoundsRes
                 .to_owned(),
         );
     }
-    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings })
+    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), warnings })
 }
 
 /// Contacts with their noise, without outliers.
@@ -237,8 +238,5 @@ pub(crate) fn pose_bounds(
         upper: Some(Bound { mesh: upper.clone(), volume: made.upper.volume() }),
         largest_gap: made.largest_gap().map(|gap| gap.distance),
     };
-    Ok((
-        BoundsResult { drawn, lower, upper: Some(upper), others: Vec::new(), contradiction: 0.0, warnings },
-        about,
-    ))
+    Ok((BoundsResult { drawn, lower, upper: Some(upper), others: Vec::new(), warnings }, about))
 }

@@ -13,4 +13,5 @@ mod export;
 mod follow;
 #[cfg(unix)]
 mod interrupted;
+mod margins;
 mod planar;

@@ -3,7 +3,7 @@
 use super::model::{NoiseError, NoisyContact};
 use super::pose::bound;
 use super::quantile;
-use super::windows::{Window, windows};
+use super::windows::{LONGEST, Window, windows};
 use crate::curvature::{CurvatureError, SharpBounds};
 use contact_kinematics::CurvatureRadii;
 use glam::DVec3;
@@ -37,7 +37,7 @@ impl SharpBounds {
         if !(0.0 <= min && min < max && max.is_finite()) {
             return Err(CurvatureError::Radii { min, max }.into());
         }
-        let lists = windows(curves);
+        let lists = windows(curves, LONGEST);
         let count: usize = lists.iter().map(Vec::len).sum();
         let alpha = 0.5 * (1.0 - confidence);
         let poses = quantile::length6(alpha / curves.iter().map(Vec::len).sum::<usize>().max(1) as f64);

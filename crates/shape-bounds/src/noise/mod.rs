@@ -21,9 +21,9 @@ pub use pose::PoseNoise;
 use crate::bounds::{BoundsError, Gap, ShapeBounds};
 use crate::halfspaces::{Intersection, Polyhedron};
 use crate::hull::Hull;
-use lower::certain_points;
+use lower::{certain_points, nearly_exact};
 use upper::certain_half_spaces;
-use windows::windows;
+use windows::{LONGEST, windows};
 
 impl ShapeBounds {
     /// Bounds between which a convex body lies with at least the stated `confidence` (say 0.95), for both bounds and all
@@ -83,8 +83,10 @@ impl CertainBounds {
         NoiseError::check_contacts(curves)?;
         let contacts: Vec<_> = curves.iter().flatten().map(|c| c.contact).collect();
         ShapeBounds::check(&contacts)?;
-        let lists = windows(curves);
         let alpha = (1.0 - confidence) / 2.0;
+        let singles = windows(curves, 1);
+        let exact = singles.first().is_some_and(|list| nearly_exact(list, alpha, poses));
+        let lists = if exact { singles } else { windows(curves, LONGEST) };
         let upper = match certain_half_spaces(&lists, alpha, poses) {
             Ok(half_spaces) => match Intersection::of(&half_spaces).map_err(BoundsError::from)? {
                 Intersection::Bounded(upper) => Some(upper),

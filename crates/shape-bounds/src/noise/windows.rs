@@ -10,7 +10,7 @@ use contact_kinematics::Direction;
 use glam::{DMat3, DVec3};
 
 /// The longest run, in contacts: beyond, the noise left is below a tenth and the loss on a curve large.
-const LONGEST: usize = 128;
+pub(super) const LONGEST: usize = 128;
 
 /// The mean of a run of contacts.
 #[derive(Clone, Copy, Debug)]
@@ -41,9 +41,9 @@ pub(super) struct Window {
     pub(super) turning: f64,
 }
 
-/// Windows of each length over `curves`, one list for each length.
-pub(super) fn windows(curves: &[Vec<NoisyContact>]) -> Vec<Vec<Window>> {
-    let longest = curves.iter().map(Vec::len).max().unwrap_or(0).min(LONGEST);
+/// Windows of each length up to the `longest` over `curves`, one list for each length.
+pub(super) fn windows(curves: &[Vec<NoisyContact>], longest: usize) -> Vec<Vec<Window>> {
+    let longest = curves.iter().map(Vec::len).max().unwrap_or(0).min(longest);
     let mut lists = Vec::new();
     let mut length = 1;
     while length <= longest {
