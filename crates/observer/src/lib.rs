@@ -15,7 +15,7 @@ pub mod planar;
 mod three_palms;
 
 pub use core::{
-    Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Model, NewtonEstimate,
+    Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Link, Model, NewtonEstimate,
     NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start, Status, describe_direction, rk4,
     rk4_linearised, solve_batch, solve_batch_along, solve_batch_from,
 };
@@ -24,10 +24,10 @@ pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Normal
 pub use three_palms::{
     BodyEstimate, CurveUncertainty, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate,
     MotionState, NoiseLevel, OtherMotion, PaperError, PaperMethod, PaperReconstruction, PaperStart,
-    PredictorCorrector, Quantity, Reason, Reliability, Scales, SensorConstant, SensorEstimate, SensorPriors,
-    StartState, Track, TrackError, UnknownBody, WeakDirection, equivalent_orientations, estimate_body,
-    estimate_body_from, estimate_motion, estimate_motion_and_sensors, estimate_motion_from,
-    integrate_paper_system, nearest_turn,
+    PoseCovariance, PoseErrors, PredictorCorrector, Quantity, Reason, Reliability, Scales, SensorConstant,
+    SensorEstimate, SensorPriors, StartState, Track, TrackError, UnknownBody, WeakDirection,
+    equivalent_orientations, estimate_body, estimate_body_from, estimate_motion, estimate_motion_and_sensors,
+    estimate_motion_from, integrate_paper_system, nearest_turn,
 };
 #[cfg(feature = "palms")]
 pub use three_palms::{

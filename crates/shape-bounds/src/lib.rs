@@ -63,7 +63,10 @@ pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
-pub use noise::{ContactNoise, NoiseError, NoisyContact, Outlier, estimate_noise, without_outliers};
+pub use noise::{
+    CertainBounds, ContactNoise, NoiseError, NoisyContact, Outlier, PoseNoise, estimate_noise,
+    without_outliers,
+};
 pub use palms::{PalmContact, PalmError, PalmIntersection};
 pub use poses::{
     BodyPose, CALIBRATED_RUNS, CONFIDENCES, PoseBounds, PoseError, PoseRule, half_space_above_plane,

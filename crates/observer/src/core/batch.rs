@@ -5,6 +5,7 @@
 
 use super::model::{Model, Sample};
 use super::newton::check_start;
+use super::node::Link;
 use super::report::{ObserverError, Report, ScaledInformation, Status};
 use super::window::{Start, Window};
 use nalgebra::{SMatrix, SVector};
@@ -51,6 +52,8 @@ pub struct BatchSolution<const N: usize> {
     pub report: Report<N>,
     /// Covariance of the state at each sample; that of the first also stands in the report.
     pub covariances: Vec<SMatrix<f64, N, N>>,
+    /// What makes them one joint distribution: how the deviation at each sample from the second on follows the one before.
+    pub links: Vec<Link<N>>,
     /// Chi-squared of the fit: squared residuals of outputs and process noise in units of their deviations. With all as
     /// stated it has as many degrees of freedom as there are measured channels beyond the `N` states.
     pub chi_squared: f64,
@@ -206,6 +209,7 @@ fn iterate<Mo: Model<N, M>, const N: usize, const M: usize>(
     Ok(BatchSolution {
         states,
         covariances,
+        links: window.links(),
         chi_squared,
         prior_cost: window.prior_cost(model),
         log_determinant,

@@ -16,6 +16,7 @@ pub use batch::{BatchOptions, BatchSolution, solve_batch, solve_batch_along, sol
 pub use ekf::{EkfEstimate, ExtendedKalmanFilter};
 pub use model::{Model, Sample};
 pub use newton::{Arrival, NewtonEstimate, NewtonObserver, NewtonOptions};
+pub use node::Link;
 #[cfg(feature = "palms")]
 pub(crate) use report::direction_words;
 pub use report::{ObserverError, Report, Status, describe_direction};

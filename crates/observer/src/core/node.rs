@@ -35,17 +35,30 @@ impl<const N: usize, const M: usize> Node<N, M> {
         }
     }
 
+    /// How the deviation here follows that of the node before, all data considered.
+    pub(super) fn link(&self) -> Link<N> {
+        match &self.noise {
+            Some((gain, q)) => Link { transition: gain * self.transition, noise: gain * q },
+            None => Link { transition: self.transition, noise: SMatrix::zeros() },
+        }
+    }
+
     /// Covariance here, all data considered, from that of the node before.
     pub(super) fn carried(&self, before: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
-        let p = match &self.noise {
-            Some((gain, q)) => {
-                let a = gain * self.transition;
-                a * before * a.transpose() + gain * q
-            }
-            None => self.transition * before * self.transition.transpose(),
-        };
+        let Link { transition, noise } = self.link();
+        let p = transition * before * transition.transpose() + noise;
         (p + p.transpose()) * 0.5
     }
+}
+
+/// How the deviation of a state follows that of the one before, all data considered: `d_k = transition d_(k-1)` and an
+/// independent deviation. With the covariance of the first state it is the joint distribution of all of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Link<const N: usize> {
+    /// Derivative by the deviation before.
+    pub transition: SMatrix<f64, N, N>,
+    /// Covariance of the independent part.
+    pub noise: SMatrix<f64, N, N>,
 }
 
 /// Knowledge of the first state: cost `d' L d / 2 - v' d`, `d` the step that leads to it from `at`.

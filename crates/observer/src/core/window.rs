@@ -1,7 +1,7 @@
 //! Gauss-Newton on a stretch of samples: linearise forward, eliminate backward, step forward.
 
 use super::model::{Model, Sample};
-use super::node::{Node, Prior};
+use super::node::{Link, Node, Prior};
 use super::report::ScaledInformation;
 use nalgebra::{SMatrix, SVector};
 use std::collections::VecDeque;
@@ -295,6 +295,11 @@ impl<const N: usize, const M: usize> Window<N, M> {
             p
         };
         self.nodes.iter().enumerate().map(one).collect()
+    }
+
+    /// How each deviation follows the one before, from the second node on.
+    pub(super) fn links(&self) -> Vec<Link<N>> {
+        self.nodes.iter().skip(1).map(Node::link).collect()
     }
 
     /// Drops the first sample. What it and the prior said is carried to the next one, weakened by `keep` (one: all of

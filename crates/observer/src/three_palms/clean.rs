@@ -21,7 +21,16 @@ pub(super) fn stride(track: &Track, scales: &Scales) -> usize {
     ((track.len() as f64 / nodes) as usize).clamp(1, track.len() / 2)
 }
 
-/// Covariance of the scaled unknowns of a fit to a log with next to no noise, and the residual that the noise explains.
+/// What is known of the scaled unknowns of a fit.
+pub(super) struct Clean<const P: usize> {
+    pub(super) covariance: SMatrix<f64, P, P>,
+    /// Residual that noise explains, m/s.
+    pub(super) predicted: f64,
+    /// Deviation of the contacts that would explain what is left beside it, m.
+    pub(super) lasting: f64,
+}
+
+/// What is known of a fit to a log with next to no noise.
 ///
 /// What noise does not explain is a lasting error of sensors or model: as many independent ones as there are correlation
 /// times in the log.
@@ -32,14 +41,20 @@ pub(super) fn clean_covariance<const P: usize>(
     noise: &NoiseLevel,
     stride: usize,
     residuals: &[[f64; 3]],
-) -> (SMatrix<f64, P, P>, f64) {
+) -> Clean<P> {
     let per_node = stride as f64;
     let sampling = Sampling { per_node, weight: per_node, direct: per_node };
     let inverse = information_inverse(observability);
     let from_noise = propagate_to(steps, rows, &inverse, noise, sampling);
     let lasting = root_mean_square(residuals).powi(2) - from_noise.residual.powi(2);
     let excess = lasting.max(0.0) * correlation_samples(residuals);
-    (from_noise.covariance + inverse * excess + unknown(observability), from_noise.residual)
+    let slopes: f64 = steps.iter().flat_map(|s| s.by_contact).map(|[a, b]| a * a + b * b).sum();
+    let slope = slopes / (3 * steps.len().max(1)) as f64;
+    Clean {
+        covariance: from_noise.covariance + inverse * excess + unknown(observability),
+        predicted: from_noise.residual,
+        lasting: if slope > 0.0 { (lasting.max(0.0) / slope).sqrt() } else { 0.0 },
+    }
 }
 
 pub(super) fn root_mean_square(residuals: &[[f64; 3]]) -> f64 {

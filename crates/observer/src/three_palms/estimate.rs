@@ -1,5 +1,5 @@
 use super::alternatives::{OtherMotion, refine_best};
-use super::clean::{clean_covariance, stride};
+use super::clean::{Clean, clean_covariance, stride};
 use super::cold_start::{cold_start, fit_near, scales, unexplained};
 use super::convexity::largest_violation;
 use super::covariance::NoiseLevel;
@@ -9,11 +9,12 @@ use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNK
 use super::noise::noise_level;
 use super::orientations::nearest_to_identity;
 use super::polish::polish_all;
+use super::pose_errors::{self, PoseErrors};
 use super::refine::{Refined, Setting};
 use super::state_space::Constant;
 use super::track::{Track, TrackError};
 use super::verdict::{LARGEST_DEVIATION, LARGEST_MISFIT, LARGEST_PLAIN_DEVIATION, judge};
-use crate::least_squares::{Fit, FitStatus, Observability};
+use crate::least_squares::{Fit, FitStatus, LeastSquares, Observability};
 use contact_kinematics::{ContactCurve, CurveError};
 use glam::{DQuat, DVec3};
 use nalgebra::SMatrix;
@@ -80,6 +81,8 @@ pub struct MotionEstimate {
     /// Uncertainty of the curves at some of the samples, where data were adjusted; empty for logs without noise to speak
     /// of.
     pub uncertainty: Vec<CurveUncertainty>,
+    /// How far all poses together may be off, for bounds on the shape. None where not a single motion could be drawn.
+    pub pose_errors: Option<PoseErrors>,
     /// Other motions that were found where the log leaves room for them, those that need the smallest corrections first. Only
     /// looked for where mass and inertia are known.
     pub others: Vec<OtherMotion>,
@@ -167,7 +170,14 @@ fn clean_estimate(
     let residuals = problem.residuals_along(&motion);
     let observability = Observability::new(&fit.normal.information);
     let (steps, rows) = thin_problem.linearised(&fit.point);
-    let (covariance, predicted) = clean_covariance(&steps, &rows, &observability, &noise, stride, &residuals);
+    let Clean { covariance, predicted, lasting } =
+        clean_covariance(&steps, &rows, &observability, &noise, stride, &residuals);
+    let nodes = (0..track.len()).step_by(stride).collect();
+    let poses = |step: &Row| {
+        let motion = thin_problem.motion(&thin_problem.retract(&fit.point, step));
+        Some(motion.iter().map(|m| (m.p_WCm, m.R_WO)).collect())
+    };
+    let pose_errors = pose_errors::of_start(nodes, &covariance, poses, lasting);
     let weakest = weakest_direction(&covariance);
     let evidence =
         Evidence::new(track, &residuals, predicted, &observability, weakest, noise, fit.iterations);
@@ -182,6 +192,7 @@ fn clean_estimate(
         curves,
         radii,
         uncertainty,
+        pose_errors,
         others,
         covariance,
         evidence,
@@ -241,6 +252,7 @@ fn noisy_estimate<const N: usize>(
         curves,
         radii,
         uncertainty,
+        pose_errors: refined.pose_errors(DQuat::IDENTITY, misfit),
         others,
         covariance,
         evidence,

@@ -19,6 +19,7 @@ mod orientations;
 mod paper_method;
 mod paper_system;
 mod polish;
+mod pose_errors;
 mod prior;
 mod quadrature;
 mod random;
@@ -47,6 +48,7 @@ pub use orientations::{equivalent_orientations, nearest_turn};
 pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
+pub use pose_errors::{PoseCovariance, PoseErrors};
 pub use sensors::{SensorConstant, SensorEstimate, SensorPriors, estimate_motion_and_sensors};
 pub use streaming::{MotionStream, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 pub use track::{Track, TrackError};

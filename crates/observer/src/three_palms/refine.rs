@@ -40,6 +40,8 @@ pub(super) struct Refined<const N: usize> {
     /// Largest shift of a state at the start by noise, in its deviations; infinite where as much noise again leads
     /// nowhere.
     pub(super) shift: f64,
+    /// Shifts of all states by pairs of noise, where the covariances are widened by them.
+    pub(super) shifts: Vec<Vec<SVector<f64, N>>>,
     cut: Vec<Block>,
     reach: f64,
     prior: Start<N>,
@@ -98,6 +100,7 @@ impl<const N: usize> Refined<N> {
                 covariance.ger(1.0 / PAIRS as f64, q, q, 1.0);
             }
         }
+        self.shifts = found;
     }
 
     /// Root mean square over pairs of the shift of a state at the start, in its deviations: the largest.
@@ -191,7 +194,18 @@ pub(super) fn refine_along<const N: usize>(
     let prior = known.prior(&model, first, &parameters);
     let MostProbable { solution, improbability, shortfall } =
         most_probable(&model, &inputs, &states, &prior, reach, passes)?;
-    Ok(Refined { model, solution, improbability, shortfall, nodes, shift: 0.0, cut, reach, prior })
+    Ok(Refined {
+        model,
+        solution,
+        improbability,
+        shortfall,
+        nodes,
+        shift: 0.0,
+        shifts: Vec::new(),
+        cut,
+        reach,
+        prior,
+    })
 }
 
 /// The blocks of samples, each with a node in it.

@@ -28,22 +28,24 @@ pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let found = estimate_without_forces(&log.without_truth(), &known)?;
     progress.step("bounding the shape");
     let mut warnings = Vec::new();
-    let bounded = match bounds(&contacts(&log, &found)) {
-        Ok(mut bounded) => {
-            warnings.append(&mut bounded.warnings);
-            let noise = found.evidence.noise_explains;
-            if noise > NOTABLE_NOISE * found.shape.semi_axes.max_element() {
-                warnings.push(format!(
-                    "The bounds take every contact as exact, but means of contacts are noisy by {noise:.1e} m: the object \
-                     may pass the bounds by a few times that of a single contact."
-                ));
+    let noise = found.evidence.noise_explains;
+    let bounded = if noise > NOTABLE_NOISE * found.shape.semi_axes.max_element() {
+        warnings.push(format!(
+            "There are no bounds on the shape: means of contacts are noisy by {noise:.1e} m, and without forces it is not known \
+             how far that moves the poses. The fitted ellipsoid comes with its deviations."
+        ));
+        None
+    } else {
+        match bounds(&contacts(&log, &found)) {
+            Ok(mut bounded) => {
+                warnings.append(&mut bounded.warnings);
+                Some(bounded)
             }
-            Some(bounded)
-        }
-        Err(error) => {
-            let why = error.source().map_or_else(|| error.to_string(), ToString::to_string);
-            warnings.push(format!("The contacts give no bounds under this motion ({why})."));
-            None
+            Err(error) => {
+                let why = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+                warnings.push(format!("The contacts give no bounds under this motion ({why})."));
+                None
+            }
         }
     };
     progress.step("writing the results");

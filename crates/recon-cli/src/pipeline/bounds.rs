@@ -1,5 +1,5 @@
 use crate::error::CliError;
-use recon::shape_bounds::{ContactSample, Hull, Intersection, ShapeBounds};
+use recon::shape_bounds::{ContactSample, Hull, Intersection, Polyhedron, ShapeBounds, SolidHull};
 use recon_io::{Bound, Bounds, MeshError, TriangleMesh};
 
 /// Most contacts that the bounds of a picture are made from: about 6000 triangles a body.
@@ -15,9 +15,6 @@ pub(crate) struct BoundsResult {
     pub(crate) upper: Option<TriangleMesh>,
     /// Further surfaces: file, comment, mesh.
     pub(crate) others: Vec<(&'static str, &'static str, TriangleMesh)>,
-    /// How far the worst contact lies beyond the half-space of another, m: for exact contacts of a convex body at most
-    /// rounding, however they were moved.
-    pub(crate) contradiction: f64,
     /// What the reader must know.
     pub(crate) warnings: Vec<String>,
 }
@@ -31,7 +28,7 @@ pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliErro
         warnings.push(flat(whole.lower()).to_owned());
     }
     warnings.extend(unbounded(&whole));
-    let some = thinned(contacts);
+    let some = some_of(contacts);
     let few = if contacts.len() > some.len() { ShapeBounds::from_contacts(&some).ok() } else { None };
     let few = few.as_ref().unwrap_or(&whole);
     // Fewer contacts may leave nothing to draw where all of them gave bounds; then all are drawn.
@@ -43,14 +40,7 @@ pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliErro
             .map(|all| Bound { mesh: few_upper.unwrap_or(all), volume: whole.upper_volume() }),
         largest_gap: whole.largest_gap().map(|gap| gap.distance),
     };
-    Ok(BoundsResult {
-        drawn,
-        lower,
-        upper,
-        others: Vec::new(),
-        contradiction: contradiction(&some),
-        warnings,
-    })
+    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), warnings })
 }
 
 /// What to say where there is no upper bound.
@@ -61,21 +51,38 @@ pub(super) fn unbounded(bounds: &ShapeBounds) -> Option<String> {
     Some(format!("The contacts leave the object unbounded on some side{side}: there is no upper bound."))
 }
 
-/// How far the worst contact lies beyond the half-space of another, m, among [`DRAWN`] of them.
+/// How far the worst contact lies beyond the half-space of another, m, among [`DRAWN`] of them: for exact contacts of a convex body
+/// at most rounding, however they were moved.
 pub(super) fn contradiction_among(contacts: &[ContactSample]) -> f64 {
-    contradiction(&thinned(contacts))
+    contradiction(&some_of(contacts))
 }
 
-/// At most [`DRAWN`] contacts, spread evenly.
-fn thinned(contacts: &[ContactSample]) -> Vec<ContactSample> {
-    let count = contacts.len().min(DRAWN);
-    (0..count).map(|k| contacts[k * contacts.len() / count]).collect()
+/// At most [`DRAWN`] of them, spread evenly.
+fn some_of<T: Copy>(all: &[T]) -> Vec<T> {
+    let count = all.len().min(DRAWN);
+    (0..count).map(|k| all[k * all.len() / count]).collect()
 }
 
 fn contradiction(contacts: &[ContactSample]) -> f64 {
     let spaces: Vec<_> = contacts.iter().map(ContactSample::half_space).collect();
     let beyond = |c: &ContactSample| spaces.iter().map(|s| s.excess(c.point)).fold(0.0, f64::max);
     contacts.iter().map(beyond).fold(0.0, f64::max)
+}
+
+/// Surfaces of bounds for drawing: of some of their corners and planes, where there are many.
+pub(super) fn drawn_surfaces(
+    lower: Option<&SolidHull>,
+    upper: Option<&Polyhedron>,
+) -> Result<(Option<TriangleMesh>, Option<TriangleMesh>), CliError> {
+    let lower = lower.map(|all| match Hull::of(&some_of(all.vertices())) {
+        Ok(Hull::Solid(few)) => own(few.mesh()),
+        _ => own(all.mesh()),
+    });
+    let upper = upper.map(|all| match Intersection::of(&some_of(&all.face_half_spaces())) {
+        Ok(Intersection::Bounded(few)) => own(few.mesh()),
+        _ => own(all.mesh()),
+    });
+    Ok((lower.transpose()?, upper.transpose()?))
 }
 
 /// A surface as the writer of meshes takes it.

@@ -1,5 +1,6 @@
 //! The estimator's evidence in words and numbers for people.
 
+use glam::DMat3;
 use recon::observer::{IdentifiedBody, MotionEstimate, OtherMotion, Reliability, StartState};
 use recon_io::{Evidence, EvidenceValue, Level, Verdict};
 
@@ -24,6 +25,8 @@ pub(crate) struct Checks {
     pub(crate) size: f64,
     /// Mass and inertia where they were estimated.
     pub(crate) identified: Option<IdentifiedBody>,
+    /// Confidence of the bounds where there are any.
+    pub(crate) bounds_at: Option<f64>,
 }
 
 impl Checks {
@@ -223,6 +226,42 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
              squared deviations more data must be corrected for it, and how many times less probable it is.",
             Level::Caution,
         ));
+    }
+    if let (Some(confidence), Some(errors)) = (checks.bounds_at, &estimate.pose_errors) {
+        let shared = errors.shared();
+        let deviation = |m: DMat3| (m.x_axis.x + m.y_axis.y + m.z_axis.z).max(0.0).sqrt();
+        let mut add = |key: &str, name: &str, value, unit: &str, meaning: &str| {
+            rows.push(row(key, name, value, unit, meaning, neutral));
+        };
+        add(
+            "bounds_confidence",
+            "Confidence of the bounds",
+            number(confidence),
+            "",
+            "Both bounds hold with at least this probability for the noise of contacts and forces and for the error of the motion.",
+        );
+        add(
+            "bounds_frame",
+            "Axes of the bounds",
+            EvidenceValue::Text("mean pose".to_owned()),
+            "",
+            "Body axes in which the estimated poses are right on the average over the samples: the body's own, displaced by the mean \
+             error of the poses.",
+        );
+        add(
+            "std_bounds_turn",
+            "Turn of these axes",
+            number(deviation(shared.rotation)),
+            "rad",
+            "Standard deviation of how far they are turned against the body's own, all axes together.",
+        );
+        add(
+            "std_bounds_shift",
+            "Shift of these axes",
+            number(deviation(shared.translation)),
+            "m",
+            "Standard deviation of how far their origin is from the centre of mass.",
+        );
     }
     if let Some(body) = &checks.identified {
         let moments = body.mass.principal().moments;

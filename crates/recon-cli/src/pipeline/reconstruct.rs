@@ -1,7 +1,7 @@
-use super::bounds::{BoundsResult, bounds, contradiction_among};
+use super::bounds::{BoundsResult, contradiction_among};
 use super::evidence::{Checks, evidence, verdict};
 use super::simulate::known_body;
-use super::sound::curve_bounds;
+use super::sound::motion_bounds;
 use super::truth::{true_motion, true_shape};
 use crate::error::CliError;
 use crate::progress::Progress;
@@ -70,16 +70,21 @@ pub(crate) fn reconstruct(
     progress.step("bounding the shape");
     let contacts = samples(&palms);
     let size = size(&palms);
-    let bounded = match bounds_of(&estimate, &contacts, size) {
-        Ok(bounded) => Some(bounded),
-        // Contacts moved by a wrong motion contradict each other; the verdict on the motion says why, and is not lost.
-        Err(error) if !estimate.reliability.is_reliable() => {
-            warnings.push(format!("The contacts give no bounds under this motion ({}).", cause(&error)));
-            None
-        }
-        Err(error) => return Err(error),
-    };
-    let contradiction = bounded.as_ref().map_or(0.0, |b| b.contradiction);
+    let bounded = bounds_of(&estimate)?;
+    if bounded.is_none() {
+        warnings.push(
+            "There are no bounds on the shape: how far the contacts are off is not known under a motion that is not to be relied on."
+                .to_owned(),
+        );
+    }
+    let noise = estimate.evidence.noise.contact;
+    if bounded.is_some() && noise > NOTABLE_NOISE * size {
+        warnings.push(format!(
+            "Contacts are noisy by {noise:.1e} m: the bounds have margins with which they hold at {:.0} % confidence.",
+            100.0 * CONFIDENCE
+        ));
+    }
+    let contradiction = contradiction_among(&contacts);
     let (drawn, lower, upper) = match bounded {
         Some(BoundsResult { drawn, lower, upper, warnings: of_bounds, .. }) => {
             warnings.extend(of_bounds);
@@ -87,7 +92,8 @@ pub(crate) fn reconstruct(
         }
         None => (None, None, None),
     };
-    let checks = Checks { implausible: !odd.is_empty(), contradiction, size, identified };
+    let bounds_at = drawn.is_some().then_some(CONFIDENCE);
+    let checks = Checks { implausible: !odd.is_empty(), contradiction, size, identified, bounds_at };
     let axes = log.truth().map_or(DQuat::IDENTITY, |truth| match identified {
         None => nearest_turn(&mass, truth[0].R_WO, estimate.start.R_WO),
         // Axes that were found need not be those of the truth: turns are compared from the first sample on.
@@ -182,42 +188,13 @@ fn size(palms: &[PalmTrack; 3]) -> f64 {
     contacts.map(|c| c.p_OC.length()).fold(0.0, f64::max)
 }
 
-/// The innermost cause of an error, in words.
-fn cause(error: &CliError) -> String {
-    let mut inner: &dyn std::error::Error = error;
-    while let Some(source) = inner.source() {
-        inner = source;
+/// Bounds that hold at [`CONFIDENCE`] for all that is known to be uncertain. None under a motion that is not to be relied on: then
+/// it is not known how far contacts are off.
+fn bounds_of(estimate: &MotionEstimate) -> Result<Option<BoundsResult>, CliError> {
+    if !estimate.reliability.is_reliable() {
+        return Ok(None);
     }
-    inner.to_string()
-}
-
-/// Bounds that hold at [`CONFIDENCE`] where contacts are noisy and it is known how much, else bounds from exact contacts, with
-/// what to say about them.
-fn bounds_of(
-    estimate: &MotionEstimate,
-    contacts: &[ContactSample],
-    size: f64,
-) -> Result<BoundsResult, CliError> {
-    let noise = estimate.evidence.noise.contact;
-    if noise <= NOTABLE_NOISE * size {
-        return bounds(contacts);
-    }
-    let why = match curve_bounds(estimate, CONFIDENCE) {
-        Ok(mut sound) => {
-            sound.contradiction = contradiction_among(contacts);
-            sound.warnings.push(format!(
-                "Contacts are noisy by {noise:.1e} m: the bounds have margins with which they hold at {:.0} % confidence.",
-                100.0 * CONFIDENCE
-            ));
-            return Ok(sound);
-        }
-        Err(error) => cause(&error),
-    };
-    let mut exact = bounds(contacts)?;
-    exact.warnings.push(format!(
-        "The bounds take every contact as exact, but contact positions are noisy by {noise:.1e} m: the object may pass the bounds by a few times that. With margins there are none: {why}."
-    ));
-    Ok(exact)
+    motion_bounds(estimate, CONFIDENCE)
 }
 
 /// A message as a sentence of its own.

@@ -1,13 +1,13 @@
 //! Bounds that hold at a stated confidence: from noisy contacts, and from poses above a plane.
 
-use super::bounds::{BoundsResult, meshes, own, unbounded};
+use super::bounds::{BoundsResult, drawn_surfaces, meshes, own};
 use crate::error::CliError;
 use glam::DMat3;
-use recon::contact_kinematics::CurvatureRadii;
-use recon::observer::MotionEstimate;
+use recon::contact_kinematics::{CurvatureRadii, CurvePoint};
+use recon::observer::{MotionEstimate, PoseCovariance};
 use recon::shape_bounds::{
-    BodyPose, ContactNoise, ContactSample, NoisyContact, Outlier, PoseBounds, PoseRule, ShapeBounds,
-    SharpBounds, estimate_noise, without_outliers,
+    BodyPose, CertainBounds, ContactNoise, ContactSample, NoisyContact, Outlier, PoseBounds, PoseNoise,
+    PoseRule, SharpBounds, estimate_noise, without_outliers,
 };
 use recon_io::{Bound, Bounds};
 use serde_json::{Value, json};
@@ -33,7 +33,7 @@ pub(crate) fn noisy_bounds(
     confidence: f64,
 ) -> Result<(BoundsResult, Value), CliError> {
     let Cleaned { kept, warning, about } = cleaned(curves, noise, confidence)?;
-    let bounds = ShapeBounds::from_noisy_curves(&kept, confidence)?;
+    let bounds = CertainBounds::from_noisy_curves(&kept, confidence)?;
     Ok((finished(&bounds, warning)?, about))
 }
 
@@ -61,51 +61,83 @@ pub(crate) fn sharp_bounds(
         largest_gap: polytopes.largest_gap().map(|gap| gap.distance),
     };
     let warnings = warning.into_iter().collect();
-    Ok((BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings }, about))
+    Ok((BoundsResult { drawn, lower, upper, others: Vec::new(), warnings }, about))
 }
 
-/// Bounds of the body of a motion estimate, from the uncertainty of its contact curves.
-pub(crate) fn curve_bounds(estimate: &MotionEstimate, confidence: f64) -> Result<BoundsResult, CliError> {
-    let mut curves = [const { Vec::new() }; 3];
-    let times: Vec<f64> = estimate.motion.iter().map(|m| m.t).collect();
-    for known in &estimate.uncertainty {
-        let k = times.partition_point(|t| *t < known.t).min(times.len() - 1);
-        for (i, curve) in curves.iter_mut().enumerate() {
-            let Some(point) = estimate.curves[i].points().get(k) else { continue };
-            // Errors of the motion are alike along a curve: nothing is gained on them by averaging.
-            let noise = ContactNoise {
-                point: DMat3::ZERO,
-                normal: 0.0,
-                pose_translation: largest_deviation(known.points[i]),
-                pose_rotation: largest_deviation(known.normals[i]),
-            };
-            curve.push(NoisyContact {
-                contact: ContactSample { point: point.beta_O, normal: point.n_O },
-                noise,
-            });
-        }
+/// Bounds of the body of a motion estimate that hold at `confidence` for all that the estimate knows to be uncertain: the noise
+/// of the contacts and the motion. They are in the axes in which the estimated poses are right on the average.
+///
+/// None where it is not known how uncertain the motion is.
+pub(crate) fn motion_bounds(
+    estimate: &MotionEstimate,
+    confidence: f64,
+) -> Result<Option<BoundsResult>, CliError> {
+    let Some(errors) = &estimate.pose_errors else { return Ok(None) };
+    let alpha = 1.0 - confidence;
+    let poses = errors.deviations(1.0 - SHARE_OF_POSES * alpha);
+    if !poses.is_finite() {
+        return Ok(None);
     }
-    let bounds = ShapeBounds::from_noisy_curves(&curves, confidence)?;
-    finished(&bounds, None)
+    let variance = estimate.evidence.noise.contact.powi(2);
+    let samples = estimate.motion.len();
+    let stride = samples.div_ceil(SAMPLES);
+    let noises: Vec<PoseNoise> =
+        (0..samples).step_by(stride).map(|k| pose_noise(errors.covariance(k))).collect();
+    let curves = estimate.curves.each_ref().map(|curve| {
+        let points = curve.points().iter().step_by(stride).zip(&noises);
+        let noisy = |(point, pose): (&CurvePoint, &PoseNoise)| {
+            let n = point.n_O.get();
+            // A palm feels where in its plane it is touched.
+            let tangent = DMat3::IDENTITY - DMat3::from_cols(n * n.x, n * n.y, n * n.z);
+            let noise = ContactNoise { point: tangent * variance, normal: 0.0, pose: *pose };
+            NoisyContact { contact: ContactSample { point: point.beta_O, normal: point.n_O }, noise }
+        };
+        points.map(noisy).collect::<Vec<_>>()
+    });
+    let bounds = CertainBounds::from_curves_of_poses(&curves, 1.0 - (1.0 - SHARE_OF_POSES) * alpha, poses)?;
+    finished(&bounds, None).map(Some)
 }
 
-/// No less than the largest standard deviation along any direction: a symmetric matrix has no eigenvalue above its largest
-/// sum of absolute values in a row.
-fn largest_deviation(m: DMat3) -> f64 {
-    let rows = [m.x_axis, m.y_axis, m.z_axis].map(|row| row.abs().element_sum());
-    rows.into_iter().fold(0.0, f64::max).sqrt()
+/// Samples whose contacts bound the body, at most: more of them gain next to nothing.
+const SAMPLES: usize = 6000;
+/// Share of the odds of a failure that errors of the poses may have; the contacts' own margins hardly grow when they get less.
+const SHARE_OF_POSES: f64 = 0.9;
+
+fn pose_noise(of: PoseCovariance) -> PoseNoise {
+    PoseNoise { rotation: of.rotation, translation: of.translation, cross: of.cross }
 }
 
-/// Meshes and figures of bounds.
-fn finished(bounds: &ShapeBounds, warning: Option<String>) -> Result<BoundsResult, CliError> {
-    let (lower, upper) = meshes(bounds)?;
+/// Meshes and figures of bounds, of which each may be missing, and what is to be said then.
+fn finished(bounds: &CertainBounds, warning: Option<String>) -> Result<BoundsResult, CliError> {
+    let solid = bounds.lower.as_ref().and_then(|lower| lower.solid());
+    let lower = solid.map(|solid| own(solid.mesh())).transpose()?;
+    let upper = bounds.upper.as_ref().map(|upper| own(upper.mesh())).transpose()?;
+    let (few_lower, few_upper) = drawn_surfaces(solid, bounds.upper.as_ref())?;
     let drawn = Bounds {
-        lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: bounds.lower_volume() },
-        upper: upper.clone().map(|mesh| Bound { mesh, volume: bounds.upper_volume() }),
+        lower: Bound {
+            mesh: few_lower.unwrap_or_default(),
+            volume: solid.map_or(0.0, |solid| solid.volume()),
+        },
+        upper: few_upper.map(|mesh| Bound {
+            mesh,
+            volume: bounds.upper.as_ref().map_or(f64::INFINITY, |upper| upper.volume()),
+        }),
         largest_gap: bounds.largest_gap().map(|gap| gap.distance),
     };
-    let warnings = warning.into_iter().chain(unbounded(bounds)).collect();
-    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings })
+    let mut warnings: Vec<String> = warning.into_iter().collect();
+    if lower.is_none() {
+        warnings.push(
+            "Nothing is certain to be inside of the object at this confidence: the lower bound is empty."
+                .to_owned(),
+        );
+    }
+    if upper.is_none() {
+        warnings.push(
+            "Nothing finite is certain to contain the object at this confidence: there is no upper bound."
+                .to_owned(),
+        );
+    }
+    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), warnings })
 }
 
 /// Contacts with their noise, without outliers.
@@ -206,8 +238,5 @@ pub(crate) fn pose_bounds(
         upper: Some(Bound { mesh: upper.clone(), volume: made.upper.volume() }),
         largest_gap: made.largest_gap().map(|gap| gap.distance),
     };
-    Ok((
-        BoundsResult { drawn, lower, upper: Some(upper), others: Vec::new(), contradiction: 0.0, warnings },
-        about,
-    ))
+    Ok((BoundsResult { drawn, lower, upper: Some(upper), others: Vec::new(), warnings }, about))
 }

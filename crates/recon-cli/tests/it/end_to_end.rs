@@ -79,10 +79,10 @@ fn motion_has_the_columns_of_the_truth_and_its_values() {
     let curves = scratch.run(&["bounds", "out/contact_curves.csv", "--json"]);
     let again: Value = serde_json::from_str(&curves.stdout).unwrap();
     let first: Value = serde_json::from_str(&scratch.read("out/summary.json")).unwrap();
-    for key in ["lower_volume_m3", "upper_volume_m3", "largest_gap_m"] {
+    // Taken as exact the same contacts give slightly narrower bounds than with the margins of a motion at 50 Hz.
+    for (key, widened) in [("lower_volume_m3", -1.0), ("upper_volume_m3", 1.0), ("largest_gap_m", 1.0)] {
         let [read, made] = [&again, &first].map(|v| v["bounds"][key].as_f64().unwrap());
-        // Reading makes normals unit again, which moves their last bit.
-        assert!((read - made).abs() < 1e-10 * made, "{key}: {read} {made}");
+        assert!((0.0..1e-2 * made).contains(&(widened * (made - read))), "{key}: {read} {made}");
     }
 }
 

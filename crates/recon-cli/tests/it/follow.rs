@@ -92,19 +92,19 @@ fn a_log_without_forces_gives_the_ellipsoid() {
     scratch.write("bare.csv", &without(&log, "f_"));
     let arguments = ["reconstruct", "bare.csv", "--scene", "scene.toml", "--without-forces"];
     let run = scratch.run(&arguments);
-    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    // The ellipsoid without bounds: under noise it is not known how far the contacts are off.
+    assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);
     let figures: serde_json::Value = serde_json::from_str(&scratch.read("recon-out/summary.json")).unwrap();
     for (axis, expected) in [1.0, 2.0, 2.5].into_iter().enumerate() {
         let found = figures["semi_axes_m"][axis].as_f64().unwrap();
         // Means over 3 s of contacts noisy by 2.5e-3 m.
         assert!((found - expected).abs() < 2e-3, "{found} {expected}");
     }
-    let (lower, upper) = (&figures["bounds"]["lower_volume_m3"], &figures["bounds"]["upper_volume_m3"]);
-    let volume = 4.0 / 3.0 * std::f64::consts::PI * 5.0;
-    // Three seconds of touch leave some side open.
-    assert!(lower.as_f64().unwrap() < volume && upper.as_f64().is_none_or(|upper| upper > volume));
+    assert!(
+        figures["bounds"].is_null() && figures["warnings"].to_string().contains("no bounds on the shape")
+    );
     let motion = Table::parse(&scratch.read("recon-out/motion.csv"));
-    assert!(motion.rows.len() > 30 && scratch.path().join("recon-out/lower_bound.ply").exists());
+    assert!(motion.rows.len() > 30 && !scratch.path().join("recon-out/lower_bound.ply").exists());
 }
 
 #[test]

@@ -14,4 +14,5 @@ mod follow;
 #[cfg(unix)]
 mod interrupted;
 mod nothing_lost;
+mod margins;
 mod planar;

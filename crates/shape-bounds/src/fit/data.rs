@@ -62,7 +62,7 @@ pub(super) fn check_contact(index: usize, contact: &NoisyContact) -> Result<(), 
     if !(noise.normal >= 0.0 && noise.normal.is_finite()) {
         return Err(FitError::Noise { index, name: "normal", value: noise.normal });
     }
-    if noise.pose_translation != 0.0 || noise.pose_rotation != 0.0 {
+    if !noise.pose.is_none() {
         return Err(FitError::PoseNoise { index });
     }
     let matrix = nalgebra::Matrix3::from_fn(|i, j| noise.point.col(j)[i]);

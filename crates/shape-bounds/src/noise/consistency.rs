@@ -1,6 +1,7 @@
 //! How noisy contacts are, from the contacts themselves: the roughness of curves that are smooth.
 
 use super::model::{ContactNoise, NoiseError, NoisyContact};
+use super::pose::PoseNoise;
 use super::quantile;
 use crate::median::{OF_NORMAL, median};
 use crate::sample::ContactSample;
@@ -18,7 +19,7 @@ pub(crate) const FEWEST: usize = 30;
 /// give standard deviations of the point across and along the surface and of the normal, which a few outliers do not
 /// change. Being estimates, they are raised so far that the true ones are below them at the stated `confidence`. What
 /// neighbours have in common, as the error of a pose that drifts, is not seen: state it in
-/// [`ContactNoise::pose_translation`] and [`ContactNoise::pose_rotation`].
+/// [`ContactNoise::pose`].
 ///
 /// # Errors
 /// [`NoiseError`] for an impossible confidence, a curve of fewer than 30 contacts, and a point that is not finite.
@@ -57,12 +58,7 @@ fn of_curve(index: usize, curve: &[ContactSample], z: f64) -> Result<Vec<NoisyCo
     let noise = |n: DVec3| {
         let outer = DMat3::from_cols(n * n.x, n * n.y, n * n.z);
         let tangent = (DMat3::IDENTITY - outer) * (tangential * tangential);
-        ContactNoise {
-            point: outer * (across * across) + tangent,
-            normal,
-            pose_translation: 0.0,
-            pose_rotation: 0.0,
-        }
+        ContactNoise { point: outer * (across * across) + tangent, normal, pose: PoseNoise::NONE }
     };
     Ok(curve.iter().map(|c| NoisyContact { contact: *c, noise: noise(c.normal.get()) }).collect())
 }

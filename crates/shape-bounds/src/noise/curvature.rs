@@ -1,8 +1,9 @@
 //! Bounds from noisy contacts on a body whose radii of curvature are limited.
 
 use super::model::{NoiseError, NoisyContact};
+use super::pose::bound;
 use super::quantile;
-use super::windows::{Window, windows};
+use super::windows::{LONGEST, Window, windows};
 use crate::curvature::{CurvatureError, SharpBounds};
 use contact_kinematics::CurvatureRadii;
 use glam::DVec3;
@@ -36,13 +37,15 @@ impl SharpBounds {
         if !(0.0 <= min && min < max && max.is_finite()) {
             return Err(CurvatureError::Radii { min, max }.into());
         }
-        let lists = windows(curves);
+        let lists = windows(curves, LONGEST);
         let count: usize = lists.iter().map(Vec::len).sum();
-        let quantile = quantile::length3(0.5 * (1.0 - confidence) / (2 * count.max(1)) as f64);
+        let alpha = 0.5 * (1.0 - confidence);
+        let poses = quantile::length6(alpha / curves.iter().map(Vec::len).sum::<usize>().max(1) as f64);
+        let quantile = quantile::length3(alpha / (2 * count.max(1)) as f64);
         let mut best: Option<(f64, Self)> = None;
         let mut first_error = None;
         for list in lists.iter().filter(|list| list.len() >= FEWEST) {
-            match of_list(list, radii, quantile) {
+            match of_list(list, radii, quantile, poses) {
                 Ok(bounds) => {
                     let gap = bounds.upper().volume() - bounds.lower().volume();
                     if best.as_ref().is_none_or(|(smallest, _)| gap < *smallest) {
@@ -71,10 +74,15 @@ fn by_contact(error: CurvatureError, list: &[Window]) -> CurvatureError {
     }
 }
 
-fn of_list(list: &[Window], radii: CurvatureRadii, quantile: f64) -> Result<SharpBounds, NoiseError> {
+fn of_list(
+    list: &[Window],
+    radii: CurvatureRadii,
+    quantile: f64,
+    poses: f64,
+) -> Result<SharpBounds, NoiseError> {
     let CurvatureRadii { min, max } = radii;
     let centres = |rho: f64| list.iter().map(|w| w.inside(rho)).collect::<Vec<DVec3>>();
-    let error = |rho: f64| list.iter().map(|w| w.error(rho, quantile)).fold(0.0, f64::max);
+    let error = |rho: f64| list.iter().map(|w| w.error(rho, quantile, poses)).fold(0.0, f64::max);
     let (inner, outer) = (error(min), error(max));
     if inner >= min && inner > 0.0 {
         return Err(NoiseError::NoLowerBound);
@@ -94,14 +102,11 @@ impl Window {
     }
 
     /// How far that may be from the true mean.
-    fn error(&self, rho: f64, quantile: f64) -> f64 {
-        let m = self.covariance;
-        // A symmetric matrix has no eigenvalue above its largest sum of absolute values in a row.
-        let largest =
-            [m.x_axis, m.y_axis, m.z_axis].map(|row| row.abs().element_sum()).into_iter().fold(0.0, f64::max);
-        let independent = (largest + (rho * self.normal_sd).powi(2)).sqrt();
+    fn error(&self, rho: f64, quantile: f64, poses: f64) -> f64 {
+        let independent = (bound(self.covariance) + (rho * self.normal_sd).powi(2)).sqrt();
         let second_order = 0.5 * rho * (quantile * self.single_normal_sd).powi(2);
-        let pose = self.pose_translation + self.pose_rotation * self.inside(rho).length();
-        quantile * (independent + pose) + second_order
+        // The centre lies rho further in than the point.
+        let pose = bound(self.pose_of_point).sqrt() + self.turning.sqrt() * rho;
+        quantile * independent + poses * pose + second_order + self.pose_second_order(poses, rho)
     }
 }

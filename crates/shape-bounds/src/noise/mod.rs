@@ -5,6 +5,7 @@ mod curvature;
 mod lower;
 mod model;
 pub(crate) mod outliers;
+mod pose;
 pub(crate) mod quantile;
 mod roughness;
 #[cfg(test)]
@@ -15,11 +16,14 @@ mod windows;
 pub use consistency::estimate_noise;
 pub use model::{ContactNoise, NoiseError, NoisyContact};
 pub use outliers::{Outlier, without_outliers};
+pub use pose::PoseNoise;
 
-use crate::bounds::ShapeBounds;
-use lower::certain_points;
+use crate::bounds::{BoundsError, Gap, ShapeBounds};
+use crate::halfspaces::{Intersection, Polyhedron};
+use crate::hull::Hull;
+use lower::{certain_points, nearly_exact};
 use upper::certain_half_spaces;
-use windows::windows;
+use windows::{LONGEST, windows};
 
 impl ShapeBounds {
     /// Bounds between which a convex body lies with at least the stated `confidence` (say 0.95), for both bounds and all
@@ -34,17 +38,78 @@ impl ShapeBounds {
     /// [`NoiseError`] for an impossible confidence or noise, noise that leaves nothing certain inside or nothing finite
     /// certain outside, and contacts that contradict each other by more than the stated noise can explain.
     pub fn from_noisy_curves(curves: &[Vec<NoisyContact>], confidence: f64) -> Result<Self, NoiseError> {
+        let certain = CertainBounds::from_noisy_curves(curves, confidence)?;
+        match (&certain.lower, &certain.upper) {
+            (_, None) => Err(NoiseError::NoUpperBound),
+            (None, _) => Err(NoiseError::NoLowerBound),
+            _ => certain.both().ok_or(NoiseError::NoLowerBound),
+        }
+    }
+}
+
+/// What is certain of a convex body: bounds of which each may be missing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CertainBounds {
+    /// In the body; none where nothing is certain to be.
+    pub lower: Option<Hull>,
+    /// Around the body; none where nothing finite is certain to be.
+    pub upper: Option<Polyhedron>,
+}
+
+impl CertainBounds {
+    /// As [`ShapeBounds::from_noisy_curves`], with each bound that there is.
+    ///
+    /// # Errors
+    /// [`NoiseError`] for an impossible confidence or noise, and for contacts that contradict each other by more than the
+    /// stated noise can explain.
+    pub fn from_noisy_curves(curves: &[Vec<NoisyContact>], confidence: f64) -> Result<Self, NoiseError> {
+        NoiseError::check_confidence(confidence)?;
+        let alpha = 0.5 * (1.0 - confidence);
+        let poses = quantile::length6(alpha / curves.iter().map(Vec::len).sum::<usize>().max(1) as f64);
+        Self::from_curves_of_poses(curves, 1.0 - alpha, poses)
+    }
+
+    /// The same where the errors of all poses together are within `poses` of their standard deviations: bounds that hold with at
+    /// least the stated `confidence` whenever that is so. The union bound is then only over the contacts' own noise.
+    ///
+    /// # Errors
+    /// As [`Self::from_noisy_curves`].
+    pub fn from_curves_of_poses(
+        curves: &[Vec<NoisyContact>],
+        confidence: f64,
+        poses: f64,
+    ) -> Result<Self, NoiseError> {
         NoiseError::check_confidence(confidence)?;
         NoiseError::check_contacts(curves)?;
         let contacts: Vec<_> = curves.iter().flatten().map(|c| c.contact).collect();
-        Self::check(&contacts)?;
-        let lists = windows(curves);
+        ShapeBounds::check(&contacts)?;
         let alpha = (1.0 - confidence) / 2.0;
-        let half_spaces = certain_half_spaces(&lists, alpha)?;
-        let points = certain_points(&lists, alpha);
-        if points.is_empty() {
-            return Err(NoiseError::NoLowerBound);
-        }
-        Ok(Self::from_parts(&points, &half_spaces)?)
+        let singles = windows(curves, 1);
+        let exact = singles.first().is_some_and(|list| nearly_exact(list, alpha, poses));
+        let lists = if exact { singles } else { windows(curves, LONGEST) };
+        let upper = match certain_half_spaces(&lists, alpha, poses) {
+            Ok(half_spaces) => match Intersection::of(&half_spaces).map_err(BoundsError::from)? {
+                Intersection::Bounded(upper) => Some(upper),
+                Intersection::Unbounded(_) => None,
+            },
+            Err(NoiseError::NoUpperBound) => None,
+            Err(error) => return Err(error),
+        };
+        let points = certain_points(&lists, alpha, poses);
+        let lower =
+            if points.is_empty() { None } else { Some(Hull::of(&points).map_err(BoundsError::from)?) };
+        Ok(Self { lower, upper })
+    }
+
+    /// The largest gap between both, as [`ShapeBounds::largest_gap`]; none where one is missing.
+    #[must_use]
+    pub fn largest_gap(&self) -> Option<Gap> {
+        self.both()?.largest_gap()
+    }
+
+    /// Both bounds, where there are both and the lower one has a volume.
+    #[must_use]
+    pub fn both(&self) -> Option<ShapeBounds> {
+        ShapeBounds::between(self.lower.clone()?, Intersection::Bounded(self.upper.clone()?))
     }
 }

@@ -1,3 +1,4 @@
+use super::pose::PoseNoise;
 use crate::sample::ContactSample;
 use glam::{DMat3, DVec3};
 use thiserror::Error;
@@ -12,34 +13,24 @@ pub struct ContactNoise {
     pub point: DMat3,
     /// Standard deviation of the normal about each tangent axis, in rad.
     pub normal: f64,
-    /// Standard deviation per axis of the body pose's translation when the contact was made, in m.
-    pub pose_translation: f64,
-    /// Standard deviation per axis of the body pose's rotation about the body's origin, in rad.
-    pub pose_rotation: f64,
+    /// Of the body's pose when the contact was made.
+    pub pose: PoseNoise,
 }
 
 impl ContactNoise {
     /// The same standard deviation of the point along all axes (m) and of the normal (rad), and an exact pose.
     #[must_use]
     pub fn isotropic(point: f64, normal: f64) -> Self {
-        Self {
-            point: DMat3::from_diagonal(DVec3::splat(point * point)),
-            normal,
-            pose_translation: 0.0,
-            pose_rotation: 0.0,
-        }
+        Self { point: DMat3::from_diagonal(DVec3::splat(point * point)), normal, pose: PoseNoise::NONE }
     }
 
     /// The first entry that is not a standard deviation or covariance.
     pub(super) fn defect(&self) -> Option<(&'static str, f64)> {
-        for (name, value) in [
-            ("normal", self.normal),
-            ("pose_translation", self.pose_translation),
-            ("pose_rotation", self.pose_rotation),
-        ] {
-            if !(value.is_finite() && value >= 0.0) {
-                return Some((name, value));
-            }
+        if !(self.normal.is_finite() && self.normal >= 0.0) {
+            return Some(("normal", self.normal));
+        }
+        if let Some(defect) = self.pose.defect() {
+            return Some(defect);
         }
         for column in 0..3 {
             for row in 0..3 {
@@ -120,13 +111,9 @@ pub enum NoiseError {
     NoLowerBound,
     /// With normals as uncertain as stated, no finite region certainly contains the body.
     #[error(
-        "nothing finite certainly contains the body: normals are too uncertain, or leave some directions open \
-         (tried regions up to {reach} m)"
+        "nothing finite certainly contains the body: normals are too uncertain, or leave some directions open"
     )]
-    NoUpperBound {
-        /// Radius of the largest region tried.
-        reach: f64,
-    },
+    NoUpperBound,
     /// Limits on the radii of curvature that are none, or that contacts contradict by more than their noise.
     #[error(transparent)]
     Curvature(#[from] crate::curvature::CurvatureError),

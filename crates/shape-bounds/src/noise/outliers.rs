@@ -200,10 +200,8 @@ impl<'a> Suspects<'a> {
         let independent =
             n.dot((a.noise.point + b.noise.point) * n) + (a.noise.normal * n.cross(reach).length()).powi(2);
         // Errors of the poses may be correlated in any way: at worst they add.
-        let pose = a.noise.pose_translation
-            + b.noise.pose_translation
-            + a.noise.pose_rotation * a.contact.point.length().max(b.contact.point.length())
-            + b.noise.pose_rotation * b.contact.point.length();
+        let of_plane = a.noise.pose.along(n).deviation(b.contact.point, 0.0);
+        let pose = of_plane + n.dot(b.noise.pose.at(b.contact.point) * n).max(0.0).sqrt();
         let rounding = ROUNDING * (a.contact.point.abs().max_element() + b.contact.point.abs().max_element());
         excess / (independent.max(0.0).sqrt() + pose + rounding)
     }

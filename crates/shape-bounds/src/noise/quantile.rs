@@ -14,6 +14,15 @@ pub(crate) fn length3(alpha: f64) -> f64 {
     solve(alpha, |r| 2.0 * (-r * r / 2.0).exp() * (1.0 / r + r) / TAU_ROOT)
 }
 
+/// Length that a vector of six independent standard normals exceeds with probability `alpha`:
+/// `P = exp(-q) (1 + q + q^2 / 2)` with `q = r^2 / 2`, exact.
+pub(crate) fn length6(alpha: f64) -> f64 {
+    solve(alpha, |r| {
+        let q = 0.5 * r * r;
+        (-q).exp() * (1.0 + q + 0.5 * q * q)
+    })
+}
+
 /// Length that a vector of two independent standard normals exceeds with probability `alpha`: exact (Rayleigh).
 pub(crate) fn length2(alpha: f64) -> f64 {
     (-2.0 * alpha.ln()).sqrt()
@@ -48,7 +57,8 @@ mod tests {
             let excess = length3(alpha) - table.sqrt();
             assert!((0.0..0.06).contains(&excess), "{alpha}: {excess}");
         }
-        // Square root of the quantile of chi-square with two degrees of freedom.
+        // Square roots of quantiles of chi-square with six and with two degrees of freedom.
+        assert!((length6(1e-2).powi(2) - 16.811_893_83).abs() < 1e-7);
         assert!((length2(1e-2).powi(2) - 9.210_340_372).abs() < 1e-8);
     }
 }

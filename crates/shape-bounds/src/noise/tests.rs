@@ -70,10 +70,7 @@ fn more_noise_gives_wider_bounds_and_too_much_gives_an_error() {
     let gap = |level| run(300, level, 0.95, 5).map(|b| b.upper_volume() - b.lower_volume()).unwrap();
     let gaps = [0.0, 1e-4, 1e-3, 1e-2].map(gap);
     assert!(gaps.windows(2).all(|w| w[0] < w[1]), "{gaps:?}");
-    assert!(matches!(
-        run(300, 0.5, 0.95, 5),
-        Err(NoiseError::NoLowerBound | NoiseError::NoUpperBound { .. })
-    ));
+    assert!(matches!(run(300, 0.5, 0.95, 5), Err(NoiseError::NoLowerBound | NoiseError::NoUpperBound)));
 }
 
 #[test]

@@ -19,6 +19,8 @@ struct Quantiles {
     normal: f64,
     /// Of the length of three standard normals.
     length: f64,
+    /// Deviations that the poses are off by at most.
+    poses: f64,
 }
 
 /// Half-spaces that all contain the body, except with probability `alpha`.
@@ -26,10 +28,17 @@ struct Quantiles {
 /// For a contact measured as `x^`, `n^` where the truth is `x`, `n`, every point `y` of the body has
 /// `n^.(y - x^) <= (n^ - n).(y - x) - n^.(x^ - x)`: an error of the offset, and one of the normal that acts over the
 /// distance from the contact to `y`. Only those `y` matter that the unmoved half-space would cut off.
-pub(super) fn certain_half_spaces(lists: &[Vec<Window>], alpha: f64) -> Result<Vec<HalfSpace>, NoiseError> {
+///
+/// `poses` is the number of deviations that the poses are off by at most: an error of the pose moves every `y` along `n^` by as
+/// much as a point of the body that stands there.
+pub(super) fn certain_half_spaces(
+    lists: &[Vec<Window>],
+    alpha: f64,
+    poses: f64,
+) -> Result<Vec<HalfSpace>, NoiseError> {
     let windows: Vec<Window> = lists.iter().flatten().copied().collect();
-    let each = alpha / (4 * windows.len().max(1)) as f64;
-    let quantiles = Quantiles { normal: quantile::normal(each), length: quantile::length3(each) };
+    let each = alpha / (2 * windows.len().max(1)) as f64;
+    let quantiles = Quantiles { normal: quantile::normal(each), length: quantile::length3(each), poses };
 
     let centre = windows.iter().map(|w| w.point).sum::<DVec3>() / windows.len().max(1) as f64;
     let size = windows.iter().map(|w| w.point.distance(centre)).fold(0.0, f64::max);
@@ -76,18 +85,18 @@ fn prove_region(
         }
         radius *= GROWTH;
     }
-    Err(NoiseError::NoUpperBound { reach: radius })
+    Err(NoiseError::NoUpperBound)
 }
 
 impl Window {
     /// The half-space with its margin, when no point that it may cut off is further than `reach` from the mean point.
     fn inflated(&self, quantiles: &Quantiles, reach: f64) -> HalfSpace {
-        let Quantiles { normal, length } = *quantiles;
+        let Quantiles { normal, length, poses } = *quantiles;
         let independent = normal * self.offset_sd + length * self.normal_sd * reach;
         // A normal of unit length is also shortened along the true one, by half the square of its angle.
         let second_order = 0.5 * (length * self.single_normal_sd).powi(2) * reach;
         let pose =
-            normal * self.pose_translation + length * self.pose_rotation * (reach + self.point.length());
+            poses * self.pose_of_plane.deviation(self.point, reach) + self.pose_second_order(poses, reach);
         let margin = (self.offset + independent + second_order + pose) / self.shrink;
         HalfSpace { point: self.point, normal: self.normal, margin }
     }

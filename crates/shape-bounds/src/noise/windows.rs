@@ -5,11 +5,12 @@
 //! (or joining) what each proves leaves the choice to the data.
 
 use super::model::NoisyContact;
+use super::pose::PlaneNoise;
 use contact_kinematics::Direction;
 use glam::{DMat3, DVec3};
 
 /// The longest run, in contacts: beyond, the noise left is below a tenth and the loss on a curve large.
-const LONGEST: usize = 128;
+pub(super) const LONGEST: usize = 128;
 
 /// The mean of a run of contacts.
 #[derive(Clone, Copy, Debug)]
@@ -32,14 +33,17 @@ pub(super) struct Window {
     pub(super) normal_sd: f64,
     /// The largest standard deviation of a single normal.
     pub(super) single_normal_sd: f64,
-    /// Mean standard deviations of the pose.
-    pub(super) pose_translation: f64,
-    pub(super) pose_rotation: f64,
+    /// No less than the covariance of the mean point by errors of the poses, however they are correlated.
+    pub(super) pose_of_point: DMat3,
+    /// The same of the plane, at any place.
+    pub(super) pose_of_plane: PlaneNoise,
+    /// The largest variance of a turn of the poses.
+    pub(super) turning: f64,
 }
 
-/// Windows of each length over `curves`, one list for each length.
-pub(super) fn windows(curves: &[Vec<NoisyContact>]) -> Vec<Vec<Window>> {
-    let longest = curves.iter().map(Vec::len).max().unwrap_or(0).min(LONGEST);
+/// Windows of each length up to the `longest` over `curves`, one list for each length.
+pub(super) fn windows(curves: &[Vec<NoisyContact>], longest: usize) -> Vec<Vec<Window>> {
+    let longest = curves.iter().map(Vec::len).max().unwrap_or(0).min(longest);
     let mut lists = Vec::new();
     let mut length = 1;
     while length <= longest {
@@ -70,7 +74,8 @@ impl Window {
         let direction = Direction::new(normal).ok()?;
         let point_variance = mean(&|c| {
             let n = c.contact.normal.get();
-            n.dot(c.noise.point * n)
+            // Rounding may leave less than nothing where a palm feels nothing along its normal.
+            n.dot(c.noise.point * n).max(0.0)
         });
         // Errors of the normals turn the planes about their own contacts, not about the mean point.
         let turning = mean(&|c| c.noise.normal.powi(2) * c.contact.point.distance_squared(point));
@@ -86,8 +91,19 @@ impl Window {
             offset_sd: ((point_variance + turning) * weight).sqrt(),
             normal_sd: (mean(&|c| c.noise.normal.powi(2)) * weight).sqrt(),
             single_normal_sd: run.iter().map(|c| c.noise.normal).fold(0.0, f64::max),
-            pose_translation: mean(&|c| c.noise.pose_translation),
-            pose_rotation: mean(&|c| c.noise.pose_rotation),
+            pose_of_point: run
+                .iter()
+                .fold(DMat3::ZERO, |sum, c| sum + c.noise.pose.at(c.contact.point) * weight),
+            pose_of_plane: PlaneNoise::mean(
+                run.iter().map(|c| c.noise.pose.along(c.contact.normal.get())),
+                weight,
+            ),
+            turning: run.iter().map(|c| c.noise.pose.turning()).fold(0.0, f64::max),
         })
+    }
+
+    /// What turns of the poses of as many deviations (`poses`) do beyond first order to points within `reach` of the mean one.
+    pub(super) fn pose_second_order(&self, poses: f64, reach: f64) -> f64 {
+        0.5 * poses * poses * self.turning * (self.point.length() + reach)
     }
 }

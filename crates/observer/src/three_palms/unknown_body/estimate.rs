@@ -3,21 +3,22 @@
 use super::principal::{PrincipalFrame, principal_frame};
 use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem, MASS, constants};
 use super::search::{fit_near, mass_of_weight, scales_of_ball, search, unexplained};
-use crate::least_squares::{Fit, FitStatus, Observability};
-use crate::three_palms::clean::{clean_covariance, stride};
+use crate::least_squares::{Fit, FitStatus, LeastSquares, Observability};
+use crate::three_palms::clean::{Clean, clean_covariance, stride};
 use crate::three_palms::convexity::largest_violation;
 use crate::three_palms::estimate::{EstimateError, MotionEstimate, WORTH_ADJUSTING, floored};
 use crate::three_palms::evidence::{Evidence, Reason, WeakDirection};
 use crate::three_palms::momentum::{MomentumProblem, MotionState, Scales, StartState};
 use crate::three_palms::noise::noise_level;
 use crate::three_palms::polish::{Conditions, polish_all};
+use crate::three_palms::pose_errors::{self, Pose};
 use crate::three_palms::refine::{Refined, Setting, refine};
 use crate::three_palms::state_space::{BODY, MOTION_STATES, Parameters, numbers_of_inertia};
 use crate::three_palms::track::Track;
 use crate::three_palms::verdict::{LARGEST_DEVIATION, LARGEST_MISFIT, LARGEST_PLAIN_DEVIATION, judge};
-use crate::three_palms::{NoiseLevel, curves};
+use crate::three_palms::{NoiseLevel, PoseErrors, curves};
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 use object_dynamics::{MassProperties, SensorLog};
 
 /// Largest deviation of a body of which nothing is known, in natural sizes, where noise shifts it by no more than the second
@@ -188,7 +189,18 @@ fn clean_estimate(
     let thin_of_mass = thin.of_mass(mass.mass());
     let (steps, _) = MomentumProblem::new(&thin_of_mass, &mass, scales, f64::INFINITY).linearised(&start);
     let rows = thin_problem.slopes(&fit.point).ok_or(EstimateError::NoFit)?;
-    let (scaled, predicted) = clean_covariance(&steps, &rows, &observability, &noise, stride, &residuals);
+    let Clean { covariance: scaled, predicted, lasting } =
+        clean_covariance(&steps, &rows, &observability, &noise, stride, &residuals);
+    let poses = |step: &SVector<f64, BODY_UNKNOWNS>, axes: DQuat| -> Option<Vec<Pose>> {
+        let point = thin_problem.retract(&fit.point, step);
+        let mass = point.mass()?;
+        let thin = thin.of_mass(mass.mass());
+        let motion = MomentumProblem::new(&thin, &mass, scales, f64::INFINITY).motion(&point.start);
+        Some(motion.iter().map(|m| (m.p_WCm, m.R_WO * axes)).collect())
+    };
+    let nodes: Vec<usize> = (0..track.len()).step_by(stride).collect();
+    let joint =
+        |axes: DQuat| pose_errors::of_start(nodes.clone(), &scaled, |step| poses(step, axes), lasting);
     let sizes = problem.sizes();
     let found = Found {
         scales,
@@ -204,7 +216,7 @@ fn clean_estimate(
         status: fit.status,
         refined: None,
     };
-    assemble(&track, found)
+    assemble(&track, found, joint)
 }
 
 /// The most probable body and motion, data adjusted with them.
@@ -237,14 +249,20 @@ fn adjusted_estimate(
         status,
         refined: Some(&refined),
     };
-    let mut estimate = assemble(&track, found)?;
+    let misfit = refined.misfit(BODY_UNKNOWNS);
+    let mut estimate = assemble(&track, found, |axes| refined.pose_errors(axes, misfit))?;
     if let Some(reason) = unexplained(&track, scales, &noise, fit) {
         estimate.motion.reliability.add(reason);
     }
     Ok(estimate)
 }
 
-fn assemble(track: &Track, found: Found<'_>) -> Result<BodyEstimate, EstimateError> {
+/// The estimate; `joint` gives the errors of the poses in body axes that stand so in those of the world at the start.
+fn assemble(
+    track: &Track,
+    found: Found<'_>,
+    joint: impl FnOnce(DQuat) -> Option<PoseErrors>,
+) -> Result<BodyEstimate, EstimateError> {
     let evidence = evidence(track, &found);
     let Found { scales, mass, start, motion, covariance, status, refined, .. } = found;
     let limit = match refined {
@@ -274,6 +292,7 @@ fn assemble(track: &Track, found: Found<'_>) -> Result<BodyEstimate, EstimateErr
         radii: curves::radii(track, &turned),
         motion: turned,
         uncertainty,
+        pose_errors: joint(axes),
         others: Vec::new(),
         covariance,
         evidence,

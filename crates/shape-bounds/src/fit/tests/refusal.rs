@@ -99,7 +99,10 @@ fn bad_values_are_named() {
         with(&|c| c.noise.point = DMat3::ZERO),
         FitError::Noise { index: 7, name: "point", .. }
     ));
-    assert!(matches!(with(&|c| c.noise.pose_rotation = 1e-3), FitError::PoseNoise { index: 7 }));
+    assert!(matches!(
+        with(&|c| c.noise.pose = crate::PoseNoise::isotropic(0.0, 1e-3)),
+        FitError::PoseNoise { index: 7 }
+    ));
     assert!(matches!(
         fit(&good[..1], ShapeFamily::Sphere),
         Err(FitError::TooFew { found: 1, needed: 2, .. })

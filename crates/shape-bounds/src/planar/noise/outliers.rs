@@ -32,6 +32,19 @@ pub fn without_outliers(
     Ok((kept, outliers))
 }
 
+/// Errors of a pose that stays in the plane.
+fn in_plane(translation: f64, rotation: f64) -> spatial::PoseNoise {
+    spatial::PoseNoise {
+        rotation: DMat3::from_diagonal(DVec3::new(0.0, 0.0, rotation * rotation)),
+        translation: DMat3::from_diagonal(DVec3::new(
+            translation * translation,
+            translation * translation,
+            0.0,
+        )),
+        cross: DMat3::ZERO,
+    }
+}
+
 /// The contact in the plane `z = 0`.
 fn lifted(NoisyContact { contact, noise }: &NoisyContact) -> spatial::NoisyContact {
     let [xx, xy, yx, yy] = noise.point.to_cols_array();
@@ -44,8 +57,7 @@ fn lifted(NoisyContact { contact, noise }: &NoisyContact) -> spatial::NoisyConta
         noise: spatial::ContactNoise {
             point,
             normal: noise.normal,
-            pose_translation: noise.pose_translation,
-            pose_rotation: noise.pose_rotation,
+            pose: in_plane(noise.pose_translation, noise.pose_rotation),
         },
     }
 }

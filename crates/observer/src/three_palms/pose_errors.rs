@@ -1,0 +1,267 @@
+//! How far the poses of an estimated motion may be off, all of them together.
+//!
+//! Errors of a motion come from a dozen numbers and the noise of the forces. They are common to all contacts and alike from
+//! one instant to the next, and what all poses share of them is a rigid displacement of the body's axes, which have to stand
+//! somewhere: relative to it the poses are known better than each alone. The joint distribution is drawn from.
+
+use super::random::Normal;
+use super::refine::Refined;
+use super::sensitivity::{exponential, logarithm};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::{Cholesky, SMatrix, SVector};
+
+/// Draws of the joint error: one in twenty is then known to some 0.7 %.
+pub(super) const DRAWS: usize = 1000;
+/// Nodes at which the errors are kept, at most: between them they go straight.
+const KEPT: usize = 400;
+/// What covariances are raised by, relative to the largest: next to nothing, but they can be inverted.
+const RIDGE: f64 = 1e-9;
+
+/// A rigid displacement that is uncertain: a turn about the origin (rotation vector, rad), then a shift (m).
+pub(super) type Displacement = SVector<f64, 6>;
+
+/// A pose: position of the centre of mass, and orientation, body to world.
+pub(super) type Pose = (DVec3, DQuat);
+
+/// Covariance of a small rigid displacement of the body's axes: `x` goes to `x + theta x x + d`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseCovariance {
+    /// Of the turn `theta`, rad^2.
+    pub rotation: DMat3,
+    /// Of the shift `d`, m^2.
+    pub translation: DMat3,
+    /// `E[theta d']`, rad m.
+    pub cross: DMat3,
+}
+
+impl PoseCovariance {
+    fn of(m: &SMatrix<f64, 6, 6>) -> Self {
+        let block = |row: usize, column: usize| {
+            DMat3::from_cols_array_2d(&std::array::from_fn(|j| {
+                std::array::from_fn(|i| m[(row + i, column + j)])
+            }))
+        };
+        Self { rotation: block(0, 0), translation: block(3, 3), cross: block(0, 3) }
+    }
+}
+
+/// Covariances of the errors of estimated poses in body axes, relative to what all of them share.
+///
+/// A point that stands at `x` in the body stands at `x + theta x x + d` as estimated, and so with normals. What is shared is
+/// the mean of `(theta, d)` over the motion: bounds made with these covariances hold for the body in the axes in which its
+/// estimated poses are right on the average.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseErrors {
+    nodes: Vec<usize>,
+    covariances: Vec<SMatrix<f64, 6, 6>>,
+    shared: SMatrix<f64, 6, 6>,
+    /// For each draw the largest error of all nodes in its own deviations, ascending.
+    largest: Vec<f64>,
+}
+
+impl PoseErrors {
+    /// Covariance at a sample.
+    #[must_use]
+    pub fn covariance(&self, sample: usize) -> PoseCovariance {
+        PoseCovariance::of(&self.interpolated(sample))
+    }
+
+    fn interpolated(&self, sample: usize) -> SMatrix<f64, 6, 6> {
+        let after = self.nodes.partition_point(|&node| node < sample);
+        let (Some(&to), Some(last)) = (self.nodes.get(after), self.covariances.last()) else {
+            return self.covariances.last().copied().unwrap_or_else(SMatrix::zeros);
+        };
+        if after == 0 || to == sample {
+            return *self.covariances.get(after).unwrap_or(last);
+        }
+        let from = self.nodes[after - 1];
+        // An error on the way is a mean of those at both ends, and a deviation is convex.
+        let share = (sample - from) as f64 / (to - from) as f64;
+        self.covariances[after - 1] * (1.0 - share) + self.covariances[after] * share
+    }
+
+    /// Covariance of what all poses share: how far the axes of the bounds may stand from the body's own.
+    #[must_use]
+    pub fn shared(&self) -> PoseCovariance {
+        PoseCovariance::of(&self.shared)
+    }
+
+    /// The number of deviations within which the errors of all poses lie together with the stated confidence: `e' S^-1 e` is
+    /// below its square at every sample. Infinite for a confidence that the draws do not reach.
+    #[must_use]
+    pub fn deviations(&self, confidence: f64) -> f64 {
+        // As in split conformal inference: the rank that one more draw stays below with that confidence.
+        let rank = ((self.largest.len() + 1) as f64 * confidence).ceil() as usize;
+        rank.checked_sub(1).and_then(|k| self.largest.get(k)).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// From draws of poses about the `estimated` ones at some samples (`nodes`), each read as a motion that may be the true one;
+    /// `lasting` (m) is the deviation of what shifts contacts beside the motion, in any direction. None where no draw is left
+    /// that is a motion.
+    pub(super) fn from_draws(
+        nodes: Vec<usize>,
+        estimated: &[Pose],
+        draws: impl Iterator<Item = Vec<Pose>>,
+        lasting: f64,
+    ) -> Option<Self> {
+        let mut random = Normal::seeded(LASTING_SEED);
+        let mut all = Vec::new();
+        let mut shared = SMatrix::zeros();
+        for poses in draws {
+            let (common, mut errors) = split(estimated, &poses);
+            shared += common * common.transpose();
+            for error in &mut errors {
+                (3..6).for_each(|i| error[i] += lasting * random.draw());
+            }
+            all.push(errors);
+        }
+        let count = all.len() as f64;
+        if all.is_empty() || nodes.is_empty() {
+            return None;
+        }
+        let covariances: Vec<_> = (0..nodes.len())
+            .map(|k| {
+                let sum: SMatrix<f64, 6, 6> =
+                    all.iter().map(|errors| errors[k] * errors[k].transpose()).sum();
+                raised(sum / count)
+            })
+            .collect();
+        let roots: Vec<_> = covariances.iter().map(|c| Cholesky::new(*c)).collect::<Option<_>>()?;
+        let mut largest: Vec<f64> = all
+            .iter()
+            .map(|errors| {
+                let squares = errors.iter().zip(&roots).map(|(e, root)| e.dot(&root.solve(e)));
+                squares.fold(0.0, f64::max).sqrt()
+            })
+            .collect();
+        largest.sort_unstable_by(f64::total_cmp);
+        Some(Self { nodes, covariances, shared: shared / count, largest })
+    }
+}
+
+/// Seed of what lasting errors are drawn from.
+const LASTING_SEED: u64 = 0x1a57;
+
+/// Indices of at most [`KEPT`] of `count` nodes, the first and the last among them.
+pub(super) fn kept(count: usize) -> Vec<usize> {
+    let most = count.min(KEPT);
+    (0..most).map(|k| k * count.saturating_sub(1) / most.saturating_sub(1).max(1)).collect()
+}
+
+/// What the errors at all nodes share, and what is left of each.
+fn split(estimated: &[Pose], drawn: &[Pose]) -> (Displacement, Vec<Displacement>) {
+    // From axes as estimated to true ones: x = R' (p^ + R^ x^ - p).
+    let errors: Vec<Pose> = estimated
+        .iter()
+        .zip(drawn)
+        .map(|((p_hat, R_hat), (p, R))| (R.inverse() * (*p_hat - *p), (R.inverse() * *R_hat).normalize()))
+        .collect();
+    let count = errors.len().max(1) as f64;
+    // Mean of rotations about the first: what a second round would change is of third order.
+    let first = errors.first().map_or(DQuat::IDENTITY, |(_, turn)| *turn);
+    let mean = errors.iter().map(|(_, turn)| logarithm(first.inverse() * *turn)).sum::<DVec3>() / count;
+    let turn = (first * exponential(mean)).normalize();
+    let shift = errors.iter().map(|(shift, _)| *shift).sum::<DVec3>() / count;
+    let left = |(s, q): &Pose| {
+        let (theta, d) = (-logarithm(turn.inverse() * *q), -(turn.inverse() * (*s - shift)));
+        displacement(theta, d)
+    };
+    (displacement(-logarithm(turn), -shift), errors.iter().map(left).collect())
+}
+
+fn displacement(theta: DVec3, d: DVec3) -> Displacement {
+    Displacement::from([theta.x, theta.y, theta.z, d.x, d.y, d.z])
+}
+
+/// A covariance with a small part of its largest entries, by kind, on its diagonal.
+fn raised(mut covariance: SMatrix<f64, 6, 6>) -> SMatrix<f64, 6, 6> {
+    for block in [0, 3] {
+        let largest = (block..block + 3).map(|i| covariance[(i, i)]).fold(0.0, f64::max);
+        (block..block + 3).for_each(|i| covariance[(i, i)] += RIDGE * largest + f64::MIN_POSITIVE.sqrt());
+    }
+    covariance
+}
+
+/// A matrix `A` with `A A'` a covariance, of any rank: columns without variance of their own are zero.
+pub(super) fn root<const N: usize>(covariance: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+    let mut a = SMatrix::<f64, N, N>::zeros();
+    for j in 0..N {
+        let own = covariance[(j, j)] - (0..j).map(|k| a[(j, k)] * a[(j, k)]).sum::<f64>();
+        if own.is_nan() || own <= ROUNDING * covariance[(j, j)] {
+            continue;
+        }
+        a[(j, j)] = own.sqrt();
+        for i in j + 1..N {
+            let rest = covariance[(i, j)] - (0..j).map(|k| a[(i, k)] * a[(j, k)]).sum::<f64>();
+            a[(i, j)] = rest / a[(j, j)];
+        }
+    }
+    a
+}
+
+/// Share of a variance that is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// A vector of independent standard normals.
+pub(super) fn normals<const N: usize>(random: &mut Normal) -> SVector<f64, N> {
+    SVector::from_fn(|_, _| random.draw())
+}
+
+/// Orientation turned by a small rotation vector in world axes.
+pub(super) fn turned(q: DQuat, theta: DVec3) -> DQuat {
+    (exponential(theta) * q).normalize()
+}
+
+impl<const N: usize> Refined<N> {
+    /// Joint errors of the poses at the nodes, in body axes that stand at `axes` in the model's: what is linear in the noise, and
+    /// what the covariances were widened by; all of it larger by the root of the `misfit` where that is above 1.
+    pub(super) fn pose_errors(&self, axes: DQuat, misfit: f64) -> Option<PoseErrors> {
+        let mut random = Normal::seeded(MOTION_SEED);
+        let kept = kept(self.nodes.len());
+        let states = self.states();
+        let poses: Vec<Pose> =
+            kept.iter().map(|&k| (states[k].p_WCm, (states[k].R_WO * axes).normalize())).collect();
+        let first = root(&self.solution.report.covariance);
+        let links: Vec<_> =
+            self.solution.links.iter().map(|link| (link.transition, root(&link.noise))).collect();
+        let grown = misfit.max(1.0).sqrt();
+        let draw = |_: usize| {
+            let of_pairs: Vec<f64> = self.shifts.iter().map(|_| random.draw()).collect();
+            let pairs = (self.shifts.len().max(1) as f64).sqrt();
+            let mut deviation: SVector<f64, N> = first * normals(&mut random);
+            let mut places = kept.iter().zip(&poses).peekable();
+            let mut drawn = Vec::with_capacity(kept.len());
+            for k in 0..self.nodes.len() {
+                if let Some((transition, noise)) = k.checked_sub(1).and_then(|before| links.get(before)) {
+                    deviation = transition * deviation + noise * normals(&mut random);
+                }
+                let Some((_, (p, q))) = places.next_if(|(at, _)| **at == k) else { continue };
+                let beyond = self.shifts.iter().zip(&of_pairs).map(|(shift, z)| shift[k] * (z / pairs));
+                let all = (deviation + beyond.sum::<SVector<f64, N>>()) * grown;
+                let part = |block: usize| DVec3::new(all[3 * block], all[3 * block + 1], all[3 * block + 2]);
+                drawn.push((*p + part(0), turned(*q, part(3))));
+            }
+            drawn
+        };
+        let nodes = kept.iter().map(|&k| self.nodes[k]).collect();
+        PoseErrors::from_draws(nodes, &poses, (0..DRAWS).map(draw), 0.0)
+    }
+}
+
+/// Joint errors of the poses of a motion that follows from its start alone: `covariance` is that of the unknowns, `poses` gives
+/// the motion at `nodes` for a change of them.
+pub(super) fn of_start<const P: usize>(
+    nodes: Vec<usize>,
+    covariance: &SMatrix<f64, P, P>,
+    poses: impl Fn(&SVector<f64, P>) -> Option<Vec<Pose>>,
+    lasting: f64,
+) -> Option<PoseErrors> {
+    let mut random = Normal::seeded(MOTION_SEED);
+    let root = root(covariance);
+    let estimated = poses(&SVector::zeros())?;
+    let draws = (0..DRAWS).filter_map(|_| poses(&(root * normals(&mut random))));
+    PoseErrors::from_draws(nodes, &estimated, draws, lasting)
+}
+
+/// Seed of what motions are drawn from.
+const MOTION_SEED: u64 = 0x6d07;
