@@ -1,4 +1,4 @@
-use super::bounds::{BoundsResult, bounds, contradiction_among};
+use super::bounds::{BoundsResult, bounds, contradiction};
 use super::evidence::{Checks, evidence, verdict};
 use super::simulate::known_body;
 use super::sound::curve_bounds;
@@ -204,7 +204,7 @@ fn bounds_of(
     }
     let why = match curve_bounds(estimate, CONFIDENCE) {
         Ok(mut sound) => {
-            sound.contradiction = contradiction_among(contacts);
+            sound.contradiction = contradiction(contacts)?;
             sound.warnings.push(format!(
                 "Contacts are noisy by {noise:.1e} m: the bounds have margins with which they hold at {:.0} % confidence.",
                 100.0 * CONFIDENCE
