@@ -1,8 +1,11 @@
 //! Both bounds of a convex body from its contacts, and the gap between them.
 
+mod agreement;
 mod gap;
 mod incremental;
 
+pub use agreement::Contradiction;
+pub(crate) use agreement::{PRINTED, ROUNDING_ULPS, beyond};
 pub use gap::Gap;
 pub use incremental::IncrementalBounds;
 
@@ -28,6 +31,13 @@ pub enum BoundsError {
         /// Contacts needed.
         needed: usize,
     },
+    /// A contact point lies beyond the tangent plane of another, by more than rounding.
+    #[error(
+        "contact {} lies {:e} m beyond the tangent plane of contact {}, which no convex body allows: a contact is wrong, \
+         contacts are noisy (state or estimate their noise), or the body is concave (take it for that)",
+        .0.contact, .0.excess, .0.plane
+    )]
+    Contradiction(Contradiction),
     /// The contact points have no hull.
     #[error("lower bound: {0}")]
     Points(#[from] PointsError),
@@ -49,13 +59,11 @@ impl ShapeBounds {
     /// Bounds from contacts on a convex body.
     ///
     /// # Errors
-    /// [`BoundsError`] for fewer than four contacts, values that are not finite, and contacts that contradict each
-    /// other (a smallest contradictory set is named).
+    /// [`BoundsError`] for fewer than four contacts, values that are not finite, and contacts of which one lies beyond the
+    /// tangent plane of another, by more than printing with six digits moves it (the worst two are named). By what is less,
+    /// the half-spaces are moved out, so that the lower bound lies in the upper one.
     pub fn from_contacts(contacts: &[ContactSample]) -> Result<Self, BoundsError> {
-        Self::check(contacts)?;
-        let points: Vec<DVec3> = contacts.iter().map(|c| c.point).collect();
-        let half_spaces: Vec<HalfSpace> = contacts.iter().map(ContactSample::half_space).collect();
-        Self::from_parts(&points, &half_spaces)
+        Self::exact(contacts)
     }
 
     /// Whether there are contacts enough, all of finite coordinates.
@@ -71,7 +79,11 @@ impl ShapeBounds {
 
     /// Bounds from points that are in the body and half-spaces that contain it.
     pub(crate) fn from_parts(points: &[DVec3], half_spaces: &[HalfSpace]) -> Result<Self, BoundsError> {
-        let lower = Hull::of(points)?;
+        Self::of_hull(Hull::of(points)?, points, half_spaces)
+    }
+
+    /// The same with the hull of the points made already.
+    fn of_hull(lower: Hull, points: &[DVec3], half_spaces: &[HalfSpace]) -> Result<Self, BoundsError> {
         let upper = Intersection::of(half_spaces)?;
         let corners = lower.corner_points(points);
         Ok(Self { lower, corners, upper })

@@ -49,7 +49,7 @@ pub enum FacetError {
 pub(crate) fn faceted(
     start: Vec<ContactSample>,
     tolerance: f64,
-    touch: impl Fn(&Gap) -> ContactSample,
+    mut touch: impl FnMut(&Gap) -> ContactSample,
 ) -> Result<ShapeBounds, FacetError> {
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(FacetError::Tolerance { value: tolerance });
@@ -73,17 +73,17 @@ pub(crate) fn faceted(
         if contacts.len() + wide.len() > MOST {
             break;
         }
-        contacts.extend(wide.iter().map(&touch));
+        contacts.extend(wide.iter().map(&mut touch));
     }
     Err(FacetError::TooFine { tolerance, facets: contacts.len(), gap })
 }
 
 /// [`faceted`] for a body that is known by its support points.
 pub(crate) fn faceted_by_support(
-    support: impl Fn(DVec3) -> DVec3,
+    mut support: impl FnMut(DVec3) -> DVec3,
     tolerance: f64,
 ) -> Result<ShapeBounds, FacetError> {
-    let touch = |normal: Direction| ContactSample { point: support(normal.get()), normal };
+    let mut touch = |normal: Direction| ContactSample { point: support(normal.get()), normal };
     let axes = [Direction::X, Direction::Y, Direction::Z];
     let start = axes.into_iter().flat_map(|d| [touch(d), touch(-d)]).collect();
     faceted(start, tolerance, |gap| touch(gap.direction))

@@ -48,7 +48,7 @@ mod random;
 mod sample;
 mod twofold;
 
-pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
+pub use bounds::{BoundsError, Contradiction, Gap, IncrementalBounds, ShapeBounds};
 pub use concave::{AlphaError, AlphaShape, HermiteSurface, SurfaceError};
 pub use curvature::{
     BallHull, BallIntersection, ConvexMeasures, CurvatureBounds, CurvatureError, RoundedHull,

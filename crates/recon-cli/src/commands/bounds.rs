@@ -3,7 +3,7 @@ use crate::cli::{BoundsArgs, FitAs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
-    BoundsResult, Noise, PlanarRequest, bounds, concave_bounds, fit_words, fitted_shape, noisy_bounds,
+    BoundsResult, Noise, PlanarRequest, concave_bounds, exact_bounds, fit_words, fitted_shape, noisy_bounds,
     pose_bounds, sharp_bounds, write_bounds_folder,
 };
 use crate::progress::Progress;
@@ -62,7 +62,7 @@ fn of_contacts(args: &BoundsArgs, curves: &[Vec<ContactSample>]) -> Result<(Boun
     let (mut made, mut about) = match (radii(args), noise) {
         (Some(radii), noise) => sharp_bounds(curves, radii, noise)?,
         (None, Some((noise, confidence))) => noisy_bounds(curves, noise, confidence)?,
-        (None, None) => (bounds(&curves.concat())?, json!({ "noise": "none" })),
+        (None, None) => (exact_bounds(&curves.concat())?, json!({ "noise": "none" })),
     };
     if let Some(family) = args.fit {
         let (report, mesh) = fitted_shape(curves, noise, family)?;

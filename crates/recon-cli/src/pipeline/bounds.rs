@@ -19,9 +19,17 @@ pub(crate) struct BoundsResult {
     pub(crate) warnings: Vec<String>,
 }
 
-/// Lower and upper bound from contacts that are taken as exact.
+/// Lower and upper bound from exact contacts on a convex body.
+pub(crate) fn exact_bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliError> {
+    made(ShapeBounds::from_contacts(contacts)?, contacts)
+}
+
+/// Lower and upper bound from contacts that are taken as exact, but were moved by an estimate and may contradict each other.
 pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliError> {
-    let whole = ShapeBounds::from_contacts(contacts)?;
+    made(ShapeBounds::from_contradicting_contacts(contacts)?, contacts)
+}
+
+fn made(whole: ShapeBounds, contacts: &[ContactSample]) -> Result<BoundsResult, CliError> {
     let (lower, upper) = meshes(&whole)?;
     let mut warnings = Vec::new();
     if lower.is_none() {
@@ -29,7 +37,8 @@ pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliErro
     }
     warnings.extend(unbounded(&whole));
     let some = some_of(contacts);
-    let few = if contacts.len() > some.len() { ShapeBounds::from_contacts(&some).ok() } else { None };
+    let few =
+        if contacts.len() > some.len() { ShapeBounds::from_contradicting_contacts(&some).ok() } else { None };
     let few = few.as_ref().unwrap_or(&whole);
     // Fewer contacts may leave nothing to draw where all of them gave bounds; then all are drawn.
     let (few_lower, few_upper) = meshes(few)?;
@@ -51,22 +60,15 @@ pub(super) fn unbounded(bounds: &ShapeBounds) -> Option<String> {
     Some(format!("The contacts leave the object unbounded on some side{side}: there is no upper bound."))
 }
 
-/// How far the worst contact lies beyond the half-space of another, m, among [`DRAWN`] of them: for exact contacts of a convex body
-/// at most rounding, however they were moved.
-pub(super) fn contradiction_among(contacts: &[ContactSample]) -> f64 {
-    contradiction(&some_of(contacts))
+/// How far the worst contact lies beyond the half-space of another, m.
+pub(super) fn contradiction(contacts: &[ContactSample]) -> Result<f64, CliError> {
+    Ok(ShapeBounds::contradiction(contacts)?.map_or(0.0, |worst| worst.excess))
 }
 
 /// At most [`DRAWN`] of them, spread evenly.
 fn some_of<T: Copy>(all: &[T]) -> Vec<T> {
     let count = all.len().min(DRAWN);
     (0..count).map(|k| all[k * all.len() / count]).collect()
-}
-
-fn contradiction(contacts: &[ContactSample]) -> f64 {
-    let spaces: Vec<_> = contacts.iter().map(ContactSample::half_space).collect();
-    let beyond = |c: &ContactSample| spaces.iter().map(|s| s.excess(c.point)).fold(0.0, f64::max);
-    contacts.iter().map(beyond).fold(0.0, f64::max)
 }
 
 /// Surfaces of bounds for drawing: of some of their corners and planes, where there are many.

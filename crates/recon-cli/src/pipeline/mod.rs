@@ -13,7 +13,7 @@ mod simulate;
 mod sound;
 mod truth;
 
-pub(crate) use bounds::{BoundsResult, bounds};
+pub(crate) use bounds::{BoundsResult, bounds, exact_bounds};
 pub(crate) use concave::concave_bounds;
 pub(crate) use export::exported;
 pub(crate) use fitted::{fit_words, fitted_shape};

@@ -1,4 +1,4 @@
-use super::bounds::{BoundsResult, contradiction_among};
+use super::bounds::{BoundsResult, contradiction};
 use super::evidence::{Checks, evidence, verdict};
 use super::simulate::known_body;
 use super::sound::motion_bounds;
@@ -84,7 +84,8 @@ pub(crate) fn reconstruct(
             100.0 * CONFIDENCE
         ));
     }
-    let contradiction = contradiction_among(&contacts);
+    // Contacts that cannot even be compared contradict each other: the verdict on the motion says so.
+    let contradiction = contradiction(&contacts).unwrap_or(f64::NAN);
     let (drawn, lower, upper) = match bounded {
         Some(BoundsResult { drawn, lower, upper, warnings: of_bounds, .. }) => {
             warnings.extend(of_bounds);

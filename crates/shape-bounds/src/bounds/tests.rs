@@ -53,10 +53,13 @@ fn too_few_and_contradictory_contacts_are_named() {
     let mut wrong = contacts.clone();
     wrong[7].point = -wrong[7].point * 1.5;
     let error = ShapeBounds::from_contacts(&wrong).unwrap_err();
-    let BoundsError::HalfSpaces(IntersectionError::Contradiction { conflict, .. }) = &error else {
-        panic!("{error}")
-    };
-    assert!(conflict.contains(&7), "{error}");
+    let BoundsError::Contradiction(found) = &error else { panic!("{error}") };
+    assert!([found.contact, found.plane].contains(&7), "{error}");
+    let [c, p] = [found.contact, found.plane].map(|k| wrong[k]);
+    assert!((p.half_space().excess(c.point) - found.excess).abs() < 1e-14);
+    // Nothing is wrong with the rest.
+    wrong.remove(7);
+    assert_eq!(ShapeBounds::contradiction(&wrong), Ok(None));
 }
 
 #[test]
@@ -126,5 +129,64 @@ fn the_largest_gap_is_that_of_all_corners() {
         found.sort_unstable_by(f64::total_cmp);
         plain.sort_unstable_by(f64::total_cmp);
         assert!(found.iter().zip(&plain).all(|(f, p)| (f - p).abs() < 1e-12));
+    }
+}
+
+#[test]
+fn a_contact_beyond_another_ones_plane_is_named_although_hull_and_half_spaces_exist() {
+    let face = |n: DVec3| ContactSample { point: n * 0.5, normal: Direction::new(n).unwrap() };
+    let mut cube: Vec<ContactSample> =
+        [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|n| [face(n), face(-n)]).collect();
+    assert!(ShapeBounds::from_contacts(&cube).is_ok());
+    cube.push(ContactSample { point: DVec3::new(3.0, 3.0, 0.0), normal: Direction::X });
+    let Err(BoundsError::Contradiction(found)) = ShapeBounds::from_contacts(&cube) else {
+        panic!("accepted")
+    };
+    assert!(found.contact == 6 && [0, 2].contains(&found.plane) && (found.excess - 2.5).abs() < 1e-15);
+}
+
+#[test]
+fn the_farthest_beyond_is_that_of_all_pairs_whatever_the_dimension() {
+    let mut s = Source::new(4);
+    for case in 0..60 {
+        let stretch = [DVec3::ONE, DVec3::new(1.0, 0.6, 0.0), DVec3::X, DVec3::ZERO][case % 4];
+        let contacts: Vec<ContactSample> = (0..5 + case)
+            .map(|_| ContactSample {
+                point: s.normal3() * stretch,
+                normal: Direction::new(s.direction()).unwrap(),
+            })
+            .collect();
+        let mut expected = 0.0_f64;
+        for c in &contacts {
+            expected = contacts.iter().map(|d| c.half_space().excess(d.point)).fold(expected, f64::max);
+        }
+        let found = ShapeBounds::contradiction(&contacts).unwrap().map_or(0.0, |worst| worst.excess);
+        assert!((found - expected).abs() < 1e-14, "case {case}: {found} {expected}");
+    }
+}
+
+#[test]
+fn contacts_rounded_to_printed_digits_leave_the_lower_bound_in_the_upper_one() {
+    for (digits, seed) in [(6, 1), (7, 2), (9, 3), (12, 4)] {
+        let unit = 10.0_f64.powi(-digits);
+        let rounded = |v: DVec3| (v / unit).round() * unit;
+        let contacts: Vec<ContactSample> = ellipsoid_contacts(2000, seed)
+            .iter()
+            .map(|c| ContactSample {
+                point: rounded(c.point),
+                normal: Direction::from_unit(rounded(c.normal.get()), 1e-5).unwrap(),
+            })
+            .collect();
+        let bounds = ShapeBounds::from_contacts(&contacts).unwrap();
+        let upper = bounds.upper().bounded().unwrap();
+        assert!(contacts.iter().all(|c| upper.contains(c.point)), "{digits} digits");
+        // Points that stand on their heads by more than printing does are refused.
+        let noisy: Vec<ContactSample> = contacts
+            .iter()
+            .map(|c| ContactSample { point: c.point * (1.0 + 1e-2 * (40.0 * c.point.x).sin()), ..*c })
+            .collect();
+        assert!(matches!(ShapeBounds::from_contacts(&noisy), Err(BoundsError::Contradiction(_))));
+        let bounds = ShapeBounds::from_contradicting_contacts(&noisy).unwrap();
+        assert!(noisy.iter().all(|c| bounds.upper().bounded().unwrap().contains(c.point)));
     }
 }

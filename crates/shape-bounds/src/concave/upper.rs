@@ -1,5 +1,5 @@
-use crate::bounds::{BoundsError, ShapeBounds};
-use crate::hull::{Hull, SupportWalk};
+use crate::bounds::{BoundsError, ShapeBounds, beyond};
+use crate::hull::Hull;
 use crate::sample::{ContactSample, HalfSpace};
 use glam::DVec3;
 
@@ -23,17 +23,8 @@ impl ShapeBounds {
         let points: Vec<DVec3> = contacts.iter().map(|c| c.point).collect();
         let size = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let hull = Hull::of(&points)?;
-        let corners = hull.corner_points(&points);
-        let mut walk = hull.solid().map(SupportWalk::new);
-        let mut farthest = |d: DVec3| match &mut walk {
-            Some(walk) => walk.farthest(d),
-            None => crate::distance::farthest_of(&corners, d),
-        };
-        let mut on_hull = |c: &ContactSample| {
-            let n = c.normal.get();
-            n.dot(farthest(n) - c.point) <= ROUNDING * size
-        };
-        let kept: Vec<usize> = (0..contacts.len()).filter(|i| on_hull(&contacts[*i])).collect();
+        let beyond = beyond(&hull, &points, contacts);
+        let kept: Vec<usize> = (0..contacts.len()).filter(|i| beyond[*i].1 <= ROUNDING * size).collect();
         let half_spaces: Vec<HalfSpace> = kept.iter().map(|i| contacts[*i].half_space()).collect();
         Ok((Self::from_parts(&points, &half_spaces)?, kept))
     }

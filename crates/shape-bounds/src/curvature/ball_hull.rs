@@ -3,16 +3,19 @@
 use super::balls::BallIntersection;
 use super::circle::Circle;
 use super::steiner::ConvexMeasures;
+use super::support::BallWalk;
 use super::surface::{Corner, Shape};
 use crate::bounds::ShapeBounds;
 use crate::faceted::{FacetError, faceted_by_support};
 use crate::integrals::Compensated;
 use contact_kinematics::Direction;
 use glam::DVec3;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Below this half-angle a series takes the place of differences that cancel.
 const SHORT: f64 = 0.5;
+/// How far volumes by duality may differ, as a share of the ball's.
+const DUALITY: f64 = 1e-11;
 /// Terms of those series: the first left out is below 2^-53 of the first one at [`SHORT`].
 const TERMS: u32 = 10;
 
@@ -68,10 +71,8 @@ impl BallHull {
     /// # Errors
     /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
     pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
-        faceted_by_support(
-            |d| d * (self.dual.radius() + self.margin) + self.dual.support_point(-d),
-            tolerance,
-        )
+        let mut walk = BallWalk::new(&self.dual);
+        faceted_by_support(|d| d * (self.dual.radius() + self.margin) + walk.farthest(-d), tolerance)
     }
 
     /// Volume in m^3.
@@ -89,6 +90,14 @@ impl BallHull {
     #[must_use]
     pub fn measures(&self) -> ConvexMeasures {
         self.core_measures().grown(self.margin)
+    }
+
+    /// Whether the measures agree with those of the dual, as far as those have digits.
+    pub(super) fn agrees_with_duality(&self) -> bool {
+        let (own, dual, rho) = (self.core_measures(), self.dual.measures(), self.dual.radius());
+        let ball = 4.0 / 3.0 * PI * rho * rho * rho;
+        let volume = ball - rho * rho * dual.mean_curvature + rho * dual.area - dual.volume;
+        (own.volume - volume).abs() <= DUALITY * ball
     }
 
     fn core_measures(&self) -> ConvexMeasures {

@@ -5,8 +5,9 @@ use super::error::CurvatureError;
 use super::insert::Builder;
 use super::measure::face_moments;
 use super::steiner::ConvexMeasures;
+use super::support::BallWalk;
 use super::surface::{Shape, Surface};
-use super::{ROUNDING, check_contacts};
+use super::{ROUNDING, VolumeRange, check_contacts};
 use crate::bounds::ShapeBounds;
 use crate::faceted::{FacetError, faceted_by_support};
 use crate::hull::insertion_order;
@@ -15,6 +16,16 @@ use crate::sample::ContactSample;
 use contact_kinematics::Direction;
 use glam::DVec3;
 use std::f64::consts::PI;
+
+/// What a ball cuts off by less than this, relative to radius and coordinates, is rounding of its centre.
+const CUT: f64 = 64.0 * f64::EPSILON;
+
+/// By how much radii are made larger, one after the other, until the surface stands a check.
+const SLACKS: [f64; 6] = [0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5];
+/// How far vector areas may be from closing, relative to the area.
+const CLOSED: f64 = 1e-9;
+/// Of so many balls one may be left out for rounding.
+const LEFT_OUT: usize = 100;
 
 /// The intersection of balls of one radius, each touching from outside at a known point of the body: an upper bound of a
 /// body that rolls freely inside of such a ball.
@@ -43,13 +54,76 @@ impl BallIntersection {
         }
         let points: Vec<DVec3> = contacts.iter().map(|c| c.point).collect();
         let centres: Vec<DVec3> = contacts.iter().map(|c| c.point - c.normal.get() * radius).collect();
-        let (all, outside) = Self::build(&centres, &points, radius, ROUNDING * radius);
-        match outside {
-            None => Ok(all),
-            Some(Outside { sample, other, excess }) => {
+        let volumes = VolumeRange::of(contacts, 0.0);
+        match Self::settled(&centres, &points, radius, ROUNDING * radius, |all, slack| {
+            volumes.holds(all.volume(), slack)
+        }) {
+            Ok(all) => Ok(all),
+            Err(Unsettled::Outside(Outside { sample, other, excess })) => {
                 Err(CurvatureError::TooFlat { sample, other, excess, radius })
             }
+            Err(Unsettled::Rounding) => Err(CurvatureError::Rounding { min: 0.0, max: radius }),
         }
+    }
+
+    /// [`Self::build`] of balls whose touching points are on their spheres, with a radius as much larger as it takes for
+    /// surface and measures to stand a check.
+    ///
+    /// Where a body's own radius is the limit, all spheres of a part of its surface pass through one point, and rounding of
+    /// their centres decides what is left there. Of larger balls there is a small ball left in common instead, whose corners
+    /// can be told. That makes an intersection larger and a ball hull smaller, so that both remain bounds.
+    pub(super) fn settled(
+        centres: &[DVec3],
+        touching: &[DVec3],
+        radius: f64,
+        tolerance: f64,
+        is_right: impl Fn(&Self, f64) -> bool,
+    ) -> Result<Self, Unsettled> {
+        let size = centres.iter().map(|c| c.abs().max_element()).fold(radius, f64::max);
+        for slack in SLACKS {
+            let kept = distinct(centres, slack * size);
+            let of = |all: &[DVec3]| kept.iter().map(|k| all[*k as usize]).collect::<Vec<DVec3>>();
+            let (mut all, outside) =
+                Self::build(&of(centres), &of(touching), radius + slack * size, tolerance);
+            all.sources.iter_mut().for_each(|source| *source = kept[*source as usize]);
+            // A pair that contradicts the radius is what it is, however the surface came out.
+            if let Some(Outside { sample, other, excess }) = outside {
+                let [sample, other] = [sample, other].map(|k| kept[k] as usize);
+                return Err(Unsettled::Outside(Outside { sample, other, excess }));
+            }
+            let room = tolerance + 2.0 * slack * size;
+            let whole = all.skipped * LEFT_OUT <= centres.len() && all.is_closed();
+            if whole && all.touches(centres, touching, radius, room) && is_right(&all, slack) {
+                return Ok(all);
+            }
+        }
+        Err(Unsettled::Rounding)
+    }
+
+    /// Whether the surface reaches as far along each touching point's normal as that point, and no more than `room` (m) further.
+    fn touches(&self, centres: &[DVec3], touching: &[DVec3], radius: f64, room: f64) -> bool {
+        let mut walk = BallWalk::new(self);
+        let rounding = 4.0 * self.surface.rounding;
+        insertion_order(touching).into_iter().all(|k| {
+            let (centre, touching) = (centres[k as usize], touching[k as usize]);
+            let n = (touching - centre) / radius;
+            let height = n.dot(walk.farthest(n) - touching);
+            (-room - rounding..=room + rounding).contains(&height)
+        })
+    }
+
+    /// Whether the vector areas of the faces add up to zero, as those of a closed surface do.
+    fn is_closed(&self) -> bool {
+        let (mut sum, mut total, mut arcs) = (DVec3::ZERO, 0.0, Vec::new());
+        for k in self.faces() {
+            self.surface.arcs_of(k, &mut arcs);
+            if !arcs.is_empty() {
+                let (area, vector) = face_moments(&self.surface, k, &arcs);
+                sum += vector;
+                total += area;
+            }
+        }
+        sum.length() <= CLOSED * total
     }
 
     /// The intersection of the balls about `centres`, of which there is at least one; `touching[k]` is a point on sphere `k`
@@ -64,7 +138,8 @@ impl BallIntersection {
         let interior = touching.iter().sum::<DVec3>() / touching.len() as f64;
         let sources = insertion_order(touching);
         let sorted = sources.iter().map(|k| centres[*k as usize]).collect();
-        let mut builder = Builder::new(sorted, radius, interior);
+        let size = centres.iter().chain(touching).map(|c| c.abs().max_element()).fold(radius, f64::max);
+        let mut builder = Builder::new(sorted, radius, CUT * size);
         for (p, source) in sources.iter().enumerate().skip(1) {
             builder.insert(p as u32, touching[*source as usize]);
         }
@@ -106,7 +181,7 @@ impl BallIntersection {
         None
     }
 
-    fn any_face(&self) -> u32 {
+    pub(super) fn any_face(&self) -> u32 {
         match self.surface.shape {
             Shape::Ball(k) | Shape::Lens(k, _) => k,
             Shape::Net => self.surface.live_corners().next().map_or(0, |c| c.balls[0]),
@@ -192,7 +267,8 @@ impl BallIntersection {
     /// # Errors
     /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
     pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
-        faceted_by_support(|d| self.support_point(d), tolerance)
+        let mut walk = BallWalk::new(self);
+        faceted_by_support(|d| walk.farthest(d), tolerance)
     }
 
     /// Whether `point` is in all balls, to rounding.
@@ -204,83 +280,38 @@ impl BallIntersection {
     /// Support function in m, in time O(n).
     #[must_use]
     pub fn support(&self, n: Direction) -> f64 {
-        self.support_point(n.get()).dot(n.get())
+        BallWalk::new(self).farthest(n.get()).dot(n.get())
     }
+}
 
-    /// The point farthest along `d`: of a face, an edge or a corner.
-    pub(super) fn support_point(&self, d: DVec3) -> DVec3 {
-        let n = d.normalize_or_zero();
-        self.extreme_point(
-            |centre| n * self.radius() + centre,
-            |circle| n - circle.axis * n.dot(circle.axis),
-            |p| p.dot(n),
-            |_| n,
-        )
+/// Indices of centres of which no two are closer to each other than `least` (m); any other is that close to one of them.
+fn distinct(centres: &[DVec3], least: f64) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..centres.len() as u32).collect();
+    if least == 0.0 {
+        return order;
     }
-
-    /// The largest distance of a point of the intersection from `point`.
-    pub(super) fn farthest_from(&self, point: DVec3) -> f64 {
-        let away = |from: DVec3| (from - point).normalize_or(DVec3::X);
-        let farthest = self.extreme_point(
-            |centre| centre + away(centre) * self.radius(),
-            |circle| {
-                let w = circle.middle - point;
-                w - circle.axis * w.dot(circle.axis)
-            },
-            |p| p.distance_squared(point),
-            |p| p - point,
-        );
-        farthest.distance(point)
-    }
-
-    /// The point of the surface that is best by a measure that has one maximum on each sphere, `top` of its centre, and one on
-    /// each circle, in a direction `across` from its middle; it rises along its `gradient`.
-    fn extreme_point(
-        &self,
-        top: impl Fn(DVec3) -> DVec3,
-        across: impl Fn(&Circle) -> DVec3,
-        measure: impl Fn(DVec3) -> f64,
-        gradient: impl Fn(DVec3) -> DVec3,
-    ) -> DVec3 {
-        let (surface, rho) = (&self.surface, self.surface.radius);
-        let mut best = (f64::NEG_INFINITY, self.interior);
-        let mut compare = |p: DVec3| {
-            let value = measure(p);
-            if value > best.0 {
-                best = (value, p);
-            }
-        };
-        let mut arcs = Vec::new();
-        for k in self.faces() {
-            let top = top(surface.centre(k));
-            surface.arcs_of(k, &mut arcs);
-            if arcs.iter().all(|arc| !surface.is_outside(arc.other, top)) {
-                compare(top);
-            }
-            for (i, arc) in arcs.iter().enumerate() {
-                compare(arc.start);
-                let end = arcs[(i + 1) % arcs.len()].start;
-                // An edge of less than half a circle has its best point inside just if the measure rises from its start and
-                // falls to its end: two products in the place of two angles.
-                let (a, b) = (surface.centre(k), surface.centre(arc.other));
-                let (axis, middle) = (b - a, (a + b) * 0.5);
-                let rises = |p: DVec3| gradient(p).dot(axis.cross(p - middle)) > 0.0;
-                let is_short = axis.cross(arc.start - middle).dot(end - middle) > 0.0;
-                if is_short && (!rises(arc.start) || rises(end)) {
-                    continue;
-                }
-                let circle = Circle::between(surface.centre(k), surface.centre(arc.other), rho);
-                let across = across(&circle);
-                if across.length_squared() > 0.0 {
-                    let highest = circle.middle + across.normalize() * circle.radius;
-                    if surface.angle(&circle, arc.start, highest) <= surface.angle(&circle, arc.start, end) {
-                        compare(highest);
-                    }
-                }
-            }
+    // Along a direction that is across no plane of the data, few are level with each other.
+    const ACROSS: DVec3 = DVec3::new(0.417_3, 0.551_9, 0.722_1);
+    let along = |k: u32| centres[k as usize].dot(ACROSS);
+    order.sort_unstable_by(|a, b| along(*a).total_cmp(&along(*b)));
+    let mut kept: Vec<u32> = Vec::with_capacity(order.len());
+    for k in order {
+        let level = kept.iter().rev().take_while(|other| along(k) - along(**other) <= least);
+        let is_new = !level.into_iter().any(|o| centres[*o as usize].distance(centres[k as usize]) <= least);
+        if is_new {
+            kept.push(k);
         }
-        best.1
     }
+    kept.sort_unstable();
+    kept
+}
+
+/// Why balls have no intersection that stands a check.
+pub(super) enum Unsettled {
+    /// A touching point is not in all balls.
+    Outside(Outside),
+    /// Rounding decides, whatever the slack.
+    Rounding,
 }
 
 /// A point that is outside of a ball, by the caller's indices.

@@ -62,4 +62,15 @@ pub enum CurvatureError {
         /// The upper limit, in m.
         max: f64,
     },
+    /// Rounding decides what the balls leave, as far as tried.
+    #[error(
+        "radii of curvature from {min} m to {max} m leave so little between the bounds that rounding decides; state wider \
+         limits, such as a largest radius larger by a thousandth"
+    )]
+    Rounding {
+        /// The lower limit, in m.
+        min: f64,
+        /// The upper limit, in m.
+        max: f64,
+    },
 }

@@ -3,14 +3,9 @@
 mod replace;
 
 use super::circle::Circle;
+use super::support::Climb;
 use super::surface::{Corner, NONE, Shape, Surface};
 use glam::DVec3;
-
-/// How far beyond a ball, relative to the radius, the surface must reach before there is something to cut off.
-const CUT: f64 = 4.0 * f64::EPSILON;
-
-/// Balls whose centres are closer than this part of the radius are the same but for rounding.
-const TWIN: f64 = 1e-12;
 
 /// An edge that the new ball's sphere crosses.
 #[derive(Clone, Copy)]
@@ -40,7 +35,7 @@ struct Visit {
 pub(super) struct Builder {
     pub(super) surface: Surface,
     pub(super) skipped: usize,
-    interior: DVec3,
+    climb: Climb,
     /// Where the next search starts: a corner that is there.
     hint: u32,
     insertions: u32,
@@ -65,15 +60,16 @@ enum Cut {
 }
 
 impl Builder {
-    /// The intersection of the first of the balls about `centres`. `interior` is a point in all of them.
-    pub(super) fn new(centres: Vec<DVec3>, radius: f64, interior: DVec3) -> Self {
+    /// The intersection of the first of the balls about `centres`.
+    /// What a ball cuts off by less than `rounding` (m) is left.
+    pub(super) fn new(centres: Vec<DVec3>, radius: f64, rounding: f64) -> Self {
         let corner_of = vec![NONE; centres.len()];
         let corners = Vec::with_capacity(2 * centres.len());
-        let surface = Surface { radius, centres, shape: Shape::Ball(0), corners, corner_of };
+        let surface = Surface { radius, rounding, centres, shape: Shape::Ball(0), corners, corner_of };
         Self {
             surface,
             skipped: 0,
-            interior,
+            climb: Climb::default(),
             hint: 0,
             insertions: 0,
             free: Vec::new(),
@@ -89,7 +85,7 @@ impl Builder {
     pub(super) fn insert(&mut self, p: u32, at: DVec3) {
         match self.surface.shape {
             Shape::Ball(k) => {
-                if self.surface.centre(k) != self.surface.centre(p) {
+                if self.surface.centre(k).distance(self.surface.centre(p)) > self.surface.rounding {
                     self.surface.shape = Shape::Lens(k, p);
                 }
             }
@@ -101,7 +97,6 @@ impl Builder {
             Shape::Net => match self.find_cut(p, at) {
                 Cut::Nowhere => {}
                 Cut::Inconsistent => self.skipped += 1,
-                Cut::Corner(corner) | Cut::Edge(corner, _) if self.is_twin(p, corner) => {}
                 Cut::Corner(corner) => {
                     self.collect_lost(p, corner);
                     self.replace_lost(p);
@@ -114,30 +109,23 @@ impl Builder {
         }
     }
 
-    /// Whether ball `p` is one of the balls at the corner but for rounding: what it cuts off is rounding, too.
-    fn is_twin(&self, p: u32, corner: u32) -> bool {
-        let limit = TWIN * self.surface.radius;
-        let centre = self.surface.centre(p);
-        let balls = self.surface.corners[corner as usize].balls;
-        balls.iter().any(|b| self.surface.centre(*b).distance_squared(centre) < limit * limit)
-    }
-
-    /// The face that is cut by ball `p` where the ray from the interior through `at` leaves the intersection; `None` when
-    /// ball `p` is implied there, at its own contact, and hence everywhere.
-    fn cuts_face(&self, start: u32, p: u32, at: DVec3) -> Option<u32> {
-        let direction = (at - self.interior).normalize_or_zero();
-        let (face, reach) = self.surface.face_along(self.interior, direction, start);
-        let hit = self.interior + direction * reach;
-        let limit = self.surface.radius * (1.0 + CUT);
-        (hit.distance_squared(self.surface.centre(p)) > limit * limit).then_some(face)
+    /// A face that ball `p`, which touches at `at`, cuts; `None` where it cuts none.
+    ///
+    /// The intersection rolls freely in a ball of the radius: if its farthest point along the normal at `at` is no farther than
+    /// `at`, it touches ball `p` there from inside, and lies in it.
+    fn cuts_face(&mut self, start: u32, p: u32, at: DVec3) -> Option<u32> {
+        let normal = (at - self.surface.centre(p)).normalize_or_zero();
+        self.climb.face = start;
+        let farthest = self.climb.farthest(&self.surface, normal);
+        self.surface.is_outside(p, farthest).then_some(self.climb.face)
     }
 
     /// Where ball `p` cuts a net: first by climbing from corner to corner away from its centre, where any corner outside will
     /// do; where that ends inside, by the face at the ball's contact.
-    fn find_cut(&self, p: u32, at: DVec3) -> Cut {
+    fn find_cut(&mut self, p: u32, at: DVec3) -> Cut {
         let surface = &self.surface;
         let centre = surface.centre(p);
-        let limit = surface.radius * surface.radius;
+        let limit = surface.limit();
         let mut corner = self.hint;
         let mut distance = surface.corners[corner as usize].at.distance_squared(centre);
         while distance <= limit {
@@ -149,7 +137,8 @@ impl Builder {
                 }
             }
             if next == corner {
-                return self.find_cut_at_contact(p, at, surface.corners[corner as usize].balls[0]);
+                let start = surface.corners[corner as usize].balls[0];
+                return self.find_cut_at_contact(p, at, start);
             }
             corner = next;
         }
@@ -157,9 +146,9 @@ impl Builder {
     }
 
     #[cold]
-    fn find_cut_at_contact(&self, p: u32, at: DVec3, start: u32) -> Cut {
-        let surface = &self.surface;
+    fn find_cut_at_contact(&mut self, p: u32, at: DVec3, start: u32) -> Cut {
         let Some(face) = self.cuts_face(start, p, at) else { return Cut::Nowhere };
+        let surface = &self.surface;
         let Some(first) = surface.corner_on(face) else { return Cut::Inconsistent };
         let (mut corner, mut edge_found) = (first, None);
         loop {

@@ -7,6 +7,8 @@
 mod ball_hull;
 mod balls;
 mod circle;
+#[cfg(test)]
+mod degenerate_tests;
 mod error;
 mod insert;
 mod measure;
@@ -17,6 +19,7 @@ mod sharp;
 #[cfg(test)]
 mod sharp_tests;
 mod steiner;
+mod support;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -28,13 +31,16 @@ pub use rounded::RoundedHull;
 pub use sharp::{RoundedIntersection, SharpBounds};
 pub use steiner::ConvexMeasures;
 
+use crate::halfspaces::Intersection;
 use crate::hull::PointsError;
-use crate::sample::ContactSample;
+use crate::sample::{ContactSample, HalfSpace};
 use contact_kinematics::{CurvatureRadii, Direction};
 use glam::DVec3;
 
 /// By how much contacts may contradict the limits before it is an error, relative to their size: rounding.
 const ROUNDING: f64 = 1e-12;
+/// Rounding of volumes, relative.
+const VOLUME_ROUNDING: f64 = 1e-9;
 
 /// Lower and upper bound of a convex body whose radii of curvature are limited.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,6 +84,31 @@ impl CurvatureBounds {
     #[must_use]
     pub fn support(&self, n: Direction) -> (f64, f64) {
         (self.lower.support(n), self.upper.support(n))
+    }
+}
+
+/// Volumes between which that of each bound lies, from constructions whose signs are exact: the hull of the inner balls, and the
+/// half-spaces.
+struct VolumeRange {
+    least: f64,
+    most: f64,
+}
+
+impl VolumeRange {
+    /// For balls of radius `min` inside of the body.
+    fn of(contacts: &[ContactSample], min: f64) -> Self {
+        let inner: Vec<DVec3> = contacts.iter().map(|c| c.point - c.normal.get() * min).collect();
+        let half_spaces: Vec<HalfSpace> = contacts.iter().map(ContactSample::half_space).collect();
+        let least = RoundedHull::of(&inner, min).map_or(0.0, |hull| hull.volume());
+        let upper = Intersection::of(&half_spaces).ok();
+        let most = upper.and_then(|all| all.bounded().map(|p| p.volume())).unwrap_or(f64::INFINITY);
+        Self { least, most }
+    }
+
+    /// Whether a volume is in the range, to rounding and what a relative `slack` of the radii changes.
+    fn holds(&self, volume: f64, slack: f64) -> bool {
+        let room = VOLUME_ROUNDING + 100.0 * slack;
+        (self.least * (1.0 - room)..=self.most * (1.0 + room)).contains(&volume)
     }
 }
 

@@ -6,6 +6,7 @@ use crate::distance::{farthest_of, nearest};
 use crate::faceted::{FacetError, faceted_by_support};
 use crate::hull::{Hull, PointsError, SolidHull, SupportWalk};
 use crate::integrals::Compensated;
+use crate::twofold::cross_of_differences;
 use contact_kinematics::Direction;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -66,7 +67,8 @@ impl RoundedHull {
     /// # Errors
     /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
     pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
-        faceted_by_support(|d| farthest_of(&self.corners, d) + d * self.radius, tolerance)
+        let mut farthest = self.core_support();
+        faceted_by_support(|d| farthest(d) + d * self.radius, tolerance)
     }
 
     /// Support function in m.
@@ -116,17 +118,20 @@ impl RoundedHull {
 
 /// Sum over the edges of length times exterior angle.
 fn edge_angles(hull: &SolidHull) -> f64 {
-    let normal = |f: usize| {
-        let [a, b, c] = hull.corners(f);
-        (b - a).cross(c - a)
-    };
+    // Centres that coincide or are collinear but for rounding make facets that are as thin as that.
+    let normals: Vec<DVec3> = (0..hull.triangles().len())
+        .map(|f| {
+            let [a, b, c] = hull.corners(f);
+            cross_of_differences(a, b, c)
+        })
+        .collect();
     let mut sum = Compensated::default();
     for (f, neighbours) in hull.neighbours().iter().enumerate() {
-        let (corners, own) = (hull.corners(f), normal(f));
+        let corners = hull.corners(f);
         for (e, g) in neighbours.iter().enumerate() {
             if f < *g as usize {
                 let edge = corners[(e + 1) % 3] - corners[e];
-                let other = normal(*g as usize);
+                let (own, other) = (normals[f].normalize_or_zero(), normals[*g as usize].normalize_or_zero());
                 // The angle by both sine and cosine keeps its digits at nearly flat and nearly folded edges.
                 let angle = own.cross(other).length().atan2(own.dot(other));
                 sum.add(edge.length() * angle);

@@ -1,10 +1,11 @@
 //! The sharpest bounds that contacts and limits on the radii of curvature give.
 
 use super::ball_hull::BallHull;
-use super::balls::{BallIntersection, Outside};
+use super::balls::{BallIntersection, Outside, Unsettled};
 use super::error::CurvatureError;
 use super::steiner::ConvexMeasures;
-use super::{ROUNDING, check_contacts};
+use super::support::BallWalk;
+use super::{ROUNDING, VolumeRange, check_contacts};
 use crate::bounds::ShapeBounds;
 use crate::distance::nearest;
 use crate::faceted::{FacetError, faceted_by_support};
@@ -43,14 +44,27 @@ impl SharpBounds {
         let size = contacts.iter().map(|c| c.point.abs().max_element()).fold(max, f64::max);
         let contradicted =
             |sample, other, excess| CurvatureError::Contradicted { sample, other, excess, min, max };
-        let (core, outside) = BallIntersection::build(&outer, &inner, max - min, ROUNDING * size);
-        if let Some(o) = outside {
-            return Err(contradicted(o.sample, o.other, o.excess));
-        }
-        let (dual, outside) = BallIntersection::build(&inner, &outer, max - min, ROUNDING * size);
-        if let Some(o) = outside {
-            return Err(contradicted(o.other, o.sample, o.excess));
-        }
+        let volumes = VolumeRange::of(contacts, min);
+        let settled =
+            |centres: &[DVec3], touching: &[DVec3], is_right: &dyn Fn(&BallIntersection, f64) -> bool| {
+                BallIntersection::settled(centres, touching, max - min, ROUNDING * size, is_right)
+            };
+        let widened =
+            |core: &BallIntersection, slack| volumes.holds(core.measures().grown(min).volume, slack);
+        let core = settled(&outer, &inner, &widened).map_err(|error| match error {
+            Unsettled::Outside(o) => contradicted(o.sample, o.other, o.excess),
+            Unsettled::Rounding => CurvatureError::Rounding { min, max },
+        })?;
+        let hull_of = |dual: &BallIntersection| BallHull::of_dual(dual.clone(), min);
+        let agrees =
+            |hull: BallHull, slack| volumes.holds(hull.volume(), slack) && hull.agrees_with_duality();
+        let dual =
+            settled(&inner, &outer, &|dual, slack| agrees(hull_of(dual), slack)).map_err(
+                |error| match error {
+                    Unsettled::Outside(o) => contradicted(o.other, o.sample, o.excess),
+                    Unsettled::Rounding => CurvatureError::Rounding { min, max },
+                },
+            )?;
         Ok(Self { lower: BallHull::of_dual(dual, min), upper: RoundedIntersection { core, margin: min } })
     }
 
@@ -147,14 +161,16 @@ impl RoundedIntersection {
     /// # Errors
     /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
     pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
-        faceted_by_support(|d| self.core.support_point(d) + d * self.margin, tolerance)
+        let mut walk = BallWalk::new(&self.core);
+        faceted_by_support(|d| walk.farthest(d) + d * self.margin, tolerance)
     }
 
     /// Whether `point` is inside; one outside by a few units of rounding may be admitted.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
-        let start = self.core.support_point(point - self.core.interior());
-        let found = nearest(point, start, |d| self.core.support_point(d));
+        let mut walk = BallWalk::new(&self.core);
+        let start = walk.farthest(point - self.core.interior());
+        let found = nearest(point, start, |d| walk.farthest(d));
         found.certified <= self.margin + 4.0 * f64::EPSILON * (point.abs().max_element() + self.core.radius())
     }
 }

@@ -53,6 +53,9 @@ pub(super) struct Arc {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Surface {
     pub(super) radius: f64,
+    /// How far beyond a ball a point may be by rounding, in m: what a ball cuts off by less is left, so that balls that
+    /// coincide, or pass through one corner, count once.
+    pub(super) rounding: f64,
     pub(super) centres: Vec<DVec3>,
     pub(super) shape: Shape,
     pub(super) corners: Vec<Corner>,
@@ -65,10 +68,17 @@ impl Surface {
         self.centres[ball as usize]
     }
 
-    /// Whether the point is outside of the ball.
+    /// Whether the point is outside of the ball, by more than rounding.
     #[inline]
     pub(super) fn is_outside(&self, ball: u32, point: DVec3) -> bool {
-        point.distance_squared(self.centre(ball)) > self.radius * self.radius
+        point.distance_squared(self.centre(ball)) > self.limit()
+    }
+
+    /// The squared distance from a centre beyond which a point is outside of the ball.
+    #[inline]
+    pub(super) fn limit(&self) -> f64 {
+        let reach = self.radius + self.rounding;
+        reach * reach
     }
 
     /// The corner whose faces `i`, `j`, `k` follow each other anticlockwise; `None` when rounding leaves no such point.
@@ -216,7 +226,7 @@ impl Surface {
         let along = w.dot(axis) / axis.length();
         let across = (w.length_squared() - along * along).max(0.0).sqrt();
         let nearest = across - s.length();
-        nearest * nearest + along * along <= self.radius * self.radius
+        nearest * nearest + along * along <= self.limit()
     }
 
     /// Whether the edge of `corner` between its balls `edge` and `edge + 1`, both of whose ends are inside of `ball`, is
@@ -234,7 +244,7 @@ impl Surface {
         let along = w.dot(axis) / axis.length();
         let across = (w.length_squared() - along * along).max(0.0).sqrt();
         let farthest = across + s.length();
-        farthest * farthest + along * along > self.radius * self.radius
+        farthest * farthest + along * along > self.limit()
     }
 
     /// The ball whose face the ray from `origin` along `direction` meets, by descent over neighbouring faces of the distance

@@ -36,7 +36,7 @@ fn bounds_hold_under_noise_where_plain_ones_fail() {
         let bounds = run(300, 1e-3, 0.95, seed).unwrap();
         assert!(holds(&bounds), "seed {seed}");
         let plain: Vec<_> = noisy_curves(300, 2.5e-3, 1e-3, seed).concat();
-        let plain = ShapeBounds::from_contacts(&plain).unwrap();
+        let plain = ShapeBounds::from_contradicting_contacts(&plain).unwrap();
         plain_failures += usize::from(!holds(&plain));
     }
     assert_eq!(plain_failures, 30);

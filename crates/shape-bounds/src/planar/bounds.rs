@@ -5,6 +5,7 @@ use super::halfplanes::{OUTWARD_ULPS, interior_point};
 use super::{
     ContactSample, Direction, HalfPlane, Hull, IncrementalHull, Intersection, IntersectionError, PointsError,
 };
+use crate::bounds::{Contradiction, PRINTED, ROUNDING_ULPS};
 use glam::DVec2;
 use thiserror::Error;
 
@@ -24,6 +25,13 @@ pub enum BoundsError {
         /// Contacts needed.
         needed: usize,
     },
+    /// A contact point lies beyond the tangent line of another, by more than rounding.
+    #[error(
+        "contact {} lies {:e} m beyond the tangent line of contact {}, which no convex outline allows: a contact is wrong, \
+         contacts are noisy (state or estimate their noise), or the body is concave",
+        .0.contact, .0.excess, .0.plane
+    )]
+    Contradiction(Contradiction),
     /// The contact points have no hull.
     #[error("lower bound: {0}")]
     Points(#[from] PointsError),
@@ -57,12 +65,32 @@ impl ShapeBounds {
     /// Bounds from contacts on a convex body.
     ///
     /// # Errors
-    /// [`BoundsError`] for fewer than three contacts, values that are not finite, and contacts that contradict each other
-    /// (a smallest contradictory set is named).
+    /// [`BoundsError`] for fewer than three contacts, values that are not finite, and contacts of which one lies beyond the
+    /// tangent line of another, by more than printing with six digits moves it (the worst two are named). By what is
+    /// less, the half-planes are moved out, so that the lower bound lies in the upper one.
     pub fn from_contacts(contacts: &[ContactSample]) -> Result<Self, BoundsError> {
         Self::check(contacts)?;
         let points: Vec<DVec2> = contacts.iter().map(|c| c.point).collect();
-        let half_planes: Vec<HalfPlane> = contacts.iter().map(ContactSample::half_plane).collect();
+        let lower = Hull::of(&points)?;
+        let mut worst = Contradiction { contact: 0, plane: 0, excess: 0.0 };
+        let mut half_planes = Vec::with_capacity(contacts.len());
+        let rounding =
+            ROUNDING_ULPS * f64::EPSILON * points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        for (plane, (contact, c)) in
+            farthest_along_normals(&lower, contacts).into_iter().zip(contacts).enumerate()
+        {
+            let own = c.half_plane();
+            let excess = own.excess(points[contact]);
+            if excess > worst.excess {
+                worst = Contradiction { contact, plane, excess };
+            }
+            half_planes.push(HalfPlane { margin: if excess > rounding { excess } else { 0.0 }, ..own });
+        }
+        let mean = points.iter().sum::<DVec2>() / points.len() as f64;
+        let extent = points.iter().map(|p| p.distance(mean)).fold(0.0, f64::max);
+        if worst.excess > PRINTED * extent + rounding {
+            return Err(BoundsError::Contradiction(worst));
+        }
         Self::from_parts(&points, &half_planes)
     }
 
@@ -137,6 +165,31 @@ impl ShapeBounds {
     pub fn largest_gap(&self) -> Option<Gap> {
         self.gaps().into_iter().max_by(|x, y| x.distance.total_cmp(&y.distance))
     }
+}
+
+/// For each contact the index of the point that is the farthest along its normal, by climbing around the hull from the
+/// contact's own point.
+fn farthest_along_normals(hull: &Hull, contacts: &[ContactSample]) -> Vec<usize> {
+    let ring: Vec<usize> = match hull {
+        Hull::Point(k) => vec![*k],
+        Hull::Segment(ends) => ends.to_vec(),
+        Hull::Polygon(polygon) => polygon.sources().iter().map(|k| *k as usize).collect(),
+    };
+    let mut place = vec![None; contacts.len()];
+    ring.iter().enumerate().for_each(|(at, k)| place[*k] = Some(at));
+    let mut at = 0;
+    let count = ring.len();
+    let one = |(k, c): (usize, &ContactSample)| {
+        let height = |at: usize| c.normal.get().dot(contacts[ring[at]].point);
+        at = place[k].unwrap_or(at);
+        while let Some(side) =
+            [(at + 1) % count, (at + count - 1) % count].into_iter().find(|s| height(*s) > height(at))
+        {
+            at = side;
+        }
+        ring[at]
+    };
+    contacts.iter().enumerate().map(one).collect()
 }
 
 /// Bounds that take one contact at a time: a new point into the hull, a new half-plane into the hull of the polar duals.

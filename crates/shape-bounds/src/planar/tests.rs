@@ -284,3 +284,42 @@ fn bad_input_is_named() {
     assert!(matches!(incremental.insert(DVec2::INFINITY), Err(PointsError::NotFinite { index: 0, .. })));
     assert!(matches!(incremental.insert(DVec2::splat(1e200)), Err(PointsError::DynamicRange { .. })));
 }
+
+#[test]
+fn contacts_that_no_convex_outline_has_are_named() {
+    let mut s = Source::new(6);
+    for case in 0..50 {
+        let mut wrong = contacts(&ellipse(), scattered(30, &mut s));
+        assert!(ShapeBounds::from_contacts(&wrong).is_ok());
+        // One moved in by a fifth: its neighbours are beyond its line.
+        wrong[case % 30].point = ellipse().point(0.0).lerp(wrong[case % 30].point, 0.8);
+        let mut worst = 0.0_f64;
+        for c in &wrong {
+            worst = wrong.iter().map(|d| c.half_plane().excess(d.point)).fold(worst, f64::max);
+        }
+        match ShapeBounds::from_contacts(&wrong) {
+            Err(BoundsError::Contradiction(found)) => {
+                assert!([found.contact, found.plane].contains(&(case % 30)));
+                assert!((found.excess - worst).abs() < 1e-15 && worst > 0.0);
+            }
+            Ok(_) => assert!(worst < 1e-5, "case {case}: {worst}"),
+            Err(error) => panic!("{error}"),
+        }
+    }
+    // A limacon, and one whose flat side is pushed in but kept its normals.
+    let at = |angle: f64| {
+        let r = 1.0 + 0.5 * angle.cos();
+        let point = DVec2::from_angle(angle) * r;
+        let tangent = DVec2::from_angle(angle).perp() * r - DVec2::from_angle(angle) * (0.5 * angle.sin());
+        let normal = Direction::new(-tangent.perp()).unwrap();
+        ContactSample { point, normal }
+    };
+    let limacon: Vec<ContactSample> = (0..60).map(|k| at(f64::from(k) * TAU / 60.0)).collect();
+    assert!(ShapeBounds::from_contacts(&limacon).is_ok(), "a limacon with b = a / 2 is convex");
+    let dented: Vec<ContactSample> = limacon
+        .iter()
+        .map(|c| ContactSample { point: DVec2::new(c.point.x.max(-0.2), c.point.y), ..*c })
+        .filter(|c| c.point.x > -0.3)
+        .collect();
+    assert!(matches!(ShapeBounds::from_contacts(&dented), Err(BoundsError::Contradiction(_))));
+}

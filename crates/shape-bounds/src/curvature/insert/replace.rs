@@ -4,8 +4,8 @@ use super::super::surface::{Corner, NONE};
 use super::{Builder, RimEdge};
 use glam::DVec3;
 
-/// How far from a sphere, relative to its radius, a corner may be and still be taken for one on it: rounding.
-const TANGENT: f64 = 64.0 * f64::EPSILON;
+/// How far from a sphere a corner may be and still be taken for one on it, relative to what counts as rounding.
+const TANGENT: f64 = 2.0;
 
 impl Builder {
     /// Puts the face of ball `p`, with a corner on each edge of the rim, in the place of the lost corners; leaves the ball out
@@ -89,7 +89,7 @@ impl Builder {
         }
         let off = |end: DVec3| (end.distance(surface.centre(p)) - surface.radius).abs();
         let end = if off(lost) < off(kept) { lost } else { kept };
-        (off(end) <= TANGENT * surface.radius).then_some(end)
+        (off(end) <= TANGENT * surface.rounding).then_some(end)
     }
 
     pub(super) fn add(&mut self, balls: [u32; 3], at: DVec3) -> u32 {
