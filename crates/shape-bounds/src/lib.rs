@@ -66,6 +66,7 @@ pub use mesh::TriangleMesh;
 pub use noise::{ContactNoise, NoiseError, NoisyContact, Outlier, estimate_noise, without_outliers};
 pub use palms::{PalmContact, PalmError, PalmIntersection};
 pub use poses::{
-    BodyPose, CALIBRATED_RUNS, CONFIDENCES, PoseBounds, PoseError, PoseRule, half_space_above_plane,
+    BodyPose, CALIBRATED_RUNS, CONFIDENCES, ContradictingRun, PlaneHeight, PoseBounds, PoseError, PoseRule,
+    half_space_above_plane,
 };
 pub use sample::{ContactError, ContactSample, HalfSpace, NORMAL_TOLERANCE};
