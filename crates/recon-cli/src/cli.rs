@@ -192,7 +192,10 @@ corners (lower_bound.csv, upper_bound.csv) for meshes.
 
 Poses above a plane are CSV with the columns qw, qx, qy, qz (body to world) and px, py, pz (m, z upwards), sampled evenly; a
 column `toss` or `run` numbers the runs. Their noise is judged from their own consistency, by a rule that holds on
-simulated tosses with room to spare; --tight takes the narrowest margins that hold there.
+simulated tosses with room to spare; --tight takes the narrowest margins that hold there, which cut the one real body that
+was tried. Runs that contradict the others are left out and named. What the plane's height may be off is stated by
+--height-deviation where one error is common to all runs, and by --run-height-deviation where each run has its own; the
+bounds are the wider for it.
 
 The output folder appears as a whole or not at all: lower_bound.ply, upper_bound.ply (m) and summary.json, with --fit
 fitted_shape.ply, with --concave alpha_shape.ply and smooth_surface.ply.
@@ -205,7 +208,8 @@ Examples:
   recon bounds contacts.csv --contact-noise 1e-4 --normal-noise 2e-3 --confidence 0.99 -o bounds
   recon bounds contacts.csv --estimate-noise -o bounds
   recon bounds contacts.csv --rho-min 0.02 --rho-max 0.2 -o bounds
-  recon bounds tosses.csv --plane-height 0.002 -o bounds")]
+  recon bounds tosses.csv --plane-height 0.002 -o bounds
+  recon bounds tosses.csv --plane-height 0 --height-deviation 0.001 -o bounds")]
 pub(crate) struct BoundsArgs {
     /// Contact points with outward normals, or poses above a plane (CSV)
     pub(crate) input: PathBuf,
@@ -237,12 +241,18 @@ pub(crate) struct BoundsArgs {
     /// Radius of the balls that hollow the alpha shape out, m [default: the smallest that leaves it in one piece]
     #[arg(long, value_name = "M", requires = "concave", value_parser = positive)]
     pub(crate) alpha: Option<f64>,
-    /// Narrower margins for poses, right for trackers like the simulated ones
+    /// Narrower margins for poses, right for trackers like the simulated ones alone
     #[arg(long)]
     pub(crate) tight: bool,
     /// Height of the plane below the poses, m [default: 0]
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) plane_height: Option<f64>,
+    /// Standard deviation of that height, m: an error common to all runs
+    #[arg(long, value_name = "M", value_parser = not_negative)]
+    pub(crate) height_deviation: Option<f64>,
+    /// Standard deviation of the plane's height from run to run, m
+    #[arg(long, value_name = "M", value_parser = not_negative)]
+    pub(crate) run_height_deviation: Option<f64>,
     /// Folder to write the meshes and summary.json to; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,

@@ -69,6 +69,7 @@ pub use noise::{
 };
 pub use palms::{PalmContact, PalmError, PalmIntersection};
 pub use poses::{
-    BodyPose, CALIBRATED_RUNS, CONFIDENCES, PoseBounds, PoseError, PoseRule, half_space_above_plane,
+    BodyPose, CALIBRATED_RUNS, CONFIDENCES, ContradictingRun, PlaneHeight, PoseBounds, PoseError, PoseRule,
+    half_space_above_plane,
 };
 pub use sample::{ContactError, ContactSample, HalfSpace, NORMAL_TOLERANCE};

@@ -9,7 +9,7 @@ use crate::pipeline::{
 use crate::progress::Progress;
 use recon::contact_kinematics::CurvatureRadii;
 use recon::contact_kinematics::planar::RadiusBounds;
-use recon::shape_bounds::{ContactSample, PoseRule};
+use recon::shape_bounds::{ContactSample, PlaneHeight};
 use recon_io::{FolderTarget, Touches, read_touches};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -34,9 +34,12 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
         }
         Touches::Poses(runs) => {
             let count = runs.iter().map(Vec::len).sum::<usize>();
-            let rule = if args.tight { PoseRule::tight() } else { PoseRule::default() };
-            let (made, about) =
-                pose_bounds(&runs, args.plane_height.unwrap_or(0.0), confidence(args), &rule)?;
+            let plane = PlaneHeight {
+                z: args.plane_height.unwrap_or(0.0),
+                deviation: args.height_deviation.unwrap_or(0.0),
+                run_deviation: args.run_height_deviation.unwrap_or(0.0),
+            };
+            let (made, about) = pose_bounds(&runs, plane, confidence(args), args.tight)?;
             (made, about, format!("{count} poses in {} runs", runs.len()))
         }
         Touches::Contacts(curves) => {
@@ -90,6 +93,8 @@ fn check_options(args: &BoundsArgs, touches: &Touches) -> Result<(), CliError> {
     let exact = noise(args).is_none();
     let pointless = [
         (args.plane_height.is_some(), "plane-height", "poses"),
+        (args.height_deviation.is_some(), "height-deviation", "poses"),
+        (args.run_height_deviation.is_some(), "run-height-deviation", "poses"),
         (args.tight, "tight", "poses"),
         (args.confidence.is_some() && exact, "confidence", "poses and noisy contacts"),
     ];

@@ -13,6 +13,6 @@ mod export;
 mod follow;
 #[cfg(unix)]
 mod interrupted;
-mod nothing_lost;
 mod margins;
+mod nothing_lost;
 mod planar;

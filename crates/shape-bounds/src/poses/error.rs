@@ -29,6 +29,9 @@ pub enum PoseError {
     /// A confidence that is none.
     #[error("confidence {0}: it must lie between 0.5 and 1, both excluded")]
     Confidence(f64),
+    /// A standard deviation of the plane's height that is none.
+    #[error("standard deviation {0} m of the plane's height: it must be finite and at least zero")]
+    Deviation(f64),
     /// A share or factor of a rule that is none.
     #[error(
         "the rule's `{name}` is {value}: shares and factors are finite, `trusted` is above 0 and at most 1, factors are above 0 and ordered"

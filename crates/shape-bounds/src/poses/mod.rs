@@ -6,14 +6,18 @@
 //! inside.
 
 mod error;
+mod height;
 mod level;
 mod lower;
 mod rule;
+mod runs;
 #[cfg(test)]
 mod tests;
 
 pub use error::PoseError;
+pub use height::PlaneHeight;
 pub use rule::{CALIBRATED_RUNS, CONFIDENCES, PoseRule};
+pub use runs::ContradictingRun;
 
 use crate::bounds::{Gap, ShapeBounds};
 use crate::halfspaces::{Intersection, Polyhedron};
@@ -21,6 +25,7 @@ use crate::hull::Hull;
 use crate::sample::HalfSpace;
 use contact_kinematics::Direction;
 use glam::{DQuat, DVec3};
+use runs::Agreed;
 
 /// Where a body was.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,12 +43,19 @@ pub struct PoseBounds {
     pub upper: Polyhedron,
     /// This is in the body, at the stated confidence; `None` where the touching poses prove nothing inside.
     pub lower: Option<Hull>,
-    /// The half-space of each pose with its margin, run by run: they all hold at the stated confidence.
+    /// The half-space of each pose with its margin, run by run: they all hold at the stated confidence. Empty for runs that
+    /// are left out.
     pub half_spaces: Vec<Vec<HalfSpace>>,
     /// Margin common to all half-spaces, in m.
     pub margin: f64,
-    /// Noise at which the trusted share of the touching poses are consistent with all others, in m.
+    /// Noise at which the trusted share of the touching poses are consistent with all others, in m; where the body is
+    /// propped up, at which few enough runs contradict the others.
     pub consistent_level: f64,
+    /// Runs that contradict others, which have no part in the bounds.
+    pub left_out: Vec<ContradictingRun>,
+    /// Whether many poses that seem to touch cannot, so that something else than the plane holds or pushes the body: then
+    /// what is judged is how many runs contradict each other, and there is no lower bound.
+    pub propped: bool,
     /// Poses that were taken for touching the plane.
     pub touching: usize,
     /// Touching poses that disagree with the others by more than the margins, as (run, frame).
@@ -54,6 +66,8 @@ pub struct PoseBounds {
 #[derive(Clone, Copy)]
 struct Observation {
     half_space: HalfSpace,
+    /// The largest second difference of the position around the frame, in m.
+    roughness: f64,
     /// Margin from the roughness of the motion.
     kink: f64,
     /// How far off the plane a touching body may be at the frame, from the same.
@@ -63,32 +77,41 @@ struct Observation {
 }
 
 impl PoseBounds {
-    /// Bounds of a convex body from `runs` of poses sampled evenly in time, with the body always above the plane of
-    /// height `plane_z` in the world, by the default rule.
+    /// Bounds of a convex body from `runs` of poses sampled evenly in time, with the body always above the `plane`, by the
+    /// default rule.
     ///
     /// # Errors
     /// Those of [`Self::by_rule`].
-    pub fn above_plane(runs: &[Vec<BodyPose>], plane_z: f64, confidence: f64) -> Result<Self, PoseError> {
-        Self::by_rule(runs, plane_z, confidence, &PoseRule::default())
+    pub fn above_plane(
+        runs: &[Vec<BodyPose>],
+        plane: impl Into<PlaneHeight>,
+        confidence: f64,
+    ) -> Result<Self, PoseError> {
+        Self::by_rule(runs, plane, confidence, &PoseRule::default())
     }
 
     /// [`Self::above_plane`] by a rule of one's own.
     ///
     /// The margins hold two parts: a share of the largest second difference of the position around a frame; and a
     /// multiple of the level, common to all, at which a share of the poses in which the body touches the plane (it is at
-    /// rest, or is accelerated upwards by more than in flight) are consistent with all poses. The body's size is not used.
+    /// rest, or is accelerated upwards by more than in flight) are consistent with all poses. What the height of the plane
+    /// may be off comes on top. The body's size is not used.
+    ///
+    /// Runs that contradict others are left out where the rest then agrees to half of the level or better. Where that
+    /// leaves a level of a tenth of the body's size, poses that seem to touch do not: see [`Self::propped`].
     ///
     /// # Errors
     /// [`PoseError`] for values that are not finite, runs of fewer than three frames, an impossible confidence or rule,
     /// too few touching poses to judge, and half-spaces that leave some direction open.
     pub fn by_rule(
         runs: &[Vec<BodyPose>],
-        plane_z: f64,
+        plane: impl Into<PlaneHeight>,
         confidence: f64,
         rule: &PoseRule,
     ) -> Result<Self, PoseError> {
+        let plane = plane.into();
         rule.check()?;
-        let observations = observe(runs, plane_z, rule)?;
+        let observations = observe(runs, plane.z, rule)?;
         if !(confidence > 0.5 && confidence < 1.0) {
             return Err(PoseError::Confidence(confidence));
         }
@@ -96,14 +119,27 @@ impl PoseBounds {
         if touching < level::FEWEST {
             return Err(PoseError::TooFewTouching { found: touching, needed: level::FEWEST });
         }
-        let consistent_level = level::consistent_level(&observations, rule)?;
-        let margin = consistent_level * rule.factor(confidence, runs.len());
-        let upper = intersect(&observations, margin)?;
-        let outliers = level::inconsistent(&observations, &upper, margin);
-        let inside = lower::certain_points(&observations, &upper, margin);
+        let Agreed { kept, level, left_out, propped } = runs::agreed(observations, runs.len(), rule)?;
+        let rule = if propped { &runs::PROPPED } else { rule };
+        let (of_rule, of_height) = plane.allowance(runs.len(), confidence)?;
+        let margin = level * rule.factor(of_rule, runs.len()) + of_height;
+        let upper = intersect(&kept, margin)?;
+        let outliers = if propped { Vec::new() } else { level::inconsistent(&kept, &upper, margin) };
+        let inside = if propped { Vec::new() } else { lower::certain_points(&kept, &upper, margin) };
         let lower = Hull::of(&inside).ok().filter(|hull| hull.solid().is_some());
-        let half_spaces = by_run(&observations, runs, margin);
-        Ok(Self { upper, lower, half_spaces, margin, consistent_level, touching, outliers })
+        let half_spaces = by_run(&kept, runs.len(), margin);
+        let consistent_level = level;
+        Ok(Self {
+            upper,
+            lower,
+            half_spaces,
+            margin,
+            consistent_level,
+            left_out,
+            propped,
+            touching,
+            outliers,
+        })
     }
 }
 
@@ -140,6 +176,7 @@ fn observe(runs: &[Vec<BodyPose>], plane_z: f64, rule: &PoseRule) -> Result<Vec<
             let normalised = BodyPose { R_WO: pose.R_WO.normalize(), ..*pose };
             observations.push(Observation {
                 half_space: half_space_above_plane(&normalised, plane_z),
+                roughness,
                 kink: rule.kink * roughness,
                 gap: rule.gap * roughness,
                 touching: level::touches(poses, frame, flight, noise),
@@ -157,9 +194,10 @@ impl Observation {
     }
 }
 
-fn by_run(observations: &[Observation], runs: &[Vec<BodyPose>], margin: f64) -> Vec<Vec<HalfSpace>> {
-    let mut moved = observations.iter().map(|o| o.moved(margin));
-    runs.iter().map(|run| moved.by_ref().take(run.len()).collect()).collect()
+fn by_run(kept: &[Observation], runs: usize, margin: f64) -> Vec<Vec<HalfSpace>> {
+    let mut all = vec![Vec::new(); runs];
+    kept.iter().for_each(|o| all[o.at.0].push(o.moved(margin)));
+    all
 }
 
 fn intersect(observations: &[Observation], margin: f64) -> Result<Polyhedron, PoseError> {

@@ -45,6 +45,72 @@ fn a_tossed_box_is_contained_and_its_noise_is_found() {
     }
 }
 
+/// How far the farthest corner of a box is beyond the bound, in m.
+fn beyond(bounds: &PoseBounds, half: DVec3) -> f64 {
+    let corner =
+        |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - DVec3::ONE;
+    (0..8).map(|i| bounds.upper.excess(half * corner(i))).fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn raise(run: &mut [BodyPose], by: f64) {
+    run.iter_mut().for_each(|pose| pose.p_WO.z += by);
+}
+
+#[test]
+fn one_wrong_toss_costs_one_toss() {
+    let half = DVec3::new(0.05, 0.04, 0.06);
+    for (seed, wrong) in [(11, 7), (12, 20), (13, 33)] {
+        let mut runs = tosses(60, half, 1e-4, seed);
+        let right = PoseBounds::above_plane(&runs, 0.0, 0.95).unwrap();
+        assert!(right.left_out.is_empty() && !right.propped, "{seed}: {:?}", right.left_out);
+        raise(&mut runs[wrong], -0.02);
+        let bounds = PoseBounds::above_plane(&runs, 0.0, 0.95).unwrap();
+        let named: Vec<usize> = bounds.left_out.iter().map(|l| l.run).collect();
+        assert_eq!(named, [wrong], "{seed}");
+        assert!(bounds.left_out[0].against.len() > 1 && bounds.half_spaces[wrong].is_empty());
+        assert!(beyond(&bounds, half) <= 0.0, "{seed}");
+        assert!(bounds.margin < 1.5 * right.margin, "{seed}: {} {}", bounds.margin, right.margin);
+    }
+}
+
+#[test]
+fn a_body_that_is_propped_up_is_still_contained() {
+    let half = DVec3::new(0.05, 0.04, 0.06);
+    for seed in 21..24 {
+        let mut runs = tosses(60, half, 1e-4, seed);
+        // Every third run ends on something else, at heights of its own; two runs are seen too low.
+        (0..20).for_each(|k| raise(&mut runs[3 * k], 0.02 + 0.003 * k as f64));
+        raise(&mut runs[1], -0.006);
+        raise(&mut runs[31], -0.01);
+        let bounds = PoseBounds::above_plane(&runs, 0.0, 0.95).unwrap();
+        assert!(bounds.propped && bounds.lower.is_none(), "{seed} {}", bounds.consistent_level);
+        assert!(beyond(&bounds, half) <= 0.0, "{seed}: {}", beyond(&bounds, half));
+        let volume = 8.0 * half.element_product();
+        assert!(bounds.upper.volume() < 1.8 * volume, "{seed}: {}", bounds.upper.volume() / volume);
+    }
+}
+
+#[test]
+fn an_uncertain_height_widens_the_margin_and_is_contained() {
+    let half = DVec3::new(0.05, 0.04, 0.06);
+    let runs = tosses(60, half, 1e-4, 31);
+    let at = |z, deviation, run_deviation| {
+        PoseBounds::above_plane(&runs, PlaneHeight { z, deviation, run_deviation }, 0.95)
+    };
+    let exact = at(0.0, 0.0, 0.0).unwrap();
+    // Two deviations too high: as likely as a miss of the whole.
+    let wrong = at(2e-3, 1e-3, 0.0).unwrap();
+    assert!(beyond(&wrong, half) <= 0.0 && wrong.margin > exact.margin + 1.9e-3);
+    let of_runs = at(0.0, 0.0, 1e-3).unwrap();
+    // 1 - 0.025 / 60 is the probability of 3.34 deviations.
+    assert!(
+        (of_runs.margin - exact.margin - 3.34e-3).abs() < 2e-4 * (1.0 + exact.margin),
+        "{}",
+        of_runs.margin
+    );
+    assert_eq!(at(0.0, -1.0, 0.0), Err(PoseError::Deviation(-1.0)));
+}
+
 #[test]
 fn bad_poses_are_named() {
     let mut runs = tosses(20, DVec3::splat(0.05), 1e-4, 4);
