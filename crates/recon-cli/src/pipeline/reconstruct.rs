@@ -30,6 +30,8 @@ pub(crate) struct Reconstruction {
     pub(crate) lower: Option<TriangleMesh>,
     /// Surface of the upper bound from all contacts.
     pub(crate) upper: Option<TriangleMesh>,
+    /// How far the lower one stands out of it, m.
+    pub(crate) stands_out: f64,
     /// Mass and inertia in the body axes of the estimate.
     pub(crate) mass: MassProperties,
     /// The same with deviations where they were estimated.
@@ -79,7 +81,8 @@ pub(crate) fn reconstruct(
         }
         Err(error) => return Err(error),
     };
-    let contradiction = bounded.as_ref().map_or(0.0, |b| b.contradiction);
+    let stands_out = bounded.as_ref().map_or(0.0, |b| b.contradiction);
+    let contradiction = bounded.as_ref().map_or(0.0, |_| contradiction_among(&contacts)).max(stands_out);
     let (drawn, lower, upper) = match bounded {
         Some(BoundsResult { drawn, lower, upper, warnings: of_bounds, .. }) => {
             warnings.extend(of_bounds);
@@ -110,7 +113,7 @@ pub(crate) fn reconstruct(
         warnings,
     };
     let contact_noise = estimate.evidence.noise.contact;
-    Ok(Reconstruction { data, lower, upper, mass, identified, contacts, contact_noise })
+    Ok(Reconstruction { data, lower, upper, stands_out, mass, identified, contacts, contact_noise })
 }
 
 /// Body and motion; the body with its deviations where it is not known.
@@ -204,7 +207,6 @@ fn bounds_of(
     }
     let why = match curve_bounds(estimate, CONFIDENCE) {
         Ok(mut sound) => {
-            sound.contradiction = contradiction_among(contacts);
             sound.warnings.push(format!(
                 "Contacts are noisy by {noise:.1e} m: the bounds have margins with which they hold at {:.0} % confidence.",
                 100.0 * CONFIDENCE

@@ -9,7 +9,7 @@ use recon::shape_bounds::{
     BodyPose, ContactNoise, ContactSample, NoisyContact, Outlier, PoseBounds, PoseRule, ShapeBounds,
     SharpBounds, estimate_noise, without_outliers,
 };
-use recon_io::{Bound, Bounds};
+use recon_io::{Bound, Bounds, brief_to};
 use serde_json::{Value, json};
 
 /// Outliers that are named one by one; the rest is counted.
@@ -105,7 +105,7 @@ fn finished(bounds: &ShapeBounds, warning: Option<String>) -> Result<BoundsResul
         largest_gap: bounds.largest_gap().map(|gap| gap.distance),
     };
     let warnings = warning.into_iter().chain(unbounded(bounds)).collect();
-    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings })
+    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings }.compared())
 }
 
 /// Contacts with their noise, without outliers.
@@ -143,7 +143,7 @@ pub(super) fn listed(outliers: &[Outlier]) -> Value {
 
 pub(super) fn left_out(outliers: &[Outlier]) -> Option<String> {
     let name = |o: &Outlier| {
-        format!("contact {} of curve {} ({:.0} deviations)", o.index + 1, o.curve + 1, o.deviations)
+        format!("contact {} of curve {} ({} deviations)", o.index + 1, o.curve + 1, brief_to(2, o.deviations))
     };
     let named: Vec<String> = outliers.iter().take(NAMED).map(name).collect();
     let more = if outliers.len() > NAMED { ", and others" } else { "" };
@@ -181,8 +181,8 @@ pub(crate) fn pose_bounds(
     let mut warnings = Vec::new();
     if lower.is_none() {
         warnings.push(format!(
-            "The poses need a margin of {:.3} m to agree with each other, which leaves no lower bound: is the height of the plane right?",
-            made.margin
+            "The poses need a margin of {} m to agree with each other, which leaves no lower bound: is the height of the plane right?",
+            brief_to(3, made.margin)
         ));
     }
     // Frames beside an impact pass for touching, and a few of them always disagree.
