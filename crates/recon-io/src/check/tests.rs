@@ -17,7 +17,7 @@ fn octahedron(size: f64) -> TriangleMesh {
         [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis * size, axis * -size]).collect();
     let triangles = (0..8).map(|k: u32| {
         let [x, y, z] = [k & 1, 2 + (k >> 1 & 1), 4 + (k >> 2 & 1)];
-        if k.count_ones() % 2 == 0 { [x, y, z] } else { [x, z, y] }
+        if k.count_ones().is_multiple_of(2) { [x, y, z] } else { [x, z, y] }
     });
     TriangleMesh { vertices, triangles: triangles.collect() }
 }
