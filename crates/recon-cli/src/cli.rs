@@ -6,9 +6,9 @@ use std::path::PathBuf;
 const EXIT_CODES: &str = "\
 Exit codes:
   0    done
-  1    a fault of recon itself
+  1    a fault of recon itself, as where results fail the check at their end; nothing is written then
   2    the command line is not understood
-  3    an input (log, scene, contacts) cannot be used
+  3    an input (log, scene, contacts) cannot be used, or a folder of results does not hold (`recon check`)
   4    done, but the result is not to be relied on, or ends before it was asked to; it is written, and says why
   5    a result cannot be written; what stood there before stands there still
   130  interrupted; nothing is left half-written";
@@ -19,7 +19,8 @@ Examples:
   recon simulate scene.toml -o log.csv              a sensor log of a known object
   recon reconstruct log.csv --scene scene.toml -o out   shape, motion and bounds from a log
   recon follow - --scene scene.toml                 the motion as it becomes known, from a running log
-  recon bounds out/contact_curves.csv -o bounds     bounds from contact points and normals alone";
+  recon bounds out/contact_curves.csv -o bounds     bounds from contact points and normals alone
+  recon check out                                   whether results hold, by their files alone";
 
 /// Shape, motion and bounds of an unknown smooth convex object, from touch alone.
 #[derive(Debug, Parser)]
@@ -47,6 +48,8 @@ pub(crate) enum Command {
     Planar(PlanarArgs),
     /// Simulate and reconstruct the scene of the paper's Fig. 5, with no input at all
     Demo(DemoArgs),
+    /// Check a folder of results again, by its files alone
+    Check(CheckArgs),
 }
 
 #[derive(Args, Debug)]
@@ -342,6 +345,21 @@ pub(crate) struct DemoArgs {
     /// Write beside files in the folder that recon did not write; these are never replaced or removed
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+What every command checks before it writes a folder, done again by code that had no part in making the results: the files
+are those that recon wrote (sizes and CRC-32 in manifest.json), all numbers are finite, meshes are closed and turned one
+way, bounds are convex, as large as stated, and the lower one lies inside the upper one (by exact signs; what rounding or
+stated tolerances allow is told), and every fit says how it ended.
+
+Examples:
+  recon check recon-out
+  recon check bounds --json")]
+pub(crate) struct CheckArgs {
+    /// Folder that recon wrote
+    pub(crate) folder: PathBuf,
 }
 
 fn fit(text: &str) -> Result<FitAs, String> {

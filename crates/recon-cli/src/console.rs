@@ -1,6 +1,7 @@
 //! What is said to the user: results on standard output, everything else on standard error.
 
 use crate::error::CliError;
+use recon_io::with_brief_numbers;
 use serde_json::{Value, json};
 use std::error::Error;
 use std::io::{self, ErrorKind, Write};
@@ -22,7 +23,7 @@ impl Console {
 
     /// Prints a result: `text` for a person, `value` for a program.
     pub(crate) fn result(&self, text: &str, value: &Value) -> Result<(), CliError> {
-        let line = if self.json { format!("{value:#}") } else { text.trim_end().to_owned() };
+        let line = if self.json { format!("{value:#}") } else { with_brief_numbers(text.trim_end()) };
         listened(writeln!(io::stdout().lock(), "{line}"))
     }
 
@@ -30,7 +31,7 @@ impl Console {
     pub(crate) fn note(&self, text: &str) {
         if !self.json {
             // Without anyone to read notes there is nothing to be done.
-            let _ = writeln!(io::stderr().lock(), "{text}");
+            let _ = writeln!(io::stderr().lock(), "{}", with_brief_numbers(text));
         }
     }
 
@@ -49,7 +50,11 @@ impl Console {
         let text = if self.json {
             format!("{:#}", json!({ "error": error.to_string(), "causes": causes }))
         } else {
-            std::iter::once(format!("recon: {error}")).chain(causes).collect::<Vec<_>>().join("\n  because: ")
+            let text = std::iter::once(format!("recon: {error}"))
+                .chain(causes)
+                .collect::<Vec<_>>()
+                .join("\n  because: ");
+            with_brief_numbers(&text)
         };
         let _ = writeln!(io::stderr().lock(), "{text}");
     }

@@ -4,7 +4,7 @@ use recon::shape_bounds::{
     AlphaError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
     SurfaceError, planar,
 };
-use recon_io::{ExportError, LogFileError, MeshError, OutputError, SceneError, TouchesError};
+use recon_io::{CheckError, ExportError, LogFileError, MeshError, OutputError, SceneError, TouchesError};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use thiserror::Error;
@@ -120,6 +120,8 @@ pub(crate) enum CliError {
     Fit(#[from] FitError),
     #[error("the result cannot be written")]
     Output(#[from] OutputError),
+    #[error("the results do not hold")]
+    Check(#[from] CheckError),
     #[error("standard output cannot be written")]
     StandardOutput(#[source] std::io::Error),
     #[error("interrupted; nothing is left half-written")]
@@ -132,7 +134,12 @@ impl CliError {
     /// The code of each kind is told in `recon --help`.
     pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
-            Self::Picture(_) | Self::Facets(_) | Self::Mesh(_) | Self::Signals(_) | Self::PlanarDemo(_) => 1,
+            Self::Output(OutputError::Certificate { .. })
+            | Self::Picture(_)
+            | Self::Facets(_)
+            | Self::Mesh(_)
+            | Self::Signals(_)
+            | Self::PlanarDemo(_) => 1,
             Self::Log(_)
             | Self::Scene(_)
             | Self::Touches(_)
@@ -162,6 +169,7 @@ impl CliError {
             | Self::PlanarTooShort { .. }
             | Self::PlanarNoise
             | Self::Export(_)
+            | Self::Check(_)
             | Self::Fit(_)
             | Self::Bounds(_) => 3,
             Self::Option { .. } => 2,

@@ -1,8 +1,10 @@
-//! Files of recon: sensor logs, scene files, contact lists, meshes, tables and the report. No mathematics.
+//! Files of recon: sensor logs, scene files, contact lists, meshes, tables and the report. No mathematics, but for what the
+//! check of results ([`check`]) reads off the corners of meshes.
 //!
 //! Errors of reading name the file, the line or key, the value and the mend. What is written as a whole appears as a
 //! whole or not at all ([`OutputFolder`], [`AtomicFile`]).
 
+mod check;
 mod export;
 mod log;
 mod mesh;
@@ -18,12 +20,14 @@ mod summary;
 mod table;
 mod touches;
 
+pub use check::{CheckError, Fault, check, outline_stands_out, stands_out};
 pub use export::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
 pub use log::{
     LogFileError, LogFileErrorKind, LogReader, parse_log, parse_planar_log, read_log, read_planar_log,
     write_log, write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
+pub use number::{brief, brief_to, with_brief_numbers};
 pub use output::{
     AtomicFile, FileTarget, FolderTarget, OutputError, OutputFolder, Summed, is_standard_output,
 };

@@ -1,5 +1,6 @@
 //! Triangle meshes as PLY files.
 
+use crate::check::Surface;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::io::{self, BufWriter, Write};
@@ -53,6 +54,13 @@ impl TriangleMesh {
             }
         }
         Ok(Self { vertices, triangles })
+    }
+
+    /// Whether every edge is passed as often forwards as backwards, so that the triangles leave no hole and are turned one
+    /// way.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        Surface::from(self).open_edge().is_none()
     }
 
     /// The closed surface of the points that `at` gives for unit vectors, on a net of `rows` by `columns` between the

@@ -1,4 +1,57 @@
-//! How numbers are printed: exactly in data files, briefly in reports.
+//! How numbers are printed: exactly in data files, briefly for people.
+
+/// Longest text that a number has in full: `-1.7976931348623157e308` and its like, and a few more.
+const LONGEST: usize = 25;
+
+/// `value` for people, to six significant digits and in twelve characters at most.
+#[must_use]
+pub fn brief(value: f64) -> String {
+    brief_to(6, value)
+}
+
+/// `value` for people, to at most so many significant digits, six of them in twelve characters at most: plain between 1e-4
+/// and 1e6, else with an exponent; digits before the point are never rounded away.
+#[must_use]
+pub fn brief_to(digits: usize, value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || !value.is_finite() {
+        return if value.is_nan() { "nan".to_owned() } else { format!("{}", value + 0.0) };
+    }
+    let trimmed = |text: &str| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text.to_owned(),
+    };
+    if (1e-4..1e6).contains(&size) {
+        let before = [10.0, 100.0, 1e3, 1e4, 1e5].iter().filter(|power| size >= **power).count();
+        let zeros = [1.0, 0.1, 0.01, 1e-3].iter().filter(|power| size < **power).count();
+        return trimmed(&format!("{value:.*}", (digits + zeros).saturating_sub(before + 1)));
+    }
+    let text = format!("{value:.*e}", digits.clamp(1, 5) - 1);
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => format!("{}e{exponent}", trimmed(mantissa)),
+        None => text,
+    }
+}
+
+/// `text` with every number that is written out in more digits than it has, as `{}` writes 1e300, made brief.
+#[must_use]
+pub fn with_brief_numbers(text: &str) -> String {
+    let belongs = |c: char| c.is_ascii_digit() || c == '.';
+    let mut brief_text = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        let (before, from) = rest.split_at(start);
+        let (number, after) = from.split_at(from.find(|c| !belongs(c)).unwrap_or(from.len()));
+        // The end of a sentence is no part of its last number.
+        let digits = number.trim_end_matches('.');
+        let value = (digits.len() > LONGEST).then(|| digits.parse().ok()).flatten();
+        brief_text += before;
+        brief_text += &value.map_or_else(|| digits.to_owned(), brief);
+        brief_text += &number[digits.len()..];
+        rest = after;
+    }
+    brief_text + rest
+}
 
 /// The shortest decimal that reads back as the same `f64`; `nan`, `inf` and `-inf` where there is no number.
 pub(crate) fn exact(value: f64) -> String {
@@ -39,7 +92,47 @@ mod tests {
         assert_eq!(significant(0.0, 3), 0.0);
     }
 
+    #[test]
+    fn people_read_few_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (4.2, "4.2"),
+            (13.205_290_1, "13.2053"),
+            (1.2588, "1.2588"),
+            (-0.000_123_456_78, "-0.000123457"),
+            (999_999.96, "1000000"),
+            (123_456.7, "123457"),
+            (1e6, "1e6"),
+            (-1.234_567e-300, "-1.2346e-300"),
+            (f64::NEG_INFINITY, "-inf"),
+            (f64::NAN, "nan"),
+        ] {
+            assert_eq!(brief(value), text);
+        }
+        assert_eq!([28.6, 1234.0, -8.21, 3e300].map(|v| brief_to(2, v)), ["29", "1234", "-8.2", "3e300"]);
+        let text = format!("{} samples up to t = {} s, {}.", 12, 1.5e300, -1e-40);
+        assert_eq!(with_brief_numbers(&text), "12 samples up to t = 1.5e300 s, -1e-40.");
+        let untouched = "run-20261122094510.csv: 0.1 + 0.2 = 0.30000000000000004; 127.0.0.1";
+        assert_eq!(with_brief_numbers(untouched), untouched);
+    }
+
     proptest! {
+        #[test]
+        fn no_number_for_people_is_long_or_wrong(bits in any::<u64>()) {
+            let value = f64::from_bits(bits);
+            for text in [brief(value), brief(value % 1e6)] {
+                prop_assert!(text.len() <= 12, "{text}");
+            }
+            if value.is_finite() {
+                let back: f64 = brief(value).parse().unwrap();
+                // Five digits at least.
+                prop_assert!((back - value).abs() <= 5.1e-5 * value.abs(), "{value:e} {back:e}");
+            }
+            let sentence = with_brief_numbers(&format!("from {value} to {value:.6}."));
+            prop_assert!(sentence.split(' ').all(|word| word.len() <= LONGEST + 2), "{sentence}");
+        }
+
         #[test]
         fn exact_reads_back(bits in any::<u64>()) {
             let value = f64::from_bits(bits);

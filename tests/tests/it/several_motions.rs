@@ -5,7 +5,7 @@ use recon::contact_kinematics::{Ellipsoid, Palm, SupportFunction};
 use recon::object_dynamics::{InitialMotion, Instant, MassProperties, SensorNoise, ThreePalmScene};
 use recon::observer::{
     KnownBody, MotionEstimate, NoiseLevel, Reason, Reliability, StartState, UnknownBody, estimate_body,
-    estimate_motion, nearest_turn,
+    estimate_motion, estimate_motion_from, nearest_turn,
 };
 use recon_tests::{exact_log, f5, g2};
 
@@ -44,10 +44,17 @@ fn the_right_motion_is_taken_of_several() {
     let (simulation, log) = exact_log(&scene, start, 2.0, 1000.0);
     let noise = SensorNoise { contact: 0.025, force: 0.065, torque: 0.0 };
     for seed in [5002] {
-        let found = estimate_motion(&log.with_noise(&noise, seed).unwrap(), &known(&scene, noise)).unwrap();
+        let (log, known) = (log.with_noise(&noise, seed).unwrap(), known(&scene, noise));
+        let found = estimate_motion(&log, &known).unwrap();
         let off = worst(&found, scene.mass(), &simulation.instants[0]);
         assert!(off < 5.0, "seed {seed}: {off}");
         assert!(found.reliability.is_reliable(), "seed {seed}: {:?}", found.reliability);
+        // Its rank and condition are its own, not those of the motion that the search came to: from a start at it they are
+        // the same.
+        let again = estimate_motion_from(&log, &known, &found.start).unwrap();
+        let [a, b] = [&found, &again].map(|estimate| estimate.evidence.condition);
+        assert!((a / b - 1.0).abs() < 1e-3, "seed {seed}: {a} {b}");
+        assert_eq!(found.evidence.rank, again.evidence.rank);
         // There were others to choose from.
         assert!(found.evidence.log_odds.is_finite() && found.evidence.log_odds > 20.0);
     }

@@ -7,7 +7,9 @@ use super::estimate::WORTH_ADJUSTING;
 use super::evidence::Reason;
 use super::momentum::{MomentumProblem, Scales, StartState, UNKNOWNS};
 use super::track::{Node, Track, smoothing_variance};
-use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
+use crate::least_squares::{
+    Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability,
+};
 use contact_kinematics::PalmTriple;
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::MassProperties;
@@ -191,6 +193,17 @@ pub(super) fn fit_near(
     let problem = MomentumProblem::new(&thin, mass, scales, f64::INFINITY);
     let fit = LevenbergMarquardt { damping: 1e-4, ..COARSE }.fit(&problem, near);
     (fit.status != FitStatus::Failed).then_some(fit)
+}
+
+/// The contact conditions of the thinned track, linearised at a motion, in whatever way it was found.
+pub(super) fn conditions_at(
+    track: &Track,
+    mass: &MassProperties,
+    scales: Scales,
+    at: &StartState,
+) -> Option<NormalEquations<UNKNOWNS>> {
+    let thin = track.thinned(stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME));
+    MomentumProblem::new(&thin, mass, scales, f64::INFINITY).linearise(at)
 }
 
 /// What a fit of the thinned track leaves of noisy data where noise does not explain it, m/s: residual and explanation.

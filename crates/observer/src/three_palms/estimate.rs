@@ -1,6 +1,6 @@
 use super::alternatives::{OtherMotion, refine_best};
 use super::clean::{Clean, clean_covariance, stride};
-use super::cold_start::{cold_start, fit_near, scales, unexplained};
+use super::cold_start::{cold_start, conditions_at, fit_near, scales, unexplained};
 use super::convexity::largest_violation;
 use super::covariance::NoiseLevel;
 use super::curves::CurveUncertainty;
@@ -218,7 +218,8 @@ fn noisy_estimate<const N: usize>(
     let residuals = problem.residuals_along(&motion);
     let predicted = problem.expected_through(&refined.nodes, &motion, &noise);
     let misfit = refined.misfit(N);
-    let observability = Observability::new(&best.normal.information);
+    let conditions = conditions_at(track, mass, scales, &states[0]).ok_or(EstimateError::NoFit)?;
+    let observability = Observability::new(&conditions.information);
     let covariance = refined.solution.covariances[0];
     let by_block = scales.by_block();
     let scaled = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|i, j| {

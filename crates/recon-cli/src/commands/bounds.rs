@@ -10,7 +10,7 @@ use crate::progress::Progress;
 use recon::contact_kinematics::CurvatureRadii;
 use recon::contact_kinematics::planar::RadiusBounds;
 use recon::shape_bounds::{ContactSample, PlaneHeight};
-use recon_io::{FolderTarget, Touches, read_touches};
+use recon_io::{FolderTarget, Touches, brief, brief_to, read_touches};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::slice;
@@ -53,7 +53,7 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
     }
     drop(progress);
     console.result(&describe(&made, &what, &about), &figures)?;
-    let whole = made.lower.is_some() && made.upper.is_some();
+    let whole = made.lower.is_some() && made.upper.is_some() && !made.contradicts();
     Ok(if whole { Outcome::Done } else { Outcome::WithReservations })
 }
 
@@ -151,6 +151,7 @@ fn figures(made: &BoundsResult, what: &str, about: &Value) -> Value {
             "upper_volume_m3": upper,
             "lower_over_upper": upper.map(|u| lower / u),
             "largest_gap_m": made.drawn.largest_gap,
+            "contradiction_m": made.contradiction,
         },
         "warnings": made.warnings,
     })
@@ -167,18 +168,18 @@ fn describe(made: &BoundsResult, what: &str, about: &Value) -> String {
         let _ = writeln!(text, "  confidence             {} %", 100.0 * confidence);
     }
     if let Some(margin) = about["margin_m"].as_f64() {
-        let _ = writeln!(text, "  margin of the poses    {margin:.6} m");
+        let _ = writeln!(text, "  margin of the poses    {} m", brief(margin));
     }
-    let _ = writeln!(text, "  lower bound            {lower:.6e} m^3");
+    let _ = writeln!(text, "  lower bound            {} m^3", brief(lower));
     if let Some(upper) = &made.drawn.upper {
-        let _ = writeln!(text, "  upper bound            {:.6e} m^3", upper.volume);
-        let _ = writeln!(text, "  lower / upper          {:.4}", lower / upper.volume);
+        let _ = writeln!(text, "  upper bound            {} m^3", brief(upper.volume));
+        let _ = writeln!(text, "  lower / upper          {}", brief_to(4, lower / upper.volume));
     }
     if let Some(gap) = made.drawn.largest_gap {
-        let _ = writeln!(text, "  gap, at most           {gap:.6} m");
+        let _ = writeln!(text, "  gap, at most           {} m", brief(gap));
     }
     if let Some(volume) = about["concave"]["alpha_volume_m3"].as_f64() {
-        let _ = writeln!(text, "  alpha shape, about     {volume:.6e} m^3");
+        let _ = writeln!(text, "  alpha shape, about     {} m^3", brief(volume));
     }
     if about["fit"].is_object() {
         text += &fit_words(&about["fit"]);

@@ -1,6 +1,7 @@
 //! The commands: from arguments to files and words.
 
 mod bounds;
+mod check;
 mod demo;
 mod follow;
 mod planar;
@@ -22,5 +23,6 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
         Command::Bounds(args) => bounds::run(args, console),
         Command::Planar(args) => planar::run(args, console),
         Command::Demo(args) => demo::run(args, console),
+        Command::Check(args) => check::run(args, console),
     }
 }

@@ -11,7 +11,9 @@ use recon::object_dynamics::planar::{
 use recon::observer::planar::{
     NaturalScale, PlanarNominal, PlanarObserver, PlanarObserverOptions, ShapeFitOptions, fit_shape,
 };
-use recon_io::{FigureCurve, FigurePanel, FolderTarget, read_planar_log, write_figures, write_planar_log};
+use recon_io::{
+    FigureCurve, FigurePanel, FolderTarget, brief, read_planar_log, write_figures, write_planar_log,
+};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
@@ -276,7 +278,7 @@ fn describe(args: &PlanarArgs, made: &Reconstruction) -> String {
     let mut text: String = made.warnings.iter().map(|w| format!("Warning: {w}\n")).collect();
     let last = made.rows.last().map_or(f64::NAN, |r| r.t);
     let first = made.rows.first().map_or(f64::NAN, |r| r.t);
-    text += &format!("{} estimates from t = {first} s to {last} s\n", made.rows.len());
+    text += &format!("{} estimates from t = {} s to {} s\n", made.rows.len(), brief(first), brief(last));
     for key in [
         "method",
         "status",
@@ -287,6 +289,13 @@ fn describe(args: &PlanarArgs, made: &Reconstruction) -> String {
         "radius_deviation_m",
     ] {
         if let Some(value) = made.figures.get(key) {
+            let value = match (value.as_f64(), value.as_str()) {
+                (Some(number), _) => brief(number),
+                (None, Some(word)) => word.to_owned(),
+                (None, None) => value.as_array().map_or(value.to_string(), |all| {
+                    all.iter().filter_map(Value::as_f64).map(brief).collect::<Vec<_>>().join(", ")
+                }),
+            };
             text += &format!("  {key:<22} {value}\n");
         }
     }

@@ -6,7 +6,7 @@ use crate::interrupt::while_writing;
 use crate::pipeline::{PlanarBounds, PlanarRequest, fit_words, planar_bounds};
 use glam::DVec2;
 use recon::shape_bounds::planar::ContactSample;
-use recon_io::{FigureCurve, FigurePanel, FolderTarget, write_figures};
+use recon_io::{FigureCurve, FigurePanel, FolderTarget, brief, brief_to, write_figures};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -39,6 +39,7 @@ fn figures(made: &PlanarBounds, count: usize) -> Value {
             "upper_area_m2": upper,
             "lower_over_upper": lower / upper,
             "largest_gap_m": made.largest_gap(),
+            "contradiction_m": made.contradiction,
         },
         "warnings": made.warnings,
     })
@@ -51,13 +52,13 @@ fn describe(made: &PlanarBounds, count: usize) -> String {
         let _ = writeln!(text, "  confidence             {} %", 100.0 * confidence);
     }
     let [lower, upper] = made.areas;
-    let _ = writeln!(text, "  lower bound            {lower:.6e} m^2");
+    let _ = writeln!(text, "  lower bound            {} m^2", brief(lower));
     if upper.is_finite() {
-        let _ = writeln!(text, "  upper bound            {upper:.6e} m^2");
-        let _ = writeln!(text, "  lower / upper          {:.4}", lower / upper);
+        let _ = writeln!(text, "  upper bound            {} m^2", brief(upper));
+        let _ = writeln!(text, "  lower / upper          {}", brief_to(4, lower / upper));
     }
     if let Some(gap) = made.largest_gap() {
-        let _ = writeln!(text, "  gap, at most           {gap:.6} m");
+        let _ = writeln!(text, "  gap, at most           {} m", brief(gap));
     }
     if made.about["fit"].is_object() {
         text += &fit_words(&made.about["fit"]);

@@ -3,7 +3,7 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{Reconstruction, exported, reconstruct, write_reconstruction_folder};
 use crate::progress::Progress;
-use recon_io::{FolderTarget, Scene, read_log};
+use recon_io::{FolderTarget, Scene, brief, brief_to, read_log};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
@@ -55,13 +55,13 @@ fn describe(made: &Reconstruction, figures: &Value, folder: &Path) -> String {
         let _ = writeln!(text, "  {name:<22} {value}");
     };
     if let (Some(first), Some(last)) = (data.times.first(), data.times.last()) {
-        line("samples", format!("{} over {:.3} s", data.times.len(), last - first));
+        line("samples", format!("{} over {} s", data.times.len(), brief(last - first)));
     }
     if let Some(bounds) = &data.bounds {
-        line("lower bound", format!("{:.6} m^3", bounds.lower.volume));
+        line("lower bound", format!("{} m^3", brief(bounds.lower.volume)));
         if let Some(upper) = &bounds.upper {
-            line("upper bound", format!("{:.6} m^3", upper.volume));
-            line("lower / upper", format!("{:.4}", bounds.lower.volume / upper.volume));
+            line("upper bound", format!("{} m^3", brief(upper.volume)));
+            line("lower / upper", brief_to(4, bounds.lower.volume / upper.volume));
         }
     }
     let error = &figures["largest_error"];

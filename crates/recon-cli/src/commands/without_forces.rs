@@ -10,7 +10,7 @@ use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::SensorLog;
 use recon::observer::{KnownTouch, NoForceEstimate, estimate_without_forces};
 use recon::shape_bounds::ContactSample;
-use recon_io::{MotionState, Scene, read_log};
+use recon_io::{MotionState, Scene, brief, read_log};
 use serde_json::{Value, json};
 use std::error::Error;
 
@@ -95,6 +95,7 @@ fn figures(found: &NoForceEstimate, bounded: Option<&BoundsResult>, warnings: &[
     let q = shape.orientation;
     json!({
         "method": "motion of an ellipsoid fitted to contacts and palm poses",
+        "status": format!("{:?}", evidence.status),
         "semi_axes_m": shape.semi_axes.to_array(),
         "centre_m": shape.centre.to_array(),
         "orientation_wxyz": [q.w, q.x, q.y, q.z],
@@ -110,6 +111,7 @@ fn figures(found: &NoForceEstimate, bounded: Option<&BoundsResult>, warnings: &[
         "bounds": bounded.map(|b| json!({
             "lower_volume_m3": b.drawn.lower.volume,
             "upper_volume_m3": b.drawn.upper.as_ref().map(|u| u.volume),
+            "contradiction_m": b.contradiction,
         })),
         "warnings": warnings,
     })
@@ -128,16 +130,18 @@ fn describe(
         evidence.residual_rms, evidence.noise_explains, evidence.weakest, evidence.weakest_deviation
     )];
     lines.extend(warnings.iter().map(|w| format!("Warning: {w}")));
-    lines.push(format!("  semi-axes              {:.6}, {:.6}, {:.6} m", a.x, a.y, a.z));
+    lines.push(format!("  semi-axes              {}, {}, {} m", brief(a.x), brief(a.y), brief(a.z)));
     let c = shape.centre;
     lines.push(format!(
-        "  centre                 ({:.6}, {:.6}, {:.6}) m from the centre of mass",
-        c.x, c.y, c.z
+        "  centre                 ({}, {}, {}) m from the centre of mass",
+        brief(c.x),
+        brief(c.y),
+        brief(c.z)
     ));
     if let Some(bounded) = bounded {
-        lines.push(format!("  lower bound            {:.6} m^3", bounded.drawn.lower.volume));
+        lines.push(format!("  lower bound            {} m^3", brief(bounded.drawn.lower.volume)));
         if let Some(upper) = &bounded.drawn.upper {
-            lines.push(format!("  upper bound            {:.6} m^3", upper.volume));
+            lines.push(format!("  upper bound            {} m^3", brief(upper.volume)));
         }
     }
     lines.push(args.output.display().to_string());

@@ -1,6 +1,7 @@
+use super::reconstruct::NOTABLE_NOISE;
 use crate::error::CliError;
 use recon::shape_bounds::{ContactSample, Hull, Intersection, Polyhedron, ShapeBounds, SolidHull};
-use recon_io::{Bound, Bounds, MeshError, TriangleMesh};
+use recon_io::{Bound, Bounds, MeshError, TriangleMesh, stands_out};
 
 /// Most contacts that the bounds of a picture are made from: about 6000 triangles a body.
 const DRAWN: usize = 1500;
@@ -15,8 +16,32 @@ pub(crate) struct BoundsResult {
     pub(crate) upper: Option<TriangleMesh>,
     /// Further surfaces: file, comment, mesh.
     pub(crate) others: Vec<(&'static str, &'static str, TriangleMesh)>,
+    /// How far the lower bound stands out of the upper one, m: for exact contacts of a convex body at most rounding,
+    /// however they were moved.
+    pub(crate) contradiction: f64,
     /// What the reader must know.
     pub(crate) warnings: Vec<String>,
+}
+
+impl BoundsResult {
+    /// With how far the lower bound stands out of the upper one, and a warning where that is worth one.
+    pub(super) fn compared(mut self) -> Self {
+        let both = self.lower.as_ref().zip(self.upper.as_ref());
+        self.contradiction = both.map_or(0.0, |(lower, upper)| stands_out(lower, upper));
+        if self.contradicts() {
+            self.warnings.push(format!(
+                "The contacts contradict each other: the lower bound stands out of the upper one by {:.1e} m.",
+                self.contradiction
+            ));
+        }
+        self
+    }
+
+    /// Whether contacts contradict each other by more than is worth a warning.
+    pub(crate) fn contradicts(&self) -> bool {
+        let corners = self.upper.iter().flat_map(|mesh| &mesh.vertices);
+        self.contradiction > NOTABLE_NOISE * corners.map(|corner| corner.length()).fold(0.0, f64::max)
+    }
 }
 
 /// Lower and upper bound from exact contacts on a convex body.
@@ -49,7 +74,7 @@ fn made(whole: ShapeBounds, contacts: &[ContactSample]) -> Result<BoundsResult, 
             .map(|all| Bound { mesh: few_upper.unwrap_or(all), volume: whole.upper_volume() }),
         largest_gap: whole.largest_gap().map(|gap| gap.distance),
     };
-    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), warnings })
+    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings }.compared())
 }
 
 /// What to say where there is no upper bound.

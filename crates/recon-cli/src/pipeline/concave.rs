@@ -26,12 +26,19 @@ pub(crate) fn concave_bounds(
         .map(|k| contacts[k * contacts.len() / contacts.len().min(INTERPOLATED)])
         .collect();
     let surface = HermiteSurface::through(&some)?;
-    let warnings = vec![
+    let smooth = own(surface.mesh(CELLS))?;
+    let closed = smooth.is_closed();
+    let mut warnings = vec![
         "The bounds are those of the object's hull. The upper one holds if the contacts that were kept lie on the hull's \
          boundary, which contacts alone cannot prove."
             .to_owned(),
         "alpha_shape.ply and smooth_surface.ply are approximations of the object, no bounds.".to_owned(),
     ];
+    if !closed {
+        warnings.push(
+            "The smooth surface is open: between the contacts it leaves the space around them.".to_owned(),
+        );
+    }
     let about = json!({
         "noise": "none",
         "concave": {
@@ -39,6 +46,7 @@ pub(crate) fn concave_bounds(
             "alpha_radius_m": radius,
             "alpha_volume_m3": alpha.volume(radius)?,
             "surface_through_contacts": some.len(),
+            "surface_is_closed": closed,
         },
     });
     let drawn = Bounds {
@@ -51,7 +59,7 @@ pub(crate) fn concave_bounds(
         (
             "smooth_surface.ply",
             "surface through points and normals, an approximation and no bound; metres",
-            own(surface.mesh(CELLS))?,
+            smooth,
         ),
     ];
     let warnings = warnings.into_iter().chain(unbounded(&bounds)).collect();

@@ -2,7 +2,7 @@
 
 use glam::DMat3;
 use recon::observer::{IdentifiedBody, MotionEstimate, OtherMotion, Reliability, StartState};
-use recon_io::{Evidence, EvidenceValue, Level, Verdict};
+use recon_io::{Evidence, EvidenceValue, Level, Verdict, brief_to};
 
 /// Unknowns of the estimate: centre of mass, velocity, angular momentum, orientation.
 const UNKNOWNS: usize = 12;
@@ -285,8 +285,9 @@ fn in_words(others: &[OtherMotion], taken: &StartState) -> String {
     let one = |other: &OtherMotion| {
         let turned = other.start.R_WO.angle_between(taken.R_WO).to_degrees();
         format!(
-            "turned by {turned:.0} deg, +{:.0} squared deviations, e^{:.0}",
-            other.corrections, other.log_odds
+            "turned by {turned:.0} deg, +{} squared deviations, e^{}",
+            brief_to(2, other.corrections),
+            brief_to(2, other.log_odds)
         )
     };
     others.iter().map(one).collect::<Vec<_>>().join("; ")
@@ -307,9 +308,11 @@ mod tests {
         };
         let other =
             |angle: f64, corrections, log_odds| OtherMotion { start: start(angle), corrections, log_odds };
-        let words = in_words(&[other(0.5, 12.4, 30.0), other(-1.0, 40.0, -8.2)], &start(0.0));
-        let expected =
-            "turned by 29 deg, +12 squared deviations, e^30; turned by 57 deg, +40 squared deviations, e^-8";
+        let words = in_words(
+            &[other(0.5, 12.4, 30.0), other(-1.0, 40.0, -8.2), other(1.0, 3e300, -2e200)],
+            &start(0.0),
+        );
+        let expected = "turned by 29 deg, +12 squared deviations, e^30; turned by 57 deg, +40 squared deviations, e^-8.2; turned by 57 deg, +3e300 squared deviations, e^-2e200";
         assert_eq!(words, expected);
     }
 }

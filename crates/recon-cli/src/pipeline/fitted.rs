@@ -6,11 +6,12 @@ use crate::error::CliError;
 use glam::DVec2;
 use recon::contact_kinematics::planar::RadiusFunction;
 use recon::contact_kinematics::{Direction, SupportFunction};
+use recon::observer::Status;
 use recon::shape_bounds::planar::{self, OutlineFamily, OutlineFit};
 use recon::shape_bounds::{
     ContactNoise, ContactSample, FitOptions, FitStatistics, NoiseLevel, NoisyContact, ShapeFamily, ShapeFit,
 };
-use recon_io::TriangleMesh;
+use recon_io::{TriangleMesh, brief, brief_to};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
@@ -130,6 +131,8 @@ where
 }
 
 fn add_statistics(report: &mut Value, of: &FitStatistics, equations: f64, stated: bool) {
+    // A fit that does not come to rest is an error.
+    report["status"] = json!(format!("{:?}", Status::Converged));
     report["residual_m"] = json!(of.residual);
     report["condition"] = json!(of.condition);
     report["weakest_deviation_over_size"] = json!(of.weakest_deviation);
@@ -153,7 +156,7 @@ pub(crate) fn fit_words(report: &Value) -> String {
     for parameter in report["parameters"].as_array().into_iter().flatten().take(NAMED) {
         let of = |name: &str| parameter[name].as_f64().unwrap_or(f64::NAN);
         let name = parameter["name"].as_str().unwrap_or_default();
-        text += &format!("    {name:<20} {:.6} +- {:.1e}\n", of("value"), of("deviation"));
+        text += &format!("    {name:<20} {} +- {:.1e}\n", brief(of("value")), of("deviation"));
     }
     let count = report["parameters"].as_array().map_or(0, Vec::len);
     if count > NAMED {
@@ -162,7 +165,8 @@ pub(crate) fn fit_words(report: &Value) -> String {
     if report["chi_squared"].is_number() {
         let ratio = number("chi_squared") / number("degrees_of_freedom");
         text += &format!(
-            "    chi squared over degrees of freedom {ratio:.2}; about 1 for a shape of this family\n"
+            "    chi squared over degrees of freedom {}; about 1 for a shape of this family\n",
+            brief_to(3, ratio)
         );
     }
     text

@@ -19,7 +19,10 @@ pub(crate) fn write_reconstruction_folder(
     extras: &[Extra],
 ) -> Result<Value, CliError> {
     let data = &made.data;
-    let figures = summary(data);
+    let mut figures = summary(data);
+    if let Some(bounds) = figures["bounds"].as_object_mut() {
+        bounds.insert("contradiction_m".to_owned(), made.stands_out.into());
+    }
     while_writing(|| {
         let mut folder = Folder(target.begin()?);
         folder.write("motion.csv", |to| write_motion(&data.times, &data.motion, to))?;

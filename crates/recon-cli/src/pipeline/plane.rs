@@ -10,6 +10,7 @@ use recon::shape_bounds::planar::{
     ContactNoise, ContactSample, CurvatureBounds, Direction, Intersection, NoisyContact, ShapeBounds,
     estimate_noise, without_outliers,
 };
+use recon_io::outline_stands_out;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
@@ -41,6 +42,8 @@ pub(crate) struct PlanarBounds {
     pub(crate) areas: [f64; 2],
     /// Direction of the normal (rad) and how far the bounds are apart there (m).
     pub(crate) gaps: Vec<[f64; 2]>,
+    /// How far the lower bound stands out of the upper one, m: for exact contacts at most rounding.
+    pub(crate) contradiction: f64,
     /// What the reader must know.
     pub(crate) warnings: Vec<String>,
     /// Noise, limits and fit.
@@ -133,9 +136,11 @@ fn drawn(bounds: &ShapeBounds, about: Value) -> PlanarBounds {
             "The contacts leave the object unbounded on some side: there is no upper bound.".to_owned(),
         );
     }
+    let outlines = [lower, upper].map(Option::unwrap_or_default);
     PlanarBounds {
         points: Vec::new(),
-        outlines: [lower, upper].map(Option::unwrap_or_default),
+        contradiction: outline_stands_out(&outlines[0], &outlines[1]),
+        outlines,
         fitted: Vec::new(),
         areas: [bounds.lower_area(), bounds.upper_area()],
         gaps: gaps(|n| bounds.support(n)),
@@ -146,13 +151,19 @@ fn drawn(bounds: &ShapeBounds, about: Value) -> PlanarBounds {
 
 fn sharp(contacts: &[ContactSample], radii: RadiusBounds) -> Result<PlanarBounds, CliError> {
     let bounds = CurvatureBounds::from_contacts(contacts, radii)?;
+    let outlines = [bounds.lower().outline(STEP), bounds.upper().outline(STEP)];
+    // The height of an arc above its chord, which is no longer than the outline is wide.
+    let (low, high) =
+        outlines[1].iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+    let height = (radii.max * (1.0 - (STEP / 2.0).cos())).min((high - low).length() * STEP / 8.0);
     Ok(PlanarBounds {
         points: Vec::new(),
-        outlines: [bounds.lower().outline(STEP), bounds.upper().outline(STEP)],
+        contradiction: 0.0,
+        outlines,
         fitted: Vec::new(),
         areas: [bounds.lower().area(), bounds.upper().area()],
         gaps: gaps(|n| bounds.support(n)),
         warnings: Vec::new(),
-        about: json!({ "noise": "none", "radii_of_curvature_m": [radii.min, radii.max] }),
+        about: json!({ "noise": "none", "radii_of_curvature_m": [radii.min, radii.max], "outline_tolerance_m": height }),
     })
 }

@@ -30,6 +30,8 @@ pub(crate) struct Reconstruction {
     pub(crate) lower: Option<TriangleMesh>,
     /// Surface of the upper bound from all contacts.
     pub(crate) upper: Option<TriangleMesh>,
+    /// How far the lower one stands out of it, m.
+    pub(crate) stands_out: f64,
     /// Mass and inertia in the body axes of the estimate.
     pub(crate) mass: MassProperties,
     /// The same with deviations where they were estimated.
@@ -85,6 +87,7 @@ pub(crate) fn reconstruct(
         ));
     }
     // Contacts that cannot even be compared contradict each other: the verdict on the motion says so.
+    let stands_out = bounded.as_ref().map_or(0.0, |b| b.contradiction);
     let contradiction = contradiction(&contacts).unwrap_or(f64::NAN);
     let (drawn, lower, upper) = match bounded {
         Some(BoundsResult { drawn, lower, upper, warnings: of_bounds, .. }) => {
@@ -117,7 +120,7 @@ pub(crate) fn reconstruct(
         warnings,
     };
     let contact_noise = estimate.evidence.noise.contact;
-    Ok(Reconstruction { data, lower, upper, mass, identified, contacts, contact_noise })
+    Ok(Reconstruction { data, lower, upper, stands_out, mass, identified, contacts, contact_noise })
 }
 
 /// Body and motion; the body with its deviations where it is not known.

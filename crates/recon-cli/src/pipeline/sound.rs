@@ -9,7 +9,7 @@ use recon::shape_bounds::{
     BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, NoisyContact, Outlier,
     PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, estimate_noise, without_outliers,
 };
-use recon_io::{Bound, Bounds};
+use recon_io::{Bound, Bounds, brief_to};
 use serde_json::{Value, json};
 
 /// Outliers that are named one by one; the rest is counted.
@@ -61,7 +61,10 @@ pub(crate) fn sharp_bounds(
         largest_gap: polytopes.largest_gap().map(|gap| gap.distance),
     };
     let warnings = warning.into_iter().collect();
-    Ok((BoundsResult { drawn, lower, upper, others: Vec::new(), warnings }, about))
+    Ok((
+        BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings }.compared(),
+        about,
+    ))
 }
 
 /// Bounds of the body of a motion estimate that hold at `confidence` for all that the estimate knows to be uncertain: the noise
@@ -137,7 +140,7 @@ fn finished(bounds: &CertainBounds, warning: Option<String>) -> Result<BoundsRes
                 .to_owned(),
         );
     }
-    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), warnings })
+    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings }.compared())
 }
 
 /// Contacts with their noise, without outliers.
@@ -175,7 +178,7 @@ pub(super) fn listed(outliers: &[Outlier]) -> Value {
 
 pub(super) fn left_out(outliers: &[Outlier]) -> Option<String> {
     let name = |o: &Outlier| {
-        format!("contact {} of curve {} ({:.0} deviations)", o.index + 1, o.curve + 1, o.deviations)
+        format!("contact {} of curve {} ({} deviations)", o.index + 1, o.curve + 1, brief_to(2, o.deviations))
     };
     let named: Vec<String> = outliers.iter().take(NAMED).map(name).collect();
     let more = if outliers.len() > NAMED { ", and others" } else { "" };
@@ -238,7 +241,11 @@ pub(crate) fn pose_bounds(
         upper: Some(Bound { mesh: upper.clone(), volume: made.upper.volume() }),
         largest_gap: made.largest_gap().map(|gap| gap.distance),
     };
-    Ok((BoundsResult { drawn, lower, upper: Some(upper), others: Vec::new(), warnings }, about))
+    Ok((
+        BoundsResult { drawn, lower, upper: Some(upper), others: Vec::new(), contradiction: 0.0, warnings }
+            .compared(),
+        about,
+    ))
 }
 
 fn contradicting(of: &ContradictingRun) -> Value {
@@ -265,8 +272,8 @@ fn pose_warnings(made: &PoseBounds, confidence: f64) -> Vec<String> {
         );
     } else if made.lower.is_none() {
         warnings.push(format!(
-            "The poses need a margin of {:.3} m to agree with each other, which leaves no lower bound: is the height of the plane right?",
-            made.margin
+            "The poses need a margin of {} m to agree with each other, which leaves no lower bound: is the height of the plane right?",
+            brief_to(3, made.margin)
         ));
     }
     // Frames beside an impact pass for touching, and a few of them always disagree.

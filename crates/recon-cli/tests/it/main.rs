@@ -7,6 +7,7 @@
 mod bad_input;
 mod bounds;
 mod bounds_shapes;
+mod check;
 mod common;
 mod end_to_end;
 mod export;

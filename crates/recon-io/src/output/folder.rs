@@ -2,6 +2,7 @@ use super::checksum::Summed;
 use super::manifest::{Contents, Entry, MANIFEST, Manifest, STAGE};
 use super::place::{input_in, resolved};
 use super::{OutputError, sibling};
+use crate::check::{CheckError, certify};
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -120,11 +121,23 @@ impl OutputFolder {
         Ok(())
     }
 
-    /// Puts the files in place, those of an earlier run away, and leaves everything else as it is.
+    /// Checks what the files hold ([`crate::check`]) and puts them in place, those of an earlier run away; everything else
+    /// stays as it is.
     ///
     /// # Errors
-    /// [`OutputError`]; what stood there before stands there again.
-    pub fn commit(mut self) -> Result<(), OutputError> {
+    /// [`OutputError`], in particular [`OutputError::Certificate`]; what stood there before stands there again.
+    pub fn commit(self) -> Result<(), OutputError> {
+        let names: Vec<String> = self.files.iter().map(|file| file.name.clone()).collect();
+        let fails = |faults| OutputError::Certificate {
+            path: self.target.named.clone(),
+            source: CheckError::Faults { faults },
+        };
+        certify(&self.temporary, &names).map_err(fails)?;
+        self.place()
+    }
+
+    /// [`commit`](Self::commit) of files that hold anything.
+    pub(crate) fn place(mut self) -> Result<(), OutputError> {
         let manifest =
             Manifest { recon: env!("CARGO_PKG_VERSION").to_owned(), files: std::mem::take(&mut self.files) };
         self.write(MANIFEST, |to| {

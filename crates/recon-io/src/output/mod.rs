@@ -3,7 +3,7 @@
 mod checksum;
 mod file;
 mod folder;
-mod manifest;
+pub(crate) mod manifest;
 mod place;
 #[cfg(test)]
 mod tests;
@@ -88,6 +88,14 @@ pub enum OutputError {
         path: PathBuf,
         /// As it was given.
         input: PathBuf,
+    },
+    /// The results do not hold what they say. This is a fault of recon.
+    #[error("the results for {} fail their own check and are not written: {source}", path.display())]
+    Certificate {
+        /// The target.
+        path: PathBuf,
+        /// What does not hold.
+        source: crate::CheckError,
     },
     /// The target has no name of its own.
     #[error("`{}` cannot be the name of a result; name a file or folder to be made", path.display())]

@@ -42,7 +42,7 @@ fn write_folder(target: &Path, names: &[&str], text: &str, force: bool) -> Resul
     for name in names {
         folder.write(name, |to| to.write_all(text.as_bytes()))?;
     }
-    folder.commit()
+    folder.place()
 }
 
 fn write_file(target: &Path, inputs: &[PathBuf], text: &str) -> Result<(), OutputError> {
@@ -159,14 +159,14 @@ fn what_appears_while_recon_computes_is_not_overwritten() {
     let folder = begun();
     fs::write(scratch.path("out/b.csv"), "edited").unwrap();
     fs::write(scratch.path("out/notes.txt"), "new").unwrap();
-    folder.commit().unwrap();
+    folder.place().unwrap();
     assert_eq!(scratch.names("out"), ["a.csv", "b.csv", MANIFEST, "notes.txt"]);
     assert_eq!(scratch.read("out/b.csv"), "edited");
     fs::remove_file(scratch.path("out/b.csv")).unwrap();
     fs::remove_file(scratch.path("out/notes.txt")).unwrap();
     let folder = begun();
     fs::write(scratch.path("out/a.csv"), "edited").unwrap();
-    assert!(words(folder.commit()).contains("a.csv was not written by recon, or was changed"));
+    assert!(words(folder.place()).contains("a.csv was not written by recon, or was changed"));
     assert_eq!((scratch.read("out/a.csv").as_str(), scratch.names("out").len()), ("edited", 2));
 }
 

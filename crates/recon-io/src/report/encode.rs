@@ -4,7 +4,7 @@ use super::data::{
     Bound, Departure, Evidence, EvidenceValue, Level, MotionState, PalmTrack, ReportData, TrueShape,
 };
 use crate::TriangleMesh;
-use crate::number::{on_scale, significant};
+use crate::number::{on_scale, significant, with_brief_numbers};
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
@@ -20,7 +20,7 @@ pub(super) fn encode(data: &ReportData) -> Value {
     let size = size(data);
     json!({
         "title": data.title,
-        "verdict": { "level": level(data.verdict.level), "text": data.verdict.text },
+        "verdict": { "level": level(data.verdict.level), "text": with_brief_numbers(&data.verdict.text) },
         "version": env!("CARGO_PKG_VERSION"),
         "size": significant(size, 4),
         "samples": data.times.len(),
@@ -35,7 +35,7 @@ pub(super) fn encode(data: &ReportData) -> Value {
         })),
         "shape": data.true_shape.as_ref().map(|s| shape(s, size)),
         "evidence": data.evidence.iter().map(evidence).collect::<Vec<_>>(),
-        "warnings": data.warnings,
+        "warnings": data.warnings.iter().map(|w| with_brief_numbers(w)).collect::<Vec<_>>(),
     })
 }
 
@@ -155,7 +155,7 @@ fn evidence(row: &Evidence) -> Value {
         "value": match &row.value {
             EvidenceValue::Number(v) => json!(number(significant(*v, 6))),
             EvidenceValue::Count(n) => json!(n),
-            EvidenceValue::Text(text) => json!(text),
+            EvidenceValue::Text(text) => json!(with_brief_numbers(text)),
         },
         "unit": row.unit,
         "meaning": row.meaning,

@@ -50,6 +50,19 @@ pub enum NoForceError {
         /// Noise of the block means, m.
         noise: f64,
     },
+    /// The fit was still on its way when its iterations ran out, so its shape and motion are no minimum.
+    #[error(
+        "the fit did not settle in {iterations} iterations ({residual:.1e} m are left where noise leaves {noise:.1e} m): the \
+         log, or what moves in it, determines too little; a longer log, or palms that move, may"
+    )]
+    NotSettled {
+        /// Iterations of the last fit.
+        iterations: usize,
+        /// Root mean square of the residuals where it was, m.
+        residual: f64,
+        /// Noise of the block means, m.
+        noise: f64,
+    },
     /// The data leave a direction of the unknowns open.
     #[error(
         "the log does not determine the unknowns: {words} has a standard deviation of {deviation:.1e} of its natural \

@@ -27,6 +27,9 @@ const RANK_TOLERANCE: f64 = 1e-13;
 /// A right fit leaves at most this multiple of the noise, or this share of the length where there is next to no noise.
 const EXPLAINED: (f64, f64) = (1.4, 1e-5);
 
+/// Linearisations of the last fit, which begins near its minimum.
+pub(super) const ITERATIONS: usize = 100;
+
 /// What is known beside the log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnownTouch {
@@ -50,6 +53,8 @@ pub struct TouchShape {
 /// What an estimate without forces rests on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoForceEvidence {
+    /// How the last fit ended: in a minimum, or where rounding hides every way down.
+    pub status: FitStatus,
     /// Samples used.
     pub samples: usize,
     /// Root mean square of the differences between predicted and measured block means, m.
@@ -141,7 +146,7 @@ pub fn estimate_without_forces(log: &SensorLog, known: &KnownTouch) -> Result<No
     };
     let nodes = series.nodes(stride(NODES_PER_NATURAL_TIME));
     let fine = series.nodes(stride(FINE * NODES_PER_NATURAL_TIME));
-    let scene = Scene { series: &series, gravity, length, noise };
+    let scene = Scene { series: &series, gravity, length, noise, iterations: ITERATIONS };
     let best = search(&series, &nodes, gravity, scene.enough(&nodes));
     let best = best.ok_or(NoForceError::NoFit { residual: f64::NAN, noise })?;
     scene.estimate(&fine, best.point)
@@ -153,6 +158,8 @@ pub(super) struct Scene<'a> {
     pub(super) gravity: DVec3,
     pub(super) length: f64,
     pub(super) noise: f64,
+    /// Linearisations after which a fit that has not settled never will.
+    pub(super) iterations: usize,
 }
 
 impl Scene<'_> {
@@ -164,7 +171,8 @@ impl Scene<'_> {
     /// The minimum next to a start, and what it is worth.
     pub(super) fn estimate(&self, nodes: &Nodes, start: Guess) -> Result<NoForceEstimate, NoForceError> {
         let problem = TouchProblem::new(nodes, self.gravity, self.length, f64::INFINITY);
-        let solver = LevenbergMarquardt { iterations: 25, step_tolerance: 1e-9, damping: 1e-9, prior: 0.0 };
+        let iterations = self.iterations;
+        let solver = LevenbergMarquardt { iterations, step_tolerance: 1e-9, damping: 1e-9, prior: 0.0 };
         let fit = solver.fit(&problem, start);
         let rms = fit.normal.rms();
         let deviation = self.noise * nodes.variance.sqrt();
@@ -178,9 +186,14 @@ impl Scene<'_> {
         if failed || rms.is_nan() || rms > self.enough(nodes) {
             return Err(no_fit);
         }
+        if fit.status == FitStatus::OutOfIterations {
+            let (iterations, residual, noise) = (fit.iterations, rms, deviation);
+            return Err(NoForceError::NotSettled { iterations, residual, noise });
+        }
         let motion = problem.motion(&fit.point, nodes.t.len()).ok_or(no_fit)?;
         let (largest, smallest) = (spectrum.eigenvalues[UNKNOWNS - 1], spectrum.eigenvalues[0]);
         let evidence = NoForceEvidence {
+            status: fit.status,
             samples: self.series.t.len(),
             residual_rms: rms,
             noise_explains: deviation,

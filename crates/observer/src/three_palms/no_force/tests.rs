@@ -1,8 +1,9 @@
-use super::estimate::{Scene, entries};
+use super::estimate::{ITERATIONS, Scene, entries};
 use super::problem::{Guess, Row, TouchProblem, UNKNOWNS, uniform};
 use super::series::TouchSeries;
 use super::shape::FreeEllipsoid;
 use super::*;
+use crate::least_squares::FitStatus;
 use crate::three_palms::state_space::{inertia_of_numbers, numbers_of_inertia};
 use contact_kinematics::{Ellipsoid, Palm, SlopeMotion, Sphere, SupportFunction, Translated};
 use glam::{DMat3, DQuat, DVec3};
@@ -100,7 +101,8 @@ fn covariance_is_true_under_noise() {
     for seed in 0..runs {
         let level = SensorNoise { contact: noise, force: 0.0, torque: 0.0 };
         let series = TouchSeries::new(&clean.with_noise(&level, seed).unwrap()).unwrap();
-        let scene = Scene { series: &series, gravity: KNOWN.gravity, length: 2.0, noise };
+        let scene =
+            Scene { series: &series, gravity: KNOWN.gravity, length: 2.0, noise, iterations: ITERATIONS };
         let estimate = scene.estimate(&series.nodes(8), truth).unwrap();
         let error = found(&estimate) - entries(&truth);
         sum += error.dot(&estimate.covariance.cholesky().unwrap().solve(&error));
@@ -112,6 +114,23 @@ fn covariance_is_true_under_noise() {
     }
     let mean = sum / runs as f64;
     assert!((18.0 - 4.4..18.0 + 4.4).contains(&mean), "{mean}");
+}
+
+/// Two linearisations from the truth leave no more than noise, and are no minimum: the answer would be as good as the
+/// guess.
+#[test]
+fn a_fit_that_has_not_settled_is_refused() {
+    let (_, clean, truth) = general(2.0, 250.0);
+    let noise = 2.5e-3;
+    let level = SensorNoise { contact: noise, force: 0.0, torque: 0.0 };
+    let series = TouchSeries::new(&clean.with_noise(&level, 1).unwrap()).unwrap();
+    let after = |iterations: usize| {
+        let scene = Scene { series: &series, gravity: KNOWN.gravity, length: 2.0, noise, iterations };
+        scene.estimate(&series.nodes(8), truth)
+    };
+    let refused = after(2);
+    assert!(matches!(refused, Err(NoForceError::NotSettled { iterations: 2, .. })), "{refused:?}");
+    assert_eq!(after(ITERATIONS).unwrap().evidence.status, FitStatus::Converged);
 }
 
 #[test]

@@ -237,7 +237,7 @@ function evidence() {
     const row = element("tr", {}, body), first = element("td", {}, row);
     element("span", { class: "mark " + level, title: marks[level][1], text: marks[level][0] }, first);
     first.append(name);
-    element("td", { class: "number", text: (typeof value === "string" ? value : format(value)) + (unit ? " " + unit : "") }, row);
+    element("td", { class: typeof value === "string" ? "words" : "number", text: (typeof value === "string" ? value : format(value)) + (unit ? " " + unit : "") }, row);
     element("td", { class: "meaning", text: meaning }, row);
   }
 }

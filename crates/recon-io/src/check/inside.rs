@@ -1,0 +1,139 @@
+//! Whether points lie in a closed surface: by exact signs, in a tree of boxes.
+
+use super::mesh_file::Surface;
+use super::surface::side;
+use glam::DVec3;
+use robust::{Coord, orient2d};
+
+/// Triangles of a leaf.
+const LEAF: usize = 8;
+
+/// A closed surface that is asked for many points.
+pub(super) struct Solid<'a> {
+    surface: &'a Surface,
+    /// Triangles, those of a node side by side.
+    order: Vec<u32>,
+    nodes: Vec<Node>,
+}
+
+struct Node {
+    low: DVec3,
+    high: DVec3,
+    /// Of `order`, for a leaf.
+    triangles: std::ops::Range<usize>,
+    /// The second child; the first one follows its parent. 0 for a leaf.
+    second: usize,
+}
+
+impl<'a> Solid<'a> {
+    pub(super) fn new(surface: &'a Surface) -> Self {
+        let count = surface.triangles.len();
+        let order = (0..u32::try_from(count).unwrap_or(u32::MAX)).collect();
+        let mut solid = Self { surface, order, nodes: Vec::new() };
+        if count > 0 {
+            solid.split(0, count);
+        }
+        solid
+    }
+
+    fn split(&mut self, from: usize, to: usize) {
+        let corners = |k: &u32| self.surface.at(*k as usize);
+        let all = || self.order[from..to].iter().flat_map(corners);
+        let (low, high) =
+            (all().fold(DVec3::INFINITY, DVec3::min), all().fold(DVec3::NEG_INFINITY, DVec3::max));
+        let here = self.nodes.len();
+        self.nodes.push(Node { low, high, triangles: from..to, second: 0 });
+        if to - from <= LEAF {
+            return;
+        }
+        let axis = (high - low).max_position();
+        let surface = self.surface;
+        let middle = |k: &u32| surface.at(*k as usize).map(|c| c[axis]).iter().sum::<f64>();
+        let half = (to - from) / 2;
+        self.order[from..to].select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)));
+        self.split(from, from + half);
+        self.nodes[here].second = self.nodes.len();
+        self.split(from + half, to);
+    }
+
+    /// Leads over the leaves whose nodes, and all above them, are `wanted`.
+    fn leaves(&self, mut wanted: impl FnMut(&Node) -> bool, mut each: impl FnMut(usize)) {
+        let mut stack = if self.nodes.is_empty() { vec![] } else { vec![0] };
+        while let Some(k) = stack.pop() {
+            let node = &self.nodes[k];
+            if !wanted(node) {
+                continue;
+            }
+            if node.second == 0 {
+                self.order[node.triangles.clone()].iter().for_each(|triangle| each(*triangle as usize));
+            } else {
+                stack.extend([node.second, k + 1]);
+            }
+        }
+    }
+
+    /// How often the surface goes round a point: once for points inside. Counted by the faces that the ray along +x
+    /// leaves through; every decision is an exact sign. On the surface itself either answer comes out.
+    pub(super) fn winding(&self, p: DVec3) -> i32 {
+        let on_ray = |node: &Node| {
+            node.high.x >= p.x
+                && (node.low.y..=node.high.y).contains(&p.y)
+                && (node.low.z..=node.high.z).contains(&p.z)
+        };
+        let mut count = 0;
+        self.leaves(on_ray, |triangle| {
+            let corners = self.surface.at(triangle);
+            let around = winding_in_plane(&corners, p);
+            // In front of the point the face has it on its inner side where it faces along the ray.
+            if around != 0 && side(corners, p) * f64::from(around) < 0.0 {
+                count += around;
+            }
+        });
+        count
+    }
+
+    /// How far a point is from the surface, m.
+    pub(super) fn distance(&self, p: DVec3) -> f64 {
+        let nearest = std::cell::Cell::new(f64::INFINITY);
+        let near = |node: &Node| p.clamp(node.low, node.high).distance(p) < nearest.get();
+        self.leaves(near, |triangle| {
+            nearest.set(nearest.get().min(distance_to_triangle(self.surface.at(triangle), p)));
+        });
+        nearest.get()
+    }
+
+    /// The point of `points` that is farthest outside, and how far, m; `None` where all are inside.
+    pub(super) fn farthest_outside(&self, points: &[DVec3]) -> Option<(usize, f64)> {
+        let outside = points.iter().enumerate().filter(|(_, p)| self.winding(**p) != 1);
+        outside.map(|(k, p)| (k, self.distance(*p))).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// How often a triangle, seen along x, goes round a point: +-1 or 0, the same on either side of a shared edge.
+fn winding_in_plane(corners: &[DVec3; 3], p: DVec3) -> i32 {
+    let at = |q: DVec3| Coord { x: q.y, y: q.z };
+    let of_edge = |k: usize| {
+        let (a, b) = (corners[k], corners[(k + 1) % 3]);
+        if (a.z <= p.z) == (b.z <= p.z) {
+            return 0;
+        }
+        let turn = orient2d(at(a), at(b), at(p));
+        i32::from(a.z <= p.z && turn > 0.0) - i32::from(a.z > p.z && turn < 0.0)
+    };
+    of_edge(0) + of_edge(1) + of_edge(2)
+}
+
+fn distance_to_triangle(corners: [DVec3; 3], p: DVec3) -> f64 {
+    let [a, b, c] = corners;
+    let to_edge = [(a, b), (b, c), (c, a)].map(|(from, to)| {
+        let (along, reach) = (to - from, p - from);
+        let share = (reach.dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        // An edge of no length is a point.
+        if share.is_nan() { reach.length() } else { reach.distance(along * share) }
+    });
+    let nearest = to_edge.into_iter().fold(f64::INFINITY, f64::min);
+    let n = (b - a).cross(c - a);
+    let above = |from: DVec3, to: DVec3| n.dot((to - from).cross(p - from)) >= 0.0;
+    let height = (p - a).dot(n).abs() / n.length();
+    if above(a, b) && above(b, c) && above(c, a) && height < nearest { height } else { nearest }
+}

@@ -1,0 +1,145 @@
+//! The certificate of a folder of results: what can be checked from the files alone, by code that had no part in making
+//! them.
+//!
+//! Corners are compared as they stand in the files, by exact signs (Shewchuk's predicates, from the crate `robust`).
+//! What is left to a tolerance is what writing rounds: see [`rounding`].
+
+mod bounds;
+mod fault;
+mod figures;
+mod inside;
+mod mesh_file;
+mod outline;
+mod surface;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use bounds::{outline_stands_out, stands_out};
+pub use fault::{CheckError, Fault};
+
+use crate::output::manifest::{MANIFEST, Manifest, State};
+pub(crate) use mesh_file::Surface;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufReader};
+use std::path::Path;
+
+/// Checks a folder of results again, by its files alone: that they are those that recon wrote, that meshes are closed and
+/// turned one way, bounds convex, as large as stated and the lower one inside the upper one, that all numbers are finite,
+/// and that every fit says how it ended. Returns what was found to hold, in words.
+///
+/// # Errors
+/// [`CheckError`] names everything that does not hold.
+pub fn check(folder: impl AsRef<Path>) -> Result<Vec<String>, CheckError> {
+    let path = folder.as_ref();
+    let in_folder = |source| CheckError::Io { path: path.to_owned(), source };
+    let manifest = Manifest::of(path).map_err(in_folder)?;
+    let manifest = manifest.ok_or_else(|| CheckError::NoManifest { path: path.to_owned() })?;
+    let mut faults = Vec::new();
+    let mut sound = Vec::new();
+    for entry in &manifest.files {
+        let file = entry.name.clone();
+        match entry.state(path).map_err(in_folder)? {
+            State::AsWritten => sound.push(file),
+            State::Changed => {
+                faults.push(Fault::Changed { file: file.clone() });
+                sound.push(file);
+            }
+            State::Missing => faults.push(Fault::Missing { file }),
+        }
+    }
+    let written = format!("{} files as written by recon {}", manifest.files.len(), manifest.recon);
+    match certify(path, &sound) {
+        Ok(held) if faults.is_empty() => Ok(std::iter::once(written).chain(held).collect()),
+        Ok(_) => Err(CheckError::Faults { faults }),
+        Err(further) => Err(CheckError::Faults { faults: faults.into_iter().chain(further).collect() }),
+    }
+}
+
+/// Checks the contents of files in a folder, whoever wrote them.
+pub(crate) fn certify(folder: &Path, names: &[String]) -> Result<Vec<String>, Vec<Fault>> {
+    let mut found = Found::default();
+    for file in names.iter().filter(|name| *name != MANIFEST) {
+        if let Err(error) = found.read(folder, file) {
+            found.faults.push(Fault::Unreadable { file: file.clone(), what: error.to_string() });
+        }
+    }
+    match &found.summary {
+        Some(summary) => found.faults.extend(figures::faults(summary)),
+        None => found.faults.push(Fault::Missing { file: SUMMARY.to_owned() }),
+    }
+    found.check_open();
+    found.check_bounds();
+    if found.faults.is_empty() { Ok(found.held) } else { Err(found.faults) }
+}
+
+const SUMMARY: &str = "summary.json";
+/// An approximation that need not close between contacts, if the summary says so.
+const MAY_BE_OPEN: &str = "smooth_surface.ply";
+
+/// What was read from a folder.
+#[derive(Default)]
+struct Found {
+    summary: Option<Value>,
+    surfaces: BTreeMap<String, Surface>,
+    outlines: BTreeMap<String, outline::Outline>,
+    /// An edge at which the surface that may be open is.
+    open: Option<[u32; 2]>,
+    /// What holds, in words.
+    held: Vec<String>,
+    faults: Vec<Fault>,
+}
+
+impl Found {
+    fn read(&mut self, folder: &Path, file: &str) -> io::Result<()> {
+        let open = || Ok::<_, io::Error>(BufReader::new(File::open(folder.join(file))?));
+        let extension = Path::new(file).extension().and_then(|e| e.to_str()).unwrap_or_default();
+        match (file, extension) {
+            (SUMMARY, _) => self.summary = Some(serde_json::from_reader(open()?)?),
+            ("lower_bound.csv" | "upper_bound.csv", _) => match table::corners(file, open()?)? {
+                Ok(corners) => {
+                    self.outlines.insert(file.to_owned(), outline::Outline(corners));
+                }
+                Err(fault) => self.faults.push(fault),
+            },
+            (_, "csv") => match table::numbers(file, open()?, |_| ())? {
+                None => self.held.push(format!("{file}: all numbers are finite")),
+                Some(fault) => self.faults.push(fault),
+            },
+            (_, "ply") => self.take(file, Surface::from_ply(open()?)?),
+            (_, "obj") => self.take(file, Surface::from_obj(open()?)?),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn check_open(&mut self) {
+        let Some(edge) = self.open else { return };
+        let stated = self.summary.as_ref().and_then(|s| s["about"]["concave"]["surface_is_closed"].as_bool());
+        if stated == Some(false) {
+            self.held.push(format!("{MAY_BE_OPEN}: open, as stated"));
+        } else {
+            self.faults.push(Fault::Open { file: MAY_BE_OPEN.to_owned(), edge });
+        }
+    }
+
+    fn take(&mut self, file: &str, surface: Surface) {
+        match surface.open_edge() {
+            Some(edge) if file == MAY_BE_OPEN => self.open = Some(edge),
+            Some(edge) => self.faults.push(Fault::Open { file: file.to_owned(), edge }),
+            None if file.ends_with("_bound.ply") => {}
+            None => {
+                self.held.push(format!("{file}: closed, {} faces turned one way", surface.triangles.len()))
+            }
+        }
+        self.surfaces.insert(file.to_owned(), surface);
+    }
+}
+
+/// How far rounding moves a corner or a plane through it, at most, m: a corner is the rounded intersection of planes whose
+/// offsets were rounded, each by a few units in the last place of the farthest corner's distance from the origin.
+fn rounding(reach: f64) -> f64 {
+    64.0 * f64::EPSILON * reach
+}

@@ -1,0 +1,110 @@
+//! What can be said of one surface: closed, turned outwards, convex, how large.
+
+use super::mesh_file::Surface;
+use glam::DVec3;
+use robust::{Coord3D, orient3d};
+
+/// Volume, area and reach of a closed surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Size {
+    /// m^3.
+    pub(super) volume: f64,
+    /// m^2.
+    pub(super) area: f64,
+}
+
+/// A pair of triangles at an edge.
+struct Edge {
+    ends: [u32; 2],
+    /// The third corners of the triangle that passes the edge forwards and of the one that passes it backwards.
+    beside: [u32; 2],
+}
+
+/// Positive where `p` is on the outer side of the triangle; the sign is exact.
+pub(super) fn side([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
+    let of = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
+    -orient3d(of(a), of(b), of(c), of(p))
+}
+
+impl Surface {
+    /// Every edge is passed as often forwards as backwards; else an edge that is not.
+    pub(crate) fn open_edge(&self) -> Option<[u32; 2]> {
+        let passes = self.passes();
+        passes.chunk_by(|a, b| a.0 == b.0).find_map(|edge| {
+            let forwards = edge.iter().filter(|pass| pass.1).count();
+            (2 * forwards != edge.len()).then_some(edge[0].0)
+        })
+    }
+
+    /// Each edge by the numbers of its ends, with the direction in which a triangle passes it and the third corner.
+    fn passes(&self) -> Vec<([u32; 2], bool, u32)> {
+        let of = |t: &[u32; 3]| {
+            let [a, b, c] = *t;
+            [(a, b, c), (b, c, a), (c, a, b)].map(|(from, to, third)| {
+                let ends = if from < to { [from, to] } else { [to, from] };
+                (ends, from < to, third)
+            })
+        };
+        let mut passes: Vec<_> = self.triangles.iter().flat_map(of).collect();
+        passes.sort_unstable();
+        passes
+    }
+
+    /// Edges of a surface on which each edge belongs to two triangles; the first that does not.
+    fn edges(&self) -> Result<Vec<Edge>, [u32; 2]> {
+        let passes = self.passes();
+        let pair = |edge: &[([u32; 2], bool, u32)]| match edge {
+            [back, forth] if forth.1 && !back.1 => Ok(Edge { ends: back.0, beside: [forth.2, back.2] }),
+            _ => Err(edge[0].0),
+        };
+        passes.chunk_by(|a, b| a.0 == b.0).map(pair).collect()
+    }
+
+    /// Signed volume and area, the volume about a corner of the surface.
+    pub(super) fn size(&self) -> Size {
+        let about = self.corners.first().copied().unwrap_or_default();
+        let mut size = Size { volume: 0.0, area: 0.0 };
+        for triangle in 0..self.triangles.len() {
+            let [a, b, c] = self.at(triangle).map(|corner| corner - about);
+            size.volume += a.dot(b.cross(c)) / 6.0;
+            size.area += (b - a).cross(c - a).length() / 2.0;
+        }
+        size
+    }
+
+    /// Why this is not the surface of one convex body but for dents of depth `tolerance` (m).
+    ///
+    /// Each edge is in two triangles, corners, edges and faces are numbered as on a sphere (Euler), and no edge is
+    /// dented: by the exact sign, or by less than `tolerance` as the smallest height of the four corners beside it.
+    pub(super) fn not_convex(&self, tolerance: f64) -> Option<String> {
+        let edges = match self.edges() {
+            Err([a, b]) => {
+                return Some(format!("the edge of corners {} and {} is not that of two faces", a + 1, b + 1));
+            }
+            Ok(edges) => edges,
+        };
+        let mut used = vec![false; self.corners.len()];
+        self.triangles.iter().flatten().for_each(|&corner| used[corner as usize] = true);
+        let corners = used.iter().filter(|used| **used).count();
+        if corners + self.triangles.len() != edges.len() + 2 {
+            return Some("its faces are not joined as those of one body".to_owned());
+        }
+        let worst = edges.iter().map(|edge| (self.dent(edge), edge.ends)).max_by(|a, b| a.0.total_cmp(&b.0));
+        worst.filter(|(depth, _)| *depth > tolerance).map(|(depth, [a, b])| {
+            format!("it is dented by {depth:.1e} m at the edge of corners {} and {}", a + 1, b + 1)
+        })
+    }
+
+    /// How deep the dent at an edge is; 0 where there is none.
+    fn dent(&self, edge: &Edge) -> f64 {
+        let [a, b] = edge.ends.map(|corner| self.corners[corner as usize]);
+        let [c, d] = edge.beside.map(|corner| self.corners[corner as usize]);
+        if side([a, b, c], d) <= 0.0 {
+            return 0.0;
+        }
+        // A sliver has no plane to measure from: the face of the four corners with the largest area has one.
+        let area = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p).length();
+        let largest = area(a, b, c).max(area(a, b, d)).max(area(a, c, d)).max(area(b, c, d));
+        if largest > 0.0 { (b - a).dot((c - a).cross(d - a)).abs() / largest } else { 0.0 }
+    }
+}

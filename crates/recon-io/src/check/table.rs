@@ -1,0 +1,62 @@
+//! Tables: every row has all cells, every cell a finite number.
+
+use super::Fault;
+use glam::DVec2;
+use std::io::{self, BufRead};
+
+/// Columns in which `nan` says that there is nothing: radius functions of a palm that does not touch.
+const MAY_BE_NAN: [(&str, &str); 3] =
+    [("radius_functions.csv", "r_1"), ("radius_functions.csv", "r_2"), ("radius_functions.csv", "r_3")];
+/// Columns of a log that are empty or `nan` while a palm does not touch.
+const LOG: &str = "log.csv";
+
+/// Reads a table of numbers and gives each row to `each`.
+pub(super) fn numbers(
+    file: &str,
+    mut from: impl BufRead,
+    mut each: impl FnMut(&[f64]),
+) -> io::Result<Option<Fault>> {
+    let mut text = String::new();
+    from.read_line(&mut text)?;
+    let columns: Vec<String> = text.trim_end().split(',').map(str::to_owned).collect();
+    let (mut line, mut row) = (1, Vec::with_capacity(columns.len()));
+    loop {
+        text.clear();
+        if from.read_line(&mut text)? == 0 {
+            return Ok(None);
+        }
+        line += 1;
+        row.clear();
+        for (k, cell) in text.trim_end().split(',').enumerate() {
+            let column = columns.get(k).map_or("", String::as_str);
+            let absent = || {
+                let empty = cell.is_empty() || cell == "nan";
+                empty && (file == LOG || MAY_BE_NAN.contains(&(file, column)))
+            };
+            match cell.parse::<f64>() {
+                Ok(number) if number.is_finite() => row.push(number),
+                _ if absent() => row.push(f64::NAN),
+                _ => {
+                    let (file, column, text) = (file.to_owned(), column.to_owned(), cell.to_owned());
+                    return Ok(Some(Fault::Cell { file, line, column, text }));
+                }
+            }
+        }
+        if row.len() != columns.len() {
+            let (expected, found) = (columns.len(), row.len());
+            return Ok(Some(Fault::Row { file: file.to_owned(), line, expected, found }));
+        }
+        each(&row);
+    }
+}
+
+/// Reads the corners of an outline.
+pub(super) fn corners(file: &str, from: impl BufRead) -> io::Result<Result<Vec<DVec2>, Fault>> {
+    let mut corners = Vec::new();
+    let fault = numbers(file, from, |row| {
+        if let [x, y] = row {
+            corners.push(DVec2::new(*x, *y));
+        }
+    })?;
+    Ok(fault.map_or(Ok(corners), Err))
+}
