@@ -212,7 +212,7 @@ fn doubtful(of: &NoiseDoubt) -> String {
             curve + 1
         ),
         NoiseDoubt::Correlated { ratio, p_value } => format!(
-            "Noise is alike from one contact to the next: {ratio:.1} times as large over four contacts as over one (z-test, \
+            "Noise is alike from one contact to the next: {ratio:.1} times as large over every second contact as over every one (z-test, \
              p = {p_value:.0e}). No means are taken over contacts; the stated level must be that of the whole noise."
         ),
     }

@@ -38,8 +38,8 @@ pub enum NoiseDoubt {
         /// Odds of as much or more from the stated noise, at most.
         p_value: f64,
     },
-    /// Noise is alike from one contact to the next: differences over four contacts are larger than over one, by a z-test on the
-    /// logarithm of the ratio of their medians.
+    /// Noise is alike from one contact to the next: differences over every second contact are larger than over every one, by a z-test
+    /// on the logarithm of the ratio of their medians.
     Correlated {
         /// How many times larger.
         ratio: f64,
@@ -112,14 +112,14 @@ pub fn correlated_noise(curves: &[Vec<NoisyContact>]) -> Option<NoiseDoubt> {
                 continue;
             }
             let weight = contacts.len() as f64;
-            logarithm += weight * (found[2].0 / found[0].0).ln();
-            variance += weight * weight * (found[2].1.powi(2) + found[0].1.powi(2));
+            logarithm += weight * (found[1].0 / found[0].0).ln();
+            variance += weight * weight * (found[1].1.powi(2) + found[0].1.powi(2));
             squares.iter_mut().zip(&found).for_each(|(sum, (d, _))| *sum += weight * d * d);
         }
         let z = logarithm / variance.sqrt();
         let [one, two, four] = squares;
-        let noise = two > one && four - one < STEEPEST * (two - one) && four < LARGEST_GROWTH * one;
-        (z > limit && noise).then(|| NoiseDoubt::Correlated { ratio: (four / one).sqrt(), p_value: tail(z) })
+        let noise = four - one < STEEPEST * (two - one) && four < LARGEST_GROWTH * one;
+        (z > limit && noise).then(|| NoiseDoubt::Correlated { ratio: (two / one).sqrt(), p_value: tail(z) })
     };
     PARTS.iter().find_map(judged)
 }
