@@ -23,7 +23,7 @@ pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Normal
 #[cfg(feature = "palms")]
 pub use three_palms::{
     BodyEstimate, CurveUncertainty, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate,
-    MotionState, NoiseLevel, OtherMotion, PaperError, PaperMethod, PaperReconstruction, PaperStart,
+    MotionState, NoiseLevel, OtherMotion, PaperError, PaperMethod, PaperReconstruction, PaperStart, PoseAxes,
     PoseCovariance, PoseErrors, PredictorCorrector, Quantity, Reason, Reliability, Scales, SensorConstant,
     SensorEstimate, SensorPriors, StartState, Track, TrackError, UnknownBody, WeakDirection,
     equivalent_orientations, estimate_body, estimate_body_from, estimate_motion, estimate_motion_and_sensors,

@@ -40,6 +40,11 @@ pub(crate) enum CliError {
     Option { option: &'static str, meant: &'static str, found: &'static str, path: PathBuf },
     #[error("the contacts give no bounds under noise")]
     NoisyBounds(#[from] NoiseError),
+    #[error(
+        "the noise of the contacts cannot be read off them: it is alike from one to the next ({ratio:.1} times as large over every \
+         second contact as over every one, p = {p_value:.0e}); state it with --contact-noise and --normal-noise"
+    )]
+    CorrelatedNoise { ratio: f64, p_value: f64 },
     #[error("the contacts and the limits on the curvature give no bounds")]
     Curvature(#[from] CurvatureError),
     #[error("the bounds have no meshes")]
@@ -144,6 +149,7 @@ impl CliError {
             | Self::Scene(_)
             | Self::Touches(_)
             | Self::NoisyBounds(_)
+            | Self::CorrelatedNoise { .. }
             | Self::PoseBounds(_)
             | Self::Curvature(_)
             | Self::PlanarBounds(_)

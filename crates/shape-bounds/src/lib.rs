@@ -64,8 +64,8 @@ pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, S
 pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
 pub use noise::{
-    CertainBounds, ContactNoise, NoiseError, NoisyContact, Outlier, PoseNoise, estimate_noise,
-    without_outliers,
+    CertainBounds, ContactNoise, NoiseDoubt, NoiseError, NoisyContact, Outlier, PoseNoise, correlated_noise,
+    estimate_noise, with_noise_as_found, without_outliers,
 };
 pub use palms::{PalmContact, PalmError, PalmIntersection};
 pub use poses::{

@@ -177,7 +177,7 @@ fn clean_estimate(
         let motion = thin_problem.motion(&thin_problem.retract(&fit.point, step));
         Some(motion.iter().map(|m| (m.p_WCm, m.R_WO)).collect())
     };
-    let pose_errors = pose_errors::of_start(nodes, &covariance, poses, lasting);
+    let pose_errors = pose_errors::of_start(nodes, &covariance, poses, lasting, true);
     let weakest = weakest_direction(&covariance);
     let evidence =
         Evidence::new(track, &residuals, predicted, &observability, weakest, noise, fit.iterations);
@@ -253,7 +253,7 @@ fn noisy_estimate<const N: usize>(
         curves,
         radii,
         uncertainty,
-        pose_errors: refined.pose_errors(DQuat::IDENTITY, misfit),
+        pose_errors: refined.pose_errors(DQuat::IDENTITY, misfit, true),
         others,
         covariance,
         evidence,

@@ -48,7 +48,7 @@ pub use orientations::{equivalent_orientations, nearest_turn};
 pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
-pub use pose_errors::{PoseCovariance, PoseErrors};
+pub use pose_errors::{PoseAxes, PoseCovariance, PoseErrors};
 pub use sensors::{SensorConstant, SensorEstimate, SensorPriors, estimate_motion_and_sensors};
 pub use streaming::{MotionStream, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 pub use track::{Track, TrackError};

@@ -45,16 +45,26 @@ impl PoseCovariance {
     }
 }
 
-/// Covariances of the errors of estimated poses in body axes, relative to what all of them share.
+/// The axes that errors of poses are told in, and so the axes in which bounds hold that are made with them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PoseAxes {
+    /// The body's own: principal axes about the centre of mass.
+    Principal,
+    /// Those in which the estimated poses are right on the average over the motion.
+    MeanPose,
+}
+
+/// Covariances of the errors of estimated poses in body axes.
 ///
-/// A point that stands at `x` in the body stands at `x + theta x x + d` as estimated, and so with normals. What is shared is
-/// the mean of `(theta, d)` over the motion: bounds made with these covariances hold for the body in the axes in which its
-/// estimated poses are right on the average.
+/// A point that stands at `x` in the body stands at `x + theta x x + d` as estimated, and so with normals. What all poses share,
+/// the mean of `(theta, d)` over the motion, moves the whole shape: it is taken out ([`PoseAxes::MeanPose`]) unless it is
+/// next to nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseErrors {
     nodes: Vec<usize>,
     covariances: Vec<SMatrix<f64, 6, 6>>,
     shared: SMatrix<f64, 6, 6>,
+    axes: PoseAxes,
     /// For each draw the largest error of all nodes in its own deviations, ascending.
     largest: Vec<f64>,
 }
@@ -80,6 +90,12 @@ impl PoseErrors {
         self.covariances[after - 1] * (1.0 - share) + self.covariances[after] * share
     }
 
+    /// The axes that the errors are told in.
+    #[must_use]
+    pub fn axes(&self) -> PoseAxes {
+        self.axes
+    }
+
     /// Covariance of what all poses share: how far the axes of the bounds may stand from the body's own.
     #[must_use]
     pub fn shared(&self) -> PoseCovariance {
@@ -96,29 +112,39 @@ impl PoseErrors {
     }
 
     /// From draws of poses about the `estimated` ones at some samples (`nodes`), each read as a motion that may be the true one;
-    /// `lasting` (m) is the deviation of what shifts contacts beside the motion, in any direction. None where no draw is left
-    /// that is a motion.
+    /// `lasting` (m) is the deviation of what shifts contacts beside the motion, in any direction. `principal` says that the draws
+    /// have the true principal axes. None where no draw is left that is a motion.
     pub(super) fn from_draws(
         nodes: Vec<usize>,
         estimated: &[Pose],
         draws: impl Iterator<Item = Vec<Pose>>,
         lasting: f64,
+        principal: bool,
     ) -> Option<Self> {
-        let mut random = Normal::seeded(LASTING_SEED);
-        let mut all = Vec::new();
-        let mut shared = SMatrix::zeros();
-        for poses in draws {
-            let (common, mut errors) = split(estimated, &poses);
-            shared += common * common.transpose();
-            for error in &mut errors {
-                (3..6).for_each(|i| error[i] += lasting * random.draw());
-            }
-            all.push(errors);
-        }
-        let count = all.len() as f64;
-        if all.is_empty() || nodes.is_empty() {
+        let drawn: Vec<Vec<Pose>> = draws.map(|poses| errors_of(estimated, &poses)).collect();
+        let count = drawn.len() as f64;
+        if drawn.is_empty() || nodes.is_empty() {
             return None;
         }
+        let means: Vec<Pose> = drawn.iter().map(|errors| mean(errors)).collect();
+        let shared: SMatrix<f64, 6, 6> =
+            means.iter().map(|m| displacement(*m)).map(|g| g * g.transpose()).sum();
+        let shared = shared / count;
+        let turn = (0..3).map(|i| shared[(i, i)]).sum::<f64>().sqrt();
+        let axes = if principal && turn < NEXT_TO_NO_TURN { PoseAxes::Principal } else { PoseAxes::MeanPose };
+        let mut random = Normal::seeded(LASTING_SEED);
+        let mut relative = |(errors, mean): (&Vec<Pose>, &Pose)| -> Vec<Displacement> {
+            let (shift, turn) =
+                if axes == PoseAxes::MeanPose { *mean } else { (DVec3::ZERO, DQuat::IDENTITY) };
+            let back = turn.inverse();
+            let left = errors.iter().map(|(s, q)| displacement((back * (*s - shift), back * *q)));
+            left.map(|mut error| {
+                (3..6).for_each(|i| error[i] += lasting * random.draw());
+                error
+            })
+            .collect()
+        };
+        let all: Vec<Vec<Displacement>> = drawn.iter().zip(&means).map(&mut relative).collect();
         let covariances: Vec<_> = (0..nodes.len())
             .map(|k| {
                 let sum: SMatrix<f64, 6, 6> =
@@ -135,9 +161,13 @@ impl PoseErrors {
             })
             .collect();
         largest.sort_unstable_by(f64::total_cmp);
-        Some(Self { nodes, covariances, shared: shared / count, largest })
+        Some(Self { nodes, covariances, shared, axes, largest })
     }
 }
+
+/// Turn that all poses share, rad (all axes together), below which it costs next to nothing to tell errors in the body's own axes: less
+/// than three thousandths of the size at three deviations.
+const NEXT_TO_NO_TURN: f64 = 1e-3;
 
 /// Seed of what lasting errors are drawn from.
 const LASTING_SEED: u64 = 0x1a57;
@@ -148,28 +178,26 @@ pub(super) fn kept(count: usize) -> Vec<usize> {
     (0..most).map(|k| k * count.saturating_sub(1) / most.saturating_sub(1).max(1)).collect()
 }
 
-/// What the errors at all nodes share, and what is left of each.
-fn split(estimated: &[Pose], drawn: &[Pose]) -> (Displacement, Vec<Displacement>) {
-    // From axes as estimated to true ones: x = R' (p^ + R^ x^ - p).
-    let errors: Vec<Pose> = estimated
-        .iter()
-        .zip(drawn)
-        .map(|((p_hat, R_hat), (p, R))| (R.inverse() * (*p_hat - *p), (R.inverse() * *R_hat).normalize()))
-        .collect();
-    let count = errors.len().max(1) as f64;
-    // Mean of rotations about the first: what a second round would change is of third order.
-    let first = errors.first().map_or(DQuat::IDENTITY, |(_, turn)| *turn);
-    let mean = errors.iter().map(|(_, turn)| logarithm(first.inverse() * *turn)).sum::<DVec3>() / count;
-    let turn = (first * exponential(mean)).normalize();
-    let shift = errors.iter().map(|(shift, _)| *shift).sum::<DVec3>() / count;
-    let left = |(s, q): &Pose| {
-        let (theta, d) = (-logarithm(turn.inverse() * *q), -(turn.inverse() * (*s - shift)));
-        displacement(theta, d)
+/// What takes points from body axes as estimated to true ones, at each node: `x = R' (p^ + R^ x^ - p)`.
+fn errors_of(estimated: &[Pose], drawn: &[Pose]) -> Vec<Pose> {
+    let error = |((p_hat, R_hat), (p, R)): (&Pose, &Pose)| {
+        (R.inverse() * (*p_hat - *p), (R.inverse() * *R_hat).normalize())
     };
-    (displacement(-logarithm(turn), -shift), errors.iter().map(left).collect())
+    estimated.iter().zip(drawn).map(error).collect()
 }
 
-fn displacement(theta: DVec3, d: DVec3) -> Displacement {
+/// The mean of errors at all nodes; of the rotations about the first, what a second round would change is of third order.
+fn mean(errors: &[Pose]) -> Pose {
+    let count = errors.len().max(1) as f64;
+    let first = errors.first().map_or(DQuat::IDENTITY, |(_, turn)| *turn);
+    let about = errors.iter().map(|(_, turn)| logarithm(first.inverse() * *turn)).sum::<DVec3>() / count;
+    let shift = errors.iter().map(|(shift, _)| *shift).sum::<DVec3>() / count;
+    (shift, (first * exponential(about)).normalize())
+}
+
+/// The displacement that such an error undoes.
+fn displacement((shift, turn): Pose) -> Displacement {
+    let (theta, d) = (-logarithm(turn), -shift);
     Displacement::from([theta.x, theta.y, theta.z, d.x, d.y, d.z])
 }
 
@@ -215,7 +243,7 @@ pub(super) fn turned(q: DQuat, theta: DVec3) -> DQuat {
 impl<const N: usize> Refined<N> {
     /// Joint errors of the poses at the nodes, in body axes that stand at `axes` in the model's: what is linear in the noise, and
     /// what the covariances were widened by; all of it larger by the root of the `misfit` where that is above 1.
-    pub(super) fn pose_errors(&self, axes: DQuat, misfit: f64) -> Option<PoseErrors> {
+    pub(super) fn pose_errors(&self, axes: DQuat, misfit: f64, principal: bool) -> Option<PoseErrors> {
         let mut random = Normal::seeded(MOTION_SEED);
         let kept = kept(self.nodes.len());
         let states = self.states();
@@ -244,7 +272,7 @@ impl<const N: usize> Refined<N> {
             drawn
         };
         let nodes = kept.iter().map(|&k| self.nodes[k]).collect();
-        PoseErrors::from_draws(nodes, &poses, (0..DRAWS).map(draw), 0.0)
+        PoseErrors::from_draws(nodes, &poses, (0..DRAWS).map(draw), 0.0, principal)
     }
 }
 
@@ -255,12 +283,13 @@ pub(super) fn of_start<const P: usize>(
     covariance: &SMatrix<f64, P, P>,
     poses: impl Fn(&SVector<f64, P>) -> Option<Vec<Pose>>,
     lasting: f64,
+    principal: bool,
 ) -> Option<PoseErrors> {
     let mut random = Normal::seeded(MOTION_SEED);
     let root = root(covariance);
     let estimated = poses(&SVector::zeros())?;
     let draws = (0..DRAWS).filter_map(|_| poses(&(root * normals(&mut random))));
-    PoseErrors::from_draws(nodes, &estimated, draws, lasting)
+    PoseErrors::from_draws(nodes, &estimated, draws, lasting, principal)
 }
 
 /// Seed of what motions are drawn from.

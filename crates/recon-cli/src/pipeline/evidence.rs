@@ -1,7 +1,7 @@
 //! The estimator's evidence in words and numbers for people.
 
 use glam::DMat3;
-use recon::observer::{IdentifiedBody, MotionEstimate, OtherMotion, Reliability, StartState};
+use recon::observer::{IdentifiedBody, MotionEstimate, OtherMotion, PoseAxes, Reliability, StartState};
 use recon_io::{Evidence, EvidenceValue, Level, Verdict, brief_to};
 
 /// Unknowns of the estimate: centre of mass, velocity, angular momentum, orientation.
@@ -243,10 +243,16 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
         add(
             "bounds_frame",
             "Axes of the bounds",
-            EvidenceValue::Text("mean pose".to_owned()),
+            EvidenceValue::Text(
+                match errors.axes() {
+                    PoseAxes::Principal => "principal",
+                    PoseAxes::MeanPose => "mean pose",
+                }
+                .to_owned(),
+            ),
             "",
-            "Body axes in which the estimated poses are right on the average over the samples: the body's own, displaced by the mean \
-             error of the poses.",
+            "Principal: the bounds hold in the body's own axes. Mean pose: in body axes in which the estimated poses are right on the \
+             average over the samples, that is the body's own displaced by the mean error of the poses.",
         );
         add(
             "std_bounds_turn",

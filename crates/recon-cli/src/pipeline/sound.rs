@@ -6,8 +6,9 @@ use glam::DMat3;
 use recon::contact_kinematics::{CurvatureRadii, CurvePoint};
 use recon::observer::{MotionEstimate, PoseCovariance};
 use recon::shape_bounds::{
-    BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, NoisyContact, Outlier,
-    PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, estimate_noise, without_outliers,
+    BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, NoiseDoubt, NoisyContact,
+    Outlier, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, correlated_noise, estimate_noise,
+    with_noise_as_found, without_outliers,
 };
 use recon_io::{Bound, Bounds, brief_to};
 use serde_json::{Value, json};
@@ -32,9 +33,13 @@ pub(crate) fn noisy_bounds(
     noise: Noise,
     confidence: f64,
 ) -> Result<(BoundsResult, Value), CliError> {
-    let Cleaned { kept, warning, about } = cleaned(curves, noise, confidence)?;
-    let bounds = CertainBounds::from_noisy_curves(&kept, confidence)?;
-    Ok((finished(&bounds, warning)?, about))
+    let Cleaned { kept, warnings, about, correlated } = cleaned(curves, noise, confidence)?;
+    let bounds = if correlated {
+        CertainBounds::from_correlated_curves(&kept, confidence)?
+    } else {
+        CertainBounds::from_noisy_curves(&kept, confidence)?
+    };
+    Ok((finished(&bounds, warnings)?, about))
 }
 
 /// Bounds of a convex body with radii of curvature within `radii`, from exact contacts or from noisy ones at a confidence.
@@ -43,12 +48,17 @@ pub(crate) fn sharp_bounds(
     radii: CurvatureRadii,
     noise: Option<(Noise, f64)>,
 ) -> Result<(BoundsResult, Value), CliError> {
-    let (bounds, warning, mut about) = match noise {
+    let (bounds, warnings, mut about) = match noise {
         Some((noise, confidence)) => {
-            let Cleaned { kept, warning, about } = cleaned(curves, noise, confidence)?;
-            (SharpBounds::from_noisy_curves(&kept, radii, confidence)?, warning, about)
+            let Cleaned { kept, warnings, about, correlated } = cleaned(curves, noise, confidence)?;
+            // Each in a curve of its own: nothing is gained by means then.
+            let single = || kept.iter().flatten().map(|c| vec![*c]).collect::<Vec<_>>();
+            let kept = if correlated { single() } else { kept };
+            (SharpBounds::from_noisy_curves(&kept, radii, confidence)?, warnings, about)
         }
-        None => (SharpBounds::from_contacts(&curves.concat(), radii)?, None, json!({ "noise": "none" })),
+        None => {
+            (SharpBounds::from_contacts(&curves.concat(), radii)?, Vec::new(), json!({ "noise": "none" }))
+        }
     };
     let tolerance = MESH_TOLERANCE * bounds.upper().volume().cbrt();
     about["radii_of_curvature_m"] = json!([radii.min, radii.max]);
@@ -60,7 +70,6 @@ pub(crate) fn sharp_bounds(
         upper: upper.clone().map(|mesh| Bound { mesh, volume: bounds.upper().volume() }),
         largest_gap: polytopes.largest_gap().map(|gap| gap.distance),
     };
-    let warnings = warning.into_iter().collect();
     Ok((
         BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings }.compared(),
         about,
@@ -98,7 +107,7 @@ pub(crate) fn motion_bounds(
         points.map(noisy).collect::<Vec<_>>()
     });
     let bounds = CertainBounds::from_curves_of_poses(&curves, 1.0 - (1.0 - SHARE_OF_POSES) * alpha, poses)?;
-    finished(&bounds, None).map(Some)
+    finished(&bounds, Vec::new()).map(Some)
 }
 
 /// Samples whose contacts bound the body, at most: more of them gain next to nothing.
@@ -111,7 +120,7 @@ fn pose_noise(of: PoseCovariance) -> PoseNoise {
 }
 
 /// Meshes and figures of bounds, of which each may be missing, and what is to be said then.
-fn finished(bounds: &CertainBounds, warning: Option<String>) -> Result<BoundsResult, CliError> {
+fn finished(bounds: &CertainBounds, mut warnings: Vec<String>) -> Result<BoundsResult, CliError> {
     let solid = bounds.lower.as_ref().and_then(|lower| lower.solid());
     let lower = solid.map(|solid| own(solid.mesh())).transpose()?;
     let upper = bounds.upper.as_ref().map(|upper| own(upper.mesh())).transpose()?;
@@ -127,7 +136,6 @@ fn finished(bounds: &CertainBounds, warning: Option<String>) -> Result<BoundsRes
         }),
         largest_gap: bounds.largest_gap().map(|gap| gap.distance),
     };
-    let mut warnings: Vec<String> = warning.into_iter().collect();
     if lower.is_none() {
         warnings.push(
             "Nothing is certain to be inside of the object at this confidence: the lower bound is empty."
@@ -146,8 +154,10 @@ fn finished(bounds: &CertainBounds, warning: Option<String>) -> Result<BoundsRes
 /// Contacts with their noise, without outliers.
 pub(super) struct Cleaned {
     pub(super) kept: Vec<Vec<NoisyContact>>,
-    warning: Option<String>,
+    warnings: Vec<String>,
     about: Value,
+    /// Whether noise is alike from one contact to the next.
+    correlated: bool,
 }
 
 pub(super) fn cleaned(
@@ -163,32 +173,95 @@ pub(super) fn cleaned(
         }
         Noise::Estimated => ("estimated", estimate_noise(curves, confidence)?),
     };
+    let correlated = correlated_noise(&noisy);
+    if let (Some(NoiseDoubt::Correlated { ratio, p_value }), Noise::Estimated) = (correlated, noise) {
+        return Err(CliError::CorrelatedNoise { ratio, p_value });
+    }
+    // Levels that were read off the contacts are what they show.
+    let (noisy, mut doubts) = match noise {
+        Noise::Stated { .. } => with_noise_as_found(&noisy),
+        Noise::Estimated => (noisy, Vec::new()),
+    };
+    doubts.extend(correlated);
     let (kept, outliers) = without_outliers(&noisy, confidence)?;
     let levels: Vec<Value> = noisy.iter().filter_map(|curve| curve.first()).map(level).collect();
-    let about = json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed(&outliers) });
-    Ok(Cleaned { kept, warning: left_out(&outliers), about })
+    let mut about =
+        json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed(&outliers) });
+    if !doubts.is_empty() {
+        about["noise_doubts"] = doubts.iter().map(doubt).collect();
+    }
+    let warnings = doubts.iter().map(doubtful).chain(left_out(&outliers)).collect();
+    Ok(Cleaned { kept, warnings, about, correlated: correlated.is_some() })
+}
+
+/// What is not as was stated, for programs.
+fn doubt(of: &NoiseDoubt) -> Value {
+    match of {
+        NoiseDoubt::Level { curve, what, stated, found, p_value } => json!({
+            "assumption": "level", "curve": curve + 1, "what": what, "stated": stated, "found": found, "p_value": p_value,
+        }),
+        NoiseDoubt::Correlated { ratio, p_value } => {
+            json!({ "assumption": "independent", "ratio": ratio, "p_value": p_value })
+        }
+    }
+}
+
+/// The same in words, with what is done about it.
+fn doubtful(of: &NoiseDoubt) -> String {
+    match of {
+        NoiseDoubt::Level { curve, what, stated, found, p_value } => format!(
+            "Noise of curve {} ({what}) is {found:.1e} where {stated:.1e} was stated (z-test on the median of third differences, \
+             p = {p_value:.0e}): the larger one is used.",
+            curve + 1
+        ),
+        NoiseDoubt::Correlated { ratio, p_value } => format!(
+            "Noise is alike from one contact to the next: {ratio:.1} times as large over every second contact as over every one (z-test, \
+             p = {p_value:.0e}). No means are taken over contacts; the stated level must be that of the whole noise."
+        ),
+    }
 }
 
 /// Outliers, counted from 1.
 pub(super) fn listed(outliers: &[Outlier]) -> Value {
-    let one =
-        |o: &Outlier| json!({ "curve": o.curve + 1, "contact": o.index + 1, "deviations": o.deviations });
+    let one = |o: &Outlier| {
+        let why = if o.share > 0.0 { "contradicts others" } else { "not on a smooth curve" };
+        json!({ "curve": o.curve + 1, "contact": o.index + 1, "deviations": o.deviations, "why": why })
+    };
     outliers.iter().map(one).collect()
 }
 
 pub(super) fn left_out(outliers: &[Outlier]) -> Option<String> {
-    let name = |o: &Outlier| {
-        format!("contact {} of curve {} ({} deviations)", o.index + 1, o.curve + 1, brief_to(2, o.deviations))
+    // One that contradicts no other contact may be an edge.
+    let rough: Vec<&Outlier> = outliers.iter().filter(|o| o.share == 0.0).collect();
+    let wrong: Vec<&Outlier> = outliers.iter().filter(|o| o.share > 0.0).collect();
+    let named = |of: &[&Outlier]| {
+        let name = |o: &&Outlier| {
+            format!(
+                "contact {} of curve {} ({} deviations)",
+                o.index + 1,
+                o.curve + 1,
+                brief_to(2, o.deviations)
+            )
+        };
+        let more = if of.len() > NAMED { ", and others" } else { "" };
+        format!("{}{more}", of.iter().take(NAMED).map(name).collect::<Vec<_>>().join(", "))
     };
-    let named: Vec<String> = outliers.iter().take(NAMED).map(name).collect();
-    let more = if outliers.len() > NAMED { ", and others" } else { "" };
-    (!outliers.is_empty()).then(|| {
-        format!(
-            "{} contact(s) cannot be right beside the others and are left out: {}{more}.",
-            outliers.len(),
-            named.join(", ")
-        )
-    })
+    let mut said = Vec::new();
+    if !wrong.is_empty() {
+        said.push(format!(
+            "{} contact(s) cannot be right beside the others and are left out: {}.",
+            wrong.len(),
+            named(&wrong)
+        ));
+    }
+    if !rough.is_empty() {
+        said.push(format!(
+            "{} contact(s) are not explained by a smooth curve (an edge, or an error) and are left out: {}.",
+            rough.len(),
+            named(&rough)
+        ));
+    }
+    (!said.is_empty()).then(|| said.join(" "))
 }
 
 /// Standard deviations of a contact across and along the surface and of its normal.

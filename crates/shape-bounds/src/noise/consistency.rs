@@ -92,7 +92,7 @@ pub(crate) fn deviation(
 }
 
 /// Weights of the difference of an order, and the sum of its squared autocorrelations.
-fn binomials(order: usize) -> (Vec<f64>, f64) {
+pub(super) fn binomials(order: usize) -> (Vec<f64>, f64) {
     let mut weights = vec![1.0];
     for _ in 0..order {
         let shifted = weights.iter().chain(&[0.0]);

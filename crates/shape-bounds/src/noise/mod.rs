@@ -1,5 +1,6 @@
 //! Bounds that hold at a stated confidence when contacts are measured with noise.
 
+mod assumptions;
 pub(crate) mod consistency;
 mod curvature;
 mod lower;
@@ -13,6 +14,7 @@ mod tests;
 mod upper;
 mod windows;
 
+pub use assumptions::{NoiseDoubt, correlated_noise, with_noise_as_found};
 pub use consistency::estimate_noise;
 pub use model::{ContactNoise, NoiseError, NoisyContact};
 pub use outliers::{Outlier, without_outliers};
@@ -67,6 +69,15 @@ impl CertainBounds {
         let alpha = 0.5 * (1.0 - confidence);
         let poses = quantile::length6(alpha / curves.iter().map(Vec::len).sum::<usize>().max(1) as f64);
         Self::from_curves_of_poses(curves, 1.0 - alpha, poses)
+    }
+
+    /// The same for noise that may be alike from one contact to the next, in any way: nothing is gained by means then.
+    ///
+    /// # Errors
+    /// As [`Self::from_noisy_curves`].
+    pub fn from_correlated_curves(curves: &[Vec<NoisyContact>], confidence: f64) -> Result<Self, NoiseError> {
+        let single: Vec<Vec<NoisyContact>> = curves.iter().flatten().map(|c| vec![*c]).collect();
+        Self::from_noisy_curves(&single, confidence)
     }
 
     /// The same where the errors of all poses together are within `poses` of their standard deviations: bounds that hold with at

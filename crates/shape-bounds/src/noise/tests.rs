@@ -224,3 +224,53 @@ fn limits_that_noisy_contacts_contradict_are_named() {
     let found = SharpBounds::from_noisy_curves(&vague, CurvatureRadii { min: 0.1, max: 6.5 }, 0.95);
     assert!(matches!(found, Err(NoiseError::NoLowerBound)), "{found:?}");
 }
+
+/// The ellipsoid's curves with point and normal noise that has the correlation `rho` from one contact to the next.
+fn alike(level: f64, rho: f64, seed: u64) -> Vec<Vec<crate::ContactSample>> {
+    let mut source = crate::generators::Source::new(seed ^ 0xA1);
+    let mut curves = noisy_curves(600, 0.0, 0.0, seed);
+    for curve in &mut curves {
+        let (mut point, mut turn) = (source.normal3(), source.normal3());
+        for contact in curve {
+            contact.point += point * (level * AXES.x);
+            let n = contact.normal.get() + turn * level;
+            contact.normal = contact_kinematics::Direction::new(n).unwrap();
+            let fresh = (1.0 - rho * rho).sqrt();
+            point = point * rho + source.normal3() * fresh;
+            turn = turn * rho + source.normal3() * fresh;
+        }
+    }
+    curves
+}
+
+/// Thresholds are odds of false alarms, set on these seeds and proven on others (docs/bounds.md).
+#[test]
+fn noise_that_is_not_as_stated_is_found_and_as_stated_raises_no_alarm() {
+    let stated = |curves, level: f64| with_noise(curves, level * AXES.x, level);
+    let mut found = 0;
+    for seed in 2000..2020 {
+        let right = stated(noisy_curves(600, 1e-3 * AXES.x, 1e-3, seed), 1e-3);
+        let (kept, doubts) = with_noise_as_found(&right);
+        assert!(kept == right && doubts.is_empty(), "seed {seed}: {doubts:?}");
+        assert_eq!(correlated_noise(&right), None, "seed {seed}");
+        let (raised, doubts) =
+            with_noise_as_found(&stated(noisy_curves(600, 2e-3 * AXES.x, 2e-3, seed), 1e-3));
+        assert!(doubts.len() >= 8, "seed {seed}: {doubts:?}");
+        if seed < 2003 {
+            assert!(holds(&ShapeBounds::from_noisy_curves(&raised, 0.95).unwrap()), "seed {seed}");
+        }
+        let correlated = stated(alike(1e-3, 0.95, seed), 1e-3);
+        found += usize::from(correlated_noise(&correlated).is_some());
+        if seed < 2003 {
+            let both = CertainBounds::from_correlated_curves(&correlated, 0.95).unwrap().both().unwrap();
+            assert!(holds(&both), "seed {seed}");
+        }
+    }
+    // 95 % of others are.
+    assert!(found >= 15, "{found}");
+    // Exact contacts, and sparse ones, are not noise.
+    for count in [90, 150, 600] {
+        let exact = stated(noisy_curves(count, 0.0, 0.0, 5), 1e-7);
+        assert_eq!((with_noise_as_found(&exact).1.len(), correlated_noise(&exact)), (0, None), "{count}");
+    }
+}

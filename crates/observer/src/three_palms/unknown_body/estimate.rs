@@ -200,7 +200,7 @@ fn clean_estimate(
     };
     let nodes: Vec<usize> = (0..track.len()).step_by(stride).collect();
     let joint =
-        |axes: DQuat| pose_errors::of_start(nodes.clone(), &scaled, |step| poses(step, axes), lasting);
+        |axes: DQuat| pose_errors::of_start(nodes.clone(), &scaled, |step| poses(step, axes), lasting, false);
     let sizes = problem.sizes();
     let found = Found {
         scales,
@@ -250,7 +250,7 @@ fn adjusted_estimate(
         refined: Some(&refined),
     };
     let misfit = refined.misfit(BODY_UNKNOWNS);
-    let mut estimate = assemble(&track, found, |axes| refined.pose_errors(axes, misfit))?;
+    let mut estimate = assemble(&track, found, |axes| refined.pose_errors(axes, misfit, false))?;
     if let Some(reason) = unexplained(&track, scales, &noise, fit) {
         estimate.motion.reliability.add(reason);
     }
