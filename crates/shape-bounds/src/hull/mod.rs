@@ -87,6 +87,14 @@ impl Hull {
         }
     }
 
+    /// The hull itself if it has a volume.
+    pub(crate) fn into_solid(self) -> Option<SolidHull> {
+        match self {
+            Self::Solid(solid) => Some(solid),
+            _ => None,
+        }
+    }
+
     /// The corners of the hull of `points`, in order around a polygon.
     pub(crate) fn corner_points(&self, points: &[DVec3]) -> Vec<DVec3> {
         match self {
