@@ -14,6 +14,7 @@ pub use error::IntersectionError;
 pub(crate) use interior::interior_point;
 pub(crate) use polyhedron::OUTWARD_ULPS;
 pub use polyhedron::Polyhedron;
+pub(crate) use recession::OPEN;
 
 use crate::hull::{Hull, SolidHull};
 use crate::predicates::above;
@@ -87,7 +88,7 @@ impl Intersection {
         let depth = half_spaces.iter().map(|h| -h.excess(interior)).fold(f64::INFINITY, f64::min);
         let dimension = dual.dimension();
         let closed = dual.into_solid().filter(strictly_contains_origin);
-        let is_near = closed.as_ref().is_some_and(|dual| nearest_facet(dual) * depth > recession::OPEN);
+        let is_near = closed.as_ref().is_some_and(|dual| nearest_facet(dual) * depth > OPEN);
         let polyhedron = closed.map(|dual| Polyhedron::from_dual(dual, half_spaces, outwards, interior));
         let polyhedron = match polyhedron {
             Some(polyhedron) if is_near => return Ok(Self::Bounded(polyhedron)),

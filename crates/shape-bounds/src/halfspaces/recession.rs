@@ -10,7 +10,7 @@ use std::collections::HashSet;
 
 /// A direction is open if no normal rises along it by more than this: what normals with six printed digits are off by. Less
 /// than that is no limit to speak of: it would be met at a distance of half a million times the size.
-pub(super) const OPEN: f64 = 2e-6;
+pub(crate) const OPEN: f64 = 2e-6;
 /// Above this length a product of differences of unit vectors, in twofold precision, has its direction right to a millionth.
 const CERTAIN: f64 = 1e-25;
 /// Directions closer to each other than this are given once.
