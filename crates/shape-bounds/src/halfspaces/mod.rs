@@ -16,7 +16,7 @@ pub(crate) use polyhedron::OUTWARD_ULPS;
 pub use polyhedron::Polyhedron;
 pub(crate) use recession::OPEN;
 
-use crate::hull::{Hull, SolidHull};
+use crate::hull::{Hull, MOST_POINTS, SolidHull};
 use crate::predicates::above;
 use crate::sample::HalfSpace;
 use crate::twofold::cross_of_differences;
@@ -53,7 +53,7 @@ impl Intersection {
     /// [`IntersectionError`] for no half-spaces, values that are not finite, half-spaces that contradict each other
     /// (a smallest such set is named), and an interior too thin to compute with.
     pub fn of(half_spaces: &[HalfSpace]) -> Result<Self, IntersectionError> {
-        let limit = u32::MAX as usize - 2;
+        let limit = MOST_POINTS;
         if half_spaces.is_empty() {
             return Err(IntersectionError::Empty);
         }
