@@ -33,7 +33,7 @@ pub enum BoundsError {
     },
     /// A contact point lies beyond the tangent plane of another, by more than rounding.
     #[error(
-        "contact {} lies {:e} m beyond the tangent plane of contact {}, which no convex body allows: a contact is wrong, \
+        "contact {} lies {:e} m beyond the tangent plane of contact {}, which no convex body allows: a contact is wrong or its normal points inwards, \
          contacts are noisy (state or estimate their noise), or the body is concave (take it for that)",
         .0.contact, .0.excess, .0.plane
     )]
@@ -147,7 +147,7 @@ impl ShapeBounds {
     pub fn gaps(&self) -> Vec<Gap> {
         let Some(mut search) = self.gap_search() else { return Vec::new() };
         (0..self.upper.bounded().map_or(0, |upper| upper.vertices().len()))
-            .filter_map(|corner| search.at_corner(corner))
+            .filter_map(|corner| search.at_corner(corner, 0.0))
             .collect()
     }
 
@@ -158,7 +158,7 @@ impl ShapeBounds {
         let mut gaps = Vec::new();
         for corner in 0..corners {
             if search.at_most(corner) > least {
-                gaps.extend(search.at_corner(corner).filter(|gap| gap.distance > least));
+                gaps.extend(search.at_corner(corner, least).filter(|gap| gap.distance > least));
             }
         }
         gaps

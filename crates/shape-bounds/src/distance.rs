@@ -21,11 +21,12 @@ pub(crate) struct Nearest {
     pub(crate) certified: f64,
 }
 
-/// Nearest point to `query` of the body whose farthest point along `d` is `support(d)`; `start` is any of its points.
-pub(crate) fn nearest(query: DVec3, start: DVec3, mut support: impl FnMut(DVec3) -> DVec3) -> Nearest {
-    let mut simplex = vec![start - query];
-    let mut closest = simplex[0];
-    let mut best = Nearest { point: start, direction: DVec3::ZERO, certified: 0.0 };
+/// Nearest point to `query` of the body whose farthest point along `d` is `support(d)`; `start` are one to three of its points,
+/// the nearer the better: from one alone that is near beside the nearest, the first direction is along the surface.
+pub(crate) fn nearest(query: DVec3, start: &[DVec3], mut support: impl FnMut(DVec3) -> DVec3) -> Nearest {
+    let mut simplex: Vec<DVec3> = start.iter().map(|p| *p - query).collect();
+    let mut closest = reduce(&mut simplex);
+    let mut best = Nearest { point: closest + query, direction: DVec3::ZERO, certified: 0.0 };
     for _ in 0..ITERATIONS {
         let distance = closest.length();
         if distance == 0.0 {
@@ -157,7 +158,7 @@ mod tests {
         let mut s = Source::new(3);
         for _ in 0..500 {
             let query = s.normal3() * 2.0;
-            let found = nearest(query, corners[0], |d| support(&corners, d));
+            let found = nearest(query, &corners[..1], |d| support(&corners, d));
             let expected = query - query.clamp(DVec3::NEG_ONE, DVec3::ONE);
             assert!((found.certified - expected.length()).abs() < 1e-14, "{query} {found:?}");
             assert!((query - found.point - expected).length() < 1e-13);
@@ -174,7 +175,7 @@ mod tests {
             let size = points.iter().map(|p| p.length()).fold(0.0, f64::max);
             for _ in 0..50 {
                 let query = s.normal3() * size * 3.0;
-                let found = nearest(query, points[0], |d| support(&points, d));
+                let found = nearest(query, &points[..1], |d| support(&points, d));
                 let reached = found.point.distance(query);
                 assert!(reached - found.certified <= 1e-12 * size, "{kind:?} {reached} {found:?}");
             }
@@ -194,7 +195,7 @@ mod tests {
         for _ in 0..2000 {
             let middle = points[s.below(points.len())].lerp(points[s.below(points.len())], s.unit());
             let query = middle * s.between(1.0, 3.0);
-            let found = nearest(query, points[s.below(points.len())], |d| support(&points, d));
+            let found = nearest(query, &[points[s.below(points.len())]], |d| support(&points, d));
             let reached = found.point.distance(query);
             assert!(reached - found.certified <= 1e-11, "{query} {reached} {found:?}");
             assert!(reached >= hull.excess(query) - 1e-11, "{query} {reached} {}", hull.excess(query));

@@ -1,6 +1,7 @@
 //! Polytopes inside and outside of a curved convex body, within a tolerance of each other.
 
 use crate::bounds::{BoundsError, Gap, ShapeBounds};
+use crate::halfspaces::{Intersection, Unbounded};
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;
 use glam::DVec3;
@@ -14,6 +15,9 @@ const ROUNDS: usize = 60;
 
 /// Corners this close to each other, relative to the tolerance, are at one place.
 const SAME_PLACE: f64 = 1e-3;
+
+/// How far beyond the contacts, in terms of their size, an open direction is looked at.
+const FAR: f64 = 1e6;
 
 /// Why a curved body has no polytopes around it.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -58,8 +62,14 @@ pub(crate) fn faceted(
     let mut gap = f64::INFINITY;
     for _ in 0..ROUNDS {
         let bounds = ShapeBounds::from_contacts(&contacts)?;
-        if bounds.upper().bounded().is_none() {
-            return Err(FacetError::Unbounded);
+        if let Intersection::Unbounded(open) = bounds.upper() {
+            // The tangent planes so far leave a side open; the body need not.
+            let more = towards(open, &contacts).iter().map(&mut touch).collect::<Vec<ContactSample>>();
+            if more.iter().any(|c| !c.point.is_finite()) {
+                return Err(FacetError::Unbounded);
+            }
+            contacts.extend(more);
+            continue;
         }
         // Where more than three planes meet, several corners are at one place: one touch there is enough.
         let mut places = HashSet::new();
@@ -76,6 +86,19 @@ pub(crate) fn faceted(
         contacts.extend(wide.iter().map(&mut touch));
     }
     Err(FacetError::TooFine { tolerance, facets: contacts.len(), gap })
+}
+
+/// Gaps without end in the open directions.
+fn towards(open: &Unbounded, contacts: &[ContactSample]) -> Vec<Gap> {
+    let inner = open.interior();
+    let size = contacts.iter().map(|c| c.point.distance(inner)).fold(f64::MIN_POSITIVE, f64::max);
+    let gap = |direction: &Direction| Gap {
+        direction: *direction,
+        outer: inner + direction.get() * (FAR * size),
+        inner,
+        distance: f64::INFINITY,
+    };
+    open.directions().iter().map(gap).collect()
 }
 
 /// [`faceted`] for a body that is known by its support points.

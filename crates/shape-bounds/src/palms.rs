@@ -1,6 +1,6 @@
 //! What contacts with spherical palms say about a convex body.
 
-use crate::bounds::{Gap, ShapeBounds};
+use crate::bounds::ShapeBounds;
 use crate::faceted::{FacetError, faceted};
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;
@@ -9,6 +9,9 @@ use thiserror::Error;
 
 /// By how much a contact may be outside of another palm's ball, relative to the size, before it is an error: rounding.
 const ROUNDING: f64 = 1e-12;
+
+/// Steps tried on the way to a point deep inside.
+const STEPS: usize = 40;
 
 /// A contact with a palm that is part of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +123,26 @@ impl PalmIntersection {
                 }
             }
         }
-        Ok(Self { palms: palms.to_vec(), interior })
+        let mut all = Self { palms: palms.to_vec(), interior };
+        all.move_inwards();
+        Ok(all)
+    }
+
+    /// Moves the interior point, where it is on the surface, as of one or two palms, against the normals to where it is
+    /// deepest among steps of powers of two.
+    fn move_inwards(&mut self) {
+        let mean = self.interior;
+        let inwards = -self.palms.iter().map(|p| p.contact.normal.get()).sum::<DVec3>().normalize_or_zero();
+        let mut step = self.palms.iter().map(|p| p.hollow_radius).fold(f64::INFINITY, f64::min);
+        let mut deepest = self.excess(mean);
+        for _ in 0..if step.is_finite() { STEPS } else { 0 } {
+            let candidate = mean + inwards * step;
+            let excess = self.excess(candidate);
+            if excess < deepest {
+                (deepest, self.interior) = (excess, candidate);
+            }
+            step *= 0.5;
+        }
     }
 
     /// The largest distance of `point` behind a palm, in m; negative inside.
@@ -136,13 +158,16 @@ impl PalmIntersection {
     /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and an intersection that has no end or no
     /// interior.
     pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
-        let start = self.palms.iter().map(|p| p.contact).collect();
-        faceted(start, tolerance, |gap| self.touched_towards(gap))
+        // A few palms do not make a polytope; where the surface lies along the axes may.
+        let axes = [Direction::X, Direction::Y, Direction::Z];
+        let around = axes.into_iter().flat_map(|d| [d, -d]).map(|d| self.touched_along(d.get()));
+        let palms = self.palms.iter().map(|p| p.contact);
+        let start = palms.chain(around.filter(|c| c.point.is_finite())).collect();
+        faceted(start, tolerance, |gap| self.touched_along((gap.outer - self.interior).normalize_or_zero()))
     }
 
-    /// The surface where the ray from the interior to a corner of an outer polytope leaves the intersection.
-    fn touched_towards(&self, gap: &Gap) -> ContactSample {
-        let d = (gap.outer - self.interior).normalize_or_zero();
+    /// The surface where the ray from the interior along `d` leaves the intersection; not finite where it does not.
+    fn touched_along(&self, d: DVec3) -> ContactSample {
         let mut first = (f64::INFINITY, &self.palms[0]);
         for palm in &self.palms {
             let exit = palm.exit(self.interior, d);

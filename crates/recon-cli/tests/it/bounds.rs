@@ -148,6 +148,47 @@ fn poses_above_a_plane_bound_the_body_from_both_sides() {
 }
 
 #[test]
+fn contacts_of_no_convex_body_and_open_bodies_are_named() {
+    let scratch = Scratch::new("contradiction");
+    let mut cube = String::from("x,y,z,nx,ny,nz\n");
+    for n in ["1,0,0", "-1,0,0", "0,1,0", "0,-1,0", "0,0,1", "0,0,-1"] {
+        let point = n.replace('1', "0.5");
+        writeln!(cube, "{point},{n}").unwrap();
+    }
+    scratch.write("wrong.csv", &format!("{cube}3,3,0,1,0,0\n"));
+    let run = scratch.run(&["bounds", "wrong.csv", "-o", "out"]);
+    assert_eq!(run.code, Some(3), "{}{}", run.stdout, run.stderr);
+    assert!(run.stderr.contains("contact 6 lies 2.5e0 m beyond the tangent plane"), "{}", run.stderr);
+    assert!(!scratch.path().join("out").exists());
+    // A tilted cylinder round its waist, with normals of six digits.
+    let mut waist = String::from("x,y,z,nx,ny,nz\n");
+    for k in 0..24 {
+        let (s, c) = (TAU * f64::from(k) / 24.0).sin_cos();
+        let n = [0.6 * c, s, 0.8 * c];
+        let cap = if k % 2 == 0 { 0.1 } else { -0.1 };
+        writeln!(
+            waist,
+            "{},{},{},{:.6},{:.6},{:.6}",
+            n[0] - 0.8 * cap,
+            n[1],
+            n[2] + 0.6 * cap,
+            n[0],
+            n[1],
+            n[2]
+        )
+        .unwrap();
+    }
+    scratch.write("waist.csv", &waist);
+    let run = scratch.run(&["bounds", "waist.csv"]);
+    assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);
+    assert!(
+        run.stdout.contains("(0.80, 0.00, -0.60)") || run.stdout.contains("(-0.80, 0.00, 0.60)"),
+        "{}",
+        run.stdout
+    );
+}
+
+#[test]
 fn options_and_poses_that_do_not_go_together_are_refused() {
     let scratch = Scratch::new("options");
     let good = tosses([0.05, 0.04, 0.06]);
@@ -184,6 +225,6 @@ fn options_and_poses_that_do_not_go_together_are_refused() {
         })
         .collect();
     scratch.write("bad.csv", &inwards);
-    refused(&["bad.csv"], 3, &["no point in common"]);
+    refused(&["bad.csv"], 3, &["beyond the tangent plane of contact", "inwards"]);
     refused(&["bad.csv", "--contact-noise", "1e-3", "--normal-noise", "1e-3"], 3, &["point outwards"]);
 }

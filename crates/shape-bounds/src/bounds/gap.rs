@@ -51,6 +51,35 @@ impl LowerBound<'_> {
         }
     }
 
+    /// A triangle of the lower bound that is nearest to `query`, and a corner of it, by descent over the facets around corners,
+    /// which ends at the nearest one, or at the first within `enough`. `None` without facets.
+    fn near_triangle(&self, query: DVec3, place: u32, enough: f64) -> Option<(f64, u32, [DVec3; 3])> {
+        let Self::Solid(walk) = self else { return None };
+        let hull = walk.hull();
+        let mut best = (f64::INFINITY, place, [DVec3::ZERO; 3]);
+        let mut around = Some(place);
+        while let Some(corner) = around.take() {
+            for facet in hull.facets_around(corner) {
+                let triangle = hull.corners(facet as usize);
+                let distance = distance_to_triangle(query, triangle);
+                if distance < best.0 {
+                    let nearer = |a: &u32, b: &u32| {
+                        let to = |v: u32| hull.vertices()[v as usize].distance_squared(query);
+                        to(*a).total_cmp(&to(*b))
+                    };
+                    let next =
+                        hull.triangles()[facet as usize].into_iter().filter(|v| *v != corner).min_by(nearer);
+                    best = (distance, corner, triangle);
+                    around = next;
+                }
+            }
+            if best.0 <= enough {
+                break;
+            }
+        }
+        Some(best)
+    }
+
     fn go_to(&mut self, place: u32) {
         if let Self::Solid(walk) = self {
             walk.start_at(place);
@@ -99,12 +128,20 @@ impl<'a> GapSearch<'a> {
         self.supports[face as usize] = (point, self.lower.place());
     }
 
-    /// The gap at a corner; `None` where it is below rounding and has no direction.
-    pub(super) fn at_corner(&mut self, corner: usize) -> Option<Gap> {
+    /// The gap at a corner; `None` where it is below rounding and has no direction, or at most `enough`.
+    pub(super) fn at_corner(&mut self, corner: usize, enough: f64) -> Option<Gap> {
         let outer = self.upper.vertices()[corner];
-        let (start, place) = self.supports[self.upper.faces_at(corner)[0] as usize];
+        let supports = self.upper.faces_at(corner).map(|f| self.supports[f as usize]);
+        let mut start = supports.map(|(point, _)| point);
+        let mut place = supports[0].1;
+        if let Some((distance, near, triangle)) = self.lower.near_triangle(outer, place, enough) {
+            if distance <= enough {
+                return None;
+            }
+            (place, start) = (near, triangle);
+        }
         self.lower.go_to(place);
-        let found = nearest(outer, start, |d| self.lower.farthest(d));
+        let found = nearest(outer, &start, |d| self.lower.farthest(d));
         let direction = Direction::new(found.direction).ok()?;
         Some(Gap { direction, outer, inner: found.point, distance: found.certified })
     }
@@ -125,7 +162,7 @@ impl<'a> GapSearch<'a> {
             if best.is_some_and(|gap| gap.distance >= at_most) {
                 break;
             }
-            let gap = self.at_corner(corner as usize);
+            let gap = self.at_corner(corner as usize, best.map_or(0.0, |gap| gap.distance));
             best = best.into_iter().chain(gap).max_by(|x, y| x.distance.total_cmp(&y.distance));
         }
         best

@@ -89,7 +89,7 @@ impl IncrementalBounds {
         let lower = self.lower.hull()?;
         let corners = lower.corner_points(self.lower.points());
         let upper =
-            Intersection::from_dual(dual.hull.hull(), &self.half_spaces, dual.outwards(), dual.centre);
+            Intersection::from_dual(dual.hull.hull()?, &self.half_spaces, dual.outwards(), dual.centre)?;
         Ok(ShapeBounds { lower, corners, upper })
     }
 }

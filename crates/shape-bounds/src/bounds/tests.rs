@@ -116,7 +116,7 @@ fn the_largest_gap_is_that_of_all_corners() {
     for contacts in [curve_contacts(240, 3), ellipsoid_contacts(150, 3)] {
         let bounds = ShapeBounds::from_contacts(&contacts).unwrap();
         let plain = bounds.upper().bounded().unwrap().vertices().iter().map(|v| {
-            crate::distance::nearest(*v, bounds.corners[0], |d| {
+            crate::distance::nearest(*v, &bounds.corners[..1], |d| {
                 crate::distance::farthest_of(&bounds.corners, d)
             })
         });
@@ -189,4 +189,11 @@ fn contacts_rounded_to_printed_digits_leave_the_lower_bound_in_the_upper_one() {
         let bounds = ShapeBounds::from_contradicting_contacts(&noisy).unwrap();
         assert!(noisy.iter().all(|c| bounds.upper().bounded().unwrap().contains(c.point)));
     }
+}
+
+#[test]
+fn the_largest_gap_of_scattered_contacts_takes_few_searches_and_is_that_of_all_corners() {
+    let bounds = ShapeBounds::from_contacts(&ellipsoid_contacts(3000, 1)).unwrap();
+    let of_all = bounds.gaps().iter().map(|gap| gap.distance).fold(0.0, f64::max);
+    assert!((bounds.largest_gap().unwrap().distance - of_all).abs() < 1e-14);
 }

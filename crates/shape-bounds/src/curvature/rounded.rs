@@ -80,7 +80,7 @@ impl RoundedHull {
     /// Whether `point` is inside; one outside by a few units of rounding may be admitted.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
-        let found = nearest(point, self.corners[0], self.core_support());
+        let found = nearest(point, &self.corners[..1], self.core_support());
         let rounding = 4.0 * f64::EPSILON * (point.abs().max_element() + self.radius);
         found.certified <= self.radius + rounding
     }

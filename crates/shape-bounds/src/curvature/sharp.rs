@@ -170,7 +170,7 @@ impl RoundedIntersection {
     pub fn contains(&self, point: DVec3) -> bool {
         let mut walk = BallWalk::new(&self.core);
         let start = walk.farthest(point - self.core.interior());
-        let found = nearest(point, start, |d| walk.farthest(d));
+        let found = nearest(point, &[start], |d| walk.farthest(d));
         found.certified <= self.margin + 4.0 * f64::EPSILON * (point.abs().max_element() + self.core.radius())
     }
 }

@@ -111,7 +111,7 @@ impl Surface {
     pub(super) fn is_between(&self, point: DVec3, start: DVec3, end: DVec3, [a, b]: [u32; 2]) -> bool {
         let (a, b) = (self.centre(a), self.centre(b));
         let middle = (a + b) * 0.5;
-        passes(a - b, start - middle, end - start, end - middle, point - middle)
+        self.passes(a - b, [start, end], middle, point - middle)
     }
 
     /// The angle of an edge, right-handed about the circle's axis: tau for a lens, and below zero, by rounding, where close
@@ -218,9 +218,9 @@ impl Surface {
         let (a, b) = (from.balls[edge as usize], from.balls[(edge as usize + 1) % 3]);
         let (a, b, centre) = (self.centre(a), self.centre(b), self.centre(ball));
         let (axis, middle) = (a - b, (a + b) * 0.5);
-        let (s, t, w) = (from.at - middle, to - middle, centre - middle);
+        let (s, w) = (from.at - middle, centre - middle);
         // The nearest point of the circle is in direction `w`. The arc is right-handed about the axis.
-        if !passes(axis, s, to - from.at, t, w) {
+        if !self.passes(axis, [from.at, to], middle, w) {
             return false;
         }
         let along = w.dot(axis) / axis.length();
@@ -237,8 +237,8 @@ impl Surface {
         let (a, b) = (from.balls[edge as usize], from.balls[(edge as usize + 1) % 3]);
         let (a, b, centre) = (self.centre(a), self.centre(b), self.centre(ball));
         let (axis, middle) = (a - b, (a + b) * 0.5);
-        let (s, t, w) = (from.at - middle, to - middle, centre - middle);
-        if !passes(axis, s, to - from.at, t, -w) {
+        let (s, w) = (from.at - middle, centre - middle);
+        if !self.passes(axis, [from.at, to], middle, -w) {
             return false;
         }
         let along = w.dot(axis) / axis.length();
@@ -273,14 +273,18 @@ impl Surface {
         let along = b.dot(direction);
         along + (along * along + self.radius * self.radius - b.length_squared()).max(0.0).sqrt()
     }
-}
 
-/// Whether the arc from `s` to `t` about `axis` (right-handed, seen from the circle's middle; `chord` is `t - s`) passes the
-/// direction `d`.
-#[inline]
-fn passes(axis: DVec3, s: DVec3, chord: DVec3, t: DVec3, d: DVec3) -> bool {
-    let left_of = |p: DVec3, q: DVec3| axis.dot(p.cross(q)) > 0.0;
-    let (after_start, before_end) = (left_of(s, d), left_of(d, t));
-    // The difference of the ends keeps the sense of short arcs.
-    if left_of(s, chord) { after_start && before_end } else { after_start || before_end }
+    /// Whether the arc from `start` to `end` about `axis` (right-handed) through `middle` passes the direction `d` from there.
+    #[inline]
+    fn passes(&self, axis: DVec3, [start, end]: [DVec3; 2], middle: DVec3, d: DVec3) -> bool {
+        let (s, t, chord) = (start - middle, end - middle, end - start);
+        // Corners that coincide bound an edge of no length, and not a whole circle.
+        if chord.length_squared() <= self.rounding * self.rounding {
+            return false;
+        }
+        let left_of = |p: DVec3, q: DVec3| axis.dot(p.cross(q)) > 0.0;
+        let (after_start, before_end) = (left_of(s, d), left_of(d, t));
+        // The difference of the ends keeps the sense of short arcs.
+        if left_of(s, chord) { after_start && before_end } else { after_start || before_end }
+    }
 }

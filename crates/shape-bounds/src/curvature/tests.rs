@@ -132,3 +132,23 @@ fn contradicted_limits_name_the_contacts() {
         error => panic!("{error}"),
     }
 }
+
+/// Curves that meet at right angles, every ball with its mirror images: four spheres and more in one corner.
+#[test]
+fn symmetric_contacts_leave_no_ball_out() {
+    let contacts: Vec<ContactSample> = (0..900)
+        .map(|k| {
+            let (curve, angle) = (k / 300, std::f64::consts::TAU * f64::from(k % 300) / 300.0);
+            let (s, c) = angle.sin_cos();
+            let lift = 0.4 * (2.0 * angle).sin();
+            let n = [DVec3::new(c, s, lift), DVec3::new(lift, c, s), DVec3::new(s, lift, c)][curve as usize];
+            contact(n.normalize(), n)
+        })
+        .collect();
+    let radii = CurvatureRadii { min: 0.8, max: 1.3 };
+    let sharp = SharpBounds::from_contacts(&contacts, radii).unwrap();
+    let (low, high) = (sharp.lower().volume(), sharp.upper().volume());
+    let sphere = 4.0 / 3.0 * PI;
+    assert!(low < sphere && sphere < high && high - low < 0.4, "{low} {high}");
+    assert_eq!((sharp.lower().skipped(), sharp.upper().core().skipped()), (0, 0));
+}

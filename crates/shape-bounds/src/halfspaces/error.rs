@@ -1,3 +1,4 @@
+use crate::hull::PointsError;
 use glam::DVec3;
 use thiserror::Error;
 
@@ -46,5 +47,19 @@ pub enum IntersectionError {
         tight: Vec<usize>,
         /// Radius of the largest ball inside of all half-spaces, as computed, in m.
         inradius: f64,
+    },
+    /// Normals or distances of such different sizes that exact arithmetic leaves the range of `f64`.
+    #[error("the half-spaces' polar duals: {0}")]
+    Range(#[from] PointsError),
+    /// The normals close around the body, but rounding leaves no polyhedron.
+    #[error(
+        "the normals leave no direction open, but the polar duals about a point {depth:e} m inside span {dimension} \
+         dimension(s) to rounding: too thin a body for its distance; widen the margins"
+    )]
+    Duals {
+        /// Dimension of the duals' hull.
+        dimension: usize,
+        /// How deep inside of all half-spaces the point is, in m.
+        depth: f64,
     },
 }

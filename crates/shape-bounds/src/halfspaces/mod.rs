@@ -14,12 +14,17 @@ pub use error::IntersectionError;
 pub(crate) use interior::interior_point;
 pub(crate) use polyhedron::OUTWARD_ULPS;
 pub use polyhedron::Polyhedron;
+pub(crate) use recession::OPEN;
 
-use crate::hull::{Hull, PointsError, SolidHull};
+use crate::hull::{Hull, MOST_POINTS, SolidHull};
 use crate::predicates::above;
 use crate::sample::HalfSpace;
+use crate::twofold::cross_of_differences;
 use contact_kinematics::Direction;
 use glam::DVec3;
+
+/// Below this squared sine of an angle a facet's normal takes twofold precision to be right to a billionth.
+const SLIVER: f64 = 1e-14;
 
 /// The intersection of half-spaces, which has an interior.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +53,7 @@ impl Intersection {
     /// [`IntersectionError`] for no half-spaces, values that are not finite, half-spaces that contradict each other
     /// (a smallest such set is named), and an interior too thin to compute with.
     pub fn of(half_spaces: &[HalfSpace]) -> Result<Self, IntersectionError> {
-        let limit = u32::MAX as usize - 2;
+        let limit = MOST_POINTS;
         if half_spaces.is_empty() {
             return Err(IntersectionError::Empty);
         }
@@ -63,26 +68,43 @@ impl Intersection {
         let outwards = polyhedron::outward_rounding(half_spaces);
         let duals: Vec<DVec3> =
             half_spaces.iter().map(|h| h.normal.get() / -h.moved(outwards).excess(interior)).collect();
-        Ok(Self::from_dual(Hull::of(&duals), half_spaces, outwards, interior))
+        Self::from_dual(Hull::of(&duals)?, half_spaces, outwards, interior)
     }
 
     /// The intersection whose polar duals about `interior`, of the half-spaces moved `outwards` (m) for rounding, have the hull
     /// `dual`.
+    ///
+    /// Whether it has an end is a question to the normals alone. Where a direction is open, the polyhedron reaches from the
+    /// interior point as far as that one's depth over the slope of the normals along it; one that stays nearer is bounded.
+    ///
+    /// # Errors
+    /// [`IntersectionError::Duals`] where the duals cannot be told apart although the normals close.
     pub(crate) fn from_dual(
-        dual: Result<Hull, PointsError>,
+        dual: Hull,
         half_spaces: &[HalfSpace],
         outwards: f64,
         interior: DVec3,
-    ) -> Self {
-        match dual {
-            Ok(Hull::Solid(dual)) if strictly_contains_origin(&dual) => {
-                Self::Bounded(Polyhedron::from_dual(dual, half_spaces, outwards, interior))
-            }
-            _ => Self::Unbounded(Unbounded {
+    ) -> Result<Self, IntersectionError> {
+        let depth = half_spaces.iter().map(|h| -h.excess(interior)).fold(f64::INFINITY, f64::min);
+        let dimension = dual.dimension();
+        let closed = dual.into_solid().filter(strictly_contains_origin);
+        let is_near = closed.as_ref().is_some_and(|dual| nearest_facet(dual) * depth > OPEN);
+        let polyhedron = closed.map(|dual| Polyhedron::from_dual(dual, half_spaces, outwards, interior));
+        let polyhedron = match polyhedron {
+            Some(polyhedron) if is_near => return Ok(Self::Bounded(polyhedron)),
+            other => other,
+        };
+        let directions = recession::unbounded_directions(half_spaces)?;
+        if !directions.is_empty() {
+            return Ok(Self::Unbounded(Unbounded {
                 half_spaces: half_spaces.to_vec(),
                 interior,
-                directions: recession::unbounded_directions(half_spaces),
-            }),
+                directions,
+            }));
+        }
+        match polyhedron.filter(Polyhedron::is_finite) {
+            Some(polyhedron) => Ok(Self::Bounded(polyhedron)),
+            None => Err(IntersectionError::Duals { dimension, depth }),
         }
     }
 
@@ -101,6 +123,21 @@ fn strictly_contains_origin(dual: &SolidHull) -> bool {
         let [a, b, c] = dual.corners(f);
         above(a, b, c, DVec3::ZERO) < 0.0
     })
+}
+
+/// The least distance from the origin, which is inside, to the plane of a facet: one over that of the farthest corner of the
+/// polar.
+fn nearest_facet(dual: &SolidHull) -> f64 {
+    let distance = |f: usize| {
+        let [a, b, c] = dual.corners(f);
+        let (ab, ac) = (b - a, c - a);
+        let mut across = ab.cross(ac);
+        if across.length_squared() < SLIVER * ab.length_squared() * ac.length_squared() {
+            across = cross_of_differences(a, b, c);
+        }
+        across.normalize_or_zero().dot(a)
+    };
+    (0..dual.triangles().len()).map(distance).fold(f64::INFINITY, f64::min)
 }
 
 impl Unbounded {
@@ -131,10 +168,8 @@ impl Unbounded {
         }
         match Intersection::of(&all)? {
             Intersection::Bounded(polyhedron) => Ok(polyhedron),
-            // Six faces of a cube bound everything; a dual hull that says otherwise has been rounded flat.
-            Intersection::Unbounded(_) => {
-                Err(IntersectionError::NoInterior { tight: Vec::new(), inradius: 0.0 })
-            }
+            // Six faces of a cube bound everything.
+            Intersection::Unbounded(_) => Err(IntersectionError::Duals { dimension: 3, depth: 0.0 }),
         }
     }
 }

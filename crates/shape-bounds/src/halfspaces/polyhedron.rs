@@ -45,6 +45,11 @@ impl Polyhedron {
         self.interior
     }
 
+    /// Whether all corners are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.vertices.iter().all(|v| v.is_finite())
+    }
+
     /// Corners in m. Corners where more than three planes meet appear once for each three of them.
     #[must_use]
     pub fn vertices(&self) -> &[DVec3] {

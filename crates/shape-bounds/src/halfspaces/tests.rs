@@ -242,3 +242,96 @@ fn bad_half_spaces_are_named() {
     spaces[3].margin = f64::NAN;
     assert!(matches!(Intersection::of(&spaces), Err(IntersectionError::NotFinite { index: 3, .. })));
 }
+
+/// Whether some direction is open to rounding, by trying the directions across every two normals, and against every one.
+fn is_open(normals: &[DVec3]) -> bool {
+    let across = normals.iter().flat_map(|a| normals.iter().map(|b| a.cross(*b)));
+    let more = normals.iter().flat_map(|a| {
+        let (u, v) = a.any_orthonormal_pair();
+        [-*a, u, -u, v, -v]
+    });
+    across.chain(more).filter(|d| d.length() > 1e-9).any(|d| {
+        let d = d.normalize();
+        [d, -d].iter().any(|d| normals.iter().all(|n| n.dot(*d) <= 1e-7))
+    })
+}
+
+#[test]
+fn open_and_closed_intersections_are_told_apart_as_by_trying_every_direction() {
+    let mut s = Source::new(31);
+    let mut counts = [0, 0];
+    for case in 0..1600 {
+        let (axis, count) = (s.direction(), 3 + s.below(12));
+        let turn = s.rotation();
+        let normal = |s: &mut Source, k: usize| match case % 8 {
+            // Anywhere; on one side; round the waist; round the waist but for rounding; a cone; near-parallel; a slab; a prism.
+            0 => s.direction(),
+            1 => (s.direction() + axis * 0.9).normalize(),
+            2 => {
+                let angle = std::f64::consts::TAU * k as f64 / count as f64;
+                turn * DVec3::new(angle.cos(), angle.sin(), 0.0)
+            }
+            3 => (axis.cross(s.direction()).normalize() + s.normal3() * 1e-16).normalize(),
+            4 => (axis.cross(s.direction()).normalize() + axis * 0.1).normalize(),
+            5 => (s.direction() * 1e-9 + [axis, -axis, turn * axis][s.below(3)]).normalize(),
+            6 => (axis * [1.0, -1.0][s.below(2)] + s.normal3() * 1e-16).normalize(),
+            _ => turn * [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y][k % 4],
+        };
+        let normals: Vec<DVec3> = (0..count).map(|k| normal(&mut s, k)).collect();
+        let spaces: Vec<HalfSpace> =
+            normals.iter().map(|n| space(*n * s.between(0.5, 1.0) + turn * DVec3::Y, *n)).collect();
+        let expected = is_open(&normals);
+        counts[usize::from(expected)] += 1;
+        match Intersection::of(&spaces).unwrap_or_else(|e| panic!("case {case}: {e}")) {
+            Intersection::Bounded(body) => {
+                assert!(!expected, "case {case}: {}", body.volume());
+                assert!(body.volume().is_finite() && body.volume() > 0.0, "case {case}");
+            }
+            Intersection::Unbounded(open) => {
+                assert!(expected, "case {case}");
+                for d in open.directions() {
+                    let worst = normals.iter().map(|n| n.dot(d.get())).fold(f64::NEG_INFINITY, f64::max);
+                    assert!(worst <= recession::OPEN, "case {case}: {worst}");
+                }
+            }
+        }
+    }
+    assert!(counts[0] > 100 && counts[1] > 500, "{counts:?}");
+}
+
+#[test]
+fn a_cylinder_touched_round_its_waist_is_open_along_its_axis() {
+    let mut s = Source::new(7);
+    for count in [4, 7, 24, 60, 300, 2000] {
+        for _ in 0..5 {
+            let turn = s.rotation();
+            let shift = s.normal3();
+            let spaces: Vec<HalfSpace> = (0..count)
+                .map(|k| {
+                    turn * DVec3::from((
+                        glam::DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(count)),
+                        0.0,
+                    ))
+                })
+                .map(|n| space(n * 0.3 + shift, n))
+                .collect();
+            let Intersection::Unbounded(open) = Intersection::of(&spaces).unwrap() else {
+                panic!("{count}: closed")
+            };
+            for end in [DVec3::Z, DVec3::NEG_Z] {
+                let found = open.directions().iter().any(|d| d.get().distance(turn * end) < 1e-6);
+                assert!(found, "{count}: {:?}", open.directions());
+            }
+            assert!(open.directions().iter().all(|d| d.get().dot(turn * DVec3::Z).abs() > 1.0 - 1e-6));
+            let cut = open.within_cube(shift, 1.0).unwrap();
+            assert!(cut.volume() > 0.0 && cut.volume() < 8.0);
+        }
+    }
+}
+
+#[test]
+fn what_leaves_the_range_of_exact_arithmetic_is_an_error_and_no_open_side() {
+    let mut spaces = cube(1.0);
+    spaces[0].normal = Direction::new_unchecked(DVec3::new(1.0, 1e-250, 0.0));
+    assert!(matches!(Intersection::of(&spaces), Err(IntersectionError::Range(_))));
+}

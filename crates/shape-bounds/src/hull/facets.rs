@@ -6,6 +6,9 @@ use glam::DVec3;
 /// No facet, or no vertex.
 pub(super) const NONE: u32 = u32::MAX;
 
+/// Points that a hull holds at most: its facets, twice as many, and the marks of twice the insertions are 32-bit numbers.
+pub(crate) const MOST_POINTS: usize = (u32::MAX / 2) as usize - 2;
+
 /// A triangle of the hull and what a test against it needs, in one cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]

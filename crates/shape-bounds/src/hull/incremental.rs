@@ -1,9 +1,10 @@
 //! A hull that grows with its points.
 
 use super::build::Builder;
-use super::facets::NONE;
+use super::facets::MOST_POINTS;
 use super::seed::{Seed, find_seed};
 use super::{Hull, PointsError, SolidHull, scaling};
+use crate::predicates::{above, projection_axis};
 use glam::DVec3;
 
 /// A hull to which points are added one by one without starting over. A point costs the walk to it, O(sqrt n) facets from
@@ -18,7 +19,8 @@ pub struct IncrementalHull {
 }
 
 enum State {
-    Flat,
+    /// Up to three of the points, that span what all of them do.
+    Flat(Vec<usize>),
     Solid(Box<Builder>),
 }
 
@@ -32,7 +34,7 @@ impl IncrementalHull {
     /// A hull of no points.
     #[must_use]
     pub fn new() -> Self {
-        Self { state: State::Flat, points: Vec::new() }
+        Self { state: State::Flat(Vec::new()), points: Vec::new() }
     }
 
     /// Adds a point; true if the hull grew (always while the points do not span space).
@@ -45,8 +47,10 @@ impl IncrementalHull {
         self.points.push(point);
         Ok(match &mut self.state {
             State::Solid(builder) => builder.push(point),
-            State::Flat => {
-                self.try_to_span();
+            State::Flat(basis) => {
+                if extends(&self.points, basis) {
+                    self.start_growing();
+                }
                 true
             }
         })
@@ -55,8 +59,8 @@ impl IncrementalHull {
     /// Whether `point` can be taken.
     pub(crate) fn check(&self, point: DVec3) -> Result<(), PointsError> {
         let index = self.points.len();
-        if index + 1 >= NONE as usize {
-            return Err(PointsError::TooMany { count: index + 1, limit: NONE as usize - 1 });
+        if index >= MOST_POINTS {
+            return Err(PointsError::TooMany { count: index + 1, limit: MOST_POINTS });
         }
         match scaling::exact_scale(&[point]) {
             Ok(1.0) => Ok(()),
@@ -69,11 +73,8 @@ impl IncrementalHull {
         }
     }
 
-    /// Starts growing as soon as the points span space.
-    fn try_to_span(&mut self) {
-        if self.points.len() < 4 {
-            return;
-        }
+    /// Starts growing now that the points span space.
+    fn start_growing(&mut self) {
         let Seed::Space(corners) = find_seed(&self.points) else { return };
         let mut builder = Builder::from_simplex(self.points.clone(), corners.map(|c| c as u32));
         for p in 0..self.points.len() as u32 {
@@ -94,11 +95,27 @@ impl IncrementalHull {
     /// [`PointsError::Empty`] before the first point.
     pub fn hull(&self) -> Result<Hull, PointsError> {
         match &self.state {
-            State::Flat => Hull::of(&self.points),
+            State::Flat(_) => Hull::of(&self.points),
             State::Solid(builder) => {
                 let order: Vec<u32> = (0..self.points.len() as u32).collect();
                 Ok(Hull::Solid(SolidHull::from_builder(builder, &order, 1.0)))
             }
         }
     }
+}
+
+/// Takes the last point into the basis if it adds a dimension, in constant time; true once all of them are spanned.
+fn extends(points: &[DVec3], basis: &mut Vec<usize>) -> bool {
+    let Some(last) = points.len().checked_sub(1) else { return false };
+    let p = points[last];
+    let adds = match basis[..] {
+        [] => true,
+        [a] => points[a] != p,
+        [a, b] => projection_axis(points[a], points[b], p).is_some(),
+        [a, b, c, ..] => return above(points[a], points[b], points[c], p) != 0.0,
+    };
+    if adds {
+        basis.push(last);
+    }
+    false
 }

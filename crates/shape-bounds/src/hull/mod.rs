@@ -16,6 +16,7 @@ mod walk;
 
 pub use certificate::HullCertificate;
 pub use error::PointsError;
+pub(crate) use facets::MOST_POINTS;
 pub use incremental::IncrementalHull;
 pub(crate) use order::insertion_order;
 pub use solid::SolidHull;
@@ -49,10 +50,10 @@ impl Hull {
     /// filter. The result does not depend on chance: the random order is a fixed function of the indices.
     ///
     /// # Errors
-    /// [`PointsError`] for no points, more than 2^32 - 2 points, a coordinate that is not finite, and coordinates
+    /// [`PointsError`] for no points, more than 2^31 - 3 points, a coordinate that is not finite, and coordinates
     /// whose sizes differ by more than 2^630.
     pub fn of(points: &[DVec3]) -> Result<Self, PointsError> {
-        let limit = facets::NONE as usize - 1;
+        let limit = MOST_POINTS;
         if points.is_empty() {
             return Err(PointsError::Empty);
         }
@@ -81,6 +82,14 @@ impl Hull {
     /// The hull if it has a volume.
     #[must_use]
     pub fn solid(&self) -> Option<&SolidHull> {
+        match self {
+            Self::Solid(solid) => Some(solid),
+            _ => None,
+        }
+    }
+
+    /// The hull itself if it has a volume.
+    pub(crate) fn into_solid(self) -> Option<SolidHull> {
         match self {
             Self::Solid(solid) => Some(solid),
             _ => None,

@@ -26,6 +26,11 @@ impl<'a> SupportWalk<'a> {
         Self { hull, corner: 0, met: Vec::new(), search: 0, stack: Vec::new() }
     }
 
+    /// The hull that is climbed.
+    pub(crate) fn hull(&self) -> &'a SolidHull {
+        self.hull
+    }
+
     /// Where the next climb starts.
     pub(crate) fn corner(&self) -> u32 {
         self.corner

@@ -83,3 +83,31 @@ fn impossible_palms_are_named() {
     assert_eq!(open.faceted(0.1), Err(FacetError::Unbounded));
     assert_eq!(open.faceted(0.0), Err(FacetError::Tolerance { value: 0.0 }));
 }
+
+/// One to four hollow palms: their balls have an end on every side, although the tangent planes leave one open.
+#[test]
+fn a_few_hollow_palms_bound_the_body() {
+    let mut s = Source::new(5);
+    for case in 0..40 {
+        let contacts = ellipsoid_contacts(1 + case % 4, 100 + case as u64);
+        let radii: Vec<f64> = contacts.iter().map(|_| s.between(6.3, 20.0)).collect();
+        let found = PalmIntersection::of(&palms(&contacts, |k| radii[k])).unwrap();
+        let tolerance = 0.3;
+        let bounds = found.faceted(tolerance).unwrap_or_else(|e| panic!("case {case}: {e}"));
+        assert!(bounds.largest_gap().unwrap().distance <= tolerance);
+        let upper = bounds.upper().bounded().unwrap();
+        let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(bounds.lower_volume() < 4.2 * smallest.powi(3), "case {case}");
+        for _ in 0..100 {
+            let n = s.direction();
+            assert!(upper.support(Direction::new(n).unwrap()) >= ellipsoid_support(n) - 1e-9, "case {case}");
+            let point = found.interior + n * s.between(0.0, 2.0 * smallest);
+            assert!(found.excess(point) > 0.0 || upper.contains(point), "case {case}");
+        }
+    }
+    // Flat palms on one side have no end, however many.
+    let flat: Vec<ContactSample> =
+        ellipsoid_contacts(60, 1).into_iter().filter(|c| c.normal.get().z > 0.2).collect();
+    let open = PalmIntersection::of(&palms(&flat, |_| f64::INFINITY)).unwrap();
+    assert_eq!(open.faceted(0.1), Err(crate::FacetError::Unbounded));
+}

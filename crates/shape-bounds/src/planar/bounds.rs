@@ -27,7 +27,7 @@ pub enum BoundsError {
     },
     /// A contact point lies beyond the tangent line of another, by more than rounding.
     #[error(
-        "contact {} lies {:e} m beyond the tangent line of contact {}, which no convex outline allows: a contact is wrong, \
+        "contact {} lies {:e} m beyond the tangent line of contact {}, which no convex outline allows: a contact is wrong or its normal points inwards, \
          contacts are noisy (state or estimate their noise), or the body is concave",
         .0.contact, .0.excess, .0.plane
     )]
@@ -268,7 +268,7 @@ impl IncrementalBounds {
         let lower = self.lower.hull()?;
         let corners = lower.corner_points(self.lower.points());
         let Dual { centre, outer, hull, .. } = dual;
-        let upper = Intersection::from_dual(hull.hull(), &self.half_planes, outer, hull.points(), *centre);
+        let upper = Intersection::from_dual(hull.hull()?, &self.half_planes, outer, hull.points(), *centre)?;
         Ok(ShapeBounds { lower, corners, upper })
     }
 }

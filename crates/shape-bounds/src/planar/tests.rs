@@ -323,3 +323,26 @@ fn contacts_that_no_convex_outline_has_are_named() {
         .collect();
     assert!(matches!(ShapeBounds::from_contacts(&dented), Err(BoundsError::Contradiction(_))));
 }
+
+#[test]
+fn lines_that_are_parallel_but_for_rounding_leave_a_strip_open() {
+    let plane = |angle: f64, height: f64| {
+        let normal = Direction::from_angle(angle);
+        HalfPlane { point: normal.get() * height, normal, margin: 0.0 }
+    };
+    let mut s = Source::new(3);
+    for digits in [1e-16, 1e-12, 1e-7] {
+        for _ in 0..50 {
+            let axis = s.between(0.0, TAU);
+            let planes: Vec<HalfPlane> = (0..12)
+                .map(|k| plane(axis + PI * f64::from(k % 2) + digits * s.between(-1.0, 1.0), 1.0))
+                .collect();
+            let Intersection::Unbounded(open) = Intersection::of(&planes).unwrap() else { panic!("closed") };
+            let along = DVec2::from_angle(axis).perp();
+            for end in [along, -along] {
+                assert!(open.directions().iter().any(|d| d.get().distance(end) < 1e-5));
+            }
+            assert!(open.within_square(DVec2::ZERO, 3.0).is_ok());
+        }
+    }
+}

@@ -1,3 +1,4 @@
+use crate::planar::PointsError;
 use glam::DVec2;
 use thiserror::Error;
 
@@ -47,4 +48,7 @@ pub enum IntersectionError {
         /// Radius of the largest disc inside of all half-planes, as computed, in m.
         inradius: f64,
     },
+    /// Normals or distances of such different sizes that exact arithmetic leaves the range of `f64`.
+    #[error("the half-planes' polar duals: {0}")]
+    Range(#[from] PointsError),
 }

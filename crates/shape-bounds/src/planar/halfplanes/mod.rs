@@ -6,7 +6,9 @@ mod interior;
 pub use error::IntersectionError;
 pub(super) use interior::interior_point;
 
-use super::{ConvexPolygon, Direction, HalfPlane, Hull, PointsError};
+use super::hull::HullPolygon;
+use super::{ConvexPolygon, Direction, HalfPlane, Hull};
+use crate::halfspaces::OPEN;
 use crate::predicates::turn;
 use glam::DVec2;
 
@@ -127,23 +129,36 @@ impl Intersection {
         let outer: Vec<HalfPlane> =
             half_planes.iter().map(|h| HalfPlane { margin: h.margin + outward, ..*h }).collect();
         let duals: Vec<DVec2> = outer.iter().map(|h| h.normal.get() / -h.excess(interior)).collect();
-        Ok(Self::from_dual(Hull::of(&duals), half_planes, &outer, &duals, interior))
+        Self::from_dual(Hull::of(&duals)?, half_planes, &outer, &duals, interior)
     }
 
+    /// As in space, whether there is an end is a question to the normals alone; an edge of the dual that is far enough from the
+    /// origin proves one.
     pub(super) fn from_dual(
-        dual: Result<Hull, PointsError>,
+        dual: Hull,
         half_planes: &[HalfPlane],
         outer: &[HalfPlane],
         duals: &[DVec2],
         interior: DVec2,
-    ) -> Self {
-        if let Ok(Hull::Polygon(hull)) = &dual
-            && hull.shape().edges().all(|(a, b)| turn(a, b, DVec2::ZERO) > 0.0)
-        {
-            return Self::Bounded(region(hull.sources(), outer, duals, interior));
+    ) -> Result<Self, IntersectionError> {
+        let depth = half_planes.iter().map(|h| -h.excess(interior)).fold(f64::INFINITY, f64::min);
+        let around = |hull: &&HullPolygon| hull.shape().edges().all(|(a, b)| turn(a, b, DVec2::ZERO) > 0.0);
+        let closed = dual.polygon().filter(around);
+        let distance = |(a, b): (DVec2, DVec2)| (b - a).perp_dot(-a) / a.distance(b);
+        let is_near = |hull: &HullPolygon| {
+            hull.shape().edges().map(distance).fold(f64::INFINITY, f64::min) * depth > OPEN
+        };
+        if closed.is_none_or(|hull| !is_near(hull)) {
+            let directions = unbounded_directions(half_planes)?;
+            if !directions.is_empty() {
+                let half_planes = half_planes.to_vec();
+                return Ok(Self::Unbounded(Unbounded { half_planes, interior, directions }));
+            }
         }
-        let directions = unbounded_directions(half_planes);
-        Self::Unbounded(Unbounded { half_planes: half_planes.to_vec(), interior, directions })
+        match closed {
+            Some(hull) => Ok(Self::Bounded(region(hull.sources(), outer, duals, interior))),
+            None => Err(IntersectionError::NoInterior { tight: Vec::new(), inradius: depth }),
+        }
     }
 
     /// The polygon, if the intersection is bounded.
@@ -197,37 +212,36 @@ fn meeting(a: &HalfPlane, b: &HalfPlane) -> Option<DVec2> {
     Some(start + n.perp() * (-b.excess(start) / slope))
 }
 
-/// Directions that generate the cone `{ d : n_k . d <= 0 for all k }`: outward normals of those edges of the hull of the
-/// normals and the origin that hold the origin.
-fn unbounded_directions(half_planes: &[HalfPlane]) -> Vec<Direction> {
+/// Directions that generate the cone `{ d : n_k . d <= 0 for all k }`, up to [`OPEN`]: outward normals of those edges of the hull
+/// of the normals and the origin that come as near to the origin, in a set without near-duplicates.
+fn unbounded_directions(half_planes: &[HalfPlane]) -> Result<Vec<Direction>, IntersectionError> {
     let mut points: Vec<DVec2> = half_planes.iter().map(|h| h.normal.get()).collect();
-    points.push(DVec2::ZERO);
-    let generators: Vec<DVec2> = match Hull::of(&points) {
-        Ok(Hull::Polygon(hull)) => hull
-            .shape()
-            .edges()
-            .filter(|(a, b)| turn(*a, *b, DVec2::ZERO) <= 0.0)
-            .map(|(a, b)| -(b - a).perp())
-            .collect(),
-        Ok(Hull::Segment([i, j])) => {
-            let (a, b) = (points[i], points[j]);
-            let across = (b - a).perp();
-            let mut both = vec![across, -across];
-            if a == DVec2::ZERO {
-                both.push(-b);
-            } else if b == DVec2::ZERO {
-                both.push(-a);
-            }
-            both
+    let along = points[0];
+    let generators: Vec<DVec2> = if points.iter().all(|n| n.perp_dot(along).abs() <= OPEN) {
+        // Lines that are parallel, but for printing.
+        let mut both = vec![along.perp(), -along.perp()];
+        if points.iter().all(|n| n.dot(along) > 0.0) {
+            both.push(-along);
         }
-        // Unit normals and the origin are not one point, and have no extreme coordinates.
-        Ok(Hull::Point(_)) | Err(_) => Vec::new(),
+        both
+    } else {
+        points.push(DVec2::ZERO);
+        let hull = Hull::of(&points)?;
+        let edges = hull.polygon().map(|hull| hull.shape().edges().collect::<Vec<_>>()).unwrap_or_default();
+        edges
+            .into_iter()
+            .filter_map(|(a, b)| {
+                let outward = -(b - a).perp();
+                let is_near = turn(a, b, DVec2::ZERO) <= 0.0 || outward.normalize_or_zero().dot(a) <= OPEN;
+                is_near.then_some(outward)
+            })
+            .collect()
     };
     let mut directions: Vec<Direction> = Vec::new();
     for direction in generators.into_iter().filter_map(|g| Direction::new(g).ok()) {
-        if directions.iter().all(|d| d.get().distance(direction.get()) > 1e-12) {
+        if directions.iter().all(|d| d.get().distance(direction.get()) > 1e-9) {
             directions.push(direction);
         }
     }
-    directions
+    Ok(directions)
 }
