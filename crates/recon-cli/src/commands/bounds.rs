@@ -49,7 +49,7 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
     }
     drop(progress);
     console.result(&describe(&made, &what, &about), &figures)?;
-    let whole = made.lower.is_some() && made.upper.is_some();
+    let whole = made.lower.is_some() && made.upper.is_some() && about["fit"]["status"] != "refused";
     Ok(if whole { Outcome::Done } else { Outcome::WithReservations })
 }
 
@@ -64,9 +64,11 @@ fn of_contacts(args: &BoundsArgs, curves: &[Vec<ContactSample>]) -> Result<(Boun
         (None, None) => (bounds(&curves.concat())?, json!({ "noise": "none" })),
     };
     if let Some(family) = args.fit {
-        let (report, mesh) = fitted_shape(curves, noise, family)?;
-        about["fit"] = report;
-        made.others.push(("fitted_shape.ply", "shape fitted to the contacts; metres", mesh));
+        let fitted = fitted_shape(curves, noise, family)?;
+        about["fit"] = fitted.report;
+        made.warnings.extend(fitted.warning);
+        let comment = "shape fitted to the contacts; metres";
+        made.others.extend(fitted.mesh.map(|mesh| ("fitted_shape.ply", comment, mesh)));
     }
     Ok((made, about))
 }
