@@ -115,7 +115,10 @@ fn compared(
         let needless = exact.filter(|e| e.parameters() <= family.parameters());
         let fitted = match needless {
             Some(exact) => Err(FitError::Needless { family, exact }),
-            None => ShapeFit::of(contacts, family, options),
+            // Where a smaller family fits, what a hard search would find is not wanted.
+            None => {
+                ShapeFit::nearest(contacts, family, options, fits.is_empty()).and_then(ShapeFit::unrefuted)
+            }
         };
         let outcome = fitted.map(|fit| {
             if fit.is_exact {

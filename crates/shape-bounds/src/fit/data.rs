@@ -96,11 +96,13 @@ pub(super) fn ball(model: &dyn Model, contacts: &[NoisyContact], data: &Data) ->
 const EXPONENTS: [[f64; 2]; 4] = [[0.5, 0.5], [0.5, 1.5], [1.5, 0.5], [1.5, 1.5]];
 
 /// A superquadric may have its first exponent along any of the ellipsoid's axes, and its second about axes that are turned
-/// by an eighth: the best of six starts is kept if the contacts do not refute it, else that of thirty.
+/// by an eighth: the best of six starts is kept if the contacts do not refute it, else, if the search is `thorough`, that of
+/// thirty.
 pub(super) fn superquadric(
     model: &dyn Model,
     contacts: &[NoisyContact],
     data: &Data,
+    thorough: bool,
 ) -> Result<Solution, FitError> {
     let family = ShapeFamily::Superquadric;
     let start = ball(&EllipsoidModel, contacts, data);
@@ -123,9 +125,7 @@ pub(super) fn superquadric(
     let problem = Spatial { model, contacts, size: data.size };
     let enough = |found: &Solution| refute::is_likely(found, data, 3 * contacts.len() - model.count());
     let smooth = solve(&problem, starts(&[[1.0, 1.0]]), enough);
-    if let Ok(found) = &smooth
-        && enough(found)
-    {
+    if !thorough || smooth.as_ref().is_ok_and(&enough) {
         return smooth.map_err(|e| into_error(e, model, family, data.size));
     }
     let rough = solve(&problem, starts(&EXPONENTS), enough);

@@ -157,7 +157,7 @@ impl ShapeFit {
         family: ShapeFamily,
         options: &FitOptions,
     ) -> Result<Self, FitError> {
-        Self::nearest(contacts, family, options)?.unrefuted()
+        Self::nearest(contacts, family, options, true)?.unrefuted()
     }
 
     fn unrefuted(self) -> Result<Self, FitError> {
@@ -167,17 +167,18 @@ impl ShapeFit {
         }
     }
 
-    /// The likeliest shape, refuted or not.
+    /// The likeliest shape, refuted or not; `thorough` tries more starts where the contacts refute what few lead to.
     fn nearest(
         contacts: &[NoisyContact],
         family: ShapeFamily,
         options: &FitOptions,
+        thorough: bool,
     ) -> Result<Self, FitError> {
         let data = Data::check(contacts, options)?;
         let model = data.model(family, contacts.len())?;
         let model = model.as_ref();
         let solution = match family {
-            ShapeFamily::Superquadric => superquadric(model, contacts, &data)?,
+            ShapeFamily::Superquadric => superquadric(model, contacts, &data, thorough)?,
             _ => {
                 let start = ball(model, contacts, &data);
                 let problem = Spatial { model, contacts, size: data.size };

@@ -165,9 +165,9 @@ pub(super) type Solution = levenberg::Solution<Linearised>;
 type Unsolved = levenberg::Unsolved<Linearised>;
 
 /// Contacts that starts are tried on, spread evenly over all: enough to tell a right valley from a wrong one.
-const TRIED: usize = 150;
+const TRIED: usize = 100;
 /// Ends of starts that are followed to rest.
-const FOLLOWED: usize = 3;
+const FOLLOWED: usize = 2;
 /// Ends of starts whose sums of squares differ by less than this share are the same.
 const SAME: f64 = 1e-6;
 
