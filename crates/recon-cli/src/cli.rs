@@ -187,8 +187,10 @@ stated or estimated: then the bounds hold at the stated confidence, and contacts
 listed. Limits on the radii of curvature tighten the bounds; their meshes are then within a thousandth of the size.
 
 With --fit a shape of few parameters is fitted too, and told with its covariance: a family, or auto for the one of the
-smallest information criterion. With --concave the object need not be convex: the bounds are those of its hull, and an
-alpha shape and a smooth surface are written too, which are approximations.
+smallest information criterion. A shape that the contacts refute (p-value below 1e-4 of the chi-squared test where noise is
+stated, of the likeness of neighbours' residuals where it is not) is refused with exit code 4; bounds are written all the
+same. With --concave the object need not be convex: the bounds are those of its hull, and an alpha shape and a smooth
+surface are written too, which are approximations.
 
 Contacts in the plane have the columns x, y and nx, ny alone. Areas stand for volumes, and a picture (bounds.svg) and
 corners (lower_bound.csv, upper_bound.csv) for meshes.

@@ -56,8 +56,8 @@ pub use curvature::{
 };
 pub use faceted::FacetError;
 pub use fit::{
-    Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel, ShapeChoice,
-    ShapeFamily, ShapeFit, SkewEllipsoid, Superquadric,
+    COMPARED, Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel,
+    SIGNIFICANCE, ShapeChoice, ShapeFamily, ShapeFit, SkewEllipsoid, Superquadric,
 };
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};

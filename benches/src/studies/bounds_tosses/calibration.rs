@@ -96,7 +96,7 @@ pub(crate) fn volume(half_spaces: &[HalfSpace], outwards: f64) -> f64 {
 
 /// The `ceil((n + 1) confidence)`-th smallest of `n`: a further value of the same kind is at most as large with at least
 /// that probability (split conformal inference). Infinite where `n` is too small to say.
-fn conformal(values: impl Iterator<Item = f64>, confidence: f64) -> f64 {
+pub(crate) fn conformal(values: impl Iterator<Item = f64>, confidence: f64) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let rank = ((sorted.len() + 1) as f64 * confidence).ceil() as usize;

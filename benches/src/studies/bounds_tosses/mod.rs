@@ -3,11 +3,12 @@
 //!
 //! Usage: `bounds_tosses [SETS] [FOLDER]`: at most SETS sets of each family and tracker (all by default), which are kept in
 //! FOLDER (`target/tosses` by default) and simulated where they are not there. Needs Python with MuJoCo and SciPy. Prints
-//! tables in Markdown.
+//! tables in Markdown, the last of a real body's tosses where they lie beside the repository; with 0 SETS that alone.
 
 mod body;
 mod calibration;
 mod check;
+mod real;
 mod sets;
 
 use calibration::{Form, Judged};
@@ -22,6 +23,9 @@ use std::sync::{Mutex, PoisonError};
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let most: u32 = crate::words().nth(0).map_or(Ok(u32::MAX), |a| a.parse())?;
     let folder = crate::words().nth(1).map_or_else(default_folder, PathBuf::from);
+    if most == 0 {
+        return real::print();
+    }
     let sets = sets::sets(most);
     println!("# Bounds from poses of tossed bodies\n");
     println!(
@@ -40,7 +44,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     }
     calibration::print(&judged);
     check::print(&rows);
-    Ok(())
+    real::print()
 }
 
 /// What a set says about each form and about the tight rule.

@@ -53,7 +53,8 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
     }
     drop(progress);
     console.result(&describe(&made, &what, &about), &figures)?;
-    let whole = made.lower.is_some() && made.upper.is_some() && !made.contradicts();
+    let refused = about["fit"]["status"] == "refused";
+    let whole = made.lower.is_some() && made.upper.is_some() && !made.contradicts() && !refused;
     Ok(if whole { Outcome::Done } else { Outcome::WithReservations })
 }
 
@@ -68,9 +69,11 @@ fn of_contacts(args: &BoundsArgs, curves: &[Vec<ContactSample>]) -> Result<(Boun
         (None, None) => (exact_bounds(&curves.concat())?, json!({ "noise": "none" })),
     };
     if let Some(family) = args.fit {
-        let (report, mesh) = fitted_shape(curves, noise, family)?;
-        about["fit"] = report;
-        made.others.push(("fitted_shape.ply", "shape fitted to the contacts; metres", mesh));
+        let fitted = fitted_shape(curves, noise, family)?;
+        about["fit"] = fitted.report;
+        made.warnings.extend(fitted.warning);
+        let comment = "shape fitted to the contacts; metres";
+        made.others.extend(fitted.mesh.map(|mesh| ("fitted_shape.ply", comment, mesh)));
     }
     Ok((made, about))
 }

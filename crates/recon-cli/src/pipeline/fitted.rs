@@ -9,7 +9,8 @@ use recon::contact_kinematics::{Direction, SupportFunction};
 use recon::observer::Status;
 use recon::shape_bounds::planar::{self, OutlineFamily, OutlineFit};
 use recon::shape_bounds::{
-    ContactNoise, ContactSample, FitOptions, FitStatistics, NoiseLevel, NoisyContact, ShapeFamily, ShapeFit,
+    Candidate, ContactNoise, ContactSample, FitError, FitOptions, FitStatistics, NoiseLevel, NoisyContact,
+    ShapeFamily, ShapeFit,
 };
 use recon_io::{TriangleMesh, brief, brief_to};
 use serde_json::{Value, json};
@@ -22,12 +23,23 @@ const RELATIVE_NOISE: f64 = 1e-3;
 const NET: (u32, u32) = (48, 96);
 const CORNERS: u32 = 720;
 
-/// Fits a shape to contacts in space; its report and its surface.
+/// A fit, or why there is none.
+pub(crate) struct Fitted {
+    /// Status and figures, for the summary.
+    pub(crate) report: Value,
+    /// The fitted surface; none where the contacts refute the shape.
+    pub(crate) mesh: Option<TriangleMesh>,
+    /// What the reader must know.
+    pub(crate) warning: Option<String>,
+}
+
+/// Fits a shape to contacts in space. A shape that the contacts refute is reported as refused, which is no error: the
+/// bounds hold without it.
 pub(crate) fn fitted_shape(
     curves: &[Vec<ContactSample>],
     noise: Option<(Noise, f64)>,
     family: FitAs,
-) -> Result<(Value, TriangleMesh), CliError> {
+) -> Result<Fitted, CliError> {
     let (contacts, options) = match noise {
         Some((noise, confidence)) => (cleaned(curves, noise, confidence)?.kept.concat(), stated()),
         None => {
@@ -48,20 +60,44 @@ pub(crate) fn fitted_shape(
         FitAs::Harmonics(degree) => vec![ShapeFamily::Harmonics { degree }],
         FitAs::Circle | FitAs::Ellipse | FitAs::Waves(_) => Vec::new(),
     };
-    let choice = ShapeFit::choose(&contacts, &families, &options)?;
+    let choice = match ShapeFit::choose(&contacts, &families, &options) {
+        Ok(choice) => choice,
+        Err(error) => return refused(error),
+    };
     let fit = &choice.best;
-    let tried = choice.candidates.iter().map(|c| {
+    let mut report = report(&fit.family().to_string(), fit.names(), fit.parameters(), fit.covariance());
+    add_statistics(&mut report, fit.statistics(), 3.0, noise.is_some());
+    report["tried"] = tried(&choice.candidates);
+    let mesh = TriangleMesh::net(NET.0, NET.1, |n| fit.body().point(Direction::new_unchecked(n)));
+    Ok(Fitted { report, mesh: Some(mesh), warning: None })
+}
+
+/// What is told of shapes that the contacts refute; other errors stay errors.
+fn refused(error: FitError) -> Result<Fitted, CliError> {
+    let (tried, warning) = match &error {
+        FitError::NoneFits { candidates } => {
+            let text = "No family of shapes fits the contacts, so that none is written; the bounds do not need one. \
+                        summary.json tells of each.";
+            (tried(candidates), text.to_owned())
+        }
+        FitError::Refuted { .. } | FitError::Unlike { .. } => {
+            (Value::Null, format!("No shape is written: {error}."))
+        }
+        _ => return Err(error.into()),
+    };
+    let report = json!({ "status": "refused", "reason": error.to_string(), "tried": tried });
+    Ok(Fitted { report, mesh: None, warning: Some(warning) })
+}
+
+fn tried(candidates: &[Candidate]) -> Value {
+    let one = |c: &Candidate| {
         let name = c.family.to_string();
         match &c.outcome {
             Ok(criterion) => json!({ "family": name, "criterion": criterion }),
             Err(error) => json!({ "family": name, "not_fitted": error.to_string() }),
         }
-    });
-    let mut report = report(&fit.family().to_string(), fit.names(), fit.parameters(), fit.covariance());
-    add_statistics(&mut report, fit.statistics(), 3.0, noise.is_some());
-    report["tried"] = tried.collect();
-    let mesh = TriangleMesh::net(NET.0, NET.1, |n| fit.body().point(Direction::new_unchecked(n)));
-    Ok((report, mesh))
+    };
+    candidates.iter().map(one).collect()
 }
 
 /// Fits an outline to contacts in the plane; its report and its corners.
@@ -124,6 +160,7 @@ where
         |i| json!({ "name": names[i], "value": values[i], "deviation": covariance[(i, i)].max(0.0).sqrt() }),
     );
     json!({
+        "status": "fitted",
         "family": family,
         "parameters": parameters.collect::<Vec<_>>(),
         "covariance": (0..count).map(row).collect::<Vec<_>>(),
@@ -147,6 +184,9 @@ fn add_statistics(report: &mut Value, of: &FitStatistics, equations: f64, stated
 
 /// What is said about a fit.
 pub(crate) fn fit_words(report: &Value) -> String {
+    if report["status"] == "refused" {
+        return "  fitted shape           none: refused\n".to_owned();
+    }
     let number = |name: &str| report[name].as_f64().unwrap_or(f64::NAN);
     let mut text = format!(
         "  fitted shape           {}, rms residual {:.3e} m\n",

@@ -142,6 +142,15 @@ fn poses_above_a_plane_bound_the_body_from_both_sides() {
     assert!(margin(&summary) < 3e-3);
     let tight = bounds(&scratch, &["tosses.csv", "--plane-height", "0.1", "--tight"]);
     assert!(volumes(&tight)[1] > volume && margin(&tight) != margin(&summary));
+    // What it is not good for stands in the output.
+    assert_eq!(tight["about"]["rule"], "tight");
+    assert!(tight["about"]["not_good_for"].as_str().unwrap().contains("cut corners"));
+    assert!(
+        tight["warnings"].to_string().contains("--tight")
+            && summary["warnings"].as_array().unwrap().is_empty()
+    );
+    let uncertain = bounds(&scratch, &["tosses.csv", "--plane-height", "0.1", "--height-deviation", "1e-3"]);
+    assert!(margin(&uncertain) > margin(&summary) + 1.9e-3 && volumes(&uncertain)[1] > upper);
     for name in ["lower_bound.ply", "upper_bound.ply"] {
         assert!(scratch.path().join("out").join(name).is_file(), "{name}");
     }
@@ -199,6 +208,7 @@ fn options_and_poses_that_do_not_go_together_are_refused() {
         assert!(words.iter().all(|word| run.stderr.contains(word)), "{}", run.stderr);
         assert!(!scratch.path().join("out").exists() && run.stdout.is_empty());
     };
+    refused(&["clean.csv", "--run-height-deviation", "1e-3"], 2, &["--run-height-deviation", "poses"]);
     refused(&["tosses.csv", "--estimate-noise"], 2, &["--estimate-noise", "holds poses"]);
     refused(&["clean.csv", "--plane-height", "0.1"], 2, &["--plane-height", "holds contacts"]);
     refused(&["clean.csv", "--tight"], 2, &["--tight", "holds contacts"]);

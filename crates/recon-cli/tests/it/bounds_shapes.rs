@@ -133,11 +133,30 @@ fn shapes_are_fitted_in_space_with_their_covariance() {
         assert!((variance - p.2 * p.2).abs() < 1e-12 * variance);
     }
     assert!(scratch.path().join("out/fitted_shape.ply").is_file());
-    let run = scratch.run(&["bounds", "clean.csv", "--fit", "harmonics:2"]);
-    assert!(run.stdout.contains("harmonics to degree 2") && run.stdout.contains("+-"), "{}", run.stdout);
-    // A ball through an ellipsoid leaves a residual of the size of the difference.
-    let ball = bounds(&scratch, &["clean.csv", "--fit", "ball"]);
-    assert!(ball["about"]["fit"]["residual_m"].as_f64().unwrap() > 0.1);
+    assert_eq!(fit["status"], "fitted");
+    let run = scratch.run(&["bounds", "clean.csv", "--fit", "ellipsoid"]);
+    assert!(run.stdout.contains("ellipsoid") && run.stdout.contains("+-"), "{}", run.stdout);
+    let exact = bounds(&scratch, &["clean.csv", "--fit", "auto"]);
+    assert_eq!(exact["about"]["fit"]["family"], "ellipsoid");
+}
+
+#[test]
+fn a_shape_that_the_contacts_refute_is_refused_and_bounds_are_written() {
+    let scratch = Scratch::new("refuted");
+    scratch.write("clean.csv", &ellipsoid(0.0));
+    let stated = ["--contact-noise", "1e-3", "--normal-noise", "1e-3"];
+    for noise in [&[][..], &stated[..]] {
+        let run =
+            scratch.run(&[&["bounds", "clean.csv", "--json", "--fit", "ball", "-o", "out"], noise].concat());
+        assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);
+        let summary: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+        let fit = &summary["about"]["fit"];
+        assert_eq!(fit["status"], "refused");
+        assert!(fit["reason"].as_str().unwrap().starts_with("sphere: refuted by the contacts"), "{fit}");
+        assert!(summary["warnings"].to_string().contains("No shape is written"));
+        assert!(scratch.path().join("out/upper_bound.ply").is_file());
+        assert!(!scratch.path().join("out/fitted_shape.ply").is_file());
+    }
 }
 
 #[test]

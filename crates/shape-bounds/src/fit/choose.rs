@@ -1,7 +1,7 @@
 //! Which family: no more parameters than the contacts call for.
 
-use super::solve::Solution;
-use super::{Data, FitError, FitOptions, NoiseLevel, ShapeFamily, ShapeFit, log_determinants};
+use super::solve::{Solution, thinned};
+use super::{Data, FitError, FitOptions, NoiseLevel, ShapeFamily, ShapeFit, log_determinants, refute};
 use crate::noise::NoisyContact;
 
 /// A family that was tried.
@@ -64,41 +64,74 @@ impl ShapeFit {
     /// # }
     /// ```
     ///
-    /// Families that cannot be fitted are reported and left out. That the best is good is not implied: see
-    /// [`super::FitStatistics::chi_squared`].
+    /// Families that cannot be fitted, or that the contacts refute, are reported and left out, and so are those of more
+    /// parameters once one fits exactly. Of more than [`COMPARED`] contacts so many, spread evenly, say in which order families
+    /// are fitted to all; the first that all do not refute is the best.
     ///
     /// # Errors
-    /// [`FitError::NoFamily`] for none, and the last family's error if none can be fitted.
+    /// [`FitError::NoFamily`] for none, the family's own error if there is but one, and [`FitError::NoneFits`] if none of several
+    /// fits.
     pub fn choose(
         contacts: &[NoisyContact],
         families: &[ShapeFamily],
         options: &FitOptions,
     ) -> Result<ShapeChoice, FitError> {
-        let mut best: Option<Self> = None;
-        let mut candidates = Vec::with_capacity(families.len());
-        let mut failure = FitError::NoFamily;
-        for &family in families {
-            let outcome = match Self::of(contacts, family, options) {
-                Ok(fit) => {
-                    let own = fit.information_criterion;
-                    if best.as_ref().is_none_or(|known| own < known.information_criterion) {
-                        best = Some(fit);
-                    }
-                    Ok(own)
-                }
+        let few = thinned(contacts, COMPARED);
+        let (mut fits, mut candidates) = compared(&few, families, options);
+        fits.sort_by(|a, b| a.information_criterion.total_cmp(&b.information_criterion));
+        for fit in fits {
+            if few.len() == contacts.len() {
+                return Ok(ShapeChoice { best: fit, candidates });
+            }
+            match Self::of(contacts, fit.family, options) {
+                Ok(best) => return Ok(ShapeChoice { best, candidates }),
                 Err(error) => {
-                    failure = error.clone();
-                    Err(error)
+                    let own = candidates.iter_mut().find(|c| c.family == fit.family);
+                    own.into_iter().for_each(|c| c.outcome = Err(error.clone()));
                 }
-            };
-            candidates.push(Candidate { family, outcome });
+            }
         }
-        best.map(|best| ShapeChoice { best, candidates }).ok_or(failure)
+        Err(match &candidates[..] {
+            [] => FitError::NoFamily,
+            [Candidate { outcome: Err(error), .. }] => error.clone(),
+            _ => FitError::NoneFits { candidates },
+        })
     }
 }
 
-/// What rounding leaves of an exact fit, relative to the size of the data.
-const ROUNDING: f64 = 1e-14;
+/// Contacts that families are compared on, at most.
+pub const COMPARED: usize = 600;
+
+/// Fits of all families that are not refuted, and the outcome of each.
+fn compared(
+    contacts: &[NoisyContact],
+    families: &[ShapeFamily],
+    options: &FitOptions,
+) -> (Vec<ShapeFit>, Vec<Candidate>) {
+    let mut fits: Vec<ShapeFit> = Vec::new();
+    let mut candidates = Vec::with_capacity(families.len());
+    let mut exact: Option<ShapeFamily> = None;
+    for &family in families {
+        let needless = exact.filter(|e| e.parameters() <= family.parameters());
+        let fitted = match needless {
+            Some(exact) => Err(FitError::Needless { family, exact }),
+            // Where a smaller family fits, what a hard search would find is not wanted.
+            None => {
+                ShapeFit::nearest(contacts, family, options, fits.is_empty()).and_then(ShapeFit::unrefuted)
+            }
+        };
+        let outcome = fitted.map(|fit| {
+            if fit.is_exact {
+                exact = Some(family);
+            }
+            let criterion = fit.information_criterion;
+            fits.push(fit);
+            criterion
+        });
+        candidates.push(Candidate { family, outcome });
+    }
+    (fits, candidates)
+}
 
 pub(super) fn criterion(solution: &Solution, data: &Data, parameters: usize) -> f64 {
     let equations = (3 * solution.system.contacts.len()) as f64;
@@ -107,9 +140,7 @@ pub(super) fn criterion(solution: &Solution, data: &Data, parameters: usize) -> 
         NoiseLevel::Stated => chi_squared,
         // The factor of the noise is fitted as well, which profiles the likelihood. Exact data would make it zero.
         NoiseLevel::Estimated => {
-            let weight: f64 = solution.system.contacts.iter().map(|c| c.whitening.norm_squared()).sum();
-            let floor = weight * (ROUNDING * data.size).powi(2);
-            equations * (chi_squared.max(floor) / equations).ln()
+            equations * (chi_squared.max(refute::rounding(solution, data)) / equations).ln()
         }
     };
     misfit + log_determinants(solution) + parameters as f64 * equations.ln()

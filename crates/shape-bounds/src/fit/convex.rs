@@ -28,12 +28,14 @@ pub(super) struct Held {
 /// `t' H(n) t >= limit` for all normals `n` and tangents `t` is linear in the coefficients. Of these infinitely many
 /// constraints those are taken that the shape breaks on a grid, the quadratic programme is solved, and so on until the
 /// certificate of [`PolynomialSupport::curvature_radii`] holds: a cutting-plane method. The result is the projection of the
-/// unconstrained estimate onto a convex set that holds the truth, which brings it nearer to the truth in that metric.
+/// unconstrained estimate onto a convex set that holds the truth, which brings it nearer to the truth in that metric. A
+/// projection at more than `farthest` is refused as soon as it is seen: it grows with each constraint.
 pub(super) fn hold(
     degree: usize,
     theta: &DVector<f64>,
     root: &SquareRoot,
     limit: f64,
+    farthest: f64,
 ) -> Result<Held, FitError> {
     let family = ShapeFamily::Harmonics { degree };
     let body = HarmonicModel::body(theta)?;
@@ -71,6 +73,9 @@ pub(super) fn hold(
         let g = DMatrix::from_fn(rows.len(), theta.len(), |i, j| rows[i][j]);
         let h = DVector::from_fn(rows.len(), |i, _| target - constraints[i].dot(theta));
         let (x, held) = least_distance(&g, &h).ok_or_else(|| none.clone())?;
+        if x.norm() > farthest {
+            return Err(none);
+        }
         let step = triangle.solve_upper_triangular(&x).ok_or_else(|| none.clone())?;
         theta_held = theta + step;
         body = HarmonicModel::body(&theta_held)?;

@@ -3,7 +3,7 @@
 use super::family::{EllipsoidModel, HarmonicModel, Model, Superquadric, SuperquadricModel};
 use super::information::SquareRoot;
 use super::solve::{Solution, Spatial, into_error, solve};
-use super::{FitError, FitOptions, NoiseLevel, ShapeFamily};
+use super::{FitError, FitOptions, NoiseLevel, ShapeFamily, refute};
 use crate::noise::NoisyContact;
 use glam::DVec3;
 use nalgebra::DVector;
@@ -92,26 +92,46 @@ pub(super) fn ball(model: &dyn Model, contacts: &[NoisyContact], data: &Data) ->
     model.ball(data.centre + centre, radius)
 }
 
+/// Exponents that starts have beside 1: towards a box and towards a double pyramid.
+const EXPONENTS: [[f64; 2]; 4] = [[0.5, 0.5], [0.5, 1.5], [1.5, 0.5], [1.5, 1.5]];
+
 /// A superquadric may have its first exponent along any of the ellipsoid's axes, and its second about axes that are turned
-/// by an eighth: the best of six starts is kept.
+/// by an eighth: the best of six starts is kept if the contacts do not refute it, else, if the search is `thorough`, that of
+/// thirty.
 pub(super) fn superquadric(
     model: &dyn Model,
     contacts: &[NoisyContact],
     data: &Data,
+    thorough: bool,
 ) -> Result<Solution, FitError> {
     let family = ShapeFamily::Superquadric;
     let start = ball(&EllipsoidModel, contacts, data);
     let problem = Spatial { model: &EllipsoidModel, contacts, size: data.size };
-    let ellipsoid = solve(&problem, vec![start])
+    let ellipsoid = solve(&problem, vec![start], |_| true)
         .map_err(|e| into_error(e, &EllipsoidModel, ShapeFamily::Ellipsoid, data.size))?;
     let body = EllipsoidModel::body(&ellipsoid.theta)?;
-    let mut starts = Vec::new();
-    for special in 0..3 {
-        for turn in [0.0, std::f64::consts::FRAC_PI_4] {
-            let start = Superquadric::from_ellipsoid(&body, special, turn);
-            starts.extend(start.as_ref().map(SuperquadricModel::parameters));
+    let starts = |exponents: &[[f64; 2]]| {
+        let mut starts = Vec::new();
+        for special in 0..3 {
+            for turn in [0.0, std::f64::consts::FRAC_PI_4] {
+                for e in exponents {
+                    let start = Superquadric::from_ellipsoid(&body, special, turn, *e);
+                    starts.extend(start.as_ref().map(SuperquadricModel::parameters));
+                }
+            }
         }
-    }
+        starts
+    };
     let problem = Spatial { model, contacts, size: data.size };
-    solve(&problem, starts).map_err(|e| into_error(e, model, family, data.size))
+    let enough = |found: &Solution| refute::is_likely(found, data, 3 * contacts.len() - model.count());
+    let smooth = solve(&problem, starts(&[[1.0, 1.0]]), enough);
+    if !thorough || smooth.as_ref().is_ok_and(&enough) {
+        return smooth.map_err(|e| into_error(e, model, family, data.size));
+    }
+    let rough = solve(&problem, starts(&EXPONENTS), enough);
+    match (smooth, rough) {
+        (Ok(a), Ok(b)) => Ok(if b.system.chi_squared < a.system.chi_squared { b } else { a }),
+        (Ok(found), Err(_)) | (Err(_), Ok(found)) => Ok(found),
+        (Err(error), Err(_)) => Err(into_error(error, model, family, data.size)),
+    }
 }

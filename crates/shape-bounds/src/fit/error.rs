@@ -1,4 +1,4 @@
-use super::ShapeFamily;
+use super::{Candidate, ShapeFamily};
 use contact_kinematics::ShapeError;
 use glam::DVec3;
 use thiserror::Error;
@@ -81,6 +81,46 @@ pub enum FitError {
         /// Iterations made.
         iterations: usize,
     },
+    /// The contacts refute the shape at their stated noise.
+    #[error(
+        "{family}: refuted by the contacts: chi-squared {chi_squared:.1} of {degrees_of_freedom} degrees of freedom, which \
+         contacts of such a shape exceed once in {:.0} times; the body is no such shape, or the noise is larger than stated",
+        1.0 / super::SIGNIFICANCE
+    )]
+    Refuted {
+        /// What was fitted.
+        family: ShapeFamily,
+        /// Sum of squared residuals in units of the stated noise.
+        chi_squared: f64,
+        /// Equations minus parameters.
+        degrees_of_freedom: usize,
+    },
+    /// Residuals of neighbours are alike, which noise is not.
+    #[error(
+        "{family}: refuted by the contacts: residuals of {residual:.1e} m are alike at neighbouring contacts, as those of \
+         another shape and not as noise is (p-value below {:.0e})",
+        super::SIGNIFICANCE
+    )]
+    Unlike {
+        /// What was fitted.
+        family: ShapeFamily,
+        /// Root mean square of the residuals per axis, in m.
+        residual: f64,
+    },
+    /// A family with fewer parameters is exact already.
+    #[error("{family}: not tried, since the {exact} fits exactly")]
+    Needless {
+        /// What was not fitted.
+        family: ShapeFamily,
+        /// What fits.
+        exact: ShapeFamily,
+    },
+    /// No family of those given fits.
+    #[error("no family fits the contacts: {}", reasons(candidates))]
+    NoneFits {
+        /// All families, and why each does not.
+        candidates: Vec<Candidate>,
+    },
     /// No convex shape of the family has radii of curvature as large as asked for.
     #[error("{family}: no body has all radii of curvature above {radius:e} m and comes near the contacts")]
     NoConvexBody {
@@ -98,4 +138,9 @@ pub enum FitError {
     /// The fitted numbers are no shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),
+}
+
+fn reasons(candidates: &[Candidate]) -> String {
+    let reason = |c: &Candidate| c.outcome.as_ref().err().map(ToString::to_string);
+    candidates.iter().filter_map(reason).collect::<Vec<_>>().join("; ")
 }

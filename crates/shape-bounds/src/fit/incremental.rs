@@ -110,7 +110,7 @@ impl IncrementalFit {
 
     fn relinearised(&self) -> Result<Linear, FitError> {
         let fit = match &self.linear {
-            None => ShapeFit::of(&self.contacts, self.family, &self.options)?,
+            None => ShapeFit::nearest(&self.contacts, self.family, &self.options, true)?,
             Some(linear) => {
                 let data = Data::check(&self.contacts, &self.options)?;
                 let model = data.model(self.family, self.contacts.len())?;
@@ -123,7 +123,7 @@ impl IncrementalFit {
                             contacts: self.contacts.len(),
                         });
                     }
-                    Err(_) => ShapeFit::of(&self.contacts, self.family, &self.options)?,
+                    Err(_) => ShapeFit::nearest(&self.contacts, self.family, &self.options, true)?,
                 }
             }
         };
@@ -149,7 +149,7 @@ impl IncrementalFit {
                 ITERATIONS,
             )
         {
-            return ShapeFit::finish(model.as_ref(), self.family, &self.contacts, found, &data);
+            return ShapeFit::finish(model.as_ref(), self.family, &self.contacts, found, &data)?.unrefuted();
         }
         ShapeFit::of(&self.contacts, self.family, &self.options)
     }

@@ -109,23 +109,31 @@ pub(crate) fn iterate<P: Problem>(
     Err(Unsolved::NotConverged(iterations, Some(Solution { theta, system, iterations })))
 }
 
-/// Parameters near the best solution that several starts lead to. A start that is not at rest after [`APPROACH`] iterations
-/// counts as far as it came: with normals taken as exact, a surface with flats and edges is a rough problem.
+/// Parameters near the best solution that several starts lead to.
 pub(crate) fn best_of<P: Problem>(
     problem: &P,
     starts: Vec<DVector<f64>>,
 ) -> Result<DVector<f64>, Unsolved<P::Contact>> {
-    let mut best: Option<Solution<P::Contact>> = None;
+    ends(problem, starts)?.into_iter().next().map(|(theta, _)| theta).ok_or(Unsolved::NotConverged(0, None))
+}
+
+/// Where several starts lead, with the sums of squares there, the smallest first; an error if none leads anywhere. A start
+/// that is not at rest after [`APPROACH`] iterations counts as far as it came: with normals taken as exact, a surface with
+/// flats and edges is a rough problem.
+pub(crate) fn ends<P: Problem>(
+    problem: &P,
+    starts: Vec<DVector<f64>>,
+) -> Result<Vec<(DVector<f64>, f64)>, Unsolved<P::Contact>> {
+    let mut ends = Vec::with_capacity(starts.len());
     let mut failure = Unsolved::NotConverged(0, None);
     for start in starts {
         match iterate(problem, start, APPROACH) {
             Ok(found) | Err(Unsolved::NotConverged(_, Some(found))) => {
-                if best.as_ref().is_none_or(|known| found.system.chi_squared < known.system.chi_squared) {
-                    best = Some(found);
-                }
+                ends.push((found.theta, found.system.chi_squared));
             }
             Err(other) => failure = other,
         }
     }
-    best.map(|found| found.theta).ok_or(failure)
+    ends.sort_by(|a, b| a.1.total_cmp(&b.1));
+    if ends.is_empty() { Err(failure) } else { Ok(ends) }
 }

@@ -14,15 +14,17 @@ mod incremental;
 pub(crate) mod information;
 pub(crate) mod levenberg;
 pub(crate) mod nnls;
+mod refute;
 mod report;
 mod solve;
 #[cfg(test)]
 mod tests;
 
-pub use choose::{Candidate, ShapeChoice};
+pub use choose::{COMPARED, Candidate, ShapeChoice};
 pub use error::FitError;
 pub use family::{SkewEllipsoid, Superquadric};
 pub use incremental::IncrementalFit;
+pub use refute::SIGNIFICANCE;
 pub use report::{FitStatistics, ShapeFit};
 
 use crate::noise::NoisyContact;
@@ -144,25 +146,43 @@ pub struct FitOptions {
 }
 
 impl ShapeFit {
-    /// The shape of a family that the contacts make likeliest.
+    /// The shape of a family that the contacts make likeliest, unless they refute it.
     ///
     /// # Errors
     /// [`FitError`] for bad values, too few contacts, contacts that leave a parameter open (all normals in one plane, one
-    /// short arc), and no convergence.
+    /// short arc), no convergence, and a shape that the contacts refute at [`SIGNIFICANCE`]: by the chi-squared test
+    /// where the noise is stated, by the likeness of neighbours' residuals where it is not.
     pub fn of(
         contacts: &[NoisyContact],
         family: ShapeFamily,
         options: &FitOptions,
     ) -> Result<Self, FitError> {
+        Self::nearest(contacts, family, options, true)?.unrefuted()
+    }
+
+    fn unrefuted(self) -> Result<Self, FitError> {
+        match &self.refuted {
+            Some(refuted) => Err(refuted.clone()),
+            None => Ok(self),
+        }
+    }
+
+    /// The likeliest shape, refuted or not; `thorough` tries more starts where the contacts refute what few lead to.
+    fn nearest(
+        contacts: &[NoisyContact],
+        family: ShapeFamily,
+        options: &FitOptions,
+        thorough: bool,
+    ) -> Result<Self, FitError> {
         let data = Data::check(contacts, options)?;
         let model = data.model(family, contacts.len())?;
         let model = model.as_ref();
         let solution = match family {
-            ShapeFamily::Superquadric => superquadric(model, contacts, &data)?,
+            ShapeFamily::Superquadric => superquadric(model, contacts, &data, thorough)?,
             _ => {
                 let start = ball(model, contacts, &data);
                 let problem = Spatial { model, contacts, size: data.size };
-                solve(&problem, vec![start]).map_err(|e| into_error(e, model, family, data.size))?
+                solve(&problem, vec![start], |_| true).map_err(|e| into_error(e, model, family, data.size))?
             }
         };
         Self::finish(model, family, contacts, solution, &data)
@@ -203,6 +223,7 @@ impl ShapeFit {
         let open = |root: &SquareRoot| undetermined(model, family, root, data.size);
         let problem = Spatial { model, contacts, size: data.size };
         let mut active_constraints = 0;
+        let degrees_of_freedom = 3 * contacts.len() - model.count();
         let body = match family {
             ShapeFamily::Sphere => {
                 let theta = &solution.theta;
@@ -220,8 +241,15 @@ impl ShapeFit {
             }
             ShapeFamily::Superquadric => FittedBody::Superquadric(SuperquadricModel::body(&solution.theta)?),
             ShapeFamily::Harmonics { degree } => {
-                let held =
-                    convex::hold(degree, &solution.theta, &solution.system.root, data.smallest_radius)?;
+                // A shape that is refuted before it is held is so after.
+                let free = HarmonicModel::body(&solution.theta)?;
+                let left = residual(&FittedBody::Harmonics(free), &solution, contacts);
+                refute::check(family, contacts, &solution, data, (left, degrees_of_freedom))?;
+                // The truth is a convex body, so that a projection is no further than noise takes the estimate from the truth.
+                let farthest = refute::chi_squared_quantile(model.count()).sqrt()
+                    * noise_factor(&solution, data, degrees_of_freedom);
+                let (theta, root) = (&solution.theta, &solution.system.root);
+                let held = convex::hold(degree, theta, root, data.smallest_radius, farthest)?;
                 if held.active > 0 {
                     active_constraints = held.active;
                     solution.system =
@@ -234,22 +262,20 @@ impl ShapeFit {
         let root = &solution.system.root;
         let known = root.knowledge(&model.scales(data.size)).ok_or_else(|| open(root))?;
         let covariance = root.covariance().ok_or_else(|| open(root))?;
-        let equations = 3 * contacts.len();
-        let degrees_of_freedom = equations - model.count();
-        let noise_factor = match data.noise_level {
-            NoiseLevel::Stated => 1.0,
-            NoiseLevel::Estimated => (solution.system.chi_squared / degrees_of_freedom.max(1) as f64).sqrt(),
-        };
+        let noise_factor = noise_factor(&solution, data, degrees_of_freedom);
         if known.rank < model.count() || known.weakest_deviation * noise_factor > 1.0 {
             return Err(open(root));
         }
+        let residual = residual(&body, &solution, contacts);
         Ok(Self {
+            is_exact: refute::is_exact(residual, data),
+            refuted: refute::check(family, contacts, &solution, data, (residual, degrees_of_freedom)).err(),
             family,
             covariance: covariance * noise_factor.powi(2),
             statistics: FitStatistics {
                 chi_squared: solution.system.chi_squared,
                 degrees_of_freedom,
-                residual: residual(&body, &solution, contacts),
+                residual,
                 worst: worst(&solution),
                 noise_factor,
                 condition: known.condition,
@@ -262,6 +288,14 @@ impl ShapeFit {
             parameters: solution.theta,
             body,
         })
+    }
+}
+
+/// What stated standard deviations are to be multiplied by.
+fn noise_factor(solution: &Solution, data: &Data, degrees_of_freedom: usize) -> f64 {
+    match data.noise_level {
+        NoiseLevel::Stated => 1.0,
+        NoiseLevel::Estimated => (solution.system.chi_squared / degrees_of_freedom.max(1) as f64).sqrt(),
     }
 }
 

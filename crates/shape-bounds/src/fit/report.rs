@@ -1,4 +1,4 @@
-use super::{FittedBody, ShapeFamily};
+use super::{FitError, FittedBody, ShapeFamily};
 use contact_kinematics::{Direction, SupportFunction};
 use glam::DVec3;
 use nalgebra::{DMatrix, DVector};
@@ -36,6 +36,10 @@ pub struct ShapeFit {
     pub(super) statistics: FitStatistics,
     pub(super) information_criterion: f64,
     pub(super) names: Vec<String>,
+    /// Why the contacts refute the shape, if they do.
+    pub(super) refuted: Option<FitError>,
+    /// Whether the residuals are rounding.
+    pub(super) is_exact: bool,
 }
 
 impl ShapeFit {

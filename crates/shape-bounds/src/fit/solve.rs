@@ -2,7 +2,7 @@
 
 use super::family::Model;
 use super::information::SquareRoot;
-use super::levenberg::{self, ITERATIONS, Problem, System, best_of, iterate};
+use super::levenberg::{self, ITERATIONS, Problem, System, ends, iterate};
 use super::{FitError, ShapeFamily};
 use crate::noise::NoisyContact;
 use contact_kinematics::{Direction, SupportFunction, SupportJet};
@@ -164,18 +164,56 @@ impl<M: Model + ?Sized> Problem for Spatial<'_, M> {
 pub(super) type Solution = levenberg::Solution<Linearised>;
 type Unsolved = levenberg::Unsolved<Linearised>;
 
+/// Contacts that starts are tried on, spread evenly over all: enough to tell a right valley from a wrong one.
+const TRIED: usize = 100;
+/// Ends of starts that are followed to rest.
+const FOLLOWED: usize = 2;
+/// Ends of starts whose sums of squares differ by less than this share are the same.
+const SAME: f64 = 1e-6;
+
 /// The likeliest parameters.
 ///
-/// First with the normals taken as exact, which is a smooth problem from any start; from the best of its solutions, with
-/// the true normals eliminated. Started far off, the search for a true normal can end on the wrong side of the body.
+/// First with the normals taken as exact, which is a smooth problem from any start; from where that leads, with the true
+/// normals eliminated, the best end first until one is good `enough`, else the best of all. Started far off, the search for a
+/// true normal can end on the wrong side of the body.
 pub(super) fn solve<M: Model + ?Sized>(
     problem: &Spatial<'_, M>,
     starts: Vec<DVector<f64>>,
+    enough: impl Fn(&Solution) -> bool,
 ) -> Result<Solution, Unsolved> {
-    let mut exact = problem.contacts.to_vec();
+    let mut exact = thinned(problem.contacts, if starts.len() > 1 { TRIED } else { usize::MAX });
     exact.iter_mut().for_each(|c| c.noise.normal = 0.0);
-    let near = best_of(&Spatial { contacts: &exact, ..*problem }, starts)?;
-    iterate(problem, near, ITERATIONS)
+    let ends = ends(&Spatial { contacts: &exact, ..*problem }, starts)?;
+    let mut best: Option<Solution> = None;
+    let mut failure = None;
+    let mut last = f64::NEG_INFINITY;
+    let mut followed = 0;
+    for (end, chi_squared) in ends {
+        if followed == FOLLOWED {
+            break;
+        }
+        if chi_squared - last <= SAME * chi_squared {
+            continue;
+        }
+        last = chi_squared;
+        followed += 1;
+        match iterate(problem, end, ITERATIONS) {
+            Ok(found) if enough(&found) => return Ok(found),
+            Ok(found) => {
+                if best.as_ref().is_none_or(|known| found.system.chi_squared < known.system.chi_squared) {
+                    best = Some(found);
+                }
+            }
+            Err(error) => failure = failure.or(Some(error)),
+        }
+    }
+    best.ok_or_else(|| failure.unwrap_or(Unsolved::NotConverged(0, None)))
+}
+
+/// At most `most` contacts, spread evenly.
+pub(super) fn thinned(contacts: &[NoisyContact], most: usize) -> Vec<NoisyContact> {
+    let count = contacts.len().min(most);
+    (0..count).map(|k| contacts[k * contacts.len() / count]).collect()
 }
 
 /// What a failed iteration says of the contacts.

@@ -29,7 +29,7 @@ const HALVINGS: usize = 4;
 /// The form and the factors come from the even-numbered tosses of the real elbow of `docs/bounds-tosses.md`, forty hundreds of them;
 /// the odd-numbered ones check it.
 pub(super) const PROPPED: PoseRule =
-    PoseRule { kink: 1.0, gap: 0.0, trusted: 0.8, factors: [1.5, 2.0], scarcity: 0.57 };
+    PoseRule { kink: 1.0, gap: 0.0, trusted: 0.8, factors: [1.4, 2.0], scarcity: 0.57 };
 
 /// What is left when runs that contradict the others are left out.
 pub(super) struct Agreed {

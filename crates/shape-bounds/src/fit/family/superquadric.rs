@@ -228,6 +228,7 @@ impl Superquadric {
         body: &super::SkewEllipsoid,
         special: usize,
         turn: f64,
+        exponents: [f64; 2],
     ) -> Option<Self> {
         let axes = [(special + 1) % 3, (special + 2) % 3, special];
         let frame = DMat3::from_quat(body.rotation());
@@ -237,6 +238,6 @@ impl Superquadric {
         // Turned by an eighth, both axes across have the same length.
         let mean = 0.5 * (lengths.x + lengths.y);
         let lengths = if turn == 0.0 { lengths } else { DVec3::new(mean, mean, lengths.z) };
-        Self::new(body.centre(), lengths, rotation * DQuat::from_rotation_z(turn), [1.0, 1.0]).ok()
+        Self::new(body.centre(), lengths, rotation * DQuat::from_rotation_z(turn), exponents).ok()
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use contact_kinematics::MinkowskiSum;
 
 /// How often each family is chosen in seeded runs.
 fn rate(body: impl Fn(&mut Source) -> Box<dyn SupportFunction>, expected: ShapeFamily, runs: u64) -> f64 {
@@ -38,12 +39,12 @@ fn the_true_family_is_chosen() {
 #[test]
 fn families_that_cannot_be_fitted_are_named_and_left_out() {
     let mut s = Source::new(3);
-    let body = random_ellipsoid(&mut s);
+    let body = Sphere::new(1.3).unwrap();
     let contacts = exact(&body, scattered(4, &mut s));
-    let families = [ShapeFamily::Sphere, ShapeFamily::Harmonics { degree: 6 }];
+    let families = [ShapeFamily::Harmonics { degree: 6 }, ShapeFamily::Sphere];
     let choice = ShapeFit::choose(&contacts, &families, &FitOptions::default()).unwrap();
     assert_eq!(choice.best.family(), ShapeFamily::Sphere);
-    assert!(matches!(choice.candidates[1].outcome, Err(FitError::TooFew { found: 4, needed: 17, .. })));
+    assert!(matches!(choice.candidates[0].outcome, Err(FitError::TooFew { found: 4, needed: 17, .. })));
     assert_eq!(ShapeFit::choose(&contacts, &[], &FitOptions::default()).unwrap_err(), FitError::NoFamily);
 }
 
@@ -59,4 +60,63 @@ fn a_superquadric_that_a_smooth_start_does_not_reach_is_found() {
     let fit = ShapeFit::of(&contacts, ShapeFamily::Superquadric, &FitOptions::default()).unwrap();
     // Chi-squared of 289 degrees of freedom is above 1.4 times that with a probability of 1e-5.
     assert!(fit.statistics().chi_squared < 1.4 * 289.0, "{}", fit.statistics().chi_squared);
+}
+
+/// The study's body of no family, touched at places along three curves or scattered.
+fn rounded_box(s: &mut Source) -> MinkowskiSum<Superquadric, Sphere> {
+    let core = Superquadric::new(DVec3::ZERO, DVec3::new(0.8, 0.6, 1.0), s.rotation(), [0.4, 0.4]).unwrap();
+    MinkowskiSum(core, Sphere::new(0.3).unwrap())
+}
+
+#[test]
+fn a_body_of_no_family_is_refused_by_name_whether_the_noise_is_known_or_not() {
+    let small = [ShapeFamily::Sphere, ShapeFamily::Ellipsoid, ShapeFamily::Superquadric];
+    for seed in 40..43 {
+        let mut s = Source::new(seed);
+        let body = rounded_box(&mut s);
+        let contacts = measured(&body, curves(150, &mut s), 1e-3, 1e-3, &mut s);
+        for family in small {
+            let refused = ShapeFit::of(&contacts, family, &FitOptions::default()).unwrap_err();
+            assert!(matches!(refused, FitError::Refuted { family: f, .. } if f == family), "{refused}");
+        }
+        let unknown = FitOptions { noise_level: NoiseLevel::Estimated, ..FitOptions::default() };
+        let refused = ShapeFit::of(&contacts, ShapeFamily::Ellipsoid, &unknown).unwrap_err();
+        assert!(matches!(refused, FitError::Unlike { .. }), "{seed} {refused}");
+        match ShapeFit::choose(&contacts, &small, &FitOptions::default()) {
+            Err(FitError::NoneFits { candidates }) => assert_eq!(candidates.len(), 3),
+            other => panic!("{seed} {other:?}"),
+        }
+    }
+}
+
+#[test]
+fn an_exact_ellipsoid_is_called_one_and_nothing_larger_is_tried() {
+    let unknown = FitOptions { noise_level: NoiseLevel::Estimated, ..FitOptions::default() };
+    for count in [30, 3000] {
+        let mut s = Source::new(44);
+        let body = random_ellipsoid(&mut s);
+        let contacts = exact(&body, curves(count, &mut s));
+        let choice = ShapeFit::choose(&contacts, &ShapeFamily::candidates(count), &unknown).unwrap();
+        assert_eq!(choice.best.family(), ShapeFamily::Ellipsoid);
+        let of = |family| choice.candidates.iter().find(|c| c.family == family).unwrap();
+        let larger = &of(ShapeFamily::Superquadric).outcome;
+        assert!(matches!(larger, Err(FitError::Needless { exact: ShapeFamily::Ellipsoid, .. })));
+        assert!(distance(&choice.best, &body) < 1e-8);
+    }
+}
+
+/// At a significance of one in ten thousand, two hundred fits of the right family are not refused.
+#[test]
+fn right_shapes_are_not_refused() {
+    let unknown = FitOptions { noise_level: NoiseLevel::Estimated, ..FitOptions::default() };
+    for seed in 0..200 {
+        let mut s = Source::new(seed + 7100);
+        let body = random_ellipsoid(&mut s);
+        let normals = if seed % 2 == 0 { curves(60, &mut s) } else { scattered(60, &mut s) };
+        let contacts = measured(&body, normals, 3e-3, 3e-3, &mut s);
+        for options in [FitOptions::default(), unknown] {
+            let fit = ShapeFit::of(&contacts, ShapeFamily::Ellipsoid, &options);
+            assert!(fit.is_ok(), "{seed}: {}", fit.unwrap_err());
+        }
+    }
 }

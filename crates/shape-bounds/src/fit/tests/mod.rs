@@ -50,6 +50,17 @@ pub(super) fn scattered(count: usize, s: &mut Source) -> Vec<DVec3> {
     (0..count).map(|_| s.direction()).collect()
 }
 
+/// Normals along three closed curves, as three palms trace them.
+pub(super) fn curves(count: usize, s: &mut Source) -> Vec<DVec3> {
+    let turns = [s.rotation(), s.rotation(), s.rotation()];
+    (0..count)
+        .map(|i| {
+            let t = (i / 3) as f64 / count.div_ceil(3) as f64 * std::f64::consts::TAU;
+            turns[i % 3] * DVec3::new(t.cos(), t.sin(), 0.6 * (2.0 * t).sin()).normalize()
+        })
+        .collect()
+}
+
 pub(super) fn random_ellipsoid(s: &mut Source) -> SkewEllipsoid {
     let turn = DMat3::from_quat(s.rotation());
     let squares = DVec3::new(s.between(0.5, 2.0), s.between(0.5, 2.0), s.between(0.5, 2.0)).powf(2.0);

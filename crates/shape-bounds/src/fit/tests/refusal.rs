@@ -62,13 +62,15 @@ fn harmonics_are_held_convex_and_nearer_to_the_truth() {
         let data = Data::check(&contacts, &FitOptions::default()).unwrap();
         let model = family.model().unwrap();
         let start = ball(model.as_ref(), &contacts, &data);
-        let Ok(free) =
-            solve(&Spatial { model: model.as_ref(), contacts: &contacts, size: data.size }, vec![start])
-        else {
+        let Ok(free) = solve(
+            &Spatial { model: model.as_ref(), contacts: &contacts, size: data.size },
+            vec![start],
+            |_| true,
+        ) else {
             panic!("no free fit")
         };
         let limit = 0.1;
-        let convex = convex::hold(4, &free.theta, &free.system.root, limit).unwrap();
+        let convex = convex::hold(4, &free.theta, &free.system.root, limit, f64::INFINITY).unwrap();
         assert!(convex.body.curvature_radii().min >= limit);
         if convex.active == 0 {
             continue;
@@ -76,7 +78,7 @@ fn harmonics_are_held_convex_and_nearer_to_the_truth() {
         held += 1;
         // The best harmonic description of the truth has radii above the limit as well, so projecting is no loss.
         let clean = exact(&body, scattered(400, &mut s));
-        let truth = fit(&clean, family).unwrap();
+        let truth = ShapeFit::nearest(&clean, family, &FitOptions::default(), true).unwrap();
         assert!(truth.curvature_radii().min > limit && truth.statistics().active_constraints == 0);
         let far = |theta: &DVector<f64>| (free.system.root.triangle() * (theta - truth.parameters())).norm();
         assert!(far(&convex.theta) < far(&free.theta), "{} {}", far(&convex.theta), far(&free.theta));

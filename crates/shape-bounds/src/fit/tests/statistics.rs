@@ -54,10 +54,13 @@ fn consistency(
         let contacts = at_truth(&normals, &mut s, noise);
         let data = Data::check(&contacts, &FitOptions::default()).unwrap();
         let start = truth.clone();
-        let found =
-            solve(&Spatial { model: model.as_ref(), contacts: &contacts, size: data.size }, vec![start])
-                .ok()
-                .unwrap();
+        let found = solve(
+            &Spatial { model: model.as_ref(), contacts: &contacts, size: data.size },
+            vec![start],
+            |_| true,
+        )
+        .ok()
+        .unwrap();
         let fit = ShapeFit::finish(model.as_ref(), family, &contacts, found, &data).unwrap();
         assert_eq!(fit.statistics().active_constraints, 0);
         let error = fit.parameters() - truth;
