@@ -82,9 +82,12 @@ The output folder appears as a whole or not at all: motion.csv, contact_curves.c
 lower_bound.ply, upper_bound.ply, report.html, which opens in any browser, and manifest.json, which lists them. With --export it holds the object for
 simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer to.
 
+The bounds hold at 95 % confidence for the noise of the sensors and the error of the motion, in the axes that bounds_frame in
+summary.json names. A motion that is not to be relied on gives none.
+
 With --without-forces the contacts and palm poses alone are fitted with the motion of an ellipsoid, its centre anywhere; mass
 and inertia of the scene are not looked at, and only inertia over mass is found. Then the folder holds motion.csv,
-summary.json and the bounds.
+summary.json and, where contacts are exact, the bounds.
 
 Examples:
   recon reconstruct log.csv --scene scene.toml -o out

@@ -294,3 +294,55 @@ pub(super) fn of_start<const P: usize>(
 
 /// Seed of what motions are drawn from.
 const MOTION_SEED: u64 = 0x6d07;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Poses along a turn about z, displaced in body axes by what all of them share and by what each has of its own.
+    fn drawn(estimated: &[Pose], shared: f64, own: f64, principal: bool) -> PoseErrors {
+        let mut random = Normal::seeded(3);
+        let mut vector = |size: f64| DVec3::new(random.draw(), random.draw(), random.draw()) * size;
+        let all: Vec<Vec<Pose>> = (0..DRAWS)
+            .map(|_| {
+                let (turn, shift) = (exponential(vector(shared)), vector(shared));
+                let moved = |(p, q): &Pose| {
+                    let (turn, shift) = (turn * exponential(vector(own)), shift + vector(own));
+                    (*p + *q * shift, (*q * turn).normalize())
+                };
+                estimated.iter().map(moved).collect()
+            })
+            .collect();
+        let nodes = (0..estimated.len()).map(|k| 10 * k).collect();
+        PoseErrors::from_draws(nodes, estimated, all.into_iter(), 0.0, principal).unwrap()
+    }
+
+    #[test]
+    fn what_all_poses_share_is_taken_out_unless_it_is_next_to_nothing() {
+        let pose = |k: usize| (DVec3::new(0.1, 0.2, 0.3) * k as f64, DQuat::from_rotation_z(0.05 * k as f64));
+        let estimated: Vec<Pose> = (0..40).map(pose).collect();
+        let deviation = |m: DMat3| ((m.x_axis.x + m.y_axis.y + m.z_axis.z) / 3.0).sqrt();
+        let large = drawn(&estimated, 0.05, 1e-4, true);
+        assert_eq!(large.axes(), PoseAxes::MeanPose);
+        for sample in [0, 7, 200, 390, 1000] {
+            let left = deviation(large.covariance(sample).rotation);
+            // A little of each is in the mean, and of two ends interpolated the mean variance stands.
+            assert!((0.9e-4..1.1e-4).contains(&left), "{sample}: {left}");
+        }
+        assert!((0.045..0.055).contains(&deviation(large.shared().rotation)));
+        assert_eq!(drawn(&estimated, 1e-4, 1e-5, true).axes(), PoseAxes::Principal);
+        assert_eq!(drawn(&estimated, 1e-4, 1e-5, false).axes(), PoseAxes::MeanPose);
+        // Forty independent poses of six numbers each: chi-squared of 6 at odds of 0.05 / 40 is 22.
+        let c = large.deviations(0.95);
+        assert!((4.4..5.0).contains(&c), "{c}");
+        assert_eq!(large.deviations(0.9999), f64::INFINITY);
+    }
+
+    #[test]
+    fn roots_of_covariances_of_any_rank_give_them_back() {
+        let a = SMatrix::<f64, 4, 2>::new(1.0, 2.0, -1.0, 0.5, 0.0, 0.0, 3.0, -0.25);
+        let covariance = a * a.transpose();
+        let root = root(&covariance);
+        assert!((root * root.transpose() - covariance).amax() < 1e-12);
+    }
+}

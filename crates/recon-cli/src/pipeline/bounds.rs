@@ -105,7 +105,7 @@ pub(super) fn drawn_surfaces(
         Ok(Hull::Solid(few)) => own(few.mesh()),
         _ => own(all.mesh()),
     });
-    let upper = upper.map(|all| match Intersection::of(&some_of(&all.face_half_spaces())) {
+    let upper = upper.map(|all| match Intersection::of(&some_of(all.face_half_spaces())) {
         Ok(Intersection::Bounded(few)) => own(few.mesh()),
         _ => own(all.mesh()),
     });
