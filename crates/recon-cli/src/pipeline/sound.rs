@@ -6,8 +6,8 @@ use glam::DMat3;
 use recon::contact_kinematics::CurvatureRadii;
 use recon::observer::MotionEstimate;
 use recon::shape_bounds::{
-    BodyPose, ContactNoise, ContactSample, NoisyContact, Outlier, PoseBounds, PoseRule, ShapeBounds,
-    SharpBounds, estimate_noise, without_outliers,
+    BodyPose, ContactNoise, ContactSample, FacetError, NoisyContact, Outlier, PoseBounds, PoseRule,
+    ShapeBounds, SharpBounds, estimate_noise, without_outliers,
 };
 use recon_io::{Bound, Bounds};
 use serde_json::{Value, json};
@@ -50,10 +50,17 @@ pub(crate) fn sharp_bounds(
         }
         None => (SharpBounds::from_contacts(&curves.concat(), radii)?, None, json!({ "noise": "none" })),
     };
-    let tolerance = MESH_TOLERANCE * bounds.upper().volume().cbrt();
+    let size = bounds.upper().volume().cbrt();
+    let mut tolerance = MESH_TOLERANCE * size;
+    // Bounds that are curved too strongly for meshes this fine get coarser ones.
+    let polytopes = loop {
+        match bounds.polytopes(tolerance) {
+            Err(FacetError::TooFine { gap, .. }) if gap < size => tolerance = gap.max(2.0 * tolerance),
+            other => break other?,
+        }
+    };
     about["radii_of_curvature_m"] = json!([radii.min, radii.max]);
     about["mesh_tolerance_m"] = json!(tolerance);
-    let polytopes = bounds.polytopes(tolerance)?;
     let (lower, upper) = meshes(&polytopes)?;
     let drawn = Bounds {
         lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: bounds.lower().volume() },
