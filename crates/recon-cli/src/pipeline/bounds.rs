@@ -24,15 +24,21 @@ pub(crate) struct BoundsResult {
 
 /// Lower and upper bound from exact contacts on a convex body.
 pub(crate) fn exact_bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliError> {
-    made(ShapeBounds::from_contacts(contacts)?, contacts)
+    // Contacts that contradict each other by more than rounding are an error.
+    made(ShapeBounds::from_contacts(contacts)?, contacts, 0.0)
 }
 
 /// Lower and upper bound from contacts that are taken as exact, but were moved by an estimate and may contradict each other.
 pub(crate) fn bounds(contacts: &[ContactSample]) -> Result<BoundsResult, CliError> {
-    made(ShapeBounds::from_contradicting_contacts(contacts)?, contacts)
+    let contradiction = contradiction(contacts)?;
+    made(ShapeBounds::from_contradicting_contacts(contacts)?, contacts, contradiction)
 }
 
-fn made(whole: ShapeBounds, contacts: &[ContactSample]) -> Result<BoundsResult, CliError> {
+fn made(
+    whole: ShapeBounds,
+    contacts: &[ContactSample],
+    contradiction: f64,
+) -> Result<BoundsResult, CliError> {
     let (lower, upper) = meshes(&whole)?;
     let mut warnings = Vec::new();
     if lower.is_none() {
@@ -52,14 +58,7 @@ fn made(whole: ShapeBounds, contacts: &[ContactSample]) -> Result<BoundsResult, 
             .map(|all| Bound { mesh: few_upper.unwrap_or(all), volume: whole.upper_volume() }),
         largest_gap: whole.largest_gap().map(|gap| gap.distance),
     };
-    Ok(BoundsResult {
-        drawn,
-        lower,
-        upper,
-        others: Vec::new(),
-        contradiction: contradiction(contacts)?,
-        warnings,
-    })
+    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction, warnings })
 }
 
 /// What to say where there is no upper bound.
