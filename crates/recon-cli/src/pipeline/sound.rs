@@ -6,7 +6,7 @@ use glam::DMat3;
 use recon::contact_kinematics::{CurvatureRadii, CurvePoint};
 use recon::observer::{MotionEstimate, PoseCovariance};
 use recon::shape_bounds::{
-    BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, NoiseDoubt, NoisyContact,
+    BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, NoiseDoubt, NoisyContact,
     Outlier, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, correlated_noise, estimate_noise,
     with_noise_as_found, without_outliers,
 };
@@ -60,10 +60,17 @@ pub(crate) fn sharp_bounds(
             (SharpBounds::from_contacts(&curves.concat(), radii)?, Vec::new(), json!({ "noise": "none" }))
         }
     };
-    let tolerance = MESH_TOLERANCE * bounds.upper().volume().cbrt();
+    let size = bounds.upper().volume().cbrt();
+    let mut tolerance = MESH_TOLERANCE * size;
+    // Bounds that are curved too strongly for meshes this fine get coarser ones.
+    let polytopes = loop {
+        match bounds.polytopes(tolerance) {
+            Err(FacetError::TooFine { gap, .. }) if gap < size => tolerance = gap.max(2.0 * tolerance),
+            other => break other?,
+        }
+    };
     about["radii_of_curvature_m"] = json!([radii.min, radii.max]);
     about["mesh_tolerance_m"] = json!(tolerance);
-    let polytopes = bounds.polytopes(tolerance)?;
     let (lower, upper) = meshes(&polytopes)?;
     let drawn = Bounds {
         lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: bounds.lower().volume() },

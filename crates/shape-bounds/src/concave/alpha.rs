@@ -25,7 +25,10 @@ impl AlphaShape {
     /// [`AlphaError::Flat`] for points that span no volume, and the errors of [`crate::Hull::of`].
     pub fn of(points: &[DVec3]) -> Result<Self, AlphaError> {
         let tetrahedra = tetrahedra(points)?;
-        let radii = tetrahedra.iter().map(|t| circumradius(t, points)).collect();
+        // In units of the size, products of extreme coordinates stay in range.
+        let size = points.iter().map(|p| p.abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
+        let unit: Vec<DVec3> = points.iter().map(|p| *p / size).collect();
+        let radii = tetrahedra.iter().map(|t| circumradius(t, &unit) * size).collect();
         Ok(Self { points: points.to_vec(), tetrahedra, radii })
     }
 

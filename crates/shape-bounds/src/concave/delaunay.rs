@@ -8,7 +8,7 @@
 
 use super::cavity::{OUTSIDE, Tetrahedron};
 use super::error::AlphaError;
-use crate::hull::{Hull, insertion_order};
+use crate::hull::{ExactRange, Hull, exact_scale, insertion_order};
 use crate::predicates::{above, projection_axis};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -25,10 +25,13 @@ pub(super) struct Delaunay<'a> {
 pub(super) fn tetrahedra(points: &[DVec3]) -> Result<Vec<Tetrahedron>, AlphaError> {
     let dimension = Hull::of(points)?.dimension();
     let order = insertion_order(points);
-    let Some(seed) = seed(points, &order).filter(|_| dimension == 3) else {
+    // Spheres are exact in a narrower range than planes are.
+    let scale = exact_scale(points, ExactRange::SPHERE)?;
+    let points: Vec<DVec3> = points.iter().map(|p| *p * scale).collect();
+    let Some(seed) = seed(&points, &order).filter(|_| dimension == 3) else {
         return Err(AlphaError::Flat { dimension });
     };
-    let mut own = Delaunay::start(points, seed);
+    let mut own = Delaunay::start(&points, seed);
     for i in order {
         own.insert(i);
     }

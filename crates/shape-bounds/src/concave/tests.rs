@@ -184,3 +184,27 @@ fn bad_input_is_named() {
     contacts[4].point.x = f64::INFINITY;
     assert!(matches!(HermiteSurface::through(&contacts), Err(SurfaceError::NotFinite { index: 4 })));
 }
+
+#[test]
+fn the_size_of_the_points_does_not_matter() {
+    let mut s = crate::generators::Source::new(3);
+    let points: Vec<DVec3> = (0..60).map(|_| s.normal3()).collect();
+    let own = AlphaShape::of(&points).unwrap();
+    let expected = own.connecting_radius();
+    // Powers of two, so that the scaled points are exact: 1e-110, 1e61, 1e150.
+    for exponent in [-365, 203, 498] {
+        let unit = 2.0_f64.powi(exponent);
+        let scaled: Vec<DVec3> = points.iter().map(|p| *p * unit).collect();
+        let shape = AlphaShape::of(&scaled).unwrap();
+        assert!((shape.connecting_radius() / unit / expected - 1.0).abs() < 1e-9, "{exponent}");
+        assert_eq!(
+            shape.mesh(expected * unit * 1.001).unwrap().triangles,
+            own.mesh(expected * 1.001).unwrap().triangles
+        );
+        let crate::Hull::Solid(hull) = crate::Hull::of(&scaled).unwrap() else { panic!("flat") };
+        assert!(scaled.iter().all(|p| hull.contains(*p)), "{exponent}");
+        assert!(!hull.contains(scaled[0] * 100.0) && !hull.contains(DVec3::splat(1e300)));
+    }
+    let wild = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z * 1e-200, DVec3::ONE];
+    assert!(matches!(AlphaShape::of(&wild), Err(AlphaError::Points(_))));
+}

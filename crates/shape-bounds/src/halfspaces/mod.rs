@@ -17,7 +17,6 @@ pub use polyhedron::Polyhedron;
 pub(crate) use recession::OPEN;
 
 use crate::hull::{Hull, MOST_POINTS, SolidHull};
-use crate::predicates::above;
 use crate::sample::HalfSpace;
 use crate::twofold::cross_of_differences;
 use contact_kinematics::Direction;
@@ -119,10 +118,7 @@ impl Intersection {
 }
 
 fn strictly_contains_origin(dual: &SolidHull) -> bool {
-    (0..dual.triangles().len()).all(|f| {
-        let [a, b, c] = dual.corners(f);
-        above(a, b, c, DVec3::ZERO) < 0.0
-    })
+    (0..dual.triangles().len()).all(|f| dual.above_facet(f, DVec3::ZERO) < 0.0)
 }
 
 /// The least distance from the origin, which is inside, to the plane of a facet: one over that of the farthest corner of the

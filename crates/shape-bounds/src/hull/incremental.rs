@@ -2,8 +2,9 @@
 
 use super::build::Builder;
 use super::facets::MOST_POINTS;
+use super::scaling::{ExactRange, exact_scale};
 use super::seed::{Seed, find_seed};
-use super::{Hull, PointsError, SolidHull, scaling};
+use super::{Hull, PointsError, SolidHull};
 use crate::predicates::{above, projection_axis};
 use glam::DVec3;
 
@@ -62,7 +63,7 @@ impl IncrementalHull {
         if index >= MOST_POINTS {
             return Err(PointsError::TooMany { count: index + 1, limit: MOST_POINTS });
         }
-        match scaling::exact_scale(&[point]) {
+        match exact_scale(&[point], ExactRange::ORIENTATION) {
             Ok(1.0) => Ok(()),
             Ok(_) => {
                 let size = point.abs();

@@ -19,6 +19,7 @@ pub use error::PointsError;
 pub(crate) use facets::MOST_POINTS;
 pub use incremental::IncrementalHull;
 pub(crate) use order::insertion_order;
+pub(crate) use scaling::{ExactRange, exact_scale};
 pub use solid::SolidHull;
 pub use walk::SupportWalk;
 
@@ -60,7 +61,7 @@ impl Hull {
         if points.len() > limit {
             return Err(PointsError::TooMany { count: points.len(), limit });
         }
-        let scale = scaling::exact_scale(points)?;
+        let scale = exact_scale(points, ExactRange::ORIENTATION)?;
         let scaled: Vec<DVec3>;
         let working = if scale == 1.0 {
             points

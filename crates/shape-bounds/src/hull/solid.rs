@@ -20,6 +20,8 @@ pub struct SolidHull {
     neighbours: Vec<[u32; 3]>,
     /// For each corner, one of the facets at it.
     facet_at: Vec<u32>,
+    /// The power of two by which coordinates are multiplied for exact signs.
+    scale: f64,
 }
 
 impl SolidHull {
@@ -59,13 +61,13 @@ impl SolidHull {
                 neighbours.push(facet.neighbours.map(|g| numbers[g as usize]));
             }
         }
-        Self { vertices, sources, triangles, neighbours, facet_at }
+        Self { vertices, sources, triangles, neighbours, facet_at, scale }
     }
 
     /// The same hull with facets numbered by the first of their corners, so that whoever goes through them finds the corners
     /// in the cache. The order of the builder is that of insertion and reuse.
     pub(crate) fn with_facets_along_corners(self) -> Self {
-        let Self { vertices, sources, triangles, neighbours, mut facet_at } = self;
+        let Self { vertices, sources, triangles, neighbours, mut facet_at, scale } = self;
         let first = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]) as usize;
         let mut next = vec![0; vertices.len() + 1];
         triangles.iter().for_each(|t| next[first(t) + 1] += 1);
@@ -82,7 +84,7 @@ impl SolidHull {
             .map(|f| (triangles[*f as usize], neighbours[*f as usize].map(|g| numbers[g as usize])))
             .unzip();
         facet_at.iter_mut().for_each(|facet| *facet = numbers[*facet as usize]);
-        Self { vertices, sources, triangles, neighbours, facet_at }
+        Self { vertices, sources, triangles, neighbours, facet_at, scale }
     }
 
     /// Corners in m.
@@ -215,10 +217,18 @@ impl SolidHull {
     /// Whether `point` is inside or on the surface; exact.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
-        (0..self.triangles.len()).all(|f| {
-            let [a, b, c] = self.corners(f);
-            above(a, b, c, point) <= 0.0
-        })
+        // A point out of the range of the predicate is out of that of the corners.
+        let low = self.vertices.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let high = self.vertices.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        point.cmpge(low).all()
+            && point.cmple(high).all()
+            && (0..self.triangles.len()).all(|f| self.above_facet(f, point) <= 0.0)
+    }
+
+    /// Positive where `point`, in the range of the corners, is strictly outside of a facet's plane, zero on it; exact.
+    pub(crate) fn above_facet(&self, facet: usize, point: DVec3) -> f64 {
+        let [a, b, c] = self.corners(facet).map(|p| p * self.scale);
+        above(a, b, c, point * self.scale)
     }
 
     /// How far `point` is outside, in m: the largest signed distance from a facet's plane, negative inside.
@@ -226,12 +236,15 @@ impl SolidHull {
     /// A point strictly outside is at least this far from the hull.
     #[must_use]
     pub fn excess(&self, point: DVec3) -> f64 {
+        // In units of the size, products of extreme coordinates stay in range.
+        let size = self.vertices.iter().map(|v| v.abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
+        let unit = |p: DVec3| p / size;
         (0..self.triangles.len())
             .filter_map(|f| {
-                let [a, b, c] = self.corners(f);
+                let [a, b, c] = self.corners(f).map(unit);
                 let normal = (b - a).cross(c - a);
                 let length = normal.length();
-                (length > 0.0).then(|| normal.dot(point - a) / length)
+                (length > 0.0).then(|| normal.dot(unit(point) - a) / length * size)
             })
             .fold(f64::NEG_INFINITY, f64::max)
     }
