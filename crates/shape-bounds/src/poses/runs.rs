@@ -54,15 +54,20 @@ pub(super) fn agreed(
         propped: false,
     };
     while known.left_out.len() < most {
-        let found = contradicting(&known.kept, BETTER * known.level, most - known.left_out.len())?;
+        // Where nothing is left at half of the level, or a side is open without the runs, leaving them out is no help.
+        let Some(found) =
+            harmless(contradicting(&known.kept, BETTER * known.level, most - known.left_out.len()))?
+        else {
+            break;
+        };
         let rest = without(&known.kept, &found);
         if found.is_empty() || rest.iter().filter(|o| o.touching).count() < FEWEST {
             break;
         }
-        let level = match consistent_level(&rest, rule) {
-            Ok(level) if level <= BETTER * known.level => level,
-            Ok(_) | Err(PoseError::Open { .. }) => break,
-            Err(error) => return Err(error),
+        let Some(level) =
+            harmless(consistent_level(&rest, rule))?.filter(|level| *level <= BETTER * known.level)
+        else {
+            break;
         };
         known.left_out.extend(found);
         known = Agreed { kept: rest, level, ..known };
@@ -74,6 +79,15 @@ pub(super) fn agreed(
         Some(of_runs) => Agreed { left_out: [known.left_out, of_runs.left_out].concat(), ..of_runs },
         None => known,
     })
+}
+
+/// A result, or none where the half-spaces close around nothing.
+fn harmless<T>(result: Result<T, PoseError>) -> Result<Option<T>, PoseError> {
+    match result {
+        Ok(value) => Ok(Some(value)),
+        Err(PoseError::Open { .. } | PoseError::HalfSpaces(_)) => Ok(None),
+        Err(error) => Err(error),
+    }
 }
 
 /// The largest distance of a corner of the bound from the origin, in m.
