@@ -26,7 +26,7 @@ const HALVINGS: usize = 4;
 /// The rule for a body that something else than the plane props up or pushes, so that what seems to touch need not:
 /// `trusted` is the share of the runs, not of the poses, that do not contradict the others at the level.
 ///
-/// The form and the factors come from the even-numbered tosses of the real elbow of `docs/bounds-tosses.md`, forty hundreds of them;
+/// The form and the factors come from the even-numbered tosses of the real elbow of `docs/bounds.md`, twenty hundreds of them;
 /// the odd-numbered ones check it.
 pub(super) const PROPPED: PoseRule =
     PoseRule { kink: 1.0, gap: 0.0, trusted: 0.8, factors: [1.4, 2.0], scarcity: 0.57 };
