@@ -100,7 +100,7 @@ fn fit(made: &Reconstruction) -> Result<EllipsoidFit, CliError> {
     let some: Vec<_> =
         made.contacts.iter().step_by(step).map(|c| NoisyContact { contact: *c, noise }).collect();
     let options = FitOptions { noise_level: NoiseLevel::Estimated, ..FitOptions::default() };
-    let fit = ShapeFit::of(&some, ShapeFamily::Ellipsoid, &options)?;
+    let fit = ShapeFit::nearest(&some, ShapeFamily::Ellipsoid, &options)?;
     let FittedBody::Ellipsoid(body) = fit.body() else {
         // The family that was asked for is the one that is fitted.
         return Err(ExportError::NoBound { name: "ellipsoid", reason: "the fit is no ellipsoid" }.into());

@@ -1,7 +1,9 @@
 //! Which family: no more parameters than the contacts call for.
 
 use super::solve::{Solution, thinned};
-use super::{Data, FitError, FitOptions, NoiseLevel, ShapeFamily, ShapeFit, log_determinants, refute};
+use super::{
+    Data, FitError, FitOptions, NoiseLevel, Search, ShapeFamily, ShapeFit, log_determinants, refute,
+};
 use crate::noise::NoisyContact;
 
 /// A family that was tried.
@@ -111,14 +113,14 @@ fn compared(
     let mut fits: Vec<ShapeFit> = Vec::new();
     let mut candidates = Vec::with_capacity(families.len());
     let mut exact: Option<ShapeFamily> = None;
+    // Where a smaller family fits, what a hard search would find is not wanted.
+    let search = |none_yet: bool| if none_yet { Search::Thorough } else { Search::Quick };
     for &family in families {
         let needless = exact.filter(|e| e.parameters() <= family.parameters());
         let fitted = match needless {
             Some(exact) => Err(FitError::Needless { family, exact }),
-            // Where a smaller family fits, what a hard search would find is not wanted.
-            None => {
-                ShapeFit::nearest(contacts, family, options, fits.is_empty()).and_then(ShapeFit::unrefuted)
-            }
+            None => ShapeFit::likeliest(contacts, family, options, search(fits.is_empty()))
+                .and_then(ShapeFit::unrefuted),
         };
         let outcome = fitted.map(|fit| {
             if fit.is_exact {

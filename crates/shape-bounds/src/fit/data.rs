@@ -12,9 +12,22 @@ use nalgebra::DVector;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Data {
     pub(super) size: f64,
-    centre: DVec3,
+    pub(super) centre: DVec3,
     pub(super) noise_level: NoiseLevel,
     pub(super) smallest_radius: f64,
+    /// Whether a shape is given up as soon as the contacts refute it.
+    pub(super) refusing: bool,
+}
+
+/// How a shape is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Search {
+    /// From few starts, and given up when it is refuted.
+    Quick,
+    /// From more starts where the contacts refute what few lead to.
+    Thorough,
+    /// As thorough, and taken though it is refuted.
+    Nearest,
 }
 
 impl Data {
@@ -31,7 +44,7 @@ impl Data {
         if !(smallest_radius >= 0.0 && smallest_radius.is_finite()) {
             return Err(FitError::Radius(smallest_radius));
         }
-        Ok(Self { size, centre, noise_level: options.noise_level, smallest_radius })
+        Ok(Self { size, centre, noise_level: options.noise_level, smallest_radius, refusing: true })
     }
 
     pub(super) fn model(&self, family: ShapeFamily, found: usize) -> Result<Box<dyn Model>, FitError> {
@@ -96,13 +109,13 @@ pub(super) fn ball(model: &dyn Model, contacts: &[NoisyContact], data: &Data) ->
 const EXPONENTS: [[f64; 2]; 4] = [[0.5, 0.5], [0.5, 1.5], [1.5, 0.5], [1.5, 1.5]];
 
 /// A superquadric may have its first exponent along any of the ellipsoid's axes, and its second about axes that are turned
-/// by an eighth: the best of six starts is kept if the contacts do not refute it, else, if the search is `thorough`, that of
+/// by an eighth: the best of six starts is kept if the contacts do not refute it, else, unless the search is quick, that of
 /// thirty.
 pub(super) fn superquadric(
     model: &dyn Model,
     contacts: &[NoisyContact],
     data: &Data,
-    thorough: bool,
+    search: Search,
 ) -> Result<Solution, FitError> {
     let family = ShapeFamily::Superquadric;
     let start = ball(&EllipsoidModel, contacts, data);
@@ -125,7 +138,7 @@ pub(super) fn superquadric(
     let problem = Spatial { model, contacts, size: data.size };
     let enough = |found: &Solution| refute::is_likely(found, data, 3 * contacts.len() - model.count());
     let smooth = solve(&problem, starts(&[[1.0, 1.0]]), enough);
-    if !thorough || smooth.as_ref().is_ok_and(&enough) {
+    if search == Search::Quick || smooth.as_ref().is_ok_and(&enough) {
         return smooth.map_err(|e| into_error(e, model, family, data.size));
     }
     let rough = solve(&problem, starts(&EXPONENTS), enough);

@@ -3,7 +3,7 @@
 use super::information::SquareRoot;
 use super::levenberg::{ITERATIONS, Problem, iterate};
 use super::solve::{Spatial, linearise};
-use super::{Data, FitError, FitOptions, ShapeFamily, ShapeFit, check_contact};
+use super::{Data, FitError, FitOptions, Search, ShapeFamily, ShapeFit, check_contact};
 use crate::noise::NoisyContact;
 use glam::DVec3;
 use nalgebra::DVector;
@@ -110,7 +110,7 @@ impl IncrementalFit {
 
     fn relinearised(&self) -> Result<Linear, FitError> {
         let fit = match &self.linear {
-            None => ShapeFit::nearest(&self.contacts, self.family, &self.options, true)?,
+            None => ShapeFit::likeliest(&self.contacts, self.family, &self.options, Search::Nearest)?,
             Some(linear) => {
                 let data = Data::check(&self.contacts, &self.options)?;
                 let model = data.model(self.family, self.contacts.len())?;
@@ -123,7 +123,9 @@ impl IncrementalFit {
                             contacts: self.contacts.len(),
                         });
                     }
-                    Err(_) => ShapeFit::nearest(&self.contacts, self.family, &self.options, true)?,
+                    Err(_) => {
+                        ShapeFit::likeliest(&self.contacts, self.family, &self.options, Search::Nearest)?
+                    }
                 }
             }
         };

@@ -117,13 +117,16 @@ pub(crate) fn best_of<P: Problem>(
     ends(problem, starts)?.into_iter().next().map(|(theta, _)| theta).ok_or(Unsolved::NotConverged(0, None))
 }
 
+/// Parameters with the sum of squares there.
+pub(crate) type End = (DVector<f64>, f64);
+
 /// Where several starts lead, with the sums of squares there, the smallest first; an error if none leads anywhere. A start
 /// that is not at rest after [`APPROACH`] iterations counts as far as it came: with normals taken as exact, a surface with
 /// flats and edges is a rough problem.
 pub(crate) fn ends<P: Problem>(
     problem: &P,
     starts: Vec<DVector<f64>>,
-) -> Result<Vec<(DVector<f64>, f64)>, Unsolved<P::Contact>> {
+) -> Result<Vec<End>, Unsolved<P::Contact>> {
     let mut ends = Vec::with_capacity(starts.len());
     let mut failure = Unsolved::NotConverged(0, None);
     for start in starts {

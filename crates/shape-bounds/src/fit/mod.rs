@@ -31,7 +31,7 @@ use crate::noise::NoisyContact;
 use contact_kinematics::{
     CurvatureRadii, Direction, PolynomialSupport, Sphere, SupportFunction, SupportJet, Translated,
 };
-use data::{Data, ball, check_contact, superquadric};
+use data::{Data, Search, ball, check_contact, superquadric};
 use family::{EllipsoidModel, HarmonicModel, Model, SphereModel, SuperquadricModel};
 use glam::DVec3;
 use information::SquareRoot;
@@ -157,7 +157,7 @@ impl ShapeFit {
         family: ShapeFamily,
         options: &FitOptions,
     ) -> Result<Self, FitError> {
-        Self::nearest(contacts, family, options, true)?.unrefuted()
+        Self::likeliest(contacts, family, options, Search::Thorough)?.unrefuted()
     }
 
     fn unrefuted(self) -> Result<Self, FitError> {
@@ -167,18 +167,31 @@ impl ShapeFit {
         }
     }
 
-    /// The likeliest shape, refuted or not; `thorough` tries more starts where the contacts refute what few lead to.
-    fn nearest(
+    /// The likeliest shape of a family though the contacts may refute it, where the nearest such shape is wanted whatever the body is.
+    ///
+    /// # Errors
+    /// Those of [`Self::of`] but for the last.
+    pub fn nearest(
         contacts: &[NoisyContact],
         family: ShapeFamily,
         options: &FitOptions,
-        thorough: bool,
     ) -> Result<Self, FitError> {
-        let data = Data::check(contacts, options)?;
+        Self::likeliest(contacts, family, options, Search::Nearest)
+    }
+
+    /// The likeliest shape, which knows whether it is refuted.
+    fn likeliest(
+        contacts: &[NoisyContact],
+        family: ShapeFamily,
+        options: &FitOptions,
+        search: Search,
+    ) -> Result<Self, FitError> {
+        let refusing = search != Search::Nearest;
+        let data = Data { refusing, ..Data::check(contacts, options)? };
         let model = data.model(family, contacts.len())?;
         let model = model.as_ref();
         let solution = match family {
-            ShapeFamily::Superquadric => superquadric(model, contacts, &data, thorough)?,
+            ShapeFamily::Superquadric => superquadric(model, contacts, &data, search)?,
             _ => {
                 let start = ball(model, contacts, &data);
                 let problem = Spatial { model, contacts, size: data.size };
@@ -241,13 +254,17 @@ impl ShapeFit {
             }
             ShapeFamily::Superquadric => FittedBody::Superquadric(SuperquadricModel::body(&solution.theta)?),
             ShapeFamily::Harmonics { degree } => {
-                // A shape that is refuted before it is held is so after.
-                let free = HarmonicModel::body(&solution.theta)?;
-                let left = residual(&FittedBody::Harmonics(free), &solution, contacts);
-                refute::check(family, contacts, &solution, data, (left, degrees_of_freedom))?;
-                // The truth is a convex body, so that a projection is no further than noise takes the estimate from the truth.
-                let farthest = refute::chi_squared_quantile(model.count()).sqrt()
-                    * noise_factor(&solution, data, degrees_of_freedom);
+                let farthest = if data.refusing {
+                    // A shape that is refuted before it is held is so after.
+                    let free = HarmonicModel::body(&solution.theta)?;
+                    let left = residual(&FittedBody::Harmonics(free), &solution, contacts);
+                    refute::check(family, contacts, &solution, data, (left, degrees_of_freedom))?;
+                    // The truth is a convex body: a projection is no further than noise takes the estimate from it.
+                    refute::chi_squared_quantile(model.count()).sqrt()
+                        * noise_factor(&solution, data, degrees_of_freedom)
+                } else {
+                    f64::INFINITY
+                };
                 let (theta, root) = (&solution.theta, &solution.system.root);
                 let held = convex::hold(degree, theta, root, data.smallest_radius, farthest)?;
                 if held.active > 0 {

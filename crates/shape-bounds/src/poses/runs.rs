@@ -26,7 +26,7 @@ const HALVINGS: usize = 4;
 /// The rule for a body that something else than the plane props up or pushes, so that what seems to touch need not:
 /// `trusted` is the share of the runs, not of the poses, that do not contradict the others at the level.
 ///
-/// The form and the factors come from the even-numbered tosses of the real elbow of `docs/bounds-tosses.md`, forty hundreds of them;
+/// The form and the factors come from the even-numbered tosses of the real elbow of `docs/bounds.md`, twenty hundreds of them;
 /// the odd-numbered ones check it.
 pub(super) const PROPPED: PoseRule =
     PoseRule { kink: 1.0, gap: 0.0, trusted: 0.8, factors: [1.4, 2.0], scarcity: 0.57 };
@@ -54,15 +54,20 @@ pub(super) fn agreed(
         propped: false,
     };
     while known.left_out.len() < most {
-        let found = contradicting(&known.kept, BETTER * known.level, most - known.left_out.len())?;
+        // Where nothing is left at half of the level, or a side is open without the runs, leaving them out is no help.
+        let Some(found) =
+            harmless(contradicting(&known.kept, BETTER * known.level, most - known.left_out.len()))?
+        else {
+            break;
+        };
         let rest = without(&known.kept, &found);
         if found.is_empty() || rest.iter().filter(|o| o.touching).count() < FEWEST {
             break;
         }
-        let level = match consistent_level(&rest, rule) {
-            Ok(level) if level <= BETTER * known.level => level,
-            Ok(_) | Err(PoseError::Open { .. }) => break,
-            Err(error) => return Err(error),
+        let Some(level) =
+            harmless(consistent_level(&rest, rule))?.filter(|level| *level <= BETTER * known.level)
+        else {
+            break;
         };
         known.left_out.extend(found);
         known = Agreed { kept: rest, level, ..known };
@@ -74,6 +79,15 @@ pub(super) fn agreed(
         Some(of_runs) => Agreed { left_out: [known.left_out, of_runs.left_out].concat(), ..of_runs },
         None => known,
     })
+}
+
+/// A result, or none where the half-spaces close around nothing.
+fn harmless<T>(result: Result<T, PoseError>) -> Result<Option<T>, PoseError> {
+    match result {
+        Ok(value) => Ok(Some(value)),
+        Err(PoseError::Open { .. } | PoseError::HalfSpaces(_)) => Ok(None),
+        Err(error) => Err(error),
+    }
 }
 
 /// The largest distance of a corner of the bound from the origin, in m.

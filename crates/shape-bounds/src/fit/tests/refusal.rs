@@ -78,7 +78,7 @@ fn harmonics_are_held_convex_and_nearer_to_the_truth() {
         held += 1;
         // The best harmonic description of the truth has radii above the limit as well, so projecting is no loss.
         let clean = exact(&body, scattered(400, &mut s));
-        let truth = ShapeFit::nearest(&clean, family, &FitOptions::default(), true).unwrap();
+        let truth = ShapeFit::nearest(&clean, family, &FitOptions::default()).unwrap();
         assert!(truth.curvature_radii().min > limit && truth.statistics().active_constraints == 0);
         let far = |theta: &DVector<f64>| (free.system.root.triangle() * (theta - truth.parameters())).norm();
         assert!(far(&convex.theta) < far(&free.theta), "{} {}", far(&convex.theta), far(&free.theta));
