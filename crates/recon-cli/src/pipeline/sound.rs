@@ -6,9 +6,9 @@ use glam::DMat3;
 use recon::contact_kinematics::{CurvatureRadii, CurvePoint};
 use recon::observer::{MotionEstimate, PoseCovariance};
 use recon::shape_bounds::{
-    BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, NoiseDoubt, NoisyContact,
-    Outlier, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, correlated_noise, estimate_noise,
-    with_noise_as_found, without_outliers,
+    BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, NoiseDoubt,
+    NoisyContact, Outlier, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, correlated_noise,
+    estimate_noise, with_noise_as_found, without_outliers,
 };
 use recon_io::{Bound, Bounds, brief_to};
 use serde_json::{Value, json};
