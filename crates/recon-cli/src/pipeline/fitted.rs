@@ -160,6 +160,7 @@ where
         |i| json!({ "name": names[i], "value": values[i], "deviation": covariance[(i, i)].max(0.0).sqrt() }),
     );
     json!({
+        // One that does not come to rest is an error, one that the contacts refute is refused.
         "status": "fitted",
         "family": family,
         "parameters": parameters.collect::<Vec<_>>(),
@@ -168,8 +169,6 @@ where
 }
 
 fn add_statistics(report: &mut Value, of: &FitStatistics, equations: f64, stated: bool) {
-    // A fit that does not come to rest is an error.
-    report["status"] = json!(format!("{:?}", Status::Converged));
     report["residual_m"] = json!(of.residual);
     report["condition"] = json!(of.condition);
     report["weakest_deviation_over_size"] = json!(of.weakest_deviation);

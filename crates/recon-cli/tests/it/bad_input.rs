@@ -148,7 +148,7 @@ fn bad_contacts_are_refused() {
     check("x,y,z,nx,ny,nz\n1,0,0,1,0,0\n", &["at least 4"]);
     // Two half-spaces that face away from each other.
     let apart = "1,0,0,-1,0,0\n-1,0,0,1,0,0\n0,1,0,0,1,0\n0,-1,0,0,-1,0\n0,0,1,0,0,1\n0,0,-1,0,0,-1\n";
-    check(&format!("x,y,z,nx,ny,nz\n{apart}"), &["upper bound"]);
+    check(&format!("x,y,z,nx,ny,nz\n{apart}"), &["beyond the tangent plane"]);
 }
 
 #[test]

@@ -52,6 +52,7 @@ fn contradictory_contacts_are_not_bounds_in_silence() {
     let cube = "x,y,z,nx,ny,nz\n0.5,0,0,1,0,0\n-0.5,0,0,-1,0,0\n0,0.5,0,0,1,0\n0,-0.5,0,0,-1,0\n0,0,0.5,0,0,1\n0,0,-0.5,0,0,-1\n";
     scratch.write("cube.csv", &format!("{cube}3,3,0,1,0,0\n"));
     let run = scratch.run(&["bounds", "cube.csv", "-o", "out"]);
-    assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);
-    assert!(run.stdout.contains("contradict each other"), "{}", run.stdout);
+    assert_eq!(run.code, Some(3), "{}{}", run.stdout, run.stderr);
+    assert!(run.stderr.contains("beyond the tangent plane"), "{}", run.stderr);
+    assert!(!scratch.path().join("out").exists());
 }

@@ -236,8 +236,10 @@ impl SolidHull {
     /// A point strictly outside is at least this far from the hull.
     #[must_use]
     pub fn excess(&self, point: DVec3) -> f64 {
-        // In units of the size, products of extreme coordinates stay in range.
-        let size = self.vertices.iter().map(|v| v.abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
+        // In units of about the size, products of extreme coordinates stay in range; a power of two, since a facet whose
+        // corners nearly coincide has another plane when these are rounded.
+        let largest = self.vertices.iter().map(|v| v.abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
+        let size = largest.log2().floor().exp2();
         let unit = |p: DVec3| p / size;
         (0..self.triangles.len())
             .filter_map(|f| {
