@@ -15,7 +15,7 @@ const WORST: usize = 5_000;
 const CONTACTS: usize = 200;
 
 pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let largest: usize = crate::words().nth(0).map_or(Ok(1_000_000), |a| a.parse())?;
+    let largest: usize = crate::words().next().map_or(Ok(1_000_000), |a| a.parse())?;
     println!(
         "contacts,corners_checked,error_median,error_99,error_largest,error_of_worst_determined,residual_largest,contacts_checked,cut_off"
     );

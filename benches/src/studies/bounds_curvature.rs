@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-12;
 const BALL: f64 = 4.0 / 3.0 * std::f64::consts::PI;
 
 pub(crate) fn main() -> Result<(), Failure> {
-    let bodies: u64 = crate::words().nth(0).map_or(Ok(10_000), |a| a.parse())?;
+    let bodies: u64 = crate::words().next().map_or(Ok(10_000), |a| a.parse())?;
     std::fs::create_dir_all("docs/charts/bounds")?;
     let (mut broken, mut skipped) = (0, 0);
     for seed in 0..bodies {

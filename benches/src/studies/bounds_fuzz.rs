@@ -23,7 +23,7 @@ struct Tally {
 }
 
 pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let cases: usize = crate::words().nth(0).map_or(Ok(100_000), |a| a.parse())?;
+    let cases: usize = crate::words().next().map_or(Ok(100_000), |a| a.parse())?;
     let per_kind = cases.div_ceil(InputKind::ALL.len());
     // A panic of parry's is one of its refusals, not news.
     std::panic::set_hook(Box::new(|_| {}));

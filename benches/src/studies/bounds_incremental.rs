@@ -8,7 +8,7 @@ use shape_bounds::generators::{curve_contacts, ellipsoid_contacts};
 use shape_bounds::{ContactSample, IncrementalBounds, ShapeBounds};
 
 pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let count: usize = crate::words().nth(0).map_or(Ok(10_000), |a| a.parse())?;
+    let count: usize = crate::words().next().map_or(Ok(10_000), |a| a.parse())?;
     println!(
         "input,contacts,microseconds_per_contact,microseconds_to_start_over,microseconds_to_largest_gap"
     );

@@ -15,7 +15,7 @@ const RADII: CurvatureRadii = CurvatureRadii { min: 0.4, max: 6.25 };
 const DIRECTIONS: usize = 500;
 
 pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let runs: u64 = crate::words().nth(0).map_or(Ok(1000), |a| a.parse())?;
+    let runs: u64 = crate::words().next().map_or(Ok(1000), |a| a.parse())?;
     println!("# Bounds under noise\n");
     println!(
         "Made by `cargo xtask study bounds_noise {runs}`. Ellipsoid with semi-axes 2.5, 2, 1 m, {CONTACTS} contacts on three \

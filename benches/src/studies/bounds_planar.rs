@@ -19,7 +19,7 @@ use std::fmt::Write as _;
 type Failure = Box<dyn std::error::Error>;
 
 pub(crate) fn main() -> Result<(), Failure> {
-    let runs: u64 = crate::words().nth(0).map_or(Ok(1000), |a| a.parse())?;
+    let runs: u64 = crate::words().next().map_or(Ok(1000), |a| a.parse())?;
     std::fs::create_dir_all("docs/charts/bounds")?;
     let mut csv = String::from("what,n,value\n");
     timing(&mut csv)?;

@@ -18,7 +18,7 @@ const LIMIT: Duration = Duration::from_secs(150);
 type Failure = Box<dyn std::error::Error>;
 
 pub(crate) fn main() -> Result<(), Failure> {
-    let largest: usize = crate::words().nth(0).map_or(Ok(1_000_000), |a| a.parse())?;
+    let largest: usize = crate::words().next().map_or(Ok(1_000_000), |a| a.parse())?;
     let only = crate::words().nth(1);
     let wanted = |name: &str| only.as_deref().is_none_or(|o| o == name);
     let folder = std::env::temp_dir().join(format!("bounds-timing-{}", std::process::id()));

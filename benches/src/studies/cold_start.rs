@@ -78,7 +78,7 @@ fn kind(reason: &Reason) -> &'static str {
 }
 
 pub(crate) fn main() -> Result<(), Failure> {
-    let scenes: usize = crate::words().nth(0).map_or(Ok(200), |a| a.parse())?;
+    let scenes: usize = crate::words().next().map_or(Ok(200), |a| a.parse())?;
     let mut random = Random::new(1);
     let (mut known, mut unknown) = (Tally::default(), Tally::default());
     while known.times.len() < scenes {

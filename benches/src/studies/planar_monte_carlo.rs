@@ -214,7 +214,7 @@ fn print_row(cell: &str, estimator: &str, bound: &[f64; 3], tally: &Tally) {
 }
 
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
-    let runs: u32 = crate::words().nth(0).map_or(Ok(100), |s| s.parse())?;
+    let runs: u32 = crate::words().next().map_or(Ok(100), |s| s.parse())?;
     let scene = scene()?;
     let weight = scene.object.mass.mass() * scene.object.gravity;
     // Mean of `runs` chi-squared variables of 5 degrees of freedom, over 5: normal to good accuracy.

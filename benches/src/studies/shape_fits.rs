@@ -103,7 +103,7 @@ fn normals(count: usize, curves: bool, s: &mut Source) -> Vec<DVec3> {
 }
 
 pub(crate) fn main() -> Result<(), Failure> {
-    let runs: u64 = crate::words().nth(0).map_or(Ok(200), |a| a.parse())?;
+    let runs: u64 = crate::words().next().map_or(Ok(200), |a| a.parse())?;
     println!("# Shapes fitted to contacts\n");
     println!(
         "`cargo xtask study shape_fits {runs}`: seeded runs, each with a new body, new contacts and new noise; points are off"

@@ -80,7 +80,7 @@ impl Errors {
 }
 
 pub(crate) fn main() -> Result<(), Failure> {
-    let repeats: usize = crate::words().nth(0).map_or(Ok(20), |a| a.parse())?;
+    let repeats: usize = crate::words().next().map_or(Ok(20), |a| a.parse())?;
     let cases = cases()?;
     println!("# Three palms: time beside error\n\nMade by `cargo xtask study three_palms_timing`.\n");
     println!(

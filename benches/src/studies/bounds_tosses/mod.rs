@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
-    let most: u32 = crate::words().nth(0).map_or(Ok(u32::MAX), |a| a.parse())?;
+    let most: u32 = crate::words().next().map_or(Ok(u32::MAX), |a| a.parse())?;
     let folder = crate::words().nth(1).map_or_else(default_folder, PathBuf::from);
     if most == 0 {
         return real::print();

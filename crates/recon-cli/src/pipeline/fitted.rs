@@ -6,7 +6,6 @@ use crate::error::CliError;
 use glam::DVec2;
 use recon::contact_kinematics::planar::RadiusFunction;
 use recon::contact_kinematics::{Direction, SupportFunction};
-use recon::observer::Status;
 use recon::shape_bounds::planar::{self, OutlineFamily, OutlineFit};
 use recon::shape_bounds::{
     Candidate, ContactNoise, ContactSample, FitError, FitOptions, FitStatistics, NoiseLevel, NoisyContact,

@@ -72,15 +72,15 @@ fn along(c: &NoisyContact) -> f64 {
     (0.5 * (a.dot(c.noise.point * a) + b.dot(c.noise.point * b))).max(0.0).sqrt()
 }
 
-/// `curves` with noise no smaller than they show themselves, and what was stated too small. Curves of fewer than 30 contacts, and those
-/// that bend too much from one contact to the next, do not tell.
+/// `curves` with noise no smaller than they show themselves, and what was stated too small. Curves of fewer than 30 contacts, those
+/// that bend too much from one contact to the next, and lists in no order do not tell.
 #[must_use]
 pub fn with_noise_as_found(curves: &[Vec<NoisyContact>]) -> (Vec<Vec<NoisyContact>>, Vec<NoiseDoubt>) {
     let mut raised = curves.to_vec();
     let mut doubts = Vec::new();
     let each = FALSE_ALARM / (PARTS.len() * curves.len().max(1)) as f64;
     let limit = quantile::normal(each);
-    for (curve, contacts) in raised.iter_mut().enumerate().filter(|(_, contacts)| contacts.len() >= FEWEST) {
+    for (curve, contacts) in raised.iter_mut().enumerate().filter(|(_, contacts)| is_traced(contacts)) {
         for part in &PARTS {
             let stated = contacts.iter().map(part.stated).fold(0.0, f64::max);
             let (here, next) =
@@ -104,7 +104,7 @@ pub fn correlated_noise(curves: &[Vec<NoisyContact>]) -> Option<NoiseDoubt> {
     let limit = quantile::normal(FALSE_ALARM / PARTS.len() as f64);
     let judged = |part: &Part| {
         let (mut logarithm, mut variance, mut squares) = (0.0, 0.0, [0.0; 3]);
-        for contacts in curves.iter().filter(|contacts| contacts.len() >= FEWEST) {
+        for contacts in curves.iter().filter(|contacts| is_traced(contacts)) {
             let found = [1, 2, 4].map(|spacing| part.deviation(contacts, ORDER_OF_ALIKE, spacing));
             let next = part.deviation(contacts, ORDER_OF_ALIKE + 1, 1).0;
             // Where the next order takes away more, the curve is left in this one.
@@ -122,6 +122,16 @@ pub fn correlated_noise(curves: &[Vec<NoisyContact>]) -> Option<NoiseDoubt> {
         (z > limit && noise).then(|| NoiseDoubt::Correlated { ratio: (two / one).sqrt(), p_value: tail(z) })
     };
     PARTS.iter().find_map(judged)
+}
+
+/// Whether there are enough contacts, each near the one before: of contacts in no order, neighbours are as far apart as any two, and
+/// their differences say nothing of noise.
+fn is_traced(contacts: &[NoisyContact]) -> bool {
+    let mean = contacts.iter().map(|c| c.contact.point).sum::<DVec3>() / contacts.len().max(1) as f64;
+    let mut steps: Vec<f64> =
+        contacts.windows(2).map(|pair| pair[0].contact.point.distance(pair[1].contact.point)).collect();
+    let mut reach: Vec<f64> = contacts.iter().map(|c| c.contact.point.distance(mean)).collect();
+    contacts.len() >= FEWEST && median(&mut steps) < 0.5 * median(&mut reach)
 }
 
 /// No less than the tail of a standard normal, for all tests together.

@@ -1,6 +1,7 @@
 use super::*;
+use crate::ContactSample;
 use crate::curvature::{CurvatureError, SharpBounds};
-use crate::generators::{AXES, ellipsoid_support, noisy_curves};
+use crate::generators::{AXES, Source, ellipsoid_support, noisy_curves};
 use crate::halfspaces::Intersection;
 use contact_kinematics::CurvatureRadii;
 use glam::DVec3;
@@ -241,6 +242,17 @@ fn alike(level: f64, rho: f64, seed: u64) -> Vec<Vec<crate::ContactSample>> {
         }
     }
     curves
+}
+
+/// Contacts in no order are no curve: what lies between neighbours is the body, not noise.
+#[test]
+fn scattered_contacts_raise_no_alarm_about_their_noise() {
+    let mut s = Source::new(11);
+    let noise = ContactNoise::isotropic(1e-3, 1e-3);
+    let normals = (0..300).map(|_| s.normal3().normalize());
+    let contacts = ContactSample::from_raw(normals.map(|n| (n, n))).unwrap();
+    let scattered = vec![contacts.into_iter().map(|contact| NoisyContact { contact, noise }).collect()];
+    assert_eq!((with_noise_as_found(&scattered).1.len(), correlated_noise(&scattered)), (0, None));
 }
 
 /// Thresholds are odds of false alarms, set on these seeds and proven on others (docs/bounds.md).
