@@ -20,7 +20,7 @@ mod summary;
 mod table;
 mod touches;
 
-pub use check::{CheckError, Fault, check, outline_stands_out, stands_out};
+pub use check::{CheckError, Fault, check, check_unwritten, outline_stands_out, stands_out};
 pub use export::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
 pub use log::{
     LogFileError, LogFileErrorKind, LogReader, parse_log, parse_planar_log, read_log, read_planar_log,

@@ -10,7 +10,7 @@ use crate::progress::Progress;
 use recon::contact_kinematics::CurvatureRadii;
 use recon::contact_kinematics::planar::RadiusBounds;
 use recon::shape_bounds::{ContactSample, PlaneHeight};
-use recon_io::{FolderTarget, Touches, brief, brief_to, read_touches};
+use recon_io::{FolderTarget, Touches, brief, brief_to, check_unwritten, read_touches};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::slice;
@@ -48,8 +48,9 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
         }
     };
     let figures = figures(&made, &what, &about);
-    if let Some(folder) = target {
-        write_bounds_folder(folder, &made, &figures)?;
+    match target {
+        Some(folder) => write_bounds_folder(folder, &made, &figures)?,
+        None => check_unwritten(&figures, &made.surfaces(), &[])?,
     }
     drop(progress);
     console.result(&describe(&made, &what, &about), &figures)?;

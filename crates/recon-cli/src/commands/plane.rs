@@ -6,7 +6,7 @@ use crate::interrupt::while_writing;
 use crate::pipeline::{PlanarBounds, PlanarRequest, fit_words, planar_bounds};
 use glam::DVec2;
 use recon::shape_bounds::planar::ContactSample;
-use recon_io::{FigureCurve, FigurePanel, FolderTarget, brief, brief_to, write_figures};
+use recon_io::{FigureCurve, FigurePanel, FolderTarget, brief, brief_to, check_unwritten, write_figures};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -20,8 +20,9 @@ pub(super) fn run(
     let made = planar_bounds(curves, request)?;
     let count = curves.iter().map(Vec::len).sum::<usize>();
     let figures = figures(&made, count);
-    if let Some(folder) = target {
-        write_folder(folder, &made, &figures)?;
+    match target {
+        Some(folder) => write_folder(folder, &made, &figures)?,
+        None => check_unwritten(&figures, &[], &made.drawn_outlines())?,
     }
     console.result(&describe(&made, count), &figures)?;
     let whole = made.outlines.iter().all(|outline| !outline.is_empty());
@@ -70,10 +71,8 @@ fn write_folder(target: FolderTarget, made: &PlanarBounds, figures: &Value) -> R
     while_writing(|| {
         let mut folder = target.begin()?;
         folder.write("bounds.svg", |to| write_figures(&panels(made), to))?;
-        for (name, outline) in ["lower_bound.csv", "upper_bound.csv"].into_iter().zip(&made.outlines) {
-            if !outline.is_empty() {
-                folder.write(name, |to| corners(outline, to))?;
-            }
+        for (name, outline) in made.drawn_outlines() {
+            folder.write(name, |to| corners(outline, to))?;
         }
         if !made.fitted.is_empty() {
             folder.write("fitted_shape.csv", |to| corners(&made.fitted, to))?;

@@ -3,6 +3,10 @@ use crate::error::CliError;
 use recon::shape_bounds::{ContactSample, Hull, Intersection, Polyhedron, ShapeBounds, SolidHull};
 use recon_io::{Bound, Bounds, MeshError, TriangleMesh, stands_out};
 
+/// Files of the bounds.
+pub(super) const LOWER: &str = "lower_bound.ply";
+pub(super) const UPPER: &str = "upper_bound.ply";
+
 /// Most contacts that the bounds of a picture are made from: about 6000 triangles a body.
 const DRAWN: usize = 1500;
 
@@ -35,6 +39,12 @@ impl BoundsResult {
             ));
         }
         self
+    }
+
+    /// The surfaces of the bounds by the names of their files.
+    pub(crate) fn surfaces(&self) -> Vec<(&'static str, &TriangleMesh)> {
+        let both = [(LOWER, self.lower.as_ref()), (UPPER, self.upper.as_ref())];
+        both.into_iter().filter_map(|(name, mesh)| Some((name, mesh?))).collect()
     }
 
     /// Whether contacts contradict each other by more than is worth a warning.
@@ -74,7 +84,8 @@ fn made(whole: ShapeBounds, contacts: &[ContactSample]) -> Result<BoundsResult, 
             .map(|all| Bound { mesh: few_upper.unwrap_or(all), volume: whole.upper_volume() }),
         largest_gap: whole.largest_gap().map(|gap| gap.distance),
     };
-    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings }.compared())
+    // Half-spaces were moved out to where no contact lies beyond them.
+    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings })
 }
 
 /// What to say where there is no upper bound.

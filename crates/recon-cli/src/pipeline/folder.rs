@@ -1,5 +1,5 @@
 use super::Reconstruction;
-use super::bounds::BoundsResult;
+use super::bounds::{BoundsResult, LOWER, UPPER};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
 use recon_io::{
@@ -28,8 +28,8 @@ pub(crate) fn write_reconstruction_folder(
         folder.write("motion.csv", |to| write_motion(&data.times, &data.motion, to))?;
         folder.write("contact_curves.csv", |to| write_contact_curves(data, to))?;
         folder.write("radius_functions.csv", |to| write_radius_functions(data, to))?;
-        folder.write_mesh("lower_bound.ply", "inside the object; metres, body axes", made.lower.as_ref())?;
-        folder.write_mesh("upper_bound.ply", "around the object; metres, body axes", made.upper.as_ref())?;
+        folder.write_mesh(LOWER, "inside the object; metres, body axes", made.lower.as_ref())?;
+        folder.write_mesh(UPPER, "around the object; metres, body axes", made.upper.as_ref())?;
         for (name, contents) in extras {
             folder.write(name, |to| to.write_all(contents))?;
         }
@@ -52,8 +52,8 @@ pub(crate) fn write_touch_folder(
         let mut folder = Folder(target.begin()?);
         folder.write("motion.csv", |to| write_motion(times, motion, to))?;
         let (lower, upper) = bounds.map_or((None, None), |b| (b.lower.as_ref(), b.upper.as_ref()));
-        folder.write_mesh("lower_bound.ply", "inside the object; metres, body axes", lower)?;
-        folder.write_mesh("upper_bound.ply", "around the object; metres, body axes", upper)?;
+        folder.write_mesh(LOWER, "inside the object; metres, body axes", lower)?;
+        folder.write_mesh(UPPER, "around the object; metres, body axes", upper)?;
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()
     })
@@ -67,8 +67,8 @@ pub(crate) fn write_bounds_folder(
 ) -> Result<(), CliError> {
     while_writing(|| {
         let mut folder = Folder(target.begin()?);
-        folder.write_mesh("lower_bound.ply", "inside the object; metres", made.lower.as_ref())?;
-        folder.write_mesh("upper_bound.ply", "around the object; metres", made.upper.as_ref())?;
+        folder.write_mesh(LOWER, "inside the object; metres", made.lower.as_ref())?;
+        folder.write_mesh(UPPER, "around the object; metres", made.upper.as_ref())?;
         for (name, comment, mesh) in &made.others {
             folder.write_mesh(name, comment, Some(mesh))?;
         }

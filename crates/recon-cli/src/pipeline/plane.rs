@@ -51,6 +51,13 @@ pub(crate) struct PlanarBounds {
 }
 
 impl PlanarBounds {
+    /// The outlines that there are, by the names of their files.
+    pub(crate) fn drawn_outlines(&self) -> Vec<(&'static str, &[DVec2])> {
+        let named =
+            ["lower_bound.csv", "upper_bound.csv"].into_iter().zip(self.outlines.iter().map(Vec::as_slice));
+        named.filter(|(_, outline)| !outline.is_empty()).collect()
+    }
+
     /// The Hausdorff distance of the bounds to the resolution of the directions, m; `None` where a side is open.
     pub(crate) fn largest_gap(&self) -> Option<f64> {
         self.gaps.iter().map(|g| g[1]).reduce(f64::max)

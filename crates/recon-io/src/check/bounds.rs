@@ -42,7 +42,7 @@ struct Bound {
     /// Largest coordinate, m, and the number of terms that `size` is a sum of.
     reach: f64,
     terms: usize,
-    not_convex: Option<String>,
+    not_convex: Option<Fault>,
 }
 
 impl Bound {
@@ -54,13 +54,14 @@ impl Bound {
             boundary: size.area,
             reach,
             terms: surface.triangles.len(),
-            not_convex: surface.not_convex(drawn + DENTS * reach),
+            not_convex: surface.not_convex(file, drawn + DENTS * reach),
         }
     }
 
     fn of_outline(file: &str, outline: &Outline, drawn: f64) -> Self {
         let ((size, boundary), reach) = (outline.size(), outline.reach());
-        let not_convex = outline.not_convex(drawn + DENTS * reach);
+        let dented = |why| Fault::NotConvex { file: file.to_owned(), why };
+        let not_convex = outline.not_convex(drawn + DENTS * reach).map(dented);
         Self { file: file.to_owned(), size, boundary, reach, terms: outline.0.len(), not_convex }
     }
 
@@ -126,9 +127,7 @@ impl Found {
 
     fn check_size(&mut self, bound: &Bound, stated: f64, tolerance: f64, unit: &'static str) {
         let Bound { file, size: found, .. } = bound;
-        if let Some(why) = &bound.not_convex {
-            self.faults.push(Fault::NotConvex { file: file.clone(), why: why.clone() });
-        }
+        self.faults.extend(bound.not_convex.clone());
         if (found - stated).abs() <= tolerance {
             self.held.push(format!("{file}: closed, convex, {stated:.6e} {unit} as stated"));
         } else {

@@ -8,6 +8,9 @@ use robust::{Coord, orient2d};
 /// Triangles of a leaf.
 const LEAF: usize = 8;
 
+/// The box of no points.
+const NOTHING: (DVec3, DVec3) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+
 /// A closed surface that is asked for many points.
 pub(super) struct Solid<'a> {
     surface: &'a Surface,
@@ -27,33 +30,39 @@ struct Node {
 
 impl<'a> Solid<'a> {
     pub(super) fn new(surface: &'a Surface) -> Self {
-        let count = surface.triangles.len();
-        let order = (0..u32::try_from(count).unwrap_or(u32::MAX)).collect();
-        let mut solid = Self { surface, order, nodes: Vec::new() };
-        if count > 0 {
-            solid.split(0, count);
+        // Middles beside the numbers: sorted where they lie, without a look at the corners.
+        let mut placed: Vec<(DVec3, u32)> = (0..u32::try_from(surface.triangles.len()).unwrap_or(u32::MAX))
+            .map(|k| (surface.at(k as usize).iter().sum::<DVec3>(), k))
+            .collect();
+        let mut solid = Self { surface, order: Vec::new(), nodes: Vec::new() };
+        if !placed.is_empty() {
+            solid.split(&mut placed, 0);
+            solid.order = placed.into_iter().map(|(_, k)| k).collect();
         }
         solid
     }
 
-    fn split(&mut self, from: usize, to: usize) {
-        let corners = |k: &u32| self.surface.at(*k as usize);
-        let all = || self.order[from..to].iter().flat_map(corners);
-        let (low, high) =
-            (all().fold(DVec3::INFINITY, DVec3::min), all().fold(DVec3::NEG_INFINITY, DVec3::max));
+    /// The node of triangles that stand in `order` from `from` on; returns its box.
+    fn split(&mut self, placed: &mut [(DVec3, u32)], from: usize) -> (DVec3, DVec3) {
         let here = self.nodes.len();
-        self.nodes.push(Node { low, high, triangles: from..to, second: 0 });
-        if to - from <= LEAF {
-            return;
-        }
-        let axis = (high - low).max_position();
-        let surface = self.surface;
-        let middle = |k: &u32| surface.at(*k as usize).map(|c| c[axis]).iter().sum::<f64>();
-        let half = (to - from) / 2;
-        self.order[from..to].select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)));
-        self.split(from, from + half);
-        self.nodes[here].second = self.nodes.len();
-        self.split(from + half, to);
+        let to = from + placed.len();
+        self.nodes.push(Node { low: DVec3::ZERO, high: DVec3::ZERO, triangles: from..to, second: 0 });
+        let (low, high) = if placed.len() <= LEAF {
+            let corners = placed.iter().flat_map(|(_, k)| self.surface.at(*k as usize));
+            corners.fold(NOTHING, |(low, high), c| (low.min(c), high.max(c)))
+        } else {
+            let (low, high) = placed.iter().fold(NOTHING, |(low, high), (m, _)| (low.min(*m), high.max(*m)));
+            let axis = (high - low).max_position();
+            let half = placed.len() / 2;
+            placed.select_nth_unstable_by(half, |a, b| a.0[axis].total_cmp(&b.0[axis]));
+            let (first, second) = placed.split_at_mut(half);
+            let first = self.split(first, from);
+            self.nodes[here].second = self.nodes.len();
+            let second = self.split(second, from + half);
+            (first.0.min(second.0), first.1.max(second.1))
+        };
+        (self.nodes[here].low, self.nodes[here].high) = (low, high);
+        (low, high)
     }
 
     /// Leads over the leaves whose nodes, and all above them, are `wanted`.

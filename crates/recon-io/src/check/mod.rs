@@ -18,7 +18,9 @@ mod tests;
 pub use bounds::{outline_stands_out, stands_out};
 pub use fault::{CheckError, Fault};
 
+use crate::TriangleMesh;
 use crate::output::manifest::{MANIFEST, Manifest, State};
+use glam::DVec2;
 pub(crate) use mesh_file::Surface;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -58,6 +60,23 @@ pub fn check(folder: impl AsRef<Path>) -> Result<Vec<String>, CheckError> {
     }
 }
 
+/// Checks results that are written nowhere, as [`check`] does with those of a folder: what is stated of them, and their
+/// surfaces and outlines (corners counter-clockwise), each by the name of the file that it would be.
+///
+/// # Errors
+/// [`CheckError::Faults`] names everything that does not hold.
+pub fn check_unwritten(
+    summary: &Value,
+    surfaces: &[(&str, &TriangleMesh)],
+    outlines: &[(&str, &[DVec2])],
+) -> Result<(), CheckError> {
+    let mut found = Found { summary: Some(summary.clone()), ..Found::default() };
+    surfaces.iter().for_each(|(file, mesh)| found.take(file, Surface::from(*mesh)));
+    let outline = |(file, corners): &(&str, &[DVec2])| (file.to_string(), outline::Outline(corners.to_vec()));
+    found.outlines.extend(outlines.iter().map(outline));
+    found.certificate().map(drop).map_err(|faults| CheckError::Faults { faults })
+}
+
 /// Checks the contents of files in a folder, whoever wrote them.
 pub(crate) fn certify(folder: &Path, names: &[String]) -> Result<Vec<String>, Vec<Fault>> {
     let mut found = Found::default();
@@ -66,13 +85,7 @@ pub(crate) fn certify(folder: &Path, names: &[String]) -> Result<Vec<String>, Ve
             found.faults.push(Fault::Unreadable { file: file.clone(), what: error.to_string() });
         }
     }
-    match &found.summary {
-        Some(summary) => found.faults.extend(figures::faults(summary)),
-        None => found.faults.push(Fault::Missing { file: SUMMARY.to_owned() }),
-    }
-    found.check_open();
-    found.check_bounds();
-    if found.faults.is_empty() { Ok(found.held) } else { Err(found.faults) }
+    found.certificate()
 }
 
 const SUMMARY: &str = "summary.json";
@@ -115,6 +128,17 @@ impl Found {
         Ok(())
     }
 
+    /// What holds of all that was read, in words.
+    fn certificate(mut self) -> Result<Vec<String>, Vec<Fault>> {
+        match &self.summary {
+            Some(summary) => self.faults.extend(figures::faults(summary)),
+            None => self.faults.push(Fault::Missing { file: SUMMARY.to_owned() }),
+        }
+        self.check_open();
+        self.check_bounds();
+        if self.faults.is_empty() { Ok(self.held) } else { Err(self.faults) }
+    }
+
     fn check_open(&mut self) {
         let Some(edge) = self.open else { return };
         let stated = self.summary.as_ref().and_then(|s| s["about"]["concave"]["surface_is_closed"].as_bool());
@@ -126,11 +150,13 @@ impl Found {
     }
 
     fn take(&mut self, file: &str, surface: Surface) {
-        match surface.open_edge() {
-            Some(edge) if file == MAY_BE_OPEN => self.open = Some(edge),
-            Some(edge) => self.faults.push(Fault::Open { file: file.to_owned(), edge }),
-            None if file.ends_with("_bound.ply") => {}
-            None => {
+        // Of bounds more is asked, which includes it: `Surface::not_convex`.
+        let open = if file.ends_with("_bound.ply") { None } else { Some(surface.open_edge()) };
+        match open {
+            Some(Some(edge)) if file == MAY_BE_OPEN => self.open = Some(edge),
+            Some(Some(edge)) => self.faults.push(Fault::Open { file: file.to_owned(), edge }),
+            None => {}
+            Some(None) => {
                 self.held.push(format!("{file}: closed, {} faces turned one way", surface.triangles.len()))
             }
         }

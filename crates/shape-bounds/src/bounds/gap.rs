@@ -28,6 +28,9 @@ pub(super) struct GapSearch<'a> {
     supports: Vec<(DVec3, u32)>,
 }
 
+/// Corners that are tried in the order of how large their gap can be: enough for a gap that rules most others out.
+const TRIED_FIRST: usize = 1000;
+
 /// Support points of the lower bound.
 enum LowerBound<'a> {
     Solid(SupportWalk<'a>),
@@ -152,17 +155,24 @@ impl<'a> GapSearch<'a> {
         distance_to_triangle(self.upper.vertices()[corner], triangle)
     }
 
-    /// The largest gap: corners in the order of how large theirs can be, until no other can be larger.
+    /// The largest gap: that of the corners where it can be largest first, then of all that can have a larger one, as they
+    /// lie in memory, which is from neighbour to neighbour.
     pub(super) fn largest(&mut self) -> Option<Gap> {
-        let mut order: Vec<(f64, u32)> =
-            (0..self.upper.vertices().len()).map(|v| (self.at_most(v), v as u32)).collect();
-        order.sort_unstable_by(|x, y| y.0.total_cmp(&x.0));
+        let at_most: Vec<f64> = (0..self.upper.vertices().len()).map(|v| self.at_most(v)).collect();
+        let larger = |x: &u32, y: &u32| at_most[*y as usize].total_cmp(&at_most[*x as usize]);
+        let mut first: Vec<u32> = (0..at_most.len() as u32).collect();
+        if first.len() > TRIED_FIRST {
+            first.select_nth_unstable_by(TRIED_FIRST, larger);
+            first.truncate(TRIED_FIRST);
+        }
+        first.sort_unstable_by(larger);
         let mut best: Option<Gap> = None;
-        for (at_most, corner) in order {
-            if best.is_some_and(|gap| gap.distance >= at_most) {
-                break;
+        for corner in first.into_iter().map(|k| k as usize).chain(0..at_most.len()) {
+            let known = best.map_or(0.0, |gap| gap.distance);
+            if best.is_some() && known >= at_most[corner] {
+                continue;
             }
-            let gap = self.at_corner(corner as usize, best.map_or(0.0, |gap| gap.distance));
+            let gap = self.at_corner(corner, known);
             best = best.into_iter().chain(gap).max_by(|x, y| x.distance.total_cmp(&y.distance));
         }
         best
