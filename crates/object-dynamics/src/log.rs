@@ -149,10 +149,10 @@ impl SensorLog {
         self.samples.iter().enumerate().find_map(first)
     }
 
-    /// The same log without truth: what a robot has.
+    /// The log without truth, which is what a robot has, and the truth.
     #[must_use]
-    pub fn without_truth(&self) -> Self {
-        Self { samples: self.samples.clone(), truth: None }
+    pub fn split_truth(self) -> (Self, Option<Vec<TrueState>>) {
+        (Self { samples: self.samples, truth: None }, self.truth)
     }
 }
 

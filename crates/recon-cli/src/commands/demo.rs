@@ -18,10 +18,10 @@ pub(crate) fn run(args: &DemoArgs, console: &Console) -> Result<Outcome, CliErro
     progress.step("simulating");
     let simulated = simulate(&scene, path, 1e-12)?;
     let title = "An ellipsoid on three palms (Fig. 5 of Moll and Erdmann, 2002)";
-    let made = reconstruct(&simulated.log, &scene, title, false, &progress)?;
-    progress.step("writing the results");
     let mut log = Vec::new();
     write_log(&simulated.log, &mut log).map_err(CliError::StandardOutput)?;
+    let made = reconstruct(simulated.log, &scene, title, false, &progress)?;
+    progress.step("writing the results");
     let extras = [("scene.toml".to_owned(), SCENE.into()), ("log.csv".to_owned(), log)];
     let figures = write_reconstruction_folder(target, &made, &extras)?;
     drop(progress);

@@ -18,7 +18,7 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     progress.step("reading the log");
     let log = read_log(&args.log)?;
     let name = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
-    let made = reconstruct(&log, &scene, &name, args.identify, &progress)?;
+    let made = reconstruct(log, &scene, &name, args.identify, &progress)?;
     progress.step("writing the results");
     let files = exported(&made, &args.export, args.export_shape)?;
     let extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();

@@ -19,13 +19,13 @@ pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let target = super::reconstruct::target(args)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");
-    let log = read_log(&args.log)?;
+    let (log, _) = read_log(&args.log)?.split_truth();
     progress.step("estimating motion and shape");
     let known = KnownTouch {
         gravity: DVec3::new(0.0, 0.0, -scene.gravity),
         contact_noise: scene.sensors.contact_std.filter(|noise| *noise > 0.0),
     };
-    let found = estimate_without_forces(&log.without_truth(), &known)?;
+    let found = estimate_without_forces(&log, &known)?;
     progress.step("bounding the shape");
     let mut warnings = Vec::new();
     let noise = found.evidence.noise_explains;

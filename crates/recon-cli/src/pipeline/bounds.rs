@@ -10,6 +10,9 @@ pub(super) const UPPER: &str = "upper_bound.ply";
 /// Most contacts that the bounds of a picture are made from: about 6000 triangles a body.
 const DRAWN: usize = 1500;
 
+/// Most contacts of a motion that are compared with each other.
+const COMPARED: usize = 200_000;
+
 /// Bounds from all contacts for measuring, and from some of them for drawing.
 pub(crate) struct BoundsResult {
     /// Volumes of all, surfaces of [`DRAWN`].
@@ -71,7 +74,7 @@ fn made(whole: ShapeBounds, contacts: &[ContactSample]) -> Result<BoundsResult, 
         warnings.push(flat(whole.lower()).to_owned());
     }
     warnings.extend(unbounded(&whole));
-    let some = some_of(contacts);
+    let some = some_of(contacts, DRAWN);
     let few =
         if contacts.len() > some.len() { ShapeBounds::from_contradicting_contacts(&some).ok() } else { None };
     let few = few.as_ref().unwrap_or(&whole);
@@ -96,14 +99,16 @@ pub(super) fn unbounded(bounds: &ShapeBounds) -> Option<String> {
     Some(format!("The contacts leave the object unbounded on some side{side}: there is no upper bound."))
 }
 
-/// How far the worst contact lies beyond the half-space of another, m.
+/// How far the worst contact lies beyond the half-space of another, m: of at most [`COMPARED`], since neighbours on a curve
+/// say the same.
 pub(super) fn contradiction(contacts: &[ContactSample]) -> Result<f64, CliError> {
-    Ok(ShapeBounds::contradiction(contacts)?.map_or(0.0, |worst| worst.excess))
+    let some = some_of(contacts, COMPARED);
+    Ok(ShapeBounds::contradiction(&some)?.map_or(0.0, |worst| worst.excess))
 }
 
-/// At most [`DRAWN`] of them, spread evenly.
-fn some_of<T: Copy>(all: &[T]) -> Vec<T> {
-    let count = all.len().min(DRAWN);
+/// At most so many of them, spread evenly.
+fn some_of<T: Copy>(all: &[T], most: usize) -> Vec<T> {
+    let count = all.len().min(most);
     (0..count).map(|k| all[k * all.len() / count]).collect()
 }
 
@@ -112,11 +117,11 @@ pub(super) fn drawn_surfaces(
     lower: Option<&SolidHull>,
     upper: Option<&Polyhedron>,
 ) -> Result<(Option<TriangleMesh>, Option<TriangleMesh>), CliError> {
-    let lower = lower.map(|all| match Hull::of(&some_of(all.vertices())) {
+    let lower = lower.map(|all| match Hull::of(&some_of(all.vertices(), DRAWN)) {
         Ok(Hull::Solid(few)) => own(few.mesh()),
         _ => own(all.mesh()),
     });
-    let upper = upper.map(|all| match Intersection::of(&some_of(all.face_half_spaces())) {
+    let upper = upper.map(|all| match Intersection::of(&some_of(all.face_half_spaces(), DRAWN)) {
         Ok(Intersection::Bounded(few)) => own(few.mesh()),
         _ => own(all.mesh()),
     });

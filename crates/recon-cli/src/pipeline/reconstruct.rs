@@ -51,28 +51,32 @@ impl Reconstruction {
 
 /// Motion, contact curves and bounds from a log. Truth in the log is only compared with, never used.
 pub(crate) fn reconstruct(
-    log: &SensorLog,
+    log: SensorLog,
     scene: &Scene,
     title: &str,
     identify: bool,
     progress: &Progress,
 ) -> Result<Reconstruction, CliError> {
     let known = if identify { None } else { Some(known_body(scene)?) };
-    let odd = implausibilities(log, scene);
+    let odd = implausibilities(&log, scene);
     let mut warnings: Vec<String> = odd.iter().map(|w| sentence(&w.to_string())).collect();
     progress.step("estimating the motion");
-    let (mass, identified, estimate) =
-        estimated(&log.without_truth(), scene, known).map_err(|error| match (error, odd.first()) {
+    let (log, truth) = log.split_truth();
+    let (mass, identified, mut estimate) =
+        estimated(&log, scene, known).map_err(|error| match (error, odd.first()) {
             (CliError::Estimate(source), Some(odd)) => CliError::OddLog { odd: odd.to_string(), source },
             (error, _) => error,
         })?;
     let used = estimate.motion.len();
-    warnings.extend(contact_loss(log, used));
-    let palms = tracks(log, &estimate)?;
+    warnings.extend(contact_loss(&log, used));
+    let palms = tracks(&log, &estimate)?;
+    // Of long logs there is no room for what is not needed any more.
+    drop(log);
     progress.step("bounding the shape");
     let contacts = samples(&palms);
     let size = size(&palms);
     let bounded = bounds_of(&estimate)?;
+    (estimate.curves, estimate.radii) = Default::default();
     if bounded.is_none() {
         warnings.push(
             "There are no bounds on the shape: how far the contacts are off is not known under a motion that is not to be relied on."
@@ -98,12 +102,12 @@ pub(crate) fn reconstruct(
     };
     let bounds_at = drawn.is_some().then_some(CONFIDENCE);
     let checks = Checks { implausible: !odd.is_empty(), contradiction, size, identified, bounds_at };
-    let axes = log.truth().map_or(DQuat::IDENTITY, |truth| match identified {
+    let axes = truth.as_ref().map_or(DQuat::IDENTITY, |truth| match identified {
         None => nearest_turn(&mass, truth[0].R_WO, estimate.start.R_WO),
         // Axes that were found need not be those of the truth: turns are compared from the first sample on.
         Some(_) => truth[0].R_WO.inverse() * estimate.start.R_WO,
     });
-    let shape = match (&scene.simulation, log.truth()) {
+    let shape = match (&scene.simulation, &truth) {
         (Some(simulation), Some(_)) => Some(true_shape(simulation, axes)?),
         _ => None,
     };
@@ -113,7 +117,7 @@ pub(crate) fn reconstruct(
         times: estimate.motion.iter().map(|m| m.t).collect(),
         palms,
         motion: estimate.motion.iter().map(state).collect(),
-        truth: log.truth().map(|truth| true_motion(&truth[..used], axes)),
+        truth: truth.map(|truth| true_motion(&truth[..used], axes)),
         bounds: drawn,
         true_shape: shape,
         evidence: evidence(&estimate, &checks),

@@ -28,7 +28,7 @@ fn run<S: SupportFunction>(body: S, inertia: DMat3, duration: f64, rate: f64) ->
     let start = InitialMotion { R_WO: DQuat::IDENTITY, w_WO: DVec3::new(0.2, 0.3, -0.4) };
     let simulation =
         scene.simulate(start, SampleTimes { duration, rate }, Tolerance::uniform(1e-12)).unwrap();
-    let log = simulation.sensor_log(&scene).unwrap().without_truth();
+    let log = simulation.sensor_log(&scene).unwrap().split_truth().0;
     let mut samples = log.samples().to_vec();
     for palm in samples.iter_mut().flat_map(|s| &mut s.palms) {
         (palm.force, palm.torque) = (None, None);
