@@ -2,6 +2,7 @@
 //!
 //! Frames: `W` world (Z up, gravity `(0, 0, -g)`), `O` object (origin in the centre of mass). Units: SI.
 
+mod condensed;
 pub mod integrate;
 mod log;
 mod mass;

@@ -27,6 +27,8 @@ pub(crate) struct Checks {
     pub(crate) identified: Option<IdentifiedBody>,
     /// Confidence of the bounds where there are any.
     pub(crate) bounds_at: Option<f64>,
+    /// Samples of the log that were taken as one.
+    pub(crate) together: usize,
 }
 
 impl Checks {
@@ -216,6 +218,16 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
             neutral,
         ),
     ];
+    if checks.together > 1 {
+        rows.push(row(
+            "samples_together",
+            "Rows in a sample",
+            EvidenceValue::Count(checks.together as u64),
+            "",
+            "The log is denser than its motion needs: the means of so many rows are taken as one sample.",
+            neutral,
+        ));
+    }
     if !estimate.others.is_empty() {
         rows.push(row(
             "other_motions",

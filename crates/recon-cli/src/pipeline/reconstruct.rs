@@ -20,6 +20,9 @@ use recon_io::{
 /// Contact noise above this share of the object's size is worth a warning beside the bounds.
 pub(crate) const NOTABLE_NOISE: f64 = 1e-6;
 
+/// Samples of longer logs are taken together, where that loses nothing.
+const MOST_SAMPLES: usize = 200_000;
+
 /// Confidence of bounds from noisy contacts.
 const CONFIDENCE: f64 = 0.95;
 
@@ -61,11 +64,14 @@ pub(crate) fn reconstruct(
     let odd = implausibilities(&log, scene);
     let mut warnings: Vec<String> = odd.iter().map(|w| sentence(&w.to_string())).collect();
     progress.step("estimating the motion");
+    let (log, together) = condensed(log);
     let (log, truth) = log.split_truth();
     let (mass, identified, mut estimate) =
-        estimated(&log, scene, known).map_err(|error| match (error, odd.first()) {
-            (CliError::Estimate(source), Some(odd)) => CliError::OddLog { odd: odd.to_string(), source },
-            (error, _) => error,
+        estimated(&log, scene, known, noise(scene, together)).map_err(|error| {
+            match (error, odd.first()) {
+                (CliError::Estimate(source), Some(odd)) => CliError::OddLog { odd: odd.to_string(), source },
+                (error, _) => error,
+            }
         })?;
     let used = estimate.motion.len();
     warnings.extend(contact_loss(&log, used));
@@ -101,7 +107,8 @@ pub(crate) fn reconstruct(
         None => (None, None, None),
     };
     let bounds_at = drawn.is_some().then_some(CONFIDENCE);
-    let checks = Checks { implausible: !odd.is_empty(), contradiction, size, identified, bounds_at };
+    let checks =
+        Checks { implausible: !odd.is_empty(), contradiction, size, identified, bounds_at, together };
     let axes = truth.as_ref().map_or(DQuat::IDENTITY, |truth| match identified {
         None => nearest_turn(&mass, truth[0].R_WO, estimate.start.R_WO),
         // Axes that were found need not be those of the truth: turns are compared from the first sample on.
@@ -132,9 +139,10 @@ fn estimated(
     log: &SensorLog,
     scene: &Scene,
     known: Option<MassProperties>,
+    noise: Option<NoiseLevel>,
 ) -> Result<(MassProperties, Option<IdentifiedBody>, MotionEstimate), CliError> {
     let gravity = DVec3::new(0.0, 0.0, -scene.gravity);
-    let (palm_inertias, noise) = (scene.palm_inertia, noise(scene));
+    let palm_inertias = scene.palm_inertia;
     Ok(match known {
         Some(mass) => (mass, None, estimate_motion(log, &KnownBody { mass, gravity, palm_inertias, noise })?),
         None => {
@@ -144,8 +152,20 @@ fn estimated(
     })
 }
 
-fn noise(scene: &Scene) -> Option<NoiseLevel> {
-    Some(NoiseLevel { contact: scene.sensors.contact_std?, force: scene.sensors.force_std? })
+/// The log, or of a long one the means of so many samples.
+fn condensed(log: SensorLog) -> (SensorLog, usize) {
+    // Odd, so that the truth of the middle one is that of the mean's time.
+    let together = log.samples().len().div_ceil(MOST_SAMPLES) | 1;
+    match (together > 1).then(|| log.condensed(together)).flatten() {
+        Some(means) => (means, together),
+        None => (log, 1),
+    }
+}
+
+/// The noise of means of so many samples, where it is stated.
+fn noise(scene: &Scene, together: usize) -> Option<NoiseLevel> {
+    let mean = 1.0 / (together as f64).sqrt();
+    Some(NoiseLevel { contact: mean * scene.sensors.contact_std?, force: mean * scene.sensors.force_std? })
 }
 
 fn state(m: &recon::observer::MotionState) -> MotionState {
