@@ -116,7 +116,7 @@ pub fn exact_log<S: SupportFunction>(
 ) -> (Simulation, SensorLog) {
     let times = SampleTimes { duration, rate };
     let simulation = scene.simulate(start, times, Tolerance::uniform(1e-14)).unwrap();
-    let log = simulation.sensor_log(scene).unwrap().without_truth();
+    let log = simulation.sensor_log(scene).unwrap().split_truth().0;
     (simulation, log)
 }
 

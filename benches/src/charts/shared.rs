@@ -19,7 +19,7 @@ pub(super) fn exact_log<S: SupportFunction>(
     rate: f64,
 ) -> Result<(Simulation, SensorLog), SimulationError> {
     let simulation = scene.simulate(start, SampleTimes { duration, rate }, Tolerance::uniform(1e-14))?;
-    let log = simulation.sensor_log(scene)?.without_truth();
+    let log = simulation.sensor_log(scene)?.split_truth().0;
     Ok((simulation, log))
 }
 

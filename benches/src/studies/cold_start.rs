@@ -134,7 +134,7 @@ fn scene(random: &mut Random) -> Result<Option<(ThreePalmScene<Ellipsoid>, Simul
     if simulation.instants.len() < 1000 {
         return Ok(None);
     }
-    let log = simulation.sensor_log(&scene)?.without_truth();
+    let log = simulation.sensor_log(&scene)?.split_truth().0;
     Ok(Some((scene, simulation, log)))
 }
 

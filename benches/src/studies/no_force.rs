@@ -126,7 +126,7 @@ fn scene(random: &mut Random, noise: f64, seed: u64) -> Result<Option<(DVec3, Se
         return Ok(None);
     }
     let level = SensorNoise { contact: noise, force: 0.0, torque: 0.0 };
-    let log = simulation.sensor_log(&scene)?.without_truth().with_noise(&level, seed)?;
+    let log = simulation.sensor_log(&scene)?.split_truth().0.with_noise(&level, seed)?;
     let mut samples = log.samples().to_vec();
     for palm in samples.iter_mut().flat_map(|s| &mut s.palms) {
         (palm.force, palm.torque) = (None, None);

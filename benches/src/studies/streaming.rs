@@ -122,7 +122,7 @@ impl Case {
         let times = SampleTimes { duration, rate: RATE };
         let run = scene.simulate(start, times, Tolerance::uniform(1e-11))?;
         let noise = SensorNoise { contact: NOISE.contact, force: NOISE.force, torque: 0.0 };
-        let log = run.sensor_log(&scene)?.without_truth().with_noise(&noise, seed)?;
+        let log = run.sensor_log(&scene)?.split_truth().0.with_noise(&noise, seed)?;
         Ok((log.duration() >= shortest).then_some(Self { scene, truth: run.instants, log }))
     }
 

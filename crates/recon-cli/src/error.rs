@@ -111,6 +111,11 @@ pub(crate) enum CliError {
     PlanarNoise,
     #[error("the planar demo cannot be simulated: {0}")]
     PlanarDemo(String),
+    #[error(
+        "normals are rounded: their lengths are off 1 by up to {off:.1e}, too much for contacts that are taken as exact; state the \
+         noise (--normal-noise {off:.0e} or more, --contact-noise), or let it be estimated (--estimate-noise)"
+    )]
+    RoundedNormals { off: f64 },
     #[error("the contacts give no bounds")]
     Bounds(#[from] BoundsError),
     #[error("the upper bound cannot be cut to a picture")]
@@ -150,6 +155,7 @@ impl CliError {
             | Self::Touches(_)
             | Self::NoisyBounds(_)
             | Self::CorrelatedNoise { .. }
+            | Self::RoundedNormals { .. }
             | Self::PoseBounds(_)
             | Self::Curvature(_)
             | Self::PlanarBounds(_)

@@ -161,7 +161,7 @@ fn random_scenes_come_out_right_from_no_guess() {
             continue;
         }
         tried += 1;
-        let log = simulation.sensor_log(&scene).unwrap().without_truth();
+        let log = simulation.sensor_log(&scene).unwrap().split_truth().0;
         let estimate = estimate_motion(&log, &known(&scene, None)).unwrap();
         let (cm, w) = largest_error(&estimate, &simulation);
         let right = cm < 1e-6 && w < 1e-6;

@@ -161,7 +161,7 @@ fn parallel_palms_are_right_or_reported() {
         let times = SampleTimes { duration: 3.0, rate: 500.0 };
         let Ok(simulation) = scene.simulate(start, times, Tolerance::uniform(1e-13)) else { continue };
         let Ok(log) = simulation.sensor_log(&scene) else { continue };
-        let estimate = estimate(&scene, &log.without_truth()).unwrap();
+        let estimate = estimate(&scene, &log.split_truth().0).unwrap();
         let error = centre_error(&estimate, &simulation);
         assert!(error < 1e-6 || !estimate.reliability.is_reliable(), "{degrees} degrees: {error:e}");
     }

@@ -168,7 +168,7 @@ fn palms_that_are_nearly_parallel_are_right_or_reported() {
     let start = InitialMotion { R_WO: DQuat::IDENTITY, w_WO: DVec3::new(0.0, 0.1, 0.1) };
     let times = SampleTimes { duration: 2.0, rate: 100.0 };
     let simulation = scene.simulate(start, times, Tolerance::uniform(1e-13)).unwrap();
-    let log = simulation.sensor_log(&scene).unwrap().without_truth().with_noise(&NOISE, 3).unwrap();
+    let log = simulation.sensor_log(&scene).unwrap().split_truth().0.with_noise(&NOISE, 3).unwrap();
     let truth = simulation.instants[0].touch.p_WCm;
     let known = of_known(&scene, &log, Some(STATED));
     let unknown = of_unknown(&scene, &log, Some(STATED)).map(|e| e.motion);

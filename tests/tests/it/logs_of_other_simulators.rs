@@ -27,7 +27,7 @@ fn estimate(path: &Path, case: &Case) -> (SensorLog, MotionEstimate) {
     let mass = MassProperties::uniform_ellipsoid(1.0, case.axes).unwrap();
     let gravity = DVec3::new(0.0, 0.0, -case.gravity);
     let known = KnownBody { mass, gravity, palm_inertias: None, noise: None };
-    let estimate = estimate_motion(&log.without_truth(), &known).unwrap();
+    let estimate = estimate_motion(&log.clone().split_truth().0, &known).unwrap();
     (log, estimate)
 }
 

@@ -200,7 +200,7 @@ fn line_of<S: SupportFunction>(
     let Row { noise, rate, window, unknown, .. } = *row;
     let times = SampleTimes { duration: window, rate };
     let simulation = scene.simulate(start, times, Tolerance::uniform(1e-13))?;
-    let clean = simulation.sensor_log(scene)?.without_truth();
+    let clean = simulation.sensor_log(scene)?.split_truth().0;
     let level = |factor: f64| SensorNoise {
         contact: factor * noise * SIZE,
         force: factor * 0.01 * FORCE,

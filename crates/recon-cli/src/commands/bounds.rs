@@ -15,6 +15,9 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::slice;
 
+/// Normals of five digits or more pass for exact: their length is off by less.
+const EXACT_NORMALS: f64 = 1e-5;
+
 /// Confidence of bounds under noise where none is asked for.
 const CONFIDENCE: f64 = 0.95;
 
@@ -28,7 +31,7 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
     check_options(args, &touches)?;
     progress.step("bounding the shape");
     let (made, about, what) = match touches {
-        Touches::PlanarContacts(curves) => {
+        Touches::PlanarContacts { curves, .. } => {
             drop(progress);
             return plane::run(&curves, &planar_request(args), target, console);
         }
@@ -42,7 +45,7 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
             let (made, about) = pose_bounds(&runs, plane, confidence(args), args.tight)?;
             (made, about, format!("{count} poses in {} runs", runs.len()))
         }
-        Touches::Contacts(curves) => {
+        Touches::Contacts { curves, .. } => {
             let (made, about) = of_contacts(args, &curves)?;
             (made, about, format!("{} contacts", curves.iter().map(Vec::len).sum::<usize>()))
         }
@@ -113,12 +116,12 @@ fn check_options(args: &BoundsArgs, touches: &Touches) -> Result<(), CliError> {
                 (args.concave, "concave", "contacts"),
             ],
         ),
-        Touches::Contacts(_) => {
+        Touches::Contacts { .. } => {
             let family = (!in_space, "fit circle, ellipse or waves", "contacts in the plane");
             let found = if exact { "contacts without stated noise" } else { "contacts" };
             (found, pointless.into_iter().chain([family]).collect())
         }
-        Touches::PlanarContacts(_) => {
+        Touches::PlanarContacts { .. } => {
             let of_space = [
                 (args.concave, "concave", "contacts in space"),
                 (!in_plane, "fit ball, ellipsoid, superquadric or harmonics", "contacts in space"),
@@ -129,7 +132,20 @@ fn check_options(args: &BoundsArgs, touches: &Touches) -> Result<(), CliError> {
     };
     match wrong.into_iter().find(|(given, ..)| *given) {
         Some((_, option, meant)) => Err(CliError::Option { option, meant, found, path: args.input.clone() }),
+        None if exact => exact_enough(touches),
         None => Ok(()),
+    }
+}
+
+/// Refuses to take normals as exact that are visibly rounded: bounds from them would be off by as much.
+fn exact_enough(touches: &Touches) -> Result<(), CliError> {
+    match touches {
+        Touches::Contacts { rounding, .. } | Touches::PlanarContacts { rounding, .. }
+            if *rounding > EXACT_NORMALS =>
+        {
+            Err(CliError::RoundedNormals { off: *rounding })
+        }
+        _ => Ok(()),
     }
 }
 

@@ -167,7 +167,11 @@ fn contacts_of_no_convex_body_and_open_bodies_are_named() {
     scratch.write("wrong.csv", &format!("{cube}3,3,0,1,0,0\n"));
     let run = scratch.run(&["bounds", "wrong.csv", "-o", "out"]);
     assert_eq!(run.code, Some(3), "{}{}", run.stdout, run.stderr);
-    assert!(run.stderr.contains("contact 6 lies 2.5e0 m beyond the tangent plane"), "{}", run.stderr);
+    assert!(
+        run.stderr.contains("contact 6 (from 0) lies 2.5e0 m beyond the tangent plane"),
+        "{}",
+        run.stderr
+    );
     assert!(!scratch.path().join("out").exists());
     // A tilted cylinder round its waist, with normals of six digits.
     let mut waist = String::from("x,y,z,nx,ny,nz\n");
@@ -195,6 +199,32 @@ fn contacts_of_no_convex_body_and_open_bodies_are_named() {
         "{}",
         run.stdout
     );
+}
+
+#[test]
+fn rounded_normals_are_noise() {
+    let scratch = Scratch::new("rounded");
+    let mut rounded = String::new();
+    for (k, line) in sphere_contacts(0.0, 0.0).lines().enumerate() {
+        let cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        let digits =
+            |c: &String| if k == 0 { c.clone() } else { format!("{:.4}", c.parse::<f64>().unwrap()) };
+        let normal: Vec<String> = cells[4..].iter().map(digits).collect();
+        writeln!(rounded, "{},{}", cells[..4].join(","), normal.join(",")).unwrap();
+    }
+    scratch.write("rounded.csv", &rounded);
+    let run = scratch.run(&["bounds", "rounded.csv"]);
+    assert_eq!(run.code, Some(3), "{}{}", run.stdout, run.stderr);
+    assert!(run.stderr.contains("normals are rounded"), "{}", run.stderr);
+    scratch.write("exact.csv", &sphere_contacts(0.0, 0.0));
+    let exact = volumes(&bounds(&scratch, &["exact.csv"]));
+    let stated = ["rounded.csv", "--normal-noise", "1e-4", "--contact-noise", "1e-6", "-o", "out"];
+    let [lower, upper] = volumes(&bounds(&scratch, &stated));
+    assert!(lower < exact[0] && exact[1] < upper, "{lower} {upper} {exact:?}");
+    assert!(lower > 0.97 * exact[0] && upper < 1.03 * exact[1], "{lower} {upper} {exact:?}");
+    scratch.write("far.csv", &rounded.replacen("1.0000", "1.0020", 1));
+    let run = scratch.run(&["bounds", "far.csv", "--estimate-noise"]);
+    assert_eq!(run.code, Some(3), "{}{}", run.stdout, run.stderr);
 }
 
 #[test]

@@ -9,8 +9,8 @@ use recon::shape_bounds::ContactSample;
 use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
-/// Largest departure of a normal's length from 1.
-pub(super) const UNIT_TOLERANCE: f64 = 1e-5;
+/// Largest departure of a normal's length from 1: three printed digits are off by 9e-4.
+pub(super) const UNIT_TOLERANCE: f64 = 1e-3;
 
 const COLUMNS: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
@@ -26,19 +26,28 @@ pub fn read_contacts(path: impl AsRef<Path>) -> Result<Vec<Vec<ContactSample>>, 
 }
 
 /// [`read_contacts`] from CSV text: the columns `x, y, z` (m) and `nx, ny, nz`, and where there is a column `palm` or
-/// `curve`, a new curve where its number changes. Columns are found by name; others are ignored.
+/// `curve`, a new curve where its number changes. Columns are found by name; others are ignored. Normals may be rounded to
+/// three digits and are made unit vectors.
 ///
 /// # Errors
 /// [`TouchesErrorKind`] names the line and the column.
 pub fn parse_contacts(text: impl Read) -> Result<Vec<Vec<ContactSample>>, TouchesErrorKind> {
-    let mut contacts = Vec::new();
+    contacts_and_rounding(text).map(|(curves, _)| curves)
+}
+
+/// The same, and by how much the length of a normal is off 1 at most.
+pub(super) fn contacts_and_rounding(
+    text: impl Read,
+) -> Result<(Vec<Vec<ContactSample>>, f64), TouchesErrorKind> {
+    let (mut contacts, mut rounding) = (Vec::new(), 0.0_f64);
     for row in read_columns(text, COLUMNS, &["palm", "curve"])? {
         let [x, y, z, nx, ny, nz] = row.values;
         let normal = Direction::from_unit(DVec3::new(nx, ny, nz), UNIT_TOLERANCE)
             .map_err(|source| TouchesErrorKind::Normal { line: row.line, source })?;
+        rounding = rounding.max((DVec3::new(nx, ny, nz).length() - 1.0).abs());
         contacts.push((row.group, ContactSample { point: DVec3::new(x, y, z), normal }));
     }
-    Ok(by_group(contacts))
+    Ok((by_group(contacts), rounding))
 }
 
 /// Writes contact points so that [`parse_contacts`] reads them back.

@@ -19,10 +19,20 @@ use std::path::Path;
 /// What bounds of a body can be made from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Touches {
-    /// Contact points with outward normals, one list for each curve, in the order of the file.
-    Contacts(Vec<Vec<ContactSample>>),
+    /// Contact points with outward normals.
+    Contacts {
+        /// One list for each curve, in the order of the file.
+        curves: Vec<Vec<ContactSample>>,
+        /// By how much the length of a normal is off 1 in the file at most: by what its digits were rounded, if by nothing else.
+        rounding: f64,
+    },
     /// The same in the plane.
-    PlanarContacts(Vec<Vec<flat::ContactSample>>),
+    PlanarContacts {
+        /// One list for each curve, in the order of the file.
+        curves: Vec<Vec<flat::ContactSample>>,
+        /// By how much the length of a normal is off 1 in the file at most.
+        rounding: f64,
+    },
     /// Poses of a body above a plane, one list for each run, in the order of time.
     Poses(Vec<Vec<BodyPose>>),
 }
@@ -41,9 +51,11 @@ pub fn read_touches(path: impl AsRef<Path>) -> Result<Touches, TouchesError> {
     let touches = if is_poses {
         parse_poses(text.as_bytes()).map(Touches::Poses)
     } else if planar::is_planar(header) {
-        parse_planar_contacts(text.as_bytes()).map(Touches::PlanarContacts)
+        planar::contacts_and_rounding(text.as_bytes())
+            .map(|(curves, rounding)| Touches::PlanarContacts { curves, rounding })
     } else {
-        parse_contacts(text.as_bytes()).map(Touches::Contacts)
+        contacts::contacts_and_rounding(text.as_bytes())
+            .map(|(curves, rounding)| Touches::Contacts { curves, rounding })
     };
     touches.map_err(in_file)
 }

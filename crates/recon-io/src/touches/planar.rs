@@ -22,14 +22,22 @@ pub(super) fn is_planar(header: &str) -> bool {
 /// # Errors
 /// [`TouchesErrorKind`] names the line and the column.
 pub fn parse_planar_contacts(text: impl Read) -> Result<Vec<Vec<ContactSample>>, TouchesErrorKind> {
-    let mut contacts = Vec::new();
+    contacts_and_rounding(text).map(|(curves, _)| curves)
+}
+
+/// The same, and by how much the length of a normal is off 1 at most.
+pub(super) fn contacts_and_rounding(
+    text: impl Read,
+) -> Result<(Vec<Vec<ContactSample>>, f64), TouchesErrorKind> {
+    let (mut contacts, mut rounding) = (Vec::new(), 0.0_f64);
     for row in read_columns(text, COLUMNS, &["palm", "curve"])? {
         let [x, y, nx, ny] = row.values;
         let normal = Direction::from_unit(DVec2::new(nx, ny), UNIT_TOLERANCE)
             .map_err(|source| TouchesErrorKind::PlanarNormal { line: row.line, source })?;
+        rounding = rounding.max((DVec2::new(nx, ny).length() - 1.0).abs());
         contacts.push((row.group, ContactSample { point: DVec2::new(x, y), normal }));
     }
-    Ok(by_group(contacts))
+    Ok((by_group(contacts), rounding))
 }
 
 #[cfg(test)]
