@@ -308,6 +308,7 @@ pub(crate) fn pose_bounds(
         "margin_m": made.margin,
         "touching_poses": made.touching,
         "propped": made.propped,
+        "plane_seems_lower_m": made.plane_seems_lower,
         "runs_left_out": made.left_out.iter().map(contradicting).collect::<Vec<_>>(),
         "outliers": made.outliers.iter().map(|(run, frame)| json!({ "run": run + 1, "frame": frame + 1 })).collect::<Vec<_>>(),
     });
@@ -354,6 +355,13 @@ fn pose_warnings(made: &PoseBounds, confidence: f64) -> Vec<String> {
         warnings.push(format!(
             "The poses need a margin of {} m to agree with each other, which leaves no lower bound: is the height of the plane right?",
             brief_to(3, made.margin)
+        ));
+    }
+    if let Some(lower) = made.plane_seems_lower {
+        warnings.push(format!(
+            "The poses agree better with a plane about {} m lower than stated, which is more than the margins cover: is its height right? \
+             What it may be off is stated by --height-deviation.",
+            brief_to(2, lower)
         ));
     }
     // Frames beside an impact pass for touching, and a few of them always disagree.

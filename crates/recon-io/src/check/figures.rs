@@ -4,7 +4,7 @@ use super::Fault;
 use serde_json::Value;
 
 /// Numbers that may be absent: there is no upper bound, no bound at all, or no truth to compare with.
-const MAY_BE_NULL: [&str; 8] = [
+const MAY_BE_NULL: [&str; 9] = [
     "bounds",
     "upper_volume_m3",
     "upper_area_m2",
@@ -13,6 +13,7 @@ const MAY_BE_NULL: [&str; 8] = [
     "true_volume_m3",
     "largest_error",
     "contradiction_m",
+    "plane_seems_lower_m",
 ];
 
 /// Whether the reader is told that something is amiss.

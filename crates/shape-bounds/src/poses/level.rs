@@ -9,7 +9,7 @@ pub(super) const FEWEST: usize = 50;
 /// Halvings of the bracket for the level: a ten-thousandth of the body's size, then a ten-thousandth of that.
 const HALVINGS: usize = 16;
 /// Frames at the end of a run that are taken for rest.
-const RESTING: usize = 5;
+pub(super) const RESTING: usize = 5;
 /// A frame touches when it is accelerated upwards by more than in flight downwards, and by more than so many standard
 /// deviations of the tracking noise.
 const NOISE_DEVIATIONS: f64 = 5.0;

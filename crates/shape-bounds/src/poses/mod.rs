@@ -11,6 +11,7 @@ mod level;
 mod lower;
 mod rule;
 mod runs;
+mod suspect;
 #[cfg(test)]
 mod tests;
 
@@ -58,6 +59,9 @@ pub struct PoseBounds {
     pub propped: bool,
     /// Poses that were taken for touching the plane.
     pub touching: usize,
+    /// How far lower than stated the plane seems to be, in m: where a body with edges seems to have hung in the air when it touched
+    /// with them. A body that is round tells nothing of that.
+    pub plane_seems_lower: Option<f64>,
     /// Touching poses that disagree with the others by more than the margins, as (run, frame).
     pub outliers: Vec<(usize, usize)>,
 }
@@ -127,6 +131,11 @@ impl PoseBounds {
         let outliers = if propped { Vec::new() } else { level::inconsistent(&kept, &upper, margin) };
         let inside = if propped { Vec::new() } else { lower::certain_points(&kept, &upper, margin) };
         let lower = Hull::of(&inside).ok().filter(|hull| hull.solid().is_some());
+        let plane_seems_lower = if propped {
+            None
+        } else {
+            suspect::lower_plane(&kept, margin, level::noise_scale(runs) / 6.0_f64.sqrt())
+        };
         let half_spaces = by_run(&kept, runs.len(), margin);
         let consistent_level = level;
         Ok(Self {
@@ -138,6 +147,7 @@ impl PoseBounds {
             left_out,
             propped,
             touching,
+            plane_seems_lower,
             outliers,
         })
     }

@@ -112,6 +112,19 @@ fn an_uncertain_height_widens_the_margin_and_is_contained() {
 }
 
 #[test]
+fn a_plane_stated_too_high_is_noticed_where_edges_tell() {
+    let half = DVec3::new(0.05, 0.04, 0.06);
+    for (seed, sd) in [(41, 2e-5), (42, 5e-5), (43, 1e-4)] {
+        let runs = tosses(60, half, sd, seed);
+        let seems = |z: f64| PoseBounds::above_plane(&runs, z, 0.95).unwrap().plane_seems_lower;
+        assert_eq!((seems(0.0), seems(-1e-3)), (None, None), "sd {sd}");
+        // The worst errors of the poses come on top: some five to seven deviations.
+        let told = seems(1e-3).unwrap();
+        assert!(told > 0.9e-3 && told < 1e-3 + 8.4 * sd, "sd {sd}: {told}");
+    }
+}
+
+#[test]
 fn bad_poses_are_named() {
     let mut runs = tosses(20, DVec3::splat(0.05), 1e-4, 4);
     runs[3][5].p_WO.z = f64::NAN;
