@@ -31,8 +31,7 @@ impl ShapeBounds {
     /// [`BoundsError`] for contacts that have no hull.
     pub fn contradiction(contacts: &[ContactSample]) -> Result<Option<Contradiction>, BoundsError> {
         let points: Vec<DVec3> = contacts.iter().map(|c| c.point).collect();
-        let hull = Hull::of(&points)?;
-        Ok(worst(&beyond(&hull, &points, contacts), &points))
+        Ok(contradiction_of(&Hull::of(&points)?, &points, contacts))
     }
 
     /// Bounds from contacts that are known to contradict each other, since they were moved by an estimate: each half-space is
@@ -68,6 +67,15 @@ impl ShapeBounds {
     pub(super) fn exact(contacts: &[ContactSample]) -> Result<Self, BoundsError> {
         Self::within(contacts, PRINTED)
     }
+}
+
+/// The same with the hull of the points made already.
+pub(super) fn contradiction_of(
+    hull: &Hull,
+    points: &[DVec3],
+    contacts: &[ContactSample],
+) -> Option<Contradiction> {
+    worst(&beyond(hull, points, contacts), points)
 }
 
 /// For each contact the point that is the farthest along its normal, and how far that is beyond its plane, in m.

@@ -1,6 +1,6 @@
 //! Both bounds, contact by contact.
 
-use super::{BoundsError, ShapeBounds};
+use super::{BoundsError, ShapeBounds, agreement};
 use crate::halfspaces::{Intersection, OUTWARD_ULPS, interior_point};
 use crate::hull::IncrementalHull;
 use crate::sample::{ContactSample, HalfSpace};
@@ -77,16 +77,22 @@ impl IncrementalBounds {
         self.half_spaces.is_empty()
     }
 
-    /// The bounds as they are now, in time O(n).
+    /// The bounds as they are now, in time O(n). Contacts that contradict each other by no more than
+    /// [`ShapeBounds::from_contacts`] allows for are bounded anew as it does, in time O(n log n).
     ///
     /// # Errors
-    /// [`BoundsError::TooFew`] before the fourth contact.
+    /// [`BoundsError::TooFew`] before the fourth contact, and [`BoundsError::Contradiction`].
     pub fn bounds(&self) -> Result<ShapeBounds, BoundsError> {
         let (found, needed) = (self.half_spaces.len(), super::FEWEST);
         let Some(dual) = self.dual.as_ref().filter(|_| found >= needed) else {
             return Err(BoundsError::TooFew { found, needed });
         };
         let lower = self.lower.hull()?;
+        let contact = |h: &HalfSpace| ContactSample { point: h.point, normal: h.normal };
+        let contacts: Vec<ContactSample> = self.half_spaces.iter().map(contact).collect();
+        if agreement::contradiction_of(&lower, self.lower.points(), &contacts).is_some() {
+            return ShapeBounds::from_contacts(&contacts);
+        }
         let corners = lower.corner_points(self.lower.points());
         let upper =
             Intersection::from_dual(dual.hull.hull()?, &self.half_spaces, dual.outwards(), dual.centre)?;

@@ -108,6 +108,12 @@ fn a_contradictory_contact_is_not_taken() {
         "{error}"
     );
     assert_eq!(growing.bounds().unwrap(), before);
+    // One whose half-space goes with all others while its point is beyond some of them is found at the next look.
+    let beyond = ContactSample { point: DVec3::new(9.0, 9.0, 0.0), normal: Direction::X };
+    growing.insert(&beyond).unwrap();
+    assert!(
+        matches!(growing.bounds(), Err(BoundsError::Contradiction(found)) if found.contact == 60 && found.excess > 1.0)
+    );
 }
 
 /// The search in the order of what is possible, against the plain one: every corner, every support point.
