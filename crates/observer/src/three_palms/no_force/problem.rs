@@ -65,12 +65,13 @@ impl<'a> TouchProblem<'a> {
         let shape = FreeEllipsoid::new(&guess.shape);
         let mass = MassProperties::new(1.0, inertia_of_numbers(&guess.inertia)).ok()?;
         let at = |half: usize, q: DQuat, w: DVec3| {
-            Instant::new(&shape, &mass, self.gravity, self.nodes.palms[half], (0.0, q, w))
+            let sound = q.is_finite() && w.is_finite();
+            sound.then(|| Instant::new(&shape, &mass, self.gravity, self.nodes.palms[half], (0.0, q, w)))
         };
         let (mut q, mut w) = (DQuat::IDENTITY, guess.w);
         let mut all = Vec::with_capacity(nodes);
         for k in 0..nodes {
-            let now = at(2 * k, q, w);
+            let now = at(2 * k, q, w)?;
             all.push(Instant { t: self.nodes.t[k], ..now });
             if k + 1 == nodes {
                 break;
@@ -80,17 +81,14 @@ impl<'a> TouchProblem<'a> {
             let slope = |w: DVec3, q: DQuat| DQuat::from_xyzw(0.5 * w.x, 0.5 * w.y, 0.5 * w.z, 0.0) * q;
             let after = |half: usize, s: f64, dq: DQuat, a: DVec3| {
                 let (q, w) = ((q + dq * s).normalize(), w + a * s);
-                (slope(w, q), at(half, q, w).accelerations.alpha_WO)
+                Some((slope(w, q), at(half, q, w)?.accelerations.alpha_WO))
             };
             let (q1, a1) = (slope(w, q), now.accelerations.alpha_WO);
-            let (q2, a2) = after(2 * k + 1, 0.5 * h, q1, a1);
-            let (q3, a3) = after(2 * k + 1, 0.5 * h, q2, a2);
-            let (q4, a4) = after(2 * k + 2, h, q3, a3);
+            let (q2, a2) = after(2 * k + 1, 0.5 * h, q1, a1)?;
+            let (q3, a3) = after(2 * k + 1, 0.5 * h, q2, a2)?;
+            let (q4, a4) = after(2 * k + 2, h, q3, a3)?;
             q = (q + (q1 + (q2 + q3) * 2.0 + q4) * (h / 6.0)).normalize();
             w += (a1 + (a2 + a3) * 2.0 + a4) * (h / 6.0);
-            if !(w.is_finite() && q.is_finite()) {
-                return None;
-            }
         }
         Some(all)
     }

@@ -49,6 +49,19 @@ fn general(duration: f64, rate: f64) -> (Simulation, SensorLog, Guess) {
 
 const KNOWN: KnownTouch = KnownTouch { gravity: DVec3::new(0.0, 0.0, -9.81), contact_noise: None };
 
+/// Steps of a search may lead anywhere; what is no number there must not reach the contacts.
+#[test]
+fn spins_beyond_all_numbers_are_no_motion() {
+    let (_, log, truth) = general(0.5, 200.0);
+    let series = TouchSeries::new(&log).unwrap();
+    let nodes = series.nodes(5);
+    let problem = TouchProblem::new(&nodes, KNOWN.gravity, 2.0, f64::INFINITY);
+    for speed in [1e80, 1e160, 1e250, 1e300, f64::NAN] {
+        let guess = Guess { w: DVec3::splat(speed), ..truth };
+        assert!(problem.residuals(&guess).is_none(), "{speed}");
+    }
+}
+
 #[test]
 fn the_true_motion_leaves_nothing_to_fourth_order() {
     let (_, log, truth) = general(2.0, 1000.0);
