@@ -215,3 +215,29 @@ fn polytopes_enclose_every_curved_bound() {
     let rod = RoundedHull::of(&[DVec3::ZERO, DVec3::X], 0.0).unwrap();
     assert!(matches!(rod.faceted(0.1), Err(crate::FacetError::Bounds(_))));
 }
+
+/// Contacts on the caps of a capsule, with balls so large that its side is nearly flat: many planes around the upper bound pass
+/// through its corners and edges, some of them twice.
+#[test]
+fn polytopes_around_sharp_edges_have_no_corner_beyond_their_planes() {
+    for seed in 0..4 {
+        let mut s = Source::new(700 + seed);
+        let contacts: Vec<ContactSample> = (0..200)
+            .map(|_| s.direction())
+            .map(|n| ContactSample {
+                point: 0.5 * n + DVec3::Z.copysign(DVec3::splat(n.z)) * DVec3::Z,
+                normal: Direction::new(n).unwrap(),
+            })
+            .collect();
+        let radii = CurvatureRadii { min: 0.0, max: 1000.0 };
+        let bounds = SharpBounds::from_contacts(&contacts, radii).unwrap();
+        for tolerance in [0.1, 0.03, 3e-3, 1e-3] {
+            let polytopes = bounds.upper().faceted(tolerance).unwrap();
+            let outer = polytopes.upper().bounded().unwrap();
+            let excess = outer.vertices().iter().map(|v| outer.excess(*v)).fold(0.0, f64::max);
+            assert!(excess < 1e-14, "seed {seed}, tolerance {tolerance}: {excess:.1e}");
+            assert!(polytopes.lower_volume() < bounds.upper().volume());
+            assert!(bounds.upper().volume() < outer.volume());
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! The corners of an intersection of half-spaces, one for each facet of the hull of duals.
 
 use super::vertex::{common_point, polar_corner};
-use crate::hull::SolidHull;
+use crate::hull::{SolidHull, SupportWalk};
 use crate::sample::HalfSpace;
 use glam::DVec3;
 
@@ -14,7 +14,8 @@ const BATCH: usize = 16;
 /// exact for them: their corners are consistent to rounding, but where planes are nearly parallel they may slide far along
 /// them. The corner computed from the half-spaces as given is exact in that direction too, where it is a corner at all:
 /// where rounding of the duals has joined planes that are not quite neighbours it protrudes over the plane across an edge.
-/// That edge is then flipped.
+/// That edge is then flipped. Where the planes determine it badly, those across the edges may do no better, and it is held
+/// against the plane that it is the farthest beyond of all.
 pub(super) fn corners(
     dual: &mut SolidHull,
     half_spaces: &[HalfSpace],
@@ -31,21 +32,66 @@ pub(super) fn corners(
         across.extend(batch.clone().map(|f| neighbours_across(dual, f).map(|v| half_spaces[v as usize])));
         for (f, across) in batch.zip(&across) {
             let planes = triangles[f].map(|v| &half_spaces[v as usize]);
+            let within = |corner: DVec3| across.iter().all(|h| h.excess(corner) <= tolerance);
             let corner = common_point(planes, tolerance)
-                .filter(|corner| across.iter().all(|h| h.excess(*corner) <= tolerance));
+                .filter(|(corner, sure)| {
+                    within(*corner)
+                        && (*sure || beyond_all(dual, half_spaces, f, *corner, interior) <= tolerance)
+                })
+                .map(|(corner, _)| corner);
             if corner.is_none() {
                 doubtful.push(f);
             }
             corners.push(corner.unwrap_or(DVec3::NAN));
         }
     }
-    for f in doubtful {
-        // A flip before may have settled it.
-        if corners[f].is_nan() && !flip(dual, half_spaces, &mut corners, f, tolerance) {
-            corners[f] = interior + polar_corner(dual.corners(f));
+    // A flip before may have settled it.
+    doubtful
+        .retain(|&f| corners[f].is_nan() && !flip(dual, half_spaces, &mut corners, f, interior, tolerance));
+    settle(dual, half_spaces, &mut corners, doubtful, interior, tolerance);
+    corners
+}
+
+/// Gives corners to the facets that are left: slivers, whose three planes have a line in common but for rounding, as planes along
+/// a sharp edge do. Where along the line their corner is, rounding decides; those of the facets beside it, which share two of
+/// the planes, are on it. The one that is the least off its own planes and beyond any other is taken, or that of the rounded
+/// duals if it is better, from the surest facet to the next.
+fn settle(
+    dual: &SolidHull,
+    half_spaces: &[HalfSpace],
+    corners: &mut [DVec3],
+    mut left: Vec<usize>,
+    interior: DVec3,
+    tolerance: f64,
+) {
+    let height = |f: usize, corner: DVec3| {
+        let own = dual.triangles()[f].map(|v| half_spaces[v as usize].excess(corner).abs());
+        own.into_iter().fold(beyond_all(dual, half_spaces, f, corner, interior), f64::max)
+    };
+    let best = |f: usize, corners: &[DVec3]| {
+        let beside = dual.neighbours()[f].map(|g| corners[g as usize]);
+        let polar = interior + polar_corner(dual.corners(f));
+        let all = beside.into_iter().chain([polar]).filter(|corner| corner.is_finite());
+        all.map(|corner| (height(f, corner), corner)).min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    while !left.is_empty() {
+        let before = left.len();
+        let mut nearest: Option<(f64, usize, DVec3)> = None;
+        left.retain(|&f| {
+            let Some((off, corner)) = best(f, corners) else { return true };
+            if off <= tolerance {
+                corners[f] = corner;
+            } else if nearest.is_none_or(|(least, ..)| off < least) {
+                nearest = Some((off, f, corner));
+            }
+            off > tolerance
+        });
+        if left.len() == before {
+            let Some((_, f, corner)) = nearest else { break };
+            corners[f] = corner;
+            left.retain(|other| *other != f);
         }
     }
-    corners
 }
 
 /// Flips the edge over which the corner of facet `f` protrudes, if that gives two corners that do not.
@@ -54,17 +100,18 @@ fn flip(
     half_spaces: &[HalfSpace],
     corners: &mut [DVec3],
     f: usize,
+    interior: DVec3,
     tolerance: f64,
 ) -> bool {
     let planes = dual.triangles()[f].map(|v| &half_spaces[v as usize]);
-    let Some(corner) = common_point(planes, tolerance) else { return false };
+    let Some((corner, _)) = common_point(planes, tolerance) else { return false };
     let across = neighbours_across(dual, f).map(|v| half_spaces[v as usize].excess(corner));
     let edge = (1..3).fold(0, |worst, edge| if across[edge] > across[worst] { edge } else { worst });
     let g = dual.neighbours()[f][edge] as usize;
     if !dual.flip(f as u32, edge) {
         return false;
     }
-    let new = [f, g].map(|facet| consistent(dual, half_spaces, facet, tolerance));
+    let new = [f, g].map(|facet| consistent(dual, half_spaces, facet, interior, tolerance));
     if let [Some(at_f), Some(at_g)] = new {
         (corners[f], corners[g]) = (at_f, at_g);
         return true;
@@ -76,11 +123,35 @@ fn flip(
     false
 }
 
-/// The corner of a facet, if it lies on its own planes and within those across its edges.
-fn consistent(dual: &SolidHull, half_spaces: &[HalfSpace], facet: usize, tolerance: f64) -> Option<DVec3> {
+/// The corner of a facet, if it lies on its own planes and within all others.
+fn consistent(
+    dual: &SolidHull,
+    half_spaces: &[HalfSpace],
+    facet: usize,
+    interior: DVec3,
+    tolerance: f64,
+) -> Option<DVec3> {
     let planes = dual.triangles()[facet].map(|v| &half_spaces[v as usize]);
-    let across = neighbours_across(dual, facet).map(|v| &half_spaces[v as usize]);
-    common_point(planes, tolerance).filter(|corner| across.iter().all(|h| h.excess(*corner) <= tolerance))
+    let (corner, _) = common_point(planes, tolerance)?;
+    let across = neighbours_across(dual, facet).map(|v| half_spaces[v as usize].excess(corner));
+    let within = across.into_iter().all(|excess| excess <= tolerance)
+        && beyond_all(dual, half_spaces, facet, corner, interior) <= tolerance;
+    within.then_some(corner)
+}
+
+/// How far a corner of a facet is beyond the plane that it is the farthest beyond of all, in m: that whose dual is the farthest along
+/// the corner's direction.
+#[cold]
+fn beyond_all(
+    dual: &SolidHull,
+    half_spaces: &[HalfSpace],
+    facet: usize,
+    corner: DVec3,
+    interior: DVec3,
+) -> f64 {
+    let mut walk = SupportWalk::new(dual);
+    walk.start_at(dual.triangles()[facet][0]);
+    half_spaces[walk.farthest_corner(corner - interior)].excess(corner)
 }
 
 /// The third corners of the facets across the edges of a facet.

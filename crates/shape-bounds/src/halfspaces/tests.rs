@@ -87,7 +87,7 @@ fn where_thousands_of_planes_nearly_meet_each_corner_is_common_to_its_planes() {
     let body = polyhedron(&spaces);
     for v in 0..body.vertices().len() {
         let planes = body.faces_at(v).map(|f| &body.face_half_spaces()[f as usize]);
-        let exact = super::vertex::common_point(planes, 1e-14).unwrap();
+        let (exact, _) = super::vertex::common_point(planes, 1e-14).unwrap();
         let distance = body.vertices()[v].distance(exact);
         assert!(distance < 1e-12 * AXES.max_element(), "corner {v}: {distance}");
     }

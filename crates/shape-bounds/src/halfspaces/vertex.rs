@@ -7,6 +7,8 @@ use glam::DVec3;
 
 /// A corner whose bound on its error is below this many tolerances, about 1e-12 of the size, needs no refinement.
 const GOOD: f64 = 1000.0;
+/// Rounding of the planes' offsets is amplified by at most so much in a corner whose place is sure: to 1e-6 of the size.
+const LOOSE: f64 = 1e9;
 /// Refinements at most. The inverse has some correct digits, or the planes have no point in common to speak of; so one or
 /// two steps are enough.
 const STEPS: usize = 4;
@@ -82,9 +84,10 @@ fn closest_first([i, j, k]: [&HalfSpace; 3]) -> [&HalfSpace; 3] {
 /// rounding of the point and of the planes' heights at it, `tolerance`; none where they have none, to that accuracy.
 ///
 /// Where the planes determine the point badly, it is refined with residuals in twofold precision: then it is the point common
-/// to the planes as given, to rounding, as long as the inverse has one correct digit.
+/// to the planes as given, to rounding, as long as the inverse has one correct digit; and then it is said not to be well
+/// determined.
 #[inline]
-pub(super) fn common_point(planes: [&HalfSpace; 3], tolerance: f64) -> Option<DVec3> {
+pub(super) fn common_point(planes: [&HalfSpace; 3], tolerance: f64) -> Option<(DVec3, bool)> {
     let planes = closest_first(planes);
     let [i, j, k] = planes;
     let inverse = Inverse::of(planes);
@@ -94,11 +97,12 @@ pub(super) fn common_point(planes: [&HalfSpace; 3], tolerance: f64) -> Option<DV
     let t = inverse.apply([i.margin, offset_j, offset_k]);
     let point = i.point + t;
     let common = |point: DVec3| planes.iter().all(|h| h.excess(point).abs() <= tolerance);
+    let sure = size(inverse.second) + size(inverse.third) <= LOOSE;
     if inverse.rounding(t, [d, e]) <= GOOD * tolerance && common(point) {
-        return Some(point);
+        return Some((point, sure));
     }
     let point = refined(planes, &inverse, point, tolerance);
-    common(point).then_some(point)
+    common(point).then_some((point, false))
 }
 
 /// Steps of Newton's method until they are below rounding.
