@@ -74,22 +74,22 @@ fn settle(
         let all = beside.into_iter().chain([polar]).filter(|corner| corner.is_finite());
         all.map(|corner| (height(f, corner), corner)).min_by(|a, b| a.0.total_cmp(&b.0))
     };
+    // What no pass settles any more takes the best there is.
+    let mut allowed = tolerance;
     while !left.is_empty() {
         let before = left.len();
-        let mut nearest: Option<(f64, usize, DVec3)> = None;
-        left.retain(|&f| {
-            let Some((off, corner)) = best(f, corners) else { return true };
-            if off <= tolerance {
+        left.retain(|&f| match best(f, corners).filter(|(off, _)| *off <= allowed) {
+            Some((_, corner)) => {
                 corners[f] = corner;
-            } else if nearest.is_none_or(|(least, ..)| off < least) {
-                nearest = Some((off, f, corner));
+                false
             }
-            off > tolerance
+            None => true,
         });
         if left.len() == before {
-            let Some((_, f, corner)) = nearest else { break };
-            corners[f] = corner;
-            left.retain(|other| *other != f);
+            if allowed == f64::INFINITY {
+                break;
+            }
+            allowed = f64::INFINITY;
         }
     }
 }

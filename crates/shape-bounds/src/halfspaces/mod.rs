@@ -88,19 +88,17 @@ impl Intersection {
         let dimension = dual.dimension();
         let closed = dual.into_solid().filter(strictly_contains_origin);
         let is_near = closed.as_ref().is_some_and(|dual| nearest_facet(dual) * depth > OPEN);
-        let polyhedron = closed.map(|dual| Polyhedron::from_dual(dual, half_spaces, outwards, interior));
-        let polyhedron = match polyhedron {
-            Some(polyhedron) if is_near => return Ok(Self::Bounded(polyhedron)),
-            other => other,
-        };
-        let directions = recession::unbounded_directions(half_spaces)?;
-        if !directions.is_empty() {
-            return Ok(Self::Unbounded(Unbounded {
-                half_spaces: half_spaces.to_vec(),
-                interior,
-                directions,
-            }));
+        if !is_near {
+            let directions = recession::unbounded_directions(half_spaces)?;
+            if !directions.is_empty() {
+                return Ok(Self::Unbounded(Unbounded {
+                    half_spaces: half_spaces.to_vec(),
+                    interior,
+                    directions,
+                }));
+            }
         }
+        let polyhedron = closed.map(|dual| Polyhedron::from_dual(dual, half_spaces, outwards, interior));
         match polyhedron.filter(Polyhedron::is_finite) {
             Some(polyhedron) => Ok(Self::Bounded(polyhedron)),
             None => Err(IntersectionError::Duals { dimension, depth }),

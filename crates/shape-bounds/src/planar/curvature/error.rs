@@ -5,7 +5,9 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum CurvatureError {
     /// Limits that no body has.
-    #[error("radii of curvature from {min} m to {max} m: they must be ordered, at least zero, and finite")]
+    #[error(
+        "radii of curvature from {min} m to {max} m: the smallest must be at least zero and below the largest, which must be finite"
+    )]
     Radii {
         /// The lower limit as given.
         min: f64,
