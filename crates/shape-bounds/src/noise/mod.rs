@@ -6,6 +6,7 @@ mod curvature;
 mod lower;
 mod model;
 pub(crate) mod outliers;
+mod polynomial;
 mod pose;
 pub(crate) mod quantile;
 mod roughness;

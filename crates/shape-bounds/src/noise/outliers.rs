@@ -124,7 +124,7 @@ impl<'a> Suspects<'a> {
         let mut suspects = Self { places, alive: vec![true; all.len()], all, found: Vec::new(), limit };
         let mut first = 0;
         for (curve, contacts) in curves.iter().enumerate() {
-            for (index, deviations) in standing_out(contacts, (1.0 - confidence) / curves.len() as f64) {
+            for (index, deviations) in standing_out(contacts, (1.0 - confidence) / curves.len() as f64, 3) {
                 suspects.alive[first + index] = false;
                 suspects.found.push(Outlier { curve, index, deviations, share: 0.0 });
             }
