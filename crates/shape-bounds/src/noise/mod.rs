@@ -1,8 +1,9 @@
 //! Bounds that hold at a stated confidence when contacts are measured with noise.
 
-mod assumptions;
+pub(crate) mod assumptions;
 pub(crate) mod consistency;
 mod curvature;
+mod levels;
 mod lower;
 mod model;
 pub(crate) mod outliers;
@@ -12,6 +13,7 @@ pub(crate) mod quantile;
 mod roughness;
 #[cfg(test)]
 mod tests;
+mod traced;
 mod upper;
 mod windows;
 
@@ -20,6 +22,7 @@ pub use consistency::estimate_noise;
 pub use model::{ContactNoise, NoiseError, NoisyContact};
 pub use outliers::{Outlier, without_outliers};
 pub use pose::PoseNoise;
+pub(crate) use traced::FEWEST;
 
 use crate::bounds::{BoundsError, Gap, ShapeBounds};
 use crate::halfspaces::{Intersection, Polyhedron};

@@ -1,6 +1,37 @@
 //! Values of smooth curves predicted from their neighbours, by polynomials of least squares.
 
 use glam::DVec3;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// Neighbours that predict a contact, by their places in the curve counted from it, and the degree of the polynomial.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Predictor {
+    pub(super) before: (usize, usize),
+    pub(super) after: (usize, usize),
+    pub(super) degree: usize,
+}
+
+pub(super) const fn around(before: usize, after: usize, reach: usize, degree: usize) -> Predictor {
+    Predictor { before: (before, reach), after: (after, reach), degree }
+}
+
+/// The neighbours of the `k`-th of those `left` that a predictor takes, where there are as many.
+pub(super) fn neighbours(left: &[usize], k: usize, of: Predictor) -> Option<Vec<usize>> {
+    let Predictor { before: (near_before, far_before), after: (near_after, far_after), .. } = of;
+    // At the end of a curve there are fewer on that side, and more on the other.
+    let (two_sided, behind) = (near_before <= far_before && near_after <= far_after, left.len() - 1 - k);
+    let short = |far: usize, there: usize| if two_sided { far.saturating_sub(there) } else { 0 };
+    let (short_before, short_after) = (short(far_before, k), short(far_after, behind));
+    let far_before = far_before + short_after - short_before;
+    let far_after = far_after + short_before - short_after;
+    if far_before > k || far_after > behind {
+        return None;
+    }
+    let before = k - far_before..(k + 1).saturating_sub(near_before);
+    let after = k + near_after..k + far_after + 1;
+    Some(before.chain(after).map(|j| left[j]).collect())
+}
 
 /// Polynomials of a degree over some places, none of them 0.
 #[derive(Clone, Debug)]
@@ -56,6 +87,21 @@ impl Polynomials {
     }
 }
 
+/// Polynomials by the neighbours' places, counted from the one that they predict, and the degree.
+#[derive(Debug, Default)]
+pub(super) struct Known(HashMap<(Vec<isize>, usize), Rc<Polynomials>>);
+
+impl Known {
+    pub(super) fn polynomials(&mut self, one: usize, others: &[usize], degree: usize) -> Rc<Polynomials> {
+        let places: Vec<isize> = others.iter().map(|j| *j as isize - one as isize).collect();
+        let made = |(places, degree): &(Vec<isize>, usize)| {
+            let places: Vec<f64> = places.iter().map(|p| *p as f64).collect();
+            Rc::new(Polynomials::over(&places, *degree))
+        };
+        self.0.entry((places, degree)).or_insert_with_key(made).clone()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -75,8 +121,10 @@ mod tests {
         }
         let mean = Polynomials::over(&places, 0);
         assert!(mean.weights.iter().all(|w| (w - 1.0 / 7.0).abs() < 1e-15) && mean.free() == 6);
-        // A parabola through three of four places misses the fourth by the third difference.
-        let line = Polynomials::over(&[-1.0, 1.0, 3.0], 1);
-        assert!((line.next - (1.0 / 6.0_f64.sqrt() * 5.0 / 2.0 - 0.0)).abs() < 3.0, "{}", line.next);
+        // Of a line through four places, what a parabola bends by is missed at 0 by the ratio of both.
+        let line = Polynomials::over(&[-2.0, -1.0, 1.0, 2.0], 1);
+        let parabola = [-2.0_f64, -1.0, 1.0, 2.0].map(|t| DVec3::X * (t * t));
+        let missed = line.weights.iter().zip(parabola).map(|(w, v)| w * v.x).sum::<f64>();
+        assert!((missed.abs() - line.next * line.misfit(parabola.to_vec()).sqrt()).abs() < 1e-14);
     }
 }

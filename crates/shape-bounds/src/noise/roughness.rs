@@ -1,23 +1,9 @@
 //! Contacts that stand out of their own curve.
 
 use super::model::NoisyContact;
-use super::polynomial::Polynomials;
+use super::polynomial::{Known, Predictor, around, neighbours};
 use super::quantile;
 use glam::{DMat3, DVec3};
-use std::collections::HashMap;
-use std::rc::Rc;
-
-/// Neighbours that predict a contact, by their places in the curve counted from it, and the degree of the polynomial.
-#[derive(Clone, Copy, Debug)]
-struct Predictor {
-    before: (usize, usize),
-    after: (usize, usize),
-    degree: usize,
-}
-
-const fn around(before: usize, after: usize, reach: usize, degree: usize) -> Predictor {
-    Predictor { before: (before, reach), after: (after, reach), degree }
-}
 
 /// Neighbours on both sides: many carry little noise, a high degree follows a curve that bends.
 const AROUND: [Predictor; 10] = [
@@ -44,17 +30,39 @@ const REACH: usize = 9;
 /// How well a curve is predicted is taken from how well the polynomial fits the neighbours themselves: contacts that are not in any
 /// order stand out nowhere. `dimension` is that of space.
 pub(super) fn standing_out(curve: &[NoisyContact], alpha: f64, dimension: usize) -> Vec<(usize, f64)> {
+    let (mut series, limit) = series(curve, alpha, dimension);
+    found_and_left(&mut series, limit, curve.len()).0
+}
+
+/// The contacts that do not stand out, and what their points and normals depart by from what their neighbours predict, over the
+/// deviation of that where all values have deviation 1.
+pub(super) fn departures(
+    curve: &[NoisyContact],
+    alpha: f64,
+    dimension: usize,
+) -> (Vec<usize>, [Vec<DVec3>; 2]) {
+    let (mut series, limit) = series(curve, alpha, dimension);
+    let left = found_and_left(&mut series, limit, curve.len()).1;
+    let of = |s: &mut Series| (0..left.len()).map(|k| s.judged(&left, k).vector).collect();
+    let departures = series.each_mut().map(of);
+    (left, departures)
+}
+
+/// Points and normals, and the deviations beyond which one stands out.
+fn series(curve: &[NoisyContact], alpha: f64, dimension: usize) -> ([Series; 2], f64) {
     let limit = quantile::length3(alpha / (2 * curve.len().max(1)) as f64);
     let of_normal = |c: &NoisyContact| DMat3::from_diagonal(DVec3::splat(c.noise.normal.powi(2)));
     let points = curve.iter().map(|c| (c.contact.point, c.noise.point)).collect();
     let normals = curve.iter().map(|c| (c.contact.normal.get(), of_normal(c))).collect();
-    let mut series = [
-        Series { values: points, dimension, limit, known: HashMap::new() },
-        Series { values: normals, dimension: dimension - 1, limit, known: HashMap::new() },
-    ];
-    let mut left: Vec<usize> = (0..curve.len()).collect();
-    let mut score =
-        |left: &[usize], k: usize| series.iter_mut().map(|s| s.score(left, k)).fold(0.0, f64::max);
+    let of = |values, dimension| Series { values, dimension, limit, known: Known::default() };
+    ([of(points, dimension), of(normals, dimension - 1)], limit)
+}
+
+fn found_and_left(series: &mut [Series; 2], limit: f64, count: usize) -> (Vec<(usize, f64)>, Vec<usize>) {
+    let mut left: Vec<usize> = (0..count).collect();
+    let mut score = |left: &[usize], k: usize| {
+        series.iter_mut().map(|s| s.judged(left, k).deviations).fold(0.0, f64::max)
+    };
     let mut found = drop_worst(&mut left, limit, &mut score);
     // What only seemed to stand out beside a larger outlier does so no more.
     found.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -68,7 +76,7 @@ pub(super) fn standing_out(curve: &[NoisyContact], alpha: f64, dimension: usize)
         }
         stands_out
     });
-    found
+    (found, left)
 }
 
 /// Takes out the contact of highest score until none is above the limit.
@@ -100,13 +108,14 @@ struct Series {
     dimension: usize,
     /// Deviations beyond which one stands out.
     limit: f64,
-    /// Polynomials by the neighbours' places and the degree.
-    known: HashMap<(Vec<isize>, usize), Rc<Polynomials>>,
+    known: Known,
 }
 
 /// What a value departs from its prediction by.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Departure {
+    /// Over its deviation where all values have deviation 1.
+    vector: DVec3,
     /// Standard deviation of the departure, by the noise, or by how badly the neighbours are fitted where that is larger.
     deviation: f64,
     /// In as many of these.
@@ -116,11 +125,11 @@ struct Departure {
 }
 
 impl Series {
-    /// Departure of the `k`-th of those `left` from what its neighbours predict, in standard deviations.
-    fn score(&mut self, left: &[usize], k: usize) -> f64 {
+    /// Departure of the `k`-th of those `left` from what its neighbours predict best.
+    fn judged(&mut self, left: &[usize], k: usize) -> Departure {
         let around = self.best(left, k, &AROUND);
-        if let Some(Departure { deviations, fitted: true, .. }) = around {
-            return deviations;
+        if let Some(departure @ Departure { fitted: true, .. }) = around {
+            return departure;
         }
         let before =
             BESIDE.map(|(first, last, degree)| Predictor { before: (first, last), after: (1, 0), degree });
@@ -129,7 +138,7 @@ impl Series {
         // An edge is explained from one side.
         let beside = sides.into_iter().flatten().min_by(|a, b| a.deviations.total_cmp(&b.deviations));
         let both = around.into_iter().chain(beside);
-        both.min_by(|a, b| a.deviation.total_cmp(&b.deviation)).map_or(0.0, |d| d.deviations)
+        both.min_by(|a, b| a.deviation.total_cmp(&b.deviation)).unwrap_or_default()
     }
 
     /// The departure from the prediction that is known best.
@@ -153,7 +162,7 @@ impl Series {
     }
 
     fn departure(&mut self, one: usize, others: &[usize], degree: usize) -> Departure {
-        let polynomials = self.polynomials(one, others, degree);
+        let polynomials = self.known.polynomials(one, others, degree);
         let (mut vector, mut covariance) = self.values[one];
         let mut noise = 0.0;
         for (j, w) in others.iter().zip(&polynomials.weights) {
@@ -173,32 +182,6 @@ impl Series {
         let stated = vector.dot(covariance * vector).max(0.0).sqrt() / length.max(f64::MIN_POSITIVE);
         let deviation = stated.max(seen) + bend / self.limit;
         let deviations = if deviation > 0.0 { length / deviation } else { 0.0 };
-        Departure { deviation, deviations, fitted: misfit <= free * noise }
+        Departure { vector: vector / polynomials.gain, deviation, deviations, fitted: misfit <= free * noise }
     }
-
-    fn polynomials(&mut self, one: usize, others: &[usize], degree: usize) -> Rc<Polynomials> {
-        let places: Vec<isize> = others.iter().map(|j| *j as isize - one as isize).collect();
-        let made = |(places, degree): &(Vec<isize>, usize)| {
-            let places: Vec<f64> = places.iter().map(|p| *p as f64).collect();
-            Rc::new(Polynomials::over(&places, *degree))
-        };
-        self.known.entry((places, degree)).or_insert_with_key(made).clone()
-    }
-}
-
-/// The neighbours of the `k`-th of those `left` that a predictor takes, where there are as many.
-fn neighbours(left: &[usize], k: usize, of: Predictor) -> Option<Vec<usize>> {
-    let Predictor { before: (near_before, far_before), after: (near_after, far_after), .. } = of;
-    // At the end of a curve there are fewer on that side, and more on the other.
-    let (two_sided, behind) = (near_before <= far_before && near_after <= far_after, left.len() - 1 - k);
-    let short = |far: usize, there: usize| if two_sided { far.saturating_sub(there) } else { 0 };
-    let (short_before, short_after) = (short(far_before, k), short(far_after, behind));
-    let far_before = far_before + short_after - short_before;
-    let far_after = far_after + short_before - short_after;
-    if far_before > k || far_after > behind {
-        return None;
-    }
-    let before = k - far_before..(k + 1).saturating_sub(near_before);
-    let after = k + near_after..k + far_after + 1;
-    Some(before.chain(after).map(|j| left[j]).collect())
 }
