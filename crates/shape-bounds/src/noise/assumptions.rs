@@ -11,7 +11,7 @@ const FALSE_ALARM: f64 = 1e-3;
 const RAISED: f64 = 0.05;
 /// Orders of the differences that noise that is alike is judged by: low ones say more, high ones leave less of a curve, which at a wider
 /// spacing is more.
-const ORDERS_OF_ALIKE: std::ops::RangeInclusive<usize> = 3..=9;
+const ORDERS_OF_ALIKE: std::ops::RangeInclusive<usize> = 3..=7;
 /// Share of what differences of an order find that those of a higher one must find: less is the curve, which they take away.
 pub(super) const RESOLVED: f64 = 0.8;
 /// Differences over every second contact are at most so many times as large as over every one, if noise makes them so: the root of 2
@@ -126,7 +126,10 @@ pub(crate) fn correlated(curves: &[Vec<NoisyContact>], dimension: usize) -> Opti
                 let (here, next) = (found(*order), found(order + 1));
                 here.iter().zip(&next).all(|(a, b)| a.0 > 0.0 && b.0 > RESOLVED * a.0)
             };
-            let Some([one, two]) = ORDERS_OF_ALIKE.into_iter().find(resolved).map(found) else { continue };
+            // Of the orders that leave none of it the one of the smallest growth: what is left of the curve grows more than noise.
+            let growth = |[one, two]: &[(f64, f64); 2]| two.0 / one.0;
+            let resolved = ORDERS_OF_ALIKE.filter(resolved).map(found);
+            let Some([one, two]) = resolved.min_by(|a, b| growth(a).total_cmp(&growth(b))) else { continue };
             if two.0 > SMOOTHEST * one.0 {
                 continue;
             }

@@ -52,7 +52,7 @@ pub(super) fn rougher(curve: &Traced, odds: f64, alpha: f64) -> Vec<Rough> {
             if square > 1.0 && p_value < odds {
                 found.push(Rough {
                     part,
-                    contacts: left[run.start]..left[run.end - 1] + 1,
+                    contacts: span(&left, run, curve.contacts.len()),
                     whole: run.len() == left.len(),
                     ratio: square.sqrt(),
                     at_most: (square / least(alpha, free)).sqrt(),
@@ -64,6 +64,13 @@ pub(super) fn rougher(curve: &Traced, odds: f64, alpha: f64) -> Vec<Rough> {
     }
     // Where noise is as stated as far as can be told, what is left elsewhere is the curve.
     if found.iter().any(|run| run.resolved) { found } else { Vec::new() }
+}
+
+/// The contacts of a run of those `left`, with what was left out between them and at the ends of the curve.
+fn span(left: &[usize], run: &Range<usize>, count: usize) -> Range<usize> {
+    let first = if run.start == 0 { 0 } else { left[run.start] };
+    let end = if run.end == left.len() { count } else { left[run.end - 1] + 1 };
+    first..end
 }
 
 fn runs(count: usize) -> Vec<Range<usize>> {

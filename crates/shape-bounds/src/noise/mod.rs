@@ -12,6 +12,8 @@ mod pose;
 pub(crate) mod quantile;
 mod roughness;
 #[cfg(test)]
+mod stated_tests;
+#[cfg(test)]
 mod tests;
 mod traced;
 mod upper;
