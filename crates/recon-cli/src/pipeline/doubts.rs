@@ -9,6 +9,8 @@ use serde_json::{Value, json};
 pub(super) struct Doubts {
     all: Vec<NoiseDoubt>,
     noise: Noise,
+    /// Whether independence could be tested.
+    tested: bool,
     /// Whether noise is alike from one contact to the next.
     pub(super) correlated: bool,
 }
@@ -17,14 +19,14 @@ impl Doubts {
     /// Levels that were read off contacts whose noise is alike are none: an error.
     pub(super) fn new(
         mut levels: Vec<NoiseDoubt>,
-        alike: Option<NoiseDoubt>,
+        (alike, tested): (Option<NoiseDoubt>, bool),
         noise: Noise,
     ) -> Result<Self, CliError> {
         if let (Some(NoiseDoubt::Correlated { ratio, p_value }), Noise::Estimated) = (alike, noise) {
             return Err(CliError::CorrelatedNoise { ratio, p_value });
         }
         levels.extend(alike);
-        Ok(Self { all: levels, noise, correlated: alike.is_some() })
+        Ok(Self { all: levels, noise, tested, correlated: alike.is_some() })
     }
 
     /// For programs, where there are any.
@@ -32,6 +34,15 @@ impl Doubts {
         if !self.all.is_empty() {
             about["noise_doubts"] = self.all.iter().map(listed).collect();
         }
+        about["independence_is_tested"] = json!(self.tested);
+    }
+
+    /// What is to be said of levels that were read off contacts too few, or too far apart, to tell whether their noise is alike: such
+    /// noise is larger than it looks. Levels that were stated are the user's.
+    pub(super) fn untested(&self) -> Option<String> {
+        let said = "Contacts are too few, or too far apart, to tell whether their noise is alike from one to the next: if it is, the \
+                    estimated noise is too small and the bounds do not hold.";
+        (matches!(self.noise, Noise::Estimated) && !self.tested).then(|| said.to_owned())
     }
 
     /// In words, with what is done about each.

@@ -9,7 +9,7 @@ use glam::DVec2;
 use recon::contact_kinematics::planar::RadiusBounds;
 use recon::shape_bounds::planar::{
     ContactNoise, ContactSample, CurvatureBounds, Direction, Intersection, NoisyContact, ShapeBounds,
-    correlated_noise, estimate_noise, with_noise_as_found, without_outliers,
+    correlated_noise, estimate_noise, independence_is_tested, with_noise_as_found, without_outliers,
 };
 use recon_io::outline_stands_out;
 use serde_json::{Value, json};
@@ -103,7 +103,7 @@ fn cleaned(curves: &[Vec<ContactSample>], noise: Noise, confidence: f64) -> Resu
         }
         Noise::Estimated => ("estimated", estimate_noise(curves, confidence)?),
     };
-    let alike = correlated_noise(&noisy);
+    let alike = (correlated_noise(&noisy), independence_is_tested(&noisy));
     let (noisy, levels) = with_noise_as_found(&noisy);
     let doubts = Doubts::new(levels, alike, noise)?;
     let (mut kept, outliers) = without_outliers(&noisy, confidence)?;
@@ -114,7 +114,11 @@ fn cleaned(curves: &[Vec<ContactSample>], noise: Noise, confidence: f64) -> Resu
     let mut about =
         json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed(&outliers) });
     doubts.add_to(&mut about);
-    Ok(Cleaned { kept, warnings: doubts.warnings().chain(left_out(&outliers)).collect(), about })
+    Ok(Cleaned {
+        kept,
+        warnings: doubts.warnings().chain(left_out(&outliers)).chain(doubts.untested()).collect(),
+        about,
+    })
 }
 
 /// Standard deviations of a contact across and along the outline (m) and of its normal (rad).

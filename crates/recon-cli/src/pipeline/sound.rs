@@ -9,7 +9,7 @@ use recon::observer::{MotionEstimate, PoseCovariance};
 use recon::shape_bounds::{
     BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, NoisyContact,
     Outlier, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, correlated_noise, estimate_noise,
-    with_noise_as_found, without_outliers,
+    independence_is_tested, with_noise_as_found, without_outliers,
 };
 use recon_io::{Bound, Bounds, brief_to};
 use serde_json::{Value, json};
@@ -181,7 +181,7 @@ pub(super) fn cleaned(
         }
         Noise::Estimated => ("estimated", estimate_noise(curves, confidence)?),
     };
-    let alike = correlated_noise(&noisy);
+    let alike = (correlated_noise(&noisy), independence_is_tested(&noisy));
     let (noisy, levels) = with_noise_as_found(&noisy);
     let doubts = Doubts::new(levels, alike, noise)?;
     let (kept, outliers) = without_outliers(&noisy, confidence)?;
@@ -189,7 +189,7 @@ pub(super) fn cleaned(
     let mut about =
         json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed(&outliers) });
     doubts.add_to(&mut about);
-    let warnings = doubts.warnings().chain(left_out(&outliers)).collect();
+    let warnings = doubts.warnings().chain(left_out(&outliers)).chain(doubts.untested()).collect();
     Ok(Cleaned { kept, warnings, about, correlated: doubts.correlated })
 }
 

@@ -105,6 +105,11 @@ fn levels_are_not_read_off_contacts_whose_noise_is_alike() {
         assert!(run.stderr.contains(word), "{word}: {}", run.stderr);
     }
     assert!(!scratch.path().join("out").exists());
+    // Where they are too few to tell, that is said.
+    scratch.write("few.csv", &ellipse(200, |_| 1e-2, 0.0));
+    let run = scratch.run(&["bounds", "few.csv", "--estimate-noise"]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    assert!(run.stdout.contains("too few, or too far apart"), "{}", run.stdout);
     let (doubts, warnings) = told(&scratch, "alike.csv", "ellipse");
     assert!(doubts.iter().any(|d| d["assumption"] == "independent"), "{doubts:?}");
     assert!(warnings.iter().any(|w| w.contains("No means are taken")), "{warnings:?}");

@@ -19,7 +19,7 @@ mod traced;
 mod upper;
 mod windows;
 
-pub use assumptions::{NoiseDoubt, correlated_noise, with_noise_as_found};
+pub use assumptions::{NoiseDoubt, correlated_noise, independence_is_tested, with_noise_as_found};
 pub use consistency::estimate_noise;
 pub use model::{ContactNoise, NoiseError, NoisyContact};
 pub use outliers::{Outlier, without_outliers};

@@ -39,8 +39,8 @@ pub use fit::{FitError, FittedOutline, OutlineChoice, OutlineFamily, OutlineFit,
 pub use halfplanes::{Intersection, IntersectionError, Region, Unbounded};
 pub use hull::{Hull, HullPolygon, IncrementalHull, PointsError};
 pub use noise::{
-    ContactNoise, NoiseError, NoisyContact, correlated_noise, estimate_noise, with_noise_as_found,
-    without_outliers,
+    ContactNoise, NoiseError, NoisyContact, correlated_noise, estimate_noise, independence_is_tested,
+    with_noise_as_found, without_outliers,
 };
 pub use polygon::ConvexPolygon;
 pub use sample::{ContactError, ContactSample, HalfPlane};

@@ -3,7 +3,7 @@
 use super::lift::{lifted, lowered};
 use super::model::{ContactNoise, NoiseError, NoisyContact};
 use crate::noise::FEWEST;
-use crate::noise::assumptions::{NoiseDoubt, as_found, correlated};
+use crate::noise::assumptions::{NoiseDoubt, as_found, correlated, tested};
 use crate::noise::consistency::{estimated, raise};
 use crate::planar::ContactSample;
 
@@ -48,4 +48,10 @@ pub fn with_noise_as_found(curves: &[Vec<NoisyContact>]) -> (Vec<Vec<NoisyContac
 #[must_use]
 pub fn correlated_noise(curves: &[Vec<NoisyContact>]) -> Option<NoiseDoubt> {
     correlated(&curves.iter().map(|curve| lifted(curve)).collect::<Vec<_>>(), 2)
+}
+
+/// Whether [`correlated_noise`] would find a random walk: the twin of [`crate::independence_is_tested`].
+#[must_use]
+pub fn independence_is_tested(curves: &[Vec<NoisyContact>]) -> bool {
+    tested(&curves.iter().map(|curve| lifted(curve)).collect::<Vec<_>>(), 2)
 }
