@@ -30,7 +30,7 @@ pub struct Outlier {
 /// contradict others: two contacts of a convex body do when one lies beyond the other's half-space. Beyond what noise
 /// does, at the stated `confidence` for all pairs together, one of the two is wrong: the one that contradicts more
 /// contacts; both, where the rest does not tell. Leaving a good contact out only widens the bounds, so that they stay
-/// sound either way. Errors of less than about seven standard deviations, at the ends of a curve twelve, may stay unnoticed.
+/// sound either way. Errors of less than about ten standard deviations may stay unnoticed, and larger ones at edges (docs/bounds.md).
 ///
 /// # Errors
 /// [`NoiseError`] for an impossible confidence or noise, a point that is not finite, and when half of the contacts or more

@@ -114,7 +114,7 @@ fn noise_as_stated_and_edges_raise_no_alarm() {
         assert_eq!((with_noise_as_found(&right).1, correlated_noise(&right)), (vec![], None), "seed {seed}");
         // A hundred contacts a curve are too few to find noise that is alike.
         assert!(!independence_is_tested(&right), "seed {seed}");
-        assert!(independence_is_tested(&stated(&measured(900, |_, _| 1.0, seed), LEVEL)), "seed {seed}");
+        assert!(independence_is_tested(&stated(&measured(1500, |_, _| 1.0, seed), LEVEL)), "seed {seed}");
     }
     // Sections of a cube with rounded edges, on which a third of the contacts lie, known to a thousandth of the edges' radius.
     let noise = ContactNoise::isotropic(1e-4, 1e-4);
