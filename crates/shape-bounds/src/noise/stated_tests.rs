@@ -1,4 +1,4 @@
-//! Noise that is not as stated or assumed, on seeds that no threshold was set on.
+//! Noise that is not as stated or assumed; rates on seeds that nothing was set on are in docs/bounds.md.
 
 use super::*;
 use crate::ContactSample;
