@@ -42,7 +42,7 @@ pub(crate) enum CliError {
     NoisyBounds(#[from] NoiseError),
     #[error(
         "the noise of the contacts cannot be read off them: it is alike from one to the next ({ratio:.1} times as large over every \
-         second contact as over every one, p = {p_value:.0e}); state it with --contact-noise and --normal-noise"
+         second contact as over every one, z-test, p = {p_value:.0e}), or the body has edges; state it with --contact-noise and --normal-noise"
     )]
     CorrelatedNoise { ratio: f64, p_value: f64 },
     #[error("the contacts and the limits on the curvature give no bounds")]

@@ -65,7 +65,7 @@ pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
 pub use noise::{
     CertainBounds, ContactNoise, NoiseDoubt, NoiseError, NoisyContact, Outlier, PoseNoise, correlated_noise,
-    estimate_noise, with_noise_as_found, without_outliers,
+    estimate_noise, independence_is_tested, with_noise_as_found, without_outliers,
 };
 pub use palms::{PalmContact, PalmError, PalmIntersection};
 pub use poses::{

@@ -3,8 +3,8 @@ use crate::cli::{BoundsArgs, FitAs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
-    BoundsResult, Noise, PlanarRequest, concave_bounds, exact_bounds, fit_words, fitted_shape, noisy_bounds,
-    pose_bounds, sharp_bounds, write_bounds_folder,
+    BoundsResult, Noise, PlanarRequest, concave_bounds, doubtful_fit, exact_bounds, fit_words, fitted_shape,
+    noisy_bounds, pose_bounds, sharp_bounds, write_bounds_folder,
 };
 use crate::progress::Progress;
 use recon::contact_kinematics::CurvatureRadii;
@@ -76,6 +76,7 @@ fn of_contacts(args: &BoundsArgs, curves: &[Vec<ContactSample>]) -> Result<(Boun
         let fitted = fitted_shape(curves, noise, family)?;
         about["fit"] = fitted.report;
         made.warnings.extend(fitted.warning);
+        made.warnings.extend(doubtful_fit(&about));
         let comment = "shape fitted to the contacts; metres";
         made.others.extend(fitted.mesh.map(|mesh| ("fitted_shape.ply", comment, mesh)));
     }

@@ -3,6 +3,7 @@
 mod body;
 mod bounds;
 mod concave;
+mod doubts;
 mod evidence;
 mod export;
 mod fitted;
@@ -15,6 +16,7 @@ mod truth;
 
 pub(crate) use bounds::{BoundsResult, bounds, exact_bounds};
 pub(crate) use concave::concave_bounds;
+pub(crate) use doubts::doubtful_fit;
 pub(crate) use export::exported;
 pub(crate) use fitted::{fit_words, fitted_shape};
 pub(crate) use folder::{write_bounds_folder, write_reconstruction_folder, write_touch_folder};

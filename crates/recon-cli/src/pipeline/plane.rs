@@ -1,14 +1,15 @@
 //! Bounds of an outline in the plane, with what is drawn of them.
 
+use super::doubts::{Doubts, doubtful_fit};
 use super::fitted::{fitted_outline, relative_noise};
-use super::sound::{Noise, left_out, listed};
+use super::sound::{Noise, largest, left_out, listed};
 use crate::cli::FitAs;
 use crate::error::CliError;
 use glam::DVec2;
 use recon::contact_kinematics::planar::RadiusBounds;
 use recon::shape_bounds::planar::{
     ContactNoise, ContactSample, CurvatureBounds, Direction, Intersection, NoisyContact, ShapeBounds,
-    estimate_noise, without_outliers,
+    correlated_noise, estimate_noise, independence_is_tested, with_noise_as_found, without_outliers,
 };
 use recon_io::outline_stands_out;
 use serde_json::{Value, json};
@@ -73,9 +74,9 @@ pub(crate) fn planar_bounds(
     let (kept, mut made) = match (request.radii, request.noise) {
         (Some(radii), _) => (relative_noise(&all), sharp(&all, radii)?),
         (None, Some((noise, confidence))) => {
-            let Cleaned { kept, warning, about } = cleaned(curves, noise, confidence)?;
+            let Cleaned { kept, warnings, about } = cleaned(curves, noise, confidence)?;
             let mut made = drawn(&ShapeBounds::from_noisy_curves(&kept, confidence)?, about);
-            made.warnings.extend(warning);
+            made.warnings.extend(warnings);
             (kept.concat(), made)
         }
         (None, None) => {
@@ -86,15 +87,17 @@ pub(crate) fn planar_bounds(
     if let Some(family) = request.fit {
         let (report, outline) = fitted_outline(&kept, request.noise.is_some(), family)?;
         made.about["fit"] = report;
+        made.warnings.extend(doubtful_fit(&made.about));
         made.fitted = outline;
     }
     Ok(made)
 }
 
-/// Contacts with their noise, without outliers.
+/// Contacts with their noise, without outliers; each in a curve of its own where noise is alike from one to the next, because nothing
+/// is gained by means then.
 struct Cleaned {
     kept: Vec<Vec<NoisyContact>>,
-    warning: Option<String>,
+    warnings: Vec<String>,
     about: Value,
 }
 
@@ -107,17 +110,29 @@ fn cleaned(curves: &[Vec<ContactSample>], noise: Noise, confidence: f64) -> Resu
         }
         Noise::Estimated => ("estimated", estimate_noise(curves, confidence)?),
     };
-    let (kept, outliers) = without_outliers(&noisy, confidence)?;
-    let levels: Vec<Value> = noisy.iter().filter_map(|curve| curve.first()).map(level).collect();
-    let about = json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed(&outliers) });
-    Ok(Cleaned { kept, warning: left_out(&outliers), about })
+    let alike = (correlated_noise(&noisy), independence_is_tested(&noisy));
+    let (noisy, levels) = with_noise_as_found(&noisy);
+    let doubts = Doubts::new(levels, alike, noise)?;
+    let (mut kept, outliers) = without_outliers(&noisy, confidence)?;
+    if doubts.correlated {
+        kept = kept.into_iter().flatten().map(|contact| vec![contact]).collect();
+    }
+    let levels: Vec<Value> = noisy.iter().map(|curve| largest(curve.iter().map(level))).collect();
+    let mut about =
+        json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed(&outliers) });
+    doubts.add_to(&mut about);
+    Ok(Cleaned {
+        kept,
+        warnings: doubts.warnings().chain(left_out(&outliers)).chain(doubts.untested()).collect(),
+        about,
+    })
 }
 
-/// Standard deviations of a contact across and along the outline and of its normal.
-fn level(c: &NoisyContact) -> Value {
+/// Standard deviations of a contact across and along the outline (m) and of its normal (rad).
+fn level(c: &NoisyContact) -> [f64; 3] {
     let n = c.contact.normal.get();
     let deviation = |u: DVec2| u.dot(c.noise.point * u).max(0.0).sqrt();
-    json!({ "across_m": deviation(n), "along_m": deviation(n.perp()), "normal_rad": c.noise.normal })
+    [deviation(n), deviation(n.perp()), c.noise.normal]
 }
 
 /// The field of gaps of a pair of support functions; empty where the upper one has no end.

@@ -1,14 +1,15 @@
 //! Bounds that hold at a stated confidence: from noisy contacts, and from poses above a plane.
 
 use super::bounds::{BoundsResult, drawn_surfaces, meshes, own};
+use super::doubts::Doubts;
 use crate::error::CliError;
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, CurvePoint};
 use recon::observer::{MotionEstimate, PoseCovariance};
 use recon::shape_bounds::{
-    BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, NoiseDoubt,
-    NoisyContact, Outlier, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, correlated_noise,
-    estimate_noise, with_noise_as_found, without_outliers,
+    BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, NoisyContact,
+    Outlier, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, correlated_noise, estimate_noise,
+    independence_is_tested, with_noise_as_found, without_outliers,
 };
 use recon_io::{Bound, Bounds, brief_to};
 use serde_json::{Value, json};
@@ -180,52 +181,16 @@ pub(super) fn cleaned(
         }
         Noise::Estimated => ("estimated", estimate_noise(curves, confidence)?),
     };
-    let correlated = correlated_noise(&noisy);
-    if let (Some(NoiseDoubt::Correlated { ratio, p_value }), Noise::Estimated) = (correlated, noise) {
-        return Err(CliError::CorrelatedNoise { ratio, p_value });
-    }
-    // Levels that were read off the contacts are what they show.
-    let (noisy, mut doubts) = match noise {
-        Noise::Stated { .. } => with_noise_as_found(&noisy),
-        Noise::Estimated => (noisy, Vec::new()),
-    };
-    doubts.extend(correlated);
+    let alike = (correlated_noise(&noisy), independence_is_tested(&noisy));
+    let (noisy, levels) = with_noise_as_found(&noisy);
+    let doubts = Doubts::new(levels, alike, noise)?;
     let (kept, outliers) = without_outliers(&noisy, confidence)?;
-    let levels: Vec<Value> = noisy.iter().filter_map(|curve| curve.first()).map(level).collect();
+    let levels: Vec<Value> = noisy.iter().map(|curve| largest(curve.iter().map(level))).collect();
     let mut about =
         json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed(&outliers) });
-    if !doubts.is_empty() {
-        about["noise_doubts"] = doubts.iter().map(doubt).collect();
-    }
-    let warnings = doubts.iter().map(doubtful).chain(left_out(&outliers)).collect();
-    Ok(Cleaned { kept, warnings, about, correlated: correlated.is_some() })
-}
-
-/// What is not as was stated, for programs.
-fn doubt(of: &NoiseDoubt) -> Value {
-    match of {
-        NoiseDoubt::Level { curve, what, stated, found, p_value } => json!({
-            "assumption": "level", "curve": curve + 1, "what": what, "stated": stated, "found": found, "p_value": p_value,
-        }),
-        NoiseDoubt::Correlated { ratio, p_value } => {
-            json!({ "assumption": "independent", "ratio": ratio, "p_value": p_value })
-        }
-    }
-}
-
-/// The same in words, with what is done about it.
-fn doubtful(of: &NoiseDoubt) -> String {
-    match of {
-        NoiseDoubt::Level { curve, what, stated, found, p_value } => format!(
-            "Noise of curve {} ({what}) is {found:.1e} where {stated:.1e} was stated (z-test on the median of third differences, \
-             p = {p_value:.0e}): the larger one is used.",
-            curve + 1
-        ),
-        NoiseDoubt::Correlated { ratio, p_value } => format!(
-            "Noise is alike from one contact to the next: {ratio:.1} times as large over every second contact as over every one (z-test, \
-             p = {p_value:.0e}). No means are taken over contacts; the stated level must be that of the whole noise."
-        ),
-    }
+    doubts.add_to(&mut about);
+    let warnings = doubts.warnings().chain(left_out(&outliers)).chain(doubts.untested()).collect();
+    Ok(Cleaned { kept, warnings, about, correlated: doubts.correlated })
 }
 
 /// Outliers, counted from 1.
@@ -271,15 +236,19 @@ pub(super) fn left_out(outliers: &[Outlier]) -> Option<String> {
     (!said.is_empty()).then(|| said.join(" "))
 }
 
-/// Standard deviations of a contact across and along the surface and of its normal.
-fn level(c: &NoisyContact) -> Value {
+/// Standard deviations of a contact across and along the surface (m) and of its normal (rad).
+fn level(c: &NoisyContact) -> [f64; 3] {
     let n = c.contact.normal.get();
     let along = n.any_orthonormal_vector();
-    json!({
-        "across_m": n.dot(c.noise.point * n).max(0.0).sqrt(),
-        "along_m": along.dot(c.noise.point * along).max(0.0).sqrt(),
-        "normal_rad": c.noise.normal,
-    })
+    let deviation = |u: DVec3| u.dot(c.noise.point * u).max(0.0).sqrt();
+    [deviation(n), deviation(along), c.noise.normal]
+}
+
+/// The largest deviations of the contacts of a curve.
+pub(super) fn largest(levels: impl Iterator<Item = [f64; 3]>) -> Value {
+    let [across, along, normal] =
+        levels.fold([0.0; 3], |largest: [f64; 3], one| std::array::from_fn(|k| largest[k].max(one[k])));
+    json!({ "across_m": across, "along_m": along, "normal_rad": normal })
 }
 
 /// What the tight rule is not good for.

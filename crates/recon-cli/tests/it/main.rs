@@ -6,6 +6,7 @@
 
 mod bad_input;
 mod bounds;
+mod bounds_noise;
 mod bounds_shapes;
 mod check;
 mod common;

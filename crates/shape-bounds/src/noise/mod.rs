@@ -1,24 +1,30 @@
 //! Bounds that hold at a stated confidence when contacts are measured with noise.
 
-mod assumptions;
+pub(crate) mod assumptions;
 pub(crate) mod consistency;
 mod curvature;
+mod levels;
 mod lower;
 mod model;
 pub(crate) mod outliers;
+mod polynomial;
 mod pose;
 pub(crate) mod quantile;
 mod roughness;
 #[cfg(test)]
+mod stated_tests;
+#[cfg(test)]
 mod tests;
+mod traced;
 mod upper;
 mod windows;
 
-pub use assumptions::{NoiseDoubt, correlated_noise, with_noise_as_found};
+pub use assumptions::{NoiseDoubt, correlated_noise, independence_is_tested, with_noise_as_found};
 pub use consistency::estimate_noise;
 pub use model::{ContactNoise, NoiseError, NoisyContact};
 pub use outliers::{Outlier, without_outliers};
 pub use pose::PoseNoise;
+pub(crate) use traced::FEWEST;
 
 use crate::bounds::{BoundsError, Gap, ShapeBounds};
 use crate::halfspaces::{Intersection, Polyhedron};

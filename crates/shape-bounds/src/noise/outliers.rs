@@ -30,7 +30,7 @@ pub struct Outlier {
 /// contradict others: two contacts of a convex body do when one lies beyond the other's half-space. Beyond what noise
 /// does, at the stated `confidence` for all pairs together, one of the two is wrong: the one that contradicts more
 /// contacts; both, where the rest does not tell. Leaving a good contact out only widens the bounds, so that they stay
-/// sound either way. Errors of less than about seven standard deviations, at the ends of a curve twelve, may stay unnoticed.
+/// sound either way. Errors of less than about ten standard deviations may stay unnoticed, and larger ones at edges (docs/bounds.md).
 ///
 /// # Errors
 /// [`NoiseError`] for an impossible confidence or noise, a point that is not finite, and when half of the contacts or more
@@ -41,7 +41,7 @@ pub fn without_outliers(
 ) -> Result<(Vec<Vec<NoisyContact>>, Vec<Outlier>), NoiseError> {
     NoiseError::check_confidence(confidence)?;
     NoiseError::check_contacts(curves)?;
-    judged(curves, confidence)
+    judged(curves, confidence, 3)
         .map_err(|Undecided { outliers, contacts }| NoiseError::Undecided { outliers, contacts })
 }
 
@@ -51,12 +51,13 @@ pub(crate) struct Undecided {
     pub(crate) contacts: usize,
 }
 
-/// [`without_outliers`] of values that have been checked.
+/// [`without_outliers`] of values that have been checked, in a space of two or three dimensions.
 pub(crate) fn judged(
     curves: &[Vec<NoisyContact>],
     confidence: f64,
+    dimension: usize,
 ) -> Result<(Vec<Vec<NoisyContact>>, Vec<Outlier>), Undecided> {
-    let mut suspects = Suspects::new(curves, confidence);
+    let mut suspects = Suspects::new(curves, confidence, dimension);
     while suspects.drop_worst() {
         let (outliers, contacts) = (suspects.found.len(), suspects.all.len());
         if 2 * outliers >= contacts {
@@ -115,7 +116,7 @@ struct Contradiction {
 }
 
 impl<'a> Suspects<'a> {
-    fn new(curves: &'a [Vec<NoisyContact>], confidence: f64) -> Self {
+    fn new(curves: &'a [Vec<NoisyContact>], confidence: f64, dimension: usize) -> Self {
         let all: Vec<_> = curves.iter().flatten().collect();
         let places =
             curves.iter().enumerate().flat_map(|(c, curve)| (0..curve.len()).map(move |k| (c, k))).collect();
@@ -124,7 +125,9 @@ impl<'a> Suspects<'a> {
         let mut suspects = Self { places, alive: vec![true; all.len()], all, found: Vec::new(), limit };
         let mut first = 0;
         for (curve, contacts) in curves.iter().enumerate() {
-            for (index, deviations) in standing_out(contacts, (1.0 - confidence) / curves.len() as f64) {
+            for (index, deviations) in
+                standing_out(contacts, (1.0 - confidence) / curves.len() as f64, dimension)
+            {
                 suspects.alive[first + index] = false;
                 suspects.found.push(Outlier { curve, index, deviations, share: 0.0 });
             }

@@ -1,60 +1,91 @@
 //! Contacts that stand out of their own curve.
 
 use super::model::NoisyContact;
+use super::polynomial::{Known, Predictor, around, neighbours};
 use super::quantile;
-use crate::median::median;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
-/// Median length of a vector of three standard normals.
-const MEDIAN_LENGTH: f64 = 1.538_172_25;
+/// Neighbours on both sides: many carry little noise, a high degree follows a curve that bends.
+const AROUND: [Predictor; 10] = [
+    around(1, 1, 6, 3),
+    around(1, 2, 6, 3),
+    around(2, 1, 6, 3),
+    around(1, 1, 4, 3),
+    around(1, 2, 4, 3),
+    around(2, 1, 4, 3),
+    around(1, 1, 6, 5),
+    around(1, 2, 6, 5),
+    around(2, 1, 6, 5),
+    around(1, 1, 6, 7),
+];
+/// On one side, the nearest left out or not: places from the first to the last, and degrees. An edge, or a wrong neighbour, spoils
+/// what is predicted from the other side alone.
+const BESIDE: [(usize, usize, usize); 4] = [(1, 8, 2), (1, 5, 2), (2, 9, 2), (2, 6, 2)];
+/// The farthest place of a predictor.
+const REACH: usize = 9;
 
-/// Contacts on either side that tell how much the curve bends.
-const REACH: usize = 10;
-
-/// Contacts of `curve` whose point or normal departs from the line between its neighbours by more than noise does, with
-/// the number of standard deviations, where noise fails to explain as much with probability `alpha` for the whole curve.
+/// Contacts of `curve` whose point or normal departs from what its neighbours predict by more than noise does, with the number of
+/// standard deviations, where noise fails to explain as much with probability `alpha` for the whole curve.
 ///
-/// How much the curve itself bends is taken from the median over neighbours and over the whole: contacts that are not in
-/// any order stand out nowhere.
-pub(super) fn standing_out(curve: &[NoisyContact], alpha: f64) -> Vec<(usize, f64)> {
-    let limit = quantile::length3(alpha / (2 * curve.len().max(1)) as f64);
-    // Where the noise of points has two directions, as on a surface, half of the trace is the variance of each.
-    let of_point = |c: &NoisyContact| {
-        let m = c.noise.point;
-        (c.contact.point, 0.5 * (m.x_axis.x + m.y_axis.y + m.z_axis.z))
-    };
-    let of_normal = |c: &NoisyContact| (c.contact.normal.get(), c.noise.normal.powi(2));
-    let series = [
-        Series::new(curve.iter().map(of_point).collect()),
-        Series::new(curve.iter().map(of_normal).collect()),
-    ];
-    let mut left: Vec<usize> = (0..curve.len()).collect();
-    let mut found = Vec::new();
-    // First what no pair of neighbours predicts, so that the neighbours of a large outlier are not blamed for it; then
-    // what departs from the line between its neighbours, which is the sharper test.
-    for predictions in [&PAIRS[..], &PAIRS[..1]] {
-        drop_worst(&mut left, &mut found, limit, |left, k| {
-            let of_pair = |[a, b]: &[isize; 2]| {
-                let neighbour = |offset: isize| left.get(k.checked_add_signed(offset)?).copied();
-                let (a, b) = (neighbour(*a)?, neighbour(*b)?);
-                Some(series.iter().map(|s| s.score(left[k], a, b)).fold(0.0, f64::max))
-            };
-            predictions.iter().filter_map(of_pair).reduce(f64::min).unwrap_or(0.0)
-        });
-    }
-    found
+/// How well a curve is predicted is taken from how well the polynomial fits the neighbours themselves: contacts that are not in any
+/// order stand out nowhere. `dimension` is that of space.
+pub(super) fn standing_out(curve: &[NoisyContact], alpha: f64, dimension: usize) -> Vec<(usize, f64)> {
+    let (mut series, limit) = series(curve, alpha, dimension);
+    found_and_left(&mut series, limit, curve.len()).0
 }
 
-/// Neighbours from which a contact is predicted by a straight line: on both sides, then two on one side.
-const PAIRS: [[isize; 2]; 3] = [[-1, 1], [1, 2], [-1, -2]];
+/// The contacts that do not stand out, and what their points and normals depart by from what their neighbours predict, over the
+/// deviation of that where all values have deviation 1.
+pub(super) fn departures(
+    curve: &[NoisyContact],
+    alpha: f64,
+    dimension: usize,
+) -> (Vec<usize>, [Vec<DVec3>; 2]) {
+    let (mut series, limit) = series(curve, alpha, dimension);
+    let left = found_and_left(&mut series, limit, curve.len()).1;
+    let of = |s: &mut Series| (0..left.len()).map(|k| s.judged(&left, k).vector).collect();
+    let departures = series.each_mut().map(of);
+    (left, departures)
+}
+
+/// Points and normals, and the deviations beyond which one stands out.
+fn series(curve: &[NoisyContact], alpha: f64, dimension: usize) -> ([Series; 2], f64) {
+    let limit = quantile::length3(alpha / (2 * curve.len().max(1)) as f64);
+    let of_normal = |c: &NoisyContact| DMat3::from_diagonal(DVec3::splat(c.noise.normal.powi(2)));
+    let points = curve.iter().map(|c| (c.contact.point, c.noise.point)).collect();
+    let normals = curve.iter().map(|c| (c.contact.normal.get(), of_normal(c))).collect();
+    let of = |values, dimension| Series { values, dimension, limit, known: Known::default() };
+    ([of(points, dimension), of(normals, dimension - 1)], limit)
+}
+
+fn found_and_left(series: &mut [Series; 2], limit: f64, count: usize) -> (Vec<(usize, f64)>, Vec<usize>) {
+    let mut left: Vec<usize> = (0..count).collect();
+    let mut score = |left: &[usize], k: usize| {
+        series.iter_mut().map(|s| s.judged(left, k).deviations).fold(0.0, f64::max)
+    };
+    let mut found = drop_worst(&mut left, limit, &mut score);
+    // What only seemed to stand out beside a larger outlier does so no more.
+    found.sort_by(|a, b| a.1.total_cmp(&b.1));
+    found.retain_mut(|(contact, deviations)| {
+        let place = left.partition_point(|k| k < contact);
+        left.insert(place, *contact);
+        *deviations = score(&left, place);
+        let stands_out = *deviations > limit;
+        if stands_out {
+            left.remove(place);
+        }
+        stands_out
+    });
+    (found, left)
+}
 
 /// Takes out the contact of highest score until none is above the limit.
 fn drop_worst(
     left: &mut Vec<usize>,
-    found: &mut Vec<(usize, f64)>,
     limit: f64,
-    score: impl Fn(&[usize], usize) -> f64,
-) {
+    mut score: impl FnMut(&[usize], usize) -> f64,
+) -> Vec<(usize, f64)> {
+    let mut found = Vec::new();
     let mut scores: Vec<f64> = (0..left.len()).map(|k| score(left, k)).collect();
     while let Some((k, worst)) = scores.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) {
         if worst <= limit {
@@ -62,42 +93,95 @@ fn drop_worst(
         }
         found.push((left.remove(k), worst));
         scores.remove(k);
-        // What stood beside it is judged anew.
-        for near in k.saturating_sub(2)..(k + 2).min(left.len()) {
+        // What it predicted is judged anew.
+        for near in k.saturating_sub(REACH)..(k + REACH).min(left.len()) {
             scores[near] = score(left, near);
         }
     }
+    found
 }
 
-/// Values along a curve, their variances per axis, and how much they bend from one to the next, noise included.
+/// Values along a curve with their covariances.
 struct Series {
-    values: Vec<(DVec3, f64)>,
-    typical: Vec<f64>,
+    values: Vec<(DVec3, DMat3)>,
+    /// In which they vary.
+    dimension: usize,
+    /// Deviations beyond which one stands out.
+    limit: f64,
+    known: Known,
+}
+
+/// What a value departs from its prediction by.
+#[derive(Clone, Copy, Debug, Default)]
+struct Departure {
+    /// Over its deviation where all values have deviation 1.
+    vector: DVec3,
+    /// Standard deviation of the departure, by the noise, or by how badly the neighbours are fitted where that is larger.
+    deviation: f64,
+    /// In as many of these.
+    deviations: f64,
+    /// Whether the noise explains how badly.
+    fitted: bool,
 }
 
 impl Series {
-    fn new(values: Vec<(DVec3, f64)>) -> Self {
-        let bends: Vec<f64> =
-            values.windows(3).map(|w| (0.5 * (w[0].0 + w[2].0) - w[1].0).length()).collect();
-        let whole = median(&mut bends.clone());
-        let typical = (0..values.len())
-            .map(|k| {
-                let near = k.saturating_sub(REACH + 1)..(k + REACH).min(bends.len());
-                whole.max(median(&mut bends.get(near).unwrap_or_default().to_vec())) / MEDIAN_LENGTH
-            })
-            .collect();
-        Self { values, typical }
+    /// Departure of the `k`-th of those `left` from what its neighbours predict best.
+    fn judged(&mut self, left: &[usize], k: usize) -> Departure {
+        let around = self.best(left, k, &AROUND);
+        if let Some(departure @ Departure { fitted: true, .. }) = around {
+            return departure;
+        }
+        let before =
+            BESIDE.map(|(first, last, degree)| Predictor { before: (first, last), after: (1, 0), degree });
+        let after = before.map(|p| Predictor { before: p.after, after: p.before, ..p });
+        let sides = [self.best(left, k, &before), self.best(left, k, &after)];
+        // An edge is explained from one side.
+        let beside = sides.into_iter().flatten().min_by(|a, b| a.deviations.total_cmp(&b.deviations));
+        let both = around.into_iter().chain(beside);
+        both.min_by(|a, b| a.deviation.total_cmp(&b.deviation)).unwrap_or_default()
     }
 
-    /// Departure of `k` from the line through `a` and `b`, in standard deviations.
-    fn score(&self, k: usize, a: usize, b: usize) -> f64 {
-        let (to_a, to_b) = (a as f64 - k as f64, b as f64 - k as f64);
-        let (first, last) = (to_b / (to_b - to_a), -to_a / (to_b - to_a));
-        let (x, y, z) = (self.values[a], self.values[k], self.values[b]);
-        let departure = (first * x.0 + last * z.0 - y.0).length();
-        let noise = (first * first * x.1 + y.1 + last * last * z.1).sqrt();
-        // The departure of a curve is its bend times both distances.
-        let deviation = noise.max(self.typical[k] * (to_a * to_b).abs());
-        if deviation > 0.0 { departure / deviation } else { 0.0 }
+    /// The departure from the prediction that is known best.
+    fn best(&mut self, left: &[usize], k: usize, predictors: &[Predictor]) -> Option<Departure> {
+        let mut best: Option<Departure> = None;
+        for predictor in predictors {
+            let Some(departure) = neighbours(left, k, *predictor)
+                .map(|others| self.departure(left[k], &others, predictor.degree))
+            else {
+                continue;
+            };
+            if best.is_none_or(|best| departure.deviation < best.deviation) {
+                best = Some(departure);
+            }
+            // Others carry more noise.
+            if departure.fitted {
+                break;
+            }
+        }
+        best
+    }
+
+    fn departure(&mut self, one: usize, others: &[usize], degree: usize) -> Departure {
+        let polynomials = self.known.polynomials(one, others, degree);
+        let (mut vector, mut covariance) = self.values[one];
+        let mut noise = 0.0;
+        for (j, w) in others.iter().zip(&polynomials.weights) {
+            let (value, own) = self.values[*j];
+            vector -= value * *w;
+            covariance += own * (w * w);
+            noise += (own.x_axis.x + own.y_axis.y + own.z_axis.z) / others.len() as f64;
+        }
+        let misfit =
+            polynomials.misfit(others.iter().map(|j| self.values[*j].0 - self.values[one].0).collect());
+        let free = polynomials.free() as f64;
+        let seen = (misfit / (free * self.dimension as f64)).sqrt() * polynomials.gain;
+        // What the next degree adds explains as much as it leaves beyond the noise.
+        let bend = (misfit - free * noise).max(0.0).sqrt() * polynomials.next;
+        let length = vector.length();
+        // Along its own direction: never more departures than by the inverse of the covariance, which there may be none of.
+        let stated = vector.dot(covariance * vector).max(0.0).sqrt() / length.max(f64::MIN_POSITIVE);
+        let deviation = stated.max(seen) + bend / self.limit;
+        let deviations = if deviation > 0.0 { length / deviation } else { 0.0 };
+        Departure { vector: vector / polynomials.gain, deviation, deviations, fitted: misfit <= free * noise }
     }
 }

@@ -147,7 +147,7 @@ fn outliers_hardly_move_the_estimated_noise() {
 #[test]
 fn bounds_hold_with_estimated_noise_and_planted_outliers() {
     let mut caught = 0;
-    for seed in 0..20 {
+    for seed in 0..5 {
         let curves = estimate_noise(&spoilt(1e-3, 30, 0.1, 0.1, seed), 0.99).unwrap();
         let (kept, outliers) = without_outliers(&curves, 0.99).unwrap();
         let planted = |o: &&Outlier| {
@@ -159,7 +159,7 @@ fn bounds_hold_with_estimated_noise_and_planted_outliers() {
         assert!(holds(&ShapeBounds::from_noisy_curves(&kept, 0.95).unwrap()), "seed {seed}");
     }
     // Off by 40 and 100 standard deviations.
-    assert_eq!(caught, 20 * 29);
+    assert_eq!(caught, 5 * 29);
 }
 
 #[test]
@@ -260,7 +260,7 @@ fn scattered_contacts_raise_no_alarm_about_their_noise() {
 fn noise_that_is_not_as_stated_is_found_and_as_stated_raises_no_alarm() {
     let stated = |curves, level: f64| with_noise(curves, level * AXES.x, level);
     let mut found = 0;
-    for seed in 2000..2020 {
+    for seed in 2000..2008 {
         let right = stated(noisy_curves(600, 1e-3 * AXES.x, 1e-3, seed), 1e-3);
         let (kept, doubts) = with_noise_as_found(&right);
         assert!(kept == right && doubts.is_empty(), "seed {seed}: {doubts:?}");
@@ -279,7 +279,7 @@ fn noise_that_is_not_as_stated_is_found_and_as_stated_raises_no_alarm() {
         }
     }
     // 95 % of others are.
-    assert!(found >= 15, "{found}");
+    assert!(found >= 6, "{found}");
     // Exact contacts, and sparse ones, are not noise.
     for count in [90, 150, 600] {
         let exact = stated(noisy_curves(count, 0.0, 0.0, 5), 1e-7);

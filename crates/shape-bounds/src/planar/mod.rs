@@ -38,6 +38,9 @@ pub use direction::{Direction, DirectionError};
 pub use fit::{FitError, FittedOutline, OutlineChoice, OutlineFamily, OutlineFit, TurnedEllipse};
 pub use halfplanes::{Intersection, IntersectionError, Region, Unbounded};
 pub use hull::{Hull, HullPolygon, IncrementalHull, PointsError};
-pub use noise::{ContactNoise, NoiseError, NoisyContact, estimate_noise, without_outliers};
+pub use noise::{
+    ContactNoise, NoiseError, NoisyContact, correlated_noise, estimate_noise, independence_is_tested,
+    with_noise_as_found, without_outliers,
+};
 pub use polygon::ConvexPolygon;
 pub use sample::{ContactError, ContactSample, HalfPlane};

@@ -1,9 +1,11 @@
 //! How noisy contacts in the plane are, from the contacts themselves.
 
+use super::lift::{lifted, lowered};
 use super::model::{ContactNoise, NoiseError, NoisyContact};
-use crate::noise::consistency::{FEWEST, deviation, raise};
+use crate::noise::FEWEST;
+use crate::noise::assumptions::{NoiseDoubt, as_found, correlated, tested};
+use crate::noise::consistency::{estimated, raise};
 use crate::planar::ContactSample;
-use glam::{DMat2, DVec3};
 
 /// Contacts with the noise that they themselves show, curve by curve, each in the order in which it was traced: the twin
 /// of [`crate::estimate_noise`], which says how.
@@ -15,32 +17,41 @@ pub fn estimate_noise(
     confidence: f64,
 ) -> Result<Vec<Vec<NoisyContact>>, NoiseError> {
     NoiseError::check_confidence(confidence)?;
-    let z = raise(confidence, curves.len());
-    curves.iter().enumerate().map(|(index, curve)| of_curve(index, curve, z)).collect()
+    let of_curve = |(index, curve): (usize, &Vec<ContactSample>)| {
+        if curve.len() < FEWEST {
+            return Err(NoiseError::TooFewToJudge { curve: index, found: curve.len(), needed: FEWEST });
+        }
+        if let Some(contact) = curve.iter().position(|c| !c.point.is_finite()) {
+            return Err(NoiseError::NotFinite { curve: index, index: contact, point: curve[contact].point });
+        }
+        let exact = |contact: &ContactSample| NoisyContact {
+            contact: *contact,
+            noise: ContactNoise::isotropic(0.0, 0.0),
+        };
+        let curve: Vec<NoisyContact> = curve.iter().map(exact).collect();
+        let z = raise(confidence, curves.len());
+        Ok(lowered(&curve, &estimated(lifted(&curve), 2, z)))
+    };
+    curves.iter().enumerate().map(of_curve).collect()
 }
 
-fn of_curve(index: usize, curve: &[ContactSample], z: f64) -> Result<Vec<NoisyContact>, NoiseError> {
-    if curve.len() < FEWEST {
-        return Err(NoiseError::TooFewToJudge { curve: index, found: curve.len(), needed: FEWEST });
-    }
-    if let Some(contact) = curve.iter().position(|c| !c.point.is_finite()) {
-        return Err(NoiseError::NotFinite { curve: index, index: contact, point: curve[contact].point });
-    }
-    let points: Vec<DVec3> = curve.iter().map(|c| c.point.extend(0.0)).collect();
-    let normals: Vec<DVec3> = curve.iter().map(|c| c.normal.get().extend(0.0)).collect();
-    let across = deviation(&points, &normals, z, |n, d| vec![n.dot(d)]);
-    let along = |n: DVec3, d: DVec3| vec![DVec3::Z.cross(n).dot(d)];
-    let tangential = deviation(&points, &normals, z, along);
-    let normal = deviation(&normals, &normals, z, along);
-    let noise = |c: &ContactSample| {
-        let n = c.normal.get();
-        let outer = DMat2::from_cols(n * n.x, n * n.y);
-        let tangent = (DMat2::IDENTITY - outer) * (tangential * tangential);
-        ContactNoise {
-            point: outer * (across * across) + tangent,
-            normal,
-            ..ContactNoise::isotropic(0.0, 0.0)
-        }
-    };
-    Ok(curve.iter().map(|c| NoisyContact { contact: *c, noise: noise(c) }).collect())
+/// `curves` with noise no smaller than they show themselves, and what was stated too small: the twin of
+/// [`crate::with_noise_as_found`].
+#[must_use]
+pub fn with_noise_as_found(curves: &[Vec<NoisyContact>]) -> (Vec<Vec<NoisyContact>>, Vec<NoiseDoubt>) {
+    let in_space: Vec<_> = curves.iter().map(|curve| lifted(curve)).collect();
+    let (raised, doubts) = as_found(&in_space, 2);
+    (curves.iter().zip(&raised).map(|(curve, raised)| lowered(curve, raised)).collect(), doubts)
+}
+
+/// Whether the noise of contacts is alike from one to the next, along all curves together.
+#[must_use]
+pub fn correlated_noise(curves: &[Vec<NoisyContact>]) -> Option<NoiseDoubt> {
+    correlated(&curves.iter().map(|curve| lifted(curve)).collect::<Vec<_>>(), 2)
+}
+
+/// Whether [`correlated_noise`] would find a random walk: the twin of [`crate::independence_is_tested`].
+#[must_use]
+pub fn independence_is_tested(curves: &[Vec<NoisyContact>]) -> bool {
+    tested(&curves.iter().map(|curve| lifted(curve)).collect::<Vec<_>>(), 2)
 }

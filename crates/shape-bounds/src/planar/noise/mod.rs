@@ -2,6 +2,7 @@
 //! why.
 
 mod consistency;
+mod lift;
 mod lower;
 mod model;
 mod outliers;
@@ -10,7 +11,7 @@ mod tests;
 mod upper;
 mod windows;
 
-pub use consistency::estimate_noise;
+pub use consistency::{correlated_noise, estimate_noise, independence_is_tested, with_noise_as_found};
 pub use model::{ContactNoise, NoiseError, NoisyContact};
 pub use outliers::without_outliers;
 

@@ -1,6 +1,7 @@
 //! Coverage of the bounds under noise, and what they cost.
 
 use super::*;
+use crate::NoiseDoubt;
 use crate::generators::Source;
 use crate::planar::{BoundsError, ContactSample, Direction};
 use contact_kinematics::planar::{Ellipse, RadiusFunction};
@@ -160,4 +161,52 @@ fn wrong_contacts_are_found_and_right_ones_kept() {
     assert!(matches!(without_outliers(&inwards, 0.95), Err(NoiseError::Undecided { contacts: 60, .. })));
     let short = [vec![curve(40, 0.0, &mut Source::new(1))[0][0].contact; 5]];
     assert!(matches!(estimate_noise(&short, 0.95), Err(NoiseError::TooFewToJudge { found: 5, .. })));
+}
+
+/// The curve with noise of `level(k)` times what is stated, and of correlation `alike` from one to the next.
+fn not_as_stated(
+    count: usize,
+    level: impl Fn(usize) -> f64,
+    alike: f64,
+    seed: u64,
+) -> Vec<Vec<NoisyContact>> {
+    let mut s = Source::new(seed);
+    let mut curves = curve(count, 0.0, &mut s);
+    let (mut x, mut y, mut turn) = (s.normal(), s.normal(), s.normal());
+    let fresh = (1.0 - alike * alike).sqrt();
+    for (k, c) in curves[0].iter_mut().enumerate() {
+        (x, y, turn) = (
+            alike * x + fresh * s.normal(),
+            alike * y + fresh * s.normal(),
+            alike * turn + fresh * s.normal(),
+        );
+        c.contact.point += DVec2::new(x, y) * (2e-3 * level(k));
+        let n = c.contact.normal.get();
+        c.contact.normal = Direction::new(n + n.perp() * (1e-3 * level(k) * turn)).unwrap();
+        c.noise = ContactNoise::isotropic(2e-3, 1e-3);
+    }
+    curves
+}
+
+#[test]
+fn noise_that_is_not_as_stated_is_found() {
+    let mut found = 0;
+    for seed in 4000..4010 {
+        let right = not_as_stated(300, |_| 1.0, 0.0, seed);
+        let (kept, doubts) = with_noise_as_found(&right);
+        assert!(kept == right && doubts.is_empty(), "seed {seed}: {doubts:?}");
+        assert_eq!(correlated_noise(&right), None, "seed {seed}");
+        let (raised, doubts) = with_noise_as_found(&not_as_stated(300, |_| 2.0, 0.0, seed));
+        let levels =
+            doubts.iter().filter(|d| matches!(d, NoiseDoubt::Level { stated, found, .. } if found > stated));
+        assert!(levels.count() >= 2, "seed {seed}: {doubts:?}");
+        let least = raised[0].iter().map(|c| c.noise.normal).fold(1.0, f64::min);
+        assert!(least > 1.7e-3, "seed {seed}: {least} {doubts:?}");
+        let quarter = |k: usize| if (75..150).contains(&k) { 4.0 } else { 1.0 };
+        let (raised, doubts) = with_noise_as_found(&not_as_stated(300, quarter, 0.0, seed));
+        assert!(!doubts.is_empty() && raised[0][110].noise.normal > 3.2e-3, "seed {seed}: {doubts:?}");
+        assert!(raised[0][250].noise.normal < 0.8 * raised[0][110].noise.normal, "seed {seed}");
+        found += usize::from(correlated_noise(&not_as_stated(1000, |_| 1.0, 0.95, seed)).is_some());
+    }
+    assert!(found >= 8, "{found}");
 }
