@@ -73,7 +73,7 @@ fn of_contacts(args: &BoundsArgs, curves: &[Vec<ContactSample>]) -> Result<(Boun
         about["fit"] = fitted.report;
         made.warnings.extend(fitted.warning);
         let comment = "shape fitted to the contacts; metres";
-        made.others.extend(fitted.mesh.map(|mesh| ("fitted_shape.ply", comment, mesh)));
+        made.others.extend(fitted.drawn.map(|mesh| ("fitted_shape.ply", comment, mesh)));
     }
     Ok((made, about))
 }

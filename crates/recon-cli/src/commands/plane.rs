@@ -24,7 +24,8 @@ pub(super) fn run(
         write_folder(folder, &made, &figures)?;
     }
     console.result(&describe(&made, count), &figures)?;
-    let whole = made.outlines.iter().all(|outline| !outline.is_empty());
+    let refused = made.about["fit"]["status"] == "refused";
+    let whole = made.outlines.iter().all(|outline| !outline.is_empty()) && !refused;
     Ok(if whole { Outcome::Done } else { Outcome::WithReservations })
 }
 

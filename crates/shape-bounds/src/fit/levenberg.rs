@@ -6,7 +6,7 @@ use nalgebra::DVector;
 /// Iterations before a fit is given up; a handful suffices near a solution.
 pub(crate) const ITERATIONS: usize = 200;
 /// Iterations with normals taken as exact.
-const APPROACH: usize = 40;
+const APPROACH: usize = 15;
 /// A step this small, in standard deviations, changes nothing.
 const STILL: f64 = 1e-7;
 /// A predicted improvement this small, relative to the sum of squares, is rounding of it ...

@@ -77,11 +77,17 @@ fn a_body_of_no_family_is_refused_by_name_whether_the_noise_is_known_or_not() {
         let contacts = measured(&body, curves(150, &mut s), 1e-3, 1e-3, &mut s);
         for family in small {
             let refused = ShapeFit::of(&contacts, family, &FitOptions::default()).unwrap_err();
-            assert!(matches!(refused, FitError::Refuted { family: f, .. } if f == family), "{refused}");
+            assert!(
+                matches!(refused, FitError::Refuted { family: f, by: Refutation::ChiSquared { .. } } if f == family),
+                "{refused}"
+            );
         }
         let unknown = FitOptions { noise_level: NoiseLevel::Estimated, ..FitOptions::default() };
         let refused = ShapeFit::of(&contacts, ShapeFamily::Ellipsoid, &unknown).unwrap_err();
-        assert!(matches!(refused, FitError::Unlike { .. }), "{seed} {refused}");
+        assert!(
+            matches!(refused, FitError::Refuted { by: Refutation::Likeness { .. }, .. }),
+            "{seed} {refused}"
+        );
         match ShapeFit::choose(&contacts, &small, &FitOptions::default()) {
             Err(FitError::NoneFits { candidates }) => assert_eq!(candidates.len(), 3),
             other => panic!("{seed} {other:?}"),
