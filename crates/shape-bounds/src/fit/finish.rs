@@ -7,7 +7,7 @@ use super::information::SquareRoot;
 use super::levenberg::Problem;
 use super::misfit::Misfit;
 use super::refute::{self, Leftover};
-use super::solve::{Solution, Spatial, undetermined};
+use super::solve::{Linearised, Solution, Spatial, undetermined};
 use super::{FitError, FitStatistics, FittedBody, ShapeFamily, ShapeFit};
 use contact_kinematics::{Sphere, SupportFunction, Translated};
 use glam::DVec3;
@@ -43,7 +43,7 @@ impl ShapeFit {
         if known.rank < model.count() || known.weakest_deviation * noise_factor > 1.0 {
             return Err(own.open());
         }
-        let refuted = own.check(&misfit).err();
+        let refuted = own.check(&body, &misfit).err();
         let statistics = FitStatistics {
             chi_squared: misfit.chi_squared,
             degrees_of_freedom: misfit.degrees_of_freedom(),
@@ -103,9 +103,10 @@ impl Unfinished<'_> {
     fn held_convex(&mut self, degree: usize) -> Result<FittedBody, FitError> {
         let farthest = if self.data.refusing {
             // A shape that is refuted before it is held is so after.
-            let free = self.misfit(&FittedBody::Harmonics(HarmonicModel::body(&self.solution.theta)?));
-            self.check(&free)?;
-            refute::farthest(&free, self.data.noise_level)
+            let free = FittedBody::Harmonics(HarmonicModel::body(&self.solution.theta)?);
+            let misfit = self.misfit(&free);
+            self.check(&free, &misfit)?;
+            refute::farthest(&misfit, self.data.noise_level)
         } else {
             f64::INFINITY
         };
@@ -124,20 +125,16 @@ impl Unfinished<'_> {
         Ok(())
     }
 
-    fn check(&self, misfit: &Misfit) -> Result<(), FitError> {
-        let by = refute::refutation(self.data.noise_level, misfit, || self.leftovers());
+    fn check(&self, body: &FittedBody, misfit: &Misfit) -> Result<(), FitError> {
+        let contacts = &self.solution.system.contacts;
+        let leftover = |own: &Linearised| Leftover {
+            point: body.point(own.normal),
+            normal: own.normal.get(),
+            residual: DVec3::new(own.residual.x, own.residual.y, own.residual.z),
+        };
+        let leftovers = || contacts.iter().map(leftover).collect();
+        let by = refute::refutation(self.data.noise_level, misfit, leftovers);
         by.map_or(Ok(()), |by| Err(FitError::Refuted { family: self.family, by }))
-    }
-
-    fn leftovers(&self) -> Vec<Leftover> {
-        let pairs = self.problem.contacts.iter().zip(&self.solution.system.contacts);
-        pairs
-            .map(|(c, own)| Leftover {
-                point: c.contact.point,
-                normal: c.contact.normal.get(),
-                residual: DVec3::new(own.residual.x, own.residual.y, own.residual.z),
-            })
-            .collect()
     }
 
     fn misfit(&self, body: &FittedBody) -> Misfit {

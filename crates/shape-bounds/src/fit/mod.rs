@@ -32,8 +32,9 @@ pub use report::{FitStatistics, ShapeFit};
 
 use crate::noise::NoisyContact;
 use data::{Data, ball};
+use levenberg::ITERATIONS;
 use search::{Search, superquadric};
-use solve::{Spatial, into_error, solve};
+use solve::{Effort, Spatial, into_error, solve};
 
 /// Whether the stated noise is known, or only how it is shared out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -104,11 +105,24 @@ impl ShapeFit {
             ShapeFamily::Superquadric => superquadric(model, contacts, &data, search)?,
             _ => {
                 let start = ball(model, contacts, &data);
+                let iterations = if refusing { iterations(family) } else { ITERATIONS };
+                let effort = Effort { iterations, ..Effort::default() };
                 let problem = Spatial { model, contacts, size: data.size };
-                solve(&problem, vec![start], 1, |_| true)
+                solve(&problem, vec![start], effort, |_| true)
                     .map_err(|e| into_error(e, model, family, data.size))?
             }
         };
         Self::finish(model, family, contacts, solution, &data)
+    }
+}
+
+/// Iterations after which the contacts are not those of a shape of the family.
+///
+/// Harmonics are linear in their parameters, only the true normals are not: contacts of such a body are at rest after a
+/// handful of iterations, others may never be.
+fn iterations(family: ShapeFamily) -> usize {
+    match family {
+        ShapeFamily::Harmonics { .. } => 30,
+        _ => ITERATIONS,
     }
 }

@@ -25,7 +25,7 @@ pub enum Refutation {
     ChiSquared {
         /// Sum of squared residuals in units of the stated noise.
         chi_squared: f64,
-        /// Equations minus parameters.
+        /// Equations minus parameters that no constraint holds.
         degrees_of_freedom: usize,
     },
     /// Residuals of neighbours are alike, which noise is not.
@@ -39,11 +39,14 @@ pub enum Refutation {
     },
 }
 
-/// A contact and what a fit leaves of it; in the plane without a third coordinate.
+/// A contact's place on the fitted body and what the fit leaves of it; in the plane without a third coordinate.
+///
+/// Where the contact was measured to be says something of its error, so contacts that were measured near one another have
+/// alike ones. Its likeliest place on the body does not.
 pub(crate) struct Leftover {
     /// Where, in m.
     pub(crate) point: DVec3,
-    /// Outward unit normal.
+    /// Outward unit normal there.
     pub(crate) normal: DVec3,
     /// Residual in units of the noise.
     pub(crate) residual: DVec3,

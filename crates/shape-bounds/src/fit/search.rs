@@ -3,7 +3,8 @@
 use super::data::{Data, ball};
 use super::family::{EllipsoidModel, Model, Superquadric, SuperquadricModel};
 use super::finish::misfit;
-use super::solve::{SAME, Solution, Spatial, into_error, solve};
+use super::levenberg::ITERATIONS;
+use super::solve::{Effort, SAME, Solution, Spatial, into_error, solve};
 use super::{FitError, ShapeFamily, refute};
 use crate::noise::NoisyContact;
 use nalgebra::DVector;
@@ -21,8 +22,10 @@ pub(super) enum Search {
 
 /// Rounds of looking about a superquadric for a better one, at most.
 const ROUNDS: usize = 4;
-/// Ends that are followed to rest, of the first starts and of those about a superquadric.
-const FOLLOWED: [usize; 2] = [2, 4];
+/// Ends that are followed to rest, of the first starts ...
+const FIRST: Effort = Effort { followed: 2, iterations: ITERATIONS };
+/// ... and of those about a superquadric, some of which differ by a few units of the sum of squares.
+const ABOUT: Effort = Effort { followed: 8, iterations: ITERATIONS };
 
 /// The likeliest superquadric: from an ellipsoid, then, unless the search is quick, about what that leads to, until nothing
 /// there is better.
@@ -39,19 +42,23 @@ pub(super) fn superquadric(
 ) -> Result<Solution, FitError> {
     let start = ball(&EllipsoidModel, contacts, data);
     let problem = Spatial { model: &EllipsoidModel, contacts, size: data.size };
-    let ellipsoid = solve(&problem, vec![start], 1, |_| true)
+    let ellipsoid = solve(&problem, vec![start], Effort::default(), |_| true)
         .map_err(|e| into_error(e, &EllipsoidModel, ShapeFamily::Ellipsoid, data.size))?;
     let first = Superquadric::from_ellipsoid(&EllipsoidModel::body(&ellipsoid.theta)?)?;
     let problem = Spatial { model, contacts, size: data.size };
     let enough = |found: &Solution| refute::is_likely(data.noise_level, &misfit(found, data));
-    let mut best = solve(&problem, starts_about(&first), FOLLOWED[0], enough)
+    let mut best = solve(&problem, starts_about(&first), FIRST, enough)
         .map_err(|e| into_error(e, model, ShapeFamily::Superquadric, data.size))?;
     if search == Search::Quick {
         return Ok(best);
     }
     for _ in 0..ROUNDS {
+        // Nothing is better than what leaves rounding.
+        if best.system.chi_squared <= misfit(&best, data).rounding() {
+            break;
+        }
         let about = starts_about(&SuperquadricModel::body(&best.theta)?);
-        match solve(&problem, about, FOLLOWED[1], |_| false) {
+        match solve(&problem, about, ABOUT, |_| false) {
             Ok(found) if found.system.chi_squared < best.system.chi_squared * (1.0 - SAME) => best = found,
             _ => break,
         }

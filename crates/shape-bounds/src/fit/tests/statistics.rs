@@ -57,7 +57,7 @@ fn consistency(
         let found = solve(
             &Spatial { model: model.as_ref(), contacts: &contacts, size: data.size },
             vec![start],
-            1,
+            Effort::default(),
             |_| true,
         )
         .ok()

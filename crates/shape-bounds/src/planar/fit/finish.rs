@@ -7,6 +7,7 @@ use crate::fit::levenberg::{Problem, Solution};
 use crate::fit::misfit::Misfit;
 use crate::fit::refute;
 use crate::fit::{FitStatistics, NoiseLevel};
+use contact_kinematics::planar::RadiusFunction;
 
 /// A solution that is to be made a fit.
 struct Unfinished<'a> {
@@ -39,7 +40,7 @@ impl OutlineFit {
         if known.rank < misfit.parameters || known.weakest_deviation * noise_factor > 1.0 {
             return Err(own.open());
         }
-        own.check(&misfit)?;
+        own.check(&body, &misfit)?;
         Ok(Self {
             family,
             covariance: covariance * noise_factor.powi(2),
@@ -71,9 +72,9 @@ impl Unfinished<'_> {
     fn hold_convex(&mut self, limit: f64) -> Result<(), FitError> {
         // Waves that are refuted before they are held are so after.
         let free = AnyWaves::of(&self.solution.theta);
-        let free = solve::misfit(&free, &self.solution, &self.problem, 0);
-        self.check(&free)?;
-        let farthest = refute::farthest(&free, self.level);
+        let misfit = solve::misfit(&free, &self.solution, &self.problem, 0);
+        self.check(&free, &misfit)?;
+        let farthest = refute::farthest(&misfit, self.level);
         let (theta, root) = (&self.solution.theta, &self.solution.system.root);
         let (theta, held) = convex::hold(self.family, theta, root, limit, farthest)?;
         if held > 0 {
@@ -84,8 +85,8 @@ impl Unfinished<'_> {
         Ok(())
     }
 
-    fn check(&self, misfit: &Misfit) -> Result<(), FitError> {
-        let leftovers = || solve::leftovers(&self.solution, self.problem.contacts);
+    fn check(&self, body: &dyn RadiusFunction, misfit: &Misfit) -> Result<(), FitError> {
+        let leftovers = || solve::leftovers(body, &self.solution);
         let by = refute::refutation(self.level, misfit, leftovers);
         by.map_or(Ok(()), |by| Err(FitError::Refuted { family: self.family, by }))
     }

@@ -156,15 +156,13 @@ pub(super) fn misfit(
 }
 
 /// What each contact is left with.
-pub(super) fn leftovers(solution: &Solution<Linearised>, contacts: &[NoisyContact]) -> Vec<Leftover> {
-    let pairs = contacts.iter().zip(&solution.system.contacts);
-    pairs
-        .map(|(c, own)| Leftover {
-            point: c.contact.point.extend(0.0),
-            normal: c.contact.normal.get().extend(0.0),
-            residual: own.residual.extend(0.0),
-        })
-        .collect()
+pub(super) fn leftovers(body: &dyn RadiusFunction, solution: &Solution<Linearised>) -> Vec<Leftover> {
+    let leftover = |own: &Linearised| Leftover {
+        point: body.point(own.angle).extend(0.0),
+        normal: DVec2::from_angle(own.angle).extend(0.0),
+        residual: own.residual.extend(0.0),
+    };
+    solution.system.contacts.iter().map(leftover).collect()
 }
 
 pub(super) fn worst(solution: &Solution<Linearised>) -> (usize, f64) {

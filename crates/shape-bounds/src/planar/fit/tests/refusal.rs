@@ -81,3 +81,14 @@ fn right_outlines_are_not_refused() {
         }
     }
 }
+
+/// Contacts as near one another as their noise: those that are measured nearest have alike errors, which is not the shape's.
+#[test]
+fn dense_contacts_of_a_right_outline_are_not_refused() {
+    let body = TurnedEllipse::new(DVec2::ZERO, [1.0, 0.2, 0.6]).unwrap();
+    for seed in 0..20 {
+        let contacts = noisy(&body, 600, 3e-2, &mut Source::new(seed + 7300));
+        let fit = OutlineFit::of(&contacts, OutlineFamily::Ellipse, &UNKNOWN);
+        assert!(fit.is_ok(), "{seed}: {}", fit.unwrap_err());
+    }
+}
