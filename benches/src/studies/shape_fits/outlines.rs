@@ -56,10 +56,10 @@ fn right(family: OutlineFamily, s: &mut Source) -> Result<Body, Failure> {
     })
 }
 
-/// Whether the contacts refuse the family; other errors than that none fits stay errors.
+/// Whether the contacts refuse the family, which those that leave a parameter open do not; other errors stay errors.
 fn refused<T>(fit: Result<T, FitError>) -> Result<bool, Failure> {
     match fit {
-        Ok(_) => Ok(false),
+        Ok(_) | Err(FitError::Undetermined { .. }) => Ok(false),
         Err(
             FitError::Refuted { .. }
             | FitError::NoneFits { .. }

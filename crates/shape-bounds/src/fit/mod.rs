@@ -32,7 +32,7 @@ pub use report::{FitStatistics, ShapeFit};
 
 use crate::noise::NoisyContact;
 use data::{Data, ball};
-use levenberg::ITERATIONS;
+use levenberg::{ITERATIONS, LINEAR};
 use search::{Search, superquadric};
 use solve::{Effort, Spatial, into_error, solve};
 
@@ -117,12 +117,9 @@ impl ShapeFit {
 }
 
 /// Iterations after which the contacts are not those of a shape of the family.
-///
-/// Harmonics are linear in their parameters, only the true normals are not: contacts of such a body are at rest after a
-/// handful of iterations, others may never be.
 fn iterations(family: ShapeFamily) -> usize {
     match family {
-        ShapeFamily::Harmonics { .. } => 30,
+        ShapeFamily::Harmonics { .. } => LINEAR,
         _ => ITERATIONS,
     }
 }

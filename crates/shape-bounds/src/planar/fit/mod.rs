@@ -17,7 +17,7 @@ pub use family::{FittedOutline, TurnedEllipse};
 
 use super::{NoisyContact, noise::ContactNoise};
 use crate::fit::choose::{Fit, compared};
-use crate::fit::levenberg::{ITERATIONS, best_of, iterate};
+use crate::fit::levenberg::{ITERATIONS, LINEAR, best_of, iterate};
 use crate::fit::{Candidate, FitOptions, FitStatistics};
 use contact_kinematics::planar::{RadiusBounds, RadiusFunction, RadiusJet};
 use family::model;
@@ -113,9 +113,10 @@ impl OutlineFit {
         let mut exact = contacts.to_vec();
         exact.iter_mut().for_each(|c| c.noise.normal = 0.0);
         let plane = |contacts| Plane { model: model.as_ref(), contacts, size };
+        let iterations = if let OutlineFamily::Fourier { .. } = family { LINEAR } else { ITERATIONS };
         // Normals as exact first: a smooth problem from any start.
         let solution = best_of(&plane(&exact), vec![model.circle(centre, size)])
-            .and_then(|near| iterate(&plane(contacts), near, ITERATIONS));
+            .and_then(|near| iterate(&plane(contacts), near, iterations));
         let solution = solution.map_err(|e| solve::into_error(e, model.as_ref(), family, size))?;
         Self::finish(plane(contacts), family, solution, limit, options.noise_level)
     }
