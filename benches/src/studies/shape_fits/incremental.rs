@@ -17,7 +17,9 @@ pub(super) fn incremental() -> Result<(), Failure> {
     println!(
         "Cost per contact, with the fit from the start that it stands for, and the distance of the last running estimate from that"
     );
-    println!("fit in the metric of its covariance (not for the superquadric, whose axes have many names).\n");
+    println!(
+        "fit in the metric of its covariance (not for the superquadric, whose axes have many names). Harmonics are the nearest ones.\n"
+    );
     println!("| family | us per contact | ms from the start | distance |");
     println!("|---|---|---|---|");
     let core = Ellipsoid::new(DVec3::new(2.5, 2.0, 1.0))?;
@@ -47,7 +49,7 @@ pub(super) fn incremental() -> Result<(), Failure> {
         }
         let each = start.elapsed().as_secs_f64() * 1e6 / 1000.0;
         let start = ThreadTime::now();
-        let fit = ShapeFit::of(&contacts, family, &FitOptions::default())?;
+        let fit = ShapeFit::nearest(&contacts, family, &FitOptions::default())?;
         let whole = start.elapsed().as_secs_f64() * 1e3;
         let error = last.ok_or("no estimate")? - fit.parameters();
         let distance =
