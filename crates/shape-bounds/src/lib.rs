@@ -57,7 +57,7 @@ pub use curvature::{
 pub use faceted::FacetError;
 pub use fit::{
     COMPARED, Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel,
-    SIGNIFICANCE, ShapeChoice, ShapeFamily, ShapeFit, SkewEllipsoid, Superquadric,
+    Refutation, SIGNIFICANCE, ShapeChoice, ShapeFamily, ShapeFit, SkewEllipsoid, Superquadric,
 };
 pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};

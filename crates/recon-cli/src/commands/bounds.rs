@@ -78,7 +78,7 @@ fn of_contacts(args: &BoundsArgs, curves: &[Vec<ContactSample>]) -> Result<(Boun
         made.warnings.extend(fitted.warning);
         made.warnings.extend(doubtful_fit(&about));
         let comment = "shape fitted to the contacts; metres";
-        made.others.extend(fitted.mesh.map(|mesh| ("fitted_shape.ply", comment, mesh)));
+        made.others.extend(fitted.drawn.map(|mesh| ("fitted_shape.ply", comment, mesh)));
     }
     Ok((made, about))
 }

@@ -25,7 +25,8 @@ pub(super) fn run(
         None => check_unwritten(&figures, &[], &made.drawn_outlines())?,
     }
     console.result(&describe(&made, count), &figures)?;
-    let whole = made.outlines.iter().all(|outline| !outline.is_empty());
+    let refused = made.about["fit"]["status"] == "refused";
+    let whole = made.outlines.iter().all(|outline| !outline.is_empty()) && !refused;
     Ok(if whole { Outcome::Done } else { Outcome::WithReservations })
 }
 

@@ -13,7 +13,9 @@ use recon::shape_bounds::{
 };
 use recon_io::{TriangleMesh, brief, brief_to};
 use serde_json::{Value, json};
+use std::error::Error;
 use std::f64::consts::TAU;
+use std::fmt::Display;
 
 /// Deviation of normals, in rad, and of points, as a share of the size, where no noise is stated: only their ratio
 /// matters, because their common factor is estimated from the residuals.
@@ -23,13 +25,28 @@ const NET: (u32, u32) = (48, 96);
 const CORNERS: u32 = 720;
 
 /// A fit, or why there is none.
-pub(crate) struct Fitted {
+pub(crate) struct Fitted<T> {
     /// Status and figures, for the summary.
     pub(crate) report: Value,
-    /// The fitted surface; none where the contacts refute the shape.
-    pub(crate) mesh: Option<TriangleMesh>,
+    /// The fitted surface or outline; none where the contacts refute it.
+    pub(crate) drawn: Option<T>,
     /// What the reader must know.
     pub(crate) warning: Option<String>,
+}
+
+impl<T> Fitted<T> {
+    /// Nothing, because the contacts refute it.
+    fn refused(error: &dyn Error, tried: Value) -> Self {
+        let warning = if tried.is_null() {
+            format!("No shape is written: {error}.")
+        } else {
+            "No family of shapes fits the contacts, so that none is written; the bounds do not need one. \
+             summary.json tells of each."
+                .to_owned()
+        };
+        let report = json!({ "status": "refused", "reason": error.to_string(), "tried": tried });
+        Self { report, drawn: None, warning: Some(warning) }
+    }
 }
 
 /// Fits a shape to contacts in space. A shape that the contacts refute is reported as refused, which is no error: the
@@ -38,7 +55,7 @@ pub(crate) fn fitted_shape(
     curves: &[Vec<ContactSample>],
     noise: Option<(Noise, f64)>,
     family: FitAs,
-) -> Result<Fitted, CliError> {
+) -> Result<Fitted<TriangleMesh>, CliError> {
     let (contacts, options) = match noise {
         Some((noise, confidence)) => (cleaned(curves, noise, confidence)?.kept.concat(), stated()),
         None => {
@@ -61,35 +78,24 @@ pub(crate) fn fitted_shape(
     };
     let choice = match ShapeFit::choose(&contacts, &families, &options) {
         Ok(choice) => choice,
-        Err(error) => return refused(error),
+        Err(error) => {
+            return match &error {
+                FitError::NoneFits { candidates } => Ok(Fitted::refused(&error, tried(candidates))),
+                FitError::Refuted { .. } => Ok(Fitted::refused(&error, Value::Null)),
+                _ => Err(error.into()),
+            };
+        }
     };
     let fit = &choice.best;
     let mut report = report(&fit.family().to_string(), fit.names(), fit.parameters(), fit.covariance());
     add_statistics(&mut report, fit.statistics(), 3.0, noise.is_some());
     report["tried"] = tried(&choice.candidates);
     let mesh = TriangleMesh::net(NET.0, NET.1, |n| fit.body().point(Direction::new_unchecked(n)));
-    Ok(Fitted { report, mesh: Some(mesh), warning: None })
+    Ok(Fitted { report, drawn: Some(mesh), warning: None })
 }
 
-/// What is told of shapes that the contacts refute; other errors stay errors.
-fn refused(error: FitError) -> Result<Fitted, CliError> {
-    let (tried, warning) = match &error {
-        FitError::NoneFits { candidates } => {
-            let text = "No family of shapes fits the contacts, so that none is written; the bounds do not need one. \
-                        summary.json tells of each.";
-            (tried(candidates), text.to_owned())
-        }
-        FitError::Refuted { .. } | FitError::Unlike { .. } => {
-            (Value::Null, format!("No shape is written: {error}."))
-        }
-        _ => return Err(error.into()),
-    };
-    let report = json!({ "status": "refused", "reason": error.to_string(), "tried": tried });
-    Ok(Fitted { report, mesh: None, warning: Some(warning) })
-}
-
-fn tried(candidates: &[Candidate]) -> Value {
-    let one = |c: &Candidate| {
+fn tried<F: Display, E: Display>(candidates: &[Candidate<F, E>]) -> Value {
+    let one = |c: &Candidate<F, E>| {
         let name = c.family.to_string();
         match &c.outcome {
             Ok(criterion) => json!({ "family": name, "criterion": criterion }),
@@ -99,12 +105,12 @@ fn tried(candidates: &[Candidate]) -> Value {
     candidates.iter().map(one).collect()
 }
 
-/// Fits an outline to contacts in the plane; its report and its corners.
+/// Fits an outline to contacts in the plane, drawn by its corners; refused as in space.
 pub(crate) fn fitted_outline(
     contacts: &[planar::NoisyContact],
     stated_noise: bool,
     family: FitAs,
-) -> Result<(Value, Vec<DVec2>), CliError> {
+) -> Result<Fitted<Vec<DVec2>>, CliError> {
     let families = match family {
         FitAs::Auto => OutlineFamily::candidates(contacts.len()),
         FitAs::Circle => vec![OutlineFamily::Circle],
@@ -113,17 +119,22 @@ pub(crate) fn fitted_outline(
         FitAs::Ball | FitAs::Ellipsoid | FitAs::Superquadric | FitAs::Harmonics(_) => Vec::new(),
     };
     let options = if stated_noise { stated() } else { estimated() };
-    let choice = OutlineFit::choose(contacts, &families, &options)?;
+    let choice = match OutlineFit::choose(contacts, &families, &options) {
+        Ok(choice) => choice,
+        Err(error) => {
+            return match &error {
+                planar::FitError::NoneFits { candidates } => Ok(Fitted::refused(&error, tried(candidates))),
+                planar::FitError::Refuted { .. } => Ok(Fitted::refused(&error, Value::Null)),
+                _ => Err(error.into()),
+            };
+        }
+    };
     let fit = &choice.best;
-    let tried = choice.candidates.iter().map(|(family, outcome)| match outcome {
-        Ok(criterion) => json!({ "family": family.to_string(), "criterion": criterion }),
-        Err(error) => json!({ "family": family.to_string(), "not_fitted": error.to_string() }),
-    });
     let mut report = report(&fit.family().to_string(), &fit.names(), fit.parameters(), fit.covariance());
     add_statistics(&mut report, fit.statistics(), 2.0, stated_noise);
-    report["tried"] = tried.collect();
+    report["tried"] = tried(&choice.candidates);
     let corner = |k: u32| fit.body().point(TAU * f64::from(k) / f64::from(CORNERS));
-    Ok((report, (0..CORNERS).map(corner).collect()))
+    Ok(Fitted { report, drawn: Some((0..CORNERS).map(corner).collect()), warning: None })
 }
 
 /// Contacts in the plane with noise of which only the ratio between points and normals is meant.

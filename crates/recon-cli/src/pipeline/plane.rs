@@ -37,7 +37,7 @@ pub(crate) struct PlanarBounds {
     pub(crate) points: Vec<DVec2>,
     /// Corners, or points along the arcs, of the lower and the upper bound; empty where there is none.
     pub(crate) outlines: [Vec<DVec2>; 2],
-    /// The fitted outline; empty where none was asked for.
+    /// The fitted outline; empty where none was asked for or the contacts refute it.
     pub(crate) fitted: Vec<DVec2>,
     /// Areas of both bounds in m^2; the second is infinite where the contacts leave a side open.
     pub(crate) areas: [f64; 2],
@@ -85,10 +85,11 @@ pub(crate) fn planar_bounds(
     };
     made.points = kept.iter().map(|c| c.contact.point).collect();
     if let Some(family) = request.fit {
-        let (report, outline) = fitted_outline(&kept, request.noise.is_some(), family)?;
-        made.about["fit"] = report;
+        let fitted = fitted_outline(&kept, request.noise.is_some(), family)?;
+        made.about["fit"] = fitted.report;
+        made.fitted = fitted.drawn.unwrap_or_default();
+        made.warnings.extend(fitted.warning);
         made.warnings.extend(doubtful_fit(&made.about));
-        made.fitted = outline;
     }
     Ok(made)
 }

@@ -22,6 +22,24 @@ fn ellipse(noise: f64, wrong: f64) -> String {
     text
 }
 
+/// Contacts on a square with sides of 2 m grown by a disc of 0.4 m, five degrees of turning apart and on the flats.
+fn rounded_square() -> String {
+    let mut text = String::from("x,y,nx,ny\n");
+    for corner in 0..4 {
+        let turn = |x: f64, y: f64| [[x, y], [-y, x], [-x, -y], [y, -x]][corner];
+        for k in 0..18 {
+            let (s, c) = (f64::from(k) * PI / 36.0).sin_cos();
+            // The flat before the corner, touched at places along it, then the corner.
+            let flat = (turn(1.4, -1.0 + 2.0 * f64::from(k) / 18.0), turn(1.0, 0.0));
+            let round = (turn(1.0 + 0.4 * c, 1.0 + 0.4 * s), turn(c, s));
+            for (p, n) in [flat, round] {
+                writeln!(text, "{},{},{},{}", p[0], p[1], n[0], n[1]).unwrap();
+            }
+        }
+    }
+    text
+}
+
 /// Directions spread evenly over the sphere.
 fn directions(count: usize) -> impl Iterator<Item = [f64; 3]> {
     (0..count).map(move |k| {
@@ -157,6 +175,36 @@ fn a_shape_that_the_contacts_refute_is_refused_and_bounds_are_written() {
         assert!(scratch.path().join("out/upper_bound.ply").is_file());
         assert!(!scratch.path().join("out/fitted_shape.ply").is_file());
     }
+}
+
+#[test]
+fn an_outline_that_the_contacts_refute_is_refused_and_bounds_are_written() {
+    let scratch = Scratch::new("refuted-outline");
+    scratch.write("ellipse.csv", &ellipse(0.0, 0.0)).write("square.csv", &rounded_square());
+    let stated = ["--contact-noise", "1e-3", "--normal-noise", "1e-3"];
+    for (arguments, reason, warning) in [
+        (["ellipse.csv", "--fit", "circle"], "circle: refuted by the contacts", "No shape is written"),
+        (
+            ["square.csv", "--fit", "auto"],
+            "no family fits the contacts: circle: refuted",
+            "No family of shapes",
+        ),
+    ] {
+        for noise in [&[][..], &stated[..]] {
+            let run = scratch.run(&[&["bounds", "--json", "-o", "out"], &arguments[..], noise].concat());
+            assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);
+            let summary: Value = serde_json::from_str(&run.stdout).unwrap();
+            let fit = &summary["about"]["fit"];
+            assert_eq!(fit["status"], "refused");
+            assert!(fit["reason"].as_str().unwrap().starts_with(reason), "{fit}");
+            assert!(summary["warnings"].to_string().contains(warning), "{}", summary["warnings"]);
+            assert!(scratch.path().join("out/upper_bound.csv").is_file());
+            assert!(!scratch.path().join("out/fitted_shape.csv").is_file());
+        }
+    }
+    let words = scratch.run(&["bounds", "ellipse.csv", "--fit", "circle"]);
+    assert_eq!(words.code, Some(4));
+    assert!(words.stdout.contains("none: refused"), "{}", words.stdout);
 }
 
 #[test]

@@ -1,18 +1,24 @@
 //! Which family: no more parameters than the contacts call for.
 
-use super::solve::{Solution, thinned};
-use super::{
-    Data, FitError, FitOptions, NoiseLevel, Search, ShapeFamily, ShapeFit, log_determinants, refute,
-};
+use super::search::Search;
+use super::solve::thinned;
+use super::{FitError, FitOptions, ShapeFamily, ShapeFit};
 use crate::noise::NoisyContact;
+use std::fmt;
 
-/// A family that was tried.
+/// A family that was tried, of shapes in space or of outlines in the plane.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Candidate {
+pub struct Candidate<F = ShapeFamily, E = FitError> {
     /// The family.
-    pub family: ShapeFamily,
+    pub family: F,
     /// Its information criterion, or why it has no fit.
-    pub outcome: Result<f64, FitError>,
+    pub outcome: Result<f64, E>,
+}
+
+/// Why each candidate has no fit.
+pub(crate) fn reasons<F, E: fmt::Display>(candidates: &[Candidate<F, E>]) -> String {
+    let reason = |c: &Candidate<F, E>| c.outcome.as_ref().err().map(ToString::to_string);
+    candidates.iter().filter_map(reason).collect::<Vec<_>>().join("; ")
 }
 
 /// The chosen shape and what it was chosen from.
@@ -79,8 +85,11 @@ impl ShapeFit {
         options: &FitOptions,
     ) -> Result<ShapeChoice, FitError> {
         let few = thinned(contacts, COMPARED);
-        let (mut fits, mut candidates) = compared(&few, families, options);
-        fits.sort_by(|a, b| a.information_criterion.total_cmp(&b.information_criterion));
+        let (fits, mut candidates) = compared(families, |family, none_yet| {
+            // Where a smaller family fits, what a hard search would find is not wanted.
+            let search = if none_yet { Search::Thorough } else { Search::Quick };
+            Self::likeliest(&few, family, options, search)?.unrefuted()
+        });
         for fit in fits {
             if few.len() == contacts.len() {
                 return Ok(ShapeChoice { best: fit, candidates });
@@ -104,46 +113,65 @@ impl ShapeFit {
 /// Contacts that families are compared on, at most.
 pub const COMPARED: usize = 600;
 
-/// Fits of all families that are not refuted, and the outcome of each.
-fn compared(
-    contacts: &[NoisyContact],
-    families: &[ShapeFamily],
-    options: &FitOptions,
-) -> (Vec<ShapeFit>, Vec<Candidate>) {
-    let mut fits: Vec<ShapeFit> = Vec::new();
+/// A fit that may be chosen.
+pub(crate) trait Fit {
+    /// Its families.
+    type Family: Copy;
+    /// Why a family has no fit.
+    type Error;
+
+    fn criterion(&self) -> f64;
+    fn is_exact(&self) -> bool;
+    fn parameters(family: Self::Family) -> usize;
+    /// What is said of a family that is not tried because one of no more parameters is exact.
+    fn needless(family: Self::Family, exact: Self::Family) -> Self::Error;
+}
+
+impl Fit for ShapeFit {
+    type Family = ShapeFamily;
+    type Error = FitError;
+
+    fn criterion(&self) -> f64 {
+        self.information_criterion
+    }
+    fn is_exact(&self) -> bool {
+        self.is_exact
+    }
+    fn parameters(family: ShapeFamily) -> usize {
+        family.parameters()
+    }
+    fn needless(family: ShapeFamily, exact: ShapeFamily) -> FitError {
+        FitError::Needless { family, exact }
+    }
+}
+
+/// All families with the outcome of each.
+type Candidates<F> = Vec<Candidate<<F as Fit>::Family, <F as Fit>::Error>>;
+
+/// Fits of all families that have one, the smallest criterion first. A family is fitted with the word whether none fits yet.
+pub(crate) fn compared<F: Fit>(
+    families: &[F::Family],
+    mut fit: impl FnMut(F::Family, bool) -> Result<F, F::Error>,
+) -> (Vec<F>, Candidates<F>) {
+    let mut fits: Vec<F> = Vec::new();
     let mut candidates = Vec::with_capacity(families.len());
-    let mut exact: Option<ShapeFamily> = None;
-    // Where a smaller family fits, what a hard search would find is not wanted.
-    let search = |none_yet: bool| if none_yet { Search::Thorough } else { Search::Quick };
+    let mut exact: Option<F::Family> = None;
     for &family in families {
-        let needless = exact.filter(|e| e.parameters() <= family.parameters());
+        let needless = exact.filter(|exact| F::parameters(*exact) <= F::parameters(family));
         let fitted = match needless {
-            Some(exact) => Err(FitError::Needless { family, exact }),
-            None => ShapeFit::likeliest(contacts, family, options, search(fits.is_empty()))
-                .and_then(ShapeFit::unrefuted),
+            Some(exact) => Err(F::needless(family, exact)),
+            None => fit(family, fits.is_empty()),
         };
         let outcome = fitted.map(|fit| {
-            if fit.is_exact {
+            if fit.is_exact() {
                 exact = Some(family);
             }
-            let criterion = fit.information_criterion;
+            let criterion = fit.criterion();
             fits.push(fit);
             criterion
         });
         candidates.push(Candidate { family, outcome });
     }
+    fits.sort_by(|a, b| a.criterion().total_cmp(&b.criterion()));
     (fits, candidates)
-}
-
-pub(super) fn criterion(solution: &Solution, data: &Data, parameters: usize) -> f64 {
-    let equations = (3 * solution.system.contacts.len()) as f64;
-    let chi_squared = solution.system.chi_squared;
-    let misfit = match data.noise_level {
-        NoiseLevel::Stated => chi_squared,
-        // The factor of the noise is fitted as well, which profiles the likelihood. Exact data would make it zero.
-        NoiseLevel::Estimated => {
-            equations * (chi_squared.max(refute::rounding(solution, data)) / equations).ln()
-        }
-    };
-    misfit + log_determinants(solution) + parameters as f64 * equations.ln()
 }

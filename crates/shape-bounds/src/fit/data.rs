@@ -1,9 +1,8 @@
 //! Contacts that can be fitted to, and where the fits start.
 
-use super::family::{EllipsoidModel, HarmonicModel, Model, Superquadric, SuperquadricModel};
+use super::family::{HarmonicModel, Model};
 use super::information::SquareRoot;
-use super::solve::{Solution, Spatial, into_error, solve};
-use super::{FitError, FitOptions, NoiseLevel, ShapeFamily, refute};
+use super::{FitError, FitOptions, NoiseLevel, ShapeFamily};
 use crate::noise::NoisyContact;
 use glam::DVec3;
 use nalgebra::DVector;
@@ -17,17 +16,6 @@ pub(super) struct Data {
     pub(super) smallest_radius: f64,
     /// Whether a shape is given up as soon as the contacts refute it.
     pub(super) refusing: bool,
-}
-
-/// How a shape is looked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Search {
-    /// From few starts, and given up when it is refuted.
-    Quick,
-    /// From more starts where the contacts refute what few lead to.
-    Thorough,
-    /// As thorough, and taken though it is refuted.
-    Nearest,
 }
 
 impl Data {
@@ -103,48 +91,4 @@ pub(super) fn ball(model: &dyn Model, contacts: &[NoisyContact], data: &Data) ->
     let near = found[3] > 0.01 * data.size && found[3] < 100.0 * data.size;
     let (centre, radius) = if near { (centre, found[3]) } else { (DVec3::ZERO, data.size) };
     model.ball(data.centre + centre, radius)
-}
-
-/// Exponents that starts have beside 1: towards a box and towards a double pyramid.
-const EXPONENTS: [[f64; 2]; 4] = [[0.5, 0.5], [0.5, 1.5], [1.5, 0.5], [1.5, 1.5]];
-
-/// A superquadric may have its first exponent along any of the ellipsoid's axes, and its second about axes that are turned
-/// by an eighth: the best of six starts is kept if the contacts do not refute it, else, unless the search is quick, that of
-/// thirty.
-pub(super) fn superquadric(
-    model: &dyn Model,
-    contacts: &[NoisyContact],
-    data: &Data,
-    search: Search,
-) -> Result<Solution, FitError> {
-    let family = ShapeFamily::Superquadric;
-    let start = ball(&EllipsoidModel, contacts, data);
-    let problem = Spatial { model: &EllipsoidModel, contacts, size: data.size };
-    let ellipsoid = solve(&problem, vec![start], |_| true)
-        .map_err(|e| into_error(e, &EllipsoidModel, ShapeFamily::Ellipsoid, data.size))?;
-    let body = EllipsoidModel::body(&ellipsoid.theta)?;
-    let starts = |exponents: &[[f64; 2]]| {
-        let mut starts = Vec::new();
-        for special in 0..3 {
-            for turn in [0.0, std::f64::consts::FRAC_PI_4] {
-                for e in exponents {
-                    let start = Superquadric::from_ellipsoid(&body, special, turn, *e);
-                    starts.extend(start.as_ref().map(SuperquadricModel::parameters));
-                }
-            }
-        }
-        starts
-    };
-    let problem = Spatial { model, contacts, size: data.size };
-    let enough = |found: &Solution| refute::is_likely(found, data, 3 * contacts.len() - model.count());
-    let smooth = solve(&problem, starts(&[[1.0, 1.0]]), enough);
-    if search == Search::Quick || smooth.as_ref().is_ok_and(&enough) {
-        return smooth.map_err(|e| into_error(e, model, family, data.size));
-    }
-    let rough = solve(&problem, starts(&EXPONENTS), enough);
-    match (smooth, rough) {
-        (Ok(a), Ok(b)) => Ok(if b.system.chi_squared < a.system.chi_squared { b } else { a }),
-        (Ok(found), Err(_)) | (Err(_), Ok(found)) => Ok(found),
-        (Err(error), Err(_)) => Err(into_error(error, model, family, data.size)),
-    }
 }

@@ -1,4 +1,5 @@
-use super::{Candidate, ShapeFamily};
+use super::choose::reasons;
+use super::{Candidate, Refutation, ShapeFamily};
 use contact_kinematics::ShapeError;
 use glam::DVec3;
 use thiserror::Error;
@@ -81,31 +82,13 @@ pub enum FitError {
         /// Iterations made.
         iterations: usize,
     },
-    /// The contacts refute the shape at their stated noise.
-    #[error(
-        "{family}: refuted by the contacts: chi-squared {chi_squared:.1} of {degrees_of_freedom} degrees of freedom, which \
-         contacts of such a shape exceed once in {:.0} times; the body is no such shape, or the noise is larger than stated",
-        1.0 / super::SIGNIFICANCE
-    )]
+    /// The contacts refute the shape.
+    #[error("{family}: refuted by the contacts: {by}")]
     Refuted {
         /// What was fitted.
         family: ShapeFamily,
-        /// Sum of squared residuals in units of the stated noise.
-        chi_squared: f64,
-        /// Equations minus parameters.
-        degrees_of_freedom: usize,
-    },
-    /// Residuals of neighbours are alike, which noise is not.
-    #[error(
-        "{family}: refuted by the contacts: residuals of {residual:.1e} m are alike at neighbouring contacts, as those of \
-         another shape and not as noise is (p-value below {:.0e})",
-        super::SIGNIFICANCE
-    )]
-    Unlike {
-        /// What was fitted.
-        family: ShapeFamily,
-        /// Root mean square of the residuals per axis, in m.
-        residual: f64,
+        /// How they do.
+        by: Refutation,
     },
     /// A family with fewer parameters is exact already.
     #[error("{family}: not tried, since the {exact} fits exactly")]
@@ -138,9 +121,4 @@ pub enum FitError {
     /// The fitted numbers are no shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),
-}
-
-fn reasons(candidates: &[Candidate]) -> String {
-    let reason = |c: &Candidate| c.outcome.as_ref().err().map(ToString::to_string);
-    candidates.iter().filter_map(reason).collect::<Vec<_>>().join("; ")
 }

@@ -1,9 +1,11 @@
 //! A fit that takes one contact at a time.
 
+use super::data::{Data, check_contact};
 use super::information::SquareRoot;
 use super::levenberg::{ITERATIONS, Problem, iterate};
+use super::search::Search;
 use super::solve::{Spatial, linearise};
-use super::{Data, FitError, FitOptions, Search, ShapeFamily, ShapeFit, check_contact};
+use super::{FitError, FitOptions, ShapeFamily, ShapeFit};
 use crate::noise::NoisyContact;
 use glam::DVec3;
 use nalgebra::DVector;

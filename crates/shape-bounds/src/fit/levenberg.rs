@@ -5,8 +5,11 @@ use nalgebra::DVector;
 
 /// Iterations before a fit is given up; a handful suffices near a solution.
 pub(crate) const ITERATIONS: usize = 200;
+/// Iterations before contacts are not those of a body that is linear in its parameters, harmonics or waves: only the true
+/// normals are not, and right ones are at rest after a handful.
+pub(crate) const LINEAR: usize = 30;
 /// Iterations with normals taken as exact.
-const APPROACH: usize = 40;
+const APPROACH: usize = 15;
 /// A step this small, in standard deviations, changes nothing.
 const STILL: f64 = 1e-7;
 /// A predicted improvement this small, relative to the sum of squares, is rounding of it ...

@@ -1,99 +1,128 @@
-//! Whether the contacts refute a fitted shape.
+//! Whether the contacts refute a fitted shape, in the plane and in space.
 
-use super::solve::Solution;
-use super::{Data, FitError, NoiseLevel, ShapeFamily};
+use super::NoiseLevel;
+use super::misfit::Misfit;
 use crate::bounds::PRINTED;
-use crate::noise::NoisyContact;
 use crate::noise::quantile::normal;
+use glam::DVec3;
 use std::collections::BTreeMap;
+use thiserror::Error;
 
 /// A shape is refused if contacts of a body of its family would speak against it as much with less than this probability.
 pub const SIGNIFICANCE: f64 = 1e-4;
 /// Contacts whose nearest neighbours are looked for, which takes the square of their number.
 const JUDGED: usize = 2000;
-/// Residuals below this share of the size are rounding, of the numbers given or of the iteration: the fit is exact.
-pub(super) const EXACT: f64 = 1e-9;
 
-/// Whether the residuals are rounding.
-pub(super) fn is_exact(residual: f64, data: &Data) -> bool {
-    residual <= EXACT * data.size
+/// By what contacts refute a shape.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum Refutation {
+    /// Residuals are larger than the stated noise.
+    #[error(
+        "chi-squared {chi_squared:.1} of {degrees_of_freedom} degrees of freedom, which contacts of such a shape exceed \
+         once in {:.0} times; the body is no such shape, or the noise is larger than stated",
+        1.0 / SIGNIFICANCE
+    )]
+    ChiSquared {
+        /// Sum of squared residuals in units of the stated noise.
+        chi_squared: f64,
+        /// Equations minus parameters that no constraint holds.
+        degrees_of_freedom: usize,
+    },
+    /// Residuals of neighbours are alike, which noise is not.
+    #[error(
+        "residuals of {residual:.1e} m are alike at neighbouring contacts, as those of another shape and not as noise is \
+         (p-value below {SIGNIFICANCE:.0e})"
+    )]
+    Likeness {
+        /// Root mean square of the residuals per axis, in m.
+        residual: f64,
+    },
 }
 
-/// Refuses a shape that its contacts refute at [`SIGNIFICANCE`].
+/// A contact's place on the fitted body and what the fit leaves of it; in the plane without a third coordinate.
+///
+/// Where the contact was measured to be says something of its error, so contacts that were measured near one another have
+/// alike ones. Its likeliest place on the body does not.
+pub(crate) struct Leftover {
+    /// Where, in m.
+    pub(crate) point: DVec3,
+    /// Outward unit normal there.
+    pub(crate) normal: DVec3,
+    /// Residual in units of the noise.
+    pub(crate) residual: DVec3,
+}
+
+/// What refutes a shape with such a misfit at [`SIGNIFICANCE`], if anything does.
 ///
 /// With stated noise by the chi-squared test. With unknown noise by what is left: residuals of a shape of the family are
 /// independent from contact to contact, those of another shape are alike at neighbours. What contacts are printed with says
 /// nothing of the shape, whether neighbours have it alike or not.
-pub(super) fn check(
-    family: ShapeFamily,
-    contacts: &[NoisyContact],
-    solution: &Solution,
-    data: &Data,
-    (residual, degrees_of_freedom): (f64, usize),
-) -> Result<(), FitError> {
-    if is_exact(residual, data) {
-        return Ok(());
+pub(crate) fn refutation(
+    level: NoiseLevel,
+    misfit: &Misfit,
+    leftovers: impl FnOnce() -> Vec<Leftover>,
+) -> Option<Refutation> {
+    if misfit.is_exact() {
+        return None;
     }
-    let chi_squared = solution.system.chi_squared;
-    match data.noise_level {
+    let Misfit { chi_squared, residual, size, .. } = *misfit;
+    let degrees_of_freedom = misfit.degrees_of_freedom();
+    match level {
         NoiseLevel::Stated if chi_squared > chi_squared_quantile(degrees_of_freedom) => {
-            Err(FitError::Refuted { family, chi_squared, degrees_of_freedom })
+            Some(Refutation::ChiSquared { chi_squared, degrees_of_freedom })
         }
         NoiseLevel::Estimated
-            if residual > PRINTED * data.size
-                && likeness(contacts, solution, data.size) > normal(SIGNIFICANCE) =>
+            if residual > PRINTED * size && likeness(&leftovers(), size) > normal(SIGNIFICANCE) =>
         {
-            Err(FitError::Unlike { family, residual })
+            Some(Refutation::Likeness { residual })
         }
-        _ => Ok(()),
+        _ => None,
     }
 }
 
 /// Whether the sum of squares is one that contacts of such a shape leave; with unknown noise, whether it is next to none.
-pub(super) fn is_likely(solution: &Solution, data: &Data, degrees_of_freedom: usize) -> bool {
-    let chi_squared = solution.system.chi_squared;
-    match data.noise_level {
-        NoiseLevel::Stated => chi_squared <= chi_squared_quantile(degrees_of_freedom),
-        NoiseLevel::Estimated => chi_squared <= rounding(solution, data),
-    }
+pub(crate) fn is_likely(level: NoiseLevel, misfit: &Misfit) -> bool {
+    misfit.chi_squared
+        <= match level {
+            NoiseLevel::Stated => chi_squared_quantile(misfit.degrees_of_freedom()),
+            NoiseLevel::Estimated => misfit.rounding(),
+        }
 }
 
-/// The sum of squares of residuals that are rounding.
-pub(super) fn rounding(solution: &Solution, data: &Data) -> f64 {
-    let weight: f64 = solution.system.contacts.iter().map(|c| c.whitening.norm_squared()).sum();
-    weight * (EXACT * data.size).powi(2)
+/// How far in its standard deviations an estimate may be moved to where the truth is: noise takes it no further.
+pub(crate) fn farthest(misfit: &Misfit, level: NoiseLevel) -> f64 {
+    chi_squared_quantile(misfit.parameters).sqrt() * misfit.noise_factor(level)
 }
 
 /// What chi-squared exceeds with a probability of [`SIGNIFICANCE`], by the cube root's approximation (Wilson and Hilferty 1931),
 /// which is right to a hundredth from three degrees of freedom on.
-pub(super) fn chi_squared_quantile(degrees_of_freedom: usize) -> f64 {
+fn chi_squared_quantile(degrees_of_freedom: usize) -> f64 {
     let count = degrees_of_freedom.max(1) as f64;
     let variance = 2.0 / (9.0 * count);
     count * (1.0 - variance + normal(SIGNIFICANCE) * variance.sqrt()).powi(3)
 }
 
 /// The sum of the cosines between neighbours' residuals in its standard deviations, which takes nothing of their distribution
-/// but symmetry: about normal for independent ones.
-fn likeness(contacts: &[NoisyContact], solution: &Solution, size: f64) -> f64 {
-    let step = contacts.len().div_ceil(JUDGED).max(1);
-    let some: Vec<usize> = (0..contacts.len()).step_by(step).collect();
-    let far = |a: usize, b: usize| {
-        let (a, b) = (&contacts[a].contact, &contacts[b].contact);
-        a.point.distance_squared(b.point) / (size * size) + a.normal.get().distance_squared(b.normal.get())
+/// but symmetry: about normal for independent ones. Pairs of nearest neighbours close no ring, so their signs are independent.
+fn likeness(leftovers: &[Leftover], size: f64) -> f64 {
+    let step = leftovers.len().div_ceil(JUDGED).max(1);
+    let some: Vec<&Leftover> = leftovers.iter().step_by(step).collect();
+    let far = |a: &Leftover, b: &Leftover| {
+        a.point.distance_squared(b.point) / (size * size) + a.normal.distance_squared(b.normal)
     };
     let nearest = |k: usize| {
-        let others = some.iter().copied().filter(|j| *j != k).map(|j| (far(k, j), j));
+        let others = (0..some.len()).filter(|j| *j != k).map(|j| (far(some[k], some[j]), j));
         others.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, j)| j)
     };
-    let neighbours: BTreeMap<usize, usize> = some.iter().filter_map(|k| Some((*k, nearest(*k)?))).collect();
+    let neighbours: BTreeMap<usize, usize> = (0..some.len()).filter_map(|k| Some((k, nearest(k)?))).collect();
     let (mut sum, mut squares) = (0.0, 0.0);
     for (k, j) in &neighbours {
         // A pair of nearest neighbours counts once.
         if k > j && neighbours.get(j) == Some(k) {
             continue;
         }
-        let [a, b] = [k, j].map(|k| solution.system.contacts[*k].residual);
-        let cosine = a.dot(&b) / (a.norm() * b.norm()).max(f64::MIN_POSITIVE);
+        let [a, b] = [k, j].map(|k| some[*k].residual);
+        let cosine = a.dot(b) / (a.length() * b.length()).max(f64::MIN_POSITIVE);
         sum += cosine;
         squares += cosine * cosine;
     }

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 pub struct FitStatistics {
     /// Sum of squared residuals in units of the stated noise; `degrees_of_freedom` is expected of a true model.
     pub chi_squared: f64,
-    /// Equations (three for each contact) minus parameters.
+    /// Equations (three for each contact, in the plane two) minus parameters that no constraint holds.
     pub degrees_of_freedom: usize,
     /// Root mean square of the residuals of the points, normals carried along, in m per axis.
     pub residual: f64,

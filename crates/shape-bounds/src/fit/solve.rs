@@ -166,19 +166,33 @@ type Unsolved = levenberg::Unsolved<Linearised>;
 
 /// Contacts that starts are tried on, spread evenly over all: enough to tell a right valley from a wrong one.
 const TRIED: usize = 100;
-/// Ends of starts that are followed to rest.
-const FOLLOWED: usize = 2;
+/// What a solution is worth.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// Ends of starts that are followed to rest, at most.
+    pub(super) followed: usize,
+    /// Iterations for each.
+    pub(super) iterations: usize,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Self { followed: 1, iterations: ITERATIONS }
+    }
+}
+
 /// Ends of starts whose sums of squares differ by less than this share are the same.
-const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 
 /// The likeliest parameters.
 ///
 /// First with the normals taken as exact, which is a smooth problem from any start; from where that leads, with the true
-/// normals eliminated, the best end first until one is good `enough`, else the best of all. Started far off, the search for a
+/// normals eliminated, the best end first, until one is good `enough`, else the best of those. Started far off, the search for a
 /// true normal can end on the wrong side of the body.
 pub(super) fn solve<M: Model + ?Sized>(
     problem: &Spatial<'_, M>,
     starts: Vec<DVector<f64>>,
+    effort: Effort,
     enough: impl Fn(&Solution) -> bool,
 ) -> Result<Solution, Unsolved> {
     let mut exact = thinned(problem.contacts, if starts.len() > 1 { TRIED } else { usize::MAX });
@@ -189,7 +203,7 @@ pub(super) fn solve<M: Model + ?Sized>(
     let mut last = f64::NEG_INFINITY;
     let mut followed = 0;
     for (end, chi_squared) in ends {
-        if followed == FOLLOWED {
+        if followed == effort.followed {
             break;
         }
         if chi_squared - last <= SAME * chi_squared {
@@ -197,7 +211,7 @@ pub(super) fn solve<M: Model + ?Sized>(
         }
         last = chi_squared;
         followed += 1;
-        match iterate(problem, end, ITERATIONS) {
+        match iterate(problem, end, effort.iterations) {
             Ok(found) if enough(&found) => return Ok(found),
             Ok(found) => {
                 if best.as_ref().is_none_or(|known| found.system.chi_squared < known.system.chi_squared) {
@@ -224,7 +238,24 @@ pub(super) fn into_error(
     size: f64,
 ) -> FitError {
     match failure {
-        Unsolved::Singular(system) => super::undetermined(model, family, &system.root, size),
+        Unsolved::Singular(system) => undetermined(model, family, &system.root, size),
         Unsolved::NotConverged(iterations, _) => FitError::NotConverged { family, iterations },
+    }
+}
+
+pub(super) fn undetermined(
+    model: &(impl Model + ?Sized),
+    family: ShapeFamily,
+    root: &SquareRoot,
+    size: f64,
+) -> FitError {
+    let known = root.knowledge(&model.scales(size));
+    FitError::Undetermined {
+        family,
+        rank: known.map_or(0, |k| k.rank),
+        parameters: model.count(),
+        condition: known.map_or(f64::INFINITY, |k| k.condition),
+        weakest: known.map_or_else(String::new, |k| model.name(k.weakest_parameter)),
+        deviation: known.map_or(f64::INFINITY, |k| k.weakest_deviation),
     }
 }

@@ -223,21 +223,40 @@ impl Model for SuperquadricModel {
 }
 
 impl Superquadric {
-    /// The superquadric of the same axes whose third axis is the ellipsoid's axis `special`, turned about it by `turn`.
-    pub(in crate::fit) fn from_ellipsoid(
-        body: &super::SkewEllipsoid,
-        special: usize,
-        turn: f64,
-        exponents: [f64; 2],
-    ) -> Option<Self> {
-        let axes = [(special + 1) % 3, (special + 2) % 3, special];
-        let frame = DMat3::from_quat(body.rotation());
-        let rotation =
-            DQuat::from_mat3(&DMat3::from_cols(frame.col(axes[0]), frame.col(axes[1]), frame.col(axes[2])));
-        let lengths = DVec3::from_array(axes.map(|i| body.semi_axes()[i]));
-        // Turned by an eighth, both axes across have the same length.
-        let mean = 0.5 * (lengths.x + lengths.y);
-        let lengths = if turn == 0.0 { lengths } else { DVec3::new(mean, mean, lengths.z) };
-        Self::new(body.centre(), lengths, rotation * DQuat::from_rotation_z(turn), exponents).ok()
+    /// The ellipsoid as a superquadric.
+    pub(in crate::fit) fn from_ellipsoid(body: &super::SkewEllipsoid) -> Result<Self, ShapeError> {
+        Self::new(body.centre(), body.semi_axes(), body.rotation(), [1.0, 1.0])
+    }
+
+    /// The exponent of the section across an axis.
+    fn section(&self, across: usize) -> f64 {
+        self.exponents[usize::from(across == 2)]
+    }
+
+    /// One about as large, turned by an eighth about an axis: corners of the section across it come where its sides were.
+    pub(in crate::fit) fn turned_by_an_eighth(&self, about: usize) -> Option<Self> {
+        let [i, j] = [(about + 1) % 3, (about + 2) % 3];
+        let mut lengths = self.semi_axes;
+        // Both axes across have the same length then: where |x|^(2/e) + |y|^(2/e) = 1 meets x = y.
+        let between = (0.5 * (1.0 - self.section(about))).exp2();
+        lengths[i] = 0.5 * (self.semi_axes[i] + self.semi_axes[j]) * between;
+        lengths[j] = lengths[i];
+        let turn = DQuat::from_axis_angle(DVec3::AXES[about], std::f64::consts::FRAC_PI_4);
+        let mut exponents = self.exponents;
+        let own = &mut exponents[usize::from(about == 2)];
+        *own = (2.0 - *own).clamp(EDGE, 2.0 - EDGE);
+        Self::new(self.centre, lengths, self.rotation * turn, exponents).ok()
+    }
+
+    /// One about alike whose third axis, that of the first exponent, is the axis `third` of this one.
+    pub(in crate::fit) fn with_third(&self, third: usize) -> Option<Self> {
+        let axes = [(third + 1) % 3, (third + 2) % 3, third];
+        let frame = DMat3::from_quat(self.rotation);
+        let turned = DMat3::from_cols(frame.col(axes[0]), frame.col(axes[1]), frame.col(axes[2]));
+        let lengths = DVec3::from_array(axes.map(|i| self.semi_axes[i]));
+        // The two sections through the third axis share an exponent.
+        let through = 0.5 * (self.section(axes[0]) + self.section(axes[1]));
+        let exponents = [through, self.section(third)];
+        Self::new(self.centre, lengths, DQuat::from_mat3(&turned), exponents).ok()
     }
 }

@@ -24,16 +24,25 @@ fn rate(body: impl Fn(&mut Source) -> Box<dyn SupportFunction>, expected: ShapeF
     hits as f64 / runs as f64
 }
 
+const RUNS: u64 = 10;
+
 #[test]
-fn the_true_family_is_chosen() {
+fn balls_and_ellipsoids_are_chosen_where_they_are_true() {
     let ball = |s: &mut Source| -> Box<dyn SupportFunction> {
         Box::new(Translated { body: Sphere::new(s.between(0.5, 2.0)).unwrap(), offset: s.normal3() })
     };
-    let runs = 10;
-    assert!(rate(ball, ShapeFamily::Sphere, runs) >= 0.9);
-    assert!(rate(|s| Box::new(random_ellipsoid(s)), ShapeFamily::Ellipsoid, runs) >= 0.9);
-    assert!(rate(|s| Box::new(superquadric_body(s)), ShapeFamily::Superquadric, runs) >= 0.9);
-    assert!(rate(|s| Box::new(harmonic_body(s)), ShapeFamily::Harmonics { degree: 4 }, runs) >= 0.9);
+    assert!(rate(ball, ShapeFamily::Sphere, RUNS) >= 0.9);
+    assert!(rate(|s| Box::new(random_ellipsoid(s)), ShapeFamily::Ellipsoid, RUNS) >= 0.9);
+}
+
+#[test]
+fn superquadrics_are_chosen_where_they_are_true() {
+    assert!(rate(|s| Box::new(superquadric_body(s)), ShapeFamily::Superquadric, RUNS) >= 0.9);
+}
+
+#[test]
+fn harmonics_are_chosen_where_they_are_true() {
+    assert!(rate(|s| Box::new(harmonic_body(s)), ShapeFamily::Harmonics { degree: 4 }, RUNS) >= 0.9);
 }
 
 #[test]
@@ -62,6 +71,27 @@ fn a_superquadric_that_a_smooth_start_does_not_reach_is_found() {
     assert!(fit.statistics().chi_squared < 1.4 * 289.0, "{}", fit.statistics().chi_squared);
 }
 
+/// Found by the study: in three of these two of the ellipsoid's axes are alike and lie between those of the body, so that
+/// starts in the ellipsoid's frame lead to shapes that the contacts refute; in two others all exponents are alike, and a
+/// shape with another axis for the first is nearly as likely.
+#[test]
+fn superquadrics_with_axes_that_the_ellipsoid_does_not_show_are_found() {
+    for (seed, noise) in [(300_040, 1e-3), (300_301, 1e-3), (300_306, 1e-2), (300_553, 1e-2), (301_399, 1e-2)]
+    {
+        let mut s = Source::new(seed);
+        let axes = DVec3::new(s.between(0.5, 2.0), s.between(0.5, 2.0), s.between(0.5, 2.0));
+        let exponents = [s.between(0.5, 1.5), s.between(0.5, 1.5)];
+        let body = Superquadric::new(s.normal3() * 0.3, axes, s.rotation(), exponents).unwrap();
+        let contacts = measured(&body, curves(60, &mut s), noise, noise, &mut s);
+        let fit = ShapeFit::of(&contacts, ShapeFamily::Superquadric, &FitOptions::default()).unwrap();
+        let problem = Spatial { model: &SuperquadricModel, contacts: &contacts, size: 1.0 };
+        let truth = levenberg::iterate(&problem, SuperquadricModel::parameters(&body), ITERATIONS);
+        let truth = truth.ok().unwrap().system.chi_squared;
+        let found = fit.statistics().chi_squared;
+        assert!(found <= truth * (1.0 + 1e-6), "{seed}: {found} {truth}");
+    }
+}
+
 /// The study's body of no family, touched at places along three curves or scattered.
 fn rounded_box(s: &mut Source) -> MinkowskiSum<Superquadric, Sphere> {
     let core = Superquadric::new(DVec3::ZERO, DVec3::new(0.8, 0.6, 1.0), s.rotation(), [0.4, 0.4]).unwrap();
@@ -77,11 +107,17 @@ fn a_body_of_no_family_is_refused_by_name_whether_the_noise_is_known_or_not() {
         let contacts = measured(&body, curves(150, &mut s), 1e-3, 1e-3, &mut s);
         for family in small {
             let refused = ShapeFit::of(&contacts, family, &FitOptions::default()).unwrap_err();
-            assert!(matches!(refused, FitError::Refuted { family: f, .. } if f == family), "{refused}");
+            assert!(
+                matches!(refused, FitError::Refuted { family: f, by: Refutation::ChiSquared { .. } } if f == family),
+                "{refused}"
+            );
         }
         let unknown = FitOptions { noise_level: NoiseLevel::Estimated, ..FitOptions::default() };
         let refused = ShapeFit::of(&contacts, ShapeFamily::Ellipsoid, &unknown).unwrap_err();
-        assert!(matches!(refused, FitError::Unlike { .. }), "{seed} {refused}");
+        assert!(
+            matches!(refused, FitError::Refuted { by: Refutation::Likeness { .. }, .. }),
+            "{seed} {refused}"
+        );
         match ShapeFit::choose(&contacts, &small, &FitOptions::default()) {
             Err(FitError::NoneFits { candidates }) => assert_eq!(candidates.len(), 3),
             other => panic!("{seed} {other:?}"),
@@ -118,5 +154,18 @@ fn right_shapes_are_not_refused() {
             let fit = ShapeFit::of(&contacts, ShapeFamily::Ellipsoid, &options);
             assert!(fit.is_ok(), "{seed}: {}", fit.unwrap_err());
         }
+    }
+}
+
+/// Contacts as near one another as their noise: those that are measured nearest have alike errors, which is not the shape's.
+#[test]
+fn dense_contacts_of_a_right_shape_are_not_refused() {
+    let unknown = FitOptions { noise_level: NoiseLevel::Estimated, ..FitOptions::default() };
+    for seed in 0..10 {
+        let mut s = Source::new(seed + 7300);
+        let body = random_ellipsoid(&mut s);
+        let contacts = measured(&body, curves(600, &mut s), 3e-2, 3e-2, &mut s);
+        let fit = ShapeFit::of(&contacts, ShapeFamily::Ellipsoid, &unknown);
+        assert!(fit.is_ok(), "{seed}: {}", fit.unwrap_err());
     }
 }

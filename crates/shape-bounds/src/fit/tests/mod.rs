@@ -5,11 +5,14 @@ mod recovery;
 mod refusal;
 mod statistics;
 
+use super::family::{EllipsoidModel, HarmonicModel, Model, SphereModel, SuperquadricModel};
+use super::levenberg::Problem;
 use super::*;
 use crate::generators::Source;
 use crate::noise::ContactNoise;
 use crate::sample::ContactSample;
-use glam::{DMat3, DQuat};
+use contact_kinematics::{Direction, PolynomialSupport, Sphere, SupportFunction, Translated};
+use glam::{DMat3, DQuat, DVec3};
 use nalgebra::DVector;
 
 /// Contacts at `normals` of a body, points off by `point` (m per axis) and normals by `angle` (rad per tangent axis), with

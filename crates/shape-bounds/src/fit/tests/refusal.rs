@@ -65,6 +65,7 @@ fn harmonics_are_held_convex_and_nearer_to_the_truth() {
         let Ok(free) = solve(
             &Spatial { model: model.as_ref(), contacts: &contacts, size: data.size },
             vec![start],
+            Effort::default(),
             |_| true,
         ) else {
             panic!("no free fit")

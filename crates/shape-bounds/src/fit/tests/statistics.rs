@@ -57,6 +57,7 @@ fn consistency(
         let found = solve(
             &Spatial { model: model.as_ref(), contacts: &contacts, size: data.size },
             vec![start],
+            Effort::default(),
             |_| true,
         )
         .ok()

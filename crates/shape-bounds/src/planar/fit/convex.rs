@@ -16,12 +16,14 @@ const DENSITY: usize = 40;
 const MARGIN: f64 = 0.01;
 
 /// The waves nearest to `theta` in the metric of the data whose radius of curvature is proved to be above `limit`, and how
-/// many constraints hold them.
+/// many constraints hold them. Waves at more than `farthest` are refused as soon as they are seen: as in space, the distance
+/// grows with each constraint.
 pub(super) fn hold(
     family: OutlineFamily,
     theta: &DVector<f64>,
     root: &SquareRoot,
     limit: f64,
+    farthest: f64,
 ) -> Result<(DVector<f64>, usize), FitError> {
     let proved = |theta: &DVector<f64>| {
         outline(family, theta).is_ok_and(|body| body.radius_bounds().min >= limit.max(f64::MIN_POSITIVE))
@@ -65,6 +67,9 @@ pub(super) fn hold(
         let g = DMatrix::from_fn(rows.len(), theta.len(), |i, j| rows[i][j]);
         let h = DVector::from_fn(rows.len(), |i, _| target - constraints[i].dot(theta));
         let (x, tight) = least_distance(&g, &h).ok_or_else(none)?;
+        if x.norm() > farthest {
+            return Err(none());
+        }
         held = theta + triangle.solve_upper_triangular(&x).ok_or_else(none)?;
         active = tight;
     }

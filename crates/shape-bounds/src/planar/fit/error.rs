@@ -1,4 +1,6 @@
 use super::OutlineFamily;
+use crate::fit::choose::reasons;
+use crate::fit::{Candidate, Refutation};
 use contact_kinematics::planar::ShapeError;
 use glam::DVec2;
 use thiserror::Error;
@@ -79,6 +81,28 @@ pub enum FitError {
         family: OutlineFamily,
         /// Iterations made.
         iterations: usize,
+    },
+    /// The contacts refute the outline.
+    #[error("{family}: refuted by the contacts: {by}")]
+    Refuted {
+        /// What was fitted.
+        family: OutlineFamily,
+        /// How they do.
+        by: Refutation,
+    },
+    /// A family with no more parameters is exact already.
+    #[error("{family}: not tried, since the {exact} fits exactly")]
+    Needless {
+        /// What was not fitted.
+        family: OutlineFamily,
+        /// What fits.
+        exact: OutlineFamily,
+    },
+    /// No family of those given fits.
+    #[error("no family fits the contacts: {}", reasons(candidates))]
+    NoneFits {
+        /// All families, and why each does not.
+        candidates: Vec<Candidate<OutlineFamily, FitError>>,
     },
     /// No convex outline of the family has radii of curvature as large as asked for.
     #[error("{family}: no body has all radii of curvature above {radius:e} m and comes near the contacts")]

@@ -89,9 +89,16 @@ struct Waves {
 }
 
 /// A sum of waves that need not be convex.
-struct AnyWaves {
+pub(super) struct AnyWaves {
     cosines: Vec<f64>,
     sines: Vec<f64>,
+}
+
+impl AnyWaves {
+    pub(super) fn of(theta: &DVector<f64>) -> Self {
+        let (cosines, sines) = coefficients(theta);
+        Self { cosines, sines }
+    }
 }
 
 impl RadiusFunction for AnyWaves {

@@ -7,6 +7,7 @@
 mod convex;
 mod error;
 mod family;
+mod finish;
 mod solve;
 #[cfg(test)]
 mod tests;
@@ -15,14 +16,14 @@ pub use error::FitError;
 pub use family::{FittedOutline, TurnedEllipse};
 
 use super::{NoisyContact, noise::ContactNoise};
-use crate::fit::information::SquareRoot;
-use crate::fit::levenberg::{ITERATIONS, Problem, Solution, best_of, iterate};
-use crate::fit::{FitOptions, FitStatistics, NoiseLevel};
+use crate::fit::choose::{Fit, compared};
+use crate::fit::levenberg::{ITERATIONS, LINEAR, best_of, iterate};
+use crate::fit::{Candidate, FitOptions, FitStatistics};
 use contact_kinematics::planar::{RadiusBounds, RadiusFunction, RadiusJet};
 use family::model;
 use glam::DVec2;
 use nalgebra::{DMatrix, DVector};
-use solve::{Linearised, Plane};
+use solve::Plane;
 use std::fmt;
 
 /// Families of outlines, by what their parameters are.
@@ -79,6 +80,8 @@ pub struct OutlineFit {
     covariance: DMatrix<f64>,
     statistics: FitStatistics,
     information_criterion: f64,
+    /// Whether the residuals are rounding.
+    is_exact: bool,
 }
 
 /// The chosen outline and what it was chosen from.
@@ -86,15 +89,16 @@ pub struct OutlineFit {
 pub struct OutlineChoice {
     /// The fit with the smallest information criterion.
     pub best: OutlineFit,
-    /// All families in the order given, each with its criterion or why it has no fit.
-    pub candidates: Vec<(OutlineFamily, Result<f64, FitError>)>,
+    /// All families in the order given.
+    pub candidates: Vec<Candidate<OutlineFamily, FitError>>,
 }
 
 impl OutlineFit {
-    /// The outline of a family that the contacts make likeliest.
+    /// The outline of a family that the contacts make likeliest, unless they refute it.
     ///
     /// # Errors
-    /// [`FitError`] for bad values, too few contacts, contacts that leave a parameter open, and no convergence.
+    /// [`FitError`] for bad values, too few contacts, contacts that leave a parameter open, no convergence, and an outline
+    /// that the contacts refute: see [`crate::ShapeFit::of`].
     pub fn of(
         contacts: &[NoisyContact],
         family: OutlineFamily,
@@ -109,91 +113,31 @@ impl OutlineFit {
         let mut exact = contacts.to_vec();
         exact.iter_mut().for_each(|c| c.noise.normal = 0.0);
         let plane = |contacts| Plane { model: model.as_ref(), contacts, size };
+        let iterations = if let OutlineFamily::Fourier { .. } = family { LINEAR } else { ITERATIONS };
         // Normals as exact first: a smooth problem from any start.
         let solution = best_of(&plane(&exact), vec![model.circle(centre, size)])
-            .and_then(|near| iterate(&plane(contacts), near, ITERATIONS));
+            .and_then(|near| iterate(&plane(contacts), near, iterations));
         let solution = solution.map_err(|e| solve::into_error(e, model.as_ref(), family, size))?;
-        Self::finish(&plane(contacts), family, solution, limit, options.noise_level)
+        Self::finish(plane(contacts), family, solution, limit, options.noise_level)
     }
 
     /// The family of the smallest Bayesian information criterion; see [`crate::ShapeFit::choose`].
     ///
     /// # Errors
-    /// [`FitError::NoFamily`] for none, and the last family's error if none can be fitted.
+    /// [`FitError::NoFamily`] for none, the family's own error if there is but one, and [`FitError::NoneFits`] if none of several
+    /// fits.
     pub fn choose(
         contacts: &[NoisyContact],
         families: &[OutlineFamily],
         options: &FitOptions,
     ) -> Result<OutlineChoice, FitError> {
-        let mut best: Option<Self> = None;
-        let mut candidates = Vec::with_capacity(families.len());
-        let mut failure = FitError::NoFamily;
-        for &family in families {
-            let fit = Self::of(contacts, family, options);
-            candidates.push((family, fit.as_ref().map(|f| f.information_criterion).map_err(Clone::clone)));
-            match fit {
-                Ok(fit) => {
-                    let own = fit.information_criterion;
-                    if best.as_ref().is_none_or(|known| own < known.information_criterion) {
-                        best = Some(fit);
-                    }
-                }
-                Err(error) => failure = error,
-            }
+        let (fits, candidates) = compared(families, |family, _| Self::of(contacts, family, options));
+        match (fits.into_iter().next(), &candidates[..]) {
+            (Some(best), _) => Ok(OutlineChoice { best, candidates }),
+            (None, []) => Err(FitError::NoFamily),
+            (None, [Candidate { outcome: Err(error), .. }]) => Err(error.clone()),
+            (None, _) => Err(FitError::NoneFits { candidates }),
         }
-        best.map(|best| OutlineChoice { best, candidates }).ok_or(failure)
-    }
-
-    fn finish(
-        problem: &Plane<'_>,
-        family: OutlineFamily,
-        mut solution: Solution<Linearised>,
-        limit: f64,
-        noise_level: NoiseLevel,
-    ) -> Result<Self, FitError> {
-        let count = problem.model.count();
-        let open = |root: &SquareRoot| solve::undetermined(problem.model, family, root, problem.size);
-        let mut active_constraints = 0;
-        if let OutlineFamily::Fourier { .. } = family {
-            let held = convex::hold(family, &solution.theta, &solution.system.root, limit)?;
-            if held.1 > 0 {
-                solution.system =
-                    problem.assemble(&held.0, None).ok_or_else(|| open(&solution.system.root))?;
-                (solution.theta, active_constraints) = held;
-            }
-        }
-        let root = &solution.system.root;
-        let known = root.knowledge(&problem.scales()).ok_or_else(|| open(root))?;
-        let covariance = root.covariance().ok_or_else(|| open(root))?;
-        let chi_squared = solution.system.chi_squared;
-        let equations = 2 * problem.contacts.len();
-        let degrees_of_freedom = equations - count;
-        let noise_factor = match noise_level {
-            NoiseLevel::Stated => 1.0,
-            NoiseLevel::Estimated => (chi_squared / degrees_of_freedom.max(1) as f64).sqrt(),
-        };
-        if known.rank < count || known.weakest_deviation * noise_factor > 1.0 {
-            return Err(open(root));
-        }
-        let body = family::outline(family, &solution.theta)?;
-        Ok(Self {
-            family,
-            covariance: covariance * noise_factor.powi(2),
-            statistics: FitStatistics {
-                chi_squared,
-                degrees_of_freedom,
-                residual: solve::residual(&body, &solution, problem.contacts),
-                worst: solve::worst(&solution),
-                noise_factor,
-                condition: known.condition,
-                weakest_deviation: known.weakest_deviation * noise_factor,
-                active_constraints,
-                iterations: solution.iterations,
-            },
-            information_criterion: solve::criterion(&solution, noise_level, problem.size),
-            parameters: solution.theta,
-            body,
-        })
     }
 
     /// The family.
@@ -250,6 +194,24 @@ impl OutlineFit {
         let n = DVec2::from_angle(theta);
         let slope = DVector::from_iterator(columns.len(), columns.iter().map(|c| c.dot(n)));
         slope.dot(&(&self.covariance * &slope)).max(0.0).sqrt()
+    }
+}
+
+impl Fit for OutlineFit {
+    type Family = OutlineFamily;
+    type Error = FitError;
+
+    fn criterion(&self) -> f64 {
+        self.information_criterion
+    }
+    fn is_exact(&self) -> bool {
+        self.is_exact
+    }
+    fn parameters(family: OutlineFamily) -> usize {
+        family.parameters()
+    }
+    fn needless(family: OutlineFamily, exact: OutlineFamily) -> FitError {
+        FitError::Needless { family, exact }
     }
 }
 

@@ -1,9 +1,11 @@
 //! Contacts in the plane against a family: the twin of `fit::solve`, which explains the residual.
 
-use super::family::{FittedOutline, Model};
-use super::{FitError, NoiseLevel, NoisyContact, OutlineFamily};
+use super::family::Model;
+use super::{FitError, NoisyContact, OutlineFamily};
 use crate::fit::information::SquareRoot;
 use crate::fit::levenberg::{Problem, Solution, System, Unsolved};
+use crate::fit::misfit::Misfit;
+use crate::fit::refute::Leftover;
 use contact_kinematics::planar::RadiusFunction;
 use glam::{DMat2, DVec2};
 use nalgebra::DVector;
@@ -131,37 +133,36 @@ fn true_normal(body: &dyn RadiusFunction, contact: &NoisyContact, start: f64) ->
     angle
 }
 
-/// What rounding leaves of an exact fit, relative to the size of the data.
-const ROUNDING: f64 = 1e-14;
-
-/// `-2 ln L + p ln(2 N)`, as in space.
-pub(super) fn criterion(solution: &Solution<Linearised>, level: NoiseLevel, size: f64) -> f64 {
-    let contacts = &solution.system.contacts;
-    let equations = (2 * contacts.len()) as f64;
-    let chi_squared = solution.system.chi_squared;
-    let misfit = match level {
-        NoiseLevel::Stated => chi_squared,
-        NoiseLevel::Estimated => {
-            let weight: f64 = contacts.iter().flat_map(|c| c.whitening).map(|row| row.length_squared()).sum();
-            equations * (chi_squared.max(weight * (ROUNDING * size).powi(2)) / equations).ln()
-        }
-    };
-    let determinants: f64 = contacts.iter().map(|c| c.log_determinant).sum();
-    misfit + determinants + solution.theta.len() as f64 * equations.ln()
+/// The misfit of a solution, of which `body` is the outline.
+pub(super) fn misfit(
+    body: &dyn RadiusFunction,
+    solution: &Solution<Linearised>,
+    problem: &Plane<'_>,
+    held: usize,
+) -> Misfit {
+    let own = &solution.system.contacts;
+    let pairs = problem.contacts.iter().zip(own);
+    let square: f64 = pairs.map(|(c, own)| c.contact.point.distance_squared(body.point(own.angle))).sum();
+    Misfit {
+        chi_squared: solution.system.chi_squared,
+        equations: 2 * own.len(),
+        parameters: solution.theta.len(),
+        held,
+        weight: own.iter().flat_map(|c| c.whitening).map(|row| row.length_squared()).sum(),
+        log_determinants: own.iter().map(|c| c.log_determinant).sum(),
+        residual: (square / (2 * own.len().max(1)) as f64).sqrt(),
+        size: problem.size,
+    }
 }
 
-/// Root mean square of `x^ - x(theta)` per axis, in m.
-pub(super) fn residual(
-    body: &FittedOutline,
-    solution: &Solution<Linearised>,
-    contacts: &[NoisyContact],
-) -> f64 {
-    let square: f64 = contacts
-        .iter()
-        .zip(&solution.system.contacts)
-        .map(|(c, own)| c.contact.point.distance_squared(body.point(own.angle)))
-        .sum();
-    (square / (2 * contacts.len().max(1)) as f64).sqrt()
+/// What each contact is left with.
+pub(super) fn leftovers(body: &dyn RadiusFunction, solution: &Solution<Linearised>) -> Vec<Leftover> {
+    let leftover = |own: &Linearised| Leftover {
+        point: body.point(own.angle).extend(0.0),
+        normal: DVec2::from_angle(own.angle).extend(0.0),
+        residual: own.residual.extend(0.0),
+    };
+    solution.system.contacts.iter().map(leftover).collect()
 }
 
 pub(super) fn worst(solution: &Solution<Linearised>) -> (usize, f64) {

@@ -1,5 +1,7 @@
 //! Planar fits: derivatives, exact recovery, consistent covariances, choice, refusals.
 
+mod refusal;
+
 use super::*;
 use crate::generators::Source;
 use crate::planar::{ContactSample, Direction};
