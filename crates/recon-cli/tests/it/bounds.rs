@@ -82,7 +82,7 @@ fn limits_on_the_curvature_tighten_the_bounds() {
         assert_eq!(run.code, Some(code), "{}{}", run.stdout, run.stderr);
         assert!(words.iter().all(|word| run.stderr.contains(word)), "{}", run.stderr);
     };
-    refused(&["--rho-min", "2", "--rho-max", "1"], 3, &["from 2 m to 1 m", "must be ordered"]);
+    refused(&["--rho-min", "2", "--rho-max", "1"], 3, &["from 2 m to 1 m", "below the largest"]);
     refused(&["--rho-min", "0.8", "--rho-max", "0.9"], 3, &["both contact", "from 0.8 m to 0.9 m"]);
     refused(&["--rho-min", "0.8"], 2, &["--rho-max"]);
 }

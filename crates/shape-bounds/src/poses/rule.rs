@@ -31,7 +31,7 @@ impl Default for PoseRule {
     /// with. At 95 % the factor is that of exponential tails for a thousand poses, 2.6, where 2.12 is enough for the
     /// simulated tosses; at 99 % it is what is enough there. It contains the one real body that was tried.
     fn default() -> Self {
-        Self { kink: 0.25, gap: 0.25, trusted: 0.98, factors: [2.6, 3.52], scarcity: 0.02 }
+        Self { kink: 0.25, gap: 0.25, trusted: 0.98, factors: [2.6, 3.95], scarcity: 0.02 }
     }
 }
 
@@ -41,7 +41,7 @@ impl PoseRule {
     /// compares the rules.
     #[must_use]
     pub fn tight() -> Self {
-        Self { kink: 0.125, gap: 0.0, trusted: 0.8, factors: [4.88, 6.73], scarcity: 0.57 }
+        Self { kink: 0.125, gap: 0.0, trusted: 0.8, factors: [4.96, 6.73], scarcity: 0.57 }
     }
 
     /// Margin over level at a confidence from so many runs.
