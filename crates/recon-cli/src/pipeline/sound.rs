@@ -233,6 +233,12 @@ pub(super) fn left_out(outliers: &[Outlier]) -> Option<String> {
             named(&rough)
         ));
     }
+    if !said.is_empty() {
+        said.push(
+            "Where some are wrong, others that are off by less may be unnoticed: the bounds hold if the rest is as noisy as assumed."
+                .to_owned(),
+        );
+    }
     (!said.is_empty()).then(|| said.join(" "))
 }
 

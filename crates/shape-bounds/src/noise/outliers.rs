@@ -8,6 +8,9 @@ use glam::DVec3;
 
 /// Contacts against which the suspects are tried to tell which of a contradictory pair is wrong.
 const WITNESSES: usize = 1000;
+/// Share of what is found that may be good contacts, and rounds in which the limit follows it.
+const FALSE_OF_FOUND: f64 = 0.25;
+const ROUNDS: usize = 3;
 /// What exact contacts may contradict each other by, relative to their coordinates: rounding.
 const ROUNDING: f64 = 1e-14;
 
@@ -30,7 +33,8 @@ pub struct Outlier {
 /// contradict others: two contacts of a convex body do when one lies beyond the other's half-space. Beyond what noise
 /// does, at the stated `confidence` for all pairs together, one of the two is wrong: the one that contradicts more
 /// contacts; both, where the rest does not tell. Leaving a good contact out only widens the bounds, so that they stay
-/// sound either way. Errors of less than about ten standard deviations may stay unnoticed, and larger ones at edges (docs/bounds.md).
+/// sound either way. Where some are found, the limit is lowered until one in four of what is found may be a good one. Errors of less than
+/// about five to ten standard deviations may stay unnoticed, and larger ones at edges (docs/bounds.md).
 ///
 /// # Errors
 /// [`NoiseError`] for an impossible confidence or noise, a point that is not finite, and when half of the contacts or more
@@ -120,20 +124,35 @@ impl<'a> Suspects<'a> {
         let all: Vec<_> = curves.iter().flatten().collect();
         let places =
             curves.iter().enumerate().flat_map(|(c, curve)| (0..curve.len()).map(move |k| (c, k))).collect();
-        let pairs = (all.len() as f64).powi(2).max(1.0);
-        let limit = quantile::normal(((1.0 - confidence) / pairs).min(0.1));
-        let mut suspects = Self { places, alive: vec![true; all.len()], all, found: Vec::new(), limit };
-        let mut first = 0;
-        for (curve, contacts) in curves.iter().enumerate() {
-            for (index, deviations) in
-                standing_out(contacts, (1.0 - confidence) / curves.len() as f64, dimension)
-            {
-                suspects.alive[first + index] = false;
-                suspects.found.push(Outlier { curve, index, deviations, share: 0.0 });
+        // False alarms that are allowed among all contacts. Where wrong ones are found there are others, and a good one more or less does
+        // no harm: one in so many of what is found.
+        let mut allowed = 1.0 - confidence;
+        let mut found = Vec::new();
+        for _ in 0..ROUNDS {
+            let alpha = allowed / curves.len() as f64;
+            let of_curve = |(curve, contacts): (usize, &Vec<NoisyContact>)| {
+                let all = standing_out(contacts, alpha, dimension).into_iter();
+                all.map(move |(index, deviations)| Outlier { curve, index, deviations, share: 0.0 })
+                    .collect::<Vec<_>>()
+            };
+            found = curves.iter().enumerate().flat_map(of_curve).collect();
+            let enough = FALSE_OF_FOUND * found.len() as f64;
+            if enough <= allowed {
+                break;
             }
-            first += contacts.len();
+            allowed = enough;
         }
-        suspects
+        let pairs = (all.len() as f64).powi(2).max(1.0);
+        let limit = quantile::normal((allowed / pairs).min(0.1));
+        let mut alive = vec![true; all.len()];
+        let firsts = curves.iter().scan(0, |next, curve| {
+            let first = *next;
+            *next += curve.len();
+            Some(first)
+        });
+        let firsts: Vec<usize> = firsts.collect();
+        found.iter().for_each(|o| alive[firsts[o.curve] + o.index] = false);
+        Self { places, alive, all, found, limit }
     }
 
     /// Drops contacts until the contradictions that are found now are gone; `false` when there are none.
