@@ -268,3 +268,41 @@ fn options_and_poses_that_do_not_go_together_are_refused() {
     refused(&["bad.csv"], 3, &["beyond the tangent plane of contact", "inwards"]);
     refused(&["bad.csv", "--contact-noise", "1e-3", "--normal-noise", "1e-3"], 3, &["point outwards"]);
 }
+
+/// Thirty contacts on each side of a box that stands askew, with normals that differ by `spread`.
+fn box_contacts(spread: f64, case: usize) -> String {
+    let q = [0.5, 0.5 * wobble(case), 0.5 * wobble(case + 7), 0.3];
+    let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let q = q.map(|x| x / length);
+    let half = [0.7, 0.4, 0.9];
+    let turned = |v: [f64; 3]| {
+        let by = product(q, [0.0, v[0], v[1], v[2]]);
+        let back = product(by, [q[0], -q[1], -q[2], -q[3]]);
+        [back[1] + 0.3, back[2] - 0.8, back[3] + 1.1]
+    };
+    let mut text = String::from("x,y,z,nx,ny,nz\n");
+    for k in 0..180 {
+        let (axis, side) = (k % 3, if k % 2 == 0 { 1.0 } else { -1.0 });
+        let mut x = [0, 1, 2].map(|i| half[i] * wobble(7 * k + i + case));
+        let mut n = [0.0; 3];
+        (x[axis], n[axis]) = (side * half[axis], side);
+        let n = [0, 1, 2].map(|i| turned(n)[i] - turned([0.0; 3])[i] + spread * wobble(11 * k + i));
+        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let [x, n] = [turned(x), n.map(|x| x / length)].map(|v| v.map(|x| x.to_string()).join(","));
+        writeln!(text, "{x},{n}").unwrap();
+    }
+    text
+}
+
+/// Flat sides that are touched many times give planes that are one but for the last digits: where they meet is nowhere.
+#[test]
+fn flat_sides_touched_many_times_give_a_box() {
+    let scratch = Scratch::new("flat");
+    for (case, spread) in [0.0, 1e-16, 1e-14, 1e-12, 1e-10, 1e-8].into_iter().enumerate() {
+        scratch.write("box.csv", &box_contacts(spread, case));
+        // The command's own certificate finds folds in the surface.
+        let [lower, upper] = volumes(&bounds(&scratch, &["box.csv", "-o", "out"]));
+        let volume = 8.0 * 0.7 * 0.4 * 0.9;
+        assert!(lower < volume && (upper / volume - 1.0).abs() < 1e-6, "{spread}: {lower} {upper}");
+    }
+}

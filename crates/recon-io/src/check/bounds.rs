@@ -13,9 +13,9 @@ use std::f64::consts::PI;
 /// Contradictions above this share of the size are worth a warning.
 const NOTABLE: f64 = 1e-6;
 
-/// Dents up to this share of the reach are rounding: where planes meet at an angle of 1e-6 to 1e-3, as those of contacts
-/// next to each other on a curve do, the corner of three is off by as much more than the planes are.
-const DENTS: f64 = 1e-9;
+/// Dents up to this share of the reach are rounding: where planes meet at an angle of 1e-9 to 1e-3, as those of contacts
+/// next to each other on a curve or on a flat side do, the corner of three is off by as much more than the planes are.
+const DENTS: f64 = 1e-7;
 
 /// How far the first of two closed surfaces stands out of the second, m: the largest distance of a corner outside, 0 where
 /// all are inside.

@@ -8,7 +8,7 @@ use glam::DVec3;
 /// Facets whose data are fetched together, so that memory is waited for once.
 const BATCH: usize = 16;
 
-/// The corner of each facet of the dual.
+/// The corner of each facet of the dual, and whether all are well determined by their planes.
 ///
 /// The planes of the duals are those of the half-spaces but for rounding, and the combinatorics of the dual hull is
 /// exact for them: their corners are consistent to rounding, but where planes are nearly parallel they may slide far along
@@ -21,8 +21,9 @@ pub(super) fn corners(
     half_spaces: &[HalfSpace],
     interior: DVec3,
     tolerance: f64,
-) -> Vec<DVec3> {
+) -> (Vec<DVec3>, bool) {
     let triangles = dual.triangles();
+    let mut sure = true;
     let mut corners = Vec::with_capacity(triangles.len());
     let mut doubtful = Vec::new();
     let mut across: Vec<[HalfSpace; 3]> = Vec::with_capacity(BATCH);
@@ -33,7 +34,9 @@ pub(super) fn corners(
         for (f, across) in batch.zip(&across) {
             let planes = triangles[f].map(|v| &half_spaces[v as usize]);
             let within = |corner: DVec3| across.iter().all(|h| h.excess(corner) <= tolerance);
-            let corner = common_point(planes, tolerance)
+            let found = common_point(planes, tolerance);
+            sure &= found.is_some_and(|(_, sure)| sure);
+            let corner = found
                 .filter(|(corner, sure)| {
                     within(*corner)
                         && (*sure || beyond_all(dual, half_spaces, f, *corner, interior) <= tolerance)
@@ -49,7 +52,7 @@ pub(super) fn corners(
     doubtful
         .retain(|&f| corners[f].is_nan() && !flip(dual, half_spaces, &mut corners, f, interior, tolerance));
     settle(dual, half_spaces, &mut corners, doubtful, interior, tolerance);
-    corners
+    (corners, sure)
 }
 
 /// Gives corners to the facets that are left: slivers, whose three planes have a line in common but for rounding, as planes along

@@ -8,6 +8,7 @@ mod polyhedron;
 mod recession;
 #[cfg(test)]
 mod tests;
+mod twins;
 mod vertex;
 
 pub use error::IntersectionError;
@@ -65,9 +66,17 @@ impl Intersection {
         }
         let interior = interior_point(half_spaces)?;
         let outwards = polyhedron::outward_rounding(half_spaces);
-        let duals: Vec<DVec3> =
-            half_spaces.iter().map(|h| h.normal.get() / -h.moved(outwards).excess(interior)).collect();
-        Self::from_dual(Hull::of(&duals)?, half_spaces, outwards, interior)
+        let made = |half_spaces: &[HalfSpace]| {
+            let duals: Vec<DVec3> =
+                half_spaces.iter().map(|h| h.normal.get() / -h.moved(outwards).excess(interior)).collect();
+            Self::from_dual(Hull::of(&duals)?, half_spaces, outwards, interior)
+        };
+        let first = made(half_spaces)?;
+        if first.bounded().is_none_or(Polyhedron::is_sure) {
+            return Ok(first);
+        }
+        // Where along the line that planes share a corner is, rounding decides: of such planes one stands for all.
+        twins::joined(half_spaces, interior).map_or(Ok(first), |joined| made(&joined))
     }
 
     /// The intersection whose polar duals about `interior`, of the half-spaces moved `outwards` (m) for rounding, have the hull

@@ -24,6 +24,8 @@ pub struct Polyhedron {
     /// The half-space of each face, with the outward rounding in its margin.
     half_spaces: Vec<HalfSpace>,
     redundant: Vec<u32>,
+    /// Whether all corners are well determined by their planes.
+    sure: bool,
 }
 
 impl Polyhedron {
@@ -32,11 +34,17 @@ impl Polyhedron {
         let mut dual = dual.with_facets_along_corners();
         let half_spaces: Vec<HalfSpace> =
             dual.sources().iter().map(|k| all[*k as usize].moved(outwards)).collect();
-        let vertices = corners(&mut dual, &half_spaces, interior, CONSISTENT_ULPS * rounding_unit(all));
+        let (vertices, sure) =
+            corners(&mut dual, &half_spaces, interior, CONSISTENT_ULPS * rounding_unit(all));
         let mut used = vec![false; all.len()];
         dual.sources().iter().for_each(|k| used[*k as usize] = true);
         let redundant = (0..all.len() as u32).filter(|k| !used[*k as usize]).collect();
-        Self { interior, dual, vertices, half_spaces, redundant }
+        Self { interior, dual, vertices, half_spaces, redundant, sure }
+    }
+
+    /// Whether all corners are well determined by their planes; of planes that share a line, where along it rounding decides.
+    pub(super) fn is_sure(&self) -> bool {
+        self.sure
     }
 
     /// A point strictly inside, in m.

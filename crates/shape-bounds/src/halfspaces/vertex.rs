@@ -7,7 +7,7 @@ use glam::DVec3;
 
 /// A corner whose bound on its error is below this many tolerances, about 1e-12 of the size, needs no refinement.
 const GOOD: f64 = 1000.0;
-/// Rounding of the planes' offsets is amplified by at most so much in a corner whose place is sure: to 1e-6 of the size.
+/// Rounding of the planes' offsets is amplified by at most so much in a corner whose place is sure: to 1e-7 of the size.
 const LOOSE: f64 = 1e9;
 /// Refinements at most. The inverse has some correct digits, or the planes have no point in common to speak of; so one or
 /// two steps are enough.
