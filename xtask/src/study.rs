@@ -16,6 +16,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "bounds-noise.md",
         "bounds of simulated noisy contacts: how often they hold, how tight they are",
     ),
+    (
+        "bounds_noise_wrong",
+        "bounds-noise-wrong.md",
+        "bounds of contacts whose noise is not as stated: how often they hold, what is said about it",
+    ),
     ("bounds_tosses", "bounds-tosses.md", "bounds from poses of bodies that MuJoCo tosses onto a table"),
     ("cold_start", "cold-start.md", "three palms: random scenes from no guess"),
     ("no_force", "no-force.md", "three palms without force sensors: random scenes from no guess"),

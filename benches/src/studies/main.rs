@@ -7,6 +7,7 @@ mod bounds_curvature;
 mod bounds_fuzz;
 mod bounds_incremental;
 mod bounds_noise;
+mod bounds_noise_wrong;
 mod bounds_planar;
 mod bounds_timing;
 mod bounds_tosses;
@@ -31,6 +32,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("bounds_fuzz", || in_words(bounds_fuzz::main())),
     ("bounds_incremental", || in_words(bounds_incremental::main())),
     ("bounds_noise", || in_words(bounds_noise::main())),
+    ("bounds_noise_wrong", || in_words(bounds_noise_wrong::main())),
     ("bounds_planar", || in_words(bounds_planar::main())),
     ("bounds_timing", || in_words(bounds_timing::main())),
     ("bounds_tosses", || in_words(bounds_tosses::main())),

@@ -1,0 +1,86 @@
+//! The way from measured contacts to bounds, as `recon bounds` goes it, and what came of it.
+
+use super::noise::Case;
+use shape_bounds::{
+    CertainBounds, ContactNoise, NoiseError, NoisyContact, Outlier, correlated_noise, estimate_noise,
+    independence_is_tested, with_noise_as_found, without_outliers,
+};
+
+const CONFIDENCE: f64 = 0.95;
+
+/// Where the levels of noise come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Levels {
+    Stated,
+    Estimated,
+}
+
+/// Bounds, the contacts left out, and whether a warning says that noise is not as stated or may not be.
+struct Bounded {
+    bounds: CertainBounds,
+    outliers: Vec<Outlier>,
+    warned: bool,
+}
+
+/// What became of the runs of one row with as many contacts each.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tally {
+    /// Runs with bounds; the others are refused with an error.
+    pub(super) bounded: usize,
+    /// Of these, both bounds hold.
+    pub(super) hold: usize,
+    /// Of these, noise is said to be not as stated, or not to be tested.
+    pub(super) warned: usize,
+    /// One of the bounds fails without that warning.
+    pub(super) silent: usize,
+    /// Wrong contacts in runs with bounds.
+    pub(super) wrong: usize,
+    /// Of these, left out.
+    pub(super) found: usize,
+    /// Right contacts that are left out.
+    pub(super) taken: usize,
+}
+
+impl Tally {
+    pub(super) fn add(&mut self, case: &Case, levels: Levels) {
+        // Refused: the contacts contradict what is stated or assumed by more than can be mended.
+        let Ok(Some(run)) = bounded(case, levels) else { return };
+        let holds = case.body.is_between(&run.bounds);
+        let found = run.outliers.iter().filter(|o| case.wrong[o.curve][o.index].is_some()).count();
+        self.bounded += 1;
+        self.hold += usize::from(holds);
+        self.warned += usize::from(run.warned);
+        self.silent += usize::from(!holds && !run.warned);
+        self.wrong += case.wrong.iter().flatten().flatten().count();
+        self.found += found;
+        self.taken += run.outliers.len() - found;
+    }
+}
+
+/// None where estimated noise is alike from one contact to the next: the estimate says nothing then.
+fn bounded(case: &Case, levels: Levels) -> Result<Option<Bounded>, NoiseError> {
+    let noisy = match levels {
+        Levels::Stated => stated(case),
+        Levels::Estimated => estimate_noise(&case.curves, CONFIDENCE)?,
+    };
+    let estimated = levels == Levels::Estimated;
+    let correlated = correlated_noise(&noisy).is_some();
+    if correlated && estimated {
+        return Ok(None);
+    }
+    let (noisy, doubts) = with_noise_as_found(&noisy);
+    let untested = estimated && !independence_is_tested(&noisy);
+    let (kept, outliers) = without_outliers(&noisy, CONFIDENCE)?;
+    let bounds = if correlated {
+        CertainBounds::from_correlated_curves(&kept, CONFIDENCE)?
+    } else {
+        CertainBounds::from_noisy_curves(&kept, CONFIDENCE)?
+    };
+    Ok(Some(Bounded { bounds, outliers, warned: correlated || untested || !doubts.is_empty() }))
+}
+
+fn stated(case: &Case) -> Vec<Vec<NoisyContact>> {
+    let noise = ContactNoise::isotropic(case.point_sd, case.normal_sd);
+    let with = |contact: &_| NoisyContact { contact: *contact, noise };
+    case.curves.iter().map(|curve| curve.iter().map(with).collect()).collect()
+}
