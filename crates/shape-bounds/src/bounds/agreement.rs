@@ -2,12 +2,12 @@
 
 use super::{BoundsError, ShapeBounds};
 use crate::hull::{Hull, SupportWalk};
-use crate::sample::{ContactSample, HalfSpace};
+use crate::sample::{ContactSample, HalfSpace, NORMAL_TOLERANCE};
 use glam::DVec3;
 
 /// By how much a contact may lie beyond the plane of another, relative to the extent of the contacts: what coordinates and
 /// normals with six printed digits are rounded by.
-pub(crate) const PRINTED: f64 = 2e-6;
+pub(crate) const PRINTED: f64 = NORMAL_TOLERANCE;
 /// Rounding of a height over a plane, in units of rounding of the largest coordinate: the planes of an upper bound are
 /// further out by more than that.
 pub(crate) const ROUNDING_ULPS: f64 = 4.0;

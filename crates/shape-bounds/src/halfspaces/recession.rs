@@ -2,7 +2,7 @@
 
 use crate::hull::{Hull, PointsError, SolidHull};
 use crate::predicates::{above, drop_axis, projection_axis, turn};
-use crate::sample::HalfSpace;
+use crate::sample::{HalfSpace, NORMAL_TOLERANCE};
 use crate::twofold::cross_of_differences;
 use contact_kinematics::Direction;
 use glam::DVec3;
@@ -10,7 +10,7 @@ use std::collections::HashSet;
 
 /// A direction is open if no normal rises along it by more than this: what normals with six printed digits are off by. Less
 /// than that is no limit to speak of: it would be met at a distance of half a million times the size.
-pub(crate) const OPEN: f64 = 2e-6;
+pub(crate) const OPEN: f64 = NORMAL_TOLERANCE;
 /// Above this length a product of differences of unit vectors, in twofold precision, has its direction right to a millionth.
 const CERTAIN: f64 = 1e-25;
 /// Directions closer to each other than this are given once.
