@@ -256,3 +256,26 @@ fn what_does_not_go_together_is_named() {
     refused(&["few.csv", "--fit", "harmonics:4"], 3, &["no shape can be fitted", "at least"]);
     refused(&["bad.csv"], 3, &["line 2", "length 2"]);
 }
+
+/// A cone touched all round: all planes of its side meet in the apex, whose corner there is once for each three of them.
+#[test]
+fn a_cone_has_bounds_that_hold() {
+    let scratch = Scratch::new("cone");
+    let mut text = String::from("x,y,z,nx,ny,nz\n");
+    for k in 0..150 {
+        let (s, c) = (2.4 * f64::from(k)).sin_cos();
+        let z = f64::from(k % 29) / 29.0;
+        let n = std::f64::consts::FRAC_1_SQRT_2;
+        writeln!(text, "{},{},{z},{},{},{n}", (1.0 - z) * c, (1.0 - z) * s, n * c, n * s).unwrap();
+        writeln!(text, "{},{},0,0,0,-1", z * c, z * s).unwrap();
+    }
+    scratch.write("cone.csv", &text);
+    // The command's own certificate judges whether the surface has dents.
+    let run = scratch.run(&["bounds", "cone.csv", "--json", "-o", "out"]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let figures: Value = serde_json::from_str(&run.stdout).unwrap();
+    let [lower, upper] =
+        ["lower_volume_m3", "upper_volume_m3"].map(|name| figures["bounds"][name].as_f64().unwrap());
+    let cone = std::f64::consts::PI / 3.0;
+    assert!(0.95 * cone < lower && lower < cone && cone < upper && upper < 1.001 * cone, "{lower} {upper}");
+}

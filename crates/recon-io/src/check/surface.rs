@@ -111,12 +111,14 @@ impl Surface {
     fn dent(&self, edge: &Edge) -> f64 {
         let [a, b] = edge.ends.map(|corner| self.corners[corner as usize]);
         let [c, d] = edge.beside.map(|corner| self.corners[corner as usize]);
-        if side([a, b, c], d) <= 0.0 {
+        // Exact to its last digits, too: the product of differences is nothing but rounding where the four are nearly on a line.
+        let volume = side([a, b, c], d);
+        if volume <= 0.0 {
             return 0.0;
         }
         // A sliver has no plane to measure from: the face of the four corners with the largest area has one.
         let area = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p).length();
         let largest = area(a, b, c).max(area(a, b, d)).max(area(a, c, d)).max(area(b, c, d));
-        if largest > 0.0 { (b - a).dot((c - a).cross(d - a)).abs() / largest } else { 0.0 }
+        if largest > 0.0 { volume / largest } else { 0.0 }
     }
 }
