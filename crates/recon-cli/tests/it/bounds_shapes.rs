@@ -279,3 +279,29 @@ fn a_cone_has_bounds_that_hold() {
     let cone = std::f64::consts::PI / 3.0;
     assert!(0.95 * cone < lower && lower < cone && cone < upper && upper < 1.001 * cone, "{lower} {upper}");
 }
+
+/// Straight sides that are touched many times give lines that are one but for the last digits: where they meet is nowhere.
+#[test]
+fn straight_sides_touched_many_times_give_a_polygon() {
+    let scratch = Scratch::new("straight");
+    for (case, spread) in [0.0, 1e-16, 1e-15, 1e-13, 1e-11, 1e-9].into_iter().enumerate() {
+        let sides = 3 + case;
+        let mut text = String::from("x,y,nx,ny\n");
+        for k in 0..20 * sides {
+            let (s, c) = (TAU * (k / 20) as f64 / sides as f64 + 0.3 + case as f64).sin_cos();
+            // The apothem is 1; half a side is its tangent.
+            let along = (TAU / 2.0 / sides as f64).tan() * wobble(k);
+            let n = [c + spread * wobble(2 * k), s + spread * wobble(2 * k + 1)];
+            let length = n[0].hypot(n[1]);
+            writeln!(text, "{},{},{},{}", c - along * s, s + along * c, n[0] / length, n[1] / length)
+                .unwrap();
+        }
+        scratch.write("sides.csv", &text);
+        let run = scratch.run(&["bounds", "sides.csv", "--json", "-o", "out"]);
+        assert_eq!(run.code, Some(0), "{spread}: {}{}", run.stdout, run.stderr);
+        let figures: Value = serde_json::from_str(&run.stdout).unwrap();
+        let area = sides as f64 * (TAU / 2.0 / sides as f64).tan();
+        let upper = figures["bounds"]["upper_area_m2"].as_f64().unwrap();
+        assert!((upper / area - 1.0).abs() < 1e-7, "{spread}: {upper} {area}");
+    }
+}

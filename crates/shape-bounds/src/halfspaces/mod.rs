@@ -16,6 +16,7 @@ pub(crate) use interior::interior_point;
 pub(crate) use polyhedron::OUTWARD_ULPS;
 pub use polyhedron::Polyhedron;
 pub(crate) use recession::OPEN;
+pub(crate) use twins::TWINS;
 
 use crate::hull::{Hull, MOST_POINTS, SolidHull};
 use crate::sample::HalfSpace;

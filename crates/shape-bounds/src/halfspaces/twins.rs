@@ -5,7 +5,7 @@ use crate::sample::HalfSpace;
 use glam::DVec3;
 
 /// Two planes are one if their normals, and their distances from the interior relative to the largest, differ by no more.
-const TWINS: f64 = 1e-9;
+pub(crate) const TWINS: f64 = 1e-9;
 
 /// A direction that no data single out.
 const ASKEW: DVec3 = DVec3::new(0.482_716, -0.613_902, 0.624_581);

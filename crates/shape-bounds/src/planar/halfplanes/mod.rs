@@ -8,12 +8,15 @@ pub(super) use interior::interior_point;
 
 use super::hull::HullPolygon;
 use super::{ConvexPolygon, Direction, HalfPlane, Hull};
-use crate::halfspaces::OPEN;
+use crate::halfspaces::{OPEN, TWINS};
 use crate::predicates::turn;
 use glam::DVec2;
 
 /// Units of rounding of the largest coordinate by which lines are moved outwards before anything is computed from them.
 pub(super) const OUTWARD_ULPS: f64 = 8.0;
+
+/// Edges that a polygon has at least.
+const FEWEST: usize = 3;
 
 /// The intersection of half-planes, which has an interior.
 #[derive(Clone, Debug, PartialEq)]
@@ -173,6 +176,7 @@ impl Intersection {
 
 /// The polygon whose edges lie on the half-planes `sources`, in order. Corner `k` is where edges `k - 1` and `k` meet.
 fn region(sources: &[u32], outer: &[HalfPlane], duals: &[DVec2], interior: DVec2) -> Region {
+    let sources = &without_twins(sources, outer, interior)[..];
     let count = sources.len();
     let source = |k: usize| sources[k % count] as usize;
     let mut vertices: Vec<DVec2> = (0..count)
@@ -198,6 +202,35 @@ fn region(sources: &[u32], outer: &[HalfPlane], duals: &[DVec2], interior: DVec2
         redundant: (0..outer.len() as u32).filter(|i| !used[*i as usize]).collect(),
         half_planes: outer.to_vec(),
     }
+}
+
+/// The half-planes without those that are one with others but for rounding, as those of many contacts on one straight side, of which the
+/// farthest one stands for all: where nearly parallel lines meet is off by rounding over their angle.
+fn without_twins(sources: &[u32], outer: &[HalfPlane], interior: DVec2) -> Vec<u32> {
+    let distance = |s: u32| -outer[s as usize].excess(interior);
+    let largest = sources.iter().map(|s| distance(*s)).fold(0.0, f64::max);
+    let normal = |s: u32| outer[s as usize].normal.get();
+    let are_twins = |a: u32, b: u32| {
+        normal(a).distance(normal(b)) <= TWINS && (distance(a) - distance(b)).abs() <= TWINS * largest
+    };
+    // The first of each run of twins, and the farthest.
+    let mut kept: Vec<[u32; 2]> = Vec::with_capacity(sources.len());
+    let farther = |a: u32, b: u32| if distance(b) > distance(a) { b } else { a };
+    for &source in sources {
+        match kept.last_mut() {
+            Some([first, farthest]) if are_twins(*first, source) => *farthest = farther(*farthest, source),
+            _ => kept.push([source; 2]),
+        }
+    }
+    // Around the end of the list.
+    if let (Some([first, _]), Some([last, of_last])) = (kept.first().copied(), kept.last().copied())
+        && kept.len() > FEWEST
+        && are_twins(last, first)
+    {
+        kept.pop();
+        kept[0][1] = farther(kept[0][1], of_last);
+    }
+    if kept.len() < FEWEST { sources.to_vec() } else { kept.into_iter().map(|[_, s]| s).collect() }
 }
 
 /// Where two lines meet, computed from the first one's own point so that nothing large cancels.
