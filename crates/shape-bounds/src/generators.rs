@@ -39,6 +39,22 @@ pub fn noisy_curves(count: usize, point_sd: f64, normal_sd: f64, seed: u64) -> V
     curves
 }
 
+/// Normals scattered over the sphere.
+pub fn scattered_normals(count: usize, s: &mut Source) -> Vec<DVec3> {
+    (0..count).map(|_| s.direction()).collect()
+}
+
+/// Normals along three closed curves, as three palms trace them.
+pub fn traced_normals(count: usize, s: &mut Source) -> Vec<DVec3> {
+    let turns = [s.rotation(), s.rotation(), s.rotation()];
+    (0..count)
+        .map(|i| {
+            let t = (i / 3) as f64 / count.div_ceil(3) as f64 * std::f64::consts::TAU;
+            turns[i % 3] * DVec3::new(t.cos(), t.sin(), 0.6 * (2.0 * t).sin()).normalize()
+        })
+        .collect()
+}
+
 /// Support function of the ellipsoid with semi-axes [`AXES`].
 #[must_use]
 pub fn ellipsoid_support(n: DVec3) -> f64 {

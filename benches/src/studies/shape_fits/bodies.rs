@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use recon::contact_kinematics::{
     Direction, MinkowskiSum, PolynomialSupport, Sphere, SupportFunction, Translated,
 };
-use shape_bounds::generators::Source;
+use shape_bounds::generators::{Source, scattered_normals, traced_normals};
 use shape_bounds::{ContactNoise, ContactSample, NoisyContact, ShapeFamily, SkewEllipsoid, Superquadric};
 
 /// Seeded bodies, one new for each run, all about 1 m in size.
@@ -83,16 +83,7 @@ pub(super) fn measured(
 
 /// Normals scattered over the sphere, or along three closed curves as three palms trace them.
 pub(super) fn normals(count: usize, curves: bool, s: &mut Source) -> Vec<DVec3> {
-    if !curves {
-        return (0..count).map(|_| s.direction()).collect();
-    }
-    let turns = [s.rotation(), s.rotation(), s.rotation()];
-    (0..count)
-        .map(|i| {
-            let t = (i / 3) as f64 / count.div_ceil(3) as f64 * std::f64::consts::TAU;
-            turns[i % 3] * DVec3::new(t.cos(), t.sin(), 0.6 * (2.0 * t).sin()).normalize()
-        })
-        .collect()
+    if curves { traced_normals(count, s) } else { scattered_normals(count, s) }
 }
 
 /// Exact contacts, with a small noise stated.

@@ -8,7 +8,7 @@ mod statistics;
 use super::family::{EllipsoidModel, HarmonicModel, Model, SphereModel, SuperquadricModel};
 use super::levenberg::Problem;
 use super::*;
-use crate::generators::Source;
+use crate::generators::{Source, scattered_normals as scattered, traced_normals as curves};
 use crate::noise::ContactNoise;
 use crate::sample::ContactSample;
 use contact_kinematics::{Direction, PolynomialSupport, Sphere, SupportFunction, Translated};
@@ -47,21 +47,6 @@ pub(super) fn exact(
     let mut contacts = measured(body, normals, 0.0, 0.0, &mut Source::new(0));
     contacts.iter_mut().for_each(|c| c.noise = ContactNoise::isotropic(1e-3, 1e-3));
     contacts
-}
-
-pub(super) fn scattered(count: usize, s: &mut Source) -> Vec<DVec3> {
-    (0..count).map(|_| s.direction()).collect()
-}
-
-/// Normals along three closed curves, as three palms trace them.
-pub(super) fn curves(count: usize, s: &mut Source) -> Vec<DVec3> {
-    let turns = [s.rotation(), s.rotation(), s.rotation()];
-    (0..count)
-        .map(|i| {
-            let t = (i / 3) as f64 / count.div_ceil(3) as f64 * std::f64::consts::TAU;
-            turns[i % 3] * DVec3::new(t.cos(), t.sin(), 0.6 * (2.0 * t).sin()).normalize()
-        })
-        .collect()
 }
 
 pub(super) fn random_ellipsoid(s: &mut Source) -> SkewEllipsoid {
