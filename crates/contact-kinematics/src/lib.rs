@@ -8,6 +8,7 @@
 
 mod contact;
 mod direction;
+mod motion_law;
 mod palm;
 pub mod planar;
 mod support;
@@ -18,6 +19,7 @@ pub use contact::{
     radius_rate, separation_rates,
 };
 pub use direction::{Direction, DirectionError};
+pub use motion_law::MotionLaw;
 pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple, SlopeMotion};
 pub use support::{
     CurvatureRadii, Ellipsoid, MinkowskiSum, Monomial, PolynomialSupport, ShapeError, Sphere,

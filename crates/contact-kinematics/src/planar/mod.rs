@@ -11,6 +11,7 @@ mod fourier;
 mod palms;
 mod polygon;
 mod radius;
+mod surface;
 
 pub use circle::Circle;
 pub use contact::{PairContact, PairVelocity};
@@ -20,3 +21,7 @@ pub use fourier::FourierBody;
 pub use palms::{PairRates, PalmPair, PalmPairState};
 pub use polygon::RoundedPolygon;
 pub use radius::{RadiusBounds, RadiusFunction, RadiusJet};
+pub use surface::{
+    BodyPlace, ContactError, MotionPart, PalmSurface, SurfaceContact, SurfaceError, SurfaceMotion,
+    SurfacePose, SurfaceRates, SurfaceState,
+};
