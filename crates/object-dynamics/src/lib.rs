@@ -6,6 +6,7 @@ mod condensed;
 pub mod integrate;
 mod log;
 mod mass;
+mod modes;
 #[cfg(feature = "noise")]
 mod noise;
 pub mod planar;
@@ -14,6 +15,7 @@ mod three_palms;
 
 pub use log::{LogError, PalmReading, Sample, SensorLog, TrueState};
 pub use mass::{MassError, MassProperties, PrincipalInertia};
+pub use modes::{ContactMode, FrictionError, check_friction};
 #[cfg(feature = "noise")]
 pub use noise::SensorNoise;
 pub use series::SeriesError;

@@ -4,6 +4,7 @@
 //! degree of freedom, its orientation `phi0`, and nothing is divided by but `sin phi2` and `I0/m + <d, d>`, both
 //! positive: the equations are regular at every speed and in every orientation.
 
+mod contacts;
 mod error;
 mod log;
 mod mass;
@@ -15,6 +16,10 @@ mod reaction;
 mod simulate;
 mod torque_driven;
 
+pub use contacts::{
+    Choice, ContactProblem, ContactScene, ContactSceneError, MOST_PALMS, ModeError, PlanarMode, Response,
+    ScenePalm, TouchingContact, Unsolvable,
+};
 pub use error::{PlanarLogError, PlanarSimulationError};
 pub use log::{PlanarLog, PlanarSample, PlanarTruth};
 pub use mass::{PlanarMass, PlanarMassError};

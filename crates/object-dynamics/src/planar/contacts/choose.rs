@@ -1,0 +1,185 @@
+//! Which modes the contacts take.
+
+use super::{ContactProblem, PlanarMode, Response, Unsolvable, respond};
+use nalgebra::{DMatrix, Vector3};
+use thiserror::Error;
+
+/// Share of the largest force or rate by which a sign may be wrong: what a run is held to.
+const CONSISTENT: f64 = 1e-9;
+/// Accelerations of two sets that differ by more than this share are two answers: a thousand times what sets within
+/// [`CONSISTENT`] of their border differ by.
+const DIFFERENT: f64 = 1e-6;
+
+/// The modes taken, and what they do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// One mode for each contact of the problem.
+    pub modes: Vec<PlanarMode>,
+    /// Accelerations and forces.
+    pub response: Response,
+}
+
+/// Why no modes can be taken.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ModeError {
+    /// No set of modes is consistent with the laws of contact and friction.
+    #[error(
+        "no set of contact modes is consistent (Painleve's paradox): friction is too large here for rigid bodies"
+    )]
+    Inconsistent,
+    /// Two sets are, with different accelerations.
+    #[error(
+        "contact modes {first:?} and {second:?} are both consistent: rigid bodies with friction do not decide here"
+    )]
+    Ambiguous {
+        /// One mode for each touching contact.
+        first: Vec<PlanarMode>,
+        /// Likewise.
+        second: Vec<PlanarMode>,
+    },
+    /// Sliding friction has made the matrix of the contacts lose the property that guarantees one answer.
+    #[error(
+        "sliding friction leaves no unique answer: a principal minor of the contacts' matrix is {minor:.3e} (it must be \
+         positive)"
+    )]
+    NotP {
+        /// The smallest principal minor, in units of the rows' sizes.
+        minor: f64,
+    },
+    /// The palms' motion tears apart, or friction jams, contacts that nothing can part.
+    #[error("{0}")]
+    Unsolvable(#[from] Unsolvable),
+}
+
+struct Consistent {
+    choice: Choice,
+    changes: usize,
+}
+
+impl ContactProblem {
+    /// The modes that agree with the signs of forces, gaps and slips: the `present` ones if they do, else those with the
+    /// fewest changes. Sets in `ended` are left out, unless nothing else is consistent: an event has just told against them.
+    ///
+    /// # Errors
+    /// [`ModeError`].
+    pub fn choose(&self, present: &[PlanarMode], ended: &[Vec<PlanarMode>]) -> Result<Choice, ModeError> {
+        let mut found: Vec<Consistent> = Vec::new();
+        let options: Vec<Vec<PlanarMode>> = self.contacts.iter().map(|c| options(&c.contact)).collect();
+        let count: usize = options.iter().map(Vec::len).product();
+        for number in 0..count {
+            let modes = pick(&options, number);
+            let Ok(response) = self.respond(&modes) else { continue };
+            if self.margin(&modes, &response) < -CONSISTENT {
+                continue;
+            }
+            let changes = modes.iter().zip(present).filter(|(a, b)| a != b).count();
+            found.push(Consistent { choice: Choice { modes, response }, changes });
+        }
+        self.refuse_two_answers(&found)?;
+        // The last resort comes last; sets of as few changes keep their order, in which sticking stands first.
+        found.sort_by_key(|c| (ended.contains(&c.choice.modes), c.changes));
+        let choice = found.into_iter().next().ok_or(ModeError::Inconsistent)?.choice;
+        let minor = self.smallest_minor(&choice.modes);
+        if minor < -CONSISTENT { Err(ModeError::NotP { minor }) } else { Ok(choice) }
+    }
+
+    fn refuse_two_answers(&self, found: &[Consistent]) -> Result<(), ModeError> {
+        let Some(first) = found.first() else { return Ok(()) };
+        let limit = DIFFERENT * self.scale() * self.roots[0];
+        match found.iter().find(|c| (c.choice.response.x - first.choice.response.x).norm() > limit) {
+            Some(second) => Err(ModeError::Ambiguous {
+                first: first.choice.modes.clone(),
+                second: second.choice.modes.clone(),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// How far the signs are from being wrong, as a share of the largest rate or force: the least over all conditions.
+    ///
+    /// A gap that is off must not close; normal forces push; sticking forces stay in the cone; where a contact starts to
+    /// slide it does so against its friction.
+    #[must_use]
+    pub fn margin(&self, modes: &[PlanarMode], response: &Response) -> f64 {
+        let mass = self.roots[0] * self.roots[0];
+        let largest = response.forces.iter().flatten().fold(0.0_f64, |s, f| s.max(f.abs())) / mass;
+        let scale = self.scale().max(largest);
+        let mut margin = f64::INFINITY;
+        for ((c, mode), [normal, along]) in self.contacts.iter().zip(modes).zip(&response.forces) {
+            let own = match *mode {
+                PlanarMode::Off => c.normal.dot(&response.x) + c.contact.biases[0],
+                PlanarMode::Stick => (c.contact.mu * normal - along.abs()).min(*normal) / mass,
+                PlanarMode::Slide { .. } if c.contact.sense != 0.0 => normal / mass,
+                PlanarMode::Slide { sense } => {
+                    (normal / mass).min(sense * (c.tangent.dot(&response.x) + c.contact.biases[1]))
+                }
+            };
+            margin = margin.min(own / scale);
+        }
+        // A NaN is no margin.
+        if margin.is_nan() { f64::NEG_INFINITY } else { margin }
+    }
+
+    /// The smallest principal minor of the matrix (rows times columns) of the sliding contacts with friction, sticking ones
+    /// eliminated, in units of the rows' lengths. Positive where one answer is guaranteed.
+    ///
+    /// Infinite where there is nothing to ask: no friction slides, or the rest of the contacts hold the body.
+    #[must_use]
+    pub fn smallest_minor(&self, modes: &[PlanarMode]) -> f64 {
+        let (mut held, mut sliding) = (Vec::new(), Vec::new());
+        for (c, mode) in self.contacts.iter().zip(modes) {
+            match *mode {
+                PlanarMode::Off => {}
+                PlanarMode::Stick => held.extend([c.normal, c.tangent]),
+                PlanarMode::Slide { sense } => {
+                    sliding.push((c.normal, c.normal - c.tangent * (c.contact.mu * sense)));
+                }
+            }
+        }
+        let rubs = self
+            .contacts
+            .iter()
+            .zip(modes)
+            .any(|(c, mode)| c.contact.mu > 0.0 && matches!(mode, PlanarMode::Slide { .. }));
+        if !rubs || held.len() + sliding.len() > 3 {
+            return f64::INFINITY;
+        }
+        let free = |x: &Vector3<f64>| {
+            let right: Vec<f64> = held.iter().map(|row| row.dot(x)).collect();
+            x - respond::least_norm(&held, &right).solution
+        };
+        let columns: Vec<Vector3<f64>> = sliding.iter().map(|(_, column)| free(column)).collect();
+        let sets = 1..(1_usize << sliding.len());
+        let minor = |set: usize| {
+            let chosen: Vec<usize> = (0..sliding.len()).filter(|i| set >> i & 1 == 1).collect();
+            let entry = |i: usize, j: usize| {
+                let (row, other) = (&sliding[chosen[i]].0, &sliding[chosen[j]].0);
+                row.dot(&columns[chosen[j]]) / (row.norm() * other.norm())
+            };
+            DMatrix::from_fn(chosen.len(), chosen.len(), entry).determinant()
+        };
+        sets.map(minor).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// What a contact may do: with friction four things, or two where it slips or there is no friction.
+fn options(contact: &super::TouchingContact) -> Vec<PlanarMode> {
+    let slide = |sense| PlanarMode::Slide { sense };
+    if contact.mu == 0.0 {
+        vec![slide(0.0), PlanarMode::Off]
+    } else if contact.sense == 0.0 {
+        vec![PlanarMode::Stick, slide(1.0), slide(-1.0), PlanarMode::Off]
+    } else {
+        vec![slide(contact.sense), PlanarMode::Off]
+    }
+}
+
+/// One option of each contact: the digits of `number`.
+fn pick(options: &[Vec<PlanarMode>], mut number: usize) -> Vec<PlanarMode> {
+    let digit = |list: &Vec<PlanarMode>| {
+        let mode = list[number % list.len()];
+        number /= list.len();
+        mode
+    };
+    options.iter().map(digit).collect()
+}
