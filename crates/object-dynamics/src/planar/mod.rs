@@ -6,6 +6,7 @@
 
 mod contacts;
 mod error;
+mod hybrid;
 mod log;
 mod mass;
 mod motion;
@@ -17,10 +18,14 @@ mod simulate;
 mod torque_driven;
 
 pub use contacts::{
-    Choice, ContactProblem, ContactScene, ContactSceneError, MOST_PALMS, ModeError, PlanarMode, Response,
-    ScenePalm, TouchingContact, Unsolvable,
+    Choice, ContactProblem, ContactScene, ContactSceneError, Jammed, MOST_PALMS, ModeError, PlanarMode,
+    Response, ScenePalm, TouchingContact,
 };
 pub use error::{PlanarLogError, PlanarSimulationError};
+pub use hybrid::{
+    BodyState, Cause, ContactEvent, ContactReading, ContactRun, ContactRunSample, ContactSimulationError,
+    ContactStart, FieldError, StartError,
+};
 pub use log::{PlanarLog, PlanarSample, PlanarTruth};
 pub use mass::{PlanarMass, PlanarMassError};
 pub use motion::{ConstantRates, HarmonicPalms, PairMotion};

@@ -1,11 +1,11 @@
 //! Which modes the contacts take.
 
-use super::{ContactProblem, PlanarMode, Response, Unsolvable, respond};
+use super::{ContactProblem, PlanarMode, Response, respond};
 use nalgebra::{DMatrix, Vector3};
 use thiserror::Error;
 
 /// Share of the largest force or rate by which a sign may be wrong: what a run is held to.
-const CONSISTENT: f64 = 1e-9;
+pub(crate) const CONSISTENT: f64 = 1e-9;
 /// Accelerations of two sets that differ by more than this share are two answers: a thousand times what sets within
 /// [`CONSISTENT`] of their border differ by.
 const DIFFERENT: f64 = 1e-6;
@@ -46,9 +46,6 @@ pub enum ModeError {
         /// The smallest principal minor, in units of the rows' sizes.
         minor: f64,
     },
-    /// The palms' motion tears apart, or friction jams, contacts that nothing can part.
-    #[error("{0}")]
-    Unsolvable(#[from] Unsolvable),
 }
 
 struct Consistent {
@@ -98,13 +95,13 @@ impl ContactProblem {
     /// How far the signs are from being wrong, as a share of the largest rate or force: the least over all conditions.
     ///
     /// A gap that is off must not close; normal forces push; sticking forces stay in the cone; where a contact starts to
-    /// slide it does so against its friction.
+    /// slide it does so against its friction; the palms do not tear redundant contacts apart.
     #[must_use]
     pub fn margin(&self, modes: &[PlanarMode], response: &Response) -> f64 {
         let mass = self.roots[0] * self.roots[0];
         let largest = response.forces.iter().flatten().fold(0.0_f64, |s, f| s.max(f.abs())) / mass;
         let scale = self.scale().max(largest);
-        let mut margin = f64::INFINITY;
+        let mut margin = if response.torn > 0.0 { -response.torn / scale } else { f64::INFINITY };
         for ((c, mode), [normal, along]) in self.contacts.iter().zip(modes).zip(&response.forces) {
             let own = match *mode {
                 PlanarMode::Off => c.normal.dot(&response.x) + c.contact.biases[0],

@@ -10,8 +10,9 @@ mod scene;
 #[cfg(test)]
 mod tests;
 
+pub(super) use choose::CONSISTENT;
 pub use choose::{Choice, ModeError};
-pub use respond::{Response, Unsolvable};
+pub use respond::{Jammed, Response};
 pub use scene::{ContactScene, ContactSceneError, ScenePalm};
 
 use super::mass::PlanarMass;

@@ -8,8 +8,8 @@ use thiserror::Error;
 /// Rows or columns whose smallest singular value is below this share of the largest count as dependent: forces that are
 /// 1e9 times what they do to the body would be needed to tell them apart.
 const DEPENDENT: f64 = 1e-9;
-/// Share of the largest rate up to which redundant rows may contradict each other: their rounding, amplified by the
-/// least independent of them.
+/// Share of its terms up to which a solution of dependent equations may miss them: rounding, amplified by the least
+/// independent of them.
 const CONTRADICTION: f64 = 1e-9;
 
 /// What a body does under one set of modes.
@@ -24,23 +24,18 @@ pub struct Response {
     /// Whether the forces are not unique: bodies stuck on several palms squeeze themselves. They are then those of least
     /// size within the friction cones, or, where there are none, of least size.
     pub redundant: bool,
+    /// What the palms' motion leaves of constraints that contradict each other, m/s^2; zero but for rounding where it can be
+    /// followed.
+    pub torn: f64,
     /// Mass-weighted acceleration.
     pub(super) x: Vector3<f64>,
 }
 
-/// Why a set of modes has no accelerations.
+/// Why a set of modes has no accelerations: friction makes the forces infinite, or undetermined together with the
+/// acceleration.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum Unsolvable {
-    /// Friction makes the forces infinite, or undetermined together with the acceleration.
-    #[error("friction leaves forces and acceleration undetermined")]
-    Jammed,
-    /// The palms' motion does not allow the contacts of the set together.
-    #[error("the palms' motion tears these contacts apart by {residual:.3e} m/s^2")]
-    Torn {
-        /// What is left of the constraints, m/s^2.
-        residual: f64,
-    },
-}
+#[error("friction leaves forces and acceleration undetermined: the contacts are jammed")]
+pub struct Jammed;
 
 /// The linear system of a set: `rows . x = -biases`, `x = free + columns forces`.
 struct System {
@@ -62,12 +57,12 @@ impl ContactProblem {
     /// Row `n` for sliding contacts with the force along `n - mu sense t`; rows and forces along `n` and `t` for sticking ones.
     ///
     /// # Errors
-    /// [`Unsolvable`].
-    pub fn respond(&self, modes: &[PlanarMode]) -> Result<Response, Unsolvable> {
+    /// [`Jammed`].
+    pub fn respond(&self, modes: &[PlanarMode]) -> Result<Response, Jammed> {
         let system = self.assemble(modes);
         let size = system.rows.len();
         if size == 0 {
-            return Ok(self.response(modes, self.free, &[], false));
+            return Ok(self.response(modes, self.free, &[], None));
         }
         if size <= 3 && independent(&system.rows) {
             return self.regular(modes, &system);
@@ -98,7 +93,7 @@ impl ContactProblem {
     }
 
     /// At most three independent rows: the forces are unique unless friction makes the matrix singular.
-    fn regular(&self, modes: &[PlanarMode], system: &System) -> Result<Response, Unsolvable> {
+    fn regular(&self, modes: &[PlanarMode], system: &System) -> Result<Response, Jammed> {
         let size = system.rows.len();
         let (mut matrix, mut right) = (Matrix3::identity(), Vector3::zeros());
         for i in 0..size {
@@ -110,29 +105,26 @@ impl ContactProblem {
         let lengths = |list: &[Vector3<f64>]| list.iter().map(Vector3::norm).product::<f64>();
         let volume = matrix.determinant().abs() / (lengths(&system.rows) * lengths(&system.columns));
         if volume.is_nan() || volume < DEPENDENT {
-            return Err(Unsolvable::Jammed);
+            return Err(Jammed);
         }
-        let forces = matrix.lu().solve(&right).ok_or(Unsolvable::Jammed)?;
+        let forces = matrix.lu().solve(&right).ok_or(Jammed)?;
         let x = if size == 3 {
             // The palms alone determine the motion: what rests on them rests exactly.
             let matrix = Matrix3::from_fn(|i, j| system.rows[i][j]);
             let biases = Vector3::from_fn(|i, _| -system.biases[i]);
-            matrix.lu().solve(&biases).ok_or(Unsolvable::Jammed)?
+            matrix.lu().solve(&biases).ok_or(Jammed)?
         } else {
             (0..size).fold(self.free, |x, i| x + system.columns[i] * forces[i])
         };
-        Ok(self.response(modes, x, &forces.as_slice()[..size], false))
+        Ok(self.response(modes, x, &forces.as_slice()[..size], None))
     }
 
-    /// More rows than are independent: the motion is unique where they do not contradict each other, the forces are not.
-    fn redundant(&self, modes: &[PlanarMode], system: &System) -> Result<Response, Unsolvable> {
+    /// More rows than are independent: the motion is unique where they do not contradict each other (where they do, it is that
+    /// of least squares), the forces are not.
+    fn redundant(&self, modes: &[PlanarMode], system: &System) -> Result<Response, Jammed> {
         let size = system.rows.len();
         let right: Vec<f64> = system.biases.iter().map(|b| -b).collect();
         let motion = least_norm(&system.rows, &right);
-        let scale = self.scale();
-        if motion.residual > CONTRADICTION * scale {
-            return Err(Unsolvable::Torn { residual: motion.residual });
-        }
         let columns = DMatrix::from_fn(3, size, |i, j| system.columns[j][i]);
         // Square, so that its decomposition holds the null space too.
         let side = size.max(3);
@@ -149,14 +141,15 @@ impl ContactProblem {
                 wanted[i] = right[i] - system.rows[i].dot(&self.free);
             }
         }
-        let (least, null) = split(&matrix, &wanted).ok_or(Unsolvable::Jammed)?;
+        let (least, null) = split(&matrix, &wanted).ok_or(Jammed)?;
         let terms = wanted.norm() + matrix.norm() * least.norm();
-        if (&matrix * &least - &wanted).norm() > CONTRADICTION * terms {
-            return Err(Unsolvable::Jammed);
+        let contradicts = motion.residual > CONTRADICTION * self.scale();
+        if !contradicts && (&matrix * &least - &wanted).norm() > CONTRADICTION * terms {
+            return Err(Jammed);
         }
         let squeezed = &columns * &null;
         if squeezed.norm() > CONTRADICTION.sqrt() * columns.norm() {
-            return Err(Unsolvable::Jammed);
+            return Err(Jammed);
         }
         let forces = feasible::within_cones(&least, &null, &self.cones(modes, size)).unwrap_or(least);
         let x = if motion.rank == 3 {
@@ -165,7 +158,7 @@ impl ContactProblem {
             let push = &columns * &forces;
             self.free + Vector3::new(push[0], push[1], push[2])
         };
-        Ok(self.response(modes, x, forces.as_slice(), true))
+        Ok(self.response(modes, x, forces.as_slice(), Some(motion.residual)))
     }
 
     /// Rows `H` of the cones `H forces >= 0`: normal forces push, sticking ones stay within friction.
@@ -192,7 +185,7 @@ impl ContactProblem {
         DMatrix::from_fn(rows.len(), size, |i, j| rows[i][j])
     }
 
-    fn response(&self, modes: &[PlanarMode], x: Vector3<f64>, parts: &[f64], redundant: bool) -> Response {
+    fn response(&self, modes: &[PlanarMode], x: Vector3<f64>, parts: &[f64], torn: Option<f64>) -> Response {
         let mut parts = parts.iter();
         let mut next = || parts.next().copied().unwrap_or(0.0);
         let forces = self.contacts.iter().zip(modes).map(|(c, mode)| match *mode {
@@ -205,7 +198,7 @@ impl ContactProblem {
         });
         let forces = forces.collect();
         let (a_WCm, alpha0) = self.unweighted(&x);
-        Response { a_WCm, alpha0, forces, redundant, x }
+        Response { a_WCm, alpha0, forces, redundant: torn.is_some(), torn: torn.unwrap_or(0.0), x }
     }
 
     /// Size of the rates at hand, m/s^2: what rounding is a share of.
@@ -229,6 +222,9 @@ fn independent(rows: &[Vector3<f64>]) -> bool {
 
 /// Solution of least size of `rows . x = right`, in the sense of least squares.
 pub(super) fn least_norm(rows: &[Vector3<f64>], right: &[f64]) -> LeastNorm {
+    if rows.is_empty() {
+        return LeastNorm { solution: Vector3::zeros(), rank: 0, residual: 0.0 };
+    }
     let matrix = DMatrix::from_fn(rows.len().max(3), 3, |i, j| rows.get(i).map_or(0.0, |row| row[j]));
     let svd = matrix.svd(true, true);
     let (Some(u), Some(v_t)) = (svd.u.as_ref(), svd.v_t.as_ref()) else {

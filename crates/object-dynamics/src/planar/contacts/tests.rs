@@ -120,10 +120,10 @@ fn palms_that_move_apart_tear_sticking_contacts() {
     let mut contacts = [resting(DVec2::X, -DVec2::X, 0.9), resting(-DVec2::X, DVec2::X, 0.9)];
     contacts[1].biases = [1.0, 0.0];
     let p = problem(2.0, 0.7, &contacts);
-    let torn = p.respond(&[PlanarMode::Stick; 2]);
-    assert!(matches!(torn, Err(Unsolvable::Torn { residual }) if (residual - 0.5).abs() < 1e-12), "{torn:?}");
+    let torn = p.respond(&[PlanarMode::Stick; 2]).unwrap();
+    assert!((torn.torn - 0.5).abs() < 1e-12 && p.margin(&[PlanarMode::Stick; 2], &torn) < -0.04, "{torn:?}");
     // The pinched normals alone leave their squeeze, and so the friction of a slide, undetermined.
     contacts[1].biases = [0.0; 2];
     let jam = problem(2.0, 0.7, &contacts).respond(&[slide(1.0), slide(-1.0)]);
-    assert_eq!(jam, Err(Unsolvable::Jammed));
+    assert_eq!(jam, Err(Jammed));
 }

@@ -1,0 +1,152 @@
+//! What the contacts do next: blows where gaps close, then modes anew.
+
+use super::error::{ContactSimulationError, FieldError};
+use super::events::Cause;
+use super::phase::Phase;
+use super::state::{BodyState, PALM_WORK, TIME, Vector};
+use super::tracker::{Touch, Tracker};
+use crate::planar::contacts::{ContactProblem, ModeError, PlanarMode};
+use contact_kinematics::planar::RadiusFunction;
+
+/// Share of the body's size up to which a gap counts as closed when modes are chosen.
+const CLOSED: f64 = 1e-10;
+/// Share of the natural speed up to which a gap rate or a slip counts as zero when modes are chosen.
+const STILL: f64 = 1e-9;
+
+/// What an event leads to.
+pub(super) struct Decision<'a, S> {
+    pub(super) phase: Phase<'a, S>,
+    pub(super) y: Vector,
+    /// Work of the impulses of a blow against the slips and gap rates, J; none without a blow.
+    pub(super) blow: Option<f64>,
+}
+
+/// What is known when modes are to be chosen.
+pub(super) struct Question<'q> {
+    /// Modes of all palms so far.
+    pub(super) present: &'q [PlanarMode],
+    pub(super) cause: Cause,
+    /// Sets that have ended at this instant.
+    pub(super) ended: &'q [Vec<PlanarMode>],
+}
+
+impl<S: RadiusFunction> Tracker<'_, S> {
+    /// Modes from the vector `y` on, which is pulled onto the contacts first.
+    pub(super) fn decide(
+        &self,
+        mut y: Vector,
+        question: &Question<'_>,
+    ) -> Result<Decision<'_, S>, ContactSimulationError> {
+        let t = y[TIME];
+        let at = |source| ContactSimulationError::Contact { t, source };
+        let mut modes = question.present.to_vec();
+        if let Cause::Gap { palm } = question.cause {
+            // Its gap is taken out, its gap rate is not: that is the blow's.
+            let mut closed = modes.clone();
+            closed[palm] = PlanarMode::Slide { sense: 0.0 };
+            let velocity = [y[3], y[4], y[5]];
+            self.phase(&closed).project(&mut y).map_err(at)?;
+            y[3..6].copy_from_slice(&velocity);
+            modes[palm] = PlanarMode::Stick;
+        }
+        self.phase(question.present).project(&mut y).map_err(at)?;
+        let mut state = BodyState::of(&y);
+        let told =
+            |state: BodyState| move |source: ModeError| ContactSimulationError::Modes { t, state, source };
+        let mut touches = self.closed(t, &state, &modes).map_err(at)?;
+        let still = STILL * self.speed(&state);
+        let closes = |touch: &Touch| touch.contact.n.dot(touch.slip(&state)) < -still;
+        let mut blow = None;
+        if touches.iter().any(closes) {
+            let work = self.blow(&touches, &mut state, &mut modes).map_err(told(state))?;
+            y[PALM_WORK] += work[0];
+            blow = Some(work[1]);
+        }
+        touches.retain(|touch| touch.contact.n.dot(touch.slip(&state)) <= still);
+        // After a blow nothing is told against the sets before it.
+        let ended = if blow.is_some() { &[] } else { question.ended };
+        let question = Question { present: &modes, cause: question.cause, ended };
+        let modes = self.choose(&touches, &state, &question).map_err(at)?.map_err(told(state))?;
+        state.write(&mut y);
+        let phase = self.phase(&modes);
+        phase.project(&mut y).map_err(at)?;
+        Ok(Decision { phase, y, blow })
+    }
+
+    fn phase(&self, modes: &[PlanarMode]) -> Phase<'_, S> {
+        Phase { tracker: self, modes: modes.to_vec() }
+    }
+
+    /// Contacts that touch: by their modes, or by their gaps.
+    fn closed(&self, t: f64, state: &BodyState, modes: &[PlanarMode]) -> Result<Vec<Touch>, FieldError> {
+        let mut touches = Vec::new();
+        for (palm, mode) in modes.iter().enumerate() {
+            let near = *mode != PlanarMode::Off || self.gap(palm, t, state)?[0] <= CLOSED * self.size;
+            if near {
+                touches.push(self.touch(palm, t, state)?);
+            }
+        }
+        Ok(touches)
+    }
+
+    /// Inelastic blow: impulses in the friction cones after which no gap closes, and the modes that they are of. Returns the
+    /// work (J) on the palms' velocities and on the slips.
+    fn blow(
+        &self,
+        touches: &[Touch],
+        state: &mut BodyState,
+        modes: &mut [PlanarMode],
+    ) -> Result<[f64; 2], ModeError> {
+        let contacts: Vec<_> = touches
+            .iter()
+            .map(|touch| {
+                let u = touch.surface.material_velocity(touch.contact.p_WC);
+                let biases = [-touch.contact.n.dot(u), -touch.contact.t.dot(u)];
+                touch.touching(biases, self.friction(touch.palm), 0.0)
+            })
+            .collect();
+        let present: Vec<_> = touches.iter().map(|touch| modes[touch.palm]).collect();
+        let problem = ContactProblem::new(self.mass(), (state.v_WCm, state.omega0), &contacts);
+        let choice = problem.choose(&present, &[])?;
+        let before = *state;
+        (state.v_WCm, state.omega0) = (choice.response.a_WCm, choice.response.alpha0);
+        let mut work = [0.0; 2];
+        for ((touch, mode), [normal, along]) in touches.iter().zip(&choice.modes).zip(&choice.response.forces)
+        {
+            let impulse = touch.contact.n * *normal + touch.contact.t * *along;
+            work[0] += impulse.dot(touch.surface.material_velocity(touch.contact.p_WC));
+            work[1] += 0.5 * impulse.dot(touch.slip(&before) + touch.slip(state));
+            modes[touch.palm] = *mode;
+        }
+        Ok(work)
+    }
+
+    /// Modes of all palms from the contacts that touch and do not part.
+    fn choose(
+        &self,
+        touches: &[Touch],
+        state: &BodyState,
+        question: &Question<'_>,
+    ) -> Result<Result<Vec<PlanarMode>, ModeError>, FieldError> {
+        let still = STILL * self.speed(state);
+        let mut contacts = Vec::new();
+        for touch in touches {
+            let (rates, mu) = (touch.rates(state)?, self.friction(touch.palm));
+            let along = touch.contact.t.dot(rates.slip);
+            let stopped =
+                question.cause == Cause::Slip { palm: touch.palm } || along.abs() <= still || mu == 0.0;
+            let sense = if stopped { 0.0 } else { along.signum() };
+            contacts.push(touch.touching([rates.gap_bias, touch.contact.t.dot(rates.slip_bias)], mu, sense));
+        }
+        let of_touches = |all: &[PlanarMode]| touches.iter().map(|touch| all[touch.palm]).collect::<Vec<_>>();
+        let ended: Vec<_> = question.ended.iter().map(|set| of_touches(set)).collect();
+        let problem = ContactProblem::new(self.mass(), self.free_fall(), &contacts);
+        Ok(problem.choose(&of_touches(question.present), &ended).map(|choice| {
+            let mut modes = vec![PlanarMode::Off; question.present.len()];
+            for (touch, mode) in touches.iter().zip(choice.modes) {
+                modes[touch.palm] = mode;
+            }
+            modes
+        }))
+    }
+}

@@ -1,0 +1,110 @@
+//! States that a run can start from.
+
+use super::error::StartError;
+use super::state::BodyState;
+use super::tracker::{Touch, Tracker};
+use crate::planar::contacts::{ContactProblem, ContactScene, PlanarMode};
+use contact_kinematics::planar::RadiusFunction;
+use glam::DVec2;
+
+/// Share of the body's size, or of its natural speed, to which a start must touch.
+const TOUCHING: f64 = 1e-9;
+/// Steps by which a body is placed on palms; Newton's method takes about five from nearby.
+const PLACING: u32 = 60;
+/// Longest of them, as a share of the body's size.
+const LONGEST: f64 = 0.25;
+
+/// Where a run starts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactStart {
+    /// State of the body.
+    pub state: BodyState,
+    /// Palms (from 0) that the body touches; it may touch others, or fly into them.
+    pub contacts: Vec<usize>,
+}
+
+impl<S: RadiusFunction> ContactScene<S> {
+    /// The state nearest to `guess` in which the body touches `palms` (from 0) at time `t` (s), and moves along them: nearest
+    /// in the metric of kinetic energy.
+    ///
+    /// # Errors
+    /// [`StartError::NoRoom`] where there is none nearby, or another palm is in the way; [`StartError::NoPalm`] and
+    /// [`StartError::NotFinite`].
+    pub fn place(&self, t: f64, guess: BodyState, palms: &[usize]) -> Result<BodyState, StartError> {
+        let tracker = Tracker::new(self);
+        tracker.check(&guess, palms)?;
+        let mut state = guess;
+        for _ in 0..PLACING {
+            let touches = tracker.touches(t, &state, palms)?;
+            if touches.iter().all(|touch| touch.contact.gap.abs() <= tracker.gap_rounding(touch, &state)) {
+                break;
+            }
+            let (shift, turn) = tracker.normal_correction(&touches, |touch| touch.contact.gap);
+            let length = shift.length().max(turn.abs() * tracker.size);
+            let share = (LONGEST * tracker.size / length).min(1.0);
+            state.p_WCm += shift * share;
+            state.phi0 += turn * share;
+        }
+        for palm in 0..self.palms().len() {
+            let gap = tracker.gap(palm, t, &state).map_or(f64::NAN, |[gap, _]| gap);
+            let asked = palms.contains(&palm);
+            let free = gap >= -TOUCHING * tracker.size && (!asked || gap <= TOUCHING * tracker.size);
+            if !free {
+                return Err(StartError::NoRoom { palm: palm + 1, gap });
+            }
+        }
+        let touches = tracker.touches(t, &state, palms)?;
+        let rate = |touch: &Touch| touch.contact.n.dot(touch.slip(&state));
+        let (velocity, turn) = tracker.normal_correction(&touches, rate);
+        Ok(BodyState { v_WCm: state.v_WCm + velocity, omega0: state.omega0 + turn, ..state })
+    }
+}
+
+impl<S: RadiusFunction> Tracker<'_, S> {
+    /// Refuses a start that is not in contact as it says.
+    pub(super) fn check_start(&self, t: f64, start: &ContactStart) -> Result<(), StartError> {
+        let state = &start.state;
+        self.check(state, &start.contacts)?;
+        for palm in 0..self.scene.palms().len() {
+            let number = palm + 1;
+            let lost = |_| StartError::NoRoom { palm: number, gap: f64::NAN };
+            let [gap, rate] = self.gap(palm, t, state).map_err(lost)?;
+            if gap < -TOUCHING * self.size {
+                return Err(StartError::Penetration { palm: number, gap });
+            }
+            if !start.contacts.contains(&palm) {
+                continue;
+            }
+            if gap > TOUCHING * self.size {
+                return Err(StartError::OutOfContact { palm: number, gap });
+            }
+            if rate.abs() > TOUCHING * self.speed(state) {
+                return Err(StartError::NotAlong { palm: number, rate });
+            }
+        }
+        Ok(())
+    }
+
+    fn check(&self, state: &BodyState, palms: &[usize]) -> Result<(), StartError> {
+        if !state.is_finite() {
+            return Err(StartError::NotFinite);
+        }
+        let count = self.scene.palms().len();
+        match palms.iter().find(|&&palm| palm >= count) {
+            Some(palm) => Err(StartError::NoPalm { palm: palm + 1, count }),
+            None => Ok(()),
+        }
+    }
+
+    fn touches(&self, t: f64, state: &BodyState, palms: &[usize]) -> Result<Vec<Touch>, StartError> {
+        let lost = |palm: usize| StartError::NoRoom { palm: palm + 1, gap: f64::NAN };
+        palms.iter().map(|&palm| self.touch(palm, t, state).map_err(|_| lost(palm))).collect()
+    }
+
+    fn normal_correction(&self, touches: &[Touch], residual: impl Fn(&Touch) -> f64) -> (DVec2, f64) {
+        let contacts: Vec<_> = touches.iter().map(|touch| touch.touching([0.0; 2], 0.0, 0.0)).collect();
+        let residuals: Vec<_> = touches.iter().map(|touch| [residual(touch), 0.0]).collect();
+        let modes = vec![PlanarMode::Slide { sense: 0.0 }; touches.len()];
+        ContactProblem::new(self.mass(), (DVec2::ZERO, 0.0), &contacts).correction(&modes, &residuals)
+    }
+}
