@@ -76,6 +76,8 @@ pub struct ContactRun {
     pub samples: Vec<ContactRunSample>,
     /// Changes of modes, the first one at the start.
     pub events: Vec<ContactEvent>,
+    /// Steps of the integrator.
+    pub steps: usize,
 }
 
 impl ContactRun {
@@ -117,7 +119,7 @@ impl<S: RadiusFunction> ContactScene<S> {
         let mut joints: Vec<f64> = self.palms().iter().flat_map(|palm| palm.motion.joints()).collect();
         joints.sort_by(f64::total_cmp);
         let tolerance = Tolerance { relative: tolerance, absolute: ABSOLUTE_SHARE * tolerance };
-        let run = ContactRun { samples: Vec::with_capacity(times.len()), events: Vec::new() };
+        let run = ContactRun { samples: Vec::with_capacity(times.len()), events: Vec::new(), steps: 0 };
         let mut recorder = Recorder { tracker: &tracker, times, joints, tolerance, run, blow_work: 0.0 };
         recorder.record(y, &present)?;
         Ok(recorder.run)
@@ -172,6 +174,7 @@ impl<S: RadiusFunction> Recorder<'_, S> {
                 // What cannot be projected fails in the next rate.
                 let _ = phase.project(y);
             })?;
+            self.run.steps += 1;
             let end = solver.time();
             let Some(dense) = solver.dense()? else { break };
             let event = phase.first_event(&dense, end).map_err(|source| contact_error(end, source))?;

@@ -1,0 +1,3 @@
+//! What cannot be simulated is named.
+
+use super::*;

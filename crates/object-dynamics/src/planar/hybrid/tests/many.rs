@@ -1,0 +1,1 @@
+//! Some hundred changes of modes, seeded.
