@@ -4,6 +4,7 @@
 //! degree of freedom, its orientation `phi0`, and nothing is divided by but `sin phi2` and `I0/m + <d, d>`, both
 //! positive: the equations are regular at every speed and in every orientation.
 
+mod contact_log;
 mod contacts;
 mod error;
 mod hybrid;
@@ -17,6 +18,7 @@ mod reaction;
 mod simulate;
 mod torque_driven;
 
+pub use contact_log::{ContactLog, ContactLogError, ContactLogSample, PalmSample};
 pub use contacts::{
     Choice, ContactProblem, ContactScene, ContactSceneError, Jammed, MOST_PALMS, ModeError, PlanarMode,
     Response, ScenePalm, TouchingContact,
@@ -30,7 +32,7 @@ pub use log::{PlanarLog, PlanarSample, PlanarTruth};
 pub use mass::{PlanarMass, PlanarMassError};
 pub use motion::{ConstantRates, HarmonicPalms, PairMotion};
 #[cfg(feature = "noise")]
-pub use noise::PlanarNoise;
+pub use noise::{ContactNoise, PlanarNoise};
 pub use quasistatic::{Equilibrium, FollowError, PlanarEquilibria};
 pub use reaction::{PairReaction, PlanarObject};
 pub use simulate::{LostContact, PlanarRun, PlanarRunSample, PlanarStart, simulate_prescribed};

@@ -7,10 +7,14 @@ use super::state::{BodyState, PALM_WORK, TIME, Vector};
 use super::tracker::{Touch, Tracker};
 use crate::planar::contacts::{ContactProblem, ModeError, PlanarMode};
 use contact_kinematics::planar::RadiusFunction;
+use glam::DVec2;
 
 /// Share of the body's size up to which a gap counts as closed when modes are chosen.
 const CLOSED: f64 = 1e-10;
-/// Share of the natural speed up to which a gap rate or a slip counts as zero when modes are chosen.
+/// Share of the natural speed up to which a gap rate counts as zero when modes are chosen. A body falls through a gap that is
+/// rounding, 1e-14 of its size, at 1.4e-7 of that speed: a body that rattles between two palms never comes to rest below that.
+const SETTLED: f64 = 1e-6;
+/// Share of the natural speed up to which a slip counts as zero.
 const STILL: f64 = 1e-9;
 
 /// What an event leads to.
@@ -19,6 +23,8 @@ pub(super) struct Decision<'a, S> {
     pub(super) y: Vector,
     /// Work of the impulses of a blow against the slips and gap rates, J; none without a blow.
     pub(super) blow: Option<f64>,
+    /// Energy, J, that goes with the gap rates that count as zero.
+    pub(super) settled: f64,
 }
 
 /// What is known when modes are to be chosen.
@@ -54,7 +60,7 @@ impl<S: RadiusFunction> Tracker<'_, S> {
         let told =
             |state: BodyState| move |source: ModeError| ContactSimulationError::Modes { t, state, source };
         let mut touches = self.closed(t, &state, &modes).map_err(at)?;
-        let still = STILL * self.speed(&state);
+        let still = SETTLED * self.speed(&state);
         let closes = |touch: &Touch| touch.contact.n.dot(touch.slip(&state)) < -still;
         let mut blow = None;
         if touches.iter().any(closes) {
@@ -69,12 +75,19 @@ impl<S: RadiusFunction> Tracker<'_, S> {
         let modes = self.choose(&touches, &state, &question).map_err(at)?.map_err(told(state))?;
         state.write(&mut y);
         let phase = self.phase(&modes);
+        let before = self.kinetic(&y);
         phase.project(&mut y).map_err(at)?;
-        Ok(Decision { phase, y, blow })
+        let settled = self.kinetic(&y) - before;
+        Ok(Decision { phase, y, blow, settled })
     }
 
     fn phase(&self, modes: &[PlanarMode]) -> Phase<'_, S> {
         Phase { tracker: self, modes: modes.to_vec() }
+    }
+
+    fn kinetic(&self, y: &Vector) -> f64 {
+        let BodyState { v_WCm, omega0, .. } = BodyState::of(y);
+        self.scene.object().energy(DVec2::ZERO, v_WCm, omega0)
     }
 
     /// Contacts that touch: by their modes, or by their gaps.

@@ -10,9 +10,11 @@ use contact_kinematics::planar::RadiusFunction;
 /// Points of each integration step at which signs are looked at. A force that dips below zero and comes back between two of
 /// them is missed, a gap is not unless it dips twice; a step moves the body by less than its own size.
 const CHECKS: u32 = 8;
-/// Share of the body's size by which a gap may be negative, and of the normal force by which a sticking force may leave its
-/// cone, before that counts: above rounding, and well below the 1e-9 that a run is held to.
-const SLACK: f64 = 1e-11;
+/// Share of the normal force by which a sticking force may leave its cone before that counts: above rounding, and well below
+/// the 1e-9 that a run is held to.
+const CONE_SLACK: f64 = 1e-11;
+/// Units of its rounding by which a gap may be negative before that counts.
+const GAP_SLACK: f64 = 4.0;
 /// Halvings by which a phase that begins on the edge of its end is followed back.
 const HALVINGS: u32 = 30;
 
@@ -151,7 +153,7 @@ impl<S: RadiusFunction> Phase<'_, S> {
                     }
                 }
                 PlanarMode::Stick => {
-                    let limit = (mu + SLACK) * normal;
+                    let limit = (mu + CONE_SLACK) * normal;
                     push(Cause::Cone { palm }, told(limit - along));
                     push(Cause::Cone { palm }, told(limit + along));
                 }
@@ -162,7 +164,8 @@ impl<S: RadiusFunction> Phase<'_, S> {
         push(Cause::Friction, reading.problem.smallest_minor(&reading.modes));
         for (palm, _) in self.modes.iter().enumerate().filter(|(_, mode)| **mode == PlanarMode::Off) {
             let [gap, rate] = self.tracker.gap(palm, t, &state)?;
-            all.push(Indicator { cause: Cause::Gap { palm }, value: gap + SLACK * self.tracker.size, rate });
+            let value = gap + GAP_SLACK * self.tracker.gap_rounding(palm, t, &state);
+            all.push(Indicator { cause: Cause::Gap { palm }, value, rate });
         }
         Ok(all)
     }

@@ -71,7 +71,9 @@ impl<S: RadiusFunction> Phase<'_, S> {
             .collect();
         for _ in 0..PROJECTIONS {
             let touches = self.touches(t, &state)?;
-            if touches.iter().all(|touch| touch.contact.gap.abs() <= self.tracker.gap_rounding(touch, &state))
+            if touches
+                .iter()
+                .all(|touch| touch.contact.gap.abs() <= self.tracker.gap_rounding(touch.palm, t, &state))
             {
                 break;
             }

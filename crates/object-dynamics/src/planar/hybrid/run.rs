@@ -18,7 +18,7 @@ const ABSOLUTE_SHARE: f64 = 1e-2;
 const STEP_SHARE: f64 = 0.25;
 /// Changes of modes within one natural time after which they are taken to have no end. A body that rattles to rest in a wedge
 /// takes some tens.
-const MOST_CHANGES: usize = 500;
+const MOST_CHANGES: usize = 5_000;
 
 /// One palm at one instant of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,7 +143,7 @@ impl<S: RadiusFunction> Recorder<'_, S> {
             self.check_progress(y[TIME])?;
             let question = Question { present: &present, cause, ended: &ended };
             let decision = self.tracker.decide(y, &question)?;
-            self.blow_work += decision.blow.unwrap_or(0.0);
+            self.blow_work += decision.blow.unwrap_or(0.0) + decision.settled;
             let (phase, t) = (decision.phase, y[TIME]);
             let modes = phase.modes.clone();
             self.run.events.push(ContactEvent { t, cause, modes, blow_work: decision.blow });
@@ -194,11 +194,16 @@ impl<S: RadiusFunction> Recorder<'_, S> {
         Ok(None)
     }
 
-    /// How far the next step may go: to a joint of the palms' motions, the last sample, or a share of the body's size.
+    /// How far the next step may go: to a joint of the palms' motions, the last sample, or, where a gap may close, a share of
+    /// the body's size.
     fn step_limit(&self, phase: &Phase<'_, S>, t: f64, y: &Vector) -> f64 {
         let last = self.times[self.times.len() - 1];
         let next = self.joints.partition_point(|&joint| joint <= t);
         let joint = self.joints.get(next).copied().unwrap_or(last);
+        if !phase.modes.contains(&PlanarMode::Off) {
+            // Nothing can be passed by.
+            return joint.min(last);
+        }
         let state = BodyState::of(y);
         let palms = self.tracker.scene.palms().iter().map(|palm| palm.motion.at(t));
         let fastest = palms.map(|palm| palm.material_velocity(state.p_WCm).length()).fold(0.0, f64::max);

@@ -36,7 +36,10 @@ impl<S: RadiusFunction> ContactScene<S> {
         let mut state = guess;
         for _ in 0..PLACING {
             let touches = tracker.touches(t, &state, palms)?;
-            if touches.iter().all(|touch| touch.contact.gap.abs() <= tracker.gap_rounding(touch, &state)) {
+            if touches
+                .iter()
+                .all(|touch| touch.contact.gap.abs() <= tracker.gap_rounding(touch.palm, t, &state))
+            {
                 break;
             }
             let (shift, turn) = tracker.normal_correction(&touches, |touch| touch.contact.gap);

@@ -83,12 +83,12 @@ impl<'a, S: RadiusFunction> Tracker<'a, S> {
         fall + state.v_WCm.length() + state.omega0.abs() * self.size
     }
 
-    /// Rounding of a gap, m.
-    pub(super) fn gap_rounding(&self, touch: &Touch, state: &BodyState) -> f64 {
-        let radius = self.scene.palms()[touch.palm].surface.radius().unwrap_or(0.0);
-        let jet = touch.contact.jet;
-        let lengths = (state.p_WCm - touch.surface.p_WP).length() + jet.r.abs() + jet.d.abs() + radius;
-        GAP_ROUNDING * lengths
+    /// Rounding of the gap to palm `palm`, m.
+    pub(super) fn gap_rounding(&self, palm: usize, t: f64, state: &BodyState) -> f64 {
+        let described = &self.scene.palms()[palm];
+        let radius = described.surface.radius().unwrap_or(0.0);
+        let distance = (state.p_WCm - described.motion.at(t).p_WP).length();
+        GAP_ROUNDING * (distance + 2.0 * self.size + radius)
     }
 }
 

@@ -88,7 +88,7 @@ fn complete_elliptic(k: f64) -> f64 {
 }
 
 #[test]
-fn a_disc_rolls_in_a_cup_and_over_a_fingertip() {
+fn a_disc_rolls_in_a_cup_as_a_pendulum() {
     // (C - R) angle'' = -2/3 g sin(angle) for a cup of radius C: a pendulum.
     let (cup, start): (f64, f64) = (0.2, 1.0);
     let arm = cup - R;

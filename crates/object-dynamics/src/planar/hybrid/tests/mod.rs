@@ -4,6 +4,7 @@ mod bad_input;
 mod discs;
 mod ladder;
 mod many;
+mod moving;
 
 use super::*;
 use crate::planar::{ContactScene, PlanarMass, PlanarMode, PlanarObject, ScenePalm};
@@ -69,7 +70,8 @@ fn check_run<S: RadiusFunction>(scene: &ContactScene<S>, run: &ContactRun) {
                 }
             }
         }
-        assert!(s.friction_work <= 1e-15 && s.blow_work <= 1e-15, "{s:?}");
+        // A share of 1e-11, the coarsest tolerance of these runs, of energies of 0.1 J.
+        assert!(s.friction_work <= 1e-12 && s.blow_work <= 1e-12, "{s:?}");
     }
     assert!(run.energy_drift() < 1e-10, "energy drifts by {:e}", run.energy_drift());
 }
