@@ -42,7 +42,7 @@ fn case() -> impl Strategy<Value = Case> {
             let mut azimuth = 0.3;
             let palms = palms.map(|(shift, slope, amplitude, frequency, phase)| {
                 azimuth += std::f64::consts::TAU / 3.0;
-                Palm::new(azimuth + shift, SlopeMotion::Sinusoid { slope, amplitude, frequency, phase })
+                Palm::new(azimuth + shift, MotionLaw::Sinusoid { mean: slope, amplitude, frequency, phase })
                     .unwrap()
             });
             let mass = MassProperties::new(mass, tensor).unwrap();
@@ -176,7 +176,7 @@ fn without_gravity_nothing_holds_the_body() {
 fn palms_that_turn_parallel_end_the_simulation_with_an_error() {
     // Palms 1 and 2 sink towards the horizontal together: their normals meet at vertical.
     let axes = DVec3::new(1.2, 1.0, 0.9);
-    let sink = |azimuth| Palm::new(azimuth, SlopeMotion::Steady { slope: 0.6, rate: -0.6 }).unwrap();
+    let sink = |azimuth| Palm::new(azimuth, MotionLaw::Steady { start: 0.6, rate: -0.6 }).unwrap();
     let palms = [sink(0.0), sink(2.1), Palm::fixed(4.2, 0.6).unwrap()];
     let mass = MassProperties::uniform_ellipsoid(1.0, axes).unwrap();
     let scene = ThreePalmScene::new(Ellipsoid::new(axes).unwrap(), mass, palms, 9.81).unwrap();
