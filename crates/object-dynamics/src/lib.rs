@@ -3,17 +3,23 @@
 //! Frames: `W` world (Z up, gravity `(0, 0, -g)`), `O` object (origin in the centre of mass). Units: SI.
 
 mod condensed;
+mod contacts;
 pub mod integrate;
 mod log;
 mod mass;
+mod modes;
 #[cfg(feature = "noise")]
 mod noise;
 pub mod planar;
 mod series;
 mod three_palms;
 
+pub use contacts::{
+    ContactScene, ContactSceneError, DriveError, MOST_PALMS, PalmDrive, PalmSpring, PalmTorque, ScenePalm,
+};
 pub use log::{LogError, PalmReading, Sample, SensorLog, TrueState};
 pub use mass::{MassError, MassProperties, PrincipalInertia};
+pub use modes::{ContactMode, FrictionError, check_friction};
 #[cfg(feature = "noise")]
 pub use noise::SensorNoise;
 pub use series::SeriesError;
