@@ -4,7 +4,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{
-    Ellipsoid, MinkowskiSum, Monomial, Palm, PolynomialSupport, SlopeMotion, SupportFunction,
+    Ellipsoid, MinkowskiSum, Monomial, MotionLaw, Palm, PolynomialSupport, SupportFunction,
 };
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
@@ -48,7 +48,7 @@ pub fn g2() -> (ThreePalmScene<GeneralBody>, InitialMotion) {
     let body = general_body(DVec3::new(2.5, 2.0, 1.5), DVec3::new(0.2, -0.1, 0.15), 0.08);
     let inertia = DMat3::from_cols_array(&[1.4, 0.08, -0.05, 0.08, 1.9, 0.06, -0.05, 0.06, 2.3]);
     let palm = |azimuth, slope, amplitude, frequency, phase| {
-        Palm::new(azimuth, SlopeMotion::Sinusoid { slope, amplitude, frequency, phase }).unwrap()
+        Palm::new(azimuth, MotionLaw::Sinusoid { mean: slope, amplitude, frequency, phase }).unwrap()
     };
     let palms =
         [palm(0.1, 0.9, 0.08, 1.7, 0.3), palm(2.0, 1.05, 0.1, 2.1, 1.0), palm(4.3, 1.0, 0.06, 1.3, 2.0)];

@@ -1,7 +1,7 @@
 //! Three palms without force sensors: random scenes from no guess, without noise and with it.
 
 use glam::{DQuat, DVec3};
-use recon::contact_kinematics::{Ellipsoid, Palm, SlopeMotion, Translated};
+use recon::contact_kinematics::{Ellipsoid, MotionLaw, Palm, Translated};
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, ThreePalmScene,
@@ -112,7 +112,10 @@ fn scene(random: &mut Random, noise: f64, seed: u64) -> Result<Option<(DVec3, Se
         let azimuth = f64::from(k) * std::f64::consts::TAU / 3.0 + random.within(-0.3, 0.3);
         let (slope, frequency, phase) =
             (random.within(0.8, 1.1), random.within(1.5, 3.0), random.within(0.0, 6.0));
-        palms.push(Palm::new(azimuth, SlopeMotion::Sinusoid { slope, amplitude: 0.05, frequency, phase })?);
+        palms.push(Palm::new(
+            azimuth,
+            MotionLaw::Sinusoid { mean: slope, amplitude: 0.05, frequency, phase },
+        )?);
     }
     let body = Translated { body: Ellipsoid::new(axes)?, offset: random.vector(-0.2, 0.2) };
     let scene = ThreePalmScene::new(body, mass, [palms[0], palms[1], palms[2]], 9.81)?;

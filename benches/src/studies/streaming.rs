@@ -4,7 +4,7 @@
 use cpu_time::ThreadTime;
 use glam::{DQuat, DVec3};
 use nalgebra::SVector;
-use recon::contact_kinematics::{Ellipsoid, Palm, SlopeMotion};
+use recon::contact_kinematics::{Ellipsoid, MotionLaw, Palm};
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, SensorNoise, ThreePalmScene,
@@ -138,7 +138,7 @@ impl Case {
 }
 
 fn swing(azimuth: f64, slope: f64, amplitude: f64, frequency: f64, phase: f64) -> Result<Palm, Failure> {
-    Ok(Palm::new(azimuth, SlopeMotion::Sinusoid { slope, amplitude, frequency, phase })?)
+    Ok(Palm::new(azimuth, MotionLaw::Sinusoid { mean: slope, amplitude, frequency, phase })?)
 }
 
 fn minute(axes: DVec3) -> Result<Case, Failure> {

@@ -12,6 +12,7 @@ mod motion_law;
 mod palm;
 pub mod planar;
 mod support;
+mod surface;
 
 pub use contact::{
     Contact, ContactCurve, ContactRates, ContactSupport, CurveError, CurvePoint, Darboux, ThreeContacts,
@@ -20,8 +21,12 @@ pub use contact::{
 };
 pub use direction::{Direction, DirectionError};
 pub use motion_law::MotionLaw;
-pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple, SlopeMotion};
+pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple};
 pub use support::{
     CurvatureRadii, Ellipsoid, MinkowskiSum, Monomial, PolynomialSupport, ShapeError, Sphere,
     SupportFunction, SupportJet, Translated, check_convex, principal_radii,
+};
+pub use surface::{
+    BodyPlace, ContactError, MotionPart, PalmSurface, PoseTable, SurfaceContact, SurfaceError, SurfaceMotion,
+    SurfacePose, SurfaceRates, SurfaceState,
 };

@@ -3,6 +3,8 @@
 //! Frames: `W` world (Z up, gravity `(0, 0, -g)`), `O` object (origin in the centre of mass). Units: SI.
 
 mod condensed;
+mod contacts;
+mod hybrid;
 pub mod integrate;
 mod log;
 mod mass;
@@ -11,15 +13,25 @@ mod modes;
 mod noise;
 pub mod planar;
 mod series;
+mod state;
 mod three_palms;
 
+pub use contacts::{
+    ContactScene, ContactSceneError, DriveError, MOST_PALMS, ModeError, PalmContactError, PalmCoordinates,
+    PalmDrive, PalmSpring, PalmTorque, ScenePalm, SceneState,
+};
+pub use hybrid::{
+    ContactEvent, ContactEventKind, ContactInstant, ContactInstantError, ContactSimulation,
+    ContactSimulationError, ContactStart,
+};
 pub use log::{LogError, PalmReading, Sample, SensorLog, TrueState};
 pub use mass::{MassError, MassProperties, PrincipalInertia};
 pub use modes::{ContactMode, FrictionError, check_friction};
 #[cfg(feature = "noise")]
 pub use noise::SensorNoise;
 pub use series::SeriesError;
+pub use state::BodyState;
 pub use three_palms::{
-    Accelerations, End, InitialMotion, Instant, MaximalState, MultiplierSolution, SampleTimes, SceneError,
-    Simulation, SimulationError, ThreePalmScene,
+    Accelerations, End, InitialMotion, Instant, MultiplierSolution, SampleTimes, SceneError, Simulation,
+    SimulationError, ThreePalmScene,
 };

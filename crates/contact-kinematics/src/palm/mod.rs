@@ -5,7 +5,7 @@ mod motion;
 mod triple;
 
 pub use frame::PalmFrame;
-pub use motion::{Palm, PalmState, SlopeMotion};
+pub use motion::{Palm, PalmState};
 pub use triple::PalmTriple;
 
 use glam::DVec3;
@@ -41,8 +41,8 @@ pub enum PalmError {
         /// Largest condition accepted.
         limit: f64,
     },
-    /// A parameter of the palm's motion is not a finite number.
-    #[error("palm {what} is {value}; it must be finite")]
+    /// A parameter of the palm's motion is not a finite number, or a duration not above zero.
+    #[error("palm {what} is {value}; it must be finite, and a duration above zero")]
     NotFinite {
         /// Which parameter.
         what: &'static str,

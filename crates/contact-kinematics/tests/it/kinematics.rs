@@ -18,7 +18,7 @@ fn body() -> impl SupportFunction {
 
 fn palms() -> [Palm; 3] {
     let palm = |azimuth, slope, amplitude, frequency, phase| {
-        Palm::new(azimuth, SlopeMotion::Sinusoid { slope, amplitude, frequency, phase }).unwrap()
+        Palm::new(azimuth, MotionLaw::Sinusoid { mean: slope, amplitude, frequency, phase }).unwrap()
     };
     [palm(0.1, 0.9, 0.08, 1.7, 0.3), palm(2.0, 1.05, 0.1, 2.1, 1.0), palm(4.3, 1.0, 0.06, 1.3, 2.0)]
 }

@@ -6,3 +6,4 @@
 
 mod kinematics;
 mod planar;
+mod surfaces;

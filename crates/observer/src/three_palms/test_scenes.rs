@@ -1,6 +1,6 @@
 //! A scene that unit tests share.
 
-use contact_kinematics::{Ellipsoid, Palm, SlopeMotion};
+use contact_kinematics::{Ellipsoid, MotionLaw, Palm};
 use glam::{DQuat, DVec3};
 use object_dynamics::integrate::Tolerance;
 use object_dynamics::{InitialMotion, MassProperties, SampleTimes, SensorLog, ThreePalmScene};
@@ -10,7 +10,7 @@ pub(super) fn on_swinging_palms() -> (SensorLog, MassProperties, DVec3) {
     let axes = DVec3::new(1.0, 2.0, 2.5);
     let mass = MassProperties::uniform_ellipsoid(1.3, axes).unwrap();
     let palm = |azimuth, phase| {
-        let motion = SlopeMotion::Sinusoid { slope: 1.0, amplitude: 0.08, frequency: 1.7, phase };
+        let motion = MotionLaw::Sinusoid { mean: 1.0, amplitude: 0.08, frequency: 1.7, phase };
         Palm::new(azimuth, motion).unwrap()
     };
     let palms = [palm(0.1, 0.3), palm(2.2, 1.0), palm(4.3, 2.0)];

@@ -1,7 +1,7 @@
 use super::file::{ObjectTable, PalmTable, PalmsTable, SceneFile, SensorsTable, ShapeTable, SimulationTable};
 use super::{KnownInertia, Scene, SceneErrorKind as Kind, Sensors, Shape, Simulation};
 use glam::{DMat3, DQuat, DVec3};
-use recon::contact_kinematics::{CurvatureRadii, Palm, PalmTriple, SlopeMotion};
+use recon::contact_kinematics::{CurvatureRadii, MotionLaw, Palm, PalmTriple};
 
 /// Largest departure of the initial quaternion's length from 1.
 const UNIT_TOLERANCE: f64 = 1e-6;
@@ -145,11 +145,14 @@ fn palm(number: usize, table: &PalmTable) -> Result<Palm, Kind> {
     let azimuth = angle(number, ["azimuth", "azimuth_deg"], [table.azimuth, table.azimuth_deg])?;
     let slope = angle(number, ["slope", "slope_deg"], [table.slope, table.slope_deg])?;
     let motion = match (table.rate, &table.sinusoid) {
-        (None, None) => SlopeMotion::Fixed { slope },
-        (Some(rate), None) => SlopeMotion::Steady { slope, rate },
-        (None, Some(s)) => {
-            SlopeMotion::Sinusoid { slope, amplitude: s.amplitude, frequency: s.frequency, phase: s.phase }
-        }
+        (None, None) => MotionLaw::Constant { value: slope },
+        (Some(rate), None) => MotionLaw::Steady { start: slope, rate },
+        (None, Some(s)) => MotionLaw::Sinusoid {
+            mean: slope,
+            amplitude: s.amplitude,
+            frequency: s.frequency,
+            phase: s.phase,
+        },
         (Some(_), Some(_)) => {
             let keys = ["rate", "sinusoid"].map(|k| format!("`simulation.palms.{k}`")).to_vec();
             return Err(Kind::Ambiguous { keys });

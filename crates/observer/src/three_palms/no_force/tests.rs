@@ -5,7 +5,7 @@ use super::shape::FreeEllipsoid;
 use super::*;
 use crate::least_squares::FitStatus;
 use crate::three_palms::state_space::{inertia_of_numbers, numbers_of_inertia};
-use contact_kinematics::{Ellipsoid, Palm, SlopeMotion, Sphere, SupportFunction, Translated};
+use contact_kinematics::{Ellipsoid, MotionLaw, Palm, Sphere, SupportFunction, Translated};
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::integrate::Tolerance;
 use object_dynamics::{
@@ -17,7 +17,7 @@ const OFFSET: DVec3 = DVec3::new(0.1, -0.05, 0.12);
 
 fn palms() -> [Palm; 3] {
     let palm = |azimuth, slope, amplitude, frequency, phase| {
-        Palm::new(azimuth, SlopeMotion::Sinusoid { slope, amplitude, frequency, phase }).unwrap()
+        Palm::new(azimuth, MotionLaw::Sinusoid { mean: slope, amplitude, frequency, phase }).unwrap()
     };
     [palm(0.1, 0.9, 0.08, 1.7, 0.3), palm(2.0, 1.05, 0.1, 2.1, 1.0), palm(4.3, 1.0, 0.06, 1.3, 2.0)]
 }

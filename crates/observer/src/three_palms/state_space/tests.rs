@@ -6,7 +6,7 @@ use crate::three_palms::cold_start::scales;
 use crate::three_palms::covariance::NoiseLevel;
 use crate::three_palms::momentum::StartState;
 use crate::three_palms::track::Track;
-use contact_kinematics::{Ellipsoid, Palm, SlopeMotion};
+use contact_kinematics::{Ellipsoid, MotionLaw, Palm};
 use glam::{DQuat, DVec3};
 use nalgebra::SVector;
 use object_dynamics::integrate::Tolerance;
@@ -40,7 +40,7 @@ fn moving_scene() -> (MassProperties, Simulation, Track) {
     let axes = DVec3::new(1.0, 2.0, 2.5);
     let mass = MassProperties::uniform_ellipsoid(1.3, axes).unwrap();
     let palm = |azimuth, phase| {
-        let motion = SlopeMotion::Sinusoid { slope: 1.0, amplitude: 0.08, frequency: 1.7, phase };
+        let motion = MotionLaw::Sinusoid { mean: 1.0, amplitude: 0.08, frequency: 1.7, phase };
         Palm::new(azimuth, motion).unwrap()
     };
     let palms = [palm(0.1, 0.3), palm(2.2, 1.0), palm(4.3, 2.0)];

@@ -1,7 +1,5 @@
 //! Laws that hold for any body on any three palms, and the errors of scenes that cannot be.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
-
 use contact_kinematics::*;
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::integrate::Tolerance;
@@ -42,7 +40,7 @@ fn case() -> impl Strategy<Value = Case> {
             let mut azimuth = 0.3;
             let palms = palms.map(|(shift, slope, amplitude, frequency, phase)| {
                 azimuth += std::f64::consts::TAU / 3.0;
-                Palm::new(azimuth + shift, SlopeMotion::Sinusoid { slope, amplitude, frequency, phase })
+                Palm::new(azimuth + shift, MotionLaw::Sinusoid { mean: slope, amplitude, frequency, phase })
                     .unwrap()
             });
             let mass = MassProperties::new(mass, tensor).unwrap();
@@ -55,7 +53,7 @@ proptest! {
     #[test]
     fn minimal_and_multiplier_forms_agree(case in case()) {
         let now = case.scene.instant(case.t, case.start.R_WO, case.start.w_WO).unwrap();
-        let state = MaximalState {
+        let state = BodyState {
             p_WCm: now.touch.p_WCm,
             R_WO: now.R_WO,
             v_WCm: now.rates.v_WCm,
@@ -176,7 +174,7 @@ fn without_gravity_nothing_holds_the_body() {
 fn palms_that_turn_parallel_end_the_simulation_with_an_error() {
     // Palms 1 and 2 sink towards the horizontal together: their normals meet at vertical.
     let axes = DVec3::new(1.2, 1.0, 0.9);
-    let sink = |azimuth| Palm::new(azimuth, SlopeMotion::Steady { slope: 0.6, rate: -0.6 }).unwrap();
+    let sink = |azimuth| Palm::new(azimuth, MotionLaw::Steady { start: 0.6, rate: -0.6 }).unwrap();
     let palms = [sink(0.0), sink(2.1), Palm::fixed(4.2, 0.6).unwrap()];
     let mass = MassProperties::uniform_ellipsoid(1.0, axes).unwrap();
     let scene = ThreePalmScene::new(Ellipsoid::new(axes).unwrap(), mass, palms, 9.81).unwrap();
