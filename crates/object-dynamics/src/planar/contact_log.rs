@@ -1,10 +1,9 @@
 //! What any number of planar palms sensed, in memory.
 
-use super::contacts::MOST_PALMS;
-use super::hybrid::ContactRun;
+use super::hybrid::{ContactInstant, ContactSimulation};
 use super::log::PlanarTruth;
-use crate::SeriesError;
 use crate::series::{check_lengths, check_order};
+use crate::{ContactMode, MOST_PALMS, SeriesError};
 use contact_kinematics::planar::SurfacePose;
 use glam::DVec2;
 use thiserror::Error;
@@ -104,25 +103,22 @@ impl ContactLog {
     }
 }
 
-impl ContactRun {
-    /// The run as a log with truth.
+impl ContactSimulation {
+    /// What its palms sense, with truth.
     ///
     /// # Errors
-    /// [`SeriesError::TooShort`] for a run of a single sample.
+    /// [`SeriesError::TooShort`] for a simulation of a single instant.
     pub fn log(&self) -> Result<ContactLog, ContactLogError> {
-        let samples = self.samples.iter().map(|s| ContactLogSample {
-            t: s.t,
-            palms: s
-                .contacts
-                .iter()
-                .map(|c| PalmSample {
-                    pose: SurfacePose { p_WP: c.palm.p_WP, angle: c.palm.angle },
-                    p_WC: c.p_WC,
-                    force: c.force,
-                })
-                .collect(),
+        let palm = |at: &ContactInstant, i: usize| PalmSample {
+            pose: SurfacePose { p_WP: at.palms[i].p_WP, angle: at.palms[i].angle },
+            p_WC: (at.modes[i] != ContactMode::Off).then_some(at.contacts[i].p_WC),
+            force: at.forces[i],
+        };
+        let samples = self.instants.iter().map(|at| {
+            let palms = (0..at.palms.len()).map(|i| palm(at, i)).collect();
+            ContactLogSample { t: at.t, palms }
         });
-        let truth = self.samples.iter().map(|s| s.state.into()).collect();
+        let truth = self.instants.iter().map(|at| at.body.into()).collect();
         ContactLog::new(samples.collect(), Some(truth))
     }
 }

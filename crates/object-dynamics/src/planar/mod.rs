@@ -19,14 +19,11 @@ mod simulate;
 mod torque_driven;
 
 pub use contact_log::{ContactLog, ContactLogError, ContactLogSample, PalmSample};
-pub use contacts::{
-    Choice, ContactProblem, ContactScene, ContactSceneError, Jammed, MOST_PALMS, ModeError, PlanarMode,
-    Response, ScenePalm, TouchingContact,
-};
+pub use contacts::{ContactScene, ContactSceneError, Jammed, ModeError, ScenePalm};
 pub use error::{PlanarLogError, PlanarSimulationError};
 pub use hybrid::{
-    BodyState, Cause, ContactEvent, ContactReading, ContactRun, ContactRunSample, ContactSimulationError,
-    ContactStart, FieldError, StartError,
+    BodyState, ContactEvent, ContactEventKind, ContactInstant, ContactInstantError, ContactSimulation,
+    ContactSimulationError, ContactStart, FieldError, PalmContactError, StartError,
 };
 pub use log::{PlanarLog, PlanarSample, PlanarTruth};
 pub use mass::{PlanarMass, PlanarMassError};

@@ -5,45 +5,48 @@ use nalgebra::{DMatrix, Vector3};
 use thiserror::Error;
 
 /// Share of the largest force or rate by which a sign may be wrong: what a run is held to.
-pub(crate) const CONSISTENT: f64 = 1e-9;
+pub(in crate::planar) const CONSISTENT: f64 = 1e-9;
 /// Accelerations of two sets that differ by more than this share are two answers: a thousand times what sets within
 /// [`CONSISTENT`] of their border differ by.
 const DIFFERENT: f64 = 1e-6;
 
 /// The modes taken, and what they do.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Choice {
+pub(in crate::planar) struct Choice {
     /// One mode for each contact of the problem.
-    pub modes: Vec<PlanarMode>,
+    pub(in crate::planar) modes: Vec<PlanarMode>,
     /// Accelerations and forces.
-    pub response: Response,
+    pub(in crate::planar) response: Response,
 }
 
-/// Why no modes can be taken.
+/// Why no modes can be taken. A set is told by the letters of its touching contacts, in the order of the palms: `O` off, `S`
+/// sliding (with the sign of its slip along the palm's tangent), `R` sticking.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ModeError {
-    /// No set of modes is consistent with the laws of contact and friction.
+    /// Painleve's paradox or a jam: rigid bodies with this friction have no motion here.
     #[error(
-        "no set of contact modes is consistent (Painleve's paradox): friction is too large here for rigid bodies"
+        "no mode set of the contacts is consistent (friction wedges the object: a jam, or Painleve's paradox)"
     )]
     Inconsistent,
-    /// Two sets are, with different accelerations.
+    /// Several motions are possible.
     #[error(
-        "contact modes {first:?} and {second:?} are both consistent: rigid bodies with friction do not decide here"
+        "mode sets {first} and {second} are both consistent: rigid bodies leave open which motion follows"
     )]
     Ambiguous {
-        /// One mode for each touching contact.
-        first: Vec<PlanarMode>,
-        /// Likewise.
-        second: Vec<PlanarMode>,
+        /// One of them.
+        first: String,
+        /// Another.
+        second: String,
     },
-    /// Sliding friction has made the matrix of the contacts lose the property that guarantees one answer.
+    /// The sliding contacts' matrix is no P-matrix: forces without bound are near.
     #[error(
-        "sliding friction leaves no unique answer: a principal minor of the contacts' matrix is {minor:.3e} (it must be \
-         positive)"
+        "mode set {modes}: friction wedges the sliding contacts (smallest principal minor {minor:.2e}, not above zero): \
+         no P-matrix, so motion need not exist or be one"
     )]
     NotP {
-        /// The smallest principal minor, in units of the rows' sizes.
+        /// The set.
+        modes: String,
+        /// Smallest principal minor, dimensionless.
         minor: f64,
     },
 }
@@ -56,10 +59,11 @@ struct Consistent {
 impl ContactProblem {
     /// The modes that agree with the signs of forces, gaps and slips: the `present` ones if they do, else those with the
     /// fewest changes. Sets in `ended` are left out, unless nothing else is consistent: an event has just told against them.
-    ///
-    /// # Errors
-    /// [`ModeError`].
-    pub fn choose(&self, present: &[PlanarMode], ended: &[Vec<PlanarMode>]) -> Result<Choice, ModeError> {
+    pub(in crate::planar) fn choose(
+        &self,
+        present: &[PlanarMode],
+        ended: &[Vec<PlanarMode>],
+    ) -> Result<Choice, ModeError> {
         let mut found: Vec<Consistent> = Vec::new();
         let options: Vec<Vec<PlanarMode>> = self.contacts.iter().map(|c| options(&c.contact)).collect();
         let count: usize = options.iter().map(Vec::len).product();
@@ -77,7 +81,10 @@ impl ContactProblem {
         found.sort_by_key(|c| (ended.contains(&c.choice.modes), c.changes));
         let choice = found.into_iter().next().ok_or(ModeError::Inconsistent)?.choice;
         let minor = self.smallest_minor(&choice.modes);
-        if minor < -CONSISTENT { Err(ModeError::NotP { minor }) } else { Ok(choice) }
+        if minor < -CONSISTENT {
+            return Err(ModeError::NotP { modes: letters(&choice.modes), minor });
+        }
+        Ok(choice)
     }
 
     fn refuse_two_answers(&self, found: &[Consistent]) -> Result<(), ModeError> {
@@ -85,8 +92,8 @@ impl ContactProblem {
         let limit = DIFFERENT * self.scale() * self.roots[0];
         match found.iter().find(|c| (c.choice.response.x - first.choice.response.x).norm() > limit) {
             Some(second) => Err(ModeError::Ambiguous {
-                first: first.choice.modes.clone(),
-                second: second.choice.modes.clone(),
+                first: letters(&first.choice.modes),
+                second: letters(&second.choice.modes),
             }),
             None => Ok(()),
         }
@@ -96,8 +103,7 @@ impl ContactProblem {
     ///
     /// A gap that is off must not close; normal forces push; sticking forces stay in the cone; where a contact starts to
     /// slide it does so against its friction; the palms do not tear redundant contacts apart.
-    #[must_use]
-    pub fn margin(&self, modes: &[PlanarMode], response: &Response) -> f64 {
+    pub(in crate::planar) fn margin(&self, modes: &[PlanarMode], response: &Response) -> f64 {
         let mass = self.roots[0] * self.roots[0];
         let largest = response.forces.iter().flatten().fold(0.0_f64, |s, f| s.max(f.abs())) / mass;
         let scale = self.scale().max(largest);
@@ -121,8 +127,7 @@ impl ContactProblem {
     /// eliminated, in units of the rows' lengths. Positive where one answer is guaranteed.
     ///
     /// Infinite where there is nothing to ask: no friction slides, or the rest of the contacts hold the body.
-    #[must_use]
-    pub fn smallest_minor(&self, modes: &[PlanarMode]) -> f64 {
+    pub(in crate::planar) fn smallest_minor(&self, modes: &[PlanarMode]) -> f64 {
         let (mut held, mut sliding) = (Vec::new(), Vec::new());
         for (c, mode) in self.contacts.iter().zip(modes) {
             match *mode {
@@ -157,6 +162,16 @@ impl ContactProblem {
         };
         sets.map(minor).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// The letters of a set.
+pub(in crate::planar) fn letters(modes: &[PlanarMode]) -> String {
+    let sign = |mode: &PlanarMode| match *mode {
+        PlanarMode::Slide { sense } if sense > 0.0 => "+",
+        PlanarMode::Slide { sense } if sense < 0.0 => "-",
+        _ => "",
+    };
+    modes.iter().map(|mode| format!("{}{}", mode.mode().letter(), sign(mode))).collect()
 }
 
 /// What a contact may do: with friction four things, or two where it slips or there is no friction.

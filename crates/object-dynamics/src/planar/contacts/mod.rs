@@ -10,9 +10,10 @@ mod scene;
 #[cfg(test)]
 mod tests;
 
-pub(super) use choose::CONSISTENT;
-pub use choose::{Choice, ModeError};
-pub use respond::{Jammed, Response};
+pub use choose::ModeError;
+pub(super) use choose::{CONSISTENT, letters};
+pub use respond::Jammed;
+pub(super) use respond::Response;
 pub use scene::{ContactScene, ContactSceneError, ScenePalm};
 
 use super::mass::PlanarMass;
@@ -20,12 +21,9 @@ use crate::modes::ContactMode;
 use glam::DVec2;
 use nalgebra::Vector3;
 
-/// Most palms of a scene: the choice of modes goes through up to four of each contact.
-pub const MOST_PALMS: usize = 5;
-
 /// What a planar contact does: its mode, and where it slides the sense of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum PlanarMode {
+pub(super) enum PlanarMode {
     /// No force.
     #[default]
     Off,
@@ -40,8 +38,7 @@ pub enum PlanarMode {
 
 impl PlanarMode {
     /// The mode without its sense.
-    #[must_use]
-    pub fn mode(&self) -> ContactMode {
+    pub(super) fn mode(self) -> ContactMode {
         match self {
             Self::Off => ContactMode::Off,
             Self::Slide { .. } => ContactMode::Slide,
@@ -54,27 +51,38 @@ impl PlanarMode {
 ///
 /// In a blow velocities take the place of accelerations: biases are then those of the first rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TouchingContact {
+pub(super) struct TouchingContact {
     /// The palm's normal, into the object.
-    pub n: DVec2,
+    pub(super) n: DVec2,
     /// Its tangent.
-    pub t: DVec2,
+    pub(super) t: DVec2,
     /// Contact point from the centre of mass, m.
-    pub b_W: DVec2,
+    pub(super) b_W: DVec2,
     /// `gap'' = n . (a + alpha x b) + biases[0]` and `t . slip' = t . (a + alpha x b) + biases[1]`, m/s^2.
-    pub biases: [f64; 2],
+    pub(super) biases: [f64; 2],
     /// Coefficient of friction.
-    pub mu: f64,
+    pub(super) mu: f64,
     /// Sign of the present slip along `t`; 0 where the contact does not slip, and the forces decide whether it will.
-    pub sense: f64,
+    pub(super) sense: f64,
 }
 
 /// A body with its touching contacts at one instant: what its acceleration is asked of.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ContactProblem {
+pub(super) struct ContactProblem {
     roots: [f64; 2],
     free: Vector3<f64>,
     contacts: Vec<Rows>,
+}
+
+/// A small change of motion, and the impulses that make it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Correction {
+    /// Of the centre of mass, m/s (or m).
+    pub(super) linear: DVec2,
+    /// Of the orientation, rad/s (or rad).
+    pub(super) angular: f64,
+    /// At each contact along its normal and tangent, N s.
+    pub(super) impulses: Vec<[f64; 2]>,
 }
 
 /// Rows of a contact in mass-weighted coordinates.
@@ -88,8 +96,7 @@ struct Rows {
 impl ContactProblem {
     /// From mass, the acceleration of the centre of mass (m/s^2) and the angular acceleration (rad/s^2) without contacts,
     /// and the contacts.
-    #[must_use]
-    pub fn new(mass: PlanarMass, free: (DVec2, f64), contacts: &[TouchingContact]) -> Self {
+    pub(super) fn new(mass: PlanarMass, free: (DVec2, f64), contacts: &[TouchingContact]) -> Self {
         let roots = [mass.mass().sqrt(), mass.inertia().sqrt()];
         let row = |e: DVec2, b: DVec2| {
             let linear = e / roots[0];
@@ -105,22 +112,28 @@ impl ContactProblem {
     }
 
     /// The motion with least kinetic energy that takes the rates `residuals` (along normal and tangent of each contact; m/s
-    /// or, of gaps, m) away from the contacts, along the normals of sliding contacts and both axes of sticking ones: velocity
-    /// of the centre of mass and angular velocity.
-    #[must_use]
-    pub(crate) fn correction(&self, modes: &[PlanarMode], residuals: &[[f64; 2]]) -> (DVec2, f64) {
-        let (mut rows, mut right) = (Vec::new(), Vec::new());
-        for ((contact, mode), residual) in self.contacts.iter().zip(modes).zip(residuals) {
-            if *mode != PlanarMode::Off {
-                rows.push(contact.normal);
-                right.push(-residual[0]);
-            }
-            if *mode == PlanarMode::Stick {
-                rows.push(contact.tangent);
-                right.push(-residual[1]);
+    /// or, of gaps, m) away from the contacts, along the normals of sliding contacts and both axes of sticking ones.
+    pub(super) fn correction(&self, modes: &[PlanarMode], residuals: &[[f64; 2]]) -> Correction {
+        let (mut rows, mut right, mut axes) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, (contact, mode)) in self.contacts.iter().zip(modes).enumerate() {
+            let count = match mode {
+                PlanarMode::Off => 0,
+                PlanarMode::Slide { .. } => 1,
+                PlanarMode::Stick => 2,
+            };
+            for axis in 0..count {
+                rows.push([contact.normal, contact.tangent][axis]);
+                right.push(-residuals[i][axis]);
+                axes.push((i, axis));
             }
         }
-        self.unweighted(&respond::least_norm(&rows, &right).solution)
+        let least = respond::least_norm(&rows, &right);
+        let mut impulses = vec![[0.0; 2]; self.contacts.len()];
+        for ((i, axis), share) in axes.into_iter().zip(least.shares) {
+            impulses[i][axis] = share;
+        }
+        let (linear, angular) = self.unweighted(&least.solution);
+        Correction { linear, angular, impulses }
     }
 
     /// Natural units of mass-weighted coordinates back to acceleration and angular acceleration.

@@ -14,19 +14,19 @@ const CONTRADICTION: f64 = 1e-9;
 
 /// What a body does under one set of modes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Response {
+pub(in crate::planar) struct Response {
     /// Acceleration of the centre of mass, m/s^2.
-    pub a_WCm: DVec2,
+    pub(in crate::planar) a_WCm: DVec2,
     /// Angular acceleration, rad/s^2.
-    pub alpha0: f64,
+    pub(in crate::planar) alpha0: f64,
     /// Force of each palm on the body along its normal and its tangent, N; zero where the contact is off.
-    pub forces: Vec<[f64; 2]>,
+    pub(in crate::planar) forces: Vec<[f64; 2]>,
     /// Whether the forces are not unique: bodies stuck on several palms squeeze themselves. They are then those of least
     /// size within the friction cones, or, where there are none, of least size.
-    pub redundant: bool,
+    pub(in crate::planar) redundant: bool,
     /// What the palms' motion leaves of constraints that contradict each other, m/s^2; zero but for rounding where it can be
     /// followed.
-    pub torn: f64,
+    pub(in crate::planar) torn: f64,
     /// Mass-weighted acceleration.
     pub(super) x: Vector3<f64>,
 }
@@ -47,6 +47,8 @@ struct System {
 /// Least-norm solution of a system of rows in three unknowns.
 pub(super) struct LeastNorm {
     pub(super) solution: Vector3<f64>,
+    /// Shares of the rows in it: `solution = sum of shares rows`.
+    pub(super) shares: Vec<f64>,
     rank: usize,
     residual: f64,
 }
@@ -55,10 +57,7 @@ impl ContactProblem {
     /// Accelerations and forces under `modes`, one for each contact, whatever the signs of the forces.
     ///
     /// Row `n` for sliding contacts with the force along `n - mu sense t`; rows and forces along `n` and `t` for sticking ones.
-    ///
-    /// # Errors
-    /// [`Jammed`].
-    pub fn respond(&self, modes: &[PlanarMode]) -> Result<Response, Jammed> {
+    pub(in crate::planar) fn respond(&self, modes: &[PlanarMode]) -> Result<Response, Jammed> {
         let system = self.assemble(modes);
         let size = system.rows.len();
         if size == 0 {
@@ -223,24 +222,29 @@ fn independent(rows: &[Vector3<f64>]) -> bool {
 /// Solution of least size of `rows . x = right`, in the sense of least squares.
 pub(super) fn least_norm(rows: &[Vector3<f64>], right: &[f64]) -> LeastNorm {
     if rows.is_empty() {
-        return LeastNorm { solution: Vector3::zeros(), rank: 0, residual: 0.0 };
+        return LeastNorm { solution: Vector3::zeros(), shares: Vec::new(), rank: 0, residual: 0.0 };
     }
     let matrix = DMatrix::from_fn(rows.len().max(3), 3, |i, j| rows.get(i).map_or(0.0, |row| row[j]));
     let svd = matrix.svd(true, true);
     let (Some(u), Some(v_t)) = (svd.u.as_ref(), svd.v_t.as_ref()) else {
-        return LeastNorm { solution: Vector3::zeros(), rank: 0, residual: f64::INFINITY };
+        let shares = vec![0.0; rows.len()];
+        return LeastNorm { solution: Vector3::zeros(), shares, rank: 0, residual: f64::INFINITY };
     };
     let limit = DEPENDENT * svd.singular_values.max();
-    let (mut solution, mut rank) = (Vector3::zeros(), 0);
+    let (mut solution, mut shares, mut rank) = (Vector3::zeros(), vec![0.0; rows.len()], 0);
     for k in 0..3 {
         if svd.singular_values[k] > limit {
             let part: f64 = right.iter().enumerate().map(|(i, r)| u[(i, k)] * r).sum();
-            solution += Vector3::new(v_t[(k, 0)], v_t[(k, 1)], v_t[(k, 2)]) * (part / svd.singular_values[k]);
+            let length = part / svd.singular_values[k];
+            solution += Vector3::new(v_t[(k, 0)], v_t[(k, 1)], v_t[(k, 2)]) * length;
+            for (i, share) in shares.iter_mut().enumerate() {
+                *share += u[(i, k)] * length / svd.singular_values[k];
+            }
             rank += 1;
         }
     }
     let left = rows.iter().zip(right).map(|(row, r)| (row.dot(&solution) - r).abs());
-    LeastNorm { solution, rank, residual: left.fold(0.0, f64::max) }
+    LeastNorm { solution, shares, rank, residual: left.fold(0.0, f64::max) }
 }
 
 /// Least-norm solution of a square system, and an orthonormal basis of its null space.

@@ -1,4 +1,4 @@
-use super::MOST_PALMS;
+use crate::MOST_PALMS;
 use crate::modes::{FrictionError, check_friction};
 use crate::planar::reaction::PlanarObject;
 use contact_kinematics::planar::{PalmSurface, RadiusFunction, SurfaceError, SurfaceMotion};

@@ -1,9 +1,9 @@
 //! What the contacts do next: blows where gaps close, then modes anew.
 
-use super::error::{ContactSimulationError, FieldError};
-use super::events::Cause;
+use super::error::{ContactSimulationError, FieldError, PalmContactError};
+use super::events::{ContactEventKind as Kind, End};
 use super::phase::Phase;
-use super::state::{BodyState, PALM_WORK, TIME, Vector};
+use super::state::{BodyState, PALM_WORK, TIME, Vector, add_impulse};
 use super::tracker::{Touch, Tracker};
 use crate::planar::contacts::{ContactProblem, ModeError, PlanarMode};
 use contact_kinematics::planar::RadiusFunction;
@@ -31,7 +31,8 @@ pub(super) struct Decision<'a, S> {
 pub(super) struct Question<'q> {
     /// Modes of all palms so far.
     pub(super) present: &'q [PlanarMode],
-    pub(super) cause: Cause,
+    /// Why they end; none at the start.
+    pub(super) end: Option<End>,
     /// Sets that have ended at this instant.
     pub(super) ended: &'q [Vec<PlanarMode>],
 }
@@ -46,7 +47,7 @@ impl<S: RadiusFunction> Tracker<'_, S> {
         let t = y[TIME];
         let at = |source| ContactSimulationError::Contact { t, source };
         let mut modes = question.present.to_vec();
-        if let Cause::Gap { palm } = question.cause {
+        if let Some(End::Event(Kind::Touches, Some(palm))) = question.end {
             // Its gap is taken out, its gap rate is not: that is the blow's.
             let mut closed = modes.clone();
             closed[palm] = PlanarMode::Slide { sense: 0.0 };
@@ -57,27 +58,30 @@ impl<S: RadiusFunction> Tracker<'_, S> {
         }
         self.phase(question.present).project(&mut y).map_err(at)?;
         let mut state = BodyState::of(&y);
-        let told =
-            |state: BodyState| move |source: ModeError| ContactSimulationError::Modes { t, state, source };
-        let mut touches = self.closed(t, &state, &modes).map_err(at)?;
+        let told = |state: BodyState| {
+            move |source: ModeError| ContactSimulationError::Modes { t, body: state, source }
+        };
+        let mut touches = self.closed(t, &state, &modes).map_err(|source| at(source.into()))?;
         let still = SETTLED * self.speed(&state);
         let closes = |touch: &Touch| touch.contact.n.dot(touch.slip(&state)) < -still;
         let mut blow = None;
         if touches.iter().any(closes) {
-            let work = self.blow(&touches, &mut state, &mut modes).map_err(told(state))?;
-            y[PALM_WORK] += work[0];
-            blow = Some(work[1]);
+            blow = Some(self.blow(&touches, &mut y, &mut modes).map_err(told(state))?);
+            state = BodyState::of(&y);
         }
         touches.retain(|touch| touch.contact.n.dot(touch.slip(&state)) <= still);
         // After a blow nothing is told against the sets before it.
         let ended = if blow.is_some() { &[] } else { question.ended };
-        let question = Question { present: &modes, cause: question.cause, ended };
+        let question = Question { present: &modes, end: question.end, ended };
         let modes = self.choose(&touches, &state, &question).map_err(at)?.map_err(told(state))?;
-        state.write(&mut y);
         let phase = self.phase(&modes);
+        // What goes with rates that count as zero is an impulse, too.
         let before = self.kinetic(&y);
-        phase.project(&mut y).map_err(at)?;
-        let settled = self.kinetic(&y) - before;
+        let impulses = phase.project(&mut y).map_err(at)?;
+        let mut settled = self.kinetic(&y) - before;
+        for (touch, impulse) in impulses {
+            settled -= add_blow(&mut y, &touch, impulse);
+        }
         Ok(Decision { phase, y, blow, settled })
     }
 
@@ -91,7 +95,12 @@ impl<S: RadiusFunction> Tracker<'_, S> {
     }
 
     /// Contacts that touch: by their modes, or by their gaps.
-    fn closed(&self, t: f64, state: &BodyState, modes: &[PlanarMode]) -> Result<Vec<Touch>, FieldError> {
+    fn closed(
+        &self,
+        t: f64,
+        state: &BodyState,
+        modes: &[PlanarMode],
+    ) -> Result<Vec<Touch>, PalmContactError> {
         let mut touches = Vec::new();
         for (palm, mode) in modes.iter().enumerate() {
             let near = *mode != PlanarMode::Off || self.gap(palm, t, state)?[0] <= CLOSED * self.size;
@@ -102,14 +111,9 @@ impl<S: RadiusFunction> Tracker<'_, S> {
         Ok(touches)
     }
 
-    /// Inelastic blow: impulses in the friction cones after which no gap closes, and the modes that they are of. Returns the
-    /// work (J) on the palms' velocities and on the slips.
-    fn blow(
-        &self,
-        touches: &[Touch],
-        state: &mut BodyState,
-        modes: &mut [PlanarMode],
-    ) -> Result<[f64; 2], ModeError> {
+    /// Inelastic blow: impulses in the friction cones after which no gap closes, and the modes that they are of. Returns their
+    /// work (J) on gap rates and slips; what they do at the palms' velocities is work of the palms.
+    fn blow(&self, touches: &[Touch], y: &mut Vector, modes: &mut [PlanarMode]) -> Result<f64, ModeError> {
         let contacts: Vec<_> = touches
             .iter()
             .map(|touch| {
@@ -119,16 +123,18 @@ impl<S: RadiusFunction> Tracker<'_, S> {
             })
             .collect();
         let present: Vec<_> = touches.iter().map(|touch| modes[touch.palm]).collect();
-        let problem = ContactProblem::new(self.mass(), (state.v_WCm, state.omega0), &contacts);
+        let before = BodyState::of(y);
+        let problem = ContactProblem::new(self.mass(), (before.v_WCm, before.omega0), &contacts);
         let choice = problem.choose(&present, &[])?;
-        let before = *state;
-        (state.v_WCm, state.omega0) = (choice.response.a_WCm, choice.response.alpha0);
-        let mut work = [0.0; 2];
+        let (v_WCm, omega0) = (choice.response.a_WCm, choice.response.alpha0);
+        let after = BodyState { v_WCm, omega0, ..before };
+        after.write(y);
+        let mut work = 0.0;
         for ((touch, mode), [normal, along]) in touches.iter().zip(&choice.modes).zip(&choice.response.forces)
         {
             let impulse = touch.contact.n * *normal + touch.contact.t * *along;
-            work[0] += impulse.dot(touch.surface.material_velocity(touch.contact.p_WC));
-            work[1] += 0.5 * impulse.dot(touch.slip(&before) + touch.slip(state));
+            add_blow(y, touch, impulse);
+            work += 0.5 * impulse.dot(touch.slip(&before) + touch.slip(&after));
             modes[touch.palm] = *mode;
         }
         Ok(work)
@@ -146,8 +152,9 @@ impl<S: RadiusFunction> Tracker<'_, S> {
         for touch in touches {
             let (rates, mu) = (touch.rates(state)?, self.friction(touch.palm));
             let along = touch.contact.t.dot(rates.slip);
-            let stopped =
-                question.cause == Cause::Slip { palm: touch.palm } || along.abs() <= still || mu == 0.0;
+            let stopped = question.end == Some(End::Event(Kind::SlipEnds, Some(touch.palm)))
+                || along.abs() <= still
+                || mu == 0.0;
             let sense = if stopped { 0.0 } else { along.signum() };
             contacts.push(touch.touching([rates.gap_bias, touch.contact.t.dot(rates.slip_bias)], mu, sense));
         }
@@ -162,4 +169,12 @@ impl<S: RadiusFunction> Tracker<'_, S> {
             modes
         }))
     }
+}
+
+/// Adds an impulse and what it works at the palm's velocity, J, which is returned.
+fn add_blow(y: &mut Vector, touch: &Touch, impulse: DVec2) -> f64 {
+    let work = impulse.dot(touch.surface.material_velocity(touch.contact.p_WC));
+    add_impulse(y, touch.palm, impulse);
+    y[PALM_WORK] += work;
+    work
 }

@@ -20,48 +20,67 @@ pub enum ContactSimulationError {
     /// The start cannot be used.
     #[error("start: {0}")]
     Start(#[from] StartError),
-    /// A contact cannot be computed.
-    #[error("at t = {t} s, {source}")]
+    /// Two palms overlap each other.
+    #[error("palms {first} and {second} overlap by {depth:.3e} m at the start; move them apart")]
+    PalmsOverlap {
+        /// Palm number from 1.
+        first: usize,
+        /// Palm number from 1.
+        second: usize,
+        /// How deep, m.
+        depth: f64,
+    },
+    /// A contact could not be found.
+    #[error("at t = {t} s: {source}")]
     Contact {
         /// Time in s.
         t: f64,
-        /// Which, and why.
+        /// Why.
         source: FieldError,
     },
-    /// The laws of contact and friction give no answer, or two.
-    #[error("at t = {t} s, with the object at {state:?}: {source}")]
+    /// No contact modes, or more than one set, follow from rigid bodies with Coulomb friction.
+    #[error("at t = {t} s: {source}")]
     Modes {
         /// Time in s.
         t: f64,
-        /// State there.
-        state: BodyState,
+        /// The body there.
+        body: BodyState,
         /// Why.
         source: ModeError,
     },
     /// The integrator cannot go on.
     #[error(transparent)]
     Integration(#[from] IntegrationError<FieldError>),
-    /// Contacts come and go without end.
-    #[error("contacts changed {changes} times up to t = {t} s without the motion going on")]
-    Stalled {
-        /// Time in s.
+    /// Modes change without end in no time.
+    #[error(
+        "{count} mode changes within {span:.1e} s at t = {t} s: they pile up, and rigid contacts say no more"
+    )]
+    TooManyEvents {
+        /// How many.
+        count: usize,
+        /// Within what time, s.
+        span: f64,
+        /// When, s.
         t: f64,
-        /// Changes within the last natural time.
-        changes: usize,
     },
+}
+
+/// Why a contact with a palm cannot be told.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error("palm {palm}: {source}")]
+pub struct PalmContactError {
+    /// Palm number from 1.
+    pub palm: usize,
+    /// Why.
+    pub source: ContactError,
 }
 
 /// Why accelerations cannot be told.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum FieldError {
-    /// A contact cannot be computed.
-    #[error("palm {palm}: {source}")]
-    Contact {
-        /// Palm number from 1.
-        palm: usize,
-        /// Why.
-        source: ContactError,
-    },
+    /// A contact.
+    #[error(transparent)]
+    Contact(#[from] PalmContactError),
     /// The contacts are jammed.
     #[error(transparent)]
     Jammed(#[from] Jammed),
@@ -95,7 +114,7 @@ pub enum StartError {
     #[error(
         "object does not touch palm {palm} as asked: their gap is {gap:.3e} m; place it on the palms first"
     )]
-    OutOfContact {
+    NotInContact {
         /// Palm number.
         palm: usize,
         /// Gap, m.

@@ -2,7 +2,7 @@
 
 use super::error::FieldError;
 use super::phase::Phase;
-use super::state::{BodyState, Vector};
+use super::state::{BodyState, LENGTH, Vector};
 use crate::integrate::{DenseOutput, find_root};
 use crate::planar::contacts::{CONSISTENT, PlanarMode};
 use contact_kinematics::planar::RadiusFunction;
@@ -18,33 +18,26 @@ const GAP_SLACK: f64 = 4.0;
 /// Halvings by which a phase that begins on the edge of its end is followed back.
 const HALVINGS: u32 = 30;
 
-/// Why the modes change. Palms are numbered from 0.
+/// What has changed at a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactEventKind {
+    /// The body has come to touch the palm: a blow.
+    Touches,
+    /// The normal force of a sliding contact has fallen to zero.
+    Lifts,
+    /// Its slip has come to an end.
+    SlipEnds,
+    /// Its force has reached the edge of the friction cone.
+    ConeLeft,
+    /// No squeeze within the cones holds a body stuck on several palms any more, or the palms part.
+    SqueezeEnds,
+}
+
+/// Why a phase ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cause {
-    /// The run begins.
-    Start,
-    /// A gap closes.
-    Gap {
-        /// Palm.
-        palm: usize,
-    },
-    /// The force of a sliding contact falls to zero.
-    Force {
-        /// Palm.
-        palm: usize,
-    },
-    /// The force of a sticking contact reaches the edge of its cone.
-    Cone {
-        /// Palm.
-        palm: usize,
-    },
-    /// The slip of a sliding contact falls to zero.
-    Slip {
-        /// Palm.
-        palm: usize,
-    },
-    /// Bodies stuck on several palms can no longer be held by any squeeze within the cones, or the palms move apart.
-    Squeeze,
+pub(super) enum End {
+    /// A change of modes; at which palm, from 0, where it is one's.
+    Event(ContactEventKind, Option<usize>),
     /// Sliding friction has come to where it allows two answers, or none.
     Friction,
 }
@@ -52,29 +45,31 @@ pub enum Cause {
 /// A quantity that is positive while the modes hold; of gaps also the rate.
 #[derive(Clone, Copy)]
 struct Indicator {
-    cause: Cause,
+    end: End,
     value: f64,
     rate: f64,
 }
+
+use ContactEventKind as Kind;
 
 impl<S: RadiusFunction> Phase<'_, S> {
     /// First end of the phase within a step, up to `end`.
     pub(super) fn first_event(
         &self,
-        dense: &DenseOutput<9>,
+        dense: &DenseOutput<LENGTH>,
         end: f64,
-    ) -> Result<Option<(f64, Cause)>, FieldError> {
+    ) -> Result<Option<(f64, End)>, FieldError> {
         let start = dense.start();
         let (mut t_before, mut before) = (start, self.indicators(start, &dense.at(start))?);
         for check in 1..=CHECKS {
             let t = start + (end - start) * f64::from(check) / f64::from(CHECKS);
             let now = self.indicators(t, &dense.at(t))?;
-            let mut first: Option<(f64, Cause)> = None;
+            let mut first: Option<(f64, End)> = None;
             for (index, (a, b)) in before.iter().zip(&now).enumerate() {
                 let Some(until) = self.below_zero(dense, index, (t_before, a), (t, b)) else { continue };
                 let at = self.locate(dense, index, (t_before, a.value), until);
                 if first.is_none_or(|(earliest, _)| at < earliest) {
-                    first = Some((at, b.cause));
+                    first = Some((at, b.end));
                 }
             }
             if first.is_some() {
@@ -88,7 +83,7 @@ impl<S: RadiusFunction> Phase<'_, S> {
     /// A time up to `b` at which an indicator is below zero: the end, or where a gap is least in between.
     fn below_zero(
         &self,
-        dense: &DenseOutput<9>,
+        dense: &DenseOutput<LENGTH>,
         index: usize,
         a: (f64, &Indicator),
         b: (f64, &Indicator),
@@ -106,7 +101,7 @@ impl<S: RadiusFunction> Phase<'_, S> {
     }
 
     /// The zero between `a`, with its value, and `until`.
-    fn locate(&self, dense: &DenseOutput<9>, index: usize, a: (f64, f64), until: f64) -> f64 {
+    fn locate(&self, dense: &DenseOutput<LENGTH>, index: usize, a: (f64, f64), until: f64) -> f64 {
         let value = |t: f64| self.indicator(dense, index, t).map_or(f64::NAN, |i| i.value);
         let rounding = f64::EPSILON * until.abs();
         let (mut from, mut until) = (a.0, until);
@@ -127,7 +122,7 @@ impl<S: RadiusFunction> Phase<'_, S> {
         find_root(value, from, until, rounding).unwrap_or(from)
     }
 
-    fn indicator(&self, dense: &DenseOutput<9>, index: usize, t: f64) -> Option<Indicator> {
+    fn indicator(&self, dense: &DenseOutput<LENGTH>, index: usize, t: f64) -> Option<Indicator> {
         self.indicators(t, &dense.at(t)).ok()?.get(index).copied()
     }
 
@@ -135,7 +130,8 @@ impl<S: RadiusFunction> Phase<'_, S> {
     fn indicators(&self, t: f64, y: &Vector) -> Result<Vec<Indicator>, FieldError> {
         let state = BodyState::of(y);
         let mut all = Vec::new();
-        let mut push = |cause, value| all.push(Indicator { cause, value, rate: 0.0 });
+        let mut push = |end, value| all.push(Indicator { end, value, rate: 0.0 });
+        let event = |kind, palm| End::Event(kind, Some(palm));
         let reading = self.reading(t, &state)?;
         let response = &reading.response;
         for (((touch, rates), mode), [normal, along]) in
@@ -147,25 +143,25 @@ impl<S: RadiusFunction> Phase<'_, S> {
             match *mode {
                 PlanarMode::Off => {}
                 PlanarMode::Slide { sense } => {
-                    push(Cause::Force { palm }, told(*normal));
+                    push(event(Kind::Lifts, palm), told(*normal));
                     if sense != 0.0 {
-                        push(Cause::Slip { palm }, sense * touch.contact.t.dot(rates.slip));
+                        push(event(Kind::SlipEnds, palm), sense * touch.contact.t.dot(rates.slip));
                     }
                 }
                 PlanarMode::Stick => {
                     let limit = (mu + CONE_SLACK) * normal;
-                    push(Cause::Cone { palm }, told(limit - along));
-                    push(Cause::Cone { palm }, told(limit + along));
+                    push(event(Kind::ConeLeft, palm), told(limit - along));
+                    push(event(Kind::ConeLeft, palm), told(limit + along));
                 }
             }
         }
         let holds = !response.redundant || reading.problem.margin(&reading.modes, response) >= -CONSISTENT;
-        push(Cause::Squeeze, if holds { 1.0 } else { -1.0 });
-        push(Cause::Friction, reading.problem.smallest_minor(&reading.modes));
+        push(End::Event(Kind::SqueezeEnds, None), if holds { 1.0 } else { -1.0 });
+        push(End::Friction, reading.problem.smallest_minor(&reading.modes));
         for (palm, _) in self.modes.iter().enumerate().filter(|(_, mode)| **mode == PlanarMode::Off) {
             let [gap, rate] = self.tracker.gap(palm, t, &state)?;
             let value = gap + GAP_SLACK * self.tracker.gap_rounding(palm, t, &state);
-            all.push(Indicator { cause: Cause::Gap { palm }, value, rate });
+            all.push(Indicator { end: event(Kind::Touches, palm), value, rate });
         }
         Ok(all)
     }

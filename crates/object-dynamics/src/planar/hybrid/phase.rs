@@ -1,9 +1,9 @@
 //! Motion while no contact changes its mode.
 
-use super::error::FieldError;
-use super::state::{BodyState, FRICTION_WORK, PALM_WORK, TIME, Vector};
+use super::error::{FieldError, PalmContactError};
+use super::state::{BodyState, FRICTION_WORK, LENGTH, PALM_WORK, TIME, Vector, add_impulse};
 use super::tracker::{Touch, Tracker};
-use crate::planar::contacts::{ContactProblem, PlanarMode, Response};
+use crate::planar::contacts::{ContactProblem, Correction, PlanarMode, Response};
 use contact_kinematics::planar::{RadiusFunction, SurfaceRates};
 use glam::DVec2;
 
@@ -51,17 +51,24 @@ impl<S: RadiusFunction> Phase<'_, S> {
         let state = BodyState::of(y);
         let reading = self.reading(t, &state)?;
         let (a, v) = (reading.response.a_WCm, state.v_WCm);
-        let mut rate = [v.x, v.y, state.omega0, a.x, a.y, reading.response.alpha0, 0.0, 0.0, 1.0];
+        let mut rate = [0.0; LENGTH];
+        let motion = BodyState { p_WCm: v, phi0: state.omega0, v_WCm: a, omega0: reading.response.alpha0 };
+        motion.write(&mut rate);
+        rate[TIME] = 1.0;
         for ((touch, rates), force) in reading.touches.iter().zip(reading.forces()) {
+            add_impulse(&mut rate, touch.palm, force);
             rate[PALM_WORK] += force.dot(rates.surface_velocity);
-            rate[FRICTION_WORK] += force.dot(touch.contact.t) * rates.slip.dot(touch.contact.t);
+            if self.modes[touch.palm] != PlanarMode::Stick {
+                rate[FRICTION_WORK] += force.dot(touch.contact.t) * rates.slip.dot(touch.contact.t);
+            }
         }
         Ok(rate)
     }
 
     /// Pulls the state onto the contacts: gaps zero, gap rates zero, slips of sticking contacts zero, by the least change in
-    /// the metric of kinetic energy. A state that is there to rounding stays as it is.
-    pub(super) fn project(&self, y: &mut Vector) -> Result<(), FieldError> {
+    /// the metric of kinetic energy. A state that is there to rounding stays as it is. Returns the impulses of the change of
+    /// velocity.
+    pub(super) fn project(&self, y: &mut Vector) -> Result<Vec<(Touch, DVec2)>, FieldError> {
         let t = y[TIME];
         let mut state = BodyState::of(y);
         let gaps_alone: Vec<PlanarMode> = self
@@ -78,23 +85,26 @@ impl<S: RadiusFunction> Phase<'_, S> {
                 break;
             }
             let residual = |touch: &Touch| [touch.contact.gap, 0.0];
-            let (shift, turn) = self.correction(&touches, &gaps_alone, residual);
-            state.p_WCm += shift;
-            state.phi0 += turn;
+            let shift = self.correction(&touches, &gaps_alone, residual);
+            state.p_WCm += shift.linear;
+            state.phi0 += shift.angular;
         }
         let touches = self.touches(t, &state)?;
         let residual = |touch: &Touch| {
             let slip = touch.slip(&state);
             [touch.contact.n.dot(slip), touch.contact.t.dot(slip)]
         };
-        let (velocity, rate) = self.correction(&touches, &self.modes, residual);
-        state.v_WCm += velocity;
-        state.omega0 += rate;
+        let change = self.correction(&touches, &self.modes, residual);
+        state.v_WCm += change.linear;
+        state.omega0 += change.angular;
         state.write(y);
-        Ok(())
+        let impulse = |(touch, [normal, along]): (Touch, [f64; 2])| {
+            (touch, touch.contact.n * normal + touch.contact.t * along)
+        };
+        Ok(touches.into_iter().zip(change.impulses).map(impulse).collect())
     }
 
-    fn touches(&self, t: f64, state: &BodyState) -> Result<Vec<Touch>, FieldError> {
+    fn touches(&self, t: f64, state: &BodyState) -> Result<Vec<Touch>, PalmContactError> {
         let touching = (0..self.modes.len()).filter(|&palm| self.modes[palm] != PlanarMode::Off);
         touching.map(|palm| self.tracker.touch(palm, t, state)).collect()
     }
@@ -104,7 +114,7 @@ impl<S: RadiusFunction> Phase<'_, S> {
         touches: &[Touch],
         modes: &[PlanarMode],
         residual: impl Fn(&Touch) -> [f64; 2],
-    ) -> (DVec2, f64) {
+    ) -> Correction {
         let contacts: Vec<_> = touches.iter().map(|touch| touch.touching([0.0; 2], 0.0, 0.0)).collect();
         let modes: Vec<_> = touches.iter().map(|touch| modes[touch.palm]).collect();
         let residuals: Vec<_> = touches.iter().map(residual).collect();

@@ -1,115 +1,46 @@
 //! The loop: a phase, its event, the modes after it.
 
 use super::decide::Question;
-use super::error::ContactSimulationError;
-use super::events::Cause;
+use super::error::{ContactSimulationError, FieldError};
+use super::events::End;
 use super::phase::Phase;
+use super::result::{ContactEvent, ContactSimulation};
 use super::start::ContactStart;
-use super::state::{BodyState, FRICTION_WORK, PALM_WORK, TIME, Vector};
+use super::state::{BodyState, LENGTH, TIME, Vector};
 use super::tracker::Tracker;
-use crate::integrate::{Dop853, Tolerance};
-use crate::planar::contacts::{ContactScene, PlanarMode};
-use contact_kinematics::planar::{RadiusFunction, SurfaceState};
-use glam::DVec2;
+use crate::integrate::{Dop853, Statistics, Tolerance};
+use crate::planar::contacts::{ContactScene, ModeError, PlanarMode, letters};
+use contact_kinematics::planar::RadiusFunction;
 
 /// Absolute tolerance against the relative one: lengths, speeds and energies of a scene are not far below 1e-2.
 const ABSOLUTE_SHARE: f64 = 1e-2;
 /// Share of its size by which the body, or a palm at its place, may move in one step, so that no contact is passed by.
 const STEP_SHARE: f64 = 0.25;
 /// Changes of modes within one natural time after which they are taken to have no end. A body that rattles to rest in a wedge
-/// takes some tens.
+/// takes some tens, with much friction some hundreds.
 const MOST_CHANGES: usize = 5_000;
 
-/// One palm at one instant of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactReading {
-    /// Where it stands and how it moves.
-    pub palm: SurfaceState,
-    /// What its contact does.
-    pub mode: PlanarMode,
-    /// Gap, m.
-    pub gap: f64,
-    /// Contact point, world, m; none where the contact is off.
-    pub p_WC: Option<DVec2>,
-    /// Force on the body, world, N.
-    pub force: DVec2,
-    /// Slip of the body along the palm's tangent, m/s; zero where the contact is off.
-    pub slip: f64,
-}
-
-/// One instant of a run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ContactRunSample {
-    /// Time in s.
-    pub t: f64,
-    /// State of the body.
-    pub state: BodyState,
-    /// The palms, in the order of the scene.
-    pub contacts: Vec<ContactReading>,
-    /// Kinetic and potential energy of the body, J.
-    pub energy: f64,
-    /// Work of the palms' motion since the start, J: of the forces, and of the impulses of blows.
-    pub palm_work: f64,
-    /// Work of friction since the start, J; not positive.
-    pub friction_work: f64,
-    /// Energy lost in blows since the start, J; not positive.
-    pub blow_work: f64,
-}
-
-/// A change of modes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ContactEvent {
-    /// Time in s.
-    pub t: f64,
-    /// Why.
-    pub cause: Cause,
-    /// Modes from then on, of all palms.
-    pub modes: Vec<PlanarMode>,
-    /// Energy that a blow took, J; none where there was none.
-    pub blow_work: Option<f64>,
-}
-
-/// A simulated run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ContactRun {
-    /// Samples at the times asked for.
-    pub samples: Vec<ContactRunSample>,
-    /// Changes of modes, the first one at the start.
-    pub events: Vec<ContactEvent>,
-    /// Steps of the integrator.
-    pub steps: usize,
-}
-
-impl ContactRun {
-    /// Largest departure of energy from start energy plus work, as a fraction of the largest energy seen.
-    #[must_use]
-    pub fn energy_drift(&self) -> f64 {
-        let Some(first) = self.samples.first() else { return 0.0 };
-        let balance = |s: &ContactRunSample| s.energy - s.palm_work - s.friction_work - s.blow_work;
-        let worst = self.samples.iter().map(|s| (balance(s) - balance(first)).abs()).fold(0.0, f64::max);
-        worst / self.samples.iter().map(|s| s.energy.abs()).fold(f64::MIN_POSITIVE, f64::max)
-    }
-}
-
 impl<S: RadiusFunction> ContactScene<S> {
-    /// Simulates from `start` at the first of `times` (s) on, sampled at them, to the relative `tolerance` per step.
+    /// Simulates from `start` at the first of `times` (s) through every change of modes, sampled at `times`.
     ///
-    /// Between events the modes stay and the equations are smooth; an event ends a step. After each step gaps and gap rates of
-    /// touching contacts, and slips of sticking ones, are taken back to zero. Blows are inelastic.
+    /// Smooth motion by DOP853 with the forces of the present modes, to the relative `tolerance` per step, pulled back onto
+    /// the contacts after each; changes of modes are located on its dense output, and the modes after each are the
+    /// consistent ones. Blows are inelastic.
     ///
     /// # Errors
-    /// [`ContactSimulationError`].
+    /// [`ContactSimulationError`]; where rigid bodies with friction have no motion, or several, the state is named.
     pub fn simulate(
         &self,
         start: &ContactStart,
         times: &[f64],
         tolerance: f64,
-    ) -> Result<ContactRun, ContactSimulationError> {
+    ) -> Result<ContactSimulation, ContactSimulationError> {
         check_times(times)?;
         let tracker = Tracker::new(self);
+        tracker.check_overlap(times[0])?;
         tracker.check_start(times[0], start)?;
-        let mut y = [0.0; 9];
-        start.state.write(&mut y);
+        let mut y = [0.0; LENGTH];
+        start.body.write(&mut y);
         y[TIME] = times[0];
         let mut present = vec![PlanarMode::Off; self.palms().len()];
         for &palm in &start.contacts {
@@ -119,79 +50,95 @@ impl<S: RadiusFunction> ContactScene<S> {
         let mut joints: Vec<f64> = self.palms().iter().flat_map(|palm| palm.motion.joints()).collect();
         joints.sort_by(f64::total_cmp);
         let tolerance = Tolerance { relative: tolerance, absolute: ABSOLUTE_SHARE * tolerance };
-        let run = ContactRun { samples: Vec::with_capacity(times.len()), events: Vec::new(), steps: 0 };
-        let mut recorder = Recorder { tracker: &tracker, times, joints, tolerance, run, blow_work: 0.0 };
-        recorder.record(y, &present)?;
-        Ok(recorder.run)
+        let instants = Vec::with_capacity(times.len());
+        let result = ContactSimulation { instants, events: Vec::new(), statistics: Statistics::default() };
+        let mut run = Run { tracker: &tracker, times, joints, tolerance, result, blow_work: 0.0 };
+        run.finish(y, present)?;
+        Ok(run.result)
+    }
+
+    /// Kinetic and potential energy of the body, J; zero height is the world origin.
+    #[must_use]
+    pub fn energy(&self, body: &BodyState) -> f64 {
+        self.object().energy(body.p_WCm, body.v_WCm, body.omega0)
     }
 }
 
-struct Recorder<'a, S> {
+struct Run<'a, S> {
     tracker: &'a Tracker<'a, S>,
     times: &'a [f64],
     joints: Vec<f64>,
     tolerance: Tolerance,
-    run: ContactRun,
+    result: ContactSimulation,
     blow_work: f64,
 }
 
-impl<S: RadiusFunction> Recorder<'_, S> {
-    fn record(&mut self, y: Vector, present: &[PlanarMode]) -> Result<(), ContactSimulationError> {
-        let (mut y, mut present, mut cause) = (y, present.to_vec(), Cause::Start);
+impl<S: RadiusFunction> Run<'_, S> {
+    fn finish(&mut self, y: Vector, present: Vec<PlanarMode>) -> Result<(), ContactSimulationError> {
+        let (mut y, mut present, mut end) = (y, present, None);
         let mut ended: Vec<Vec<PlanarMode>> = Vec::new();
         loop {
-            self.check_progress(y[TIME])?;
-            let question = Question { present: &present, cause, ended: &ended };
-            let decision = self.tracker.decide(y, &question)?;
+            let decision = self.tracker.decide(y, &Question { present: &present, end, ended: &ended })?;
             self.blow_work += decision.blow.unwrap_or(0.0) + decision.settled;
             let (phase, t) = (decision.phase, y[TIME]);
-            let modes = phase.modes.clone();
-            self.run.events.push(ContactEvent { t, cause, modes, blow_work: decision.blow });
-            let Some((end, why)) = self.follow(&phase, decision.y)? else { return Ok(()) };
+            if let Some(End::Event(kind, palm)) = end {
+                let modes = phase.modes.iter().map(|mode| mode.mode()).collect();
+                let event = ContactEvent { t, palm, kind, modes, blow_work: decision.blow };
+                self.result.events.push(event);
+                self.check_pile_up(t)?;
+            }
+            let Some((last, why)) = self.follow(&phase, decision.y)? else { return Ok(()) };
             // Sets that end at the instant at which they begin are not tried again there.
-            if end[TIME] > t || decision.blow.is_some() {
+            if last[TIME] > t || decision.blow.is_some() {
                 ended.clear();
             }
             ended.push(phase.modes.clone());
-            (y, present, cause) = (end, phase.modes, why);
+            (y, present, end) = (last, phase.modes, Some(why));
         }
     }
 
-    /// Integrates one phase and samples it. Its end and why, unless it lasts to the last sample.
+    /// Integrates one phase and samples it. Its last state and why it ends, unless it holds up to the last sample.
     fn follow(
         &mut self,
         phase: &Phase<'_, S>,
         y: Vector,
-    ) -> Result<Option<(Vector, Cause)>, ContactSimulationError> {
-        let last = self.times[self.times.len() - 1];
-        let mut solver = Dop853::new(|t, y: &Vector| phase.rate(t, y), y[TIME], y, self.tolerance)?;
-        if self.run.samples.is_empty() {
+    ) -> Result<Option<(Vector, End)>, ContactSimulationError> {
+        if self.result.instants.is_empty() {
             self.sample(phase, y)?;
         }
-        while solver.time() < last {
+        let last = self.times[self.times.len() - 1];
+        let mut solver = Dop853::new(|t, y: &Vector| phase.rate(t, y), y[TIME], y, self.tolerance)?;
+        let mut reached = None;
+        while solver.time() < last && reached.is_none() {
             let limit = self.step_limit(phase, solver.time(), solver.state());
             solver.step(limit, |y| {
                 // What cannot be projected fails in the next rate.
                 let _ = phase.project(y);
             })?;
-            self.run.steps += 1;
             let end = solver.time();
             let Some(dense) = solver.dense()? else { break };
             let event = phase.first_event(&dense, end).map_err(|source| contact_error(end, source))?;
             let until = event.map_or(end, |(t, _)| t);
-            while let Some(&t) = self.times.get(self.run.samples.len()).filter(|&&t| t <= until) {
+            let at = |t: f64| {
                 let mut y = if t == end { *solver.state() } else { dense.at(t) };
                 y[TIME] = t;
+                y
+            };
+            while let Some(&t) = self.times.get(self.result.instants.len()).filter(|&&t| t <= until) {
+                let mut y = at(t);
                 phase.project(&mut y).map_err(|source| contact_error(t, source))?;
                 self.sample(phase, y)?;
             }
-            if let Some((t, cause)) = event {
-                let mut y = dense.at(t);
-                y[TIME] = t;
-                return Ok(Some((y, cause)));
-            }
+            reached = event.map(|(t, why)| (at(t), why));
         }
-        Ok(None)
+        let (sum, done) = (&mut self.result.statistics, solver.statistics());
+        sum.evaluations += done.evaluations;
+        sum.accepted += done.accepted;
+        sum.rejected += done.rejected;
+        match reached {
+            Some((y, End::Friction)) => Err(wedged(phase, &y)),
+            reached => Ok(reached),
+        }
     }
 
     /// How far the next step may go: to a joint of the palms' motions, the last sample, or, where a gap may close, a share of
@@ -201,56 +148,46 @@ impl<S: RadiusFunction> Recorder<'_, S> {
         let next = self.joints.partition_point(|&joint| joint <= t);
         let joint = self.joints.get(next).copied().unwrap_or(last);
         if !phase.modes.contains(&PlanarMode::Off) {
-            // Nothing can be passed by.
             return joint.min(last);
         }
-        let state = BodyState::of(y);
+        let body = BodyState::of(y);
         let palms = self.tracker.scene.palms().iter().map(|palm| palm.motion.at(t));
-        let fastest = palms.map(|palm| palm.material_velocity(state.p_WCm).length()).fold(0.0, f64::max);
-        let speed = phase.tracker.speed(&state) + fastest;
+        let fastest = palms.map(|palm| palm.material_velocity(body.p_WCm).length()).fold(0.0, f64::max);
+        let speed = phase.tracker.speed(&body) + fastest;
         (t + STEP_SHARE * self.tracker.size / speed).min(joint).min(last)
     }
 
     fn sample(&mut self, phase: &Phase<'_, S>, y: Vector) -> Result<(), ContactSimulationError> {
-        let (t, state) = (y[TIME], BodyState::of(&y));
-        let at = |source| contact_error(t, source);
-        let reading = phase.reading(t, &state).map_err(at)?;
-        let mut contacts = Vec::with_capacity(phase.modes.len());
-        for (palm, &mode) in phase.modes.iter().enumerate() {
-            let surface = self.tracker.scene.palms()[palm].motion.at(t);
-            let touching = reading.touches.iter().zip(reading.forces()).find(|((c, _), _)| c.palm == palm);
-            contacts.push(match touching {
-                Some(((touch, rates), force)) => ContactReading {
-                    palm: surface,
-                    mode,
-                    gap: touch.contact.gap,
-                    p_WC: Some(touch.contact.p_WC),
-                    force,
-                    slip: touch.contact.t.dot(rates.slip),
-                },
-                None => {
-                    let [gap, _] = self.tracker.gap(palm, t, &state).map_err(at)?;
-                    ContactReading { palm: surface, mode, gap, p_WC: None, force: DVec2::ZERO, slip: 0.0 }
-                }
-            });
-        }
-        let energy = self.tracker.scene.object().energy(state.p_WCm, state.v_WCm, state.omega0);
-        let (palm_work, friction_work) = (y[PALM_WORK], y[FRICTION_WORK]);
-        let blow_work = self.blow_work;
-        let sample = ContactRunSample { t, state, contacts, energy, palm_work, friction_work, blow_work };
-        self.run.samples.push(sample);
+        let instant = phase.instant(&y, self.blow_work).map_err(|source| contact_error(y[TIME], source))?;
+        self.result.instants.push(instant);
         Ok(())
     }
 
-    fn check_progress(&self, t: f64) -> Result<(), ContactSimulationError> {
-        let natural = self.tracker.natural_time();
-        let recent = self.run.events.iter().rev().take_while(|event| t - event.t < natural);
-        let changes = recent.take(MOST_CHANGES).count();
-        if changes == MOST_CHANGES { Err(ContactSimulationError::Stalled { t, changes }) } else { Ok(()) }
+    fn check_pile_up(&self, t: f64) -> Result<(), ContactSimulationError> {
+        let events = &self.result.events;
+        let Some(first) = events.len().checked_sub(MOST_CHANGES) else { return Ok(()) };
+        let span = t - events[first].t;
+        if span > self.tracker.natural_time() {
+            return Ok(());
+        }
+        Err(ContactSimulationError::TooManyEvents { count: MOST_CHANGES, span, t })
     }
 }
 
-fn contact_error(t: f64, source: super::FieldError) -> ContactSimulationError {
+/// Friction has become critical for the sliding contacts.
+fn wedged<S: RadiusFunction>(phase: &Phase<'_, S>, y: &Vector) -> ContactSimulationError {
+    let (t, body) = (y[TIME], BodyState::of(y));
+    match phase.reading(t, &body) {
+        Ok(reading) => {
+            let minor = reading.problem.smallest_minor(&reading.modes);
+            let source = ModeError::NotP { modes: letters(&reading.modes), minor };
+            ContactSimulationError::Modes { t, body, source }
+        }
+        Err(source) => contact_error(t, source),
+    }
+}
+
+fn contact_error(t: f64, source: FieldError) -> ContactSimulationError {
     ContactSimulationError::Contact { t, source }
 }
 

@@ -1,10 +1,10 @@
 //! States that a run can start from.
 
-use super::error::StartError;
+use super::error::{ContactSimulationError, StartError};
 use super::state::BodyState;
 use super::tracker::{Touch, Tracker};
-use crate::planar::contacts::{ContactProblem, ContactScene, PlanarMode};
-use contact_kinematics::planar::RadiusFunction;
+use crate::planar::contacts::{ContactProblem, ContactScene, Correction, PlanarMode};
+use contact_kinematics::planar::{PalmSurface, RadiusFunction, SurfaceState};
 use glam::DVec2;
 
 /// Share of the body's size, or of its natural speed, to which a start must touch.
@@ -17,8 +17,8 @@ const LONGEST: f64 = 0.25;
 /// Where a run starts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactStart {
-    /// State of the body.
-    pub state: BodyState,
+    /// The body.
+    pub body: BodyState,
     /// Palms (from 0) that the body touches; it may touch others, or fly into them.
     pub contacts: Vec<usize>,
 }
@@ -42,11 +42,11 @@ impl<S: RadiusFunction> ContactScene<S> {
             {
                 break;
             }
-            let (shift, turn) = tracker.normal_correction(&touches, |touch| touch.contact.gap);
-            let length = shift.length().max(turn.abs() * tracker.size);
+            let shift = tracker.normal_correction(&touches, |touch| touch.contact.gap);
+            let length = shift.linear.length().max(shift.angular.abs() * tracker.size);
             let share = (LONGEST * tracker.size / length).min(1.0);
-            state.p_WCm += shift * share;
-            state.phi0 += turn * share;
+            state.p_WCm += shift.linear * share;
+            state.phi0 += shift.angular * share;
         }
         for palm in 0..self.palms().len() {
             let gap = tracker.gap(palm, t, &state).map_or(f64::NAN, |[gap, _]| gap);
@@ -58,15 +58,31 @@ impl<S: RadiusFunction> ContactScene<S> {
         }
         let touches = tracker.touches(t, &state, palms)?;
         let rate = |touch: &Touch| touch.contact.n.dot(touch.slip(&state));
-        let (velocity, turn) = tracker.normal_correction(&touches, rate);
-        Ok(BodyState { v_WCm: state.v_WCm + velocity, omega0: state.omega0 + turn, ..state })
+        let change = tracker.normal_correction(&touches, rate);
+        let (v_WCm, omega0) = (state.v_WCm + change.linear, state.omega0 + change.angular);
+        Ok(BodyState { v_WCm, omega0, ..state })
     }
 }
 
 impl<S: RadiusFunction> Tracker<'_, S> {
+    /// Refuses palms that overlap each other at time `t`. Lines are taken to end where others begin.
+    pub(super) fn check_overlap(&self, t: f64) -> Result<(), ContactSimulationError> {
+        let palms: Vec<_> = self.scene.palms().iter().map(|palm| (palm.surface, palm.motion.at(t))).collect();
+        for (second, b) in palms.iter().enumerate() {
+            for (first, a) in palms[..second].iter().enumerate() {
+                let depth = -distance(a, b).min(distance(b, a));
+                if depth > TOUCHING * self.size {
+                    let (first, second) = (first + 1, second + 1);
+                    return Err(ContactSimulationError::PalmsOverlap { first, second, depth });
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Refuses a start that is not in contact as it says.
     pub(super) fn check_start(&self, t: f64, start: &ContactStart) -> Result<(), StartError> {
-        let state = &start.state;
+        let state = &start.body;
         self.check(state, &start.contacts)?;
         for palm in 0..self.scene.palms().len() {
             let number = palm + 1;
@@ -79,7 +95,7 @@ impl<S: RadiusFunction> Tracker<'_, S> {
                 continue;
             }
             if gap > TOUCHING * self.size {
-                return Err(StartError::OutOfContact { palm: number, gap });
+                return Err(StartError::NotInContact { palm: number, gap });
             }
             if rate.abs() > TOUCHING * self.speed(state) {
                 return Err(StartError::NotAlong { palm: number, rate });
@@ -104,10 +120,21 @@ impl<S: RadiusFunction> Tracker<'_, S> {
         palms.iter().map(|&palm| self.touch(palm, t, state).map_err(|_| lost(palm))).collect()
     }
 
-    fn normal_correction(&self, touches: &[Touch], residual: impl Fn(&Touch) -> f64) -> (DVec2, f64) {
+    fn normal_correction(&self, touches: &[Touch], residual: impl Fn(&Touch) -> f64) -> Correction {
         let contacts: Vec<_> = touches.iter().map(|touch| touch.touching([0.0; 2], 0.0, 0.0)).collect();
         let residuals: Vec<_> = touches.iter().map(|touch| [residual(touch), 0.0]).collect();
         let modes = vec![PlanarMode::Slide { sense: 0.0 }; touches.len()];
         ContactProblem::new(self.mass(), (DVec2::ZERO, 0.0), &contacts).correction(&modes, &residuals)
+    }
+}
+
+/// Distance of two palms, in the order in which one kind is treated; infinite for the other order and where none is defined.
+fn distance((a, at): &(PalmSurface, SurfaceState), (b, bt): &(PalmSurface, SurfaceState)) -> f64 {
+    let between = bt.p_WP - at.p_WP;
+    match (*a, *b) {
+        (PalmSurface::Arc { radius: r }, PalmSurface::Arc { radius: s }) => between.length() - r - s,
+        (PalmSurface::Line, PalmSurface::Arc { radius }) => at.to_palm(bt.p_WP).y - radius,
+        (PalmSurface::Cup { radius: r }, PalmSurface::Arc { radius: s }) => r - between.length() - s,
+        _ => f64::INFINITY,
     }
 }

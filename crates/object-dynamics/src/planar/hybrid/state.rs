@@ -1,3 +1,4 @@
+use crate::MOST_PALMS;
 use crate::planar::log::PlanarTruth;
 use contact_kinematics::planar::BodyPlace;
 use glam::DVec2;
@@ -15,11 +16,26 @@ pub struct BodyState {
     pub omega0: f64,
 }
 
-/// Body state, work of the palms, work of friction (J), and time (s), which lets a projection know when it is.
-pub(super) type Vector = [f64; 9];
+/// Length of [`Vector`].
+pub(super) const LENGTH: usize = IMPULSES + 2 * MOST_PALMS;
+/// Body state, work of the palms and of friction (J), time (s), which lets a projection know when it is, and the integrals of
+/// the palms' forces (N s).
+pub(super) type Vector = [f64; LENGTH];
 pub(super) const PALM_WORK: usize = 6;
 pub(super) const FRICTION_WORK: usize = 7;
 pub(super) const TIME: usize = 8;
+const IMPULSES: usize = 9;
+
+/// Adds `change` to the impulse of palm `palm` in `y`.
+pub(super) fn add_impulse(y: &mut Vector, palm: usize, change: DVec2) {
+    y[IMPULSES + 2 * palm] += change.x;
+    y[IMPULSES + 2 * palm + 1] += change.y;
+}
+
+/// Impulse of palm `palm`.
+pub(super) fn impulse(y: &Vector, palm: usize) -> DVec2 {
+    DVec2::new(y[IMPULSES + 2 * palm], y[IMPULSES + 2 * palm + 1])
+}
 
 impl BodyState {
     /// Where the body is.

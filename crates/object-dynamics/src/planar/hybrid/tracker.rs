@@ -1,8 +1,9 @@
 //! Where the body is next to the palms of a scene.
 
-use super::error::FieldError;
+use super::error::PalmContactError;
 use super::state::BodyState;
-use crate::planar::contacts::{ContactScene, MOST_PALMS, TouchingContact};
+use crate::MOST_PALMS;
+use crate::planar::contacts::{ContactScene, TouchingContact};
 use crate::planar::mass::PlanarMass;
 use contact_kinematics::planar::{ContactError, RadiusFunction, SurfaceContact, SurfaceRates, SurfaceState};
 use glam::DVec2;
@@ -36,22 +37,22 @@ impl<'a, S: RadiusFunction> Tracker<'a, S> {
     }
 
     /// The contact with palm `palm` (from 0).
-    pub(super) fn touch(&self, palm: usize, t: f64, state: &BodyState) -> Result<Touch, FieldError> {
+    pub(super) fn touch(&self, palm: usize, t: f64, state: &BodyState) -> Result<Touch, PalmContactError> {
         let described = &self.scene.palms()[palm];
         let (surface, guess) = (described.motion.at(t), self.directions[palm].get());
         let shape = &self.scene.object().shape;
         let contact = SurfaceContact::new(shape, &state.place(), described.surface, &surface, guess)
-            .map_err(|source| FieldError::Contact { palm: palm + 1, source })?;
+            .map_err(|source| PalmContactError { palm: palm + 1, source })?;
         self.directions[palm].set(Some(contact.theta));
         Ok(Touch { palm, surface, contact })
     }
 
     /// Gap (m) to palm `palm` and its rate (m/s), for any place of the body.
-    pub(super) fn gap(&self, palm: usize, t: f64, state: &BodyState) -> Result<[f64; 2], FieldError> {
+    pub(super) fn gap(&self, palm: usize, t: f64, state: &BodyState) -> Result<[f64; 2], PalmContactError> {
         match self.touch(palm, t, state) {
             Ok(touch) => Ok([touch.contact.gap, touch.contact.n.dot(touch.slip(state))]),
             // Deep inside only the sign is asked for.
-            Err(FieldError::Contact { source: ContactError::CentreInside { depth }, .. }) => {
+            Err(PalmContactError { source: ContactError::CentreInside { depth }, .. }) => {
                 let radius = self.scene.palms()[palm].surface.radius().unwrap_or(0.0);
                 Ok([-depth - radius, 0.0])
             }
@@ -98,10 +99,10 @@ impl Touch {
         self.contact.slip(&self.surface, state.v_WCm, state.omega0)
     }
 
-    pub(super) fn rates(&self, state: &BodyState) -> Result<SurfaceRates, FieldError> {
+    pub(super) fn rates(&self, state: &BodyState) -> Result<SurfaceRates, PalmContactError> {
         self.contact
             .rates(&self.surface, state.v_WCm, state.omega0)
-            .map_err(|source| FieldError::Contact { palm: self.palm + 1, source })
+            .map_err(|source| PalmContactError { palm: self.palm + 1, source })
     }
 
     /// The contact with given biases, friction and sense of slip.

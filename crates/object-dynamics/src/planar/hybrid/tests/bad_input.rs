@@ -43,7 +43,7 @@ fn bad_scenes_are_named() {
 fn bad_starts_are_named() {
     let scene = build(vec![floor()], G).unwrap();
     let start = |state, contacts: &[usize]| {
-        let start = ContactStart { state, contacts: contacts.to_vec() };
+        let start = ContactStart { body: state, contacts: contacts.to_vec() };
         match scene.simulate(&start, &[0.0, 0.1], 1e-10) {
             Err(ContactSimulationError::Start(error)) => error,
             other => panic!("{other:?}"),
@@ -55,13 +55,31 @@ fn bad_starts_are_named() {
     ));
     assert!(matches!(
         start(at(0.0, 0.041), &[0]),
-        StartError::OutOfContact { palm: 1, gap } if (gap - 1e-3).abs() < 1e-15
+        StartError::NotInContact { palm: 1, gap } if (gap - 1e-3).abs() < 1e-15
     ));
     let rising = BodyState { v_WCm: DVec2::new(0.3, 0.1), ..at(0.0, 0.04) };
     assert_eq!(start(rising, &[0]), StartError::NotAlong { palm: 1, rate: 0.1 });
     assert_eq!(start(at(0.0, 0.04), &[1]), StartError::NoPalm { palm: 2, count: 1 });
     assert_eq!(start(at(f64::NAN, 0.04), &[0]), StartError::NotFinite);
     assert_eq!(start(BodyState { omega0: f64::NAN, ..at(0.0, 0.04) }, &[]), StartError::NotFinite);
+}
+
+#[test]
+fn palms_that_overlap_are_named() {
+    let tip = |x, y| immobile(PalmSurface::Arc { radius: 0.02 }, DVec2::new(x, y), 0.0, 0.3);
+    let cup = immobile(PalmSurface::Cup { radius: 0.2 }, DVec2::ZERO, 0.0, 0.3);
+    let start = ContactStart { body: at(0.0, 0.05), contacts: vec![] };
+    for (palms, expected) in [
+        (vec![tip(0.1, 0.1), tip(0.13, 0.1)], 0.01),
+        (vec![tip(0.1, 0.015), floor()], 0.005),
+        (vec![cup, tip(0.0, -0.19)], 0.01),
+    ] {
+        let error = build(palms, G).unwrap().simulate(&start, &[0.0, 0.1], 1e-10).unwrap_err();
+        let ContactSimulationError::PalmsOverlap { first: 1, second: 2, depth } = error else {
+            panic!("{error}")
+        };
+        assert!((depth - expected).abs() < 1e-15, "{depth}");
+    }
 }
 
 #[test]
@@ -72,7 +90,7 @@ fn a_body_is_placed_where_there_is_room() {
     let scene = build(vec![floor(), ceiling(0.09)], G).unwrap();
     let placed = scene.place(0.0, guess, &[0, 1]).unwrap();
     assert!(placed.v_WCm.y.abs() < 1e-2 && placed.phi0 != 0.3);
-    let start = ContactStart { state: placed, contacts: vec![0, 1] };
+    let start = ContactStart { body: placed, contacts: vec![0, 1] };
     assert!(scene.simulate(&start, &[0.0, 1e-3], 1e-10).is_ok());
     for palms in [&[0, 1][..], &[0][..]] {
         let scene = build(vec![floor(), ceiling(0.07)], G).unwrap();
@@ -84,7 +102,7 @@ fn a_body_is_placed_where_there_is_room() {
 #[test]
 fn bad_times_and_tolerances_are_named() {
     let scene = build(vec![floor()], G).unwrap();
-    let start = ContactStart { state: at(0.0, 0.04), contacts: vec![0] };
+    let start = ContactStart { body: at(0.0, 0.04), contacts: vec![0] };
     for (times, index) in [(&[][..], 0), (&[0.0, 0.0][..], 1), (&[0.0, 0.1, f64::NAN][..], 2)] {
         let error = scene.simulate(&start, times, 1e-10).unwrap_err();
         assert!(matches!(error, ContactSimulationError::Times { index: i, .. } if i == index), "{error}");

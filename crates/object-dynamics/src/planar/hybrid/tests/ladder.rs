@@ -22,7 +22,7 @@ fn leaning(scene: &ContactScene<Ellipse>, angle: f64) -> ContactStart {
     // The contacts determine the place at this angle: the pair of lines is hinged.
     let contact = PairContact::new(&scene.object().shape, &corner(), guess.phi0);
     let state = BodyState { p_WCm: contact.p_WCm, ..guess };
-    ContactStart { state, contacts: vec![0, 1] }
+    ContactStart { body: state, contacts: vec![0, 1] }
 }
 
 fn corner() -> PalmPair {
@@ -58,26 +58,26 @@ fn a_frictionless_ladder_follows_its_energy_until_it_leaves_the_wall() {
     let scene = ladder(0.0);
     let start = leaning(&scene, 1.1);
     let run = scene.simulate(&start, &times(0.3, 300), 1e-13).unwrap();
-    let event = &run.events[1];
-    assert_eq!(event.cause, Cause::Force { palm: 1 });
-    for s in run.samples.iter().filter(|s| s.t > 0.01 && s.t < event.t).step_by(10) {
-        let expected = time_by_energy(&scene, start.state.phi0, s.state.phi0);
+    let event = &run.events[0];
+    assert_eq!(event.kind, ContactEventKind::Lifts);
+    for s in run.instants.iter().filter(|s| s.t > 0.01 && s.t < event.t).step_by(10) {
+        let expected = time_by_energy(&scene, start.body.phi0, s.body.phi0);
         assert!((s.t - expected).abs() < 1e-10, "{} {expected}", s.t);
     }
     // Where the wall's force vanishes, told by the equations of the hinged pair along the energy's curve.
-    let [rest, _] = energies(&scene, start.state.phi0);
+    let [rest, _] = energies(&scene, start.body.phi0);
     let force = |phi: f64| {
         let [here, kinetic] = energies(&scene, phi);
         let palms = PalmPairState { pair: corner(), motion: PairRates::default() };
         scene.object().reaction(&palms, phi, ((rest - here) / kinetic).sqrt()).forces[1]
     };
     let lost =
-        crate::integrate::find_root(force, start.state.phi0 + 0.05, start.state.phi0 + 0.9, 1e-15).unwrap();
-    let expected = time_by_energy(&scene, start.state.phi0, lost);
+        crate::integrate::find_root(force, start.body.phi0 + 0.05, start.body.phi0 + 0.9, 1e-15).unwrap();
+    let expected = time_by_energy(&scene, start.body.phi0, lost);
     assert!((event.t - expected).abs() < 1e-10, "{} {expected}", event.t);
     // From then on nothing pushes it sideways.
-    let off: Vec<_> = run.samples.iter().filter(|s| s.contacts[1].p_WC.is_none()).collect();
-    assert!(off.len() > 20 && off.iter().all(|s| (s.state.v_WCm.x - off[0].state.v_WCm.x).abs() < 1e-13));
+    let off: Vec<_> = run.instants.iter().filter(|s| s.modes[1] == ContactMode::Off).collect();
+    assert!(off.len() > 20 && off.iter().all(|s| (s.body.v_WCm.x - off[0].body.v_WCm.x).abs() < 1e-13));
     check_run(&scene, &run);
 }
 
@@ -106,14 +106,34 @@ fn a_ladder_with_friction_agrees_with_an_independent_integration() {
     let start = leaning(&scene, 1.0);
     let end = 0.12;
     let run = scene.simulate(&start, &times(end, 60), 1e-13).unwrap();
-    let sliding = |m: &PlanarMode| matches!(m, PlanarMode::Slide { .. });
-    assert!(run.events.len() == 1 && run.events[0].modes.iter().all(sliding), "{:?}", run.events);
+    let sliding = |m: &ContactMode| *m == ContactMode::Slide;
+    assert!(run.events.is_empty() && run.instants[0].modes.iter().all(sliding), "{:?}", run.events);
     let field = |_: f64, y: &[f64; 2]| Ok::<_, Infallible>(sliding_ladder(&scene, mu, y));
-    let y = integrate_fixed(FixedScheme::Rk4, field, 0.0, [start.state.phi0, 0.0], end, 2_000).unwrap();
-    let last = run.samples.last().unwrap().state;
+    let y = integrate_fixed(FixedScheme::Rk4, field, 0.0, [start.body.phi0, 0.0], end, 2_000).unwrap();
+    let last = run.instants.last().unwrap().body;
     assert!((last.phi0 - y[0]).abs() < 1e-10 && (last.omega0 - y[1]).abs() < 1e-10, "{last:?} {y:?}");
-    assert!(run.samples.last().unwrap().friction_work < -1e-3);
+    assert!(run.instants.last().unwrap().friction_work < -1e-3);
     check_run(&scene, &run);
+}
+
+#[test]
+fn an_instant_gives_the_forces_of_any_modes() {
+    let (mu, omega0) = (0.15, 2.0);
+    let scene = ladder(mu);
+    let start = leaning(&scene, 1.0).body;
+    let contact = PairContact::new(&scene.object().shape, &corner(), start.phi0);
+    let v_WCm = contact.velocity(&PalmPairState::at_rest(corner()), omega0).v_WCm;
+    let body = BodyState { v_WCm, omega0, ..start };
+    let now = scene.instant(0.0, &body, &[ContactMode::Slide; 2]).unwrap();
+    let [_, alpha0] = sliding_ladder(&scene, mu, &[body.phi0, omega0]);
+    assert!((now.alpha0 - alpha0).abs() < 1e-11, "{} {alpha0}", now.alpha0);
+    // The wall off: what pushes is the floor alone; it may hold with a force that pulls as well.
+    let free = scene.instant(0.0, &body, &[ContactMode::Slide, ContactMode::Off]).unwrap();
+    assert!(free.forces[1] == DVec2::ZERO && free.a_WCm.x != now.a_WCm.x);
+    assert!(scene.wedging(0.0, &body, &[ContactMode::Slide; 2]).unwrap() > 0.0);
+    assert_eq!(scene.wedging(0.0, &body, &[ContactMode::Stick; 2]).unwrap(), f64::INFINITY);
+    let found = scene.instant(0.0, &body, &[ContactMode::Off]).unwrap_err();
+    assert_eq!(found, ContactInstantError::ModeCount { expected: 2, found: 1 });
 }
 
 #[test]
@@ -122,8 +142,8 @@ fn a_steep_rough_ladder_stands_and_a_flatter_one_falls() {
     for (angle, stands) in [(1.4, true), (0.7, false)] {
         let start = leaning(&scene, angle);
         let run = scene.simulate(&start, &times(10.0, 20), 1e-11).unwrap();
-        let last = run.samples.last().unwrap();
-        assert_eq!(last.state == run.samples[0].state, stands, "{angle}: {:?}", run.events);
+        let last = run.instants.last().unwrap();
+        assert_eq!(last.body == run.instants[0].body, stands, "{angle}: {:?}", run.events);
         check_run(&scene, &run);
     }
 }
@@ -135,8 +155,8 @@ fn the_order_of_the_integrator_survives_a_located_event() {
     let start = leaning(&scene, 1.1);
     let end = |tolerance: f64| {
         let run = scene.simulate(&start, &[0.0, 0.3], tolerance).unwrap();
-        assert!(run.events.len() == 2, "{:?}", run.events);
-        (run.steps, run.samples[1].state)
+        assert!(run.events.len() == 1, "{:?}", run.events);
+        (run.statistics.accepted, run.instants[1].body)
     };
     let (_, exact) = end(1e-14);
     let errors: Vec<(f64, f64)> = [1e-6, 1e-10]

@@ -59,7 +59,7 @@ impl Draw {
                 let floor = line(DVec2::new(0.0, 0.03), 0.1, mu());
                 let walls =
                     [(-0.1, -1.2), (0.1, 1.3)].map(|(x, angle)| line(DVec2::new(x, 0.0), angle, mu()));
-                let tips = [-0.03, 0.06].map(|x| immobile(tip, DVec2::new(x, 0.03), 0.0, mu()));
+                let tips = [-0.03, 0.06].map(|x| immobile(tip, DVec2::new(x, 0.07), 0.0, mu()));
                 let mut palms: Vec<_> = walls.into_iter().chain(tips).collect();
                 for palm in &mut palms {
                     *palm = self.turning(palm.clone(), 0.1);
@@ -79,9 +79,9 @@ fn thrown(seed: u64, largest_mu: f64) -> (ContactScene<FourierBody>, ContactStar
     let state = BodyState {
         v_WCm: DVec2::new(draw.between(-0.3, 0.3), 0.0),
         omega0: draw.between(-10.0, 10.0),
-        ..at(draw.between(-0.01, 0.01), 0.13)
+        ..at(draw.between(-0.01, 0.01), if seed % 4 == 3 { 0.16 } else { 0.13 })
     };
-    (scene, ContactStart { state, contacts: vec![] })
+    (scene, ContactStart { body: state, contacts: vec![] })
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn hundreds_of_mode_changes_keep_gaps_cones_and_energy() {
     for seed in 0..40 {
         let (scene, start) = thrown(seed, 0.6);
         let run = scene.simulate(&start, &times(1.0, 50), 1e-11).unwrap();
-        changes += run.events.len() - 1;
+        changes += run.events.len();
         blows += run.events.iter().filter(|e| e.blow_work.is_some()).count();
         check_run(&scene, &run);
     }
@@ -102,7 +102,7 @@ fn what_rigid_bodies_do_not_decide_is_named_with_its_state() {
     // A rough wedge: the contact that sticks comes to the edge of its cone, and the body could as well leave the other palm.
     let (scene, start) = thrown(872, 0.6);
     let error = scene.simulate(&start, &times(1.0, 50), 1e-11).unwrap_err();
-    let ContactSimulationError::Modes { t, state, source } = error else { panic!("{error}") };
-    assert!((t - 0.845).abs() < 1e-3 && (state.phi0 + 1.117).abs() < 1e-3);
+    let ContactSimulationError::Modes { t, body, source } = error else { panic!("{error}") };
+    assert!((t - 0.845).abs() < 1e-3 && (body.phi0 + 1.117).abs() < 1e-3);
     assert!(matches!(source, crate::planar::ModeError::Ambiguous { .. }), "{source}");
 }

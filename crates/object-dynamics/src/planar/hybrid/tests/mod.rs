@@ -7,7 +7,8 @@ mod many;
 mod moving;
 
 use super::*;
-use crate::planar::{ContactScene, PlanarMass, PlanarMode, PlanarObject, ScenePalm};
+use crate::ContactMode;
+use crate::planar::{ContactScene, PlanarMass, PlanarObject, ScenePalm};
 use contact_kinematics::planar::{PalmSurface, RadiusFunction, SurfaceMotion, SurfacePose};
 use glam::DVec2;
 
@@ -36,42 +37,59 @@ fn at(x: f64, y: f64) -> BodyState {
 }
 
 /// What a run promises at every sample: no gap or cone violated beyond 1e-9 (of the size 0.05 m, of the weight or the largest
-/// force), friction against the slip, no creep, and energy but for the works.
-fn check_run<S: RadiusFunction>(scene: &ContactScene<S>, run: &ContactRun) {
-    for s in &run.samples {
-        let force = s.contacts.iter().map(|c| c.force.length()).fold(MASS * G, f64::max);
-        for (contact, palm) in s.contacts.iter().zip(scene.palms()) {
+/// force), friction against the slip, no creep, and energy but for the works to 1e-10.
+fn check_run<S: RadiusFunction>(scene: &ContactScene<S>, run: &ContactSimulation) {
+    for s in &run.instants {
+        let force = s.forces.iter().map(|f| f.length()).fold(MASS * G, f64::max);
+        for (i, palm) in scene.palms().iter().enumerate() {
+            let contact = &s.contacts[i];
             assert!(contact.gap > -1e-9 * 0.05, "gap {:e} at {}", contact.gap, s.t);
-            let Some(p_WC) = contact.p_WC else {
-                assert_eq!(contact.force, DVec2::ZERO);
+            if s.modes[i] == ContactMode::Off {
+                assert_eq!(s.forces[i], DVec2::ZERO);
                 continue;
-            };
+            }
             assert!(contact.gap.abs() < 1e-9 * 0.05, "gap {:e} at {}", contact.gap, s.t);
-            let to_palm = contact.palm.to_palm(p_WC);
-            let n = match palm.surface {
-                PalmSurface::Line => DVec2::from_angle(contact.palm.angle).perp(),
-                PalmSurface::Arc { .. } => DVec2::from_angle(contact.palm.angle).rotate(to_palm.normalize()),
-                PalmSurface::Cup { .. } => -DVec2::from_angle(contact.palm.angle).rotate(to_palm.normalize()),
+            // The palm's own normal where the contact is.
+            let to_palm = s.palms[i].to_palm(contact.p_WC);
+            let own = match palm.surface {
+                PalmSurface::Line => DVec2::Y,
+                PalmSurface::Arc { .. } => to_palm.normalize(),
+                PalmSurface::Cup { .. } => -to_palm.normalize(),
             };
-            let (normal, along) = (n.dot(contact.force), -n.perp().dot(contact.force));
+            let n = DVec2::from_angle(s.palms[i].angle).rotate(own);
+            let (normal, along) = (n.dot(s.forces[i]), -n.perp().dot(s.forces[i]));
+            let slip = -n.perp().dot(s.slip(i));
             assert!(normal > -1e-9 * force, "normal force {normal:e} at {}", s.t);
             assert!(
                 along.abs() <= palm.friction * normal + 1e-9 * force,
                 "cone at {}: {along} {normal}",
                 s.t
             );
-            match contact.mode {
-                PlanarMode::Off => unreachable!("an open contact has no point"),
-                PlanarMode::Stick => {
-                    assert!(contact.slip.abs() < 1e-14, "creep {:e} at {}", contact.slip, s.t)
-                }
-                PlanarMode::Slide { .. } => {
-                    assert!(along * contact.slip <= 1e-12, "friction pushes at {}", s.t)
-                }
+            if s.modes[i] == ContactMode::Stick {
+                assert!(slip.abs() < 1e-14, "creep {slip:e} at {}", s.t);
+            } else {
+                assert!(along * slip <= 1e-12, "friction pushes at {}", s.t);
             }
         }
         // A share of 1e-11, the coarsest tolerance of these runs, of energies of 0.1 J.
         assert!(s.friction_work <= 1e-12 && s.blow_work <= 1e-12, "{s:?}");
     }
-    assert!(run.energy_drift() < 1e-10, "energy drifts by {:e}", run.energy_drift());
+    check_balances(scene, run);
+}
+
+/// Energy against works, and momentum against impulses.
+fn check_balances<S: RadiusFunction>(scene: &ContactScene<S>, run: &ContactSimulation) {
+    let energies = run.instants.iter().map(|s| scene.energy(&s.body));
+    let largest = energies.fold(f64::MIN_POSITIVE, |m, e| m.max(e.abs()));
+    let balance = |s: &ContactInstant| scene.energy(&s.body) - s.palm_work - s.friction_work - s.blow_work;
+    let momentum = |s: &ContactInstant| {
+        s.body.v_WCm * MASS - s.impulses.iter().sum::<DVec2>() + DVec2::new(0.0, MASS * G * s.t)
+    };
+    let first = &run.instants[0];
+    for s in &run.instants {
+        let drift = (balance(s) - balance(first)) / largest;
+        assert!(drift.abs() < 1e-10, "energy drifts by {drift:e} at {}", s.t);
+        let off = (momentum(s) - momentum(first)).length() / (MASS * (1.0 + G * s.t));
+        assert!(off < 1e-10, "momentum is {off:e} off at {}", s.t);
+    }
 }
