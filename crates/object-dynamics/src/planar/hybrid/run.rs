@@ -8,7 +8,7 @@ use super::result::{ContactEvent, ContactSimulation};
 use super::start::ContactStart;
 use super::state::{BodyState, LENGTH, TIME, Vector};
 use super::tracker::Tracker;
-use crate::integrate::{Dop853, Statistics, Tolerance};
+use crate::integrate::{Dop853, IntegrationError, Statistics, Tolerance};
 use crate::planar::contacts::{ContactScene, ModeError, PlanarMode, letters};
 use contact_kinematics::planar::RadiusFunction;
 
@@ -19,6 +19,8 @@ const STEP_SHARE: f64 = 0.25;
 /// Changes of modes within one natural time after which they are taken to have no end. A body that rattles to rest in a wedge
 /// takes some tens, with much friction some hundreds.
 const MOST_CHANGES: usize = 5_000;
+/// A principal minor below this, where the integrator cannot go on, is why: forces are a hundred times what they were.
+const CRITICAL: f64 = 1e-2;
 
 impl<S: RadiusFunction> ContactScene<S> {
     /// Simulates from `start` at the first of `times` (s) through every change of modes, sampled at `times`.
@@ -111,10 +113,9 @@ impl<S: RadiusFunction> Run<'_, S> {
         let mut reached = None;
         while solver.time() < last && reached.is_none() {
             let limit = self.step_limit(phase, solver.time(), solver.state());
-            solver.step(limit, |y| {
-                // What cannot be projected fails in the next rate.
-                let _ = phase.project(y);
-            })?;
+            // What cannot be projected fails in the next rate.
+            let stepped = solver.step(limit, |y| drop(phase.project(y)));
+            stepped.map_err(|error| stuck(phase, solver.state(), error))?;
             let end = solver.time();
             let Some(dense) = solver.dense()? else { break };
             let event = phase.first_event(&dense, end).map_err(|source| contact_error(end, source))?;
@@ -171,6 +172,22 @@ impl<S: RadiusFunction> Run<'_, S> {
             return Ok(());
         }
         Err(ContactSimulationError::TooManyEvents { count: MOST_CHANGES, span, t })
+    }
+}
+
+/// An integrator that cannot go on near critical friction is told as that.
+fn stuck<S: RadiusFunction>(
+    phase: &Phase<'_, S>,
+    y: &Vector,
+    error: IntegrationError<FieldError>,
+) -> ContactSimulationError {
+    match wedged(phase, y) {
+        told @ ContactSimulationError::Modes { source: ModeError::NotP { minor, .. }, .. }
+            if minor < CRITICAL =>
+        {
+            told
+        }
+        _ => error.into(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Some hundred changes of modes, seeded: bodies thrown onto palms that move.
 
 use super::*;
+use crate::planar::ModeError;
 use contact_kinematics::MotionLaw;
 use contact_kinematics::planar::{FourierBody, MotionPart};
 
@@ -99,10 +100,23 @@ fn hundreds_of_mode_changes_keep_gaps_cones_and_energy() {
 
 #[test]
 fn what_rigid_bodies_do_not_decide_is_named_with_its_state() {
+    let stop = |seed: u64, largest_mu: f64| {
+        let (scene, start) = thrown(seed, largest_mu);
+        match scene.simulate(&start, &times(1.0, 50), 1e-11) {
+            Err(ContactSimulationError::Modes { t, body, source }) => (t, body.phi0, source),
+            other => panic!("{other:?}"),
+        }
+    };
     // A rough wedge: the contact that sticks comes to the edge of its cone, and the body could as well leave the other palm.
-    let (scene, start) = thrown(872, 0.6);
-    let error = scene.simulate(&start, &times(1.0, 50), 1e-11).unwrap_err();
-    let ContactSimulationError::Modes { t, body, source } = error else { panic!("{error}") };
-    assert!((t - 0.845).abs() < 1e-3 && (body.phi0 + 1.117).abs() < 1e-3);
-    assert!(matches!(source, crate::planar::ModeError::Ambiguous { .. }), "{source}");
+    let (t, phi0, why) = stop(872, 0.6);
+    assert!((t - 0.845).abs() < 1e-3 && (phi0 + 1.117).abs() < 1e-3);
+    assert!(matches!(why, ModeError::Ambiguous { .. }), "{why}");
+    // Jammed between a wall and a fingertip that close in on it.
+    let (t, phi0, why) = stop(115, 0.6);
+    assert!((t - 0.815).abs() < 1e-3 && (phi0 - 1.611).abs() < 1e-3);
+    assert_eq!(why, ModeError::Inconsistent);
+    // Sticking on one palm it slides on the other until no finite force does.
+    let (t, _, why) = stop(100_056, 1.2);
+    assert!((t - 0.332).abs() < 1e-3);
+    assert!(matches!(why, ModeError::NotP { minor, .. } if minor < 1e-6), "{why}");
 }
