@@ -14,6 +14,7 @@ mod bounds_tosses;
 mod chart;
 mod cold_start;
 mod no_force;
+mod planar_contacts;
 mod planar_costs;
 mod planar_monte_carlo;
 mod shape_fits;
@@ -38,6 +39,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("bounds_tosses", || in_words(bounds_tosses::main())),
     ("cold_start", || in_words(cold_start::main())),
     ("no_force", || in_words(no_force::main())),
+    ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_costs", || in_words(planar_costs::main())),
     ("planar_monte_carlo", || in_words(planar_monte_carlo::main())),
     ("shape_fits", || in_words(shape_fits::main())),
