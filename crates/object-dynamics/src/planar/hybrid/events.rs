@@ -100,7 +100,7 @@ impl<S: RadiusFunction> Phase<'_, S> {
         self.indicator(dense, index, least).filter(|i| i.value < 0.0).map(|_| least)
     }
 
-    /// The zero between `a`, with its value, and `until`.
+    /// The zero between `a`, with its value, and `until`, from its far side.
     fn locate(&self, dense: &DenseOutput<LENGTH>, index: usize, a: (f64, f64), until: f64) -> f64 {
         let value = |t: f64| self.indicator(dense, index, t).map_or(f64::NAN, |i| i.value);
         let rounding = f64::EPSILON * until.abs();
@@ -119,7 +119,13 @@ impl<S: RadiusFunction> Phase<'_, S> {
                 return a.0;
             }
         }
-        find_root(value, from, until, rounding).unwrap_or(from)
+        let root = find_root(value, from, until, rounding).unwrap_or(from);
+        // A force that jumps, as where a rounded polygon passes from a corner to an edge, is asked for beyond its jump.
+        let mut step = rounding;
+        while value(root + step) > 0.0 && root + step < until {
+            step *= 2.0;
+        }
+        (root + 2.0 * step).min(until)
     }
 
     fn indicator(&self, dense: &DenseOutput<LENGTH>, index: usize, t: f64) -> Option<Indicator> {

@@ -2,7 +2,7 @@
 
 use super::*;
 use contact_kinematics::MotionLaw;
-use contact_kinematics::planar::{Circle, Ellipse, MotionPart};
+use contact_kinematics::planar::{Circle, Ellipse, MotionPart, RoundedPolygon};
 
 fn moved(palm: ScenePalm, part: MotionPart) -> ScenePalm {
     let motion = SurfaceMotion { parts: vec![part], ..palm.motion };
@@ -90,5 +90,27 @@ fn palms_that_part_end_the_sticking_at_once() {
     let event = &run.events[0];
     // The ramp's acceleration reaches 1e-9 of gravity a little after its begin.
     assert!(event.kind == ContactEventKind::SqueezeEnds && (0.1..0.101).contains(&event.t), "{event:?}");
+    check_run(&scene, &run);
+}
+
+#[test]
+fn a_spinning_rounded_square_leaves_the_floor_where_an_edge_ends() {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec2::new(x, y) * 0.035);
+    let (rounding, bulge) = (0.005, 0.2);
+    let shape = RoundedPolygon::new(&corners, rounding, bulge).unwrap();
+    let scene = scene(&shape, 4e-4, vec![line(DVec2::ZERO, 0.0, 0.0)]);
+    let guess = BodyState { omega0: 25.0, ..at(0.0, 0.05) };
+    let state = scene.place(0.0, guess, &[0]).unwrap();
+    let run =
+        scene.simulate(&ContactStart { body: state, contacts: vec![0] }, &times(0.3, 300), 1e-12).unwrap();
+    // Over an edge it is carried, rho > r; over a corner (rho - r) omega^2 is below -g. The radius of curvature jumps, and so
+    // does the force, to below zero.
+    let first = &run.events[0];
+    assert_eq!(first.kind, ContactEventKind::Lifts);
+    let before = run.instants.iter().rfind(|s| s.t < first.t).unwrap();
+    assert!(before.forces[0].y > MASS * G && before.body.phi0 < bulge, "{before:?}");
+    let after = run.instants.iter().find(|s| s.t > first.t).unwrap();
+    assert!(after.body.phi0 > bulge && after.contacts[0].gap > 0.0);
+    assert!(run.events.len() < 20, "{:?}", run.events.len());
     check_run(&scene, &run);
 }
