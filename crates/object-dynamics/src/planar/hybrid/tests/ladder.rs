@@ -147,25 +147,3 @@ fn a_steep_rough_ladder_stands_and_a_flatter_one_falls() {
         check_run(&scene, &run);
     }
 }
-
-#[test]
-fn the_order_of_the_integrator_survives_a_located_event() {
-    // The frictionless ladder, past the loss of the wall: error against steps, from one tolerance to the next.
-    let scene = ladder(0.0);
-    let start = leaning(&scene, 1.1);
-    let end = |tolerance: f64| {
-        let run = scene.simulate(&start, &[0.0, 0.3], tolerance).unwrap();
-        assert!(run.events.len() == 1, "{:?}", run.events);
-        (run.statistics.accepted, run.instants[1].body)
-    };
-    let (_, exact) = end(1e-14);
-    let errors: Vec<(f64, f64)> = [1e-6, 1e-10]
-        .into_iter()
-        .map(|tolerance| {
-            let (steps, state) = end(tolerance);
-            (steps as f64, (state.p_WCm - exact.p_WCm).length() + 0.05 * (state.phi0 - exact.phi0).abs())
-        })
-        .collect();
-    let order = (errors[0].1 / errors[1].1).ln() / (errors[1].0 / errors[0].0).ln();
-    assert!(order > 6.0, "{order} {errors:?}");
-}

@@ -114,3 +114,25 @@ fn a_spinning_rounded_square_leaves_the_floor_where_an_edge_ends() {
         check_run(&scene, &run);
     }
 }
+
+#[test]
+fn the_order_of_the_integrator_survives_a_located_event() {
+    // An egg that spins on the floor slides until it rolls: error against steps, from one tolerance to the next.
+    let egg = Ellipse::new(0.05, 0.045, DVec2::new(0.004, 0.0)).unwrap();
+    let scene = scene(egg, 3e-4, vec![line(DVec2::ZERO, 0.0, 0.3)]);
+    let body = scene.place(0.0, BodyState { omega0: -20.0, ..at(0.0, 0.05) }, &[0]).unwrap();
+    let start = ContactStart { body, contacts: vec![0] };
+    let end = |tolerance: f64| {
+        let run = scene.simulate(&start, &[0.0, 0.8], tolerance).unwrap();
+        let kinds: Vec<_> = run.events.iter().map(|e| e.kind).collect();
+        assert_eq!(kinds, [ContactEventKind::SlipEnds]);
+        (run.statistics.accepted as f64, run.instants[1].body)
+    };
+    let (_, exact) = end(1e-14);
+    let [coarse, fine] = [1e-5, 1e-10].map(|tolerance| {
+        let (steps, body) = end(tolerance);
+        (steps, (body.p_WCm - exact.p_WCm).length() + 0.05 * (body.phi0 - exact.phi0).abs())
+    });
+    let order = (coarse.1 / fine.1).ln() / (fine.0 / coarse.0).ln();
+    assert!(fine.0 > 2.0 * coarse.0 && (6.5..10.0).contains(&order), "{order} {coarse:?} {fine:?}");
+}
