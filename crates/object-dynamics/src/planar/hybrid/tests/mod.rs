@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod discs;
+mod hinged;
 mod ladder;
 mod many;
 mod moving;
