@@ -2,6 +2,8 @@
 //!
 //! World axes X right, Y up; angles counter-clockwise. Palm `i` leaves the hinge along `u_i`; its unit normal `n_i`
 //! points into the wedge, at the object. The object is described by its radius function about its centre of mass.
+//!
+//! Palms of any pose and motion, lines, arcs and cups, are [`PalmSurface`]s; [`SurfaceContact`] is the contact with one.
 
 mod circle;
 mod contact;
