@@ -9,6 +9,9 @@ pub(in crate::planar) const CONSISTENT: f64 = 1e-9;
 /// Accelerations of two sets that differ by more than this share are two answers: a thousand times what sets within
 /// [`CONSISTENT`] of their border differ by.
 const DIFFERENT: f64 = 1e-6;
+/// A principal minor below this wedges: forces are a million times those that would move the free body as much, and grow
+/// without bound.
+pub(in crate::planar) const WEDGED: f64 = 1e-6;
 
 /// The modes taken, and what they do.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,10 +41,10 @@ pub enum ModeError {
         /// Another.
         second: String,
     },
-    /// The sliding contacts' matrix is no P-matrix: forces without bound are near.
+    /// The sliding contacts' matrix is no P-matrix, or has all but ceased to be one: forces without bound are near.
     #[error(
-        "mode set {modes}: friction wedges the sliding contacts (smallest principal minor {minor:.2e}, not above zero): \
-         no P-matrix, so motion need not exist or be one"
+        "mode set {modes}: the sliding contacts wedge the object (smallest principal minor {minor:.2e}, not above \
+         {WEDGED:.0e}): no P-matrix, so motion need not exist or be one"
     )]
     NotP {
         /// The set.
@@ -80,8 +83,8 @@ impl ContactProblem {
         // The last resort comes last; sets of as few changes keep their order, in which sticking stands first.
         found.sort_by_key(|c| (ended.contains(&c.choice.modes), c.changes));
         let choice = found.into_iter().next().ok_or(ModeError::Inconsistent)?.choice;
-        let minor = self.smallest_minor(&choice.modes);
-        if minor < -CONSISTENT {
+        let minor = self.smallest_minor(&choice.modes, &choice.response);
+        if minor < WEDGED {
             return Err(ModeError::NotP { modes: letters(&choice.modes), minor });
         }
         Ok(choice)
@@ -123,11 +126,11 @@ impl ContactProblem {
         if margin.is_nan() { f64::NEG_INFINITY } else { margin }
     }
 
-    /// The smallest principal minor of the matrix (rows times columns) of the sliding contacts with friction, sticking ones
-    /// eliminated, in units of the rows' lengths. Positive where one answer is guaranteed.
+    /// The smallest principal minor of the matrix (rows times columns) of the sliding contacts, sticking ones eliminated, in
+    /// units of the rows' lengths. Positive where one answer is guaranteed.
     ///
-    /// Infinite where there is nothing to ask: no friction slides, or the rest of the contacts hold the body.
-    pub(in crate::planar) fn smallest_minor(&self, modes: &[PlanarMode]) -> f64 {
+    /// Infinite where there is nothing to ask: nothing slides, or the forces are not unique.
+    pub(in crate::planar) fn smallest_minor(&self, modes: &[PlanarMode], response: &Response) -> f64 {
         let (mut held, mut sliding) = (Vec::new(), Vec::new());
         for (c, mode) in self.contacts.iter().zip(modes) {
             match *mode {
@@ -138,12 +141,7 @@ impl ContactProblem {
                 }
             }
         }
-        let rubs = self
-            .contacts
-            .iter()
-            .zip(modes)
-            .any(|(c, mode)| c.contact.mu > 0.0 && matches!(mode, PlanarMode::Slide { .. }));
-        if !rubs || held.len() + sliding.len() > 3 {
+        if response.redundant {
             return f64::INFINITY;
         }
         let free = |x: &Vector3<f64>| {

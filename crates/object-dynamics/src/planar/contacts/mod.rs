@@ -11,7 +11,7 @@ mod scene;
 mod tests;
 
 pub use choose::ModeError;
-pub(super) use choose::{CONSISTENT, letters};
+pub(super) use choose::{CONSISTENT, WEDGED, letters};
 pub use respond::Jammed;
 pub(super) use respond::Response;
 pub use scene::{ContactScene, ContactSceneError, ScenePalm};

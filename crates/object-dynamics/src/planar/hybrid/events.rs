@@ -4,7 +4,7 @@ use super::error::FieldError;
 use super::phase::Phase;
 use super::state::{BodyState, LENGTH, Vector};
 use crate::integrate::{DenseOutput, find_root};
-use crate::planar::contacts::{CONSISTENT, PlanarMode};
+use crate::planar::contacts::{CONSISTENT, PlanarMode, WEDGED};
 use contact_kinematics::planar::RadiusFunction;
 
 /// Points of each integration step at which signs are looked at. A force that dips below zero and comes back between two of
@@ -38,8 +38,8 @@ pub enum ContactEventKind {
 pub(super) enum End {
     /// A change of modes; at which palm, from 0, where it is one's.
     Event(ContactEventKind, Option<usize>),
-    /// Sliding friction has come to where it allows two answers, or none.
-    Friction,
+    /// The contacts wedge the body: its motion is no longer determined.
+    Wedged,
 }
 
 /// A quantity that is positive while the modes hold; of gaps also the rate.
@@ -163,7 +163,7 @@ impl<S: RadiusFunction> Phase<'_, S> {
         }
         let holds = !response.redundant || reading.problem.margin(&reading.modes, response) >= -CONSISTENT;
         push(End::Event(Kind::SqueezeEnds, None), if holds { 1.0 } else { -1.0 });
-        push(End::Friction, reading.problem.smallest_minor(&reading.modes));
+        push(End::Wedged, reading.smallest_minor() - WEDGED);
         for (palm, _) in self.modes.iter().enumerate().filter(|(_, mode)| **mode == PlanarMode::Off) {
             let [gap, rate] = self.tracker.gap(palm, t, &state)?;
             let value = gap + GAP_SLACK * self.tracker.gap_rounding(palm, t, &state);

@@ -49,7 +49,7 @@ impl<S: RadiusFunction> ContactScene<S> {
     }
 
     /// The smallest principal minor of the sliding contacts' matrix of a body with the given modes, dimensionless: above zero
-    /// (a P-matrix) motion exists and is one. Infinite where nothing slides with friction.
+    /// (a P-matrix) motion exists and is one. Infinite where nothing slides, or the forces are not unique.
     ///
     /// # Errors
     /// [`ContactInstantError`].
@@ -61,7 +61,7 @@ impl<S: RadiusFunction> ContactScene<S> {
     ) -> Result<f64, ContactInstantError> {
         let tracker = Tracker::new(self);
         let reading = sliding_phase(&tracker, t, body, modes)?.reading(t, body)?;
-        Ok(reading.problem.smallest_minor(&reading.modes))
+        Ok(reading.smallest_minor())
     }
 }
 

@@ -123,6 +123,10 @@ impl<S: RadiusFunction> Phase<'_, S> {
 }
 
 impl Reading {
+    pub(super) fn smallest_minor(&self) -> f64 {
+        self.problem.smallest_minor(&self.modes, &self.response)
+    }
+
     /// Forces of the touching palms on the body, world, N.
     pub(super) fn forces(&self) -> impl Iterator<Item = DVec2> {
         let parts = self.touches.iter().zip(&self.response.forces);

@@ -137,7 +137,7 @@ impl<S: RadiusFunction> Run<'_, S> {
         sum.accepted += done.accepted;
         sum.rejected += done.rejected;
         match reached {
-            Some((y, End::Friction)) => Err(wedged(phase, &y)),
+            Some((y, End::Wedged)) => Err(wedged(phase, &y)),
             reached => Ok(reached),
         }
     }
@@ -196,7 +196,7 @@ fn wedged<S: RadiusFunction>(phase: &Phase<'_, S>, y: &Vector) -> ContactSimulat
     let (t, body) = (y[TIME], BodyState::of(y));
     match phase.reading(t, &body) {
         Ok(reading) => {
-            let minor = reading.problem.smallest_minor(&reading.modes);
+            let minor = reading.smallest_minor();
             let source = ModeError::NotP { modes: letters(&reading.modes), minor };
             ContactSimulationError::Modes { t, body, source }
         }
