@@ -19,6 +19,8 @@ const STEP_SHARE: f64 = 0.25;
 /// Changes of modes within one natural time after which they are taken to have no end. A body that rattles to rest in a wedge
 /// takes some tens, with much friction some hundreds.
 const MOST_CHANGES: usize = 5_000;
+/// Steps within one natural time after which the integrator is taken to stand still: smooth motion takes some tens.
+const MOST_STEPS: usize = 10_000;
 /// A principal minor below this, where the integrator cannot go on, is why: forces are a hundred times what they were.
 const CRITICAL: f64 = 1e-2;
 
@@ -117,6 +119,9 @@ impl<S: RadiusFunction> Run<'_, S> {
             let stepped = solver.step(limit, |y| drop(phase.project(y)));
             stepped.map_err(|error| stuck(phase, solver.state(), error))?;
             let end = solver.time();
+            self.check_pace(solver.statistics().accepted, end - y[TIME]).map_err(|step| {
+                stuck(phase, solver.state(), IntegrationError::StepTooSmall { t: end, step })
+            })?;
             let Some(dense) = solver.dense()? else { break };
             let event = phase.first_event(&dense, end).map_err(|source| contact_error(end, source))?;
             let until = event.map_or(end, |(t, _)| t);
@@ -162,6 +167,12 @@ impl<S: RadiusFunction> Run<'_, S> {
         let instant = phase.instant(&y, self.blow_work).map_err(|source| contact_error(y[TIME], source))?;
         self.result.instants.push(instant);
         Ok(())
+    }
+
+    /// Refuses steps so small that the motion does not go on; names their mean.
+    fn check_pace(&self, steps: usize, elapsed: f64) -> Result<(), f64> {
+        let allowed = MOST_STEPS as f64 * (1.0 + elapsed / self.tracker.natural_time());
+        if (steps as f64) < allowed { Ok(()) } else { Err(elapsed / steps as f64) }
     }
 
     fn check_pile_up(&self, t: f64) -> Result<(), ContactSimulationError> {
