@@ -13,6 +13,7 @@ mod bounds_timing;
 mod bounds_tosses;
 mod chart;
 mod cold_start;
+mod contact_logs;
 mod no_force;
 mod planar_contacts;
 mod planar_costs;
@@ -38,6 +39,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("bounds_timing", || in_words(bounds_timing::main())),
     ("bounds_tosses", || in_words(bounds_tosses::main())),
     ("cold_start", || in_words(cold_start::main())),
+    ("contact_logs", || in_words(contact_logs::main())),
     ("no_force", || in_words(no_force::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_costs", || in_words(planar_costs::main())),

@@ -47,8 +47,8 @@ impl SurfaceContact {
         } else {
             inverse_of_one_plus(self.body_radii * self.palm_shape)? * right
         };
-        let p_dot_WC = surface_velocity + self.from_tangent(over_palm) + gap_rate * self.n;
-        let n_dot = palm.w_WP.cross(self.n) + self.from_tangent(self.palm_shape * over_palm);
+        let p_dot_WC = surface_velocity + self.along_tangent(over_palm) + gap_rate * self.n;
+        let n_dot = palm.w_WP.cross(self.n) + self.along_tangent(self.palm_shape * over_palm);
         let slip_bias = w_WO.cross(p_dot_WC - v_WCm) - palm.material_velocity_rate(self.p_WC, p_dot_WC);
         Ok(SurfaceRates {
             slip,
@@ -69,7 +69,7 @@ impl SurfaceContact {
 
     /// The vector with the given components along the tangent axes.
     #[must_use]
-    pub fn from_tangent(&self, x: DVec2) -> DVec3 {
+    pub fn along_tangent(&self, x: DVec2) -> DVec3 {
         x.x * self.t[0] + x.y * self.t[1]
     }
 }

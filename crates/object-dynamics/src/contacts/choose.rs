@@ -2,8 +2,9 @@
 
 use super::MOST_PALMS;
 use super::cones::forces_in_cones;
+use super::directions::NO_DIRECTIONS;
 use super::painleve::smallest_minor;
-use super::problem::{ContactProblem, Directions, Modes, Reaction};
+use super::problem::{ContactProblem, Directions, FULFILLED, Modes, Reaction};
 use crate::ContactMode;
 use glam::DVec2;
 use thiserror::Error;
@@ -11,7 +12,11 @@ use thiserror::Error;
 /// Forces and accelerations within this share of the largest are zero.
 const SLACK: f64 = 1e-9;
 /// Two consistent mode sets are one where their accelerations differ by less than this share: at a transition both sides hold.
-const SAME: f64 = 1e-6;
+const SAME: f64 = 1e-5;
+/// Slip starts where it is accelerated by more than this share.
+const STARTS: f64 = 1e-7;
+/// Sticking contacts that contradict each other by less than this share do so by rounding.
+const EXACT: f64 = 1e-10;
 
 /// Why no mode set can be taken. Modes are given as letters, palm by palm: O off, S slides, R sticks and rolls.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -55,6 +60,35 @@ pub(crate) enum Touch {
     Rests,
 }
 
+/// What has just ended: it may seem to hold still, by rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Left {
+    /// A mode of one contact.
+    Mode(usize, ContactMode),
+    /// The present modes, as a whole.
+    Set,
+}
+
+impl Left {
+    fn excludes(self, modes: &Modes, present: &Modes) -> bool {
+        match self {
+            Self::Mode(i, mode) => modes[i] == mode,
+            Self::Set => modes == present,
+        }
+    }
+}
+
+/// What speaks against a consistent mode set, the weightiest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Rank {
+    /// It has just ended, and may seem to hold still by rounding.
+    left: bool,
+    /// Its sticking contacts contradict each other a little.
+    strained: bool,
+    /// A contact that is said to start to slide is not accelerated: it may be said to stick as well.
+    sticks_as_well: bool,
+}
+
 /// A consistent mode set.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Choice {
@@ -66,37 +100,42 @@ pub(crate) struct Choice {
 impl ContactProblem {
     /// The consistent mode set; of several that mean the same motion the one with the fewest changes from `present`.
     ///
-    /// `not`: a contact and a mode that it has just left, taken only where nothing else is consistent.
+    /// `not`: what has just ended, taken only where nothing else is consistent.
     pub(crate) fn choose(
         &self,
         touches: &[Touch; MOST_PALMS],
         present: &Modes,
-        not: Option<(usize, ContactMode)>,
+        not: Option<Left>,
     ) -> Result<Choice, ModeError> {
         let force = self.force_scale();
+        let holds = |modes: &Modes, directions: &Directions| {
+            let choice = self.consistent(touches, modes, Some(directions), force);
+            choice.is_some_and(|choice| self.starts_truly(touches, &choice, force))
+        };
+        let relaxed = self.relaxed(touches, force, holds);
         let mut sets = self.candidates(touches);
         sets.sort_by_key(|modes| (0..self.contacts().len()).filter(|&i| modes[i] != present[i]).count());
-        let excluded = |modes: &Modes| not.is_some_and(|(i, mode)| modes[i] == mode);
-        let mut found: Option<Choice> = None;
-        for stage in [false, true] {
-            for modes in sets.iter().filter(|modes| excluded(modes) == stage) {
-                let Some(choice) = self.consistent(touches, modes, force) else { continue };
-                match &found {
-                    None => found = Some(choice),
-                    Some(first) if self.differ(first, &choice, force) => {
-                        return Err(ModeError::Ambiguous {
-                            first: self.letters(&first.modes),
-                            second: self.letters(&choice.modes),
-                        });
+        let mut found: Option<(Rank, Choice)> = None;
+        for modes in &sets {
+            let near = relaxed.as_ref().filter(|(known, _)| known == modes).map(|(_, directions)| directions);
+            let Some(choice) = self.consistent(touches, modes, near, force) else { continue };
+            let rank = Rank {
+                left: not.is_some_and(|left| left.excludes(modes, present)),
+                strained: choice.reaction.unmet > EXACT,
+                sticks_as_well: !self.starts_truly(touches, &choice, force),
+            };
+            match &found {
+                Some((best, _)) if *best < rank => {}
+                Some((best, first)) if *best == rank => {
+                    if self.differ(first, &choice, force) {
+                        let [first, second] = [first, &choice].map(|choice| self.letters(&choice.modes));
+                        return Err(ModeError::Ambiguous { first, second });
                     }
-                    Some(_) => {}
                 }
-            }
-            if found.is_some() {
-                break;
+                _ => found = Some((rank, choice)),
             }
         }
-        let choice = found.ok_or(ModeError::Inconsistent)?;
+        let (_, choice) = found.ok_or(ModeError::Inconsistent)?;
         let minor = self.smallest_sliding_minor(&choice.modes, &choice.directions);
         if minor <= 0.0 {
             return Err(ModeError::NotP { modes: self.letters(&choice.modes), minor });
@@ -134,9 +173,16 @@ impl ContactProblem {
     }
 
     /// The set with its forces, if those are what its modes ask for.
-    fn consistent(&self, touches: &[Touch; MOST_PALMS], modes: &Modes, force: f64) -> Option<Choice> {
+    /// `near`: directions close to those of contacts that start to slide, where they are known.
+    fn consistent(
+        &self,
+        touches: &[Touch; MOST_PALMS],
+        modes: &Modes,
+        near: Option<&Directions>,
+        force: f64,
+    ) -> Option<Choice> {
         let slack = SLACK * force;
-        let mut directions = [DVec2::X; MOST_PALMS];
+        let mut directions = near.copied().unwrap_or(NO_DIRECTIONS);
         let mut starting = Vec::new();
         for (i, contact) in self.contacts().iter().enumerate() {
             match touches[i] {
@@ -148,7 +194,9 @@ impl ContactProblem {
         let reaction = if starting.is_empty() {
             self.solve(modes, &directions).ok()?
         } else {
-            let (found, reaction) = self.starting_directions(modes, &directions, &starting, slack)?;
+            let known = near.and_then(|near| self.directions_near(modes, near, &starting));
+            let (found, reaction) =
+                known.or_else(|| self.starting_directions(modes, &directions, &starting, slack))?;
             directions = found;
             reaction
         };
@@ -159,15 +207,31 @@ impl ContactProblem {
         if !all_leave {
             return None;
         }
-        let reaction = if self.in_cones(modes, &reaction, slack) {
-            reaction
-        } else if reaction.unique {
-            return None;
-        } else {
-            forces_in_cones(self, modes, &reaction, slack)?
-        };
+        let reaction = Some(reaction).filter(|reaction| reaction.unmet <= FULFILLED)?;
+        let reaction = self.within_cones(modes, reaction)?;
         self.with_frictionless_directions(touches, modes, &mut directions, &reaction);
         Some(Choice { modes: *modes, directions, reaction })
+    }
+
+    /// Whether every contact that starts to slide is accelerated.
+    fn starts_truly(&self, touches: &[Touch; MOST_PALMS], choice: &Choice, force: f64) -> bool {
+        self.contacts().iter().enumerate().all(|(i, contact)| {
+            let starts = touches[i] == Touch::Rests && choice.modes[i] == ContactMode::Slide;
+            let rate = contact.in_tangent(self.slip_rate(i, &choice.reaction));
+            !starts || contact.friction == 0.0 || rate.length() > STARTS * force * self.own_response(i)
+        })
+    }
+
+    /// The reaction, if its forces are in their cones; of over-constrained sticking any forces that are.
+    pub(crate) fn within_cones(&self, modes: &Modes, reaction: Reaction) -> Option<Reaction> {
+        let slack = SLACK * self.force_scale();
+        if self.in_cones(modes, &reaction, slack) {
+            Some(reaction)
+        } else if reaction.unique {
+            None
+        } else {
+            forces_in_cones(self, modes, &reaction, slack)
+        }
     }
 
     pub(crate) fn in_cones(&self, modes: &Modes, reaction: &Reaction, slack: f64) -> bool {

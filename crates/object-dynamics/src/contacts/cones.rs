@@ -25,10 +25,16 @@ pub(crate) fn forces_in_cones(
     // Wrench of the sticking forces, moments per mean lever so that both halves weigh the same.
     let lever =
         sticking.iter().map(|&i| problem.contacts()[i].b.length()).sum::<f64>() / sticking.len() as f64;
-    let wrench = DMatrix::from_fn(6, n, |row, column| {
+    // The force on a palm that gives way moves that palm: it is not free either.
+    let wrench = DMatrix::from_fn(6 + n, n, |row, column| {
         let contact = &problem.contacts()[sticking[column / 3]];
         let axis = [contact.n, contact.t[0], contact.t[1]][column % 3];
-        if row < 3 { axis[row] } else { contact.b.cross(axis)[row - 3] / lever }
+        match row {
+            0..3 => axis[row],
+            3..6 => contact.b.cross(axis)[row - 3] / lever,
+            _ if (row - 6) / 3 == column / 3 => contact.yields.direction(axis)[(row - 6) % 3],
+            _ => 0.0,
+        }
     });
     let held = DVector::from_fn(n, |k, _| {
         let contact = &problem.contacts()[sticking[k / 3]];
@@ -66,7 +72,7 @@ fn with_forces(
     let mut forces = reaction.forces;
     for (k, &i) in sticking.iter().enumerate() {
         let contact = &problem.contacts()[i];
-        let tangent: DVec3 = contact.from_tangent(DVec2::new(x[3 * k + 1], x[3 * k + 2]));
+        let tangent: DVec3 = contact.along_tangent(DVec2::new(x[3 * k + 1], x[3 * k + 2]));
         forces[i] = x[3 * k] * contact.n + tangent;
     }
     // The accelerations stay: these forces have the same wrench.

@@ -1,15 +1,20 @@
 //! The direction in which a contact starts to slide: part of the answer, and not that of the force that held it.
 
+use super::MOST_PALMS;
 use super::problem::{ContactProblem, Directions, Modes, Reaction};
 use crate::integrate::find_root;
 use glam::DVec2;
+use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
 /// Angles at which the turning condition is looked at; between two of them it has one root at the most, as far as was seen.
 const SCANNED: u32 = 48;
-/// Rounds over several contacts that start together, and the change of direction at which they have settled.
+/// Rounds over several contacts that start together, and the change of direction (rad) at which they have settled.
 const MOST_ROUNDS: u32 = 100;
 const SETTLED: f64 = 1e-12;
+/// Newton's steps beside a known direction; the derivative is a difference over this angle.
+const NEWTON_STEPS: u32 = 12;
+const DIFFERENCE: f64 = 1e-6;
 
 impl ContactProblem {
     /// Directions in which the contacts `starting` begin to slide, with the forces then: `T slip' = gamma tau`, `gamma >= 0`.
@@ -24,59 +29,96 @@ impl ContactProblem {
         slack: f64,
     ) -> Option<(Directions, Reaction)> {
         let mut now = *directions;
-        for &i in starting {
-            now[i] = self.first_guess(i);
-        }
-        for round in 0..MOST_ROUNDS {
+        for _ in 0..MOST_ROUNDS {
             let mut change = 0.0_f64;
             for &i in starting {
-                let found = self.one_direction(modes, &now, i, slack, round > 0)?;
+                let found = self.one_direction(modes, &now, i, slack)?;
                 change = change.max((found - now[i]).length());
                 now[i] = found;
             }
             if change < SETTLED || starting.len() == 1 {
                 return self.solve(modes, &now).ok().map(|reaction| (now, reaction));
             }
+            if change < 0.1
+                && let Some(settled) = self.directions_near(modes, &now, starting)
+            {
+                return Some(settled).filter(|(found, reaction)| {
+                    starting.iter().all(|&i| self.starts_along(i, found[i], reaction, slack))
+                });
+            }
         }
         None
     }
 
-    /// Where the contact would slide without forces.
-    fn first_guess(&self, i: usize) -> DVec2 {
-        let contact = &self.contacts()[i];
-        contact.in_tangent(contact.free).try_normalize().unwrap_or(DVec2::X)
-    }
-
-    /// The direction of contact `i` with those of the others held; of several the one nearest to the present one.
-    fn one_direction(
+    /// The same close to known directions, by Newton's method on all angles together: for the next instant.
+    pub(crate) fn directions_near(
         &self,
         modes: &Modes,
         directions: &Directions,
-        i: usize,
-        slack: f64,
-        near: bool,
-    ) -> Option<DVec2> {
-        let state = |angle: f64| -> Option<(DVec2, DVec2, Reaction)> {
-            let tau = DVec2::from_angle(angle);
-            let mut all = *directions;
-            all[i] = tau;
-            let reaction = self.solve(modes, &all).ok()?;
-            Some((tau, self.contacts()[i].in_tangent(self.slip_rate(i, &reaction)), reaction))
+        starting: &[usize],
+    ) -> Option<(Directions, Reaction)> {
+        let n = starting.len();
+        let mut now = *directions;
+        let turns = |now: &Directions| -> Option<(DVector<f64>, Reaction)> {
+            let reaction = self.solve(modes, now).ok()?;
+            let turn = |k: usize| {
+                let i = starting[k];
+                now[i].perp_dot(self.contacts()[i].in_tangent(self.slip_rate(i, &reaction)))
+            };
+            Some((DVector::from_fn(n, |k, _| turn(k)), reaction))
         };
-        let turn = |angle: f64| state(angle).map_or(f64::NAN, |(tau, rate, _)| tau.perp_dot(rate));
-        let good = |angle: f64| {
-            let (tau, rate, reaction) = state(angle)?;
-            let pushes = reaction.forces[i].dot(self.contacts()[i].n) >= -slack;
-            (pushes && tau.dot(rate) >= -slack * self.own_response(i)).then_some(tau)
+        let turned = |now: &Directions, k: usize, angle: f64| {
+            let mut next = *now;
+            next[starting[k]] = DVec2::from_angle(angle).rotate(now[starting[k]]);
+            next
         };
-        let first = directions[i].to_angle();
-        if near {
-            // In later rounds the direction hardly moves: look beside it before all around.
-            let (a, b) = (first - 0.05, first + 0.05);
-            if let Some(tau) = find_root(turn, a, b, 1e-15).ok().and_then(good) {
-                return Some(tau);
+        for _ in 0..NEWTON_STEPS {
+            let (value, reaction) = turns(&now)?;
+            let mut slopes = DMatrix::zeros(n, n);
+            for k in 0..n {
+                let (moved, _) = turns(&turned(&now, k, DIFFERENCE))?;
+                slopes.set_column(k, &((moved - &value) / DIFFERENCE));
+            }
+            let step = -slopes.lu().solve(&value)?;
+            let size = step.amax();
+            if size.is_nan() || size >= 0.5 {
+                return None;
+            }
+            for k in 0..n {
+                now = turned(&now, k, step[k]);
+            }
+            if size < SETTLED {
+                return Some((now, reaction));
             }
         }
+        // Rounding of the accelerations may leave more than the last digits of an angle.
+        turns(&now).map(|(_, reaction)| (now, reaction))
+    }
+
+    fn starts_along(&self, i: usize, tau: DVec2, reaction: &Reaction, slack: f64) -> bool {
+        let rate = self.contacts()[i].in_tangent(self.slip_rate(i, reaction));
+        let pushes = reaction.forces[i].dot(self.contacts()[i].n) >= -slack;
+        pushes && tau.dot(rate) >= -slack * self.own_response(i)
+    }
+
+    /// The direction of contact `i` with those of the others held; of several the one nearest to the present one.
+    fn one_direction(&self, modes: &Modes, directions: &Directions, i: usize, slack: f64) -> Option<DVec2> {
+        let state = |angle: f64| -> Option<(DVec2, Reaction)> {
+            let mut all = *directions;
+            all[i] = DVec2::from_angle(angle);
+            self.solve(modes, &all).ok().map(|reaction| (all[i], reaction))
+        };
+        let turn = |angle: f64| {
+            state(angle).map_or(f64::NAN, |(tau, reaction)| {
+                tau.perp_dot(self.contacts()[i].in_tangent(self.slip_rate(i, &reaction)))
+            })
+        };
+        let good = |angle: f64| {
+            state(angle)
+                .filter(|(tau, reaction)| self.starts_along(i, *tau, reaction, slack))
+                .map(|(tau, _)| tau)
+        };
+        let first = directions[i].to_angle();
         let mut best: Option<DVec2> = None;
         let angle = |k: u32| first + TAU * (f64::from(k) + 0.5) / f64::from(SCANNED);
         let mut before = turn(angle(0));
@@ -93,3 +135,6 @@ impl ContactProblem {
         best
     }
 }
+
+/// Directions of no contact in particular.
+pub(crate) const NO_DIRECTIONS: Directions = [DVec2::X; MOST_PALMS];

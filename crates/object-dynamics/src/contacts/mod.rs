@@ -7,13 +7,14 @@ mod drive;
 mod instant;
 mod painleve;
 mod problem;
+mod relax;
 mod scene;
 mod solve;
 
 pub use choose::ModeError;
-pub(crate) use choose::Touch;
+pub(crate) use choose::{Left, Touch};
 pub use drive::{DriveError, PalmDrive, PalmSpring, PalmTorque};
 pub(crate) use instant::Contacts;
 pub use instant::{PalmContactError, PalmCoordinates, SceneState};
-pub(crate) use problem::{ContactProblem, Directions, Modes, Reaction};
+pub(crate) use problem::{ContactProblem, Directions, FULFILLED, Modes, Reaction};
 pub use scene::{ContactScene, ContactSceneError, MOST_PALMS, ScenePalm};

@@ -36,6 +36,15 @@ pub(crate) enum Yields {
 }
 
 impl Yields {
+    /// The part of a force that moves the palm, as a vector of its size.
+    pub(crate) fn direction(self, force: DVec3) -> DVec3 {
+        match self {
+            Self::No => DVec3::ZERO,
+            Self::All(_) => force,
+            Self::Along(lever, _) => lever.try_normalize().map_or(DVec3::ZERO, |unit| unit * unit.dot(force)),
+        }
+    }
+
     /// The same in the palm's coordinates: those of a hinge stand in `x`.
     pub(crate) fn coordinates(self, force: DVec3) -> DVec3 {
         match self {
@@ -77,7 +86,12 @@ pub(crate) struct Reaction {
     pub(crate) alpha: DVec3,
     /// Whether no other forces keep the modes. Else squeezes between sticking contacts, which move nothing, are free.
     pub(crate) unique: bool,
+    /// By how much the sticking contacts contradict each other, as a share of what they ask for.
+    pub(crate) unmet: f64,
 }
+
+/// Sticking contacts agree as long as they contradict each other by less than this share.
+pub(crate) const FULFILLED: f64 = 1e-6;
 
 /// Mode and slip direction of each contact (unit tangent; of sliding contacts alone).
 pub(crate) type Modes = [ContactMode; MOST_PALMS];
@@ -157,7 +171,7 @@ impl ContactProblem {
         for c in 0..count {
             forces[columns[c].0] += solved.x[c] * columns[c].1;
         }
-        Ok(Reaction { unique: solved.unique, ..self.reaction(forces) })
+        Ok(Reaction { unique: solved.unique, unmet: solved.unmet, ..self.reaction(forces) })
     }
 
     /// Accelerations under given forces.
@@ -168,7 +182,7 @@ impl ContactProblem {
             a += da;
             alpha += dalpha;
         }
-        Reaction { forces, a, alpha, unique: true }
+        Reaction { forces, a, alpha, unique: true, unmet: 0.0 }
     }
 
     /// What a force at contact `j` adds to the accelerations.
@@ -230,10 +244,10 @@ impl ContactProblem {
 impl ProblemContact {
     /// Force per unit of normal force while it slides along the unit tangent `tau`: `n - mu tau`.
     pub(crate) fn sliding_force(&self, tau: DVec2) -> DVec3 {
-        self.n - self.friction * self.from_tangent(tau)
+        self.n - self.friction * self.along_tangent(tau)
     }
 
-    pub(crate) fn from_tangent(&self, x: DVec2) -> DVec3 {
+    pub(crate) fn along_tangent(&self, x: DVec2) -> DVec3 {
         x.x * self.t[0] + x.y * self.t[1]
     }
 

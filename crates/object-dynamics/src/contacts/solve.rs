@@ -11,8 +11,6 @@ const SMALLEST_PIVOT: f64 = 1e-11;
 const SMALLEST_SINGULAR: f64 = 1e-10;
 /// Largest part of a sliding contact's force in a combination of forces that moves nothing.
 const LARGEST_SHARE: f64 = 1e-6;
-/// Constraints that hang together agree when what is left of their right sides is below this share of them.
-const FULFILLED: f64 = 1e-8;
 
 /// Matrix and right side; the leading `n` rows and columns are used.
 pub(crate) struct Dense {
@@ -24,16 +22,13 @@ pub(crate) struct Dense {
 pub(crate) struct Solved {
     pub(crate) x: [f64; N],
     pub(crate) unique: bool,
+    /// By how much constraints that hang together contradict each other, as a share of the right sides.
+    pub(crate) unmet: f64,
 }
 
-/// Why a mode set has no forces.
+/// A mode set without forces: constraints that hang together while a contact slides, which is at a critical friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Unsolvable {
-    /// The constraints contradict each other.
-    Inconsistent,
-    /// Constraints that hang together while some contact slides: at a critical friction, forces without bound.
-    Singular,
-}
+pub(crate) struct Unsolvable;
 
 impl Default for Dense {
     fn default() -> Self {
@@ -46,7 +41,7 @@ impl Dense {
     /// `squeezes` alone, which are forces of sticking contacts against each other. Of those solutions the shortest.
     pub(crate) fn solve(&self, n: usize, squeezes: &[bool; N]) -> Result<Solved, Unsolvable> {
         match self.eliminate(n) {
-            Some(x) => Ok(Solved { x, unique: true }),
+            Some(x) => Ok(Solved { x, unique: true, unmet: 0.0 }),
             None => self.shortest(n, squeezes),
         }
     }
@@ -65,8 +60,8 @@ impl Dense {
                     pivot = r;
                 }
             }
-            // Not `<`: a NaN is no pivot.
-            if !(m[pivot][k].abs() > SMALLEST_PIVOT * scales[pivot]) {
+            let size = m[pivot][k].abs();
+            if size.is_nan() || size <= SMALLEST_PIVOT * scales[pivot] {
                 return None;
             }
             m.swap(k, pivot);
@@ -93,10 +88,10 @@ impl Dense {
         let matrix = nalgebra::DMatrix::from_fn(n, n, |r, c| self.matrix[r][c]);
         let right = nalgebra::DVector::from_column_slice(&self.right[..n]);
         if !matrix.iter().chain(right.iter()).all(|v| v.is_finite()) {
-            return Err(Unsolvable::Singular);
+            return Err(Unsolvable);
         }
         let svd = matrix.svd(true, true);
-        let (Some(u), Some(v_t)) = (&svd.u, &svd.v_t) else { return Err(Unsolvable::Singular) };
+        let (Some(u), Some(v_t)) = (&svd.u, &svd.v_t) else { return Err(Unsolvable) };
         let largest = svd.singular_values.amax();
         let parts = u.transpose() * &right;
         let (mut x, mut unmet, mut unique) = (nalgebra::DVector::zeros(n), 0.0_f64, true);
@@ -109,14 +104,11 @@ impl Dense {
             unique = false;
             unmet = unmet.max(parts[k].abs());
             if (0..n).any(|c| !squeezes[c] && direction[c].abs() > LARGEST_SHARE) {
-                return Err(Unsolvable::Singular);
+                return Err(Unsolvable);
             }
-        }
-        if unmet > FULFILLED * right.amax() {
-            return Err(Unsolvable::Inconsistent);
         }
         let mut result = [0.0; N];
         result[..n].copy_from_slice(x.as_slice());
-        Ok(Solved { x: result, unique })
+        Ok(Solved { x: result, unique, unmet: unmet / right.amax().max(f64::MIN_POSITIVE) })
     }
 }

@@ -41,7 +41,7 @@ pub(super) fn first_crossing<S: SupportFunction, const N: usize>(
         let mut first: Option<Crossing> = None;
         for (palm, (pair, pair_before)) in after.iter().zip(&values).enumerate() {
             for (which, &value) in pair.iter().enumerate() {
-                if !(value <= 0.0) {
+                if value.is_nan() || value > 0.0 {
                     continue;
                 }
                 let at = if pair_before[which] > 0.0 {

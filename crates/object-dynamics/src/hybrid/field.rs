@@ -10,8 +10,12 @@ use crate::contacts::{
 use contact_kinematics::SupportFunction;
 use glam::{DQuat, DVec2, DVec3};
 
-/// Slip below this share of the natural speed has no direction of its own.
+/// Slip below this share of the natural speed is none.
 pub(super) const STILL: f64 = 1e-9;
+/// A contact that has begun to slide takes the direction in which it is driven until its slip reaches this share of the natural
+/// speed. It is drawn there at the rate `mu f / (m slip)`, too fast to be integrated; what lags behind is of the order of the
+/// slip, in rad.
+const STARTING: f64 = 1e-6;
 
 /// A stretch of motion with the same modes.
 #[derive(Clone, Copy)]
@@ -22,6 +26,8 @@ pub(super) struct Stretch {
     /// Along them the field goes on smoothly where a slip passes through zero: the friction keeps its side until the event
     /// is located.
     pub(super) towards: [DVec3; MOST_PALMS],
+    /// Sliding contacts that have just begun to.
+    pub(super) starting: [bool; MOST_PALMS],
     pub(super) guesses: Guesses,
 }
 
@@ -46,21 +52,46 @@ impl Stretch {
         let touch = scene.contacts_at(&state, &self.guesses)?;
         let problem = scene.problem(&state.body, &touch);
         let mut directions = [DVec2::X; MOST_PALMS];
+        let mut starting = Vec::new();
         for (i, contact) in problem.contacts().iter().enumerate() {
-            if self.modes[i] == ContactMode::Slide {
-                let slip = contact.in_tangent(touch.rates[i].slip);
-                let towards = contact.in_tangent(self.towards[i]);
-                let speed = slip.length();
-                directions[i] = if speed > STILL * units.speed {
-                    // Not `signum`, which takes minus zero for negative.
-                    slip / if slip.dot(towards) < 0.0 { -speed } else { speed }
-                } else {
-                    towards.try_normalize().unwrap_or(DVec2::X)
-                };
+            if self.modes[i] != ContactMode::Slide {
+                continue;
+            }
+            let slip = contact.in_tangent(touch.rates[i].slip);
+            let towards = contact.in_tangent(self.towards[i]);
+            let speed = slip.length();
+            let begins = self.begins(i, &problem, touch.rates[i].slip, units);
+            directions[i] = if begins || speed <= STILL * units.speed {
+                towards.try_normalize().unwrap_or(DVec2::X)
+            } else {
+                // Not `signum`, which takes minus zero for negative.
+                slip / if slip.dot(towards) < 0.0 { -speed } else { speed }
+            };
+            if begins {
+                starting.push(i);
             }
         }
-        let reaction = problem.solve(&self.modes, &directions).ok();
+        let begun = match starting.is_empty() {
+            true => None,
+            false => problem.directions_near(&self.modes, &directions, &starting),
+        };
+        let reaction = match begun {
+            Some((found, reaction)) => {
+                directions = found;
+                Some(reaction)
+            }
+            None => problem.solve(&self.modes, &directions).ok(),
+        };
+        let reaction =
+            reaction.map(|reaction| problem.within_cones(&self.modes, reaction).unwrap_or(reaction));
         Ok(Evaluated { state, tallies, touch, problem, directions, reaction })
+    }
+
+    /// Whether contact `i` has so little slip since it began to slide that its direction is that of the drive.
+    pub(super) fn begins(&self, i: usize, problem: &ContactProblem, slip: DVec3, units: &Units) -> bool {
+        let contact = &problem.contacts()[i];
+        let slow = contact.in_tangent(slip).length() < STARTING * units.speed;
+        self.starting[i] && contact.friction > 0.0 && slow
     }
 
     /// The stretch as the next step sees it: slip directions and contacts as they are now.
@@ -68,9 +99,10 @@ impl Stretch {
         let mut next = *self;
         for (i, contact) in now.problem.contacts().iter().enumerate() {
             next.guesses[i] = Some(now.touch.contacts[i].n_O);
-            let slip = contact.in_tangent(now.touch.rates[i].slip);
-            if slip.length() > STILL * units.speed {
-                next.towards[i] = contact.from_tangent(slip).normalize();
+            let speed = contact.in_tangent(now.touch.rates[i].slip).length();
+            next.starting[i] = self.starting[i] && speed < STARTING * units.speed;
+            if self.modes[i] == ContactMode::Slide {
+                next.towards[i] = contact.along_tangent(now.directions[i]);
             }
         }
         next

@@ -4,10 +4,18 @@ use super::field::{Evaluated, Stretch};
 use super::packed::Units;
 use super::result::ContactEventKind as Kind;
 use crate::ContactMode;
-use crate::contacts::MOST_PALMS;
+use crate::contacts::{FULFILLED, MOST_PALMS};
 
 /// A guard below this share of what it was when the step began has the step searched.
 const SUSPICIOUS: f64 = 0.3;
+
+/// Over-constrained sticking holds as long as the palms let it and some forces are in their cones: a guard that jumps.
+const HOLDS: f64 = 1e-3;
+/// Forces within this share of the weight are on the edge of their cone.
+const SLACK: f64 = 1e-7;
+
+/// A contact that has begun to slide is no longer driven when it is braked by this share of the natural acceleration.
+const DRIVEN: f64 = 1e-5;
 
 /// Two guards a contact, dimensionless; infinite where there is none.
 pub(super) type Guards = [[f64; 2]; MOST_PALMS];
@@ -38,8 +46,15 @@ impl Stretch {
                 ContactMode::Slide => {
                     guards[i][0] = normal / weight;
                     if contact.friction > 0.0 {
-                        guards[i][1] = now.touch.rates[i].slip.dot(self.towards[i]) / units.speed;
+                        guards[i][1] = self.slip_guard(i, now, units);
                     }
+                }
+                ContactMode::Stick if now.reaction.is_some_and(|reaction| !reaction.unique) => {
+                    let tangential = contact.in_tangent(force).length();
+                    let held =
+                        tangential - contact.friction * normal <= SLACK * weight && normal >= -SLACK * weight;
+                    let agree = 1.0 - now.reaction.map_or(f64::NAN, |reaction| reaction.unmet) / FULFILLED;
+                    guards[i][1] = HOLDS * if held { agree } else { -1.0 };
                 }
                 ContactMode::Stick => {
                     let tangential = contact.in_tangent(force).length();
@@ -48,6 +63,18 @@ impl Stretch {
             }
         }
         guards
+    }
+
+    /// The slip along its direction when the step began; of a contact that has just begun to slide, what drives it.
+    fn slip_guard(&self, i: usize, now: &Evaluated, units: &Units) -> f64 {
+        let slip = now.touch.rates[i].slip;
+        match &now.reaction {
+            Some(reaction) if self.begins(i, &now.problem, slip, units) => {
+                let rate = now.problem.contacts()[i].in_tangent(now.problem.slip_rate(i, reaction));
+                DRIVEN + now.directions[i].dot(rate) / (units.speed * units.rate)
+            }
+            _ => slip.dot(self.towards[i]) / units.speed,
+        }
     }
 }
 

@@ -78,7 +78,12 @@ impl<S: SupportFunction> ContactScene<S> {
         let mut all = [ContactMode::Off; MOST_PALMS];
         all[..expected].copy_from_slice(modes);
         let none = [None::<Direction>; MOST_PALMS];
-        let stretch = Stretch { modes: all, towards: [DVec3::ZERO; MOST_PALMS], guesses: none };
+        let stretch = Stretch {
+            modes: all,
+            towards: [DVec3::ZERO; MOST_PALMS],
+            starting: [false; MOST_PALMS],
+            guesses: none,
+        };
         Ok((stretch, Units::new(self.size(), self.mass().mass(), -self.gravity().z)))
     }
 }

@@ -7,7 +7,7 @@ use super::packed::{RIGID, Tallies, Units, YIELDING};
 use super::project::projected;
 use super::result::{ContactEvent, ContactEventKind, ContactInstant, ContactSimulation};
 use super::start::{ContactStart, check_overlap};
-use crate::contacts::{ContactScene, MOST_PALMS, ModeError, Modes, SceneState, Touch};
+use crate::contacts::{ContactScene, Left, MOST_PALMS, ModeError, Modes, SceneState, Touch};
 use crate::integrate::{Dop853, IntegrationError, Statistics, Tolerance};
 use crate::three_palms::check_times;
 use crate::{ContactMode, SampleTimes};
@@ -22,8 +22,12 @@ const SLIP_ENDED: f64 = 1e-4;
 const MOST_AT_ONCE: usize = 60;
 /// What counts as no time, in natural times.
 const AT_ONCE: f64 = 1e-7;
+/// Slips and rates of gaps at the start below this share of the natural speed are none: a state given to six digits.
+const STATED: f64 = 1e-5;
+/// A contact whose gap opens slower than this share of the natural speed has not left.
+const LEAVES: f64 = 1e-5;
 /// An approach slower than this share of the natural speed is no blow.
-const GRAZING: f64 = 1e-12;
+const GRAZING: f64 = 1e-9;
 
 impl<S: SupportFunction> ContactScene<S> {
     /// Simulates from `start` through every change of modes to the last sample.
@@ -41,9 +45,9 @@ impl<S: SupportFunction> ContactScene<S> {
         tolerance: f64,
     ) -> Result<ContactSimulation, Error> {
         if self.palms().iter().all(|palm| palm.drive.is_prescribed()) {
-            Run::<S, RIGID>::new(self, start, times, tolerance)?.to_the_end()
+            Run::<S, RIGID>::new(self, start, times, tolerance)?.finished()
         } else {
-            Run::<S, YIELDING>::new(self, start, times, tolerance)?.to_the_end()
+            Run::<S, YIELDING>::new(self, start, times, tolerance)?.finished()
         }
     }
 
@@ -71,7 +75,7 @@ struct Run<'a, S, const N: usize> {
 
 /// How far a stretch went.
 enum Reached {
-    End,
+    Limit,
     Event(Crossing),
     /// A step must be taken again up to this time.
     Again(f64),
@@ -97,7 +101,8 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let mut joints: Vec<f64> = scene.palms().iter().flat_map(|palm| palm.drive.joints()).collect();
         joints.sort_by(f64::total_cmp);
         let modes = closed.map(|closed| if closed { ContactMode::Slide } else { ContactMode::Off });
-        let stretch = Stretch { modes, towards: [DVec3::ZERO; MOST_PALMS], guesses };
+        let stretch =
+            Stretch { modes, towards: [DVec3::ZERO; MOST_PALMS], starting: [false; MOST_PALMS], guesses };
         let result = ContactSimulation {
             instants: Vec::with_capacity(count),
             events: Vec::new(),
@@ -121,12 +126,12 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         Ok(run)
     }
 
-    fn to_the_end(mut self) -> Result<ContactSimulation, Error> {
+    fn finished(mut self) -> Result<ContactSimulation, Error> {
         let last = (self.count - 1) as f64 / self.sample_rate;
         let mut limit = last;
         while self.t < last {
-            match self.stretch_until(limit, last)? {
-                Reached::End => limit = last,
+            match self.stretch_until(limit)? {
+                Reached::Limit => limit = last,
                 Reached::Again(sooner) => limit = sooner,
                 Reached::Event(crossing) => {
                     limit = last;
@@ -138,11 +143,14 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
     }
 
     /// Integrates with the present modes up to `limit` or the first event.
-    fn stretch_until(&mut self, limit: f64, last: f64) -> Result<Reached, Error> {
+    fn stretch_until(&mut self, limit: f64) -> Result<Reached, Error> {
         let (scene, units) = (self.scene, self.units);
         let now = Cell::new(self.stretch);
         let (doubt, at_start) = (Cell::new(false), Cell::new(Guards::default()));
         let field = |t: f64, y: &[f64; N]| {
+            if !y.iter().all(|v| v.is_finite()) {
+                return Ok([f64::NAN; N]);
+            }
             let stretch = now.get();
             let evaluated = stretch.evaluate(scene, &units, units.unpack(t, y))?;
             if suspicious(&stretch.guards(&evaluated, &units), &at_start.get()) {
@@ -154,7 +162,8 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let reached = loop {
             let (t, y) = (solver.time(), *solver.state());
             if t >= limit {
-                break if limit < last { Reached::Again(last) } else { Reached::End };
+                (self.t, self.y) = (t, y);
+                break Reached::Limit;
             }
             let evaluated = self.evaluated(t, &y)?;
             self.check_wedging(&evaluated)?;
@@ -163,8 +172,8 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             at_start.set(self.stretch.guards(&evaluated, &units));
             doubt.set(false);
             let next_joint = self.joints.iter().copied().find(|joint| *joint > t).unwrap_or(limit);
-            let project = |y: &mut [f64; N]| self.project(y, t);
-            if let Err(error) = solver.step(limit.min(next_joint), project) {
+            let project = |t: f64, y: &mut [f64; N]| self.project(t, y);
+            if let Err(error) = solver.step_onto(limit.min(next_joint), project) {
                 return Err(self.stuck(&evaluated, error));
             }
             let (end, next_sample) = (solver.time(), self.result.instants.len() as f64 / self.sample_rate);
@@ -200,9 +209,6 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
                 break Reached::Event(crossing);
             }
         };
-        if matches!(reached, Reached::End) || matches!(reached, Reached::Again(at) if at == last) {
-            (self.t, self.y) = (solver.time(), *solver.state());
-        }
         let done = solver.statistics();
         let sum = &mut self.result.statistics;
         sum.evaluations += done.evaluations;
@@ -217,7 +223,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
     }
 
     /// Pulls a packed state back onto the contacts; where that fails it stays, and the next evaluation tells why.
-    fn project(&self, y: &mut [f64; N], t: f64) {
+    fn project(&self, t: f64, y: &mut [f64; N]) {
         let (state, tallies) = self.units.unpack(t, y);
         let stretch = &self.stretch;
         if let Ok(state) = projected(self.scene, state, &stretch.modes, &stretch.guesses, self.units.length) {
@@ -257,16 +263,22 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let left = match crossing.kind {
             ContactEventKind::Touches | ContactEventKind::SlipEnds => None,
             ContactEventKind::Lifts | ContactEventKind::ConeLeft => {
-                Some((crossing.palm, self.stretch.modes[crossing.palm]))
+                let squeezed =
+                    self.evaluated(self.t, &self.y)?.reaction.is_some_and(|reaction| !reaction.unique);
+                let mode = self.stretch.modes[crossing.palm];
+                Some(if squeezed { Left::Set } else { Left::Mode(crossing.palm, mode) })
             }
         };
-        let (mut state, tallies) = self.units.unpack(self.t, &self.y);
+        let (state, tallies) = self.units.unpack(self.t, &self.y);
+        // Until now the old modes have held: what departs from them is the integrator's error, the rest of a slip as well.
+        let mut modes: Modes = self.stretch.modes;
         if crossing.kind == ContactEventKind::SlipEnds {
-            // What is left of the slip is the integrator's error.
-            let mut modes: Modes = self.stretch.modes;
             modes[crossing.palm] = ContactMode::Stick;
-            state = projected(self.scene, state, &modes, &self.stretch.guesses, self.units.length)
-                .map_err(|source| Error::Contact { t: self.t, source })?;
+        }
+        let state = projected(self.scene, state, &modes, &self.stretch.guesses, self.units.length)
+            .map_err(|source| Error::Contact { t: self.t, source })?;
+        if crossing.kind == ContactEventKind::SlipEnds {
+            self.stretch.modes = modes;
         }
         self.settle(state, &tallies, &closed, left)?;
         let modes = self.stretch.modes[..self.scene.palms().len()].to_vec();
@@ -291,7 +303,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         state: SceneState,
         tallies: &Tallies,
         closed: &[bool; MOST_PALMS],
-        left: Option<(usize, ContactMode)>,
+        left: Option<Left>,
     ) -> Result<(), Error> {
         let (scene, units) = (self.scene, self.units);
         let t = state.t;
@@ -299,8 +311,10 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let gaps_closed = closed.map(|closed| if closed { ContactMode::Slide } else { ContactMode::Off });
         let (mut state, mut tallies) = (state, *tallies);
         let mut touch = scene.contacts_at(&state, &self.stretch.guesses).map_err(contact)?;
-        let approaches = |i: usize| closed[i] && touch.rates[i].gap_rate < -GRAZING * units.speed;
-        if (0..scene.palms().len()).any(approaches) {
+        let grazing = units.speed * if self.result.instants.is_empty() { STATED } else { GRAZING };
+        let approaches = |i: usize| closed[i] && touch.rates[i].gap_rate < -grazing;
+        let struck = (0..scene.palms().len()).any(approaches);
+        if struck {
             let before = scene.energy(&state.body);
             let (after, impulses) = blow(scene, &state, &touch, closed)
                 .map_err(|source| Error::Modes { state: Box::new(state), source })?;
@@ -311,15 +325,19 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             }
             touch = scene.contacts_at(&state, &self.stretch.guesses).map_err(contact)?;
         }
+        // At the start the state is as exact as who gave it.
+        let still = units.speed * if self.result.instants.is_empty() { STATED } else { STILL };
         let problem = scene.problem(&state.body, &touch);
         let mut touches = [Touch::Apart; MOST_PALMS];
         for (i, at) in problem.contacts().iter().enumerate() {
             let rates = &touch.rates[i];
-            if closed[i] && rates.gap_rate <= STILL * units.speed {
+            if closed[i] && rates.gap_rate <= LEAVES * units.speed {
                 let slip = at.in_tangent(rates.slip);
                 let speed = slip.length();
+                // Palms that have begun to pull sticking contacts apart leave some slip in all of them.
+                let sticks = !struck && self.stretch.modes[i] == ContactMode::Stick;
                 touches[i] =
-                    if speed > STILL * units.speed { Touch::Slides(slip / speed) } else { Touch::Rests };
+                    if sticks || speed <= still { Touch::Rests } else { Touch::Slides(slip / speed) };
             }
         }
         let present = if self.result.instants.is_empty() { gaps_closed } else { self.stretch.modes };
@@ -328,7 +346,8 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             .map_err(|source| Error::Modes { state: Box::new(state), source })?;
         self.stretch.modes = choice.modes;
         for (i, at) in problem.contacts().iter().enumerate() {
-            self.stretch.towards[i] = at.from_tangent(choice.directions[i]);
+            self.stretch.towards[i] = at.along_tangent(choice.directions[i]);
+            self.stretch.starting[i] = touches[i] == Touch::Rests;
             self.stretch.guesses[i] = Some(touch.contacts[i].n_O);
         }
         let state =

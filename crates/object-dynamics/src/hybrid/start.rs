@@ -4,8 +4,8 @@ use crate::SimulationError;
 use crate::contacts::{ContactScene, MOST_PALMS, PalmCoordinates, SceneState};
 use contact_kinematics::{PalmSurface, SupportFunction, SurfaceState};
 
-/// Gaps below this share of the object's size are taken for contact, and closed; an object given to six digits starts so.
-const TOUCHING: f64 = 1e-5;
+/// Gaps below this share of the object's size are taken for contact, and closed; an object placed to five digits starts so.
+const TOUCHING: f64 = 1e-4;
 
 /// State at `t = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]

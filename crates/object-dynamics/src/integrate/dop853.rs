@@ -154,6 +154,18 @@ where
         t_limit: f64,
         project: impl FnOnce(&mut [f64; N]),
     ) -> Result<(), IntegrationError<E>> {
+        self.step_onto(t_limit, |_, y| project(y))
+    }
+
+    /// As [`Self::step`], onto an invariant that changes with time: `project` is told the time of the new state.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn step_onto(
+        &mut self,
+        t_limit: f64,
+        project: impl FnOnce(f64, &mut [f64; N]),
+    ) -> Result<(), IntegrationError<E>> {
         let mut limit_ratio = LARGEST_RATIO;
         loop {
             let remaining = t_limit - self.t;
@@ -181,8 +193,8 @@ where
                 limit_ratio = 1.0;
                 continue;
             }
-            project(&mut end);
             let t = if ends { t_limit } else { self.t + h };
+            project(t, &mut end);
             let rate = self.evaluate(t, &end)?;
             self.k[12] = rate;
             self.last = Some(LastStep { t: self.t, h, y: self.y });

@@ -1,0 +1,167 @@
+//! A reference log as its file has it, and the scene that it is of.
+
+use glam::{DMat3, DQuat, DVec3};
+use recon::contact_kinematics::{Ellipsoid, PalmSurface, PoseTable, SurfaceMotion, SurfacePose};
+use recon::object_dynamics::{
+    BodyState, ContactScene, MassProperties, PalmCoordinates, PalmDrive, PalmSpring, ScenePalm,
+};
+use serde_json::Value;
+use std::collections::HashMap;
+use std::error::Error;
+use std::path::Path;
+use std::process::Command;
+
+pub(super) type Anything<T> = Result<T, Box<dyn Error>>;
+
+/// Columns by name, and the scene's description.
+pub(super) struct Log {
+    columns: HashMap<String, Vec<f64>>,
+    about: Value,
+}
+
+impl Log {
+    /// Reads `NAME.csv.gz` and `NAME.json`.
+    pub(super) fn read(folder: &Path, name: &str) -> Anything<Self> {
+        let packed = folder.join(format!("{name}.csv.gz"));
+        let output = Command::new("gzip").arg("-dc").arg(&packed).output()?;
+        if !output.status.success() {
+            return Err(format!("{}: {}", packed.display(), String::from_utf8_lossy(&output.stderr)).into());
+        }
+        let text = String::from_utf8(output.stdout)?;
+        let mut lines = text.lines();
+        let names: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+        let mut values = vec![Vec::new(); names.len()];
+        for line in lines {
+            for (column, text) in values.iter_mut().zip(line.split(',')) {
+                column.push(text.parse()?);
+            }
+        }
+        let columns = names.into_iter().map(str::to_owned).zip(values).collect();
+        let about = serde_json::from_str(&std::fs::read_to_string(folder.join(format!("{name}.json")))?)?;
+        Ok(Self { columns, about })
+    }
+
+    pub(super) fn column(&self, name: &str) -> Anything<&[f64]> {
+        self.columns.get(name).map(Vec::as_slice).ok_or_else(|| format!("no column {name}").into())
+    }
+
+    /// The vector `STEMx TAIL`, `STEMy TAIL`, `STEMz TAIL` at every sample.
+    pub(super) fn vectors(&self, stem: &str, tail: &str) -> Anything<Vec<DVec3>> {
+        let part = |axis: &str| self.column(&format!("{stem}{axis}{tail}"));
+        let (x, y, z) = (part("x")?, part("y")?, part("z")?);
+        Ok((0..x.len()).map(|k| DVec3::new(x[k], y[k], z[k])).collect())
+    }
+
+    fn quaternions(&self, stem: &str, tail: &str) -> Anything<Vec<DQuat>> {
+        let (v, w) = (self.vectors(stem, tail)?, self.column(&format!("{stem}w{tail}"))?);
+        Ok(v.iter().zip(w).map(|(v, w)| DQuat::from_xyzw(v.x, v.y, v.z, *w)).collect())
+    }
+
+    pub(super) fn palm_count(&self) -> usize {
+        self.about["palms"].as_array().map_or(0, Vec::len)
+    }
+
+    /// The body's state at sample `k`.
+    pub(super) fn body(&self, k: usize) -> Anything<BodyState> {
+        Ok(BodyState {
+            p_WCm: self.vectors("cm", "")?[k],
+            R_WO: self.quaternions("q", "")?[k],
+            v_WCm: self.vectors("v", "")?[k],
+            w_WO: self.vectors("w", "")?[k],
+        })
+    }
+
+    /// The scene whose palms move as the log's did, every `thinned`-th pose being a node of their paths.
+    pub(super) fn scene(&self, thinned: usize) -> Anything<ContactScene<Ellipsoid>> {
+        let body = Ellipsoid::new(vector(&self.about["axes"]))?;
+        let inertia = DMat3::from_cols(
+            vector(&self.about["inertia"][0]),
+            vector(&self.about["inertia"][1]),
+            vector(&self.about["inertia"][2]),
+        );
+        let mass = MassProperties::new(number(&self.about["mass"]), inertia)?;
+        let palms = (1..=self.palm_count()).map(|i| self.palm(i, thinned)).collect::<Anything<Vec<_>>>()?;
+        Ok(ContactScene::new(body, mass, palms, number(&self.about["gravity"]))?)
+    }
+
+    fn palm(&self, i: usize, thinned: usize) -> Anything<ScenePalm> {
+        let about = &self.about["palms"][i - 1];
+        let radius = number(&about["radius"]);
+        let surface = match about["kind"].as_str().unwrap_or_default() {
+            "flat" => PalmSurface::Plane,
+            "sphere" => PalmSurface::Sphere { radius },
+            "cup" => PalmSurface::Cup { radius },
+            other => return Err(format!("palm of kind {other}").into()),
+        };
+        let mut positions = self.vectors("P", &format!("_{i}"))?;
+        let spring = &about["spring"];
+        let drive = if spring.is_null() {
+            PalmDrive::Prescribed(self.path(i, &positions, thinned)?)
+        } else {
+            let (stiffness, damping) = (matrix(&spring["K"]), matrix(&spring["C"]));
+            let mass = number(&spring["mass"]);
+            self.command(i, &mut positions, (stiffness, damping, mass))?;
+            let command = self.path(i, &positions, thinned)?;
+            PalmDrive::Spring(PalmSpring { command, stiffness, damping, mass })
+        };
+        Ok(ScenePalm { surface, drive, friction: number(&about["mu"]) })
+    }
+
+    fn path(&self, i: usize, positions: &[DVec3], thinned: usize) -> Anything<SurfaceMotion> {
+        let (t, turns) = (self.column("t")?, self.quaternions("Q", &format!("_{i}"))?);
+        let still = positions.iter().zip(&turns).all(|(p, q)| *p == positions[0] && *q == turns[0]);
+        let pose = |k: usize| SurfacePose::new(positions[k], turns[k]);
+        if still {
+            return Ok(SurfaceMotion::immobile(pose(0)?));
+        }
+        let rows: Result<Vec<_>, _> = (0..t.len())
+            .filter(|k| k % thinned == 0 || *k == t.len() - 1)
+            .map(|k| pose(k).map(|p| (t[k], p)))
+            .collect();
+        Ok(SurfaceMotion::Table(PoseTable::new(&rows?)?))
+    }
+
+    /// Where the palm was commanded to be, from where it was: with `z = p_c - p`, `C z' + K z = m p'' + f`.
+    fn command(&self, i: usize, positions: &mut [DVec3], (K, C, m): (DMat3, DMat3, f64)) -> Anything<()> {
+        let (t, v, f) =
+            (self.column("t")?, self.vectors("V", &format!("_{i}"))?, self.vectors("f", &format!("_{i}"))?);
+        let n = t.len();
+        let load = |k: usize| {
+            let (a, b) = (k.saturating_sub(1), (k + 1).min(n - 1));
+            m * (v[b] - v[a]) / (t[b] - t[a]) + f[k]
+        };
+        let mut z = K.inverse() * load(0);
+        positions[0] += z;
+        for k in 1..n {
+            // Trapezoidal rule: the ratio C / K is at least two steps long.
+            let h = t[k] - t[k - 1];
+            let right = (C / h - K * 0.5) * z + 0.5 * (load(k - 1) + load(k));
+            z = (C / h + K * 0.5).inverse() * right;
+            positions[k] += z;
+        }
+        Ok(())
+    }
+
+    /// Coordinates of the palms on springs at sample `k`.
+    pub(super) fn palm_coordinates(&self, k: usize) -> Anything<[PalmCoordinates; 5]> {
+        let mut all = [PalmCoordinates::default(); 5];
+        for i in 1..=self.palm_count() {
+            let tail = format!("_{i}");
+            let (position, velocity) = (self.vectors("P", &tail)?[k], self.vectors("V", &tail)?[k]);
+            all[i - 1] = PalmCoordinates { position, velocity };
+        }
+        Ok(all)
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
+
+fn vector(value: &Value) -> DVec3 {
+    DVec3::new(number(&value[0]), number(&value[1]), number(&value[2]))
+}
+
+fn matrix(value: &Value) -> DMat3 {
+    DMat3::from_cols(vector(&value[0]), vector(&value[1]), vector(&value[2])).transpose()
+}
