@@ -28,8 +28,8 @@ pub(crate) fn main() -> Result<(), Failure> {
     let first: u64 = words.next().map_or(Ok(1_000_000), |a| a.parse())?;
     println!("# Planar bodies on any palms\n");
     println!(
-        "Made by `cargo xtask study planar_contacts`: {scenes} scenes a row from seed {first} on, {DURATION} s each, relative \
-         tolerance {TOLERANCE:.0e}. Circles, ellipses, Fourier bodies and rounded polygons of about 50 mm are thrown at one \
+        "Made by `cargo xtask study planar_contacts`: {scenes} scenes a row from seed {first} on, {DURATION} s each, \
+         relative tolerance {TOLERANCE:.0e}. Circles, ellipses, Fourier bodies and rounded polygons of about 50 mm are thrown at one \
          to five lines, fingertips and cups that shift and turn, with friction from 0 to the coefficient of the row. Worst of \
          all samples (200 a second).\n"
     );

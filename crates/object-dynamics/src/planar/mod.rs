@@ -1,8 +1,8 @@
-//! The planar case: motion, contact forces and sensor logs of an object between two hinged palms, frictionless; and on one
-//! to five palms of any shape and motion, with friction ([`ContactScene`]).
+//! The planar case: motion, contact forces and sensor logs of an object between two hinged palms, frictionless; and
+//! on one to five palms of any shape and motion, with friction ([`ContactScene`]).
 //!
-//! Conventions as in [`contact_kinematics::planar`]; gravity is `(0, -g)`. While both contacts hold, the object has one
-//! degree of freedom, its orientation `phi0`, and nothing is divided by but `sin phi2` and `I0/m + <d, d>`, both
+//! Conventions as in [`contact_kinematics::planar`]; gravity is `(0, -g)`. While both contacts hold, the object has
+//! one degree of freedom, its orientation `phi0`, and nothing is divided by but `sin phi2` and `I0/m + <d, d>`, both
 //! positive: the equations are regular at every speed and in every orientation.
 
 mod contact_log;

@@ -11,10 +11,11 @@ pub struct BodyPlace {
     pub phi0: f64,
 }
 
-/// The one datum of a contact: where a body is next to a palm, and how both are curved there. It holds off contact too.
+/// The one datum of a contact: where a body is next to a palm, and how both are curved there. It holds off contact
+/// too.
 ///
-/// Off contact the palm is taken inflated by the gap (an arc's radius is then `radius + gap`), so that it touches the body
-/// in the body's nearest point; every rate is exact for it.
+/// Off contact the palm is taken inflated by the gap (an arc's radius is then `radius + gap`), so that it touches the
+/// body in the body's nearest point; every rate is exact for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceContact {
     /// Distance of body and palm in m, negative where they penetrate.
@@ -36,11 +37,11 @@ pub struct SurfaceContact {
 }
 
 impl SurfaceContact {
-    /// The contact of `shape` with a palm. `guess` is the direction of the body's outward normal there (rad, body axes),
-    /// where one is known.
+    /// The contact of `shape` with a palm. `guess` is the direction of the body's outward normal there (rad, body
+    /// axes), where one is known.
     ///
-    /// In closed form for lines. For arcs and cups the distance of the palm's centre from the body is a maximum or minimum
-    /// over the normal: Newton's method in a bracket, to rounding.
+    /// In closed form for lines. For arcs and cups the distance of the palm's centre from the body is a maximum or
+    /// minimum over the normal: Newton's method in a bracket, to rounding.
     ///
     /// # Errors
     /// [`ContactError`].

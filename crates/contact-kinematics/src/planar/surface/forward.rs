@@ -1,8 +1,8 @@
 //! Where a body touches a palm: the normal at which the distance of body and palm is stationary.
 //!
-//! With `D = p_WP - p_WCm` in body axes, `G(theta) = n(theta) . D - r(theta)` is the distance of the palm's centre from the
-//! body's tangent line. Its largest value is the centre's distance from the body (arc); minus its smallest is the distance of
-//! the body's farthest point (cup). `G' = -(t . D - d)` and `G'' = -(G + rho)`.
+//! With `D = p_WP - p_WCm` in body axes, `G(theta) = n(theta) . D - r(theta)` is the distance of the palm's centre
+//! from the body's tangent line. Its largest value is the centre's distance from the body (arc); minus its smallest
+//! is the distance of the body's farthest point (cup). `G' = -(t . D - d)` and `G'' = -(G + rho)`.
 
 use super::{BodyPlace, ContactError, PalmSurface, SurfaceState};
 use crate::planar::radius::{RadiusFunction, RadiusJet};
@@ -11,11 +11,12 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Newton's method takes 3 to 6 steps; bisection of a bracket of [`LONGEST_STEP`] ends after 55.
 const MOST_STEPS: u32 = 80;
-/// Steps in rad by which a bracket is looked for: the first is that of a warm start, and each doubles up to the longest.
+/// Steps in rad by which a bracket is looked for: the first is that of a warm start, and each doubles up to the
+/// longest.
 const FIRST_STEP: f64 = 0.01;
 const LONGEST_STEP: f64 = 0.3;
-/// Directions of the search over a whole turn, for starts from which Newton's method found a stationary value that is not
-/// proved to be the one.
+/// Directions of the search over a whole turn, for starts from which Newton's method found a stationary value that is
+/// not proved to be the one.
 const SCAN: u32 = 128;
 /// An offset below this many units of rounding of its terms is rounding.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -88,8 +89,9 @@ impl<S: RadiusFunction + ?Sized> Search<'_, S> {
         }
     }
 
-    /// Whether a stationary value is the extreme one. A positive distance is: `G` is concave wherever it is positive. So is
-    /// that of a farthest point beyond every radius of curvature: the body lies inside of the circle through it (Blaschke).
+    /// Whether a stationary value is the extreme one. A positive distance is: `G` is concave wherever it is positive.
+    /// So is that of a farthest point beyond every radius of curvature: the body lies inside of the circle through it
+    /// (Blaschke).
     fn is_proved(&self, now: &Trial) -> bool {
         if self.sign > 0.0 { now.distance > 0.0 } else { -now.distance >= self.shape.radius_bounds().max }
     }
@@ -147,7 +149,8 @@ impl<S: RadiusFunction + ?Sized> Search<'_, S> {
         Err(ContactError::NotFound { iterations: MOST_STEPS, offset: now.offset.abs() })
     }
 
-    /// Directions around `start` between which the offset rises through zero. It does so within a turn, as `G` is periodic.
+    /// Directions around `start` between which the offset rises through zero. It does so within a turn, as `G` is
+    /// periodic.
     fn bracket(&self, start: &Trial) -> (f64, f64) {
         let up = if start.offset < 0.0 { 1.0 } else { -1.0 };
         let (mut inner, mut step, mut gone) = (start.theta, FIRST_STEP, 0.0);

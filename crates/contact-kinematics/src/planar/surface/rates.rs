@@ -1,8 +1,8 @@
 use super::{ContactError, SurfaceContact, SurfaceState};
 use glam::DVec2;
 
-/// Largest condition `1 / |1 + H S|` (radius of the body times curvature of the palm) with which the contact's path over
-/// the palm is told: it loses `log10(condition)` digits.
+/// Largest condition `1 / |1 + H S|` (radius of the body times curvature of the palm) with which the contact's path
+/// over the palm is told: it loses `log10(condition)` digits.
 const LARGEST_CONDITION: f64 = 1e10;
 
 /// How a contact moves, at one velocity of body and palm. World axes.
@@ -33,8 +33,8 @@ impl SurfaceContact {
 
     /// Rates at the body's velocity (centre of mass, m/s) and angular velocity (rad/s), and the palm's.
     ///
-    /// With `y` the velocity of the contact over the palm along `t`: `(1 + rho k) y = t . slip - rho (omega0 - W)`, `k` the
-    /// palm's curvature.
+    /// With `y` the velocity of the contact over the palm along `t`: `(1 + rho k) y = t . slip - rho (omega0 - W)`,
+    /// `k` the palm's curvature.
     ///
     /// # Errors
     /// [`ContactError::Matching`] where the curvatures match.

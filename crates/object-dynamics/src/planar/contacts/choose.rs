@@ -9,8 +9,8 @@ pub(in crate::planar) const CONSISTENT: f64 = 1e-9;
 /// Accelerations of two sets that differ by more than this share are two answers: a thousand times what sets within
 /// [`CONSISTENT`] of their border differ by.
 const DIFFERENT: f64 = 1e-6;
-/// A principal minor below this wedges: forces are a million times those that would move the free body as much, and grow
-/// without bound.
+/// A principal minor below this wedges: forces are a million times those that would move the free body as much, and
+/// grow without bound.
 pub(in crate::planar) const WEDGED: f64 = 1e-6;
 
 /// The modes taken, and what they do.
@@ -22,8 +22,8 @@ pub(in crate::planar) struct Choice {
     pub(in crate::planar) response: Response,
 }
 
-/// Why no modes can be taken. A set is told by the letters of its touching contacts, in the order of the palms: `O` off, `S`
-/// sliding (with the sign of its slip along the palm's tangent), `R` sticking.
+/// Why no modes can be taken. A set is told by the letters of its touching contacts, in the order of the palms: `O`
+/// off, `S` sliding (with the sign of its slip along the palm's tangent), `R` sticking.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ModeError {
     /// Painleve's paradox or a jam: rigid bodies with this friction have no motion here.
@@ -60,8 +60,9 @@ struct Consistent {
 }
 
 impl ContactProblem {
-    /// The modes that agree with the signs of forces, gaps and slips: the `present` ones if they do, else those with the
-    /// fewest changes. Sets in `ended` are left out, unless nothing else is consistent: an event has just told against them.
+    /// The modes that agree with the signs of forces, gaps and slips: the `present` ones if they do, else those with
+    /// the fewest changes. Sets in `ended` are left out, unless nothing else is consistent: an event has just told
+    /// against them.
     pub(in crate::planar) fn choose(
         &self,
         present: &[PlanarMode],
@@ -104,8 +105,8 @@ impl ContactProblem {
 
     /// How far the signs are from being wrong, as a share of the largest rate or force: the least over all conditions.
     ///
-    /// A gap that is off must not close; normal forces push; sticking forces stay in the cone; where a contact starts to
-    /// slide it does so against its friction; the palms do not tear redundant contacts apart.
+    /// A gap that is off must not close; normal forces push; sticking forces stay in the cone; where a contact starts
+    /// to slide it does so against its friction; the palms do not tear redundant contacts apart.
     pub(in crate::planar) fn margin(&self, modes: &[PlanarMode], response: &Response) -> f64 {
         let mass = self.roots[0] * self.roots[0];
         let largest = response.forces.iter().flatten().fold(0.0_f64, |s, f| s.max(f.abs())) / mass;
@@ -126,8 +127,8 @@ impl ContactProblem {
         if margin.is_nan() { f64::NEG_INFINITY } else { margin }
     }
 
-    /// The smallest principal minor of the matrix (rows times columns) of the sliding contacts, sticking ones eliminated, in
-    /// units of the rows' lengths. Positive where one answer is guaranteed.
+    /// The smallest principal minor of the matrix (rows times columns) of the sliding contacts, sticking ones
+    /// eliminated, in units of the rows' lengths. Positive where one answer is guaranteed.
     ///
     /// Infinite where there is nothing to ask: nothing slides, or the forces are not unique.
     pub(in crate::planar) fn smallest_minor(&self, modes: &[PlanarMode], response: &Response) -> f64 {

@@ -1,13 +1,15 @@
 //! Forces within cones where they are not unique: least distance programming.
 //!
-//! C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), chapter 23: algorithms NNLS (23.10) and LDP (23.27).
+//! C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), chapter 23: algorithms NNLS (23.10) and LDP
+//! (23.27).
 
 use nalgebra::{DMatrix, DVector};
 
 /// Forces this many times the least ones are not looked for: a squeeze that large is no answer of a rigid body.
 const LARGEST_SQUEEZE: f64 = 1e6;
 
-/// Of the forces `least + null z` those nearest to `least` with `cones (least + null z) >= 0`; none where there are none.
+/// Of the forces `least + null z` those nearest to `least` with `cones (least + null z) >= 0`; none where there are
+/// none.
 pub(super) fn within_cones(
     least: &DVector<f64>,
     null: &DMatrix<f64>,
@@ -19,7 +21,8 @@ pub(super) fn within_cones(
     }
     let size = least.norm();
     let (free, count) = (null.ncols(), cones.nrows());
-    // z of least size with G z >= h, in units of the least forces: the residual of a least-squares problem over u >= 0.
+    // z of least size with G z >= h, in units of the least forces: the residual of a least-squares problem over u >=
+    // 0.
     let g = cones * null;
     let e = DMatrix::from_fn(free + 1, count, |i, j| if i < free { g[(j, i)] } else { -slack[j] / size });
     let f = DVector::from_fn(free + 1, |i, _| f64::from(i == free));

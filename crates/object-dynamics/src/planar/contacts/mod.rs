@@ -1,7 +1,7 @@
 //! Forces and accelerations at contacts that are off, slide or stick, and the choice between these.
 //!
-//! Everything is computed in mass-weighted coordinates `(sqrt m a, sqrt I0 alpha)`, in which the inverse mass matrix is the
-//! unit matrix: a contact direction `e` at the lever `b` is the row `(e / sqrt m, e . (z x b) / sqrt I0)`.
+//! Everything is computed in mass-weighted coordinates `(sqrt m a, sqrt I0 alpha)`, in which the inverse mass matrix
+//! is the unit matrix: a contact direction `e` at the lever `b` is the row `(e / sqrt m, e . (z x b) / sqrt I0)`.
 
 mod choose;
 mod feasible;
@@ -29,7 +29,8 @@ pub(super) enum PlanarMode {
     Off,
     /// Slip along the palm's tangent.
     Slide {
-        /// 1 or -1, the sign of the body's slip along the palm's tangent `t`; 0 on a frictionless palm, where it has no say.
+        /// 1 or -1, the sign of the body's slip along the palm's tangent `t`; 0 on a frictionless palm, where it has
+        /// no say.
         sense: f64,
     },
     /// No slip.
@@ -94,8 +95,8 @@ struct Rows {
 }
 
 impl ContactProblem {
-    /// From mass, the acceleration of the centre of mass (m/s^2) and the angular acceleration (rad/s^2) without contacts,
-    /// and the contacts.
+    /// From mass, the acceleration of the centre of mass (m/s^2) and the angular acceleration (rad/s^2) without
+    /// contacts, and the contacts.
     pub(super) fn new(mass: PlanarMass, free: (DVec2, f64), contacts: &[TouchingContact]) -> Self {
         let roots = [mass.mass().sqrt(), mass.inertia().sqrt()];
         let row = |e: DVec2, b: DVec2| {
@@ -111,8 +112,9 @@ impl ContactProblem {
         Self { roots, free: Vector3::new(a.x, a.y, alpha), contacts: contacts.collect() }
     }
 
-    /// The motion with least kinetic energy that takes the rates `residuals` (along normal and tangent of each contact; m/s
-    /// or, of gaps, m) away from the contacts, along the normals of sliding contacts and both axes of sticking ones.
+    /// The motion with least kinetic energy that takes the rates `residuals` (along normal and tangent of each
+    /// contact; m/s or, of gaps, m) away from the contacts, along the normals of sliding contacts and both axes of
+    /// sticking ones.
     pub(super) fn correction(&self, modes: &[PlanarMode], residuals: &[[f64; 2]]) -> Correction {
         let (mut rows, mut right, mut axes) = (Vec::new(), Vec::new(), Vec::new());
         for (i, (contact, mode)) in self.contacts.iter().zip(modes).enumerate() {

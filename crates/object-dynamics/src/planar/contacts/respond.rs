@@ -5,8 +5,8 @@ use glam::DVec2;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use thiserror::Error;
 
-/// Rows or columns whose smallest singular value is below this share of the largest count as dependent: forces that are
-/// 1e9 times what they do to the body would be needed to tell them apart.
+/// Rows or columns whose smallest singular value is below this share of the largest count as dependent: forces that
+/// are 1e9 times what they do to the body would be needed to tell them apart.
 const DEPENDENT: f64 = 1e-9;
 /// Share of its terms up to which a solution of dependent equations may miss them: rounding, amplified by the least
 /// independent of them.
@@ -21,11 +21,11 @@ pub(in crate::planar) struct Response {
     pub(in crate::planar) alpha0: f64,
     /// Force of each palm on the body along its normal and its tangent, N; zero where the contact is off.
     pub(in crate::planar) forces: Vec<[f64; 2]>,
-    /// Whether the forces are not unique: bodies stuck on several palms squeeze themselves. They are then those of least
-    /// size within the friction cones, or, where there are none, of least size.
+    /// Whether the forces are not unique: bodies stuck on several palms squeeze themselves. They are then those of
+    /// least size within the friction cones, or, where there are none, of least size.
     pub(in crate::planar) redundant: bool,
-    /// What the palms' motion leaves of constraints that contradict each other, m/s^2; zero but for rounding where it can be
-    /// followed.
+    /// What the palms' motion leaves of constraints that contradict each other, m/s^2; zero but for rounding where it
+    /// can be followed.
     pub(in crate::planar) torn: f64,
     /// Mass-weighted acceleration.
     pub(super) x: Vector3<f64>,
@@ -56,7 +56,8 @@ pub(super) struct LeastNorm {
 impl ContactProblem {
     /// Accelerations and forces under `modes`, one for each contact, whatever the signs of the forces.
     ///
-    /// Row `n` for sliding contacts with the force along `n - mu sense t`; rows and forces along `n` and `t` for sticking ones.
+    /// Row `n` for sliding contacts with the force along `n - mu sense t`; rows and forces along `n` and `t` for
+    /// sticking ones.
     pub(in crate::planar) fn respond(&self, modes: &[PlanarMode]) -> Result<Response, Jammed> {
         let system = self.assemble(modes);
         let size = system.rows.len();
@@ -118,8 +119,8 @@ impl ContactProblem {
         Ok(self.response(modes, x, &forces.as_slice()[..size], None))
     }
 
-    /// More rows than are independent: the motion is unique where they do not contradict each other (where they do, it is that
-    /// of least squares), the forces are not.
+    /// More rows than are independent: the motion is unique where they do not contradict each other (where they do,
+    /// it is that of least squares), the forces are not.
     fn redundant(&self, modes: &[PlanarMode], system: &System) -> Result<Response, Jammed> {
         let size = system.rows.len();
         let right: Vec<f64> = system.biases.iter().map(|b| -b).collect();

@@ -98,7 +98,8 @@ fn painleves_rod_is_inconsistent_or_ambiguous() {
 
 #[test]
 fn a_pinched_body_squeezes_itself_within_its_cones() {
-    // A bar of half length 1 lies level between two walls that lean in: pinched, its weight is carried by friction alone.
+    // A bar of half length 1 lies level between two walls that lean in: pinched, its weight is carried by friction
+    // alone.
     for (mu, holds) in [(0.6, true), (0.5, false)] {
         let lean: f64 = 0.5;
         let left = DVec2::new(lean.cos(), -lean.sin());

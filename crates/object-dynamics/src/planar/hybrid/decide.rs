@@ -11,8 +11,9 @@ use glam::DVec2;
 
 /// Share of the body's size up to which a gap counts as closed when modes are chosen.
 const CLOSED: f64 = 1e-10;
-/// Share of the natural speed up to which a gap rate counts as zero when modes are chosen. A body falls through a gap that is
-/// rounding, 1e-14 of its size, at 1.4e-7 of that speed: a body that rattles between two palms never comes to rest below that.
+/// Share of the natural speed up to which a gap rate counts as zero when modes are chosen. A body falls through a gap
+/// that is rounding, 1e-14 of its size, at 1.4e-7 of that speed: a body that rattles between two palms never comes to
+/// rest below that.
 const SETTLED: f64 = 1e-6;
 /// Share of the natural speed up to which a slip counts as zero.
 const STILL: f64 = 1e-9;
@@ -111,8 +112,8 @@ impl<S: RadiusFunction> Tracker<'_, S> {
         Ok(touches)
     }
 
-    /// Inelastic blow: impulses in the friction cones after which no gap closes, and the modes that they are of. Returns their
-    /// work (J) on gap rates and slips; what they do at the palms' velocities is work of the palms.
+    /// Inelastic blow: impulses in the friction cones after which no gap closes, and the modes that they are of.
+    /// Returns their work (J) on gap rates and slips; what they do at the palms' velocities is work of the palms.
     fn blow(&self, touches: &[Touch], y: &mut Vector, modes: &mut [PlanarMode]) -> Result<f64, ModeError> {
         let contacts: Vec<_> = touches
             .iter()

@@ -7,11 +7,11 @@ use crate::integrate::{DenseOutput, find_root};
 use crate::planar::contacts::{CONSISTENT, PlanarMode, WEDGED};
 use contact_kinematics::planar::RadiusFunction;
 
-/// Points of each integration step at which signs are looked at. A force that dips below zero and comes back between two of
-/// them is missed, a gap is not unless it dips twice; a step moves the body by less than its own size.
+/// Points of each integration step at which signs are looked at. A force that dips below zero and comes back between
+/// two of them is missed, a gap is not unless it dips twice; a step moves the body by less than its own size.
 const CHECKS: u32 = 8;
-/// Share of the normal force by which a sticking force may leave its cone before that counts: above rounding, and well below
-/// the 1e-9 that a run is held to.
+/// Share of the normal force by which a sticking force may leave its cone before that counts: above rounding, and
+/// well below the 1e-9 that a run is held to.
 const CONE_SLACK: f64 = 1e-11;
 /// Units of its rounding by which a gap may be negative before that counts.
 const GAP_SLACK: f64 = 4.0;
@@ -120,7 +120,8 @@ impl<S: RadiusFunction> Phase<'_, S> {
             }
         }
         let root = find_root(value, from, until, rounding).unwrap_or(from);
-        // A force that jumps, as where a rounded polygon passes from a corner to an edge, is asked for beyond its jump.
+        // A force that jumps, as where a rounded polygon passes from a corner to an edge, is asked for beyond its
+        // jump.
         let mut step = rounding;
         while value(root + step) > 0.0 && root + step < until {
             step *= 2.0;

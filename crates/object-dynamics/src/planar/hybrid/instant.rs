@@ -28,9 +28,9 @@ pub enum ContactInstantError {
 }
 
 impl<S: RadiusFunction> ContactScene<S> {
-    /// Contacts, forces and accelerations at time `t` (s) of a body whose contacts have the given modes, whether those are
-    /// consistent or not: a force that pulls or leaves its cone is returned as it comes out. Friction acts against the slip,
-    /// and not at all where there is none to slide.
+    /// Contacts, forces and accelerations at time `t` (s) of a body whose contacts have the given modes, whether
+    /// those are consistent or not: a force that pulls or leaves its cone is returned as it comes out. Friction acts
+    /// against the slip, and not at all where there is none to slide.
     ///
     /// # Errors
     /// [`ContactInstantError`].
@@ -48,8 +48,8 @@ impl<S: RadiusFunction> ContactScene<S> {
         Ok(phase.instant(&y, 0.0)?)
     }
 
-    /// The smallest principal minor of the sliding contacts' matrix of a body with the given modes, dimensionless: above zero
-    /// (a P-matrix) motion exists and is one. Infinite where nothing slides, or the forces are not unique.
+    /// The smallest principal minor of the sliding contacts' matrix of a body with the given modes, dimensionless:
+    /// above zero (a P-matrix) motion exists and is one. Infinite where nothing slides, or the forces are not unique.
     ///
     /// # Errors
     /// [`ContactInstantError`].

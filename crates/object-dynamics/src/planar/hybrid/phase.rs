@@ -65,9 +65,9 @@ impl<S: RadiusFunction> Phase<'_, S> {
         Ok(rate)
     }
 
-    /// Pulls the state onto the contacts: gaps zero, gap rates zero, slips of sticking contacts zero, by the least change in
-    /// the metric of kinetic energy. A state that is there to rounding stays as it is. Returns the impulses of the change of
-    /// velocity.
+    /// Pulls the state onto the contacts: gaps zero, gap rates zero, slips of sticking contacts zero, by the least
+    /// change in the metric of kinetic energy. A state that is there to rounding stays as it is. Returns the impulses
+    /// of the change of velocity.
     pub(super) fn project(&self, y: &mut Vector) -> Result<Vec<(Touch, DVec2)>, FieldError> {
         let t = y[TIME];
         let mut state = BodyState::of(y);

@@ -16,8 +16,8 @@ use contact_kinematics::planar::RadiusFunction;
 const ABSOLUTE_SHARE: f64 = 1e-2;
 /// Share of its size by which the body, or a palm at its place, may move in one step, so that no contact is passed by.
 const STEP_SHARE: f64 = 0.25;
-/// Changes of modes within one natural time after which they are taken to have no end. A body that rattles to rest in a wedge
-/// takes some tens, with much friction some hundreds.
+/// Changes of modes within one natural time after which they are taken to have no end. A body that rattles to rest in
+/// a wedge takes some tens, with much friction some hundreds.
 const MOST_CHANGES: usize = 5_000;
 /// Steps within one natural time after which the integrator is taken to stand still: smooth motion takes some tens.
 const MOST_STEPS: usize = 10_000;
@@ -27,9 +27,9 @@ const CRITICAL: f64 = 1e-2;
 impl<S: RadiusFunction> ContactScene<S> {
     /// Simulates from `start` at the first of `times` (s) through every change of modes, sampled at `times`.
     ///
-    /// Smooth motion by DOP853 with the forces of the present modes, to the relative `tolerance` per step, pulled back onto
-    /// the contacts after each; changes of modes are located on its dense output, and the modes after each are the
-    /// consistent ones. Blows are inelastic.
+    /// Smooth motion by DOP853 with the forces of the present modes, to the relative `tolerance` per step, pulled
+    /// back onto the contacts after each; changes of modes are located on its dense output, and the modes after each
+    /// are the consistent ones. Blows are inelastic.
     ///
     /// # Errors
     /// [`ContactSimulationError`]; where rigid bodies with friction have no motion, or several, the state is named.
@@ -147,8 +147,8 @@ impl<S: RadiusFunction> Run<'_, S> {
         }
     }
 
-    /// How far the next step may go: to a joint of the palms' motions, the last sample, or, where a gap may close, a share of
-    /// the body's size.
+    /// How far the next step may go: to a joint of the palms' motions, the last sample, or, where a gap may close, a
+    /// share of the body's size.
     fn step_limit(&self, phase: &Phase<'_, S>, t: f64, y: &Vector) -> f64 {
         let last = self.times[self.times.len() - 1];
         let next = self.joints.partition_point(|&joint| joint <= t);

@@ -24,8 +24,8 @@ pub struct ContactStart {
 }
 
 impl<S: RadiusFunction> ContactScene<S> {
-    /// The state nearest to `guess` in which the body touches `palms` (from 0) at time `t` (s), and moves along them: nearest
-    /// in the metric of kinetic energy.
+    /// The state nearest to `guess` in which the body touches `palms` (from 0) at time `t` (s), and moves along them:
+    /// nearest in the metric of kinetic energy.
     ///
     /// # Errors
     /// [`StartError::NoRoom`] where there is none nearby, or another palm is in the way; [`StartError::NoPalm`] and
@@ -128,7 +128,8 @@ impl<S: RadiusFunction> Tracker<'_, S> {
     }
 }
 
-/// Distance of two palms, in the order in which one kind is treated; infinite for the other order and where none is defined.
+/// Distance of two palms, in the order in which one kind is treated; infinite for the other order and where none is
+/// defined.
 fn distance((a, at): &(PalmSurface, SurfaceState), (b, bt): &(PalmSurface, SurfaceState)) -> f64 {
     let between = bt.p_WP - at.p_WP;
     match (*a, *b) {

@@ -18,8 +18,8 @@ pub struct BodyState {
 
 /// Length of [`Vector`].
 pub(super) const LENGTH: usize = IMPULSES + 2 * MOST_PALMS;
-/// Body state, work of the palms and of friction (J), time (s), which lets a projection know when it is, and the integrals of
-/// the palms' forces (N s).
+/// Body state, work of the palms and of friction (J), time (s), which lets a projection know when it is, and the
+/// integrals of the palms' forces (N s).
 pub(super) type Vector = [f64; LENGTH];
 pub(super) const PALM_WORK: usize = 6;
 pub(super) const FRICTION_WORK: usize = 7;

@@ -1,4 +1,5 @@
-//! A thin ellipse that leans on a floor and a wall: one coordinate, against a quadrature and an independent integration.
+//! A thin ellipse that leans on a floor and a wall: one coordinate, against a quadrature and an independent
+//! integration.
 
 use super::*;
 use crate::integrate::{FixedScheme, integrate_fixed};
@@ -37,7 +38,8 @@ fn energies(scene: &ContactScene<Ellipse>, phi: f64) -> [f64; 2] {
     [object.energy(contact.p_WCm, DVec2::ZERO, 0.0), object.energy(DVec2::ZERO, v, 1.0)]
 }
 
-/// Time from rest at `from` to `to` by energy: `integral of dphi / omega` with `phi = from +- s^2`, Simpson on 2,000 intervals.
+/// Time from rest at `from` to `to` by energy: `integral of dphi / omega` with `phi = from +- s^2`, by Gauss-Legendre
+/// rules.
 fn time_by_energy(scene: &ContactScene<Ellipse>, from: f64, to: f64) -> f64 {
     let [start, _] = energies(scene, from);
     let (sign, end) = ((to - from).signum(), (to - from).abs().sqrt());
@@ -86,7 +88,8 @@ fn sliding_ladder(scene: &ContactScene<Ellipse>, mu: f64, y: &[f64; 2]) -> [f64;
     let [phi, omega] = *y;
     let contact = PairContact::new(&scene.object().shape, &corner(), phi);
     let [floor, wall] = contact.jets;
-    // n_i . a = d_i alpha + (rho_i - r_i) omega^2, n_floor = Y, n_wall = X; the lower end slides out, the upper one down.
+    // n_i . a = d_i alpha + (rho_i - r_i) omega^2, n_floor = Y, n_wall = X; the lower end slides out, the upper one
+    // down.
     let (k1, k2) = ((floor.rho - floor.r) * omega * omega, (wall.rho - wall.r) * omega * omega);
     // m a_x = f2 - mu f1, m (a_y + g) = f1 + mu f2: solved for the forces at alpha = 0 and per alpha.
     let forces = |ax: f64, ay: f64| {

@@ -107,7 +107,8 @@ fn what_rigid_bodies_do_not_decide_is_named_with_its_state() {
             other => panic!("{other:?}"),
         }
     };
-    // A rough wedge: the contact that sticks comes to the edge of its cone, and the body could as well leave the other palm.
+    // A rough wedge: the contact that sticks comes to the edge of its cone, and the body could as well leave the
+    // other palm.
     let (t, phi0, why) = stop(872, 0.6);
     assert!((t - 0.845).abs() < 1e-3 && (phi0 + 1.117).abs() < 1e-3);
     assert!(matches!(why, ModeError::Ambiguous { .. }), "{why}");

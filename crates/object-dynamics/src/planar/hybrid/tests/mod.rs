@@ -37,8 +37,8 @@ fn at(x: f64, y: f64) -> BodyState {
     BodyState { p_WCm: DVec2::new(x, y), ..BodyState::default() }
 }
 
-/// What a run promises at every sample: no gap or cone violated beyond 1e-9 (of the size 0.05 m, of the weight or the largest
-/// force), friction against the slip, no creep, and energy but for the works to 1e-10.
+/// What a run promises at every sample: no gap or cone violated beyond 1e-9 (of the size 0.05 m, of the weight or the
+/// largest force), friction against the slip, no creep, and energy but for the works to 1e-10.
 fn check_run<S: RadiusFunction>(scene: &ContactScene<S>, run: &ContactSimulation) {
     for s in &run.instants {
         let force = s.forces.iter().map(|f| f.length()).fold(MASS * G, f64::max);

@@ -103,8 +103,8 @@ fn a_spinning_rounded_square_leaves_the_floor_where_an_edge_ends() {
         let guess = BodyState { omega0: f64::from(spin), ..at(0.0, 0.05) };
         let body = scene.place(0.0, guess, &[0]).unwrap();
         let run = scene.simulate(&ContactStart { body, contacts: vec![0] }, &times(0.1, 100), 1e-12).unwrap();
-        // Over an edge it is carried, rho > r; over a corner (rho - r) omega^2 is below -g. The radius of curvature jumps, and
-        // so does the force, to below zero.
+        // Over an edge it is carried, rho > r; over a corner (rho - r) omega^2 is below -g. The radius of curvature
+        // jumps, and so does the force, to below zero.
         let first = &run.events[0];
         assert_eq!(first.kind, ContactEventKind::Lifts);
         let before = run.instants.iter().rfind(|s| s.t < first.t).unwrap();
