@@ -15,6 +15,7 @@ mod chart;
 mod cold_start;
 mod contact_logs;
 mod no_force;
+mod planar_contacts;
 mod planar_costs;
 mod planar_monte_carlo;
 mod shape_fits;
@@ -40,6 +41,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("cold_start", || in_words(cold_start::main())),
     ("contact_logs", || in_words(contact_logs::main())),
     ("no_force", || in_words(no_force::main())),
+    ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_costs", || in_words(planar_costs::main())),
     ("planar_monte_carlo", || in_words(planar_monte_carlo::main())),
     ("shape_fits", || in_words(shape_fits::main())),

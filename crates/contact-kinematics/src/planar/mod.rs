@@ -2,6 +2,8 @@
 //!
 //! World axes X right, Y up; angles counter-clockwise. Palm `i` leaves the hinge along `u_i`; its unit normal `n_i`
 //! points into the wedge, at the object. The object is described by its radius function about its centre of mass.
+//!
+//! Palms of any pose and motion, lines, arcs and cups, are [`PalmSurface`]s; [`SurfaceContact`] is the contact with one.
 
 mod circle;
 mod contact;
@@ -11,6 +13,7 @@ mod fourier;
 mod palms;
 mod polygon;
 mod radius;
+mod surface;
 
 pub use circle::Circle;
 pub use contact::{PairContact, PairVelocity};
@@ -20,3 +23,7 @@ pub use fourier::FourierBody;
 pub use palms::{PairRates, PalmPair, PalmPairState};
 pub use polygon::RoundedPolygon;
 pub use radius::{RadiusBounds, RadiusFunction, RadiusJet};
+pub use surface::{
+    BodyPlace, ContactError, MotionPart, PalmSurface, SurfaceContact, SurfaceError, SurfaceMotion,
+    SurfacePose, SurfaceRates, SurfaceState,
+};
