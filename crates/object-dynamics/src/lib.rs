@@ -3,6 +3,7 @@
 //! Frames: `W` world (Z up, gravity `(0, 0, -g)`), `O` object (origin in the centre of mass). Units: SI.
 
 mod condensed;
+mod contact_log;
 mod contacts;
 pub mod integrate;
 mod log;
@@ -14,6 +15,12 @@ pub mod planar;
 mod series;
 mod three_palms;
 
+#[cfg(feature = "noise")]
+pub use contact_log::{ChannelNoise, ContactNoise};
+pub use contact_log::{
+    ContactLog, ContactLogError, ContactPoints, ForceChannel, LoggedPalm, MeasuredMotion, NotThreePlanes,
+    PalmRecord, RecordedMotion, SensedAxes, SensedForce, ThreePlanes, Touch, TrueContact, TwistSource,
+};
 pub use contacts::{
     ContactScene, ContactSceneError, DriveError, MOST_PALMS, PalmDrive, PalmSpring, PalmTorque, ScenePalm,
 };
