@@ -23,8 +23,9 @@ mod touches;
 pub use check::{CheckError, Fault, check, check_unwritten, outline_stands_out, stands_out};
 pub use export::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
 pub use log::{
-    LogFileError, LogFileErrorKind, LogReader, parse_log, parse_planar_log, read_log, read_planar_log,
-    write_log, write_planar_log,
+    AnyLog, LogFileError, LogFileErrorKind, LogReader, PalmSetup, parse_any_log, parse_contact_log,
+    parse_log, parse_planar_log, read_any_log, read_contact_log, read_log, read_planar_log,
+    write_contact_log, write_log, write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use number::{brief, brief_to, with_brief_numbers};

@@ -71,8 +71,8 @@ impl Builder<'_> {
             surface: record.surface,
             friction: record.friction,
             motion,
+            force: while_touched(record.force, &touches),
             touches,
-            force: record.force,
             impulse: record.impulse,
             torque: record.torque,
             truth: record.truth,
@@ -190,6 +190,18 @@ impl Builder<'_> {
         }
         Ok((touches, farthest))
     }
+}
+
+/// The force, without the noise of a sensor that is not touched.
+fn while_touched(mut force: ForceChannel, touches: &[Option<Touch>]) -> ForceChannel {
+    for (k, _) in touches.iter().enumerate().filter(|(_, touch)| touch.is_none()) {
+        match &mut force {
+            ForceChannel::Missing => {}
+            ForceChannel::Normal(values) => values[k] = 0.0,
+            ForceChannel::Three(vectors) => vectors[k] = DVec3::ZERO,
+        }
+    }
+    force
 }
 
 /// The nearest point of the surface with its normal, and how far off it the point was, m.

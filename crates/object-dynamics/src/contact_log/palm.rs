@@ -126,10 +126,28 @@ impl LoggedPalm {
         self.impulse.axes()
     }
 
+    /// The whole channel of the force, as it was recorded.
+    #[must_use]
+    pub fn force_channel(&self) -> &ForceChannel {
+        &self.force
+    }
+
+    /// The whole channel of the impulse, as it was recorded: an integral, of which [`Self::impulse`] takes differences.
+    #[must_use]
+    pub fn impulse_channel(&self) -> &ForceChannel {
+        &self.impulse
+    }
+
     /// Torque of its motor about its x axis at sample `k`, N m, where it was measured.
     #[must_use]
     pub fn torque(&self, k: usize) -> Option<f64> {
         self.torque.as_ref().and_then(|torque| torque[k])
+    }
+
+    /// Whether the torque of its motor was measured at any sample.
+    #[must_use]
+    pub fn has_torque(&self) -> bool {
+        self.torque.is_some()
     }
 
     /// What a simulator knows of the contact at sample `k`.
