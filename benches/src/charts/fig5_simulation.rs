@@ -5,7 +5,7 @@ use crate::{Axis, Budget, Method, Study, WorkPrecision};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::Ellipsoid;
 use recon::object_dynamics::integrate::{Dop853, FixedScheme, Tolerance, integrate_fixed};
-use recon::object_dynamics::{InitialMotion, MaximalState, SampleTimes, ThreePalmScene};
+use recon::object_dynamics::{BodyState, InitialMotion, SampleTimes, ThreePalmScene};
 
 pub(super) const CHART: Chart =
     Chart { name: "fig5-simulation", about: "integrators and formulations on the paper's Fig. 5", draw };
@@ -135,8 +135,8 @@ fn multiplier(scene: &ThreePalmScene<Ellipsoid>, start: InitialMotion, tolerance
     Ok(poses)
 }
 
-fn maximal(y: &[f64; 13]) -> MaximalState {
-    MaximalState {
+fn maximal(y: &[f64; 13]) -> BodyState {
+    BodyState {
         p_WCm: DVec3::new(y[0], y[1], y[2]),
         R_WO: DQuat::from_xyzw(y[4], y[5], y[6], y[3]).normalize(),
         v_WCm: DVec3::new(y[7], y[8], y[9]),

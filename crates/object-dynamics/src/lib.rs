@@ -5,6 +5,7 @@
 mod condensed;
 mod contact_log;
 mod contacts;
+mod hybrid;
 pub mod integrate;
 mod log;
 mod mass;
@@ -13,6 +14,7 @@ mod modes;
 mod noise;
 pub mod planar;
 mod series;
+mod state;
 mod three_palms;
 
 #[cfg(feature = "noise")]
@@ -22,7 +24,12 @@ pub use contact_log::{
     PalmRecord, RecordedMotion, SensedAxes, SensedForce, ThreePlanes, Touch, TrueContact, TwistSource,
 };
 pub use contacts::{
-    ContactScene, ContactSceneError, DriveError, MOST_PALMS, PalmDrive, PalmSpring, PalmTorque, ScenePalm,
+    ContactScene, ContactSceneError, DriveError, MOST_PALMS, ModeError, PalmContactError, PalmCoordinates,
+    PalmDrive, PalmSpring, PalmTorque, ScenePalm, SceneState,
+};
+pub use hybrid::{
+    ContactEvent, ContactEventKind, ContactInstant, ContactInstantError, ContactSimulation,
+    ContactSimulationError, ContactStart,
 };
 pub use log::{LogError, PalmReading, Sample, SensorLog, TrueState};
 pub use mass::{MassError, MassProperties, PrincipalInertia};
@@ -30,7 +37,8 @@ pub use modes::{ContactMode, FrictionError, check_friction};
 #[cfg(feature = "noise")]
 pub use noise::SensorNoise;
 pub use series::SeriesError;
+pub use state::BodyState;
 pub use three_palms::{
-    Accelerations, End, InitialMotion, Instant, MaximalState, MultiplierSolution, SampleTimes, SceneError,
-    Simulation, SimulationError, ThreePalmScene,
+    Accelerations, End, InitialMotion, Instant, MultiplierSolution, SampleTimes, SceneError, Simulation,
+    SimulationError, ThreePalmScene,
 };

@@ -1,8 +1,8 @@
 //! What the palms sensed, in memory. File formats live elsewhere.
 
+use crate::BodyState;
 use crate::series::{SeriesError, check_lengths, check_order};
 use contact_kinematics::{Direction, DirectionError};
-use glam::{DQuat, DVec3};
 use thiserror::Error;
 
 /// A log of three palms: samples in strictly increasing time, at least two of them.
@@ -37,17 +37,7 @@ pub struct PalmReading {
 }
 
 /// True state of the object, where a simulator knows it. Never read by an estimator.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TrueState {
-    /// Centre of mass, m, world.
-    pub p_WCm: DVec3,
-    /// Orientation, body to world.
-    pub R_WO: DQuat,
-    /// Velocity of the centre of mass, m/s, world.
-    pub v_WCm: DVec3,
-    /// Angular velocity, rad/s, world axes.
-    pub w_WO: DVec3,
-}
+pub type TrueState = BodyState;
 
 /// Why samples are not a log.
 #[derive(Clone, Debug, Error, PartialEq)]

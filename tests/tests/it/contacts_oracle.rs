@@ -2,7 +2,11 @@
 
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{
-    BodyPlace, Ellipsoid, PalmSurface, SurfaceContact, SurfaceState, Translated,
+    BodyPlace, Direction, Ellipsoid, MotionLaw, MotionPart, PalmSurface, SurfaceContact, SurfaceMotion,
+    SurfacePose, SurfaceState, Translated,
+};
+use recon::object_dynamics::{
+    BodyState, ContactMode, ContactScene, MassProperties, PalmDrive, ScenePalm, SceneState,
 };
 use serde_json::Value;
 
@@ -31,6 +35,7 @@ struct Body {
     place: BodyPlace,
     v: DVec3,
     w: DVec3,
+    mass: MassProperties,
 }
 
 fn body(oracle: &Value) -> Body {
@@ -43,6 +48,7 @@ fn body(oracle: &Value) -> Body {
         place: BodyPlace { p_WCm: vector(&state["cm"]), R_WO: DMat3::from_quat(R_WO) },
         v: vector(&state["v"]),
         w: vector(&state["w"]),
+        mass: MassProperties::new(number(&state["mass"]), matrix(&state["inertia_body"])).unwrap(),
     }
 }
 
@@ -99,4 +105,63 @@ fn contacts_and_their_rates_are_those_of_the_gap() {
             assert!(difference < TOLERANCE, "{surface:?}: {what} is off by {difference:.1e}");
         }
     }
+}
+
+/// A motion that has the given state at `t = 0`: sinusoids of frequency 1 have any rate and acceleration there.
+fn motion(state: &SurfaceState) -> SurfaceMotion {
+    let law = |rate: f64, acceleration: f64| {
+        let phase = (-acceleration).atan2(rate);
+        let amplitude = rate.hypot(acceleration);
+        MotionLaw::Sinusoid { mean: -amplitude * phase.sin(), amplitude, frequency: 1.0, phase }
+    };
+    // Turns about x, then y, then z: the later ones turn the rates of the earlier ones along.
+    let w = state.w_WP;
+    let carried =
+        DVec3::Y.cross(DVec3::X) * w.y * w.x + DVec3::Z.cross(DVec3::X * w.x + DVec3::Y * w.y) * w.z;
+    let alpha = state.alpha_WP - carried;
+    let mut parts = Vec::new();
+    for (axis, k) in [(Direction::X, 0), (Direction::Y, 1), (Direction::Z, 2)] {
+        parts.push(MotionPart::Turn { pivot: state.p_WP, axis, law: law(w[k], alpha[k]) });
+    }
+    for (direction, k) in [(Direction::X, 0), (Direction::Y, 1), (Direction::Z, 2)] {
+        parts.push(MotionPart::Shift { direction, law: law(state.v_WP[k], state.a_WP[k]) });
+    }
+    let pose = SurfacePose::new(state.p_WP, DQuat::from_mat3(&state.R_WP)).unwrap();
+    SurfaceMotion::Parts { pose, parts }
+}
+
+#[test]
+fn accelerations_and_forces_are_those_of_two_other_forms() {
+    let oracle = oracle();
+    let body = body(&oracle);
+    let cases = oracle["dynamics"].as_array().unwrap();
+    assert_eq!(cases.len(), 9);
+    for case in cases {
+        let palms = case["palms"].as_array().unwrap();
+        let scene_palm = |(palm, mu): (&Value, &Value)| {
+            let drive = PalmDrive::Prescribed(motion(&state(palm)));
+            ScenePalm { surface: surface(palm), drive, friction: number(mu) }
+        };
+        let palms: Vec<_> = palms.iter().zip(case["mu"].as_array().unwrap()).map(scene_palm).collect();
+        let gravity = -vector(&oracle["state"]["gravity"]).z;
+        let scene = ContactScene::new(&body.shape, body.mass, palms, gravity).unwrap();
+        let (p_WCm, R_WO) = (body.place.p_WCm, DQuat::from_mat3(&body.place.R_WO));
+        let at = BodyState { p_WCm, R_WO, v_WCm: body.v, w_WO: body.w };
+        let palms = scene.palms_at_start();
+        let modes: Vec<_> = case["modes"].as_str().unwrap().chars().map(mode).collect();
+        let now = scene.instant(&SceneState { t: 0.0, body: at, palms }, &modes).unwrap();
+        let name = &case["name"];
+        let difference = (now.a_WCm - vector(&case["a"])).length();
+        assert!(difference < TOLERANCE, "{name}: a is off by {difference:.1e}");
+        let difference = (now.alpha_WO - vector(&case["alpha"])).length();
+        assert!(difference < 100.0 * TOLERANCE, "{name}: alpha is off by {difference:.1e} of some 100");
+        for (i, force) in case["forces"].as_array().unwrap().iter().enumerate() {
+            let difference = (now.forces[i] - vector(force)).length();
+            assert!(difference < TOLERANCE, "{name}: force {i} is off by {difference:.1e}");
+        }
+    }
+}
+
+fn mode(letter: char) -> ContactMode {
+    ContactMode::ALL.into_iter().find(|mode| mode.letter() == letter).unwrap()
 }

@@ -1,6 +1,6 @@
 use super::{PoseTable, SurfaceError, SurfacePose, SurfaceState};
 use crate::{Direction, MotionLaw};
-use glam::{DMat3, DQuat, DVec3};
+use glam::DVec3;
 
 /// A prescribed rigid motion of a palm.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,19 +114,7 @@ impl MotionPart {
                     ..*of
                 }
             }
-            Self::Turn { pivot, axis, .. } => {
-                let turn = DMat3::from_quat(DQuat::from_axis_angle(axis.get(), value));
-                let (w, alpha) = (rate * axis.get(), acceleration * axis.get());
-                let (arm, v, w_P) = (turn * (of.p_WP - pivot), turn * of.v_WP, turn * of.w_WP);
-                SurfaceState {
-                    p_WP: pivot + arm,
-                    R_WP: turn * of.R_WP,
-                    v_WP: w.cross(arm) + v,
-                    w_WP: w + w_P,
-                    a_WP: alpha.cross(arm) + w.cross(w.cross(arm)) + 2.0 * w.cross(v) + turn * of.a_WP,
-                    alpha_WP: alpha + w.cross(w_P) + turn * of.alpha_WP,
-                }
-            }
+            Self::Turn { pivot, axis, .. } => of.turned(pivot, axis, [value, rate, acceleration]),
         }
     }
 }

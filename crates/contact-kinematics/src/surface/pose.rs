@@ -1,4 +1,5 @@
 use super::SurfaceError;
+use crate::Direction;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Largest departure of a quaternion's length from 1 that is taken for rounding.
@@ -58,6 +59,22 @@ pub struct SurfaceState {
 }
 
 impl SurfaceState {
+    /// The frame carried along by a turn about the axis through `pivot`: `[angle, rate, acceleration]` in rad and s.
+    #[must_use]
+    pub fn turned(&self, pivot: DVec3, axis: Direction, [angle, rate, acceleration]: [f64; 3]) -> Self {
+        let turn = DMat3::from_quat(DQuat::from_axis_angle(axis.get(), angle));
+        let (w, alpha) = (rate * axis.get(), acceleration * axis.get());
+        let (arm, v, w_P) = (turn * (self.p_WP - pivot), turn * self.v_WP, turn * self.w_WP);
+        Self {
+            p_WP: pivot + arm,
+            R_WP: turn * self.R_WP,
+            v_WP: w.cross(arm) + v,
+            w_WP: w + w_P,
+            a_WP: alpha.cross(arm) + w.cross(w.cross(arm)) + 2.0 * w.cross(v) + turn * self.a_WP,
+            alpha_WP: alpha + w.cross(w_P) + turn * self.alpha_WP,
+        }
+    }
+
     /// Velocity of the palm's material at the world point `c`, m/s: `V + W x (c - P)`.
     ///
     /// A palm that turns in itself moves its surface, although its shape does not change.

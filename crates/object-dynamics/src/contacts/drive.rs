@@ -106,7 +106,17 @@ impl PalmDrive {
         }
     }
 
-    /// The motion that it follows where nothing gives way: of a hinge, the palm at its first angle.
+    /// Times at which its motion is less smooth than elsewhere.
+    #[must_use]
+    pub fn joints(&self) -> Vec<f64> {
+        match self {
+            Self::Prescribed(motion) => motion.joints(),
+            Self::Spring(spring) => spring.command.joints(),
+            Self::Torque(drive) => drive.torque.joints().into_iter().flatten().collect(),
+        }
+    }
+
+    /// Whether the object cannot change its motion.
     #[must_use]
     pub fn is_prescribed(&self) -> bool {
         matches!(self, Self::Prescribed(_))

@@ -1,7 +1,19 @@
 //! A smooth convex body on palms of any number, shape, pose and motion, with Coulomb friction.
 
+mod choose;
+mod cones;
+mod directions;
 mod drive;
+mod instant;
+mod painleve;
+mod problem;
 mod scene;
+mod solve;
 
+pub use choose::ModeError;
+pub(crate) use choose::Touch;
 pub use drive::{DriveError, PalmDrive, PalmSpring, PalmTorque};
+pub(crate) use instant::Contacts;
+pub use instant::{PalmContactError, PalmCoordinates, SceneState};
+pub(crate) use problem::{ContactProblem, Directions, Modes, Reaction};
 pub use scene::{ContactScene, ContactSceneError, MOST_PALMS, ScenePalm};

@@ -7,6 +7,7 @@ mod scene;
 mod simulate;
 
 pub use instant::{Accelerations, Instant};
-pub use multiplier::{MaximalState, MultiplierSolution};
+pub use multiplier::MultiplierSolution;
 pub use scene::{SceneError, ThreePalmScene};
+pub(crate) use simulate::check_times;
 pub use simulate::{End, InitialMotion, SampleTimes, Simulation, SimulationError};

@@ -4,22 +4,10 @@
 //! solves a 3 x 3 one, and its integrated positions drift off the palms.
 
 use super::{Accelerations, ThreePalmScene};
+use crate::BodyState;
 use contact_kinematics::{PalmError, SupportFunction, body_normal, body_normal_rate};
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DVec3};
 use nalgebra::{SMatrix, SVector};
-
-/// State in maximal coordinates: nothing in it knows of the palms.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MaximalState {
-    /// Centre of mass, world, m.
-    pub p_WCm: DVec3,
-    /// Orientation, body to world.
-    pub R_WO: DQuat,
-    /// Velocity of the centre of mass, world, m/s.
-    pub v_WCm: DVec3,
-    /// Angular velocity, world axes, rad/s.
-    pub w_WO: DVec3,
-}
 
 /// Solution of the multiplier form, with the departures of the state from its constraints.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +31,7 @@ impl<S: SupportFunction> ThreePalmScene<S> {
     pub fn multiplier_form(
         &self,
         t: f64,
-        state: &MaximalState,
+        state: &BodyState,
     ) -> Result<Option<MultiplierSolution>, PalmError> {
         let (palms, _) = self.palms_at(t)?;
         let R = DMat3::from_quat(state.R_WO);

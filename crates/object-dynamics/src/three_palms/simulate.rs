@@ -223,7 +223,7 @@ impl Simulation {
     }
 }
 
-fn check_times(times: SampleTimes) -> Result<usize, SimulationError> {
+pub(crate) fn check_times(times: SampleTimes) -> Result<usize, SimulationError> {
     for (what, value) in [("duration", times.duration), ("sample rate", times.rate)] {
         if !(value > 0.0 && value.is_finite()) {
             return Err(SimulationError::SampleTimes { what, value });

@@ -1,7 +1,5 @@
 //! Laws that hold for any body on any three palms, and the errors of scenes that cannot be.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
-
 use contact_kinematics::*;
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::integrate::Tolerance;
@@ -55,7 +53,7 @@ proptest! {
     #[test]
     fn minimal_and_multiplier_forms_agree(case in case()) {
         let now = case.scene.instant(case.t, case.start.R_WO, case.start.w_WO).unwrap();
-        let state = MaximalState {
+        let state = BodyState {
             p_WCm: now.touch.p_WCm,
             R_WO: now.R_WO,
             v_WCm: now.rates.v_WCm,

@@ -1,0 +1,231 @@
+//! Which contacts stick, slide or leave: the mode set that is consistent with the forces that it asks for.
+
+use super::MOST_PALMS;
+use super::cones::forces_in_cones;
+use super::painleve::smallest_minor;
+use super::problem::{ContactProblem, Directions, Modes, Reaction};
+use crate::ContactMode;
+use glam::DVec2;
+use thiserror::Error;
+
+/// Forces and accelerations within this share of the largest are zero.
+const SLACK: f64 = 1e-9;
+/// Two consistent mode sets are one where their accelerations differ by less than this share: at a transition both sides hold.
+const SAME: f64 = 1e-6;
+
+/// Why no mode set can be taken. Modes are given as letters, palm by palm: O off, S slides, R sticks and rolls.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ModeError {
+    /// Painlevé's paradox or a jam: rigid bodies with this friction have no motion here.
+    #[error(
+        "no mode set of the contacts is consistent (friction wedges the object: a jam, or Painlevé's paradox)"
+    )]
+    Inconsistent,
+    /// Several motions are possible.
+    #[error(
+        "mode sets {first} and {second} are both consistent: rigid bodies leave open which motion follows"
+    )]
+    Ambiguous {
+        /// One of them.
+        first: String,
+        /// Another.
+        second: String,
+    },
+    /// The sliding contacts' matrix is no P-matrix: forces without bound are near.
+    #[error(
+        "mode set {modes}: friction wedges the sliding contacts (smallest principal minor {minor:.2e}, not above zero): \
+         no P-matrix, so motion need not exist or be one"
+    )]
+    NotP {
+        /// The set.
+        modes: String,
+        /// Smallest principal minor, dimensionless.
+        minor: f64,
+    },
+}
+
+/// What is known of a contact before modes are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Touch {
+    /// It does not touch, or leaves: no force.
+    Apart,
+    /// It touches and slides along the unit tangent.
+    Slides(DVec2),
+    /// It touches without slip: it may stick, or start to slide.
+    Rests,
+}
+
+/// A consistent mode set.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Choice {
+    pub(crate) modes: Modes,
+    pub(crate) directions: Directions,
+    pub(crate) reaction: Reaction,
+}
+
+impl ContactProblem {
+    /// The consistent mode set; of several that mean the same motion the one with the fewest changes from `present`.
+    ///
+    /// `not`: a contact and a mode that it has just left, taken only where nothing else is consistent.
+    pub(crate) fn choose(
+        &self,
+        touches: &[Touch; MOST_PALMS],
+        present: &Modes,
+        not: Option<(usize, ContactMode)>,
+    ) -> Result<Choice, ModeError> {
+        let force = self.force_scale();
+        let mut sets = self.candidates(touches);
+        sets.sort_by_key(|modes| (0..self.contacts().len()).filter(|&i| modes[i] != present[i]).count());
+        let excluded = |modes: &Modes| not.is_some_and(|(i, mode)| modes[i] == mode);
+        let mut found: Option<Choice> = None;
+        for stage in [false, true] {
+            for modes in sets.iter().filter(|modes| excluded(modes) == stage) {
+                let Some(choice) = self.consistent(touches, modes, force) else { continue };
+                match &found {
+                    None => found = Some(choice),
+                    Some(first) if self.differ(first, &choice, force) => {
+                        return Err(ModeError::Ambiguous {
+                            first: self.letters(&first.modes),
+                            second: self.letters(&choice.modes),
+                        });
+                    }
+                    Some(_) => {}
+                }
+            }
+            if found.is_some() {
+                break;
+            }
+        }
+        let choice = found.ok_or(ModeError::Inconsistent)?;
+        let minor = self.smallest_sliding_minor(&choice.modes, &choice.directions);
+        if minor <= 0.0 {
+            return Err(ModeError::NotP { modes: self.letters(&choice.modes), minor });
+        }
+        Ok(choice)
+    }
+
+    /// Sum of what the forces are made of, N: a scale for what counts as zero.
+    fn force_scale(&self) -> f64 {
+        let of = |i: usize| self.contacts()[i].free.length() / self.own_response(i);
+        (0..self.contacts().len()).map(of).fold(f64::MIN_POSITIVE, f64::max)
+    }
+
+    fn candidates(&self, touches: &[Touch; MOST_PALMS]) -> Vec<Modes> {
+        let mut sets = vec![[ContactMode::Off; MOST_PALMS]];
+        for (i, contact) in self.contacts().iter().enumerate() {
+            let options: &[ContactMode] = match touches[i] {
+                Touch::Apart => &[ContactMode::Off],
+                Touch::Slides(_) => &[ContactMode::Slide, ContactMode::Off],
+                Touch::Rests if contact.friction == 0.0 => &[ContactMode::Slide, ContactMode::Off],
+                Touch::Rests => &[ContactMode::Stick, ContactMode::Slide, ContactMode::Off],
+            };
+            sets = sets
+                .iter()
+                .flat_map(|set| {
+                    options.iter().map(|&mode| {
+                        let mut set = *set;
+                        set[i] = mode;
+                        set
+                    })
+                })
+                .collect();
+        }
+        sets
+    }
+
+    /// The set with its forces, if those are what its modes ask for.
+    fn consistent(&self, touches: &[Touch; MOST_PALMS], modes: &Modes, force: f64) -> Option<Choice> {
+        let slack = SLACK * force;
+        let mut directions = [DVec2::X; MOST_PALMS];
+        let mut starting = Vec::new();
+        for (i, contact) in self.contacts().iter().enumerate() {
+            match touches[i] {
+                Touch::Slides(tau) => directions[i] = tau,
+                Touch::Rests if modes[i] == ContactMode::Slide && contact.friction > 0.0 => starting.push(i),
+                Touch::Rests | Touch::Apart => {}
+            }
+        }
+        let reaction = if starting.is_empty() {
+            self.solve(modes, &directions).ok()?
+        } else {
+            let (found, reaction) = self.starting_directions(modes, &directions, &starting, slack)?;
+            directions = found;
+            reaction
+        };
+        let leaves = |i: usize| {
+            touches[i] == Touch::Apart || self.gap_acceleration(i, &reaction) >= -slack * self.own_response(i)
+        };
+        let all_leave = (0..self.contacts().len()).all(|i| modes[i] != ContactMode::Off || leaves(i));
+        if !all_leave {
+            return None;
+        }
+        let reaction = if self.in_cones(modes, &reaction, slack) {
+            reaction
+        } else if reaction.unique {
+            return None;
+        } else {
+            forces_in_cones(self, modes, &reaction, slack)?
+        };
+        self.with_frictionless_directions(touches, modes, &mut directions, &reaction);
+        Some(Choice { modes: *modes, directions, reaction })
+    }
+
+    pub(crate) fn in_cones(&self, modes: &Modes, reaction: &Reaction, slack: f64) -> bool {
+        self.contacts().iter().enumerate().all(|(i, contact)| {
+            let force = reaction.forces[i];
+            let normal = contact.n.dot(force);
+            match modes[i] {
+                ContactMode::Off => true,
+                ContactMode::Slide => normal >= -slack,
+                ContactMode::Stick => {
+                    normal >= -slack
+                        && contact.in_tangent(force).length() <= contact.friction * normal.max(0.0) + slack
+                }
+            }
+        })
+    }
+
+    /// Without friction a contact starts to slide wherever it is carried.
+    fn with_frictionless_directions(
+        &self,
+        touches: &[Touch; MOST_PALMS],
+        modes: &Modes,
+        directions: &mut Directions,
+        reaction: &Reaction,
+    ) {
+        for (i, contact) in self.contacts().iter().enumerate() {
+            let free = touches[i] == Touch::Rests && contact.friction == 0.0;
+            if free && modes[i] == ContactMode::Slide {
+                let rate = contact.in_tangent(self.slip_rate(i, reaction));
+                directions[i] = rate.try_normalize().unwrap_or(DVec2::X);
+            }
+        }
+    }
+
+    fn differ(&self, one: &Choice, other: &Choice, force: f64) -> bool {
+        let difference = |i: usize| {
+            (self.slip_rate(i, &one.reaction) - self.slip_rate(i, &other.reaction)).length()
+                / self.own_response(i)
+        };
+        (0..self.contacts().len()).any(|i| difference(i) > SAME * force)
+    }
+
+    /// Smallest principal minor of the sliding contacts' matrix; infinite where none slides with friction.
+    pub(crate) fn smallest_sliding_minor(&self, modes: &Modes, directions: &Directions) -> f64 {
+        let sliding: Vec<usize> =
+            (0..self.contacts().len()).filter(|&i| modes[i] == ContactMode::Slide).collect();
+        if sliding.iter().all(|&i| self.contacts()[i].friction == 0.0) {
+            return f64::INFINITY;
+        }
+        let scale: Vec<f64> = sliding.iter().map(|&i| self.own_response(i)).collect();
+        match self.sliding_matrix(modes, directions) {
+            Some(matrix) => smallest_minor(&matrix, &scale),
+            None => f64::NEG_INFINITY,
+        }
+    }
+
+    /// The modes as letters, palm by palm.
+    pub(crate) fn letters(&self, modes: &Modes) -> String {
+        modes[..self.contacts().len()].iter().map(|mode| mode.letter()).collect()
+    }
+}

@@ -1,0 +1,77 @@
+use crate::contacts::{ModeError, PalmContactError, SceneState};
+use crate::integrate::IntegrationError;
+use crate::{LogError, SimulationError};
+use thiserror::Error;
+
+/// Why a simulation through contact modes cannot start or go on.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ContactSimulationError {
+    /// Sample times or the state at the start are not usable.
+    #[error(transparent)]
+    Start(#[from] SimulationError),
+    /// The object overlaps a palm.
+    #[error(
+        "object penetrates palm {palm} by {depth:.3e} m at the start; move it by that along the palm's normal"
+    )]
+    Penetration {
+        /// Palm number from 1.
+        palm: usize,
+        /// How deep, m.
+        depth: f64,
+    },
+    /// The object touches nothing.
+    #[error(
+        "object touches no palm at the start: palm {palm} is the nearest, with a gap of {gap:.3e} m; move it there, or \
+         say that it starts in flight"
+    )]
+    NotInContact {
+        /// Palm number from 1.
+        palm: usize,
+        /// The gap, m.
+        gap: f64,
+    },
+    /// Two palms overlap each other.
+    #[error("palms {first} and {second} overlap by {depth:.3e} m at the start; move them apart")]
+    PalmsOverlap {
+        /// Palm number from 1.
+        first: usize,
+        /// Palm number from 1.
+        second: usize,
+        /// How deep, m.
+        depth: f64,
+    },
+    /// No contact mode, or more than one, follows from rigid bodies with Coulomb friction.
+    #[error("at t = {} s: {source}", state.t)]
+    Modes {
+        /// Body and palms there.
+        state: Box<SceneState>,
+        /// Why.
+        source: ModeError,
+    },
+    /// A contact could not be found.
+    #[error("at t = {t} s: {source}")]
+    Contact {
+        /// Time in s.
+        t: f64,
+        /// Why.
+        source: PalmContactError,
+    },
+    /// The equations of motion could not be integrated.
+    #[error("integration: {0}")]
+    Integration(#[source] IntegrationError<PalmContactError>),
+    /// Modes change without end in no time.
+    #[error(
+        "{count} mode changes within {span:.1e} s at t = {t} s: they pile up, and rigid contacts say no more"
+    )]
+    TooManyEvents {
+        /// How many.
+        count: usize,
+        /// Within what time, s.
+        span: f64,
+        /// When, s.
+        t: f64,
+    },
+    /// The samples do not make a log.
+    #[error("sensor log: {0}")]
+    Log(#[source] LogError),
+}

@@ -1,0 +1,18 @@
+//! Simulation through contact modes: smooth motion between located events, and what happens at each.
+
+mod blow;
+mod error;
+mod events;
+mod field;
+mod guards;
+mod instant;
+mod packed;
+mod project;
+mod result;
+mod run;
+mod start;
+
+pub use error::ContactSimulationError;
+pub use instant::ContactInstantError;
+pub use result::{ContactEvent, ContactEventKind, ContactInstant, ContactSimulation};
+pub use start::ContactStart;

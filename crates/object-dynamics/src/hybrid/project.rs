@@ -1,0 +1,99 @@
+//! Pulls a state back onto its contacts: gaps closed, no rate of a gap, no slip where a contact sticks.
+
+use crate::contacts::{
+    ContactProblem, ContactScene, Directions, MOST_PALMS, Modes, PalmContactError, SceneState,
+};
+use crate::{BodyState, ContactMode};
+use contact_kinematics::{Direction, SupportFunction};
+use glam::{DQuat, DVec2, DVec3};
+
+/// Rounds of the position's projection: it converges quadratically from the integrator's error.
+const ROUNDS: u32 = 3;
+
+/// Normals of the body at the contacts, body axes, where they are known.
+pub(super) type Guesses = [Option<Direction>; MOST_PALMS];
+
+/// The state with every contact of `modes` held, by the smallest change as the masses weigh it.
+pub(super) fn projected<S: SupportFunction>(
+    scene: &ContactScene<S>,
+    mut state: SceneState,
+    modes: &Modes,
+    guesses: &Guesses,
+    size: f64,
+) -> Result<SceneState, PalmContactError> {
+    let held = |mode: &ContactMode| *mode != ContactMode::Off;
+    if !modes.iter().any(held) {
+        return Ok(state);
+    }
+    let closed = modes.map(|mode| if held(&mode) { ContactMode::Slide } else { mode });
+    for _ in 0..ROUNDS {
+        let touch = scene.contacts_at(&state, guesses)?;
+        let open = (0..scene.palms().len()).filter(|&i| held(&modes[i]));
+        let worst = open.map(|i| touch.contacts[i].gap.abs()).fold(0.0, f64::max);
+        if worst <= 4.0 * f64::EPSILON * size {
+            break;
+        }
+        let mut problem = scene.problem(&state.body, &touch);
+        let gap = |i: usize| touch.contacts[i].gap * touch.contacts[i].n;
+        let Some(change) = without_friction(&mut problem, gap, &closed) else { break };
+        apply(&mut state, &problem, &change, Part::Position);
+    }
+    let touch = scene.contacts_at(&state, guesses)?;
+    let mut problem = scene.problem(&state.body, &touch);
+    if let Some(change) = without_friction(&mut problem, |i| touch.rates[i].slip, modes) {
+        apply(&mut state, &problem, &change, Part::Velocity);
+    }
+    Ok(state)
+}
+
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Part {
+    Position,
+    Velocity,
+}
+
+/// Turns the problem of accelerations into one of displacements or velocities `of` each contact, and solves it.
+fn without_friction(
+    problem: &mut ContactProblem,
+    of: impl Fn(usize) -> DVec3,
+    modes: &Modes,
+) -> Option<crate::contacts::Reaction> {
+    problem.free_motion = [DVec3::ZERO; 2];
+    for i in 0..problem.contacts().len() {
+        let free = of(i);
+        let contact = problem.contact_mut(i);
+        contact.free = free;
+        contact.normal_bias = 0.0;
+        contact.friction = 0.0;
+    }
+    let directions: Directions = [DVec2::X; MOST_PALMS];
+    problem.solve(modes, &directions).ok()
+}
+
+/// Changes position or velocity of body and palms by what forces of a problem do.
+pub(super) fn apply(
+    state: &mut SceneState,
+    problem: &ContactProblem,
+    change: &crate::contacts::Reaction,
+    part: Part,
+) {
+    let BodyState { p_WCm, R_WO, v_WCm, w_WO } = &mut state.body;
+    match part {
+        Part::Position => {
+            *p_WCm += change.a;
+            *R_WO = (DQuat::from_scaled_axis(change.alpha) * *R_WO).normalize();
+        }
+        Part::Velocity => {
+            *v_WCm += change.a;
+            *w_WO += change.alpha;
+        }
+    }
+    for (i, contact) in problem.contacts().iter().enumerate() {
+        let coordinates = &mut state.palms[i];
+        let coordinate = match part {
+            Part::Position => &mut coordinates.position,
+            Part::Velocity => &mut coordinates.velocity,
+        };
+        *coordinate -= contact.yields.coordinates(change.forces[i]);
+    }
+}

@@ -1,0 +1,363 @@
+use super::blow::blow;
+use super::error::ContactSimulationError as Error;
+use super::events::{Crossing, first_crossing};
+use super::field::{Evaluated, STILL, Stretch};
+use super::guards::{Guards, suspicious};
+use super::packed::{RIGID, Tallies, Units, YIELDING};
+use super::project::projected;
+use super::result::{ContactEvent, ContactEventKind, ContactInstant, ContactSimulation};
+use super::start::{ContactStart, check_overlap};
+use crate::contacts::{ContactScene, MOST_PALMS, ModeError, Modes, SceneState, Touch};
+use crate::integrate::{Dop853, IntegrationError, Statistics, Tolerance};
+use crate::three_palms::check_times;
+use crate::{ContactMode, SampleTimes};
+use contact_kinematics::SupportFunction;
+use glam::DVec3;
+use std::cell::Cell;
+
+/// A slip that ends must have fallen below this share of the natural speed: else its direction has only turned by a right
+/// angle within a step, and the step is taken again, shorter.
+const SLIP_ENDED: f64 = 1e-4;
+/// More changes of modes than this without time to tell them apart are a pile-up.
+const MOST_AT_ONCE: usize = 60;
+/// What counts as no time, in natural times.
+const AT_ONCE: f64 = 1e-7;
+/// An approach slower than this share of the natural speed is no blow.
+const GRAZING: f64 = 1e-12;
+
+impl<S: SupportFunction> ContactScene<S> {
+    /// Simulates from `start` through every change of modes to the last sample.
+    ///
+    /// Smooth motion by DOP853 in maximal coordinates with the forces of the present modes, pulled back onto the contacts
+    /// after each step; changes of modes are located on its dense output, and the modes after each are the consistent ones.
+    /// `tolerance` is the local error allowed in natural units (size of the body, `sqrt(g l)`).
+    ///
+    /// # Errors
+    /// [`ContactSimulationError`](Error); where rigid bodies with friction have no motion, or several, the state is named.
+    pub fn simulate(
+        &self,
+        start: &ContactStart,
+        times: SampleTimes,
+        tolerance: f64,
+    ) -> Result<ContactSimulation, Error> {
+        if self.palms().iter().all(|palm| palm.drive.is_prescribed()) {
+            Run::<S, RIGID>::new(self, start, times, tolerance)?.to_the_end()
+        } else {
+            Run::<S, YIELDING>::new(self, start, times, tolerance)?.to_the_end()
+        }
+    }
+
+    /// Half of the body's mean width over three axes, m: the unit of length.
+    pub(super) fn size(&self) -> f64 {
+        use contact_kinematics::Direction;
+        let axes = [Direction::X, Direction::Y, Direction::Z];
+        axes.into_iter().map(|u| self.body().value(u) + self.body().value(-u)).sum::<f64>() / 6.0
+    }
+}
+
+struct Run<'a, S, const N: usize> {
+    scene: &'a ContactScene<S>,
+    units: Units,
+    tolerance: Tolerance,
+    sample_rate: f64,
+    count: usize,
+    joints: Vec<f64>,
+    stretch: Stretch,
+    t: f64,
+    y: [f64; N],
+    blow_work: f64,
+    result: ContactSimulation,
+}
+
+/// How far a stretch went.
+enum Reached {
+    End,
+    Event(Crossing),
+    /// A step must be taken again up to this time.
+    Again(f64),
+}
+
+impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
+    fn new(
+        scene: &'a ContactScene<S>,
+        start: &ContactStart,
+        times: SampleTimes,
+        tolerance: f64,
+    ) -> Result<Self, Error> {
+        let count = check_times(times)?;
+        let state = start.state(scene)?;
+        let units = Units::new(scene.size(), scene.mass().mass(), -scene.gravity().z);
+        let guesses = [None; MOST_PALMS];
+        let touch =
+            scene.contacts_at(&state, &guesses).map_err(|source| Error::Contact { t: 0.0, source })?;
+        let surfaces: Vec<_> = scene.palms().iter().map(|p| p.surface).zip(touch.palms.clone()).collect();
+        check_overlap(&surfaces)?;
+        let gaps: Vec<f64> = touch.contacts.iter().map(|contact| contact.gap).collect();
+        let closed = start.closed(&gaps, units.length)?;
+        let mut joints: Vec<f64> = scene.palms().iter().flat_map(|palm| palm.drive.joints()).collect();
+        joints.sort_by(f64::total_cmp);
+        let modes = closed.map(|closed| if closed { ContactMode::Slide } else { ContactMode::Off });
+        let stretch = Stretch { modes, towards: [DVec3::ZERO; MOST_PALMS], guesses };
+        let result = ContactSimulation {
+            instants: Vec::with_capacity(count),
+            events: Vec::new(),
+            statistics: Statistics::default(),
+        };
+        let mut run = Self {
+            scene,
+            units,
+            tolerance: Tolerance::uniform(tolerance),
+            sample_rate: times.rate,
+            count,
+            joints,
+            stretch,
+            t: 0.0,
+            y: [0.0; N],
+            blow_work: 0.0,
+            result,
+        };
+        run.settle(state, &Tallies::default(), &closed, None)?;
+        run.sample(0.0, &run.y.clone())?;
+        Ok(run)
+    }
+
+    fn to_the_end(mut self) -> Result<ContactSimulation, Error> {
+        let last = (self.count - 1) as f64 / self.sample_rate;
+        let mut limit = last;
+        while self.t < last {
+            match self.stretch_until(limit, last)? {
+                Reached::End => limit = last,
+                Reached::Again(sooner) => limit = sooner,
+                Reached::Event(crossing) => {
+                    limit = last;
+                    self.change(&crossing)?;
+                }
+            }
+        }
+        Ok(self.result)
+    }
+
+    /// Integrates with the present modes up to `limit` or the first event.
+    fn stretch_until(&mut self, limit: f64, last: f64) -> Result<Reached, Error> {
+        let (scene, units) = (self.scene, self.units);
+        let now = Cell::new(self.stretch);
+        let (doubt, at_start) = (Cell::new(false), Cell::new(Guards::default()));
+        let field = |t: f64, y: &[f64; N]| {
+            let stretch = now.get();
+            let evaluated = stretch.evaluate(scene, &units, units.unpack(t, y))?;
+            if suspicious(&stretch.guards(&evaluated, &units), &at_start.get()) {
+                doubt.set(true);
+            }
+            Ok(evaluated.rates(scene, &units))
+        };
+        let mut solver = Dop853::new(field, self.t, self.y, self.tolerance).map_err(Error::Integration)?;
+        let reached = loop {
+            let (t, y) = (solver.time(), *solver.state());
+            if t >= limit {
+                break if limit < last { Reached::Again(last) } else { Reached::End };
+            }
+            let evaluated = self.evaluated(t, &y)?;
+            self.check_wedging(&evaluated)?;
+            self.stretch = self.stretch.renewed(&evaluated, &units);
+            now.set(self.stretch);
+            at_start.set(self.stretch.guards(&evaluated, &units));
+            doubt.set(false);
+            let next_joint = self.joints.iter().copied().find(|joint| *joint > t).unwrap_or(limit);
+            let project = |y: &mut [f64; N]| self.project(y, t);
+            if let Err(error) = solver.step(limit.min(next_joint), project) {
+                return Err(self.stuck(&evaluated, error));
+            }
+            let (end, next_sample) = (solver.time(), self.result.instants.len() as f64 / self.sample_rate);
+            if !doubt.get() && next_sample > end {
+                continue;
+            }
+            let Some(dense) = solver.dense().map_err(Error::Integration)? else { continue };
+            let crossing = match doubt.get() {
+                true => first_crossing(&self.stretch, scene, &units, &dense, &at_start.get())
+                    .map_err(|source| Error::Contact { t, source })?,
+                false => None,
+            };
+            let until = crossing.map_or(end, |c| c.t);
+            if let Some(c) = &crossing
+                && c.kind == ContactEventKind::SlipEnds
+                && !self.slip_has_ended(c, &dense.at(c.t))?
+                && c.t - t > 1e-12 * end.abs()
+            {
+                (self.t, self.y) = (t, y);
+                break Reached::Again(t + 0.25 * (c.t - t));
+            }
+            while self.result.instants.len() < self.count {
+                let sample = self.result.instants.len() as f64 / self.sample_rate;
+                if sample > until {
+                    break;
+                }
+                let state = if sample == end { *solver.state() } else { dense.at(sample) };
+                self.sample(sample, &state)?;
+            }
+            if let Some(crossing) = crossing {
+                (self.t, self.y) =
+                    (crossing.t, if crossing.t == end { *solver.state() } else { dense.at(crossing.t) });
+                break Reached::Event(crossing);
+            }
+        };
+        if matches!(reached, Reached::End) || matches!(reached, Reached::Again(at) if at == last) {
+            (self.t, self.y) = (solver.time(), *solver.state());
+        }
+        let done = solver.statistics();
+        let sum = &mut self.result.statistics;
+        sum.evaluations += done.evaluations;
+        sum.accepted += done.accepted;
+        sum.rejected += done.rejected;
+        Ok(reached)
+    }
+
+    fn evaluated(&self, t: f64, y: &[f64; N]) -> Result<Evaluated, Error> {
+        let state = self.units.unpack(t, y);
+        self.stretch.evaluate(self.scene, &self.units, state).map_err(|source| Error::Contact { t, source })
+    }
+
+    /// Pulls a packed state back onto the contacts; where that fails it stays, and the next evaluation tells why.
+    fn project(&self, y: &mut [f64; N], t: f64) {
+        let (state, tallies) = self.units.unpack(t, y);
+        let stretch = &self.stretch;
+        if let Ok(state) = projected(self.scene, state, &stretch.modes, &stretch.guesses, self.units.length) {
+            *y = self.units.pack(&state, &tallies);
+        }
+    }
+
+    fn slip_has_ended(&self, crossing: &Crossing, y: &[f64; N]) -> Result<bool, Error> {
+        let now = self.evaluated(crossing.t, y)?;
+        let slip = now.touch.contacts[crossing.palm].in_tangent(now.touch.rates[crossing.palm].slip);
+        Ok(slip.length() < SLIP_ENDED * self.units.speed)
+    }
+
+    fn check_wedging(&self, now: &Evaluated) -> Result<(), Error> {
+        let minor = now.problem.smallest_sliding_minor(&self.stretch.modes, &now.directions);
+        if minor > 0.0 {
+            return Ok(());
+        }
+        let modes = now.problem.letters(&self.stretch.modes);
+        Err(Error::Modes { state: Box::new(now.state), source: ModeError::NotP { modes, minor } })
+    }
+
+    /// An integrator that cannot go on near a critical friction is told as that.
+    fn stuck(&self, now: &Evaluated, error: IntegrationError<crate::contacts::PalmContactError>) -> Error {
+        let minor = now.problem.smallest_sliding_minor(&self.stretch.modes, &now.directions);
+        if minor < 1e-2 {
+            let modes = now.problem.letters(&self.stretch.modes);
+            return Error::Modes { state: Box::new(now.state), source: ModeError::NotP { modes, minor } };
+        }
+        Error::Integration(error)
+    }
+
+    /// New modes after an event.
+    fn change(&mut self, crossing: &Crossing) -> Result<(), Error> {
+        let mut closed = self.stretch.modes.map(|mode| mode != ContactMode::Off);
+        closed[crossing.palm] = true;
+        let left = match crossing.kind {
+            ContactEventKind::Touches | ContactEventKind::SlipEnds => None,
+            ContactEventKind::Lifts | ContactEventKind::ConeLeft => {
+                Some((crossing.palm, self.stretch.modes[crossing.palm]))
+            }
+        };
+        let (mut state, tallies) = self.units.unpack(self.t, &self.y);
+        if crossing.kind == ContactEventKind::SlipEnds {
+            // What is left of the slip is the integrator's error.
+            let mut modes: Modes = self.stretch.modes;
+            modes[crossing.palm] = ContactMode::Stick;
+            state = projected(self.scene, state, &modes, &self.stretch.guesses, self.units.length)
+                .map_err(|source| Error::Contact { t: self.t, source })?;
+        }
+        self.settle(state, &tallies, &closed, left)?;
+        let modes = self.stretch.modes[..self.scene.palms().len()].to_vec();
+        let event = ContactEvent { t: self.t, palm: crossing.palm, kind: crossing.kind, modes };
+        self.result.events.push(event);
+        self.check_pile_up()
+    }
+
+    fn check_pile_up(&self) -> Result<(), Error> {
+        let events = &self.result.events;
+        let Some(first) = events.len().checked_sub(MOST_AT_ONCE) else { return Ok(()) };
+        let span = self.t - events[first].t;
+        if span > AT_ONCE / self.units.rate {
+            return Ok(());
+        }
+        Err(Error::TooManyEvents { count: MOST_AT_ONCE, span, t: self.t })
+    }
+
+    /// Finds the modes of a state whose `closed` contacts touch, after a blow where one approaches.
+    fn settle(
+        &mut self,
+        state: SceneState,
+        tallies: &Tallies,
+        closed: &[bool; MOST_PALMS],
+        left: Option<(usize, ContactMode)>,
+    ) -> Result<(), Error> {
+        let (scene, units) = (self.scene, self.units);
+        let t = state.t;
+        let contact = |source| Error::Contact { t, source };
+        let gaps_closed = closed.map(|closed| if closed { ContactMode::Slide } else { ContactMode::Off });
+        let (mut state, mut tallies) = (state, *tallies);
+        let mut touch = scene.contacts_at(&state, &self.stretch.guesses).map_err(contact)?;
+        let approaches = |i: usize| closed[i] && touch.rates[i].gap_rate < -GRAZING * units.speed;
+        if (0..scene.palms().len()).any(approaches) {
+            let before = scene.energy(&state.body);
+            let (after, impulses) = blow(scene, &state, &touch, closed)
+                .map_err(|source| Error::Modes { state: Box::new(state), source })?;
+            state = after;
+            self.blow_work += scene.energy(&state.body) - before;
+            for (sum, impulse) in tallies.impulses.iter_mut().zip(impulses.forces) {
+                *sum += impulse;
+            }
+            touch = scene.contacts_at(&state, &self.stretch.guesses).map_err(contact)?;
+        }
+        let problem = scene.problem(&state.body, &touch);
+        let mut touches = [Touch::Apart; MOST_PALMS];
+        for (i, at) in problem.contacts().iter().enumerate() {
+            let rates = &touch.rates[i];
+            if closed[i] && rates.gap_rate <= STILL * units.speed {
+                let slip = at.in_tangent(rates.slip);
+                let speed = slip.length();
+                touches[i] =
+                    if speed > STILL * units.speed { Touch::Slides(slip / speed) } else { Touch::Rests };
+            }
+        }
+        let present = if self.result.instants.is_empty() { gaps_closed } else { self.stretch.modes };
+        let choice = problem
+            .choose(&touches, &present, left)
+            .map_err(|source| Error::Modes { state: Box::new(state), source })?;
+        self.stretch.modes = choice.modes;
+        for (i, at) in problem.contacts().iter().enumerate() {
+            self.stretch.towards[i] = at.from_tangent(choice.directions[i]);
+            self.stretch.guesses[i] = Some(touch.contacts[i].n_O);
+        }
+        let state =
+            projected(scene, state, &choice.modes, &self.stretch.guesses, units.length).map_err(contact)?;
+        (self.t, self.y) = (t, units.pack(&state, &tallies));
+        Ok(())
+    }
+
+    fn sample(&mut self, t: f64, y: &[f64; N]) -> Result<(), Error> {
+        let now = self.evaluated(t, y)?;
+        let count = self.scene.palms().len();
+        let Some(reaction) = now.reaction else {
+            let state = Box::new(now.state);
+            return Err(Error::Modes { state, source: ModeError::Inconsistent });
+        };
+        self.result.instants.push(ContactInstant {
+            state: now.state,
+            modes: self.stretch.modes[..count].to_vec(),
+            palms: now.touch.palms,
+            contacts: now.touch.contacts,
+            rates: now.touch.rates,
+            forces: reaction.forces[..count].to_vec(),
+            impulses: now.tallies.impulses[..count].to_vec(),
+            a_WCm: reaction.a,
+            alpha_WO: reaction.alpha,
+            friction_work: now.tallies.friction_work,
+            palm_work: now.tallies.palm_work,
+            blow_work: self.blow_work,
+        });
+        Ok(())
+    }
+}

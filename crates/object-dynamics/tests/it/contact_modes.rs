@@ -1,0 +1,1 @@
+//! Modes of several contacts: agreement of formulations, invariants, and where rigid bodies have no answer.

@@ -1,0 +1,9 @@
+//! Dynamics from outside.
+//!
+//! One binary: each one more costs a link of everything.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
+mod closed_forms;
+mod contact_modes;
+mod three_palms;
