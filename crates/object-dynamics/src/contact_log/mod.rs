@@ -6,6 +6,7 @@ mod error;
 mod noise;
 mod palm;
 mod record;
+mod simulated;
 mod three_planes;
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 mod build;
 #[cfg(feature = "noise")]
 mod noise;
+mod simulated;
 mod three_planes;
 
 use super::*;
