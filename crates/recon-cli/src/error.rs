@@ -70,6 +70,8 @@ pub(crate) enum CliError {
     UnknownBody,
     #[error("{} has no [simulation]: give shape, palms and duration there, as in the scene that `recon demo` writes", path.display())]
     NothingToSimulate { path: PathBuf },
+    #[error("{} has palms of any shape ([[palm]]), which this command does not know yet; it knows three flat palms through the origin (`simulation.palms`)", path.display())]
+    AnyPalms { path: PathBuf },
     #[error("the object's shape cannot be used")]
     Shape(#[from] recon::contact_kinematics::ShapeError),
     #[error("the scene cannot be simulated")]
@@ -166,6 +168,7 @@ impl CliError {
             | Self::Surface(_)
             | Self::UnknownBody
             | Self::NothingToSimulate { .. }
+            | Self::AnyPalms { .. }
             | Self::Shape(_)
             | Self::Dynamics(_)
             | Self::Simulation(_)

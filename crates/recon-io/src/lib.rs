@@ -38,7 +38,9 @@ pub use report::{
     Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
     ReportError, TrueShape, Verdict, write_report,
 };
-pub use scene::{KnownInertia, Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation};
+pub use scene::{
+    BoxedShape, KnownInertia, KnownPalm, Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation,
+};
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
 pub use summary::summary;
 pub use table::{write_contact_curves, write_motion, write_radius_functions};

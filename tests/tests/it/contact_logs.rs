@@ -4,8 +4,8 @@
 
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::PalmSurface;
-use recon::object_dynamics::{ContactLog, ContactMode, SensedAxes, TwistSource};
-use recon_io::{AnyLog, PalmSetup, read_any_log};
+use recon::object_dynamics::{ContactLog, ContactMode, SampleTimes, SensedAxes, TwistSource};
+use recon_io::{AnyLog, PalmSetup, Scene, parse_contact_log, read_any_log, write_contact_log};
 use std::path::{Path, PathBuf};
 
 /// What is true of a scene, and how well its log keeps the laws: largest departures as they were measured when it was made.
@@ -232,4 +232,37 @@ fn palms_with_friction_are_no_three_planes() {
     let log = read(&cases()[1], &excerpt("S4"));
     let refused = log.three_planes().unwrap_err().to_string();
     assert!(refused.contains("palm 1 is a sphere"), "{refused}");
+}
+
+#[test]
+fn a_scene_file_becomes_a_log_that_reads_back() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/recon-cli/scenes/pick-up.toml");
+    let scene = Scene::read(path).unwrap();
+    let (start, times) = scene.contact_start().unwrap();
+    let world = scene.contact_scene().unwrap();
+    let simulation = world.simulate(&start, SampleTimes { rate: 200.0, ..times }, 1e-8).unwrap();
+    let log = ContactLog::from_simulation(&world, &simulation).unwrap();
+    for event in &simulation.events {
+        println!("{:.5} palm {} {:?} {:?}", event.t, event.palm + 1, event.kind, event.modes);
+    }
+    // The table lets go and the fingertips hold.
+    let last = log.times().len() - 1;
+    assert!(log.palms()[0].touch(last).is_none() && log.palms()[0].touch(0).is_some());
+    assert!(log.palms()[1..].iter().all(|tip| tip.touch(0).is_none() && tip.touch(last).is_some()));
+    let height = log.truth().unwrap()[last].p_WCm.z;
+    assert!((height - 0.055).abs() < 2e-3, "{height}");
+    let noisy = log.with_noise(&scene.sensors.contact_noise(), 1).unwrap();
+    for log in [log, noisy] {
+        let mut text = Vec::new();
+        write_contact_log(&log, &mut text).unwrap();
+        let back = parse_contact_log(&text[..], &scene.palm_setups().unwrap()).unwrap();
+        assert_eq!(log.truth(), back.truth());
+        for (a, b) in log.palms().iter().zip(back.palms()) {
+            assert_eq!((a.surface(), a.friction()), (b.surface(), b.friction()));
+            for k in 0..=last {
+                assert_eq!((a.touch(k), a.motion(k), a.truth(k)), (b.touch(k), b.motion(k), b.truth(k)));
+                assert_eq!((a.force(k), a.impulse(k)), (b.force(k), b.impulse(k)));
+            }
+        }
+    }
 }

@@ -196,6 +196,14 @@ pub enum LogFileErrorKind {
         /// As given, in N.
         force: f64,
     },
+    /// A table of poses over time that cannot be used; `line` is that of the pose at fault, where one is.
+    #[error("{}{source}", line.map_or(String::new(), |line| format!("line {line}: ")))]
+    PoseTable {
+        /// Line number.
+        line: Option<u64>,
+        /// Why.
+        source: SurfaceError,
+    },
     /// A mode that is none.
     #[error("line {line}, column `{column}` is {value}; a mode is 0 (off), 1 (slides) or 2 (sticks)")]
     Mode {

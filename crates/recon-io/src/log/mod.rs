@@ -22,3 +22,4 @@ pub use reader::LogReader;
 pub use write::write_log;
 
 pub(crate) use columns::TRUTH;
+pub(crate) use contacts::read_pose_table;
