@@ -21,7 +21,9 @@ mod table;
 mod touches;
 
 pub use check::{CheckError, Fault, check, check_unwritten, outline_stands_out, stands_out};
-pub use export::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
+pub use export::{
+    ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel, SceneModel,
+};
 pub use log::{
     AnyLog, LogFileError, LogFileErrorKind, LogReader, PalmSetup, parse_any_log, parse_contact_log,
     parse_log, parse_planar_log, read_any_log, read_contact_log, read_log, read_planar_log,

@@ -7,6 +7,7 @@
 mod contact_logs;
 mod contacts_oracle;
 mod estimate_motion;
+mod exported_scenes;
 mod failure_cases;
 mod failures_unknown_body;
 mod logs_of_other_simulators;

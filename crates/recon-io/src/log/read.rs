@@ -1,4 +1,5 @@
 use super::columns::{Columns, Field, PalmColumns};
+use super::contacts::palms_in;
 use super::error::{LogFileError, LogFileErrorKind as Kind};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame, PalmTriple};
@@ -47,7 +48,7 @@ impl<R: Read> Table<R> {
     }
 
     pub(super) fn three_palms(self) -> Result<SensorLog, Kind> {
-        let columns = Columns::find(&self.header)?;
+        let columns = three_palms(&self.header)?;
         let mut rows = Rows::default();
         self.each_row(|row| rows.push(row, &columns))?;
         rows.finish()
@@ -61,6 +62,11 @@ impl<R: Read> Table<R> {
         }
         Ok(())
     }
+}
+
+/// The columns of version 1; a header of version 2 is told as that.
+pub(super) fn three_palms(header: &csv::StringRecord) -> Result<Columns, Kind> {
+    if palms_in(header) > 0 { Err(Kind::AnyPalms) } else { Columns::find(header) }
 }
 
 pub(super) fn csv_error(error: csv::Error) -> Kind {

@@ -27,7 +27,7 @@ pub enum NotThreePlanes {
     NoPoint,
     /// The planes do not go through one point that rests.
     #[error(
-        "palm {palm} passes the point in which the palms meet best at {distance} m (sample {sample}, t = {time} s; {limit} m \
+        "palm {palm} passes the point in which the palms meet best at {distance:.1e} m (sample {sample}, t = {time} s; {limit:.1e} m \
          would be rounding); motion is estimated on palms through one point that rests so far"
     )]
     Apart {
@@ -44,8 +44,8 @@ pub enum NotThreePlanes {
     },
     /// The tangential forces are more than noise.
     #[error(
-        "palm {palm} rubs: its tangential force is {ratio} of the normal force and agrees from sample to sample \
-         ({deviations} deviations of what noise does); motion is estimated without friction so far. If it is the palm's \
+        "palm {palm} rubs: its tangential force is {ratio:.1e} of the normal force and agrees from sample to sample \
+         ({deviations:.0} deviations of what noise does); motion is estimated without friction so far. If it is the palm's \
          orientation that is off, give the normal force alone"
     )]
     Rubs {

@@ -36,7 +36,7 @@ pub(super) enum ForceColumns {
 }
 
 /// Number of palms of which a header has contact points.
-pub(super) fn palms_in(header: &csv::StringRecord) -> usize {
+pub(in crate::log) fn palms_in(header: &csv::StringRecord) -> usize {
     let number = |name: &str| {
         let (stem, number) = name.trim_start_matches('\u{feff}').trim().rsplit_once('_')?;
         matches!(stem, "px" | "sx").then(|| number.parse().ok())?
