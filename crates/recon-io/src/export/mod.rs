@@ -3,14 +3,11 @@
 mod error;
 mod mjcf;
 mod obj;
-mod principal;
 mod scene;
 mod surface;
 mod urdf;
 mod xml;
 
-#[cfg(test)]
-mod scene_tests;
 #[cfg(test)]
 mod tests;
 
