@@ -11,9 +11,12 @@ pub(crate) fn three_palms(path: &Path, scene: &Scene) -> Result<(SensorLog, Opti
         AnyLog::ThreePalms(log) => Ok((log, None)),
         AnyLog::Contacts(log) => {
             let unknown = |source| CliError::NotThreePlanes { path: path.to_owned(), source };
-            let ThreePlanes { log, p_WM } = log.three_planes().map_err(unknown)?;
+            let known_to = scene.sensors.contact_off_palm.unwrap_or(0.0);
+            let ThreePlanes { log, p_WM, apart } = log.three_planes_within(known_to).map_err(unknown)?;
             let [x, y, z] = p_WM.to_array().map(brief);
-            let moved = format!("The palms meet in ({x}, {y}, {z}) m: all positions are seen from there.");
+            let moved = format!(
+                "The palms meet in ({x}, {y}, {z}) m, to within {apart:.1e} m: all positions are seen from there."
+            );
             Ok((log, (p_WM != DVec3::ZERO).then_some(moved)))
         }
     }

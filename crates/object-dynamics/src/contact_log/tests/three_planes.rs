@@ -123,6 +123,13 @@ fn what_the_estimators_do_not_know_is_refused_by_name() {
     });
     let NotThreePlanes::Apart { distance, limit, .. } = apart else { panic!("{apart}") };
     assert!(distance > 1e-5 && distance < 5e-4 && limit < 1e-9, "{apart}");
+    let mut records = cradle(0.0, DVec3::ZERO);
+    let RecordedMotion::Poses(poses) = &mut records[2].motion else { unreachable!() };
+    poses.iter_mut().for_each(|pose| pose.p_WP += 5e-4 * (pose.R_WP * DVec3::Z));
+    let within = log(records.clone()).three_planes_within(5e-4).unwrap();
+    assert!((within.apart - distance).abs() < 1e-12, "{} {distance}", within.apart);
+    let closer = log(records).three_planes_within(0.9 * distance).unwrap_err();
+    assert!(matches!(closer, NotThreePlanes::Apart { limit, .. } if limit == 0.9 * distance));
     let beside = refused(&|r| {
         let copy = r[0].motion.clone();
         r[1].motion = copy.clone();

@@ -28,7 +28,7 @@ pub enum NotThreePlanes {
     /// The planes do not go through one point that rests.
     #[error(
         "palm {palm} passes the point in which the palms meet best at {distance:.1e} m (sample {sample}, t = {time} s; {limit:.1e} m \
-         would be rounding); motion is estimated on palms through one point that rests so far"
+         would be taken for rounding or noise); motion is estimated on palms through one point that rests so far"
     )]
     Apart {
         /// Palm number from 1.
@@ -39,7 +39,7 @@ pub enum NotThreePlanes {
         time: f64,
         /// Distance in m.
         distance: f64,
-        /// What rounding explains, m.
+        /// What rounding explains, or how well the poses were said to be known, m.
         limit: f64,
     },
     /// The tangential forces are more than noise.

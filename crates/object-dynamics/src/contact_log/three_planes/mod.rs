@@ -31,6 +31,9 @@ pub struct ThreePlanes {
     pub log: SensorLog,
     /// That point, world, m: to be added to what is estimated from the log.
     pub p_WM: DVec3,
+    /// How far the farthest palm passes it, m. A palm off along its normal leaves the motion as it is, and moves the surface of
+    /// the object by as much.
+    pub apart: f64,
 }
 
 impl ContactLog {
@@ -39,6 +42,14 @@ impl ContactLog {
     /// # Errors
     /// [`NotThreePlanes`] names what the estimators of frictionless motion on three such palms do not know.
     pub fn three_planes(&self) -> Result<ThreePlanes, NotThreePlanes> {
+        self.three_planes_within(0.0)
+    }
+
+    /// The same of palms whose poses are only known to within `apart`, m: they may pass each other by as much.
+    ///
+    /// # Errors
+    /// As [`Self::three_planes`].
+    pub fn three_planes_within(&self, apart: f64) -> Result<ThreePlanes, NotThreePlanes> {
         let [a, b, c] = &self.palms[..] else {
             return Err(NotThreePlanes::Count { found: self.palms.len() });
         };
@@ -47,7 +58,7 @@ impl ContactLog {
             return Err(NotThreePlanes::Curved { palm: i + 1, kind: palms[i].surface.name() });
         }
         check_friction(palms, self.times.len())?;
-        let p_WM = self.meeting_point(palms)?;
+        let (p_WM, apart) = self.meeting_point(palms, apart)?;
         let sample = |k: usize| {
             let reading = |i: usize| {
                 self.reading(palms[i], k, p_WM).map_err(|source| NotThreePlanes::Frame {
@@ -62,7 +73,7 @@ impl ContactLog {
         let samples = (0..self.times.len()).map(sample).collect::<Result<Vec<_>, NotThreePlanes>>()?;
         let moved = |state: &TrueState| TrueState { p_WCm: state.p_WCm - p_WM, ..*state };
         let truth = self.truth.as_ref().map(|truth| truth.iter().map(moved).collect());
-        Ok(ThreePlanes { log: SensorLog::new(samples, truth)?, p_WM })
+        Ok(ThreePlanes { log: SensorLog::new(samples, truth)?, p_WM, apart })
     }
 
     fn reading(&self, palm: &LoggedPalm, k: usize, p_WM: DVec3) -> Result<PalmReading, PalmError> {
@@ -86,9 +97,10 @@ impl ContactLog {
         })
     }
 
-    /// The point through which all planes go at all times: the origin, if they do, else the one nearest to them.
-    fn meeting_point(&self, palms: [&LoggedPalm; 3]) -> Result<DVec3, NotThreePlanes> {
-        let apart = |p_WM: DVec3| {
+    /// The point through which all planes go at all times, and how far they pass it: the origin, if they go through that to
+    /// rounding, else the point nearest to them.
+    fn meeting_point(&self, palms: [&LoggedPalm; 3], known_to: f64) -> Result<(DVec3, f64), NotThreePlanes> {
+        let apart = |p_WM: DVec3, known_to: f64| {
             let all = (0..self.times.len()).flat_map(|k| (0..3).map(move |i| (k, i)));
             let (mut extent, mut worst) = (0.0_f64, (0.0_f64, 0, 0));
             for (k, i) in all {
@@ -99,14 +111,14 @@ impl ContactLog {
                 }
                 extent = extent.max(palms[i].touch(k).map_or(0.0, |touch| (touch.p_WC - p_WM).length()));
             }
-            let ((distance, sample, i), limit) = (worst, MEETING * extent);
+            let ((distance, sample, i), limit) = (worst, known_to.max(MEETING * extent));
             let time = self.times[sample];
             match distance <= limit {
-                true => Ok(p_WM),
+                true => Ok((p_WM, distance)),
                 false => Err(NotThreePlanes::Apart { palm: i + 1, sample, time, distance, limit }),
             }
         };
-        apart(DVec3::ZERO).or_else(|_| apart(self.nearest_point(palms)?))
+        apart(DVec3::ZERO, 0.0).or_else(|_| apart(self.nearest_point(palms)?, known_to))
     }
 
     /// The point with the least sum of squared distances from all planes at all times.
