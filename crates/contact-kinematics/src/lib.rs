@@ -28,5 +28,5 @@ pub use support::{
 };
 pub use surface::{
     BodyPlace, ContactError, MotionPart, PalmSurface, PoseTable, SurfaceContact, SurfaceError, SurfaceMotion,
-    SurfacePose, SurfaceRates, SurfaceState,
+    SurfacePoint, SurfacePose, SurfaceRates, SurfaceState,
 };

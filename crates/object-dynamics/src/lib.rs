@@ -3,6 +3,7 @@
 //! Frames: `W` world (Z up, gravity `(0, 0, -g)`), `O` object (origin in the centre of mass). Units: SI.
 
 mod condensed;
+mod contact_log;
 mod contacts;
 mod hybrid;
 pub mod integrate;
@@ -16,6 +17,12 @@ mod series;
 mod state;
 mod three_palms;
 
+#[cfg(feature = "noise")]
+pub use contact_log::{ChannelNoise, ContactNoise};
+pub use contact_log::{
+    ContactLog, ContactLogError, ContactPoints, ForceChannel, LoggedPalm, MeasuredMotion, NotThreePlanes,
+    PalmRecord, RecordedMotion, SensedAxes, SensedForce, ThreePlanes, Touch, TrueContact, TwistSource,
+};
 pub use contacts::{
     ContactScene, ContactSceneError, DriveError, MOST_PALMS, ModeError, PalmContactError, PalmCoordinates,
     PalmDrive, PalmSpring, PalmTorque, ScenePalm, SceneState,

@@ -1,4 +1,4 @@
-use recon::object_dynamics::{LogError, SceneError as DynamicsError, SimulationError};
+use recon::object_dynamics::{LogError, NotThreePlanes, SceneError as DynamicsError, SimulationError};
 use recon::observer::EstimateError;
 use recon::shape_bounds::{
     AlphaError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
@@ -70,6 +70,10 @@ pub(crate) enum CliError {
     UnknownBody,
     #[error("{} has no [simulation]: give shape, palms and duration there, as in the scene that `recon demo` writes", path.display())]
     NothingToSimulate { path: PathBuf },
+    #[error("{} has palms of any shape ([[palm]]), which this command does not know yet; it knows three flat palms through the origin (`simulation.palms`)", path.display())]
+    AnyPalms { path: PathBuf },
+    #[error("nothing is estimated from {} yet", path.display())]
+    NotThreePlanes { path: PathBuf, source: NotThreePlanes },
     #[error("the object's shape cannot be used")]
     Shape(#[from] recon::contact_kinematics::ShapeError),
     #[error("the scene cannot be simulated")]
@@ -166,6 +170,8 @@ impl CliError {
             | Self::Surface(_)
             | Self::UnknownBody
             | Self::NothingToSimulate { .. }
+            | Self::AnyPalms { .. }
+            | Self::NotThreePlanes { .. }
             | Self::Shape(_)
             | Self::Dynamics(_)
             | Self::Simulation(_)

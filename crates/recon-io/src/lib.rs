@@ -21,10 +21,13 @@ mod table;
 mod touches;
 
 pub use check::{CheckError, Fault, check, check_unwritten, outline_stands_out, stands_out};
-pub use export::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
+pub use export::{
+    ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel, SceneModel,
+};
 pub use log::{
-    LogFileError, LogFileErrorKind, LogReader, parse_log, parse_planar_log, read_log, read_planar_log,
-    write_log, write_planar_log,
+    AnyLog, LogFileError, LogFileErrorKind, LogReader, PalmSetup, parse_any_log, parse_contact_log,
+    parse_log, parse_planar_log, read_any_log, read_contact_log, read_log, read_planar_log,
+    write_contact_log, write_log, write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use number::{brief, brief_to, with_brief_numbers};
@@ -37,7 +40,9 @@ pub use report::{
     Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
     ReportError, TrueShape, Verdict, write_report,
 };
-pub use scene::{KnownInertia, Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation};
+pub use scene::{
+    BoxedShape, KnownInertia, KnownPalm, Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation,
+};
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
 pub use summary::summary;
 pub use table::{write_contact_curves, write_motion, write_radius_functions};

@@ -4,8 +4,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
+mod contact_logs;
 mod contacts_oracle;
 mod estimate_motion;
+mod exported_scenes;
 mod failure_cases;
 mod failures_unknown_body;
 mod logs_of_other_simulators;

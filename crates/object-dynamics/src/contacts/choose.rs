@@ -136,11 +136,21 @@ impl ContactProblem {
             }
         }
         let (_, choice) = found.ok_or(ModeError::Inconsistent)?;
-        let minor = self.smallest_sliding_minor(&choice.modes, &choice.directions);
-        if minor <= 0.0 {
-            return Err(ModeError::NotP { modes: self.letters(&choice.modes), minor });
-        }
+        self.check_wedging(touches, &choice)?;
         Ok(choice)
+    }
+
+    /// Refuses sliding contacts that friction wedges, those that would leave at once included: there it is chance whether one
+    /// motion follows, none or several.
+    fn check_wedging(&self, touches: &[Touch; MOST_PALMS], choice: &Choice) -> Result<(), ModeError> {
+        let (mut modes, mut directions) = (choice.modes, choice.directions);
+        for (i, touch) in touches.iter().enumerate() {
+            if let Touch::Slides(tau) = touch {
+                (modes[i], directions[i]) = (ContactMode::Slide, *tau);
+            }
+        }
+        let minor = self.smallest_sliding_minor(&modes, &directions);
+        if minor > 0.0 { Ok(()) } else { Err(ModeError::NotP { modes: self.letters(&modes), minor }) }
     }
 
     /// Sum of what the forces are made of, N: a scale for what counts as zero.

@@ -1,9 +1,9 @@
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{Reconstruction, exported, reconstruct, write_reconstruction_folder};
+use crate::pipeline::{Reconstruction, exported, reconstruct, three_palms, write_reconstruction_folder};
 use crate::progress::Progress;
-use recon_io::{FolderTarget, Scene, brief, brief_to, read_log};
+use recon_io::{FolderTarget, Scene, brief, brief_to};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
@@ -16,9 +16,10 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let target = target(args)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");
-    let log = read_log(&args.log)?;
+    let (log, moved) = three_palms(&args.log, &scene)?;
     let name = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
-    let made = reconstruct(log, &scene, &name, args.identify, &progress)?;
+    let mut made = reconstruct(log, &scene, &name, args.identify, &progress)?;
+    made.data.warnings.extend(moved);
     progress.step("writing the results");
     let files = exported(&made, &args.export, args.export_shape)?;
     let extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();

@@ -3,14 +3,14 @@
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{BoundsResult, NOTABLE_NOISE, bounds, write_touch_folder};
+use crate::pipeline::{BoundsResult, NOTABLE_NOISE, bounds, three_palms, write_touch_folder};
 use crate::progress::Progress;
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::SensorLog;
 use recon::observer::{KnownTouch, NoForceEstimate, estimate_without_forces};
 use recon::shape_bounds::ContactSample;
-use recon_io::{MotionState, Scene, brief, read_log};
+use recon_io::{MotionState, Scene, brief};
 use serde_json::{Value, json};
 use std::error::Error;
 
@@ -19,7 +19,8 @@ pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let target = super::reconstruct::target(args)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");
-    let (log, _) = read_log(&args.log)?.split_truth();
+    let (log, moved) = three_palms(&args.log, &scene)?;
+    let (log, _) = log.split_truth();
     progress.step("estimating motion and shape");
     let known = KnownTouch {
         gravity: DVec3::new(0.0, 0.0, -scene.gravity),
@@ -27,7 +28,7 @@ pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     };
     let found = estimate_without_forces(&log, &known)?;
     progress.step("bounding the shape");
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<String> = moved.into_iter().collect();
     let noise = found.evidence.noise_explains;
     let bounded = if noise > NOTABLE_NOISE * found.shape.semi_axes.max_element() {
         warnings.push(format!(

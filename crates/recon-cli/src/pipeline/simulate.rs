@@ -1,4 +1,3 @@
-use super::body::body;
 use crate::error::CliError;
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{End, InitialMotion, SampleTimes, SensorLog, SensorNoise, ThreePalmScene};
@@ -18,8 +17,9 @@ pub(crate) fn simulate(scene: &Scene, path: &Path, tolerance: f64) -> Result<Sim
     let simulation =
         scene.simulation.as_ref().ok_or_else(|| CliError::NothingToSimulate { path: path.to_owned() })?;
     let mass = known_body(scene)?;
-    let body = body(simulation)?;
-    let mut palms = ThreePalmScene::new(body.as_ref(), mass, simulation.palms, scene.gravity)?;
+    let body = simulation.body()?;
+    let three = simulation.palms.ok_or_else(|| CliError::AnyPalms { path: path.to_owned() })?;
+    let mut palms = ThreePalmScene::new(body.as_ref(), mass, three, scene.gravity)?;
     if let Some(inertia) = scene.palm_inertia {
         palms = palms.with_palm_inertias(inertia)?;
     }

@@ -1,6 +1,6 @@
 //! The true motion and shape, in the body axes of the estimate.
 
-use super::body::{body, volume};
+use super::body::volume;
 use crate::error::CliError;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, SupportFunction};
@@ -19,7 +19,7 @@ pub(crate) fn true_motion(states: &[TrueState], axes: DQuat) -> Vec<MotionState>
 
 /// The true shape in the axes of the estimate, as triangles and as lines of equal normal.
 pub(crate) fn true_shape(simulation: &Simulation, axes: DQuat) -> Result<TrueShape, CliError> {
-    let body = body(simulation)?;
+    let body = simulation.body()?;
     let on = |n: DVec3| axes.inverse() * body.point(Direction::new_unchecked(n));
     let at = |row: u32, column: u32| {
         let (polar, around) =

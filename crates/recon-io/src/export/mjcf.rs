@@ -6,33 +6,48 @@ use glam::DQuat;
 use std::io::{self, Write};
 
 pub(super) fn write(model: &ObjectModel, to: &mut dyn Write) -> io::Result<()> {
-    let name = &model.name;
-    writeln!(to, "<mujoco model=\"{name}\">")?;
-    head(&model.notes, to)?;
-    let [xx, xy, xz, yy, yz, zz] = model.inertia();
-    if let Some(deviations) = &model.deviations {
-        let [dxx, dxy, dxz, dyy, dyz, dzz] = upper(deviations.inertia);
-        let (mass, inertia) = (numbers(&[deviations.mass]), numbers(&[dxx, dyy, dzz, dxy, dxz, dyz]));
-        writeln!(to, "<custom>")?;
-        writeln!(
-            to,
-            "  {}",
-            comment("Standard deviations; those of the inertia in the order of fullinertia.")
-        )?;
-        writeln!(to, "  <numeric name=\"{name}_mass_std\" data=\"{mass}\"/>")?;
-        writeln!(to, "  <numeric name=\"{name}_inertia_std\" data=\"{inertia}\"/>\n</custom>")?;
-    }
-    let meshes = model.meshes(&[]);
-    if !meshes.is_empty() {
-        writeln!(to, "<asset>")?;
-        for (mesh, _) in &meshes {
-            let file = model.mesh_file(mesh);
-            // The mass is the body's, whatever the mesh encloses.
-            writeln!(to, "  <mesh name=\"{name}_{mesh}\" file=\"{file}\" inertia=\"convex\"/>")?;
-        }
-        writeln!(to, "</asset>")?;
-    }
+    open(model, to)?;
+    deviations(model, to)?;
+    assets(model, to)?;
     writeln!(to, "<worldbody>")?;
+    body(model, to)?;
+    writeln!(to, "</worldbody>\n</mujoco>")
+}
+
+/// The first lines.
+pub(super) fn open(model: &ObjectModel, to: &mut dyn Write) -> io::Result<()> {
+    writeln!(to, "<mujoco model=\"{}\">", model.name)?;
+    head(&model.notes, to)
+}
+
+fn deviations(model: &ObjectModel, to: &mut dyn Write) -> io::Result<()> {
+    let (name, Some(deviations)) = (&model.name, &model.deviations) else { return Ok(()) };
+    let [dxx, dxy, dxz, dyy, dyz, dzz] = upper(deviations.inertia);
+    let (mass, inertia) = (numbers(&[deviations.mass]), numbers(&[dxx, dyy, dzz, dxy, dxz, dyz]));
+    writeln!(to, "<custom>")?;
+    writeln!(to, "  {}", comment("Standard deviations; those of the inertia in the order of fullinertia."))?;
+    writeln!(to, "  <numeric name=\"{name}_mass_std\" data=\"{mass}\"/>")?;
+    writeln!(to, "  <numeric name=\"{name}_inertia_std\" data=\"{inertia}\"/>\n</custom>")
+}
+
+/// The meshes that the object refers to.
+pub(super) fn assets(model: &ObjectModel, to: &mut dyn Write) -> io::Result<()> {
+    let (name, meshes) = (&model.name, model.meshes(&[]));
+    if meshes.is_empty() {
+        return Ok(());
+    }
+    writeln!(to, "<asset>")?;
+    for (mesh, _) in &meshes {
+        let file = model.mesh_file(mesh);
+        // The mass is the body's, whatever the mesh encloses.
+        writeln!(to, "  <mesh name=\"{name}_{mesh}\" file=\"{file}\" inertia=\"convex\"/>")?;
+    }
+    writeln!(to, "</asset>")
+}
+
+/// The object as a free body.
+pub(super) fn body(model: &ObjectModel, to: &mut dyn Write) -> io::Result<()> {
+    let (name, [xx, xy, xz, yy, yz, zz]) = (&model.name, model.inertia());
     write!(to, "  <body name=\"{name}\"")?;
     if let Some(start) = &model.start {
         let (pos, quat) = (numbers(&start.p_WCm.to_array()), quaternion(start.R_WO));
@@ -61,7 +76,7 @@ pub(super) fn write(model: &ObjectModel, to: &mut dyn Write) -> io::Result<()> {
              group=\"2\" rgba=\"0.5 0.5 0.5 0.3\"/>"
         )?;
     }
-    writeln!(to, "  </body>\n</worldbody>\n</mujoco>")
+    writeln!(to, "  </body>")
 }
 
 /// w first.

@@ -1,8 +1,9 @@
-//! The identified object as a model for simulators: MJCF and URDF with mass, inertia, shape and bounds.
+//! Models for simulators: the identified object (MJCF and URDF with mass, inertia, shape and bounds), and whole scenes (MJCF).
 
 mod error;
 mod mjcf;
 mod obj;
+mod scene;
 mod surface;
 mod urdf;
 mod xml;
@@ -11,6 +12,7 @@ mod xml;
 mod tests;
 
 pub use error::ExportError;
+pub use scene::SceneModel;
 
 use crate::{MotionState, TriangleMesh};
 use glam::{DMat3, DQuat, DVec3};

@@ -1,7 +1,7 @@
 use crate::separator::advice;
-use recon::contact_kinematics::{DirectionError, PalmError};
-use recon::object_dynamics::LogError;
+use recon::contact_kinematics::{DirectionError, PalmError, SurfaceError};
 use recon::object_dynamics::planar::PlanarLogError;
+use recon::object_dynamics::{ContactLogError, LogError};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -126,6 +126,107 @@ pub enum LogFileErrorKind {
         line: u64,
         /// How far from it they are there.
         source: PalmError,
+    },
+    /// A log of general palms without a description of these palms.
+    #[error(
+        "has the columns of palms of any shape, which say nothing of the shapes; give a scene with a [[palm]] for each"
+    )]
+    NoPalms,
+    /// A log of general palms where three flat ones are read.
+    #[error(
+        "has the columns px_i or sx_i of palms of any shape, and here logs of three flat palms through the origin are read \
+         (s1_i, s2_i)"
+    )]
+    AnyPalms,
+    /// Log and scene have different numbers of palms.
+    #[error("has {found} palm(s) by its columns px_i or sx_i where the scene has {expected}")]
+    PalmCount {
+        /// Palms of the scene.
+        expected: usize,
+        /// Palms of the log.
+        found: usize,
+    },
+    /// The same quantity stands in two sets of columns.
+    #[error("has both {first} and {second}, which say the same; keep one")]
+    TwoWays {
+        /// Columns of the one.
+        first: String,
+        /// Columns of the other.
+        second: String,
+    },
+    /// Nothing says where a palm is.
+    #[error(
+        "palm {palm} has no pose; give it by the columns Px_{palm}..Pz_{palm} and Qw_{palm}..Qz_{palm}, or as `pose` of the \
+         scene's [[palm]] if it does not move"
+    )]
+    NoPose {
+        /// Palm from 1.
+        palm: usize,
+    },
+    /// A pose of a palm that is none.
+    #[error("line {line}: pose of palm {palm} (Px_{palm}..Pz_{palm}, Qw_{palm}..Qz_{palm}): {source}")]
+    Pose {
+        /// Line number.
+        line: u64,
+        /// Palm from 1.
+        palm: usize,
+        /// Why.
+        source: SurfaceError,
+    },
+    /// Part of a contact point is there and part is not.
+    #[error(
+        "line {line}: contact of palm {palm} ({columns}) is ({}, {}, {}); without contact all three are nan, with contact \
+         none is", value[0], value[1], value[2]
+    )]
+    PartOfContact {
+        /// Line number.
+        line: u64,
+        /// Palm from 1.
+        palm: usize,
+        /// The three columns.
+        columns: String,
+        /// What stands there.
+        value: [f64; 3],
+    },
+    /// A force without a place where it acts, in general logs.
+    #[error(
+        "line {line}, column `{column}`: palm {palm} is not touched but exerts {force} N; without contact it is 0 or nan"
+    )]
+    ForceOffContact {
+        /// Line number.
+        line: u64,
+        /// Column name.
+        column: String,
+        /// Palm from 1.
+        palm: usize,
+        /// As given, in N.
+        force: f64,
+    },
+    /// A table of poses over time that cannot be used; `line` is that of the pose at fault, where one is.
+    #[error("{}{source}", line.map_or(String::new(), |line| format!("line {line}: ")))]
+    PoseTable {
+        /// Line number.
+        line: Option<u64>,
+        /// Why.
+        source: SurfaceError,
+    },
+    /// A mode that is none.
+    #[error("line {line}, column `{column}` is {value}; a mode is 0 (off), 1 (slides) or 2 (sticks)")]
+    Mode {
+        /// Line number.
+        line: u64,
+        /// Column name.
+        column: String,
+        /// As given.
+        value: f64,
+    },
+    /// The samples do not make a log of general palms; `line` is that of the sample named by `source`, where it names one.
+    #[error("{}{source}", line.map_or(String::new(), |line| format!("line {line}: ")))]
+    ContactSamples {
+        /// Line number.
+        line: Option<u64>,
+        /// Why.
+        source: ContactLogError,
     },
     /// The true orientation is not a unit quaternion.
     #[error("line {line}: true orientation (qw, qx, qy, qz) has length {length}; it must be 1")]

@@ -1,6 +1,8 @@
-//! Sensor logs, version 1, of three palms and planar ones of two, as CSV files.
+//! Sensor logs as CSV files: of any palms (version 2), of three flat palms (version 1), and planar ones of two. What they
+//! hold is in `docs/formats.md`.
 
 mod columns;
+mod contacts;
 mod error;
 mod planar;
 mod read;
@@ -10,6 +12,9 @@ mod write;
 #[cfg(test)]
 mod tests;
 
+pub use contacts::{
+    AnyLog, PalmSetup, parse_any_log, parse_contact_log, read_any_log, read_contact_log, write_contact_log,
+};
 pub use error::{LogFileError, LogFileErrorKind};
 pub use planar::{parse_planar_log, read_planar_log, write_planar_log};
 pub use read::{parse_log, read_log};
@@ -17,3 +22,4 @@ pub use reader::LogReader;
 pub use write::write_log;
 
 pub(crate) use columns::TRUTH;
+pub(crate) use contacts::read_pose_table;

@@ -1,4 +1,5 @@
 use super::columns::{Columns, Field, PalmColumns};
+use super::contacts::palms_in;
 use super::error::{LogFileError, LogFileErrorKind as Kind};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame, PalmTriple};
@@ -28,18 +29,44 @@ pub fn read_log(path: impl AsRef<Path>) -> Result<SensorLog, LogFileError> {
 /// # Errors
 /// [`LogFileErrorKind`](super::LogFileErrorKind) names the line and the column.
 pub fn parse_log(text: impl Read) -> Result<SensorLog, Kind> {
-    let mut reader =
-        csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text);
-    let mut rows = reader.records();
-    let header = rows.next().ok_or(Kind::Empty)?.map_err(csv_error)?;
-    let columns = Columns::find(&header)?;
-    let mut rows_read = Rows::default();
-    for row in rows {
-        let record = row.map_err(csv_error)?;
-        let line = record.position().map_or(0, csv::Position::line);
-        rows_read.push(&Row { record: &record, line }, &columns)?;
+    Table::open(text)?.three_palms()
+}
+
+/// A CSV file whose header has been read.
+pub(super) struct Table<R> {
+    pub(super) header: csv::StringRecord,
+    rows: csv::StringRecordsIntoIter<R>,
+}
+
+impl<R: Read> Table<R> {
+    pub(super) fn open(text: R) -> Result<Self, Kind> {
+        let mut reader = csv::ReaderBuilder::new();
+        reader.has_headers(false).flexible(true).trim(csv::Trim::All);
+        let mut rows = reader.from_reader(text).into_records();
+        let header = rows.next().ok_or(Kind::Empty)?.map_err(csv_error)?;
+        Ok(Self { header, rows })
     }
-    rows_read.finish()
+
+    pub(super) fn three_palms(self) -> Result<SensorLog, Kind> {
+        let columns = three_palms(&self.header)?;
+        let mut rows = Rows::default();
+        self.each_row(|row| rows.push(row, &columns))?;
+        rows.finish()
+    }
+
+    pub(super) fn each_row(self, mut take: impl FnMut(&Row) -> Result<(), Kind>) -> Result<(), Kind> {
+        for row in self.rows {
+            let record = row.map_err(csv_error)?;
+            let line = record.position().map_or(0, csv::Position::line);
+            take(&Row { record: &record, line })?;
+        }
+        Ok(())
+    }
+}
+
+/// The columns of version 1; a header of version 2 is told as that.
+pub(super) fn three_palms(header: &csv::StringRecord) -> Result<Columns, Kind> {
+    if palms_in(header) > 0 { Err(Kind::AnyPalms) } else { Columns::find(header) }
 }
 
 pub(super) fn csv_error(error: csv::Error) -> Kind {
@@ -164,7 +191,7 @@ impl Row<'_> {
         Err(Kind::ForceWithoutContact { line: self.line, palm, force })
     }
 
-    fn truth(&self, fields: &[Field; 13]) -> Result<TrueState, Kind> {
+    pub(super) fn truth(&self, fields: &[Field; 13]) -> Result<TrueState, Kind> {
         let [px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz] = self.vector(fields)?;
         let q = DQuat::from_xyzw(qx, qy, qz, qw);
         let length = q.length();
@@ -173,7 +200,8 @@ impl Row<'_> {
         }
         Ok(TrueState {
             p_WCm: DVec3::new(px, py, pz),
-            R_WO: q.normalize(),
+            // A quaternion that was written at unit length reads back digit by digit.
+            R_WO: if (length - 1.0).abs() <= 2.0 * f64::EPSILON { q } else { q.normalize() },
             v_WCm: DVec3::new(vx, vy, vz),
             w_WO: DVec3::new(wx, wy, wz),
         })

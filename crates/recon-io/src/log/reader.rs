@@ -1,6 +1,6 @@
 use super::columns::Columns;
 use super::error::LogFileErrorKind as Kind;
-use super::read::{Row, csv_error};
+use super::read::{Row, csv_error, three_palms};
 use recon::object_dynamics::{LogError, Sample, SeriesError};
 use std::io::Read;
 
@@ -30,7 +30,7 @@ impl<R: Read> LogReader<R> {
             .from_reader(text)
             .into_records();
         let header = rows.next().ok_or(Kind::Empty)?.map_err(csv_error)?;
-        Ok(Self { columns: Columns::find(&header)?, rows, count: 0, latest: None, ended: false })
+        Ok(Self { columns: three_palms(&header)?, rows, count: 0, latest: None, ended: false })
     }
 
     fn sample(&mut self, record: csv::Result<csv::StringRecord>) -> Result<Sample, Kind> {

@@ -81,7 +81,7 @@ fn header(optional: &[Optional; 3], truth: bool) -> Vec<String> {
 }
 
 /// A state in the order of the truth columns.
-fn true_values(state: &TrueState) -> [f64; 13] {
+pub(super) fn true_values(state: &TrueState) -> [f64; 13] {
     let (p, q, v, w) = (state.p_WCm, state.R_WO, state.v_WCm, state.w_WO);
     [p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z]
 }

@@ -1,7 +1,9 @@
 use super::file::{ObjectTable, PalmTable, PalmsTable, SceneFile, SensorsTable, ShapeTable, SimulationTable};
+use super::palms::palms as any_palms;
 use super::{KnownInertia, Scene, SceneErrorKind as Kind, Sensors, Shape, Simulation};
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, MotionLaw, Palm, PalmTriple};
+use std::path::Path;
 
 /// Largest departure of the initial quaternion's length from 1.
 const UNIT_TOLERANCE: f64 = 1e-6;
@@ -10,12 +12,14 @@ const UNIT_TOLERANCE: f64 = 1e-6;
 /// while it is simulated, so this is the most that a small machine holds.
 const MOST_SAMPLES: f64 = 1e6;
 
-/// Checks every number and says each thing in one way.
-pub(super) fn scene(file: SceneFile) -> Result<Scene, Kind> {
+/// Checks every number and says each thing in one way. Files that a scene in `folder` names are beside it.
+pub(super) fn scene(file: SceneFile, folder: &Path) -> Result<Scene, Kind> {
     let gravity = Kind::not_negative("gravity", file.gravity)?;
     let (mass, inertia) = mass_and_inertia(&file.object)?;
     let sensors = sensors(&file.sensors)?;
-    let simulation = file.simulation.map(|s| simulation(s, &sensors)).transpose()?;
+    let friction = file.palms.friction.map(|f| Kind::not_negative("palms.friction", f)).transpose()?;
+    let palms = any_palms(file.palm, friction, folder)?;
+    let simulation = file.simulation.map(|s| simulation(s, &sensors, palms.is_some())).transpose()?;
     Ok(Scene {
         gravity,
         mass,
@@ -23,7 +27,8 @@ pub(super) fn scene(file: SceneFile) -> Result<Scene, Kind> {
         curvature: curvature(&file.object)?,
         sensors,
         palm_inertia: palm_inertia(&file.palms)?,
-        friction: file.palms.friction.map(|f| Kind::not_negative("palms.friction", f)).transpose()?,
+        friction,
+        palms,
         simulation,
     })
 }
@@ -61,9 +66,16 @@ fn curvature(table: &ObjectTable) -> Result<Option<CurvatureRadii>, Kind> {
 }
 
 fn sensors(table: &SensorsTable) -> Result<Sensors, Kind> {
+    let not_negative =
+        |key, value: Option<f64>| value.map(|v| Kind::not_negative(&format!("sensors.{key}"), v)).transpose();
     Ok(Sensors {
-        contact_std: table.contact_std.map(|v| Kind::not_negative("sensors.contact_std", v)).transpose()?,
-        force_std: table.force_std.map(|v| Kind::not_negative("sensors.force_std", v)).transpose()?,
+        contact_std: not_negative("contact_std", table.contact_std)?,
+        force_std: not_negative("force_std", table.force_std)?,
+        force_share: not_negative("force_share", table.force_share)?,
+        impulse_std: not_negative("impulse_std", table.impulse_std)?,
+        impulse_share: not_negative("impulse_share", table.impulse_share)?,
+        torque_std: not_negative("torque_std", table.torque_std)?,
+        contact_off_palm: not_negative("contact_off_palm", table.contact_off_palm)?,
         sample_rate: table.sample_rate.map(|v| Kind::positive("sensors.sample_rate", v)).transpose()?,
     })
 }
@@ -76,7 +88,8 @@ fn palm_inertia(table: &PalmsTable) -> Result<Option<[f64; 3]>, Kind> {
     Ok(Some(inertia))
 }
 
-fn simulation(table: SimulationTable, sensors: &Sensors) -> Result<Simulation, Kind> {
+fn simulation(table: SimulationTable, sensors: &Sensors, any_palms: bool) -> Result<Simulation, Kind> {
+    let palms = three_palms(&table, any_palms)?;
     let duration = Kind::positive("simulation.duration", table.duration)?;
     let sample_rate = match table.sample_rate {
         Some(rate) => Kind::positive("simulation.sample_rate", rate)?,
@@ -95,9 +108,12 @@ fn simulation(table: SimulationTable, sensors: &Sensors) -> Result<Simulation, K
     Ok(Simulation {
         shape,
         offset,
-        palms: palms(&table.palms)?,
+        palms,
+        p_WCm: table.position.map(|p| vector("simulation.position", p, Kind::finite)).transpose()?,
         R_WO: orientation.normalize(),
+        v_WCm: vector("simulation.velocity", table.velocity.unwrap_or_default(), Kind::finite)?,
         w_WO: vector("simulation.angular_velocity", table.angular_velocity, Kind::finite)?,
+        in_flight: table.in_flight.unwrap_or_default(),
         duration,
         sample_rate,
         seed: table.seed,
@@ -132,6 +148,31 @@ fn shape(table: ShapeTable) -> Result<(Shape, DVec3), Kind> {
         }
     };
     Ok((shape, vector("simulation.shape.offset", offset, Kind::finite)?))
+}
+
+/// The three palms through the origin, which are the palms where there is no `[[palm]]`.
+fn three_palms(table: &SimulationTable, any_palms: bool) -> Result<Option<[Palm; 3]>, Kind> {
+    if any_palms {
+        return match table.palms {
+            Some(_) => {
+                Err(Kind::Ambiguous { keys: vec!["[[palm]]".to_owned(), "`simulation.palms`".to_owned()] })
+            }
+            None => Ok(None),
+        };
+    }
+    let general = [
+        ("simulation.position", table.position.is_some()),
+        ("simulation.velocity", table.velocity.is_some()),
+        ("simulation.in_flight", table.in_flight.is_some()),
+    ];
+    if let Some((key, _)) = general.into_iter().find(|(_, given)| *given) {
+        return Err(Kind::OtherPalms { key, only: "[[palm]]; palms through the origin determine it" });
+    }
+    let tables = table.palms.as_ref().ok_or(Kind::Missing {
+        what: "any palm",
+        mend: "give three in `simulation.palms`, or a [[palm]] for each",
+    })?;
+    palms(tables).map(Some)
 }
 
 fn palms(tables: &[PalmTable]) -> Result<[Palm; 3], Kind> {

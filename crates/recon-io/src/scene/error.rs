@@ -1,5 +1,6 @@
-use recon::contact_kinematics::PalmError;
-use recon::object_dynamics::MassError;
+use crate::log::LogFileError;
+use recon::contact_kinematics::{DirectionError, PalmError, ShapeError, SurfaceError};
+use recon::object_dynamics::{ContactSceneError, DriveError, MassError};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -66,6 +67,70 @@ pub enum SceneErrorKind {
     /// The palms cannot hold an object.
     #[error("`simulation.palms`: {0}")]
     Palms(PalmError),
+    /// A `[[palm]]` lacks something.
+    #[error("`palm[{palm}].{key}` is not given; give it in the {} [[palm]]", ordinal(*palm))]
+    MissingOfPalm {
+        /// Palm from 1.
+        palm: usize,
+        /// What it lacks.
+        key: &'static str,
+    },
+    /// A vector that has no direction.
+    #[error("`{key}`: {source}")]
+    Direction {
+        /// Full path of the key.
+        key: String,
+        /// Why.
+        source: DirectionError,
+    },
+    /// Shape or pose of a `[[palm]]`.
+    #[error("`palm[{palm}]`: {source}")]
+    PalmSurface {
+        /// Palm from 1.
+        palm: usize,
+        /// Why.
+        source: SurfaceError,
+    },
+    /// What moves a `[[palm]]`.
+    #[error("`palm[{palm}]`: {source}")]
+    PalmDrive {
+        /// Palm from 1.
+        palm: usize,
+        /// Why.
+        source: DriveError,
+    },
+    /// The table of poses of a `[[palm]]`.
+    #[error("`palm[{palm}].poses`: {source}")]
+    Poses {
+        /// Palm from 1.
+        palm: usize,
+        /// The file and what is wrong with it.
+        source: Box<LogFileError>,
+    },
+    /// A key that has a meaning on palms of one kind alone.
+    #[error("`{key}` is only for scenes with {only}")]
+    OtherPalms {
+        /// Full path of the key.
+        key: &'static str,
+        /// Where it belongs.
+        only: &'static str,
+    },
+    /// The object's shape.
+    #[error("`simulation.shape`: {0}")]
+    Shape(ShapeError),
+    /// Object and palms make no scene.
+    #[error(transparent)]
+    Contacts(ContactSceneError),
+}
+
+/// `first` to `fifth`, and so many others as there may be.
+fn ordinal(number: usize) -> String {
+    match number {
+        1 => "first".to_owned(),
+        2 => "second".to_owned(),
+        3 => "third".to_owned(),
+        other => format!("{other}th"),
+    }
 }
 
 impl SceneErrorKind {

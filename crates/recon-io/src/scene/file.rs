@@ -1,5 +1,6 @@
 //! The scene file as it stands on disk; [`super::build`] turns it into a checked [`super::Scene`].
 
+use super::palms::PalmTable as AnyPalmTable;
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -12,6 +13,8 @@ pub(super) struct SceneFile {
     pub(super) sensors: SensorsTable,
     #[serde(default)]
     pub(super) palms: PalmsTable,
+    #[serde(default)]
+    pub(super) palm: Vec<AnyPalmTable>,
     pub(super) simulation: Option<SimulationTable>,
 }
 
@@ -30,6 +33,11 @@ pub(super) struct ObjectTable {
 pub(super) struct SensorsTable {
     pub(super) contact_std: Option<f64>,
     pub(super) force_std: Option<f64>,
+    pub(super) force_share: Option<f64>,
+    pub(super) impulse_std: Option<f64>,
+    pub(super) impulse_share: Option<f64>,
+    pub(super) torque_std: Option<f64>,
+    pub(super) contact_off_palm: Option<f64>,
     pub(super) sample_rate: Option<f64>,
 }
 
@@ -51,8 +59,11 @@ pub(super) struct SimulationTable {
     pub(super) angular_velocity: [f64; 3],
     #[serde(default)]
     pub(super) seed: u64,
+    pub(super) position: Option<[f64; 3]>,
+    pub(super) velocity: Option<[f64; 3]>,
+    pub(super) in_flight: Option<bool>,
     pub(super) shape: ShapeTable,
-    pub(super) palms: Vec<PalmTable>,
+    pub(super) palms: Option<Vec<PalmTable>>,
 }
 
 fn upright() -> [f64; 4] {

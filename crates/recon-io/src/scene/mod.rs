@@ -3,11 +3,14 @@
 mod build;
 mod error;
 mod file;
+mod palms;
+mod shape;
 
 #[cfg(test)]
 mod tests;
 
 pub use error::{SceneError, SceneErrorKind};
+pub use palms::{BoxedShape, KnownPalm};
 
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, Palm};
@@ -56,6 +59,10 @@ use std::path::Path;
 /// # Ok(())
 /// # }
 /// ```
+/// Palms of any number, shape, pose and motion stand in `[[palm]]` tables ([`KnownPalm`]) in place of `simulation.palms`.
+/// They do not determine where the object is: `[simulation]` then has `position` and may have `velocity` (world axes) and
+/// `in_flight = true` for an object that touches nothing yet. `[sensors]` may then have `force_share`, `impulse_std`, `impulse_share` and
+/// `torque_std`, and `contact_off_palm`, the largest distance of a contact point from its palm that a log may have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Gravitational acceleration `g` in m/s^2, at least zero; gravity is `(0, 0, -g)`.
@@ -72,6 +79,8 @@ pub struct Scene {
     pub palm_inertia: Option<[f64; 3]>,
     /// Coefficient of friction between object and palms.
     pub friction: Option<f64>,
+    /// Palms of any shape, pose and motion; none where the scene has three flat ones through the origin.
+    pub palms: Option<Vec<KnownPalm>>,
     /// What a simulation starts from.
     pub simulation: Option<Simulation>,
 }
@@ -92,8 +101,18 @@ pub enum KnownInertia {
 pub struct Sensors {
     /// Standard deviation of `s1` and `s2`, in m.
     pub contact_std: Option<f64>,
-    /// Standard deviation of `f`, in N.
+    /// Standard deviation of `f`, or of each axis of a force, in N.
     pub force_std: Option<f64>,
+    /// What it grows by with the force, as a share of it.
+    pub force_share: Option<f64>,
+    /// Standard deviation of each axis of an impulse over one interval, in N s.
+    pub impulse_std: Option<f64>,
+    /// What it grows by with the impulse, as a share of it.
+    pub impulse_share: Option<f64>,
+    /// Standard deviation of a motor's torque, in N m.
+    pub torque_std: Option<f64>,
+    /// Largest distance of a contact point from its palm that is taken for noise, in m.
+    pub contact_off_palm: Option<f64>,
     /// Samples per second.
     pub sample_rate: Option<f64>,
 }
@@ -105,12 +124,18 @@ pub struct Simulation {
     pub shape: Shape,
     /// Displacement of the shape's own origin from the centre of mass, body axes, in m.
     pub offset: DVec3,
-    /// The three palms.
-    pub palms: [Palm; 3],
+    /// Three palms through the origin; none where the scene has palms of any shape.
+    pub palms: Option<[Palm; 3]>,
+    /// Initial centre of mass, in m, world, where the palms do not determine it.
+    pub p_WCm: Option<DVec3>,
     /// Initial orientation, body to world.
     pub R_WO: DQuat,
+    /// Initial velocity of the centre of mass in m/s, world, where the palms do not determine it.
+    pub v_WCm: DVec3,
     /// Initial angular velocity in rad/s, world axes.
     pub w_WO: DVec3,
+    /// Whether the object may start without touching a palm.
+    pub in_flight: bool,
     /// Length in s.
     pub duration: f64,
     /// Samples per second of the log.
@@ -155,15 +180,19 @@ impl Scene {
         let path = path.as_ref();
         let in_file = |kind| SceneError { path: path.to_owned(), kind };
         let text = std::fs::read_to_string(path).map_err(|e| in_file(e.into()))?;
-        Self::parse(&text).map_err(in_file)
+        build::scene(
+            toml::from_str(&text).map_err(|e| in_file(e.into()))?,
+            path.parent().unwrap_or(Path::new("")),
+        )
+        .map_err(in_file)
     }
 
-    /// Reads a scene from TOML text.
+    /// Reads a scene from TOML text. Files that it names are looked for in the present folder.
     ///
     /// # Errors
     /// [`SceneErrorKind`] names the key.
     pub fn parse(text: &str) -> Result<Self, SceneErrorKind> {
-        build::scene(toml::from_str(text)?)
+        build::scene(toml::from_str(text)?, Path::new(""))
     }
 
     /// Mass and inertia, where both are known.

@@ -38,12 +38,13 @@ fn good_scene_is_read() {
     let simulation = scene.simulation.unwrap();
     assert_eq!(simulation.shape, Shape::Ellipsoid { semi_axes: DVec3::new(2.5, 2.0, 1.0) });
     assert_eq!(simulation.sample_rate, 1000.0);
-    let n = simulation.palms[0].at(0.0).frame.n;
+    let palms = simulation.palms.unwrap();
+    let n = palms[0].at(0.0).frame.n;
     assert!(
         (n - DVec3::new(0.0, 0.75_f64.sqrt(), 0.5)).length() < 1e-15,
         "normal of palm 1 of the Fig. 5 logs"
     );
-    assert!(!simulation.palms[1].is_immobile() && simulation.palms[2].is_immobile());
+    assert!(!palms[1].is_immobile() && palms[2].is_immobile());
 }
 
 #[test]

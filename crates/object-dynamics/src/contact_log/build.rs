@@ -1,0 +1,242 @@
+//! From what palms recorded to what a log holds.
+
+use super::error::ContactLogError as Error;
+use super::palm::{LoggedMotion, LoggedPalm, Touch};
+use super::record::{
+    ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, TwistSource, not_finite,
+};
+use crate::MOST_PALMS;
+use crate::modes::check_friction;
+use crate::series::{check_lengths, check_order};
+use contact_kinematics::{CurvatureRadii, Direction, PalmSurface, PoseTable, SurfacePose, SurfaceState};
+use glam::DVec3;
+
+/// A force may pull by noise up to this share of the largest force of the log.
+const PULL_BY_NOISE: f64 = 0.1;
+/// Rounding of a point that was turned into palm axes and back, in units of rounding of its coordinates: a point that is as
+/// near as this to the surface stands on it, and is left alone. So what was once put there stays where it is.
+const TURNED: f64 = 16.0 * f64::EPSILON;
+/// Length of a quaternion that differs from 1 by its own rounding alone.
+const UNIT_TO_ROUNDING: f64 = 2.0 * f64::EPSILON;
+
+pub(super) fn palms(
+    times: &[f64],
+    records: Vec<PalmRecord>,
+    truth: Option<usize>,
+) -> Result<Vec<LoggedPalm>, Error> {
+    check_lengths(times.len(), truth)?;
+    for (sample, &time) in times.iter().enumerate() {
+        if !time.is_finite() {
+            return Err(Error::TimeNotFinite { sample, value: time });
+        }
+        check_order(sample, sample.checked_sub(1).map(|before| times[before]), time)?;
+    }
+    if !(1..=MOST_PALMS).contains(&records.len()) {
+        return Err(Error::PalmCount { found: records.len() });
+    }
+    let number = |(index, record)| Builder { palm: index + 1, times }.palm(record);
+    let palms: Vec<LoggedPalm> = records.into_iter().enumerate().map(number).collect::<Result<_, _>>()?;
+    check_pulls(times, &palms)?;
+    Ok(palms)
+}
+
+struct Builder<'a> {
+    /// Number from 1.
+    palm: usize,
+    times: &'a [f64],
+}
+
+impl Builder<'_> {
+    fn palm(&self, record: PalmRecord) -> Result<LoggedPalm, Error> {
+        let palm = self.palm;
+        self.check_lengths(&record)?;
+        // Of a body without any extent, as none is known here.
+        let none = CurvatureRadii { min: 0.0, max: 0.0 };
+        record.surface.check(none).map_err(|source| Error::Surface { palm, source })?;
+        if let Some(friction) = record.friction {
+            check_friction(friction).map_err(|source| Error::Friction { palm, source })?;
+        }
+        for (what, channel) in [("force", &record.force), ("impulse", &record.impulse)] {
+            self.check_finite(what, channel.first_not_finite())?;
+        }
+        let torques = record.torque.iter().flatten().enumerate();
+        self.check_finite(
+            "torque",
+            torques.filter_map(|(k, t)| Some((k, (*t)?))).find(|t| !t.1.is_finite()),
+        )?;
+        let motion = self.motion(record.motion)?;
+        let (touches, offset) =
+            self.touches(record.surface, &motion, &record.contacts, record.largest_offset)?;
+        Ok(LoggedPalm {
+            surface: record.surface,
+            friction: record.friction,
+            motion,
+            force: while_touched(record.force, &touches),
+            touches,
+            impulse: record.impulse,
+            torque: record.torque,
+            truth: record.truth,
+            offset,
+        })
+    }
+
+    fn check_lengths(&self, record: &PalmRecord) -> Result<(), Error> {
+        let motion = match &record.motion {
+            RecordedMotion::Fixed(_) => None,
+            RecordedMotion::Poses(poses) => Some(poses.len()),
+            RecordedMotion::Measured(states) => Some(states.len()),
+        };
+        let channels = [
+            ("motion", motion),
+            ("contact", Some(record.contacts.points().len())),
+            ("force", record.force.len()),
+            ("impulse", record.impulse.len()),
+            ("torque", record.torque.as_ref().map(Vec::len)),
+            ("truth", record.truth.as_ref().map(Vec::len)),
+        ];
+        let expected = self.times.len();
+        match channels.into_iter().find(|(_, length)| length.is_some_and(|found| found != expected)) {
+            Some((what, Some(found))) => Err(Error::ChannelLength { what, palm: self.palm, expected, found }),
+            _ => Ok(()),
+        }
+    }
+
+    fn check_finite(&self, what: &'static str, bad: Option<(usize, f64)>) -> Result<(), Error> {
+        match bad {
+            Some((sample, value)) => {
+                let (palm, time) = (self.palm, self.times[sample]);
+                Err(Error::ReadingNotFinite { what, palm, sample, time, value })
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn motion(&self, recorded: RecordedMotion) -> Result<LoggedMotion, Error> {
+        let pose = |(sample, pose): (usize, SurfacePose)| {
+            let (palm, time) = (self.palm, self.times[sample]);
+            unit(pose).map_err(|source| Error::Pose { palm, sample, time, source })
+        };
+        match recorded {
+            RecordedMotion::Fixed(fixed) => Ok(LoggedMotion::Fixed(pose((0, fixed))?)),
+            RecordedMotion::Poses(poses) => {
+                let poses = poses.into_iter().enumerate().map(pose).collect::<Result<Vec<_>, _>>()?;
+                if poses.iter().all(|pose| *pose == poses[0]) {
+                    return Ok(LoggedMotion::Fixed(poses[0]));
+                }
+                let states = self.splined(&poses)?;
+                Ok(LoggedMotion::Moving { states, twists: TwistSource::FromPoses })
+            }
+            RecordedMotion::Measured(states) => {
+                let state = |(sample, state): (usize, MeasuredMotion)| -> Result<_, Error> {
+                    let bad = |v| not_finite(v).map(|value| (sample, value));
+                    self.check_finite("velocity (V)", bad(state.v_WP))?;
+                    self.check_finite("angular velocity (W)", bad(state.w_WP))?;
+                    Ok(MeasuredMotion { pose: pose((sample, state.pose))?, ..state })
+                };
+                let states = states.into_iter().enumerate().map(state).collect::<Result<Vec<_>, _>>()?;
+                let first = MeasuredMotion::at_rest(states[0].pose);
+                if states.iter().all(|state| *state == first) {
+                    return Ok(LoggedMotion::Fixed(first.pose));
+                }
+                Ok(LoggedMotion::Moving { states, twists: TwistSource::Stated })
+            }
+        }
+    }
+
+    fn splined(&self, poses: &[SurfacePose]) -> Result<Vec<MeasuredMotion>, Error> {
+        let rows: Vec<_> = self.times.iter().copied().zip(poses.iter().copied()).collect();
+        // Times and poses were checked: only their number can be wrong.
+        let table = PoseTable::new(&rows)
+            .map_err(|_| Error::TwistFromPoses { palm: self.palm, samples: poses.len() })?;
+        let state = |(t, pose)| {
+            let SurfaceState { v_WP, w_WP, .. } = table.at(t);
+            MeasuredMotion { pose, v_WP, w_WP }
+        };
+        Ok(rows.into_iter().map(state).collect())
+    }
+
+    /// The contacts on the palm, and how far the farthest was off it.
+    fn touches(
+        &self,
+        surface: PalmSurface,
+        motion: &LoggedMotion,
+        contacts: &ContactPoints,
+        limit: f64,
+    ) -> Result<(Vec<Option<Touch>>, f64), Error> {
+        let in_palm = matches!(contacts, ContactPoints::Palm(_));
+        let mut farthest = 0.0_f64;
+        let mut touches = Vec::with_capacity(self.times.len());
+        for (sample, point) in contacts.points().iter().enumerate() {
+            let Some(point) = *point else {
+                touches.push(None);
+                continue;
+            };
+            let (palm, time) = (self.palm, self.times[sample]);
+            self.check_finite("contact", not_finite(point).map(|value| (sample, value)))?;
+            let pose = match motion {
+                LoggedMotion::Fixed(pose) => pose,
+                LoggedMotion::Moving { states, .. } => &states[sample].pose,
+            };
+            let frame = pose.at_rest();
+            let p_W = if in_palm { frame.to_world(point) } else { point };
+            let (touch, distance) =
+                put_on(surface, &frame, p_W).ok_or(Error::NoNormal { palm, sample, time })?;
+            // A limit that is not a number limits nothing.
+            if distance.abs() > limit {
+                return Err(Error::OffPalm { palm, sample, time, distance, limit });
+            }
+            farthest = farthest.max(distance.abs());
+            touches.push(Some(touch));
+        }
+        Ok((touches, farthest))
+    }
+}
+
+/// The force, without the noise of a sensor that is not touched.
+fn while_touched(mut force: ForceChannel, touches: &[Option<Touch>]) -> ForceChannel {
+    for (k, _) in touches.iter().enumerate().filter(|(_, touch)| touch.is_none()) {
+        match &mut force {
+            ForceChannel::Missing => {}
+            ForceChannel::Normal(values) => values[k] = 0.0,
+            ForceChannel::Three(vectors) => vectors[k] = DVec3::ZERO,
+        }
+    }
+    force
+}
+
+/// The nearest point of the surface with its normal, and how far off it the point was, m.
+fn put_on(surface: PalmSurface, frame: &SurfaceState, p_W: DVec3) -> Option<(Touch, f64)> {
+    let p_P = frame.to_palm(p_W);
+    let near = surface.nearest(p_P)?;
+    let rounding = TURNED * (p_W.length() + frame.p_WP.length() + p_P.length());
+    let on_it = near.distance.abs() <= rounding;
+    let p_WC = if on_it { p_W } else { frame.to_world(near.p_P) };
+    // From the point as it stands in the log, so that it is the same whenever the log is read again.
+    let n_P = surface.nearest(frame.to_palm(p_WC))?.n_P;
+    let n = Direction::new(frame.R_WP * n_P.get()).ok()?;
+    Some((Touch { p_WC, n }, if on_it { 0.0 } else { near.distance }))
+}
+
+/// The pose with its quaternion at unit length; one that is unit to rounding stays as it is, digit by digit.
+fn unit(pose: SurfacePose) -> Result<SurfacePose, contact_kinematics::SurfaceError> {
+    let checked = SurfacePose::new(pose.p_WP, pose.R_WP)?;
+    let as_it_is = (pose.R_WP.length() - 1.0).abs() <= UNIT_TO_ROUNDING;
+    Ok(if as_it_is { pose } else { checked })
+}
+
+fn check_pulls(times: &[f64], palms: &[LoggedPalm]) -> Result<(), Error> {
+    let normal_force = |palm: &LoggedPalm, k: usize| match (&palm.force, palm.touches[k]) {
+        (ForceChannel::Normal(values), _) => values[k],
+        (ForceChannel::Three(vectors), Some(touch)) => vectors[k].dot(touch.n.get()),
+        _ => 0.0,
+    };
+    let all = || (0..times.len()).flat_map(|k| (0..palms.len()).map(move |i| (k, i)));
+    let largest = all().map(|(k, i)| normal_force(&palms[i], k)).fold(0.0_f64, f64::max);
+    for (sample, i) in all() {
+        let value = normal_force(&palms[i], sample);
+        if value < -PULL_BY_NOISE * largest {
+            return Err(Error::Pull { palm: i + 1, sample, time: times[sample], value });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,184 @@
+use crate::modes::FrictionError;
+use crate::series::SeriesError;
+use contact_kinematics::{PalmError, SurfaceError};
+use thiserror::Error;
+
+/// Why what palms recorded is not a log. Palms count from 1, samples from 0.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ContactLogError {
+    /// Too few samples, out of order, or with truth of another length.
+    #[error(transparent)]
+    Series(#[from] SeriesError),
+    /// A time is not a number.
+    #[error("t of sample {sample} is {value}; it must be finite")]
+    TimeNotFinite {
+        /// Index from 0.
+        sample: usize,
+        /// As given.
+        value: f64,
+    },
+    /// No palm, or too many.
+    #[error("log has {found} palms; 1 to {} are possible", crate::MOST_PALMS)]
+    PalmCount {
+        /// How many.
+        found: usize,
+    },
+    /// A palm's shape.
+    #[error("palm {palm}: {source}")]
+    Surface {
+        /// Palm number from 1.
+        palm: usize,
+        /// Why.
+        source: SurfaceError,
+    },
+    /// A palm's friction.
+    #[error("palm {palm}: {source}")]
+    Friction {
+        /// Palm number from 1.
+        palm: usize,
+        /// Why.
+        source: FrictionError,
+    },
+    /// A channel has another number of samples than there are times.
+    #[error("{what} of palm {palm} has {found} samples where the log has {expected}")]
+    ChannelLength {
+        /// Which channel.
+        what: &'static str,
+        /// Palm number from 1.
+        palm: usize,
+        /// Times of the log.
+        expected: usize,
+        /// Samples of the channel.
+        found: usize,
+    },
+    /// A pose is no pose.
+    #[error("palm {palm} at sample {sample} (t = {time} s): {source}")]
+    Pose {
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// Why.
+        source: SurfaceError,
+    },
+    /// The twist of a palm cannot be taken from its poses.
+    #[error(
+        "palm {palm}: its twist cannot be taken from {samples} poses; give it (V and W), or at least 4 samples"
+    )]
+    TwistFromPoses {
+        /// Palm number from 1.
+        palm: usize,
+        /// How many poses there are.
+        samples: usize,
+    },
+    /// A reading is NaN or infinite.
+    #[error("{what} of palm {palm} at sample {sample} (t = {time} s) is {value}; it must be finite")]
+    ReadingNotFinite {
+        /// Which reading.
+        what: &'static str,
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// As given.
+        value: f64,
+    },
+    /// A contact point is not on its palm.
+    #[error(
+        "contact of palm {palm} at sample {sample} (t = {time} s) is {distance} m off the palm's surface, and {limit} m is \
+         the most that was said to be noise; check the palm's shape, its pose and the units"
+    )]
+    OffPalm {
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// Along the normal, m, positive on the object's side.
+        distance: f64,
+        /// Largest accepted, m.
+        limit: f64,
+    },
+    /// A contact point lies where the palm has no normal.
+    #[error(
+        "contact of palm {palm} at sample {sample} (t = {time} s) lies in the palm's centre or on its axis, where no point \
+         of its surface is nearest; check the palm's shape and its pose"
+    )]
+    NoNormal {
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+    },
+    /// A contact force pulls.
+    #[error(
+        "force of palm {palm} at sample {sample} (t = {time} s) pulls with {value} N along the normal; a palm cannot pull"
+    )]
+    Pull {
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// Along the normal into the object, N.
+        value: f64,
+    },
+    /// A reading of one sample is missing where others have it.
+    #[error(
+        "{what} of palm {palm} is missing at sample {sample} (t = {time} s) and there at others; it must be there at every \
+         sample, or at none"
+    )]
+    Missing {
+        /// Which reading.
+        what: &'static str,
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+    },
+    /// A palm of a log of three planes has no frame.
+    #[error("palm {palm} at sample {sample} (t = {time} s): {source}")]
+    Frame {
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// Why.
+        source: PalmError,
+    },
+}
+
+impl ContactLogError {
+    /// Index from 0 of the sample at fault, where one is.
+    #[must_use]
+    pub fn sample(&self) -> Option<usize> {
+        match *self {
+            Self::Series(series) => series.sample(),
+            Self::TimeNotFinite { sample, .. }
+            | Self::Pose { sample, .. }
+            | Self::ReadingNotFinite { sample, .. }
+            | Self::OffPalm { sample, .. }
+            | Self::NoNormal { sample, .. }
+            | Self::Pull { sample, .. }
+            | Self::Missing { sample, .. }
+            | Self::Frame { sample, .. } => Some(sample),
+            Self::PalmCount { .. }
+            | Self::Surface { .. }
+            | Self::Friction { .. }
+            | Self::ChannelLength { .. }
+            | Self::TwistFromPoses { .. } => None,
+        }
+    }
+}

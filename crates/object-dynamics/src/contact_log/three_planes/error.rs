@@ -1,0 +1,85 @@
+use crate::LogError;
+use contact_kinematics::PalmError;
+use thiserror::Error;
+
+/// Why a log is not one of three flat frictionless palms through one point, which is all that the estimators know so far.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum NotThreePlanes {
+    /// Another number of palms.
+    #[error("log has {found} palm(s); motion is estimated from three so far")]
+    Count {
+        /// How many.
+        found: usize,
+    },
+    /// A palm that is not flat.
+    #[error("palm {palm} is a {kind}; motion is estimated on flat palms so far")]
+    Curved {
+        /// Palm number from 1.
+        palm: usize,
+        /// Name of its kind.
+        kind: &'static str,
+    },
+    /// The planes meet in a line, or in none.
+    #[error(
+        "the palms' normals are parallel to one plane throughout the log: they meet in no single point, and motion is \
+         estimated on palms through one point so far"
+    )]
+    NoPoint,
+    /// The planes do not go through one point that rests.
+    #[error(
+        "palm {palm} passes the point in which the palms meet best at {distance:.1e} m (sample {sample}, t = {time} s; {limit:.1e} m \
+         would be taken for rounding or noise); motion is estimated on palms through one point that rests so far"
+    )]
+    Apart {
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0 of the sample at which it is farthest.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// Distance in m.
+        distance: f64,
+        /// What rounding explains, or how well the poses were said to be known, m.
+        limit: f64,
+    },
+    /// The tangential forces are more than noise.
+    #[error(
+        "palm {palm} rubs: its tangential force is {ratio:.1e} of the normal force and agrees from sample to sample \
+         ({deviations:.0} deviations of what noise does); motion is estimated without friction so far. If it is the palm's \
+         orientation that is off, give the normal force alone"
+    )]
+    Rubs {
+        /// Number from 1 of the palm where the ratio is largest.
+        palm: usize,
+        /// `|f_t| / f_n` without its noise.
+        ratio: f64,
+        /// Over all palms, in standard deviations.
+        deviations: f64,
+    },
+    /// Friction is stated, and no sensor shows how much of it there is.
+    #[error(
+        "friction of palm {palm} is stated as {friction} and its sensor has the normal force alone; motion is estimated \
+         without friction so far"
+    )]
+    Friction {
+        /// Palm number from 1.
+        palm: usize,
+        /// Coefficient of friction.
+        friction: f64,
+    },
+    /// A palm has no frame.
+    #[error("palm {palm} at sample {sample} (t = {time} s): {source}")]
+    Frame {
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// Why.
+        source: PalmError,
+    },
+    /// The readings do not make a log.
+    #[error(transparent)]
+    Log(#[from] LogError),
+}

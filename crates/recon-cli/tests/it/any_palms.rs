@@ -1,0 +1,100 @@
+//! Logs and scenes of palms of any shape: what is three planes through a point is estimated, and the rest refused by name.
+
+use crate::common::{Scratch, scene, scratch_with_log};
+use glam::DVec3;
+use recon::object_dynamics::{ContactLog, ForceChannel, RecordedMotion};
+use recon_io::{read_log, write_contact_log};
+use serde_json::Value;
+
+const PALM: &str = "\n[[palm]]\nkind = \"flat\"\n";
+
+/// A folder with a log of three palms in version 2, away from the origin by `p_WM`, and a scene that goes with it.
+fn scratch(test: &str, p_WM: DVec3) -> Scratch {
+    let scratch = scratch_with_log(test);
+    let log = ContactLog::try_from(&read_log(scratch.path().join("log.csv")).unwrap()).unwrap();
+    let mut records = log.records();
+    for record in &mut records {
+        if let RecordedMotion::Fixed(pose) = &mut record.motion {
+            pose.p_WP += p_WM;
+        }
+        if let recon::object_dynamics::ContactPoints::World(points) = &mut record.contacts {
+            points.iter_mut().flatten().for_each(|p| *p += p_WM);
+        }
+    }
+    let mut truth = log.truth().unwrap().to_vec();
+    truth.iter_mut().for_each(|state| state.p_WCm += p_WM);
+    let moved = ContactLog::new(log.times().to_vec(), records, Some(truth)).unwrap();
+    let mut text = Vec::new();
+    write_contact_log(&moved, &mut text).unwrap();
+    scratch.write("any.csv", std::str::from_utf8(&text).unwrap());
+    let known = scene().split("[simulation]").next().unwrap().to_owned();
+    scratch.write("any.toml", &(known + &PALM.repeat(3)));
+    scratch
+}
+
+fn reconstruct(scratch: &Scratch, log: &str, scene: &str, folder: &str) -> (Option<i32>, String, Value) {
+    let run = scratch.run(&["reconstruct", log, "--scene", scene, "-o", folder, "--json"]);
+    (run.code, run.stderr, serde_json::from_str(&run.stdout).unwrap_or_default())
+}
+
+#[test]
+fn three_planes_are_estimated_in_either_version_and_anywhere() {
+    let scratch = scratch("any-palms", DVec3::new(0.3, -0.2, 0.1));
+    let (code, _, one) = reconstruct(&scratch, "log.csv", "scene.toml", "one");
+    let (code_two, errors, two) = reconstruct(&scratch, "any.csv", "any.toml", "two");
+    assert_eq!(code, code_two, "{errors}");
+    for key in ["position_m", "angular_velocity_rad_per_s"] {
+        let [a, b] = [&one, &two].map(|summary| summary["largest_error"][key].as_f64().unwrap());
+        assert!((a - b).abs() < 1e-9, "{key}: {a} {b}");
+    }
+    let warnings = two["warnings"].to_string();
+    assert!(warnings.contains("meet in (0.3, -0.2, 0.1) m, to within"), "{warnings}");
+    assert!(!one["warnings"].to_string().contains("meet in"));
+}
+
+#[test]
+fn what_is_not_known_yet_is_refused_by_name() {
+    let scratch = scratch("not-yet", DVec3::ZERO);
+    let refused = |arguments: &[&str], words: &[&str]| {
+        let run = scratch.run(arguments);
+        assert_eq!(run.code, Some(3), "{}{}", run.stdout, run.stderr);
+        for word in words {
+            assert!(run.stderr.contains(word), "`{word}` is not in\n{}", run.stderr);
+        }
+        assert!(!scratch.path().join("out").exists());
+    };
+    let known = scratch.read("any.toml");
+    let reconstruct = ["reconstruct", "any.csv", "--scene", "bad.toml", "-o", "out"];
+    scratch.write("bad.toml", &known.replacen("kind = \"flat\"", "kind = \"flat\"\nfriction = 0.3", 1));
+    refused(&reconstruct, &["any.csv", "friction of palm 1 is stated as 0.3"]);
+    scratch.write("bad.toml", &known.replacen("kind = \"flat\"", "kind = \"cylinder\"\nradius = 1e-3", 1));
+    refused(&reconstruct, &["palm 1 is a cylinder"]);
+    scratch.write("bad.toml", &(known.clone() + PALM));
+    refused(&reconstruct, &["any.csv", "has 3 palm(s)", "the scene has 4"]);
+    scratch.write("bad.toml", known.split("[[palm]]").next().unwrap());
+    refused(&reconstruct, &["any.csv", "[[palm]] for each"]);
+    let noise = ["--contact-noise", "1e-3", "--force-noise", "1e-3"];
+    let follow = [&["follow", "any.csv", "--scene", "any.toml"][..], &noise].concat();
+    refused(&follow, &["any.csv", "px_i", "three flat palms"]);
+    scratch.write("pick-up.toml", include_str!("../../scenes/pick-up.toml"));
+    refused(&["simulate", "pick-up.toml", "-o", "out"], &["pick-up.toml", "[[palm]]", "three flat palms"]);
+    // Forces that rub.
+    let log = ContactLog::try_from(&read_log(scratch.path().join("log.csv")).unwrap()).unwrap();
+    let mut records = log.records();
+    for (record, palm) in records.iter_mut().zip(log.palms()) {
+        let tilted = |k| {
+            palm.touch(k).map_or(DVec3::ZERO, |touch| {
+                let n = touch.n.get();
+                palm.force(k).unwrap().vector.length() * (n + 0.1 * n.any_orthonormal_vector())
+            })
+        };
+        record.force = ForceChannel::Three((0..log.times().len()).map(tilted).collect());
+    }
+    let mut text = Vec::new();
+    write_contact_log(&ContactLog::new(log.times().to_vec(), records, None).unwrap(), &mut text).unwrap();
+    scratch.write("any.csv", std::str::from_utf8(&text).unwrap());
+    refused(
+        &["reconstruct", "any.csv", "--scene", "any.toml", "-o", "out"],
+        &["rubs", "1.0e-1 of the normal force"],
+    );
+}
