@@ -1,10 +1,11 @@
 //! What any number of planar palms sensed, in memory.
 
+use super::contacts::ContactScene;
 use super::hybrid::{ContactInstant, ContactSimulation};
 use super::log::PlanarTruth;
 use crate::series::{check_lengths, check_order};
 use crate::{ContactMode, MOST_PALMS, SeriesError};
-use contact_kinematics::planar::SurfacePose;
+use contact_kinematics::planar::{PalmSurface, RadiusBounds, RadiusFunction, SurfaceError, SurfacePose};
 use glam::DVec2;
 use thiserror::Error;
 
@@ -17,6 +18,9 @@ pub struct PalmSample {
     pub p_WC: Option<DVec2>,
     /// Force of the palm on the object, world, N.
     pub force: DVec2,
+    /// Its integral since a time that is one for the whole log, N s, where it was measured: exact through blows, which samples
+    /// of the force miss.
+    pub impulse: Option<DVec2>,
 }
 
 /// One instant of a [`ContactLog`].
@@ -31,6 +35,7 @@ pub struct ContactLogSample {
 /// A log of planar palms: at least two samples in strictly increasing time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactLog {
+    surfaces: Vec<PalmSurface>,
     samples: Vec<ContactLogSample>,
     truth: Option<Vec<PlanarTruth>>,
 }
@@ -41,13 +46,29 @@ pub enum ContactLogError {
     /// Too few samples, out of order, or with truth of another length.
     #[error(transparent)]
     Series(#[from] SeriesError),
-    /// No palm, too many, or not as many as in the first sample.
-    #[error("sample {sample} has {found} palms; all samples have the same number, from 1 to {MOST_PALMS}")]
+    /// No palm, or too many.
+    #[error("log has {found} palms; 1 to {MOST_PALMS} are possible")]
     PalmCount {
+        /// How many.
+        found: usize,
+    },
+    /// A sample has not one reading of each palm.
+    #[error("sample {sample} has readings of {found} palms; the log has {expected}")]
+    Readings {
         /// Index from 0.
         sample: usize,
+        /// Number of palms.
+        expected: usize,
         /// How many it has.
         found: usize,
+    },
+    /// A palm's surface.
+    #[error("palm {palm}: {source}")]
+    Surface {
+        /// Palm number from 1.
+        palm: usize,
+        /// Why.
+        source: SurfaceError,
     },
     /// A reading is not a number.
     #[error("{what} of sample {sample} is {value}; it must be finite")]
@@ -62,26 +83,41 @@ pub enum ContactLogError {
 }
 
 impl ContactLog {
-    /// Checks the samples and takes them.
+    /// Checks the surfaces of the palms and the samples, and takes them.
     ///
     /// # Errors
     /// [`ContactLogError`] names the first sample that cannot be used.
     pub fn new(
+        surfaces: Vec<PalmSurface>,
         samples: Vec<ContactLogSample>,
         truth: Option<Vec<PlanarTruth>>,
     ) -> Result<Self, ContactLogError> {
         check_lengths(samples.len(), truth.as_ref().map(Vec::len))?;
-        let count = samples[0].palms.len();
+        let expected = surfaces.len();
+        if !(1..=MOST_PALMS).contains(&expected) {
+            return Err(ContactLogError::PalmCount { found: expected });
+        }
+        for (index, surface) in surfaces.iter().enumerate() {
+            // Whether a cup is wide enough depends on a body that no log knows: any is for a point.
+            let checked = surface.check(RadiusBounds { min: 0.0, max: 0.0 });
+            checked.map_err(|source| ContactLogError::Surface { palm: index + 1, source })?;
+        }
         for (index, sample) in samples.iter().enumerate() {
             let found = sample.palms.len();
-            if found != count || !(1..=MOST_PALMS).contains(&found) {
-                return Err(ContactLogError::PalmCount { sample: index, found });
+            if found != expected {
+                return Err(ContactLogError::Readings { sample: index, expected, found });
             }
             check_sample(index, sample)?;
             let previous = index.checked_sub(1).map(|before| samples[before].t);
             check_order(index, previous, sample.t)?;
         }
-        Ok(Self { samples, truth })
+        Ok(Self { surfaces, samples, truth })
+    }
+
+    /// The surfaces of the palms, in the order of the readings.
+    #[must_use]
+    pub fn surfaces(&self) -> &[PalmSurface] {
+        &self.surfaces
     }
 
     /// The samples, in time order.
@@ -104,29 +140,31 @@ impl ContactLog {
 }
 
 impl ContactSimulation {
-    /// What its palms sense, with truth.
+    /// What the palms of `scene`, which has been simulated, sense, with truth.
     ///
     /// # Errors
-    /// [`SeriesError::TooShort`] for a simulation of a single instant.
-    pub fn log(&self) -> Result<ContactLog, ContactLogError> {
+    /// [`SeriesError::TooShort`] for a simulation of a single instant, [`ContactLogError::Readings`] for another scene.
+    pub fn log<S: RadiusFunction>(&self, scene: &ContactScene<S>) -> Result<ContactLog, ContactLogError> {
         let palm = |at: &ContactInstant, i: usize| PalmSample {
             pose: SurfacePose { p_WP: at.palms[i].p_WP, angle: at.palms[i].angle },
             p_WC: (at.modes[i] != ContactMode::Off).then_some(at.contacts[i].p_WC),
             force: at.forces[i],
+            impulse: Some(at.impulses[i]),
         };
         let samples = self.instants.iter().map(|at| {
             let palms = (0..at.palms.len()).map(|i| palm(at, i)).collect();
             ContactLogSample { t: at.t, palms }
         });
         let truth = self.instants.iter().map(|at| at.body.into()).collect();
-        ContactLog::new(samples.collect(), Some(truth))
+        let surfaces = scene.palms().iter().map(|palm| palm.surface).collect();
+        ContactLog::new(surfaces, samples.collect(), Some(truth))
     }
 }
 
 fn check_sample(sample: usize, row: &ContactLogSample) -> Result<(), ContactLogError> {
     let of_palm = |palm: &PalmSample| {
         let SurfacePose { p_WP, angle } = palm.pose;
-        let contact = palm.p_WC.unwrap_or(DVec2::ZERO);
+        let (contact, impulse) = (palm.p_WC.unwrap_or(DVec2::ZERO), palm.impulse.unwrap_or(DVec2::ZERO));
         [
             ("x of a palm", p_WP.x),
             ("y of a palm", p_WP.y),
@@ -135,6 +173,8 @@ fn check_sample(sample: usize, row: &ContactLogSample) -> Result<(), ContactLogE
             ("y of a contact", contact.y),
             ("x of a force", palm.force.x),
             ("y of a force", palm.force.y),
+            ("x of an impulse", impulse.x),
+            ("y of an impulse", impulse.y),
         ]
     };
     let readings = std::iter::once(("t", row.t)).chain(row.palms.iter().flat_map(of_palm));
@@ -152,16 +192,24 @@ mod tests {
 
     #[test]
     fn bad_logs_are_named() {
-        let new = |samples: Vec<ContactLogSample>| ContactLog::new(samples, None).unwrap_err();
+        let lines = |count| vec![PalmSurface::Line; count];
+        let new = |samples: Vec<ContactLogSample>| ContactLog::new(lines(1), samples, None).unwrap_err();
         assert!(matches!(new(vec![sample(0.0, 1)]), ContactLogError::Series(SeriesError::TooShort { .. })));
         assert!(matches!(
             new(vec![sample(0.1, 1), sample(0.1, 1)]),
             ContactLogError::Series(SeriesError::TimeNotIncreasing { sample: 1, .. })
         ));
-        let count = |sample, found| ContactLogError::PalmCount { sample, found };
-        assert_eq!(new(vec![sample(0.0, 2), sample(0.1, 1)]), count(1, 1));
-        assert_eq!(new(vec![sample(0.0, 6), sample(0.1, 6)]), count(0, 6));
-        assert_eq!(new(vec![sample(0.0, 0), sample(0.1, 0)]), count(0, 0));
+        let readings = ContactLogError::Readings { sample: 1, expected: 1, found: 2 };
+        assert_eq!(new(vec![sample(0.0, 1), sample(0.1, 2)]), readings);
+        for found in [0, 6] {
+            let samples = vec![sample(0.0, found), sample(0.1, found)];
+            let error = ContactLog::new(lines(found), samples, None).unwrap_err();
+            assert_eq!(error, ContactLogError::PalmCount { found });
+        }
+        let flat = vec![PalmSurface::Line, PalmSurface::Arc { radius: 0.0 }];
+        let error = ContactLog::new(flat, vec![sample(0.0, 2), sample(0.1, 2)], None).unwrap_err();
+        let source = SurfaceError::Radius { radius: 0.0 };
+        assert_eq!(error, ContactLogError::Surface { palm: 2, source });
         let mut lost = sample(0.1, 1);
         lost.palms[0].p_WC = Some(DVec2::new(0.0, f64::NAN));
         assert!(matches!(
@@ -170,7 +218,7 @@ mod tests {
         ));
         let truth = Some(vec![PlanarTruth::default()]);
         assert!(matches!(
-            ContactLog::new(vec![sample(0.0, 1), sample(0.1, 1)], truth),
+            ContactLog::new(lines(1), vec![sample(0.0, 1), sample(0.1, 1)], truth),
             Err(ContactLogError::Series(SeriesError::TruthLength { expected: 2, found: 1 }))
         ));
     }

@@ -25,11 +25,13 @@ fn a_belt_takes_a_disc_along() {
     assert!((last.palm_work - mu * MASS * G * belt * until).abs() < 1e-12, "{}", last.palm_work);
     assert!((last.friction_work + 0.5 * mu * MASS * G * belt * until).abs() < 1e-12);
     // In the log the impulse of the weight and the forces is the momentum, and the contact lies below the centre.
-    let log = run.log().unwrap();
+    let log = run.log(&scene).unwrap();
     for (sample, truth) in log.samples().iter().zip(log.truth().unwrap()) {
         let [palm] = sample.palms[..] else { panic!("{sample:?}") };
         assert!((palm.p_WC.unwrap() - truth.p_WCm + DVec2::new(0.0, radius)).length() < 1e-12);
         assert!((palm.pose.p_WP.x - belt * sample.t).abs() < 1e-15);
+        let weight = DVec2::new(0.0, MASS * G * sample.t);
+        assert!((palm.impulse.unwrap() - MASS * truth.v_WCm - weight).length() < 1e-12);
         let along = if sample.t < until { mu * MASS * G } else { 0.0 };
         assert!((palm.force - DVec2::new(along, MASS * G)).length() < 1e-12);
     }
