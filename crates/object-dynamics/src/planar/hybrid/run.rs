@@ -111,7 +111,9 @@ impl<S: RadiusFunction> Run<'_, S> {
             self.sample(phase, y)?;
         }
         let last = self.times[self.times.len() - 1];
-        let mut solver = Dop853::new(|t, y: &Vector| phase.rate(t, y), y[TIME], y, self.tolerance)?;
+        // A trial step may overshoot to where there is no contact any more: not a number, and the step is taken shorter.
+        let field = |t: f64, y: &Vector| Ok(phase.rate(t, y).unwrap_or([f64::NAN; LENGTH]));
+        let mut solver = Dop853::new(field, y[TIME], y, self.tolerance)?;
         let mut reached = None;
         while solver.time() < last && reached.is_none() {
             let limit = self.step_limit(phase, solver.time(), solver.state());
@@ -186,13 +188,14 @@ impl<S: RadiusFunction> Run<'_, S> {
     }
 }
 
-/// An integrator that cannot go on near critical friction is told as that.
+/// An integrator that cannot go on where accelerations cannot be told, or near critical friction, is told as that.
 fn stuck<S: RadiusFunction>(
     phase: &Phase<'_, S>,
     y: &Vector,
     error: IntegrationError<FieldError>,
 ) -> ContactSimulationError {
     match wedged(phase, y) {
+        told @ ContactSimulationError::Contact { .. } => told,
         told @ ContactSimulationError::Modes { source: ModeError::NotP { minor, .. }, .. }
             if minor < CRITICAL =>
         {
