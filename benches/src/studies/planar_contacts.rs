@@ -25,13 +25,14 @@ const DURATION: f64 = 1.0;
 pub(crate) fn main() -> Result<(), Failure> {
     let mut words = crate::words();
     let scenes: u64 = words.next().map_or(Ok(2000), |a| a.parse())?;
-    let first: u64 = words.next().map_or(Ok(1_000_000), |a| a.parse())?;
+    let first: u64 = words.next().map_or(Ok(3_000_000), |a| a.parse())?;
     println!("# Planar bodies on any palms\n");
     println!(
         "Made by `cargo xtask study planar_contacts`: {scenes} scenes a row from seed {first} on, {DURATION} s each, \
-         relative tolerance {TOLERANCE:.0e}. Circles, ellipses, Fourier bodies and rounded polygons of about 50 mm are thrown at one \
-         to five lines, fingertips and cups that shift and turn, with friction from 0 to the coefficient of the row. Worst of \
-         all samples (200 a second).\n"
+         relative tolerance {TOLERANCE:.0e}. Circles, ellipses, Fourier bodies and rounded polygons of about 50 mm are \
+         thrown at one to five lines, fingertips and cups that shift and turn, with friction from 0 to the coefficient of \
+         the row; scenes whose palms overlap are left out. Worst of all samples (200 a second). What is not simulated is \
+         named with its time: palms that close on the body jam it.\n"
     );
     println!(
         "| largest mu | simulated | two answers | none | no P-matrix | other | changes of modes | blows | overlap, um | \
