@@ -13,6 +13,14 @@ use std::process::Command;
 
 pub(super) type Anything<T> = Result<T, Box<dyn Error>>;
 
+/// A contact that takes a mode: 0 off, 1 slides, 2 sticks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Change {
+    pub(super) t: f64,
+    pub(super) palm: usize,
+    pub(super) mode: u8,
+}
+
 /// Columns by name, and the scene's description.
 pub(super) struct Log {
     columns: HashMap<String, Vec<f64>>,
@@ -55,6 +63,28 @@ impl Log {
     fn quaternions(&self, stem: &str, tail: &str) -> Anything<Vec<DQuat>> {
         let (v, w) = (self.vectors(stem, tail)?, self.column(&format!("{stem}w{tail}"))?);
         Ok(v.iter().zip(w).map(|(v, w)| DQuat::from_xyzw(v.x, v.y, v.z, *w)).collect())
+    }
+
+    /// Slip below which the log says that a contact sticks, m/s.
+    pub(super) fn slip_tolerance(&self) -> f64 {
+        number(&self.about["slip_tolerance"])
+    }
+
+    /// Changes of modes at the first `count` samples.
+    pub(super) fn changes(&self, count: usize) -> Anything<Vec<Change>> {
+        let t = self.column("t")?;
+        let mut found = Vec::new();
+        let modes = (1..=self.palm_count())
+            .map(|i| self.column(&format!("mode_{i}")))
+            .collect::<Anything<Vec<_>>>()?;
+        for k in 1..count {
+            for (palm, mode) in modes.iter().enumerate() {
+                if mode[k] != mode[k - 1] {
+                    found.push(Change { t: t[k], palm, mode: mode[k] as u8 });
+                }
+            }
+        }
+        Ok(found)
     }
 
     pub(super) fn palm_count(&self) -> usize {

@@ -5,8 +5,9 @@ use crate::ContactMode;
 use glam::{DVec2, DVec3};
 use nalgebra::{DMatrix, DVector};
 
-/// Rounds of the projections; they converge linearly, slowly only where the cones just touch.
-const MOST_ROUNDS: u32 = 20_000;
+/// Rounds of the projections. Where the cones have room for the forces some ten do; where they just touch, more than this are
+/// taken for none.
+const MOST_ROUNDS: u32 = 400;
 
 /// Forces of the sticking contacts inside of their cones with the same effect on the body as those of `reaction`, or none.
 ///
@@ -41,7 +42,8 @@ pub(crate) fn forces_in_cones(
         reaction.forces[sticking[k / 3]].dot([contact.n, contact.t[0], contact.t[1]][k % 3])
     });
     let inverse = wrench.clone().pseudo_inverse(1e-10).ok()?;
-    let onto_motion = |x: &DVector<f64>| x - &inverse * (&wrench * (x - &held));
+    let onto_held = &inverse * &wrench;
+    let onto_motion = |x: &DVector<f64>| x - &onto_held * (x - &held);
     let onto_cones = |x: &DVector<f64>| {
         let mut y = x.clone();
         for (k, &i) in sticking.iter().enumerate() {

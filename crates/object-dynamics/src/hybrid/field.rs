@@ -1,7 +1,7 @@
 //! The smooth motion between events: rates of the state with the modes held.
 
 use super::packed::{Tallies, Units};
-use super::project::Guesses;
+use super::project::{Along, Guesses};
 use crate::ContactMode;
 use crate::contacts::{
     ContactProblem, ContactScene, Contacts, Directions, MOST_PALMS, Modes, PalmContactError, Reaction,
@@ -28,6 +28,8 @@ pub(super) struct Stretch {
     pub(super) towards: [DVec3; MOST_PALMS],
     /// Sliding contacts that have just begun to.
     pub(super) starting: [bool; MOST_PALMS],
+    /// Contacts at an edge of their modes where nothing else is consistent: they may stay there, by rounding.
+    pub(super) at_edge: [bool; MOST_PALMS],
     pub(super) guesses: Guesses,
 }
 
@@ -92,6 +94,26 @@ impl Stretch {
         let contact = &problem.contacts()[i];
         let slow = contact.in_tangent(slip).length() < STARTING * units.speed;
         self.starting[i] && contact.friction > 0.0 && slow
+    }
+
+    /// Directions of the contacts that have just begun to slide: the friction keeps their slip in them.
+    pub(super) fn beginning<S: SupportFunction>(
+        &self,
+        scene: &ContactScene<S>,
+        units: &Units,
+        state: (SceneState, Tallies),
+    ) -> Result<Along, PalmContactError> {
+        let mut along: Along = [None; MOST_PALMS];
+        if !self.starting.contains(&true) {
+            return Ok(along);
+        }
+        let now = self.evaluate(scene, units, state)?;
+        for (i, contact) in now.problem.contacts().iter().enumerate() {
+            let begins = self.modes[i] == ContactMode::Slide
+                && self.begins(i, &now.problem, now.touch.rates[i].slip, units);
+            along[i] = begins.then(|| contact.along_tangent(now.directions[i]));
+        }
+        Ok(along)
     }
 
     /// The stretch as the next step sees it: slip directions and contacts as they are now.

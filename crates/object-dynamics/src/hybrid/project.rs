@@ -13,11 +13,17 @@ const ROUNDS: u32 = 3;
 /// Normals of the body at the contacts, body axes, where they are known.
 pub(super) type Guesses = [Option<Direction>; MOST_PALMS];
 
+/// Slip directions of contacts that have just begun to slide, world axes.
+pub(super) type Along = [Option<DVec3>; MOST_PALMS];
+
 /// The state with every contact of `modes` held, by the smallest change as the masses weigh it.
+///
+/// A contact with a direction in `along` slips in that direction alone.
 pub(super) fn projected<S: SupportFunction>(
     scene: &ContactScene<S>,
     mut state: SceneState,
     modes: &Modes,
+    along: &Along,
     guesses: &Guesses,
     size: f64,
 ) -> Result<SceneState, PalmContactError> {
@@ -40,7 +46,17 @@ pub(super) fn projected<S: SupportFunction>(
     }
     let touch = scene.contacts_at(&state, guesses)?;
     let mut problem = scene.problem(&state.body, &touch);
-    if let Some(change) = without_friction(&mut problem, |i| touch.rates[i].slip, modes) {
+    let mut rows = *modes;
+    let slip = |i: usize| {
+        let slip = touch.rates[i].slip;
+        along[i].map_or(slip, |tau| slip - slip.dot(tau) * tau)
+    };
+    for i in 0..rows.len() {
+        if along[i].is_some() {
+            rows[i] = ContactMode::Stick;
+        }
+    }
+    if let Some(change) = without_friction(&mut problem, slip, &rows) {
         apply(&mut state, &problem, &change, Part::Velocity);
     }
     Ok(state)

@@ -101,8 +101,13 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let mut joints: Vec<f64> = scene.palms().iter().flat_map(|palm| palm.drive.joints()).collect();
         joints.sort_by(f64::total_cmp);
         let modes = closed.map(|closed| if closed { ContactMode::Slide } else { ContactMode::Off });
-        let stretch =
-            Stretch { modes, towards: [DVec3::ZERO; MOST_PALMS], starting: [false; MOST_PALMS], guesses };
+        let stretch = Stretch {
+            modes,
+            towards: [DVec3::ZERO; MOST_PALMS],
+            starting: [false; MOST_PALMS],
+            at_edge: [false; MOST_PALMS],
+            guesses,
+        };
         let result = ContactSimulation {
             instants: Vec::with_capacity(count),
             events: Vec::new(),
@@ -147,12 +152,18 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let (scene, units) = (self.scene, self.units);
         let now = Cell::new(self.stretch);
         let (doubt, at_start) = (Cell::new(false), Cell::new(Guards::default()));
+        let from = Cell::new(self.t);
         let field = |t: f64, y: &[f64; N]| {
             if !y.iter().all(|v| v.is_finite()) {
                 return Ok([f64::NAN; N]);
             }
             let stretch = now.get();
-            let evaluated = stretch.evaluate(scene, &units, units.unpack(t, y))?;
+            let evaluated = match stretch.evaluate(scene, &units, units.unpack(t, y)) {
+                Ok(evaluated) => evaluated,
+                // A trial stage that went too far: a shorter step, unless it is the step's own start.
+                Err(error) if t == from.get() => return Err(error),
+                Err(_) => return Ok([f64::NAN; N]),
+            };
             if suspicious(&stretch.guards(&evaluated, &units), &at_start.get()) {
                 doubt.set(true);
             }
@@ -169,6 +180,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             self.check_wedging(&evaluated)?;
             self.stretch = self.stretch.renewed(&evaluated, &units);
             now.set(self.stretch);
+            from.set(t);
             at_start.set(self.stretch.guards(&evaluated, &units));
             doubt.set(false);
             let next_joint = self.joints.iter().copied().find(|joint| *joint > t).unwrap_or(limit);
@@ -225,8 +237,9 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
     /// Pulls a packed state back onto the contacts; where that fails it stays, and the next evaluation tells why.
     fn project(&self, t: f64, y: &mut [f64; N]) {
         let (state, tallies) = self.units.unpack(t, y);
-        let stretch = &self.stretch;
-        if let Ok(state) = projected(self.scene, state, &stretch.modes, &stretch.guesses, self.units.length) {
+        let (stretch, size) = (&self.stretch, self.units.length);
+        let Ok(along) = stretch.beginning(self.scene, &self.units, (state, tallies)) else { return };
+        if let Ok(state) = projected(self.scene, state, &stretch.modes, &along, &stretch.guesses, size) {
             *y = self.units.pack(&state, &tallies);
         }
     }
@@ -275,12 +288,25 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         if crossing.kind == ContactEventKind::SlipEnds {
             modes[crossing.palm] = ContactMode::Stick;
         }
-        let state = projected(self.scene, state, &modes, &self.stretch.guesses, self.units.length)
-            .map_err(|source| Error::Contact { t: self.t, source })?;
+        let state = projected(
+            self.scene,
+            state,
+            &modes,
+            &[None; MOST_PALMS],
+            &self.stretch.guesses,
+            self.units.length,
+        )
+        .map_err(|source| Error::Contact { t: self.t, source })?;
         if crossing.kind == ContactEventKind::SlipEnds {
             self.stretch.modes = modes;
         }
+        let before = self.stretch.modes;
         self.settle(state, &tallies, &closed, left)?;
+        self.stretch.at_edge = [false; MOST_PALMS];
+        if self.stretch.modes == before && left.is_some() {
+            self.stretch.at_edge[crossing.palm] = true;
+            return Ok(());
+        }
         let modes = self.stretch.modes[..self.scene.palms().len()].to_vec();
         let event = ContactEvent { t: self.t, palm: crossing.palm, kind: crossing.kind, modes };
         self.result.events.push(event);
@@ -351,7 +377,8 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             self.stretch.guesses[i] = Some(touch.contacts[i].n_O);
         }
         let state =
-            projected(scene, state, &choice.modes, &self.stretch.guesses, units.length).map_err(contact)?;
+            projected(scene, state, &choice.modes, &[None; MOST_PALMS], &self.stretch.guesses, units.length)
+                .map_err(contact)?;
         (self.t, self.y) = (t, units.pack(&state, &tallies));
         Ok(())
     }
