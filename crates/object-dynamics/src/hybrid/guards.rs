@@ -17,9 +17,6 @@ const SLACK: f64 = 1e-7;
 /// A contact that has begun to slide is no longer driven when it is braked by this share of the natural acceleration.
 const DRIVEN: f64 = 1e-5;
 
-/// How far beyond its edge a contact may stay where nothing else is consistent.
-const EDGE: f64 = 1e-9;
-
 /// Two guards a contact, dimensionless; infinite where there is none.
 pub(super) type Guards = [[f64; 2]; MOST_PALMS];
 
@@ -66,7 +63,7 @@ impl Stretch {
             }
         }
         for i in (0..MOST_PALMS).filter(|&i| self.at_edge[i]) {
-            guards[i] = guards[i].map(|guard| if guard > -EDGE { f64::INFINITY } else { guard });
+            guards[i] = [f64::INFINITY; 2];
         }
         guards
     }

@@ -21,7 +21,7 @@ const SLIP_ENDED: f64 = 1e-4;
 /// More changes of modes than this without time to tell them apart are a pile-up.
 const MOST_AT_ONCE: usize = 60;
 /// What counts as no time, in natural times.
-const AT_ONCE: f64 = 1e-7;
+const AT_ONCE: f64 = 1e-4;
 /// Slips and rates of gaps at the start below this share of the natural speed are none: a state given to six digits.
 const STATED: f64 = 1e-5;
 /// A contact whose gap opens slower than this share of the natural speed has not left.
@@ -70,6 +70,8 @@ struct Run<'a, S, const N: usize> {
     t: f64,
     y: [f64; N],
     blow_work: f64,
+    /// When guards fell to zero, whether the modes changed or not.
+    crossings: Vec<f64>,
     result: ContactSimulation,
 }
 
@@ -124,6 +126,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             t: 0.0,
             y: [0.0; N],
             blow_work: 0.0,
+            crossings: Vec::new(),
             result,
         };
         run.settle(state, &Tallies::default(), &closed, None)?;
@@ -188,13 +191,15 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             if let Err(error) = solver.step_onto(limit.min(next_joint), project) {
                 return Err(self.stuck(&evaluated, error));
             }
+            let at_edge = std::mem::take(&mut self.stretch.at_edge);
             let (end, next_sample) = (solver.time(), self.result.instants.len() as f64 / self.sample_rate);
             if !doubt.get() && next_sample > end {
                 continue;
             }
             let Some(dense) = solver.dense().map_err(Error::Integration)? else { continue };
+            let passed = Stretch { at_edge, ..self.stretch };
             let crossing = match doubt.get() {
-                true => first_crossing(&self.stretch, scene, &units, &dense, &at_start.get())
+                true => first_crossing(&passed, scene, &units, &dense, &at_start.get())
                     .map_err(|source| Error::Contact { t, source })?,
                 false => None,
             };
@@ -303,6 +308,8 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let before = self.stretch.modes;
         self.settle(state, &tallies, &closed, left)?;
         self.stretch.at_edge = [false; MOST_PALMS];
+        self.crossings.push(self.t);
+        self.check_pile_up()?;
         if self.stretch.modes == before && left.is_some() {
             self.stretch.at_edge[crossing.palm] = true;
             return Ok(());
@@ -310,13 +317,12 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let modes = self.stretch.modes[..self.scene.palms().len()].to_vec();
         let event = ContactEvent { t: self.t, palm: crossing.palm, kind: crossing.kind, modes };
         self.result.events.push(event);
-        self.check_pile_up()
+        Ok(())
     }
 
     fn check_pile_up(&self) -> Result<(), Error> {
-        let events = &self.result.events;
-        let Some(first) = events.len().checked_sub(MOST_AT_ONCE) else { return Ok(()) };
-        let span = self.t - events[first].t;
+        let Some(first) = self.crossings.len().checked_sub(MOST_AT_ONCE) else { return Ok(()) };
+        let span = self.t - self.crossings[first];
         if span > AT_ONCE / self.units.rate {
             return Ok(());
         }
