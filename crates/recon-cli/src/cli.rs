@@ -36,7 +36,7 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Simulate an object on three palms and write its sensor log
+    /// Simulate an object on palms of any shape and write its sensor log
     Simulate(SimulateArgs),
     /// Reconstruct motion, contact curves and bounds from a sensor log
     Reconstruct(ReconstructArgs),
@@ -56,7 +56,8 @@ pub(crate) enum Command {
 #[command(after_help = "\
 The scene is a TOML file with gravity, [object] mass and inertia, and [simulation] shape, palms, start and duration.
 `recon demo` writes one (scene.toml) to begin from. The log holds the truth beside the readings; noise is put on the
-readings where [sensors] gives its standard deviations.
+readings where [sensors] gives its standard deviations. Palms of any number, shape and motion, with friction, stand in
+[[palm]] tables; their log is of version 2, and the changes of contact modes are told.
 
 Examples:
   recon simulate scene.toml -o log.csv

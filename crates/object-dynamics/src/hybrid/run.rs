@@ -147,12 +147,20 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let (scene, units) = (self.scene, self.units);
         let now = Cell::new(self.stretch);
         let (doubt, at_start) = (Cell::new(false), Cell::new(Guards::default()));
+        let failed = Cell::new(None);
         let field = |t: f64, y: &[f64; N]| {
             if !y.iter().all(|v| v.is_finite()) {
                 return Ok([f64::NAN; N]);
             }
             let stretch = now.get();
-            let evaluated = stretch.evaluate(scene, &units, units.unpack(t, y))?;
+            let evaluated = match stretch.evaluate(scene, &units, units.unpack(t, y)) {
+                Ok(evaluated) => evaluated,
+                // A step that is tried may reach into a palm, and is then taken again, shorter.
+                Err(error) => {
+                    failed.set(Some(error));
+                    return Ok([f64::NAN; N]);
+                }
+            };
             if suspicious(&stretch.guards(&evaluated, &units), &at_start.get()) {
                 doubt.set(true);
             }
@@ -171,10 +179,14 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             now.set(self.stretch);
             at_start.set(self.stretch.guards(&evaluated, &units));
             doubt.set(false);
+            failed.set(None);
             let next_joint = self.joints.iter().copied().find(|joint| *joint > t).unwrap_or(limit);
             let project = |t: f64, y: &mut [f64; N]| self.project(t, y);
             if let Err(error) = solver.step_onto(limit.min(next_joint), project) {
-                return Err(self.stuck(&evaluated, error));
+                return Err(match (&error, failed.get()) {
+                    (IntegrationError::NotFinite { t }, Some(source)) => Error::Contact { t: *t, source },
+                    _ => self.stuck(&evaluated, error),
+                });
             }
             let (end, next_sample) = (solver.time(), self.result.instants.len() as f64 / self.sample_rate);
             if !doubt.get() && next_sample > end {

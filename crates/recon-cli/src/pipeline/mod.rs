@@ -3,6 +3,7 @@
 mod body;
 mod bounds;
 mod concave;
+mod contacts;
 mod doubts;
 mod evidence;
 mod export;
@@ -17,6 +18,7 @@ mod truth;
 
 pub(crate) use bounds::{BoundsResult, bounds, exact_bounds};
 pub(crate) use concave::concave_bounds;
+pub(crate) use contacts::simulate_contacts;
 pub(crate) use doubts::doubtful_fit;
 pub(crate) use export::exported;
 pub(crate) use fitted::{fit_words, fitted_shape};

@@ -76,8 +76,6 @@ fn what_is_not_known_yet_is_refused_by_name() {
     let noise = ["--contact-noise", "1e-3", "--force-noise", "1e-3"];
     let follow = [&["follow", "any.csv", "--scene", "any.toml"][..], &noise].concat();
     refused(&follow, &["any.csv", "px_i", "three flat palms"]);
-    scratch.write("pick-up.toml", include_str!("../../scenes/pick-up.toml"));
-    refused(&["simulate", "pick-up.toml", "-o", "out"], &["pick-up.toml", "[[palm]]", "three flat palms"]);
     // Forces that rub.
     let log = ContactLog::try_from(&read_log(scratch.path().join("log.csv")).unwrap()).unwrap();
     let mut records = log.records();
