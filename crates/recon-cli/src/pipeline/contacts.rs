@@ -85,9 +85,17 @@ impl ContactRun {
         json!({
             "samples": self.log.times().len(),
             "duration_s": self.duration(),
+            "turn_rad": self.turn(),
             "mode_changes": changes,
             "palms": self.times_in_modes().into_iter().enumerate().map(palm).collect::<Vec<_>>(),
         })
+    }
+
+    /// Angle between the last orientation and the first, rad.
+    pub(crate) fn turn(&self) -> f64 {
+        let instants = &self.simulation.instants;
+        let ends = instants.first().zip(instants.last());
+        ends.map_or(0.0, |(first, last)| first.state.body.R_WO.angle_between(last.state.body.R_WO))
     }
 
     fn duration(&self) -> f64 {
