@@ -143,7 +143,7 @@ fn tilting_palms_turn_the_object_over_and_a_page_shows_it() {
     assert!(page.contains("<title>Three tilting palms") && page.matches("<figure").count() == 6);
     assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
     // Its own scene and log go on: simulated again, and refused by name where a motion is asked for.
-    let again = scratch.run(&["simulate", "out/scene.toml", "-o", "again.csv"]);
+    let again = scratch.run(&["simulate", "out/scene.toml", "-o", "again.csv", "--tolerance", "1e-9"]);
     assert_eq!(again.code, Some(0), "{}", again.stderr);
     assert!(scratch.read("again.csv") == scratch.read("out/log.csv"));
     let refused = scratch.run(&["reconstruct", "again.csv", "--scene", "out/scene.toml", "-o", "motion"]);

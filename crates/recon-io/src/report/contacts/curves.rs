@@ -52,7 +52,9 @@ pub(super) fn panels<S: SupportFunction>(
 fn slip(now: &ContactInstant, palm: usize) -> f64 {
     match now.modes[palm] {
         ContactMode::Off => f64::NAN,
-        _ => now.contacts[palm].in_tangent(now.rates[palm].slip).length(),
+        // What rounding leaves of it is no slip.
+        ContactMode::Stick => 0.0,
+        ContactMode::Slide => now.contacts[palm].in_tangent(now.rates[palm].slip).length(),
     }
 }
 
