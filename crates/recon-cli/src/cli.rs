@@ -36,7 +36,7 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Simulate an object on three palms and write its sensor log
+    /// Simulate an object on palms of any shape and write its sensor log
     Simulate(SimulateArgs),
     /// Reconstruct motion, contact curves and bounds from a sensor log
     Reconstruct(ReconstructArgs),
@@ -46,7 +46,7 @@ pub(crate) enum Command {
     Bounds(BoundsArgs),
     /// Reconstruct a planar object between two hinged palms from a planar log, or the scene of the paper's Fig. 3
     Planar(PlanarArgs),
-    /// Simulate and reconstruct the scene of the paper's Fig. 5, with no input at all
+    /// Simulate and reconstruct the scene of the paper's Fig. 5, or show another scene, with no input at all
     Demo(DemoArgs),
     /// Check a folder of results again, by its files alone
     Check(CheckArgs),
@@ -56,7 +56,8 @@ pub(crate) enum Command {
 #[command(after_help = "\
 The scene is a TOML file with gravity, [object] mass and inertia, and [simulation] shape, palms, start and duration.
 `recon demo` writes one (scene.toml) to begin from. The log holds the truth beside the readings; noise is put on the
-readings where [sensors] gives its standard deviations.
+readings where [sensors] gives its standard deviations. Palms of any number, shape and motion, with friction, stand in
+[[palm]] tables; their log is of version 2, and the changes of contact modes are told.
 
 Examples:
   recon simulate scene.toml -o log.csv
@@ -340,16 +341,35 @@ pub(crate) struct PlanarArgs {
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
+Scenes of palms that move, with friction, are simulated through the changes of contact modes: the folder then holds the
+scene, its log (version 2), the scene for MuJoCo (scene.xml), summary.json and a report with pictures, bands of modes, forces,
+slip and energy.
+
 Examples:
   recon demo
-  recon demo -o somewhere")]
+  recon demo -o somewhere
+  recon demo --scene three-tilting-palms -o turned")]
 pub(crate) struct DemoArgs {
+    /// What is shown
+    #[arg(long, default_value = "fig5")]
+    pub(crate) scene: DemoScene,
     /// Folder to write; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long, default_value = "recon-demo")]
     pub(crate) output: PathBuf,
     /// Write beside files in the folder that recon did not write; these are never replaced or removed
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+/// A scene to begin from.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub(crate) enum DemoScene {
+    /// The paper's Fig. 5, simulated and reconstructed
+    Fig5,
+    /// Three palms that tilt in turn and turn an ellipsoid over, simulated
+    ThreeTiltingPalms,
+    /// Three fingertips that take an ellipsoid from a table, simulated
+    PickUp,
 }
 
 #[derive(Args, Debug)]

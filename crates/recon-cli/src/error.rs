@@ -1,4 +1,7 @@
-use recon::object_dynamics::{LogError, NotThreePlanes, SceneError as DynamicsError, SimulationError};
+use recon::object_dynamics::{
+    ContactLogError, ContactSimulationError, LogError, NotThreePlanes, SceneError as DynamicsError,
+    SimulationError,
+};
 use recon::observer::EstimateError;
 use recon::shape_bounds::{
     AlphaError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
@@ -70,8 +73,6 @@ pub(crate) enum CliError {
     UnknownBody,
     #[error("{} has no [simulation]: give shape, palms and duration there, as in the scene that `recon demo` writes", path.display())]
     NothingToSimulate { path: PathBuf },
-    #[error("{} has palms of any shape ([[palm]]), which this command does not know yet; it knows three flat palms through the origin (`simulation.palms`)", path.display())]
-    AnyPalms { path: PathBuf },
     #[error("nothing is estimated from {} yet", path.display())]
     NotThreePlanes { path: PathBuf, source: NotThreePlanes },
     #[error("the object's shape cannot be used")]
@@ -80,6 +81,10 @@ pub(crate) enum CliError {
     Dynamics(#[from] DynamicsError),
     #[error("the simulation failed")]
     Simulation(#[from] SimulationError),
+    #[error("the scene has no motion")]
+    Contacts(#[from] ContactSimulationError),
+    #[error("the sensor noise of the scene makes the log unusable")]
+    ContactNoise(#[source] ContactLogError),
     #[error("the sensor noise of the scene makes the log unusable")]
     Noise(#[source] LogError),
     #[error("the log gives no motion")]
@@ -170,11 +175,12 @@ impl CliError {
             | Self::Surface(_)
             | Self::UnknownBody
             | Self::NothingToSimulate { .. }
-            | Self::AnyPalms { .. }
             | Self::NotThreePlanes { .. }
             | Self::Shape(_)
             | Self::Dynamics(_)
             | Self::Simulation(_)
+            | Self::Contacts(_)
+            | Self::ContactNoise(_)
             | Self::Noise(_)
             | Self::Estimate(_)
             | Self::OddLog { .. }

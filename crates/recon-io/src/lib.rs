@@ -37,8 +37,8 @@ pub use output::{
 pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};
 pub use report::{
-    Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
-    ReportError, TrueShape, Verdict, write_report,
+    Bound, Bounds, Evidence, EvidenceValue, Level, ModeSpan, MotionState, PalmContact, PalmTrack, ReportData,
+    ReportError, TrueShape, Verdict, mode_spans, write_contact_report, write_report,
 };
 pub use scene::{
     BoxedShape, KnownInertia, KnownPalm, Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation,

@@ -33,11 +33,11 @@ const MARGIN: [f64; 4] = [64.0, 30.0, 16.0, 44.0];
 /// Colours of the curves, of text, of axes and of the ground, on a light and on a dark screen.
 const STYLE: &str = "\
 .ground{fill:#fff}.text{fill:#222}.tick{fill:#555;font-size:10px}.axis{stroke:#555;fill:none}.grid{stroke:#e4e4e4}
-.c0{color:#1b6ca8}.c1{color:#c0392b}.c2{color:#2e8b57}.c3{color:#8e44ad}
+.c0{color:#1b6ca8}.c1{color:#c0392b}.c2{color:#2e8b57}.c3{color:#8e44ad}.c4{color:#8a7a12}
 @media (prefers-color-scheme:dark){
 .ground{fill:#15181c}.text{fill:#e6e6e6}.tick{fill:#a8a8a8}.axis{stroke:#a8a8a8}.grid{stroke:#2b3036}
-.c0{color:#6cb6ef}.c1{color:#ff8a7a}.c2{color:#6fd39a}.c3{color:#cf9bea}}";
-const COLOURS: usize = 4;
+.c0{color:#6cb6ef}.c1{color:#ff8a7a}.c2{color:#6fd39a}.c3{color:#cf9bea}.c4{color:#d6c456}}";
+const COLOURS: usize = 5;
 /// Width of a character in the legend, px: generous for a proportional font of 12 px.
 const CHARACTER: f64 = 7.0;
 
@@ -206,7 +206,7 @@ fn ticks(frame: &Frame, out: &mut String) {
 }
 
 /// The smallest of 1, 2, 5 times a power of ten that is not below `least`.
-fn round_step(least: f64) -> f64 {
+pub(crate) fn round_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.log10().floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|step| *step >= least).unwrap_or(least)
 }

@@ -155,7 +155,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let (scene, units) = (self.scene, self.units);
         let now = Cell::new(self.stretch);
         let (doubt, at_start) = (Cell::new(false), Cell::new(Guards::default()));
-        let from = Cell::new(self.t);
+        let failed = Cell::new(None);
         let field = |t: f64, y: &[f64; N]| {
             if !y.iter().all(|v| v.is_finite()) {
                 return Ok([f64::NAN; N]);
@@ -163,9 +163,11 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             let stretch = now.get();
             let evaluated = match stretch.evaluate(scene, &units, units.unpack(t, y)) {
                 Ok(evaluated) => evaluated,
-                // A trial stage that went too far: a shorter step, unless it is the step's own start.
-                Err(error) if t == from.get() => return Err(error),
-                Err(_) => return Ok([f64::NAN; N]),
+                // A step that is tried may reach into a palm, and is then taken again, shorter.
+                Err(error) => {
+                    failed.set(Some(error));
+                    return Ok([f64::NAN; N]);
+                }
             };
             if suspicious(&stretch.guards(&evaluated, &units), &at_start.get()) {
                 doubt.set(true);
@@ -183,13 +185,16 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             self.check_wedging(&evaluated)?;
             self.stretch = self.stretch.renewed(&evaluated, &units);
             now.set(self.stretch);
-            from.set(t);
             at_start.set(self.stretch.guards(&evaluated, &units));
             doubt.set(false);
+            failed.set(None);
             let next_joint = self.joints.iter().copied().find(|joint| *joint > t).unwrap_or(limit);
             let project = |t: f64, y: &mut [f64; N]| self.project(t, y);
             if let Err(error) = solver.step_onto(limit.min(next_joint), project) {
-                return Err(self.stuck(&evaluated, error));
+                return Err(match (&error, failed.get()) {
+                    (IntegrationError::NotFinite { t }, Some(source)) => Error::Contact { t: *t, source },
+                    _ => self.stuck(&evaluated, error),
+                });
             }
             let at_edge = std::mem::take(&mut self.stretch.at_edge);
             let (end, next_sample) = (solver.time(), self.result.instants.len() as f64 / self.sample_rate);

@@ -1,29 +1,79 @@
 use super::reconstruct::tell;
-use crate::cli::DemoArgs;
+use crate::cli::{DemoArgs, DemoScene};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{reconstruct, simulate, write_reconstruction_folder};
+use crate::pipeline::{
+    reconstruct, simulate, simulate_contacts, write_contact_folder, write_reconstruction_folder,
+};
 use crate::progress::Progress;
-use recon_io::{FolderTarget, Scene, SceneError, write_log};
+use recon_io::{FolderTarget, Scene, SceneError, SceneModel, write_log};
 use std::path::Path;
 
-/// The scene of the paper's Fig. 5, with what the paper leaves open filled in.
-const SCENE: &str = include_str!("../../scenes/fig5.toml");
+const SCENE: &str = "scene.toml";
+/// Tolerance of the integration of the paper's scene.
+const TOLERANCE: f64 = 1e-12;
+/// Tolerance of that through contact modes: at 1e-12 the scenes here have the same changes of modes and turns to 1e-5 degrees.
+const CONTACT_TOLERANCE: f64 = 1e-9;
 
 pub(crate) fn run(args: &DemoArgs, console: &Console) -> Result<Outcome, CliError> {
-    let path = Path::new("scene.toml");
-    let scene = Scene::parse(SCENE).map_err(|kind| SceneError { path: path.to_owned(), kind })?;
+    match args.scene {
+        // The scene of the paper's Fig. 5, with what the paper leaves open filled in.
+        DemoScene::Fig5 => fig5(args, include_str!("../../scenes/fig5.toml"), console),
+        DemoScene::ThreeTiltingPalms => {
+            let text = include_str!("../../scenes/three-tilting-palms.toml");
+            any_palms(args, "Three tilting palms turn an ellipsoid over", text, console)
+        }
+        DemoScene::PickUp => {
+            let text = include_str!("../../scenes/pick-up.toml");
+            any_palms(args, "Three fingertips take an ellipsoid from a table", text, console)
+        }
+    }
+}
+
+fn fig5(args: &DemoArgs, text: &str, console: &Console) -> Result<Outcome, CliError> {
+    let scene = Scene::parse(text).map_err(in_scene)?;
     let target = FolderTarget::new(&args.output, &[], args.force)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("simulating");
-    let simulated = simulate(&scene, path, 1e-12)?;
+    let simulated = simulate(&scene, Path::new(SCENE), TOLERANCE)?;
     let title = "An ellipsoid on three palms (Fig. 5 of Moll and Erdmann, 2002)";
     let mut log = Vec::new();
     write_log(&simulated.log, &mut log).map_err(CliError::StandardOutput)?;
     let made = reconstruct(simulated.log, &scene, title, false, &progress)?;
     progress.step("writing the results");
-    let extras = [("scene.toml".to_owned(), SCENE.into()), ("log.csv".to_owned(), log)];
+    let extras = [(SCENE.to_owned(), text.into()), ("log.csv".to_owned(), log)];
     let figures = write_reconstruction_folder(target, &made, &extras)?;
     drop(progress);
     tell(console, &made, figures, &args.output)
+}
+
+/// A scene of any palms: simulated and shown.
+fn any_palms(args: &DemoArgs, title: &str, text: &str, console: &Console) -> Result<Outcome, CliError> {
+    let scene = Scene::parse(text).map_err(in_scene)?;
+    let target = FolderTarget::new(&args.output, &[], args.force)?;
+    let progress = Progress::new(2, console.is_json());
+    progress.step("simulating");
+    let run = simulate_contacts(&scene, Path::new(SCENE), CONTACT_TOLERANCE)?;
+    progress.step("writing the results");
+    let mut extras = vec![(SCENE.to_owned(), text.into())];
+    let model = SceneModel::new("scene", &scene).map_err(in_scene)?.files()?;
+    extras.extend(model.into_iter().map(|file| (file.name, file.contents)));
+    let mut figures = run.figures();
+    figures["recon"] = env!("CARGO_PKG_VERSION").into();
+    figures["title"] = title.into();
+    write_contact_folder(target, title, &run, &extras, &figures)?;
+    drop(progress);
+    figures["folder"] = args.output.to_string_lossy().into();
+    let turned = run.turn().to_degrees();
+    let said = format!(
+        "{title}\n{}\nturned by {turned:.1} degrees\n{}",
+        run.describe(),
+        args.output.join("report.html").display()
+    );
+    console.result(&said, &figures)?;
+    Ok(Outcome::Done)
+}
+
+fn in_scene(kind: recon_io::SceneErrorKind) -> CliError {
+    SceneError { path: SCENE.into(), kind }.into()
 }

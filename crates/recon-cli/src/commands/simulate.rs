@@ -2,12 +2,12 @@ use crate::cli::SimulateArgs;
 use crate::console::{Console, listened};
 use crate::error::{CliError, Outcome};
 use crate::interrupt::{Checked, while_writing};
-use crate::pipeline::{Simulated, simulate};
+use crate::pipeline::{Simulated, simulate, simulate_contacts};
 use crate::progress::Progress;
-use recon::object_dynamics::{End, SensorLog};
-use recon_io::{FileTarget, OutputError, Scene, is_standard_output, write_log};
+use recon::object_dynamics::End;
+use recon_io::{AnyLog, FileTarget, OutputError, Scene, is_standard_output, write_contact_log, write_log};
 use serde_json::{Value, json};
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
 use std::slice;
 
@@ -20,27 +20,59 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Cli
     };
     let progress = Progress::new(2, console.is_json());
     progress.step("simulating");
-    let simulated = simulate(&scene, &args.scene, args.tolerance)?;
+    let mut made = match scene.palms {
+        Some(_) => any_palms(&scene, args)?,
+        None => three_palms(&scene, args)?,
+    };
     progress.step("writing the log");
     let to_standard_output = target.is_none();
     match target {
-        None => listened(write_log(&simulated.log, io::stdout().lock()))?,
-        Some(target) => write(&simulated.log, target, &args.output)?,
+        None => listened(write_any(&made.log, io::stdout().lock()))?,
+        Some(target) => write(&made.log, target, &args.output)?,
     }
     drop(progress);
-    let text = describe(&simulated);
     if to_standard_output {
-        console.note(&text);
+        console.note(&made.text);
     } else {
-        console.result(&format!("{}: {text}", args.output.display()), &figures(&simulated, &args.output))?;
+        made.figures["log"] = args.output.to_string_lossy().into();
+        console.result(&format!("{}: {}", args.output.display(), made.text), &made.figures)?;
     }
-    Ok(if simulated.end == End::Completed { Outcome::Done } else { Outcome::WithReservations })
+    Ok(made.outcome)
 }
 
-fn write(log: &SensorLog, target: FileTarget, path: &Path) -> Result<(), CliError> {
+/// A simulated log and what is said of it.
+struct Made {
+    log: AnyLog,
+    text: String,
+    figures: Value,
+    outcome: Outcome,
+}
+
+fn any_palms(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
+    let run = simulate_contacts(scene, &args.scene, args.tolerance)?;
+    let (text, figures) = (run.describe(), run.figures());
+    Ok(Made { log: AnyLog::Contacts(run.log), text, figures, outcome: Outcome::Done })
+}
+
+fn three_palms(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
+    let simulated = simulate(scene, &args.scene, args.tolerance)?;
+    let (text, figures) = (describe(&simulated), figures(&simulated));
+    let whole = simulated.end == End::Completed;
+    let outcome = if whole { Outcome::Done } else { Outcome::WithReservations };
+    Ok(Made { log: AnyLog::ThreePalms(simulated.log), text, figures, outcome })
+}
+
+fn write_any(log: &AnyLog, to: impl Write) -> io::Result<()> {
+    match log {
+        AnyLog::ThreePalms(log) => write_log(log, to),
+        AnyLog::Contacts(log) => write_contact_log(log, to),
+    }
+}
+
+fn write(log: &AnyLog, target: FileTarget, path: &Path) -> Result<(), CliError> {
     while_writing(|| {
         let mut file = target.begin()?;
-        write_log(log, Checked(&mut file)).map_err(|source| OutputError::Io {
+        write_any(log, Checked(&mut file)).map_err(|source| OutputError::Io {
             action: "write",
             path: path.to_owned(),
             source,
@@ -63,13 +95,12 @@ fn describe(simulated: &Simulated) -> String {
     }
 }
 
-fn figures(simulated: &Simulated, output: &Path) -> Value {
+fn figures(simulated: &Simulated) -> Value {
     let lost = match simulated.end {
         End::Completed => Value::Null,
         End::ContactLost { palm, t } => json!({ "palm": palm + 1, "t_s": t }),
     };
     json!({
-        "log": output.to_string_lossy(),
         "samples": simulated.log.samples().len(),
         "duration_s": simulated.log.duration(),
         "contact_lost": lost,

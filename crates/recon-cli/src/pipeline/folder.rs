@@ -1,10 +1,11 @@
+use super::ContactRun;
 use super::Reconstruction;
 use super::bounds::{BoundsResult, LOWER, UPPER};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
 use recon_io::{
-    FolderTarget, MotionState, OutputFolder, TriangleMesh, summary, write_contact_curves, write_motion,
-    write_ply, write_radius_functions, write_report,
+    FolderTarget, MotionState, OutputFolder, TriangleMesh, summary, write_contact_curves, write_contact_log,
+    write_contact_report, write_motion, write_ply, write_radius_functions, write_report,
 };
 use serde_json::Value;
 use std::io::{self, Write};
@@ -54,6 +55,26 @@ pub(crate) fn write_touch_folder(
         let (lower, upper) = bounds.map_or((None, None), |b| (b.lower.as_ref(), b.upper.as_ref()));
         folder.write_mesh(LOWER, "inside the object; metres, body axes", lower)?;
         folder.write_mesh(UPPER, "around the object; metres, body axes", upper)?;
+        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+        folder.commit()
+    })
+}
+
+/// Writes everything about a simulated scene of any palms.
+pub(crate) fn write_contact_folder(
+    target: FolderTarget,
+    title: &str,
+    run: &ContactRun,
+    extras: &[Extra],
+    figures: &Value,
+) -> Result<(), CliError> {
+    while_writing(|| {
+        let mut folder = Folder(target.begin()?);
+        folder.write("log.csv", |to| write_contact_log(&run.log, to))?;
+        for (name, contents) in extras {
+            folder.write(name, |to| to.write_all(contents))?;
+        }
+        folder.write("report.html", |to| write_contact_report(title, &run.world, &run.simulation, to))?;
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()
     })

@@ -3,6 +3,7 @@
 mod body;
 mod bounds;
 mod concave;
+mod contacts;
 mod doubts;
 mod evidence;
 mod export;
@@ -17,10 +18,13 @@ mod truth;
 
 pub(crate) use bounds::{BoundsResult, bounds, exact_bounds};
 pub(crate) use concave::concave_bounds;
+pub(crate) use contacts::{ContactRun, simulate_contacts};
 pub(crate) use doubts::doubtful_fit;
 pub(crate) use export::exported;
 pub(crate) use fitted::{fit_words, fitted_shape};
-pub(crate) use folder::{write_bounds_folder, write_reconstruction_folder, write_touch_folder};
+pub(crate) use folder::{
+    write_bounds_folder, write_contact_folder, write_reconstruction_folder, write_touch_folder,
+};
 pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};
 pub(crate) use read::three_palms;
 pub(crate) use reconstruct::{NOTABLE_NOISE, Reconstruction, reconstruct};

@@ -12,13 +12,12 @@ pub(crate) struct Simulated {
     pub(crate) duration: f64,
 }
 
-/// Simulates the scene read from `path`, with sensor noise where the scene gives it.
+/// Simulates the scene of three flat palms through the origin read from `path`, with sensor noise where the scene gives it.
 pub(crate) fn simulate(scene: &Scene, path: &Path, tolerance: f64) -> Result<Simulated, CliError> {
-    let simulation =
-        scene.simulation.as_ref().ok_or_else(|| CliError::NothingToSimulate { path: path.to_owned() })?;
+    let stated = scene.simulation.as_ref().and_then(|simulation| Some((simulation, simulation.palms?)));
+    let (simulation, three) = stated.ok_or_else(|| CliError::NothingToSimulate { path: path.to_owned() })?;
     let mass = known_body(scene)?;
     let body = simulation.body()?;
-    let three = simulation.palms.ok_or_else(|| CliError::AnyPalms { path: path.to_owned() })?;
     let mut palms = ThreePalmScene::new(body.as_ref(), mass, three, scene.gravity)?;
     if let Some(inertia) = scene.palm_inertia {
         palms = palms.with_palm_inertias(inertia)?;

@@ -19,3 +19,4 @@ mod interrupted;
 mod margins;
 mod nothing_lost;
 mod planar;
+mod simulate_any;

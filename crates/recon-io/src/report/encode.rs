@@ -40,7 +40,7 @@ pub(super) fn encode(data: &ReportData) -> Value {
 }
 
 /// At most [`MOST_TIMES`] indices spread evenly over `0..count`, with the first and the last.
-fn thin(count: usize) -> Vec<usize> {
+pub(super) fn thin(count: usize) -> Vec<usize> {
     if count <= MOST_TIMES {
         return (0..count).collect();
     }

@@ -1,5 +1,6 @@
 //! `report.html`: one page without any reference to the outside, which shows a reconstruction to a person.
 
+mod contacts;
 mod data;
 mod encode;
 mod page;
@@ -7,6 +8,7 @@ mod page;
 #[cfg(test)]
 mod tests;
 
+pub use contacts::{ModeSpan, mode_spans, write_contact_report};
 pub use data::{
     Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
     ReportError, TrueShape, Verdict,

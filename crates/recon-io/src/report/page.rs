@@ -21,16 +21,26 @@ const SCRIPT: [&str; 8] = [
 ///
 /// # Errors
 /// [`ReportError`] (as [`io::ErrorKind::InvalidInput`]) when the tracks do not fit together, and those of `to`.
-pub fn write_report(data: &ReportData, mut to: impl Write) -> io::Result<()> {
+pub fn write_report(data: &ReportData, to: impl Write) -> io::Result<()> {
     data.check().map_err(|e: ReportError| io::Error::new(io::ErrorKind::InvalidInput, e))?;
     let json = serde_json::to_string(&encode(data))?;
     let parts = [
         ("title", escape_text(&data.title)),
-        ("style", STYLE.to_owned()),
+        ("style", style()),
         ("data", escape_script(&json)),
         ("script", SCRIPT.concat()),
     ];
-    let mut rest = PAGE;
+    fill(PAGE, &parts, to)
+}
+
+/// The style that all pages share.
+pub(super) fn style() -> String {
+    STYLE.to_owned()
+}
+
+/// Writes a page with each `{{name}}` in it replaced by the part of that name.
+pub(super) fn fill(page: &str, parts: &[(&str, String)], mut to: impl Write) -> io::Result<()> {
+    let mut rest = page;
     while let Some((before, after)) = rest.split_once("{{") {
         to.write_all(before.as_bytes())?;
         let (name, after) = after.split_once("}}").unwrap_or((after, ""));
@@ -43,7 +53,7 @@ pub fn write_report(data: &ReportData, mut to: impl Write) -> io::Result<()> {
     to.flush()
 }
 
-fn escape_text(text: &str) -> String {
+pub(super) fn escape_text(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 

@@ -1,0 +1,86 @@
+//! What each contact does over time, as bands.
+
+use super::spans::{ModeSpan, mode_spans};
+use crate::number::on_scale;
+use crate::planar_figures::round_step;
+use recon::object_dynamics::{ContactMode, ContactSimulation};
+use std::fmt::Write as _;
+
+const WIDTH: f64 = 920.0;
+const LEFT: f64 = 64.0;
+const ROW: f64 = 26.0;
+const BAND: f64 = 18.0;
+
+/// Bands of `palms` palms over the simulated time, as one SVG element; marks at the times of the pictures.
+pub(super) fn bands(simulation: &ContactSimulation, palms: usize, marks: &[f64]) -> String {
+    let all: Vec<Vec<ModeSpan>> = (0..palms).map(|palm| mode_spans(simulation, palm)).collect();
+    let (start, end) = (all.first().and_then(|s| s.first()), all.first().and_then(|s| s.last()));
+    let (start, end) = start.zip(end).map_or((0.0, 1.0), |(first, last)| (first.start, last.end));
+    let place = |t: f64| on_scale(LEFT + (WIDTH - LEFT - 8.0) * (t - start) / (end - start), 100.0, 4);
+    let bottom = ROW * palms as f64 + 4.0;
+    let mut out = format!("<svg class=\"bands\" viewBox=\"0 0 {WIDTH} {}\" role=\"img\">\n", bottom + 20.0);
+    for flight in flights(&all) {
+        let (x, width) = (place(flight[0]), place(flight[1]) - place(flight[0]));
+        let _ = writeln!(
+            out,
+            "<rect class=\"flight\" x=\"{x}\" y=\"0\" width=\"{width:.2}\" height=\"{bottom}\"/>"
+        );
+    }
+    for (i, spans) in all.iter().enumerate() {
+        let y = ROW * i as f64 + 4.0;
+        let _ = writeln!(out, "<text class=\"name p{0}\" x=\"0\" y=\"{1}\">palm {0}</text>", i + 1, y + 13.0);
+        for span in spans.iter().filter(|span| span.mode != ContactMode::Off) {
+            let (x, width) = (place(span.start), place(span.end) - place(span.start));
+            let mode = span.mode.number();
+            let _ = writeln!(
+                out,
+                "<rect class=\"m{mode}\" x=\"{x}\" y=\"{y}\" width=\"{width:.2}\" height=\"{BAND}\"/>"
+            );
+        }
+        let (x, width) = (place(start), place(end) - place(start));
+        let _ = writeln!(
+            out,
+            "<rect class=\"frame\" x=\"{x}\" y=\"{y}\" width=\"{width:.2}\" height=\"{BAND}\"/>"
+        );
+    }
+    for t in marks {
+        let _ = writeln!(out, "<path class=\"mark\" d=\"M{} 0 V{bottom}\"/>", place(*t));
+    }
+    let step = round_step((end - start) / 8.0);
+    for k in 0..=8 {
+        let t = ((start / step).ceil() + f64::from(k)) * step;
+        if t <= end {
+            let (x, y, t) = (place(t), bottom + 15.0, on_scale(t, step, 1));
+            let _ = writeln!(out, "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\">{t}</text>");
+        }
+    }
+    out + "</svg>\n"
+}
+
+/// When nothing is touched: the gaps that all palms share.
+fn flights(all: &[Vec<ModeSpan>]) -> Vec<[f64; 2]> {
+    let off = |spans: &[ModeSpan]| -> Vec<[f64; 2]> {
+        spans.iter().filter(|s| s.mode == ContactMode::Off).map(|s| [s.start, s.end]).collect()
+    };
+    let Some((first, others)) = all.split_first() else { return Vec::new() };
+    others.iter().fold(off(first), |shared, spans| {
+        let pairs =
+            shared.iter().flat_map(|a| off(spans).into_iter().map(|b| [a[0].max(b[0]), a[1].min(b[1])]));
+        pairs.filter(|[from, to]| from < to).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flights_are_what_no_palm_touches() {
+        let span = |start, end, mode| ModeSpan { start, end, mode };
+        let (off, stick) = (ContactMode::Off, ContactMode::Stick);
+        let one = vec![span(0.0, 1.0, off), span(1.0, 2.0, stick), span(2.0, 4.0, off)];
+        let two = vec![span(0.0, 0.5, stick), span(0.5, 3.0, off), span(3.0, 4.0, stick)];
+        assert_eq!(flights(&[one.clone(), two]), [[0.5, 1.0], [2.0, 3.0]]);
+        assert!(flights(&[one, vec![span(0.0, 4.0, stick)]]).is_empty());
+    }
+}

@@ -1,0 +1,14 @@
+//! The report of a simulation through contact modes: pictures, bands of modes, curves.
+
+mod bands;
+mod curves;
+mod page;
+mod picture;
+mod spans;
+mod view;
+
+#[cfg(test)]
+mod tests;
+
+pub use page::write_contact_report;
+pub use spans::{ModeSpan, mode_spans};
