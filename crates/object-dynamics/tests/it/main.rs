@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
+mod approach;
 mod closed_forms;
 mod contact_modes;
 mod three_palms;
