@@ -19,7 +19,7 @@ use std::cell::Cell;
 /// angle within a step, and the step is taken again, shorter.
 const SLIP_ENDED: f64 = 1e-4;
 /// More changes of modes than this without time to tell them apart are a pile-up.
-const MOST_AT_ONCE: usize = 60;
+const MOST_AT_ONCE: usize = 1000;
 /// What counts as no time, in natural times.
 const AT_ONCE: f64 = 1e-4;
 /// Slips and rates of gaps at the start below this share of the natural speed are none: a state given to six digits.

@@ -203,8 +203,12 @@ proptest! {
                 let (warm, gap) = (warm.unwrap(), scanned_gap(shape.as_ref(), &place, surface, &palm));
                 let cold = SurfaceContact::new(shape.as_ref(), &place, surface, &palm, None).unwrap();
                 prop_assert!((warm.gap - cold.gap).abs() < 1e-14, "{name} {surface:?} {} {}", warm.gap, cold.gap);
-                // Half a step of the outline, squared, over the largest curvature of the distance.
-                let slack = 0.5 * (shape.radius_bounds().max * TAU / 4e4).powi(2) / 1e-3 + 1e-15;
+                // Half a step `s` of the outline beside the foot: sqrt(d^2 + s^2) - d <= s^2 / (2 d) at a distance d.
+                let distance = match surface {
+                    PalmSurface::Arc { radius } => (warm.gap + radius).min(1e-3),
+                    PalmSurface::Line | PalmSurface::Cup { .. } => 1e-3,
+                };
+                let slack = 0.5 * (shape.radius_bounds().max * TAU / 4e4).powi(2) / distance + 1e-15;
                 prop_assert!(warm.gap <= gap + 1e-15 && gap < warm.gap + slack, "{name} {surface:?} {gap}");
                 // The foot on the palm is where the normal says.
                 let foot = warm.p_WC - warm.gap * warm.n;
