@@ -26,6 +26,14 @@ pub(crate) fn main() -> Anything<()> {
     if names.is_empty() {
         names = (1..=8).map(|k| format!("S{k}")).collect();
     }
+    println!("# Reference logs of any palms, simulated from their start");
+    println!();
+    println!(
+        "Eight scenes that another simulator logged (one to four palms, friction, fingertips, cups, springs, blows): {seconds} s from \
+         the log's first state at tolerance {tolerance:e}, the palms on splines through every {THINNED}th pose of the log. Modes are \
+         told as the logs tell them: a contact sticks where its slip is below the log's tolerance."
+    );
+    println!();
     println!(
         "| log | to first change (s) | departure until then (m) | growth of a change of the start | changes in the log | same, within 2 ms | first other (s) | departure until then (m) | steps | time (ms) |"
     );
