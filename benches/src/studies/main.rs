@@ -14,6 +14,7 @@ mod bounds_tosses;
 mod chart;
 mod cold_start;
 mod contact_logs;
+mod contact_wedging;
 mod no_force;
 mod planar_contacts;
 mod planar_costs;
@@ -40,6 +41,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("bounds_tosses", || in_words(bounds_tosses::main())),
     ("cold_start", || in_words(cold_start::main())),
     ("contact_logs", || in_words(contact_logs::main())),
+    ("contact_wedging", || in_words(contact_wedging::main())),
     ("no_force", || in_words(no_force::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_costs", || in_words(planar_costs::main())),
