@@ -31,6 +31,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "three palms from no guess and from nearby: time and accuracy, beside SciPy",
     ),
     ("planar_monte_carlo", "planar-monte-carlo.md", "planar observers against the Cramer-Rao bound"),
+    (
+        "contact_changes",
+        "contact-changes.md",
+        "random changes of contact modes: gaps, cones, sticking, energy",
+    ),
     ("contact_wedging", "contact-wedging.md", "states in which friction wedges sliding contacts"),
     ("contact_logs", "contact-logs.md", "reference logs of any palms simulated from their start"),
     (
