@@ -7,4 +7,5 @@
 mod approach;
 mod closed_forms;
 mod contact_modes;
+mod giving_way;
 mod three_palms;
