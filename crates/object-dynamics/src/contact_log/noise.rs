@@ -28,7 +28,8 @@ pub struct ChannelNoise {
 }
 
 impl ChannelNoise {
-    fn deviation(&self, length: f64) -> f64 {
+    /// Standard deviation of each axis of a vector of this length.
+    pub(crate) fn deviation(&self, length: f64) -> f64 {
         self.fixed.hypot(self.share * length)
     }
 }

@@ -150,7 +150,12 @@ impl ContactProblem {
             }
         }
         let minor = self.smallest_sliding_minor(&modes, &directions);
-        if minor > 0.0 { Ok(()) } else { Err(ModeError::NotP { modes: self.letters(&modes), minor }) }
+        if minor > 0.0 { Ok(()) } else { Err(self.not_p(&modes, minor)) }
+    }
+
+    /// The error of modes whose smallest principal minor is not above zero.
+    pub(crate) fn not_p(&self, modes: &Modes, minor: f64) -> ModeError {
+        ModeError::NotP { modes: self.letters(modes), minor }
     }
 
     /// Sum of what the forces are made of, N: a scale for what counts as zero.

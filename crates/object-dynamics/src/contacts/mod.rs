@@ -13,6 +13,7 @@ mod solve;
 
 pub use choose::ModeError;
 pub(crate) use choose::{Left, Touch};
+pub(crate) use directions::NO_DIRECTIONS;
 pub use drive::{DriveError, PalmDrive, PalmSpring, PalmTorque};
 pub(crate) use instant::Contacts;
 pub use instant::{PalmContactError, PalmCoordinates, SceneState};

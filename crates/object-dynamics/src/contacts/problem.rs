@@ -122,8 +122,19 @@ impl ContactProblem {
         &self.contacts[..self.count]
     }
 
-    pub(crate) fn contact_mut(&mut self, i: usize) -> &mut ProblemContact {
-        &mut self.contacts[i]
+    /// The same contacts with displacements or velocities `of` each in place of accelerations.
+    pub(crate) fn of_motion(mut self, of: impl Fn(usize) -> DVec3) -> Self {
+        self.free_motion = [DVec3::ZERO; 2];
+        for (i, contact) in self.contacts[..self.count].iter_mut().enumerate() {
+            (contact.free, contact.normal_bias) = (of(i), 0.0);
+        }
+        self
+    }
+
+    /// The same contacts without friction.
+    pub(crate) fn smooth(mut self) -> Self {
+        self.contacts.iter_mut().for_each(|contact| contact.friction = 0.0);
+        self
     }
 
     /// Forces and accelerations of a mode set. Sliding contacts slide along `directions`.

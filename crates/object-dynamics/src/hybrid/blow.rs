@@ -4,7 +4,6 @@ use super::project::{Part, apply};
 use crate::ContactMode;
 use crate::contacts::{ContactScene, Contacts, MOST_PALMS, ModeError, Modes, Reaction, SceneState, Touch};
 use contact_kinematics::SupportFunction;
-use glam::DVec3;
 
 /// The state after an inelastic blow on the `closed` contacts, and its impulses.
 ///
@@ -17,14 +16,10 @@ pub(super) fn blow<S: SupportFunction>(
     touch: &Contacts,
     closed: &[bool; MOST_PALMS],
 ) -> Result<(SceneState, Reaction), ModeError> {
-    let mut problem = scene.problem(&state.body, touch);
-    problem.free_motion = [DVec3::ZERO; 2];
+    let problem = scene.problem(&state.body, touch).of_motion(|i| touch.rates[i].slip);
     let mut touches = [Touch::Apart; MOST_PALMS];
     let mut present: Modes = [ContactMode::Off; MOST_PALMS];
     for i in 0..touch.contacts.len() {
-        let contact = problem.contact_mut(i);
-        contact.free = touch.rates[i].slip;
-        contact.normal_bias = 0.0;
         if closed[i] {
             touches[i] = Touch::Rests;
             present[i] = ContactMode::Slide;

@@ -2,6 +2,7 @@
 
 use super::packed::{Tallies, Units};
 use super::project::{Along, Guesses};
+use super::result::ContactInstant;
 use crate::ContactMode;
 use crate::contacts::{
     ContactProblem, ContactScene, Contacts, Directions, MOST_PALMS, Modes, PalmContactError, Reaction,
@@ -132,6 +133,25 @@ impl Stretch {
 }
 
 impl Evaluated {
+    /// The instant for people to read; none where the modes have no forces. `blow_work`: what blows have taken so far, J.
+    pub(super) fn into_instant(self, modes: &[ContactMode], blow_work: f64) -> Option<ContactInstant> {
+        let (reaction, count) = (self.reaction?, modes.len());
+        Some(ContactInstant {
+            state: self.state,
+            modes: modes.to_vec(),
+            palms: self.touch.palms,
+            contacts: self.touch.contacts,
+            rates: self.touch.rates,
+            forces: reaction.forces[..count].to_vec(),
+            impulses: self.tallies.impulses[..count].to_vec(),
+            a_WCm: reaction.a,
+            alpha_WO: reaction.alpha,
+            friction_work: self.tallies.friction_work,
+            palm_work: self.tallies.palm_work,
+            blow_work,
+        })
+    }
+
     /// Rates of the packed state; NaN where the modes have no forces, so that the integrator takes a shorter step.
     pub(super) fn rates<S: SupportFunction, const N: usize>(
         &self,

@@ -41,22 +41,7 @@ impl<S: SupportFunction> ContactScene<S> {
     ) -> Result<ContactInstant, ContactInstantError> {
         let (stretch, units) = self.stretch(modes)?;
         let now = stretch.evaluate(self, &units, (*state, Tallies::default()))?;
-        let reaction = now.reaction.ok_or(ModeError::Inconsistent)?;
-        let count = modes.len();
-        Ok(ContactInstant {
-            state: now.state,
-            modes: modes.to_vec(),
-            palms: now.touch.palms,
-            contacts: now.touch.contacts,
-            rates: now.touch.rates,
-            forces: reaction.forces[..count].to_vec(),
-            impulses: vec![DVec3::ZERO; count],
-            a_WCm: reaction.a,
-            alpha_WO: reaction.alpha,
-            friction_work: 0.0,
-            palm_work: 0.0,
-            blow_work: 0.0,
-        })
+        Ok(now.into_instant(modes, 0.0).ok_or(ModeError::Inconsistent)?)
     }
 
     /// The smallest principal minor of the sliding contacts' matrix in a state with the given modes, dimensionless: above zero

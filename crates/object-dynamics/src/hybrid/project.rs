@@ -1,11 +1,11 @@
 //! Pulls a state back onto its contacts: gaps closed, no rate of a gap, no slip where a contact sticks.
 
 use crate::contacts::{
-    ContactProblem, ContactScene, Directions, MOST_PALMS, Modes, PalmContactError, SceneState,
+    ContactProblem, ContactScene, MOST_PALMS, Modes, NO_DIRECTIONS, PalmContactError, Reaction, SceneState,
 };
 use crate::{BodyState, ContactMode};
 use contact_kinematics::{Direction, SupportFunction};
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DQuat, DVec3};
 
 /// Rounds of the position's projection: it converges quadratically from the integrator's error.
 const ROUNDS: u32 = 3;
@@ -39,13 +39,12 @@ pub(super) fn projected<S: SupportFunction>(
         if worst <= 4.0 * f64::EPSILON * size {
             break;
         }
-        let mut problem = scene.problem(&state.body, &touch);
         let gap = |i: usize| touch.contacts[i].gap * touch.contacts[i].n;
-        let Some(change) = without_friction(&mut problem, gap, &closed) else { break };
+        let problem = scene.problem(&state.body, &touch).of_motion(gap).smooth();
+        let Ok(change) = problem.solve(&closed, &NO_DIRECTIONS) else { break };
         apply(&mut state, &problem, &change, Part::Position);
     }
     let touch = scene.contacts_at(&state, guesses)?;
-    let mut problem = scene.problem(&state.body, &touch);
     let mut rows = *modes;
     let slip = |i: usize| {
         let slip = touch.rates[i].slip;
@@ -56,7 +55,8 @@ pub(super) fn projected<S: SupportFunction>(
             rows[i] = ContactMode::Stick;
         }
     }
-    if let Some(change) = without_friction(&mut problem, slip, &rows) {
+    let problem = scene.problem(&state.body, &touch).of_motion(slip).smooth();
+    if let Ok(change) = problem.solve(&rows, &NO_DIRECTIONS) {
         apply(&mut state, &problem, &change, Part::Velocity);
     }
     Ok(state)
@@ -68,31 +68,8 @@ pub(super) enum Part {
     Velocity,
 }
 
-/// Turns the problem of accelerations into one of displacements or velocities `of` each contact, and solves it.
-fn without_friction(
-    problem: &mut ContactProblem,
-    of: impl Fn(usize) -> DVec3,
-    modes: &Modes,
-) -> Option<crate::contacts::Reaction> {
-    problem.free_motion = [DVec3::ZERO; 2];
-    for i in 0..problem.contacts().len() {
-        let free = of(i);
-        let contact = problem.contact_mut(i);
-        contact.free = free;
-        contact.normal_bias = 0.0;
-        contact.friction = 0.0;
-    }
-    let directions: Directions = [DVec2::X; MOST_PALMS];
-    problem.solve(modes, &directions).ok()
-}
-
 /// Changes position or velocity of body and palms by what forces of a problem do.
-pub(super) fn apply(
-    state: &mut SceneState,
-    problem: &ContactProblem,
-    change: &crate::contacts::Reaction,
-    part: Part,
-) {
+pub(super) fn apply(state: &mut SceneState, problem: &ContactProblem, change: &Reaction, part: Part) {
     let BodyState { p_WCm, R_WO, v_WCm, w_WO } = &mut state.body;
     match part {
         Part::Position => {

@@ -5,7 +5,7 @@ use super::field::{Evaluated, STILL, Stretch};
 use super::guards::{Guards, suspicious};
 use super::packed::{RIGID, Tallies, Units, YIELDING};
 use super::project::projected;
-use super::result::{ContactEvent, ContactEventKind, ContactInstant, ContactSimulation};
+use super::result::{ContactEvent, ContactEventKind, ContactSimulation};
 use super::start::{ContactStart, check_overlap};
 use crate::contacts::{ContactScene, Left, MOST_PALMS, ModeError, Modes, SceneState, Touch};
 use crate::integrate::{Dop853, IntegrationError, Statistics, Tolerance};
@@ -188,7 +188,9 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             at_start.set(self.stretch.guards(&evaluated, &units));
             doubt.set(false);
             failed.set(None);
-            let next_joint = self.joints.iter().copied().find(|joint| *joint > t).unwrap_or(limit);
+            // A table of poses has a joint at every row: thousands of them.
+            let next = self.joints.partition_point(|joint| *joint <= t);
+            let next_joint = self.joints.get(next).copied().unwrap_or(limit);
             let project = |t: f64, y: &mut [f64; N]| self.project(t, y);
             if let Err(error) = solver.step_onto(limit.min(next_joint), project) {
                 return Err(match (&error, failed.get()) {
@@ -265,16 +267,16 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         if minor > 0.0 {
             return Ok(());
         }
-        let modes = now.problem.letters(&self.stretch.modes);
-        Err(Error::Modes { state: Box::new(now.state), source: ModeError::NotP { modes, minor } })
+        let source = now.problem.not_p(&self.stretch.modes, minor);
+        Err(Error::Modes { state: Box::new(now.state), source })
     }
 
     /// An integrator that cannot go on near a critical friction is told as that.
     fn stuck(&self, now: &Evaluated, error: IntegrationError<crate::contacts::PalmContactError>) -> Error {
         let minor = now.problem.smallest_sliding_minor(&self.stretch.modes, &now.directions);
         if minor < 1e-2 {
-            let modes = now.problem.letters(&self.stretch.modes);
-            return Error::Modes { state: Box::new(now.state), source: ModeError::NotP { modes, minor } };
+            let source = now.problem.not_p(&self.stretch.modes, minor);
+            return Error::Modes { state: Box::new(now.state), source };
         }
         Error::Integration(error)
     }
@@ -348,7 +350,10 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let gaps_closed = closed.map(|closed| if closed { ContactMode::Slide } else { ContactMode::Off });
         let (mut state, mut tallies) = (state, *tallies);
         let mut touch = scene.contacts_at(&state, &self.stretch.guesses).map_err(contact)?;
-        let grazing = units.speed * if self.result.instants.is_empty() { STATED } else { GRAZING };
+        // At the start the state is as exact as who gave it.
+        let at_start = self.result.instants.is_empty();
+        let [grazing, still] =
+            [GRAZING, STILL].map(|rate| units.speed * if at_start { STATED } else { rate });
         let approaches = |i: usize| closed[i] && touch.rates[i].gap_rate < -grazing;
         let struck = (0..scene.palms().len()).any(approaches);
         if struck {
@@ -362,8 +367,6 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             }
             touch = scene.contacts_at(&state, &self.stretch.guesses).map_err(contact)?;
         }
-        // At the start the state is as exact as who gave it.
-        let still = units.speed * if self.result.instants.is_empty() { STATED } else { STILL };
         let problem = scene.problem(&state.body, &touch);
         let mut touches = [Touch::Apart; MOST_PALMS];
         for (i, at) in problem.contacts().iter().enumerate() {
@@ -377,7 +380,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
                     if sticks || speed <= still { Touch::Rests } else { Touch::Slides(slip / speed) };
             }
         }
-        let present = if self.result.instants.is_empty() { gaps_closed } else { self.stretch.modes };
+        let present = if at_start { gaps_closed } else { self.stretch.modes };
         let choice = problem
             .choose(&touches, &present, left)
             .map_err(|source| Error::Modes { state: Box::new(state), source })?;
@@ -396,25 +399,12 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
 
     fn sample(&mut self, t: f64, y: &[f64; N]) -> Result<(), Error> {
         let now = self.evaluated(t, y)?;
-        let count = self.scene.palms().len();
-        let Some(reaction) = now.reaction else {
-            let state = Box::new(now.state);
-            return Err(Error::Modes { state, source: ModeError::Inconsistent });
-        };
-        self.result.instants.push(ContactInstant {
-            state: now.state,
-            modes: self.stretch.modes[..count].to_vec(),
-            palms: now.touch.palms,
-            contacts: now.touch.contacts,
-            rates: now.touch.rates,
-            forces: reaction.forces[..count].to_vec(),
-            impulses: now.tallies.impulses[..count].to_vec(),
-            a_WCm: reaction.a,
-            alpha_WO: reaction.alpha,
-            friction_work: now.tallies.friction_work,
-            palm_work: now.tallies.palm_work,
-            blow_work: self.blow_work,
-        });
+        let state = now.state;
+        let modes = &self.stretch.modes[..self.scene.palms().len()];
+        let instant = now
+            .into_instant(modes, self.blow_work)
+            .ok_or_else(|| Error::Modes { state: Box::new(state), source: ModeError::Inconsistent })?;
+        self.result.instants.push(instant);
         Ok(())
     }
 }

@@ -30,7 +30,7 @@ pub use log::{PlanarLog, PlanarSample, PlanarTruth};
 pub use mass::{PlanarMass, PlanarMassError};
 pub use motion::{ConstantRates, HarmonicPalms, PairMotion};
 #[cfg(feature = "noise")]
-pub use noise::{ChannelNoise, ContactNoise, PlanarNoise};
+pub use noise::{ContactNoise, PlanarNoise};
 pub use quasistatic::{Equilibrium, FollowError, PlanarEquilibria};
 pub use reaction::{PairReaction, PlanarObject};
 pub use simulate::{LostContact, PlanarRun, PlanarRunSample, PlanarStart, simulate_prescribed};

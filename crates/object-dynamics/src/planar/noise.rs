@@ -2,6 +2,7 @@
 
 use super::contact_log::ContactLog;
 use super::log::PlanarLog;
+use crate::ChannelNoise;
 use contact_kinematics::planar::{PalmSurface, SurfacePose};
 use glam::DVec2;
 use rand_distr::{Distribution, StandardNormal};
@@ -48,21 +49,6 @@ pub struct ContactNoise {
     pub force: ChannelNoise,
     /// Of each axis of the impulse over one interval, N s.
     pub impulse: ChannelNoise,
-}
-
-/// Noise of each axis of a vector: a fixed part, and one that grows with the vector.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ChannelNoise {
-    /// Standard deviation of the fixed part, in the unit of the channel.
-    pub fixed: f64,
-    /// That of the growing part, as a share of the vector's length.
-    pub share: f64,
-}
-
-impl ChannelNoise {
-    fn deviation(&self, length: f64) -> f64 {
-        self.fixed.hypot(self.share * length)
-    }
 }
 
 impl ContactNoise {
