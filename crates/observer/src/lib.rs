@@ -7,6 +7,8 @@
 //!
 //! The feature `palms` (on by default) adds the estimators of shape and motion from touch.
 
+#[cfg(feature = "palms")]
+mod contacts;
 mod core;
 mod least_squares;
 #[cfg(feature = "palms")]
@@ -20,6 +22,8 @@ pub use core::{
     rk4_linearised, solve_batch, solve_batch_along, solve_batch_from,
 };
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
+#[cfg(feature = "palms")]
+pub use contacts::{ContactEstimate, SensorNoise, estimate_contacts};
 #[cfg(feature = "palms")]
 pub use three_palms::{
     BodyEstimate, CurveUncertainty, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate,

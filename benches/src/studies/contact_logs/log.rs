@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, PalmSurface, PoseTable, SurfaceMotion, SurfacePose};
 use recon::object_dynamics::{
-    BodyState, ContactScene, MassProperties, PalmCoordinates, PalmDrive, PalmSpring, ScenePalm,
+    BodyState, ContactLog, ContactMode, ContactPoints, ContactScene, ForceChannel, MOST_PALMS, MassProperties, MeasuredMotion, PalmCoordinates, PalmDrive, PalmRecord, PalmSpring, RecordedMotion, ScenePalm,
 };
 use serde_json::Value;
 use std::collections::HashMap;
@@ -11,25 +11,25 @@ use std::error::Error;
 use std::path::Path;
 use std::process::Command;
 
-pub(super) type Anything<T> = Result<T, Box<dyn Error>>;
+pub(crate) type Anything<T> = Result<T, Box<dyn Error>>;
 
 /// A contact that takes a mode: 0 off, 1 slides, 2 sticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Change {
-    pub(super) t: f64,
-    pub(super) palm: usize,
-    pub(super) mode: u8,
+pub(crate) struct Change {
+    pub(crate) t: f64,
+    pub(crate) palm: usize,
+    pub(crate) mode: u8,
 }
 
 /// Columns by name, and the scene's description.
-pub(super) struct Log {
+pub(crate) struct Log {
     columns: HashMap<String, Vec<f64>>,
     about: Value,
 }
 
 impl Log {
     /// Reads `NAME.csv.gz` and `NAME.json`.
-    pub(super) fn read(folder: &Path, name: &str) -> Anything<Self> {
+    pub(crate) fn read(folder: &Path, name: &str) -> Anything<Self> {
         let packed = folder.join(format!("{name}.csv.gz"));
         let output = Command::new("gzip").arg("-dc").arg(&packed).output()?;
         if !output.status.success() {
@@ -49,29 +49,71 @@ impl Log {
         Ok(Self { columns, about })
     }
 
-    pub(super) fn column(&self, name: &str) -> Anything<&[f64]> {
+    pub(crate) fn column(&self, name: &str) -> Anything<&[f64]> {
         self.columns.get(name).map(Vec::as_slice).ok_or_else(|| format!("no column {name}").into())
     }
 
     /// The vector `STEMx TAIL`, `STEMy TAIL`, `STEMz TAIL` at every sample.
-    pub(super) fn vectors(&self, stem: &str, tail: &str) -> Anything<Vec<DVec3>> {
+    pub(crate) fn vectors(&self, stem: &str, tail: &str) -> Anything<Vec<DVec3>> {
         let part = |axis: &str| self.column(&format!("{stem}{axis}{tail}"));
         let (x, y, z) = (part("x")?, part("y")?, part("z")?);
         Ok((0..x.len()).map(|k| DVec3::new(x[k], y[k], z[k])).collect())
     }
 
-    fn quaternions(&self, stem: &str, tail: &str) -> Anything<Vec<DQuat>> {
+    pub(crate) fn quaternions(&self, stem: &str, tail: &str) -> Anything<Vec<DQuat>> {
         let (v, w) = (self.vectors(stem, tail)?, self.column(&format!("{stem}w{tail}"))?);
         Ok(v.iter().zip(w).map(|(v, w)| DQuat::from_xyzw(v.x, v.y, v.z, *w)).collect())
     }
 
+    /// Semi-axes of the body, m.
+    pub(crate) fn semi_axes(&self) -> DVec3 {
+        vector(&self.about["axes"])
+    }
+
+    /// Mass, kg, and inertia about the centre of mass in body axes.
+    pub(crate) fn mass(&self) -> (f64, DMat3) {
+        (number(&self.about["mass"]), matrix(&self.about["inertia"]))
+    }
+
+    /// What sensors read over the first `seconds`, and the modes.
+    pub(crate) fn contact_log(&self, seconds: f64) -> Anything<(ContactLog, Vec<[ContactMode; MOST_PALMS]>)> {
+        let times: Vec<f64> = self.column("t")?.iter().copied().filter(|t| *t <= seconds + 1e-9).collect();
+        let mut modes = vec![[ContactMode::Off; MOST_PALMS]; times.len()];
+        let mut records = Vec::new();
+        for i in 1..=self.palm_count() {
+            let tail = format!("_{i}");
+            let vectors = |stem| self.vectors(stem, &tail);
+            let (points, p, v, w, f) = (vectors("p")?, vectors("P")?, vectors("V")?, vectors("W")?, vectors("f")?);
+            let q = self.quaternions("Q", &tail)?;
+            let states = (0..times.len()).map(|k| Ok(MeasuredMotion { pose: SurfacePose::new(p[k], q[k])?, v_WP: v[k], w_WP: w[k] }));
+            let states: Anything<Vec<_>> = states.collect();
+            let mode = self.column(&format!("mode_{i}"))?;
+            for (k, modes) in modes.iter_mut().enumerate() {
+                modes[i - 1] = match mode[k] as u8 { 0 => ContactMode::Off, 1 => ContactMode::Slide, _ => ContactMode::Stick };
+            }
+            let touched = |k: usize| (points[k].is_finite() && modes[k][i - 1] != ContactMode::Off).then_some(points[k]);
+            records.push(PalmRecord {
+                surface: self.palm(i, 10)?.surface,
+                friction: None,
+                motion: RecordedMotion::Measured(states?),
+                contacts: ContactPoints::World((0..times.len()).map(touched).collect()),
+                force: ForceChannel::Three(f[..times.len()].to_vec()),
+                impulse: ForceChannel::Missing,
+                torque: None,
+                truth: None,
+                largest_offset: f64::INFINITY,
+            });
+        }
+        Ok((ContactLog::new(times, records, None)?, modes))
+    }
+
     /// Slip below which the log says that a contact sticks, m/s.
-    pub(super) fn slip_tolerance(&self) -> f64 {
+    pub(crate) fn slip_tolerance(&self) -> f64 {
         number(&self.about["slip_tolerance"])
     }
 
     /// Changes of modes at the first `count` samples.
-    pub(super) fn changes(&self, count: usize) -> Anything<Vec<Change>> {
+    pub(crate) fn changes(&self, count: usize) -> Anything<Vec<Change>> {
         let t = self.column("t")?;
         let mut found = Vec::new();
         let modes = (1..=self.palm_count())
@@ -87,22 +129,24 @@ impl Log {
         Ok(found)
     }
 
-    pub(super) fn palm_count(&self) -> usize {
+    pub(crate) fn palm_count(&self) -> usize {
         self.about["palms"].as_array().map_or(0, Vec::len)
     }
 
     /// The body's state at sample `k`.
-    pub(super) fn body(&self, k: usize) -> Anything<BodyState> {
-        Ok(BodyState {
-            p_WCm: self.vectors("cm", "")?[k],
-            R_WO: self.quaternions("q", "")?[k],
-            v_WCm: self.vectors("v", "")?[k],
-            w_WO: self.vectors("w", "")?[k],
-        })
+    pub(crate) fn body(&self, k: usize) -> Anything<BodyState> {
+        self.bodies(k + 1)?.pop().ok_or_else(|| "no sample".into())
+    }
+
+    /// The body's states at the first `count` samples.
+    pub(crate) fn bodies(&self, count: usize) -> Anything<Vec<BodyState>> {
+        let (p, q, v, w) =
+            (self.vectors("cm", "")?, self.quaternions("q", "")?, self.vectors("v", "")?, self.vectors("w", "")?);
+        Ok((0..count).map(|k| BodyState { p_WCm: p[k], R_WO: q[k], v_WCm: v[k], w_WO: w[k] }).collect())
     }
 
     /// The scene whose palms move as the log's did, every `thinned`-th pose being a node of their paths.
-    pub(super) fn scene(&self, thinned: usize) -> Anything<ContactScene<Ellipsoid>> {
+    pub(crate) fn scene(&self, thinned: usize) -> Anything<ContactScene<Ellipsoid>> {
         let body = Ellipsoid::new(vector(&self.about["axes"]))?;
         let inertia = DMat3::from_cols(
             vector(&self.about["inertia"][0]),
@@ -173,7 +217,7 @@ impl Log {
     }
 
     /// Coordinates of the palms on springs at sample `k`.
-    pub(super) fn palm_coordinates(&self, k: usize) -> Anything<[PalmCoordinates; 5]> {
+    pub(crate) fn palm_coordinates(&self, k: usize) -> Anything<[PalmCoordinates; 5]> {
         let mut all = [PalmCoordinates::default(); 5];
         for i in 1..=self.palm_count() {
             let tail = format!("_{i}");

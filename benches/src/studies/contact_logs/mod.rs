@@ -5,7 +5,7 @@
 //!
 //! Modes are told as the logs tell them: a contact sticks where its slip is below the log's tolerance.
 
-mod log;
+pub(crate) mod log;
 
 use log::{Anything, Log};
 use recon::contact_kinematics::SupportFunction;

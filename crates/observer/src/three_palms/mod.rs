@@ -35,6 +35,10 @@ mod track;
 mod unknown_body;
 mod verdict;
 
+pub(crate) use quadrature::running_integral;
+pub(crate) use sensitivity::{exponential, logarithm};
+pub(crate) use state_space::{inertia_of_numbers, inertia_slope, numbers_of_inertia};
+
 pub use alternatives::OtherMotion;
 pub use covariance::NoiseLevel;
 pub use curves::CurveUncertainty;

@@ -8,7 +8,7 @@ const STENCIL: usize = 6;
 const SAME_STENCIL: f64 = 1e-9;
 
 /// `integral of f from t[0] to t[k]` for every `k`. Times are strictly increasing and as many as values.
-pub(super) fn running_integral<V>(t: &[f64], f: &[V], zero: V) -> Vec<V>
+pub(crate) fn running_integral<V>(t: &[f64], f: &[V], zero: V) -> Vec<V>
 where
     V: Copy + Add<Output = V> + Mul<f64, Output = V>,
 {

@@ -125,7 +125,7 @@ pub(super) fn cross_matrix(v: DVec3) -> DMat3 {
 }
 
 /// `exp [v]x` as a quaternion, exact for small `v` too.
-pub(super) fn exponential(v: DVec3) -> DQuat {
+pub(crate) fn exponential(v: DVec3) -> DQuat {
     let angle = v.length();
     // sin(a/2) / a; the series is exact to rounding below 1e-4.
     let ratio = if angle < 1e-4 { 0.5 - angle * angle / 48.0 } else { (0.5 * angle).sin() / angle };
@@ -133,7 +133,7 @@ pub(super) fn exponential(v: DVec3) -> DQuat {
 }
 
 /// The rotation vector of a unit quaternion, of length at most pi: `exponential` undone.
-pub(super) fn logarithm(q: DQuat) -> DVec3 {
+pub(crate) fn logarithm(q: DQuat) -> DVec3 {
     let q = if q.w < 0.0 { -q } else { q };
     let v = DVec3::new(q.x, q.y, q.z);
     let sine = v.length();

@@ -1,0 +1,81 @@
+//! A start from nothing: twists that the contacts alone suggest.
+
+use super::problem::{Problem, Unknowns};
+use super::record::Record;
+use super::state::{Body, Motion};
+use crate::three_palms::{exponential, numbers_of_inertia};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::{Matrix6, Vector6};
+use object_dynamics::ContactMode;
+
+/// Weight of no motion at all against one contact condition, in natural units.
+const RIDGE: f64 = 1e-2;
+
+/// A ball of the size `length`, with the mean force for its weight.
+pub(super) fn ball(record: &Record, gravity: f64, length: f64) -> Body {
+    let forces: DVec3 = record.intervals.iter().map(|i| i.impulse.force).sum();
+    let time: f64 = record.intervals.iter().map(|i| i.h).sum();
+    let mass = (forces.length() / (time * gravity)).max(f64::MIN_POSITIVE);
+    let inertia = DMat3::from_diagonal(DVec3::splat(0.4 * mass * length * length));
+    Body::new(mass.ln(), numbers_of_inertia(inertia))
+}
+
+/// Mean distance of contacts from the mean of those of the same time, m.
+pub(super) fn size(record: &Record) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0);
+    for contacts in record.contacts.iter().filter(|c| c.len() > 1) {
+        let mean = contacts.iter().map(|c| c.c).sum::<DVec3>() / contacts.len() as f64;
+        sum += contacts.iter().map(|c| (c.c - mean).length()).sum::<f64>();
+        count += contacts.len();
+    }
+    (count > 0).then(|| sum / count as f64)
+}
+
+pub(super) fn start(problem: &Problem, body: Body, orientation: DQuat) -> Unknowns {
+    let mut motions: Vec<Motion> = Vec::with_capacity(problem.nodes.len());
+    let record = problem.record;
+    let mut centre = DVec3::ZERO;
+    let (mut q, mut last) = (orientation, None);
+    for (j, &k) in problem.nodes.iter().enumerate() {
+        let before = problem.nodes[j.saturating_sub(1)];
+        let after = problem.nodes.get(j + 1).copied().unwrap_or(k);
+        let samples = ((before + k) / 2)..=((k + after) / 2);
+        let contacts: Vec<_> = samples.flat_map(|k| &record.contacts[k]).collect();
+        if !contacts.is_empty() {
+            centre = contacts.iter().map(|c| c.c).sum::<DVec3>() / contacts.len() as f64;
+        }
+        let (v, w) = twist(&contacts, centre, problem.units.length);
+        if let Some((t, before)) = last {
+            let mean: DVec3 = 0.5 * (w + before);
+            q = (exponential(mean * (record.times[k] - t)) * q).normalize();
+        }
+        last = Some((record.times[k], w));
+        let R = DMat3::from_quat(q);
+        let L = R * body.inertia() * R.transpose() * w;
+        motions.push(Motion { p: centre, v, L, q });
+    }
+    Unknowns { motions, body }
+}
+
+/// Velocity of `centre` and angular velocity that fit the conditions of some contacts, as small as they may be.
+fn twist(contacts: &[&super::record::Contact], centre: DVec3, length: f64) -> (DVec3, DVec3) {
+    let mut normal = Matrix6::identity() * (RIDGE * contacts.len().max(1) as f64);
+    let mut right = Vector6::zeros();
+    for contact in contacts {
+        let (t1, t2) = contact.n.any_orthonormal_pair();
+        let axes = match contact.mode {
+            ContactMode::Off => continue,
+            ContactMode::Slide => [Some(contact.n), None, None],
+            ContactMode::Stick => [Some(contact.n), Some(t1), Some(t2)],
+        };
+        for e in axes.into_iter().flatten() {
+            let arm = (contact.c - centre) / length;
+            let row = super::record::six(e, arm.cross(e));
+            normal.ger(1.0, &row, &row, 1.0);
+            right += row * e.dot(contact.u);
+        }
+    }
+    let Some(factor) = normal.cholesky() else { return (DVec3::ZERO, DVec3::ZERO) };
+    let x = factor.solve(&right);
+    (DVec3::new(x[0], x[1], x[2]), DVec3::new(x[3], x[4], x[5]) / length)
+}

@@ -1,0 +1,197 @@
+//! A node's motion carried through the samples of its link by what was measured, with its derivatives.
+
+use super::record::{Interval, Wrench};
+use super::state::{Body, MOTION, Motion, Tangent, Turn};
+use crate::three_palms::exponential;
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
+
+/// Derivatives of a motion by the motion at its node.
+pub(super) type Transition = SMatrix<f64, MOTION, MOTION>;
+
+/// The motion some samples after its node, and what its derivatives are made of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Carried<const P: usize> {
+    pub(super) motion: Motion,
+    pub(super) turn: Turn,
+    /// Time since the node, s.
+    pub(super) after: f64,
+    /// Integrals since the node: force, force times time, integral of the force, and that crossed with the force.
+    impulse: DVec3,
+    first: DVec3,
+    second: DVec3,
+    crossed: DVec3,
+    /// Derivatives of the orientation by motion and constants at the node.
+    turn_by_motion: SMatrix<f64, 3, MOTION>,
+    turn_by_body: SMatrix<f64, 3, P>,
+}
+
+impl<const P: usize> Carried<P> {
+    pub(super) fn new(motion: Motion, body: &Body) -> Self {
+        let mut turn_by_motion = SMatrix::<f64, 3, MOTION>::zeros();
+        turn_by_motion.fixed_view_mut::<3, 3>(0, 9).copy_from(&Matrix3::identity());
+        Self {
+            motion,
+            turn: body.turn(motion.q, motion.L),
+            after: 0.0,
+            impulse: DVec3::ZERO,
+            first: DVec3::ZERO,
+            second: DVec3::ZERO,
+            crossed: DVec3::ZERO,
+            turn_by_motion,
+            turn_by_body: SMatrix::zeros(),
+        }
+    }
+
+    /// To the end of an interval, at whose ends the forces are `wrenches`.
+    pub(super) fn advance(&mut self, interval: &Interval, wrenches: [&Wrench; 2], body: &Body, gravity: DVec3) {
+        let before = *self;
+        self.step(interval, wrenches, body, gravity);
+        let h = interval.h;
+        // Heun's rule serves derivatives: they steer the iteration, what it converges to they do not change.
+        let (motion_start, body_start) = before.turn_rates(body);
+        self.turn_by_motion = before.turn_by_motion + motion_start * h;
+        self.turn_by_body = before.turn_by_body + body_start * h;
+        let (motion_end, body_end) = self.turn_rates(body);
+        self.turn_by_motion = before.turn_by_motion + (motion_start + motion_end) * (0.5 * h);
+        self.turn_by_body = before.turn_by_body + (body_start + body_end) * (0.5 * h);
+    }
+
+    /// The motion alone.
+    pub(super) fn step(&mut self, interval: &Interval, wrenches: [&Wrench; 2], body: &Body, gravity: DVec3) {
+        let (h, m) = (interval.h, body.inverse_mass());
+        let (force, first) = (interval.impulse.force, interval.first);
+        let second = h * force - first;
+        let Motion { p, v, L, q } = self.motion;
+        let mean = force / h;
+        // The integral of a force that is constant over the interval, crossed with it, vanishes.
+        let drift = gravity.cross(mean) * (h * h * h / 6.0);
+        let after = Motion {
+            p: p + v * h + gravity * (0.5 * h * h) + second * m,
+            v: v + gravity * h + force * m,
+            L: L + interval.impulse.moment - p.cross(force) - v.cross(first) - drift,
+            q,
+        };
+        let moment = |w: &Wrench, p: DVec3| w.moment - p.cross(w.force);
+        let rates = [moment(wrenches[0], p), moment(wrenches[1], after.p)];
+        let q = turned(q, [L, after.L], rates, body, h);
+        self.crossed += self.second.cross(force) + self.impulse.cross(first);
+        self.first += self.after * force + first;
+        self.second += self.impulse * h + second;
+        self.impulse += force;
+        self.after += h;
+        self.motion = Motion { q, ..after };
+        self.turn = body.turn(q, after.L);
+    }
+
+    /// `phi' = K ([L]x phi + dL) + K (-dI w)`.
+    fn turn_rates(&self, body: &Body) -> (SMatrix<f64, 3, MOTION>, SMatrix<f64, 3, P>) {
+        let K = matrix(self.turn.K);
+        let KL = K * cross(self.motion.L);
+        let mut by_motion = KL * self.turn_by_motion;
+        let mut add = |at: usize, block: Matrix3<f64>| {
+            let mut view = by_motion.fixed_view_mut::<3, 3>(0, at);
+            view += K * block;
+        };
+        add(0, cross(self.impulse));
+        add(3, cross(self.first));
+        add(6, Matrix3::identity());
+        let mut by_body = KL * self.turn_by_body;
+        if P > 0 {
+            let mut add = |at: usize, change: DVec3| {
+                let mut column = by_body.column_mut(at);
+                column += vector(self.turn.K * change);
+            };
+            add(0, self.crossed * body.inverse_mass());
+            for (i, change) in body.by_inertia(&self.turn).into_iter().enumerate() {
+                add(i + 1, change);
+            }
+        }
+        (by_motion, by_body)
+    }
+
+    /// Derivatives by the motion at the node and by the constants: logarithm of the mass, numbers of the inertia.
+    pub(super) fn derivatives(&self, body: &Body) -> (Transition, SMatrix<f64, MOTION, P>) {
+        let mut by_motion = Transition::identity();
+        by_motion.fixed_view_mut::<3, 3>(0, 3).copy_from(&(Matrix3::identity() * self.after));
+        by_motion.fixed_view_mut::<3, 3>(6, 0).copy_from(&cross(self.impulse));
+        by_motion.fixed_view_mut::<3, 3>(6, 3).copy_from(&cross(self.first));
+        by_motion.fixed_view_mut::<3, MOTION>(9, 0).copy_from(&self.turn_by_motion);
+        let mut by_body = SMatrix::<f64, MOTION, P>::zeros();
+        if P > 0 {
+            let m = body.inverse_mass();
+            for (at, change) in [(0, -self.second), (3, -self.impulse), (6, self.crossed)] {
+                by_body.fixed_view_mut::<3, 1>(at, 0).copy_from(&vector(change * m));
+            }
+            by_body.fixed_view_mut::<3, P>(9, 0).copy_from(&self.turn_by_body);
+        }
+        (by_motion, by_body)
+    }
+}
+
+impl<const P: usize> Carried<P> {
+    /// Derivatives at the impulses that a link's residual `r` says there were: with noisy ones the noise of a derivative
+    /// would meet its own residual.
+    pub(super) fn adjusted(&self, body: &Body, r: &Tangent) -> (Transition, SMatrix<f64, MOTION, P>) {
+        let m = body.inverse_mass();
+        let missing = [DVec3::new(r[0], r[1], r[2]) / m, DVec3::new(r[3], r[4], r[5]) / m];
+        let mut at = *self;
+        at.impulse += missing[1];
+        at.second += missing[0];
+        at.first += missing[1] * self.after - missing[0];
+        at.derivatives(body)
+    }
+}
+
+/// Orientation after `h` while the angular momentum goes from one value to another with given rates at both ends: the
+/// commutator-free Lie group method of order 4 (Celledoni, Marthinsen, Owren 2003).
+fn turned(q: DQuat, L: [DVec3; 2], rates: [DVec3; 2], body: &Body, h: f64) -> DQuat {
+    let middle = 0.5 * (L[0] + L[1]) + (rates[0] - rates[1]) * (h / 8.0);
+    let w = |q: DQuat, L: DVec3| body.turn(q, L).w;
+    let k1 = w(q, L[0]);
+    let half = exponential(k1 * (0.5 * h)) * q;
+    let k2 = w(half, middle);
+    let k3 = w(exponential(k2 * (0.5 * h)) * q, middle);
+    let k4 = w(exponential((k3 - 0.5 * k1) * h) * half, L[1]);
+    let first = exponential((3.0 * k1 + 2.0 * k2 + 2.0 * k3 - k4) * (h / 12.0));
+    let second = exponential((-k1 + 2.0 * k2 + 2.0 * k3 + 3.0 * k4) * (h / 12.0));
+    (second * (first * q)).normalize()
+}
+
+/// Information of a link of duration `h`: the inverse covariance of what white noise of the forces, of covariance `noise`
+/// over the link with moments about the centre of mass, does to the motion. None where `noise` has no inverse.
+pub(super) fn link_information(noise: &Matrix6<f64>, h: f64, body: &Body, turn: &Turn) -> Option<Transition> {
+    let inverse = noise.cholesky()?.inverse();
+    let mass = 1.0 / body.inverse_mass();
+    let inertia = matrix(turn.R * body.inertia() * turn.R.transpose());
+    // Integrals of the wrench noise twice and once over time, from the motion.
+    let mut twice = SMatrix::<f64, 6, MOTION>::zeros();
+    twice.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Matrix3::identity() * mass));
+    twice.fixed_view_mut::<3, 3>(3, 9).copy_from(&inertia);
+    let mut once = SMatrix::<f64, 6, MOTION>::zeros();
+    once.fixed_view_mut::<3, 3>(0, 3).copy_from(&(Matrix3::identity() * mass));
+    once.fixed_view_mut::<3, 3>(3, 6).copy_from(&Matrix3::identity());
+    let (s_twice, s_once) = (inverse * twice, inverse * once);
+    let mixed = twice.transpose() * s_once * (-6.0 / h);
+    let information = twice.transpose() * s_twice * (12.0 / (h * h))
+        + once.transpose() * s_once * 4.0
+        + mixed
+        + mixed.transpose();
+    Some(information)
+}
+
+pub(super) fn residual(found: &Motion, predicted: &Motion) -> Tangent {
+    found.from(predicted)
+}
+
+pub(super) fn cross(v: DVec3) -> Matrix3<f64> {
+    Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
+}
+
+pub(super) fn matrix(m: DMat3) -> Matrix3<f64> {
+    Matrix3::from_column_slice(&m.to_cols_array())
+}
+
+pub(super) fn vector(v: DVec3) -> Vector3<f64> {
+    Vector3::new(v.x, v.y, v.z)
+}

@@ -1,0 +1,14 @@
+//! Motion, mass and inertia from contacts of any palms: nodes linked by measured impulses.
+
+mod cold;
+mod estimate;
+mod flow;
+mod noise;
+mod problem;
+mod record;
+mod rows;
+mod solve;
+mod state;
+
+pub use estimate::{ContactEstimate, estimate_contacts};
+pub use noise::SensorNoise;

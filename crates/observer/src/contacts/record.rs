@@ -1,0 +1,160 @@
+//! What the estimator reads of a log: contacts at samples, and what the forces do between them.
+
+use super::noise::SensorNoise;
+use crate::three_palms::running_integral;
+use contact_kinematics::PalmSurface;
+use glam::{DMat3, DVec3};
+use nalgebra::{Matrix6, Vector6};
+use object_dynamics::{ContactLog, ContactMode, MOST_PALMS};
+use std::ops::{Add, Mul};
+
+/// A contact at one sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contact {
+    pub(super) palm: usize,
+    /// Contact point from the record's origin, m.
+    pub(super) c: DVec3,
+    pub(super) n: DVec3,
+    /// Velocity of the palm's material at the contact, m/s, and the palm's angular velocity, rad/s.
+    pub(super) u: DVec3,
+    pub(super) W: DVec3,
+    /// Shape operator of the palm in world axes, 1/m: how its normal turns along it.
+    pub(super) shape: DMat3,
+    pub(super) f: DVec3,
+    pub(super) mode: ContactMode,
+}
+
+/// Forces of all palms and their moments about the origin, or an integral of them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wrench {
+    pub(super) force: DVec3,
+    pub(super) moment: DVec3,
+}
+
+/// What forces and their noise do from one sample to the next.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Interval {
+    pub(super) h: f64,
+    pub(super) impulse: Wrench,
+    /// Integral of the force times the time since the interval's start, N s^2.
+    pub(super) first: DVec3,
+    /// Covariance of `impulse`; the moment about the origin.
+    pub(super) noise: Matrix6<f64>,
+}
+
+/// Samples of a log.
+#[derive(Debug)]
+pub(super) struct Record {
+    pub(super) times: Vec<f64>,
+    /// What all positions are measured from, world: the mean of the contacts.
+    pub(super) origin: DVec3,
+    pub(super) contacts: Vec<Vec<Contact>>,
+    pub(super) wrenches: Vec<Wrench>,
+    pub(super) intervals: Vec<Interval>,
+}
+
+impl Add for Wrench {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { force: self.force + other.force, moment: self.moment + other.moment }
+    }
+}
+
+impl Mul<f64> for Wrench {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        Self { force: self.force * factor, moment: self.moment * factor }
+    }
+}
+
+impl Record {
+    /// Of a log whose palms measure forces of three axes, with the modes of each palm at each sample; none without a contact.
+    pub(super) fn new(log: &ContactLog, modes: &[[ContactMode; MOST_PALMS]], noise: &SensorNoise) -> Option<Self> {
+        let times = log.times().to_vec();
+        let points = || (0..times.len()).flat_map(|k| log.palms().iter().filter_map(move |palm| palm.touch(k)));
+        let count = points().count();
+        if count == 0 {
+            return None;
+        }
+        let origin = points().map(|touch| touch.p_WC).sum::<DVec3>() / count as f64;
+        let contacts: Vec<Vec<Contact>> =
+            (0..times.len()).map(|k| contacts_at(log, k, origin, &modes[k])).collect();
+        let wrench = |contacts: &Vec<Contact>| {
+            let of = |c: &Contact| Wrench { force: c.f, moment: c.c.cross(c.f) };
+            contacts.iter().map(of).fold(Wrench::default(), Add::add)
+        };
+        let wrenches: Vec<Wrench> = contacts.iter().map(wrench).collect();
+        let intervals = intervals(log, &contacts, &wrenches, noise);
+        Some(Self { times, origin, contacts, wrenches, intervals })
+    }
+}
+
+fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, modes: &[ContactMode; MOST_PALMS]) -> Vec<Contact> {
+    let one = |(palm, logged): (usize, &object_dynamics::LoggedPalm)| {
+        let touch = logged.touch(k)?;
+        let motion = logged.motion(k);
+        let n = touch.n.get();
+        Some(Contact {
+            palm,
+            c: touch.p_WC - origin,
+            n,
+            u: motion.material_velocity(touch.p_WC),
+            W: motion.w_WP,
+            shape: shape_operator(logged.surface(), n, motion.pose.R_WP * DVec3::X),
+            f: logged.force(k)?.vector,
+            mode: modes[palm],
+        })
+    };
+    log.palms().iter().enumerate().filter_map(one).collect()
+}
+
+/// `contacts.md`, section 1: of a palm whose axis, if it has one, is `axis`.
+fn shape_operator(surface: PalmSurface, n: DVec3, axis: DVec3) -> DMat3 {
+    let outer = |a: DVec3| DMat3::from_cols(a * a.x, a * a.y, a * a.z);
+    let tangent = DMat3::IDENTITY - outer(n);
+    match surface {
+        PalmSurface::Plane => DMat3::ZERO,
+        PalmSurface::Sphere { radius } => tangent * (1.0 / radius),
+        PalmSurface::Cup { radius } => tangent * (-1.0 / radius),
+        PalmSurface::Cylinder { radius } => outer(axis.cross(n)) * (1.0 / radius),
+    }
+}
+
+fn intervals(log: &ContactLog, contacts: &[Vec<Contact>], wrenches: &[Wrench], noise: &SensorNoise) -> Vec<Interval> {
+    let times = log.times();
+    let since: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
+    let sums = running_integral(&since, wrenches, Wrench::default());
+    let timed: Vec<Wrench> = wrenches.iter().zip(&since).map(|(w, t)| *w * *t).collect();
+    let firsts = running_integral(&since, &timed, Wrench::default());
+    (1..times.len())
+        .map(|k| {
+            let h = since[k] - since[k - 1];
+            let impulse = sums[k] + sums[k - 1] * -1.0;
+            let first = firsts[k].force - firsts[k - 1].force - impulse.force * since[k - 1];
+            let mut covariance = Matrix6::zeros();
+            for contact in &contacts[k] {
+                add_noise(&mut covariance, contact, noise, h);
+            }
+            Interval { h, impulse, first, noise: covariance }
+        })
+        .collect()
+}
+
+/// What the noise of one contact does to the impulse and moment of an interval: samples are independent.
+fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, noise: &SensorNoise, h: f64) {
+    let force = noise.force_fixed.hypot(noise.force_share * contact.f.length()) * h;
+    for axis in DVec3::AXES {
+        let moment = contact.c.cross(axis);
+        let column = six(axis, moment) * force;
+        covariance.ger(1.0, &column, &column, 1.0);
+    }
+    let (a, b) = contact.n.any_orthonormal_pair();
+    for tangent in [a, b] {
+        let column = six(DVec3::ZERO, tangent.cross(contact.f)) * (noise.contact * h);
+        covariance.ger(1.0, &column, &column, 1.0);
+    }
+}
+
+pub(super) fn six(a: DVec3, b: DVec3) -> Vector6<f64> {
+    Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z)
+}

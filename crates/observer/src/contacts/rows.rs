@@ -1,0 +1,95 @@
+//! Contact conditions of one sample, with what noise of the contact does to them.
+
+use super::noise::SensorNoise;
+use super::record::Contact;
+use super::state::{Body, MOTION, Motion, Turn};
+use glam::DVec3;
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use object_dynamics::ContactMode;
+
+/// Conditions of one contact: its normal one alone where it slides, all three where it sticks.
+pub(super) struct Rows {
+    pub(super) axes: [DVec3; 3],
+    pub(super) count: usize,
+    /// Velocity of the body against the palm at the contact, m/s.
+    pub(super) slip: DVec3,
+    /// From the centre of mass to the contact.
+    pub(super) arm: DVec3,
+    /// Information of the conditions: inverse covariance, rows and columns that do not count are zero.
+    pub(super) information: Matrix3<f64>,
+}
+
+/// Standard deviations that a contact is moved by at most.
+const FARTHEST_FOOT: f64 = 5.0;
+
+impl Rows {
+    /// None for a contact that is off.
+    pub(super) fn new(contact: &Contact, motion: &Motion, turn: &Turn, noise: &SensorNoise) -> Option<Self> {
+        let arm = contact.c - motion.p;
+        let slip = motion.v + turn.w.cross(arm) - contact.u;
+        let (t1, t2) = contact.n.any_orthonormal_pair();
+        let axes = [contact.n, t1, t2];
+        let count = match contact.mode {
+            ContactMode::Off => return None,
+            ContactMode::Slide => 1,
+            ContactMode::Stick => 3,
+        };
+        // What a shift of the contact along a tangent does to each condition.
+        let turning = turn.w - contact.W;
+        let mut covariance = Matrix3::identity() * (noise.floor * noise.floor);
+        let mut shifts = [Vector3::zeros(); 2];
+        for (tangent, stored) in [t1, t2].into_iter().zip(&mut shifts) {
+            let shift = turning.cross(tangent);
+            let bend = if count == 1 { slip.dot(contact.shape * tangent) } else { 0.0 };
+            let column = Vector3::new(shift.dot(axes[0]) + bend, shift.dot(t1), shift.dot(t2)) * noise.contact;
+            covariance.ger(1.0, &column, &column, 1.0);
+            *stored = column;
+        }
+        let information = if count == 1 {
+            Matrix3::from_diagonal(&Vector3::new(1.0 / covariance[(0, 0)], 0.0, 0.0))
+        } else {
+            covariance.cholesky()?.inverse()
+        };
+        let mut rows = Self { axes, count, slip, arm, information };
+        let pull = information * rows.residual();
+        let foot = shifts.map(|column| -(noise.contact * column.dot(&pull)));
+        let farthest = FARTHEST_FOOT * noise.contact;
+        let length = foot[0].hypot(foot[1]);
+        let share = if length > farthest { farthest / length } else { 1.0 };
+        rows.arm += (foot[0] * t1 + foot[1] * t2) * share;
+        Some(rows)
+    }
+
+    pub(super) fn residual(&self) -> Vector3<f64> {
+        Vector3::from_fn(|i, _| if i < self.count { self.axes[i].dot(self.slip) } else { 0.0 })
+    }
+
+    /// Derivatives by the motion at the sample.
+    pub(super) fn by_motion(&self, motion: &Motion, turn: &Turn) -> SMatrix<f64, 3, MOTION> {
+        let mut rows = SMatrix::<f64, 3, MOTION>::zeros();
+        for (i, e) in self.axes.into_iter().enumerate().take(self.count) {
+            let b = self.arm.cross(e);
+            let by_L = turn.K * b;
+            let by_turn = turn.w.cross(b) + by_L.cross(motion.L);
+            let parts = [-e.cross(turn.w), e, by_L, by_turn];
+            let row = SVector::<f64, MOTION>::from_fn(|j, _| parts[j / 3][j % 3]);
+            rows.set_row(i, &row.transpose());
+        }
+        rows
+    }
+
+    /// Derivatives by the constants of the body at a given motion.
+    pub(super) fn by_body<const P: usize>(&self, body: &Body, turn: &Turn) -> SMatrix<f64, 3, P> {
+        let mut rows = SMatrix::<f64, 3, P>::zeros();
+        if P > 0 {
+            let changes = body.by_inertia(turn).map(|change| turn.K * change);
+            for (i, e) in self.axes.into_iter().enumerate().take(self.count) {
+                let b = self.arm.cross(e);
+                for (j, change) in changes.iter().enumerate() {
+                    rows[(i, j + 1)] = b.dot(*change);
+                }
+            }
+        }
+        rows
+    }
+}

@@ -1,0 +1,103 @@
+//! The motion at a node and the constants of the body.
+
+use crate::three_palms::{inertia_of_numbers, inertia_slope, logarithm};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::{SVector, Vector6};
+
+/// Numbers of a motion's tangent: centre of mass, velocity, angular momentum, turn in world axes.
+pub(super) const MOTION: usize = 12;
+pub(super) type Tangent = SVector<f64, MOTION>;
+
+/// Motion at a node; positions from the record's origin.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pub(super) p: DVec3,
+    pub(super) v: DVec3,
+    pub(super) L: DVec3,
+    pub(super) q: DQuat,
+}
+
+/// Mass and inertia about the centre of mass in body axes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Body {
+    pub(super) log_mass: f64,
+    pub(super) numbers: [f64; 6],
+    inverse_mass: f64,
+    inertia: DMat3,
+    inverse: DMat3,
+}
+
+/// What follows from motion and body at one time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    pub(super) R: DMat3,
+    /// Inverse inertia in world axes.
+    pub(super) K: DMat3,
+    pub(super) w: DVec3,
+}
+
+impl Body {
+    pub(super) fn new(log_mass: f64, numbers: [f64; 6]) -> Self {
+        let inertia = inertia_of_numbers(&numbers);
+        Self { log_mass, numbers, inverse_mass: (-log_mass).exp(), inertia, inverse: inertia.inverse() }
+    }
+
+    pub(super) fn inverse_mass(&self) -> f64 {
+        self.inverse_mass
+    }
+
+    pub(super) fn inertia(&self) -> DMat3 {
+        self.inertia
+    }
+
+    pub(super) fn turn(&self, q: DQuat, L: DVec3) -> Turn {
+        let R = DMat3::from_quat(q);
+        let K = R * self.inverse * R.transpose();
+        Turn { R, K, w: K * L }
+    }
+
+    /// `-dI w` in world axes for each number of the inertia tensor: `K` times it is the change of the angular velocity.
+    pub(super) fn by_inertia(&self, turn: &Turn) -> [DVec3; 6] {
+        let w = turn.R.transpose() * turn.w;
+        std::array::from_fn(|i| -(turn.R * (inertia_slope(&self.numbers, i) * w)))
+    }
+
+    pub(super) fn moved(&self, log_mass: f64, by: &Vector6<f64>) -> Self {
+        Self::new(self.log_mass + log_mass, std::array::from_fn(|i| self.numbers[i] + by[i]))
+    }
+}
+
+impl Motion {
+    /// The motion after a step that led to the orientation `q`, of `body` before and `after` it.
+    ///
+    /// Contact conditions are linear in the angular velocity: that moves by what the step means to first order, and the
+    /// angular momentum follows. A large step of the inertia then leaves the conditions as they were promised.
+    pub(super) fn moved(
+        &self,
+        step: &Tangent,
+        q: DQuat,
+        body: &Body,
+        numbers: Option<&Vector6<f64>>,
+        after: &Body,
+    ) -> Self {
+        let part = |i: usize| DVec3::new(step[i], step[i + 1], step[i + 2]);
+        let turn = body.turn(self.q, self.L);
+        let by = part(9);
+        let mut change = self.L.cross(by) + part(6);
+        if let Some(numbers) = numbers {
+            for (slope, by) in body.by_inertia(&turn).into_iter().zip(numbers.iter()) {
+                change += slope * *by;
+            }
+        }
+        let w = turn.w + turn.K * change + by.cross(turn.w);
+        let R = DMat3::from_quat(q);
+        Self { p: self.p + part(0), v: self.v + part(3), L: R * (after.inertia() * (R.transpose() * w)), q }
+    }
+
+    /// The step that leads here from another motion.
+    pub(super) fn from(&self, other: &Self) -> Tangent {
+        let turn = logarithm((self.q * other.q.conjugate()).normalize());
+        let parts = [self.p - other.p, self.v - other.v, self.L - other.L, turn];
+        Tangent::from_fn(|i, _| parts[i / 3][i % 3])
+    }
+}
