@@ -23,7 +23,9 @@ pub use core::{
 };
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
-pub use contacts::{ContactEstimate, SensorNoise, estimate_contacts};
+pub use contacts::{
+    ContactEstimate, ContactEstimateError, ContactOptions, SensorNoise, estimate_contacts,
+};
 #[cfg(feature = "palms")]
 pub use three_palms::{
     BodyEstimate, CurveUncertainty, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate,

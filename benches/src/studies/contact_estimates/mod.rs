@@ -3,7 +3,7 @@
 use super::contact_logs::log::{Anything, Log};
 use glam::{DMat3, DQuat};
 use recon::object_dynamics::{ContactNoise, ChannelNoise};
-use recon::observer::{ContactEstimate, SensorNoise, estimate_contacts};
+use recon::observer::{ContactEstimate, ContactOptions, SensorNoise, estimate_contacts};
 use std::path::PathBuf;
 
 pub(crate) fn main() -> Anything<()> {
@@ -36,14 +36,13 @@ fn one(name: &str, file: &Log, (stride, contact, share, seconds, seed, floor): (
         log.with_noise(&noise, seed)?
     } else { log };
     let noise = SensorNoise { contact: 2.0 * l * contact, force_fixed: 0.0, force_share: share, floor: floor * (g * l).sqrt() };
-    let truth: Vec<_> = file.bodies(log.times().len())?;
-    let (m, i) = file.mass();
-    let from = std::env::var_os("TRUTH").map(|_| (truth.as_slice(), m, i));
+    let size = (file.palm_count() == 1).then_some(0.8 * l);
+    let options = ContactOptions { noise, gravity: g, stride, size };
     let started = std::time::Instant::now();
-    let Some(found) = estimate_contacts(&log, &modes, noise, g, stride, from) else { println!("| {name} | none |"); return Ok(()) };
+    let found = estimate_contacts(&log, &modes, &options)?;
     let ms = started.elapsed().as_secs_f64() * 1e3;
     let errors = errors(file, &found, l, g)?;
-    println!("| {name} | {} | {} | {:.3} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {ms:.0} |", found.iterations, found.settled, found.cost, errors[0], errors[1], errors[2], errors[3], errors[4], errors[5]);
+    println!("| {name} | {:?} | {} | {:.3} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {ms:.0} | {:.1e} {:.1?} {:.1e}", found.iterations, found.settled, found.chi_squared / found.conditions as f64, errors[0], errors[1], errors[2], errors[3], errors[4], errors[5], found.mass_deviation, found.inertia_deviations, found.deviations[found.nodes.len() / 2][0].length() / l);
     Ok(())
 }
 

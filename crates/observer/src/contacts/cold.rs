@@ -20,15 +20,19 @@ pub(super) fn ball(record: &Record, gravity: f64, length: f64) -> Body {
     Body::new(mass.ln(), numbers_of_inertia(inertia))
 }
 
-/// Mean distance of contacts from the mean of those of the same time, m.
+/// Radius of the ball that fits contacts and normals of the same time best, m; none where no two normals differ.
 pub(super) fn size(record: &Record) -> Option<f64> {
-    let (mut sum, mut count) = (0.0, 0);
-    for contacts in record.contacts.iter().filter(|c| c.len() > 1) {
-        let mean = contacts.iter().map(|c| c.c).sum::<DVec3>() / contacts.len() as f64;
-        sum += contacts.iter().map(|c| (c.c - mean).length()).sum::<f64>();
-        count += contacts.len();
+    let (mut along, mut square) = (0.0, 0.0);
+    for contacts in &record.contacts {
+        let count = contacts.len() as f64;
+        let c = contacts.iter().map(|c| c.c).sum::<DVec3>() / count;
+        let n = contacts.iter().map(|c| c.n).sum::<DVec3>() / count;
+        for contact in contacts {
+            along -= (contact.n - n).dot(contact.c - c);
+            square += (contact.n - n).length_squared();
+        }
     }
-    (count > 0).then(|| sum / count as f64)
+    (square > 0.0 && along > 0.0).then(|| along / square)
 }
 
 pub(super) fn start(problem: &Problem, body: Body, orientation: DQuat) -> Unknowns {
@@ -42,7 +46,8 @@ pub(super) fn start(problem: &Problem, body: Body, orientation: DQuat) -> Unknow
         let samples = ((before + k) / 2)..=((k + after) / 2);
         let contacts: Vec<_> = samples.flat_map(|k| &record.contacts[k]).collect();
         if !contacts.is_empty() {
-            centre = contacts.iter().map(|c| c.c).sum::<DVec3>() / contacts.len() as f64;
+            let within = |c: &&super::record::Contact| c.c + c.n * problem.units.length;
+            centre = contacts.iter().map(within).sum::<DVec3>() / contacts.len() as f64;
         }
         let (v, w) = twist(&contacts, centre, problem.units.length);
         if let Some((t, before)) = last {

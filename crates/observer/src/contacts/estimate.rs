@@ -1,107 +1,221 @@
+use super::cold;
 use super::noise::SensorNoise;
-use super::problem::{Problem, Units};
+use super::problem::{Problem, Units, Unknowns};
 use super::record::Record;
-use super::solve::solve;
-use super::state::{Body, Tangent};
-use super::{cold, state::Motion};
+use super::solve::{Covariances, Solved, solve};
+use super::state::{Body, MOTION, Motion, Tangent};
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::SVector;
-use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS};
+use nalgebra::{SMatrix, SVector};
+use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS, SensedAxes};
+use thiserror::Error;
 
-/// What was found.
+/// Constants of an unknown body: logarithm of the mass, six numbers of the inertia tensor.
+const CONSTANTS: usize = 7;
+/// Samples from node to node in the first, coarse solution, and the floor of its conditions over the natural speed.
+const COARSE: usize = 10;
+const COARSE_FLOOR: f64 = 1e-3;
+/// Linearisations that each of the two solutions may take.
+const MOST: usize = 60;
+/// A step that promises less in units of chi-squared than these is not worth taking: coarse solution, last one.
+const ENOUGH: [f64; 2] = [1.0, 1e-3];
+/// Deviation of the logarithms of the inertia's numbers before the log is read, and of that of the mass.
+const PRIOR: f64 = 2.0;
+const PRIOR_MASS: f64 = 10.0;
+/// Deviation of the first orientation, rad: an unknown body has no axes but those it is given.
+const FIRST_TURN: f64 = 1e-5;
+
+/// Why there is no estimate.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum ContactEstimateError {
+    /// Nothing was touched.
+    #[error("no palm was touched at any sample: there is nothing to estimate from")]
+    NoContact,
+    /// A palm lacks the force.
+    #[error("palm {palm} does not measure its force in three axes: the estimate from contacts needs all of it")]
+    NoForce {
+        /// Number from 1.
+        palm: usize,
+    },
+    /// As many modes as samples are needed.
+    #[error("{found} sets of contact modes for {samples} samples: give one set a sample")]
+    Modes {
+        /// Sets given.
+        found: usize,
+        /// Samples of the log.
+        samples: usize,
+    },
+    /// All contacts are on one palm, and the size of the body is not stated.
+    #[error("one palm's contacts tell no size of the body: state one")]
+    NoSize,
+    /// Numbers beyond all bounds.
+    #[error("the least-squares problem cannot be evaluated or its equations are singular: check units and noise")]
+    Singular,
+}
+
+/// Motion, mass and inertia of an unknown body.
 #[derive(Clone, Debug)]
 pub struct ContactEstimate {
-    /// Motion at the nodes; body axes are those of the first node.
+    /// Motion at the nodes; body axes are those of the world at the first one.
     pub states: Vec<BodyState>,
-    /// Samples of the nodes.
+    /// Standard deviations there: centre of mass (m), velocity (m/s), angular velocity (rad/s), turn (rad), world axes.
+    pub deviations: Vec<[DVec3; 4]>,
+    /// Sample of each node.
     pub nodes: Vec<usize>,
     /// Mass, kg.
     pub mass: f64,
-    /// Inertia about the centre of mass, body axes.
+    /// Standard deviation of the logarithm of the mass.
+    pub mass_deviation: f64,
+    /// Inertia about the centre of mass, body axes, kg m^2.
     pub inertia: DMat3,
-    /// Linearisations.
-    pub iterations: usize,
-    /// Whether a minimum was reached.
+    /// Standard deviations of the logarithms of the roots of the second moments: beyond 1 nothing was learned.
+    pub inertia_deviations: [f64; 3],
+    /// Linearisations: coarse, all.
+    pub iterations: [usize; 2],
+    /// Whether there was no more to gain.
     pub settled: bool,
-    /// Cost over conditions.
-    pub cost: f64,
+    /// Squared residuals in units of their deviations, and how many conditions there are.
+    pub chi_squared: f64,
+    /// Contact conditions.
+    pub conditions: usize,
 }
 
-/// Motion and body from a log with known modes.
-#[must_use]
+/// How [`estimate_contacts`] works.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactOptions {
+    /// Noise of the sensors.
+    pub noise: SensorNoise,
+    /// Gravity, m/s^2, along -z of the world.
+    pub gravity: f64,
+    /// Samples from node to node.
+    pub stride: usize,
+    /// Mean radius of the body, m, where it is known; else from contacts on two palms or more.
+    pub size: Option<f64>,
+}
+
+/// Motion, mass and inertia of an unknown body from contacts of any palms, their forces in three axes and contact modes, from
+/// no guess (`contacts.md`, section 5).
+///
+/// Nodes hold the motion; measured impulses link them, and the contacts of every sample are conditions on the motion of its
+/// node, carried there. What is minimised is the squared distance of the true readings from the measured ones in their
+/// deviations: contacts and impulses are adjusted with the motion.
+///
+/// # Errors
+/// [`ContactEstimateError`] where the log lacks what is needed.
 pub fn estimate_contacts(
     log: &ContactLog,
     modes: &[[ContactMode; MOST_PALMS]],
-    noise: SensorNoise,
-    gravity: f64,
-    stride: usize,
-    from: Option<(&[BodyState], f64, DMat3)>,
-) -> Option<ContactEstimate> {
-    let record = Record::new(log, modes, &noise)?;
-    let length = cold::size(&record).unwrap_or(0.03);
+    options: &ContactOptions,
+) -> Result<ContactEstimate, ContactEstimateError> {
+    check(log, modes)?;
+    let record = Record::new(log, modes, &options.noise).ok_or(ContactEstimateError::NoContact)?;
+    let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
+    let mut problem = problem(&record, options, length);
     let last = record.times.len() - 1;
-    let mut nodes: Vec<usize> = (0..last).step_by(stride).collect();
-    nodes.push(last);
-    let body = cold::ball(&record, gravity, length);
-    let first = Motion { p: DVec3::ZERO, v: DVec3::ZERO, L: DVec3::ZERO, q: DQuat::IDENTITY };
-    let prior = Tangent::from_fn(|i, _| if i < 9 { 0.0 } else { 1e10 });
-    let cross = (body.log_mass.exp() * length * length * 0.2).sqrt();
-    let body_information = SVector::<f64, 7>::from_fn(|i, _| match i {
-        0 => 0.01,
-        1..=3 => 0.25,
-        _ => 0.25 / (cross * cross),
+    let nodes = |stride: usize| (0..last).step_by(stride.max(1)).chain([last]).collect::<Vec<usize>>();
+    problem.nodes = nodes(COARSE.max(options.stride));
+    problem.noise.floor = problem.noise.floor.max(COARSE_FLOOR * problem.units.speed);
+    let start = cold::start(&problem, problem.body.0, DQuat::IDENTITY);
+    let coarse = solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[0]).ok_or(ContactEstimateError::Singular)?;
+    let coarse_nodes = std::mem::replace(&mut problem.nodes, nodes(options.stride));
+    problem.noise = options.noise;
+    let start = refined(&problem, &coarse_nodes, &coarse.unknowns);
+    let solved = solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[1]).ok_or(ContactEstimateError::Singular)?;
+    let covariances = solved.equations.covariances().ok_or(ContactEstimateError::Singular)?;
+    Ok(estimate(&record, problem.nodes, solved, &covariances, coarse.iterations))
+}
+
+fn check(log: &ContactLog, modes: &[[ContactMode; MOST_PALMS]]) -> Result<(), ContactEstimateError> {
+    let samples = log.times().len();
+    if modes.len() != samples {
+        return Err(ContactEstimateError::Modes { found: modes.len(), samples });
+    }
+    let lacks = log.palms().iter().position(|palm| palm.force_axes() != Some(SensedAxes::Three));
+    lacks.map_or(Ok(()), |palm| Err(ContactEstimateError::NoForce { palm: palm + 1 }))
+}
+
+fn problem<'a>(record: &'a Record, options: &ContactOptions, length: f64) -> Problem<'a> {
+    let body = cold::ball(record, options.gravity, length);
+    let none = Motion { p: DVec3::ZERO, v: DVec3::ZERO, L: DVec3::ZERO, q: DQuat::IDENTITY };
+    let information = |deviation: f64| 1.0 / (deviation * deviation);
+    let mass = body.log_mass.exp();
+    // Entries beside the diagonal of the factor of the second moments are of the size of those on it.
+    let entry = PRIOR * (0.2 * mass).sqrt() * length;
+    let known = SVector::from_fn(|i, _| match i {
+        0 => information(PRIOR_MASS),
+        1..=3 => information(PRIOR),
+        _ => information(entry),
     });
-    let problem = Problem {
-        record: &record,
-        noise,
-        gravity: DVec3::new(0.0, 0.0, -gravity),
-        nodes,
-        units: Units { length, speed: (gravity * length).sqrt(), mass: body.log_mass.exp() },
-        first: Some((first, prior)),
-        body: (body, body_information),
-        unexplained: 0.0,
-    };
-    let stages: Vec<f64> = std::env::var("STAGES").map_or(vec![1.0], |s| s.split(',').map(|x| x.parse().unwrap()).collect());
-    let most: usize = std::env::var("MOST").map_or(200, |s| s.parse().unwrap());
-    let mut start = cold::start(&problem, body, DQuat::IDENTITY);
-    if let Some((states, mass, inertia)) = from {
-        let R0 = states[0].R_WO;
-        let inertia = DMat3::from_quat(R0) * inertia * DMat3::from_quat(R0).transpose();
-        let body = Body::new(mass.ln(), crate::three_palms::numbers_of_inertia(inertia));
-        start.body = body;
-        start.motions = problem.nodes.iter().map(|&k| {
-            let q = states[k].R_WO * R0.conjugate();
-            let R = DMat3::from_quat(q);
-            Motion { p: states[k].p_WCm - record.origin, v: states[k].v_WCm, L: R * inertia * R.transpose() * states[k].w_WO, q }
-        }).collect();
+    Problem {
+        record,
+        noise: options.noise,
+        gravity: DVec3::new(0.0, 0.0, -options.gravity),
+        nodes: Vec::new(),
+        units: Units { length, speed: (options.gravity * length).sqrt(), mass },
+        first: (none, Tangent::from_fn(|i, _| if i < 9 { 0.0 } else { information(FIRST_TURN) })),
+        body: (body, known),
     }
-    let mut problem = problem;
-    let mut total = 0;
-    let mut solved = None;
-    for stage in stages {
-        let fl: f64 = std::env::var("FL").map_or(1.0, |s| s.parse().unwrap());
-        problem.noise = SensorNoise { floor: noise.floor * (1.0 + fl * stage), ..noise };
-        problem.unexplained = stage;
-        let done = solve::<7>(&problem, start, most)?;
-        start = done.unknowns.clone();
-        total += done.iterations;
-        solved = Some(done);
+}
+
+/// Motions at the nodes of `problem` by what was measured after the coarse node before each.
+fn refined(problem: &Problem, coarse: &[usize], unknowns: &Unknowns) -> Unknowns {
+    let mut motions = Vec::with_capacity(problem.nodes.len());
+    for (j, &from) in coarse.iter().enumerate() {
+        let end = coarse.get(j + 1).copied().unwrap_or(from + 1);
+        let within: Vec<usize> = problem.nodes.iter().copied().filter(|k| (from..end).contains(k)).collect();
+        motions.extend(problem.carried(from, unknowns.motions[j], &unknowns.body, &within));
     }
-    let mut solved = solved?;
-    solved.iterations = total;
-    let state = |motion: &Motion, body: &Body| BodyState {
+    Unknowns { motions, body: unknowns.body }
+}
+
+fn estimate(
+    record: &Record,
+    nodes: Vec<usize>,
+    solved: Solved<CONSTANTS>,
+    covariances: &Covariances<CONSTANTS>,
+    coarse: usize,
+) -> ContactEstimate {
+    let Solved { unknowns, equations, iterations, settled } = solved;
+    let body = &unknowns.body;
+    let state = |motion: &Motion| BodyState {
         p_WCm: motion.p + record.origin,
         v_WCm: motion.v,
         w_WO: body.turn(motion.q, motion.L).w,
         R_WO: motion.q,
     };
-    Some(ContactEstimate {
-        states: solved.unknowns.motions.iter().map(|m| state(m, &solved.unknowns.body)).collect(),
-        mass: solved.unknowns.body.log_mass.exp(),
-        inertia: solved.unknowns.body.inertia(),
-        iterations: solved.iterations,
-        settled: solved.settled,
-        cost: solved.equations.cost / solved.equations.conditions as f64,
-        nodes: problem.nodes,
-    })
+    let of = |(motion, (own, follows)): (&Motion, &(_, _))| {
+        deviations(motion, body, own, follows, &covariances.body)
+    };
+    let deviation = |i: usize| covariances.body[(i, i)].max(0.0).sqrt();
+    ContactEstimate {
+        states: unknowns.motions.iter().map(state).collect(),
+        deviations: unknowns.motions.iter().zip(&covariances.motions).map(of).collect(),
+        nodes,
+        mass: body.log_mass.exp(),
+        mass_deviation: deviation(0),
+        inertia: body.inertia(),
+        inertia_deviations: [deviation(1), deviation(2), deviation(3)],
+        iterations: [coarse, coarse + iterations],
+        settled,
+        chi_squared: equations.cost,
+        conditions: equations.conditions,
+    }
+}
+
+/// With the angular velocity in place of the angular momentum.
+fn deviations(
+    motion: &Motion,
+    body: &Body,
+    own: &SMatrix<f64, MOTION, MOTION>,
+    follows: &SMatrix<f64, MOTION, CONSTANTS>,
+    constants: &SMatrix<f64, CONSTANTS, CONSTANTS>,
+) -> [DVec3; 4] {
+    let (by_motion, by_body) = motion.spin_derivatives(body);
+    let mut to = SMatrix::<f64, MOTION, MOTION>::identity();
+    let mut through = SMatrix::<f64, MOTION, CONSTANTS>::zeros();
+    to.fixed_view_mut::<3, MOTION>(6, 0).copy_from(&by_motion);
+    through.fixed_view_mut::<3, 6>(6, 1).copy_from(&by_body);
+    let by_constants = to * follows + through;
+    let covariance = to * own * to.transpose() + by_constants * constants * by_constants.transpose();
+    let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
+    std::array::from_fn(|k| DVec3::new(deviation(3 * k), deviation(3 * k + 1), deviation(3 * k + 2)))
 }

@@ -139,6 +139,20 @@ impl<const P: usize> Carried<P> {
         at.impulse += missing[1];
         at.second += missing[0];
         at.first += missing[1] * self.after - missing[0];
+        // As much of the turn is owed to the noise of the moments.
+        let turn = DVec3::new(r[9], r[10], r[11]);
+        let K = matrix(self.turn.K);
+        let inertia = self.turn.R * body.inertia() * self.turn.R.transpose();
+        let by_turn = K * cross(inertia * turn) - cross(turn);
+        at.turn_by_motion += by_turn * self.turn_by_motion;
+        if P > 0 {
+            at.turn_by_body += by_turn * self.turn_by_body;
+            let owed = body.by_inertia(&Turn { w: turn, ..self.turn });
+            for (i, change) in owed.into_iter().enumerate() {
+                let mut column = at.turn_by_body.column_mut(i + 1);
+                column += vector(self.turn.K * change);
+            }
+        }
         at.derivatives(body)
     }
 }

@@ -10,5 +10,5 @@ mod rows;
 mod solve;
 mod state;
 
-pub use estimate::{ContactEstimate, estimate_contacts};
+pub use estimate::{ContactEstimate, ContactEstimateError, ContactOptions, estimate_contacts};
 pub use noise::SensorNoise;

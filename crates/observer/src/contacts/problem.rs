@@ -4,6 +4,7 @@ use super::flow::{Carried, Transition, link_information, residual};
 use super::noise::SensorNoise;
 use super::record::{Record, Wrench};
 use super::rows::Rows;
+use super::solve::Step;
 use super::state::{Body, MOTION, Motion, Tangent};
 use crate::three_palms::exponential;
 use glam::DVec3;
@@ -27,11 +28,9 @@ pub(super) struct Problem<'a> {
     pub(super) nodes: Vec<usize>,
     pub(super) units: Units,
     /// What is known of the first motion: value and information of each number.
-    pub(super) first: Option<(Motion, Tangent)>,
+    pub(super) first: (Motion, Tangent),
     /// What is known of the body: value and information of each number.
     pub(super) body: (Body, SVector<f64, 7>),
-    /// Deviation of moments that nothing explains, in natural units: what a body of unknown inertia is begun with.
-    pub(super) unexplained: f64,
 }
 
 /// Unknowns: the motions at the nodes and the body's constants.
@@ -114,23 +113,25 @@ impl Problem<'_> {
 
     /// The unknowns after a step, and their cost.
     ///
-    /// Orientations follow from angular velocities with hardly any noise: they are integrated anew, with what the step leaves
-    /// of each link's defect. Turned one by one they would miss each other by the square of the step.
+    /// Positions and orientations follow from velocities with hardly any noise: they are integrated anew, with what the step
+    /// leaves of each link's defect. Moved one by one they would miss each other by the square of the step.
     pub(super) fn trial<const P: usize>(
         &self,
         at: &Unknowns,
-        steps: &[Tangent],
-        body: &SVector<f64, P>,
+        step: &Step<P>,
         equations: &Equations<P>,
     ) -> Option<(Unknowns, f64)> {
+        let Step { motions: steps, body } = step;
         let numbers = Vector6::from_fn(|i, _| if P > i + 1 { body[i + 1] } else { 0.0 });
         let after = if P > 0 { at.body.moved(body[0], &numbers) } else { at.body };
         let change = (P > 0).then_some(&numbers);
         let mut motions: Vec<Motion> = Vec::with_capacity(at.motions.len());
         let mut cost = 0.0;
-        let mut q = exponential(DVec3::new(steps[0][9], steps[0][10], steps[0][11])) * at.motions[0].q;
+        let vector = |t: &Tangent, i: usize| DVec3::new(t[i], t[i + 1], t[i + 2]);
+        let mut q = exponential(vector(&steps[0], 9)) * at.motions[0].q;
+        let mut p = at.motions[0].p + vector(&steps[0], 0);
         for (j, motion) in at.motions.iter().enumerate() {
-            let moved = motion.moved(&steps[j], q.normalize(), &at.body, change, &after);
+            let moved = motion.moved(&steps[j], (p, q.normalize()), &at.body, change, &after);
             motions.push(moved);
             let mut carried = Carried::<P>::new(moved, &after);
             let end = self.nodes.get(j + 1).copied().unwrap_or(self.nodes[j] + 1);
@@ -138,7 +139,7 @@ impl Problem<'_> {
             for k in self.nodes[j]..end {
                 for contact in &self.record.contacts[k] {
                     let Some(rows) = Rows::new(contact, &carried.motion, &carried.turn, &self.noise) else { continue };
-                    let r = rows.residual();
+                    let r = rows.residual;
                     cost += (rows.information * r).dot(&r);
                 }
                 if j + 1 < at.motions.len() {
@@ -149,8 +150,9 @@ impl Problem<'_> {
             }
             let Some(link) = equations.links.get(j) else { break };
             let left = link.residual + steps[j + 1] - link.by_motion * steps[j] - link.by_body * body;
-            q = exponential(DVec3::new(left[9], left[10], left[11])) * carried.motion.q;
-            let next = at.motions[j + 1].moved(&steps[j + 1], q.normalize(), &at.body, change, &after);
+            q = exponential(vector(&left, 9)) * carried.motion.q;
+            p = carried.motion.p + vector(&left, 0);
+            let next = at.motions[j + 1].moved(&steps[j + 1], (p, q.normalize()), &at.body, change, &after);
             let r = residual(&next, &carried.motion);
             let information = self.link_information(&noise, &carried, &after)?;
             cost += (information * r).dot(&r);
@@ -160,13 +162,41 @@ impl Problem<'_> {
         cost.is_finite().then_some((moved, cost))
     }
 
+    /// Motions at some samples by what was measured since sample `from`, with a motion there.
+    pub(super) fn carried(&self, from: usize, motion: Motion, body: &Body, samples: &[usize]) -> Vec<Motion> {
+        let mut carried = Carried::<0>::new(motion, body);
+        let mut at = from;
+        let mut to = |k: usize| {
+            while at < k {
+                carried.step(&self.record.intervals[at], self.wrenches(at), body, self.gravity);
+                at += 1;
+            }
+            carried.motion
+        };
+        samples.iter().map(|&k| to(k)).collect()
+    }
+
+    /// One over the squares of the natural units of a motion's numbers.
+    pub(super) fn natural_information(&self) -> Tangent {
+        let Units { length, speed, mass } = self.units;
+        let natural = [length, speed, mass * length * speed, 1.0];
+        Tangent::from_fn(|i, _| natural[i / 3].powi(-2))
+    }
+
+    /// Information of a contact condition in natural units, of a body that turns at the natural rate.
+    pub(super) fn condition_information(&self) -> f64 {
+        let Units { length, speed, .. } = self.units;
+        let deviation = self.noise.floor.max(self.noise.contact * speed / length);
+        (speed / deviation).powi(2)
+    }
+
     fn link_information<const P: usize>(
         &self,
         noise: &Matrix6<f64>,
         carried: &Carried<P>,
         body: &Body,
     ) -> Option<Transition> {
-        let noise = self.about(noise, carried.motion.p, carried.after);
+        let noise = self.about(noise, carried.motion.p);
         link_information(&noise, carried.after, body, &carried.turn)
     }
 
@@ -187,7 +217,7 @@ impl Problem<'_> {
         let (mut gradient, mut body_gradient) = (Tangent::zeros(), SVector::<f64, P>::zeros());
         let mut body = SMatrix::<f64, P, P>::zeros();
         for rows in rows {
-            let r = rows.residual();
+            let r = rows.residual;
             let weighted = rows.information * r;
             all.cost += weighted.dot(&r);
             all.conditions += rows.count;
@@ -238,7 +268,8 @@ impl Problem<'_> {
         let (F, E) = carried.adjusted(&at.body, &r);
         let through = information * F;
         all.cost += weighted.dot(&r);
-        all.links.push(LinkEquation { residual: r, by_motion: F, by_body: E });
+        let (by_motion, by_body) = carried.derivatives(&at.body);
+        all.links.push(LinkEquation { residual: r, by_motion, by_body });
         let node = &mut all.nodes[j];
         node.own += F.transpose() * through;
         node.next -= through.transpose();
@@ -257,13 +288,12 @@ impl Problem<'_> {
 
     fn add_prior<const P: usize>(&self, at: &Unknowns, all: &mut Equations<P>) {
         all.cost += self.prior_cost::<P>(at);
-        if let Some((value, information)) = &self.first {
-            let d = at.motions[0].from(value);
-            let node = &mut all.nodes[0];
-            for i in 0..MOTION {
-                node.own[(i, i)] += information[i];
-                node.gradient[i] += information[i] * d[i];
-            }
+        let (value, information) = &self.first;
+        let d = at.motions[0].from(value);
+        let node = &mut all.nodes[0];
+        for i in 0..MOTION {
+            node.own[(i, i)] += information[i];
+            node.gradient[i] += information[i] * d[i];
         }
         let d = self.body_departure(&at.body);
         for i in 0..P {
@@ -273,11 +303,9 @@ impl Problem<'_> {
     }
 
     fn prior_cost<const P: usize>(&self, at: &Unknowns) -> f64 {
-        let mut cost = 0.0;
-        if let Some((value, information)) = &self.first {
-            let d = at.motions[0].from(value);
-            cost += d.component_mul(&d).dot(information);
-        }
+        let (value, information) = &self.first;
+        let d = at.motions[0].from(value);
+        let cost = d.component_mul(&d).dot(information);
         let d = self.body_departure(&at.body);
         cost + (0..P).map(|i| self.body.1[i] * d[i] * d[i]).sum::<f64>()
     }
@@ -291,18 +319,14 @@ impl Problem<'_> {
     }
 
     /// Noise of impulse and moment about the origin, with the moment about `p` and a floor.
-    fn about(&self, noise: &Matrix6<f64>, p: DVec3, h: f64) -> Matrix6<f64> {
+    fn about(&self, noise: &Matrix6<f64>, p: DVec3) -> Matrix6<f64> {
         let mut shift = Matrix6::identity();
         shift.fixed_view_mut::<3, 3>(3, 0).copy_from(&-super::flow::cross(p));
         let mut moved = shift * noise * shift.transpose();
-        let floor = self.units.mass * self.noise.floor * std::env::var("LF").map_or(LINK_FLOOR, |s| s.parse().unwrap()) / (self.nodes.len() as f64).sqrt();
+        let floor = self.units.mass * self.noise.floor * LINK_FLOOR / (self.nodes.len() as f64).sqrt();
         for i in 0..6 {
             let unit = if i < 3 { 1.0 } else { self.units.length };
             moved[(i, i)] += (floor * unit).powi(2);
-            if i >= 3 {
-                let moment = self.unexplained * self.units.mass * self.units.speed * self.units.length;
-                moved[(i, i)] += moment * moment * h * self.units.speed / self.units.length;
-            }
         }
         moved
     }

@@ -11,7 +11,6 @@ use std::ops::{Add, Mul};
 /// A contact at one sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
-    pub(super) palm: usize,
     /// Contact point from the record's origin, m.
     pub(super) c: DVec3,
     pub(super) n: DVec3,
@@ -95,7 +94,6 @@ fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, modes: &[ContactMode; 
         let motion = logged.motion(k);
         let n = touch.n.get();
         Some(Contact {
-            palm,
             c: touch.p_WC - origin,
             n,
             u: motion.material_velocity(touch.p_WC),
@@ -135,6 +133,11 @@ fn intervals(log: &ContactLog, contacts: &[Vec<Contact>], wrenches: &[Wrench], n
             for contact in &contacts[k] {
                 add_noise(&mut covariance, contact, noise, h);
             }
+            // Between samples a force may change its mode: the rule of order 6 is no better than the trapezoidal one then.
+            let trapezoid = (wrenches[k - 1] + wrenches[k]) * (0.5 * h);
+            let differ = impulse + trapezoid * -1.0;
+            let column = six(differ.force, differ.moment);
+            covariance.ger(1.0, &column, &column, 1.0);
             Interval { h, impulse, first, noise: covariance }
         })
         .collect()

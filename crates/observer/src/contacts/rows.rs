@@ -9,11 +9,12 @@ use object_dynamics::ContactMode;
 
 /// Conditions of one contact: its normal one alone where it slides, all three where it sticks.
 pub(super) struct Rows {
+    /// Axes of the conditions, at the adjusted contact.
     pub(super) axes: [DVec3; 3],
     pub(super) count: usize,
-    /// Velocity of the body against the palm at the contact, m/s.
-    pub(super) slip: DVec3,
-    /// From the centre of mass to the contact.
+    /// Values of the conditions, m/s; zero for those that do not count.
+    pub(super) residual: Vector3<f64>,
+    /// From the centre of mass to the adjusted contact.
     pub(super) arm: DVec3,
     /// Information of the conditions: inverse covariance, rows and columns that do not count are zero.
     pub(super) information: Matrix3<f64>,
@@ -50,18 +51,19 @@ impl Rows {
         } else {
             covariance.cholesky()?.inverse()
         };
-        let mut rows = Self { axes, count, slip, arm, information };
-        let pull = information * rows.residual();
+        let residual = Vector3::from_fn(|i, _| if i < count { axes[i].dot(slip) } else { 0.0 });
+        let mut rows = Self { axes, count, residual, arm, information };
+        let pull = information * residual;
         let foot = shifts.map(|column| -(noise.contact * column.dot(&pull)));
         let farthest = FARTHEST_FOOT * noise.contact;
         let length = foot[0].hypot(foot[1]);
         let share = if length > farthest { farthest / length } else { 1.0 };
-        rows.arm += (foot[0] * t1 + foot[1] * t2) * share;
+        let foot = (foot[0] * t1 + foot[1] * t2) * share;
+        rows.arm += foot;
+        if count == 1 {
+            rows.axes[0] += contact.shape * foot;
+        }
         Some(rows)
-    }
-
-    pub(super) fn residual(&self) -> Vector3<f64> {
-        Vector3::from_fn(|i, _| if i < self.count { self.axes[i].dot(self.slip) } else { 0.0 })
     }
 
     /// Derivatives by the motion at the sample.

@@ -4,28 +4,55 @@ use super::flow::Transition;
 use super::problem::{Equations, Problem, Unknowns};
 use super::state::{MOTION, Tangent};
 use crate::least_squares::{LARGEST_DAMPING, RAISE, lowered};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, SMatrix, SVector};
 
-/// How a fit ended.
+/// First damping, as a share of the conditions' mean information.
+const FIRST_DAMPING: f64 = 1e-3;
+/// A step shorter than this in natural units is none.
+const NO_STEP: f64 = 1e-10;
+
+/// Where an iteration ended.
 #[derive(Clone, Debug)]
 pub(super) struct Solved<const P: usize> {
     pub(super) unknowns: Unknowns,
     pub(super) equations: Equations<P>,
     pub(super) iterations: usize,
+    /// Whether there is no more to gain.
     pub(super) settled: bool,
 }
 
+/// A step of all unknowns.
+pub(super) struct Step<const P: usize> {
+    pub(super) motions: Vec<Tangent>,
+    pub(super) body: SVector<f64, P>,
+}
+
+/// A node's step as it follows from the next node's, from that of the constants, and by itself; and its information then.
 struct Eliminated<const P: usize> {
-    /// What follows from the next node's step, the constants' step, and nothing.
     next: Transition,
     body: SMatrix<f64, MOTION, P>,
     alone: Tangent,
+    own: Transition,
+}
+
+/// The chain with the nodes eliminated, first to last, and what is left for the constants.
+struct Reduced<const P: usize> {
+    nodes: Vec<Eliminated<P>>,
+    body: SMatrix<f64, P, P>,
+    body_gradient: SVector<f64, P>,
+}
+
+/// Covariances of the unknowns.
+pub(super) struct Covariances<const P: usize> {
+    /// Of each motion for given constants, and how it follows the constants.
+    pub(super) motions: Vec<(Transition, SMatrix<f64, MOTION, P>)>,
+    pub(super) body: SMatrix<f64, P, P>,
 }
 
 impl<const P: usize> Equations<P> {
-    /// Steps that solve the normal equations with `damping` added; none where they are not positive definite.
-    fn step(&self, damping: &Tangent, body_damping: f64) -> Option<(Vec<Tangent>, SVector<f64, P>)> {
-        let mut kept: Vec<Eliminated<P>> = Vec::with_capacity(self.nodes.len());
+    /// None where the equations are not positive definite.
+    fn reduced(&self, damping: &Tangent, body_damping: f64) -> Option<Reduced<P>> {
+        let mut nodes: Vec<Eliminated<P>> = Vec::with_capacity(self.nodes.len());
         let mut body = self.body + SMatrix::identity() * body_damping;
         let mut body_gradient = self.body_gradient;
         let mut carried: Option<(Transition, SMatrix<f64, MOTION, P>, Tangent)> = None;
@@ -49,75 +76,95 @@ impl<const P: usize> Equations<P> {
                 body -= to_body.transpose() * to_constants;
                 body_gradient -= to_body.transpose() * alone;
             }
-            kept.push(Eliminated { next, body: to_constants, alone });
+            nodes.push(Eliminated { next, body: to_constants, alone, own });
         }
-        let shared = if P > 0 {
-            -nalgebra::DMatrix::from_column_slice(P, P, body.as_slice())
-                .cholesky()?
-                .solve(&nalgebra::DVector::from_column_slice(body_gradient.as_slice()))
-        } else {
-            nalgebra::DVector::zeros(0)
-        };
-        let shared = SVector::<f64, P>::from_fn(|i, _| shared[i]);
-        let mut steps = vec![Tangent::zeros(); self.nodes.len()];
-        let mut after = Tangent::zeros();
-        for (step, node) in steps.iter_mut().zip(&kept).rev() {
-            *step = -node.alone - node.body * shared - node.next * after;
-            after = *step;
-        }
-        Some((steps, shared))
+        Some(Reduced { nodes, body, body_gradient })
     }
 
-    fn gain(&self, steps: &[Tangent], body: &SVector<f64, P>) -> f64 {
-        let nodes: f64 = steps.iter().zip(&self.nodes).map(|(step, node)| step.dot(&node.gradient)).sum();
-        -(nodes + body.dot(&self.body_gradient))
+    fn step(&self, damping: &Tangent, body_damping: f64) -> Option<Step<P>> {
+        let reduced = self.reduced(damping, body_damping)?;
+        let body = -(inverse(&reduced.body)? * reduced.body_gradient);
+        let mut motions = vec![Tangent::zeros(); self.nodes.len()];
+        let mut after = Tangent::zeros();
+        for (step, node) in motions.iter_mut().zip(&reduced.nodes).rev() {
+            *step = -node.alone - node.body * body - node.next * after;
+            after = *step;
+        }
+        Some(Step { motions, body })
+    }
+
+    /// Fall of the cost that the linear model promises of a step which solves the damped equations, the damping counted as
+    /// a cost.
+    fn promised(&self, step: &Step<P>) -> f64 {
+        let nodes: f64 = step.motions.iter().zip(&self.nodes).map(|(s, node)| s.dot(&node.gradient)).sum();
+        -(nodes + step.body.dot(&self.body_gradient))
+    }
+
+    /// None where something is not determined at all.
+    pub(super) fn covariances(&self) -> Option<Covariances<P>> {
+        let reduced = self.reduced(&Tangent::zeros(), 0.0)?;
+        let body = inverse(&reduced.body)?;
+        let mut motions = Vec::with_capacity(self.nodes.len());
+        let (mut after, mut follows) = (Transition::zeros(), SMatrix::<f64, MOTION, P>::zeros());
+        for node in reduced.nodes.iter().rev() {
+            after = node.own.cholesky()?.inverse() + node.next * after * node.next.transpose();
+            follows = -node.body - node.next * follows;
+            motions.push((after, follows));
+        }
+        motions.reverse();
+        Some(Covariances { motions, body })
     }
 }
 
-/// Minimises the cost from `start` by at most so many linearisations.
-pub(super) fn solve<const P: usize>(problem: &Problem, start: Unknowns, most: usize) -> Option<Solved<P>> {
+/// None unless it is positive definite.
+fn inverse<const P: usize>(matrix: &SMatrix<f64, P, P>) -> Option<SMatrix<f64, P, P>> {
+    if P == 0 {
+        return Some(*matrix);
+    }
+    let inverse = DMatrix::from_column_slice(P, P, matrix.as_slice()).cholesky()?.inverse();
+    Some(SMatrix::from_column_slice(inverse.as_slice()))
+}
+
+/// Minimises the cost from `start` by at most so many linearisations, until a step promises to lower it by less than
+/// `enough`. None where the problem cannot be evaluated at the start.
+pub(super) fn solve<const P: usize>(
+    problem: &Problem,
+    start: Unknowns,
+    most: usize,
+    enough: f64,
+) -> Option<Solved<P>> {
     let mut unknowns = start;
     let mut equations = problem.linearise::<P>(&unknowns)?;
-    let units = problem.units;
-    let natural = [units.length, units.speed, units.mass * units.length * units.speed, 1.0];
-    let unit = Tangent::from_fn(|i, _| natural[i / 3].powi(-2));
-    // Of the conditions, per node and number.
-    let mut damping = 1e-3;
-    let mean = equations.conditions as f64 / problem.nodes.len() as f64 * (units.speed / problem.noise.floor.max(problem.noise.contact * units.speed / units.length)).powi(2) / MOTION as f64;
-    for iteration in 1..=most {
-        let mut raise = RAISE;
-        loop {
-            let Some((steps, body)) = equations.step(&(unit * (damping * mean)), damping * mean) else {
+    let unit = problem.natural_information();
+    let mean = problem.condition_information() * equations.conditions as f64
+        / (problem.nodes.len() * MOTION) as f64;
+    let (mut damping, mut raise, mut iterations) = (FIRST_DAMPING, RAISE, 1);
+    let mut settled = false;
+    while iterations < most && !settled && damping < LARGEST_DAMPING {
+        let step = equations.step(&(unit * (damping * mean)), damping * mean);
+        let trial = step.as_ref().and_then(|step| problem.trial(&unknowns, step, &equations));
+        let promised = step.as_ref().map_or(f64::INFINITY, |step| equations.promised(step));
+        let short = step.as_ref().is_some_and(|step| length(step, &unit) < NO_STEP);
+        settled = promised < enough || short;
+        match trial.filter(|(_, cost)| *cost < equations.cost) {
+            Some((moved, cost)) => {
+                damping = lowered(damping, (equations.cost - cost) / promised);
+                raise = RAISE;
+                let Some(next) = problem.linearise(&moved) else { break };
+                (unknowns, equations) = (moved, next);
+                iterations += 1;
+            }
+            None => {
                 damping *= raise;
                 raise *= 2.0;
-                if damping > LARGEST_DAMPING { return None; }
-                continue;
-            };
-            let promised = equations.gain(&steps, &body);
-            let trial = problem.trial(&unknowns, &steps, &body, &equations);
-            let gain = trial.as_ref().map_or(f64::NEG_INFINITY, |trial| equations.cost - trial.1);
-            let longest = steps.iter().map(|s| s.component_mul(s).dot(&unit)).fold(body.norm_squared(), f64::max).sqrt();
-            if std::env::var_os("TRACE").is_some() {
-                eprintln!("{iteration:3} cost {:.6e} per {:.4} gain {gain:.3e} promised {promised:.3e} damping {damping:.1e} step {longest:.2e} mass {:.6}", equations.cost, equations.cost / equations.conditions as f64, unknowns.body.log_mass.exp());
-            }
-            if let Some((moved, _)) = trial.filter(|_| gain > 0.0) {
-                unknowns = moved;
-                damping = lowered(damping, gain / promised);
-                equations = problem.linearise(&unknowns)?;
-                if longest < 1e-9 || promised < 1e-6 * 1.0_f64.min(equations.cost) {
-                    return Some(Solved { unknowns, equations, iterations: iteration, settled: true });
-                }
-                break;
-            }
-            if longest < 1e-9 || promised < 1e-6 {
-                return Some(Solved { unknowns, equations, iterations: iteration, settled: true });
-            }
-            damping *= raise;
-            raise *= 2.0;
-            if damping > LARGEST_DAMPING {
-                return Some(Solved { unknowns, equations, iterations: iteration, settled: false });
             }
         }
     }
-    Some(Solved { unknowns, equations, iterations: most, settled: false })
+    Some(Solved { unknowns, equations, iterations, settled })
+}
+
+/// Longest step of a node or of the constants, in natural units.
+fn length<const P: usize>(step: &Step<P>, unit: &Tangent) -> f64 {
+    let squares = step.motions.iter().map(|s| s.component_mul(s).dot(unit));
+    squares.fold(step.body.norm_squared(), f64::max).sqrt()
 }

@@ -1,8 +1,9 @@
 //! The motion at a node and the constants of the body.
 
+use super::flow::{cross, matrix, vector};
 use crate::three_palms::{inertia_of_numbers, inertia_slope, logarithm};
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::{SVector, Vector6};
+use nalgebra::{SMatrix, SVector, Vector6};
 
 /// Numbers of a motion's tangent: centre of mass, velocity, angular momentum, turn in world axes.
 pub(super) const MOTION: usize = 12;
@@ -68,14 +69,15 @@ impl Body {
 }
 
 impl Motion {
-    /// The motion after a step that led to the orientation `q`, of `body` before and `after` it.
+    /// The motion after a step that led to the position `p` and the orientation `q`, of `body` before and `after` it.
     ///
-    /// Contact conditions are linear in the angular velocity: that moves by what the step means to first order, and the
-    /// angular momentum follows. A large step of the inertia then leaves the conditions as they were promised.
+    /// Contact conditions are linear in the body's twist about a point of space: that moves by what the step means to first
+    /// order, and the angular momentum follows. A large step of centre of mass or inertia then leaves the conditions as
+    /// they were promised, and those are what is stiffest.
     pub(super) fn moved(
         &self,
         step: &Tangent,
-        q: DQuat,
+        (p, q): (DVec3, DQuat),
         body: &Body,
         numbers: Option<&Vector6<f64>>,
         after: &Body,
@@ -89,9 +91,22 @@ impl Motion {
                 change += slope * *by;
             }
         }
-        let w = turn.w + turn.K * change + by.cross(turn.w);
+        let spin = turn.K * change + by.cross(turn.w);
+        let w = turn.w + spin;
         let R = DMat3::from_quat(q);
-        Self { p: self.p + part(0), v: self.v + part(3), L: R * (after.inertia() * (R.transpose() * w)), q }
+        let v = self.v + part(3) - turn.w.cross(part(0)) + w.cross(p - self.p);
+        Self { p, v, L: R * (after.inertia() * (R.transpose() * w)), q }
+    }
+
+    /// Derivatives of the angular velocity by the motion and by the numbers of the inertia.
+    pub(super) fn spin_derivatives(&self, body: &Body) -> (SMatrix<f64, 3, MOTION>, SMatrix<f64, 3, 6>) {
+        let turn = body.turn(self.q, self.L);
+        let K = matrix(turn.K);
+        let mut by_motion = SMatrix::<f64, 3, MOTION>::zeros();
+        by_motion.fixed_view_mut::<3, 3>(0, 6).copy_from(&K);
+        by_motion.fixed_view_mut::<3, 3>(0, 9).copy_from(&(K * cross(self.L) - cross(turn.w)));
+        let changes = body.by_inertia(&turn).map(|change| vector(turn.K * change));
+        (by_motion, SMatrix::from_columns(&changes))
     }
 
     /// The step that leads here from another motion.
