@@ -1,6 +1,6 @@
 use super::file::{ObjectTable, PalmTable, PalmsTable, SceneFile, SensorsTable, ShapeTable, SimulationTable};
 use super::palms::palms as any_palms;
-use super::{KnownInertia, Scene, SceneErrorKind as Kind, Sensors, Shape, Simulation};
+use super::{KnownInertia, KnownPalm, Scene, SceneErrorKind as Kind, Sensors, Shape, Simulation};
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, MotionLaw, Palm, PalmTriple};
 use std::path::Path;
@@ -26,7 +26,7 @@ pub(super) fn scene(file: SceneFile, folder: &Path) -> Result<Scene, Kind> {
         inertia,
         curvature: curvature(&file.object)?,
         sensors,
-        palm_inertia: palm_inertia(&file.palms)?,
+        palm_inertia: palm_inertia(&file.palms)?.or_else(|| motor_inertia(palms.as_deref()?)),
         friction,
         palms,
         simulation,
@@ -86,6 +86,13 @@ fn palm_inertia(table: &PalmsTable) -> Result<Option<[f64; 3]>, Kind> {
         Kind::not_negative(&format!("palms.inertia[{i}]"), *value)?;
     }
     Ok(Some(inertia))
+}
+
+/// Of three palms that motors turn.
+fn motor_inertia(palms: &[KnownPalm]) -> Option<[f64; 3]> {
+    let inertia = |palm: &KnownPalm| Some(palm.hinge()?.inertia);
+    let [a, b, c] = palms else { return None };
+    Some([inertia(a)?, inertia(b)?, inertia(c)?])
 }
 
 fn simulation(table: SimulationTable, sensors: &Sensors, any_palms: bool) -> Result<Simulation, Kind> {

@@ -94,6 +94,7 @@ impl<'a> Palm<'a> {
             force: channel(&columns.force),
             impulse: channel(&columns.impulse),
             torque: columns.torque.is_some().then(Vec::new),
+            hinge: setup.hinge,
             truth: columns.truth.is_some().then(Vec::new),
             largest_offset: setup.largest_offset,
         };
