@@ -8,4 +8,5 @@ mod approach;
 mod closed_forms;
 mod contact_modes;
 mod giving_way;
+mod motor_palms;
 mod three_palms;
