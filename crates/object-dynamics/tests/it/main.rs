@@ -9,4 +9,5 @@ mod closed_forms;
 mod contact_modes;
 mod giving_way;
 mod motor_palms;
+mod sliding;
 mod three_palms;
