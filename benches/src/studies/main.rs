@@ -14,6 +14,7 @@ mod bounds_tosses;
 mod chart;
 mod cold_start;
 mod contact_changes;
+mod contact_cost;
 mod contact_logs;
 mod contact_wedging;
 mod no_force;
@@ -42,6 +43,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("bounds_tosses", || in_words(bounds_tosses::main())),
     ("cold_start", || in_words(cold_start::main())),
     ("contact_changes", || in_words(contact_changes::main())),
+    ("contact_cost", || in_words(contact_cost::main())),
     ("contact_logs", || in_words(contact_logs::main())),
     ("contact_wedging", || in_words(contact_wedging::main())),
     ("no_force", || in_words(no_force::main())),
