@@ -57,7 +57,8 @@ pub(crate) enum Command {
 The scene is a TOML file with gravity, [object] mass and inertia, and [simulation] shape, palms, start and duration.
 `recon demo` writes one (scene.toml) to begin from. The log holds the truth beside the readings; noise is put on the
 readings where [sensors] gives its standard deviations. Palms of any number, shape and motion, with friction, stand in
-[[palm]] tables; their log is of version 2, and the changes of contact modes are told.
+[[palm]] tables; their log is of version 2, and the changes of contact modes are told. With `plane = true` the scene is one of
+the vertical plane, and its log a planar one of version 2.
 
 Examples:
   recon simulate scene.toml -o log.csv

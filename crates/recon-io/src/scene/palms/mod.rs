@@ -8,7 +8,8 @@ mod file;
 mod tests;
 
 pub(super) use build::palms;
-pub(super) use file::PalmTable;
+pub(super) use drive::law;
+pub(super) use file::{LawTable, PalmTable};
 
 use super::{Scene, SceneErrorKind as Kind, Sensors};
 use crate::PalmSetup;
