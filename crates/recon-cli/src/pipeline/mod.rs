@@ -25,7 +25,8 @@ pub(crate) use doubts::doubtful_fit;
 pub(crate) use export::exported;
 pub(crate) use fitted::{fit_words, fitted_shape};
 pub(crate) use folder::{
-    write_bounds_folder, write_contact_folder, write_reconstruction_folder, write_touch_folder,
+    write_bounds_folder, write_contact_folder, write_files_folder, write_reconstruction_folder,
+    write_touch_folder,
 };
 pub(crate) use planar_contacts::simulate_planar_contacts;
 pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};
