@@ -18,6 +18,11 @@ const FRICTION: f64 = 0.05;
 /// Its poses, every 0.1 s.
 const LOG: &str = include_str!("../../../../tests/data/poses_S1.csv");
 const EXACT: f64 = 1e-13;
+const WAYS: &str = "\
+MuJoCo in two ways, each at the best settings found for every step (`benches/peers/contacts_mujoco.py`): `constraints` are hard, as it is
+commonly set up; the convex cone couples slip into their normal row, and a sliding contact hovers by as much as friction and
+damping lift it. `springs` are as soft as it takes them (impedance 1e-4 or 1e-3): spring and damper, and friction that is
+viscous up to Coulomb's bound.";
 /// Error within which the costs are compared in a word.
 const ASKED: f64 = 1e-6;
 
@@ -32,6 +37,7 @@ pub(crate) fn main() -> Anything<()> {
          many runs (MuJoCo: of {repeats}), one thread, all in one run on a shared machine ({}).",
         machine_line()
     );
+    println!("\n{WAYS}");
     with_friction(repeats, Path::new(&folder))?;
     without_friction(repeats)?;
     Ok(())
