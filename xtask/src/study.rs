@@ -36,6 +36,7 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "contact-changes.md",
         "random changes of contact modes: gaps, cones, sticking, energy",
     ),
+    ("contact_cost", "contact-cost.md", "cost of contacts with friction and without, beside MuJoCo"),
     ("contact_wedging", "contact-wedging.md", "states in which friction wedges sliding contacts"),
     ("contact_logs", "contact-logs.md", "reference logs of any palms simulated from their start"),
     (

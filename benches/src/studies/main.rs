@@ -15,6 +15,7 @@ mod chart;
 mod cold_start;
 mod contact_changes;
 mod contact_estimates;
+mod contact_cost;
 mod contact_logs;
 mod contact_wedging;
 mod no_force;
@@ -44,6 +45,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("cold_start", || in_words(cold_start::main())),
     ("contact_changes", || in_words(contact_changes::main())),
     ("contact_estimates", || in_words(contact_estimates::main())),
+    ("contact_cost", || in_words(contact_cost::main())),
     ("contact_logs", || in_words(contact_logs::main())),
     ("contact_wedging", || in_words(contact_wedging::main())),
     ("no_force", || in_words(no_force::main())),

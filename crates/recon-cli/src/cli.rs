@@ -48,6 +48,8 @@ pub(crate) enum Command {
     Planar(PlanarArgs),
     /// Simulate and reconstruct the scene of the paper's Fig. 5, or show another scene, with no input at all
     Demo(DemoArgs),
+    /// Write a scene of palms of any shape for MuJoCo
+    Export(ExportArgs),
     /// Check a folder of results again, by its files alone
     Check(CheckArgs),
 }
@@ -57,7 +59,8 @@ pub(crate) enum Command {
 The scene is a TOML file with gravity, [object] mass and inertia, and [simulation] shape, palms, start and duration.
 `recon demo` writes one (scene.toml) to begin from. The log holds the truth beside the readings; noise is put on the
 readings where [sensors] gives its standard deviations. Palms of any number, shape and motion, with friction, stand in
-[[palm]] tables; their log is of version 2, and the changes of contact modes are told.
+[[palm]] tables; their log is of version 2, and the changes of contact modes are told. With `plane = true` the scene is one of
+the vertical plane, and its log a planar one of version 2.
 
 Examples:
   recon simulate scene.toml -o log.csv
@@ -355,6 +358,27 @@ pub(crate) struct DemoArgs {
     pub(crate) scene: DemoScene,
     /// Folder to write; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long, default_value = "recon-demo")]
+    pub(crate) output: PathBuf,
+    /// Write beside files in the folder that recon did not write; these are never replaced or removed
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The scene is one that `recon simulate` takes, with [[palm]] tables. The folder appears as a whole or not at all: scene.xml (MJCF)
+with the object in its first state (keyframe `start`), palms, friction, springs and motors, the meshes of shapes that MuJoCo
+does not know, summary.json and manifest.json. Joints `palm_i_j` follow the parts of a palm's motion: whoever steps the model sets them by the laws in its
+custom fields.
+
+Examples:
+  recon export scene.toml -o model
+  recon export scene.toml -o model --json | jq .files")]
+pub(crate) struct ExportArgs {
+    /// Scene file (TOML)
+    pub(crate) scene: PathBuf,
+    /// Folder to write; what an earlier run wrote there and nobody changed is replaced
+    #[arg(short, long)]
     pub(crate) output: PathBuf,
     /// Write beside files in the folder that recon did not write; these are never replaced or removed
     #[arg(long)]

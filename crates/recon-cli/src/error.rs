@@ -1,3 +1,4 @@
+use recon::object_dynamics::planar as object_planar;
 use recon::object_dynamics::{
     ContactLogError, ContactSimulationError, LogError, NotThreePlanes, SceneError as DynamicsError,
     SimulationError,
@@ -83,6 +84,12 @@ pub(crate) enum CliError {
     Simulation(#[from] SimulationError),
     #[error("the scene has no motion")]
     Contacts(#[from] ContactSimulationError),
+    #[error("the object cannot start so")]
+    PlanarStart(#[from] object_planar::StartError),
+    #[error("the scene in the plane has no motion")]
+    PlanarContacts(#[from] object_planar::ContactSimulationError),
+    #[error("the simulated motion makes no log")]
+    PlanarContactLog(#[from] object_planar::ContactLogError),
     #[error("the sensor noise of the scene makes the log unusable")]
     ContactNoise(#[source] ContactLogError),
     #[error("the sensor noise of the scene makes the log unusable")]
@@ -180,6 +187,9 @@ impl CliError {
             | Self::Dynamics(_)
             | Self::Simulation(_)
             | Self::Contacts(_)
+            | Self::PlanarStart(_)
+            | Self::PlanarContacts(_)
+            | Self::PlanarContactLog(_)
             | Self::ContactNoise(_)
             | Self::Noise(_)
             | Self::Estimate(_)

@@ -26,8 +26,9 @@ pub use export::{
 };
 pub use log::{
     AnyLog, LogFileError, LogFileErrorKind, LogReader, PalmSetup, parse_any_log, parse_contact_log,
-    parse_log, parse_planar_log, read_any_log, read_contact_log, read_log, read_planar_log,
-    write_contact_log, write_log, write_planar_log,
+    parse_log, parse_planar_contact_log, parse_planar_log, read_any_log, read_contact_log, read_log,
+    read_planar_contact_log, read_planar_log, write_contact_log, write_log, write_planar_contact_log,
+    write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use number::{brief, brief_to, with_brief_numbers};
@@ -38,10 +39,11 @@ pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};
 pub use report::{
     Bound, Bounds, Evidence, EvidenceValue, Level, ModeSpan, MotionState, PalmContact, PalmTrack, ReportData,
-    ReportError, TrueShape, Verdict, mode_spans, write_contact_report, write_report,
+    ReportError, TrueShape, Verdict, mode_spans, planar_mode_spans, write_contact_report, write_report,
 };
 pub use scene::{
-    BoxedShape, KnownInertia, KnownPalm, Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation,
+    BoxedShape, KnownInertia, KnownPalm, PlanarBody, PlanarScene, Scene, SceneError, SceneErrorKind, Sensors,
+    Shape, Simulation,
 };
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
 pub use summary::summary;

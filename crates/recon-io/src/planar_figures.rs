@@ -9,7 +9,7 @@ use std::io::{self, Write};
 pub struct FigureCurve {
     /// Its name in the legend.
     pub name: String,
-    /// Points; those that are not numbers are left out.
+    /// Points; a line is broken at those that are not numbers.
     pub points: Vec<[f64; 2]>,
     /// Drawn as dots rather than as a line.
     pub dots: bool,
@@ -150,19 +150,26 @@ fn draw(panel: &FigurePanel) -> String {
 }
 
 fn draw_curve(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut String) {
-    let finite = curve.points.iter().filter(|p| p.iter().all(|v| v.is_finite()));
-    let places = finite.map(|&p| frame.place(p));
+    let finite = |p: &[f64; 2]| p.iter().all(|v| v.is_finite());
     if curve.dots {
         let _ = writeln!(out, "<g class=\"c{colour}\" fill=\"currentColor\">");
-        for [x, y] in places {
+        for [x, y] in curve.points.iter().filter(|p| finite(p)).map(|&p| frame.place(p)) {
             let _ = writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"1.2\"/>");
         }
         let _ = writeln!(out, "</g>");
-    } else {
-        let path: Vec<String> = places.map(|[x, y]| format!("{x},{y}")).collect();
+        return;
+    }
+    for piece in curve.points.split(|p| !finite(p)).filter(|piece| !piece.is_empty()) {
+        let mut path: Vec<String> =
+            piece.iter().map(|&p| frame.place(p).map(|v| v.to_string()).join(",")).collect();
+        if path.len() == 1 {
+            // A dot: a line needs two points.
+            path.push(path[0].clone());
+        }
         let _ = writeln!(
             out,
-            "<polyline class=\"c{colour}\" points=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1.4\"/>",
+            "<polyline class=\"c{colour}\" points=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1.4\" \
+             stroke-linecap=\"round\"/>",
             path.join(" ")
         );
     }
@@ -228,6 +235,39 @@ fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_are_broken_where_there_is_no_number() {
+        let gap = [f64::NAN, 0.0];
+        let points = vec![
+            gap,
+            [0.0, 0.0],
+            [1.0, 1.0],
+            gap,
+            gap,
+            [3.0, 2.0],
+            [4.0, f64::INFINITY],
+            [5.0, 1.0],
+            [6.0, 0.0],
+        ];
+        let curve = FigureCurve { name: "slip".to_owned(), points, dots: false };
+        let panel = FigurePanel {
+            title: "t".to_owned(),
+            axes: ["x".to_owned(), "y".to_owned()],
+            equal: false,
+            curves: vec![curve],
+        };
+        let drawn = draw(&panel);
+        let pieces: Vec<Vec<&str>> = drawn
+            .split("points=\"")
+            .skip(1)
+            .map(|piece| piece.split('"').next().unwrap().split(' ').collect())
+            .collect();
+        // Two points, one alone as a dot, two more; nothing runs across.
+        assert_eq!(pieces.iter().map(Vec::len).collect::<Vec<_>>(), [2, 2, 2], "{drawn}");
+        assert!(pieces[1][0] == pieces[1][1] && pieces[0][1] != pieces[1][0]);
+        assert!(!drawn.contains("NaN") && !drawn.contains("inf"));
+    }
 
     #[test]
     fn empty_flat_and_broken_curves_are_drawn_without_nan() {

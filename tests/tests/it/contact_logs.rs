@@ -62,6 +62,7 @@ fn read(case: &Case, path: &Path) -> ContactLog {
         surface: *surface,
         friction: Some(case.friction),
         pose: None,
+        hinge: None,
         largest_offset: 1.1 * case.gap,
     };
     let palms: Vec<_> = case.surfaces.iter().map(setup).collect();

@@ -1,5 +1,6 @@
 //! From what palms recorded to what a log holds.
 
+use super::PalmHinge;
 use super::error::ContactLogError as Error;
 use super::palm::{LoggedMotion, LoggedPalm, Touch};
 use super::record::{
@@ -64,6 +65,7 @@ impl Builder<'_> {
             "torque",
             torques.filter_map(|(k, t)| Some((k, (*t)?))).find(|t| !t.1.is_finite()),
         )?;
+        self.check_hinge(record.hinge.as_ref())?;
         let motion = self.motion(record.motion)?;
         let (touches, offset) =
             self.touches(record.surface, &motion, &record.contacts, record.largest_offset)?;
@@ -75,6 +77,7 @@ impl Builder<'_> {
             touches,
             impulse: record.impulse,
             torque: record.torque,
+            hinge: record.hinge,
             truth: record.truth,
             offset,
         })
@@ -108,6 +111,16 @@ impl Builder<'_> {
                 Err(Error::ReadingNotFinite { what, palm, sample, time, value })
             }
             None => Ok(()),
+        }
+    }
+
+    fn check_hinge(&self, hinge: Option<&PalmHinge>) -> Result<(), Error> {
+        let Some(hinge) = hinge else { return Ok(()) };
+        let wrong = |what, value, must| Err(Error::Hinge { palm: self.palm, what, value, must });
+        match not_finite(hinge.pivot) {
+            Some(value) => wrong("pivot", value, "finite"),
+            None if hinge.inertia > 0.0 && hinge.inertia.is_finite() => Ok(()),
+            None => wrong("moment of inertia", hinge.inertia, "above zero and finite"),
         }
     }
 

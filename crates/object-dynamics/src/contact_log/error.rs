@@ -146,6 +146,30 @@ pub enum ContactLogError {
         /// Its time in s.
         time: f64,
     },
+    /// A number of a palm's hinge.
+    #[error("{what} of the hinge of palm {palm} is {value}; it must be {must}")]
+    Hinge {
+        /// Palm number from 1.
+        palm: usize,
+        /// Which number.
+        what: &'static str,
+        /// As given, m or kg m^2.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// A force is asked for that no motor tells.
+    #[error(
+        "palm {palm} has no {what}, so that its force does not follow from the torque of its motor; {mend}"
+    )]
+    NoMotor {
+        /// Palm number from 1.
+        palm: usize,
+        /// What is missing.
+        what: &'static str,
+        /// What to do about it.
+        mend: &'static str,
+    },
     /// A palm of a log of three planes has no frame.
     #[error("palm {palm} at sample {sample} (t = {time} s): {source}")]
     Frame {
@@ -178,7 +202,9 @@ impl ContactLogError {
             | Self::Surface { .. }
             | Self::Friction { .. }
             | Self::ChannelLength { .. }
-            | Self::TwistFromPoses { .. } => None,
+            | Self::TwistFromPoses { .. }
+            | Self::Hinge { .. }
+            | Self::NoMotor { .. } => None,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod build;
 mod error;
+mod motor;
 #[cfg(feature = "noise")]
 mod noise;
 mod palm;
@@ -13,6 +14,7 @@ mod three_planes;
 mod tests;
 
 pub use error::ContactLogError;
+pub use motor::PalmHinge;
 #[cfg(feature = "noise")]
 pub use noise::{ChannelNoise, ContactNoise};
 pub use palm::{LoggedPalm, SensedForce, Touch};

@@ -82,6 +82,10 @@ struct Draws {
 
 impl Draws {
     fn put_on(&self, record: &mut PalmRecord, palm: &LoggedPalm, noise: &ContactNoise, k: usize) {
+        // A motor is read whether or not its palm is touched.
+        if let Some(torque) = record.torque.as_mut().and_then(|torque| torque[k].as_mut()) {
+            *torque += noise.torque * self.torque;
+        }
         let Some(touch) = palm.touch(k) else { return };
         if let ContactPoints::World(points) = &mut record.contacts {
             let (a, b) = touch.n.tangent_basis();
@@ -89,9 +93,6 @@ impl Draws {
         }
         if let Some(force) = palm.force(k) {
             add(&mut record.force, k, self.force * noise.force.deviation(force.vector.length()));
-        }
-        if let Some(torque) = record.torque.as_mut().and_then(|torque| torque[k].as_mut()) {
-            *torque += noise.torque * self.torque;
         }
     }
 }

@@ -1,3 +1,4 @@
+use super::PalmHinge;
 use super::record::{
     ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, SensedAxes, TrueContact,
     TwistSource,
@@ -15,6 +16,7 @@ pub struct LoggedPalm {
     pub(super) force: ForceChannel,
     pub(super) impulse: ForceChannel,
     pub(super) torque: Option<Vec<Option<f64>>>,
+    pub(super) hinge: Option<PalmHinge>,
     pub(super) truth: Option<Vec<TrueContact>>,
     /// How far the farthest contact was off the surface, m.
     pub(super) offset: f64,
@@ -138,7 +140,14 @@ impl LoggedPalm {
         &self.impulse
     }
 
-    /// Torque of its motor about its x axis at sample `k`, N m, where it was measured.
+    /// What its motor turns it about, where that is known.
+    #[must_use]
+    pub fn hinge(&self) -> Option<&PalmHinge> {
+        self.hinge.as_ref()
+    }
+
+    /// Torque of its motor about the hinge, or about its x axis where that is not known, at sample `k`, N m, where it was
+    /// measured.
     #[must_use]
     pub fn torque(&self, k: usize) -> Option<f64> {
         self.torque.as_ref().and_then(|torque| torque[k])
@@ -175,6 +184,7 @@ impl LoggedPalm {
             force: self.force.clone(),
             impulse: self.impulse.clone(),
             torque: self.torque.clone(),
+            hinge: self.hinge,
             truth: self.truth.clone(),
             largest_offset: f64::INFINITY,
         }

@@ -1,3 +1,4 @@
+use super::PalmHinge;
 use crate::ContactMode;
 use contact_kinematics::{PalmSurface, SurfacePose};
 use glam::DVec3;
@@ -17,8 +18,11 @@ pub struct PalmRecord {
     pub force: ForceChannel,
     /// Its integral since a time that is one for the whole log, N s: exact through blows, which samples of the force miss.
     pub impulse: ForceChannel,
-    /// Torque of its motor about the palm's x axis, N m, where and while it was measured.
+    /// Torque of its motor about the hinge, or about the palm's x axis where that is not known, N m: where and while it was
+    /// measured.
     pub torque: Option<Vec<Option<f64>>>,
+    /// What its motor turns it about, where that is known.
+    pub hinge: Option<PalmHinge>,
     /// What a simulator knows of the contact. Never read by an estimator.
     pub truth: Option<Vec<TrueContact>>,
     /// Largest distance of a contact point from the palm's surface that is taken for noise, m; may be infinite.

@@ -1,14 +1,14 @@
 //! The log of a simulated motion.
 
 use super::record::{ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, TrueContact};
-use super::{ContactLog, ContactLogError};
+use super::{ContactLog, ContactLogError, PalmHinge};
 use crate::{ContactInstant, ContactMode, ContactScene, ContactSimulation, PalmDrive};
 use contact_kinematics::{SupportFunction, SurfacePose};
 use glam::DQuat;
 
 impl ContactLog {
     /// What sensors without noise would have recorded of a simulated motion: contact points, three axes of force and impulse,
-    /// pose and twist of every palm, and the truth.
+    /// pose and twist of every palm, the torque of motors, and the truth.
     ///
     /// # Errors
     /// [`ContactLogError`]; that of a simulation of two samples or more does not happen.
@@ -30,6 +30,10 @@ fn record<S: SupportFunction>(scene: &ContactScene<S>, instants: &[ContactInstan
         PalmDrive::Prescribed(motion) if motion.is_immobile() => RecordedMotion::Fixed(pose(&instants[0], i)),
         _ => RecordedMotion::Measured(instants.iter().map(|now| moving(now, i)).collect()),
     };
+    let motor = match &palm.drive {
+        PalmDrive::Torque(motor) => Some(motor),
+        PalmDrive::Prescribed(_) | PalmDrive::Spring(_) => None,
+    };
     let touched = |now: &ContactInstant| (now.modes[i] != ContactMode::Off).then(|| now.contacts[i].p_WC);
     PalmRecord {
         surface: palm.surface,
@@ -38,7 +42,8 @@ fn record<S: SupportFunction>(scene: &ContactScene<S>, instants: &[ContactInstan
         contacts: ContactPoints::World(instants.iter().map(touched).collect()),
         force: ForceChannel::Three(instants.iter().map(|now| now.forces[i]).collect()),
         impulse: ForceChannel::Three(instants.iter().map(|now| now.impulses[i]).collect()),
-        torque: None,
+        torque: motor.map(|motor| instants.iter().map(|now| Some(motor.torque.at(now.state.t)[0])).collect()),
+        hinge: motor.map(PalmHinge::from),
         truth: Some(instants.iter().map(|now| true_contact(now, i)).collect()),
         largest_offset: f64::INFINITY,
     }

@@ -31,6 +31,16 @@ pub struct SampleTimes {
     pub rate: f64,
 }
 
+impl SampleTimes {
+    /// All of them, s.
+    ///
+    /// # Errors
+    /// [`SimulationError::SampleTimes`] unless duration and rate are positive and the samples are not too many.
+    pub fn all(self) -> Result<Vec<f64>, SimulationError> {
+        Ok((0..check_times(self)?).map(|k| k as f64 / self.rate).collect())
+    }
+}
+
 /// How a simulation ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {

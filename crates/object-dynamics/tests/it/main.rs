@@ -8,4 +8,6 @@ mod approach;
 mod closed_forms;
 mod contact_modes;
 mod giving_way;
+mod motor_palms;
+mod sliding;
 mod three_palms;

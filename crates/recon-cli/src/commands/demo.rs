@@ -58,16 +58,17 @@ fn any_palms(args: &DemoArgs, title: &str, text: &str, console: &Console) -> Res
     let mut extras = vec![(SCENE.to_owned(), text.into())];
     let model = SceneModel::new("scene", &scene).map_err(in_scene)?.files()?;
     extras.extend(model.into_iter().map(|file| (file.name, file.contents)));
-    let mut figures = run.figures();
+    let told = run.told();
+    let mut figures = told.figures();
     figures["recon"] = env!("CARGO_PKG_VERSION").into();
     figures["title"] = title.into();
     write_contact_folder(target, title, &run, &extras, &figures)?;
     drop(progress);
     figures["folder"] = args.output.to_string_lossy().into();
-    let turned = run.turn().to_degrees();
+    let turned = told.turn.to_degrees();
     let said = format!(
         "{title}\n{}\nturned by {turned:.1} degrees\n{}",
-        run.describe(),
+        told.describe(),
         args.output.join("report.html").display()
     );
     console.result(&said, &figures)?;

@@ -3,6 +3,7 @@
 mod bounds;
 mod check;
 mod demo;
+mod export;
 mod follow;
 mod planar;
 mod plane;
@@ -23,6 +24,7 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
         Command::Bounds(args) => bounds::run(args, console),
         Command::Planar(args) => planar::run(args, console),
         Command::Demo(args) => demo::run(args, console),
+        Command::Export(args) => export::run(args, console),
         Command::Check(args) => check::run(args, console),
     }
 }

@@ -2,17 +2,20 @@ use crate::cli::SimulateArgs;
 use crate::console::{Console, listened};
 use crate::error::{CliError, Outcome};
 use crate::interrupt::{Checked, while_writing};
-use crate::pipeline::{Simulated, simulate, simulate_contacts};
+use crate::pipeline::{Simulated, simulate, simulate_contacts, simulate_planar_contacts};
 use crate::progress::Progress;
-use recon::object_dynamics::End;
-use recon_io::{AnyLog, FileTarget, OutputError, Scene, is_standard_output, write_contact_log, write_log};
+use recon::object_dynamics::{End, planar};
+use recon_io::{
+    AnyLog, FileTarget, OutputError, PlanarScene, Scene, SceneErrorKind, is_standard_output,
+    write_contact_log, write_log, write_planar_contact_log,
+};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 use std::path::Path;
 use std::slice;
 
 pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, CliError> {
-    let scene = Scene::read(&args.scene)?;
+    let scene = AnyScene::read(&args.scene)?;
     let inputs = slice::from_ref(&args.scene);
     let target = match is_standard_output(&args.output) {
         true => None,
@@ -20,9 +23,10 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Cli
     };
     let progress = Progress::new(2, console.is_json());
     progress.step("simulating");
-    let mut made = match scene.palms {
-        Some(_) => any_palms(&scene, args)?,
-        None => three_palms(&scene, args)?,
+    let mut made = match &scene {
+        AnyScene::Plane(scene) => in_the_plane(scene, args)?,
+        AnyScene::Space(scene) if scene.palms.is_some() => any_palms(scene, args)?,
+        AnyScene::Space(scene) => three_palms(scene, args)?,
     };
     progress.step("writing the log");
     let to_standard_output = target.is_none();
@@ -40,9 +44,33 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Cli
     Ok(made.outcome)
 }
 
+/// A scene of space or of the plane.
+enum AnyScene {
+    Space(Box<Scene>),
+    Plane(Box<PlanarScene>),
+}
+
+impl AnyScene {
+    fn read(path: &Path) -> Result<Self, CliError> {
+        match Scene::read(path) {
+            Ok(scene) => Ok(Self::Space(Box::new(scene))),
+            Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
+                Ok(Self::Plane(Box::new(PlanarScene::read(path)?)))
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+}
+
+/// A log of space or of the plane.
+enum MadeLog {
+    Space(AnyLog),
+    Plane(planar::ContactLog),
+}
+
 /// A simulated log and what is said of it.
 struct Made {
-    log: AnyLog,
+    log: MadeLog,
     text: String,
     figures: Value,
     outcome: Outcome,
@@ -50,8 +78,20 @@ struct Made {
 
 fn any_palms(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
     let run = simulate_contacts(scene, &args.scene, args.tolerance)?;
-    let (text, figures) = (run.describe(), run.figures());
-    Ok(Made { log: AnyLog::Contacts(run.log), text, figures, outcome: Outcome::Done })
+    let told = run.told();
+    let log = MadeLog::Space(AnyLog::Contacts(run.log));
+    Ok(Made { log, text: told.describe(), figures: told.figures(), outcome: Outcome::Done })
+}
+
+fn in_the_plane(scene: &PlanarScene, args: &SimulateArgs) -> Result<Made, CliError> {
+    let run = simulate_planar_contacts(scene, args.tolerance)?;
+    let told = run.told();
+    let (mut text, mut figures) = (told.describe(), told.figures());
+    figures["laid_by_m"] = run.laid.into();
+    if !scene.touches.is_empty() {
+        text += &format!("\n  laid on its palms by a move of {:.1e} m", run.laid);
+    }
+    Ok(Made { log: MadeLog::Plane(run.log), text, figures, outcome: Outcome::Done })
 }
 
 fn three_palms(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
@@ -59,17 +99,18 @@ fn three_palms(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
     let (text, figures) = (describe(&simulated), figures(&simulated));
     let whole = simulated.end == End::Completed;
     let outcome = if whole { Outcome::Done } else { Outcome::WithReservations };
-    Ok(Made { log: AnyLog::ThreePalms(simulated.log), text, figures, outcome })
+    Ok(Made { log: MadeLog::Space(AnyLog::ThreePalms(simulated.log)), text, figures, outcome })
 }
 
-fn write_any(log: &AnyLog, to: impl Write) -> io::Result<()> {
+fn write_any(log: &MadeLog, to: impl Write) -> io::Result<()> {
     match log {
-        AnyLog::ThreePalms(log) => write_log(log, to),
-        AnyLog::Contacts(log) => write_contact_log(log, to),
+        MadeLog::Space(AnyLog::ThreePalms(log)) => write_log(log, to),
+        MadeLog::Space(AnyLog::Contacts(log)) => write_contact_log(log, to),
+        MadeLog::Plane(log) => write_planar_contact_log(log, to),
     }
 }
 
-fn write(log: &AnyLog, target: FileTarget, path: &Path) -> Result<(), CliError> {
+fn write(log: &MadeLog, target: FileTarget, path: &Path) -> Result<(), CliError> {
     while_writing(|| {
         let mut file = target.begin()?;
         write_any(log, Checked(&mut file)).map_err(|source| OutputError::Io {

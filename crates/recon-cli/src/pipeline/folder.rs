@@ -80,6 +80,22 @@ pub(crate) fn write_contact_folder(
     })
 }
 
+/// Writes files that are made already, and what is said of them.
+pub(crate) fn write_files_folder(
+    target: FolderTarget,
+    files: &[Extra],
+    figures: &Value,
+) -> Result<(), CliError> {
+    while_writing(|| {
+        let mut folder = Folder(target.begin()?);
+        for (name, contents) in files {
+            folder.write(name, |to| to.write_all(contents))?;
+        }
+        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+        folder.commit()
+    })
+}
+
 /// Writes the meshes of bounds and their figures.
 pub(crate) fn write_bounds_folder(
     target: FolderTarget,

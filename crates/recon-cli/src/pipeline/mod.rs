@@ -9,6 +9,8 @@ mod evidence;
 mod export;
 mod fitted;
 mod folder;
+mod modes;
+mod planar_contacts;
 mod plane;
 mod read;
 mod reconstruct;
@@ -23,8 +25,10 @@ pub(crate) use doubts::doubtful_fit;
 pub(crate) use export::exported;
 pub(crate) use fitted::{fit_words, fitted_shape};
 pub(crate) use folder::{
-    write_bounds_folder, write_contact_folder, write_reconstruction_folder, write_touch_folder,
+    write_bounds_folder, write_contact_folder, write_files_folder, write_reconstruction_folder,
+    write_touch_folder,
 };
+pub(crate) use planar_contacts::simulate_planar_contacts;
 pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};
 pub(crate) use read::three_palms;
 pub(crate) use reconstruct::{NOTABLE_NOISE, Reconstruction, reconstruct};

@@ -29,7 +29,7 @@ pub(crate) fn simulate(scene: &Scene, path: &Path, tolerance: f64) -> Result<Sim
     let noise = SensorNoise {
         contact: scene.sensors.contact_std.unwrap_or(0.0),
         force: scene.sensors.force_std.unwrap_or(0.0),
-        torque: 0.0,
+        torque: scene.sensors.torque_std.unwrap_or(0.0),
     };
     let log = if noise == SensorNoise::default() {
         ideal

@@ -1,6 +1,6 @@
 //! Logs and scenes of palms of any shape: what is three planes through a point is estimated, and the rest refused by name.
 
-use crate::common::{Scratch, scene, scratch_with_log};
+use crate::common::{Scratch, Table, scene, scratch_with_log};
 use glam::DVec3;
 use recon::object_dynamics::{ContactLog, ForceChannel, RecordedMotion};
 use recon_io::{read_log, write_contact_log};
@@ -93,6 +93,69 @@ fn three_planes_are_simulated_through_modes_and_estimated_from_their_log() {
         assert!(run.stderr.contains("four.csv") && run.stderr.contains("4 palm(s)"), "{}", run.stderr);
         assert!(!scratch.path().join("no").exists());
     }
+}
+
+/// The same, each palm on a hinge along its horizontal axis, where a motor holds it.
+fn motors() -> String {
+    let mut scene = planes()
+        .replace("velocity = [-0.508133446, 0.0, 0.0]", "velocity = [-0.508133446, 0.0, 0.0]\nseed = 3");
+    for (normal, axis) in [
+        ("[0.0, 0.866025404, 0.5] }", "[-1.0, 0.0, 0.0]"),
+        // About the other direction: the torque counts the other way.
+        ("[-0.75, -0.433012702, 0.5] }", "[-0.5, 0.866025404, 0.0]"),
+        ("[0.75, -0.433012702, 0.5] }", "[0.5, 0.866025404, 0.0]"),
+    ] {
+        let value = if axis.starts_with("[-0.5") { -15.0 } else { 15.0 };
+        let motor = format!(
+            "motor = {{ pivot = [0.0, 0.0, 0.0], axis = {axis}, inertia = 10.0, law = {{ kind = \"constant\", value = {value} }} }}"
+        );
+        scene = scene.replace(normal, &format!("{normal}\n{motor}"));
+    }
+    scene.replace("duration = 4.2", "duration = 2.0")
+}
+
+#[test]
+fn a_motion_is_estimated_from_torques_alone() {
+    let scratch = Scratch::new("motors");
+    scratch.write("any.toml", &motors());
+    let run = scratch.run(&["simulate", "any.toml", "-o", "any.csv"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(run.stdout.contains("no change of modes"), "{}", run.stdout);
+    // What a robot without force sensors has.
+    let mut table = Table::parse(&scratch.read("any.csv"));
+    let kept: Vec<usize> =
+        (0..table.header.len()).filter(|&c| !table.header[c].starts_with(['f', 'J'])).collect();
+    let keep = |row: &[String]| kept.iter().map(|&c| row[c].clone()).collect::<Vec<_>>();
+    table.rows = table.rows.iter().map(|row| keep(row)).collect();
+    table.header = keep(&table.header);
+    scratch.write("torques.csv", &table.text());
+    let largest = |scene: &str, expected: i32| {
+        let (code, errors, summary) = reconstruct(&scratch, "torques.csv", scene, &format!("{scene}-out"));
+        assert_eq!(code, Some(expected), "{errors}");
+        ["position_m", "angular_velocity_rad_per_s"]
+            .map(|key| summary["largest_error"][key].as_f64().unwrap())
+    };
+    // 6.4e-6 m and 4.2e-5 rad/s, where the forces give 3.7e-8 and 2.6e-7: the palms' acceleration is taken from their rates.
+    let [position, spin] = largest("any.toml", 0);
+    assert!(position < 1e-5 && spin < 1e-4, "{position} {spin}");
+    scratch.write("light.toml", &scratch.read("any.toml").replace("inertia = 10.0", "inertia = 9.0"));
+    let [position, _] = largest("light.toml", 4);
+    assert!(position > 1e-3, "the palms' inertia counts: {position}");
+}
+
+#[test]
+fn motors_are_as_noisy_as_the_scene_says() {
+    let scratch = Scratch::new("motor-noise");
+    // Of 303 readings: known to 4.1 %.
+    scratch.write("noisy.toml", &(motors() + "[sensors]\ntorque_std = 0.2\n"));
+    assert_eq!(scratch.run(&["simulate", "noisy.toml", "-o", "noisy.csv"]).code, Some(0));
+    let noisy = Table::parse(&scratch.read("noisy.csv"));
+    let squares = [("tau_1", 15.0), ("tau_2", -15.0), ("tau_3", 15.0)].map(|(column, mean)| {
+        let place = noisy.column(column);
+        noisy.rows.iter().map(|row| (row[place].parse::<f64>().unwrap() - mean).powi(2)).sum::<f64>()
+    });
+    let deviation = (squares.iter().sum::<f64>() / (3 * noisy.rows.len()) as f64).sqrt();
+    assert!((deviation / 0.2 - 1.0).abs() < 0.16, "{deviation}");
 }
 
 #[test]

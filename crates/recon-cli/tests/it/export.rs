@@ -144,3 +144,40 @@ fn mujoco_holds_the_inner_bound_and_the_urdf_on_the_palms() {
         replay(&scratch, "out/object.urdf", &["--until", "0.5", "--mesh-dir", folder.to_str().unwrap()]);
     assert!(urdf["mass_kg"] == 1.0 && urdf["contact_m"].as_f64().unwrap() < 0.164, "{urdf}");
 }
+
+#[test]
+fn a_scene_is_exported_alone() {
+    let scratch = Scratch::new("export-scene");
+    let scene = include_str!("../../scenes/pick-up.toml");
+    scratch.write("scene.toml", scene);
+    let run = scratch.run(&["export", "scene.toml", "-o", "model", "--json"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let said: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(said["files"], serde_json::json!(["scene.xml"]));
+    // What the demo writes of it, and the whole folder holds.
+    assert_eq!(scratch.run(&["demo", "--scene", "pick-up", "-o", "demo"]).code, Some(0));
+    assert!(scratch.read("model/scene.xml") == scratch.read("demo/scene.xml"));
+    assert_eq!(scratch.run(&["check", "model"]).code, Some(0));
+    // A shape that MuJoCo does not know comes as a mesh.
+    let egg = r#"shape = { kind = "polynomial", terms = [{ coefficient = 0.03, powers = [0, 0, 0] }, { coefficient = 0.002, powers = [3, 0, 0] }] }"#;
+    let start = scene.find("shape = {").unwrap();
+    let end = start + scene[start..].find('\n').unwrap();
+    scratch.write("scene.toml", &(scene[..start].to_owned() + egg + &scene[end..]));
+    let run = scratch.run(&["export", "scene.toml", "-o", "model"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(scratch.path().join("model/scene_shape.obj").is_file(), "{}", run.stdout);
+    // What cannot be exported is named, and what stood there stands.
+    let before = scratch.read("model/scene.xml");
+    let refused = |scene: &str, words: &[&str]| {
+        scratch.write("scene.toml", scene);
+        let run = scratch.run(&["export", "scene.toml", "-o", "model"]);
+        assert_eq!(run.code, Some(3), "{}", run.stdout);
+        assert!(words.iter().all(|word| run.stderr.contains(word)), "{}", run.stderr);
+        assert!(scratch.read("model/scene.xml") == before);
+    };
+    let cup =
+        "\n[[palm]]\nkind = \"cup\"\nradius = 1.0\nfriction = 0.1\npose = { position = [0.0, 0.0, 1.0] }\n";
+    refused(&(scene.to_owned() + cup), &["palm 5 is a cup"]);
+    refused(include_str!("../../scenes/fig5.toml"), &["scene.toml", "any [[palm]]"]);
+    refused("plane = true", &["scene.toml", "scene in the plane"]);
+}

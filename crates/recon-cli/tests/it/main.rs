@@ -20,3 +20,4 @@ mod margins;
 mod nothing_lost;
 mod planar;
 mod simulate_any;
+mod simulate_planar;

@@ -1,6 +1,6 @@
 use crate::separator::advice;
 use recon::contact_kinematics::{DirectionError, PalmError, SurfaceError};
-use recon::object_dynamics::planar::PlanarLogError;
+use recon::object_dynamics::planar::{self, PlanarLogError};
 use recon::object_dynamics::{ContactLogError, LogError};
 use std::path::PathBuf;
 use thiserror::Error;
@@ -175,18 +175,18 @@ pub enum LogFileErrorKind {
     },
     /// Part of a contact point is there and part is not.
     #[error(
-        "line {line}: contact of palm {palm} ({columns}) is ({}, {}, {}); without contact all three are nan, with contact \
-         none is", value[0], value[1], value[2]
+        "line {line}: contact of palm {palm} ({columns}) is ({}); without contact all of these are nan, with contact none is",
+        value.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
     )]
     PartOfContact {
         /// Line number.
         line: u64,
         /// Palm from 1.
         palm: usize,
-        /// The three columns.
+        /// Its columns.
         columns: String,
         /// What stands there.
-        value: [f64; 3],
+        value: Vec<f64>,
     },
     /// A force without a place where it acts, in general logs.
     #[error(
@@ -243,6 +243,14 @@ pub enum LogFileErrorKind {
         line: Option<u64>,
         /// Why.
         source: LogError,
+    },
+    /// The samples do not make a log of planar palms; `line` as above.
+    #[error("{}{source}", line.map_or(String::new(), |line| format!("line {line}: ")))]
+    PlanarContactSamples {
+        /// Line number.
+        line: Option<u64>,
+        /// Why.
+        source: planar::ContactLogError,
     },
     /// The samples do not make a planar log; `line` as above.
     #[error("{}{source}", line.map_or(String::new(), |line| format!("line {line}: ")))]

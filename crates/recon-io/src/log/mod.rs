@@ -5,6 +5,7 @@ mod columns;
 mod contacts;
 mod error;
 mod planar;
+mod planar_contacts;
 mod read;
 mod reader;
 mod write;
@@ -17,6 +18,7 @@ pub use contacts::{
 };
 pub use error::{LogFileError, LogFileErrorKind};
 pub use planar::{parse_planar_log, read_planar_log, write_planar_log};
+pub use planar_contacts::{parse_planar_contact_log, read_planar_contact_log, write_planar_contact_log};
 pub use read::{parse_log, read_log};
 pub use reader::LogReader;
 pub use write::write_log;

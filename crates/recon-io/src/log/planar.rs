@@ -9,7 +9,7 @@ use recon::object_dynamics::planar::{PlanarLog, PlanarLogError, PlanarSample, Pl
 use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
-const TRUTH: [&str; 6] = ["cmx", "cmy", "phi0", "vx", "vy", "omega0"];
+pub(super) const TRUTH: [&str; 6] = ["cmx", "cmy", "phi0", "vx", "vy", "omega0"];
 
 /// Where each quantity stands in a row.
 struct Columns {

@@ -1,8 +1,9 @@
 use super::file::{ObjectTable, PalmTable, PalmsTable, SceneFile, SensorsTable, ShapeTable, SimulationTable};
 use super::palms::palms as any_palms;
-use super::{KnownInertia, Scene, SceneErrorKind as Kind, Sensors, Shape, Simulation};
+use super::{KnownInertia, KnownPalm, Scene, SceneErrorKind as Kind, Sensors, Shape, Simulation};
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, MotionLaw, Palm, PalmTriple};
+use recon::object_dynamics::SampleTimes;
 use std::path::Path;
 
 /// Largest departure of the initial quaternion's length from 1.
@@ -26,7 +27,7 @@ pub(super) fn scene(file: SceneFile, folder: &Path) -> Result<Scene, Kind> {
         inertia,
         curvature: curvature(&file.object)?,
         sensors,
-        palm_inertia: palm_inertia(&file.palms)?,
+        palm_inertia: palm_inertia(&file.palms)?.or_else(|| motor_inertia(palms.as_deref()?)),
         friction,
         palms,
         simulation,
@@ -65,7 +66,7 @@ fn curvature(table: &ObjectTable) -> Result<Option<CurvatureRadii>, Kind> {
     Ok(Some(CurvatureRadii { min, max }))
 }
 
-fn sensors(table: &SensorsTable) -> Result<Sensors, Kind> {
+pub(super) fn sensors(table: &SensorsTable) -> Result<Sensors, Kind> {
     let not_negative =
         |key, value: Option<f64>| value.map(|v| Kind::not_negative(&format!("sensors.{key}"), v)).transpose();
     Ok(Sensors {
@@ -88,16 +89,30 @@ fn palm_inertia(table: &PalmsTable) -> Result<Option<[f64; 3]>, Kind> {
     Ok(Some(inertia))
 }
 
-fn simulation(table: SimulationTable, sensors: &Sensors, any_palms: bool) -> Result<Simulation, Kind> {
-    let palms = three_palms(&table, any_palms)?;
-    let duration = Kind::positive("simulation.duration", table.duration)?;
-    let sample_rate = match table.sample_rate {
+/// How long a simulation lasts and when it is sampled: at its own rate, that of the sensors, or 1 kHz.
+pub(super) fn sample_times(duration: f64, rate: Option<f64>, sensors: &Sensors) -> Result<SampleTimes, Kind> {
+    let duration = Kind::positive("simulation.duration", duration)?;
+    let rate = match rate {
         Some(rate) => Kind::positive("simulation.sample_rate", rate)?,
         None => sensors.sample_rate.unwrap_or(1000.0),
     };
     Kind::check("simulation.duration", duration, "at least one sample and at most 1e6 samples long", |d| {
-        (1.0..=MOST_SAMPLES).contains(&(d * sample_rate))
+        (1.0..=MOST_SAMPLES).contains(&(d * rate))
     })?;
+    Ok(SampleTimes { duration, rate })
+}
+
+/// Of three palms that motors turn.
+fn motor_inertia(palms: &[KnownPalm]) -> Option<[f64; 3]> {
+    let inertia = |palm: &KnownPalm| Some(palm.hinge()?.inertia);
+    let [a, b, c] = palms else { return None };
+    Some([inertia(a)?, inertia(b)?, inertia(c)?])
+}
+
+fn simulation(table: SimulationTable, sensors: &Sensors, any_palms: bool) -> Result<Simulation, Kind> {
+    let palms = three_palms(&table, any_palms)?;
+    let SampleTimes { duration, rate: sample_rate } =
+        sample_times(table.duration, table.sample_rate, sensors)?;
     let [w, x, y, z] = table.orientation;
     let orientation = DQuat::from_xyzw(x, y, z, w);
     let must = "the length 1 of a unit quaternion, w first";

@@ -1,5 +1,6 @@
 use crate::log::LogFileError;
 use recon::contact_kinematics::{DirectionError, PalmError, ShapeError, SurfaceError};
+use recon::object_dynamics::planar::{self, PlanarMassError};
 use recon::object_dynamics::{ContactSceneError, DriveError, MassError};
 use std::path::PathBuf;
 use thiserror::Error;
@@ -118,6 +119,20 @@ pub enum SceneErrorKind {
     /// The object's shape.
     #[error("`simulation.shape`: {0}")]
     Shape(ShapeError),
+    /// A scene in the plane where one of space is needed.
+    #[error(
+        "is a scene in the plane (`plane = true`), and here one of space is needed; `recon simulate` takes either"
+    )]
+    InPlane,
+    /// The object's outline.
+    #[error("`simulation.shape`: {0}")]
+    Outline(recon::contact_kinematics::planar::ShapeError),
+    /// Mass and inertia that no body in the plane has.
+    #[error("`object`: {0}")]
+    PlanarMass(#[from] PlanarMassError),
+    /// Object and palms make no scene in the plane.
+    #[error(transparent)]
+    PlanarContacts(planar::ContactSceneError),
     /// Object and palms make no scene.
     #[error(transparent)]
     Contacts(ContactSceneError),

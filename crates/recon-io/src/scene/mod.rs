@@ -4,6 +4,7 @@ mod build;
 mod error;
 mod file;
 mod palms;
+mod planar;
 mod shape;
 
 #[cfg(test)]
@@ -11,6 +12,7 @@ mod tests;
 
 pub use error::{SceneError, SceneErrorKind};
 pub use palms::{BoxedShape, KnownPalm};
+pub use planar::{PlanarBody, PlanarScene};
 
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, Palm};
@@ -180,11 +182,7 @@ impl Scene {
         let path = path.as_ref();
         let in_file = |kind| SceneError { path: path.to_owned(), kind };
         let text = std::fs::read_to_string(path).map_err(|e| in_file(e.into()))?;
-        build::scene(
-            toml::from_str(&text).map_err(|e| in_file(e.into()))?,
-            path.parent().unwrap_or(Path::new("")),
-        )
-        .map_err(in_file)
+        Self::in_folder(&text, path.parent().unwrap_or(Path::new(""))).map_err(in_file)
     }
 
     /// Reads a scene from TOML text. Files that it names are looked for in the present folder.
@@ -192,7 +190,15 @@ impl Scene {
     /// # Errors
     /// [`SceneErrorKind`] names the key.
     pub fn parse(text: &str) -> Result<Self, SceneErrorKind> {
-        build::scene(toml::from_str(text)?, Path::new(""))
+        Self::in_folder(text, Path::new(""))
+    }
+
+    fn in_folder(text: &str, folder: &Path) -> Result<Self, SceneErrorKind> {
+        // Before the numbers are looked at, of which the plane has two where space has three.
+        if toml::from_str::<planar::Whether>(text)?.plane {
+            return Err(SceneErrorKind::InPlane);
+        }
+        build::scene(toml::from_str(text)?, folder)
     }
 
     /// Mass and inertia, where both are known.

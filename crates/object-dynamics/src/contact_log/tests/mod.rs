@@ -1,4 +1,5 @@
 mod build;
+mod motor;
 #[cfg(feature = "noise")]
 mod noise;
 mod simulated;
@@ -24,6 +25,7 @@ fn palm(surface: PalmSurface, p_P: DVec3, samples: usize) -> PalmRecord {
         force: ForceChannel::Missing,
         impulse: ForceChannel::Missing,
         torque: None,
+        hinge: None,
         truth: None,
         largest_offset: 1e-3,
     }

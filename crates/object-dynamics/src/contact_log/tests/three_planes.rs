@@ -104,6 +104,27 @@ fn planes_through_another_point_are_moved_there() {
 }
 
 #[test]
+fn torques_are_about_the_line_through_the_meeting_point() {
+    let p_WM = DVec3::new(0.4, -0.3, 0.2);
+    let hinged = |aside: DVec3, turn: f64| {
+        let mut records = cradle(0.0, p_WM);
+        for (record, azimuth) in records.iter_mut().zip([0.0, 2.1, 4.2]) {
+            let t1 = PalmFrame::from_azimuth_slope(azimuth, 1.0).t1;
+            let axis = Direction::new(turn * t1).unwrap();
+            record.hinge = Some(PalmHinge { pivot: p_WM + 0.7 * t1 + aside, axis, inertia: 1e-3 });
+            record.torque = Some(vec![Some(0.25); SAMPLES]);
+        }
+        let sample = log(records).three_planes().unwrap().log.samples()[5];
+        sample.palms.map(|palm| palm.torque)
+    };
+    // About the horizontal axis of each palm, and against it.
+    assert_eq!(hinged(DVec3::ZERO, 1.0), [Some(0.25); 3]);
+    assert_eq!(hinged(DVec3::ZERO, -1.0), [Some(-0.25); 3]);
+    // The lever of the force is another one there.
+    assert_eq!(hinged(DVec3::Z * 1e-3, 1.0), [None; 3]);
+}
+
+#[test]
 fn what_the_estimators_do_not_know_is_refused_by_name() {
     let refused = |change: &dyn Fn(&mut Vec<PalmRecord>)| {
         let mut records = cradle(0.0, DVec3::ZERO);

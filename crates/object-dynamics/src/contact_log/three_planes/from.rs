@@ -63,6 +63,7 @@ fn plane(samples: &[Sample], i: usize) -> Result<PalmRecord, ContactLogError> {
         },
         impulse: ForceChannel::Missing,
         torque: readings().any(|r| r.torque.is_some()).then(torques),
+        hinge: None,
         truth: None,
         largest_offset: f64::INFINITY,
     })

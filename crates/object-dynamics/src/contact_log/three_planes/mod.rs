@@ -61,7 +61,7 @@ impl ContactLog {
         let (p_WM, apart) = self.meeting_point(palms, apart)?;
         let sample = |k: usize| {
             let reading = |i: usize| {
-                self.reading(palms[i], k, p_WM).map_err(|source| NotThreePlanes::Frame {
+                self.reading(palms[i], k, (p_WM, apart)).map_err(|source| NotThreePlanes::Frame {
                     palm: i + 1,
                     sample: k,
                     time: self.times[k],
@@ -76,7 +76,12 @@ impl ContactLog {
         Ok(ThreePlanes { log: SensorLog::new(samples, truth)?, p_WM, apart })
     }
 
-    fn reading(&self, palm: &LoggedPalm, k: usize, p_WM: DVec3) -> Result<PalmReading, PalmError> {
+    fn reading(
+        &self,
+        palm: &LoggedPalm,
+        k: usize,
+        (p_WM, apart): (DVec3, f64),
+    ) -> Result<PalmReading, PalmError> {
         let motion = palm.motion(k);
         let normal = plane_normal(&motion);
         let frame = PalmFrame::from_normal(normal)?;
@@ -92,7 +97,7 @@ impl ContactLog {
                     Some(palm.touch(k).map_or(0.0, |touch| vectors[k].dot(touch.n.get())))
                 }
             },
-            torque: palm.torque(k),
+            torque: torque_about(palm, k, [p_WM, frame.t1], apart),
             rate: stated.then(|| motion.w_WP.dot(frame.t1)),
         })
     }
@@ -138,6 +143,20 @@ impl ContactLog {
         }
         Ok(matrix.inverse() * side)
     }
+}
+
+/// Torque of the palm's motor about the line through `p_WM` along `t1`, N m; none where it was measured about another line, or
+/// one that passes by farther than the palms do.
+fn torque_about(palm: &LoggedPalm, k: usize, [p_WM, t1]: [DVec3; 2], apart: f64) -> Option<f64> {
+    let motion = palm.motion(k);
+    let (pivot, axis) = palm
+        .hinge()
+        .map_or((motion.pose.p_WP, motion.pose.R_WP * DVec3::X), |hinge| (hinge.pivot, hinge.axis.get()));
+    let extent = palm.touch(k).map_or(0.0, |touch| (touch.p_WC - p_WM).length());
+    let along = axis.dot(t1);
+    let same_line = axis.cross(t1).length() <= ROUNDED_TURN
+        && (pivot - p_WM).cross(axis).length() <= apart.max(MEETING * extent);
+    palm.torque(k).filter(|_| same_line).map(|torque| torque * along.signum())
 }
 
 fn plane_normal(motion: &MeasuredMotion) -> Direction {

@@ -16,6 +16,7 @@ pub use read::{parse_contact_log, read_contact_log};
 pub use write::write_contact_log;
 
 use recon::contact_kinematics::{PalmSurface, SurfacePose};
+use recon::object_dynamics::PalmHinge;
 
 /// What a log does not say of a palm: its shape and, where it does not move, its pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +27,8 @@ pub struct PalmSetup {
     pub friction: Option<f64>,
     /// Where it stands while the log has no columns for that.
     pub pose: Option<SurfacePose>,
+    /// What its motor turns it about, if it has one.
+    pub hinge: Option<PalmHinge>,
     /// Largest distance of a contact point from the palm's surface that is taken for noise, m; may be infinite.
     pub largest_offset: f64,
 }

@@ -94,6 +94,7 @@ impl<'a> Palm<'a> {
             force: channel(&columns.force),
             impulse: channel(&columns.impulse),
             torque: columns.torque.is_some().then(Vec::new),
+            hinge: setup.hinge,
             truth: columns.truth.is_some().then(Vec::new),
             largest_offset: setup.largest_offset,
         };
@@ -139,7 +140,7 @@ impl<'a> Palm<'a> {
             0 => Ok(Some(row.vector(fields)?.into())),
             _ => {
                 let columns = fields.each_ref().map(|field| field.name.as_str()).join(", ");
-                Err(Kind::PartOfContact { line: row.line, palm: self.number, columns, value })
+                Err(Kind::PartOfContact { line: row.line, palm: self.number, columns, value: value.to_vec() })
             }
         }
     }

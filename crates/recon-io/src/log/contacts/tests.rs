@@ -12,12 +12,14 @@ const FINGERTIP: PalmSetup = PalmSetup {
     surface: PalmSurface::Sphere { radius: 0.012 },
     friction: Some(0.8),
     pose: None,
+    hinge: None,
     largest_offset: 1e-3,
 };
 const PLANE: PalmSetup = PalmSetup {
     surface: PalmSurface::Plane,
     friction: None,
     pose: Some(SurfacePose { p_WP: DVec3::new(0.0, 0.0, 0.5), R_WP: DQuat::IDENTITY }),
+    hinge: None,
     largest_offset: f64::INFINITY,
 };
 
@@ -95,6 +97,18 @@ fn bad_cells_are_named_by_line_and_column() {
     assert!(matches!(ghost, Err(Kind::ForceOffContact { line: 3, palm: 2, column, .. }) if column == "fn_2"));
     assert!(with(1, "fn_2", "nan").is_ok());
     assert!(matches!(with(0, "mode_1", "3"), Err(Kind::Mode { line: 2, value: 3.0, .. })));
+    let strained = with(1, "tau_2", "inf").unwrap_err();
+    assert!(
+        matches!(
+            strained,
+            Kind::ContactSamples {
+                line: Some(3),
+                source: ContactLogError::ReadingNotFinite { what: "torque", palm: 2, .. }
+            }
+        ),
+        "{strained}"
+    );
+    assert!(matches!(with(0, "tau_2", "x"), Err(Kind::NotANumber { line: 2, .. })));
     let back = with(1, "t", "-1");
     assert!(matches!(back, Err(Kind::ContactSamples { line: Some(3), source: ContactLogError::Series(_) })));
 }
@@ -202,6 +216,7 @@ fn any_palm() -> impl Strategy<Value = PalmRecord> {
             ),
             force,
             impulse,
+            hinge: None,
             torque: torque.then(|| touched.iter().map(|there| there.then_some(0.1)).collect()),
             truth: torque
                 .then(|| vec![TrueContact { mode: ContactMode::Slide, gap: 1e-7, slip: 0.1 }; SAMPLES]),
@@ -226,7 +241,7 @@ proptest! {
         let mut text = Vec::new();
         write_contact_log(&log, &mut text).unwrap();
         let setup = |palm: &recon::object_dynamics::LoggedPalm| PalmSetup {
-            surface: palm.surface(), friction: palm.friction(), pose: None, largest_offset: 1e-9,
+            surface: palm.surface(), friction: palm.friction(), pose: None, hinge: None, largest_offset: 1e-9,
         };
         let palms: Vec<_> = log.palms().iter().map(setup).collect();
         let back = parse_contact_log(&text[..], &palms).unwrap();

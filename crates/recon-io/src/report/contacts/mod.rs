@@ -11,4 +11,4 @@ mod view;
 mod tests;
 
 pub use page::write_contact_report;
-pub use spans::{ModeSpan, mode_spans};
+pub use spans::{ModeSpan, mode_spans, planar_mode_spans};

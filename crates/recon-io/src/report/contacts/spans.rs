@@ -1,6 +1,6 @@
 //! What each contact does over time.
 
-use recon::object_dynamics::{ContactEvent, ContactMode, ContactSimulation};
+use recon::object_dynamics::{ContactMode, ContactSimulation, planar};
 
 /// A stretch of time over which a contact does the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,17 +19,31 @@ pub struct ModeSpan {
 pub fn mode_spans(simulation: &ContactSimulation, palm: usize) -> Vec<ModeSpan> {
     let instants = &simulation.instants;
     let (Some(first), Some(last)) = (instants.first(), instants.last()) else { return Vec::new() };
-    spans(first.modes[palm], [first.state.t, last.state.t], &simulation.events, palm)
+    let changes = simulation.events.iter().map(|event| (event.t, event.modes[palm]));
+    spans(first.modes[palm], [first.state.t, last.state.t], changes)
 }
 
-fn spans(mode: ContactMode, [start, end]: [f64; 2], events: &[ContactEvent], palm: usize) -> Vec<ModeSpan> {
+/// The same in the plane.
+#[must_use]
+pub fn planar_mode_spans(simulation: &planar::ContactSimulation, palm: usize) -> Vec<ModeSpan> {
+    let instants = &simulation.instants;
+    let (Some(first), Some(last)) = (instants.first(), instants.last()) else { return Vec::new() };
+    let changes = simulation.events.iter().map(|event| (event.t, event.modes[palm]));
+    spans(first.modes[palm], [first.t, last.t], changes)
+}
+
+/// From the mode at the start and the times at which modes follow.
+fn spans(
+    mode: ContactMode,
+    [start, end]: [f64; 2],
+    changes: impl Iterator<Item = (f64, ContactMode)>,
+) -> Vec<ModeSpan> {
     let mut spans: Vec<ModeSpan> = Vec::new();
     let mut open = ModeSpan { start, end, mode };
-    for event in events.iter().filter(|event| event.t <= end) {
-        let mode = event.modes[palm];
+    for (t, mode) in changes.filter(|change| change.0 <= end) {
         if mode != open.mode {
-            spans.push(ModeSpan { end: event.t, ..open });
-            open = ModeSpan { start: event.t, end, mode };
+            spans.push(ModeSpan { end: t, ..open });
+            open = ModeSpan { start: t, end, mode };
         }
     }
     spans.push(open);
@@ -49,17 +63,14 @@ fn spans(mode: ContactMode, [start, end]: [f64; 2], events: &[ContactEvent], pal
 mod tests {
     use super::*;
     use ContactMode::{Off, Slide, Stick};
-    use recon::object_dynamics::ContactEventKind;
 
     #[test]
     fn spans_cover_the_time_once_and_what_takes_no_time_is_none() {
-        let event =
-            |t, mode| ContactEvent { t, palm: 0, kind: ContactEventKind::SlipEnds, modes: vec![mode] };
-        let events =
-            [event(0.0, Slide), event(0.3, Slide), event(0.5, Off), event(0.5, Slide), event(0.7, Stick)];
-        let found = spans(Stick, [0.0, 1.0], &events, 0);
+        let changes = [(0.0, Slide), (0.3, Slide), (0.5, Off), (0.5, Slide), (0.7, Stick)];
+        let found = spans(Stick, [0.0, 1.0], changes.into_iter());
         let expected = [(0.0, 0.7, Slide), (0.7, 1.0, Stick)];
         assert_eq!(found, expected.map(|(start, end, mode)| ModeSpan { start, end, mode }));
-        assert_eq!(spans(Off, [0.0, 0.2], &events[1..], 0), [ModeSpan { start: 0.0, end: 0.2, mode: Off }]);
+        let short = spans(Off, [0.0, 0.2], changes[1..].iter().copied());
+        assert_eq!(short, [ModeSpan { start: 0.0, end: 0.2, mode: Off }]);
     }
 }

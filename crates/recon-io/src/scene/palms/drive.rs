@@ -130,7 +130,8 @@ fn matrix(table: MatrixTable) -> DMat3 {
     }
 }
 
-fn law(table: &LawTable) -> MotionLaw {
+/// As it stands in a file.
+pub(in crate::scene) fn law(table: &LawTable) -> MotionLaw {
     match *table {
         LawTable::Constant { value } => MotionLaw::Constant { value },
         LawTable::Steady { start, rate } => MotionLaw::Steady { start, rate },

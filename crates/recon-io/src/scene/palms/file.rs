@@ -45,7 +45,7 @@ pub(super) struct PartTable {
 
 #[derive(Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
-pub(super) enum LawTable {
+pub(in crate::scene) enum LawTable {
     Constant {
         value: f64,
     },

@@ -8,13 +8,15 @@ mod file;
 mod tests;
 
 pub(super) use build::palms;
-pub(super) use file::PalmTable;
+pub(super) use drive::law;
+pub(super) use file::{LawTable, PalmTable};
 
 use super::{Scene, SceneErrorKind as Kind, Sensors};
 use crate::PalmSetup;
 use recon::contact_kinematics::{PalmSurface, SupportFunction};
 use recon::object_dynamics::{
-    BodyState, ChannelNoise, ContactNoise, ContactScene, ContactStart, PalmDrive, SampleTimes, ScenePalm,
+    BodyState, ChannelNoise, ContactNoise, ContactScene, ContactStart, PalmDrive, PalmHinge, SampleTimes,
+    ScenePalm,
 };
 
 /// A closed-form shape whose kind is known when the program runs.
@@ -71,6 +73,17 @@ pub struct KnownPalm {
     pub drive: Option<PalmDrive>,
 }
 
+impl KnownPalm {
+    /// What its motor turns it about, if it has one.
+    #[must_use]
+    pub fn hinge(&self) -> Option<PalmHinge> {
+        match &self.drive {
+            Some(PalmDrive::Torque(motor)) => Some(motor.into()),
+            _ => None,
+        }
+    }
+}
+
 impl Scene {
     /// What a log of version 2 does not say of the palms; none where the scene has no `[[palm]]`.
     #[must_use]
@@ -80,6 +93,7 @@ impl Scene {
             surface: palm.surface,
             friction: palm.friction,
             pose: palm.drive.as_ref().and_then(drive::fixed_pose),
+            hinge: palm.hinge(),
             largest_offset,
         };
         Some(self.palms.as_ref()?.iter().map(setup).collect())

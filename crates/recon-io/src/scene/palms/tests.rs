@@ -103,6 +103,10 @@ fn logs_need_less_than_simulations() {
     // A palm that moves has no pose of its own.
     assert_eq!([0, 1, 2, 3].map(|i| setups[i].pose.is_some()), [false, false, true, false]);
     assert_eq!(setups[2].largest_offset, 1e-3);
+    // What its motor turns a palm about.
+    assert!(setups[..3].iter().all(|setup| setup.hinge.is_none()));
+    let hinge = setups[3].hinge.unwrap();
+    assert_eq!((hinge.pivot, hinge.axis.get(), hinge.inertia), (DVec3::X * 0.6, DVec3::Y, 1e-3));
     assert!(Scene::parse("gravity = 9.81").unwrap().palm_setups().is_none());
     let no_friction = with("[palms]\nfriction = 0.25\n", "").unwrap().contact_scene();
     assert!(matches!(no_friction, Err(Kind::MissingOfPalm { palm: 2, key: "friction" })));
