@@ -16,16 +16,16 @@ pub mod planar;
 #[cfg(feature = "palms")]
 mod three_palms;
 
+#[cfg(feature = "palms")]
+pub use contacts::{
+    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, estimate_contacts,
+};
 pub use core::{
     Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Link, Model, NewtonEstimate,
     NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start, Status, describe_direction, rk4,
     rk4_linearised, solve_batch, solve_batch_along, solve_batch_from,
 };
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
-#[cfg(feature = "palms")]
-pub use contacts::{
-    ContactEstimate, ContactEstimateError, ContactOptions, SensorNoise, estimate_contacts,
-};
 #[cfg(feature = "palms")]
 pub use three_palms::{
     BodyEstimate, CurveUncertainty, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate,

@@ -2,14 +2,13 @@
 
 use super::contact_logs::log::{Anything, Log};
 use glam::{DMat3, DQuat};
-use recon::object_dynamics::{ContactNoise, ChannelNoise};
-use recon::observer::{ContactEstimate, ContactOptions, SensorNoise, estimate_contacts};
+use recon::object_dynamics::{ChannelNoise, ContactNoise};
+use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
 use std::path::PathBuf;
 
 pub(crate) fn main() -> Anything<()> {
     let mut words = crate::words();
     let folder = PathBuf::from(words.next().ok_or("the folder of the logs is missing")?);
-    let stride: usize = words.next().map_or(Ok(10), |s| s.parse())?;
     let contact: f64 = words.next().map_or(Ok(0.0), |s| s.parse())?;
     let share: f64 = words.next().map_or(Ok(0.0), |s| s.parse())?;
     let seconds: f64 = words.next().map_or(Ok(1.8), |s| s.parse())?;
@@ -20,29 +19,58 @@ pub(crate) fn main() -> Anything<()> {
     for name in names {
         let log = Log::read(&folder, &name)?;
         for seed in 0..seeds {
-            one(&name, &log, (stride, contact, share, seconds, seed, floor))?;
+            one(&name, &log, (contact, share, seconds, seed, floor))?;
         }
     }
     Ok(())
 }
 
-fn one(name: &str, file: &Log, (stride, contact, share, seconds, seed, floor): (usize, f64, f64, f64, u64, f64)) -> Anything<()> {
+fn one(
+    name: &str,
+    file: &Log,
+    (contact, share, seconds, seed, floor): (f64, f64, f64, u64, f64),
+) -> Anything<()> {
     let (log, modes) = file.contact_log(seconds)?;
     let axes = file.semi_axes();
     let l = (axes.x + axes.y + axes.z) / 3.0;
     let g = 9.81;
     let log = if contact > 0.0 || share > 0.0 {
-        let noise = ContactNoise { contact: 2.0 * l * contact, force: ChannelNoise { fixed: 0.0, share }, ..Default::default() };
+        let noise = ContactNoise {
+            contact: 2.0 * l * contact,
+            force: ChannelNoise { fixed: 0.0, share },
+            ..Default::default()
+        };
         log.with_noise(&noise, seed)?
-    } else { log };
-    let noise = SensorNoise { contact: 2.0 * l * contact, force_fixed: 0.0, force_share: share, floor: floor * (g * l).sqrt() };
+    } else {
+        log
+    };
+    let noise = ContactNoiseLevel {
+        contact: 2.0 * l * contact,
+        force_fixed: 0.0,
+        force_share: share,
+        floor: floor * (g * l).sqrt(),
+    };
     let size = (file.palm_count() == 1).then_some(0.8 * l);
-    let options = ContactOptions { noise, gravity: g, stride, size };
+    let options = ContactOptions { noise, gravity: g, size };
     let started = std::time::Instant::now();
     let found = estimate_contacts(&log, &modes, &options)?;
     let ms = started.elapsed().as_secs_f64() * 1e3;
     let errors = errors(file, &found, l, g)?;
-    println!("| {name} | {:?} | {} | {:.3} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {ms:.0} | {:.1e} {:.1?} {:.1e}", found.iterations, found.settled, found.chi_squared / found.conditions as f64, errors[0], errors[1], errors[2], errors[3], errors[4], errors[5], found.mass_deviation, found.inertia_deviations, found.deviations[found.nodes.len() / 2][0].length() / l);
+    println!(
+        "| {name} | {:?} | {} | {:.3} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {ms:.0} | {:.1e} {:.1?} {:.1e}",
+        found.iterations,
+        found.settled,
+        found.chi_squared / found.conditions as f64,
+        errors[0],
+        errors[1],
+        errors[2],
+        errors[3],
+        errors[4],
+        errors[5],
+        found.mass_deviation,
+        found.inertia_deviations,
+        found.deviations[found.nodes.len() / 2][0].length() / l
+    );
     Ok(())
 }
 
@@ -50,7 +78,8 @@ fn errors(file: &Log, found: &ContactEstimate, l: f64, g: f64) -> Anything<[f64;
     let mut sums = [0.0; 4];
     let truth = |k: usize| file.body(k);
     let first = truth(0)?.R_WO;
-    let (cm, v, w, q) = (file.vectors("cm", "")?, file.vectors("v", "")?, file.vectors("w", "")?, file.quaternions("q", "")?);
+    let (cm, v, w, q) =
+        (file.vectors("cm", "")?, file.vectors("v", "")?, file.vectors("w", "")?, file.quaternions("q", "")?);
     for (state, &k) in found.states.iter().zip(&found.nodes) {
         sums[0] += ((state.p_WCm - cm[k]) / l).length_squared();
         sums[1] += (state.v_WCm - v[k]).length_squared() / (g * l);

@@ -3,7 +3,9 @@
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, PalmSurface, PoseTable, SurfaceMotion, SurfacePose};
 use recon::object_dynamics::{
-    BodyState, ContactLog, ContactMode, ContactPoints, ContactScene, ForceChannel, MOST_PALMS, MassProperties, MeasuredMotion, PalmCoordinates, PalmDrive, PalmRecord, PalmSpring, RecordedMotion, ScenePalm,
+    BodyState, ContactLog, ContactMode, ContactPoints, ContactScene, ForceChannel, MOST_PALMS,
+    MassProperties, MeasuredMotion, PalmCoordinates, PalmDrive, PalmRecord, PalmSpring, RecordedMotion,
+    ScenePalm,
 };
 use serde_json::Value;
 use std::collections::HashMap;
@@ -83,15 +85,23 @@ impl Log {
         for i in 1..=self.palm_count() {
             let tail = format!("_{i}");
             let vectors = |stem| self.vectors(stem, &tail);
-            let (points, p, v, w, f) = (vectors("p")?, vectors("P")?, vectors("V")?, vectors("W")?, vectors("f")?);
+            let (points, p, v, w, f) =
+                (vectors("p")?, vectors("P")?, vectors("V")?, vectors("W")?, vectors("f")?);
             let q = self.quaternions("Q", &tail)?;
-            let states = (0..times.len()).map(|k| Ok(MeasuredMotion { pose: SurfacePose::new(p[k], q[k])?, v_WP: v[k], w_WP: w[k] }));
+            let states = (0..times.len())
+                .map(|k| Ok(MeasuredMotion { pose: SurfacePose::new(p[k], q[k])?, v_WP: v[k], w_WP: w[k] }));
             let states: Anything<Vec<_>> = states.collect();
             let mode = self.column(&format!("mode_{i}"))?;
             for (k, modes) in modes.iter_mut().enumerate() {
-                modes[i - 1] = match mode[k] as u8 { 0 => ContactMode::Off, 1 => ContactMode::Slide, _ => ContactMode::Stick };
+                modes[i - 1] = match mode[k] as u8 {
+                    0 => ContactMode::Off,
+                    1 => ContactMode::Slide,
+                    _ => ContactMode::Stick,
+                };
             }
-            let touched = |k: usize| (points[k].is_finite() && modes[k][i - 1] != ContactMode::Off).then_some(points[k]);
+            let touched = |k: usize| {
+                (points[k].is_finite() && modes[k][i - 1] != ContactMode::Off).then_some(points[k])
+            };
             records.push(PalmRecord {
                 surface: self.palm(i, 10)?.surface,
                 friction: None,
@@ -100,6 +110,7 @@ impl Log {
                 force: ForceChannel::Three(f[..times.len()].to_vec()),
                 impulse: ForceChannel::Missing,
                 torque: None,
+                hinge: None,
                 truth: None,
                 largest_offset: f64::INFINITY,
             });
@@ -140,8 +151,12 @@ impl Log {
 
     /// The body's states at the first `count` samples.
     pub(crate) fn bodies(&self, count: usize) -> Anything<Vec<BodyState>> {
-        let (p, q, v, w) =
-            (self.vectors("cm", "")?, self.quaternions("q", "")?, self.vectors("v", "")?, self.vectors("w", "")?);
+        let (p, q, v, w) = (
+            self.vectors("cm", "")?,
+            self.quaternions("q", "")?,
+            self.vectors("v", "")?,
+            self.vectors("w", "")?,
+        );
         Ok((0..count).map(|k| BodyState { p_WCm: p[k], R_WO: q[k], v_WCm: v[k], w_WO: w[k] }).collect())
     }
 

@@ -1,7 +1,8 @@
 //! A start from nothing: twists that the contacts alone suggest.
 
 use super::problem::{Problem, Unknowns};
-use super::record::Record;
+use super::noise::ContactNoiseLevel;
+use super::record::{Contact, Record, six};
 use super::state::{Body, Motion};
 use crate::three_palms::{exponential, numbers_of_inertia};
 use glam::{DMat3, DQuat, DVec3};
@@ -46,10 +47,10 @@ pub(super) fn start(problem: &Problem, body: Body, orientation: DQuat) -> Unknow
         let samples = ((before + k) / 2)..=((k + after) / 2);
         let contacts: Vec<_> = samples.flat_map(|k| &record.contacts[k]).collect();
         if !contacts.is_empty() {
-            let within = |c: &&super::record::Contact| c.c + c.n * problem.units.length;
+            let within = |c: &&Contact| c.c + c.n * problem.units.length;
             centre = contacts.iter().map(within).sum::<DVec3>() / contacts.len() as f64;
         }
-        let (v, w) = twist(&contacts, centre, problem.units.length);
+        let (v, w) = twist(&contacts, centre, problem.units.length, &problem.noise);
         if let Some((t, before)) = last {
             let mean: DVec3 = 0.5 * (w + before);
             q = (exponential(mean * (record.times[k] - t)) * q).normalize();
@@ -63,21 +64,32 @@ pub(super) fn start(problem: &Problem, body: Body, orientation: DQuat) -> Unknow
 }
 
 /// Velocity of `centre` and angular velocity that fit the conditions of some contacts, as small as they may be.
-fn twist(contacts: &[&super::record::Contact], centre: DVec3, length: f64) -> (DVec3, DVec3) {
+///
+/// Where friction is felt the slip is along it: a condition across it says what the normal one leaves open.
+fn twist(contacts: &[&Contact], centre: DVec3, length: f64, noise: &ContactNoiseLevel) -> (DVec3, DVec3) {
     let mut normal = Matrix6::identity() * (RIDGE * contacts.len().max(1) as f64);
     let mut right = Vector6::zeros();
     for contact in contacts {
-        let (t1, t2) = contact.n.any_orthonormal_pair();
-        let axes = match contact.mode {
-            ContactMode::Off => continue,
-            ContactMode::Slide => [Some(contact.n), None, None],
-            ContactMode::Stick => [Some(contact.n), Some(t1), Some(t2)],
+        let arm = (contact.c - centre) / length;
+        let mut add = |e: DVec3, weight: f64| {
+            let row = six(e, arm.cross(e));
+            normal.ger(weight, &row, &row, 1.0);
+            right += row * (weight * e.dot(contact.u));
         };
-        for e in axes.into_iter().flatten() {
-            let arm = (contact.c - centre) / length;
-            let row = super::record::six(e, arm.cross(e));
-            normal.ger(1.0, &row, &row, 1.0);
-            right += row * e.dot(contact.u);
+        let (t1, t2) = contact.n.any_orthonormal_pair();
+        match contact.mode {
+            ContactMode::Off => {}
+            ContactMode::Slide => {
+                add(contact.n, 1.0);
+                let friction = contact.f.reject_from_normalized(contact.n);
+                let deviation = noise.force_fixed.hypot(noise.force_share * contact.f.length());
+                let known = friction.length_squared();
+                if known > deviation * deviation {
+                    let across = contact.n.cross(friction).normalize_or_zero();
+                    add(across, known / (known + deviation * deviation));
+                }
+            }
+            ContactMode::Stick => [contact.n, t1, t2].into_iter().for_each(|e| add(e, 1.0)),
         }
     }
     let Some(factor) = normal.cholesky() else { return (DVec3::ZERO, DVec3::ZERO) };

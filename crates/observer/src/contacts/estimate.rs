@@ -1,5 +1,5 @@
 use super::cold;
-use super::noise::SensorNoise;
+use super::noise::ContactNoiseLevel;
 use super::problem::{Problem, Units, Unknowns};
 use super::record::Record;
 use super::solve::{Covariances, Solved, solve};
@@ -11,7 +11,8 @@ use thiserror::Error;
 
 /// Constants of an unknown body: logarithm of the mass, six numbers of the inertia tensor.
 const CONSTANTS: usize = 7;
-/// Samples from node to node in the first, coarse solution, and the floor of its conditions over the natural speed.
+/// Samples from node to node in the first, coarse solution, whose contacts are carried there from the node before, and the
+/// floor of its conditions over the natural speed.
 const COARSE: usize = 10;
 const COARSE_FLOOR: f64 = 1e-3;
 /// Linearisations that each of the two solutions may take.
@@ -31,7 +32,9 @@ pub enum ContactEstimateError {
     #[error("no palm was touched at any sample: there is nothing to estimate from")]
     NoContact,
     /// A palm lacks the force.
-    #[error("palm {palm} does not measure its force in three axes: the estimate from contacts needs all of it")]
+    #[error(
+        "palm {palm} does not measure its force in three axes: the estimate from contacts needs all of it"
+    )]
     NoForce {
         /// Number from 1.
         palm: usize,
@@ -48,7 +51,9 @@ pub enum ContactEstimateError {
     #[error("one palm's contacts tell no size of the body: state one")]
     NoSize,
     /// Numbers beyond all bounds.
-    #[error("the least-squares problem cannot be evaluated or its equations are singular: check units and noise")]
+    #[error(
+        "the least-squares problem cannot be evaluated or its equations are singular: check units and noise"
+    )]
     Singular,
 }
 
@@ -83,11 +88,9 @@ pub struct ContactEstimate {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactOptions {
     /// Noise of the sensors.
-    pub noise: SensorNoise,
+    pub noise: ContactNoiseLevel,
     /// Gravity, m/s^2, along -z of the world.
     pub gravity: f64,
-    /// Samples from node to node.
-    pub stride: usize,
     /// Mean radius of the body, m, where it is known; else from contacts on two palms or more.
     pub size: Option<f64>,
 }
@@ -95,8 +98,7 @@ pub struct ContactOptions {
 /// Motion, mass and inertia of an unknown body from contacts of any palms, their forces in three axes and contact modes, from
 /// no guess (`contacts.md`, section 5).
 ///
-/// Nodes hold the motion; measured impulses link them, and the contacts of every sample are conditions on the motion of its
-/// node, carried there. What is minimised is the squared distance of the true readings from the measured ones in their
+/// Nodes hold the motion, one a sample; measured impulses link them, and contacts are conditions on it. What is minimised is the squared distance of the true readings from the measured ones in their
 /// deviations: contacts and impulses are adjusted with the motion.
 ///
 /// # Errors
@@ -111,15 +113,17 @@ pub fn estimate_contacts(
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let mut problem = problem(&record, options, length);
     let last = record.times.len() - 1;
-    let nodes = |stride: usize| (0..last).step_by(stride.max(1)).chain([last]).collect::<Vec<usize>>();
-    problem.nodes = nodes(COARSE.max(options.stride));
+    let nodes = |stride: usize| (0..last).step_by(stride).chain([last]).collect::<Vec<usize>>();
+    problem.nodes = nodes(COARSE);
     problem.noise.floor = problem.noise.floor.max(COARSE_FLOOR * problem.units.speed);
     let start = cold::start(&problem, problem.body.0, DQuat::IDENTITY);
-    let coarse = solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[0]).ok_or(ContactEstimateError::Singular)?;
-    let coarse_nodes = std::mem::replace(&mut problem.nodes, nodes(options.stride));
+    let coarse =
+        solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[0]).ok_or(ContactEstimateError::Singular)?;
+    let coarse_nodes = std::mem::replace(&mut problem.nodes, nodes(1));
     problem.noise = options.noise;
     let start = refined(&problem, &coarse_nodes, &coarse.unknowns);
-    let solved = solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[1]).ok_or(ContactEstimateError::Singular)?;
+    let solved =
+        solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[1]).ok_or(ContactEstimateError::Singular)?;
     let covariances = solved.equations.covariances().ok_or(ContactEstimateError::Singular)?;
     Ok(estimate(&record, problem.nodes, solved, &covariances, coarse.iterations))
 }

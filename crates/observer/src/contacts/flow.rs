@@ -44,7 +44,13 @@ impl<const P: usize> Carried<P> {
     }
 
     /// To the end of an interval, at whose ends the forces are `wrenches`.
-    pub(super) fn advance(&mut self, interval: &Interval, wrenches: [&Wrench; 2], body: &Body, gravity: DVec3) {
+    pub(super) fn advance(
+        &mut self,
+        interval: &Interval,
+        wrenches: [&Wrench; 2],
+        body: &Body,
+        gravity: DVec3,
+    ) {
         let before = *self;
         self.step(interval, wrenches, body, gravity);
         let h = interval.h;

@@ -9,6 +9,8 @@ mod record;
 mod rows;
 mod solve;
 mod state;
+#[cfg(test)]
+mod tests;
 
 pub use estimate::{ContactEstimate, ContactEstimateError, ContactOptions, estimate_contacts};
-pub use noise::SensorNoise;
+pub use noise::ContactNoiseLevel;

@@ -1,6 +1,6 @@
 /// Standard deviations of the white noise of sensors, as an estimator takes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SensorNoise {
+pub struct ContactNoiseLevel {
     /// Of a contact point in each tangent direction of its palm, m.
     pub contact: f64,
     /// Of each axis of a force: a fixed part, N.

@@ -1,7 +1,7 @@
 //! Least squares over all nodes: links, contact conditions and what is known beforehand, linearised.
 
 use super::flow::{Carried, Transition, link_information, residual};
-use super::noise::SensorNoise;
+use super::noise::ContactNoiseLevel;
 use super::record::{Record, Wrench};
 use super::rows::Rows;
 use super::solve::Step;
@@ -9,6 +9,10 @@ use super::state::{Body, MOTION, Motion, Tangent};
 use crate::three_palms::exponential;
 use glam::DVec3;
 use nalgebra::{Matrix6, SMatrix, SVector, Vector6};
+
+/// Links are never taken for better than this share of a condition's floor, all together: without noise of the forces the
+/// chain would be rigid, and the equations singular in double precision. It adds a thousandth to the variance of a velocity.
+const LINK_FLOOR: f64 = 0.03;
 
 /// Natural units of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +26,7 @@ pub(super) struct Units {
 #[derive(Debug)]
 pub(super) struct Problem<'a> {
     pub(super) record: &'a Record,
-    pub(super) noise: SensorNoise,
+    pub(super) noise: ContactNoiseLevel,
     pub(super) gravity: DVec3,
     /// Samples at which there is a node, in order; the first and the last of the record among them.
     pub(super) nodes: Vec<usize>,
@@ -138,7 +142,9 @@ impl Problem<'_> {
             let mut noise = Matrix6::zeros();
             for k in self.nodes[j]..end {
                 for contact in &self.record.contacts[k] {
-                    let Some(rows) = Rows::new(contact, &carried.motion, &carried.turn, &self.noise) else { continue };
+                    let Some(rows) = Rows::new(contact, &carried.motion, &carried.turn, &self.noise) else {
+                        continue;
+                    };
                     let r = rows.residual;
                     cost += (rows.information * r).dot(&r);
                 }
@@ -209,7 +215,8 @@ impl Problem<'_> {
         all: &mut Equations<P>,
     ) -> Option<()> {
         let touched = self.record.contacts[k].iter();
-        let mut rows = touched.filter_map(|c| Rows::new(c, &carried.motion, &carried.turn, &self.noise)).peekable();
+        let mut rows =
+            touched.filter_map(|c| Rows::new(c, &carried.motion, &carried.turn, &self.noise)).peekable();
         if rows.peek().is_none() {
             return Some(());
         }
@@ -331,6 +338,3 @@ impl Problem<'_> {
         moved
     }
 }
-
-/// Links are never taken for better than this share of a condition's floor, all together.
-const LINK_FLOOR: f64 = 0.03;

@@ -1,6 +1,6 @@
 //! What the estimator reads of a log: contacts at samples, and what the forces do between them.
 
-use super::noise::SensorNoise;
+use super::noise::ContactNoiseLevel;
 use crate::three_palms::running_integral;
 use contact_kinematics::PalmSurface;
 use glam::{DMat3, DVec3};
@@ -68,9 +68,14 @@ impl Mul<f64> for Wrench {
 
 impl Record {
     /// Of a log whose palms measure forces of three axes, with the modes of each palm at each sample; none without a contact.
-    pub(super) fn new(log: &ContactLog, modes: &[[ContactMode; MOST_PALMS]], noise: &SensorNoise) -> Option<Self> {
+    pub(super) fn new(
+        log: &ContactLog,
+        modes: &[[ContactMode; MOST_PALMS]],
+        noise: &ContactNoiseLevel,
+    ) -> Option<Self> {
         let times = log.times().to_vec();
-        let points = || (0..times.len()).flat_map(|k| log.palms().iter().filter_map(move |palm| palm.touch(k)));
+        let points =
+            || (0..times.len()).flat_map(|k| log.palms().iter().filter_map(move |palm| palm.touch(k)));
         let count = points().count();
         if count == 0 {
             return None;
@@ -118,7 +123,12 @@ fn shape_operator(surface: PalmSurface, n: DVec3, axis: DVec3) -> DMat3 {
     }
 }
 
-fn intervals(log: &ContactLog, contacts: &[Vec<Contact>], wrenches: &[Wrench], noise: &SensorNoise) -> Vec<Interval> {
+fn intervals(
+    log: &ContactLog,
+    contacts: &[Vec<Contact>],
+    wrenches: &[Wrench],
+    noise: &ContactNoiseLevel,
+) -> Vec<Interval> {
     let times = log.times();
     let since: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
     let sums = running_integral(&since, wrenches, Wrench::default());
@@ -144,7 +154,7 @@ fn intervals(log: &ContactLog, contacts: &[Vec<Contact>], wrenches: &[Wrench], n
 }
 
 /// What the noise of one contact does to the impulse and moment of an interval: samples are independent.
-fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, noise: &SensorNoise, h: f64) {
+fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, noise: &ContactNoiseLevel, h: f64) {
     let force = noise.force_fixed.hypot(noise.force_share * contact.f.length()) * h;
     for axis in DVec3::AXES {
         let moment = contact.c.cross(axis);

@@ -1,6 +1,6 @@
 //! Contact conditions of one sample, with what noise of the contact does to them.
 
-use super::noise::SensorNoise;
+use super::noise::ContactNoiseLevel;
 use super::record::Contact;
 use super::state::{Body, MOTION, Motion, Turn};
 use glam::DVec3;
@@ -25,7 +25,12 @@ const FARTHEST_FOOT: f64 = 5.0;
 
 impl Rows {
     /// None for a contact that is off.
-    pub(super) fn new(contact: &Contact, motion: &Motion, turn: &Turn, noise: &SensorNoise) -> Option<Self> {
+    pub(super) fn new(
+        contact: &Contact,
+        motion: &Motion,
+        turn: &Turn,
+        noise: &ContactNoiseLevel,
+    ) -> Option<Self> {
         let arm = contact.c - motion.p;
         let slip = motion.v + turn.w.cross(arm) - contact.u;
         let (t1, t2) = contact.n.any_orthonormal_pair();
@@ -42,7 +47,8 @@ impl Rows {
         for (tangent, stored) in [t1, t2].into_iter().zip(&mut shifts) {
             let shift = turning.cross(tangent);
             let bend = if count == 1 { slip.dot(contact.shape * tangent) } else { 0.0 };
-            let column = Vector3::new(shift.dot(axes[0]) + bend, shift.dot(t1), shift.dot(t2)) * noise.contact;
+            let column =
+                Vector3::new(shift.dot(axes[0]) + bend, shift.dot(t1), shift.dot(t2)) * noise.contact;
             covariance.ger(1.0, &column, &column, 1.0);
             *stored = column;
         }

@@ -136,8 +136,8 @@ pub(super) fn solve<const P: usize>(
     let mut unknowns = start;
     let mut equations = problem.linearise::<P>(&unknowns)?;
     let unit = problem.natural_information();
-    let mean = problem.condition_information() * equations.conditions as f64
-        / (problem.nodes.len() * MOTION) as f64;
+    let mean =
+        problem.condition_information() * equations.conditions as f64 / (problem.nodes.len() * MOTION) as f64;
     let (mut damping, mut raise, mut iterations) = (FIRST_DAMPING, RAISE, 1);
     let mut settled = false;
     while iterations < most && !settled && damping < LARGEST_DAMPING {

@@ -1,0 +1,206 @@
+use super::cold;
+use super::problem::{Problem, Units, Unknowns};
+use super::record::Record;
+use super::solve::Step;
+use super::state::{Body, Motion, Tangent};
+use super::*;
+use crate::three_palms::numbers_of_inertia;
+use contact_kinematics::{
+    Direction, Ellipsoid, PalmSurface, SupportFunction, SurfaceMotion, SurfacePose,
+};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::SVector;
+use object_dynamics::*;
+
+const G: f64 = 9.81;
+const SIZE: f64 = 0.04;
+const SLOPE: f64 = 0.9;
+
+/// An ellipsoid that spins between three rubbing planes.
+fn log(seconds: f64, rate: f64) -> ContactLog {
+    let axes = DVec3::new(0.05, 0.04, 0.03);
+    let (body, mass) = (Ellipsoid::new(axes).unwrap(), MassProperties::uniform_ellipsoid(0.2, axes).unwrap());
+    let R_WO = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.4);
+    let normal = |i: u32| {
+        let azimuth = f64::from(i) * std::f64::consts::TAU / 3.0;
+        DVec3::new(-SLOPE.sin() * azimuth.cos(), -SLOPE.sin() * azimuth.sin(), SLOPE.cos())
+    };
+    let palm = |i: u32| {
+        let n = normal(i);
+        let down = Direction::new(R_WO.inverse() * -n).unwrap();
+        // The plane touches a body whose centre of mass is in the origin.
+        let p = -n * body.value(down);
+        let pose = SurfacePose::new(p, DQuat::from_rotation_arc(DVec3::Z, n)).unwrap();
+        ScenePalm {
+            surface: PalmSurface::Plane,
+            drive: PalmDrive::Prescribed(SurfaceMotion::immobile(pose)),
+            friction: 0.1,
+        }
+    };
+    let scene = ContactScene::new(body, mass, (0..3).map(palm).collect(), G).unwrap();
+    // Of any spin, the velocity that leaves all three contacts closed.
+    let w = DVec3::new(3.0, -4.0, 8.0);
+    let rows = DMat3::from_cols(normal(0), normal(1), normal(2)).transpose();
+    let opening = |i: u32| {
+        let down = Direction::new(R_WO.inverse() * -normal(i)).unwrap();
+        -normal(i).dot(w.cross(R_WO * body.point(down)))
+    };
+    let v = rows.inverse() * DVec3::new(opening(0), opening(1), opening(2));
+    let start = BodyState { p_WCm: DVec3::ZERO, R_WO, v_WCm: v, w_WO: w };
+    let times = SampleTimes { duration: seconds, rate };
+    let simulation = scene.simulate(&ContactStart::touching(start), times, 1e-11).unwrap();
+    ContactLog::from_simulation(&scene, &simulation).unwrap()
+}
+
+fn modes(log: &ContactLog) -> Vec<[ContactMode; MOST_PALMS]> {
+    let mode =
+        |k: usize, i: usize| log.palms().get(i).and_then(|p| p.truth(k)).map_or(ContactMode::Off, |t| t.mode);
+    (0..log.times().len()).map(|k| std::array::from_fn(|i| mode(k, i))).collect()
+}
+
+fn noise(contact: f64, force_share: f64) -> ContactNoiseLevel {
+    ContactNoiseLevel { contact, force_fixed: 0.0, force_share, floor: 3e-5 * (G * SIZE).sqrt() }
+}
+
+fn noisy(log: &ContactLog, noise: &ContactNoiseLevel, seed: u64) -> ContactLog {
+    let force = ChannelNoise { fixed: noise.force_fixed, share: noise.force_share };
+    log.with_noise(&ContactNoise { contact: noise.contact, force, ..ContactNoise::default() }, seed).unwrap()
+}
+
+fn options(noise: ContactNoiseLevel) -> ContactOptions {
+    ContactOptions { noise, gravity: G, size: None }
+}
+
+/// Squared errors over variances in the middle, 12 numbers, and the relative error of the mass.
+fn errors(found: &ContactEstimate, log: &ContactLog) -> (f64, f64) {
+    let truth = log.truth().unwrap();
+    let middle = found.nodes.len() / 2;
+    let (state, deviations) = (&found.states[middle], &found.deviations[middle]);
+    let (at, first) = (&truth[found.nodes[middle]], truth[0].R_WO);
+    let turn = (state.R_WO * (at.R_WO * first.conjugate()).conjugate()).to_scaled_axis();
+    let differences = [state.p_WCm - at.p_WCm, state.v_WCm - at.v_WCm, state.w_WO - at.w_WO, turn];
+    let squares = differences.iter().zip(deviations).map(|(d, s)| (*d / *s).length_squared()).sum();
+    (squares, (found.mass / 0.2 - 1.0).abs())
+}
+
+/// A problem on a short noisy log, with unknowns that are not its solution.
+fn off_solution(record: &Record, noise: ContactNoiseLevel, stride: usize) -> (Problem<'_>, Unknowns) {
+    let last = record.times.len() - 1;
+    let body = cold::ball(record, G, SIZE);
+    let none = Motion { p: DVec3::ZERO, v: DVec3::ZERO, L: DVec3::ZERO, q: DQuat::IDENTITY };
+    let problem = Problem {
+        record,
+        noise,
+        gravity: DVec3::new(0.0, 0.0, -G),
+        nodes: (0..last).step_by(stride).chain([last]).collect(),
+        units: Units { length: SIZE, speed: (G * SIZE).sqrt(), mass: body.log_mass.exp() },
+        first: (none, Tangent::from_element(1.0)),
+        body: (body, SVector::from_element(1.0)),
+    };
+    let mut at = cold::start(&problem, body, DQuat::from_rotation_y(0.3));
+    let inertia = DMat3::from_diagonal(DVec3::new(1.0, 1.4, 1.6)) * 1e-4;
+    at.body = Body::new(0.19f64.ln(), numbers_of_inertia(inertia));
+    (problem, at)
+}
+
+#[test]
+fn the_gradient_is_that_of_the_cost() {
+    let noise = noise(4e-4, 0.02);
+    let log = noisy(&log(0.03, 1000.0), &noise, 3);
+    let record = Record::new(&log, &modes(&log), &noise).unwrap();
+    for stride in [1, 3] {
+        let (problem, mut at) = off_solution(&record, noise, stride);
+        // Near a solution for this body, so that no contact is as far from its reading as noise never moves one.
+        at = super::solve::solve::<0>(&problem, at, 40, 1e-6).unwrap().unknowns;
+        let equations = problem.linearise::<7>(&at).unwrap();
+        let natural = [SIZE, problem.units.speed, problem.units.mass * SIZE * problem.units.speed, 1.0];
+        let cost = |step: &Step<7>| problem.trial(&at, step, &equations).unwrap().1;
+        let nothing =
+            || Step { motions: vec![Tangent::zeros(); problem.nodes.len()], body: SVector::zeros() };
+        let mut compared = 0;
+        let mut compare = |make: &dyn Fn(f64) -> Step<7>, slope: f64, curvature: f64| {
+            // A step over which the cost changes by about one.
+            let h = 1e-2 / curvature.sqrt();
+            let difference = (cost(&make(h)) - cost(&make(-h))) / (2.0 * h);
+            // Curved links are carried by a rule of order 2 in their derivatives: 1e-3 of a deviation is not seen.
+            assert!(
+                (difference - 2.0 * slope).abs() < 0.05 * curvature.sqrt(),
+                "{stride}: {difference} {slope}"
+            );
+            compared += 1;
+        };
+        for j in [0, problem.nodes.len() / 2, problem.nodes.len() - 1] {
+            for i in 0..12 {
+                let make = |h: f64| {
+                    let mut step = nothing();
+                    step.motions[j][i] = h * natural[i / 3];
+                    step
+                };
+                let node = &equations.nodes[j];
+                let unit = natural[i / 3];
+                compare(&make, node.gradient[i] * unit, node.own[(i, i)] * unit * unit);
+            }
+        }
+        for i in 0..7 {
+            let make = |h: f64| {
+                let mut step = nothing();
+                step.body[i] = h;
+                step
+            };
+            compare(&make, equations.body_gradient[i], equations.body[(i, i)]);
+        }
+        assert_eq!(compared, 43);
+    }
+}
+
+#[test]
+fn an_exact_log_gives_motion_mass_and_inertia_from_no_guess() {
+    let log = log(0.4, 1000.0);
+    let found = estimate_contacts(&log, &modes(&log), &options(noise(0.0, 0.0))).unwrap();
+    eprintln!("{:?} {} {:?} {} {:?}", found.iterations, found.settled, found.chi_squared, found.mass, found.inertia_deviations);
+    let truth = log.truth().unwrap();
+    for k in [0, 200, 400] { let (s, t) = (&found.states[k], &truth[k]); eprintln!("{:e} {:e} {:e}", (s.p_WCm - t.p_WCm).length(), (s.v_WCm - t.v_WCm).length(), (s.w_WO - t.w_WO).length()); }
+    for (state, &k) in found.states.iter().zip(&found.nodes) {
+        assert!((state.p_WCm - truth[k].p_WCm).length() < 1e-5 * SIZE, "{k}");
+        assert!((state.w_WO - truth[k].w_WO).length() < 1e-3, "{k}");
+    }
+    assert!((found.mass / 0.2 - 1.0).abs() < 1e-5, "{}", found.mass);
+}
+
+#[test]
+fn errors_are_as_large_as_they_are_said_to_be() {
+    let exact = log(0.4, 500.0);
+    let noise = noise(4e-5, 0.004);
+    let (mut sum, runs) = (0.0, 6);
+    for seed in 0..runs {
+        let log = noisy(&exact, &noise, seed);
+        let found = estimate_contacts(&log, &modes(&log), &options(noise)).unwrap();
+        let (squares, mass) = errors(&found, &log);
+        assert!(mass < 5.0 * found.mass_deviation, "{seed}: {mass} {}", found.mass_deviation);
+        sum += squares;
+    }
+    let mean = sum / (12.0 * runs as f64);
+    assert!((0.4..1.6).contains(&mean), "squared errors are {mean} of what is said");
+}
+
+#[test]
+fn a_log_that_lacks_something_is_refused_by_name() {
+    let log = log(0.05, 200.0);
+    let options = options(noise(0.0, 0.0));
+    let few = estimate_contacts(&log, &[], &options).unwrap_err();
+    assert_eq!(few, ContactEstimateError::Modes { found: 0, samples: 11 });
+    let mut records = log.records();
+    records[1].force = ForceChannel::Missing;
+    let blind = ContactLog::new(log.times().to_vec(), records, None).unwrap();
+    let modes = modes(&log);
+    let lacks = estimate_contacts(&blind, &modes, &options).unwrap_err();
+    assert_eq!(lacks, ContactEstimateError::NoForce { palm: 2 });
+    let one = ContactLog::new(log.times().to_vec(), vec![log.records().remove(0)], None).unwrap();
+    assert_eq!(estimate_contacts(&one, &modes, &options).unwrap_err(), ContactEstimateError::NoSize);
+    let mut records = log.records();
+    for record in &mut records {
+        record.contacts = ContactPoints::World(vec![None; 11]);
+    }
+    let untouched = ContactLog::new(log.times().to_vec(), records, None).unwrap();
+    assert_eq!(estimate_contacts(&untouched, &modes, &options).unwrap_err(), ContactEstimateError::NoContact);
+}
