@@ -16,7 +16,7 @@ const SAME: f64 = 1e-5;
 /// Slip starts where it is accelerated by more than this share.
 const STARTS: f64 = 1e-7;
 /// Sticking contacts that contradict each other by less than this share do so by rounding.
-const EXACT: f64 = 1e-10;
+pub(crate) const EXACT: f64 = 1e-10;
 
 /// Why no mode set can be taken. Modes are given as letters, palm by palm: O off, S slides, R sticks and rolls.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -159,7 +159,7 @@ impl ContactProblem {
     }
 
     /// Sum of what the forces are made of, N: a scale for what counts as zero.
-    fn force_scale(&self) -> f64 {
+    pub(crate) fn force_scale(&self) -> f64 {
         let of = |i: usize| self.contacts()[i].free.length() / self.own_response(i);
         (0..self.contacts().len()).map(of).fold(f64::MIN_POSITIVE, f64::max)
     }

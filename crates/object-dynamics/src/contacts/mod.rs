@@ -2,6 +2,7 @@
 
 mod choose;
 mod cones;
+mod coulomb;
 mod directions;
 mod drive;
 mod instant;
@@ -12,7 +13,8 @@ mod scene;
 mod solve;
 
 pub use choose::ModeError;
-pub(crate) use choose::{Left, Touch};
+pub(crate) use choose::{Choice, EXACT, Left, Touch};
+pub(crate) use coulomb::Impulses;
 pub(crate) use directions::NO_DIRECTIONS;
 pub use drive::{DriveError, PalmDrive, PalmSpring, PalmTorque};
 pub(crate) use instant::Contacts;

@@ -47,7 +47,7 @@ impl Dense {
     }
 
     /// Gaussian elimination with partial pivoting; none where a pivot is zero.
-    fn eliminate(&self, n: usize) -> Option<[f64; N]> {
+    pub(crate) fn eliminate(&self, n: usize) -> Option<[f64; N]> {
         let (mut m, mut x) = (self.matrix, self.right);
         let mut scales = [0.0; N];
         for r in 0..n {
