@@ -22,6 +22,7 @@ mod planar_costs;
 mod planar_monte_carlo;
 mod shape_fits;
 mod streaming;
+mod tilting_palms;
 mod three_palms_monte_carlo;
 mod three_palms_timing;
 
@@ -50,6 +51,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("planar_monte_carlo", || in_words(planar_monte_carlo::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),
+    ("tilting_palms", || in_words(tilting_palms::main())),
     ("three_palms_monte_carlo", || in_words(three_palms_monte_carlo::main())),
     ("three_palms_timing", || in_words(three_palms_timing::main())),
 ];

@@ -6,17 +6,15 @@ use super::problem::{ContactProblem, Directions, Modes};
 use super::solve::Dense;
 use crate::ContactMode;
 use glam::{DVec2, DVec3};
+use std::f64::consts::TAU;
 
-/// Share of a contact's own response by which it gives way to its impulse: squeezes between sticking contacts, which move
-/// nothing, are the smallest that way. A sticking contact creeps by this share of what its impulse does.
-const CREEP: f64 = 1e-10;
 /// Newton's steps from one start, and halvings of one of them.
-const STEPS: u32 = 60;
+const STEPS: u32 = 30;
 const HALVINGS: u32 = 12;
 /// Impulses within this share of the largest fulfil the law: what rounding leaves of a step over contacts that creep.
 const FULFILLED: f64 = 1e-10;
-/// Weights of velocities that are tried.
-const WEIGHTS: [f64; 3] = [1e5, 1e3, 1.0];
+/// Starts spread over the cones that are tried where nothing else leads to a solution; one in a hundred or more does.
+const SPREAD: u32 = 1000;
 
 /// Impulse of each contact: normal part and two tangential ones, N s.
 pub(crate) type Impulses = [[f64; 3]; MOST_PALMS];
@@ -45,12 +43,14 @@ impl ContactProblem {
         &self,
         touching: &[bool; MOST_PALMS],
         guess: &Impulses,
+        creep: f64,
     ) -> Option<(Choice, Impulses)> {
         let touching: Vec<usize> = (0..self.contacts().len()).filter(|&i| touching[i]).collect();
         let mut law = Law::new(self, &touching);
         let guess = law.gathered(guess);
-        let found = WEIGHTS.iter().find_map(|&weight| law.at(CREEP, weight).solved(&guess, 20));
-        let found = found.or_else(|| law.stiffened());
+        let weights = [1.0 / creep.sqrt(), 1e2, 1.0];
+        let found = weights.into_iter().find_map(|weight| law.at(creep, weight).solved(&guess));
+        let found = found.or_else(|| law.stiffened(creep)).or_else(|| law.searched(creep));
         if found.is_none() && std::env::var_os("CRAWLDUMP").is_some() {
             let n = law.size();
             eprintln!("DUMP n {n} mu {:?}", touching.iter().map(|&i| self.contacts()[i].friction).collect::<Vec<_>>());
@@ -70,6 +70,9 @@ enum Branch {
     Sticks,
     Slides { tau: DVec2, length: f64, radius: f64 },
 }
+
+/// Square roots of primes: no two of them have a rational ratio.
+const IRRATIONAL: [f64; 3] = [std::f64::consts::SQRT_2, 1.732_050_807_568_877_2, 2.236_067_977_499_79];
 
 type Unknowns = [f64; 3 * MOST_PALMS];
 
@@ -217,14 +220,14 @@ impl<'a> Law<'a> {
     }
 
     /// The solution followed from contacts that give way as much as the body does down to rigid ones.
-    fn stiffened(&mut self) -> Option<Unknowns> {
+    fn stiffened(&mut self, creep: f64) -> Option<Unknowns> {
         let mut r = [0.0; 3 * MOST_PALMS];
         let (mut share, mut reached, mut factor) = (1.0, f64::NAN, 0.1);
         loop {
-            match self.at(share, 1.0 / share.sqrt()).solved(&r, STEPS) {
+            match self.at(share, 1.0 / share.sqrt()).solved(&r) {
                 Some(found) => {
                     (r, reached) = (found, share);
-                    if share <= CREEP {
+                    if share <= creep {
                         return Some(r);
                     }
                     factor = f64::max(factor * factor, 0.1);
@@ -236,14 +239,31 @@ impl<'a> Law<'a> {
                     }
                 }
             }
-            share = (reached * factor).max(CREEP);
+            share = (reached * factor).max(creep);
         }
     }
 
-    fn solved(&self, guess: &Unknowns, steps: u32) -> Option<Unknowns> {
+    /// The solution from some start of many, spread over the cones.
+    fn searched(&mut self, creep: f64) -> Option<Unknowns> {
+        // Multiples of irrational numbers fill a cube evenly.
+        let place = |start: u32, k: usize| (f64::from(start + 1) * IRRATIONAL[k % IRRATIONAL.len()] * (k + 1) as f64).fract();
+        (0..SPREAD).find_map(|start| {
+            let mut r = [0.0; 3 * MOST_PALMS];
+            for (k, &i) in self.touching.iter().enumerate() {
+                let contact = &self.problem.contacts()[i];
+                let normal = -self.free[3 * k] / self.problem.own_response(i) * 2.0 * place(start, 3 * k);
+                let share = contact.friction * place(start, 3 * k + 1).sqrt() * normal;
+                let angle = TAU * place(start, 3 * k + 2);
+                (r[3 * k], r[3 * k + 1], r[3 * k + 2]) = (normal, share * angle.cos(), share * angle.sin());
+            }
+            self.at(creep, [1e4, 1e3, 1e5, 1e2][start as usize % 4]).solved(&r)
+        })
+    }
+
+    fn solved(&self, guess: &Unknowns) -> Option<Unknowns> {
         let mut r = *guess;
         let mut f = self.residual(&r);
-        for _ in 0..steps {
+        for _ in 0..STEPS {
             if largest(&f) <= FULFILLED * self.scale {
                 return Some(r);
             }

@@ -9,7 +9,7 @@ use super::project::projected;
 use super::result::{ContactEvent, ContactEventKind};
 use super::run::Run;
 use crate::ContactMode;
-use crate::contacts::{EXACT, Left, MOST_PALMS, Modes, SceneState, Touch};
+use crate::contacts::{EXACT, Left, MOST_PALMS, ModeError, Modes, SceneState, Touch};
 use contact_kinematics::SupportFunction;
 
 /// Slips and rates of gaps at the start below this share of the natural speed are none: a state given to six digits.
@@ -55,7 +55,16 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             self.stretch.modes = modes;
         }
         let before = self.stretch.modes;
-        self.settle(state, &tallies, &closed, left)?;
+        let kept = self.stretch;
+        if let Err(error) = self.settle(state, &tallies, &closed, left) {
+            if std::env::var_os("CRAWL").is_some() { eprintln!("settle at {}: {error} present {:?}", self.t, kept.modes); }
+            if !matches!(error, Error::Modes { source: ModeError::Inconsistent | ModeError::Ambiguous { .. }, .. }) {
+                return Err(error);
+            }
+            self.stretch = kept;
+            (self.t, self.y) = (state.t, self.units.pack(&state, &tallies));
+            return Ok(true);
+        }
         self.stretch.at_edge = [false; MOST_PALMS];
         if self.stretch.modes == before && left.is_some() {
             self.stretch.at_edge[crossing.palm] = true;

@@ -20,6 +20,8 @@ use glam::{DQuat, DVec3};
 
 /// A contact takes part in a step if its gap could close within it at so many times its speed.
 const REACH: f64 = 2.0;
+/// Sticking contacts creep by this share of the tolerance: what makes their forces one.
+const CREEP: f64 = 0.01;
 /// A step grows and shrinks by at most these factors; the first leaves a margin to what the tolerance allows.
 const MARGIN: f64 = 0.8;
 const SHRINK: f64 = 0.1;
@@ -44,6 +46,8 @@ pub(super) struct Crawled {
 struct Step<'a, S> {
     scene: &'a ContactScene<S>,
     units: Units,
+    /// Slip of sticking contacts that is allowed, as a share of the natural speed.
+    creep: f64,
 }
 
 impl<S: SupportFunction> Step<'_, S> {
@@ -54,7 +58,7 @@ impl<S: SupportFunction> Step<'_, S> {
         let problem = scene.problem(&from.state.body, &touch);
         let (velocities, touching) = over_time(&problem, &touch, &from.modes, h);
         let guess = from.forces.map(|f| f.map(|x| x * h));
-        let (choice, impulses) = velocities.coulomb(&touching, &guess).ok_or_else(|| {
+        let (choice, impulses) = velocities.coulomb(&touching, &guess, self.creep / (h * self.units.rate)).ok_or_else(|| {
             Error::Modes { state: Box::new(from.state), source: ModeError::Inconsistent }
         })?;
         let mut next = self.moved(from, &touch, &velocities, &choice, h);
@@ -145,7 +149,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
     /// Goes on by time stepping until slips are fast enough for events, all rests, or the last sample is reached.
     pub(super) fn crawl(&mut self, last: f64) -> Result<(), Error> {
         let (state, tallies) = self.units.unpack(self.t, &self.y);
-        let step = Step { scene: self.scene, units: self.units };
+        let step = Step { scene: self.scene, units: self.units, creep: CREEP * self.tolerance.absolute };
         let mut now = Crawled {
             state,
             tallies,
@@ -179,6 +183,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
                 self.result.statistics.rejected += 1;
                 continue;
             }
+            self.extrapolate(&whole, &half, &mut next)?;
             if lands { next.state.t = until; }
             steps += 1;
             self.result.statistics.accepted += 1;
@@ -196,6 +201,23 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             }
         }
         if debug { eprintln!("crawl to {} steps {steps} modes {:?}", self.t, &self.stretch.modes[..self.scene.palms().len()]); }
+        Ok(())
+    }
+
+    /// Takes out the error of first order, where the modes are the same all along.
+    fn extrapolate(&self, whole: &Crawled, half: &Crawled, next: &mut Crawled) -> Result<(), Error> {
+        if whole.modes != next.modes || half.modes != next.modes {
+            return Ok(());
+        }
+        let t = next.state.t;
+        let one: [f64; N] = self.units.pack(&whole.state, &whole.tallies);
+        let two: [f64; N] = self.units.pack(&next.state, &next.tallies);
+        let y: [f64; N] = std::array::from_fn(|k| 2.0 * two[k] - one[k]);
+        let (state, tallies) = self.units.unpack(t, &y);
+        let state = projected(self.scene, state, &next.modes, &[None; MOST_PALMS], &next.guesses, self.units.length)
+            .map_err(|source| Error::Contact { t, source })?;
+        next.blow_work += next.blow_work - whole.blow_work;
+        (next.state, next.tallies) = (state, tallies);
         Ok(())
     }
 
