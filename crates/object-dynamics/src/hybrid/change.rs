@@ -12,6 +12,8 @@ use crate::ContactMode;
 use crate::contacts::{EXACT, Left, MOST_PALMS, ModeError, Modes, SceneState, Touch};
 use contact_kinematics::SupportFunction;
 
+/// Work of an event, in steps.
+const EVENT: usize = 5;
 /// Slips and rates of gaps at the start below this share of the natural speed are none: a state given to six digits.
 const STATED: f64 = 1e-5;
 /// A contact whose gap opens slower than this share of the natural speed has not left.
@@ -73,7 +75,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
         let modes = self.stretch.modes[..self.scene.palms().len()].to_vec();
         let event = ContactEvent { t: self.t, palm: crossing.palm, kind: crossing.kind, modes };
         self.result.events.push(event);
-        Ok(false)
+        Ok(self.crowded(self.t, EVENT))
     }
 
     /// Finds the modes of a state whose `closed` contacts touch, after a blow where one approaches.

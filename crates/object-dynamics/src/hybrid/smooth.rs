@@ -50,7 +50,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
                 (self.t, self.y) = (t, y);
                 break Reached::Limit;
             }
-            if self.crowded(t) {
+            if self.crowded(t, 1) {
                 (self.t, self.y) = (t, y);
                 break Reached::Crowded;
             }
@@ -65,7 +65,9 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             let next = self.joints.partition_point(|joint| *joint <= t);
             let next_joint = self.joints.get(next).copied().unwrap_or(limit);
             let project = |t: f64, y: &mut [f64; N]| self.project(t, y);
-            if let Err(error) = solver.step_onto(limit.min(next_joint), project) {
+            // What stays at an edge of its mode is looked at again after a moment.
+            let moment = if self.stretch.at_edge.contains(&true) { t + self.crawl_step() } else { limit };
+            if let Err(error) = solver.step_onto(limit.min(next_joint).min(moment), project) {
                 return Err(match (&error, failed.get()) {
                     (IntegrationError::NotFinite { t }, Some(source)) => Error::Contact { t: *t, source },
                     _ => self.stuck(&evaluated, error),
@@ -150,11 +152,11 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
     }
 
     /// Whether events and steps have become so many in so little time that time stepping needs fewer.
-    pub(super) fn crowded(&mut self, t: f64) -> bool {
+    pub(super) fn crowded(&mut self, t: f64, work: usize) -> bool {
         if t - self.work.0 > self.crawl_step() {
             self.work = (t, 0);
         }
-        self.work.1 += 1;
+        self.work.1 += work;
         self.work.1 > CROWDED
     }
 }
