@@ -25,6 +25,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
         let (scene, body) = falling(&mut source)?;
         let start = ContactStart { in_flight: true, ..ContactStart::touching(body) };
         runs += 1;
+        if let Ok(only) = std::env::var("ONLY") && only.parse::<usize>().unwrap() != runs { changes += 7; continue; }
         match scene.simulate(&start, SampleTimes { duration: 2.0, rate: 500.0 }, TOLERANCE) {
             Err(error) => {
                 let words: Vec<_> =
@@ -36,6 +37,8 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
                 let first = scene.energy(&run.instants[0].state.body);
                 for now in &run.instants {
                     let seen = violations(&scene, now, first);
+                    if std::env::var_os("ACC").is_some() && (k_of(now)) { eprintln!("acc {:.4} a {:.2e} al {:.2e} v {:.2e} w {:.2e} stats {:?}", now.state.t, now.a_WCm.length(), now.alpha_WO.length(), now.state.body.v_WCm.length(), now.state.body.w_WO.length(), run.statistics); }
+                    if std::env::var_os("VERBOSE").is_some() && (seen[0] > 1e-9 || seen[3] > 1e-9) { eprintln!("run {runs} t {:.4} {:?} {:?} gaps {:?} rates {:?}", now.state.t, now.modes.iter().map(|m| m.letter()).collect::<String>(), seen, now.contacts.iter().map(|c| c.gap).collect::<Vec<_>>(), now.rates.iter().map(|c| c.gap_rate).collect::<Vec<_>>()); }
                     worst = std::array::from_fn(|k| worst[k].max(seen[k]));
                 }
             }
@@ -92,3 +95,4 @@ fn falling(source: &mut Source) -> Result<(ContactScene<Ellipsoid>, BodyState), 
     };
     Ok((ContactScene::new(body, mass, palms, 9.81)?, start))
 }
+fn k_of(now: &ContactInstant) -> bool { ((now.state.t * 500.0).round() as usize) % 10 == 0 || (now.state.t > 0.12 && now.state.t < 0.14) }
