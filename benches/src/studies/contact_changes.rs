@@ -9,7 +9,6 @@ use recon::object_dynamics::{
     SampleTimes, ScenePalm,
 };
 use shape_bounds::generators::Source;
-use std::collections::BTreeMap;
 use std::error::Error;
 
 const TOLERANCE: f64 = 1e-11;
@@ -20,25 +19,20 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let mut source = Source::new(words.next().map_or(Ok(1), |s| s.parse())?);
     let (mut changes, mut runs) = (0, 0);
     let mut worst = [0.0_f64; 4];
-    let mut refused: BTreeMap<String, usize> = BTreeMap::new();
+    let mut refused = Vec::new();
     while changes < wanted {
         let (scene, body) = falling(&mut source)?;
         let start = ContactStart { in_flight: true, ..ContactStart::touching(body) };
         runs += 1;
-        if let Ok(only) = std::env::var("ONLY") && only.parse::<usize>().unwrap() != runs { changes += 7; continue; }
         match scene.simulate(&start, SampleTimes { duration: 2.0, rate: 500.0 }, TOLERANCE) {
             Err(error) => {
-                let words: Vec<_> =
-                    error.to_string().split_whitespace().skip(5).take(6).map(str::to_owned).collect();
-                *refused.entry(words.join(" ")).or_default() += 1;
+                refused.push(format!("run {runs}: {error}"));
             }
             Ok(run) => {
                 changes += run.events.len();
                 let first = scene.energy(&run.instants[0].state.body);
                 for now in &run.instants {
                     let seen = violations(&scene, now, first);
-                    if std::env::var_os("ACC").is_some() && (k_of(now)) { eprintln!("acc {:.4} a {:.2e} al {:.2e} v {:.2e} w {:.2e} stats {:?}", now.state.t, now.a_WCm.length(), now.alpha_WO.length(), now.state.body.v_WCm.length(), now.state.body.w_WO.length(), run.statistics); }
-                    if std::env::var_os("VERBOSE").is_some() && (seen[0] > 1e-9 || seen[3] > 1e-9) { eprintln!("run {runs} t {:.4} {:?} {:?} gaps {:?} rates {:?}", now.state.t, now.modes.iter().map(|m| m.letter()).collect::<String>(), seen, now.contacts.iter().map(|c| c.gap).collect::<Vec<_>>(), now.rates.iter().map(|c| c.gap_rate).collect::<Vec<_>>()); }
                     worst = std::array::from_fn(|k| worst[k].max(seen[k]));
                 }
             }
@@ -47,8 +41,8 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     println!("# Random changes of contact modes");
     println!();
     println!(
-        "{changes} changes in {runs} runs of 2 s (tolerance {TOLERANCE:e}), {} of them refused: {refused:?}.",
-        refused.values().sum::<usize>()
+        "{changes} changes in {runs} runs of 2 s (tolerance {TOLERANCE:e}), {} of them refused.",
+        refused.len()
     );
     println!();
     println!(
@@ -56,6 +50,10 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     );
     println!("|---|---|---|---|");
     println!("| {:.1e} | {:.1e} | {:.1e} | {:.1e} |", worst[0], worst[1], worst[2], worst[3]);
+    if !refused.is_empty() {
+        println!();
+        refused.iter().for_each(|line| println!("- {line}"));
+    }
     Ok(())
 }
 
@@ -95,4 +93,3 @@ fn falling(source: &mut Source) -> Result<(ContactScene<Ellipsoid>, BodyState), 
     };
     Ok((ContactScene::new(body, mass, palms, 9.81)?, start))
 }
-fn k_of(now: &ContactInstant) -> bool { ((now.state.t * 500.0).round() as usize) % 10 == 0 || (now.state.t > 0.12 && now.state.t < 0.14) }

@@ -22,9 +22,9 @@ mod planar_costs;
 mod planar_monte_carlo;
 mod shape_fits;
 mod streaming;
-mod tilting_palms;
 mod three_palms_monte_carlo;
 mod three_palms_timing;
+mod tilting_palms;
 
 use std::fmt::Display;
 use std::process::ExitCode;

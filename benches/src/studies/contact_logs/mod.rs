@@ -16,7 +16,9 @@ use std::path::{Path, PathBuf};
 const APART: f64 = 2e-3;
 /// Every so many poses of a log are nodes of a palm's path.
 const THINNED: usize = 10;
-fn thin() -> usize { std::env::var("THIN").map_or(THINNED, |s| s.parse().unwrap()) }
+fn thin() -> usize {
+    std::env::var("THIN").map_or(THINNED, |s| s.parse().unwrap())
+}
 
 pub(crate) fn main() -> Anything<()> {
     let mut words = crate::words();
@@ -58,9 +60,29 @@ fn one(folder: &Path, name: &str, seconds: f64, tolerance: f64) -> Anything<Stri
     let count = simulation.instants.len();
     let (theirs, ours) = (log.changes(count)?, changes(&log, &simulation));
     let same = same_changes(&theirs, &ours);
-    if std::env::var_os("CHANGES").is_some() { for c in &theirs { eprintln!("theirs {c:?}"); } for c in &ours { eprintln!("ours {c:?}"); }
-      for e in &simulation.events { eprintln!("ev {:.6} {} {:?} {}", e.t, e.palm, e.kind, e.modes.iter().map(|m| m.letter()).collect::<String>()); }
-      let cm = log.vectors("cm", "")?; for (k,now) in simulation.instants.iter().enumerate() { if k%5==0 { eprintln!("dep {:.3} {:.2e}", now.state.t, (now.state.body.p_WCm-cm[k]).length()); } } }
+    if std::env::var_os("CHANGES").is_some() {
+        for c in &theirs {
+            eprintln!("theirs {c:?}");
+        }
+        for c in &ours {
+            eprintln!("ours {c:?}");
+        }
+        for e in &simulation.events {
+            eprintln!(
+                "ev {:.6} {} {:?} {}",
+                e.t,
+                e.palm,
+                e.kind,
+                e.modes.iter().map(|m| m.letter()).collect::<String>()
+            );
+        }
+        let cm = log.vectors("cm", "")?;
+        for (k, now) in simulation.instants.iter().enumerate() {
+            if k % 5 == 0 {
+                eprintln!("dep {:.3} {:.2e}", now.state.t, (now.state.body.p_WCm - cm[k]).length());
+            }
+        }
+    }
     let t = log.column("t")?;
     let first = theirs.first().map_or(t[count - 1], |change| change.t);
     let other = theirs.get(same).or(ours.get(same)).map_or(t[count - 1], |change| change.t);

@@ -2,6 +2,7 @@
 
 use super::MOST_PALMS;
 use super::cones::forces_in_cones;
+use super::coulomb::Search;
 use super::directions::NO_DIRECTIONS;
 use super::painleve::smallest_minor;
 use super::problem::{ContactProblem, Directions, FULFILLED, Modes, Reaction};
@@ -28,13 +29,18 @@ pub enum ModeError {
     Inconsistent,
     /// Several motions are possible.
     #[error(
-        "mode sets {first} and {second} are both consistent: rigid bodies leave open which motion follows"
+        "mode sets {first} and {second} are both consistent: rigid bodies leave open which motion follows (the slip at palm \
+         {palm} changes by {:.3e} or by {:.3e}, m/s^2; m/s in a blow)", rates[0], rates[1]
     )]
     Ambiguous {
         /// One of them.
         first: String,
         /// Another.
         second: String,
+        /// The palm (from 1) at which the two motions differ most.
+        palm: usize,
+        /// Rate of the slip there in each of them, m/s^2; its change in m/s where it is a blow.
+        rates: [f64; 2],
     },
     /// The sliding contacts' matrix is no P-matrix: forces without bound are near.
     #[error(
@@ -108,16 +114,13 @@ impl ContactProblem {
         not: Option<Left>,
     ) -> Result<Choice, ModeError> {
         let force = self.force_scale();
-        let holds = |modes: &Modes, directions: &Directions| {
-            let choice = self.consistent(touches, modes, Some(directions), force);
-            choice.is_some_and(|choice| self.starts_truly(touches, &choice, force))
-        };
-        let relaxed = self.relaxed(touches, force, holds);
+        let search = Search { creep: SLACK, starts: 0 };
+        let solved = self.coulomb(touches, &[[0.0; 3]; MOST_PALMS], search).map(|(choice, _)| choice);
         let mut sets = self.candidates(touches);
         sets.sort_by_key(|modes| (0..self.contacts().len()).filter(|&i| modes[i] != present[i]).count());
         let mut found: Option<(Rank, Choice)> = None;
         for modes in &sets {
-            let near = relaxed.as_ref().filter(|(known, _)| known == modes).map(|(_, directions)| directions);
+            let near = solved.as_ref().filter(|known| known.modes == *modes).map(|known| &known.directions);
             let Some(choice) = self.consistent(touches, modes, near, force) else { continue };
             let rank = Rank {
                 left: not.is_some_and(|left| left.excludes(modes, present)),
@@ -127,9 +130,9 @@ impl ContactProblem {
             match &found {
                 Some((best, _)) if *best < rank => {}
                 Some((best, first)) if *best == rank => {
-                    if self.differ(first, &choice, force) {
+                    if let Some((palm, rates)) = self.differ(first, &choice, force) {
                         let [first, second] = [first, &choice].map(|choice| self.letters(&choice.modes));
-                        return Err(ModeError::Ambiguous { first, second });
+                        return Err(ModeError::Ambiguous { first, second, palm, rates });
                     }
                 }
                 _ => found = Some((rank, choice)),
@@ -281,12 +284,13 @@ impl ContactProblem {
         }
     }
 
-    fn differ(&self, one: &Choice, other: &Choice, force: f64) -> bool {
-        let difference = |i: usize| {
-            (self.slip_rate(i, &one.reaction) - self.slip_rate(i, &other.reaction)).length()
-                / self.own_response(i)
-        };
-        (0..self.contacts().len()).any(|i| difference(i) > SAME * force)
+    /// The palm (from 1) at which two sets differ most, with the slip's rate there in each; none where they mean one motion.
+    fn differ(&self, one: &Choice, other: &Choice, force: f64) -> Option<(usize, [f64; 2])> {
+        let rate = |i: usize, choice: &Choice| self.slip_rate(i, &choice.reaction);
+        let share = |i: usize| (rate(i, one) - rate(i, other)).length() / (force * self.own_response(i));
+        let worst = (0..self.contacts().len()).max_by(|&i, &j| share(i).total_cmp(&share(j)))?;
+        let rates = [one, other].map(|choice| rate(worst, choice).length());
+        (share(worst) > SAME).then_some((worst + 1, rates))
     }
 
     /// Smallest principal minor of the sliding contacts' matrix; infinite where none slides with friction.

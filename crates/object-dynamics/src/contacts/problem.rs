@@ -263,6 +263,11 @@ impl ContactProblem {
 }
 
 impl ProblemContact {
+    /// Normal and tangents.
+    pub(crate) fn axes(&self) -> [DVec3; 3] {
+        [self.n, self.t[0], self.t[1]]
+    }
+
     /// Force per unit of normal force while it slides along the unit tangent `tau`: `n - mu tau`.
     pub(crate) fn sliding_force(&self, tau: DVec2) -> DVec3 {
         self.n - self.friction * self.along_tangent(tau)

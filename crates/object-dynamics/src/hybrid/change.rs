@@ -59,8 +59,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
         let before = self.stretch.modes;
         let kept = self.stretch;
         if let Err(error) = self.settle(state, &tallies, &closed, left) {
-            if std::env::var_os("CRAWL").is_some() { eprintln!("settle at {}: {error} present {:?}", self.t, kept.modes); }
-            if !matches!(error, Error::Modes { source: ModeError::Inconsistent | ModeError::Ambiguous { .. }, .. }) {
+            if !matches!(error, Error::Modes { source: ModeError::Inconsistent, .. }) {
                 return Err(error);
             }
             self.stretch = kept;

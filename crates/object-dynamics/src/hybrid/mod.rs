@@ -14,6 +14,7 @@ mod result;
 mod run;
 mod smooth;
 mod start;
+mod step;
 
 pub use error::ContactSimulationError;
 pub use instant::ContactInstantError;
