@@ -6,6 +6,7 @@ mod coulomb;
 mod directions;
 mod drive;
 mod instant;
+mod law;
 mod painleve;
 mod problem;
 mod scene;
