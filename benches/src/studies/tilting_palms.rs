@@ -34,6 +34,17 @@ struct Seen {
     energy: f64,
 }
 
+impl Seen {
+    fn or(self, other: Self) -> Self {
+        Self {
+            gap: self.gap.max(other.gap),
+            cone: self.cone.max(other.cone),
+            creep: self.creep.max(other.creep),
+            energy: self.energy.max(other.energy),
+        }
+    }
+}
+
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let mut words = crate::words();
     let wanted: usize = words.next().map_or(Ok(140), |s| s.parse())?;
@@ -43,87 +54,17 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let (mut times, mut turns, mut changes) = (Vec::new(), Vec::new(), 0);
     for k in 0..wanted {
         let (scene, body, duration) = variant(&mut source)?;
-        if let Ok(only) = std::env::var("ONLY")
-            && k != only.parse::<usize>().unwrap()
-        {
-            times.push(0.0);
-            continue;
-        }
         let started = Instant::now();
-        let run =
-            scene.simulate(&ContactStart::touching(body), SampleTimes { duration, rate: 500.0 }, tolerance);
-        if let Ok(only) = std::env::var("ONLY")
-            && k == only.parse::<usize>().unwrap()
-            && let Ok(run) = &run
-        {
-            for e in &run.events {
-                eprintln!(
-                    "ev {:.7} {} {:?} {}",
-                    e.t,
-                    e.palm,
-                    e.kind,
-                    e.modes.iter().map(|m| m.letter()).collect::<String>()
-                );
-            }
-            let first = scene.energy(&run.instants[0].state.body);
-            for now in &run.instants {
-                let worst = (0..3).map(|i| contact_departure(&scene, now, i, now.modes[i])).fold(
-                    Seen::default(),
-                    |a, b| Seen {
-                        gap: a.gap.max(b.gap),
-                        cone: a.cone.max(b.cone),
-                        creep: a.creep.max(b.creep),
-                        energy: 0.0,
-                    },
-                );
-                eprintln!(
-                    "at {:.3} {} gap {:.1e} cone {:.1e} creep {:.1e} energy {:.2e} slips {:.2e} {:.2e} {:.2e} w {:.2e}",
-                    now.state.t,
-                    now.modes.iter().map(|m| m.letter()).collect::<String>(),
-                    worst.gap,
-                    worst.cone,
-                    worst.creep,
-                    scene.energy(&now.state.body) - first - now.friction_work - now.palm_work - now.blow_work,
-                    now.rates[0].slip.length(),
-                    now.rates[1].slip.length(),
-                    now.rates[2].slip.length(),
-                    now.state.body.w_WO.length()
-                );
-            }
-        }
+        let times_of_samples = SampleTimes { duration, rate: 500.0 };
+        let run = scene.simulate(&ContactStart::touching(body), times_of_samples, tolerance);
         times.push(started.elapsed().as_secs_f64());
-        if std::env::var_os("VERBOSE").is_some() {
-            eprintln!(
-                "{k} {:.2} s {}",
-                times[k],
-                match &run {
-                    Ok(_) => "ok".into(),
-                    Err(e) => format!("{e}"),
-                }
-            );
-        }
         match run {
             Err(error) => refused.push(format!("variant {k}: {error}")),
             Ok(run) => {
                 through += 1;
                 changes += run.events.len();
                 turns.push(turn(&run));
-                let seen = departures(&scene, &run);
-                if std::env::var_os("VERBOSE").is_some() {
-                    eprintln!(
-                        "   gap {:.1e} cone {:.1e} creep {:.1e} energy {:.1e} steps {} events {}",
-                        seen.gap,
-                        seen.cone,
-                        seen.creep,
-                        seen.energy,
-                        run.statistics.accepted,
-                        run.events.len()
-                    );
-                }
-                worst.gap = worst.gap.max(seen.gap);
-                worst.cone = worst.cone.max(seen.cone);
-                worst.creep = worst.creep.max(seen.creep);
-                worst.energy = worst.energy.max(seen.energy);
+                worst = worst.or(departures(&scene, &run));
             }
         }
     }
@@ -165,10 +106,7 @@ fn departures(scene: &ContactScene<Ellipsoid>, run: &ContactSimulation) -> Seen 
     let first = scene.energy(&run.instants[0].state.body);
     for now in &run.instants {
         for (i, mode) in now.modes.iter().enumerate() {
-            let seen = contact_departure(scene, now, i, *mode);
-            worst.gap = worst.gap.max(seen.gap);
-            worst.cone = worst.cone.max(seen.cone);
-            worst.creep = worst.creep.max(seen.creep);
+            worst = worst.or(contact_departure(scene, now, i, *mode));
         }
         let energy =
             scene.energy(&now.state.body) - first - now.friction_work - now.palm_work - now.blow_work;
