@@ -7,5 +7,6 @@
 mod approach;
 mod closed_forms;
 mod contact_modes;
+mod crawl;
 mod giving_way;
 mod three_palms;
