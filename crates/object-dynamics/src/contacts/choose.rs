@@ -66,22 +66,11 @@ pub(crate) enum Touch {
     Rests,
 }
 
-/// What has just ended: it may seem to hold still, by rounding.
+/// A mode of a contact that has just ended: it may seem to hold still, by rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Left {
-    /// A mode of one contact.
-    Mode(usize, ContactMode),
-    /// The present modes, as a whole.
-    Set,
-}
-
-impl Left {
-    fn excludes(self, modes: &Modes, present: &Modes) -> bool {
-        match self {
-            Self::Mode(i, mode) => modes[i] == mode,
-            Self::Set => modes == present,
-        }
-    }
+pub(crate) struct Left {
+    pub(crate) contact: usize,
+    pub(crate) mode: ContactMode,
 }
 
 /// What speaks against a consistent mode set, the weightiest first.
@@ -123,7 +112,7 @@ impl ContactProblem {
             let near = solved.as_ref().filter(|known| known.modes == *modes).map(|known| &known.directions);
             let Some(choice) = self.consistent(touches, modes, near, force) else { continue };
             let rank = Rank {
-                left: not.is_some_and(|left| left.excludes(modes, present)),
+                left: not.is_some_and(|left| modes[left.contact] == left.mode),
                 strained: choice.reaction.unmet > EXACT,
                 sticks_as_well: !self.starts_truly(touches, &choice, force),
             };

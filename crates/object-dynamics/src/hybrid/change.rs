@@ -22,7 +22,7 @@ const LEAVES: f64 = 1e-5;
 const GRAZING: f64 = 1e-9;
 
 impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
-    /// New modes after an event.
+    /// New modes after an event; whether time stepping must find them instead.
     pub(super) fn change(&mut self, crossing: &Crossing) -> Result<bool, Error> {
         let mut closed = self.stretch.modes.map(|mode| mode != ContactMode::Off);
         closed[crossing.palm] = true;
@@ -31,13 +31,12 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             ContactEventKind::Lifts | ContactEventKind::ConeLeft => {
                 let squeezed =
                     self.evaluated(self.t, &self.y)?.reaction.is_some_and(|reaction| !reaction.unique);
-                let mode = self.stretch.modes[crossing.palm];
-                Some(if squeezed { Left::Set } else { Left::Mode(crossing.palm, mode) })
+                if squeezed {
+                    return Ok(true);
+                }
+                Some(Left { contact: crossing.palm, mode: self.stretch.modes[crossing.palm] })
             }
         };
-        if left == Some(Left::Set) {
-            return Ok(true);
-        }
         let (state, tallies) = self.units.unpack(self.t, &self.y);
         // Until now the old modes have held: what departs from them is the integrator's error, the rest of a slip as well.
         let mut modes: Modes = self.stretch.modes;
@@ -57,12 +56,12 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             self.stretch.modes = modes;
         }
         let before = self.stretch.modes;
-        let kept = self.stretch;
+        let (kept, blow_work) = (self.stretch, self.blow_work);
         if let Err(error) = self.settle(state, &tallies, &closed, left) {
             if !matches!(error, Error::Modes { source: ModeError::Inconsistent, .. }) {
                 return Err(error);
             }
-            self.stretch = kept;
+            (self.stretch, self.blow_work) = (kept, blow_work);
             (self.t, self.y) = (state.t, self.units.pack(&state, &tallies));
             return Ok(true);
         }
@@ -77,7 +76,8 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
         Ok(self.crowded(self.t, EVENT))
     }
 
-    /// Finds the modes of a state whose `closed` contacts touch, after a blow where one approaches.
+    /// Finds the modes of a state whose `closed` contacts touch, after a blow where one approaches. Whether sticking contacts agree
+    /// exactly.
     pub(super) fn settle(
         &mut self,
         state: SceneState,

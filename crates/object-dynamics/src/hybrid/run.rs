@@ -18,6 +18,7 @@ impl<S: SupportFunction> ContactScene<S> {
     ///
     /// Smooth motion by DOP853 in maximal coordinates with the forces of the present modes, pulled back onto the contacts
     /// after each step; changes of modes are located on its dense output, and the modes after each are the consistent ones.
+    /// Where over-constrained sticking comes loose, or events and steps crowd, it goes on by time stepping for a while.
     /// `tolerance` is the local error allowed in natural units (size of the body, `sqrt(g l)`).
     ///
     /// # Errors
@@ -54,7 +55,7 @@ pub(super) struct Run<'a, S, const N: usize> {
     pub(super) t: f64,
     pub(super) y: [f64; N],
     pub(super) blow_work: f64,
-    /// Steps and events since a time.
+    /// Work (in steps) since a time, s: more than time stepping takes is too much.
     pub(super) work: (f64, usize),
     pub(super) result: ContactSimulation,
 }
