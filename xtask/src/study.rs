@@ -40,6 +40,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
     ("contact_wedging", "contact-wedging.md", "states in which friction wedges sliding contacts"),
     ("contact_logs", "contact-logs.md", "reference logs of any palms simulated from their start"),
     (
+        "tilting_palms",
+        "tilting-palms.md",
+        "random scenes of three tilting palms with friction on all three: which are simulated to the end",
+    ),
+    (
         "planar_contacts",
         "planar-contacts.md",
         "planar bodies on any palms: what a run keeps to, what it refuses",

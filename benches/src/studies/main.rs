@@ -26,6 +26,7 @@ mod shape_fits;
 mod streaming;
 mod three_palms_monte_carlo;
 mod three_palms_timing;
+mod tilting_palms;
 
 use std::fmt::Display;
 use std::process::ExitCode;
@@ -54,6 +55,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("planar_monte_carlo", || in_words(planar_monte_carlo::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),
+    ("tilting_palms", || in_words(tilting_palms::main())),
     ("three_palms_monte_carlo", || in_words(three_palms_monte_carlo::main())),
     ("three_palms_timing", || in_words(three_palms_timing::main())),
 ];

@@ -23,6 +23,15 @@ pub(crate) struct Change {
     pub(crate) mode: u8,
 }
 
+/// The columns of one contact.
+struct Contact<'a> {
+    p: Vec<DVec3>,
+    f: Vec<DVec3>,
+    mode: &'a [f64],
+    slip: &'a [f64],
+    gap: &'a [f64],
+}
+
 /// Columns by name, and the scene's description.
 pub(crate) struct Log {
     columns: HashMap<String, Vec<f64>>,
@@ -103,7 +112,7 @@ impl Log {
                 (points[k].is_finite() && modes[k][i - 1] != ContactMode::Off).then_some(points[k])
             };
             records.push(PalmRecord {
-                surface: self.palm(i, 10)?.surface,
+                surface: self.palm(i)?.surface,
                 friction: None,
                 motion: RecordedMotion::Measured(states?),
                 contacts: ContactPoints::World((0..times.len()).map(touched).collect()),
@@ -160,8 +169,59 @@ impl Log {
         Ok((0..count).map(|k| BodyState { p_WCm: p[k], R_WO: q[k], v_WCm: v[k], w_WO: w[k] }).collect())
     }
 
-    /// The scene whose palms move as the log's did, every `thinned`-th pose being a node of their paths.
-    pub(crate) fn scene(&self, thinned: usize) -> Anything<ContactScene<Ellipsoid>> {
+    /// How far the log itself is off until a time, m: by its residuals of Newton and Euler, integrated twice, at the most distant
+    /// contact; and by the creep of sticking contacts and the depth of all.
+    pub(crate) fn own_departure(&self, until: f64) -> Anything<[f64; 2]> {
+        let t = self.column("t")?;
+        let (mass, gravity) = (number(&self.about["mass"]), number(&self.about["gravity"]));
+        let inertia = matrix(&self.about["inertia"]);
+        let (cm, a) = (self.vectors("cm", "")?, self.vectors("a", "")?);
+        let (w, alpha, q) = (self.vectors("w", "")?, self.vectors("al", "")?, self.quaternions("q", "")?);
+        let palms = (1..=self.palm_count()).map(|i| self.contact(i)).collect::<Anything<Vec<_>>>()?;
+        let mut off = [[DVec3::ZERO; 2]; 2];
+        let (mut laws, mut creeps, mut creep) = (0.0_f64, vec![0.0; palms.len()], 0.0_f64);
+        for k in 0..t.len() - 1 {
+            if t[k] >= until {
+                break;
+            }
+            let R = DMat3::from_quat(q[k]);
+            let I = R * inertia * R.transpose();
+            let (mut force, mut moment, mut lever) = (DVec3::ZERO, DVec3::ZERO, 0.0_f64);
+            let h = t[k + 1] - t[k];
+            for (palm, crept) in palms.iter().zip(&mut creeps) {
+                if palm.mode[k] > 0.5 {
+                    let b = palm.p[k] - cm[k];
+                    force += palm.f[k];
+                    moment += b.cross(palm.f[k]);
+                    lever = lever.max(b.length());
+                    *crept += if palm.mode[k] > 1.5 { h * palm.slip[k] } else { 0.0 };
+                    creep = creep.max(*crept + palm.gap[k].abs());
+                }
+            }
+            let newton = a[k] + gravity * DVec3::Z - force / mass;
+            let euler = alpha[k] - I.inverse() * (moment - w[k].cross(I * w[k]));
+            for (off, residual) in off.iter_mut().zip([newton, euler]) {
+                off[0] += h * off[1] + 0.5 * h * h * residual;
+                off[1] += h * residual;
+            }
+            laws = laws.max(off[0][0].length() + lever * off[1][0].length());
+        }
+        Ok([laws, creep])
+    }
+
+    fn contact(&self, i: usize) -> Anything<Contact<'_>> {
+        let tail = format!("_{i}");
+        Ok(Contact {
+            p: self.vectors("p", &tail)?,
+            f: self.vectors("f", &tail)?,
+            mode: self.column(&format!("mode{tail}"))?,
+            slip: self.column(&format!("slip{tail}"))?,
+            gap: self.column(&format!("gap{tail}"))?,
+        })
+    }
+
+    /// The scene whose palms move as the log's did, every pose being a node of their paths.
+    pub(crate) fn scene(&self) -> Anything<ContactScene<Ellipsoid>> {
         let body = Ellipsoid::new(vector(&self.about["axes"]))?;
         let inertia = DMat3::from_cols(
             vector(&self.about["inertia"][0]),
@@ -169,11 +229,11 @@ impl Log {
             vector(&self.about["inertia"][2]),
         );
         let mass = MassProperties::new(number(&self.about["mass"]), inertia)?;
-        let palms = (1..=self.palm_count()).map(|i| self.palm(i, thinned)).collect::<Anything<Vec<_>>>()?;
+        let palms = (1..=self.palm_count()).map(|i| self.palm(i)).collect::<Anything<Vec<_>>>()?;
         Ok(ContactScene::new(body, mass, palms, number(&self.about["gravity"]))?)
     }
 
-    fn palm(&self, i: usize, thinned: usize) -> Anything<ScenePalm> {
+    fn palm(&self, i: usize) -> Anything<ScenePalm> {
         let about = &self.about["palms"][i - 1];
         let radius = number(&about["radius"]);
         let surface = match about["kind"].as_str().unwrap_or_default() {
@@ -185,28 +245,25 @@ impl Log {
         let mut positions = self.vectors("P", &format!("_{i}"))?;
         let spring = &about["spring"];
         let drive = if spring.is_null() {
-            PalmDrive::Prescribed(self.path(i, &positions, thinned)?)
+            PalmDrive::Prescribed(self.path(i, &positions)?)
         } else {
             let (stiffness, damping) = (matrix(&spring["K"]), matrix(&spring["C"]));
             let mass = number(&spring["mass"]);
             self.command(i, &mut positions, (stiffness, damping, mass))?;
-            let command = self.path(i, &positions, thinned)?;
+            let command = self.path(i, &positions)?;
             PalmDrive::Spring(PalmSpring { command, stiffness, damping, mass })
         };
         Ok(ScenePalm { surface, drive, friction: number(&about["mu"]) })
     }
 
-    fn path(&self, i: usize, positions: &[DVec3], thinned: usize) -> Anything<SurfaceMotion> {
+    fn path(&self, i: usize, positions: &[DVec3]) -> Anything<SurfaceMotion> {
         let (t, turns) = (self.column("t")?, self.quaternions("Q", &format!("_{i}"))?);
         let still = positions.iter().zip(&turns).all(|(p, q)| *p == positions[0] && *q == turns[0]);
         let pose = |k: usize| SurfacePose::new(positions[k], turns[k]);
         if still {
             return Ok(SurfaceMotion::immobile(pose(0)?));
         }
-        let rows: Result<Vec<_>, _> = (0..t.len())
-            .filter(|k| k % thinned == 0 || *k == t.len() - 1)
-            .map(|k| pose(k).map(|p| (t[k], p)))
-            .collect();
+        let rows: Result<Vec<_>, _> = (0..t.len()).map(|k| pose(k).map(|p| (t[k], p))).collect();
         Ok(SurfaceMotion::Table(PoseTable::new(&rows?)?))
     }
 

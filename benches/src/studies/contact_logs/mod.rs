@@ -1,6 +1,6 @@
 //! The reference logs of general contacts, simulated from their start: how far from the logs, and with which changes of modes.
 //!
-//! Arguments: the folder of the logs, seconds to simulate, tolerance, scenes. The palms' paths are splines through every 10th
+//! Arguments: the folder of the logs, seconds to simulate, tolerance, scenes. The palms' paths are splines through every
 //! pose of the log; the commands of palms on springs are found from their paths and forces. Writes a Markdown table.
 //!
 //! Modes are told as the logs tell them: a contact sticks where its slip is below the log's tolerance.
@@ -14,9 +14,6 @@ use std::path::{Path, PathBuf};
 
 /// Changes of modes are the same when they are at most this far apart, s.
 const APART: f64 = 2e-3;
-/// Every so many poses of a log are nodes of a palm's path.
-const THINNED: usize = 10;
-
 pub(crate) fn main() -> Anything<()> {
     let mut words = crate::words();
     let folder = PathBuf::from(words.next().ok_or("the folder of the logs is missing")?);
@@ -30,18 +27,19 @@ pub(crate) fn main() -> Anything<()> {
     println!();
     println!(
         "Eight scenes that another simulator logged (one to four palms, friction, fingertips, cups, springs, blows): {seconds} s from \
-         the log's first state at tolerance {tolerance:e}, the palms on splines through every {THINNED}th pose of the log. Modes are \
-         told as the logs tell them: a contact sticks where its slip is below the log's tolerance."
+         the log's first state at tolerance {tolerance:e}, the palms on splines through every pose of the log. Modes are told as \
+         the logs tell them: a contact sticks where its slip is below the log's tolerance. A log's own departure is what its residuals of \
+         Newton and Euler, integrated twice, move its contacts by, and how far they creep while they stick and sink in."
     );
     println!();
     println!(
-        "| log | to first change (s) | departure until then (m) | growth of a change of the start | changes in the log | same, within 2 ms | first other (s) | departure until then (m) | steps | time (ms) |"
+        "| log | to first change (s) | departure until then (m) | the log's own until then: Newton and Euler, creep (m) | growth of a change of the start | changes in the log | same, within 2 ms, until the first other | same in all | first other (s) | departure until then (m) | steps | time (ms) |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     for name in names {
         match one(&folder, &name, seconds, tolerance) {
             Ok(row) => println!("| {name} | {row} |"),
-            Err(error) => println!("| {name} | {error} | | | | | | | | |"),
+            Err(error) => println!("| {name} | {error} | | | | | | | | | | |"),
         }
     }
     Ok(())
@@ -49,7 +47,7 @@ pub(crate) fn main() -> Anything<()> {
 
 fn one(folder: &Path, name: &str, seconds: f64, tolerance: f64) -> Anything<String> {
     let log = Log::read(folder, name)?;
-    let scene = log.scene(THINNED)?;
+    let scene = log.scene()?;
     let body = log.body(0)?;
     let started = std::time::Instant::now();
     let simulation = simulate(&log, &scene, body, seconds, tolerance)?;
@@ -60,11 +58,13 @@ fn one(folder: &Path, name: &str, seconds: f64, tolerance: f64) -> Anything<Stri
     let t = log.column("t")?;
     let first = theirs.first().map_or(t[count - 1], |change| change.t);
     let other = theirs.get(same).or(ours.get(same)).map_or(t[count - 1], |change| change.t);
+    let [laws, creep] = log.own_departure(first)?;
     let growth = growth(&log, &scene, body, (first, tolerance))?;
     Ok(format!(
-        "{first:.3} | {:.1e} | {growth:.1} | {} | {same} | {other:.3} | {:.1e} | {} | {spent:.1}",
+        "{first:.3} | {:.1e} | {laws:.1e}, {creep:.1e} | {growth:.1} | {} | {same} | {} | {other:.3} | {:.1e} | {} | {spent:.1}",
         departure(&log, &simulation, first)?,
         theirs.len(),
+        matching(&theirs, &ours),
         departure(&log, &simulation, other)?,
         simulation.statistics.accepted,
     ))
@@ -84,6 +84,18 @@ fn same_changes(theirs: &[log::Change], ours: &[log::Change]) -> usize {
         count += 1;
     }
     count
+}
+
+/// How many changes of the log have one of ours of the same palm and mode within the tolerance, each of ours once.
+fn matching(theirs: &[log::Change], ours: &[log::Change]) -> usize {
+    let mut left: Vec<&log::Change> = ours.iter().collect();
+    let taken = theirs.iter().filter(|change| {
+        let same = |o: &&log::Change| {
+            o.palm == change.palm && o.mode == change.mode && (o.t - change.t).abs() <= APART
+        };
+        left.iter().position(same).map(|at| left.remove(at)).is_some()
+    });
+    taken.count()
 }
 
 fn departure(log: &Log, simulation: &ContactSimulation, until: f64) -> Anything<f64> {

@@ -2,6 +2,7 @@
 
 use super::MOST_PALMS;
 use super::cones::forces_in_cones;
+use super::coulomb::Search;
 use super::directions::NO_DIRECTIONS;
 use super::painleve::smallest_minor;
 use super::problem::{ContactProblem, Directions, FULFILLED, Modes, Reaction};
@@ -16,7 +17,7 @@ const SAME: f64 = 1e-5;
 /// Slip starts where it is accelerated by more than this share.
 const STARTS: f64 = 1e-7;
 /// Sticking contacts that contradict each other by less than this share do so by rounding.
-const EXACT: f64 = 1e-10;
+pub(crate) const EXACT: f64 = 1e-10;
 
 /// Why no mode set can be taken. Modes are given as letters, palm by palm: O off, S slides, R sticks and rolls.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -28,13 +29,18 @@ pub enum ModeError {
     Inconsistent,
     /// Several motions are possible.
     #[error(
-        "mode sets {first} and {second} are both consistent: rigid bodies leave open which motion follows"
+        "mode sets {first} and {second} are both consistent: rigid bodies leave open which motion follows (the slip at palm \
+         {palm} changes by {:.3e} or by {:.3e}, m/s^2; m/s in a blow)", rates[0], rates[1]
     )]
     Ambiguous {
         /// One of them.
         first: String,
         /// Another.
         second: String,
+        /// The palm (from 1) at which the two motions differ most.
+        palm: usize,
+        /// Rate of the slip there in each of them, m/s^2; its change in m/s where it is a blow.
+        rates: [f64; 2],
     },
     /// The sliding contacts' matrix is no P-matrix: forces without bound are near.
     #[error(
@@ -60,22 +66,11 @@ pub(crate) enum Touch {
     Rests,
 }
 
-/// What has just ended: it may seem to hold still, by rounding.
+/// A mode of a contact that has just ended: it may seem to hold still, by rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Left {
-    /// A mode of one contact.
-    Mode(usize, ContactMode),
-    /// The present modes, as a whole.
-    Set,
-}
-
-impl Left {
-    fn excludes(self, modes: &Modes, present: &Modes) -> bool {
-        match self {
-            Self::Mode(i, mode) => modes[i] == mode,
-            Self::Set => modes == present,
-        }
-    }
+pub(crate) struct Left {
+    pub(crate) contact: usize,
+    pub(crate) mode: ContactMode,
 }
 
 /// What speaks against a consistent mode set, the weightiest first.
@@ -108,28 +103,25 @@ impl ContactProblem {
         not: Option<Left>,
     ) -> Result<Choice, ModeError> {
         let force = self.force_scale();
-        let holds = |modes: &Modes, directions: &Directions| {
-            let choice = self.consistent(touches, modes, Some(directions), force);
-            choice.is_some_and(|choice| self.starts_truly(touches, &choice, force))
-        };
-        let relaxed = self.relaxed(touches, force, holds);
+        let search = Search { creep: SLACK, starts: 0 };
+        let solved = self.coulomb(touches, &[[0.0; 3]; MOST_PALMS], search).map(|(choice, _)| choice);
         let mut sets = self.candidates(touches);
         sets.sort_by_key(|modes| (0..self.contacts().len()).filter(|&i| modes[i] != present[i]).count());
         let mut found: Option<(Rank, Choice)> = None;
         for modes in &sets {
-            let near = relaxed.as_ref().filter(|(known, _)| known == modes).map(|(_, directions)| directions);
+            let near = solved.as_ref().filter(|known| known.modes == *modes).map(|known| &known.directions);
             let Some(choice) = self.consistent(touches, modes, near, force) else { continue };
             let rank = Rank {
-                left: not.is_some_and(|left| left.excludes(modes, present)),
+                left: not.is_some_and(|left| modes[left.contact] == left.mode),
                 strained: choice.reaction.unmet > EXACT,
                 sticks_as_well: !self.starts_truly(touches, &choice, force),
             };
             match &found {
                 Some((best, _)) if *best < rank => {}
                 Some((best, first)) if *best == rank => {
-                    if self.differ(first, &choice, force) {
+                    if let Some((palm, rates)) = self.differ(first, &choice, force) {
                         let [first, second] = [first, &choice].map(|choice| self.letters(&choice.modes));
-                        return Err(ModeError::Ambiguous { first, second });
+                        return Err(ModeError::Ambiguous { first, second, palm, rates });
                     }
                 }
                 _ => found = Some((rank, choice)),
@@ -159,7 +151,7 @@ impl ContactProblem {
     }
 
     /// Sum of what the forces are made of, N: a scale for what counts as zero.
-    fn force_scale(&self) -> f64 {
+    pub(crate) fn force_scale(&self) -> f64 {
         let of = |i: usize| self.contacts()[i].free.length() / self.own_response(i);
         (0..self.contacts().len()).map(of).fold(f64::MIN_POSITIVE, f64::max)
     }
@@ -281,12 +273,13 @@ impl ContactProblem {
         }
     }
 
-    fn differ(&self, one: &Choice, other: &Choice, force: f64) -> bool {
-        let difference = |i: usize| {
-            (self.slip_rate(i, &one.reaction) - self.slip_rate(i, &other.reaction)).length()
-                / self.own_response(i)
-        };
-        (0..self.contacts().len()).any(|i| difference(i) > SAME * force)
+    /// The palm (from 1) at which two sets differ most, with the slip's rate there in each; none where they mean one motion.
+    fn differ(&self, one: &Choice, other: &Choice, force: f64) -> Option<(usize, [f64; 2])> {
+        let rate = |i: usize, choice: &Choice| self.slip_rate(i, &choice.reaction);
+        let share = |i: usize| (rate(i, one) - rate(i, other)).length() / (force * self.own_response(i));
+        let worst = (0..self.contacts().len()).max_by(|&i, &j| share(i).total_cmp(&share(j)))?;
+        let rates = [one, other].map(|choice| rate(worst, choice).length());
+        (share(worst) > SAME).then_some((worst + 1, rates))
     }
 
     /// Smallest principal minor of the sliding contacts' matrix; infinite where none slides with friction.

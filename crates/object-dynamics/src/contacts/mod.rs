@@ -2,17 +2,19 @@
 
 mod choose;
 mod cones;
+mod coulomb;
 mod directions;
 mod drive;
 mod instant;
+mod law;
 mod painleve;
 mod problem;
-mod relax;
 mod scene;
 mod solve;
 
 pub use choose::ModeError;
-pub(crate) use choose::{Left, Touch};
+pub(crate) use choose::{Choice, EXACT, Left, Touch};
+pub(crate) use coulomb::{Forces, Search};
 pub(crate) use directions::NO_DIRECTIONS;
 pub use drive::{DriveError, PalmDrive, PalmSpring, PalmTorque};
 pub(crate) use instant::Contacts;

@@ -123,8 +123,13 @@ impl ContactProblem {
     }
 
     /// The same contacts with displacements or velocities `of` each in place of accelerations.
-    pub(crate) fn of_motion(mut self, of: impl Fn(usize) -> DVec3) -> Self {
-        self.free_motion = [DVec3::ZERO; 2];
+    pub(crate) fn of_motion(self, of: impl Fn(usize) -> DVec3) -> Self {
+        self.after(0.0, of)
+    }
+
+    /// The same with velocities `of` each contact without impulses, after a time `h` of the body's free acceleration.
+    pub(crate) fn after(mut self, h: f64, of: impl Fn(usize) -> DVec3) -> Self {
+        self.free_motion = self.free_motion.map(|a| h * a);
         for (i, contact) in self.contacts[..self.count].iter_mut().enumerate() {
             (contact.free, contact.normal_bias) = (of(i), 0.0);
         }
@@ -169,12 +174,9 @@ impl ContactProblem {
         }
         for c in 0..count {
             let (j, force) = columns[c];
-            let (a, alpha) = self.by_force(j, force);
             for r in 0..count {
                 let (i, e) = rows[r];
-                let contact = &self.contacts[i];
-                let own = if i == j { contact.yields.acceleration(force) } else { DVec3::ZERO };
-                system.matrix[r][c] = e.dot(a + alpha.cross(contact.b) + own);
+                system.matrix[r][c] = e.dot(self.moved_by(i, j, force));
             }
         }
         let solved = system.solve(count, &squeezes)?;
@@ -199,6 +201,14 @@ impl ContactProblem {
     /// What a force at contact `j` adds to the accelerations.
     fn by_force(&self, j: usize, force: DVec3) -> (DVec3, DVec3) {
         (self.inverse_mass * force, self.K * self.contacts[j].b.cross(force))
+    }
+
+    /// What a force at contact `j` adds to the rate of the slip at contact `i`.
+    pub(crate) fn moved_by(&self, i: usize, j: usize, force: DVec3) -> DVec3 {
+        let (a, alpha) = self.by_force(j, force);
+        let contact = &self.contacts[i];
+        let own = if i == j { contact.yields.acceleration(force) } else { DVec3::ZERO };
+        a + alpha.cross(contact.b) + own
     }
 
     /// Rate of the slip at contact `i`, m/s^2.
@@ -253,6 +263,11 @@ impl ContactProblem {
 }
 
 impl ProblemContact {
+    /// Normal and tangents.
+    pub(crate) fn axes(&self) -> [DVec3; 3] {
+        [self.n, self.t[0], self.t[1]]
+    }
+
     /// Force per unit of normal force while it slides along the unit tangent `tau`: `n - mu tau`.
     pub(crate) fn sliding_force(&self, tau: DVec2) -> DVec3 {
         self.n - self.friction * self.along_tangent(tau)

@@ -59,18 +59,6 @@ pub enum ContactSimulationError {
     /// The equations of motion could not be integrated.
     #[error("integration: {0}")]
     Integration(#[source] IntegrationError<PalmContactError>),
-    /// Modes change without end in no time.
-    #[error(
-        "{count} mode changes within {span:.1e} s at t = {t} s: they pile up, and rigid contacts say no more"
-    )]
-    TooManyEvents {
-        /// How many.
-        count: usize,
-        /// Within what time, s.
-        span: f64,
-        /// When, s.
-        t: f64,
-    },
     /// The samples do not make a log.
     #[error("sensor log: {0}")]
     Log(#[source] LogError),

@@ -1,6 +1,8 @@
 //! Simulation through contact modes: smooth motion between located events, and what happens at each.
 
 mod blow;
+mod change;
+mod crawl;
 mod error;
 mod events;
 mod field;
@@ -10,7 +12,9 @@ mod packed;
 mod project;
 mod result;
 mod run;
+mod smooth;
 mod start;
+mod step;
 
 pub use error::ContactSimulationError;
 pub use instant::ContactInstantError;

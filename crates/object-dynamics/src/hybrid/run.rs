@@ -1,39 +1,24 @@
-use super::blow::blow;
+//! The simulation as a whole: from event to event, and by time stepping where those crowd.
+
 use super::error::ContactSimulationError as Error;
-use super::events::{Crossing, first_crossing};
-use super::field::{Evaluated, STILL, Stretch};
-use super::guards::{Guards, suspicious};
+use super::events::Crossing;
+use super::field::{Evaluated, Stretch};
 use super::packed::{RIGID, Tallies, Units, YIELDING};
-use super::project::projected;
-use super::result::{ContactEvent, ContactEventKind, ContactSimulation};
+use super::result::ContactSimulation;
 use super::start::{ContactStart, check_overlap};
-use crate::contacts::{ContactScene, Left, MOST_PALMS, ModeError, Modes, SceneState, Touch};
-use crate::integrate::{Dop853, IntegrationError, Statistics, Tolerance};
+use crate::contacts::{ContactScene, MOST_PALMS, ModeError};
+use crate::integrate::{Statistics, Tolerance};
 use crate::three_palms::check_times;
 use crate::{ContactMode, SampleTimes};
 use contact_kinematics::SupportFunction;
 use glam::DVec3;
-use std::cell::Cell;
-
-/// A slip that ends must have fallen below this share of the natural speed: else its direction has only turned by a right
-/// angle within a step, and the step is taken again, shorter.
-const SLIP_ENDED: f64 = 1e-4;
-/// More changes of modes than this without time to tell them apart are a pile-up.
-const MOST_AT_ONCE: usize = 1000;
-/// What counts as no time, in natural times.
-const AT_ONCE: f64 = 1e-4;
-/// Slips and rates of gaps at the start below this share of the natural speed are none: a state given to six digits.
-const STATED: f64 = 1e-5;
-/// A contact whose gap opens slower than this share of the natural speed has not left.
-const LEAVES: f64 = 1e-5;
-/// An approach slower than this share of the natural speed is no blow.
-const GRAZING: f64 = 1e-9;
 
 impl<S: SupportFunction> ContactScene<S> {
     /// Simulates from `start` through every change of modes to the last sample.
     ///
     /// Smooth motion by DOP853 in maximal coordinates with the forces of the present modes, pulled back onto the contacts
     /// after each step; changes of modes are located on its dense output, and the modes after each are the consistent ones.
+    /// Where over-constrained sticking comes loose, or events and steps crowd, it goes on by time stepping for a while.
     /// `tolerance` is the local error allowed in natural units (size of the body, `sqrt(g l)`).
     ///
     /// # Errors
@@ -59,26 +44,28 @@ impl<S: SupportFunction> ContactScene<S> {
     }
 }
 
-struct Run<'a, S, const N: usize> {
-    scene: &'a ContactScene<S>,
-    units: Units,
-    tolerance: Tolerance,
-    sample_rate: f64,
-    count: usize,
-    joints: Vec<f64>,
-    stretch: Stretch,
-    t: f64,
-    y: [f64; N],
-    blow_work: f64,
-    /// When guards fell to zero, whether the modes changed or not.
-    crossings: Vec<f64>,
-    result: ContactSimulation,
+pub(super) struct Run<'a, S, const N: usize> {
+    pub(super) scene: &'a ContactScene<S>,
+    pub(super) units: Units,
+    pub(super) tolerance: Tolerance,
+    pub(super) sample_rate: f64,
+    pub(super) count: usize,
+    pub(super) joints: Vec<f64>,
+    pub(super) stretch: Stretch,
+    pub(super) t: f64,
+    pub(super) y: [f64; N],
+    pub(super) blow_work: f64,
+    /// Work (in steps) since a time, s: more than time stepping takes is too much.
+    pub(super) work: (f64, usize),
+    pub(super) result: ContactSimulation,
 }
 
 /// How far a stretch went.
-enum Reached {
+pub(super) enum Reached {
     Limit,
     Event(Crossing),
+    /// Events and steps have become denser than time stepping is.
+    Crowded,
     /// A step must be taken again up to this time.
     Again(f64),
 }
@@ -126,7 +113,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             t: 0.0,
             y: [0.0; N],
             blow_work: 0.0,
-            crossings: Vec::new(),
+            work: (0.0, 0),
             result,
         };
         run.settle(state, &Tallies::default(), &closed, None)?;
@@ -143,261 +130,25 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
                 Reached::Again(sooner) => limit = sooner,
                 Reached::Event(crossing) => {
                     limit = last;
-                    self.change(&crossing)?;
+                    if self.change(&crossing)? {
+                        self.crawl(last)?;
+                    }
+                }
+                Reached::Crowded => {
+                    limit = last;
+                    self.crawl(last)?;
                 }
             }
         }
         Ok(self.result)
     }
 
-    /// Integrates with the present modes up to `limit` or the first event.
-    fn stretch_until(&mut self, limit: f64) -> Result<Reached, Error> {
-        let (scene, units) = (self.scene, self.units);
-        let now = Cell::new(self.stretch);
-        let (doubt, at_start) = (Cell::new(false), Cell::new(Guards::default()));
-        let failed = Cell::new(None);
-        let field = |t: f64, y: &[f64; N]| {
-            if !y.iter().all(|v| v.is_finite()) {
-                return Ok([f64::NAN; N]);
-            }
-            let stretch = now.get();
-            let evaluated = match stretch.evaluate(scene, &units, units.unpack(t, y)) {
-                Ok(evaluated) => evaluated,
-                // A step that is tried may reach into a palm, and is then taken again, shorter.
-                Err(error) => {
-                    failed.set(Some(error));
-                    return Ok([f64::NAN; N]);
-                }
-            };
-            if suspicious(&stretch.guards(&evaluated, &units), &at_start.get()) {
-                doubt.set(true);
-            }
-            Ok(evaluated.rates(scene, &units))
-        };
-        let mut solver = Dop853::new(field, self.t, self.y, self.tolerance).map_err(Error::Integration)?;
-        let reached = loop {
-            let (t, y) = (solver.time(), *solver.state());
-            if t >= limit {
-                (self.t, self.y) = (t, y);
-                break Reached::Limit;
-            }
-            let evaluated = self.evaluated(t, &y)?;
-            self.check_wedging(&evaluated)?;
-            self.stretch = self.stretch.renewed(&evaluated, &units);
-            now.set(self.stretch);
-            at_start.set(self.stretch.guards(&evaluated, &units));
-            doubt.set(false);
-            failed.set(None);
-            // A table of poses has a joint at every row: thousands of them.
-            let next = self.joints.partition_point(|joint| *joint <= t);
-            let next_joint = self.joints.get(next).copied().unwrap_or(limit);
-            let project = |t: f64, y: &mut [f64; N]| self.project(t, y);
-            if let Err(error) = solver.step_onto(limit.min(next_joint), project) {
-                return Err(match (&error, failed.get()) {
-                    (IntegrationError::NotFinite { t }, Some(source)) => Error::Contact { t: *t, source },
-                    _ => self.stuck(&evaluated, error),
-                });
-            }
-            let at_edge = std::mem::take(&mut self.stretch.at_edge);
-            let (end, next_sample) = (solver.time(), self.result.instants.len() as f64 / self.sample_rate);
-            if !doubt.get() && next_sample > end {
-                continue;
-            }
-            let Some(dense) = solver.dense().map_err(Error::Integration)? else { continue };
-            let passed = Stretch { at_edge, ..self.stretch };
-            let crossing = match doubt.get() {
-                true => first_crossing(&passed, scene, &units, &dense, &at_start.get())
-                    .map_err(|source| Error::Contact { t, source })?,
-                false => None,
-            };
-            let until = crossing.map_or(end, |c| c.t);
-            if let Some(c) = &crossing
-                && c.kind == ContactEventKind::SlipEnds
-                && !self.slip_has_ended(c, &dense.at(c.t))?
-                && c.t - t > 1e-12 * end.abs()
-            {
-                (self.t, self.y) = (t, y);
-                break Reached::Again(t + 0.25 * (c.t - t));
-            }
-            while self.result.instants.len() < self.count {
-                let sample = self.result.instants.len() as f64 / self.sample_rate;
-                if sample > until {
-                    break;
-                }
-                let state = if sample == end { *solver.state() } else { dense.at(sample) };
-                self.sample(sample, &state)?;
-            }
-            if let Some(crossing) = crossing {
-                (self.t, self.y) =
-                    (crossing.t, if crossing.t == end { *solver.state() } else { dense.at(crossing.t) });
-                break Reached::Event(crossing);
-            }
-        };
-        let done = solver.statistics();
-        let sum = &mut self.result.statistics;
-        sum.evaluations += done.evaluations;
-        sum.accepted += done.accepted;
-        sum.rejected += done.rejected;
-        Ok(reached)
-    }
-
-    fn evaluated(&self, t: f64, y: &[f64; N]) -> Result<Evaluated, Error> {
+    pub(super) fn evaluated(&self, t: f64, y: &[f64; N]) -> Result<Evaluated, Error> {
         let state = self.units.unpack(t, y);
         self.stretch.evaluate(self.scene, &self.units, state).map_err(|source| Error::Contact { t, source })
     }
 
-    /// Pulls a packed state back onto the contacts; where that fails it stays, and the next evaluation tells why.
-    fn project(&self, t: f64, y: &mut [f64; N]) {
-        let (state, tallies) = self.units.unpack(t, y);
-        let (stretch, size) = (&self.stretch, self.units.length);
-        let Ok(along) = stretch.beginning(self.scene, &self.units, (state, tallies)) else { return };
-        if let Ok(state) = projected(self.scene, state, &stretch.modes, &along, &stretch.guesses, size) {
-            *y = self.units.pack(&state, &tallies);
-        }
-    }
-
-    fn slip_has_ended(&self, crossing: &Crossing, y: &[f64; N]) -> Result<bool, Error> {
-        let now = self.evaluated(crossing.t, y)?;
-        let slip = now.touch.contacts[crossing.palm].in_tangent(now.touch.rates[crossing.palm].slip);
-        Ok(slip.length() < SLIP_ENDED * self.units.speed)
-    }
-
-    fn check_wedging(&self, now: &Evaluated) -> Result<(), Error> {
-        let minor = now.problem.smallest_sliding_minor(&self.stretch.modes, &now.directions);
-        if minor > 0.0 {
-            return Ok(());
-        }
-        let source = now.problem.not_p(&self.stretch.modes, minor);
-        Err(Error::Modes { state: Box::new(now.state), source })
-    }
-
-    /// An integrator that cannot go on near a critical friction is told as that.
-    fn stuck(&self, now: &Evaluated, error: IntegrationError<crate::contacts::PalmContactError>) -> Error {
-        let minor = now.problem.smallest_sliding_minor(&self.stretch.modes, &now.directions);
-        if minor < 1e-2 {
-            let source = now.problem.not_p(&self.stretch.modes, minor);
-            return Error::Modes { state: Box::new(now.state), source };
-        }
-        Error::Integration(error)
-    }
-
-    /// New modes after an event.
-    fn change(&mut self, crossing: &Crossing) -> Result<(), Error> {
-        let mut closed = self.stretch.modes.map(|mode| mode != ContactMode::Off);
-        closed[crossing.palm] = true;
-        let left = match crossing.kind {
-            ContactEventKind::Touches | ContactEventKind::SlipEnds => None,
-            ContactEventKind::Lifts | ContactEventKind::ConeLeft => {
-                let squeezed =
-                    self.evaluated(self.t, &self.y)?.reaction.is_some_and(|reaction| !reaction.unique);
-                let mode = self.stretch.modes[crossing.palm];
-                Some(if squeezed { Left::Set } else { Left::Mode(crossing.palm, mode) })
-            }
-        };
-        let (state, tallies) = self.units.unpack(self.t, &self.y);
-        // Until now the old modes have held: what departs from them is the integrator's error, the rest of a slip as well.
-        let mut modes: Modes = self.stretch.modes;
-        if crossing.kind == ContactEventKind::SlipEnds {
-            modes[crossing.palm] = ContactMode::Stick;
-        }
-        let state = projected(
-            self.scene,
-            state,
-            &modes,
-            &[None; MOST_PALMS],
-            &self.stretch.guesses,
-            self.units.length,
-        )
-        .map_err(|source| Error::Contact { t: self.t, source })?;
-        if crossing.kind == ContactEventKind::SlipEnds {
-            self.stretch.modes = modes;
-        }
-        let before = self.stretch.modes;
-        self.settle(state, &tallies, &closed, left)?;
-        self.stretch.at_edge = [false; MOST_PALMS];
-        self.crossings.push(self.t);
-        self.check_pile_up()?;
-        if self.stretch.modes == before && left.is_some() {
-            self.stretch.at_edge[crossing.palm] = true;
-            return Ok(());
-        }
-        let modes = self.stretch.modes[..self.scene.palms().len()].to_vec();
-        let event = ContactEvent { t: self.t, palm: crossing.palm, kind: crossing.kind, modes };
-        self.result.events.push(event);
-        Ok(())
-    }
-
-    fn check_pile_up(&self) -> Result<(), Error> {
-        let Some(first) = self.crossings.len().checked_sub(MOST_AT_ONCE) else { return Ok(()) };
-        let span = self.t - self.crossings[first];
-        if span > AT_ONCE / self.units.rate {
-            return Ok(());
-        }
-        Err(Error::TooManyEvents { count: MOST_AT_ONCE, span, t: self.t })
-    }
-
-    /// Finds the modes of a state whose `closed` contacts touch, after a blow where one approaches.
-    fn settle(
-        &mut self,
-        state: SceneState,
-        tallies: &Tallies,
-        closed: &[bool; MOST_PALMS],
-        left: Option<Left>,
-    ) -> Result<(), Error> {
-        let (scene, units) = (self.scene, self.units);
-        let t = state.t;
-        let contact = |source| Error::Contact { t, source };
-        let gaps_closed = closed.map(|closed| if closed { ContactMode::Slide } else { ContactMode::Off });
-        let (mut state, mut tallies) = (state, *tallies);
-        let mut touch = scene.contacts_at(&state, &self.stretch.guesses).map_err(contact)?;
-        // At the start the state is as exact as who gave it.
-        let at_start = self.result.instants.is_empty();
-        let [grazing, still] =
-            [GRAZING, STILL].map(|rate| units.speed * if at_start { STATED } else { rate });
-        let approaches = |i: usize| closed[i] && touch.rates[i].gap_rate < -grazing;
-        let struck = (0..scene.palms().len()).any(approaches);
-        if struck {
-            let before = scene.energy(&state.body);
-            let (after, impulses) = blow(scene, &state, &touch, closed)
-                .map_err(|source| Error::Modes { state: Box::new(state), source })?;
-            state = after;
-            self.blow_work += scene.energy(&state.body) - before;
-            for (sum, impulse) in tallies.impulses.iter_mut().zip(impulses.forces) {
-                *sum += impulse;
-            }
-            touch = scene.contacts_at(&state, &self.stretch.guesses).map_err(contact)?;
-        }
-        let problem = scene.problem(&state.body, &touch);
-        let mut touches = [Touch::Apart; MOST_PALMS];
-        for (i, at) in problem.contacts().iter().enumerate() {
-            let rates = &touch.rates[i];
-            if closed[i] && rates.gap_rate <= LEAVES * units.speed {
-                let slip = at.in_tangent(rates.slip);
-                let speed = slip.length();
-                // Palms that have begun to pull sticking contacts apart leave some slip in all of them.
-                let sticks = !struck && self.stretch.modes[i] == ContactMode::Stick;
-                touches[i] =
-                    if sticks || speed <= still { Touch::Rests } else { Touch::Slides(slip / speed) };
-            }
-        }
-        let present = if at_start { gaps_closed } else { self.stretch.modes };
-        let choice = problem
-            .choose(&touches, &present, left)
-            .map_err(|source| Error::Modes { state: Box::new(state), source })?;
-        self.stretch.modes = choice.modes;
-        for (i, at) in problem.contacts().iter().enumerate() {
-            self.stretch.towards[i] = at.along_tangent(choice.directions[i]);
-            self.stretch.starting[i] = touches[i] == Touch::Rests;
-            self.stretch.guesses[i] = Some(touch.contacts[i].n_O);
-        }
-        let state =
-            projected(scene, state, &choice.modes, &[None; MOST_PALMS], &self.stretch.guesses, units.length)
-                .map_err(contact)?;
-        (self.t, self.y) = (t, units.pack(&state, &tallies));
-        Ok(())
-    }
-
-    fn sample(&mut self, t: f64, y: &[f64; N]) -> Result<(), Error> {
+    pub(super) fn sample(&mut self, t: f64, y: &[f64; N]) -> Result<(), Error> {
         let now = self.evaluated(t, y)?;
         let state = now.state;
         let modes = &self.stretch.modes[..self.scene.palms().len()];

@@ -19,7 +19,7 @@ fn ellipsoid() -> (Ellipsoid, MassProperties) {
 }
 
 /// Three planes through the origin at 55 degrees to the horizontal, a third of a turn apart.
-fn funnel(friction: f64) -> Vec<ScenePalm> {
+pub(crate) fn funnel(friction: f64) -> Vec<ScenePalm> {
     let palm = |k: u32| {
         let frame = contact_kinematics::PalmFrame::from_azimuth_slope(f64::from(k) * 2.1, 0.96);
         let pose = SurfacePose::new(DVec3::ZERO, DQuat::from_mat3(&frame.rotation())).unwrap();
@@ -50,7 +50,7 @@ fn in_funnel(body: &Ellipsoid, palms: &[ScenePalm], R_WO: DQuat, w_WO: DVec3) ->
     BodyState { p_WCm, R_WO, v_WCm: matrix.inverse() * DVec3::from_array(lift), w_WO }
 }
 
-fn energy_defect(scene: &ContactScene<Ellipsoid>, simulation: &ContactSimulation) -> f64 {
+pub(crate) fn energy_defect(scene: &ContactScene<Ellipsoid>, simulation: &ContactSimulation) -> f64 {
     let first = scene.energy(&simulation.instants[0].state.body);
     let defect = |now: &ContactInstant| {
         scene.energy(&now.state.body) - first - now.friction_work - now.palm_work - now.blow_work
@@ -59,7 +59,7 @@ fn energy_defect(scene: &ContactScene<Ellipsoid>, simulation: &ContactSimulation
 }
 
 /// Largest violation of gaps (m), cones (N) and sticking (m/s) over a run.
-fn violations(scene: &ContactScene<Ellipsoid>, simulation: &ContactSimulation) -> [f64; 3] {
+pub(crate) fn violations(scene: &ContactScene<Ellipsoid>, simulation: &ContactSimulation) -> [f64; 3] {
     let mut worst = [0.0_f64; 3];
     for now in &simulation.instants {
         for (i, mode) in now.modes.iter().enumerate() {

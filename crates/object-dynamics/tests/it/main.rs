@@ -7,6 +7,7 @@
 mod approach;
 mod closed_forms;
 mod contact_modes;
+mod crawl;
 mod giving_way;
 mod motor_palms;
 mod sliding;

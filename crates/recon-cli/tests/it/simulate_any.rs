@@ -147,21 +147,21 @@ fn tilting_palms_turn_the_object_over_and_a_page_shows_it() {
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let said: Value = serde_json::from_str(&run.stdout).unwrap();
     let turn = said["turn_rad"].as_f64().unwrap().to_degrees();
-    assert!((turn - 83.0925).abs() < 1e-3, "{turn}");
+    assert!((turn - 58.6355).abs() < 1e-3, "{turn}");
     let names = ["log.csv", "manifest.json", "report.html", "scene.toml", "scene.xml", "summary.json"];
     for name in names {
         assert!(scratch.path().join("out").join(name).exists(), "{name}");
     }
     let summary: Value = serde_json::from_str(&scratch.read("out/summary.json")).unwrap();
     assert_eq!((&summary["palms"], &summary["turn_rad"]), (&said["palms"], &said["turn_rad"]));
-    // Of the two palms with friction both are rolled on, the one without only slid on.
+    // All three palms have friction: each is rolled on for a while.
     let sticks = [0, 1, 2].map(|i| summary["palms"][i]["sticks_s"].as_f64().unwrap());
-    assert!(sticks[0] > 1.0 && sticks[1] > 1.0 && sticks[2] == 0.0, "{sticks:?}");
+    assert!(sticks.iter().all(|seconds| *seconds > 0.5), "{sticks:?}");
     let page = scratch.read("out/report.html");
     assert!(page.contains("<title>Three tilting palms") && page.matches("<figure").count() == 6);
     assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
     // Its own scene and log go on: simulated again, and refused by name where a motion is asked for.
-    let again = scratch.run(&["simulate", "out/scene.toml", "-o", "again.csv", "--tolerance", "1e-9"]);
+    let again = scratch.run(&["simulate", "out/scene.toml", "-o", "again.csv", "--tolerance", "1e-8"]);
     assert_eq!(again.code, Some(0), "{}", again.stderr);
     assert!(scratch.read("again.csv") == scratch.read("out/log.csv"));
     let refused = scratch.run(&["reconstruct", "again.csv", "--scene", "out/scene.toml", "-o", "motion"]);

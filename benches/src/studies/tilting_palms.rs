@@ -1,0 +1,209 @@
+//! Random variants of the scene of three tilting palms, with friction on all three: which share a simulation gets through, and
+//! what it keeps to.
+//!
+//! Arguments: variants, first seed, tolerance. An ellipsoid at rest where it lies lowest on three flat palms through one point;
+//! each palm in turn, in random order, is tilted about its own horizontal axis and back. Writes a Markdown table.
+
+use glam::{DMat3, DQuat, DVec3};
+use recon::contact_kinematics::{
+    Direction, Ellipsoid, MotionLaw, MotionPart, PalmFrame, PalmSurface, SupportFunction, SurfaceMotion,
+    SurfacePose,
+};
+use recon::object_dynamics::{
+    BodyState, ContactInstant, ContactMode, ContactScene, ContactSimulation, ContactStart, MassProperties,
+    PalmDrive, SampleTimes, ScenePalm,
+};
+use shape_bounds::generators::Source;
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::time::Instant;
+
+const FRICTION: f64 = 0.3;
+const GRAVITY: f64 = 9.81;
+
+/// Largest departures over a run from what must hold.
+#[derive(Clone, Copy, Default)]
+struct Seen {
+    /// Overlap, or gap in contact, m.
+    gap: f64,
+    /// Force beyond its cone, N.
+    cone: f64,
+    /// Slip of a sticking contact, m/s.
+    creep: f64,
+    /// Energy not accounted for, J.
+    energy: f64,
+}
+
+impl Seen {
+    fn or(self, other: Self) -> Self {
+        Self {
+            gap: self.gap.max(other.gap),
+            cone: self.cone.max(other.cone),
+            creep: self.creep.max(other.creep),
+            energy: self.energy.max(other.energy),
+        }
+    }
+}
+
+pub(crate) fn main() -> Result<(), Box<dyn Error>> {
+    let mut words = crate::words();
+    let wanted: usize = words.next().map_or(Ok(140), |s| s.parse())?;
+    let mut source = Source::new(words.next().map_or(Ok(1), |s| s.parse())?);
+    let tolerance: f64 = words.next().map_or(Ok(1e-8), |s| s.parse())?;
+    let (mut through, mut refused, mut worst) = (0, Vec::new(), Seen::default());
+    let (mut times, mut turns, mut changes) = (Vec::new(), Vec::new(), 0);
+    for k in 0..wanted {
+        let (scene, body, duration) = variant(&mut source)?;
+        let started = Instant::now();
+        let times_of_samples = SampleTimes { duration, rate: 500.0 };
+        let run = scene.simulate(&ContactStart::touching(body), times_of_samples, tolerance);
+        times.push(started.elapsed().as_secs_f64());
+        match run {
+            Err(error) => refused.push(format!("variant {k}: {error}")),
+            Ok(run) => {
+                through += 1;
+                changes += run.events.len();
+                turns.push(turn(&run));
+                worst = worst.or(departures(&scene, &run));
+            }
+        }
+    }
+    for sorted in [&mut times, &mut turns] {
+        sorted.sort_by(f64::total_cmp);
+    }
+    println!("# Three tilting palms with friction on all three");
+    println!();
+    println!(
+        "{wanted} random variants (slopes of 35 to 55 degrees, tilts of 0.2 to 0.45 rad in 0.4 to 0.8 s, order of the palms, ellipsoids; \
+         friction {FRICTION}) at tolerance {tolerance:e}: {through} are through, with {changes} changes of modes. Half of them turn the \
+         object by more than {:.0} degrees. A run takes {:.2} s in the median, {:.2} s at most.",
+        turns.get(turns.len() / 2).copied().unwrap_or(f64::NAN).to_degrees(),
+        times[times.len() / 2],
+        times[times.len() - 1],
+    );
+    println!();
+    println!(
+        "| overlap or gap in contact (m) | force beyond its cone (N) | slip of a sticking contact (m/s) | energy not accounted for (J) |"
+    );
+    println!("|---|---|---|---|");
+    println!("| {:.1e} | {:.1e} | {:.1e} | {:.1e} |", worst.gap, worst.cone, worst.creep, worst.energy);
+    if !refused.is_empty() {
+        println!();
+        refused.iter().for_each(|line| println!("- {line}"));
+    }
+    Ok(())
+}
+
+/// Angle between the first orientation and the last, rad.
+fn turn(run: &ContactSimulation) -> f64 {
+    let [first, last] =
+        [run.instants.first(), run.instants.last()].map(|now| now.map_or(DQuat::NAN, |n| n.state.body.R_WO));
+    first.angle_between(last)
+}
+
+fn departures(scene: &ContactScene<Ellipsoid>, run: &ContactSimulation) -> Seen {
+    let mut worst = Seen::default();
+    let first = scene.energy(&run.instants[0].state.body);
+    for now in &run.instants {
+        for (i, mode) in now.modes.iter().enumerate() {
+            worst = worst.or(contact_departure(scene, now, i, *mode));
+        }
+        let energy =
+            scene.energy(&now.state.body) - first - now.friction_work - now.palm_work - now.blow_work;
+        worst.energy = worst.energy.max(energy.abs());
+    }
+    worst
+}
+
+fn contact_departure(
+    scene: &ContactScene<Ellipsoid>,
+    now: &ContactInstant,
+    i: usize,
+    mode: ContactMode,
+) -> Seen {
+    let (contact, force) = (&now.contacts[i], now.forces[i]);
+    let normal = contact.n.dot(force);
+    let cone = contact.in_tangent(force).length() - scene.palms()[i].friction * normal;
+    Seen {
+        gap: if mode == ContactMode::Off { -contact.gap } else { contact.gap.abs() },
+        cone: cone.max(-normal),
+        creep: if mode == ContactMode::Stick { now.rates[i].slip.length() } else { 0.0 },
+        energy: 0.0,
+    }
+}
+
+/// A scene, its body at rest, and how long it lasts, s.
+fn variant(source: &mut Source) -> Result<(ContactScene<Ellipsoid>, BodyState, f64), Box<dyn Error>> {
+    let largest = source.between(0.03, 0.06);
+    let axes = largest * DVec3::new(1.0, source.between(0.6, 1.0), source.between(0.5, 0.9));
+    // Of the density of water.
+    let mass = 1000.0 * TAU * 2.0 / 3.0 * axes.element_product();
+    let (body, mass) = (Ellipsoid::new(axes)?, MassProperties::uniform_ellipsoid(mass, axes)?);
+    let mut order = [0, 1, 2];
+    for k in (1..3).rev() {
+        order.swap(k, source.below(k + 1));
+    }
+    let (ramp, pause) = (source.between(0.4, 0.8), source.between(0.0, 0.2));
+    let mut palms = Vec::new();
+    for place in order {
+        let slope = source.between(35.0, 55.0).to_radians();
+        let azimuth = f64::from(palms.len() as u32) * TAU / 3.0 + source.between(-0.2, 0.2);
+        palms.push(palm(azimuth, slope, source.between(0.2, 0.45), (place, ramp, pause))?);
+    }
+    let scene = ContactScene::new(body, mass, palms, GRAVITY)?;
+    let start = lowest(&scene, source.rotation());
+    Ok((scene, start, 4.0 * ramp + 3.0 * pause + 0.2))
+}
+
+/// A palm that is tilted flatter and back, as the `place`-th of three.
+fn palm(
+    azimuth: f64,
+    slope: f64,
+    tilt: f64,
+    (place, ramp, pause): (usize, f64, f64),
+) -> Result<ScenePalm, Box<dyn Error>> {
+    let frame = PalmFrame::from_azimuth_slope(azimuth, slope);
+    let pose = SurfacePose::new(DVec3::ZERO, DQuat::from_mat3(&frame.rotation()))?;
+    // About the horizontal axis that takes the normal towards the vertical.
+    let axis = Direction::new(frame.n.cross(DVec3::Z))?;
+    let begins = place as f64 * (ramp + pause);
+    let part = |height: f64, start: f64| MotionPart::Turn {
+        pivot: DVec3::ZERO,
+        axis,
+        law: MotionLaw::Ramp { height, start, duration: ramp },
+    };
+    let parts = vec![part(tilt, begins), part(-tilt, begins + ramp + pause)];
+    Ok(ScenePalm {
+        surface: PalmSurface::Plane,
+        drive: PalmDrive::Prescribed(SurfaceMotion::Parts { pose, parts }),
+        friction: FRICTION,
+    })
+}
+
+/// The body at rest on all three palms, turned from an orientation downhill to where its centre lies lowest.
+fn lowest(scene: &ContactScene<Ellipsoid>, start: DQuat) -> BodyState {
+    let normals: Vec<DVec3> = scene
+        .palms()
+        .iter()
+        .enumerate()
+        .map(|(i, _)| scene.palm_state(i, 0.0, &scene.palms_at_start()[i]).R_WP.z_axis)
+        .collect();
+    let inverse = DMat3::from_cols(normals[0], normals[1], normals[2]).transpose().inverse();
+    let place = |R_WO: DQuat| {
+        let support = |i: usize| Direction::new(R_WO.inverse() * -normals[i]).map(|u| scene.body().value(u));
+        inverse * DVec3::from_array([0, 1, 2].map(|i| support(i).unwrap_or(f64::NAN)))
+    };
+    let height = |x: DVec3, R: DQuat| place(DQuat::from_scaled_axis(x) * R).z;
+    let (mut R_WO, mut step) = (start.normalize(), 0.3);
+    // Downhill until the height says no more: at rest without friction, well inside of the cones with it.
+    while step > 1e-7 {
+        let slope = DVec3::AXES.map(|e| (height(1e-5 * e, R_WO) - height(-1e-5 * e, R_WO)) / 2e-5);
+        let down = -DVec3::from_array(slope).normalize_or_zero();
+        if height(step * down, R_WO) < height(DVec3::ZERO, R_WO) {
+            R_WO = (DQuat::from_scaled_axis(step * down) * R_WO).normalize();
+        } else {
+            step *= 0.5;
+        }
+    }
+    BodyState { p_WCm: place(R_WO), R_WO, v_WCm: DVec3::ZERO, w_WO: DVec3::ZERO }
+}
