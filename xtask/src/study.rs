@@ -38,6 +38,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
     ),
     ("contact_cost", "contact-cost.md", "cost of contacts with friction and without, beside MuJoCo"),
     ("contact_wedging", "contact-wedging.md", "states in which friction wedges sliding contacts"),
+    (
+        "contact_estimates",
+        "contact-estimates.md",
+        "motion, mass and inertia from reference logs of any palms, from no guess",
+    ),
     ("contact_logs", "contact-logs.md", "reference logs of any palms simulated from their start"),
     (
         "tilting_palms",

@@ -65,10 +65,9 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             (self.t, self.y) = (state.t, self.units.pack(&state, &tallies));
             return Ok(true);
         }
-        self.stretch.at_edge = [false; MOST_PALMS];
+        // Modes that neither hold nor change: forces are at an edge that only a step of some length tells.
         if self.stretch.modes == before && left.is_some() {
-            self.stretch.at_edge[crossing.palm] = true;
-            return Ok(false);
+            return Ok(true);
         }
         let modes = self.stretch.modes[..self.scene.palms().len()].to_vec();
         let event = ContactEvent { t: self.t, palm: crossing.palm, kind: crossing.kind, modes };

@@ -29,8 +29,6 @@ pub(super) struct Stretch {
     pub(super) towards: [DVec3; MOST_PALMS],
     /// Sliding contacts that have just begun to.
     pub(super) starting: [bool; MOST_PALMS],
-    /// Contacts at an edge of their modes where nothing else is consistent: they may stay there for a step.
-    pub(super) at_edge: [bool; MOST_PALMS],
     pub(super) guesses: Guesses,
 }
 

@@ -62,9 +62,6 @@ impl Stretch {
                 }
             }
         }
-        for i in (0..MOST_PALMS).filter(|&i| self.at_edge[i]) {
-            guards[i] = [f64::INFINITY; 2];
-        }
         guards
     }
 

@@ -67,7 +67,6 @@ impl<S: SupportFunction> ContactScene<S> {
             modes: all,
             towards: [DVec3::ZERO; MOST_PALMS],
             starting: [false; MOST_PALMS],
-            at_edge: [false; MOST_PALMS],
             guesses: none,
         };
         Ok((stretch, Units::new(self.size(), self.mass().mass(), -self.gravity().z)))

@@ -90,13 +90,8 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let mut joints: Vec<f64> = scene.palms().iter().flat_map(|palm| palm.drive.joints()).collect();
         joints.sort_by(f64::total_cmp);
         let modes = closed.map(|closed| if closed { ContactMode::Slide } else { ContactMode::Off });
-        let stretch = Stretch {
-            modes,
-            towards: [DVec3::ZERO; MOST_PALMS],
-            starting: [false; MOST_PALMS],
-            at_edge: [false; MOST_PALMS],
-            guesses,
-        };
+        let stretch =
+            Stretch { modes, towards: [DVec3::ZERO; MOST_PALMS], starting: [false; MOST_PALMS], guesses };
         let result = ContactSimulation {
             instants: Vec::with_capacity(count),
             events: Vec::new(),

@@ -2,7 +2,7 @@
 
 use super::error::ContactSimulationError as Error;
 use super::events::{Crossing, first_crossing};
-use super::field::{Evaluated, Stretch};
+use super::field::Evaluated;
 use super::guards::{Guards, suspicious};
 use super::project::projected;
 use super::result::ContactEventKind;
@@ -65,23 +65,19 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             let next = self.joints.partition_point(|joint| *joint <= t);
             let next_joint = self.joints.get(next).copied().unwrap_or(limit);
             let project = |t: f64, y: &mut [f64; N]| self.project(t, y);
-            // What stays at an edge of its mode is looked at again after a moment.
-            let moment = if self.stretch.at_edge.contains(&true) { t + self.crawl_step() } else { limit };
-            if let Err(error) = solver.step_onto(limit.min(next_joint).min(moment), project) {
+            if let Err(error) = solver.step_onto(limit.min(next_joint), project) {
                 return Err(match (&error, failed.get()) {
                     (IntegrationError::NotFinite { t }, Some(source)) => Error::Contact { t: *t, source },
                     _ => self.stuck(&evaluated, error),
                 });
             }
-            let at_edge = std::mem::take(&mut self.stretch.at_edge);
             let (end, next_sample) = (solver.time(), self.result.instants.len() as f64 / self.sample_rate);
             if !doubt.get() && next_sample > end {
                 continue;
             }
             let Some(dense) = solver.dense().map_err(Error::Integration)? else { continue };
-            let passed = Stretch { at_edge, ..self.stretch };
             let crossing = match doubt.get() {
-                true => first_crossing(&passed, scene, &units, &dense, &at_start.get())
+                true => first_crossing(&self.stretch, scene, &units, &dense, &at_start.get())
                     .map_err(|source| Error::Contact { t, source })?,
                 false => None,
             };

@@ -1,7 +1,7 @@
 //! A start from nothing: twists that the contacts alone suggest.
 
-use super::problem::{Problem, Unknowns};
 use super::noise::ContactNoiseLevel;
+use super::problem::{Problem, Unknowns};
 use super::record::{Contact, Record, six};
 use super::state::{Body, Motion};
 use crate::three_palms::{exponential, numbers_of_inertia};
