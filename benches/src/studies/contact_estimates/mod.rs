@@ -37,7 +37,7 @@ pub(crate) fn main() -> Anything<()> {
     println!("# Motion, mass and inertia from contacts of any palms, from no guess");
     println!();
     println!(
-        "The first {seconds} s of logs by another simulator (1 kHz, three axes of force), mass and inertia unknown, contact modes known. \
+        "The first {seconds} s of logs by another simulator (1 kHz, three axes of force), mass and inertia unknown, contact modes known (a contact sticks that slips by less than 2e-5 m/s). \
          Noise: contacts as a share of the size, forces of themselves. Errors are root mean squares over the run in natural units \
          (mean semi-axis, natural speed and rate); K is that of the inertia tensor, relative. Deviations are the estimate's own, in \
          the middle of the run."

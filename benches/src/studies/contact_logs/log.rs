@@ -15,6 +15,9 @@ use std::process::Command;
 
 pub(crate) type Anything<T> = Result<T, Box<dyn Error>>;
 
+/// Slip of a contact that sticks, m/s: what the log's contacts creep by. The log itself says so from 3e-4 on.
+const STICKS: f64 = 2e-5;
+
 /// A contact that takes a mode: 0 off, 1 slides, 2 sticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Change {
@@ -100,12 +103,12 @@ impl Log {
             let states = (0..times.len())
                 .map(|k| Ok(MeasuredMotion { pose: SurfacePose::new(p[k], q[k])?, v_WP: v[k], w_WP: w[k] }));
             let states: Anything<Vec<_>> = states.collect();
-            let mode = self.column(&format!("mode_{i}"))?;
+            let (mode, slip) = (self.column(&format!("mode_{i}"))?, self.column(&format!("slip_{i}"))?);
             for (k, modes) in modes.iter_mut().enumerate() {
                 modes[i - 1] = match mode[k] as u8 {
                     0 => ContactMode::Off,
-                    1 => ContactMode::Slide,
-                    _ => ContactMode::Stick,
+                    2 if slip[k] < STICKS => ContactMode::Stick,
+                    _ => ContactMode::Slide,
                 };
             }
             let touched = |k: usize| {
