@@ -63,14 +63,6 @@ impl SurfaceContact {
         let t = [t0, n.cross(t0)];
         let hessian = place.R_WO * found.jet.hessian * place.R_WO.transpose();
         let entry = |i: usize, j: usize| t[i].dot(hessian * t[j]);
-        let shape = match surface {
-            PalmSurface::Plane => DMat2::ZERO,
-            PalmSurface::Sphere { radius } => DMat2::IDENTITY / (radius + found.gap),
-            PalmSurface::Cup { radius } => DMat2::IDENTITY / (found.gap - radius),
-            PalmSurface::Cylinder { radius } => {
-                DMat2::from_cols_array(&[0.0, 0.0, 0.0, 1.0 / (radius + found.gap)])
-            }
-        };
         Ok(Self {
             gap: found.gap,
             n_O: found.n_O,
@@ -80,7 +72,7 @@ impl SurfaceContact {
             n,
             t,
             body_radii: DMat2::from_cols_array(&[entry(0, 0), entry(1, 0), entry(0, 1), entry(1, 1)]),
-            palm_shape: shape,
+            palm_shape: DMat2::from_diagonal(surface.curvatures(found.gap).into()),
         })
     }
 }

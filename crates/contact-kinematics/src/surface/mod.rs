@@ -68,6 +68,18 @@ impl PalmSurface {
         }
     }
 
+    /// Curvatures of the palm inflated by `gap` (m), along its axis and across it, 1/m: positive where it bulges towards the
+    /// object. They are the same in all directions but on a cylinder.
+    #[must_use]
+    pub fn curvatures(&self, gap: f64) -> [f64; 2] {
+        match *self {
+            Self::Plane => [0.0; 2],
+            Self::Sphere { radius } => [1.0 / (radius + gap); 2],
+            Self::Cup { radius } => [1.0 / (gap - radius); 2],
+            Self::Cylinder { radius } => [0.0, 1.0 / (radius + gap)],
+        }
+    }
+
     /// Name of the kind, as it stands in files: `flat`, `sphere`, `cup` or `cylinder`.
     #[must_use]
     pub fn name(&self) -> &'static str {

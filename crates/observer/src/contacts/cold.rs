@@ -56,8 +56,7 @@ pub(super) fn start(problem: &Problem, body: Body, orientation: DQuat) -> Unknow
             q = (exponential(mean * (record.times[k] - t)) * q).normalize();
         }
         last = Some((record.times[k], w));
-        let R = DMat3::from_quat(q);
-        let L = R * body.inertia() * R.transpose() * w;
+        let L = body.inertia_along(DMat3::from_quat(q)) * w;
         motions.push(Motion { p: centre, v, L, q });
     }
     Unknowns { motions, body }
@@ -82,7 +81,7 @@ fn twist(contacts: &[&Contact], centre: DVec3, length: f64, noise: &ContactNoise
             ContactMode::Slide => {
                 add(contact.n, 1.0);
                 let friction = contact.f.reject_from_normalized(contact.n);
-                let deviation = noise.force_fixed.hypot(noise.force_share * contact.f.length());
+                let deviation = noise.force(contact.f);
                 let known = friction.length_squared();
                 if known > deviation * deviation {
                     let across = contact.n.cross(friction).normalize_or_zero();

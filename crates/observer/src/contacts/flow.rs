@@ -2,8 +2,8 @@
 
 use super::record::{Interval, Wrench};
 use super::state::{Body, MOTION, Motion, Tangent, Turn};
-use crate::three_palms::exponential;
-use glam::{DMat3, DQuat, DVec3};
+use crate::three_palms::{cross_matrix, exponential};
+use glam::{DQuat, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
 
 /// Derivatives of a motion by the motion at its node.
@@ -92,21 +92,21 @@ impl<const P: usize> Carried<P> {
 
     /// `phi' = K ([L]x phi + dL) + K (-dI w)`.
     fn turn_rates(&self, body: &Body) -> (SMatrix<f64, 3, MOTION>, SMatrix<f64, 3, P>) {
-        let K = matrix(self.turn.K);
-        let KL = K * cross(self.motion.L);
+        let K = Matrix3::from(self.turn.K);
+        let KL = K * Matrix3::from(cross_matrix(self.motion.L));
         let mut by_motion = KL * self.turn_by_motion;
         let mut add = |at: usize, block: Matrix3<f64>| {
             let mut view = by_motion.fixed_view_mut::<3, 3>(0, at);
             view += K * block;
         };
-        add(0, cross(self.impulse));
-        add(3, cross(self.first));
+        add(0, Matrix3::from(cross_matrix(self.impulse)));
+        add(3, Matrix3::from(cross_matrix(self.first)));
         add(6, Matrix3::identity());
         let mut by_body = KL * self.turn_by_body;
         if P > 0 {
             let mut add = |at: usize, change: DVec3| {
                 let mut column = by_body.column_mut(at);
-                column += vector(self.turn.K * change);
+                column += Vector3::from(self.turn.K * change);
             };
             add(0, self.crossed * body.inverse_mass());
             for (i, change) in body.by_inertia(&self.turn).into_iter().enumerate() {
@@ -120,14 +120,14 @@ impl<const P: usize> Carried<P> {
     pub(super) fn derivatives(&self, body: &Body) -> (Transition, SMatrix<f64, MOTION, P>) {
         let mut by_motion = Transition::identity();
         by_motion.fixed_view_mut::<3, 3>(0, 3).copy_from(&(Matrix3::identity() * self.after));
-        by_motion.fixed_view_mut::<3, 3>(6, 0).copy_from(&cross(self.impulse));
-        by_motion.fixed_view_mut::<3, 3>(6, 3).copy_from(&cross(self.first));
+        by_motion.fixed_view_mut::<3, 3>(6, 0).copy_from(&Matrix3::from(cross_matrix(self.impulse)));
+        by_motion.fixed_view_mut::<3, 3>(6, 3).copy_from(&Matrix3::from(cross_matrix(self.first)));
         by_motion.fixed_view_mut::<3, MOTION>(9, 0).copy_from(&self.turn_by_motion);
         let mut by_body = SMatrix::<f64, MOTION, P>::zeros();
         if P > 0 {
             let m = body.inverse_mass();
             for (at, change) in [(0, -self.second), (3, -self.impulse), (6, self.crossed)] {
-                by_body.fixed_view_mut::<3, 1>(at, 0).copy_from(&vector(change * m));
+                by_body.fixed_view_mut::<3, 1>(at, 0).copy_from(&Vector3::from(change * m));
             }
             by_body.fixed_view_mut::<3, P>(9, 0).copy_from(&self.turn_by_body);
         }
@@ -147,16 +147,16 @@ impl<const P: usize> Carried<P> {
         at.first += missing[1] * self.after - missing[0];
         // As much of the turn is owed to the noise of the moments.
         let turn = DVec3::new(r[9], r[10], r[11]);
-        let K = matrix(self.turn.K);
-        let inertia = self.turn.R * body.inertia() * self.turn.R.transpose();
-        let by_turn = K * cross(inertia * turn) - cross(turn);
+        let K = Matrix3::from(self.turn.K);
+        let inertia = body.inertia_along(self.turn.R);
+        let by_turn = K * Matrix3::from(cross_matrix(inertia * turn)) - Matrix3::from(cross_matrix(turn));
         at.turn_by_motion += by_turn * self.turn_by_motion;
         if P > 0 {
             at.turn_by_body += by_turn * self.turn_by_body;
             let owed = body.by_inertia(&Turn { w: turn, ..self.turn });
             for (i, change) in owed.into_iter().enumerate() {
                 let mut column = at.turn_by_body.column_mut(i + 1);
-                column += vector(self.turn.K * change);
+                column += Vector3::from(self.turn.K * change);
             }
         }
         at.derivatives(body)
@@ -183,7 +183,7 @@ fn turned(q: DQuat, L: [DVec3; 2], rates: [DVec3; 2], body: &Body, h: f64) -> DQ
 pub(super) fn link_information(noise: &Matrix6<f64>, h: f64, body: &Body, turn: &Turn) -> Option<Transition> {
     let inverse = noise.cholesky()?.inverse();
     let mass = 1.0 / body.inverse_mass();
-    let inertia = matrix(turn.R * body.inertia() * turn.R.transpose());
+    let inertia = Matrix3::from(body.inertia_along(turn.R));
     // Integrals of the wrench noise twice and once over time, from the motion.
     let mut twice = SMatrix::<f64, 6, MOTION>::zeros();
     twice.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Matrix3::identity() * mass));
@@ -198,20 +198,4 @@ pub(super) fn link_information(noise: &Matrix6<f64>, h: f64, body: &Body, turn: 
         + mixed
         + mixed.transpose();
     Some(information)
-}
-
-pub(super) fn residual(found: &Motion, predicted: &Motion) -> Tangent {
-    found.from(predicted)
-}
-
-pub(super) fn cross(v: DVec3) -> Matrix3<f64> {
-    Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
-}
-
-pub(super) fn matrix(m: DMat3) -> Matrix3<f64> {
-    Matrix3::from_column_slice(&m.to_cols_array())
-}
-
-pub(super) fn vector(v: DVec3) -> Vector3<f64> {
-    Vector3::new(v.x, v.y, v.z)
 }

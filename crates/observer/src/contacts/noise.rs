@@ -1,3 +1,5 @@
+use glam::DVec3;
+
 /// Standard deviations of the white noise of sensors, as an estimator takes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactNoiseLevel {
@@ -9,4 +11,11 @@ pub struct ContactNoiseLevel {
     pub force_share: f64,
     /// What a contact condition is off by beside that, m/s: palms whose velocity is known no better, creep.
     pub floor: f64,
+}
+
+impl ContactNoiseLevel {
+    /// Standard deviation of each axis of the force `f`, N.
+    pub(super) fn force(&self, f: DVec3) -> f64 {
+        self.force_fixed.hypot(self.force_share * f.length())
+    }
 }

@@ -1,14 +1,14 @@
 //! Least squares over all nodes: links, contact conditions and what is known beforehand, linearised.
 
-use super::flow::{Carried, Transition, link_information, residual};
+use super::flow::{Carried, Transition, link_information};
 use super::noise::ContactNoiseLevel;
 use super::record::{Record, Wrench};
 use super::rows::Rows;
 use super::solve::Step;
 use super::state::{Body, MOTION, Motion, Tangent};
-use crate::three_palms::exponential;
-use glam::DVec3;
-use nalgebra::{Matrix6, SMatrix, SVector, Vector6};
+use crate::three_palms::{cross_matrix, exponential};
+use glam::{DQuat, DVec3};
+use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector6};
 
 /// Links are never taken for better than this share of a condition's floor, all together: without noise of the forces the
 /// chain would be rigid, and the equations singular in double precision. It adds a thousandth to the variance of a velocity.
@@ -132,10 +132,13 @@ impl Problem<'_> {
         let mut motions: Vec<Motion> = Vec::with_capacity(at.motions.len());
         let mut cost = 0.0;
         let vector = |t: &Tangent, i: usize| DVec3::new(t[i], t[i + 1], t[i + 2]);
-        let mut q = exponential(vector(&steps[0], 9)) * at.motions[0].q;
-        let mut p = at.motions[0].p + vector(&steps[0], 0);
-        for (j, motion) in at.motions.iter().enumerate() {
-            let moved = motion.moved(&steps[j], (p, q.normalize()), &at.body, change, &after);
+        // Node `j` after its step, which leads to `p` and `q` and beyond them `by`.
+        let place = |j: usize, p: DVec3, q: DQuat, by: &Tangent| {
+            let to = (p + vector(by, 0), (exponential(vector(by, 9)) * q).normalize());
+            at.motions[j].moved(&steps[j], to, &at.body, change, &after)
+        };
+        let mut moved = place(0, at.motions[0].p, at.motions[0].q, &steps[0]);
+        for j in 0..at.motions.len() {
             motions.push(moved);
             let mut carried = Carried::<P>::new(moved, &after);
             let end = self.nodes.get(j + 1).copied().unwrap_or(self.nodes[j] + 1);
@@ -156,12 +159,11 @@ impl Problem<'_> {
             }
             let Some(link) = equations.links.get(j) else { break };
             let left = link.residual + steps[j + 1] - link.by_motion * steps[j] - link.by_body * body;
-            q = exponential(vector(&left, 9)) * carried.motion.q;
-            p = carried.motion.p + vector(&left, 0);
-            let next = at.motions[j + 1].moved(&steps[j + 1], (p, q.normalize()), &at.body, change, &after);
-            let r = residual(&next, &carried.motion);
+            let next = place(j + 1, carried.motion.p, carried.motion.q, &left);
+            let r = next.from(&carried.motion);
             let information = self.link_information(&noise, &carried, &after)?;
             cost += (information * r).dot(&r);
+            moved = next;
         }
         let moved = Unknowns { motions, body: after };
         cost += self.prior_cost::<P>(&moved);
@@ -270,7 +272,7 @@ impl Problem<'_> {
         at: &Unknowns,
         all: &mut Equations<P>,
     ) {
-        let r = residual(&at.motions[j + 1], &carried.motion);
+        let r = at.motions[j + 1].from(&carried.motion);
         let weighted = information * r;
         let (F, E) = carried.adjusted(&at.body, &r);
         let through = information * F;
@@ -328,7 +330,7 @@ impl Problem<'_> {
     /// Noise of impulse and moment about the origin, with the moment about `p` and a floor.
     fn about(&self, noise: &Matrix6<f64>, p: DVec3) -> Matrix6<f64> {
         let mut shift = Matrix6::identity();
-        shift.fixed_view_mut::<3, 3>(3, 0).copy_from(&-super::flow::cross(p));
+        shift.fixed_view_mut::<3, 3>(3, 0).copy_from(&Matrix3::from(-cross_matrix(p)));
         let mut moved = shift * noise * shift.transpose();
         let floor = self.units.mass * self.noise.floor * LINK_FLOOR / (self.nodes.len() as f64).sqrt();
         for i in 0..6 {

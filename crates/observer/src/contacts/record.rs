@@ -111,16 +111,11 @@ fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, modes: &[ContactMode; 
     log.palms().iter().enumerate().filter_map(one).collect()
 }
 
-/// `contacts.md`, section 1: of a palm whose axis, if it has one, is `axis`.
+/// How the normal `n` of a palm, whose axis is `axis`, turns along its surface.
 fn shape_operator(surface: PalmSurface, n: DVec3, axis: DVec3) -> DMat3 {
     let outer = |a: DVec3| DMat3::from_cols(a * a.x, a * a.y, a * a.z);
-    let tangent = DMat3::IDENTITY - outer(n);
-    match surface {
-        PalmSurface::Plane => DMat3::ZERO,
-        PalmSurface::Sphere { radius } => tangent * (1.0 / radius),
-        PalmSurface::Cup { radius } => tangent * (-1.0 / radius),
-        PalmSurface::Cylinder { radius } => outer(axis.cross(n)) * (1.0 / radius),
-    }
+    let [along, across] = surface.curvatures(0.0);
+    (DMat3::IDENTITY - outer(n)) * along + outer(axis.cross(n)) * (across - along)
 }
 
 fn intervals(
@@ -155,7 +150,7 @@ fn intervals(
 
 /// What the noise of one contact does to the impulse and moment of an interval: samples are independent.
 fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, noise: &ContactNoiseLevel, h: f64) {
-    let force = noise.force_fixed.hypot(noise.force_share * contact.f.length()) * h;
+    let force = noise.force(contact.f) * h;
     for axis in DVec3::AXES {
         let moment = contact.c.cross(axis);
         let column = six(axis, moment) * force;

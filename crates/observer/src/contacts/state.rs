@@ -1,9 +1,8 @@
 //! The motion at a node and the constants of the body.
 
-use super::flow::{cross, matrix, vector};
-use crate::three_palms::{inertia_of_numbers, inertia_slope, logarithm};
+use crate::three_palms::{cross_matrix, inertia_of_numbers, inertia_slope, logarithm};
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::{SMatrix, SVector, Vector6};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 
 /// Numbers of a motion's tangent: centre of mass, velocity, angular momentum, turn in world axes.
 pub(super) const MOTION: usize = 12;
@@ -51,6 +50,11 @@ impl Body {
         self.inertia
     }
 
+    /// In world axes, of a body turned by `R`.
+    pub(super) fn inertia_along(&self, R: DMat3) -> DMat3 {
+        R * self.inertia * R.transpose()
+    }
+
     pub(super) fn turn(&self, q: DQuat, L: DVec3) -> Turn {
         let R = DMat3::from_quat(q);
         let K = R * self.inverse * R.transpose();
@@ -93,19 +97,20 @@ impl Motion {
         }
         let spin = turn.K * change + by.cross(turn.w);
         let w = turn.w + spin;
-        let R = DMat3::from_quat(q);
         let v = self.v + part(3) - turn.w.cross(part(0)) + w.cross(p - self.p);
-        Self { p, v, L: R * (after.inertia() * (R.transpose() * w)), q }
+        Self { p, v, L: after.inertia_along(DMat3::from_quat(q)) * w, q }
     }
 
     /// Derivatives of the angular velocity by the motion and by the numbers of the inertia.
     pub(super) fn spin_derivatives(&self, body: &Body) -> (SMatrix<f64, 3, MOTION>, SMatrix<f64, 3, 6>) {
         let turn = body.turn(self.q, self.L);
-        let K = matrix(turn.K);
+        let K = Matrix3::from(turn.K);
         let mut by_motion = SMatrix::<f64, 3, MOTION>::zeros();
         by_motion.fixed_view_mut::<3, 3>(0, 6).copy_from(&K);
-        by_motion.fixed_view_mut::<3, 3>(0, 9).copy_from(&(K * cross(self.L) - cross(turn.w)));
-        let changes = body.by_inertia(&turn).map(|change| vector(turn.K * change));
+        by_motion
+            .fixed_view_mut::<3, 3>(0, 9)
+            .copy_from(&Matrix3::from(turn.K * cross_matrix(self.L) - cross_matrix(turn.w)));
+        let changes = body.by_inertia(&turn).map(|change| Vector3::from(turn.K * change));
         (by_motion, SMatrix::from_columns(&changes))
     }
 

@@ -36,7 +36,7 @@ mod unknown_body;
 mod verdict;
 
 pub(crate) use quadrature::running_integral;
-pub(crate) use sensitivity::{exponential, logarithm};
+pub(crate) use sensitivity::{cross_matrix, exponential, logarithm};
 pub(crate) use state_space::{inertia_of_numbers, inertia_slope, numbers_of_inertia};
 
 pub use alternatives::OtherMotion;
