@@ -112,11 +112,7 @@ fn what_has_no_motion_is_told_and_leaves_no_log() {
     let scratch = Scratch::new("simulate-refused");
     let refused = |scene: String, words: &[&str]| {
         let run = simulate(&scratch, &scene);
-        assert_eq!(run.code, Some(3), "{}{}", run.stdout, run.stderr);
-        for word in words {
-            assert!(run.stderr.contains(word), "`{word}` is not in\n{}", run.stderr);
-        }
-        assert_eq!(scratch.names(), ["scene.toml"]);
+        scratch.check_refused_scene(&run, words);
     };
     let at = |height: &str| RESTING.replace("[0.0, 0.0, 0.025]", height);
     refused(at("[0.0, 0.0, 0.024]"), &["penetrates palm 1 by 1.000e-3 m"]);

@@ -98,11 +98,7 @@ fn what_cannot_be_is_told_and_leaves_no_log() {
     let scratch = Scratch::new("planar-refused");
     let refused = |scene: String, words: &[&str]| {
         let run = simulate(&scratch, &scene);
-        assert_eq!(run.code, Some(3), "{}{}", run.stdout, run.stderr);
-        for word in words {
-            assert!(run.stderr.contains(word), "`{word}` is not in\n{}", run.stderr);
-        }
-        assert_eq!(scratch.names(), ["scene.toml"]);
+        scratch.check_refused_scene(&run, words);
     };
     refused(SLOPE.replace("touches = [1]", "touches = [3]"), &["scene.toml", "`simulation.touches[0]` is 3"]);
     refused(

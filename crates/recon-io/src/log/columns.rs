@@ -44,15 +44,12 @@ impl Columns {
                 rate: may("rate")?,
             })
         };
-        let mut truth = Vec::with_capacity(TRUTH.len());
-        for name in TRUTH {
-            truth.extend(header.find(name.to_owned())?);
-        }
+        let truth = header.all(TRUTH)?;
         Ok(Self {
             count: header.names.len(),
             t: header.need("t".to_owned())?,
             palms: [palm(1)?, palm(2)?, palm(3)?],
-            truth: truth.try_into().ok(),
+            truth,
         })
     }
 }
@@ -71,6 +68,15 @@ impl Header {
             places.entry(name.clone()).or_default().push(index);
         }
         Self { names, places }
+    }
+
+    /// The columns of these names, where all of them are there.
+    pub(super) fn all<const N: usize>(&self, names: [&str; N]) -> Result<Option<[Field; N]>, Kind> {
+        let mut found = Vec::with_capacity(N);
+        for name in names {
+            found.extend(self.find(name.to_owned())?);
+        }
+        Ok(found.try_into().ok())
     }
 
     pub(super) fn find(&self, name: String) -> Result<Option<Field>, Kind> {

@@ -29,16 +29,13 @@ impl Columns {
             let [a, b] = names.map(|name| header.find(name.to_owned()));
             Ok(a?.zip(b?).map(|(a, b)| [a, b]))
         };
-        let mut truth = Vec::with_capacity(TRUTH.len());
-        for name in TRUTH {
-            truth.extend(header.find(name.to_owned())?);
-        }
+        let truth = header.all(TRUTH)?;
         Ok(Self {
             count: header.names.len(),
             needed: [need("t")?, need("phi1")?, need("phi2")?, need("s1")?, need("s2")?],
             forces: pair(["f1", "f2"])?,
             torques: pair(["tau1", "tau2"])?,
-            truth: truth.try_into().ok(),
+            truth,
         })
     }
 }
@@ -120,6 +117,15 @@ fn sample_of(error: &PlanarLogError) -> Option<usize> {
     }
 }
 
+/// Writes a row of a planar log, the truth behind what was measured.
+pub(super) fn end_row(mut row: Vec<f64>, truth: Option<&PlanarTruth>, to: &mut impl Write) -> io::Result<()> {
+    if let Some(PlanarTruth { p_WCm: p, phi0, v_WCm: v, omega0 }) = truth {
+        row.extend([p.x, p.y, *phi0, v.x, v.y, *omega0]);
+    }
+    let row: Vec<String> = row.into_iter().map(exact).collect();
+    writeln!(to, "{}", row.join(","))
+}
+
 /// Writes a planar sensor log, version 1, with numbers that read back bit for bit. Forces and torques are written where some
 /// sample has them, truth where the log has it.
 ///
@@ -139,12 +145,7 @@ pub fn write_planar_log(log: &PlanarLog, mut to: impl Write) -> io::Result<()> {
         for values in [s.forces.filter(|_| forces), s.torques.filter(|_| torques)].into_iter().flatten() {
             row.extend(values);
         }
-        if let Some(truth) = log.truth() {
-            let PlanarTruth { p_WCm: p, phi0, v_WCm: v, omega0 } = truth[k];
-            row.extend([p.x, p.y, phi0, v.x, v.y, omega0]);
-        }
-        let row: Vec<String> = row.into_iter().map(exact).collect();
-        writeln!(to, "{}", row.join(","))?;
+        end_row(row, log.truth().map(|truth| &truth[k]), &mut to)?;
     }
     to.flush()
 }

@@ -1,11 +1,10 @@
 //! Planar sensor logs, version 2: palms of any number, shape, pose and motion.
 
 use super::columns::{Field, Header};
-use super::contacts::palms_in;
+use super::contacts::check_palms;
 use super::error::{LogFileError, LogFileErrorKind as Kind};
-use super::planar::TRUTH;
+use super::planar::{TRUTH, end_row};
 use super::read::{Row, Table};
-use crate::number::exact;
 use glam::DVec2;
 use recon::contact_kinematics::planar::{PalmSurface, SurfacePose};
 use recon::object_dynamics::planar::{
@@ -75,14 +74,7 @@ struct PalmColumns {
 impl Columns {
     fn find(record: &csv::StringRecord, palms: usize) -> Result<Self, Kind> {
         let header = Header::new(record);
-        let found = palms_in(record);
-        if found != palms && found > 0 {
-            return Err(Kind::PalmCount { expected: palms, found });
-        }
-        let mut truth = Vec::with_capacity(TRUTH.len());
-        for name in TRUTH {
-            truth.extend(header.find(name.to_owned())?);
-        }
+        check_palms(record, palms)?;
         let palm = |i: usize| -> Result<PalmColumns, Kind> {
             let need = |stem: &str| header.need(format!("{stem}_{i}"));
             let measured = header.find(format!("Jx_{i}"))?.or(header.find(format!("Jy_{i}"))?).is_some();
@@ -93,11 +85,12 @@ impl Columns {
                 impulse: if measured { Some([need("Jx")?, need("Jy")?]) } else { None },
             })
         };
+        let truth = header.all(TRUTH)?;
         Ok(Self {
             count: header.names.len(),
             t: header.need("t".to_owned())?,
             palms: (1..=palms).map(palm).collect::<Result<_, _>>()?,
-            truth: truth.try_into().ok(),
+            truth,
         })
     }
 }
@@ -168,12 +161,7 @@ pub fn write_planar_contact_log(log: &ContactLog, mut to: impl Write) -> io::Res
             row.extend([contact.x, contact.y, p_WP.x, p_WP.y, angle, palm.force.x, palm.force.y]);
             row.extend(palm.impulse.filter(|_| *measured).into_iter().flat_map(|impulse| impulse.to_array()));
         }
-        if let Some(truth) = log.truth() {
-            let PlanarTruth { p_WCm: p, phi0, v_WCm: v, omega0 } = truth[k];
-            row.extend([p.x, p.y, phi0, v.x, v.y, omega0]);
-        }
-        let row: Vec<String> = row.into_iter().map(exact).collect();
-        writeln!(to, "{}", row.join(","))?;
+        end_row(row, log.truth().map(|truth| &truth[k]), &mut to)?;
     }
     to.flush()
 }

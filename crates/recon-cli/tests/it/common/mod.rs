@@ -37,6 +37,15 @@ impl Scratch {
         fs::read_to_string(self.0.join(name)).unwrap()
     }
 
+    /// Checks that a simulation was refused in these words and left nothing beside the scene.
+    pub(crate) fn check_refused_scene(&self, run: &Run, words: &[&str]) {
+        assert_eq!(run.code, Some(3), "{}{}", run.stdout, run.stderr);
+        for word in words {
+            assert!(run.stderr.contains(word), "`{word}` is not in\n{}", run.stderr);
+        }
+        assert_eq!(self.names(), ["scene.toml"]);
+    }
+
     /// Names in the folder, sorted, hidden ones included.
     pub(crate) fn names(&self) -> Vec<String> {
         let mut names: Vec<_> =

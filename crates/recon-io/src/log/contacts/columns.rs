@@ -44,24 +44,26 @@ pub(in crate::log) fn palms_in(header: &csv::StringRecord) -> usize {
     header.iter().filter_map(number).max().unwrap_or(0)
 }
 
+/// A header with contact points of palms must have those of so many.
+pub(in crate::log) fn check_palms(header: &csv::StringRecord, expected: usize) -> Result<(), Kind> {
+    match palms_in(header) {
+        found if found != expected && found > 0 => Err(Kind::PalmCount { expected, found }),
+        _ => Ok(()),
+    }
+}
+
 impl Columns {
     /// Finds the columns of so many palms by name in a header row.
     pub(super) fn find(record: &csv::StringRecord, palms: usize) -> Result<Self, Kind> {
         let header = Header::new(record);
-        let found = palms_in(record);
-        if found != palms && found > 0 {
-            return Err(Kind::PalmCount { expected: palms, found });
-        }
-        let mut truth = Vec::with_capacity(TRUTH.len());
-        for name in TRUTH {
-            truth.extend(header.find(name.to_owned())?);
-        }
+        check_palms(record, palms)?;
         let palm = |i: usize| Palm { header: &header, number: i }.columns();
+        let truth = header.all(TRUTH)?;
         Ok(Self {
             count: header.names.len(),
             t: header.need("t".to_owned())?,
             palms: (1..=palms).map(palm).collect::<Result<_, _>>()?,
-            truth: truth.try_into().ok(),
+            truth,
         })
     }
 }
