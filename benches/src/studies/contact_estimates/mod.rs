@@ -1,6 +1,6 @@
 //! Motion, mass and inertia from the reference logs of any palms, from no guess, the contact modes being known.
 //!
-//! Arguments: the folder of the logs, seconds, seeds, scenes. Writes a Markdown table.
+//! Arguments: the folder of the logs, seeds, scenes. Writes a Markdown table.
 
 use super::contact_logs::log::{Anything, Log};
 use glam::DMat3;
@@ -9,12 +9,30 @@ use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estima
 use std::path::PathBuf;
 
 const G: f64 = 9.81;
-/// Contacts as a share of the size (twice the mean semi-axis), forces as a share of themselves.
+/// Contacts as a share of the mean semi-axis, forces as a share of themselves.
 const NOISES: [(f64, f64); 3] = [(0.0, 0.0), (0.001, 0.004), (0.005, 0.02)];
 /// Floor of contact conditions over the natural speed: creep of the logs.
 const FLOOR: f64 = 3e-5;
 /// Size that is stated where one palm alone is touched, over the mean semi-axis.
 const STATED_SIZE: f64 = 0.8;
+
+/// What a log of some seconds can tell at most with contacts of 0.5 % and forces of 2 %: deviations of centre, velocity, rate,
+/// mass and inertia.
+struct Bound {
+    name: &'static str,
+    seconds: f64,
+    deviations: [f64; 5],
+}
+
+const BOUNDS: [Bound; 7] = [
+    Bound { name: "S1", seconds: 2.9, deviations: [0.0065, 0.0023, 0.016, 7e-4, 0.28] },
+    Bound { name: "S2", seconds: 1.8, deviations: [0.0049, 0.0026, 0.010, 7e-4, 0.088] },
+    Bound { name: "S3", seconds: 1.8, deviations: [0.024, 0.0068, 0.013, 2.3e-3, 0.63] },
+    Bound { name: "S4", seconds: 1.8, deviations: [0.014, 0.0017, 0.0023, 1.4e-3, 0.43] },
+    Bound { name: "S5", seconds: 1.8, deviations: [0.045, 0.0064, 0.30, 7e-3, 3.4] },
+    Bound { name: "S6", seconds: 1.6, deviations: [0.024, 0.0053, 0.086, 7.5e-4, 1.8] },
+    Bound { name: "S7", seconds: 1.8, deviations: [0.021, 0.015, 0.050, 2.1e-3, 0.35] },
+];
 
 /// A log that a robot would have, and what else is known.
 struct Case {
@@ -25,44 +43,112 @@ struct Case {
     length: f64,
 }
 
+/// Sums over the runs of one log and noise.
+#[derive(Default)]
+struct Sums {
+    runs: f64,
+    failed: usize,
+    settled: f64,
+    linearisations: f64,
+    chi_squared: f64,
+    /// Squares of the errors of centre, velocity, rate, mass, inertia, turn.
+    squares: [f64; 6],
+    /// Squares of the stated deviations of centre and mass, and the greatest of an inertia's logarithm.
+    stated: [f64; 3],
+    ms: f64,
+}
+
 pub(crate) fn main() -> Anything<()> {
     let mut words = crate::words();
     let folder = PathBuf::from(words.next().ok_or("the folder of the logs is missing")?);
-    let seconds: f64 = words.next().map_or(Ok(1.8), |s| s.parse())?;
-    let seeds: u64 = words.next().map_or(Ok(3), |s| s.parse())?;
-    let mut names: Vec<String> = words.collect();
-    if names.is_empty() {
-        names = (1..=7).map(|k| format!("S{k}")).collect();
-    }
+    let seeds: u64 = words.next().map_or(Ok(20), |s| s.parse())?;
+    let names: Vec<String> = words.collect();
     println!("# Motion, mass and inertia from contacts of any palms, from no guess");
     println!();
     println!(
-        "The first {seconds} s of logs by another simulator (1 kHz, three axes of force), mass and inertia unknown, contact modes known (a contact sticks that slips by less than 2e-5 m/s). \
-         Noise: contacts as a share of the size, forces of themselves. Errors are root mean squares over the run in natural units \
-         (mean semi-axis, natural speed and rate); K is that of the inertia tensor, relative. Deviations are the estimate's own, in \
-         the middle of the run."
+        "The first 1.8 s (S1 2.9 s, S6 1.6 s) of logs by another simulator (1 kHz, three axes of force), mass and inertia unknown, contact modes known \
+         (a contact sticks that slips by less than 2e-5 m/s). Noise: contacts as a share of the mean semi-axis, forces of themselves. \
+         Errors are root mean squares over run and seeds in natural units (mean semi-axis, natural speed and rate), mass and inertia relative; \
+         in brackets, at the largest noise, as a multiple of the least possible deviation; stated: the estimate's own deviations, in the middle of the run."
     );
     println!();
     println!(
-        "| log | noise | seed | linearisations | settled | chi-squared a condition | centre (its deviation) | velocity | rate | turn (rad) | mass (its deviation) | K | largest deviation of an inertia's logarithm | ms |"
+        "| log | noise | runs, failed | settled | linearisations | chi-squared a condition | centre | velocity | rate | turn (rad) | mass | inertia | stated: centre, mass, logarithm of a second moment's root | ms |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
-    for name in names {
-        let file = Log::read(&folder, &name)?;
+    for bound in BOUNDS.iter().filter(|b| names.is_empty() || names.iter().any(|name| name == b.name)) {
+        let file = Log::read(&folder, bound.name)?;
         for noise in NOISES {
+            let mut sums = Sums::default();
             for seed in 0..if noise.0 > 0.0 { seeds } else { 1 } {
-                let row = row(&file, noise, seconds, seed)?;
-                println!("| {name} | {} %, {} % | {seed} | {row} |", 100.0 * noise.0, 100.0 * noise.1);
+                sums.add(&file, noise, bound.seconds, seed)?;
             }
+            let least = (noise == NOISES[2]).then_some(&bound.deviations);
+            println!(
+                "| {} | {} %, {} % | {} |",
+                bound.name,
+                100.0 * noise.0,
+                100.0 * noise.1,
+                sums.row(least)
+            );
         }
     }
     Ok(())
 }
 
+impl Sums {
+    fn add(&mut self, file: &Log, noise: (f64, f64), seconds: f64, seed: u64) -> Anything<()> {
+        let Case { log, modes, options, length } = case(file, noise, seconds, seed)?;
+        let started = std::time::Instant::now();
+        let Ok(found) = estimate_contacts(&log, &modes, &options) else {
+            self.failed += 1;
+            return Ok(());
+        };
+        self.ms += started.elapsed().as_secs_f64() * 1e3;
+        self.runs += 1.0;
+        self.settled += f64::from(found.settled);
+        self.linearisations += found.iterations[1] as f64;
+        self.chi_squared += found.chi_squared / found.conditions as f64;
+        for (sum, error) in self.squares.iter_mut().zip(errors(file, &found, length)?) {
+            *sum += error * error;
+        }
+        let inertia = found.inertia_deviations.into_iter().fold(0.0, f64::max);
+        let centre = found.deviations[found.nodes.len() / 2][0].length() / length;
+        for (sum, deviation) in self.stated.iter_mut().zip([centre, found.mass_deviation, inertia]) {
+            *sum += deviation * deviation;
+        }
+        Ok(())
+    }
+
+    fn row(&self, least: Option<&[f64; 5]>) -> String {
+        let rms = |square: f64| (square / self.runs).sqrt();
+        let cell = |i: usize| {
+            let error = rms(self.squares[i]);
+            least.map_or(format!("{error:.1e}"), |least| format!("{error:.1e} ({:.2})", error / least[i]))
+        };
+        let [centre, mass, inertia] = self.stated.map(rms);
+        format!(
+            "{}, {} | {:.0} % | {:.0} | {:.2} | {} | {} | {} | {:.1e} | {} | {} | {centre:.0e}, {mass:.0e}, {inertia:.0e} | {:.0}",
+            self.runs as usize + self.failed,
+            self.failed,
+            100.0 * self.settled / self.runs,
+            self.linearisations / self.runs,
+            self.chi_squared / self.runs,
+            cell(0),
+            cell(1),
+            cell(2),
+            rms(self.squares[5]),
+            cell(3),
+            cell(4),
+            self.ms / self.runs,
+        )
+    }
+}
+
 fn case(file: &Log, (contact, share): (f64, f64), seconds: f64, seed: u64) -> Anything<Case> {
     let (log, modes) = file.contact_log(seconds)?;
     let length = file.semi_axes().element_sum() / 3.0;
-    let contact = 2.0 * length * contact;
+    let contact = length * contact;
     let force = ChannelNoise { fixed: 0.0, share };
     let log = log.with_noise(&ContactNoise { contact, force, ..ContactNoise::default() }, seed)?;
     let floor = FLOOR * (G * length).sqrt();
@@ -71,31 +157,10 @@ fn case(file: &Log, (contact, share): (f64, f64), seconds: f64, seed: u64) -> An
     Ok(Case { log, modes, options: ContactOptions { noise, gravity: G, size }, length })
 }
 
-fn row(file: &Log, noise: (f64, f64), seconds: f64, seed: u64) -> Anything<String> {
-    let Case { log, modes, options, length } = case(file, noise, seconds, seed)?;
-    let started = std::time::Instant::now();
-    let found = match estimate_contacts(&log, &modes, &options) {
-        Ok(found) => found,
-        Err(error) => return Ok(format!("{error} | | | | | | | | | |")),
-    };
-    let ms = started.elapsed().as_secs_f64() * 1e3;
-    let [centre, velocity, rate, turn, mass, K] = errors(file, &found, length)?;
-    let deviation = found.deviations[found.nodes.len() / 2][0].length() / length;
-    let inertia = found.inertia_deviations.into_iter().fold(0.0, f64::max);
-    Ok(format!(
-        "{} | {} | {:.2} | {centre:.1e} ({deviation:.0e}) | {velocity:.1e} | {rate:.1e} | {turn:.1e} | {mass:.1e} ({:.0e}) | {K:.1e} | \
-         {inertia:.0e} | {ms:.0}",
-        found.iterations[1],
-        if found.settled { "yes" } else { "no" },
-        found.chi_squared / found.conditions as f64,
-        found.mass_deviation,
-    ))
-}
-
-/// Root mean squares of centre, velocity, rate and turn in natural units, and relative errors of mass and inertia.
+/// Root mean squares of centre, velocity and rate in natural units, relative errors of mass and inertia, turn.
 fn errors(file: &Log, found: &ContactEstimate, length: f64) -> Anything<[f64; 6]> {
     let truth = file.bodies(found.nodes.last().map_or(0, |k| k + 1))?;
-    let first = truth[0].R_WO;
+    let first = truth[found.nodes[0]].R_WO;
     let mut sums = [0.0; 4];
     for (state, &k) in found.states.iter().zip(&found.nodes) {
         let turn = state.R_WO * (truth[k].R_WO * first.conjugate()).conjugate();
@@ -109,5 +174,5 @@ fn errors(file: &Log, found: &ContactEstimate, length: f64) -> Anything<[f64; 6]
     let R = DMat3::from_quat(first);
     let ratio = R * inertia * R.transpose() * found.inertia.inverse() - DMat3::IDENTITY;
     let K = (ratio.to_cols_array().iter().map(|x| x * x).sum::<f64>() / 3.0).sqrt();
-    Ok([centre, velocity, rate, turn, (found.mass / mass - 1.0).abs(), K])
+    Ok([centre, velocity, rate, found.mass / mass - 1.0, K, turn])
 }

@@ -4,6 +4,7 @@ use super::problem::{Problem, Units, Unknowns};
 use super::record::Record;
 use super::solve::{Covariances, Solved, solve};
 use super::state::{Body, MOTION, Motion, Tangent};
+use super::windows::longest;
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS, SensedAxes};
@@ -11,16 +12,17 @@ use thiserror::Error;
 
 /// Constants of an unknown body: logarithm of the mass, six numbers of the inertia tensor.
 const CONSTANTS: usize = 7;
-/// Samples from node to node in the first, coarse solution, whose contacts are carried there from the node before, and the
+/// Natural times from node to node in the first, coarse solution, whose contacts are carried there from the node before, and the
 /// floor of its conditions over the natural speed.
-const COARSE: usize = 10;
+const COARSE: f64 = 0.15;
 const COARSE_FLOOR: f64 = 1e-3;
 /// Linearisations that each of the two solutions may take.
 const MOST: usize = 60;
 /// A step that promises less in units of chi-squared than these is not worth taking: coarse solution, last one.
-const ENOUGH: [f64; 2] = [1.0, 1e-3];
-/// Deviation of the logarithms of the inertia's numbers before the log is read, and of that of the mass.
-const PRIOR: f64 = 2.0;
+const ENOUGH: [f64; 2] = [1.0, 1e-2];
+/// Deviation of the logarithms of the roots of the second moments before the log is read, about those of a ball of the body's
+/// size, and of that of the mass.
+const PRIOR: f64 = 0.7;
 const PRIOR_MASS: f64 = 10.0;
 /// Deviation of the first orientation, rad: an unknown body has no axes but those it is given.
 const FIRST_TURN: f64 = 1e-5;
@@ -112,20 +114,37 @@ pub fn estimate_contacts(
     let record = Record::new(log, modes, &options.noise).ok_or(ContactEstimateError::NoContact)?;
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let mut problem = problem(&record, options, length);
-    let last = record.times.len() - 1;
-    let nodes = |stride: usize| (0..last).step_by(stride).chain([last]).collect::<Vec<usize>>();
-    problem.nodes = nodes(COARSE);
+    let record = record.averaged(modes, longest(&options.noise, &problem.units));
+    problem.record = &record;
+    problem.nodes = spaced(&record.times, COARSE * problem.units.length / problem.units.speed);
     problem.noise.floor = problem.noise.floor.max(COARSE_FLOOR * problem.units.speed);
+    problem.friction = true;
     let start = cold::start(&problem, problem.body.0, DQuat::IDENTITY);
     let coarse =
         solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[0]).ok_or(ContactEstimateError::Singular)?;
-    let coarse_nodes = std::mem::replace(&mut problem.nodes, nodes(1));
+    let coarse_nodes = std::mem::replace(&mut problem.nodes, (0..record.times.len()).collect());
     problem.noise = options.noise;
+    problem.friction = false;
     let start = refined(&problem, &coarse_nodes, &coarse.unknowns);
-    let solved =
+    let mut solved =
         solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[1]).ok_or(ContactEstimateError::Singular)?;
     let covariances = solved.equations.covariances().ok_or(ContactEstimateError::Singular)?;
-    Ok(estimate(&record, problem.nodes, solved, &covariances, coarse.iterations))
+    solved.unknowns.motions = problem.at_samples(&solved.unknowns);
+    Ok(estimate(&record, solved, &covariances, coarse.iterations))
+}
+
+/// Samples at least `apart` from each other, the first and the last among them.
+fn spaced(times: &[f64], apart: f64) -> Vec<usize> {
+    let last = times.len() - 1;
+    let mut nodes = vec![0];
+    for k in 1..last {
+        if times[k] - times[nodes[nodes.len() - 1]] >= apart {
+            nodes.push(k);
+        }
+    }
+    nodes.push(last);
+    nodes.dedup();
+    nodes
 }
 
 fn check(log: &ContactLog, modes: &[[ContactMode; MOST_PALMS]]) -> Result<(), ContactEstimateError> {
@@ -152,6 +171,7 @@ fn problem<'a>(record: &'a Record, options: &ContactOptions, length: f64) -> Pro
     Problem {
         record,
         noise: options.noise,
+        friction: false,
         gravity: DVec3::new(0.0, 0.0, -options.gravity),
         nodes: Vec::new(),
         units: Units { length, speed: (options.gravity * length).sqrt(), mass },
@@ -173,7 +193,6 @@ fn refined(problem: &Problem, coarse: &[usize], unknowns: &Unknowns) -> Unknowns
 
 fn estimate(
     record: &Record,
-    nodes: Vec<usize>,
     solved: Solved<CONSTANTS>,
     covariances: &Covariances<CONSTANTS>,
     coarse: usize,
@@ -193,7 +212,7 @@ fn estimate(
     ContactEstimate {
         states: unknowns.motions.iter().map(state).collect(),
         deviations: unknowns.motions.iter().zip(&covariances.motions).map(of).collect(),
-        nodes,
+        nodes: record.samples.clone(),
         mass: body.log_mass.exp(),
         mass_deviation: deviation(0),
         inertia: body.inertia(),

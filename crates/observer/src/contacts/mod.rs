@@ -11,6 +11,7 @@ mod solve;
 mod state;
 #[cfg(test)]
 mod tests;
+mod windows;
 
 pub use estimate::{ContactEstimate, ContactEstimateError, ContactOptions, estimate_contacts};
 pub use noise::ContactNoiseLevel;

@@ -5,7 +5,7 @@ use super::noise::ContactNoiseLevel;
 use super::record::{Record, Wrench};
 use super::rows::Rows;
 use super::solve::Step;
-use super::state::{Body, MOTION, Motion, Tangent};
+use super::state::{Body, MOTION, Motion, Tangent, Turn};
 use crate::three_palms::{cross_matrix, exponential};
 use glam::{DQuat, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector6};
@@ -27,6 +27,8 @@ pub(super) struct Units {
 pub(super) struct Problem<'a> {
     pub(super) record: &'a Record,
     pub(super) noise: ContactNoiseLevel,
+    /// Whether the direction of friction tells that of a slip.
+    pub(super) friction: bool,
     pub(super) gravity: DVec3,
     /// Samples at which there is a node, in order; the first and the last of the record among them.
     pub(super) nodes: Vec<usize>,
@@ -73,6 +75,38 @@ struct LinkEquation<const P: usize> {
     by_body: SMatrix<f64, MOTION, P>,
 }
 
+/// Normal equations of the conditions of one sample, by the motion at it.
+struct SampleEquations<const P: usize> {
+    own: Transition,
+    to_body: SMatrix<f64, MOTION, P>,
+    gradient: Tangent,
+    body: SMatrix<f64, P, P>,
+    body_gradient: SVector<f64, P>,
+    cost: f64,
+    conditions: usize,
+}
+
+impl<const P: usize> Equations<P> {
+    /// Conditions at a motion whose derivatives are `F` by that of node `j` and `E` by the body.
+    fn add(&mut self, j: usize, rows: &SampleEquations<P>, F: &Transition, E: &SMatrix<f64, MOTION, P>) {
+        self.cost += rows.cost;
+        self.conditions += rows.conditions;
+        if rows.conditions == 0 {
+            return;
+        }
+        let node = &mut self.nodes[j];
+        let carried = rows.own * F;
+        node.own += F.transpose() * carried;
+        node.gradient += F.transpose() * rows.gradient;
+        if P > 0 {
+            node.body += F.transpose() * rows.to_body + carried.transpose() * E;
+            let mixed = E.transpose() * rows.to_body;
+            self.body += E.transpose() * rows.own * E + mixed + mixed.transpose() + rows.body;
+            self.body_gradient += E.transpose() * rows.gradient + rows.body_gradient;
+        }
+    }
+}
+
 impl Problem<'_> {
     fn wrenches(&self, k: usize) -> [&Wrench; 2] {
         [&self.record.wrenches[k], &self.record.wrenches[k + 1]]
@@ -97,19 +131,30 @@ impl Problem<'_> {
         };
         for j in 0..count {
             let mut carried = Carried::<P>::new(at.motions[j], &at.body);
-            self.add_rows(j, self.nodes[j], &carried, at, &mut all)?;
-            let Some(&end) = self.nodes.get(j + 1) else { break };
+            let from = self.nodes[j];
+            let end = self.nodes.get(j + 1).copied().unwrap_or(from);
+            if end != from + 1 {
+                let rows = self.rows(from, &carried.motion, &carried.turn, &at.body);
+                all.add(j, &rows, &Transition::identity(), &SMatrix::zeros());
+            }
             let mut noise = Matrix6::zeros();
-            for k in self.nodes[j]..end {
+            for k in from..end {
                 let interval = &self.record.intervals[k];
                 carried.advance(interval, self.wrenches(k), &at.body, self.gravity);
                 noise += interval.noise;
                 if k + 1 < end {
-                    self.add_rows(j, k + 1, &carried, at, &mut all)?;
+                    let rows = self.rows(k + 1, &carried.motion, &carried.turn, &at.body);
+                    let (F, E) = carried.derivatives(&at.body);
+                    all.add(j, &rows, &F, &E);
                 }
             }
-            let information = self.link_information(&noise, &carried, &at.body)?;
-            self.add_link(j, &carried, &information, at, &mut all);
+            if end == from + 1 {
+                self.add_split(j, &carried, at, &mut all);
+            }
+            if end > from {
+                let information = self.link_information(&noise, &carried, &at.body)?;
+                self.add_link(j, &carried, &information, at, &mut all);
+            }
         }
         self.add_prior(at, &mut all);
         all.cost.is_finite().then_some(all)
@@ -142,14 +187,11 @@ impl Problem<'_> {
             motions.push(moved);
             let mut carried = Carried::<P>::new(moved, &after);
             let end = self.nodes.get(j + 1).copied().unwrap_or(self.nodes[j] + 1);
+            let split = end == self.nodes[j] + 1 && j + 1 < at.motions.len();
             let mut noise = Matrix6::zeros();
             for k in self.nodes[j]..end {
-                for contact in &self.record.contacts[k] {
-                    let Some(rows) = Rows::new(contact, &carried.motion, &carried.turn, &self.noise) else {
-                        continue;
-                    };
-                    let r = rows.residual;
-                    cost += (rows.information * r).dot(&r);
+                if !split {
+                    cost += self.rows_cost(k, &carried.motion, &carried.turn);
                 }
                 if j + 1 < at.motions.len() {
                     let interval = &self.record.intervals[k];
@@ -161,6 +203,10 @@ impl Problem<'_> {
             let left = link.residual + steps[j + 1] - link.by_motion * steps[j] - link.by_body * body;
             let next = place(j + 1, carried.motion.p, carried.motion.q, &left);
             let r = next.from(&carried.motion);
+            if split {
+                let motion = moved.kicked(&r, self.share(j));
+                cost += self.rows_cost(self.nodes[j], &motion, &after.turn(motion.q, motion.L));
+            }
             let information = self.link_information(&noise, &carried, &after)?;
             cost += (information * r).dot(&r);
             moved = next;
@@ -168,6 +214,21 @@ impl Problem<'_> {
         let moved = Unknowns { motions, body: after };
         cost += self.prior_cost::<P>(&moved);
         cost.is_finite().then_some((moved, cost))
+    }
+
+    /// The motions at the nodes as their samples have them, after their share of what the links say.
+    pub(super) fn at_samples(&self, at: &Unknowns) -> Vec<Motion> {
+        let one = |j: usize| {
+            let motion = at.motions[j];
+            match self.nodes.get(j + 1) {
+                Some(&end) if end == self.nodes[j] + 1 => {
+                    let carried = self.carried(self.nodes[j], motion, &at.body, &[end])[0];
+                    motion.kicked(&at.motions[j + 1].from(&carried), self.share(j))
+                }
+                _ => motion,
+            }
+        };
+        (0..at.motions.len()).map(one).collect()
     }
 
     /// Motions at some samples by what was measured since sample `from`, with a motion there.
@@ -208,60 +269,82 @@ impl Problem<'_> {
         link_information(&noise, carried.after, body, &carried.turn)
     }
 
-    fn add_rows<const P: usize>(
+    /// Sum over the conditions of a sample at a motion there.
+    fn rows<const P: usize>(
         &self,
-        j: usize,
         k: usize,
-        carried: &Carried<P>,
-        at: &Unknowns,
-        all: &mut Equations<P>,
-    ) -> Option<()> {
-        let touched = self.record.contacts[k].iter();
-        let mut rows =
-            touched.filter_map(|c| Rows::new(c, &carried.motion, &carried.turn, &self.noise)).peekable();
-        if rows.peek().is_none() {
-            return Some(());
-        }
-        let (mut own, mut to_body) = (Transition::zeros(), SMatrix::<f64, MOTION, P>::zeros());
-        let (mut gradient, mut body_gradient) = (Tangent::zeros(), SVector::<f64, P>::zeros());
-        let mut body = SMatrix::<f64, P, P>::zeros();
-        for rows in rows {
+        motion: &Motion,
+        turn: &Turn,
+        body: &Body,
+    ) -> SampleEquations<P> {
+        let mut all = SampleEquations {
+            own: Transition::zeros(),
+            to_body: SMatrix::zeros(),
+            gradient: Tangent::zeros(),
+            body: SMatrix::zeros(),
+            body_gradient: SVector::zeros(),
+            cost: 0.0,
+            conditions: 0,
+        };
+        for contact in &self.record.contacts[k] {
+            let Some(rows) = Rows::new(contact, motion, turn, &self.noise, self.friction) else { continue };
             let r = rows.residual;
             let weighted = rows.information * r;
             all.cost += weighted.dot(&r);
             all.conditions += rows.count;
-            let (by_motion, by_body) =
-                (rows.by_motion(&carried.motion, &carried.turn), rows.by_body::<P>(&at.body, &carried.turn));
+            let by_motion = rows.by_motion(motion, turn);
             let w_motion = rows.information * by_motion;
-            own += by_motion.transpose() * w_motion;
-            gradient += by_motion.transpose() * weighted;
+            all.own += by_motion.transpose() * w_motion;
+            all.gradient += by_motion.transpose() * weighted;
             if P > 0 {
-                to_body += w_motion.transpose() * by_body;
-                body += by_body.transpose() * rows.information * by_body;
-                body_gradient += by_body.transpose() * weighted;
+                let by_body = rows.by_body::<P>(body, turn);
+                all.to_body += w_motion.transpose() * by_body;
+                all.body += by_body.transpose() * rows.information * by_body;
+                all.body_gradient += by_body.transpose() * weighted;
             }
         }
-        let node = &mut all.nodes[j];
-        if carried.after == 0.0 {
-            node.own += own;
-            node.gradient += gradient;
-            node.body += to_body;
-            all.body += body;
-            all.body_gradient += body_gradient;
-            return Some(());
-        }
-        // Through the derivatives of the motion at the sample by that at the node and by the body.
+        all
+    }
+
+    fn rows_cost(&self, k: usize, motion: &Motion, turn: &Turn) -> f64 {
+        let rows = |c| Rows::new(c, motion, turn, &self.noise, self.friction);
+        let cost = |rows: Rows| (rows.information * rows.residual).dot(&rows.residual);
+        self.record.contacts[k].iter().filter_map(rows).map(cost).sum()
+    }
+
+    /// Share of a link's residual that the node's own sample has, if the link is one interval.
+    ///
+    /// The noise of a force at a sample is felt in the intervals before and after it, half in each. A link takes all of it, which leaves
+    /// links independent; the node is then the motion before it, and its contact is touched after half of it.
+    fn share(&self, j: usize) -> f64 {
+        let samples = self.record.contacts[self.nodes[j]].first().map_or(1, |c| c.samples);
+        0.5 / samples as f64
+    }
+
+    /// Conditions of a node with a link of one interval after it.
+    fn add_split<const P: usize>(
+        &self,
+        j: usize,
+        carried: &Carried<P>,
+        at: &Unknowns,
+        all: &mut Equations<P>,
+    ) {
+        let share = self.share(j);
+        let motion = at.motions[j].kicked(&at.motions[j + 1].from(&carried.motion), share);
+        let rows = self.rows(self.nodes[j], &motion, &at.body.turn(motion.q, motion.L), &at.body);
+        let kicked = |i: usize| if (3..9).contains(&i) { share } else { 0.0 };
+        let after = Transition::from_diagonal(&Tangent::from_fn(|i, _| kicked(i)));
         let (F, E) = carried.derivatives(&at.body);
-        let carried_own = own * F;
-        node.own += F.transpose() * carried_own;
-        node.gradient += F.transpose() * gradient;
+        let (before, by_body) = (Transition::identity() - after * F, -(after * E));
+        let through = rows.own * after;
+        all.nodes[j].next += before.transpose() * through;
+        let next = &mut all.nodes[j + 1];
+        next.own += after * through;
+        next.gradient += after * rows.gradient;
         if P > 0 {
-            node.body += F.transpose() * to_body + carried_own.transpose() * E;
-            let mixed = E.transpose() * to_body;
-            all.body += E.transpose() * own * E + mixed + mixed.transpose() + body;
-            all.body_gradient += E.transpose() * gradient + body_gradient;
+            next.body += after * (rows.to_body + rows.own * by_body);
         }
-        Some(())
+        all.add(j, &rows, &before, &by_body);
     }
 
     fn add_link<const P: usize>(

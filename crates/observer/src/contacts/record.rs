@@ -21,6 +21,8 @@ pub(super) struct Contact {
     pub(super) shape: DMat3,
     pub(super) f: DVec3,
     pub(super) mode: ContactMode,
+    /// Samples that it is the mean of.
+    pub(super) samples: usize,
 }
 
 /// Forces of all palms and their moments about the origin, or an integral of them.
@@ -45,6 +47,8 @@ pub(super) struct Interval {
 #[derive(Debug)]
 pub(super) struct Record {
     pub(super) times: Vec<f64>,
+    /// Numbers of the log's samples at these times.
+    pub(super) samples: Vec<usize>,
     /// What all positions are measured from, world: the mean of the contacts.
     pub(super) origin: DVec3,
     pub(super) contacts: Vec<Vec<Contact>>,
@@ -89,7 +93,8 @@ impl Record {
         };
         let wrenches: Vec<Wrench> = contacts.iter().map(wrench).collect();
         let intervals = intervals(log, &contacts, &wrenches, noise);
-        Some(Self { times, origin, contacts, wrenches, intervals })
+        let samples = (0..times.len()).collect();
+        Some(Self { times, samples, origin, contacts, wrenches, intervals })
     }
 }
 
@@ -106,6 +111,7 @@ fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, modes: &[ContactMode; 
             shape: shape_operator(logged.surface(), n, motion.pose.R_WP * DVec3::X),
             f: logged.force(k)?.vector,
             mode: modes[palm],
+            samples: 1,
         })
     };
     log.palms().iter().enumerate().filter_map(one).collect()
@@ -134,8 +140,9 @@ fn intervals(
             let h = since[k] - since[k - 1];
             let impulse = sums[k] + sums[k - 1] * -1.0;
             let first = firsts[k].force - firsts[k - 1].force - impulse.force * since[k - 1];
+            // The noise of a sample is felt on both its sides; put into the interval after it alone it is white.
             let mut covariance = Matrix6::zeros();
-            for contact in &contacts[k] {
+            for contact in &contacts[k - 1] {
                 add_noise(&mut covariance, contact, noise, h);
             }
             // Between samples a force may change its mode: the rule of order 6 is no better than the trapezoidal one then.

@@ -7,7 +7,8 @@ use glam::DVec3;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use object_dynamics::ContactMode;
 
-/// Conditions of one contact: its normal one alone where it slides, all three where it sticks.
+/// Conditions of one contact: its normal one where it slides, with that across its friction if it is used, all three where it
+/// sticks.
 pub(super) struct Rows {
     /// Axes of the conditions, at the adjusted contact.
     pub(super) axes: [DVec3; 3],
@@ -22,6 +23,30 @@ pub(super) struct Rows {
 
 /// Standard deviations that a contact is moved by at most.
 const FARTHEST_FOOT: f64 = 5.0;
+/// Angle between friction and slip that is looked over, rad, and the greatest deviation of friction's own angle.
+const SLIP_ANGLE: f64 = 0.02;
+const BLURRED: f64 = 0.3;
+
+/// Direction across the friction of a contact that slides, and the standard deviation of its angle, rad; none where noise hides it.
+fn across_friction(contact: &Contact, noise: &ContactNoiseLevel) -> Option<(DVec3, f64)> {
+    let friction = contact.f.reject_from_normalized(contact.n);
+    let angle = noise.force(contact.f) / friction.length();
+    let seen = contact.mode == ContactMode::Slide && angle < BLURRED;
+    seen.then(|| (contact.n.cross(friction).normalize_or_zero(), angle.hypot(SLIP_ANGLE)))
+}
+
+/// Inverse of the first `count` rows and columns, zero elsewhere.
+fn inverse(covariance: &Matrix3<f64>, count: usize) -> Option<Matrix3<f64>> {
+    let kept = Matrix3::from_fn(|i, j| match (i < count && j < count, i == j) {
+        (true, _) => covariance[(i, j)],
+        (false, same) => f64::from(same),
+    });
+    let mut inverse = kept.cholesky()?.inverse();
+    for i in count..3 {
+        inverse[(i, i)] = 0.0;
+    }
+    Some(inverse)
+}
 
 impl Rows {
     /// None for a contact that is off.
@@ -30,43 +55,47 @@ impl Rows {
         motion: &Motion,
         turn: &Turn,
         noise: &ContactNoiseLevel,
+        friction: bool,
     ) -> Option<Self> {
         let arm = contact.c - motion.p;
         let slip = motion.v + turn.w.cross(arm) - contact.u;
-        let (t1, t2) = contact.n.any_orthonormal_pair();
+        let across = if friction { across_friction(contact, noise) } else { None };
+        let (t1, t2) = match across {
+            Some((across, _)) => (across, contact.n.cross(across)),
+            None => contact.n.any_orthonormal_pair(),
+        };
         let axes = [contact.n, t1, t2];
         let count = match contact.mode {
             ContactMode::Off => return None,
-            ContactMode::Slide => 1,
+            ContactMode::Slide => 1 + usize::from(across.is_some()),
             ContactMode::Stick => 3,
         };
         // What a shift of the contact along a tangent does to each condition.
         let turning = turn.w - contact.W;
         let mut covariance = Matrix3::identity() * (noise.floor * noise.floor);
+        let deviation = noise.contact / (contact.samples as f64).sqrt();
         let mut shifts = [Vector3::zeros(); 2];
         for (tangent, stored) in [t1, t2].into_iter().zip(&mut shifts) {
             let shift = turning.cross(tangent);
-            let bend = if count == 1 { slip.dot(contact.shape * tangent) } else { 0.0 };
-            let column =
-                Vector3::new(shift.dot(axes[0]) + bend, shift.dot(t1), shift.dot(t2)) * noise.contact;
+            let bend = if count < 3 { slip.dot(contact.shape * tangent) } else { 0.0 };
+            let column = Vector3::new(shift.dot(axes[0]) + bend, shift.dot(t1), shift.dot(t2)) * deviation;
             covariance.ger(1.0, &column, &column, 1.0);
             *stored = column;
         }
-        let information = if count == 1 {
-            Matrix3::from_diagonal(&Vector3::new(1.0 / covariance[(0, 0)], 0.0, 0.0))
-        } else {
-            covariance.cholesky()?.inverse()
-        };
+        if let Some((_, angle)) = across {
+            covariance[(1, 1)] += (angle * slip.dot(t2)).powi(2);
+        }
+        let information = inverse(&covariance, count)?;
         let residual = Vector3::from_fn(|i, _| if i < count { axes[i].dot(slip) } else { 0.0 });
         let mut rows = Self { axes, count, residual, arm, information };
         let pull = information * residual;
-        let foot = shifts.map(|column| -(noise.contact * column.dot(&pull)));
-        let farthest = FARTHEST_FOOT * noise.contact;
+        let foot = shifts.map(|column| -(deviation * column.dot(&pull)));
+        let farthest = FARTHEST_FOOT * deviation;
         let length = foot[0].hypot(foot[1]);
         let share = if length > farthest { farthest / length } else { 1.0 };
         let foot = (foot[0] * t1 + foot[1] * t2) * share;
         rows.arm += foot;
-        if count == 1 {
+        if count < 3 {
             rows.axes[0] += contact.shape * foot;
         }
         Some(rows)

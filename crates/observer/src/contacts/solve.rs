@@ -8,6 +8,8 @@ use nalgebra::{DMatrix, SMatrix, SVector};
 
 /// First damping, as a share of the conditions' mean information.
 const FIRST_DAMPING: f64 = 1e-3;
+/// Fall of chi-squared that an undamped step from the end may still promise: a seventh of a standard deviation is left then.
+const SETTLED: f64 = 0.02;
 /// A step shorter than this in natural units is none.
 const NO_STEP: f64 = 1e-10;
 
@@ -139,13 +141,13 @@ pub(super) fn solve<const P: usize>(
     let mean =
         problem.condition_information() * equations.conditions as f64 / (problem.nodes.len() * MOTION) as f64;
     let (mut damping, mut raise, mut iterations) = (FIRST_DAMPING, RAISE, 1);
-    let mut settled = false;
-    while iterations < most && !settled && damping < LARGEST_DAMPING {
+    let mut done = false;
+    while iterations < most && !done && damping < LARGEST_DAMPING {
         let step = equations.step(&(unit * (damping * mean)), damping * mean);
         let trial = step.as_ref().and_then(|step| problem.trial(&unknowns, step, &equations));
         let promised = step.as_ref().map_or(f64::INFINITY, |step| equations.promised(step));
         let short = step.as_ref().is_some_and(|step| length(step, &unit) < NO_STEP);
-        settled = promised < enough || short;
+        done = promised < enough || short;
         match trial.filter(|(_, cost)| *cost < equations.cost) {
             Some((moved, cost)) => {
                 damping = lowered(damping, (equations.cost - cost) / promised);
@@ -160,6 +162,9 @@ pub(super) fn solve<const P: usize>(
             }
         }
     }
+    // A heavily damped step promises little anywhere: what counts is what all of the step would gain.
+    let whole = equations.step(&Tangent::zeros(), 0.0);
+    let settled = whole.is_some_and(|step| equations.promised(&step) < SETTLED.max(enough));
     Some(Solved { unknowns, equations, iterations, settled })
 }
 

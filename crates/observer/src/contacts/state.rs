@@ -101,6 +101,12 @@ impl Motion {
         Self { p, v, L: after.inertia_along(DMat3::from_quat(q)) * w, q }
     }
 
+    /// With a share of what a link's residual says that velocity and angular momentum were changed by.
+    pub(super) fn kicked(&self, residual: &Tangent, share: f64) -> Self {
+        let part = |i: usize| DVec3::new(residual[i], residual[i + 1], residual[i + 2]) * share;
+        Self { v: self.v + part(3), L: self.L + part(6), ..*self }
+    }
+
     /// Derivatives of the angular velocity by the motion and by the numbers of the inertia.
     pub(super) fn spin_derivatives(&self, body: &Body) -> (SMatrix<f64, 3, MOTION>, SMatrix<f64, 3, 6>) {
         let turn = body.turn(self.q, self.L);
