@@ -43,6 +43,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "contact-estimates.md",
         "motion, mass and inertia from reference logs of any palms, from no guess",
     ),
+    (
+        "contact_exports",
+        "contact-exports.md",
+        "exported scenes of any palms in MuJoCo, beside our own motion",
+    ),
     ("contact_logs", "contact-logs.md", "reference logs of any palms simulated from their start"),
     (
         "tilting_palms",

@@ -16,6 +16,7 @@ mod cold_start;
 mod contact_changes;
 mod contact_cost;
 mod contact_estimates;
+mod contact_exports;
 mod contact_logs;
 mod contact_wedging;
 mod no_force;
@@ -47,6 +48,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("contact_changes", || in_words(contact_changes::main())),
     ("contact_estimates", || in_words(contact_estimates::main())),
     ("contact_cost", || in_words(contact_cost::main())),
+    ("contact_exports", || in_words(contact_exports::main())),
     ("contact_logs", || in_words(contact_logs::main())),
     ("contact_wedging", || in_words(contact_wedging::main())),
     ("no_force", || in_words(no_force::main())),

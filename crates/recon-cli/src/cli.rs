@@ -64,6 +64,7 @@ the vertical plane, and its log a planar one of version 2.
 
 Examples:
   recon simulate scene.toml -o log.csv
+  recon simulate scene.toml -o log.csv --report page.html
   recon simulate scene.toml -o - | head -3")]
 pub(crate) struct SimulateArgs {
     /// Scene file (TOML)
@@ -71,6 +72,9 @@ pub(crate) struct SimulateArgs {
     /// Sensor log to write (CSV); `-` for standard output, links are followed, pipes and devices written to
     #[arg(short, long)]
     pub(crate) output: PathBuf,
+    /// Page to write as well (HTML), of scenes with [[palm]] tables: pictures, contact modes, forces, slip
+    #[arg(long)]
+    pub(crate) report: Option<PathBuf>,
     /// Tolerance of the integration, relative and absolute
     #[arg(long, default_value_t = 1e-12, value_parser = tolerance)]
     pub(crate) tolerance: f64,

@@ -90,6 +90,12 @@ pub(crate) enum CliError {
     PlanarContacts(#[from] object_planar::ContactSimulationError),
     #[error("the simulated motion makes no log")]
     PlanarContactLog(#[from] object_planar::ContactLogError),
+    #[error(
+        "--report needs a scene with [[palm]] tables; `recon reconstruct` makes a page of the log of this one"
+    )]
+    NoPage,
+    #[error("the motion makes no page")]
+    Page(#[source] std::io::Error),
     #[error("the sensor noise of the scene makes the log unusable")]
     ContactNoise(#[source] ContactLogError),
     #[error("the sensor noise of the scene makes the log unusable")]
@@ -195,6 +201,8 @@ impl CliError {
             | Self::Estimate(_)
             | Self::OddLog { .. }
             | Self::Stream(_)
+            | Self::NoPage
+            | Self::Page(_)
             | Self::StreamNoise
             | Self::TooFewSamples { .. }
             | Self::WithoutForces(_)

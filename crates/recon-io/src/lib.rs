@@ -39,7 +39,8 @@ pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};
 pub use report::{
     Bound, Bounds, Evidence, EvidenceValue, Level, ModeSpan, MotionState, PalmContact, PalmTrack, ReportData,
-    ReportError, TrueShape, Verdict, mode_spans, planar_mode_spans, write_contact_report, write_report,
+    ReportError, TrueShape, Verdict, mode_spans, planar_mode_spans, write_contact_report,
+    write_planar_contact_report, write_report,
 };
 pub use scene::{
     BoxedShape, KnownInertia, KnownPalm, PlanarBody, PlanarScene, Scene, SceneError, SceneErrorKind, Sensors,

@@ -36,9 +36,11 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
         let mut now = Stepped::new(state, tallies, self.blow_work, self.stretch.modes, self.stretch.guesses);
         let (mut h, shortest) = (self.crawl_step(), tolerance / self.units.rate);
         while self.t < last {
-            let until = self.next_stop(last);
-            let lands = h >= LANDS * (until - self.t);
-            let taken = if lands { until - self.t } else { h };
+            let until = self.next_stop(last, shortest);
+            let left = until - self.t;
+            let lands = h >= LANDS * left;
+            // Not a step of next to nothing at the end: forces are impulses over the step.
+            let taken = if lands { left } else { h.min(0.5 * left) };
             let (mut next, apart) = stepper.halved::<N>(&now, taken)?;
             let factor = (MARGIN * (tolerance / apart).sqrt()).clamp(SHRINK, GROW);
             if apart > tolerance && taken > shortest {
@@ -50,7 +52,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
                 next.state.t = until;
             }
             // A step that a sample has cut short says nothing against longer ones.
-            if !lands || factor < 1.0 {
+            if taken == h || factor < 1.0 {
                 h = (taken * factor).max(shortest);
             }
             let before = std::mem::replace(&mut now, next).modes;
@@ -67,12 +69,11 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
         (2.0 * self.tolerance.absolute).sqrt() / self.units.rate
     }
 
-    /// The next sample, joint of a palm's motion or end.
-    fn next_stop(&self, last: f64) -> f64 {
-        let sample = self.result.instants.len() as f64 / self.sample_rate;
-        let next = self.joints.partition_point(|joint| *joint <= self.t);
-        let joint = self.joints.get(next).copied().unwrap_or(last);
-        last.min(sample).min(joint)
+    /// The next sample, joint of a palm's motion or end; a joint less than the `shortest` step before one of them is passed.
+    fn next_stop(&self, last: f64, shortest: f64) -> f64 {
+        let sample = last.min(self.result.instants.len() as f64 / self.sample_rate);
+        let next = self.joints.partition_point(|joint| *joint <= self.t + shortest);
+        self.joints.get(next).copied().filter(|joint| joint + shortest < sample).unwrap_or(sample)
     }
 
     /// Takes over what a step has led to: state, changes of modes and samples.

@@ -56,6 +56,12 @@ impl Units {
         y
     }
 
+    /// A number for each component: `share` for velocities, one for all else.
+    pub(super) fn velocities<const N: usize>(&self, share: f64) -> [f64; N] {
+        let palms = |k: usize| k >= RIGID && (k - RIGID) % 6 >= 3;
+        std::array::from_fn(|k| if (7..13).contains(&k) || palms(k) { share } else { 1.0 })
+    }
+
     pub(super) fn unpack<const N: usize>(&self, t: f64, y: &[f64; N]) -> (SceneState, Tallies) {
         let body = BodyState {
             p_WCm: get(y, 0) * self.length,

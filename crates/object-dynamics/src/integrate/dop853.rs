@@ -93,6 +93,7 @@ pub struct Statistics {
 pub struct Dop853<const N: usize, F> {
     field: F,
     tolerance: Tolerance,
+    shares: [f64; N],
     t: f64,
     y: [f64; N],
     /// Stages of the last step; `k[0]` of the next step is `k[12]` of the last.
@@ -139,7 +140,9 @@ where
         }
         let statistics = Statistics { evaluations: 1, ..Statistics::default() };
         let k = [[0.0; N]; 13];
-        let mut solver = Self { field, tolerance, t, y, k, rate, next_step: 0.0, last: None, statistics };
+        let shares = [1.0; N];
+        let mut solver =
+            Self { field, tolerance, shares, t, y, k, rate, next_step: 0.0, last: None, statistics };
         solver.next_step = solver.starting_step()?;
         Ok(solver)
     }
@@ -232,6 +235,11 @@ where
         Ok(Some(DenseOutput { t, h, y, coefficients }))
     }
 
+    /// Shares of the tolerance that the components are held to in the steps to come; all of it before.
+    pub fn set_shares(&mut self, shares: [f64; N]) {
+        self.shares = shares;
+    }
+
     /// Present time in s.
     pub fn time(&self) -> f64 {
         self.t
@@ -267,7 +275,7 @@ where
         let (error5, error3) = (combine(&[0.0; N], 1.0, &self.k, &E5), combine(&[0.0; N], 1.0, &self.k, &E3));
         let (mut sum5, mut sum3) = (0.0, 0.0);
         for i in 0..N {
-            let scale = self.tolerance.scale(self.y[i].abs().max(end[i].abs()));
+            let scale = self.shares[i] * self.tolerance.scale(self.y[i].abs().max(end[i].abs()));
             sum5 += (error5[i] / scale).powi(2);
             sum3 += (error3[i] / scale).powi(2);
         }

@@ -7,7 +7,8 @@ use crate::progress::Progress;
 use recon::object_dynamics::{End, planar};
 use recon_io::{
     AnyLog, FileTarget, OutputError, PlanarScene, Scene, SceneErrorKind, is_standard_output,
-    write_contact_log, write_log, write_planar_contact_log,
+    write_contact_log, write_contact_report, write_log, write_planar_contact_log,
+    write_planar_contact_report,
 };
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -21,6 +22,11 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Cli
         true => None,
         false => Some(FileTarget::new(&args.output, inputs)?),
     };
+    let page = args.report.as_ref().map(|path| {
+        let target = FileTarget::new(path, &[args.scene.clone(), args.output.clone()])?;
+        Ok::<_, CliError>((target, path))
+    });
+    let page = page.transpose()?;
     let progress = Progress::new(2, console.is_json());
     progress.step("simulating");
     let mut made = match &scene {
@@ -32,7 +38,11 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Cli
     let to_standard_output = target.is_none();
     match target {
         None => listened(write_any(&made.log, io::stdout().lock()))?,
-        Some(target) => write(&made.log, target, &args.output)?,
+        Some(target) => write(target, &args.output, |to| write_any(&made.log, to))?,
+    }
+    if let (Some((target, path)), Some(report)) = (page, &made.report) {
+        write(target, path, |to| to.write_all(report))?;
+        made.figures["report"] = path.to_string_lossy().into();
     }
     drop(progress);
     if to_standard_output {
@@ -71,6 +81,7 @@ enum MadeLog {
 /// A simulated log and what is said of it.
 struct Made {
     log: MadeLog,
+    report: Option<Vec<u8>>,
     text: String,
     figures: Value,
     outcome: Outcome,
@@ -79,8 +90,9 @@ struct Made {
 fn any_palms(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
     let run = simulate_contacts(scene, &args.scene, args.tolerance)?;
     let told = run.told();
+    let report = report(args, |title, to| write_contact_report(title, &run.world, &run.simulation, to))?;
     let log = MadeLog::Space(AnyLog::Contacts(run.log));
-    Ok(Made { log, text: told.describe(), figures: told.figures(), outcome: Outcome::Done })
+    Ok(Made { log, report, text: told.describe(), figures: told.figures(), outcome: Outcome::Done })
 }
 
 fn in_the_plane(scene: &PlanarScene, args: &SimulateArgs) -> Result<Made, CliError> {
@@ -91,15 +103,21 @@ fn in_the_plane(scene: &PlanarScene, args: &SimulateArgs) -> Result<Made, CliErr
     if !scene.touches.is_empty() {
         text += &format!("\n  laid on its palms by a move of {:.1e} m", run.laid);
     }
-    Ok(Made { log: MadeLog::Plane(run.log), text, figures, outcome: Outcome::Done })
+    let report =
+        report(args, |title, to| write_planar_contact_report(title, &scene.world, &run.simulation, to))?;
+    Ok(Made { log: MadeLog::Plane(run.log), report, text, figures, outcome: Outcome::Done })
 }
 
 fn three_palms(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
+    if args.report.is_some() {
+        return Err(CliError::NoPage);
+    }
     let simulated = simulate(scene, &args.scene, args.tolerance)?;
     let (text, figures) = (describe(&simulated), figures(&simulated));
     let whole = simulated.end == End::Completed;
     let outcome = if whole { Outcome::Done } else { Outcome::WithReservations };
-    Ok(Made { log: MadeLog::Space(AnyLog::ThreePalms(simulated.log)), text, figures, outcome })
+    let log = MadeLog::Space(AnyLog::ThreePalms(simulated.log));
+    Ok(Made { log, report: None, text, figures, outcome })
 }
 
 fn write_any(log: &MadeLog, to: impl Write) -> io::Result<()> {
@@ -110,16 +128,34 @@ fn write_any(log: &MadeLog, to: impl Write) -> io::Result<()> {
     }
 }
 
-fn write(log: &MadeLog, target: FileTarget, path: &Path) -> Result<(), CliError> {
+fn write(
+    target: FileTarget,
+    path: &Path,
+    contents: impl Fn(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), CliError> {
     while_writing(|| {
         let mut file = target.begin()?;
-        write_any(log, Checked(&mut file)).map_err(|source| OutputError::Io {
+        contents(&mut Checked(&mut file)).map_err(|source| OutputError::Io {
             action: "write",
             path: path.to_owned(),
             source,
         })?;
         Ok(file.commit()?)
     })
+}
+
+/// The page of a scene, if one is asked for; its title is the name of the scene's file.
+fn report(
+    args: &SimulateArgs,
+    write: impl Fn(&str, &mut Vec<u8>) -> io::Result<()>,
+) -> Result<Option<Vec<u8>>, CliError> {
+    if args.report.is_none() {
+        return Ok(None);
+    }
+    let title = args.scene.file_stem().map_or_else(Default::default, |stem| stem.to_string_lossy());
+    let mut page = Vec::new();
+    write(&title, &mut page).map_err(CliError::Page)?;
+    Ok(Some(page))
 }
 
 fn describe(simulated: &Simulated) -> String {

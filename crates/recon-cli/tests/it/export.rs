@@ -166,6 +166,13 @@ fn a_scene_is_exported_alone() {
     let run = scratch.run(&["export", "scene.toml", "-o", "model"]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     assert!(scratch.path().join("model/scene_shape.obj").is_file(), "{}", run.stdout);
+    // So does a cup, as boxes.
+    let cup =
+        "\n[[palm]]\nkind = \"cup\"\nradius = 1.0\nfriction = 0.1\npose = { position = [0.0, 0.0, 1.0] }\n";
+    scratch.write("scene.toml", &(scene.to_owned() + cup));
+    let run = scratch.run(&["export", "scene.toml", "-o", "model"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(scratch.read("model/scene.xml").contains("palm_5 is a cup"));
     // What cannot be exported is named, and what stood there stands.
     let before = scratch.read("model/scene.xml");
     let refused = |scene: &str, words: &[&str]| {
@@ -175,9 +182,10 @@ fn a_scene_is_exported_alone() {
         assert!(words.iter().all(|word| run.stderr.contains(word)), "{}", run.stderr);
         assert!(scratch.read("model/scene.xml") == before);
     };
-    let cup =
-        "\n[[palm]]\nkind = \"cup\"\nradius = 1.0\nfriction = 0.1\npose = { position = [0.0, 0.0, 1.0] }\n";
-    refused(&(scene.to_owned() + cup), &["palm 5 is a cup"]);
+    let damped = "\n[[palm]]\nkind = \"sphere\"\nradius = 0.01\nfriction = 0.1\npose = { position = [0.0, 0.0, 1.0] }\n\
+                  spring = { stiffness = [100, 200, 300], damping = [[1.0, 0.1, 0.0], [0.1, 1.0, 0.0], [0.0, 0.0, 1.0]], \
+                  mass = 0.1 }\n";
+    refused(&(scene.to_owned() + damped), &["damping of palm 5"]);
     refused(include_str!("../../scenes/fig5.toml"), &["scene.toml", "any [[palm]]"]);
     refused("plane = true", &["scene.toml", "scene in the plane"]);
 }

@@ -36,6 +36,27 @@ fn simulate(scratch: &Scratch, scene: &str) -> Run {
 }
 
 #[test]
+fn a_page_shows_it_if_one_is_asked_for() {
+    let scratch = Scratch::new("planar-page");
+    scratch.write("slope.toml", SLOPE);
+    let run = scratch.run(&["simulate", "slope.toml", "-o", "log.csv", "--report", "page.html", "--json"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let said: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(said["report"].as_str(), Some("page.html"));
+    let page = scratch.read("page.html");
+    assert!(page.contains("<title>slope") && page.contains("class=\"palm p2\""));
+    // Neither the scene nor the log is written over, and scenes without [[palm]] tables have no such page.
+    for file in ["slope.toml", "log.csv"] {
+        let run = scratch.run(&["simulate", "slope.toml", "-o", "log.csv", "--report", file]);
+        assert!(run.code != Some(0) && run.stderr.contains(file), "{}", run.stderr);
+    }
+    scratch.write("three.toml", include_str!("../../scenes/fig5.toml"));
+    let run = scratch.run(&["simulate", "three.toml", "-o", "other.csv", "--report", "other.html"]);
+    assert!(run.code == Some(3) && run.stderr.contains("recon reconstruct"), "{}", run.stderr);
+    assert!(!scratch.path().join("other.csv").exists());
+}
+
+#[test]
 fn a_disc_on_a_slope_slides_and_then_rolls() {
     let scratch = Scratch::new("planar-slope");
     let run = simulate(&scratch, SLOPE);

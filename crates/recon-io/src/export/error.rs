@@ -36,20 +36,6 @@ pub enum ExportError {
         /// Which surface.
         name: String,
     },
-    /// MuJoCo has no concave surfaces.
-    #[error("palm {palm} is a cup, and MuJoCo has no hollow sphere; export the scene without it")]
-    Cup {
-        /// Palm from 1.
-        palm: usize,
-    },
-    /// A motion that no joint of MuJoCo follows.
-    #[error(
-        "palm {palm} follows a table of poses; a scene is exported with motions that are parts with laws"
-    )]
-    PoseTable {
-        /// Palm from 1.
-        palm: usize,
-    },
     /// Dampers of MuJoCo's slides act along them alone.
     #[error(
         "damping of palm {palm}'s spring couples the principal axes of its stiffness, by {coupling:.1e} N s/m; MuJoCo's dampers \

@@ -8,7 +8,9 @@ mod page;
 #[cfg(test)]
 mod tests;
 
-pub use contacts::{ModeSpan, mode_spans, planar_mode_spans, write_contact_report};
+pub use contacts::{
+    ModeSpan, mode_spans, planar_mode_spans, write_contact_report, write_planar_contact_report,
+};
 pub use data::{
     Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
     ReportError, TrueShape, Verdict,

@@ -2,6 +2,7 @@ use super::data::{ReportData, ReportError};
 use super::encode::encode;
 use std::io::{self, Write};
 
+const HEAD: &str = include_str!("assets/head.html");
 const PAGE: &str = include_str!("assets/page.html");
 const STYLE: &str = include_str!("assets/style.css");
 
@@ -25,17 +26,19 @@ pub fn write_report(data: &ReportData, to: impl Write) -> io::Result<()> {
     data.check().map_err(|e: ReportError| io::Error::new(io::ErrorKind::InvalidInput, e))?;
     let json = serde_json::to_string(&encode(data))?;
     let parts = [
+        ("head", head(&data.title, "")?),
         ("title", escape_text(&data.title)),
-        ("style", style()),
         ("data", escape_script(&json)),
         ("script", SCRIPT.concat()),
     ];
     fill(PAGE, &parts, to)
 }
 
-/// The style that all pages share.
-pub(super) fn style() -> String {
-    STYLE.to_owned()
+/// The head that all pages share, with what a page adds to their style.
+pub(super) fn head(title: &str, style: &str) -> io::Result<String> {
+    let mut head = Vec::new();
+    fill(HEAD, &[("title", escape_text(title)), ("style", STYLE.to_owned() + style)], &mut head)?;
+    Ok(String::from_utf8_lossy(&head).into_owned())
 }
 
 /// Writes a page with each `{{name}}` in it replaced by the part of that name.

@@ -1,24 +1,46 @@
 //! A whole scene for MuJoCo: the object in its first state, palms with their friction, springs and hinges.
 
+mod geom;
+mod joint;
 mod palm;
 mod principal;
 
 #[cfg(test)]
 mod tests;
 
-use self::palm::{Joint, Palm};
+use self::joint::Joint;
+use self::palm::{About, Palm};
 use super::xml::{comment, numbers};
 use super::{ExportError, ExportShape, ExportedFile, ObjectModel, mjcf, obj};
 use crate::{MotionState, Scene, SceneErrorKind, Shape, TriangleMesh};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, SupportFunction};
-use recon::object_dynamics::ScenePalm;
+use recon::object_dynamics::{MOST_PALMS, PalmCoordinates, SampleTimes, ScenePalm};
 use std::io::{self, Write};
 
 /// Half the width of a flat palm that moves (planes cannot) and half the length of a cylinder, in sizes of the object.
 const BROAD: f64 = 40.0;
 /// Rows and columns of the net on which a shape is drawn that MuJoCo does not know.
 const NET: (u32, u32) = (48, 96);
+
+/// Time step, s.
+const STEP: f64 = 2e-4;
+/// Stiffness of contacts as a rate squared, 1/s^2: 1.5 in units of the time step (Runge-Kutta steps are stable up to about 7).
+const STIFFNESS: f64 = 1.5 / (STEP * STEP);
+/// Share of critical damping.
+const DAMPING: f64 = 0.5;
+/// Soft contacts: springs and dampers. Hard ones couple slip into their normal row, and what slides hovers (`contact-cost.md`).
+const IMPEDANCE: f64 = 0.01;
+/// Damping of slip, 1/s, and how much harder its rows are than normal ones: what sticks creeps next to nothing.
+const SLIP_DAMPING: f64 = 100.0;
+const IMPRATIO: f64 = 1e6;
+
+/// Tolerance with which the first state is found.
+const START_TOLERANCE: f64 = 1e-8;
+
+/// What is said of contacts in the file.
+const CONTACTS: &str = "Contacts are springs and dampers, friction a damper of slip up to Coulomb's bound; their numbers go with the \
+                        time step: solref with its inverse square and inverse.";
 
 /// An object on palms of any shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +49,8 @@ pub struct SceneModel {
     pub object: ObjectModel,
     /// The palms.
     pub palms: Vec<ScenePalm>,
+    /// Where those that give way are at the start.
+    pub start: [PalmCoordinates; MOST_PALMS],
     /// Acceleration of free fall along -Z, m/s^2.
     pub gravity: f64,
 }
@@ -39,6 +63,12 @@ impl SceneModel {
     pub fn new(name: &str, scene: &Scene) -> Result<Self, SceneErrorKind> {
         let world = scene.contact_scene()?;
         let (start, _) = scene.contact_start()?;
+        // Gaps of a state that is given to some digits are closed: stiff contacts would throw the object off.
+        let times = SampleTimes { duration: STEP, rate: 1.0 / STEP };
+        let closed = world.simulate(&start, times, START_TOLERANCE).ok();
+        let state = closed.and_then(|run| run.instants.first().map(|now| now.state));
+        let (body, palms) =
+            state.map_or((start.body, world.palms_at_start()), |state| (state.body, state.palms));
         // A scene that can be simulated has one.
         let simulation = scene.simulation.as_ref();
         let ellipsoid = |semi_axes| {
@@ -60,32 +90,40 @@ impl SceneModel {
             deviations: None,
             shape,
             seen: Vec::new(),
-            start: Some(MotionState::from(start.body)),
+            start: Some(MotionState::from(body)),
         };
-        Ok(Self { object, palms: world.palms().to_vec(), gravity: scene.gravity })
+        Ok(Self { object, palms: world.palms().to_vec(), start: palms, gravity: scene.gravity })
     }
 
     /// The model `NAME.xml` and its meshes.
     ///
     /// Joints `palm_i_j` follow the `j`th part of the motion of palm `i`: whoever steps the model sets their position and rate,
     /// by the law whose numbers stand in the custom field of that name, and `qfrc_applied` to the armature times its
-    /// acceleration. Springs are the slides `palm_i_x`, `_y`, `_z` along the principal axes of the stiffness. Motors are
-    /// the hinges `palm_i_motor` with actuators.
+    /// acceleration. Of a table of poses they are the slides `palm_i_path_x`, `_y`, `_z` and the ball `palm_i_path_turn`, which follow
+    /// the file that the text `palm_i_path` names, a row for each time step. Springs are the slides `palm_i_x`, `_y`, `_z` along
+    /// the principal axes of the stiffness. Motors are the hinges `palm_i_motor` with actuators. A cup is made of boxes.
     ///
     /// # Errors
-    /// [`ExportError`] names the palm that MuJoCo does not know, such as a cup.
+    /// [`ExportError`] names the palm that MuJoCo does not know.
     pub fn files(&self) -> Result<Vec<ExportedFile>, ExportError> {
         self.object.check()?;
         let reach = match &self.object.shape {
             ExportShape::Ellipsoid { semi_axes, .. } => semi_axes.max_element(),
             ExportShape::Mesh { mesh, .. } => mesh.vertices.iter().map(|v| v.length()).fold(0.0, f64::max),
         };
-        let palm = |(i, palm)| Palm::new(i + 1, palm, BROAD * reach);
-        let palms = self.palms.iter().enumerate().map(palm).collect::<Result<Vec<_>, _>>()?;
+        let object = self.object.start.as_ref().map_or(DVec3::ZERO, |start| start.p_WCm);
+        let about = About { broad: BROAD * reach, object, step: STEP };
+        let palm = |(i, (palm, start))| Palm::new(i + 1, palm, start, &about);
+        let palms =
+            self.palms.iter().zip(&self.start).enumerate().map(palm).collect::<Result<Vec<_>, _>>()?;
         let mut contents = Vec::new();
         // Writing to memory does not fail.
         let _ = self.write(&palms, &mut contents);
         let mut files = vec![ExportedFile { name: format!("{}.xml", self.object.name), contents }];
+        for palm in palms {
+            let name = self.path_file(&palm);
+            files.extend(palm.path.map(|contents| ExportedFile { name, contents }));
+        }
         for (name, mesh) in self.object.meshes(&[]) {
             files.push(ExportedFile { name: self.object.mesh_file(&name), contents: obj::write(&mesh) });
         }
@@ -95,12 +133,16 @@ impl SceneModel {
     fn write(&self, palms: &[Palm], to: &mut dyn Write) -> io::Result<()> {
         let joints = || palms.iter().flat_map(|palm| &palm.joints);
         mjcf::open(&self.object, to)?;
-        writeln!(to, "{}", comment("Contacts sink in by some 1e-6 m; stiffer ones need shorter steps."))?;
+        palms.iter().filter_map(Palm::note).try_for_each(|note| writeln!(to, "{}", comment(&note)))?;
+        writeln!(to, "{}", comment(CONTACTS))?;
         writeln!(
             to,
-            "<option gravity=\"0 0 {}\" timestep=\"0.0002\" integrator=\"implicitfast\" cone=\"elliptic\" \
-             impratio=\"100\" tolerance=\"1e-14\" iterations=\"200\"/>",
-            numbers(&[-self.gravity])
+            "<option gravity=\"0 0 {}\" timestep=\"{}\" integrator=\"RK4\" cone=\"elliptic\" impratio=\"{}\" \
+             solver=\"Newton\" tolerance=\"1e-14\" iterations=\"100\" \
+             ccd_tolerance=\"1e-12\" ccd_iterations=\"100\"/>",
+            numbers(&[-self.gravity]),
+            numbers(&[STEP]),
+            numbers(&[IMPRATIO])
         )?;
         writeln!(to, "<custom>")?;
         for joint in joints() {
@@ -109,18 +151,33 @@ impl SceneModel {
                 writeln!(to, "  <numeric name=\"{name}_{kind}\" data=\"{data}\"/>")?;
             }
         }
+        for palm in palms.iter().filter(|palm| palm.path.is_some()) {
+            writeln!(to, "  <text name=\"{}_path\" data=\"{}\"/>", palm.name, self.path_file(palm))?;
+        }
         writeln!(to, "</custom>")?;
         mjcf::assets(&self.object, to)?;
         writeln!(to, "<worldbody>")?;
         mjcf::body(&self.object, to)?;
         palms.iter().try_for_each(|palm| palm.write(to))?;
-        writeln!(to, "</worldbody>\n<actuator>")?;
+        writeln!(to, "</worldbody>\n<contact>")?;
+        let contact = format!(
+            "solref=\"{}\" solreffriction=\"{}\" solimp=\"{}\"",
+            numbers(&[-STIFFNESS, -2.0 * DAMPING * STIFFNESS.sqrt()]),
+            numbers(&[-1.0, -SLIP_DAMPING]),
+            numbers(&[IMPEDANCE, IMPEDANCE, 1e-3])
+        );
+        palms.iter().try_for_each(|palm| palm.write_pairs(&self.object.name, &contact, to))?;
+        writeln!(to, "</contact>\n<actuator>")?;
         for joint in joints().filter(|joint| joint.motor.is_some()) {
             writeln!(to, "  <motor name=\"{0}\" joint=\"{0}\"/>", joint.name)?;
         }
         writeln!(to, "</actuator>\n<keyframe>")?;
         self.write_start(&joints().collect::<Vec<_>>(), to)?;
         writeln!(to, "</keyframe>\n</mujoco>")
+    }
+
+    fn path_file(&self, palm: &Palm) -> String {
+        format!("{}_{}.csv", self.object.name, palm.name)
     }
 
     fn write_start(&self, joints: &[&Joint], to: &mut dyn Write) -> io::Result<()> {
@@ -130,8 +187,8 @@ impl SceneModel {
         let w = q.inverse() * start.w_WO;
         let mut position = vec![p.x, p.y, p.z, q.w, q.x, q.y, q.z];
         let mut rates = vec![v.x, v.y, v.z, w.x, w.y, w.z];
-        position.extend(joints.iter().map(|joint| joint.start[0]));
-        rates.extend(joints.iter().map(|joint| joint.start[1]));
+        position.extend(joints.iter().flat_map(|joint| &joint.position));
+        rates.extend(joints.iter().flat_map(|joint| &joint.rate));
         let control: Vec<f64> = joints.iter().filter_map(|joint| joint.motor).collect();
         writeln!(
             to,

@@ -1,9 +1,9 @@
 //! What each contact does over time, as bands.
 
-use super::spans::{ModeSpan, mode_spans};
+use super::spans::ModeSpan;
 use crate::number::on_scale;
 use crate::planar_figures::round_step;
-use recon::object_dynamics::{ContactMode, ContactSimulation};
+use recon::object_dynamics::ContactMode;
 use std::fmt::Write as _;
 
 const WIDTH: f64 = 920.0;
@@ -11,15 +11,14 @@ const LEFT: f64 = 64.0;
 const ROW: f64 = 26.0;
 const BAND: f64 = 18.0;
 
-/// Bands of `palms` palms over the simulated time, as one SVG element; marks at the times of the pictures.
-pub(super) fn bands(simulation: &ContactSimulation, palms: usize, marks: &[f64]) -> String {
-    let all: Vec<Vec<ModeSpan>> = (0..palms).map(|palm| mode_spans(simulation, palm)).collect();
+/// Bands of the spans of each palm over the simulated time, as one SVG element; marks at the times of the pictures.
+pub(super) fn bands(all: &[Vec<ModeSpan>], marks: &[f64]) -> String {
     let (start, end) = (all.first().and_then(|s| s.first()), all.first().and_then(|s| s.last()));
     let (start, end) = start.zip(end).map_or((0.0, 1.0), |(first, last)| (first.start, last.end));
     let place = |t: f64| on_scale(LEFT + (WIDTH - LEFT - 8.0) * (t - start) / (end - start), 100.0, 4);
-    let bottom = ROW * palms as f64 + 4.0;
+    let bottom = ROW * all.len() as f64 + 4.0;
     let mut out = format!("<svg class=\"bands\" viewBox=\"0 0 {WIDTH} {}\" role=\"img\">\n", bottom + 20.0);
-    for flight in flights(&all) {
+    for flight in flights(all) {
         let (x, width) = (place(flight[0]), place(flight[1]) - place(flight[0]));
         let _ = writeln!(
             out,

@@ -1,6 +1,6 @@
-use super::write_contact_report;
-use crate::Scene;
-use recon::object_dynamics::{ContactSimulation, SampleTimes};
+use super::{write_contact_report, write_planar_contact_report};
+use crate::{PlanarScene, Scene};
+use recon::object_dynamics::{ContactSimulation, SampleTimes, planar};
 
 const PICK_UP: &str = include_str!("../../../../recon-cli/scenes/pick-up.toml");
 const OTHERS: &str = r#"
@@ -44,6 +44,74 @@ fn the_page_is_whole_and_needs_nothing_else() {
     }
 }
 
+/// Points of the first line of a class, px.
+fn line(page: &str, class: &str) -> Vec<[f64; 2]> {
+    let opening = format!("class=\"{class}\" d=\"M");
+    let text = page.split(&opening).nth(1).unwrap().split('"').next().unwrap();
+    let point = |p: &str| {
+        let (x, y) = p.split_once(' ').unwrap();
+        [x.parse().unwrap(), y.parse().unwrap()]
+    };
+    text.split(" L").map(point).collect()
+}
+
+#[test]
+fn a_scene_of_the_plane_has_the_same_page() {
+    let scene = r#"
+plane = true
+gravity = 9.81
+[object]
+mass = 0.2
+inertia = 1e-4
+[palms]
+friction = 0.3
+[[palm]]
+kind = "line"
+pose = { position = [0.0, 0.0], angle_deg = 5.0 }
+[[palm]]
+kind = "arc"
+radius = 0.012
+pose = { position = [0.12, 0.09] }
+[[palm]]
+kind = "cup"
+radius = 5.0
+pose = { position = [0.0, 4.9] }
+[simulation]
+duration = 0.3
+sample_rate = 200.0
+position = [0.0, 0.08]
+touches = []
+shape = { kind = "circle", radius = 0.05 }
+"#;
+    let scene = PlanarScene::parse(scene).unwrap();
+    let start = planar::ContactStart { body: scene.start, contacts: Vec::new() };
+    let run = scene.world.simulate(&start, &scene.times.all().unwrap(), 1e-8).unwrap();
+    let mut page = Vec::new();
+    write_planar_contact_report("disc", &scene.world, &run, &mut page).unwrap();
+    let page = String::from_utf8(page).unwrap();
+    assert!(page.contains("<title>disc") && !page.contains("{{") && !page.contains("NaN"));
+    assert_eq!(page.matches("<figure").count(), 6);
+    for class in ["palm p1 open", "palm p2", "palm p3 open", "object"] {
+        assert_eq!(page.matches(&format!("class=\"{class}\"")).count(), 6, "{class}");
+    }
+    // It falls, and lands on the line: nothing is touched in the first picture, one palm in the last.
+    let touches: Vec<usize> =
+        page.split("<figure").skip(1).map(|one| one.matches("\"touch").count()).collect();
+    assert_eq!((touches[0], touches[5]), (0, 1));
+    assert!(page.contains("class=\"flight\"") && page.contains("class=\"name p3\""));
+    // The line rises by 5 degrees to the right, and circles are as large as they are to each other.
+    let [from, .., to] = line(&page, "palm p1 open")[..] else { unreachable!() };
+    let slope = (from[1] - to[1]) / (to[0] - from[0]);
+    assert!((slope - 5.0_f64.to_radians().tan()).abs() < 2e-3, "{slope}");
+    let width = |class: &str| {
+        let x = line(&page, class).into_iter().map(|p| p[0]);
+        x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min)
+    };
+    assert!((width("object") / width("palm p2") - 0.05 / 0.012).abs() < 0.1);
+    // Of a large cup no more than some sizes of the object is drawn.
+    assert!(width("palm p3 open") < 13.0 * width("object"));
+}
+
 #[test]
 fn cups_are_arcs_under_the_contact_and_cylinders_strips() {
     let scene = r#"
@@ -67,15 +135,7 @@ position = [0.0, 0.0, 0.025]
 shape = { kind = "ellipsoid", semi_axes = [0.035, 0.03, 0.025] }
 "#;
     let page = page(scene);
-    let line = |class: &str| -> Vec<[f64; 2]> {
-        let opening = format!("class=\"{class}\" d=\"M");
-        let text = page.split(&opening).nth(1).unwrap().split('"').next().unwrap();
-        let point = |p: &str| {
-            let (x, y) = p.split_once(' ').unwrap();
-            [x.parse().unwrap(), y.parse().unwrap()]
-        };
-        text.split(" L").map(point).collect()
-    };
+    let line = |class: &str| line(&page, class);
     let cup = line("palm p1 open");
     // An arc that opens upwards: its middle is lowest, at the contact, and its ends are not joined.
     let (first, middle, last) = (cup[0], cup[cup.len() / 2], cup[cup.len() - 1]);
