@@ -128,7 +128,8 @@ pub fn estimate_contacts(
     let start = refined(&problem, &coarse_nodes, &coarse.unknowns);
     let mut solved =
         solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[1]).ok_or(ContactEstimateError::Singular)?;
-    let covariances = solved.equations.covariances().ok_or(ContactEstimateError::Singular)?;
+    let unit = problem.natural_information();
+    let covariances = solved.equations.covariances(&unit).ok_or(ContactEstimateError::Singular)?;
     solved.unknowns.motions = problem.at_samples(&solved.unknowns);
     Ok(estimate(&record, solved, &covariances, coarse.iterations))
 }

@@ -102,10 +102,17 @@ impl<const P: usize> Equations<P> {
         -(nodes + step.body.dot(&self.body_gradient))
     }
 
-    /// None where something is not determined at all.
-    pub(super) fn covariances(&self) -> Option<Covariances<P>> {
-        let reduced = self.reduced(&Tangent::zeros(), 0.0)?;
-        let body = inverse(&reduced.body)?;
+    /// `unit` is the information of a node whose deviations are the natural units.
+    ///
+    /// Where rounding leaves the equations indefinite, as little of it is added as mends them: a deviation then is no larger than a
+    /// natural unit over the root of that share of all nodes. None where a tenth of it is not enough.
+    pub(super) fn covariances(&self, unit: &Tangent) -> Option<Covariances<P>> {
+        let with = |share: f64| {
+            let reduced = self.reduced(&(unit * share), 0.0)?;
+            let body = inverse(&reduced.body)?;
+            Some((reduced, body))
+        };
+        let (reduced, body) = [0.0, 1e-4, 1e-3, 1e-2, 0.1].into_iter().find_map(with)?;
         let mut motions = Vec::with_capacity(self.nodes.len());
         let (mut after, mut follows) = (Transition::zeros(), SMatrix::<f64, MOTION, P>::zeros());
         for node in reduced.nodes.iter().rev() {
