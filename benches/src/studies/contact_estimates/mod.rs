@@ -100,7 +100,7 @@ impl Sums {
     fn add(&mut self, file: &Log, noise: (f64, f64), seconds: f64, seed: u64) -> Anything<()> {
         let Case { log, modes, options, length } = case(file, noise, seconds, seed)?;
         let started = std::time::Instant::now();
-        let Ok(found) = estimate_contacts(&log, &modes, &options) else {
+        let Ok(found) = estimate_contacts(&log, Some(&modes), &options) else {
             self.failed += 1;
             return Ok(());
         };

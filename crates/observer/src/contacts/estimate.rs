@@ -1,13 +1,16 @@
 use super::cold;
+use super::modes::by_ratio;
 use super::noise::ContactNoiseLevel;
 use super::problem::{Problem, Units, Unknowns};
 use super::record::Record;
+use super::rows::Rows;
 use super::solve::{Covariances, Solved, solve};
 use super::state::{Body, MOTION, Motion, Tangent};
 use super::windows::longest;
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS, SensedAxes};
+use std::ops::Range;
 use thiserror::Error;
 
 /// Constants of an unknown body: logarithm of the mass, six numbers of the inertia tensor.
@@ -26,6 +29,13 @@ const PRIOR: f64 = 0.7;
 const PRIOR_MASS: f64 = 10.0;
 /// Deviation of the first orientation, rad: an unknown body has no axes but those it is given.
 const FIRST_TURN: f64 = 1e-5;
+
+/// Natural times on either side over which the ratio of friction to normal force is averaged, to tell modes.
+const AVERAGED: f64 = 0.12;
+/// Conditions of a contact that sticks are contradicted beyond this: three numbers in their deviations go there once in a million.
+const CONTRADICTED: f64 = 30.7;
+/// How often modes are taken back.
+const ROUNDS: usize = 6;
 
 /// Why there is no estimate.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -68,6 +78,8 @@ pub struct ContactEstimate {
     pub deviations: Vec<[DVec3; 4]>,
     /// Sample of each node.
     pub nodes: Vec<usize>,
+    /// Contact modes at all samples: those that were given, or the estimated ones.
+    pub modes: Vec<[ContactMode; MOST_PALMS]>,
     /// Mass, kg.
     pub mass: f64,
     /// Standard deviation of the logarithm of the mass.
@@ -97,8 +109,8 @@ pub struct ContactOptions {
     pub size: Option<f64>,
 }
 
-/// Motion, mass and inertia of an unknown body from contacts of any palms, their forces in three axes and contact modes, from
-/// no guess (`contacts.md`, section 5).
+/// Motion, mass and inertia of an unknown body from contacts of any palms and their forces in three axes, from no guess, with
+/// the contact modes at all samples if they are known (`contacts.md`, sections 5 and 8).
 ///
 /// Nodes hold the motion, one a sample; measured impulses link them, and contacts are conditions on it. What is minimised is the squared distance of the true readings from the measured ones in their
 /// deviations: contacts and impulses are adjusted with the motion.
@@ -107,14 +119,49 @@ pub struct ContactOptions {
 /// [`ContactEstimateError`] where the log lacks what is needed.
 pub fn estimate_contacts(
     log: &ContactLog,
-    modes: &[[ContactMode; MOST_PALMS]],
+    modes: Option<&[[ContactMode; MOST_PALMS]]>,
     options: &ContactOptions,
 ) -> Result<ContactEstimate, ContactEstimateError> {
     check(log, modes)?;
-    let record = Record::new(log, modes, &options.noise).ok_or(ContactEstimateError::NoContact)?;
+    let Some(modes) = modes else { return with_estimated_modes(log, options) };
+    Ok(with_modes(log, modes.to_vec(), options)?.0)
+}
+
+/// With modes from the ratios of forces, those of the conditions that the motion contradicts taken back.
+fn with_estimated_modes(
+    log: &ContactLog,
+    options: &ContactOptions,
+) -> Result<ContactEstimate, ContactEstimateError> {
+    let none = vec![[ContactMode::Slide; MOST_PALMS]; log.times().len()];
+    let record = Record::new(log, &none, &options.noise).ok_or(ContactEstimateError::NoContact)?;
+    let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
+    let natural = length / (options.gravity * length).sqrt();
+    let mut modes = by_ratio(log, &options.noise, AVERAGED * natural);
+    for _ in 0..ROUNDS {
+        let (found, slips) = with_modes(log, modes, options)?;
+        if slips.is_empty() {
+            return Ok(found);
+        }
+        modes = found.modes;
+        for (samples, palm) in slips {
+            modes[samples].iter_mut().for_each(|modes| modes[palm] = ContactMode::Slide);
+        }
+    }
+    Ok(with_modes(log, modes, options)?.0)
+}
+
+/// Samples at which the motion contradicts that a contact sticks, and the palm.
+type Slips = Vec<(Range<usize>, usize)>;
+
+fn with_modes(
+    log: &ContactLog,
+    modes: Vec<[ContactMode; MOST_PALMS]>,
+    options: &ContactOptions,
+) -> Result<(ContactEstimate, Slips), ContactEstimateError> {
+    let record = Record::new(log, &modes, &options.noise).ok_or(ContactEstimateError::NoContact)?;
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let mut problem = problem(&record, options, length);
-    let record = record.averaged(modes, longest(&options.noise, &problem.units));
+    let record = record.averaged(&modes, longest(&options.noise, &problem.units));
     problem.record = &record;
     problem.nodes = spaced(&record.times, COARSE * problem.units.length / problem.units.speed);
     problem.noise.floor = problem.noise.floor.max(COARSE_FLOOR * problem.units.speed);
@@ -131,7 +178,26 @@ pub fn estimate_contacts(
     let unit = problem.natural_information();
     let covariances = solved.equations.covariances(&unit).ok_or(ContactEstimateError::Singular)?;
     solved.unknowns.motions = problem.at_samples(&solved.unknowns);
-    Ok(estimate(&record, solved, &covariances, coarse.iterations))
+    let slips = slips(&problem, &solved.unknowns);
+    Ok((estimate(&record, modes, solved, &covariances, coarse.iterations), slips))
+}
+
+fn slips(problem: &Problem, at: &Unknowns) -> Slips {
+    let record = problem.record;
+    let mut slips = Vec::new();
+    for (j, motion) in at.motions.iter().enumerate() {
+        let turn = at.body.turn(motion.q, motion.L);
+        let from = record.samples[j.saturating_sub(1)];
+        let to = record.samples.get(j + 1).copied().unwrap_or(record.samples[j]);
+        for contact in record.contacts[j].iter().filter(|c| c.mode == ContactMode::Stick) {
+            let rows = Rows::new(contact, motion, &turn, &problem.noise, false);
+            let misfit = rows.map_or(0.0, |rows| (rows.information * rows.residual).dot(&rows.residual));
+            if misfit > CONTRADICTED {
+                slips.push((from..to + 1, contact.palm));
+            }
+        }
+    }
+    slips
 }
 
 /// Samples at least `apart` from each other, the first and the last among them.
@@ -148,9 +214,9 @@ fn spaced(times: &[f64], apart: f64) -> Vec<usize> {
     nodes
 }
 
-fn check(log: &ContactLog, modes: &[[ContactMode; MOST_PALMS]]) -> Result<(), ContactEstimateError> {
+fn check(log: &ContactLog, modes: Option<&[[ContactMode; MOST_PALMS]]>) -> Result<(), ContactEstimateError> {
     let samples = log.times().len();
-    if modes.len() != samples {
+    if let Some(modes) = modes.filter(|modes| modes.len() != samples) {
         return Err(ContactEstimateError::Modes { found: modes.len(), samples });
     }
     let lacks = log.palms().iter().position(|palm| palm.force_axes() != Some(SensedAxes::Three));
@@ -194,6 +260,7 @@ fn refined(problem: &Problem, coarse: &[usize], unknowns: &Unknowns) -> Unknowns
 
 fn estimate(
     record: &Record,
+    modes: Vec<[ContactMode; MOST_PALMS]>,
     solved: Solved<CONSTANTS>,
     covariances: &Covariances<CONSTANTS>,
     coarse: usize,
@@ -214,6 +281,7 @@ fn estimate(
         states: unknowns.motions.iter().map(state).collect(),
         deviations: unknowns.motions.iter().zip(&covariances.motions).map(of).collect(),
         nodes: record.samples.clone(),
+        modes,
         mass: body.log_mass.exp(),
         mass_deviation: deviation(0),
         inertia: body.inertia(),

@@ -3,6 +3,7 @@
 mod cold;
 mod estimate;
 mod flow;
+mod modes;
 mod noise;
 mod problem;
 mod record;

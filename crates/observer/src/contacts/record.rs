@@ -11,6 +11,8 @@ use std::ops::{Add, Mul};
 /// A contact at one sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
+    /// Number of the palm, from 0.
+    pub(super) palm: usize,
     /// Contact point from the record's origin, m.
     pub(super) c: DVec3,
     pub(super) n: DVec3,
@@ -104,6 +106,7 @@ fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, modes: &[ContactMode; 
         let motion = logged.motion(k);
         let n = touch.n.get();
         Some(Contact {
+            palm,
             c: touch.p_WC - origin,
             n,
             u: motion.material_velocity(touch.p_WC),

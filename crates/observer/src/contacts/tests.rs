@@ -157,7 +157,7 @@ fn better_sensors_give_a_better_motion_in_proportion() {
     let exact = log(0.4, 500.0);
     let error = |noise: ContactNoiseLevel| {
         let log = noisy(&exact, &noise, 5);
-        let found = estimate_contacts(&log, &modes(&log), &options(noise)).unwrap();
+        let found = estimate_contacts(&log, Some(&modes(&log)), &options(noise)).unwrap();
         assert!(found.settled);
         let truth = log.truth().unwrap();
         let square = |(s, &k): (&BodyState, &usize)| (s.v_WCm - truth[k].v_WCm).length_squared();
@@ -174,7 +174,7 @@ fn errors_are_as_large_as_they_are_said_to_be() {
     let (mut sum, runs) = (0.0, 6);
     for seed in 0..runs {
         let log = noisy(&exact, &noise, seed);
-        let found = estimate_contacts(&log, &modes(&log), &options(noise)).unwrap();
+        let found = estimate_contacts(&log, Some(&modes(&log)), &options(noise)).unwrap();
         let (squares, mass) = errors(&found, &log);
         assert!(mass < 5.0 * found.mass_deviation, "{seed}: {mass} {}", found.mass_deviation);
         sum += squares;
@@ -187,20 +187,20 @@ fn errors_are_as_large_as_they_are_said_to_be() {
 fn a_log_that_lacks_something_is_refused_by_name() {
     let log = log(0.05, 200.0);
     let options = options(noise(0.0, 0.0));
-    let few = estimate_contacts(&log, &[], &options).unwrap_err();
+    let few = estimate_contacts(&log, Some(&[]), &options).unwrap_err();
     assert_eq!(few, ContactEstimateError::Modes { found: 0, samples: 11 });
     let mut records = log.records();
     records[1].force = ForceChannel::Missing;
     let blind = ContactLog::new(log.times().to_vec(), records, None).unwrap();
     let modes = modes(&log);
-    let lacks = estimate_contacts(&blind, &modes, &options).unwrap_err();
+    let lacks = estimate_contacts(&blind, Some(&modes), &options).unwrap_err();
     assert_eq!(lacks, ContactEstimateError::NoForce { palm: 2 });
     let one = ContactLog::new(log.times().to_vec(), vec![log.records().remove(0)], None).unwrap();
-    assert_eq!(estimate_contacts(&one, &modes, &options).unwrap_err(), ContactEstimateError::NoSize);
+    assert_eq!(estimate_contacts(&one, Some(&modes), &options).unwrap_err(), ContactEstimateError::NoSize);
     let mut records = log.records();
     for record in &mut records {
         record.contacts = ContactPoints::World(vec![None; 11]);
     }
     let untouched = ContactLog::new(log.times().to_vec(), records, None).unwrap();
-    assert_eq!(estimate_contacts(&untouched, &modes, &options).unwrap_err(), ContactEstimateError::NoContact);
+    assert_eq!(estimate_contacts(&untouched, Some(&modes), &options).unwrap_err(), ContactEstimateError::NoContact);
 }
