@@ -3,7 +3,7 @@
 use super::noise::ContactNoiseLevel;
 use object_dynamics::{ContactLog, ContactMode, LoggedPalm, MOST_PALMS};
 
-/// Share of the samples of a palm whose ratio is below that of sliding: of those that slide at least a tenth of all do.
+/// Quantile of a palm's ratios that is taken for that of sliding.
 const SLIDING: f64 = 0.9;
 /// Standard deviations by which a ratio is below that of sliding where a contact is said to stick. One that slides and is said
 /// to stick is an error of its slip; one that sticks and is said to slide loses two conditions.
@@ -22,22 +22,53 @@ struct Ratio {
 ///
 /// The ratio of a contact that slides is the coefficient of friction, and that of one that sticks is below it. A palm along which
 /// the body never slides has a coefficient that is too small here: contacts near it lose conditions.
-pub(super) fn by_ratio(log: &ContactLog, noise: &ContactNoiseLevel, time: f64) -> Vec<[ContactMode; MOST_PALMS]> {
-    let mut modes = vec![[ContactMode::Off; MOST_PALMS]; log.times().len()];
+pub(super) fn by_ratio(
+    log: &ContactLog,
+    noise: &ContactNoiseLevel,
+    time: f64,
+) -> Vec<[ContactMode; MOST_PALMS]> {
+    let times = log.times();
+    let mut modes = vec![[ContactMode::Off; MOST_PALMS]; times.len()];
     for (i, palm) in log.palms().iter().enumerate() {
-        let ratios = averaged(&ratios(palm, log.times().len()), log.times(), time);
-        let mut sorted: Vec<f64> = ratios.iter().flatten().map(|ratio| ratio.mean).collect();
-        sorted.sort_by(f64::total_cmp);
-        let Some(&sliding) = sorted.get((SLIDING * sorted.len() as f64) as usize) else { continue };
-        for (k, ratio) in ratios.iter().enumerate() {
-            let Some(ratio) = ratio else { continue };
-            let share = noise.force_share * (1.0 + sliding * sliding) / sliding.max(f64::MIN_POSITIVE);
-            let deviation = LEAST.hypot(share / (ratio.samples as f64).sqrt());
-            let sticks = ratio.mean < sliding * (1.0 - BELOW * deviation);
-            modes[k][i] = if sticks { ContactMode::Stick } else { ContactMode::Slide };
+        let ratios = averaged(&ratios(palm, times.len()), times, time);
+        let slides = sliding(&ratios, noise);
+        // A mean may be below that of sliding by the samples beside it: nearer than `time` to one that is not it tells nothing.
+        let before = nearest(&slides, times, (0..times.len()).collect());
+        let after = nearest(&slides, times, (0..times.len()).rev().collect());
+        for k in (0..times.len()).filter(|&k| ratios[k].is_some()) {
+            let doubtful = before[k].min(after[k]) <= time;
+            modes[k][i] = if doubtful { ContactMode::Slide } else { ContactMode::Stick };
         }
     }
     modes
+}
+
+/// Whether a contact is not clearly below the ratio of sliding.
+fn sliding(ratios: &[Option<Ratio>], noise: &ContactNoiseLevel) -> Vec<bool> {
+    let mut sorted: Vec<f64> = ratios.iter().flatten().map(|ratio| ratio.mean).collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(&sliding) = sorted.get((SLIDING * sorted.len() as f64) as usize) else {
+        return vec![false; ratios.len()];
+    };
+    let share = noise.force_share * (1.0 + sliding * sliding) / sliding.max(f64::MIN_POSITIVE);
+    let slides = |ratio: &Ratio| {
+        let deviation = LEAST.hypot(share / (ratio.samples as f64).sqrt());
+        ratio.mean >= sliding * (1.0 - BELOW * deviation)
+    };
+    ratios.iter().map(|ratio| ratio.as_ref().is_some_and(slides)).collect()
+}
+
+/// Time between each sample and the last one before it, in some order, that slides.
+fn nearest(slides: &[bool], times: &[f64], order: Vec<usize>) -> Vec<f64> {
+    let mut away = vec![f64::INFINITY; times.len()];
+    let mut last = f64::INFINITY;
+    for k in order {
+        if slides[k] {
+            last = times[k];
+        }
+        away[k] = (times[k] - last).abs();
+    }
+    away
 }
 
 fn ratios(palm: &LoggedPalm, count: usize) -> Vec<Option<f64>> {

@@ -16,6 +16,10 @@ const SLOPE: f64 = 0.9;
 
 /// An ellipsoid that spins between three rubbing planes.
 fn log(seconds: f64, rate: f64) -> ContactLog {
+    rubbed(seconds, rate, 0.1)
+}
+
+fn rubbed(seconds: f64, rate: f64, friction: f64) -> ContactLog {
     let axes = DVec3::new(0.05, 0.04, 0.03);
     let (body, mass) = (Ellipsoid::new(axes).unwrap(), MassProperties::uniform_ellipsoid(0.2, axes).unwrap());
     let R_WO = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.4);
@@ -32,7 +36,7 @@ fn log(seconds: f64, rate: f64) -> ContactLog {
         ScenePalm {
             surface: PalmSurface::Plane,
             drive: PalmDrive::Prescribed(SurfaceMotion::immobile(pose)),
-            friction: 0.1,
+            friction,
         }
     };
     let scene = ContactScene::new(body, mass, (0..3).map(palm).collect(), G).unwrap();
@@ -202,5 +206,27 @@ fn a_log_that_lacks_something_is_refused_by_name() {
         record.contacts = ContactPoints::World(vec![None; 11]);
     }
     let untouched = ContactLog::new(log.times().to_vec(), records, None).unwrap();
-    assert_eq!(estimate_contacts(&untouched, Some(&modes), &options).unwrap_err(), ContactEstimateError::NoContact);
+    assert_eq!(
+        estimate_contacts(&untouched, Some(&modes), &options).unwrap_err(),
+        ContactEstimateError::NoContact
+    );
+}
+
+#[test]
+fn modes_are_told_from_forces() {
+    let exact = rubbed(0.5, 1000.0, 0.3);
+    let noise = noise(4e-5, 0.01);
+    let log = noisy(&exact, &noise, 3);
+    let found = estimate_contacts(&log, None, &options(noise)).unwrap();
+    let (mut sticks, mut told) = (0, 0);
+    for (true_modes, modes) in modes(&log).iter().zip(&found.modes) {
+        for (truth, mode) in true_modes.iter().zip(modes) {
+            assert_eq!(*truth == ContactMode::Off, *mode == ContactMode::Off);
+            assert!((*truth, *mode) != (ContactMode::Slide, ContactMode::Stick), "a slip is taken for none");
+            sticks += usize::from(*truth == ContactMode::Stick);
+            told += usize::from(*mode == ContactMode::Stick);
+        }
+    }
+    assert!(sticks > 300 && 2 * told > sticks, "{told} of {sticks} that stick");
+    assert!(found.chi_squared < 1.5 * found.conditions as f64);
 }
