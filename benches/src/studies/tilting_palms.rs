@@ -133,7 +133,9 @@ fn contact_departure(
 }
 
 /// A scene, its body at rest, and how long it lasts, s.
-fn variant(source: &mut Source) -> Result<(ContactScene<Ellipsoid>, BodyState, f64), Box<dyn Error>> {
+pub(crate) fn variant(
+    source: &mut Source,
+) -> Result<(ContactScene<Ellipsoid>, BodyState, f64), Box<dyn Error>> {
     let largest = source.between(0.03, 0.06);
     let axes = largest * DVec3::new(1.0, source.between(0.6, 1.0), source.between(0.5, 0.9));
     // Of the density of water.

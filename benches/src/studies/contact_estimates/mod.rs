@@ -2,6 +2,8 @@
 //!
 //! Arguments: the folder of the logs, seeds, scenes. Writes a Markdown table.
 
+pub(crate) mod random;
+
 use super::contact_logs::log::{Anything, Log};
 use glam::DMat3;
 use recon::object_dynamics::{ChannelNoise, ContactLog, ContactMode, ContactNoise, MOST_PALMS};

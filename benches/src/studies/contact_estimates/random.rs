@@ -1,0 +1,100 @@
+//! The estimate from contacts on random scenes of three tilting palms from rest: modes, friction and body unknown.
+//!
+//! Arguments: scenes, first seed, rate (Hz). Writes a Markdown table.
+
+use super::super::tilting_palms::variant;
+use super::{FLOOR, G};
+use recon::contact_kinematics::Ellipsoid;
+use recon::object_dynamics::{
+    ChannelNoise, ContactLog, ContactNoise, ContactScene, ContactStart, SampleTimes,
+};
+use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use shape_bounds::generators::Source;
+use std::error::Error;
+
+/// Contacts as a share of the mean semi-axis, forces of themselves.
+const NOISE: (f64, f64) = (0.005, 0.02);
+
+/// Largest errors of a run in the deviations that are stated: centre and velocity at any node in any axis, mass.
+struct Errors {
+    settled: bool,
+    chi_squared: f64,
+    centre: f64,
+    velocity: f64,
+    mass: f64,
+    /// Root mean squares: centre over mean semi-axis, velocity over the natural one; mass relative.
+    of_natural: [f64; 3],
+}
+
+pub(crate) fn main() -> Result<(), Box<dyn Error>> {
+    let mut words = crate::words();
+    let wanted: u64 = words.next().map_or(Ok(40), |s| s.parse())?;
+    let first: u64 = words.next().map_or(Ok(1), |s| s.parse())?;
+    let rate: f64 = words.next().map_or(Ok(200.0), |s| s.parse())?;
+    let mut source = Source::new(first);
+    println!(
+        "| scene | settled | chi-squared a condition | largest error in deviations: centre, velocity, mass | centre, velocity, mass (natural) |"
+    );
+    println!("|---|---|---|---|---|");
+    for k in 0..wanted {
+        let (scene, body, duration) = variant(&mut source)?;
+        let run = scene.simulate(&ContactStart::touching(body), SampleTimes { duration, rate }, 1e-8)?;
+        let exact = ContactLog::from_simulation(&scene, &run)?;
+        let length = scene.body().semi_axes().element_sum() / 3.0;
+        let row = match estimated(&exact, length, first + k) {
+            Ok(found) => row(&errors(&found, &exact, &scene, length)),
+            Err(error) => format!("{error} | | |"),
+        };
+        println!("| {k} | {row} |");
+    }
+    Ok(())
+}
+
+fn estimated(exact: &ContactLog, length: f64, seed: u64) -> Result<ContactEstimate, Box<dyn Error>> {
+    let contact = NOISE.0 * length;
+    let force = ChannelNoise { fixed: 0.0, share: NOISE.1 };
+    let log = exact.with_noise(&ContactNoise { contact, force, ..ContactNoise::default() }, seed)?;
+    let floor = FLOOR * (G * length).sqrt();
+    let noise = ContactNoiseLevel { contact, force_fixed: 0.0, force_share: NOISE.1, floor };
+    Ok(estimate_contacts(&log, None, &ContactOptions { noise, gravity: G, size: None })?)
+}
+
+fn errors(
+    found: &ContactEstimate,
+    exact: &ContactLog,
+    scene: &ContactScene<Ellipsoid>,
+    length: f64,
+) -> Errors {
+    let truth = exact.truth().unwrap_or_default();
+    let (mut centre, mut velocity, mut squares) = (0.0f64, 0.0f64, [0.0; 2]);
+    for ((state, deviations), &k) in found.states.iter().zip(&found.deviations).zip(&found.nodes) {
+        let p = state.p_WCm - truth[k].p_WCm;
+        let v = state.v_WCm - truth[k].v_WCm;
+        centre = centre.max((p / deviations[0]).abs().max_element());
+        velocity = velocity.max((v / deviations[1]).abs().max_element());
+        squares[0] += p.length_squared() / (length * length);
+        squares[1] += v.length_squared() / (G * length);
+    }
+    let [p, v] = squares.map(|sum| (sum / found.nodes.len() as f64).sqrt());
+    let mass = found.mass / scene.mass().mass() - 1.0;
+    Errors {
+        settled: found.settled,
+        chi_squared: found.chi_squared / found.conditions as f64,
+        centre,
+        velocity,
+        mass: mass.abs() / found.mass_deviation,
+        of_natural: [p, v, mass.abs()],
+    }
+}
+
+fn row(errors: &Errors) -> String {
+    let [p, v, m] = errors.of_natural;
+    format!(
+        "{} | {:.2} | {:.1}, {:.1}, {:.1} | {p:.1e}, {v:.1e}, {m:.1e}",
+        if errors.settled { "yes" } else { "no" },
+        errors.chi_squared,
+        errors.centre,
+        errors.velocity,
+        errors.mass
+    )
+}
