@@ -102,7 +102,7 @@ impl ContactProblem {
         present: &Modes,
         not: Option<Left>,
     ) -> Result<Choice, ModeError> {
-        let force = self.force_scale();
+        let force = self.force_scale(|i| touches[i] != Touch::Apart);
         let search = Search { creep: SLACK, starts: 0 };
         let solved = self.coulomb(touches, &[[0.0; 3]; MOST_PALMS], search).map(|(choice, _)| choice);
         let mut sets = self.candidates(touches);
@@ -150,10 +150,11 @@ impl ContactProblem {
         ModeError::NotP { modes: self.letters(modes), minor }
     }
 
-    /// Sum of what the forces are made of, N: a scale for what counts as zero.
-    pub(crate) fn force_scale(&self) -> f64 {
+    /// The largest force that stops a contact which `touches`, N: a scale for what counts as zero. How the body moves against palms
+    /// that it does not touch says nothing of forces.
+    pub(crate) fn force_scale(&self, touches: impl Fn(usize) -> bool) -> f64 {
         let of = |i: usize| self.contacts()[i].free.length() / self.own_response(i);
-        (0..self.contacts().len()).map(of).fold(f64::MIN_POSITIVE, f64::max)
+        (0..self.contacts().len()).filter(|&i| touches(i)).map(of).fold(f64::MIN_POSITIVE, f64::max)
     }
 
     fn candidates(&self, touches: &[Touch; MOST_PALMS]) -> Vec<Modes> {
@@ -215,7 +216,7 @@ impl ContactProblem {
             return None;
         }
         let reaction = Some(reaction).filter(|reaction| reaction.unmet <= FULFILLED)?;
-        let reaction = self.within_cones(modes, reaction)?;
+        let reaction = self.within_cones(modes, reaction, force)?;
         self.with_frictionless_directions(touches, modes, &mut directions, &reaction);
         Some(Choice { modes: *modes, directions, reaction })
     }
@@ -229,9 +230,9 @@ impl ContactProblem {
         })
     }
 
-    /// The reaction, if its forces are in their cones; of over-constrained sticking any forces that are.
-    pub(crate) fn within_cones(&self, modes: &Modes, reaction: Reaction) -> Option<Reaction> {
-        let slack = SLACK * self.force_scale();
+    /// The reaction, if its forces are in their cones to rounding of `force`, N; of over-constrained sticking any forces that are.
+    pub(crate) fn within_cones(&self, modes: &Modes, reaction: Reaction, force: f64) -> Option<Reaction> {
+        let slack = SLACK * force;
         if self.in_cones(modes, &reaction, slack) {
             Some(reaction)
         } else if reaction.unique {

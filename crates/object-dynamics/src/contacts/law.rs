@@ -56,7 +56,7 @@ impl<'a> Law<'a> {
             response: [[0.0; N]; N],
             free: [0.0; N],
             rigid: [0.0; N],
-            scale: problem.force_scale(),
+            scale: problem.force_scale(|i| touches[i] != Touch::Apart),
             weight: 1.0,
         };
         for (k, &j) in law.touching.iter().enumerate() {

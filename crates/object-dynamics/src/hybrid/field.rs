@@ -83,8 +83,9 @@ impl Stretch {
             }
             None => problem.solve(&self.modes, &directions).ok(),
         };
+        let force = problem.force_scale(|i| self.modes[i] != ContactMode::Off);
         let reaction =
-            reaction.map(|reaction| problem.within_cones(&self.modes, reaction).unwrap_or(reaction));
+            reaction.map(|reaction| problem.within_cones(&self.modes, reaction, force).unwrap_or(reaction));
         Ok(Evaluated { state, tallies, touch, problem, directions, reaction })
     }
 

@@ -65,7 +65,9 @@ impl<S: SupportFunction> Stepper<'_, S> {
         let problem = scene.problem(&from.state.body, &before);
         let (velocities, touches) = over_time(&problem, &before, &from.modes, h);
         let guess = from.along.map(|force| force.map(|part| part * h));
-        let free = velocities.contacts().iter().map(|contact| contact.free.length());
+        let contacts = velocities.contacts().iter().zip(touches);
+        let free =
+            contacts.filter(|(_, touch)| *touch != Touch::Apart).map(|(contact, _)| contact.free.length());
         let creep = (self.creep / free.fold(f64::MIN_POSITIVE, f64::max)).min(1.0);
         let found = velocities.coulomb(&touches, &guess, Search { creep, starts: STARTS });
         let (choice, impulses) = found
