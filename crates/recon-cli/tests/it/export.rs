@@ -159,7 +159,7 @@ fn a_scene_is_exported_alone() {
     assert!(scratch.read("model/scene.xml") == scratch.read("demo/scene.xml"));
     assert_eq!(scratch.run(&["check", "model"]).code, Some(0));
     // A shape that MuJoCo does not know comes as a mesh.
-    let egg = r#"shape = { kind = "polynomial", terms = [{ coefficient = 0.03, powers = [0, 0, 0] }, { coefficient = 0.002, powers = [3, 0, 0] }] }"#;
+    let egg = r#"shape = { kind = "polynomial", terms = [{ coefficient = 0.025, powers = [0, 0, 0] }, { coefficient = 0.002, powers = [3, 0, 0] }] }"#;
     let start = scene.find("shape = {").unwrap();
     let end = start + scene[start..].find('\n').unwrap();
     scratch.write("scene.toml", &(scene[..start].to_owned() + egg + &scene[end..]));

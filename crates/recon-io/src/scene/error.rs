@@ -1,7 +1,7 @@
 use crate::log::LogFileError;
 use recon::contact_kinematics::{DirectionError, PalmError, ShapeError, SurfaceError};
 use recon::object_dynamics::planar::{self, PlanarMassError};
-use recon::object_dynamics::{ContactSceneError, DriveError, MassError};
+use recon::object_dynamics::{ContactSceneError, ContactSimulationError, DriveError, MassError};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -136,6 +136,9 @@ pub enum SceneErrorKind {
     /// Object and palms make no scene.
     #[error(transparent)]
     Contacts(ContactSceneError),
+    /// The object cannot start where it is said to be.
+    #[error(transparent)]
+    Start(Box<ContactSimulationError>),
 }
 
 /// `first` to `fifth`, and so many others as there may be.

@@ -15,7 +15,7 @@ use super::{ExportError, ExportShape, ExportedFile, ObjectModel, mjcf, obj};
 use crate::{MotionState, Scene, SceneErrorKind, Shape, TriangleMesh};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, SupportFunction};
-use recon::object_dynamics::{MOST_PALMS, PalmCoordinates, SampleTimes, ScenePalm};
+use recon::object_dynamics::{ContactSimulationError, MOST_PALMS, PalmCoordinates, SampleTimes, ScenePalm};
 use std::io::{self, Write};
 
 /// Half the width of a flat palm that moves (planes cannot) and half the length of a cylinder, in sizes of the object.
@@ -55,18 +55,35 @@ pub struct SceneModel {
     pub gravity: f64,
 }
 
+/// Whether object and palms cannot be where they are said to be.
+fn is_of_the_start(error: &ContactSimulationError) -> bool {
+    use ContactSimulationError as Error;
+    matches!(
+        error,
+        Error::Start(_)
+            | Error::Penetration { .. }
+            | Error::NotInContact { .. }
+            | Error::PalmsOverlap { .. }
+            | Error::Contact { .. }
+    )
+}
+
 impl SceneModel {
     /// The scene of a file that can be simulated, called `name`.
     ///
     /// # Errors
-    /// Those of [`Scene::contact_scene`] and [`Scene::contact_start`].
+    /// Those of [`Scene::contact_scene`] and [`Scene::contact_start`], and of a start that `recon simulate` does not take.
     pub fn new(name: &str, scene: &Scene) -> Result<Self, SceneErrorKind> {
         let world = scene.contact_scene()?;
         let (start, _) = scene.contact_start()?;
         // Gaps of a state that is given to some digits are closed: stiff contacts would throw the object off.
         let times = SampleTimes { duration: STEP, rate: 1.0 / STEP };
-        let closed = world.simulate(&start, times, START_TOLERANCE).ok();
-        let state = closed.and_then(|run| run.instants.first().map(|now| now.state));
+        let state = match world.simulate(&start, times, START_TOLERANCE) {
+            Ok(run) => run.instants.first().map(|now| now.state),
+            Err(error) if is_of_the_start(&error) => return Err(SceneErrorKind::Start(Box::new(error))),
+            // What rigid bodies leave open may still be tried with soft contacts.
+            Err(_) => None,
+        };
         let (body, palms) =
             state.map_or((start.body, world.palms_at_start()), |state| (state.body, state.palms));
         // A scene that can be simulated has one.

@@ -40,10 +40,12 @@ fn palms_have_their_friction_springs_and_joints() {
 #[test]
 fn other_shapes_become_meshes_and_motors_actuators() {
     let shape = r#"kind = "ellipsoid-plus-ball", radius = 0.005,"#;
-    let motor = "kind = \"cylinder\"\nradius = 0.02\nmotor = { pivot = [0.2, 0, 0], axis = [0, 1, 0], inertia = 1e-3, \
-                 angle = 0.1, law = { kind = \"constant\", value = 0.05 } }\npose = { position = [0.5, 0.0, 0.0] }";
+    let motor = "kind = \"cylinder\"\nradius = 0.02\nmotor = { pivot = [0.2, 0, -0.5], axis = [0, 1, 0], inertia = 1e-3, \
+                 angle = 0.1, law = { kind = \"constant\", value = 0.05 } }\npose = { position = [0.5, 0.0, -0.5] }";
     let table = "kind = \"flat\"\nfriction = 0.5\npose = { position = [0.0, 0.0, 0.0] }";
     let scene = PICK_UP.replace(r#"kind = "ellipsoid","#, shape).replace(table, motor);
+    let scene =
+        scene.replace("position = [0.0, 0.0, 0.025] #", "in_flight = true\nposition = [0.0, 0.0, 0.5] #");
     let model = SceneModel::new("other", &Scene::parse(&scene).unwrap()).unwrap();
     let files = model.files().unwrap();
     assert_eq!(files.iter().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["other.xml", "other_shape.obj"]);
@@ -128,4 +130,18 @@ fn what_mujoco_does_not_know_is_refused_by_name() {
     assert_eq!(damped.files(), Err(ExportError::Damping { palm: 2, coupling: 0.1 }));
     let unplaced = Scene::parse(&PICK_UP.replace("position = [0.0, 0.0, 0.025]", "")).unwrap();
     assert!(matches!(SceneModel::new("none", &unplaced), Err(SceneErrorKind::Missing { .. })));
+}
+
+#[test]
+fn a_start_that_cannot_be_is_no_model() {
+    let refused = |from: &str, to: &str| {
+        let scene = Scene::parse(&PICK_UP.replacen(from, to, 1)).unwrap();
+        SceneModel::new("refused", &scene).unwrap_err().to_string()
+    };
+    let sunk = refused("position = [0.0, 0.0, 0.025] #", "position = [0.0, 0.0, 0.02] #");
+    assert!(sunk.contains("penetrates palm 1 by 5.000e-3 m"), "{sunk}");
+    let lifted = refused("position = [0.0, 0.0, 0.025] #", "position = [0.0, 0.0, 0.026] #");
+    assert!(lifted.contains("gap of"), "{lifted}");
+    let overlap = refused("position = [-0.0426278, -0.0198061, 0.025]", "position = [0.0, 0.053, 0.025]");
+    assert!(overlap.contains("overlap"), "{overlap}");
 }
