@@ -44,6 +44,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "motion, mass and inertia from reference logs of any palms, from no guess",
     ),
     (
+        "contact_estimates_random",
+        "contact-estimates-random.md",
+        "motion and mass on random scenes of three tilting palms, everything unknown",
+    ),
+    (
         "contact_exports",
         "contact-exports.md",
         "exported scenes of any palms in MuJoCo, beside our own motion",

@@ -1,6 +1,6 @@
 use super::cold;
 use super::modes::by_ratio;
-use super::noise::ContactNoiseLevel;
+use super::options::{ContactEstimateError, ContactOptions, check};
 use super::problem::{Problem, Units, Unknowns};
 use super::record::Record;
 use super::rows::Rows;
@@ -9,9 +9,8 @@ use super::state::{Body, MOTION, Motion, Tangent};
 use super::windows::longest;
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
-use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS, SensedAxes};
+use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS};
 use std::ops::Range;
-use thiserror::Error;
 
 /// Constants of an unknown body: logarithm of the mass, six numbers of the inertia tensor.
 const CONSTANTS: usize = 7;
@@ -36,38 +35,6 @@ const AVERAGED: f64 = 0.12;
 const CONTRADICTED: f64 = 30.7;
 /// How often modes are taken back.
 const ROUNDS: usize = 6;
-
-/// Why there is no estimate.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-pub enum ContactEstimateError {
-    /// Nothing was touched.
-    #[error("no palm was touched at any sample: there is nothing to estimate from")]
-    NoContact,
-    /// A palm lacks the force.
-    #[error(
-        "palm {palm} does not measure its force in three axes: the estimate from contacts needs all of it"
-    )]
-    NoForce {
-        /// Number from 1.
-        palm: usize,
-    },
-    /// As many modes as samples are needed.
-    #[error("{found} sets of contact modes for {samples} samples: give one set a sample")]
-    Modes {
-        /// Sets given.
-        found: usize,
-        /// Samples of the log.
-        samples: usize,
-    },
-    /// All contacts are on one palm, and the size of the body is not stated.
-    #[error("one palm's contacts tell no size of the body: state one")]
-    NoSize,
-    /// Numbers beyond all bounds.
-    #[error(
-        "the least-squares problem cannot be evaluated or its equations are singular: check units and noise"
-    )]
-    Singular,
-}
 
 /// Motion, mass and inertia of an unknown body.
 #[derive(Clone, Debug)]
@@ -98,22 +65,12 @@ pub struct ContactEstimate {
     pub conditions: usize,
 }
 
-/// How [`estimate_contacts`] works.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactOptions {
-    /// Noise of the sensors.
-    pub noise: ContactNoiseLevel,
-    /// Gravity, m/s^2, along -z of the world.
-    pub gravity: f64,
-    /// Mean radius of the body, m, where it is known; else from contacts on two palms or more.
-    pub size: Option<f64>,
-}
-
 /// Motion, mass and inertia of an unknown body from contacts of any palms and their forces in three axes, from no guess, with
 /// the contact modes at all samples if they are known (`contacts.md`, sections 5 and 8).
 ///
-/// Nodes hold the motion, one a sample; measured impulses link them, and contacts are conditions on it. What is minimised is the squared distance of the true readings from the measured ones in their
-/// deviations: contacts and impulses are adjusted with the motion.
+/// Nodes hold the motion, one a sample or one for a few samples whose contacts are averaged; measured impulses link them, and
+/// contacts are conditions on it. What is minimised is the squared distance of the true readings from the measured ones in
+/// their deviations: contacts and impulses are adjusted with the motion.
 ///
 /// # Errors
 /// [`ContactEstimateError`] where the log lacks what is needed.
@@ -122,6 +79,7 @@ pub fn estimate_contacts(
     modes: Option<&[[ContactMode; MOST_PALMS]]>,
     options: &ContactOptions,
 ) -> Result<ContactEstimate, ContactEstimateError> {
+    options.check()?;
     check(log, modes)?;
     let Some(modes) = modes else { return with_estimated_modes(log, options) };
     Ok(with_modes(log, modes.to_vec(), options)?.0)
@@ -144,7 +102,9 @@ fn with_estimated_modes(
         }
         modes = found.modes;
         for (samples, palm) in slips {
-            modes[samples].iter_mut().for_each(|modes| modes[palm] = ContactMode::Slide);
+            for mode in modes[samples].iter_mut().map(|modes| &mut modes[palm]) {
+                *mode = if *mode == ContactMode::Off { ContactMode::Off } else { ContactMode::Slide };
+            }
         }
     }
     Ok(with_modes(log, modes, options)?.0)
@@ -212,15 +172,6 @@ fn spaced(times: &[f64], apart: f64) -> Vec<usize> {
     nodes.push(last);
     nodes.dedup();
     nodes
-}
-
-fn check(log: &ContactLog, modes: Option<&[[ContactMode; MOST_PALMS]]>) -> Result<(), ContactEstimateError> {
-    let samples = log.times().len();
-    if let Some(modes) = modes.filter(|modes| modes.len() != samples) {
-        return Err(ContactEstimateError::Modes { found: modes.len(), samples });
-    }
-    let lacks = log.palms().iter().position(|palm| palm.force_axes() != Some(SensedAxes::Three));
-    lacks.map_or(Ok(()), |palm| Err(ContactEstimateError::NoForce { palm: palm + 1 }))
 }
 
 fn problem<'a>(record: &'a Record, options: &ContactOptions, length: f64) -> Problem<'a> {

@@ -5,6 +5,7 @@ mod estimate;
 mod flow;
 mod modes;
 mod noise;
+mod options;
 mod problem;
 mod record;
 mod rows;
@@ -14,5 +15,6 @@ mod state;
 mod tests;
 mod windows;
 
-pub use estimate::{ContactEstimate, ContactEstimateError, ContactOptions, estimate_contacts};
+pub use estimate::{ContactEstimate, estimate_contacts};
 pub use noise::ContactNoiseLevel;
+pub use options::{ContactEstimateError, ContactOptions};

@@ -191,6 +191,15 @@ fn errors_are_as_large_as_they_are_said_to_be() {
 fn a_log_that_lacks_something_is_refused_by_name() {
     let log = log(0.05, 200.0);
     let options = options(noise(0.0, 0.0));
+    for (what, wrong) in [
+        ("gravity", ContactOptions { gravity: 0.0, ..options }),
+        ("size", ContactOptions { size: Some(f64::NAN), ..options }),
+        ("noise of contacts", ContactOptions { noise: noise(-1e-4, 0.0), ..options }),
+        ("noise of forces as a share", ContactOptions { noise: noise(0.0, f64::INFINITY), ..options }),
+    ] {
+        let refused = estimate_contacts(&log, None, &wrong).unwrap_err().to_string();
+        assert!(refused.starts_with(what), "{refused}");
+    }
     let few = estimate_contacts(&log, Some(&[]), &options).unwrap_err();
     assert_eq!(few, ContactEstimateError::Modes { found: 0, samples: 11 });
     let mut records = log.records();

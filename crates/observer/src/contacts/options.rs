@@ -1,0 +1,99 @@
+//! What the estimate from contacts is told, and why it refuses.
+
+use super::noise::ContactNoiseLevel;
+use object_dynamics::{ContactLog, ContactMode, MOST_PALMS, SensedAxes};
+use thiserror::Error;
+
+/// Why there is no estimate.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ContactEstimateError {
+    /// Nothing was touched.
+    #[error("no palm was touched at any sample: there is nothing to estimate from")]
+    NoContact,
+    /// A palm lacks the force.
+    #[error(
+        "palm {palm} does not measure its force in three axes: the estimate from contacts needs all of it"
+    )]
+    NoForce {
+        /// Number from 1.
+        palm: usize,
+    },
+    /// As many modes as samples are needed.
+    #[error("{found} sets of contact modes for {samples} samples: give one set a sample")]
+    Modes {
+        /// Sets given.
+        found: usize,
+        /// Samples of the log.
+        samples: usize,
+    },
+    /// All contacts are on one palm, and the size of the body is not stated.
+    #[error("one palm's contacts tell no size of the body: state one")]
+    NoSize,
+    /// A setting is no number, or not a possible one.
+    #[error("{what} is {value}: it must be a finite number {must}")]
+    Setting {
+        /// Its name.
+        what: &'static str,
+        /// As it is.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// Fewer than two samples.
+    #[error("the log has {samples} samples: a motion needs at least two")]
+    Short {
+        /// Samples of the log.
+        samples: usize,
+    },
+    /// Numbers beyond all bounds.
+    #[error(
+        "the least-squares problem cannot be evaluated or its equations are singular: check units and noise"
+    )]
+    Singular,
+}
+
+/// How [`estimate_contacts`] works.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactOptions {
+    /// Noise of the sensors.
+    pub noise: ContactNoiseLevel,
+    /// Gravity, m/s^2, along -z of the world.
+    pub gravity: f64,
+    /// Mean radius of the body, m, where it is known; else from contacts on two palms or more.
+    pub size: Option<f64>,
+}
+
+impl ContactOptions {
+    pub(super) fn check(&self) -> Result<(), ContactEstimateError> {
+        let above =
+            [("gravity", self.gravity), ("size", self.size.unwrap_or(1.0)), ("floor", self.noise.floor)];
+        let not_below = [
+            ("noise of contacts", self.noise.contact),
+            ("fixed noise of forces", self.noise.force_fixed),
+            ("noise of forces as a share", self.noise.force_share),
+        ];
+        let wrong = |must, possible: fn(f64) -> bool| {
+            move |&(what, value): &(&'static str, f64)| {
+                let refused = ContactEstimateError::Setting { what, value, must };
+                (!value.is_finite() || !possible(value)).then_some(refused)
+            }
+        };
+        let first = above.iter().find_map(wrong("above zero", |x| x > 0.0));
+        first.or_else(|| not_below.iter().find_map(wrong("not below zero", |x| x >= 0.0))).map_or(Ok(()), Err)
+    }
+}
+
+pub(super) fn check(
+    log: &ContactLog,
+    modes: Option<&[[ContactMode; MOST_PALMS]]>,
+) -> Result<(), ContactEstimateError> {
+    let samples = log.times().len();
+    if samples < 2 {
+        return Err(ContactEstimateError::Short { samples });
+    }
+    if let Some(modes) = modes.filter(|modes| modes.len() != samples) {
+        return Err(ContactEstimateError::Modes { found: modes.len(), samples });
+    }
+    let lacks = log.palms().iter().position(|palm| palm.force_axes() != Some(SensedAxes::Three));
+    lacks.map_or(Ok(()), |palm| Err(ContactEstimateError::NoForce { palm: palm + 1 }))
+}
