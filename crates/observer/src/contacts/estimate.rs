@@ -81,22 +81,25 @@ pub fn estimate_contacts(
 ) -> Result<ContactEstimate, ContactEstimateError> {
     options.check()?;
     check(log, modes)?;
-    let Some(modes) = modes else { return with_estimated_modes(log, options) };
-    Ok(with_modes(log, modes.to_vec(), options)?.0)
+    let mut record = Record::new(log, &options.noise).ok_or(ContactEstimateError::NoContact)?;
+    let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
+    match modes {
+        Some(modes) => Ok(with_modes(&mut record, modes.to_vec(), options, length)?.0),
+        None => with_estimated_modes(log, &mut record, options, length),
+    }
 }
 
 /// With modes from the ratios of forces, those of the conditions that the motion contradicts taken back.
 fn with_estimated_modes(
     log: &ContactLog,
+    record: &mut Record,
     options: &ContactOptions,
+    length: f64,
 ) -> Result<ContactEstimate, ContactEstimateError> {
-    let none = vec![[ContactMode::Slide; MOST_PALMS]; log.times().len()];
-    let record = Record::new(log, &none, &options.noise).ok_or(ContactEstimateError::NoContact)?;
-    let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let natural = length / (options.gravity * length).sqrt();
     let mut modes = by_ratio(log, &options.noise, AVERAGED * natural);
     for _ in 0..ROUNDS {
-        let (found, slips) = with_modes(log, modes, options)?;
+        let (found, slips) = with_modes(record, modes, options, length)?;
         if slips.is_empty() {
             return Ok(found);
         }
@@ -107,21 +110,21 @@ fn with_estimated_modes(
             }
         }
     }
-    Ok(with_modes(log, modes, options)?.0)
+    Ok(with_modes(record, modes, options, length)?.0)
 }
 
 /// Samples at which the motion contradicts that a contact sticks, and the palm.
 type Slips = Vec<(Range<usize>, usize)>;
 
 fn with_modes(
-    log: &ContactLog,
+    record: &mut Record,
     modes: Vec<[ContactMode; MOST_PALMS]>,
     options: &ContactOptions,
+    length: f64,
 ) -> Result<(ContactEstimate, Slips), ContactEstimateError> {
-    let record = Record::new(log, &modes, &options.noise).ok_or(ContactEstimateError::NoContact)?;
-    let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
-    let mut problem = problem(&record, options, length);
-    let record = record.averaged(&modes, longest(&options.noise, &problem.units));
+    record.set_modes(&modes);
+    let mut problem = problem(record, options, length);
+    let record = record.averaged(longest(&options.noise, &problem.units));
     problem.record = &record;
     problem.nodes = spaced(&record.times, COARSE * problem.units.length / problem.units.speed);
     problem.noise.floor = problem.noise.floor.max(COARSE_FLOOR * problem.units.speed);
@@ -151,8 +154,7 @@ fn slips(problem: &Problem, at: &Unknowns) -> Slips {
         let to = record.samples.get(j + 1).copied().unwrap_or(record.samples[j]);
         for contact in record.contacts[j].iter().filter(|c| c.mode == ContactMode::Stick) {
             let rows = Rows::new(contact, motion, &turn, &problem.noise, false);
-            let misfit = rows.map_or(0.0, |rows| (rows.information * rows.residual).dot(&rows.residual));
-            if misfit > CONTRADICTED {
+            if rows.is_some_and(|rows| rows.cost() > CONTRADICTED) {
                 slips.push((from..to + 1, contact.palm));
             }
         }

@@ -288,9 +288,8 @@ impl Problem<'_> {
         };
         for contact in &self.record.contacts[k] {
             let Some(rows) = Rows::new(contact, motion, turn, &self.noise, self.friction) else { continue };
-            let r = rows.residual;
-            let weighted = rows.information * r;
-            all.cost += weighted.dot(&r);
+            let weighted = rows.information * rows.residual;
+            all.cost += rows.cost();
             all.conditions += rows.count;
             let by_motion = rows.by_motion(motion, turn);
             let w_motion = rows.information * by_motion;
@@ -308,8 +307,7 @@ impl Problem<'_> {
 
     fn rows_cost(&self, k: usize, motion: &Motion, turn: &Turn) -> f64 {
         let rows = |c| Rows::new(c, motion, turn, &self.noise, self.friction);
-        let cost = |rows: Rows| (rows.information * rows.residual).dot(&rows.residual);
-        self.record.contacts[k].iter().filter_map(rows).map(cost).sum()
+        self.record.contacts[k].iter().filter_map(rows).map(|rows| rows.cost()).sum()
     }
 
     /// Share of a link's residual that the node's own sample has, if the link is one interval.

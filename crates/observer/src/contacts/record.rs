@@ -73,12 +73,8 @@ impl Mul<f64> for Wrench {
 }
 
 impl Record {
-    /// Of a log whose palms measure forces of three axes, with the modes of each palm at each sample; none without a contact.
-    pub(super) fn new(
-        log: &ContactLog,
-        modes: &[[ContactMode; MOST_PALMS]],
-        noise: &ContactNoiseLevel,
-    ) -> Option<Self> {
+    /// Of a log whose palms measure forces of three axes, every contact sliding for now; none without a contact.
+    pub(super) fn new(log: &ContactLog, noise: &ContactNoiseLevel) -> Option<Self> {
         let times = log.times().to_vec();
         let points =
             || (0..times.len()).flat_map(|k| log.palms().iter().filter_map(move |palm| palm.touch(k)));
@@ -87,8 +83,7 @@ impl Record {
             return None;
         }
         let origin = points().map(|touch| touch.p_WC).sum::<DVec3>() / count as f64;
-        let contacts: Vec<Vec<Contact>> =
-            (0..times.len()).map(|k| contacts_at(log, k, origin, &modes[k])).collect();
+        let contacts: Vec<Vec<Contact>> = (0..times.len()).map(|k| contacts_at(log, k, origin)).collect();
         let wrench = |contacts: &Vec<Contact>| {
             let of = |c: &Contact| Wrench { force: c.f, moment: c.c.cross(c.f) };
             contacts.iter().map(of).fold(Wrench::default(), Add::add)
@@ -98,9 +93,16 @@ impl Record {
         let samples = (0..times.len()).collect();
         Some(Self { times, samples, origin, contacts, wrenches, intervals })
     }
+
+    /// Puts its contacts into the modes of each palm at each sample.
+    pub(super) fn set_modes(&mut self, modes: &[[ContactMode; MOST_PALMS]]) {
+        for (contacts, modes) in self.contacts.iter_mut().zip(modes) {
+            contacts.iter_mut().for_each(|contact| contact.mode = modes[contact.palm]);
+        }
+    }
 }
 
-fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, modes: &[ContactMode; MOST_PALMS]) -> Vec<Contact> {
+fn contacts_at(log: &ContactLog, k: usize, origin: DVec3) -> Vec<Contact> {
     let one = |(palm, logged): (usize, &object_dynamics::LoggedPalm)| {
         let touch = logged.touch(k)?;
         let motion = logged.motion(k);
@@ -113,7 +115,7 @@ fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, modes: &[ContactMode; 
             W: motion.w_WP,
             shape: shape_operator(logged.surface(), n, motion.pose.R_WP * DVec3::X),
             f: logged.force(k)?.vector,
-            mode: modes[palm],
+            mode: ContactMode::Slide,
             samples: 1,
         })
     };

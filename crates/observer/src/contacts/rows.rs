@@ -101,6 +101,11 @@ impl Rows {
         Some(rows)
     }
 
+    /// Squared residuals in their deviations.
+    pub(super) fn cost(&self) -> f64 {
+        (self.information * self.residual).dot(&self.residual)
+    }
+
     /// Derivatives by the motion at the sample.
     pub(super) fn by_motion(&self, motion: &Motion, turn: &Turn) -> SMatrix<f64, 3, MOTION> {
         let mut rows = SMatrix::<f64, 3, MOTION>::zeros();

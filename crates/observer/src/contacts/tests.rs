@@ -110,7 +110,8 @@ fn off_solution(record: &Record, noise: ContactNoiseLevel, stride: usize) -> (Pr
 fn the_gradient_is_that_of_the_cost() {
     let noise = noise(4e-4, 0.02);
     let log = noisy(&log(0.03, 1000.0), &noise, 3);
-    let record = Record::new(&log, &modes(&log), &noise).unwrap();
+    let mut record = Record::new(&log, &noise).unwrap();
+    record.set_modes(&modes(&log));
     for stride in [1, 3] {
         let (problem, mut at) = off_solution(&record, noise, stride);
         // Near a solution for this body, so that no contact is as far from its reading as noise never moves one.

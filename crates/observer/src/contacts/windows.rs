@@ -9,7 +9,6 @@ use super::problem::Units;
 use super::record::{Contact, Interval, Record, Wrench};
 use glam::DVec3;
 use nalgebra::{Matrix3, Matrix6, Vector3};
-use object_dynamics::{ContactMode, MOST_PALMS};
 use std::ops::Range;
 
 /// Longest window over the natural time: as long as a parabola is enough.
@@ -35,13 +34,18 @@ impl Window {
     fn middle(&self) -> usize {
         usize::midpoint(self.own.start, self.own.end - 1)
     }
+
+    /// Samples whose contacts are averaged: where there are too few around for a parabola, the middle one stands for all.
+    fn averaged(&self) -> usize {
+        if self.around.len() < FEWEST { 1 } else { self.own.len() }
+    }
 }
 
 /// Windows of an odd number of samples.
-fn windows(record: &Record, modes: &[[ContactMode; MOST_PALMS]], longest: f64) -> Vec<Window> {
+fn windows(record: &Record, longest: f64) -> Vec<Window> {
     let count = record.times.len();
-    let same =
-        |a: usize, b: usize| modes[a] == modes[b] && record.contacts[a].len() == record.contacts[b].len();
+    let touched = |k: usize| record.contacts[k].iter().map(|contact| (contact.palm, contact.mode));
+    let same = |a: usize, b: usize| touched(a).eq(touched(b));
     let mut all = Vec::new();
     let mut run = 0..0;
     let mut from = 0;
@@ -60,14 +64,14 @@ fn windows(record: &Record, modes: &[[ContactMode; MOST_PALMS]], longest: f64) -
 
 /// Value at the middle of a window: the mean, less what slope and bend of a parabola through the samples around add to it.
 fn at_middle(window: &Window, times: &[f64], value: impl Fn(usize) -> DVec3) -> DVec3 {
+    if window.averaged() == 1 {
+        return value(window.middle());
+    }
     let own = &window.own;
     let share = 1.0 / own.len() as f64;
     let after = |k: usize| times[k] - times[window.middle()];
     let mean = own.clone().map(&value).sum::<DVec3>() * share;
     let scale = times[window.around.end - 1] - times[window.around.start];
-    if window.around.len() < FEWEST || own.len() == 1 {
-        return if own.len() == 1 { mean } else { value(window.middle()) };
-    }
     let (mut normal, mut right) = (Matrix3::zeros(), Matrix3::zeros());
     for k in window.around.clone() {
         let s = after(k) / scale;
@@ -84,8 +88,8 @@ fn at_middle(window: &Window, times: &[f64], value: impl Fn(usize) -> DVec3) -> 
 
 impl Record {
     /// One sample a window, at its middle.
-    pub(super) fn averaged(&self, modes: &[[ContactMode; MOST_PALMS]], longest: f64) -> Self {
-        let windows = windows(self, modes, longest);
+    pub(super) fn averaged(&self, longest: f64) -> Self {
+        let windows = windows(self, longest);
         let middles: Vec<usize> = windows.iter().map(Window::middle).collect();
         let wrench = |window: &Window| {
             let sum = self.wrenches[window.own.clone()].iter().fold(Wrench::default(), |sum, w| sum + *w);
@@ -106,13 +110,12 @@ impl Record {
         let one = |(i, contact): (usize, &Contact)| {
             let of = |of: fn(&Contact) -> DVec3| at_middle(window, &self.times, |k| of(&self.contacts[k][i]));
             let c = of(|c| c.c);
-            let samples = if window.around.len() < FEWEST { 1 } else { window.own.len() };
             Contact {
                 c,
                 n: of(|c| c.n).normalize_or(contact.n),
                 u: contact.u + contact.W.cross(c - contact.c),
                 f: of(|c| c.f),
-                samples,
+                samples: window.averaged(),
                 ..*contact
             }
         };
