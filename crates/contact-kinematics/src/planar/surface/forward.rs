@@ -85,7 +85,7 @@ impl<S: RadiusFunction + ?Sized> Search<'_, S> {
         let now = self.settle(guess.filter(|theta| theta.is_finite()).unwrap_or(cold));
         match now {
             Ok(now) if self.is_proved(&now) => Ok(now),
-            _ => self.settle(self.scan()),
+            _ => self.search(),
         }
     }
 
@@ -96,17 +96,32 @@ impl<S: RadiusFunction + ?Sized> Search<'_, S> {
         if self.sign > 0.0 { now.distance > 0.0 } else { -now.distance >= self.shape.radius_bounds().max }
     }
 
-    /// The best of many directions.
-    fn scan(&self) -> f64 {
-        let mut best = (f64::NEG_INFINITY, 0.0);
-        for i in 0..SCAN {
-            let theta = f64::from(i) * TAU / f64::from(SCAN);
-            let value = self.sign * self.trial(theta).distance;
-            if value > best.0 {
-                best = (value, theta);
+    /// The best of the stationary values that are reached from every direction that can be nearest to the best: it
+    /// lies within half a step of one of the directions, and gives up less than `G''` allows on the way there.
+    fn search(&self) -> Result<Trial, ContactError> {
+        let step = TAU / f64::from(SCAN);
+        let values: Vec<(f64, f64)> = (0..SCAN)
+            .map(|i| f64::from(i) * step)
+            .map(|theta| (theta, self.sign * self.trial(theta).distance))
+            .collect();
+        let best = values.iter().fold(f64::NEG_INFINITY, |best, (_, value)| best.max(*value));
+        let most = values.iter().fold(0.0, |most: f64, (_, value)| most.max(value.abs()));
+        // `G` between two directions exceeds `most` by less than a thousandth of the sum.
+        let bend = 1.001 * (most + self.shape.radius_bounds().max);
+        let near = values.iter().filter(|(_, value)| best - value <= 0.125 * step * step * bend);
+        let mut found: Result<Trial, ContactError> =
+            Err(ContactError::NotFound { iterations: 0, offset: f64::NAN });
+        for (theta, _) in near {
+            let now = self.settle(*theta)?;
+            let better = match &found {
+                Ok(found) => self.sign * now.distance > self.sign * found.distance,
+                Err(_) => true,
+            };
+            if better {
+                found = Ok(now);
             }
         }
-        best.1
+        found
     }
 
     fn trial(&self, theta: f64) -> Trial {

@@ -184,6 +184,18 @@ fn scanned_gap(
     gaps.fold(f64::INFINITY, f64::min)
 }
 
+#[test]
+fn of_two_corners_almost_equally_far_the_farther_is_taken() {
+    // Of 128 directions the best one belongs to the wrong corner.
+    let palm = SurfacePose::new(DVec2::new(0.09640239681276727, 0.10187999640960906), 0.0).unwrap().at_rest();
+    let place = BodyPlace { p_WCm: DVec2::new(0.01, 0.02), phi0: 7.977220753808501 };
+    let cup = PalmSurface::Cup { radius: 0.12 };
+    let (_, polygon) = shapes().pop().unwrap();
+    let found = SurfaceContact::new(polygon.as_ref(), &place, cup, &palm, None).unwrap();
+    let scanned = scanned_gap(polygon.as_ref(), &place, cup, &palm);
+    assert!(found.gap <= scanned && scanned < found.gap + 1e-8, "{} {scanned}", found.gap);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     /// The gap is the smallest over the outline, from any start.
