@@ -139,7 +139,9 @@ fn with_modes(
     let mut solved =
         solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[1]).ok_or(ContactEstimateError::Singular)?;
     let unit = problem.natural_information();
-    let covariances = solved.equations.covariances(&unit).ok_or(ContactEstimateError::Singular)?;
+    let covariances = solved.equations.covariances(&unit);
+    let covariances = covariances.and_then(|claimed| claimed.widened(&solved.equations, &solved.unknowns));
+    let covariances = covariances.ok_or(ContactEstimateError::Singular)?;
     solved.unknowns.motions = problem.at_samples(&solved.unknowns);
     let slips = slips(&problem, &solved.unknowns);
     Ok((estimate(&record, modes, solved, &covariances, coarse.iterations), slips))

@@ -10,6 +10,7 @@ mod problem;
 mod record;
 mod rows;
 mod solve;
+mod spurious;
 mod state;
 #[cfg(test)]
 mod tests;

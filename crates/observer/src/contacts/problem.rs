@@ -64,15 +64,18 @@ pub(super) struct Equations<const P: usize> {
     pub(super) body_gradient: SVector<f64, P>,
     pub(super) cost: f64,
     pub(super) conditions: usize,
-    links: Vec<LinkEquation<P>>,
+    pub(super) links: Vec<LinkEquation<P>>,
 }
 
 /// A link at some unknowns.
 #[derive(Clone, Copy, Debug)]
-struct LinkEquation<const P: usize> {
+pub(super) struct LinkEquation<const P: usize> {
     residual: Tangent,
     by_motion: Transition,
     by_body: SMatrix<f64, MOTION, P>,
+    /// Inverse covariance of the residual, and by what of the motion before it falls, at adjusted impulses.
+    pub(super) information: Transition,
+    pub(super) adjusted: Transition,
 }
 
 /// Normal equations of the conditions of one sample, by the motion at it.
@@ -359,7 +362,13 @@ impl Problem<'_> {
         let through = information * F;
         all.cost += weighted.dot(&r);
         let (by_motion, by_body) = carried.derivatives(&at.body);
-        all.links.push(LinkEquation { residual: r, by_motion, by_body });
+        all.links.push(LinkEquation {
+            residual: r,
+            by_motion,
+            by_body,
+            information: *information,
+            adjusted: F,
+        });
         let node = &mut all.nodes[j];
         node.own += F.transpose() * through;
         node.next -= through.transpose();

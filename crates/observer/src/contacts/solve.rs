@@ -48,6 +48,8 @@ struct Reduced<const P: usize> {
 pub(super) struct Covariances<const P: usize> {
     /// Of each motion for given constants, and how it follows the constants.
     pub(super) motions: Vec<(Transition, SMatrix<f64, MOTION, P>)>,
+    /// Of each motion with the next one, for given constants.
+    pub(super) next: Vec<Transition>,
     pub(super) body: SMatrix<f64, P, P>,
 }
 
@@ -114,14 +116,18 @@ impl<const P: usize> Equations<P> {
         };
         let (reduced, body) = [0.0, 1e-4, 1e-3, 1e-2, 0.1].into_iter().find_map(with)?;
         let mut motions = Vec::with_capacity(self.nodes.len());
+        let mut next = Vec::with_capacity(self.nodes.len());
         let (mut after, mut follows) = (Transition::zeros(), SMatrix::<f64, MOTION, P>::zeros());
         for node in reduced.nodes.iter().rev() {
+            next.push(-node.next * after);
             after = node.own.cholesky()?.inverse() + node.next * after * node.next.transpose();
             follows = -node.body - node.next * follows;
             motions.push((after, follows));
         }
         motions.reverse();
-        Some(Covariances { motions, body })
+        next.reverse();
+        next.pop();
+        Some(Covariances { motions, next, body })
     }
 }
 

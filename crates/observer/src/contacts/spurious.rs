@@ -1,0 +1,91 @@
+//! Information on the inertia that noise alone makes the equations claim, and covariances without it.
+//!
+//! A link weighs an inertia by the change of the angular velocity along it. Where noise makes much of that change, its square
+//! adds to the information what is not there: the same that in regression on noisy regressors makes a slope look sure. With `B` the
+//! information as the equations have it, `N` what noise adds to it on average and `C = B - N` what is left, the estimate departs from the truth by `C^-1`
+//! times a score of covariance `B`, so that its covariance is `C^-1 B C^-1`.
+
+use super::flow::Transition;
+use super::problem::{Equations, Unknowns};
+use super::solve::Covariances;
+use super::state::{Body, Motion};
+use crate::three_palms::inertia_slope;
+use glam::DMat3;
+use nalgebra::{Matrix3, SMatrix, SymmetricEigen};
+
+/// Logarithm of the mass and six numbers of the inertia. The mass is known by gravity, which has no noise.
+const BODY: usize = 7;
+const NUMBERS: usize = 6;
+/// What of the information is left at least, in any direction: a deviation is then twenty times what the equations claim.
+const LEAST: f64 = 0.05;
+
+type OfBody = SMatrix<f64, BODY, BODY>;
+
+impl Covariances<BODY> {
+    /// With the covariance of the body widened where noise poses as information. None where it has no inverse.
+    pub(super) fn widened(self, equations: &Equations<BODY>, at: &Unknowns) -> Option<Self> {
+        // In units of the deviations as claimed: the information is one, and what noise adds to it a share.
+        let factor = self.body.cholesky()?.l();
+        let shares = factor.transpose() * self.spurious(equations, at) * factor;
+        let eigen = SymmetricEigen::new(shares);
+        let wider = eigen.eigenvalues.map(|share| (1.0 - share).clamp(LEAST, 1.0).powi(-2));
+        let axes = factor * eigen.eigenvectors;
+        Some(Self { body: axes * OfBody::from_diagonal(&wider) * axes.transpose(), ..self })
+    }
+
+    fn spurious(&self, equations: &Equations<BODY>, at: &Unknowns) -> OfBody {
+        let mut all = OfBody::zeros();
+        for (j, link) in equations.links.iter().enumerate() {
+            let (before, after, cross) = (&self.motions[j].0, &self.motions[j + 1].0, &self.next[j]);
+            let mixed = link.adjusted * cross;
+            let residual =
+                after + link.adjusted * before * link.adjusted.transpose() - mixed - mixed.transpose();
+            // What a residual says of the constants, the motions free to follow.
+            let left = link.information - link.information * residual * link.information;
+            let left = left.fixed_view::<3, 3>(6, 6).into_owned();
+            let ends = [&at.motions[j], &at.motions[j + 1]];
+            let noise = Spins::new(ends, &at.body, before, after, cross);
+            let slopes: [[Matrix3<f64>; 2]; NUMBERS] =
+                std::array::from_fn(|i| ends.map(|motion| slope(motion, &at.body, i)));
+            for i in 0..NUMBERS {
+                for k in 0..NUMBERS {
+                    all[(i + 1, k + 1)] += (left * noise.covariance(&slopes[i], &slopes[k])).trace();
+                }
+            }
+        }
+        0.5 * (all + all.transpose())
+    }
+}
+
+/// Derivative of the inertia in world axes by one of its numbers.
+fn slope(motion: &Motion, body: &Body, number: usize) -> Matrix3<f64> {
+    let R = DMat3::from_quat(motion.q);
+    Matrix3::from(R * inertia_slope(&body.numbers, number) * R.transpose())
+}
+
+/// Covariances of the angular velocities at the ends of a link.
+struct Spins {
+    own: [Matrix3<f64>; 2],
+    between: Matrix3<f64>,
+}
+
+impl Spins {
+    fn new(
+        ends: [&Motion; 2],
+        body: &Body,
+        before: &Transition,
+        after: &Transition,
+        cross: &Transition,
+    ) -> Self {
+        let [a, b] = ends.map(|motion| motion.spin_derivatives(body).0);
+        let own = [a * before * a.transpose(), b * after * b.transpose()];
+        Self { own, between: a * cross * b.transpose() }
+    }
+
+    /// Of the changes along the link of two matrices times the angular velocity; each matrix as it is at both ends.
+    fn covariance(&self, [a0, a1]: &[Matrix3<f64>; 2], [b0, b1]: &[Matrix3<f64>; 2]) -> Matrix3<f64> {
+        a1 * self.own[1] * b1.transpose() + a0 * self.own[0] * b0.transpose()
+            - a0 * self.between * b1.transpose()
+            - a1 * self.between.transpose() * b0.transpose()
+    }
+}
