@@ -76,6 +76,16 @@ pub(super) struct LinkEquation<const P: usize> {
     /// Inverse covariance of the residual, and by what of the motion before it falls, at adjusted impulses.
     pub(super) information: Transition,
     pub(super) adjusted: Transition,
+    /// By what of the body it falls, at adjusted impulses.
+    pub(super) adjusted_body: SMatrix<f64, MOTION, P>,
+}
+
+/// Where a step leads.
+pub(super) struct Trial {
+    pub(super) unknowns: Unknowns,
+    pub(super) cost: f64,
+    /// What the residual of each link is beyond its linear prediction.
+    pub(super) departures: Vec<Tangent>,
 }
 
 /// Normal equations of the conditions of one sample, by the motion at it.
@@ -89,7 +99,31 @@ struct SampleEquations<const P: usize> {
     conditions: usize,
 }
 
+/// Half the gradient of a cost.
+pub(super) struct Gradient<const P: usize> {
+    pub(super) motions: Vec<Tangent>,
+    pub(super) body: SVector<f64, P>,
+}
+
 impl<const P: usize> Equations<P> {
+    pub(super) fn gradient(&self) -> Gradient<P> {
+        Gradient { motions: self.nodes.iter().map(|node| node.gradient).collect(), body: self.body_gradient }
+    }
+
+    /// As far as it comes from links with other residuals.
+    pub(super) fn gradient_of(&self, residuals: &[Tangent]) -> Gradient<P> {
+        let mut all = Gradient { motions: vec![Tangent::zeros(); self.nodes.len()], body: SVector::zeros() };
+        for (j, (link, residual)) in self.links.iter().zip(residuals).enumerate() {
+            let weighted = link.information * residual;
+            all.motions[j] -= link.adjusted.transpose() * weighted;
+            all.motions[j + 1] += weighted;
+            if P > 0 {
+                all.body -= link.adjusted_body.transpose() * weighted;
+            }
+        }
+        all
+    }
+
     /// Conditions at a motion whose derivatives are `F` by that of node `j` and `E` by the body.
     fn add(&mut self, j: usize, rows: &SampleEquations<P>, F: &Transition, E: &SMatrix<f64, MOTION, P>) {
         self.cost += rows.cost;
@@ -163,7 +197,7 @@ impl Problem<'_> {
         all.cost.is_finite().then_some(all)
     }
 
-    /// The unknowns after a step, and their cost.
+    /// The unknowns after a step, and their cost. None beyond all numbers.
     ///
     /// Positions and orientations follow from velocities with hardly any noise: they are integrated anew, with what the step
     /// leaves of each link's defect. Moved one by one they would miss each other by the square of the step.
@@ -172,12 +206,13 @@ impl Problem<'_> {
         at: &Unknowns,
         step: &Step<P>,
         equations: &Equations<P>,
-    ) -> Option<(Unknowns, f64)> {
+    ) -> Option<Trial> {
         let Step { motions: steps, body } = step;
         let numbers = Vector6::from_fn(|i, _| if P > i + 1 { body[i + 1] } else { 0.0 });
         let after = if P > 0 { at.body.moved(body[0], &numbers) } else { at.body };
         let change = (P > 0).then_some(&numbers);
         let mut motions: Vec<Motion> = Vec::with_capacity(at.motions.len());
+        let mut departures = Vec::with_capacity(equations.links.len());
         let mut cost = 0.0;
         let vector = |t: &Tangent, i: usize| DVec3::new(t[i], t[i + 1], t[i + 2]);
         // Node `j` after its step, which leads to `p` and `q` and beyond them `by`.
@@ -206,6 +241,7 @@ impl Problem<'_> {
             let left = link.residual + steps[j + 1] - link.by_motion * steps[j] - link.by_body * body;
             let next = place(j + 1, carried.motion.p, carried.motion.q, &left);
             let r = next.from(&carried.motion);
+            departures.push(r - left);
             if split {
                 let motion = moved.kicked(&r, self.share(j));
                 cost += self.rows_cost(self.nodes[j], &motion, &after.turn(motion.q, motion.L));
@@ -214,9 +250,9 @@ impl Problem<'_> {
             cost += (information * r).dot(&r);
             moved = next;
         }
-        let moved = Unknowns { motions, body: after };
-        cost += self.prior_cost::<P>(&moved);
-        cost.is_finite().then_some((moved, cost))
+        let unknowns = Unknowns { motions, body: after };
+        cost += self.prior_cost::<P>(&unknowns);
+        cost.is_finite().then_some(Trial { unknowns, cost, departures })
     }
 
     /// The motions at the nodes as their samples have them, after their share of what the links say.
@@ -368,6 +404,7 @@ impl Problem<'_> {
             by_body,
             information: *information,
             adjusted: F,
+            adjusted_body: E,
         });
         let node = &mut all.nodes[j];
         node.own += F.transpose() * through;

@@ -1,15 +1,18 @@
 //! Levenberg-Marquardt steps on a chain of nodes and the constants that all of them share.
 
 use super::flow::Transition;
-use super::problem::{Equations, Problem, Unknowns};
+use super::problem::{Equations, Gradient, Problem, Trial, Unknowns};
 use super::state::{MOTION, Tangent};
 use crate::least_squares::{LARGEST_DAMPING, RAISE, lowered};
-use nalgebra::{DMatrix, SMatrix, SVector};
+use nalgebra::{Cholesky, Const, DMatrix, SMatrix, SVector};
 
 /// First damping, as a share of the conditions' mean information.
 const FIRST_DAMPING: f64 = 1e-3;
-/// Fall of chi-squared that an undamped step from the end may still promise: a seventh of a standard deviation is left then.
-const SETTLED: f64 = 0.02;
+/// A step that gains less than this share of what it promises is bent: links are not linear along it.
+const BENT: f64 = 0.5;
+/// Fall of chi-squared that an undamped step from the end may still promise: half a standard deviation is left then at most, which
+/// makes errors larger by an eighth.
+const SETTLED: f64 = 0.25;
 /// A step shorter than this in natural units is none.
 const NO_STEP: f64 = 1e-10;
 
@@ -29,19 +32,18 @@ pub(super) struct Step<const P: usize> {
     pub(super) body: SVector<f64, P>,
 }
 
-/// A node's step as it follows from the next node's, from that of the constants, and by itself; and its information then.
+/// A node of which the equations are solved for its own motion.
 struct Eliminated<const P: usize> {
+    own: Cholesky<f64, Const<MOTION>>,
+    /// By what its motion falls with that of the next node, and with the constants.
     next: Transition,
     body: SMatrix<f64, MOTION, P>,
-    alone: Tangent,
-    own: Transition,
 }
 
 /// The chain with the nodes eliminated, first to last, and what is left for the constants.
 struct Reduced<const P: usize> {
     nodes: Vec<Eliminated<P>>,
     body: SMatrix<f64, P, P>,
-    body_gradient: SVector<f64, P>,
 }
 
 /// Covariances of the unknowns.
@@ -53,48 +55,55 @@ pub(super) struct Covariances<const P: usize> {
     pub(super) body: SMatrix<f64, P, P>,
 }
 
+impl<const P: usize> Reduced<P> {
+    /// The step that takes a gradient to zero.
+    fn step(&self, gradient: &Gradient<P>) -> Step<P> {
+        let mut left = Vec::with_capacity(self.nodes.len());
+        let (mut of_body, mut carried) = (gradient.body, Tangent::zeros());
+        for (node, own) in self.nodes.iter().zip(&gradient.motions) {
+            let own = own - carried;
+            carried = node.next.transpose() * own;
+            if P > 0 {
+                of_body -= node.body.transpose() * own;
+            }
+            left.push(own);
+        }
+        let body = -(self.body * of_body);
+        let mut after = Tangent::zeros();
+        for (node, left) in self.nodes.iter().zip(&mut left).rev() {
+            after = -node.own.solve(left) - node.body * body - node.next * after;
+            *left = after;
+        }
+        Step { motions: left, body }
+    }
+}
+
 impl<const P: usize> Equations<P> {
     /// None where the equations are not positive definite.
     fn reduced(&self, damping: &Tangent, body_damping: f64) -> Option<Reduced<P>> {
         let mut nodes: Vec<Eliminated<P>> = Vec::with_capacity(self.nodes.len());
         let mut body = self.body + SMatrix::identity() * body_damping;
-        let mut body_gradient = self.body_gradient;
-        let mut carried: Option<(Transition, SMatrix<f64, MOTION, P>, Tangent)> = None;
+        let mut carried: Option<(Transition, SMatrix<f64, MOTION, P>)> = None;
         for node in &self.nodes {
-            let (mut own, mut to_body, mut gradient) = (node.own, node.body, node.gradient);
+            let (mut own, mut to_body) = (node.own, node.body);
             for i in 0..MOTION {
                 own[(i, i)] += damping[i];
             }
-            if let Some((less, less_body, less_gradient)) = carried {
+            if let Some((less, less_body)) = carried {
                 own -= less;
                 to_body -= less_body;
-                gradient -= less_gradient;
             }
-            let factor = own.cholesky()?;
-            let next = factor.solve(&node.next);
-            let to_constants = factor.solve(&to_body);
-            let alone = factor.solve(&gradient);
+            let own = own.cholesky()?;
+            let next = own.solve(&node.next);
+            let to_constants = own.solve(&to_body);
             let back = node.next.transpose();
-            carried = Some((back * next, back * to_constants, back * alone));
+            carried = Some((back * next, back * to_constants));
             if P > 0 {
                 body -= to_body.transpose() * to_constants;
-                body_gradient -= to_body.transpose() * alone;
             }
-            nodes.push(Eliminated { next, body: to_constants, alone, own });
+            nodes.push(Eliminated { own, next, body: to_constants });
         }
-        Some(Reduced { nodes, body, body_gradient })
-    }
-
-    fn step(&self, damping: &Tangent, body_damping: f64) -> Option<Step<P>> {
-        let reduced = self.reduced(damping, body_damping)?;
-        let body = -(inverse(&reduced.body)? * reduced.body_gradient);
-        let mut motions = vec![Tangent::zeros(); self.nodes.len()];
-        let mut after = Tangent::zeros();
-        for (step, node) in motions.iter_mut().zip(&reduced.nodes).rev() {
-            *step = -node.alone - node.body * body - node.next * after;
-            after = *step;
-        }
-        Some(Step { motions, body })
+        Some(Reduced { nodes, body: inverse(&body)? })
     }
 
     /// Fall of the cost that the linear model promises of a step which solves the damped equations, the damping counted as
@@ -109,25 +118,21 @@ impl<const P: usize> Equations<P> {
     /// Where rounding leaves the equations indefinite, as little of it is added as mends them: a deviation then is no larger than a
     /// natural unit over the root of that share of all nodes. None where a tenth of it is not enough.
     pub(super) fn covariances(&self, unit: &Tangent) -> Option<Covariances<P>> {
-        let with = |share: f64| {
-            let reduced = self.reduced(&(unit * share), 0.0)?;
-            let body = inverse(&reduced.body)?;
-            Some((reduced, body))
-        };
-        let (reduced, body) = [0.0, 1e-4, 1e-3, 1e-2, 0.1].into_iter().find_map(with)?;
+        let with = |share: f64| self.reduced(&(unit * share), 0.0);
+        let reduced = [0.0, 1e-4, 1e-3, 1e-2, 0.1].into_iter().find_map(with)?;
         let mut motions = Vec::with_capacity(self.nodes.len());
         let mut next = Vec::with_capacity(self.nodes.len());
         let (mut after, mut follows) = (Transition::zeros(), SMatrix::<f64, MOTION, P>::zeros());
         for node in reduced.nodes.iter().rev() {
             next.push(-node.next * after);
-            after = node.own.cholesky()?.inverse() + node.next * after * node.next.transpose();
+            after = node.own.inverse() + node.next * after * node.next.transpose();
             follows = -node.body - node.next * follows;
             motions.push((after, follows));
         }
         motions.reverse();
         next.reverse();
         next.pop();
-        Some(Covariances { motions, next, body })
+        Some(Covariances { motions, next, body: reduced.body })
     }
 }
 
@@ -156,17 +161,19 @@ pub(super) fn solve<const P: usize>(
     let (mut damping, mut raise, mut iterations) = (FIRST_DAMPING, RAISE, 1);
     let mut done = false;
     while iterations < most && !done && damping < LARGEST_DAMPING {
-        let step = equations.step(&(unit * (damping * mean)), damping * mean);
-        let trial = step.as_ref().and_then(|step| problem.trial(&unknowns, step, &equations));
+        let reduced = equations.reduced(&(unit * (damping * mean)), damping * mean);
+        let step = reduced.as_ref().map(|reduced| reduced.step(&equations.gradient()));
         let promised = step.as_ref().map_or(f64::INFINITY, |step| equations.promised(step));
+        let trial =
+            reduced.zip(step.as_ref()).and_then(|(r, step)| tried(problem, &unknowns, &equations, &r, step));
         let short = step.as_ref().is_some_and(|step| length(step, &unit) < NO_STEP);
         done = promised < enough || short;
-        match trial.filter(|(_, cost)| *cost < equations.cost) {
-            Some((moved, cost)) => {
-                damping = lowered(damping, (equations.cost - cost) / promised);
+        match trial.filter(|trial| trial.cost < equations.cost) {
+            Some(trial) => {
+                damping = lowered(damping, (equations.cost - trial.cost) / promised);
                 raise = RAISE;
-                let Some(next) = problem.linearise(&moved) else { break };
-                (unknowns, equations) = (moved, next);
+                let Some(next) = problem.linearise(&trial.unknowns) else { break };
+                (unknowns, equations) = (trial.unknowns, next);
                 iterations += 1;
             }
             None => {
@@ -176,9 +183,28 @@ pub(super) fn solve<const P: usize>(
         }
     }
     // A heavily damped step promises little anywhere: what counts is what all of the step would gain.
-    let whole = equations.step(&Tangent::zeros(), 0.0);
+    let whole = equations.reduced(&Tangent::zeros(), 0.0).map(|reduced| reduced.step(&equations.gradient()));
     let settled = whole.is_some_and(|step| equations.promised(&step) < SETTLED.max(enough));
     Some(Solved { unknowns, equations, iterations, settled })
+}
+
+/// Where a step leads. If it gains less than it should, also where it leads with what links depart by from their linear prediction
+/// taken back, whichever is better.
+fn tried<const P: usize>(
+    problem: &Problem,
+    at: &Unknowns,
+    equations: &Equations<P>,
+    reduced: &Reduced<P>,
+    step: &Step<P>,
+) -> Option<Trial> {
+    let first = problem.trial(at, step, equations)?;
+    if equations.cost - first.cost > BENT * equations.promised(step) {
+        return Some(first);
+    }
+    let back = reduced.step(&equations.gradient_of(&first.departures));
+    let motions = step.motions.iter().zip(&back.motions).map(|(step, back)| step + back).collect();
+    let second = problem.trial(at, &Step { motions, body: step.body + back.body }, equations);
+    Some(second.filter(|second| second.cost < first.cost).unwrap_or(first))
 }
 
 /// Longest step of a node or of the constants, in natural units.

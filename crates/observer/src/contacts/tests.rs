@@ -118,7 +118,7 @@ fn the_gradient_is_that_of_the_cost() {
         at = super::solve::solve::<0>(&problem, at, 40, 1e-6).unwrap().unknowns;
         let equations = problem.linearise::<7>(&at).unwrap();
         let natural = [SIZE, problem.units.speed, problem.units.mass * SIZE * problem.units.speed, 1.0];
-        let cost = |step: &Step<7>| problem.trial(&at, step, &equations).unwrap().1;
+        let cost = |step: &Step<7>| problem.trial(&at, step, &equations).unwrap().cost;
         let nothing =
             || Step { motions: vec![Tangent::zeros(); problem.nodes.len()], body: SVector::zeros() };
         let mut compared = 0;
