@@ -18,7 +18,8 @@ mod three_palms;
 
 #[cfg(feature = "palms")]
 pub use contacts::{
-    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, estimate_contacts,
+    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions,
+    estimate_contacts,
 };
 pub use core::{
     Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Link, Model, NewtonEstimate,

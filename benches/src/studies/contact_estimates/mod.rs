@@ -108,14 +108,14 @@ impl Sums {
         };
         self.ms += started.elapsed().as_secs_f64() * 1e3;
         self.runs += 1.0;
-        self.settled += f64::from(found.settled);
-        self.linearisations += found.iterations[1] as f64;
-        self.chi_squared += found.chi_squared / found.conditions as f64;
+        self.settled += f64::from(found.evidence.settled);
+        self.linearisations += found.evidence.iterations[1] as f64;
+        self.chi_squared += found.evidence.misfit;
         for (sum, error) in self.squares.iter_mut().zip(errors(file, &found, length)?) {
             *sum += error * error;
         }
         let inertia = found.inertia_deviations.into_iter().fold(0.0, f64::max);
-        let centre = found.deviations[found.nodes.len() / 2][0].length() / length;
+        let centre = found.deviations[found.states.len() / 2][0].length() / length;
         for (sum, deviation) in self.stated.iter_mut().zip([centre, found.mass_deviation, inertia]) {
             *sum += deviation * deviation;
         }
@@ -161,17 +161,17 @@ fn case(file: &Log, (contact, share): (f64, f64), seconds: f64, seed: u64) -> An
 
 /// Root mean squares of centre, velocity and rate in natural units, relative errors of mass and inertia, turn.
 fn errors(file: &Log, found: &ContactEstimate, length: f64) -> Anything<[f64; 6]> {
-    let truth = file.bodies(found.nodes.last().map_or(0, |k| k + 1))?;
-    let first = truth[found.nodes[0]].R_WO;
+    let truth = file.bodies(found.states.len())?;
+    let first = truth[0].R_WO;
     let mut sums = [0.0; 4];
-    for (state, &k) in found.states.iter().zip(&found.nodes) {
+    for (k, state) in found.states.iter().enumerate() {
         let turn = state.R_WO * (truth[k].R_WO * first.conjugate()).conjugate();
         sums[0] += (state.p_WCm - truth[k].p_WCm).length_squared() / (length * length);
         sums[1] += (state.v_WCm - truth[k].v_WCm).length_squared() / (G * length);
         sums[2] += (state.w_WO - truth[k].w_WO).length_squared() * length / G;
         sums[3] += turn.to_scaled_axis().length_squared();
     }
-    let [centre, velocity, rate, turn] = sums.map(|sum| (sum / found.nodes.len() as f64).sqrt());
+    let [centre, velocity, rate, turn] = sums.map(|sum| (sum / found.states.len() as f64).sqrt());
     let (mass, inertia) = file.mass();
     let R = DMat3::from_quat(first);
     let ratio = R * inertia * R.transpose() * found.inertia.inverse() - DMat3::IDENTITY;

@@ -67,7 +67,7 @@ fn errors(
 ) -> Errors {
     let truth = exact.truth().unwrap_or_default();
     let (mut centre, mut velocity, mut squares) = (0.0f64, 0.0f64, [0.0; 2]);
-    for ((state, deviations), &k) in found.states.iter().zip(&found.deviations).zip(&found.nodes) {
+    for (k, (state, deviations)) in found.states.iter().zip(&found.deviations).enumerate() {
         let p = state.p_WCm - truth[k].p_WCm;
         let v = state.v_WCm - truth[k].v_WCm;
         centre = centre.max((p / deviations[0]).abs().max_element());
@@ -75,11 +75,11 @@ fn errors(
         squares[0] += p.length_squared() / (length * length);
         squares[1] += v.length_squared() / (G * length);
     }
-    let [p, v] = squares.map(|sum| (sum / found.nodes.len() as f64).sqrt());
+    let [p, v] = squares.map(|sum| (sum / found.states.len() as f64).sqrt());
     let mass = found.mass / scene.mass().mass() - 1.0;
     Errors {
-        settled: found.settled,
-        chi_squared: found.chi_squared / found.conditions as f64,
+        settled: found.evidence.settled,
+        chi_squared: found.evidence.misfit,
         centre,
         velocity,
         mass: mass.abs() / found.mass_deviation,

@@ -4,9 +4,12 @@ use super::options::{ContactEstimateError, ContactOptions, check};
 use super::problem::{Problem, Units, Unknowns};
 use super::record::Record;
 use super::rows::Rows;
+use super::samples::at_all;
 use super::solve::{Covariances, Solved, solve};
-use super::state::{Body, MOTION, Motion, Tangent};
+use super::state::{Motion, Tangent};
+use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
+use crate::three_palms::{LARGEST_MISFIT, Reliability};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS};
@@ -14,12 +17,14 @@ use std::ops::Range;
 
 /// Constants of an unknown body: logarithm of the mass, six numbers of the inertia tensor.
 const CONSTANTS: usize = 7;
-/// Natural times from node to node in the first, coarse solution, whose contacts are carried there from the node before, and the
-/// floor of its conditions over the natural speed.
-const COARSE: f64 = 0.15;
-const COARSE_FLOOR: f64 = 1e-3;
+/// Natural times from node to node in the coarse solution, whose contacts are carried there from the node before, and the
+/// floors of its conditions over the natural speed: the first one finds nearly all motions, the other one some of the rest.
+const COARSE: f64 = 0.08;
+const COARSE_FLOORS: [f64; 2] = [1e-2, 1e-3];
 /// Linearisations that each of the two solutions may take.
 const MOST: usize = 60;
+/// Linearisations after which it is asked what of the inertia is learned.
+const FIRST: usize = 12;
 /// A step that promises less in units of chi-squared than these is not worth taking: coarse solution, last one.
 const ENOUGH: [f64; 2] = [1.0, 1e-2];
 /// Deviation of the logarithms of the roots of the second moments before the log is read, about those of a ball of the body's
@@ -29,6 +34,8 @@ const PRIOR_MASS: f64 = 10.0;
 /// Deviation of the first orientation, rad: an unknown body has no axes but those it is given.
 const FIRST_TURN: f64 = 1e-5;
 
+/// Share of the information of natural units that may be added at each node against rounding.
+const MENDED: f64 = 1e-3;
 /// Natural times on either side over which the ratio of friction to normal force is averaged, to tell modes.
 const AVERAGED: f64 = 0.12;
 /// Conditions of a contact that sticks are contradicted beyond this: three numbers in their deviations go there once in a million.
@@ -39,12 +46,12 @@ const ROUNDS: usize = 6;
 /// Motion, mass and inertia of an unknown body.
 #[derive(Clone, Debug)]
 pub struct ContactEstimate {
-    /// Motion at the nodes; body axes are those of the world at the first one.
+    /// Motion at all samples; body axes are those of the world at the first one.
     pub states: Vec<BodyState>,
-    /// Standard deviations there: centre of mass (m), velocity (m/s), angular velocity (rad/s), turn (rad), world axes.
+    /// Standard deviations there: centre of mass (m), velocity (m/s), angular velocity (rad/s), turn since the first sample (rad), world axes.
     pub deviations: Vec<[DVec3; 4]>,
-    /// Sample of each node.
-    pub nodes: Vec<usize>,
+    /// Whether a sample's motion is to be relied on: to within its deviations.
+    pub relied_on: Vec<bool>,
     /// Contact modes at all samples: those that were given, or the estimated ones.
     pub modes: Vec<[ContactMode; MOST_PALMS]>,
     /// Mass, kg.
@@ -53,16 +60,12 @@ pub struct ContactEstimate {
     pub mass_deviation: f64,
     /// Inertia about the centre of mass, body axes, kg m^2.
     pub inertia: DMat3,
-    /// Standard deviations of the logarithms of the roots of the second moments: beyond 1 nothing was learned.
+    /// Standard deviations of the logarithms of the roots of the second moments: beyond 0.5 nothing much was learned.
     pub inertia_deviations: [f64; 3],
-    /// Linearisations: coarse, all.
-    pub iterations: [usize; 2],
-    /// Whether there was no more to gain.
-    pub settled: bool,
-    /// Squared residuals in units of their deviations, and how many conditions there are.
-    pub chi_squared: f64,
-    /// Contact conditions.
-    pub conditions: usize,
+    /// Whether to believe it.
+    pub reliability: Reliability,
+    /// What it rests on.
+    pub evidence: ContactEvidence,
 }
 
 /// Motion, mass and inertia of an unknown body from contacts of any palms and their forces in three axes, from no guess, with
@@ -123,34 +126,69 @@ fn with_modes(
     length: f64,
 ) -> Result<(ContactEstimate, Slips), ContactEstimateError> {
     record.set_modes(&modes);
-    let mut problem = problem(record, options, length);
-    let record = record.averaged(longest(&options.noise, &problem.units));
-    problem.record = &record;
-    problem.nodes = spaced(&record.times, COARSE * problem.units.length / problem.units.speed);
-    problem.noise.floor = problem.noise.floor.max(COARSE_FLOOR * problem.units.speed);
-    problem.friction = true;
-    let start = cold::start(&problem, problem.body.0, DQuat::IDENTITY);
-    let coarse =
-        solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[0]).ok_or(ContactEstimateError::Singular)?;
-    let coarse_nodes = std::mem::replace(&mut problem.nodes, (0..record.times.len()).collect());
-    problem.noise = options.noise;
-    problem.friction = false;
-    let start = refined(&problem, &coarse_nodes, &coarse.unknowns);
-    let mut solved =
-        solve::<CONSTANTS>(&problem, start, MOST, ENOUGH[1]).ok_or(ContactEstimateError::Singular)?;
-    let unit = problem.natural_information();
-    let covariances = solved.equations.covariances(&unit);
-    let covariances = covariances.and_then(|claimed| claimed.widened(&solved.equations, &solved.unknowns));
+    let log = &*record;
+    let mut problem = problem(log, options, length);
+    let averaged = log.averaged(longest(&options.noise, &problem.units));
+    problem.record = &averaged;
+    let (solved, coarse) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
+    let covariances = solved.equations.covariances(&problem.natural_information());
+    let covariances =
+        covariances.and_then(|claimed| claimed.widened(&problem, &solved.equations, &solved.unknowns));
     let covariances = covariances.ok_or(ContactEstimateError::Singular)?;
-    solved.unknowns.motions = problem.at_samples(&solved.unknowns);
     let slips = slips(&problem, &solved.unknowns);
-    Ok((estimate(&record, modes, solved, &covariances, coarse.iterations), slips))
+    let found = estimate(log, &problem, modes, &solved, &covariances, coarse);
+    Ok((found, slips))
+}
+
+/// A coarse solution from nothing and the last one from there, with one floor of the coarse conditions after the other until noise explains
+/// what is left, else the one that leaves least; and the linearisations before the last solution.
+fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
+    let times = &problem.record.times;
+    let coarse_nodes = spaced(times, COARSE * problem.units.length / problem.units.speed);
+    let all_nodes: Vec<usize> = (0..times.len()).collect();
+    let mut best: Option<Solved<CONSTANTS>> = None;
+    let mut before = 0;
+    for floor in COARSE_FLOORS {
+        problem.nodes.clone_from(&coarse_nodes);
+        problem.noise.floor = options.noise.floor.max(floor * problem.units.speed);
+        problem.friction = true;
+        problem.frozen.clear();
+        let start = cold::start(problem, problem.body.0, DQuat::IDENTITY);
+        let coarse = solve::<CONSTANTS>(problem, start, MOST, ENOUGH[0]);
+        problem.nodes.clone_from(&all_nodes);
+        problem.noise = options.noise;
+        problem.friction = false;
+        let Some(coarse) = coarse else { continue };
+        let start = refined(problem, &coarse_nodes, &coarse.unknowns);
+        before += coarse.iterations;
+        let Some(found) = fine(problem, start) else { continue };
+        if found.settled && found.misfit() < LARGEST_MISFIT {
+            return Some((found, before));
+        }
+        let better = best.as_ref().is_none_or(|best| found.equations.cost < best.equations.cost);
+        before += best.as_ref().map_or(0, |best| best.iterations);
+        if better {
+            best = Some(found);
+        }
+    }
+    best.map(|best| (best, before))
+}
+
+/// The last solution, in which the inertia keeps its expected value along directions of which noise alone would tell.
+fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
+    let first = solve::<CONSTANTS>(problem, start, FIRST, ENOUGH[1])?;
+    let claimed = first.equations.covariances(&problem.natural_information())?;
+    let frozen = claimed.frozen(&first.equations, &first.unknowns)?;
+    problem.frozen = frozen;
+    let mut found = solve::<CONSTANTS>(problem, first.unknowns, MOST, ENOUGH[1])?;
+    found.iterations += first.iterations;
+    Some(found)
 }
 
 fn slips(problem: &Problem, at: &Unknowns) -> Slips {
     let record = problem.record;
     let mut slips = Vec::new();
-    for (j, motion) in at.motions.iter().enumerate() {
+    for (j, motion) in problem.at_samples(at).iter().enumerate() {
         let turn = at.body.turn(motion.q, motion.L);
         let from = record.samples[j.saturating_sub(1)];
         let to = record.samples.get(j + 1).copied().unwrap_or(record.samples[j]);
@@ -185,7 +223,7 @@ fn problem<'a>(record: &'a Record, options: &ContactOptions, length: f64) -> Pro
     let mass = body.log_mass.exp();
     // Entries beside the diagonal of the factor of the second moments are of the size of those on it.
     let entry = PRIOR * (0.2 * mass).sqrt() * length;
-    let known = SVector::from_fn(|i, _| match i {
+    let known = SVector::<f64, CONSTANTS>::from_fn(|i, _| match i {
         0 => information(PRIOR_MASS),
         1..=3 => information(PRIOR),
         _ => information(entry),
@@ -196,9 +234,10 @@ fn problem<'a>(record: &'a Record, options: &ContactOptions, length: f64) -> Pro
         friction: false,
         gravity: DVec3::new(0.0, 0.0, -options.gravity),
         nodes: Vec::new(),
+        frozen: Vec::new(),
         units: Units { length, speed: (options.gravity * length).sqrt(), mass },
         first: (none, Tangent::from_fn(|i, _| if i < 9 { 0.0 } else { information(FIRST_TURN) })),
-        body: (body, known),
+        body: (body, SMatrix::from_diagonal(&known)),
     }
 }
 
@@ -214,55 +253,48 @@ fn refined(problem: &Problem, coarse: &[usize], unknowns: &Unknowns) -> Unknowns
 }
 
 fn estimate(
-    record: &Record,
+    log: &Record,
+    problem: &Problem,
     modes: Vec<[ContactMode; MOST_PALMS]>,
-    solved: Solved<CONSTANTS>,
+    solved: &Solved<CONSTANTS>,
     covariances: &Covariances<CONSTANTS>,
     coarse: usize,
 ) -> ContactEstimate {
     let Solved { unknowns, equations, iterations, settled } = solved;
     let body = &unknowns.body;
+    let evidence = ContactEvidence {
+        samples: log.times.len(),
+        nodes: problem.nodes.len(),
+        conditions: equations.conditions,
+        misfit: solved.misfit(),
+        iterations: [coarse, coarse + iterations],
+        settled: *settled && covariances.mended <= MENDED,
+    };
     let state = |motion: &Motion| BodyState {
-        p_WCm: motion.p + record.origin,
+        p_WCm: motion.p + log.origin,
         v_WCm: motion.v,
         w_WO: body.turn(motion.q, motion.L).w,
         R_WO: motion.q,
     };
-    let of = |(motion, (own, follows)): (&Motion, &(_, _))| {
-        deviations(motion, body, own, follows, &covariances.body)
+    let (reliability, wider) = (evidence.reliability(), evidence.widening());
+    let motion = at_all(log, problem, unknowns, covariances);
+    let deviations: Vec<_> = motion.iter().map(|(_, of)| of.map(|of| of * wider)).collect();
+    let excess = stretches(problem, equations);
+    let one = |(k, of): (usize, &_)| {
+        let j = problem.record.samples.partition_point(|&node| node <= k).saturating_sub(1);
+        reliability.is_reliable() && relied_on(excess[j], of, &problem.units)
     };
-    let deviation = |i: usize| covariances.body[(i, i)].max(0.0).sqrt();
+    let deviation = |i: usize| covariances.body[(i, i)].max(0.0).sqrt() * wider;
     ContactEstimate {
-        states: unknowns.motions.iter().map(state).collect(),
-        deviations: unknowns.motions.iter().zip(&covariances.motions).map(of).collect(),
-        nodes: record.samples.clone(),
+        states: motion.iter().map(|(motion, _)| state(motion)).collect(),
+        relied_on: deviations.iter().enumerate().map(one).collect(),
+        deviations,
         modes,
         mass: body.log_mass.exp(),
         mass_deviation: deviation(0),
         inertia: body.inertia(),
         inertia_deviations: [deviation(1), deviation(2), deviation(3)],
-        iterations: [coarse, coarse + iterations],
-        settled,
-        chi_squared: equations.cost,
-        conditions: equations.conditions,
+        reliability,
+        evidence,
     }
-}
-
-/// With the angular velocity in place of the angular momentum.
-fn deviations(
-    motion: &Motion,
-    body: &Body,
-    own: &SMatrix<f64, MOTION, MOTION>,
-    follows: &SMatrix<f64, MOTION, CONSTANTS>,
-    constants: &SMatrix<f64, CONSTANTS, CONSTANTS>,
-) -> [DVec3; 4] {
-    let (by_motion, by_body) = motion.spin_derivatives(body);
-    let mut to = SMatrix::<f64, MOTION, MOTION>::identity();
-    let mut through = SMatrix::<f64, MOTION, CONSTANTS>::zeros();
-    to.fixed_view_mut::<3, MOTION>(6, 0).copy_from(&by_motion);
-    through.fixed_view_mut::<3, 6>(6, 1).copy_from(&by_body);
-    let by_constants = to * follows + through;
-    let covariance = to * own * to.transpose() + by_constants * constants * by_constants.transpose();
-    let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
-    std::array::from_fn(|k| DVec3::new(deviation(3 * k), deviation(3 * k + 1), deviation(3 * k + 2)))
 }

@@ -9,13 +9,16 @@ mod options;
 mod problem;
 mod record;
 mod rows;
+mod samples;
 mod solve;
 mod spurious;
 mod state;
 #[cfg(test)]
 mod tests;
+mod verdict;
 mod windows;
 
 pub use estimate::{ContactEstimate, estimate_contacts};
 pub use noise::ContactNoiseLevel;
 pub use options::{ContactEstimateError, ContactOptions};
+pub use verdict::ContactEvidence;

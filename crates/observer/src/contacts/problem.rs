@@ -14,6 +14,9 @@ use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector6};
 /// chain would be rigid, and the equations singular in double precision. It adds a thousandth to the variance of a velocity.
 const LINK_FLOOR: f64 = 0.03;
 
+/// Information that keeps a combination of the body's numbers, where the conditions claim to have one.
+pub(super) const FROZEN: f64 = 1e4;
+
 /// Natural units of a scene.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Units {
@@ -35,8 +38,10 @@ pub(super) struct Problem<'a> {
     pub(super) units: Units,
     /// What is known of the first motion: value and information of each number.
     pub(super) first: (Motion, Tangent),
-    /// What is known of the body: value and information of each number.
-    pub(super) body: (Body, SVector<f64, 7>),
+    /// What is known of the body beforehand: values and information.
+    pub(super) body: (Body, SMatrix<f64, 7, 7>),
+    /// Combinations of the body's numbers that keep their value from beforehand.
+    pub(super) frozen: Vec<SVector<f64, 7>>,
 }
 
 /// Unknowns: the motions at the nodes and the body's constants.
@@ -54,6 +59,9 @@ pub(super) struct NodeEquations<const P: usize> {
     pub(super) next: Transition,
     pub(super) body: SMatrix<f64, MOTION, P>,
     pub(super) gradient: Tangent,
+    /// Squared residuals of the conditions and of the link from here on, and how many conditions.
+    pub(super) cost: f64,
+    pub(super) conditions: usize,
 }
 
 /// Normal equations at some unknowns.
@@ -132,6 +140,8 @@ impl<const P: usize> Equations<P> {
             return;
         }
         let node = &mut self.nodes[j];
+        node.cost += rows.cost;
+        node.conditions += rows.conditions;
         let carried = rows.own * F;
         node.own += F.transpose() * carried;
         node.gradient += F.transpose() * rows.gradient;
@@ -156,6 +166,8 @@ impl Problem<'_> {
             next: Transition::zeros(),
             body: SMatrix::zeros(),
             gradient: Tangent::zeros(),
+            cost: 0.0,
+            conditions: 0,
         };
         let count = self.nodes.len();
         let mut all = Equations {
@@ -407,6 +419,7 @@ impl Problem<'_> {
             adjusted_body: E,
         });
         let node = &mut all.nodes[j];
+        node.cost += weighted.dot(&r);
         node.own += F.transpose() * through;
         node.next -= through.transpose();
         node.gradient -= F.transpose() * weighted;
@@ -431,19 +444,27 @@ impl Problem<'_> {
             node.own[(i, i)] += information[i];
             node.gradient[i] += information[i] * d[i];
         }
-        let d = self.body_departure(&at.body);
-        for i in 0..P {
-            all.body[(i, i)] += self.body.1[i];
-            all.body_gradient[i] += self.body.1[i] * d[i];
+        if P > 0 {
+            let known = self.body_information();
+            all.body += known.fixed_view::<P, P>(0, 0);
+            all.body_gradient += (known * self.body_departure(&at.body)).fixed_rows::<P>(0);
         }
+    }
+
+    /// With what keeps the frozen combinations.
+    fn body_information(&self) -> SMatrix<f64, 7, 7> {
+        self.frozen.iter().fold(self.body.1, |all, g| all + g * g.transpose() * FROZEN)
     }
 
     fn prior_cost<const P: usize>(&self, at: &Unknowns) -> f64 {
         let (value, information) = &self.first;
         let d = at.motions[0].from(value);
         let cost = d.component_mul(&d).dot(information);
+        if P == 0 {
+            return cost;
+        }
         let d = self.body_departure(&at.body);
-        cost + (0..P).map(|i| self.body.1[i] * d[i] * d[i]).sum::<f64>()
+        cost + (self.body_information() * d).dot(&d)
     }
 
     fn body_departure(&self, body: &Body) -> SVector<f64, 7> {
@@ -455,7 +476,7 @@ impl Problem<'_> {
     }
 
     /// Noise of impulse and moment about the origin, with the moment about `p` and a floor.
-    fn about(&self, noise: &Matrix6<f64>, p: DVec3) -> Matrix6<f64> {
+    pub(super) fn about(&self, noise: &Matrix6<f64>, p: DVec3) -> Matrix6<f64> {
         let mut shift = Matrix6::identity();
         shift.fixed_view_mut::<3, 3>(3, 0).copy_from(&Matrix3::from(-cross_matrix(p)));
         let mut moved = shift * noise * shift.transpose();

@@ -26,6 +26,13 @@ pub(super) struct Solved<const P: usize> {
     pub(super) settled: bool,
 }
 
+impl<const P: usize> Solved<P> {
+    /// Chi-squared over the number of conditions.
+    pub(super) fn misfit(&self) -> f64 {
+        self.equations.cost / self.equations.conditions.max(1) as f64
+    }
+}
+
 /// A step of all unknowns.
 pub(super) struct Step<const P: usize> {
     pub(super) motions: Vec<Tangent>,
@@ -53,6 +60,8 @@ pub(super) struct Covariances<const P: usize> {
     /// Of each motion with the next one, for given constants.
     pub(super) next: Vec<Transition>,
     pub(super) body: SMatrix<f64, P, P>,
+    /// Information that was added against rounding, as a share of that of natural units at each node.
+    pub(super) mended: f64,
 }
 
 impl<const P: usize> Reduced<P> {
@@ -116,10 +125,10 @@ impl<const P: usize> Equations<P> {
     /// `unit` is the information of a node whose deviations are the natural units.
     ///
     /// Where rounding leaves the equations indefinite, as little of it is added as mends them: a deviation then is no larger than a
-    /// natural unit over the root of that share of all nodes. None where a tenth of it is not enough.
+    /// natural unit over the root of that share of all nodes. None where a hundred of it are not enough.
     pub(super) fn covariances(&self, unit: &Tangent) -> Option<Covariances<P>> {
-        let with = |share: f64| self.reduced(&(unit * share), 0.0);
-        let reduced = [0.0, 1e-4, 1e-3, 1e-2, 0.1].into_iter().find_map(with)?;
+        let with = |share: f64| Some((self.reduced(&(unit * share), 0.0)?, share));
+        let (reduced, mended) = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0].into_iter().find_map(with)?;
         let mut motions = Vec::with_capacity(self.nodes.len());
         let mut next = Vec::with_capacity(self.nodes.len());
         let (mut after, mut follows) = (Transition::zeros(), SMatrix::<f64, MOTION, P>::zeros());
@@ -132,7 +141,7 @@ impl<const P: usize> Equations<P> {
         motions.reverse();
         next.reverse();
         next.pop();
-        Some(Covariances { motions, next, body: reduced.body })
+        Some(Covariances { motions, next, body: reduced.body, mended })
     }
 }
 

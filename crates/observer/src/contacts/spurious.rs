@@ -6,12 +6,12 @@
 //! times a score of covariance `B`, so that its covariance is `C^-1 B C^-1`.
 
 use super::flow::Transition;
-use super::problem::{Equations, Unknowns};
+use super::problem::{Equations, FROZEN, Problem, Unknowns};
 use super::solve::Covariances;
 use super::state::{Body, Motion};
 use crate::three_palms::inertia_slope;
 use glam::DMat3;
-use nalgebra::{Matrix3, SMatrix, SymmetricEigen};
+use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen};
 
 /// Logarithm of the mass and six numbers of the inertia. The mass is known by gravity, which has no noise.
 const BODY: usize = 7;
@@ -19,18 +19,56 @@ const NUMBERS: usize = 6;
 /// What of the information is left at least, in any direction: a deviation is then twenty times what the equations claim.
 const LEAST: f64 = 0.05;
 
+/// Share of the information beyond which a direction of the inertia is not learned: it keeps its value from beforehand.
+const UNLEARNED: f64 = 0.7;
+
 type OfBody = SMatrix<f64, BODY, BODY>;
 
+/// Shares of noise in the information that the equations claim on the body.
+struct Shares {
+    values: SVector<f64, BODY>,
+    /// Factor of the claimed covariance, its columns turned to the directions of the shares.
+    axes: OfBody,
+}
+
 impl Covariances<BODY> {
-    /// With the covariance of the body widened where noise poses as information. None where it has no inverse.
-    pub(super) fn widened(self, equations: &Equations<BODY>, at: &Unknowns) -> Option<Self> {
+    /// Combinations of the body's numbers, in units of their claimed deviations, of which noise alone tells. None where the covariance has
+    /// no inverse.
+    pub(super) fn frozen(
+        &self,
+        equations: &Equations<BODY>,
+        at: &Unknowns,
+    ) -> Option<Vec<SVector<f64, BODY>>> {
+        let Shares { values, axes } = self.shares(equations, at)?;
+        let rows = axes.try_inverse()?;
+        Some((0..BODY).filter(|&i| values[i] > UNLEARNED).map(|i| rows.row(i).transpose()).collect())
+    }
+
+    /// With the covariance of the body widened where noise poses as information, and by what was known beforehand of what is
+    /// frozen. None where it has no inverse.
+    pub(super) fn widened(
+        self,
+        problem: &Problem,
+        equations: &Equations<BODY>,
+        at: &Unknowns,
+    ) -> Option<Self> {
+        let Shares { values, axes } = self.shares(equations, at)?;
+        let wider = values.map(|share| (1.0 - share).clamp(LEAST, 1.0).powi(-2));
+        let mut body = axes * OfBody::from_diagonal(&wider) * axes.transpose();
+        let beforehand = problem.body.1.try_inverse()?;
+        for combination in &problem.frozen {
+            // What a change of its value from beforehand would do to all numbers.
+            let follows = self.body * combination * FROZEN;
+            body += follows * follows.transpose() * combination.dot(&(beforehand * combination));
+        }
+        Some(Self { body, ..self })
+    }
+
+    fn shares(&self, equations: &Equations<BODY>, at: &Unknowns) -> Option<Shares> {
         // In units of the deviations as claimed: the information is one, and what noise adds to it a share.
         let factor = self.body.cholesky()?.l();
-        let shares = factor.transpose() * self.spurious(equations, at) * factor;
-        let eigen = SymmetricEigen::new(shares);
-        let wider = eigen.eigenvalues.map(|share| (1.0 - share).clamp(LEAST, 1.0).powi(-2));
-        let axes = factor * eigen.eigenvectors;
-        Some(Self { body: axes * OfBody::from_diagonal(&wider) * axes.transpose(), ..self })
+        let eigen = SymmetricEigen::new(factor.transpose() * self.spurious(equations, at) * factor);
+        Some(Shares { values: eigen.eigenvalues, axes: factor * eigen.eigenvectors })
     }
 
     fn spurious(&self, equations: &Equations<BODY>, at: &Unknowns) -> OfBody {

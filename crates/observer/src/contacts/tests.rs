@@ -7,7 +7,7 @@ use super::*;
 use crate::three_palms::numbers_of_inertia;
 use contact_kinematics::{Direction, Ellipsoid, PalmSurface, SupportFunction, SurfaceMotion, SurfacePose};
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 use object_dynamics::*;
 
 const G: f64 = 9.81;
@@ -73,16 +73,18 @@ fn options(noise: ContactNoiseLevel) -> ContactOptions {
     ContactOptions { noise, gravity: G, size: None }
 }
 
-/// Squared errors over variances in the middle, 12 numbers, and the relative error of the mass.
+/// Squared errors over variances, 12 numbers, mean over all samples, and the relative error of the mass.
 fn errors(found: &ContactEstimate, log: &ContactLog) -> (f64, f64) {
     let truth = log.truth().unwrap();
-    let middle = found.nodes.len() / 2;
-    let (state, deviations) = (&found.states[middle], &found.deviations[middle]);
-    let (at, first) = (&truth[found.nodes[middle]], truth[found.nodes[0]].R_WO);
-    let turn = (state.R_WO * (at.R_WO * first.conjugate()).conjugate()).to_scaled_axis();
-    let differences = [state.p_WCm - at.p_WCm, state.v_WCm - at.v_WCm, state.w_WO - at.w_WO, turn];
-    let squares = differences.iter().zip(deviations).map(|(d, s)| (*d / *s).length_squared()).sum();
-    (squares, (found.mass / 0.2 - 1.0).abs())
+    let one = |((state, at), deviations): ((&BodyState, &BodyState), &[DVec3; 4])| {
+        let turn = (state.R_WO * (at.R_WO * truth[0].R_WO.conjugate()).conjugate()).to_scaled_axis();
+        let differences = [state.p_WCm - at.p_WCm, state.v_WCm - at.v_WCm, state.w_WO - at.w_WO, turn];
+        // The first turn is none.
+        let squares = differences.iter().zip(deviations).filter(|(_, s)| s.min_element() > 2e-5);
+        squares.map(|(d, s)| (*d / *s).length_squared()).sum::<f64>()
+    };
+    let squares: f64 = found.states.iter().zip(truth).zip(&found.deviations).map(one).sum();
+    (squares / truth.len() as f64, (found.mass / 0.2 - 1.0).abs())
 }
 
 /// A problem on a short noisy log, with unknowns that are not its solution.
@@ -98,7 +100,8 @@ fn off_solution(record: &Record, noise: ContactNoiseLevel, stride: usize) -> (Pr
         nodes: (0..last).step_by(stride).chain([last]).collect(),
         units: Units { length: SIZE, speed: (G * SIZE).sqrt(), mass: body.log_mass.exp() },
         first: (none, Tangent::from_element(1.0)),
-        body: (body, SVector::from_element(1.0)),
+        body: (body, SMatrix::identity()),
+        frozen: Vec::new(),
     };
     let mut at = cold::start(&problem, body, DQuat::from_rotation_y(0.3));
     let inertia = DMat3::from_diagonal(DVec3::new(1.0, 1.4, 1.6)) * 1e-4;
@@ -163,10 +166,16 @@ fn better_sensors_give_a_better_motion_in_proportion() {
     let error = |noise: ContactNoiseLevel| {
         let log = noisy(&exact, &noise, 5);
         let found = estimate_contacts(&log, Some(&modes(&log)), &options(noise)).unwrap();
-        assert!(found.settled);
+        println!(
+            "{:?} {:?} {}",
+            found.reliability,
+            found.evidence,
+            found.relied_on.iter().filter(|r| **r).count()
+        );
+        assert!(found.reliability.is_reliable() && found.relied_on.iter().all(|&relied| relied));
         let truth = log.truth().unwrap();
-        let square = |(s, &k): (&BodyState, &usize)| (s.v_WCm - truth[k].v_WCm).length_squared();
-        (found.states.iter().zip(&found.nodes).map(square).sum::<f64>() / found.nodes.len() as f64).sqrt()
+        let square = |(s, at): (&BodyState, &BodyState)| (s.v_WCm - at.v_WCm).length_squared();
+        (found.states.iter().zip(truth).map(square).sum::<f64>() / truth.len() as f64).sqrt()
     };
     let [fair, good] = [(4e-5, 4e-3), (8e-6, 8e-4)].map(|(contact, share)| error(noise(contact, share)));
     assert!((2.5..10.0).contains(&(fair / good)), "{fair} {good}");
@@ -186,6 +195,35 @@ fn errors_are_as_large_as_they_are_said_to_be() {
     }
     let mean = sum / (12.0 * runs as f64);
     assert!((0.4..1.6).contains(&mean), "squared errors are {mean} of what is said");
+}
+
+#[test]
+fn what_noise_hides_of_an_inertia_keeps_its_expected_value() {
+    // From sample to sample most of the change of the angular velocity is noise: fitted freely, roots of second moments come out three
+    // times as large at a lower cost than the true ones have.
+    let exact = log(1.0, 250.0);
+    let noise = noise(1e-4, 0.01);
+    let body = MassProperties::uniform_ellipsoid(0.2, DVec3::new(0.05, 0.04, 0.03)).unwrap();
+    let R = DMat3::from_quat(exact.truth().unwrap()[0].R_WO);
+    let truth = numbers_of_inertia(R * body.inertia() * R.transpose());
+    let (mut squares, mut runs) = (0.0, 0.0);
+    for seed in 0..4 {
+        let log = noisy(&exact, &noise, seed);
+        let found = estimate_contacts(&log, Some(&modes(&log)), &options(noise)).unwrap();
+        if !found.reliability.is_reliable() {
+            continue;
+        }
+        let numbers = numbers_of_inertia(found.inertia);
+        runs += 1.0;
+        for i in 0..3 {
+            let error = numbers[i] - truth[i];
+            assert!(error.abs() < 0.6, "{seed}: {numbers:?} {truth:?}");
+            squares += (error / found.inertia_deviations[i]).powi(2);
+        }
+    }
+    assert!(runs > 2.0, "{runs} of 4 are relied on");
+    let mean = squares / (3.0 * runs);
+    assert!((0.05..2.5).contains(&mean), "squared errors are {mean} of what is said");
 }
 
 #[test]
@@ -238,5 +276,5 @@ fn modes_are_told_from_forces() {
         }
     }
     assert!(sticks > 300 && 2 * told > sticks, "{told} of {sticks} that stick");
-    assert!(found.chi_squared < 1.5 * found.conditions as f64);
+    assert!(found.evidence.misfit < 1.5);
 }

@@ -51,7 +51,9 @@ fn windows(record: &Record, longest: f64) -> Vec<Window> {
     let mut from = 0;
     while from < count {
         if from == run.end {
-            run = from..from + (from..count).take_while(|&k| same(from, k)).count();
+            // The first sample and the last one are nodes: all lie between two.
+            let end = if from == 0 { 1 } else { (count - 1).max(from + 1) };
+            run = from..from + (from..end).take_while(|&k| same(from, k)).count();
         }
         let fits = |end: &usize| record.times[*end] - record.times[from] < longest;
         let own = from..from + 1 + (from + 1..run.end).take_while(fits).count() / 2 * 2;

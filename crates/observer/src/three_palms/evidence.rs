@@ -286,14 +286,14 @@ impl Reliability {
     }
 
     /// Refuses to rely on a motion that leaves no room for a convex body.
-    pub(super) fn check_convexity(&mut self, violation: f64) {
+    pub(crate) fn check_convexity(&mut self, violation: f64) {
         if violation.is_nan() || violation > LARGEST_VIOLATION {
             self.add(Reason::NotConvex { deviations: violation });
         }
     }
 
     /// One more reason.
-    pub(super) fn add(&mut self, reason: Reason) {
+    pub(crate) fn add(&mut self, reason: Reason) {
         match self {
             Self::Reliable => *self = Self::Unreliable(vec![reason]),
             Self::Unreliable(reasons) => reasons.push(reason),

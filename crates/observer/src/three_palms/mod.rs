@@ -38,6 +38,7 @@ mod verdict;
 pub(crate) use quadrature::running_integral;
 pub(crate) use sensitivity::{cross_matrix, exponential, logarithm};
 pub(crate) use state_space::{inertia_of_numbers, inertia_slope, numbers_of_inertia};
+pub(crate) use verdict::{LARGEST_DEVIATION, LARGEST_MISFIT};
 
 pub use alternatives::OtherMotion;
 pub use covariance::NoiseLevel;

@@ -8,7 +8,7 @@ use crate::least_squares::FitStatus;
 /// A direction of the unknowns known to worse than this share of its natural size makes the estimate unreliable: the
 /// linearisation that its covariance comes from does not reach that far. An error of five deviations without another warning
 /// was seen at 0.24 (two palms 30 degrees apart), none below 0.2.
-pub(super) const LARGEST_DEVIATION: f64 = 0.15;
+pub(crate) const LARGEST_DEVIATION: f64 = 0.15;
 /// The same where the covariance was not widened by what is beyond first order.
 pub(super) const LARGEST_PLAIN_DEVIATION: f64 = 0.1;
 /// Root mean square shift by pairs of as much noise again, in standard deviations, beyond which even the covariance that is
@@ -24,7 +24,7 @@ const DEVIATION_AMONG_OTHERS: f64 = 0.06;
 const LEAST_LOG_ODDS: f64 = 20.0;
 /// Chi-squared over its degrees of freedom beyond which noise does not explain an estimate. With hundreds of degrees it
 /// scatters by a few percent about 0.85 to 1; noise levels that are read off the data are good to 5 %.
-pub(super) const LARGEST_MISFIT: f64 = 1.4;
+pub(crate) const LARGEST_MISFIT: f64 = 1.4;
 
 /// The verdict on what an estimate says of itself.
 pub(super) fn judge(

@@ -1,0 +1,143 @@
+//! Motion and its deviations at all samples of a log, from those at the nodes.
+
+use super::flow::Carried;
+use super::problem::{Problem, Unknowns};
+use super::record::Record;
+use super::solve::Covariances;
+use super::state::{Body, MOTION, Motion, Tangent};
+use crate::three_palms::exponential;
+use glam::{DMat3, DVec3};
+use nalgebra::{Matrix3, Matrix6, SMatrix};
+
+/// Standard deviations of centre of mass, velocity, angular velocity and turn.
+pub(super) type Deviations = [DVec3; 4];
+
+/// Motion and deviations at each sample of `log`, the nodes of `problem` among them, the first and the last too.
+pub(super) fn at_all<const P: usize>(
+    log: &Record,
+    problem: &Problem,
+    found: &Unknowns,
+    covariances: &Covariances<P>,
+) -> Vec<(Motion, Deviations)> {
+    let own = problem.at_samples(found);
+    let known: Vec<Deviations> =
+        (0..own.len()).map(|j| deviations(&own[j], &found.body, j, covariances)).collect();
+    let mut all = Vec::with_capacity(log.times.len());
+    for j in 0..own.len() {
+        all.push((own[j], known[j]));
+        if let Some(&end) = problem.record.samples.get(j + 1) {
+            let from = problem.record.samples[j];
+            let link = Link::new(log, problem, found, j, from..end);
+            all.extend((from + 1..end).map(|k| link.at(log, k, [&known[j], &known[j + 1]])));
+        }
+    }
+    all
+}
+
+/// Samples from one node to the next.
+struct Link<'a> {
+    body: &'a Body,
+    samples: std::ops::Range<usize>,
+    duration: f64,
+    /// By what was measured, after each interval.
+    carried: Vec<Motion>,
+    /// What the next node's motion differs by.
+    left: Tangent,
+    /// Covariance of impulse and moment about the centre of mass that noise adds over the link.
+    noise: Matrix6<f64>,
+}
+
+impl<'a> Link<'a> {
+    fn new(
+        log: &Record,
+        problem: &Problem,
+        found: &'a Unknowns,
+        j: usize,
+        samples: std::ops::Range<usize>,
+    ) -> Self {
+        let mut carried = Carried::<0>::new(found.motions[j], &found.body);
+        let (mut motions, mut noise) = (Vec::with_capacity(samples.len()), Matrix6::zeros());
+        for k in samples.clone() {
+            carried.step(
+                &log.intervals[k],
+                [&log.wrenches[k], &log.wrenches[k + 1]],
+                &found.body,
+                problem.gravity,
+            );
+            noise += log.intervals[k].noise;
+            motions.push(carried.motion);
+        }
+        Self {
+            body: &found.body,
+            duration: log.times[samples.end] - log.times[samples.start],
+            left: found.motions[j + 1].from(&carried.motion),
+            noise: problem.about(&noise, carried.motion.p),
+            carried: motions,
+            samples,
+        }
+    }
+
+    /// At a sample inside. White noise between two known motions bends the motion by a cubic on average; velocities have the variance of
+    /// a Brownian bridge (how far the motion came tells hardly more of them, as that is not known better), places that of an integrated one.
+    fn at(&self, log: &Record, k: usize, ends: [&Deviations; 2]) -> (Motion, Deviations) {
+        let h = self.duration;
+        let s = (log.times[k] - log.times[self.samples.start]) / h;
+        let part = |i: usize| DVec3::new(self.left[i], self.left[i + 1], self.left[i + 2]);
+        // Of a cubic that ends with a value and a slope; and its slope over the duration.
+        let cubic = |value: DVec3, slope: DVec3| {
+            let at = value * (s * s * (3.0 - 2.0 * s)) + slope * (h * s * s * (s - 1.0));
+            let rate = value * (6.0 * s * (1.0 - s) / h) + slope * (s * (3.0 * s - 2.0));
+            (at, rate)
+        };
+        let before = &self.carried[k - self.samples.start - 1];
+        let turn = self.body.turn(before.q, before.L);
+        let inertia = self.body.inertia_along(turn.R);
+        let (p, v) = cubic(part(0), part(3));
+        let (turned, spin) = cubic(part(9), turn.K * part(6));
+        let motion = Motion {
+            p: before.p + p,
+            v: before.v + v,
+            L: before.L + inertia * spin,
+            q: (exponential(turned) * before.q).normalize(),
+        };
+        (motion, self.deviations(s, turn.K, ends))
+    }
+
+    fn deviations(&self, s: f64, K: DMat3, ends: [&Deviations; 2]) -> Deviations {
+        let m = self.body.inverse_mass();
+        let part = |i: usize| Matrix3::from(self.noise.fixed_view::<3, 3>(i, i));
+        let K = Matrix3::from(K);
+        let noise = [part(0) * (m * m), K * part(3) * K.transpose()]
+            .map(|of| DVec3::new(of[(0, 0)], of[(1, 1)], of[(2, 2)]));
+        let bend = s * (1.0 - s);
+        let rate = bend;
+        let place = bend.powi(3) * self.duration * self.duration / 3.0;
+        let shares = [(noise[0], place), (noise[0], rate), (noise[1], rate), (noise[1], place)];
+        std::array::from_fn(|i| {
+            let (noise, share) = shares[i];
+            let between = ends[0][i] * ends[0][i] * (1.0 - s) + ends[1][i] * ends[1][i] * s;
+            (between + noise * share).map(f64::sqrt)
+        })
+    }
+}
+
+/// At node `j`, with the angular velocity in place of the angular momentum.
+fn deviations<const P: usize>(
+    motion: &Motion,
+    body: &Body,
+    j: usize,
+    covariances: &Covariances<P>,
+) -> Deviations {
+    let (own, follows) = &covariances.motions[j];
+    let (by_motion, by_body) = motion.spin_derivatives(body);
+    let mut to = SMatrix::<f64, MOTION, MOTION>::identity();
+    let mut through = SMatrix::<f64, MOTION, P>::zeros();
+    to.fixed_view_mut::<3, MOTION>(6, 0).copy_from(&by_motion);
+    if P > 0 {
+        through.fixed_view_mut::<3, 6>(6, 1).copy_from(&by_body);
+    }
+    let by_constants = to * follows + through;
+    let covariance = to * own * to.transpose() + by_constants * covariances.body * by_constants.transpose();
+    let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
+    std::array::from_fn(|k| DVec3::new(deviation(3 * k), deviation(3 * k + 1), deviation(3 * k + 2)))
+}

@@ -1,0 +1,80 @@
+//! What an estimate from contacts rests on, and which of its rows are to be relied on.
+
+use super::problem::{Equations, Problem, Units};
+use super::samples::Deviations;
+use crate::three_palms::{LARGEST_DEVIATION, LARGEST_MISFIT, Reason, Reliability};
+
+/// Standard deviations of a normal variable beyond which a stretch of the log is not explained by noise: once in a million.
+const UNEXPLAINED: f64 = 4.75;
+/// Length of a stretch in natural times.
+const STRETCH: f64 = 1.0;
+
+/// What an estimate from contacts rests on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactEvidence {
+    /// Samples of the log.
+    pub samples: usize,
+    /// Motions that were solved for: one a window of samples.
+    pub nodes: usize,
+    /// Contact conditions.
+    pub conditions: usize,
+    /// Squared corrections of all readings, in their deviations, over the number of conditions: about 1 when all is as stated.
+    pub misfit: f64,
+    /// Linearisations: coarse, all.
+    pub iterations: [usize; 2],
+    /// Whether less than half a standard deviation was left to gain.
+    pub settled: bool,
+}
+
+impl ContactEvidence {
+    pub(super) fn reliability(&self) -> Reliability {
+        let mut reliability = Reliability::Reliable;
+        if !self.settled {
+            reliability.add(Reason::NotConverged { iterations: self.iterations[1] });
+        }
+        if self.misfit.is_nan() || self.misfit > LARGEST_MISFIT {
+            reliability.add(Reason::Inconsistent { misfit: self.misfit });
+        }
+        reliability
+    }
+
+    /// What all deviations are to be multiplied by: a misfit that is left is noise that was not stated.
+    pub(super) fn widening(&self) -> f64 {
+        self.misfit.max(1.0).sqrt()
+    }
+}
+
+/// For each node, by how many deviations of a normal variable the misfit of the stretch around it exceeds that of the whole.
+pub(super) fn stretches<const P: usize>(problem: &Problem, equations: &Equations<P>) -> Vec<f64> {
+    let Units { length, speed, .. } = problem.units;
+    let half = 0.5 * STRETCH * length / speed;
+    let times: Vec<f64> = problem.nodes.iter().map(|&k| problem.record.times[k]).collect();
+    let mut sums = vec![(0.0, 0.0)];
+    for node in &equations.nodes {
+        let (cost, conditions) = sums[sums.len() - 1];
+        sums.push((cost + node.cost, conditions + node.conditions as f64));
+    }
+    let scale = (equations.cost / equations.conditions.max(1) as f64).max(1.0);
+    let one = |&t: &f64| {
+        let from = times.partition_point(|&other| other < t - half);
+        let to = times.partition_point(|&other| other <= t + half);
+        let (cost, conditions) = (sums[to].0 - sums[from].0, sums[to].1 - sums[from].1);
+        excess(cost / scale, conditions)
+    };
+    times.iter().map(one).collect()
+}
+
+/// Chi-squared of so many degrees of freedom as a normal variable: the cube root's approximation (Wilson and Hilferty 1931).
+fn excess(chi_squared: f64, degrees: f64) -> f64 {
+    let variance = 2.0 / (9.0 * degrees.max(1.0));
+    ((chi_squared / degrees.max(1.0)).cbrt() - (1.0 - variance)) / variance.sqrt()
+}
+
+/// Whether a row is to be relied on, if the estimate is: noise explains the stretch around it, and the deviations are
+/// small enough for the linearisation that they come from.
+pub(super) fn relied_on(excess: f64, deviations: &Deviations, units: &Units) -> bool {
+    let Units { length, speed, .. } = *units;
+    let natural = [length, speed, speed / length, 1.0];
+    let small = |(of, unit): (&glam::DVec3, f64)| of.max_element() <= LARGEST_DEVIATION * unit;
+    excess <= UNEXPLAINED && deviations.iter().zip(natural).take(3).all(small)
+}
