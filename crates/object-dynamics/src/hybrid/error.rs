@@ -56,6 +56,21 @@ pub enum ContactSimulationError {
         /// Why.
         source: PalmContactError,
     },
+    /// So many steps for so little time that the end is out of reach.
+    #[error(
+        "{steps} steps lead no further than t = {t:.3e} s, where the object turns at {spin:.3e} rad/s and moves at {speed:.3e} m/s; \
+         slow down object and palms, or allow a larger tolerance"
+    )]
+    TooSlow {
+        /// Time reached, s.
+        t: f64,
+        /// Steps until then.
+        steps: usize,
+        /// Angular speed of the body there, rad/s.
+        spin: f64,
+        /// Speed of its centre of mass there, m/s.
+        speed: f64,
+    },
     /// The equations of motion could not be integrated.
     #[error("integration: {0}")]
     Integration(#[source] IntegrationError<PalmContactError>),

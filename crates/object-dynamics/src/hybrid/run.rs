@@ -44,6 +44,10 @@ impl<S: SupportFunction> ContactScene<S> {
     }
 }
 
+/// Steps within one natural time after which a motion is taken to be too fast to be followed: smooth motion takes some tens,
+/// logs with a pose of each palm at every millisecond some hundreds.
+const MOST_STEPS: usize = 10_000;
+
 pub(super) struct Run<'a, S, const N: usize> {
     pub(super) scene: &'a ContactScene<S>,
     pub(super) units: Units,
@@ -57,6 +61,8 @@ pub(super) struct Run<'a, S, const N: usize> {
     pub(super) blow_work: f64,
     /// Work (in steps) since a time, s: more than time stepping takes is too much.
     pub(super) work: (f64, usize),
+    /// Steps since the start, refused ones among them.
+    steps: usize,
     pub(super) result: ContactSimulation,
 }
 
@@ -109,6 +115,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             y: [0.0; N],
             blow_work: 0.0,
             work: (0.0, 0),
+            steps: 0,
             result,
         };
         run.settle(state, &Tallies::default(), &closed, None)?;
@@ -141,6 +148,18 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
     pub(super) fn evaluated(&self, t: f64, y: &[f64; N]) -> Result<Evaluated, Error> {
         let state = self.units.unpack(t, y);
         self.stretch.evaluate(self.scene, &self.units, state).map_err(|source| Error::Contact { t, source })
+    }
+
+    /// Counts a step that begins at `t`, and refuses to go on where so many have led nowhere.
+    pub(super) fn pace(&mut self, t: f64, y: &[f64; N]) -> Result<(), Error> {
+        self.steps += 1;
+        let allowed = MOST_STEPS as f64 * (1.0 + t * self.units.rate);
+        if self.steps as f64 <= allowed {
+            return Ok(());
+        }
+        let body = self.units.unpack(t, y).0.body;
+        let (spin, speed) = (body.w_WO.length(), body.v_WCm.length());
+        Err(Error::TooSlow { t, steps: self.steps, spin, speed })
     }
 
     pub(super) fn sample(&mut self, t: f64, y: &[f64; N]) -> Result<(), Error> {

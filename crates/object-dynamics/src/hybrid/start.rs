@@ -63,7 +63,11 @@ impl ContactStart {
     }
 }
 
-/// Refuses palms that overlap each other. Planes are taken to end where others begin.
+/// Axes and planes within this angle (rad) of each other are parallel: directions that are given to six digits are.
+const PARALLEL: f64 = 1e-6;
+
+/// Refuses palms that overlap each other. A plane is taken to end where a plane, a cup or a cylinder crosses it, and a cylinder
+/// where a cup does: only what lies along a plane, or is round, can be sunk into it.
 pub(super) fn check_overlap(surfaces: &[(PalmSurface, SurfaceState)]) -> Result<(), Error> {
     for (second, b) in surfaces.iter().enumerate() {
         for (first, a) in surfaces[..second].iter().enumerate() {
@@ -83,6 +87,10 @@ fn distance((a, at): &(PalmSurface, SurfaceState), (b, bt): &(PalmSurface, Surfa
     match (*a, *b) {
         (PalmSurface::Sphere { radius: r }, PalmSurface::Sphere { radius: s }) => between.length() - r - s,
         (PalmSurface::Plane, PalmSurface::Sphere { radius }) => at.R_WP.z_axis.dot(between) - radius,
+        (PalmSurface::Plane, PalmSurface::Cylinder { radius }) => {
+            let parallel = at.R_WP.z_axis.dot(axis_b).abs() <= PARALLEL;
+            if parallel { at.R_WP.z_axis.dot(between) - radius } else { f64::INFINITY }
+        }
         (PalmSurface::Cup { radius }, PalmSurface::Sphere { radius: s }) => radius - between.length() - s,
         (PalmSurface::Cylinder { radius: r }, PalmSurface::Sphere { radius: s }) => {
             between.reject_from_normalized(axis_a).length() - r - s
@@ -90,7 +98,7 @@ fn distance((a, at): &(PalmSurface, SurfaceState), (b, bt): &(PalmSurface, Surfa
         (PalmSurface::Cylinder { radius: r }, PalmSurface::Cylinder { radius: s }) => {
             let normal = axis_a.cross(axis_b);
             // Nearly parallel axes are as far apart as seen across one of them.
-            let apart = if normal.length() > 1e-9 {
+            let apart = if normal.length() > PARALLEL {
                 between.dot(normal.normalize()).abs()
             } else {
                 between.reject_from_normalized(axis_a).length()
