@@ -133,6 +133,7 @@ impl Builder<'_> {
             RecordedMotion::Fixed(fixed) => Ok(LoggedMotion::Fixed(pose((0, fixed))?)),
             RecordedMotion::Poses(poses) => {
                 let poses = poses.into_iter().enumerate().map(pose).collect::<Result<Vec<_>, _>>()?;
+                self.check_steps(&poses)?;
                 if poses.iter().all(|pose| *pose == poses[0]) {
                     return Ok(LoggedMotion::Fixed(poses[0]));
                 }
@@ -147,6 +148,8 @@ impl Builder<'_> {
                     Ok(MeasuredMotion { pose: pose((sample, state.pose))?, ..state })
                 };
                 let states = states.into_iter().enumerate().map(state).collect::<Result<Vec<_>, _>>()?;
+                let poses: Vec<_> = states.iter().map(|state| state.pose).collect();
+                self.check_steps(&poses)?;
                 let first = MeasuredMotion::at_rest(states[0].pose);
                 if states.iter().all(|state| *state == first) {
                     return Ok(LoggedMotion::Fixed(first.pose));
@@ -154,6 +157,16 @@ impl Builder<'_> {
                 Ok(LoggedMotion::Moving { states, twists: TwistSource::Stated })
             }
         }
+    }
+
+    fn check_steps(&self, poses: &[SurfacePose]) -> Result<(), Error> {
+        for (sample, pair) in (1..).zip(poses.windows(2)) {
+            let time = self.times[sample];
+            pair[1]
+                .check_step(&pair[0], time - self.times[sample - 1], sample)
+                .map_err(|source| Error::Pose { palm: self.palm, sample, time, source })?;
+        }
+        Ok(())
     }
 
     fn splined(&self, poses: &[SurfacePose]) -> Result<Vec<MeasuredMotion>, Error> {
