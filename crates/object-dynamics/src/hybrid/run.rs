@@ -6,7 +6,7 @@ use super::field::{Evaluated, Stretch};
 use super::packed::{RIGID, Tallies, Units, YIELDING};
 use super::result::ContactSimulation;
 use super::start::{ContactStart, check_overlap};
-use crate::contacts::{ContactScene, MOST_PALMS, ModeError};
+use crate::contacts::{ContactScene, MOST_PALMS, ModeError, SceneState};
 use crate::integrate::{Statistics, Tolerance};
 use crate::three_palms::check_times;
 use crate::{ContactMode, SampleTimes};
@@ -90,7 +90,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let touch =
             scene.contacts_at(&state, &guesses).map_err(|source| Error::Contact { t: 0.0, source })?;
         let surfaces: Vec<_> = scene.palms().iter().map(|p| p.surface).zip(touch.palms.clone()).collect();
-        check_overlap(&surfaces)?;
+        check_overlap(&surfaces, units.length)?;
         let gaps: Vec<f64> = touch.contacts.iter().map(|contact| contact.gap).collect();
         let closed = start.closed(&gaps, units.length)?;
         let mut joints: Vec<f64> = scene.palms().iter().flat_map(|palm| palm.drive.joints()).collect();
@@ -157,9 +157,20 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         if self.steps as f64 <= allowed {
             return Ok(());
         }
-        let body = self.units.unpack(t, y).0.body;
-        let (spin, speed) = (body.w_WO.length(), body.v_WCm.length());
-        Err(Error::TooSlow { t, steps: self.steps, spin, speed })
+        Err(self.too_slow(&self.units.unpack(t, y).0))
+    }
+
+    /// That the run stands still at this state, with what moves there.
+    pub(super) fn too_slow(&self, state: &SceneState) -> Error {
+        let palm = |i: usize| self.scene.palm_state(i, state.t, &state.palms[i]).v_WP.length();
+        let palms = (0..self.scene.palms().len()).map(palm);
+        Error::TooSlow {
+            t: state.t,
+            steps: self.steps,
+            spin: state.body.w_WO.length(),
+            speed: state.body.v_WCm.length(),
+            palms: palms.fold(0.0, f64::max),
+        }
     }
 
     pub(super) fn sample(&mut self, t: f64, y: &[f64; N]) -> Result<(), Error> {

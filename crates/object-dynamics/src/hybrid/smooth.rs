@@ -169,7 +169,10 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             let source = now.problem.not_p(&self.stretch.modes, minor);
             return Error::Modes { state: Box::new(now.state), source };
         }
-        Error::Integration(error)
+        match error {
+            IntegrationError::StepTooSmall { .. } => self.too_slow(&now.state),
+            other => Error::Integration(other),
+        }
     }
 
     /// Whether events and steps have become so many in so little time that time stepping needs fewer.

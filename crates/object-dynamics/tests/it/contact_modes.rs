@@ -335,6 +335,11 @@ fn palms_that_overlap_are_named() {
         let found = depth(pair).unwrap();
         assert!((found - expected).abs() < 1e-12, "{found} {expected}");
     }
+    for (same, kind) in [(floor.clone(), "flat"), (cup, "cup")] {
+        let scene = ContactScene::new(body, mass, vec![same.clone(), same], G).unwrap();
+        let error = scene.simulate(&start, times, 1e-9).unwrap_err();
+        assert_eq!(error, ContactSimulationError::PalmsCoincide { first: 1, second: 2, kind });
+    }
     // What crosses a plane is no overlap, nor is what only comes near.
     let crossing = rod(0.015, DQuat::from_rotation_y(0.3));
     for pair in [[floor.clone(), crossing], [floor.clone(), rod(0.021, still)], [floor, tilted]] {
