@@ -3,6 +3,8 @@ use glam::{DMat3, DQuat, DVec3};
 
 /// Fewest rows through which a not-a-knot spline goes.
 const FEWEST_ROWS: usize = 4;
+/// Farthest turn between two rows, degrees: beyond it which way the palm has turned is no more than a guess.
+const FARTHEST_TURN: f64 = 90.0;
 
 /// A motion through given poses: cubic splines through positions and quaternions, with the ends left free (not-a-knot).
 ///
@@ -35,7 +37,7 @@ impl PoseTable {
                 return Err(SurfaceError::Table { row, time, rows });
             }
             if let Some(&(earlier, before)) = row.checked_sub(1).and_then(|k| poses.get(k)) {
-                pose.check_step(&before, time - earlier, row)?;
+                pose.check_step(&before, time - earlier, row, FARTHEST_TURN)?;
             }
             let before = values.last().map_or(R_WP, |v| DQuat::from_xyzw(v[3], v[4], v[5], v[6]));
             let q = if before.dot(R_WP) < 0.0 { -R_WP } else { R_WP };

@@ -248,7 +248,7 @@ fn bad_palms_are_named() {
     for (other, metres, degrees) in [(far, 1.0, 0.0), (over, 0.0, 3.1_f64.to_degrees())] {
         let rows = [pose, pose, other, other, other];
         let rows: Vec<_> = (0..5).map(|k| (1e-3 * f64::from(k), rows[k as usize])).collect();
-        let Err(SurfaceError::Jump { row: 2, seconds, distance, degrees: turn }) = PoseTable::new(&rows)
+        let Err(SurfaceError::Jump { row: 2, seconds, distance, degrees: turn, .. }) = PoseTable::new(&rows)
         else {
             panic!("taken")
         };

@@ -9,7 +9,9 @@ use super::record::{
 use crate::MOST_PALMS;
 use crate::modes::check_friction;
 use crate::series::{check_lengths, check_order};
-use contact_kinematics::{CurvatureRadii, Direction, PalmSurface, PoseTable, SurfacePose, SurfaceState};
+use contact_kinematics::{
+    CurvatureRadii, Direction, PalmSurface, PoseTable, SurfaceError, SurfacePose, SurfaceState,
+};
 use glam::DVec3;
 
 /// A force may pull by noise up to this share of the largest force of the log.
@@ -19,6 +21,9 @@ const PULL_BY_NOISE: f64 = 0.1;
 const TURNED: f64 = 16.0 * f64::EPSILON;
 /// Length of a quaternion that differs from 1 by its own rounding alone.
 const UNIT_TO_ROUNDING: f64 = 2.0 * f64::EPSILON;
+
+/// Any turn between two poses, degrees: none is farther. It is the quickest way.
+const HALF_TURN: f64 = 180.0;
 
 pub(super) fn palms(
     times: &[f64],
@@ -133,7 +138,6 @@ impl Builder<'_> {
             RecordedMotion::Fixed(fixed) => Ok(LoggedMotion::Fixed(pose((0, fixed))?)),
             RecordedMotion::Poses(poses) => {
                 let poses = poses.into_iter().enumerate().map(pose).collect::<Result<Vec<_>, _>>()?;
-                self.check_steps(&poses)?;
                 if poses.iter().all(|pose| *pose == poses[0]) {
                     return Ok(LoggedMotion::Fixed(poses[0]));
                 }
@@ -148,8 +152,7 @@ impl Builder<'_> {
                     Ok(MeasuredMotion { pose: pose((sample, state.pose))?, ..state })
                 };
                 let states = states.into_iter().enumerate().map(state).collect::<Result<Vec<_>, _>>()?;
-                let poses: Vec<_> = states.iter().map(|state| state.pose).collect();
-                self.check_steps(&poses)?;
+                self.check_steps(&states)?;
                 let first = MeasuredMotion::at_rest(states[0].pose);
                 if states.iter().all(|state| *state == first) {
                     return Ok(LoggedMotion::Fixed(first.pose));
@@ -159,21 +162,27 @@ impl Builder<'_> {
         }
     }
 
-    fn check_steps(&self, poses: &[SurfacePose]) -> Result<(), Error> {
-        for (sample, pair) in (1..).zip(poses.windows(2)) {
-            let time = self.times[sample];
+    /// Steps between poses whose velocities are measured: a log may be so coarse that a palm turns far in one.
+    fn check_steps(&self, states: &[MeasuredMotion]) -> Result<(), Error> {
+        for (sample, pair) in (1..).zip(states.windows(2)) {
+            let (palm, time) = (self.palm, self.times[sample]);
             pair[1]
-                .check_step(&pair[0], time - self.times[sample - 1], sample)
-                .map_err(|source| Error::Pose { palm: self.palm, sample, time, source })?;
+                .pose
+                .check_step(&pair[0].pose, time - self.times[sample - 1], sample, HALF_TURN)
+                .map_err(|source| Error::Pose { palm, sample, time, source })?;
         }
         Ok(())
     }
 
     fn splined(&self, poses: &[SurfacePose]) -> Result<Vec<MeasuredMotion>, Error> {
         let rows: Vec<_> = self.times.iter().copied().zip(poses.iter().copied()).collect();
-        // Times and poses were checked: only their number can be wrong.
-        let table = PoseTable::new(&rows)
-            .map_err(|_| Error::TwistFromPoses { palm: self.palm, samples: poses.len() })?;
+        // Times and poses were checked: only steps between them and their number can be wrong.
+        let table = PoseTable::new(&rows).map_err(|source| match source {
+            SurfaceError::Jump { row, .. } => {
+                Error::Pose { palm: self.palm, sample: row, time: self.times[row], source }
+            }
+            _ => Error::TwistFromPoses { palm: self.palm, samples: poses.len() },
+        })?;
         let state = |(t, pose)| {
             let SurfaceState { v_WP, w_WP, .. } = table.at(t);
             MeasuredMotion { pose, v_WP, w_WP }
@@ -244,7 +253,7 @@ fn put_on(surface: PalmSurface, frame: &SurfaceState, p_W: DVec3) -> Option<(Tou
 }
 
 /// The pose with its quaternion at unit length; one that is unit to rounding stays as it is, digit by digit.
-fn unit(pose: SurfacePose) -> Result<SurfacePose, contact_kinematics::SurfaceError> {
+fn unit(pose: SurfacePose) -> Result<SurfacePose, SurfaceError> {
     let checked = SurfacePose::new(pose.p_WP, pose.R_WP)?;
     let as_it_is = (pose.R_WP.length() - 1.0).abs() <= UNIT_TO_ROUNDING;
     Ok(if as_it_is { pose } else { checked })
