@@ -348,6 +348,28 @@ fn palms_that_overlap_are_named() {
 }
 
 #[test]
+fn without_any_force_a_body_spins_on_between_two_palms() {
+    let (body, mass) = ellipsoid();
+    let palm = |z: f64, R| {
+        let pose = SurfacePose::new(DVec3::Z * z, R).unwrap();
+        let drive = PalmDrive::Prescribed(SurfaceMotion::immobile(pose));
+        ScenePalm { surface: PalmSurface::Plane, drive, friction: 0.4 }
+    };
+    let palms = vec![palm(-0.03, DQuat::IDENTITY), palm(0.03, DQuat::from_rotation_x(std::f64::consts::PI))];
+    let scene = ContactScene::new(body, mass, palms, 0.0).unwrap();
+    // About the axis through both contacts: nothing accelerates, whatever the modes are called.
+    let start =
+        BodyState { p_WCm: DVec3::ZERO, R_WO: DQuat::IDENTITY, v_WCm: DVec3::ZERO, w_WO: 5.0 * DVec3::Z };
+    let times = SampleTimes { duration: 1.0, rate: 100.0 };
+    let run = scene.simulate(&ContactStart::touching(start), times, 1e-10).unwrap();
+    for now in &run.instants {
+        let turned = DQuat::from_rotation_z(5.0 * now.state.t);
+        assert!((now.state.body.R_WO * DVec3::X - turned * DVec3::X).length() < 1e-9, "{}", now.state.t);
+        assert!((now.state.body.w_WO - start.w_WO).length() < 1e-9 && now.state.body.p_WCm.length() < 1e-12);
+    }
+}
+
+#[test]
 fn motion_too_fast_to_follow_ends_with_its_spin() {
     let (body, mass) = ellipsoid();
     let palms = funnel(0.3);
