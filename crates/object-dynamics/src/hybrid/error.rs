@@ -31,7 +31,7 @@ pub enum ContactSimulationError {
         gap: f64,
     },
     /// Two endless palms are one and the same.
-    #[error("palms {first} and {second} are the same {kind} at the start; leave one of them out")]
+    #[error("palms {first} and {second} ({kind}) are one and the same at the start; leave one of them out")]
     PalmsCoincide {
         /// Palm number from 1.
         first: usize,

@@ -21,7 +21,7 @@ pub enum ContactSimulationError {
     #[error("start: {0}")]
     Start(#[from] StartError),
     /// Two endless palms are one and the same.
-    #[error("palms {first} and {second} are the same {kind} at the start; leave one of them out")]
+    #[error("palms {first} and {second} ({kind}) are one and the same at the start; leave one of them out")]
     PalmsCoincide {
         /// Palm number from 1.
         first: usize,
