@@ -1,9 +1,9 @@
 use thiserror::Error;
 
-/// Fastest motion between two poses, m/s: about that of sound.
-pub(super) const FASTEST: f64 = 300.0;
-/// Fastest turn between two poses, degrees a second: 10,000 turns a minute.
-pub(super) const FASTEST_TURN: f64 = 60_000.0;
+/// Fastest motion of a palm, m/s: about that of sound.
+pub const FASTEST_PALM: f64 = 300.0;
+/// Fastest turn of a palm, degrees a second: 10,000 turns a minute.
+pub const FASTEST_TURN: f64 = 60_000.0;
 
 /// Why the surface of a palm or its motion cannot be used as given.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
@@ -50,7 +50,7 @@ pub enum SurfaceError {
     /// Two poses of a palm, one after the other, that no motion of a palm joins.
     #[error(
         "pose {row} is {distance:.3e} m and {degrees:.1} degrees away from the pose {seconds:.3e} s before it, and between two poses a palm \
-         moves at {FASTEST} m/s and turns by {farthest} degrees at most; correct the pose or its time, or give poses in between"
+         moves at {FASTEST_PALM} m/s and turns by {farthest} degrees at most; correct the pose or its time, or give poses in between"
     )]
     Jump {
         /// Row from 0 of the second of the two.

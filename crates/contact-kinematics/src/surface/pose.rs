@@ -1,5 +1,5 @@
 use super::SurfaceError;
-use super::error::{FASTEST, FASTEST_TURN};
+use super::error::{FASTEST_PALM, FASTEST_TURN};
 use crate::Direction;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -31,7 +31,7 @@ impl SurfacePose {
         let distance = (self.p_WP - before.p_WP).length();
         let degrees = before.R_WP.angle_between(self.R_WP).to_degrees();
         let farthest = farthest.min(FASTEST_TURN * seconds);
-        if distance <= FASTEST * seconds && degrees <= farthest {
+        if distance <= FASTEST_PALM * seconds && degrees <= farthest {
             return Ok(());
         }
         Err(SurfaceError::Jump { row, seconds, distance, degrees, farthest })

@@ -10,7 +10,8 @@ use crate::MOST_PALMS;
 use crate::modes::check_friction;
 use crate::series::{check_lengths, check_order};
 use contact_kinematics::{
-    CurvatureRadii, Direction, PalmSurface, PoseTable, SurfaceError, SurfacePose, SurfaceState,
+    CurvatureRadii, Direction, FASTEST_PALM, FASTEST_TURN, PalmSurface, PoseTable, SurfaceError, SurfacePose,
+    SurfaceState,
 };
 use glam::DVec3;
 
@@ -153,6 +154,7 @@ impl Builder<'_> {
                 };
                 let states = states.into_iter().enumerate().map(state).collect::<Result<Vec<_>, _>>()?;
                 self.check_steps(&states)?;
+                self.check_twists(&states)?;
                 let first = MeasuredMotion::at_rest(states[0].pose);
                 if states.iter().all(|state| *state == first) {
                     return Ok(LoggedMotion::Fixed(first.pose));
@@ -170,6 +172,21 @@ impl Builder<'_> {
                 .pose
                 .check_step(&pair[0].pose, time - self.times[sample - 1], sample, HALF_TURN)
                 .map_err(|source| Error::Pose { palm, sample, time, source })?;
+        }
+        Ok(())
+    }
+
+    fn check_twists(&self, states: &[MeasuredMotion]) -> Result<(), Error> {
+        let limits =
+            [("velocity (m/s)", FASTEST_PALM), ("angular velocity (rad/s)", FASTEST_TURN.to_radians())];
+        for (sample, state) in states.iter().enumerate() {
+            let speeds = [state.v_WP.length(), state.w_WP.length()];
+            if let Some(((what, most), value)) =
+                limits.into_iter().zip(speeds).find(|((_, most), v)| v > most)
+            {
+                let (palm, time) = (self.palm, self.times[sample]);
+                return Err(Error::TooFast { what, palm, sample, time, value, most });
+            }
         }
         Ok(())
     }

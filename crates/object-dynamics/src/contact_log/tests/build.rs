@@ -221,6 +221,15 @@ fn readings_that_cannot_be_are_named_with_palm_sample_and_value() {
             "{jump}"
         );
     }
+    for (v, w, value) in [(1e4, 0.0, 1e4), (0.0, 5e3, 5e3)] {
+        let fast = MeasuredMotion { v_WP: DVec3::Y * v, w_WP: DVec3::Z * w, ..MeasuredMotion::at_rest(pose) };
+        let motion = RecordedMotion::Measured(vec![MeasuredMotion::at_rest(pose), fast, fast]);
+        let told = error(times(3), PalmRecord { motion, ..good() });
+        assert!(
+            matches!(told, ContactLogError::TooFast { palm: 1, sample: 1, value: v, .. } if v == value),
+            "{told}"
+        );
+    }
     let other = SurfacePose { p_WP: pose.p_WP + 0.1 * DVec3::X, ..pose };
     let few =
         error(times(3), PalmRecord { motion: RecordedMotion::Poses(vec![pose, pose, other]), ..good() });
