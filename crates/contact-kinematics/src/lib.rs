@@ -27,6 +27,6 @@ pub use support::{
     SupportFunction, SupportJet, Translated, check_convex, principal_radii,
 };
 pub use surface::{
-    BodyPlace, ContactError, MotionPart, PalmSurface, PoseTable, SurfaceContact, SurfaceError, SurfaceMotion,
-    SurfacePoint, SurfacePose, SurfaceRates, SurfaceState,
+    BodyPlace, ContactError, FASTEST_PALM, FASTEST_TURN, MotionPart, PalmSurface, PoseTable, SurfaceContact,
+    SurfaceError, SurfaceMotion, SurfacePoint, SurfacePose, SurfaceRates, SurfaceState,
 };

@@ -34,7 +34,7 @@ pub use hybrid::{
 };
 pub use log::{LogError, PalmReading, Sample, SensorLog, TrueState};
 pub use mass::{MassError, MassProperties, PrincipalInertia};
-pub use modes::{ContactMode, FrictionError, check_friction};
+pub use modes::{ContactMode, FrictionError, MOST_FRICTION, check_friction};
 #[cfg(feature = "noise")]
 pub use noise::SensorNoise;
 pub use series::SeriesError;

@@ -201,6 +201,11 @@ mod tests {
             SensorLog::new(repeated, None),
             Err(LogError::Series(SeriesError::TimeNotIncreasing { sample: 1, .. }))
         ));
+        let nanoseconds = vec![sample(1.7e18, 1.0), sample(1.7e18 + 1e6, 1.0)];
+        assert!(matches!(
+            SensorLog::new(nanoseconds, None),
+            Err(LogError::Series(SeriesError::TimeOutOfRange { sample: 0, .. }))
+        ));
         let not_a_number = vec![sample(0.0, 1.0), sample(f64::NAN, 1.0)];
         assert!(matches!(SensorLog::new(not_a_number, None), Err(LogError::TimeNotFinite { sample: 1, .. })));
         let force = vec![sample(0.0, 1.0), sample(1.0, f64::INFINITY)];

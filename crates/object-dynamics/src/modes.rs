@@ -38,18 +38,21 @@ impl ContactMode {
     }
 }
 
+/// Largest coefficient of friction: a cone within 0.6 degrees of the tangent plane. Rubber on rubber reaches 2.
+pub const MOST_FRICTION: f64 = 100.0;
+
 /// Why a coefficient of friction cannot be used.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error("coefficient of friction is {value}; it must be finite and not negative")]
+#[error("coefficient of friction is {value}; it must be from 0 to {MOST_FRICTION}")]
 pub struct FrictionError {
     /// As given.
     pub value: f64,
 }
 
-/// A coefficient of Coulomb friction, at least zero.
+/// A coefficient of Coulomb friction, at least zero and at most [`MOST_FRICTION`].
 ///
 /// # Errors
 /// [`FrictionError`].
 pub fn check_friction(value: f64) -> Result<f64, FrictionError> {
-    if value >= 0.0 && value.is_finite() { Ok(value) } else { Err(FrictionError { value }) }
+    if (0.0..=MOST_FRICTION).contains(&value) { Ok(value) } else { Err(FrictionError { value }) }
 }

@@ -2,6 +2,9 @@
 
 use thiserror::Error;
 
+/// Times beyond this are in no use as seconds: 300 years, and steps of a microsecond are lost in rounding.
+const LATEST: f64 = 1e10;
+
 /// Why samples are not a series.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum SeriesError {
@@ -23,6 +26,14 @@ pub enum SeriesError {
         /// The time before, s.
         previous: f64,
     },
+    /// A time that is given in another unit.
+    #[error("t of sample {sample} is {time:e} s, beyond {LATEST:e} s; give times in seconds")]
+    TimeOutOfRange {
+        /// Index from 0.
+        sample: usize,
+        /// Its time, s.
+        time: f64,
+    },
     /// Truth does not match the samples.
     #[error("truth has {found} rows for {expected} samples")]
     TruthLength {
@@ -38,7 +49,7 @@ impl SeriesError {
     #[must_use]
     pub fn sample(&self) -> Option<usize> {
         match *self {
-            Self::TimeNotIncreasing { sample, .. } => Some(sample),
+            Self::TimeNotIncreasing { sample, .. } | Self::TimeOutOfRange { sample, .. } => Some(sample),
             Self::TooShort { .. } | Self::TruthLength { .. } => None,
         }
     }
@@ -55,9 +66,10 @@ pub(crate) fn check_lengths(samples: usize, truth: Option<usize>) -> Result<(), 
     }
 }
 
-/// Refuses a sample that does not come after the one before it.
+/// Refuses a sample that does not come after the one before it, or is out of any clock's range.
 pub(crate) fn check_order(sample: usize, previous: Option<f64>, time: f64) -> Result<(), SeriesError> {
     match previous {
+        _ if time.abs() > LATEST => Err(SeriesError::TimeOutOfRange { sample, time }),
         Some(previous) if time <= previous => Err(SeriesError::TimeNotIncreasing { sample, time, previous }),
         _ => Ok(()),
     }

@@ -27,12 +27,16 @@ pub(crate) struct Change {
 }
 
 /// The columns of one contact.
-struct Contact<'a> {
-    p: Vec<DVec3>,
-    f: Vec<DVec3>,
-    mode: &'a [f64],
-    slip: &'a [f64],
-    gap: &'a [f64],
+pub(super) struct Contact<'a> {
+    pub(super) p: Vec<DVec3>,
+    pub(super) f: Vec<DVec3>,
+    pub(super) n: Vec<DVec3>,
+    /// Velocity of the palm's material there.
+    pub(super) v: Vec<DVec3>,
+    pub(super) mode: &'a [f64],
+    pub(super) slip: &'a [f64],
+    pub(super) gap: &'a [f64],
+    pub(super) friction: f64,
 }
 
 /// Columns by name, and the scene's description.
@@ -87,6 +91,10 @@ impl Log {
     /// Mass, kg, and inertia about the centre of mass in body axes.
     pub(crate) fn mass(&self) -> (f64, DMat3) {
         (number(&self.about["mass"]), matrix(&self.about["inertia"]))
+    }
+
+    pub(super) fn gravity(&self) -> f64 {
+        number(&self.about["gravity"])
     }
 
     /// What sensors read over the first `seconds`, and the modes.
@@ -172,50 +180,17 @@ impl Log {
         Ok((0..count).map(|k| BodyState { p_WCm: p[k], R_WO: q[k], v_WCm: v[k], w_WO: w[k] }).collect())
     }
 
-    /// How far the log itself is off until a time, m: by its residuals of Newton and Euler, integrated twice, at the most distant
-    /// contact; and by the creep of sticking contacts and the depth of all.
-    pub(crate) fn own_departure(&self, until: f64) -> Anything<[f64; 2]> {
-        let t = self.column("t")?;
-        let (mass, gravity) = (number(&self.about["mass"]), number(&self.about["gravity"]));
-        let inertia = matrix(&self.about["inertia"]);
-        let (cm, a) = (self.vectors("cm", "")?, self.vectors("a", "")?);
-        let (w, alpha, q) = (self.vectors("w", "")?, self.vectors("al", "")?, self.quaternions("q", "")?);
-        let palms = (1..=self.palm_count()).map(|i| self.contact(i)).collect::<Anything<Vec<_>>>()?;
-        let mut off = [[DVec3::ZERO; 2]; 2];
-        let (mut laws, mut creeps, mut creep) = (0.0_f64, vec![0.0; palms.len()], 0.0_f64);
-        for k in 0..t.len() - 1 {
-            if t[k] >= until {
-                break;
-            }
-            let R = DMat3::from_quat(q[k]);
-            let I = R * inertia * R.transpose();
-            let (mut force, mut moment, mut lever) = (DVec3::ZERO, DVec3::ZERO, 0.0_f64);
-            let h = t[k + 1] - t[k];
-            for (palm, crept) in palms.iter().zip(&mut creeps) {
-                if palm.mode[k] > 0.5 {
-                    let b = palm.p[k] - cm[k];
-                    force += palm.f[k];
-                    moment += b.cross(palm.f[k]);
-                    lever = lever.max(b.length());
-                    *crept += if palm.mode[k] > 1.5 { h * palm.slip[k] } else { 0.0 };
-                    creep = creep.max(*crept + palm.gap[k].abs());
-                }
-            }
-            let newton = a[k] + gravity * DVec3::Z - force / mass;
-            let euler = alpha[k] - I.inverse() * (moment - w[k].cross(I * w[k]));
-            for (off, residual) in off.iter_mut().zip([newton, euler]) {
-                off[0] += h * off[1] + 0.5 * h * h * residual;
-                off[1] += h * residual;
-            }
-            laws = laws.max(off[0][0].length() + lever * off[1][0].length());
-        }
-        Ok([laws, creep])
-    }
-
-    fn contact(&self, i: usize) -> Anything<Contact<'_>> {
+    /// The contact with palm `i`, from 1.
+    pub(super) fn contact(&self, i: usize) -> Anything<Contact<'_>> {
         let tail = format!("_{i}");
+        let (p, origin) = (self.vectors("p", &tail)?, self.vectors("P", &tail)?);
+        let (v, w) = (self.vectors("V", &tail)?, self.vectors("W", &tail)?);
+        let v = (0..p.len()).map(|k| v[k] + w[k].cross(p[k] - origin[k])).collect();
         Ok(Contact {
-            p: self.vectors("p", &tail)?,
+            v,
+            p,
+            n: self.vectors("n", &tail)?,
+            friction: number(&self.about["palms"][i - 1]["mu"]),
             f: self.vectors("f", &tail)?,
             mode: self.column(&format!("mode{tail}"))?,
             slip: self.column(&format!("slip{tail}"))?,

@@ -5,9 +5,13 @@
 //!
 //! Modes are told as the logs tell them: a contact sticks where its slip is below the log's tolerance.
 
+mod growth;
 pub(crate) mod log;
+mod own;
 
+use growth::{Natural, growths};
 use log::{Anything, Log};
+use own::{Own, own_departures};
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::{BodyState, ContactScene, ContactSimulation, ContactStart, SampleTimes};
 use std::path::{Path, PathBuf};
@@ -28,46 +32,189 @@ pub(crate) fn main() -> Anything<()> {
     println!(
         "Eight scenes that another simulator logged (one to four palms, friction, fingertips, cups, springs, blows): {seconds} s from \
          the log's first state at tolerance {tolerance:e}, the palms on splines through every pose of the log. Modes are told as \
-         the logs tell them: a contact sticks where its slip is below the log's tolerance. A log's own departure is what its residuals of \
-         Newton and Euler, integrated twice, move its contacts by, and how far they creep while they stick and sink in."
+         the logs tell them: a contact sticks where its slip is below the log's tolerance. A departure is that of the centre of \
+         mass, and of the orientation at the body's mean semi-axis."
     );
     println!();
     println!(
-        "| log | to first change (s) | departure until then (m) | the log's own until then: Newton and Euler, creep (m) | growth of a change of the start | changes in the log | same, within 2 ms, until the first other | same in all | first other (s) | departure until then (m) | steps | time (ms) |"
+        "| log | to first change (s) | departure until then (m) | changes in the log | same, within 2 ms, until the first other | same in all | first other (s) | departure until then (m) | steps | time (ms) |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
-    for name in names {
-        match one(&folder, &name, seconds, tolerance) {
-            Ok(row) => println!("| {name} | {row} |"),
-            Err(error) => println!("| {name} | {error} | | | | | | | | | | |"),
+    println!("|---|---|---|---|---|---|---|---|---|---|");
+    let compared: Vec<_> =
+        names.iter().map(|name| (name, Compared::new(&folder, name, seconds, tolerance))).collect();
+    for (name, compared) in &compared {
+        match compared {
+            Ok(compared) => println!("| {name} | {} |", compared.row()),
+            Err(error) => println!("| {name} | {error} | | | | | | | | |"),
+        }
+    }
+    println!();
+    println!("## What a log's own departures explain");
+    println!();
+    println!(
+        "A log departs from rigid bodies by its residuals of Newton and Euler and of Coulomb's law, both integrated twice and taken to \
+         the most distant contact, and by its softness: how far its contacts sink in, and creep while they stick. What softness moves \
+         grows: the growth is that of the worst change of place or velocity at the start that the contacts allow, from runs \
+         moved along twelve directions by 1e-5 in natural units, up to the time named. The ratio is the largest until that time of our departure over \
+         (Newton and Euler + softness times growth + our tolerance), and over that and Coulomb's law, with the time (s) at which it is so large."
+    );
+    println!();
+    println!(
+        "| log | until (s) | Newton and Euler (m) | Coulomb (m) | softness (m) | growth of place, of velocity | departure (m) | ratio | ratio with Coulomb |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for (name, compared) in &compared {
+        let Ok(compared) = compared else { continue };
+        for row in compared.explained() {
+            println!("| {name} | {row} |");
+        }
+    }
+    println!();
+    println!(
+        "Changes of modes that are not the same: the log's, ours of the same palm and mode nearest to it, and by how much a change of the slip by \
+         softness times growth of velocity shifts it."
+    );
+    println!();
+    println!("| log | log's (s) | palm | mode | ours (s) | apart (ms) | explained (ms) |");
+    println!("|---|---|---|---|---|---|---|");
+    for (name, compared) in &compared {
+        for row in compared.iter().flat_map(|compared| &compared.others) {
+            println!("| {name} | {row} |");
         }
     }
     Ok(())
 }
 
-fn one(folder: &Path, name: &str, seconds: f64, tolerance: f64) -> Anything<String> {
-    let log = Log::read(folder, name)?;
-    let scene = log.scene()?;
-    let body = log.body(0)?;
-    let started = std::time::Instant::now();
-    let simulation = simulate(&log, &scene, body, seconds, tolerance)?;
-    let spent = started.elapsed().as_secs_f64() * 1e3;
-    let count = simulation.instants.len();
-    let (theirs, ours) = (log.changes(count)?, changes(&log, &simulation));
-    let same = same_changes(&theirs, &ours);
-    let t = log.column("t")?;
-    let first = theirs.first().map_or(t[count - 1], |change| change.t);
-    let other = theirs.get(same).or(ours.get(same)).map_or(t[count - 1], |change| change.t);
-    let [laws, creep] = log.own_departure(first)?;
-    let growth = growth(&log, &scene, body, (first, tolerance))?;
-    Ok(format!(
-        "{first:.3} | {:.1e} | {laws:.1e}, {creep:.1e} | {growth:.1} | {} | {same} | {} | {other:.3} | {:.1e} | {} | {spent:.1}",
-        departure(&log, &simulation, first)?,
-        theirs.len(),
-        matching(&theirs, &ours),
-        departure(&log, &simulation, other)?,
-        simulation.statistics.accepted,
-    ))
+/// A log beside its simulation.
+struct Compared {
+    theirs: Vec<log::Change>,
+    ours: Vec<log::Change>,
+    /// Samples, departures and what the log is off by itself until each.
+    t: Vec<f64>,
+    departures: Vec<f64>,
+    own: Vec<Own>,
+    growths: Vec<[f64; 2]>,
+    /// Rows of changes that are not the same.
+    others: Vec<String>,
+    /// Our own error: the tolerance, m.
+    error: f64,
+    steps: usize,
+    /// ms.
+    spent: f64,
+}
+
+impl Compared {
+    fn new(folder: &Path, name: &str, seconds: f64, tolerance: f64) -> Anything<Self> {
+        let log = Log::read(folder, name)?;
+        let scene = log.scene()?;
+        let started = std::time::Instant::now();
+        let simulation = simulate(&log, &scene, log.body(0)?, seconds, tolerance)?;
+        let spent = started.elapsed().as_secs_f64() * 1e3;
+        let count = simulation.instants.len();
+        let (natural, bodies) = (Natural::of(&log), log.bodies(count)?);
+        let pairs = simulation.instants.iter().zip(&bodies);
+        let mut compared = Self {
+            theirs: log.changes(count)?,
+            ours: changes(&log, &simulation),
+            t: log.column("t")?[..count].to_vec(),
+            departures: pairs.map(|(now, body)| natural.apart(&now.state.body, body)).collect(),
+            own: own_departures(&log, count)?,
+            growths: growths(&log, &scene, &simulation, (seconds, tolerance))?,
+            others: Vec::new(),
+            error: tolerance * natural.length,
+            steps: simulation.statistics.accepted,
+            spent,
+        };
+        compared.others = compared.other_changes(&log)?;
+        Ok(compared)
+    }
+
+    /// The first change in the log, and the first that is not the same; else the end.
+    fn stages(&self) -> [f64; 2] {
+        let end = self.t[self.t.len() - 1];
+        let same = same_changes(&self.theirs, &self.ours);
+        let other = self.theirs.get(same).or(self.ours.get(same));
+        [self.theirs.first().map_or(end, |change| change.t), other.map_or(end, |change| change.t)]
+    }
+
+    fn until(&self, time: f64) -> usize {
+        self.t.partition_point(|t| *t <= time)
+    }
+
+    fn departure(&self, until: f64) -> f64 {
+        self.departures[..self.until(until)].iter().copied().fold(0.0, f64::max)
+    }
+
+    fn row(&self) -> String {
+        let [first, other] = self.stages();
+        format!(
+            "{first:.3} | {:.1e} | {} | {} | {} | {other:.3} | {:.1e} | {} | {:.1}",
+            self.departure(first),
+            self.theirs.len(),
+            same_changes(&self.theirs, &self.ours),
+            matching(&self.theirs, &self.ours).len(),
+            self.departure(other),
+            self.steps,
+            self.spent,
+        )
+    }
+
+    /// A row for each stage and the whole.
+    fn explained(&self) -> Vec<String> {
+        let [first, other] = self.stages();
+        let mut stages = vec![first, other, self.t[self.t.len() - 1]];
+        stages.dedup();
+        let row = |until: f64| {
+            let k = self.until(until) - 1;
+            let mut ratios = [(0.0_f64, 0.0); 2];
+            for k in 0..=k {
+                let (own, [growth, _]) = (self.own[k], self.growths[k]);
+                let soft = self.error + own.laws + own.softness * growth;
+                for (ratio, allowed) in ratios.iter_mut().zip([soft, soft + own.coulomb]) {
+                    let now = self.departures[k] / allowed;
+                    *ratio = if now > ratio.0 { (now, self.t[k]) } else { *ratio };
+                }
+            }
+            let (own, [place, velocity]) = (self.own[k], self.growths[k]);
+            format!(
+                "{until:.3} | {:.1e} | {:.1e} | {:.1e} | {place:.1}, {velocity:.1} | {:.1e} | {:.2} ({:.3}) | {:.2} ({:.3})",
+                own.laws,
+                own.coulomb,
+                own.softness,
+                self.departure(until),
+                ratios[0].0,
+                ratios[0].1,
+                ratios[1].0,
+                ratios[1].1,
+            )
+        };
+        stages.into_iter().map(row).collect()
+    }
+
+    /// Changes of the log that have none of ours, told beside the nearest.
+    fn other_changes(&self, log: &Log) -> Anything<Vec<String>> {
+        let same = matching(&self.theirs, &self.ours);
+        let rate = Natural::of(log).rate;
+        let mut rows = Vec::new();
+        for change in self.theirs.iter().enumerate().filter(|(i, _)| !same.contains(i)).map(|(_, c)| c) {
+            let alike = self.ours.iter().filter(|o| o.palm == change.palm && o.mode == change.mode);
+            let nearest = alike.min_by(|a, b| (a.t - change.t).abs().total_cmp(&(b.t - change.t).abs()));
+            let k = self.until(change.t + 0.5 * (self.t[1] - self.t[0])) - 1;
+            let slip = log.contact(change.palm + 1)?.slip;
+            let slope = (slip[k] - slip[k - 1]) / (self.t[k] - self.t[k - 1]);
+            let shift = self.own[k].softness * rate * self.growths[k][1] / slope.abs();
+            let told = |o: &log::Change| format!("{:.3} | {:.0}", o.t, (o.t - change.t) * 1e3);
+            let ours = nearest.map_or_else(|| "none | -".to_owned(), told);
+            rows.push(format!(
+                "{:.3} | {} | {} | {ours} | {:.1}",
+                change.t,
+                change.palm + 1,
+                ["off", "slides", "sticks"][usize::from(change.mode.min(2))],
+                shift * 1e3,
+            ));
+        }
+        Ok(rows)
+    }
 }
 
 /// How many changes of modes are the same from the start: palm, new mode, and time.
@@ -86,38 +233,16 @@ fn same_changes(theirs: &[log::Change], ours: &[log::Change]) -> usize {
     count
 }
 
-/// How many changes of the log have one of ours of the same palm and mode within the tolerance, each of ours once.
-fn matching(theirs: &[log::Change], ours: &[log::Change]) -> usize {
+/// Which changes of the log have one of ours of the same palm and mode within the tolerance, each of ours once.
+fn matching(theirs: &[log::Change], ours: &[log::Change]) -> Vec<usize> {
     let mut left: Vec<&log::Change> = ours.iter().collect();
-    let taken = theirs.iter().filter(|change| {
+    let taken = theirs.iter().enumerate().filter(|(_, change)| {
         let same = |o: &&log::Change| {
             o.palm == change.palm && o.mode == change.mode && (o.t - change.t).abs() <= APART
         };
         left.iter().position(same).map(|at| left.remove(at)).is_some()
     });
-    taken.count()
-}
-
-fn departure(log: &Log, simulation: &ContactSimulation, until: f64) -> Anything<f64> {
-    let cm = log.vectors("cm", "")?;
-    let before = simulation.instants.iter().zip(&cm).filter(|(now, _)| now.state.t <= until);
-    Ok(before.map(|(now, cm)| (now.state.body.p_WCm - *cm).length()).fold(0.0, f64::max))
-}
-
-/// By how much a turn of 1e-7 rad of the body at the start has grown at a time.
-fn growth<S: SupportFunction>(
-    log: &Log,
-    scene: &ContactScene<S>,
-    body: BodyState,
-    (at, tolerance): (f64, f64),
-) -> Anything<f64> {
-    let turn = 1e-7;
-    let changed = BodyState { R_WO: glam::DQuat::from_rotation_x(turn) * body.R_WO, ..body };
-    let end = |body| -> Anything<glam::DQuat> {
-        let run = simulate(log, scene, body, at, tolerance)?;
-        Ok(run.instants.last().ok_or("no sample")?.state.body.R_WO)
-    };
-    Ok(end(body)?.angle_between(end(changed)?) / turn)
+    taken.map(|(index, _)| index).collect()
 }
 
 /// Changes of modes at the samples, told as the logs tell them.

@@ -2,6 +2,7 @@ use super::ellipsoid::outer;
 use super::{CurvatureRadii, ShapeError, SupportFunction, SupportJet, principal_radii};
 use crate::Direction;
 use glam::{DMat3, DVec3};
+use std::sync::OnceLock;
 
 /// Highest degree accepted: at degree 32 the curvature bounds below take about a second.
 const LARGEST_DEGREE: u32 = 32;
@@ -24,10 +25,18 @@ pub struct Monomial {
 ///
 /// Each term of degree `d` is extended 1-homogeneously as `p(u) |u|^(1-d)`. On its own it need not be convex; in a sum
 /// with a body of large enough radii of curvature it is, see [`crate::check_convex`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct PolynomialSupport {
     terms: Vec<Monomial>,
     degree: u32,
+    /// Found by a scan, once.
+    radii: OnceLock<CurvatureRadii>,
+}
+
+impl PartialEq for PolynomialSupport {
+    fn eq(&self, other: &Self) -> bool {
+        self.terms == other.terms
+    }
 }
 
 impl PolynomialSupport {
@@ -47,7 +56,7 @@ impl PolynomialSupport {
             }
             degree = degree.max(total);
         }
-        Ok(Self { terms, degree })
+        Ok(Self { terms, degree, radii: OnceLock::new() })
     }
 
     /// An egg about the Z axis: `h = radius + stretch n_z^2 + taper n_z^3`, lengths in m.
@@ -138,15 +147,17 @@ impl SupportFunction for PolynomialSupport {
     /// where it is extreme its slope vanishes, so a grid that leaves no normal further than `delta` away errs by at most
     /// `(delta k)^2 M / 2`, and `M` itself is at most its grid value over `1 - (delta k)^2 / 2`.
     fn curvature_radii(&self) -> CurvatureRadii {
-        let mut radii = CurvatureRadii { min: f64::NEG_INFINITY, max: f64::INFINITY };
-        for spacing in SPACINGS_TIMES_DEGREE {
-            let (min, max, slack) = self.radii_on_grid(spacing);
-            radii = CurvatureRadii { min: min - slack, max: max + slack };
-            if slack <= ENOUGH * min.abs() {
-                break;
+        *self.radii.get_or_init(|| {
+            let mut radii = CurvatureRadii { min: f64::NEG_INFINITY, max: f64::INFINITY };
+            for spacing in SPACINGS_TIMES_DEGREE {
+                let (min, max, slack) = self.radii_on_grid(spacing);
+                radii = CurvatureRadii { min: min - slack, max: max + slack };
+                if slack <= ENOUGH * min.abs() {
+                    break;
+                }
             }
-        }
-        radii
+            radii
+        })
     }
 }
 

@@ -1,5 +1,10 @@
 use thiserror::Error;
 
+/// Fastest motion of a palm, m/s: about that of sound.
+pub const FASTEST_PALM: f64 = 300.0;
+/// Fastest turn of a palm, degrees a second: 10,000 turns a minute.
+pub const FASTEST_TURN: f64 = 60_000.0;
+
 /// Why the surface of a palm or its motion cannot be used as given.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum SurfaceError {
@@ -41,6 +46,23 @@ pub enum SurfaceError {
         what: &'static str,
         /// As given.
         value: f64,
+    },
+    /// Two poses of a palm, one after the other, that no motion of a palm joins.
+    #[error(
+        "pose {row} is {distance:.3e} m and {degrees:.1} degrees away from the pose {seconds:.3e} s before it, and between two poses a palm \
+         moves at {FASTEST_PALM} m/s and turns by {farthest} degrees at most; correct the pose or its time, or give poses in between"
+    )]
+    Jump {
+        /// Row from 0 of the second of the two.
+        row: usize,
+        /// Time between them, s.
+        seconds: f64,
+        /// Their distance, m.
+        distance: f64,
+        /// Angle by which the palm has turned.
+        degrees: f64,
+        /// The largest angle that is taken, degrees.
+        farthest: f64,
     },
     /// A table of poses is too short or out of order.
     #[error(

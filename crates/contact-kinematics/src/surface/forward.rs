@@ -33,39 +33,40 @@ pub(super) fn find(
     if !(D_O.is_finite() && palm.R_WP.is_finite()) {
         return Err(ContactError::NotFinite);
     }
-    let search = |kind, start: DVec3, radius: f64| {
-        Search { body, D_O, kind }.run(guess.map_or(start, Direction::get), radius)
-    };
+    let search = |kind| Search { body, D_O, kind };
+    let start = guess.map_or(D_O, Direction::get);
     match surface {
         PalmSurface::Plane => {
             let n_O = Direction::new_unchecked(-(R_OW * palm.R_WP.z_axis));
             let jet = body.jet(n_O);
             Ok(Found { gap: n_O.get().dot(D_O) - jet.value, n_O, jet })
         }
-        PalmSurface::Sphere { radius } => search(Kind::Nearest, D_O, radius),
+        PalmSurface::Sphere { radius } => search(Kind::Nearest).settle(start)?.outside(radius),
         PalmSurface::Cylinder { radius } => {
             let axis = R_OW * palm.R_WP.x_axis;
-            search(Kind::NearestAround { axis }, D_O, radius)
+            search(Kind::NearestAround { axis }).settle(start)?.outside(radius)
         }
         PalmSurface::Cup { radius } => {
-            let start = if guess.is_some() { DVec3::ZERO } else { farthest(body, D_O) };
-            search(Kind::Farthest, start, radius)
+            let now = search(Kind::Farthest).farthest(guess)?;
+            Ok(Found { gap: radius + now.distance, n_O: Direction::new_unchecked(now.u), jet: now.jet })
         }
     }
 }
 
-/// A normal near that of the point farthest from `D_O`: the best of the six axes and of the direction away from `D_O`.
-fn farthest(body: &(impl SupportFunction + ?Sized), D_O: DVec3) -> DVec3 {
-    let axes = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
-    let away = Direction::new(-D_O).map(Direction::get).ok();
-    let mut best = (f64::NEG_INFINITY, DVec3::Z);
-    for u in axes.into_iter().chain(away) {
-        let distance = (body.jet(Direction::new_unchecked(u)).point - D_O).length();
-        if distance > best.0 {
-            best = (distance, u);
-        }
-    }
-    best.1
+/// Directions of the search over the whole sphere: the centres of so many squares along each edge of a cube about it.
+const SQUARES: u32 = 8;
+/// What a stationary value can give up at most on the way from its own direction to the nearest of these, as a share of its
+/// bend: the square of half the diagonal of a square, halved. Seen from the centre the diagonal is at most that long in rad.
+const GIVEN_UP: f64 = 1.0 / (SQUARES * SQUARES) as f64;
+
+/// The directions of the search over the whole sphere.
+fn directions() -> impl Iterator<Item = DVec3> {
+    let centre = |k: u32| f64::from(2 * k + 1) / f64::from(SQUARES) - 1.0;
+    let square = move |k: u32| (centre(k % SQUARES), centre(k / SQUARES));
+    (0..SQUARES * SQUARES).map(square).flat_map(|(a, b)| {
+        let faces = [DVec3::new(1.0, a, b), DVec3::new(a, 1.0, b), DVec3::new(a, b, 1.0)];
+        faces.into_iter().flat_map(|v| [v.normalize(), -v.normalize()])
+    })
 }
 
 #[derive(Clone, Copy)]
@@ -82,13 +83,46 @@ struct Search<'a, S: ?Sized> {
 }
 
 impl<S: SupportFunction + ?Sized> Search<'_, S> {
-    fn run(&self, start: DVec3, radius: f64) -> Result<Found, ContactError> {
+    /// The farthest point: the stationary value near the guess if that is proved to be it, else the best of all that are reached
+    /// from directions that can be nearest to the best.
+    ///
+    /// A stationary value at least as far as every radius of curvature is the farthest one: the body lies inside of the ball
+    /// through it (Blaschke). Contacts are, as cups are wider than that.
+    fn farthest(&self, guess: Option<Direction>) -> Result<Trial, ContactError> {
+        let largest = self.body.curvature_radii().max;
+        let is_proved = |now: &Trial| -now.distance >= largest;
+        if let Some(Ok(now)) = guess.map(|guess| self.settle(guess.get()))
+            && is_proved(&now)
+        {
+            return Ok(now);
+        }
+        let mut starts: Vec<Trial> = directions().map(|u| self.trial(u)).collect();
+        starts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let most = starts.iter().map(|start| start.distance.abs()).fold(0.0, f64::max);
+        let given_up = GIVEN_UP * (most + largest) / (1.0 - GIVEN_UP);
+        let best = starts.first().map_or(f64::NAN, |start| start.distance);
+        let mut found: Result<Trial, _> = Err(ContactError::NotFinite);
+        for start in starts.iter().take_while(|start| start.distance - best <= given_up) {
+            found = match (self.settle(start.u), found) {
+                (Ok(now), Ok(before)) if now.distance < before.distance => Ok(now),
+                (_, Ok(before)) => Ok(before),
+                (now, Err(_)) => now,
+            };
+            if found.as_ref().is_ok_and(is_proved) {
+                break;
+            }
+        }
+        found
+    }
+
+    /// Newton's method from `start` on.
+    fn settle(&self, start: DVec3) -> Result<Trial, ContactError> {
         let Some(start) = self.unit(start) else { return Err(ContactError::CentreInside { depth: 0.0 }) };
         let mut now = self.trial(start);
         for _ in 0..MOST_STEPS {
             let step = self.newton(&now);
             if step.along.length() <= step.rounding {
-                return self.found(&now, radius);
+                return Ok(now);
             }
             now = self.along(&now, step.along);
         }
@@ -164,19 +198,6 @@ impl<S: SupportFunction + ?Sized> Search<'_, S> {
         }
         *now
     }
-
-    fn found(&self, now: &Trial, radius: f64) -> Result<Found, ContactError> {
-        let gap = match self.kind {
-            Kind::Farthest => radius + now.distance,
-            Kind::Nearest | Kind::NearestAround { .. } => {
-                if now.distance <= 0.0 {
-                    return Err(ContactError::CentreInside { depth: -now.distance });
-                }
-                now.distance - radius
-            }
-        };
-        Ok(Found { gap, n_O: Direction::new_unchecked(now.u), jet: now.jet })
-    }
 }
 
 /// A step in the tangent plane, and the length of one that is made of rounding alone, rad.
@@ -190,4 +211,14 @@ struct Trial {
     u: DVec3,
     jet: SupportJet,
     distance: f64,
+}
+
+impl Trial {
+    /// The contact with a palm of this radius that the body is outside of.
+    fn outside(self, radius: f64) -> Result<Found, ContactError> {
+        if self.distance <= 0.0 {
+            return Err(ContactError::CentreInside { depth: -self.distance });
+        }
+        Ok(Found { gap: self.distance - radius, n_O: Direction::new_unchecked(self.u), jet: self.jet })
+    }
 }

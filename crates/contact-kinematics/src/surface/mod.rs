@@ -10,7 +10,7 @@ mod rates;
 mod table;
 
 pub use contact::{BodyPlace, SurfaceContact};
-pub use error::{ContactError, SurfaceError};
+pub use error::{ContactError, FASTEST_PALM, FASTEST_TURN, SurfaceError};
 pub use motion::{MotionPart, SurfaceMotion};
 pub use nearest::SurfacePoint;
 pub use pose::{SurfacePose, SurfaceState};

@@ -1,4 +1,5 @@
 use super::SurfaceError;
+use super::error::{FASTEST_PALM, FASTEST_TURN};
 use crate::Direction;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -15,6 +16,27 @@ pub struct SurfacePose {
 }
 
 impl SurfacePose {
+    /// Refuses this pose as the one `row` (from 0) of a motion if it is too far from the one `before` it, `seconds` (s) earlier, or
+    /// turned against it by more than `farthest` (degrees).
+    ///
+    /// # Errors
+    /// [`SurfaceError::Jump`].
+    pub fn check_step(
+        &self,
+        before: &Self,
+        seconds: f64,
+        row: usize,
+        farthest: f64,
+    ) -> Result<(), SurfaceError> {
+        let distance = (self.p_WP - before.p_WP).length();
+        let degrees = before.R_WP.angle_between(self.R_WP).to_degrees();
+        let farthest = farthest.min(FASTEST_TURN * seconds);
+        if distance <= FASTEST_PALM * seconds && degrees <= farthest {
+            return Ok(());
+        }
+        Err(SurfaceError::Jump { row, seconds, distance, degrees, farthest })
+    }
+
     /// From origin (m) and orientation; the quaternion is normalised.
     ///
     /// # Errors

@@ -3,6 +3,8 @@ use glam::{DMat3, DQuat, DVec3};
 
 /// Fewest rows through which a not-a-knot spline goes.
 const FEWEST_ROWS: usize = 4;
+/// Farthest turn between two rows, degrees: beyond it which way the palm has turned is no more than a guess.
+const FARTHEST_TURN: f64 = 90.0;
 
 /// A motion through given poses: cubic splines through positions and quaternions, with the ends left free (not-a-knot).
 ///
@@ -23,7 +25,7 @@ impl PoseTable {
     /// Of the two quaternions of an orientation the one near that of the row before is taken.
     ///
     /// # Errors
-    /// [`SurfaceError::Table`], and those of [`SurfacePose::new`].
+    /// [`SurfaceError::Table`], and those of [`SurfacePose::new`] and [`SurfacePose::check_step`].
     pub fn new(poses: &[(f64, SurfacePose)]) -> Result<Self, SurfaceError> {
         let rows = poses.len();
         let mut times: Vec<f64> = Vec::with_capacity(rows);
@@ -33,6 +35,9 @@ impl PoseTable {
             let in_order = time.is_finite() && times.last().is_none_or(|&before| time > before);
             if !in_order {
                 return Err(SurfaceError::Table { row, time, rows });
+            }
+            if let Some(&(earlier, before)) = row.checked_sub(1).and_then(|k| poses.get(k)) {
+                pose.check_step(&before, time - earlier, row, FARTHEST_TURN)?;
             }
             let before = values.last().map_or(R_WP, |v| DQuat::from_xyzw(v[3], v[4], v[5], v[6]));
             let q = if before.dot(R_WP) < 0.0 { -R_WP } else { R_WP };

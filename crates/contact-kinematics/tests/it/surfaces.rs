@@ -1,8 +1,8 @@
 //! Contacts with palms of any shape and pose: independent of the search that finds them, and at the edge of what it can do.
 
 use contact_kinematics::{
-    BodyPlace, ContactError, Direction, Ellipsoid, MotionLaw, MotionPart, PalmSurface, PoseTable, Sphere,
-    SupportFunction, SurfaceContact, SurfaceError, SurfaceMotion, SurfacePose,
+    BodyPlace, ContactError, Direction, Ellipsoid, MotionLaw, MotionPart, PalmSurface, PolynomialSupport,
+    PoseTable, Sphere, SupportFunction, SurfaceContact, SurfaceError, SurfaceMotion, SurfacePose,
 };
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
@@ -175,6 +175,58 @@ fn curvatures_that_nearly_match_cost_digits_and_then_are_an_error() {
     assert!(matches!(equal.check(body.curvature_radii()), Err(SurfaceError::CupTooSmall { .. })));
 }
 
+/// Unit vectors spread evenly over the sphere.
+fn spread(count: u32) -> impl Iterator<Item = DVec3> + Clone {
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    (0..count).map(move |k| {
+        let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(count);
+        let (sin, cos) = (golden * f64::from(k)).sin_cos();
+        DVec3::new(cos * (1.0 - z * z).sqrt(), sin * (1.0 - z * z).sqrt(), z)
+    })
+}
+
+/// In a cup no point of the body is nearer to it than the contact, wherever the body is: by a scan of its surface.
+fn check_farthest(body: &impl SupportFunction, centres: &[DVec3]) {
+    let points: Vec<DVec3> = spread(4000).map(|u| body.point(Direction::new(u).unwrap())).collect();
+    let radius = 1.05 * body.curvature_radii().max;
+    let place = BodyPlace { p_WCm: DVec3::ZERO, R_WO: DMat3::IDENTITY };
+    for &centre in centres {
+        let palm = SurfacePose::new(centre, DQuat::IDENTITY).unwrap().at_rest();
+        let contact = SurfaceContact::new(body, &place, PalmSurface::Cup { radius }, &palm, None).unwrap();
+        // Whatever the search starts from.
+        for guess in [Direction::X, -Direction::Z] {
+            let cup = PalmSurface::Cup { radius };
+            let again = SurfaceContact::new(body, &place, cup, &palm, Some(guess)).unwrap();
+            assert!((again.gap - contact.gap).abs() < 1e-12, "{} {}", again.gap, contact.gap);
+        }
+        let farthest = points.iter().map(|x| (*x - centre).length()).fold(0.0, f64::max);
+        let missed = farthest - (radius - contact.gap);
+        assert!(missed < 1e-12, "{missed:.1e} of {farthest} about {centre}");
+    }
+}
+
+#[test]
+fn in_a_cup_the_farthest_point_is_found() {
+    let centres: Vec<DVec3> =
+        spread(150).zip(spread(13).cycle()).map(|(u, v)| u * (0.5 + 0.5 * v.z)).collect();
+    for axes in [DVec3::new(1.0, 0.99, 0.5), DVec3::new(1.0, 0.4, 0.41), DVec3::new(1.0, 1.0, 0.7)] {
+        check_farthest(&Ellipsoid::new(axes).unwrap(), &centres);
+    }
+    // Three and four corners almost equally far.
+    let corners = |k: usize, share: f64| {
+        let mut harmonics: Vec<Vec<f64>> = (0..=k).map(|l| vec![0.0; 2 * l + 1]).collect();
+        harmonics[0][0] = 1.0;
+        harmonics[k][k] = share;
+        harmonics[k][0] = share * 0.7;
+        harmonics[k][2 * k] = -share * 0.4;
+        PolynomialSupport::from_harmonics(&harmonics).unwrap()
+    };
+    for body in [corners(3, 0.05), corners(4, 0.025), corners(5, 0.015)] {
+        assert!(body.curvature_radii().min > 0.0);
+        check_farthest(&body, &centres);
+    }
+}
+
 #[test]
 fn bad_palms_are_named() {
     let radii = Sphere::new(1.0).unwrap().curvature_radii();
@@ -191,6 +243,18 @@ fn bad_palms_are_named() {
     ));
     let pose = SurfacePose::new(DVec3::ZERO, DQuat::IDENTITY).unwrap();
     assert!(matches!(PoseTable::new(&[(0.0, pose); 4]), Err(SurfaceError::Table { row: 1, .. })));
+    let far = SurfacePose { p_WP: pose.p_WP + DVec3::X, ..pose };
+    let over = SurfacePose { R_WP: DQuat::from_rotation_y(3.1) * pose.R_WP, ..pose };
+    for (other, metres, degrees) in [(far, 1.0, 0.0), (over, 0.0, 3.1_f64.to_degrees())] {
+        let rows = [pose, pose, other, other, other];
+        let rows: Vec<_> = (0..5).map(|k| (1e-3 * f64::from(k), rows[k as usize])).collect();
+        let Err(SurfaceError::Jump { row: 2, seconds, distance, degrees: turn, .. }) = PoseTable::new(&rows)
+        else {
+            panic!("taken")
+        };
+        assert!((seconds - 1e-3).abs() < 1e-15 && (distance - metres).abs() < 1e-12);
+        assert!((turn - degrees).abs() < 1e-5);
+    }
     assert!(matches!(PoseTable::new(&[(0.0, pose)]), Err(SurfaceError::Table { rows: 1, .. })));
     // A fingertip whose centre is inside of the body.
     let (body, palm) = (Sphere::new(1.0).unwrap(), pose.at_rest());

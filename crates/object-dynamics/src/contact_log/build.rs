@@ -9,7 +9,10 @@ use super::record::{
 use crate::MOST_PALMS;
 use crate::modes::check_friction;
 use crate::series::{check_lengths, check_order};
-use contact_kinematics::{CurvatureRadii, Direction, PalmSurface, PoseTable, SurfacePose, SurfaceState};
+use contact_kinematics::{
+    CurvatureRadii, Direction, FASTEST_PALM, FASTEST_TURN, PalmSurface, PoseTable, SurfaceError, SurfacePose,
+    SurfaceState,
+};
 use glam::DVec3;
 
 /// A force may pull by noise up to this share of the largest force of the log.
@@ -19,6 +22,9 @@ const PULL_BY_NOISE: f64 = 0.1;
 const TURNED: f64 = 16.0 * f64::EPSILON;
 /// Length of a quaternion that differs from 1 by its own rounding alone.
 const UNIT_TO_ROUNDING: f64 = 2.0 * f64::EPSILON;
+
+/// Any turn between two poses, degrees: none is farther. It is the quickest way.
+const HALF_TURN: f64 = 180.0;
 
 pub(super) fn palms(
     times: &[f64],
@@ -147,6 +153,8 @@ impl Builder<'_> {
                     Ok(MeasuredMotion { pose: pose((sample, state.pose))?, ..state })
                 };
                 let states = states.into_iter().enumerate().map(state).collect::<Result<Vec<_>, _>>()?;
+                self.check_steps(&states)?;
+                self.check_twists(&states)?;
                 let first = MeasuredMotion::at_rest(states[0].pose);
                 if states.iter().all(|state| *state == first) {
                     return Ok(LoggedMotion::Fixed(first.pose));
@@ -156,11 +164,42 @@ impl Builder<'_> {
         }
     }
 
+    /// Steps between poses whose velocities are measured: a log may be so coarse that a palm turns far in one.
+    fn check_steps(&self, states: &[MeasuredMotion]) -> Result<(), Error> {
+        for (sample, pair) in (1..).zip(states.windows(2)) {
+            let (palm, time) = (self.palm, self.times[sample]);
+            pair[1]
+                .pose
+                .check_step(&pair[0].pose, time - self.times[sample - 1], sample, HALF_TURN)
+                .map_err(|source| Error::Pose { palm, sample, time, source })?;
+        }
+        Ok(())
+    }
+
+    fn check_twists(&self, states: &[MeasuredMotion]) -> Result<(), Error> {
+        let limits =
+            [("velocity (m/s)", FASTEST_PALM), ("angular velocity (rad/s)", FASTEST_TURN.to_radians())];
+        for (sample, state) in states.iter().enumerate() {
+            let speeds = [state.v_WP.length(), state.w_WP.length()];
+            if let Some(((what, most), value)) =
+                limits.into_iter().zip(speeds).find(|((_, most), v)| v > most)
+            {
+                let (palm, time) = (self.palm, self.times[sample]);
+                return Err(Error::TooFast { what, palm, sample, time, value, most });
+            }
+        }
+        Ok(())
+    }
+
     fn splined(&self, poses: &[SurfacePose]) -> Result<Vec<MeasuredMotion>, Error> {
         let rows: Vec<_> = self.times.iter().copied().zip(poses.iter().copied()).collect();
-        // Times and poses were checked: only their number can be wrong.
-        let table = PoseTable::new(&rows)
-            .map_err(|_| Error::TwistFromPoses { palm: self.palm, samples: poses.len() })?;
+        // Times and poses were checked: only steps between them and their number can be wrong.
+        let table = PoseTable::new(&rows).map_err(|source| match source {
+            SurfaceError::Jump { row, .. } => {
+                Error::Pose { palm: self.palm, sample: row, time: self.times[row], source }
+            }
+            _ => Error::TwistFromPoses { palm: self.palm, samples: poses.len() },
+        })?;
         let state = |(t, pose)| {
             let SurfaceState { v_WP, w_WP, .. } = table.at(t);
             MeasuredMotion { pose, v_WP, w_WP }
@@ -231,7 +270,7 @@ fn put_on(surface: PalmSurface, frame: &SurfaceState, p_W: DVec3) -> Option<(Tou
 }
 
 /// The pose with its quaternion at unit length; one that is unit to rounding stays as it is, digit by digit.
-fn unit(pose: SurfacePose) -> Result<SurfacePose, contact_kinematics::SurfaceError> {
+fn unit(pose: SurfacePose) -> Result<SurfacePose, SurfaceError> {
     let checked = SurfacePose::new(pose.p_WP, pose.R_WP)?;
     let as_it_is = (pose.R_WP.length() - 1.0).abs() <= UNIT_TO_ROUNDING;
     Ok(if as_it_is { pose } else { checked })

@@ -87,6 +87,24 @@ pub enum ContactLogError {
         /// As given.
         value: f64,
     },
+    /// A palm is said to move faster than any.
+    #[error(
+        "{what} of palm {palm} at sample {sample} (t = {time} s) is {value:.3e}; {most:.0} is the most that is taken; check its unit"
+    )]
+    TooFast {
+        /// Which velocity, with its unit.
+        what: &'static str,
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// As given.
+        value: f64,
+        /// Largest accepted.
+        most: f64,
+    },
     /// A contact point is not on its palm.
     #[error(
         "contact of palm {palm} at sample {sample} (t = {time} s) is {distance} m off the palm's surface, and {limit} m is \
@@ -193,6 +211,7 @@ impl ContactLogError {
             Self::TimeNotFinite { sample, .. }
             | Self::Pose { sample, .. }
             | Self::ReadingNotFinite { sample, .. }
+            | Self::TooFast { sample, .. }
             | Self::OffPalm { sample, .. }
             | Self::NoNormal { sample, .. }
             | Self::Pull { sample, .. }

@@ -48,6 +48,9 @@ pub(crate) struct Contacts {
     pub(crate) rates: Vec<SurfaceRates>,
 }
 
+/// Free accelerations of contacts below this share of their terms are rounding.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 impl<S: SupportFunction> ContactScene<S> {
     /// Pose and motion of palm `i` (from 0), with the acceleration that it would have without contact force.
     #[must_use]
@@ -110,12 +113,17 @@ impl<S: SupportFunction> ContactScene<S> {
         let free_motion = [self.gravity(), alpha];
         let problem = |i: usize| {
             let (contact, rates) = (&touch.contacts[i], &touch.rates[i]);
+            let free = self.gravity() + alpha.cross(contact.b_W) + rates.slip_bias;
+            let terms = self.gravity().length()
+                + body.w_WO.length_squared() * contact.b_W.length()
+                + rates.slip_bias.length();
             ProblemContact {
                 n: contact.n,
                 t: contact.t,
                 b: contact.b_W,
                 friction: self.palms()[i].friction,
-                free: self.gravity() + alpha.cross(contact.b_W) + rates.slip_bias,
+                // What is left of terms that cancel is no scale for what counts as zero.
+                free: if free.length() <= ROUNDING * terms { DVec3::ZERO } else { free },
                 normal_bias: rates.n_dot.dot(rates.slip),
                 yields: self.yields(i, contact.p_WC),
             }

@@ -36,6 +36,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
         let mut now = Stepped::new(state, tallies, self.blow_work, self.stretch.modes, self.stretch.guesses);
         let (mut h, shortest) = (self.crawl_step(), tolerance / self.units.rate);
         while self.t < last {
+            self.pace(self.t, &self.y.clone())?;
             let until = self.next_stop(last, shortest);
             let left = until - self.t;
             let lands = h >= LANDS * left;

@@ -30,6 +30,16 @@ pub enum ContactSimulationError {
         /// The gap, m.
         gap: f64,
     },
+    /// Two endless palms are one and the same.
+    #[error("palms {first} and {second} ({kind}) are one and the same at the start; leave one of them out")]
+    PalmsCoincide {
+        /// Palm number from 1.
+        first: usize,
+        /// Palm number from 1.
+        second: usize,
+        /// Their kind, as in files.
+        kind: &'static str,
+    },
     /// Two palms overlap each other.
     #[error("palms {first} and {second} overlap by {depth:.3e} m at the start; move them apart")]
     PalmsOverlap {
@@ -55,6 +65,23 @@ pub enum ContactSimulationError {
         t: f64,
         /// Why.
         source: PalmContactError,
+    },
+    /// So many steps for so little time that the end is out of reach.
+    #[error(
+        "{steps} steps lead no further than t = {t:.3e} s, where the object turns at {spin:.3e} rad/s and moves at {speed:.3e} m/s, palms \
+         at up to {palms:.3e} m/s; slow down object and palms, make springs softer or heavier, or allow a larger tolerance"
+    )]
+    TooSlow {
+        /// Time reached, s.
+        t: f64,
+        /// Steps until then.
+        steps: usize,
+        /// Angular speed of the body there, rad/s.
+        spin: f64,
+        /// Speed of its centre of mass there, m/s.
+        speed: f64,
+        /// Speed of the fastest palm, m/s.
+        palms: f64,
     },
     /// The equations of motion could not be integrated.
     #[error("integration: {0}")]

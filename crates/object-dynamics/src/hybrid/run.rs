@@ -6,7 +6,7 @@ use super::field::{Evaluated, Stretch};
 use super::packed::{RIGID, Tallies, Units, YIELDING};
 use super::result::ContactSimulation;
 use super::start::{ContactStart, check_overlap};
-use crate::contacts::{ContactScene, MOST_PALMS, ModeError};
+use crate::contacts::{ContactScene, MOST_PALMS, ModeError, SceneState};
 use crate::integrate::{Statistics, Tolerance};
 use crate::three_palms::check_times;
 use crate::{ContactMode, SampleTimes};
@@ -44,6 +44,10 @@ impl<S: SupportFunction> ContactScene<S> {
     }
 }
 
+/// Steps within one natural time after which a motion is taken to be too fast to be followed: smooth motion takes some tens,
+/// logs with a pose of each palm at every millisecond some hundreds.
+const MOST_STEPS: usize = 10_000;
+
 pub(super) struct Run<'a, S, const N: usize> {
     pub(super) scene: &'a ContactScene<S>,
     pub(super) units: Units,
@@ -57,6 +61,8 @@ pub(super) struct Run<'a, S, const N: usize> {
     pub(super) blow_work: f64,
     /// Work (in steps) since a time, s: more than time stepping takes is too much.
     pub(super) work: (f64, usize),
+    /// Steps since the start, refused ones among them.
+    steps: usize,
     pub(super) result: ContactSimulation,
 }
 
@@ -84,7 +90,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let touch =
             scene.contacts_at(&state, &guesses).map_err(|source| Error::Contact { t: 0.0, source })?;
         let surfaces: Vec<_> = scene.palms().iter().map(|p| p.surface).zip(touch.palms.clone()).collect();
-        check_overlap(&surfaces)?;
+        check_overlap(&surfaces, units.length)?;
         let gaps: Vec<f64> = touch.contacts.iter().map(|contact| contact.gap).collect();
         let closed = start.closed(&gaps, units.length)?;
         let mut joints: Vec<f64> = scene.palms().iter().flat_map(|palm| palm.drive.joints()).collect();
@@ -109,6 +115,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             y: [0.0; N],
             blow_work: 0.0,
             work: (0.0, 0),
+            steps: 0,
             result,
         };
         run.settle(state, &Tallies::default(), &closed, None)?;
@@ -141,6 +148,29 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
     pub(super) fn evaluated(&self, t: f64, y: &[f64; N]) -> Result<Evaluated, Error> {
         let state = self.units.unpack(t, y);
         self.stretch.evaluate(self.scene, &self.units, state).map_err(|source| Error::Contact { t, source })
+    }
+
+    /// Counts a step that begins at `t`, and refuses to go on where so many have led nowhere.
+    pub(super) fn pace(&mut self, t: f64, y: &[f64; N]) -> Result<(), Error> {
+        self.steps += 1;
+        let allowed = MOST_STEPS as f64 * (1.0 + t * self.units.rate);
+        if self.steps as f64 <= allowed {
+            return Ok(());
+        }
+        Err(self.too_slow(&self.units.unpack(t, y).0))
+    }
+
+    /// That the run stands still at this state, with what moves there.
+    pub(super) fn too_slow(&self, state: &SceneState) -> Error {
+        let palm = |i: usize| self.scene.palm_state(i, state.t, &state.palms[i]).v_WP.length();
+        let palms = (0..self.scene.palms().len()).map(palm);
+        Error::TooSlow {
+            t: state.t,
+            steps: self.steps,
+            spin: state.body.w_WO.length(),
+            speed: state.body.v_WCm.length(),
+            palms: palms.fold(0.0, f64::max),
+        }
     }
 
     pub(super) fn sample(&mut self, t: f64, y: &[f64; N]) -> Result<(), Error> {

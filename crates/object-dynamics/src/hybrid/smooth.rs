@@ -54,6 +54,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
                 (self.t, self.y) = (t, y);
                 break Reached::Limit;
             }
+            self.pace(t, &y)?;
             if self.crowded(t, 1) {
                 (self.t, self.y) = (t, y);
                 break Reached::Crowded;
@@ -168,7 +169,10 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             let source = now.problem.not_p(&self.stretch.modes, minor);
             return Error::Modes { state: Box::new(now.state), source };
         }
-        Error::Integration(error)
+        match error {
+            IntegrationError::StepTooSmall { .. } => self.too_slow(&now.state),
+            other => Error::Integration(other),
+        }
     }
 
     /// Whether events and steps have become so many in so little time that time stepping needs fewer.

@@ -63,10 +63,21 @@ impl ContactStart {
     }
 }
 
-/// Refuses palms that overlap each other. Planes are taken to end where others begin.
-pub(super) fn check_overlap(surfaces: &[(PalmSurface, SurfaceState)]) -> Result<(), Error> {
+/// Axes and planes within this angle (rad) of each other are parallel: directions that are given to six digits are.
+const PARALLEL: f64 = 1e-6;
+
+/// Palms nearer to each other than this share of the object's size are the same.
+const SAME: f64 = 1e-6;
+
+/// Refuses palms that overlap each other. A plane is taken to end where a plane, a cup or a cylinder crosses it, and a cylinder
+/// where a cup does: only what lies along a plane, or is round, can be sunk into it.
+pub(super) fn check_overlap(surfaces: &[(PalmSurface, SurfaceState)], size: f64) -> Result<(), Error> {
     for (second, b) in surfaces.iter().enumerate() {
         for (first, a) in surfaces[..second].iter().enumerate() {
+            if coincide(a, b, size) {
+                let (first, second, kind) = (first + 1, second + 1, a.0.name());
+                return Err(Error::PalmsCoincide { first, second, kind });
+            }
             let depth = -distance(a, b).min(distance(b, a));
             if depth > 0.0 {
                 return Err(Error::PalmsOverlap { first: first + 1, second: second + 1, depth });
@@ -76,6 +87,20 @@ pub(super) fn check_overlap(surfaces: &[(PalmSurface, SurfaceState)]) -> Result<
     Ok(())
 }
 
+/// Whether two planes or cups are one: the object would touch both at the same point, and nothing says which bears it.
+fn coincide((a, at): &(PalmSurface, SurfaceState), (b, bt): &(PalmSurface, SurfaceState), size: f64) -> bool {
+    let (between, n) = (bt.p_WP - at.p_WP, at.R_WP.z_axis);
+    match (*a, *b) {
+        (PalmSurface::Plane, PalmSurface::Plane) => {
+            (bt.R_WP.z_axis - n).length() <= PARALLEL && n.dot(between).abs() <= SAME * size
+        }
+        (PalmSurface::Cup { radius: r }, PalmSurface::Cup { radius: s }) => {
+            between.length() + (r - s).abs() <= SAME * size
+        }
+        _ => false,
+    }
+}
+
 /// Distance of two palms, in the order in which one kind is treated; infinite for the other order and where none is defined.
 fn distance((a, at): &(PalmSurface, SurfaceState), (b, bt): &(PalmSurface, SurfaceState)) -> f64 {
     let between = bt.p_WP - at.p_WP;
@@ -83,6 +108,10 @@ fn distance((a, at): &(PalmSurface, SurfaceState), (b, bt): &(PalmSurface, Surfa
     match (*a, *b) {
         (PalmSurface::Sphere { radius: r }, PalmSurface::Sphere { radius: s }) => between.length() - r - s,
         (PalmSurface::Plane, PalmSurface::Sphere { radius }) => at.R_WP.z_axis.dot(between) - radius,
+        (PalmSurface::Plane, PalmSurface::Cylinder { radius }) => {
+            let parallel = at.R_WP.z_axis.dot(axis_b).abs() <= PARALLEL;
+            if parallel { at.R_WP.z_axis.dot(between) - radius } else { f64::INFINITY }
+        }
         (PalmSurface::Cup { radius }, PalmSurface::Sphere { radius: s }) => radius - between.length() - s,
         (PalmSurface::Cylinder { radius: r }, PalmSurface::Sphere { radius: s }) => {
             between.reject_from_normalized(axis_a).length() - r - s
@@ -90,7 +119,7 @@ fn distance((a, at): &(PalmSurface, SurfaceState), (b, bt): &(PalmSurface, Surfa
         (PalmSurface::Cylinder { radius: r }, PalmSurface::Cylinder { radius: s }) => {
             let normal = axis_a.cross(axis_b);
             // Nearly parallel axes are as far apart as seen across one of them.
-            let apart = if normal.length() > 1e-9 {
+            let apart = if normal.length() > PARALLEL {
                 between.dot(normal.normalize()).abs()
             } else {
                 between.reject_from_normalized(axis_a).length()

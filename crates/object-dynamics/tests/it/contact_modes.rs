@@ -292,16 +292,96 @@ fn bad_scenes_and_starts_are_named() {
     assert!(matches!(run(higher), Err(ContactSimulationError::NotInContact { gap, .. }) if gap > 5e-3));
     assert!(run(BodyState { w_WO: DVec3::NAN, ..start }).is_err());
     assert!(run(BodyState { R_WO: DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), ..start }).is_err());
-    let tip = |x: f64| ScenePalm {
-        surface: PalmSurface::Sphere { radius: 0.02 },
-        drive: PalmDrive::Prescribed(SurfaceMotion::immobile(
-            SurfacePose::new(DVec3::X * x, DQuat::IDENTITY).unwrap(),
-        )),
+    let mut palms = funnel(0.3);
+    palms[2].friction = 1e300;
+    let error = ContactScene::new(body, mass, palms, G).unwrap_err().to_string();
+    assert!(error.contains("palm 3") && error.contains("from 0 to 100"), "{error}");
+}
+
+#[test]
+fn palms_that_overlap_are_named() {
+    let (body, mass) = ellipsoid();
+    let palm = |surface, p: DVec3, R: DQuat| ScenePalm {
+        surface,
+        drive: PalmDrive::Prescribed(SurfaceMotion::immobile(SurfacePose::new(p, R).unwrap())),
         friction: 0.5,
     };
-    let overlapping = ContactScene::new(body, mass, vec![tip(0.2), tip(0.23)], G).unwrap();
-    let error = overlapping.simulate(&ContactStart::touching(start), times, 1e-9).unwrap_err();
-    assert!(
-        matches!(error, ContactSimulationError::PalmsOverlap { depth, .. } if (depth - 0.01).abs() < 1e-12)
-    );
+    let still = DQuat::IDENTITY;
+    let high = BodyState { p_WCm: DVec3::Z, R_WO: still, v_WCm: DVec3::ZERO, w_WO: DVec3::ZERO };
+    let start = ContactStart { body: high, palms: None, in_flight: true };
+    let times = SampleTimes { duration: 0.01, rate: 100.0 };
+    let depth = |pair: [ScenePalm; 2]| {
+        let scene = ContactScene::new(body, mass, pair.to_vec(), G).unwrap();
+        match scene.simulate(&start, times, 1e-9) {
+            Err(ContactSimulationError::PalmsOverlap { first: 1, second: 2, depth }) => Some(depth),
+            Ok(_) => None,
+            Err(other) => panic!("{other}"),
+        }
+    };
+    let tip = |x: f64| palm(PalmSurface::Sphere { radius: 0.02 }, DVec3::X * x, still);
+    let rod = |z: f64, R| palm(PalmSurface::Cylinder { radius: 0.02 }, DVec3::Z * z, R);
+    let floor = palm(PalmSurface::Plane, DVec3::ZERO, still);
+    let tilted = palm(PalmSurface::Plane, DVec3::ZERO, DQuat::from_rotation_y(0.3));
+    let cup = palm(PalmSurface::Cup { radius: 3.0 }, DVec3::ZERO, still);
+    for (pair, expected) in [
+        ([tip(0.2), tip(0.23)], 0.01),
+        ([floor.clone(), tip(0.0)], 0.02),
+        ([cup.clone(), tip(2.99)], 0.01),
+        // Along the plane, in either order; its axis given to six digits.
+        ([floor.clone(), rod(0.015, still)], 0.005),
+        ([rod(0.015, DQuat::from_rotation_y(5e-7)), floor.clone()], 0.005),
+        ([rod(0.015, still), rod(-0.015, DQuat::from_rotation_z(1.0))], 0.01),
+    ] {
+        let found = depth(pair).unwrap();
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+    for (same, kind) in [(floor.clone(), "flat"), (cup, "cup")] {
+        let scene = ContactScene::new(body, mass, vec![same.clone(), same], G).unwrap();
+        let error = scene.simulate(&start, times, 1e-9).unwrap_err();
+        assert_eq!(error, ContactSimulationError::PalmsCoincide { first: 1, second: 2, kind });
+    }
+    // What crosses a plane is no overlap, nor is what only comes near.
+    let crossing = rod(0.015, DQuat::from_rotation_y(0.3));
+    for pair in [[floor.clone(), crossing], [floor.clone(), rod(0.021, still)], [floor, tilted]] {
+        assert_eq!(depth(pair), None);
+    }
+}
+
+#[test]
+fn without_any_force_a_body_spins_on_between_two_palms() {
+    let (body, mass) = ellipsoid();
+    let palm = |z: f64, R| {
+        let pose = SurfacePose::new(DVec3::Z * z, R).unwrap();
+        let drive = PalmDrive::Prescribed(SurfaceMotion::immobile(pose));
+        ScenePalm { surface: PalmSurface::Plane, drive, friction: 0.4 }
+    };
+    let palms = vec![palm(-0.03, DQuat::IDENTITY), palm(0.03, DQuat::from_rotation_x(std::f64::consts::PI))];
+    let scene = ContactScene::new(body, mass, palms, 0.0).unwrap();
+    // About the axis through both contacts: nothing accelerates, whatever the modes are called.
+    let start =
+        BodyState { p_WCm: DVec3::ZERO, R_WO: DQuat::IDENTITY, v_WCm: DVec3::ZERO, w_WO: 5.0 * DVec3::Z };
+    let times = SampleTimes { duration: 1.0, rate: 100.0 };
+    let off = |tolerance: f64| {
+        let run = scene.simulate(&ContactStart::touching(start), times, tolerance).unwrap();
+        for BodyState { p_WCm, w_WO, .. } in run.instants.iter().map(|now| now.state.body) {
+            assert!((w_WO - start.w_WO).length() < 1e-12 && p_WCm.length() < 1e-12);
+        }
+        let last = run.instants.last().unwrap().state;
+        (last.body.R_WO * DVec3::X - DQuat::from_rotation_z(5.0 * last.t) * DVec3::X).length()
+    };
+    // In proportion to the tolerance, which is that of a step.
+    let (coarse, fine) = (off(1e-8), off(1e-12));
+    assert!(fine < 1e-3 * coarse && coarse < 1e-6, "{coarse:e} {fine:e}");
+}
+
+#[test]
+fn motion_too_fast_to_follow_ends_with_its_spin() {
+    let (body, mass) = ellipsoid();
+    let palms = funnel(0.3);
+    let start = in_funnel(&body, &palms, DQuat::IDENTITY, DVec3::ZERO);
+    let scene = ContactScene::new(body, mass, palms, G).unwrap();
+    let times = SampleTimes { duration: 10.0, rate: 100.0 };
+    let spinning = BodyState { w_WO: DVec3::new(1e5, 2e5, 3e5), ..start };
+    let error = scene.simulate(&ContactStart::touching(spinning), times, 1e-9).unwrap_err();
+    assert!(matches!(error, ContactSimulationError::TooSlow { spin, .. } if spin > 1e4), "{error}");
 }

@@ -132,12 +132,12 @@ pub enum LogFileErrorKind {
         "has the columns of palms of any shape, which say nothing of the shapes; give a scene with a [[palm]] for each"
     )]
     NoPalms,
-    /// A log of general palms where three flat ones are read.
-    #[error(
-        "has the columns px_i or sx_i of palms of any shape, and here logs of three flat palms through the origin are read \
-         (s1_i, s2_i)"
-    )]
-    AnyPalms,
+    /// A log of general palms where one of palms through the origin is read.
+    #[error("has the columns px_i or sx_i of palms of any shape, and here logs of {read} are read")]
+    AnyPalms {
+        /// What is read, with its columns.
+        read: &'static str,
+    },
     /// Log and scene have different numbers of palms.
     #[error("has {found} palm(s) by its columns px_i or sx_i where the scene has {expected}")]
     PalmCount {

@@ -1,6 +1,7 @@
 //! Planar sensor logs, version 1: two palms hinged at the origin.
 
 use super::columns::{Field, Header};
+use super::contacts::palms_in;
 use super::error::{LogFileError, LogFileErrorKind as Kind};
 use super::read::{Row, csv_error};
 use crate::number::exact;
@@ -23,6 +24,9 @@ struct Columns {
 
 impl Columns {
     fn find(record: &csv::StringRecord) -> Result<Self, Kind> {
+        if palms_in(record) > 0 {
+            return Err(Kind::AnyPalms { read: "two palms hinged at the origin (phi1, phi2, s1, s2)" });
+        }
         let header = Header::new(record);
         let need = |name: &str| header.need(name.to_owned());
         let pair = |names: [&str; 2]| -> Result<Option<[Field; 2]>, Kind> {

@@ -66,7 +66,8 @@ impl<R: Read> Table<R> {
 
 /// The columns of version 1; a header of version 2 is told as that.
 pub(super) fn three_palms(header: &csv::StringRecord) -> Result<Columns, Kind> {
-    if palms_in(header) > 0 { Err(Kind::AnyPalms) } else { Columns::find(header) }
+    let read = "three flat palms through the origin (s1_i, s2_i)";
+    if palms_in(header) > 0 { Err(Kind::AnyPalms { read }) } else { Columns::find(header) }
 }
 
 pub(super) fn csv_error(error: csv::Error) -> Kind {

@@ -207,7 +207,30 @@ fn readings_that_cannot_be_are_named_with_palm_sample_and_value() {
         no_rotation,
         ContactLogError::Pose { sample: 2, source: SurfaceError::NoRotation { .. }, .. }
     ));
-    let other = SurfacePose { p_WP: DVec3::ZERO, ..pose };
+    let away = SurfacePose { p_WP: pose.p_WP + 4000.0 * DVec3::X, ..pose };
+    for motion in [
+        RecordedMotion::Poses(vec![pose, pose, away]),
+        RecordedMotion::Measured([pose, pose, away].map(MeasuredMotion::at_rest).to_vec()),
+    ] {
+        let jump = error(times(3), PalmRecord { motion, ..good() });
+        assert!(
+            matches!(
+                jump,
+                ContactLogError::Pose { palm: 1, sample: 2, source: SurfaceError::Jump { .. }, .. }
+            ),
+            "{jump}"
+        );
+    }
+    for (v, w, value) in [(1e4, 0.0, 1e4), (0.0, 5e3, 5e3)] {
+        let fast = MeasuredMotion { v_WP: DVec3::Y * v, w_WP: DVec3::Z * w, ..MeasuredMotion::at_rest(pose) };
+        let motion = RecordedMotion::Measured(vec![MeasuredMotion::at_rest(pose), fast, fast]);
+        let told = error(times(3), PalmRecord { motion, ..good() });
+        assert!(
+            matches!(told, ContactLogError::TooFast { palm: 1, sample: 1, value: v, .. } if v == value),
+            "{told}"
+        );
+    }
+    let other = SurfacePose { p_WP: pose.p_WP + 0.1 * DVec3::X, ..pose };
     let few =
         error(times(3), PalmRecord { motion: RecordedMotion::Poses(vec![pose, pose, other]), ..good() });
     assert_eq!(few, ContactLogError::TwistFromPoses { palm: 1, samples: 3 });

@@ -20,6 +20,16 @@ pub enum ContactSimulationError {
     /// The start cannot be used.
     #[error("start: {0}")]
     Start(#[from] StartError),
+    /// Two endless palms are one and the same.
+    #[error("palms {first} and {second} ({kind}) are one and the same at the start; leave one of them out")]
+    PalmsCoincide {
+        /// Palm number from 1.
+        first: usize,
+        /// Palm number from 1.
+        second: usize,
+        /// Their kind, as in files.
+        kind: &'static str,
+    },
     /// Two palms overlap each other.
     #[error("palms {first} and {second} overlap by {depth:.3e} m at the start; move them apart")]
     PalmsOverlap {
@@ -51,6 +61,21 @@ pub enum ContactSimulationError {
     /// The integrator cannot go on.
     #[error(transparent)]
     Integration(#[from] IntegrationError<FieldError>),
+    /// Steps so small that the end is out of reach.
+    #[error(
+        "steps are down to {step:.1e} s at t = {t:.3e} s, where the object turns at {spin:.3e} rad/s and moves at {speed:.3e} m/s; slow down \
+         object and palms, or allow a larger tolerance"
+    )]
+    TooSlow {
+        /// Time reached, s.
+        t: f64,
+        /// Step, s.
+        step: f64,
+        /// Angular speed of the body there, rad/s.
+        spin: f64,
+        /// Speed of its centre of mass there, m/s.
+        speed: f64,
+    },
     /// Modes change without end in no time.
     #[error(
         "{count} mode changes within {span:.1e} s at t = {t} s: they pile up, and rigid contacts say no more"

@@ -201,7 +201,14 @@ fn stuck<S: RadiusFunction>(
         {
             told
         }
-        _ => error.into(),
+        _ => match error {
+            IntegrationError::StepTooSmall { t, step } => {
+                let body = BodyState::of(y);
+                let (spin, speed) = (body.omega0.abs(), body.v_WCm.length());
+                ContactSimulationError::TooSlow { t, step, spin, speed }
+            }
+            other => other.into(),
+        },
     }
 }
 

@@ -70,6 +70,10 @@ impl<S: RadiusFunction> Tracker<'_, S> {
         let palms: Vec<_> = self.scene.palms().iter().map(|palm| (palm.surface, palm.motion.at(t))).collect();
         for (second, b) in palms.iter().enumerate() {
             for (first, a) in palms[..second].iter().enumerate() {
+                if let Some(kind) = coincide(a, b, TOUCHING * self.size) {
+                    let (first, second) = (first + 1, second + 1);
+                    return Err(ContactSimulationError::PalmsCoincide { first, second, kind });
+                }
                 let depth = -distance(a, b).min(distance(b, a));
                 if depth > TOUCHING * self.size {
                     let (first, second) = (first + 1, second + 1);
@@ -125,6 +129,27 @@ impl<S: RadiusFunction> Tracker<'_, S> {
         let residuals: Vec<_> = touches.iter().map(|touch| [residual(touch), 0.0]).collect();
         let modes = vec![PlanarMode::Slide { sense: 0.0 }; touches.len()];
         ContactProblem::new(self.mass(), (DVec2::ZERO, 0.0), &contacts).correction(&modes, &residuals)
+    }
+}
+
+/// What two lines or cups are that are one to within `near` (m): the object would touch both at the same point, and nothing says
+/// which bears it.
+fn coincide(
+    (a, at): &(PalmSurface, SurfaceState),
+    (b, bt): &(PalmSurface, SurfaceState),
+    near: f64,
+) -> Option<&'static str> {
+    let between = bt.p_WP - at.p_WP;
+    match (*a, *b) {
+        (PalmSurface::Line, PalmSurface::Line) => {
+            let (sine, cosine) = (bt.angle - at.angle).sin_cos();
+            let same = sine.abs() <= TOUCHING && cosine > 0.0 && at.to_palm(bt.p_WP).y.abs() <= near;
+            same.then_some("line")
+        }
+        (PalmSurface::Cup { radius: r }, PalmSurface::Cup { radius: s }) => {
+            (between.length() + (r - s).abs() <= near).then_some("cup")
+        }
+        _ => None,
     }
 }
 

@@ -64,6 +64,7 @@ fn is_of_the_start(error: &ContactSimulationError) -> bool {
             | Error::Penetration { .. }
             | Error::NotInContact { .. }
             | Error::PalmsOverlap { .. }
+            | Error::PalmsCoincide { .. }
             | Error::Contact { .. }
     )
 }

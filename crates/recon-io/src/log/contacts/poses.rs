@@ -39,7 +39,9 @@ pub(super) fn parse_pose_table(text: impl Read) -> Result<PoseTable, Kind> {
     PoseTable::new(&rows).map_err(|source| {
         let line = match source {
             // Too few rows have no line at fault.
-            SurfaceError::Table { row, .. } if row > 0 => lines.get(row).copied(),
+            SurfaceError::Table { row, .. } | SurfaceError::Jump { row, .. } if row > 0 => {
+                lines.get(row).copied()
+            }
             _ => None,
         };
         Kind::PoseTable { line, source }

@@ -45,15 +45,21 @@ pub(super) fn bands(all: &[Vec<ModeSpan>], marks: &[f64]) -> String {
     for t in marks {
         let _ = writeln!(out, "<path class=\"mark\" d=\"M{} 0 V{bottom}\"/>", place(*t));
     }
-    let step = round_step((end - start) / 8.0);
-    for k in 0..=8 {
-        let t = ((start / step).ceil() + f64::from(k)) * step;
-        if t <= end {
-            let (x, y, t) = (place(t), bottom + 15.0, on_scale(t, step, 1));
-            let _ = writeln!(out, "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\">{t}</text>");
-        }
+    for t in ticks(start, end) {
+        let (x, y) = (place(t), bottom + 15.0);
+        let _ = writeln!(out, "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\">{t}</text>");
     }
     out + "</svg>\n"
+}
+
+/// Round times from `start` to `end`, at most nine. Both ends may be off by rounding: 0.3 is less than three times 0.1, and samples
+/// are multiples of what is no binary fraction.
+fn ticks(start: f64, end: f64) -> Vec<f64> {
+    let slack = 1e-9 * (end - start);
+    let step = round_step((end - start) / 8.0 - slack);
+    let first = ((start - slack) / step).ceil();
+    let all = (0..=8).map(|k| on_scale((first + f64::from(k)) * step, step, 1));
+    all.filter(|t| *t <= end + slack).collect()
 }
 
 /// When nothing is touched: the gaps that all palms share.
@@ -72,6 +78,17 @@ fn flights(all: &[Vec<ModeSpan>]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn round_times_reach_both_ends() {
+        // As 0.3 = 3 / 10 and 0.1 + 0.2 are not the same number.
+        for end in [0.3, 0.1 + 0.2, 0.3 - 1e-16] {
+            assert_eq!(ticks(0.0, end), [0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3]);
+        }
+        assert_eq!(ticks(0.1 + 0.2, 0.7), [0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7]);
+        assert_eq!(ticks(0.0, 3.4), [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0]);
+        assert_eq!(ticks(0.0, 0.8), ticks(0.0, 799.0 / 1000.0 + 1e-3));
+    }
 
     #[test]
     fn flights_are_what_no_palm_touches() {

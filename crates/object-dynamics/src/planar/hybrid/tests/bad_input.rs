@@ -83,6 +83,21 @@ fn palms_that_overlap_are_named() {
 }
 
 #[test]
+fn palms_that_are_one_and_motion_too_fast_to_follow_are_named() {
+    let cup = immobile(PalmSurface::Cup { radius: 0.2 }, DVec2::ZERO, 0.0, 0.3);
+    let start = ContactStart { body: at(0.0, 0.05), contacts: vec![] };
+    let along = line(DVec2::new(3.0, 0.0), std::f64::consts::TAU, 0.3);
+    for (palms, kind) in [(vec![floor(), along], "line"), (vec![cup.clone(), cup], "cup")] {
+        let error = build(palms, G).unwrap().simulate(&start, &[0.0, 0.1], 1e-10).unwrap_err();
+        assert_eq!(error, ContactSimulationError::PalmsCoincide { first: 1, second: 2, kind });
+    }
+    let scene = build(vec![floor()], G).unwrap();
+    let body = BodyState { omega0: 3e5, ..start.body };
+    let error = scene.simulate(&ContactStart { body, ..start }, &[0.0, 10.0], 1e-10).unwrap_err();
+    assert!(matches!(error, ContactSimulationError::TooSlow { spin, .. } if spin > 1e4), "{error}");
+}
+
+#[test]
 fn a_body_is_placed_where_there_is_room() {
     let ceiling = |height: f64| line(DVec2::new(0.0, height), std::f64::consts::PI, 0.3);
     let guess = BodyState { phi0: 0.3, v_WCm: DVec2::new(0.2, 0.1), ..at(0.0, 0.05) };
