@@ -88,6 +88,9 @@ pub fn estimate_contacts(
     check(log, modes)?;
     let mut record = Record::new(log, &options.noise).ok_or(ContactEstimateError::NoContact)?;
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
+    let ball = cold::ball(&record, options.gravity, length);
+    let impulse = (options.gravity * length).sqrt() / ball.inverse_mass();
+    record.free_blows(impulse, impulse * length, options.gravity / ball.inverse_mass());
     match modes {
         Some(modes) => Ok(with_modes(&mut record, modes.to_vec(), options, length)?.0),
         None => with_estimated_modes(log, &mut record, options, length),
@@ -146,7 +149,7 @@ fn with_modes(
 /// what is left, else the one that leaves least; and the linearisations before the last solution.
 fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
     let times = &problem.record.times;
-    let coarse_nodes = spaced(times, COARSE * problem.units.length / problem.units.speed);
+    let coarse_nodes = spaced(problem.record, COARSE * problem.units.length / problem.units.speed);
     let all_nodes: Vec<usize> = (0..times.len()).collect();
     let mut best: Option<Solved<CONSTANTS>> = None;
     let mut before = 0;
@@ -217,12 +220,13 @@ fn slips(problem: &Problem, at: &Unknowns) -> Slips {
     slips
 }
 
-/// Samples at least `apart` from each other, the first and the last among them.
-fn spaced(times: &[f64], apart: f64) -> Vec<usize> {
+/// Samples at least `apart` from each other, the first and the last among them, and those after blows.
+fn spaced(record: &Record, apart: f64) -> Vec<usize> {
+    let times = &record.times;
     let last = times.len() - 1;
     let mut nodes = vec![0];
     for k in 1..last {
-        if times[k] - times[nodes[nodes.len() - 1]] >= apart {
+        if record.intervals[k - 1].blow || times[k] - times[nodes[nodes.len() - 1]] >= apart {
             nodes.push(k);
         }
     }

@@ -10,7 +10,7 @@ use crate::three_palms::{cross_matrix, exponential};
 use glam::{DQuat, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector6};
 
-/// Links are never taken for better than this share of a condition's floor, all together: without noise of the forces the
+/// Links are never taken for better than this share of a condition's deviation, all together: without noise of the forces the
 /// chain would be rigid, and the equations singular in double precision. It adds a thousandth to the variance of a velocity.
 const LINK_FLOOR: f64 = 0.03;
 
@@ -251,7 +251,12 @@ impl Problem<'_> {
             }
             let Some(link) = equations.links.get(j) else { break };
             let left = link.residual + steps[j + 1] - link.by_motion * steps[j] - link.by_body * body;
-            let next = place(j + 1, carried.motion.p, carried.motion.q, &left);
+            let mut next = place(j + 1, carried.motion.p, carried.motion.q, &left);
+            if self.record.contacts[end].is_empty() {
+                // Of a flight the momenta are known best, and no condition is there to keep.
+                next.v = carried.motion.v + vector(&left, 3);
+                next.L = carried.motion.L + vector(&left, 6);
+            }
             let r = next.from(&carried.motion);
             departures.push(r - left);
             if split {
@@ -305,9 +310,13 @@ impl Problem<'_> {
 
     /// Information of a contact condition in natural units, of a body that turns at the natural rate.
     pub(super) fn condition_information(&self) -> f64 {
+        (self.units.speed / self.condition_deviation()).powi(2)
+    }
+
+    /// Its deviation, m/s.
+    fn condition_deviation(&self) -> f64 {
         let Units { length, speed, .. } = self.units;
-        let deviation = self.noise.floor.max(self.noise.contact * speed / length);
-        (speed / deviation).powi(2)
+        self.noise.floor.max(self.noise.contact * speed / length)
     }
 
     fn link_information<const P: usize>(
@@ -365,7 +374,12 @@ impl Problem<'_> {
     ///
     /// The noise of a force at a sample is felt in the intervals before and after it, half in each. A link takes all of it, which leaves
     /// links independent; the node is then the motion before it, and its contact is touched after half of it.
+    ///
+    /// A blow is after the sample before it.
     fn share(&self, j: usize) -> f64 {
+        if self.record.intervals[self.nodes[j]].blow {
+            return 0.0;
+        }
         let samples = self.record.contacts[self.nodes[j]].first().map_or(1, |c| c.samples);
         0.5 / samples as f64
     }
@@ -480,7 +494,8 @@ impl Problem<'_> {
         let mut shift = Matrix6::identity();
         shift.fixed_view_mut::<3, 3>(3, 0).copy_from(&Matrix3::from(-cross_matrix(p)));
         let mut moved = shift * noise * shift.transpose();
-        let floor = self.units.mass * self.noise.floor * LINK_FLOOR / (self.nodes.len() as f64).sqrt();
+        let deviation = LINK_FLOOR * self.condition_deviation() / (self.nodes.len() as f64).sqrt();
+        let floor = self.units.mass * deviation;
         for i in 0..6 {
             let unit = if i < 3 { 1.0 } else { self.units.length };
             moved[(i, i)] += (floor * unit).powi(2);

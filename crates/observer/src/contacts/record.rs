@@ -8,6 +8,12 @@ use nalgebra::{Matrix6, Vector6};
 use object_dynamics::{ContactLog, ContactMode, MOST_PALMS};
 use std::ops::{Add, Mul};
 
+/// Intervals from the one in which a contact closes that a blow is taken to last: soft ones are over a sample later.
+const BLOW: usize = 2;
+
+/// Share of the weight that presses a contact which opens by a blow: one that opens by itself is not pressed then.
+const SUDDEN: f64 = 0.1;
+
 /// A contact at one sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
@@ -43,6 +49,8 @@ pub(super) struct Interval {
     pub(super) first: DVec3,
     /// Covariance of `impulse`; the moment about the origin.
     pub(super) noise: Matrix6<f64>,
+    /// Whether a blow may have changed the velocities.
+    pub(super) blow: bool,
 }
 
 /// Samples of a log.
@@ -94,10 +102,50 @@ impl Record {
         Some(Self { times, samples, origin, contacts, wrenches, intervals })
     }
 
-    /// Puts its contacts into the modes of each palm at each sample.
+    /// Leaves open what the velocities change by, up to about `impulse` in N s and `moment` in N m s, where a contact closes, or opens while it
+    /// is pressed by more than a share of `weight` in N: a blow is over before a sample sees it, at a palm that may not be touched at any.
+    pub(super) fn free_blows(&mut self, impulse: f64, moment: f64, weight: f64) {
+        let lost = |from: usize, to: usize| {
+            let gone = |c: &&Contact| self.contacts[to].iter().all(|other| other.palm != c.palm);
+            self.contacts[from]
+                .iter()
+                .filter(gone)
+                .map(|c| c.f.length())
+                .fold(None, |most: Option<f64>, f| Some(most.map_or(f, |m| m.max(f))))
+        };
+        let lasts = |k: usize| match (lost(k, k - 1), lost(k - 1, k)) {
+            (Some(_), _) => BLOW,
+            (None, Some(force)) if force > SUDDEN * weight => 1,
+            _ => 0,
+        };
+        let blows: Vec<usize> = (1..self.times.len()).map(lasts).collect();
+        for (k, lasts) in blows.into_iter().enumerate() {
+            for interval in self.intervals[k..].iter_mut().take(lasts).filter(|interval| !interval.blow) {
+                interval.blow = true;
+                for i in 0..6 {
+                    interval.noise[(i, i)] += if i < 3 { impulse } else { moment }.powi(2);
+                }
+            }
+        }
+    }
+
+    /// Whether a blow ends or begins at a sample.
+    pub(super) fn beside_blow(&self, k: usize) -> bool {
+        [k.checked_sub(1), Some(k)]
+            .into_iter()
+            .flatten()
+            .any(|i| self.intervals.get(i).is_some_and(|i| i.blow))
+    }
+
+    /// Puts its contacts into the modes of each palm at each sample. In the middle of a blow there is none.
     pub(super) fn set_modes(&mut self, modes: &[[ContactMode; MOST_PALMS]]) {
-        for (contacts, modes) in self.contacts.iter_mut().zip(modes) {
-            contacts.iter_mut().for_each(|contact| contact.mode = modes[contact.palm]);
+        let blows = |k: usize| {
+            k > 0 && k < self.intervals.len() && self.intervals[k - 1].blow && self.intervals[k].blow
+        };
+        let amid: Vec<bool> = (0..self.times.len()).map(blows).collect();
+        for ((contacts, modes), amid) in self.contacts.iter_mut().zip(modes).zip(amid) {
+            let mode = |palm: usize| if amid { ContactMode::Off } else { modes[palm] };
+            contacts.iter_mut().for_each(|contact| contact.mode = mode(contact.palm));
         }
     }
 }
@@ -150,7 +198,7 @@ fn intervals(
             for contact in &contacts[k - 1] {
                 add_noise(&mut noise_here, contact, noise, h);
             }
-            Interval { h, impulse, first, noise: noise_here }
+            Interval { h, impulse, first, noise: noise_here, blow: false }
         })
         .collect();
     let rough: Vec<Interval> =

@@ -47,19 +47,23 @@ fn windows(record: &Record, longest: f64) -> Vec<Window> {
     let touched = |k: usize| record.contacts[k].iter().map(|contact| (contact.palm, contact.mode));
     let same = |a: usize, b: usize| touched(a).eq(touched(b));
     let mut all = Vec::new();
+    let alone = |k: usize| k == 0 || k == count - 1 || record.beside_blow(k);
     let mut run = 0..0;
     let mut from = 0;
     while from < count {
         if from == run.end {
-            // The first sample and the last one are nodes: all lie between two.
-            let end = if from == 0 { 1 } else { (count - 1).max(from + 1) };
-            run = from..from + (from..end).take_while(|&k| same(from, k)).count();
+            // Nodes are at the first sample and the last, so that all lie between two, and on both sides of a blow.
+            let more = (from + 1..count).take_while(|&k| !alone(from) && !alone(k) && same(from, k)).count();
+            run = from..from + 1 + more;
         }
         let fits = |end: &usize| record.times[*end] - record.times[from] < longest;
         let own = from..from + 1 + (from + 1..run.end).take_while(fits).count() / 2 * 2;
         from = own.end;
         let around = own.start.saturating_sub(own.len()).max(run.start)..(own.end + own.len()).min(run.end);
-        all.push(Window { own, around });
+        // Where nothing is touched there is nothing to average, and the motion follows from that before.
+        if !record.contacts[own.start].is_empty() || alone(own.start) {
+            all.push(Window { own, around });
+        }
     }
     all
 }
@@ -127,11 +131,18 @@ impl Record {
 
 /// Neighbouring intervals as one.
 fn sum(intervals: &[Interval]) -> Interval {
-    let none = Interval { h: 0.0, impulse: Wrench::default(), first: DVec3::ZERO, noise: Matrix6::zeros() };
+    let none = Interval {
+        h: 0.0,
+        impulse: Wrench::default(),
+        first: DVec3::ZERO,
+        noise: Matrix6::zeros(),
+        blow: false,
+    };
     intervals.iter().fold(none, |sum, interval| Interval {
         h: sum.h + interval.h,
         impulse: sum.impulse + interval.impulse,
         first: sum.first + interval.first + interval.impulse.force * sum.h,
         noise: sum.noise + interval.noise,
+        blow: sum.blow || interval.blow,
     })
 }
