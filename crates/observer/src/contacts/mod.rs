@@ -10,6 +10,7 @@ mod problem;
 mod record;
 mod rows;
 mod samples;
+mod search;
 mod solve;
 mod spurious;
 mod state;
