@@ -84,7 +84,7 @@ fn coarse(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
 fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
     let first = solve::<CONSTANTS>(problem, start, FIRST, ENOUGH[1])?;
     let claimed = first.equations.covariances(&problem.natural_information())?;
-    let frozen = claimed.frozen(&first.equations, &first.unknowns)?;
+    let frozen = claimed.frozen(problem, &first.equations, &first.unknowns)?;
     problem.frozen = frozen;
     let mut found = solve::<CONSTANTS>(problem, first.unknowns, MOST, ENOUGH[1])?;
     found.iterations += first.iterations;

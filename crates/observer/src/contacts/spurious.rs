@@ -19,9 +19,6 @@ const NUMBERS: usize = 6;
 /// What of the information is left at least, in any direction: a deviation is then twenty times what the equations claim.
 const LEAST: f64 = 0.05;
 
-/// Share of the information beyond which a direction of the inertia is not learned: it keeps its value from beforehand.
-const UNLEARNED: f64 = 0.7;
-
 type OfBody = SMatrix<f64, BODY, BODY>;
 
 /// Shares of noise in the information that the equations claim on the body.
@@ -32,16 +29,19 @@ struct Shares {
 }
 
 impl Covariances<BODY> {
-    /// Combinations of the body's numbers, in units of their claimed deviations, of which noise alone tells. None where the covariance has
-    /// no inverse.
+    /// Combinations of the body's numbers, in units of their claimed deviations, that are known better beforehand than an estimate makes
+    /// them, whose variance is `B / C^2`. None where the covariance has no inverse.
     pub(super) fn frozen(
         &self,
+        problem: &Problem,
         equations: &Equations<BODY>,
         at: &Unknowns,
     ) -> Option<Vec<SVector<f64, BODY>>> {
         let Shares { values, axes } = self.shares(equations, at)?;
         let rows = axes.try_inverse()?;
-        Some((0..BODY).filter(|&i| values[i] > UNLEARNED).map(|i| rows.row(i).transpose()).collect())
+        let beforehand = axes.transpose() * problem.body.1 * axes;
+        let better = |&i: &usize| beforehand[(i, i)] > (1.0 - values[i]).max(0.0).powi(2);
+        Some((0..BODY).filter(better).map(|i| rows.row(i).transpose()).collect())
     }
 
     /// With the covariance of the body widened where noise poses as information, and by what was known beforehand of what is
