@@ -4,8 +4,9 @@ use super::bounds::{BoundsResult, LOWER, UPPER};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
 use recon_io::{
-    FolderTarget, MotionState, OutputFolder, TriangleMesh, summary, write_contact_curves, write_contact_log,
-    write_contact_report, write_motion, write_ply, write_radius_functions, write_report,
+    EstimateData, FolderTarget, MotionState, OutputFolder, TriangleMesh, estimate_summary, summary,
+    write_contact_curves, write_contact_log, write_contact_report, write_estimate_report,
+    write_estimated_motion, write_motion, write_ply, write_radius_functions, write_report,
 };
 use serde_json::Value;
 use std::io::{self, Write};
@@ -27,7 +28,8 @@ pub(crate) fn write_reconstruction_folder(
     while_writing(|| {
         let mut folder = Folder(target.begin()?);
         folder.write("motion.csv", |to| write_motion(&data.times, &data.motion, to))?;
-        folder.write("contact_curves.csv", |to| write_contact_curves(data, to))?;
+        let palms = data.palms.each_ref().map(|palm| &palm.contacts[..]);
+        folder.write("contact_curves.csv", |to| write_contact_curves(&data.times, &palms, to))?;
         folder.write("radius_functions.csv", |to| write_radius_functions(data, to))?;
         folder.write_mesh(LOWER, "inside the object; metres, body axes", made.lower.as_ref())?;
         folder.write_mesh(UPPER, "around the object; metres, body axes", made.upper.as_ref())?;
@@ -35,6 +37,22 @@ pub(crate) fn write_reconstruction_folder(
             folder.write(name, |to| to.write_all(contents))?;
         }
         folder.write("report.html", |to| write_report(data, to))?;
+        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+        folder.commit()
+    })?;
+    Ok(figures)
+}
+
+/// Writes everything about a motion that was estimated from contacts of any palms; returns the summary.
+pub(crate) fn write_estimate_folder(target: FolderTarget, data: &EstimateData) -> Result<Value, CliError> {
+    let figures = estimate_summary(data);
+    let (times, palms) = (data.log.times(), data.log.palms().len());
+    while_writing(|| {
+        let mut folder = Folder(target.begin()?);
+        folder.write("motion.csv", |to| write_estimated_motion(times, &data.estimate, palms, to))?;
+        let curves: Vec<_> = data.curves.iter().map(Vec::as_slice).collect();
+        folder.write("contact_curves.csv", |to| write_contact_curves(times, &curves, to))?;
+        folder.write("report.html", |to| write_estimate_report(data, to))?;
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()
     })?;

@@ -36,6 +36,20 @@ pub enum Fault {
         /// As it stands there.
         text: String,
     },
+    /// A cell of a table is a number that its column cannot have.
+    #[error("{file}: line {line}, column `{column}` is `{text}`; it must be {must}")]
+    Range {
+        /// Its name.
+        file: String,
+        /// From 1, with the header.
+        line: usize,
+        /// By the header.
+        column: String,
+        /// As it stands there.
+        text: String,
+        /// What it must be.
+        must: &'static str,
+    },
     /// A row of a table has too few cells or too many.
     #[error("{file}: line {line} has {found} cells; the header has {expected}")]
     Row {

@@ -1,0 +1,224 @@
+//! An estimate from contacts of any palms in words and numbers for people.
+
+use glam::DVec3;
+use recon::object_dynamics::{MassProperties, NotThreePlanes};
+use recon::observer::{ContactEstimate, ContactOptions, Reliability};
+use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Scene, Verdict, brief_to};
+
+/// Share of the samples whose motion must be relied on for a result without reservations.
+const ENOUGH: f64 = 0.5;
+
+/// Whether the estimate can be relied on, in one sentence.
+pub(super) fn verdict(estimate: &ContactEstimate) -> Verdict {
+    if let Reliability::Unreliable(reasons) = &estimate.reliability {
+        let reasons: Vec<String> = reasons.iter().map(ToString::to_string).collect();
+        let text = format!("Do not rely on this result: {}.", reasons.join("; "));
+        return Verdict { level: Level::Bad, text };
+    }
+    let (share, misfit) = (relied_on(estimate), estimate.evidence.misfit);
+    let text = format!(
+        "The fit settled, noise explains what is left (chi-squared {misfit:.2} a condition), and the motion is relied on at {} of the samples; {} of the inertia.",
+        percent(share),
+        learned(estimate)
+    );
+    Verdict { level: if share < ENOUGH { Level::Caution } else { Level::Good }, text }
+}
+
+/// Share of the samples whose motion is relied on.
+pub(super) fn relied_on(estimate: &ContactEstimate) -> f64 {
+    let relied = estimate.relied_on.iter().filter(|relied| **relied).count();
+    relied as f64 / estimate.relied_on.len().max(1) as f64
+}
+
+/// A share without the rounding that would make all of nearly all.
+fn percent(share: f64) -> String {
+    format!("{} %", brief_to(3, (1000.0 * share).floor() / 10.0))
+}
+
+fn learned(estimate: &ContactEstimate) -> &'static str {
+    match estimate.inertia_deviations.iter().filter(|deviation| **deviation < INERTIA_LEARNED).count() {
+        0 => "nothing is learned",
+        1 => "one second moment of three is learned",
+        2 => "two second moments of three are learned",
+        _ => "all is learned",
+    }
+}
+
+/// What the estimate rests on, row by row.
+pub(super) fn evidence(
+    estimate: &ContactEstimate,
+    options: &ContactOptions,
+    why: &NotThreePlanes,
+) -> Vec<Evidence> {
+    let (e, noise) = (&estimate.evidence, &options.noise);
+    let (number, neutral) = (EvidenceValue::Number, Level::Neutral);
+    let count = |n: usize| EvidenceValue::Count(n as u64);
+    let text = |text: &str| EvidenceValue::Text(text.to_owned());
+    let good_if = |good| if good { Level::Good } else { Level::Bad };
+    let misfits = estimate.reliability.is_reliable() || e.misfit < 1.5;
+    let learned_level = if estimate.inertia_deviations.iter().all(|d| *d < INERTIA_LEARNED) {
+        Level::Good
+    } else {
+        Level::Caution
+    };
+    let mut rows: Vec<(&str, &str, EvidenceValue, &str, &str, Level)> = vec![
+        ("mass", "Mass", number(estimate.mass), "kg", "As estimated from the log.", neutral),
+        (
+            "std_mass",
+            "Uncertainty of the mass",
+            number(estimate.mass * estimate.mass_deviation),
+            "kg",
+            "Standard deviation.",
+            neutral,
+        ),
+    ];
+    let principal = MassProperties::new(estimate.mass, estimate.inertia).ok().map(|mass| mass.principal());
+    let names = [
+        ("moment_x", "Least principal moment"),
+        ("moment_y", "Middle principal moment"),
+        ("moment_z", "Largest principal moment"),
+    ];
+    for (axis, (key, name)) in names.into_iter().enumerate() {
+        if let Some(principal) = &principal {
+            let moment = number(principal.moments[axis]);
+            rows.push((
+                key,
+                name,
+                moment,
+                "kg m^2",
+                "About the centre of mass, as estimated from the log.",
+                neutral,
+            ));
+        }
+    }
+    let roots: Vec<String> = estimate.inertia_deviations.iter().map(|d| brief_to(2, *d)).collect();
+    rows.extend([
+        (
+            "inertia_learned",
+            "Learned of the inertia",
+            text(learned(estimate)),
+            "",
+            "A second moment is learned where the deviation of the logarithm of its root is below 0.5; else it is what any body of this size has.",
+            learned_level,
+        ),
+        (
+            "std_log_roots",
+            "Uncertainty of second moments",
+            EvidenceValue::Text(roots.join(", ")),
+            "",
+            "Standard deviations of the logarithms of their roots.",
+            neutral,
+        ),
+        ("samples", "Samples", count(e.samples), "", "Rows of the log.", neutral),
+        (
+            "nodes",
+            "Nodes",
+            count(e.nodes),
+            "",
+            "Motions that were solved for: contacts are averaged over the samples between them.",
+            neutral,
+        ),
+        ("conditions", "Contact conditions", count(e.conditions), "", "One a contact that slides, three a contact that sticks.", neutral),
+        (
+            "misfit",
+            "Chi-squared a condition",
+            number(e.misfit),
+            "",
+            "About 1 where the stated noise explains what is left; all deviations are widened by its root above that.",
+            good_if(misfits),
+        ),
+        (
+            "iterations",
+            "Linearisations",
+            count(e.iterations[1]),
+            "",
+            "Of the coarse solution from nothing and the last one.",
+            neutral,
+        ),
+        (
+            "settled",
+            "Settled",
+            text(if e.settled { "yes" } else { "no" }),
+            "",
+            "Whether less than half a standard deviation was left to gain.",
+            good_if(e.settled),
+        ),
+        (
+            "relied_on",
+            "Samples relied on",
+            number(relied_on(estimate)),
+            "",
+            "Share of the samples whose motion is known to within its deviations.",
+            if relied_on(estimate) < ENOUGH { Level::Caution } else { Level::Good },
+        ),
+        (
+            "noise_contact",
+            "Noise of contact positions",
+            number(noise.contact),
+            "m",
+            "In each tangent direction of the palm, from the scene.",
+            neutral,
+        ),
+        ("noise_force", "Noise of forces, fixed", number(noise.force_fixed), "N", "Of each axis, from the scene.", neutral),
+        ("noise_force_share", "Noise of forces, growing", number(noise.force_share), "", "As a share of the force, from the scene.", neutral),
+        (
+            "contact_speed",
+            "Speed of contacts",
+            number(noise.floor),
+            "m/s",
+            "What a contact condition may be off by beside noise: from the scene, or 3e-5 of the natural speed.",
+            neutral,
+        ),
+    ]);
+    let why = why.to_string();
+    rows.push((
+        "not_three_planes",
+        "Not three planes",
+        EvidenceValue::Text(why),
+        "",
+        "Why the estimate is that from contacts of any palms, and not that of three planes without friction.",
+        neutral,
+    ));
+    let row =
+        |(key, name, value, unit, meaning, level): (&str, &str, EvidenceValue, &str, &str, Level)| Evidence {
+            key: key.to_owned(),
+            name: name.to_owned(),
+            value,
+            unit: unit.to_owned(),
+            meaning: meaning.to_owned(),
+            level,
+        };
+    rows.into_iter().map(row).collect()
+}
+
+/// What to say of a body that is stated, and was estimated as an unknown one.
+pub(super) fn stated_body(scene: &Scene, estimate: &ContactEstimate) -> Option<String> {
+    let stated = scene.mass_properties().ok().flatten()?;
+    let mass = (estimate.mass / stated.mass()).ln();
+    let mut text = format!(
+        "The stated mass and inertia are not used: the object is taken as unknown. The estimated mass is {:+.1e} of the stated one off \
+         ({} of its deviations)",
+        mass.exp_m1(),
+        brief_to(2, mass.abs() / estimate.mass_deviation)
+    );
+    if let Ok(found) = MassProperties::new(estimate.mass, estimate.inertia) {
+        let [stated, found] = [stated, found].map(|mass| mass.principal().moments);
+        let share = (found / stated - DVec3::ONE).abs().max_element();
+        let roots = (log_roots(found) - log_roots(stated)).abs().max_element();
+        let deviation = estimate.inertia_deviations.into_iter().fold(0.0, f64::max);
+        text += &format!(", principal moments up to {share:.1e}");
+        if roots.is_finite() && deviation > 0.0 {
+            text += &format!(
+                " (roots of second moments {} of the largest of their deviations)",
+                brief_to(2, roots / deviation)
+            );
+        }
+    }
+    Some(text + ".")
+}
+
+/// Logarithms of the roots of the second moments along the principal axes.
+fn log_roots(moments: DVec3) -> DVec3 {
+    let second = DVec3::splat(0.5 * moments.element_sum()) - moments;
+    DVec3::from_array(second.to_array().map(|s| 0.5 * s.ln()))
+}
