@@ -42,7 +42,7 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         "relied_on_share": relied as f64 / times.len() as f64,
         "mode_shares": (0..data.log.palms().len()).map(palm).collect::<Vec<_>>(),
         "evidence": data.evidence.iter().map(evidence).collect::<Map<_, _>>(),
-        "bounds": Value::Null,
+        "bounds": data.bounds.as_ref().map(bounds),
         "largest_error": departures.as_deref().map(|d| errors(d, largest_of)),
         "rms_error": departures.as_deref().map(|d| errors(d, rms_of)),
         "warnings": data.warnings,

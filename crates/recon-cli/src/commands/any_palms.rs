@@ -29,12 +29,12 @@ pub(super) fn run(
     let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
     let request = AnyPalmsRequest { scene, path: &args.log, title: &title, identify: args.identify };
     let reason = why.to_string();
-    let data = estimate_any_palms(log, why, &request, &progress)?;
+    let made = estimate_any_palms(log, why, &request, &progress)?;
     progress.step("writing the results");
-    let mut figures = write_estimate_folder(target, &data)?;
+    let (mut figures, data) = (write_estimate_folder(target, &made)?, &made.data);
     drop(progress);
     figures["folder"] = args.output.to_string_lossy().into();
-    console.result(&describe(&data, &reason, &figures, &args.output), &figures)?;
+    console.result(&describe(data, &reason, &figures, &args.output), &figures)?;
     Ok(if data.verdict.level == Level::Good { Outcome::Done } else { Outcome::WithReservations })
 }
 
@@ -58,6 +58,13 @@ fn describe(data: &EstimateData, why: &str, figures: &Value, folder: &Path) -> S
         .collect();
     if !moments.is_empty() {
         line("principal moments", format!("{} kg m^2", moments.join(", ")));
+    }
+    if let Some(bounds) = &data.bounds {
+        line("lower bound", format!("{} m^3", brief(bounds.lower.volume)));
+        if let Some(upper) = &bounds.upper {
+            line("upper bound", format!("{} m^3", brief(upper.volume)));
+            line("lower / upper", brief_to(4, bounds.lower.volume / upper.volume));
+        }
     }
     for (name, key, unit) in [
         ("largest error: position", "position_m", "m"),

@@ -1,6 +1,9 @@
 //! Motion, mass and inertia of an unknown body from contacts of any palms, with friction.
 
+use super::any_palms_bounds::estimate_bounds;
 use super::any_palms_words::{evidence, stated_body, verdict};
+use super::bounds::BoundsResult;
+use super::reconstruct::CONFIDENCE;
 use super::truth::true_motion;
 use crate::error::CliError;
 use crate::progress::Progress;
@@ -10,6 +13,7 @@ use recon::observer::{
     ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, estimate_contacts,
 };
 use recon_io::{EstimateData, PalmContact, Scene};
+use std::error::Error;
 use std::path::Path;
 
 /// What contact conditions are off by where the scene does not say it, as a share of the natural speed `sqrt(g l)`: that by which
@@ -26,6 +30,13 @@ pub(crate) struct AnyPalmsRequest<'a> {
     pub(crate) identify: bool,
 }
 
+/// What contacts of any palms tell.
+pub(crate) struct AnyPalms {
+    pub(crate) data: EstimateData,
+    /// Bounds on the shape, where there are any.
+    pub(crate) bounds: Option<BoundsResult>,
+}
+
 /// Everything that contacts of any palms tell, and why the log is not one of three planes. Truth in the log is only compared
 /// with, never used.
 pub(crate) fn estimate_any_palms(
@@ -33,7 +44,7 @@ pub(crate) fn estimate_any_palms(
     why: NotThreePlanes,
     request: &AnyPalmsRequest,
     progress: &Progress,
-) -> Result<EstimateData, CliError> {
+) -> Result<AnyPalms, CliError> {
     let lacks = log.palms().iter().position(|palm| palm.force_axes() != Some(SensedAxes::Three));
     if let Some(i) = lacks {
         return Err(CliError::NotThreeAxes { path: request.path.to_owned(), palm: i + 1, source: why });
@@ -45,7 +56,7 @@ pub(crate) fn estimate_any_palms(
         ContactEstimateError::NoSize => CliError::SizeNotStated,
         other => CliError::ContactEstimate(other),
     })?;
-    let curves = log.palms().iter().map(|palm| curve(palm, &estimate)).collect();
+    let curves: Vec<_> = log.palms().iter().map(|palm| curve(palm, &estimate)).collect();
     let truth = truth.filter(|truth| !truth.is_empty()).map(|truth| {
         // The body's axes are those of the world at the first sample.
         let axes = truth[0].R_WO.inverse() * estimate.states[0].R_WO;
@@ -56,16 +67,33 @@ pub(crate) fn estimate_any_palms(
         warnings.extend(stated_body(request.scene, &estimate));
     }
     warnings.extend(not_relied_on(&estimate));
-    Ok(EstimateData {
+    progress.step("bounding the shape");
+    let bounds = match estimate_bounds(&log, &estimate, &curves, options.noise.contact, CONFIDENCE) {
+        Ok(bounds) => bounds,
+        Err(error) => {
+            let why = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+            warnings.push(format!("The contacts give no bounds under this motion ({why})."));
+            None
+        }
+    };
+    warnings.extend(bounds.iter().flat_map(|bounds| bounds.warnings.clone()));
+    if bounds.is_none() {
+        warnings
+            .push("There are no bounds on the shape: at no sample the pose is known well enough.".to_owned());
+    }
+    let bounds_at = bounds.is_some().then_some(CONFIDENCE);
+    let data = EstimateData {
         title: request.title.to_owned(),
         verdict: verdict(&estimate),
-        evidence: evidence(&estimate, &options, &why),
+        evidence: evidence(&estimate, &options, &why, bounds_at),
         log,
         estimate,
         curves,
         truth,
+        bounds: bounds.as_ref().map(|bounds| bounds.drawn.clone()),
         warnings,
-    })
+    };
+    Ok(AnyPalms { data, bounds })
 }
 
 /// What the estimator is told, as the scene states it.

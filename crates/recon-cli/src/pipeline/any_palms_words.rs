@@ -49,6 +49,7 @@ pub(super) fn evidence(
     estimate: &ContactEstimate,
     options: &ContactOptions,
     why: &NotThreePlanes,
+    bounds_at: Option<f64>,
 ) -> Vec<Evidence> {
     let (e, noise) = (&estimate.evidence, &options.noise);
     let (number, neutral) = (EvidenceValue::Number, Level::Neutral);
@@ -170,6 +171,16 @@ pub(super) fn evidence(
             neutral,
         ),
     ]);
+    if let Some(confidence) = bounds_at {
+        rows.push((
+            "bounds_confidence",
+            "Confidence of the bounds",
+            number(confidence),
+            "",
+            "Both bounds hold with at least this probability for the noise of contacts and the deviations of the motion, however these go together, in the axes of the world at the first sample.",
+            neutral,
+        ));
+    }
     let why = why.to_string();
     rows.push((
         "not_three_planes",

@@ -1,6 +1,7 @@
 //! From files' contents to results in memory, and from results to a folder.
 
 mod any_palms;
+mod any_palms_bounds;
 mod any_palms_words;
 mod body;
 mod bounds;
@@ -20,7 +21,7 @@ mod simulate;
 mod sound;
 mod truth;
 
-pub(crate) use any_palms::{AnyPalmsRequest, estimate_any_palms};
+pub(crate) use any_palms::{AnyPalms, AnyPalmsRequest, estimate_any_palms};
 pub(crate) use bounds::{BoundsResult, bounds, exact_bounds};
 pub(crate) use concave::concave_bounds;
 pub(crate) use contacts::{ContactRun, simulate_contacts};

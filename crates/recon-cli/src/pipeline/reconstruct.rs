@@ -24,7 +24,7 @@ pub(crate) const NOTABLE_NOISE: f64 = 1e-6;
 const MOST_SAMPLES: usize = 200_000;
 
 /// Confidence of bounds from noisy contacts.
-const CONFIDENCE: f64 = 0.95;
+pub(super) const CONFIDENCE: f64 = 0.95;
 
 /// Everything that was reconstructed from a log.
 pub(crate) struct Reconstruction {

@@ -1,7 +1,7 @@
 //! A motion that was estimated from contacts of any palms, as its page shows it.
 
 use super::super::encode::thin;
-use super::super::{Evidence, MotionState, PalmContact, Verdict};
+use super::super::{Bounds, Evidence, MotionState, PalmContact, Verdict};
 use super::moment::Shown;
 use super::picture::{Line, Picture};
 use super::space::{ShownPalm, palm};
@@ -34,6 +34,8 @@ pub struct EstimateData {
     pub curves: Vec<Vec<Option<PalmContact>>>,
     /// True motion in the body axes of the estimate.
     pub truth: Option<Vec<MotionState>>,
+    /// Bounds on the shape, in body axes.
+    pub bounds: Option<Bounds>,
     /// What the numbers rest on.
     pub evidence: Vec<Evidence>,
     /// What the reader must know, in plain words.

@@ -25,13 +25,21 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
     let (times, found) = (data.log.times(), &data.estimate);
     let (pictures, doubtful) = (data.pictures(), data.doubtful());
     let relied = found.relied_on.iter().filter(|relied| **relied).count();
-    let facts = [
+    let mut facts = vec![
         ("Time", brief_to(4, data.log.duration()), "s"),
         ("Samples", times.len().to_string(), ""),
         ("Relied on", brief_to(3, 100.0 * relied as f64 / times.len() as f64), "%"),
         ("Mass", brief_to(4, found.mass), "kg"),
         ("Its deviation", brief_to(2, 100.0 * found.mass_deviation), "%"),
     ];
+    if let Some(bounds) = &data.bounds {
+        let upper = bounds.upper.as_ref();
+        facts.push(("Lower bound", brief_to(4, bounds.lower.volume), "m³"));
+        facts.push(match upper {
+            Some(upper) => ("Upper bound", brief_to(4, upper.volume), "m³"),
+            None => ("Upper bound", "unbounded".to_owned(), ""),
+        });
+    }
     let spans: Vec<_> =
         (0..data.log.palms().len()).map(|palm| estimated_mode_spans(times, found, palm)).collect();
     let marks: Vec<f64> = pictures.iter().map(|picture| picture.t).collect();
