@@ -17,7 +17,8 @@ pub(super) fn verdict(estimate: &ContactEstimate) -> Verdict {
     }
     let (share, misfit) = (relied_on(estimate), estimate.evidence.misfit);
     let text = format!(
-        "The fit settled, noise explains what is left (chi-squared {misfit:.2} a condition), and the motion is relied on at {} of the samples; {} of the inertia.",
+        "The fit settled, noise explains what is left (chi-squared {misfit:.2} a condition), and the motion is relied on at {} of the \
+         samples; of the three second moments of the inertia {} learned.",
         percent(share),
         learned(estimate)
     );
@@ -37,10 +38,10 @@ fn percent(share: f64) -> String {
 
 fn learned(estimate: &ContactEstimate) -> &'static str {
     match estimate.inertia_deviations.iter().filter(|deviation| **deviation < INERTIA_LEARNED).count() {
-        0 => "nothing is learned",
-        1 => "one second moment of three is learned",
-        2 => "two second moments of three are learned",
-        _ => "all is learned",
+        0 => "none is",
+        1 => "one is",
+        2 => "two are",
+        _ => "all are",
     }
 }
 
@@ -96,10 +97,10 @@ pub(super) fn evidence(
     rows.extend([
         (
             "inertia_learned",
-            "Learned of the inertia",
-            text(learned(estimate)),
+            "Second moments",
+            text(&format!("{} learned", learned(estimate))),
             "",
-            "A second moment is learned where the deviation of the logarithm of its root is below 0.5; else it is what any body of this size has.",
+            "Of the inertia. One is learned where the deviation of the logarithm of its root is below 0.5; else it is what any body of this size has.",
             learned_level,
         ),
         (
@@ -207,7 +208,7 @@ pub(super) fn stated_body(scene: &Scene, estimate: &ContactEstimate) -> Option<S
     let stated = scene.mass_properties().ok().flatten()?;
     let mass = (estimate.mass / stated.mass()).ln();
     let mut text = format!(
-        "The stated mass and inertia are not used: the object is taken as unknown. The estimated mass is {:+.1e} of the stated one off \
+        "The stated mass and inertia are not used: the object is taken as unknown. The estimated mass is off the stated one by {:+.1e} of it \
          ({} of its deviations)",
         mass.exp_m1(),
         brief_to(2, mass.abs() / estimate.mass_deviation)
@@ -217,7 +218,7 @@ pub(super) fn stated_body(scene: &Scene, estimate: &ContactEstimate) -> Option<S
         let share = (found / stated - DVec3::ONE).abs().max_element();
         let roots = (log_roots(found) - log_roots(stated)).abs().max_element();
         let deviation = estimate.inertia_deviations.into_iter().fold(0.0, f64::max);
-        text += &format!(", principal moments up to {share:.1e}");
+        text += &format!(", the principal moments are by up to {share:.1e} of themselves");
         if roots.is_finite() && deviation > 0.0 {
             text += &format!(
                 " (roots of second moments {} of the largest of their deviations)",

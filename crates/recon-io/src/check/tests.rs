@@ -142,6 +142,16 @@ fn tables_and_figures_without_a_number_are_named() {
         &results.spoilt("motion.csv", b"t,x\n0,1\n1\n".to_vec()),
         &["line 3 has 1 cells; the header has 2"],
     );
+    for (header, row, must) in [
+        ("t,std_cmx", "0,-1e-9", "zero or above"),
+        ("t,mode_2", "0,3", "0, 1 or 2"),
+        ("t,relied_on", "0,0.5", "0 or 1"),
+    ] {
+        let table = format!("{header}\n{row}\n").into_bytes();
+        let words = format!("line 2, column `{}` is `{}`; it must be {must}", &header[2..], &row[2..]);
+        assert_named(&results.spoilt("motion.csv", table), &[&words]);
+    }
+    assert_named(&results.spoilt("motion.csv", b"t,std_cmx,mode_1,relied_on\n0,0,2,1\n".to_vec()), &[]);
     assert_named(
         &results.spoilt("summary.json", b"{".to_vec()),
         &["summary.json cannot be read", "summary.json is missing"],
