@@ -125,14 +125,14 @@ fn a_motion_with_friction_is_estimated_to_within_what_is_said() {
     for (stem, deviations) in [("cm", "std_cm"), ("v", "std_v"), ("w", "std_w")] {
         let pairs = vectors(&log, stem).into_iter().zip(vectors(&motion, stem));
         let mean = mean(pairs.map(|(truth, found)| found - truth).collect(), deviations);
-        assert!((0.02..4.0).contains(&mean), "{stem}: {mean}");
+        assert!((0.1..4.0).contains(&mean), "{stem}: {mean}");
     }
     let (truth, found) = (turns(&log), turns(&motion));
     let error = |(truth_k, found_k): (&DQuat, &DQuat)| {
         (*found_k * found[0].inverse() * (*truth_k * truth[0].inverse()).inverse()).to_scaled_axis()
     };
     let turn = mean(truth.iter().zip(&found).map(error).collect(), "std_turn");
-    assert!((0.005..4.0).contains(&turn), "turn: {turn}");
+    assert!((0.1..4.0).contains(&turn), "turn: {turn}");
 
     let mass = said["mass_kg"].as_f64().unwrap();
     let deviation = said["std_mass_kg"].as_f64().unwrap();
