@@ -157,7 +157,7 @@ fn not_relied_on(estimate: &ContactEstimate) -> Option<String> {
     let (all, doubtful) = (estimate.relied_on.len(), estimate.relied_on.iter().filter(|r| !**r).count());
     (estimate.reliability.is_reliable() && doubtful > 0).then(|| {
         format!(
-            "At {doubtful} of {all} samples the motion is not relied on (`relied_on` in motion.csv): noise does not explain what is \
+            "At {doubtful} of {all} samples the motion is not relied on (relied_on in motion.csv is 0): noise does not explain what is \
              left there, or the deviations are too large for what they are made from."
         )
     })

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use recon::object_dynamics::{MassProperties, NotThreePlanes};
-use recon::observer::{ContactEstimate, ContactOptions, Reliability};
+use recon::observer::{ContactEstimate, ContactOptions, Reason, Reliability};
+use recon_io::EvidenceValue::{Number, Text};
 use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Scene, Verdict, brief_to};
 
 /// Share of the samples whose motion must be relied on for a result without reservations.
@@ -52,155 +53,136 @@ pub(super) fn evidence(
     why: &NotThreePlanes,
     bounds_at: Option<f64>,
 ) -> Vec<Evidence> {
-    let (e, noise) = (&estimate.evidence, &options.noise);
-    let (number, neutral) = (EvidenceValue::Number, Level::Neutral);
-    let count = |n: usize| EvidenceValue::Count(n as u64);
-    let text = |text: &str| EvidenceValue::Text(text.to_owned());
-    let good_if = |good| if good { Level::Good } else { Level::Bad };
-    let misfits = estimate.reliability.is_reliable() || e.misfit < 1.5;
-    let learned_level = if estimate.inertia_deviations.iter().all(|d| *d < INERTIA_LEARNED) {
-        Level::Good
-    } else {
-        Level::Caution
-    };
-    let mut rows: Vec<(&str, &str, EvidenceValue, &str, &str, Level)> = vec![
-        ("mass", "Mass", number(estimate.mass), "kg", "As estimated from the log.", neutral),
-        (
-            "std_mass",
-            "Uncertainty of the mass",
-            number(estimate.mass * estimate.mass_deviation),
-            "kg",
-            "Standard deviation.",
-            neutral,
-        ),
+    let mut rows = body(estimate);
+    rows.extend(fit(estimate));
+    rows.extend(told(options));
+    rows.extend(bounds_at.map(|confidence| {
+        let meaning = "Both bounds hold with at least this probability for the noise of contacts and the deviations of the motion, \
+                       however these go together, in the axes of the world at the first sample.";
+        neutral("bounds_confidence", "Confidence of the bounds", Number(confidence), "", meaning)
+    }));
+    let meaning =
+        "Why the estimate is that from contacts of any palms, and not that of three planes without friction.";
+    rows.push(neutral("not_three_planes", "Not three planes", Text(why.to_string()), "", meaning));
+    rows
+}
+
+/// Mass and inertia.
+fn body(estimate: &ContactEstimate) -> Vec<Evidence> {
+    let (mass, deviation) = (Number(estimate.mass), Number(estimate.mass * estimate.mass_deviation));
+    let mut rows = vec![
+        neutral("mass", "Mass", mass, "kg", "As estimated from the log."),
+        neutral("std_mass", "Uncertainty of the mass", deviation, "kg", "Standard deviation."),
     ];
-    let principal = MassProperties::new(estimate.mass, estimate.inertia).ok().map(|mass| mass.principal());
-    let names = [
-        ("moment_x", "Least principal moment"),
-        ("moment_y", "Middle principal moment"),
-        ("moment_z", "Largest principal moment"),
-    ];
-    for (axis, (key, name)) in names.into_iter().enumerate() {
-        if let Some(principal) = &principal {
-            let moment = number(principal.moments[axis]);
-            rows.push((
-                key,
-                name,
-                moment,
-                "kg m^2",
-                "About the centre of mass, as estimated from the log.",
-                neutral,
-            ));
+    // A tensor that no body has, as rounding may leave one, has no moments to tell.
+    if let Ok(mass) = MassProperties::new(estimate.mass, estimate.inertia) {
+        let names = [("moment_x", "Least"), ("moment_y", "Middle"), ("moment_z", "Largest")];
+        for ((key, which), moment) in names.into_iter().zip(mass.principal().moments.to_array()) {
+            let meaning = "About the centre of mass, as estimated from the log.";
+            rows.push(neutral(key, &format!("{which} principal moment"), Number(moment), "kg m^2", meaning));
         }
     }
+    let all = estimate.inertia_deviations.iter().all(|d| *d < INERTIA_LEARNED);
     let roots: Vec<String> = estimate.inertia_deviations.iter().map(|d| brief_to(2, *d)).collect();
-    rows.extend([
-        (
-            "inertia_learned",
-            "Second moments",
-            text(&format!("{} learned", learned(estimate))),
+    let meaning = "Of the inertia. One is learned where the deviation of the logarithm of its root is below 0.5; else it is what any \
+                   body of this size has.";
+    let words = Text(format!("{} learned", learned(estimate)));
+    rows.push(Evidence {
+        level: if all { Level::Good } else { Level::Caution },
+        ..neutral("inertia_learned", "Second moments", words, "", meaning)
+    });
+    let meaning = "Standard deviations of the logarithms of their roots.";
+    rows.push(neutral("std_log_roots", "Uncertainty of second moments", Text(roots.join(", ")), "", meaning));
+    rows
+}
+
+/// How the fit went.
+fn fit(estimate: &ContactEstimate) -> Vec<Evidence> {
+    let e = &estimate.evidence;
+    let good_if = |good| if good { Level::Good } else { Level::Bad };
+    let explained = match &estimate.reliability {
+        Reliability::Reliable => true,
+        Reliability::Unreliable(reasons) => !reasons.iter().any(|r| matches!(r, Reason::Inconsistent { .. })),
+    };
+    let share = relied_on(estimate);
+    let nodes = "Motions that were solved for: contacts are averaged over the samples between them.";
+    let misfit = "About 1 where the stated noise explains what is left; all deviations are widened by its root above that.";
+    let count = |n: usize| EvidenceValue::Count(n as u64);
+    let settled = Text(if e.settled { "yes" } else { "no" }.to_owned());
+    vec![
+        neutral("samples", "Samples", count(e.samples), "", "Rows of the log."),
+        neutral("nodes", "Nodes", count(e.nodes), "", nodes),
+        neutral(
+            "conditions",
+            "Contact conditions",
+            count(e.conditions),
             "",
-            "Of the inertia. One is learned where the deviation of the logarithm of its root is below 0.5; else it is what any body of this size has.",
-            learned_level,
+            "One a contact that slides, three a contact that sticks.",
         ),
-        (
-            "std_log_roots",
-            "Uncertainty of second moments",
-            EvidenceValue::Text(roots.join(", ")),
-            "",
-            "Standard deviations of the logarithms of their roots.",
-            neutral,
-        ),
-        ("samples", "Samples", count(e.samples), "", "Rows of the log.", neutral),
-        (
-            "nodes",
-            "Nodes",
-            count(e.nodes),
-            "",
-            "Motions that were solved for: contacts are averaged over the samples between them.",
-            neutral,
-        ),
-        ("conditions", "Contact conditions", count(e.conditions), "", "One a contact that slides, three a contact that sticks.", neutral),
-        (
-            "misfit",
-            "Chi-squared a condition",
-            number(e.misfit),
-            "",
-            "About 1 where the stated noise explains what is left; all deviations are widened by its root above that.",
-            good_if(misfits),
-        ),
-        (
+        Evidence {
+            level: good_if(explained),
+            ..neutral("misfit", "Chi-squared a condition", Number(e.misfit), "", misfit)
+        },
+        neutral(
             "iterations",
             "Linearisations",
             count(e.iterations[1]),
             "",
             "Of the coarse solution from nothing and the last one.",
-            neutral,
         ),
-        (
-            "settled",
-            "Settled",
-            text(if e.settled { "yes" } else { "no" }),
+        Evidence {
+            level: good_if(e.settled),
+            ..neutral(
+                "settled",
+                "Settled",
+                settled,
+                "",
+                "Whether less than half a standard deviation was left to gain.",
+            )
+        },
+        Evidence {
+            level: if share < ENOUGH { Level::Caution } else { Level::Good },
+            ..neutral(
+                "relied_on",
+                "Samples relied on",
+                Number(share),
+                "",
+                "Share of the samples whose motion is known to within its deviations.",
+            )
+        },
+    ]
+}
+
+/// What the estimator was told of the sensors.
+fn told(options: &ContactOptions) -> Vec<Evidence> {
+    let noise = &options.noise;
+    let tangent = "In each tangent direction of the palm, from the scene.";
+    let speed =
+        "What a contact condition may be off by beside noise: from the scene, or 3e-5 of the natural speed.";
+    vec![
+        neutral("noise_contact", "Noise of contact positions", Number(noise.contact), "m", tangent),
+        neutral(
+            "noise_force",
+            "Noise of forces, fixed",
+            Number(noise.force_fixed),
+            "N",
+            "Of each axis, from the scene.",
+        ),
+        neutral(
+            "noise_force_share",
+            "Noise of forces, growing",
+            Number(noise.force_share),
             "",
-            "Whether less than half a standard deviation was left to gain.",
-            good_if(e.settled),
+            "As a share of the force, from the scene.",
         ),
-        (
-            "relied_on",
-            "Samples relied on",
-            number(relied_on(estimate)),
-            "",
-            "Share of the samples whose motion is known to within its deviations.",
-            if relied_on(estimate) < ENOUGH { Level::Caution } else { Level::Good },
-        ),
-        (
-            "noise_contact",
-            "Noise of contact positions",
-            number(noise.contact),
-            "m",
-            "In each tangent direction of the palm, from the scene.",
-            neutral,
-        ),
-        ("noise_force", "Noise of forces, fixed", number(noise.force_fixed), "N", "Of each axis, from the scene.", neutral),
-        ("noise_force_share", "Noise of forces, growing", number(noise.force_share), "", "As a share of the force, from the scene.", neutral),
-        (
-            "contact_speed",
-            "Speed of contacts",
-            number(noise.floor),
-            "m/s",
-            "What a contact condition may be off by beside noise: from the scene, or 3e-5 of the natural speed.",
-            neutral,
-        ),
-    ]);
-    if let Some(confidence) = bounds_at {
-        rows.push((
-            "bounds_confidence",
-            "Confidence of the bounds",
-            number(confidence),
-            "",
-            "Both bounds hold with at least this probability for the noise of contacts and the deviations of the motion, however these go together, in the axes of the world at the first sample.",
-            neutral,
-        ));
-    }
-    let why = why.to_string();
-    rows.push((
-        "not_three_planes",
-        "Not three planes",
-        EvidenceValue::Text(why),
-        "",
-        "Why the estimate is that from contacts of any palms, and not that of three planes without friction.",
-        neutral,
-    ));
-    let row =
-        |(key, name, value, unit, meaning, level): (&str, &str, EvidenceValue, &str, &str, Level)| Evidence {
-            key: key.to_owned(),
-            name: name.to_owned(),
-            value,
-            unit: unit.to_owned(),
-            meaning: meaning.to_owned(),
-            level,
-        };
-    rows.into_iter().map(row).collect()
+        neutral("contact_speed", "Speed of contacts", Number(noise.floor), "m/s", speed),
+    ]
+}
+
+/// A row that speaks neither for nor against the result.
+fn neutral(key: &str, name: &str, value: EvidenceValue, unit: &str, meaning: &str) -> Evidence {
+    let [key, name, unit, meaning] = [key, name, unit, meaning].map(str::to_owned);
+    Evidence { key, name, value, unit, meaning, level: Level::Neutral }
 }
 
 /// What to say of a body that is stated, and was estimated as an unknown one.

@@ -11,6 +11,9 @@ use crate::planar_figures::write_figures;
 use std::io::{self, Write};
 
 const PAGE: &str = include_str!("../assets/estimate.html");
+const OBJECT: &str = "The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, where they are seen, in the colours of the palms.";
+const NO_OBJECT: &str =
+    "The object is not drawn: where it was touched is not known under a motion that is not to be relied on.";
 
 /// Writes a motion that was estimated from contacts of any palms as one HTML page that needs nothing else: the verdict, pictures,
 /// curves with their uncertainty, contact modes, mass and inertia.
@@ -25,10 +28,12 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
     let (times, found) = (data.log.times(), &data.estimate);
     let (pictures, doubtful) = (data.pictures(), data.doubtful());
     let relied = found.relied_on.iter().filter(|relied| **relied).count();
+    // Nearly all is not all.
+    let share = 1000.0 * relied as f64 / times.len() as f64;
     let mut facts = vec![
         ("Time", brief_to(4, data.log.duration()), "s"),
         ("Samples", times.len().to_string(), ""),
-        ("Relied on", brief_to(3, 100.0 * relied as f64 / times.len() as f64), "%"),
+        ("Relied on", brief_to(3, share.floor() / 10.0), "%"),
         ("Mass", brief_to(4, found.mass), "kg"),
         ("Its deviation", brief_to(2, 100.0 * found.mass_deviation), "%"),
     ];
@@ -52,6 +57,7 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
         ("verdict", verdict(data)),
         ("facts", facts.iter().map(fact).collect()),
         ("pictures", drawn(&pictures)),
+        ("object", if relied > 0 { OBJECT } else { NO_OBJECT }.to_owned()),
         ("bands", bands(&spans, &marks, &doubtful)),
         ("curves", String::from_utf8_lossy(&curves).into_owned()),
         ("dashed", dashed.to_owned()),
