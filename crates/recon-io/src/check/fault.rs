@@ -50,6 +50,16 @@ pub enum Fault {
         /// What it must be.
         must: &'static str,
     },
+    /// A motion is marked as relied on at another share of its rows than is stated.
+    #[error("motion.csv: {ones} of {rows} rows are relied on, stated is a share of {stated}")]
+    ReliedOn {
+        /// Rows.
+        rows: usize,
+        /// Those relied on.
+        ones: usize,
+        /// In summary.json.
+        stated: f64,
+    },
     /// A row of a table has too few cells or too many.
     #[error("{file}: line {line} has {found} cells; the header has {expected}")]
     Row {

@@ -10,6 +10,20 @@ const MAY_BE_NAN: [(&str, &str); 3] =
 /// Columns of a log that are empty or `nan` while a palm does not touch.
 const LOG: &str = "log.csv";
 
+/// How many rows a table has, and in how many of them the last number is 1.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LastColumn {
+    pub(super) rows: usize,
+    pub(super) ones: usize,
+}
+
+impl LastColumn {
+    pub(super) fn count(&mut self, row: &[f64]) {
+        self.rows += 1;
+        self.ones += usize::from(row.last() == Some(&1.0));
+    }
+}
+
 /// What the numbers of a column must be, and whether one is so.
 type Must = (&'static str, fn(f64) -> bool);
 

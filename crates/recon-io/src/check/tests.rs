@@ -152,6 +152,17 @@ fn tables_and_figures_without_a_number_are_named() {
         assert_named(&results.spoilt("motion.csv", table), &[&words]);
     }
     assert_named(&results.spoilt("motion.csv", b"t,std_cmx,mode_1,relied_on\n0,0,2,1\n".to_vec()), &[]);
+    let table = ("motion.csv".to_owned(), b"t,relied_on\n0,1\n1,0\n2,1\n3,1\n".to_vec());
+    for (share, faults) in
+        [(0.75, &[][..]), (0.5, &["3 of 4 rows are relied on, stated is a share of 0.5"][..])]
+    {
+        let mut stated = summary();
+        stated["relied_on_share"] = json!(share);
+        let kept = ["lower_bound.ply", "upper_bound.ply"]
+            .map(|name| results.files.iter().find(|(other, _)| other == name).unwrap().clone());
+        let told = ("summary.json".to_owned(), stated.to_string().into_bytes());
+        assert_named(&results.faults(kept.into_iter().chain([table.clone(), told]).collect()), faults);
+    }
     assert_named(
         &results.spoilt("summary.json", b"{".to_vec()),
         &["summary.json cannot be read", "summary.json is missing"],
