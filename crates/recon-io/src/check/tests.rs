@@ -152,16 +152,21 @@ fn tables_and_figures_without_a_number_are_named() {
         assert_named(&results.spoilt("motion.csv", table), &[&words]);
     }
     assert_named(&results.spoilt("motion.csv", b"t,std_cmx,mode_1,relied_on\n0,0,2,1\n".to_vec()), &[]);
-    let table = ("motion.csv".to_owned(), b"t,relied_on\n0,1\n1,0\n2,1\n3,1\n".to_vec());
-    for (share, faults) in
-        [(0.75, &[][..]), (0.5, &["3 of 4 rows are relied on, stated is a share of 0.5"][..])]
-    {
+    // Reading 1761 / 1801 from JSON ends in another last digit.
+    for (rows, ones, share, faults) in [
+        (4, 3, 0.75, &[][..]),
+        (1801, 1761, 1761.0 / 1801.0, &[]),
+        (4, 3, 0.5, &["3 of 4 rows are relied on, stated is a share of 0.5"]),
+        (1801, 1761, 1762.0 / 1801.0, &["1761 of 1801 rows are relied on"]),
+    ] {
+        let row = |k: usize| format!("{k},{}\n", u8::from(k < ones));
+        let table = "t,relied_on\n".to_owned() + &(0..rows).map(row).collect::<String>();
         let mut stated = summary();
         stated["relied_on_share"] = json!(share);
-        let kept = ["lower_bound.ply", "upper_bound.ply"]
-            .map(|name| results.files.iter().find(|(other, _)| other == name).unwrap().clone());
-        let told = ("summary.json".to_owned(), stated.to_string().into_bytes());
-        assert_named(&results.faults(kept.into_iter().chain([table.clone(), told]).collect()), faults);
+        let bounds = results.files.iter().filter(|(name, _)| name.ends_with(".ply")).cloned();
+        let told = [("motion.csv", table), ("summary.json", stated.to_string())];
+        let told = told.map(|(name, text)| (name.to_owned(), text.into_bytes()));
+        assert_named(&results.faults(bounds.chain(told).collect()), faults);
     }
     assert_named(
         &results.spoilt("summary.json", b"{".to_vec()),
