@@ -31,6 +31,7 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         "method": "motion, mass and inertia from contacts of any palms",
         "status": if found.evidence.settled { "Converged" } else { "NotSettled" },
         "verdict": { "level": level(data.verdict.level), "text": data.verdict.text },
+        "note": data.note,
         "samples": times.len(),
         "t_first_s": times.first(),
         "t_last_s": times.last(),

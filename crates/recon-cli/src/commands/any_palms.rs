@@ -28,20 +28,18 @@ pub(super) fn run(
     }
     let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
     let request = AnyPalmsRequest { scene, path: &args.log, title: &title, identify: args.identify };
-    let reason = why.to_string();
     let made = estimate_any_palms(log, why, &request, &progress)?;
     progress.step("writing the results");
     let (mut figures, data) = (write_estimate_folder(target, &made)?, &made.data);
     drop(progress);
     figures["folder"] = args.output.to_string_lossy().into();
-    console.result(&describe(data, &reason, &figures, &args.output), &figures)?;
+    console.result(&describe(data, &figures, &args.output), &figures)?;
     Ok(if data.verdict.level == Level::Good { Outcome::Done } else { Outcome::WithReservations })
 }
 
-fn describe(data: &EstimateData, why: &str, figures: &Value, folder: &Path) -> String {
+fn describe(data: &EstimateData, figures: &Value, folder: &Path) -> String {
     let found = &data.estimate;
-    let mut text = format!("{}\n", data.verdict.text);
-    let _ = writeln!(text, "Not three planes ({why}): the estimate is that from contacts of any palms.");
+    let mut text = format!("{}\n{}\n", data.verdict.text, data.note);
     for warning in &data.warnings {
         let _ = writeln!(text, "Warning: {warning}");
     }

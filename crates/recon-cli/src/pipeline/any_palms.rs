@@ -3,7 +3,7 @@
 use super::any_palms_bounds::estimate_bounds;
 use super::any_palms_words::{evidence, stated_body, verdict};
 use super::bounds::BoundsResult;
-use super::reconstruct::CONFIDENCE;
+use super::reconstruct::{CONFIDENCE, sentence};
 use super::truth::true_motion;
 use crate::error::CliError;
 use crate::progress::Progress;
@@ -85,7 +85,8 @@ pub(crate) fn estimate_any_palms(
     let data = EstimateData {
         title: request.title.to_owned(),
         verdict: verdict(&estimate),
-        evidence: evidence(&estimate, &options, &why, bounds_at),
+        note: sentence(&format!("{why}; the estimate is that from contacts of any palms")),
+        evidence: evidence(&estimate, &options, bounds_at),
         log,
         estimate,
         curves,

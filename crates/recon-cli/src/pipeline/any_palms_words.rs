@@ -1,7 +1,7 @@
 //! An estimate from contacts of any palms in words and numbers for people.
 
 use glam::DVec3;
-use recon::object_dynamics::{MassProperties, NotThreePlanes};
+use recon::object_dynamics::MassProperties;
 use recon::observer::{ContactEstimate, ContactOptions, Reason, Reliability};
 use recon_io::EvidenceValue::{Number, Text};
 use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Scene, Verdict, brief_to};
@@ -50,7 +50,6 @@ fn learned(estimate: &ContactEstimate) -> &'static str {
 pub(super) fn evidence(
     estimate: &ContactEstimate,
     options: &ContactOptions,
-    why: &NotThreePlanes,
     bounds_at: Option<f64>,
 ) -> Vec<Evidence> {
     let mut rows = body(estimate);
@@ -61,9 +60,6 @@ pub(super) fn evidence(
                        however these go together, in the axes of the world at the first sample.";
         neutral("bounds_confidence", "Confidence of the bounds", Number(confidence), "", meaning)
     }));
-    let meaning =
-        "Why the estimate is that from contacts of any palms, and not that of three planes without friction.";
-    rows.push(neutral("not_three_planes", "Not three planes", Text(why.to_string()), "", meaning));
     rows
 }
 
@@ -82,7 +78,8 @@ fn body(estimate: &ContactEstimate) -> Vec<Evidence> {
             rows.push(neutral(key, &format!("{which} principal moment"), Number(moment), "kg m^2", meaning));
         }
     }
-    let all = estimate.inertia_deviations.iter().all(|d| *d < INERTIA_LEARNED);
+    let reliable = estimate.reliability.is_reliable();
+    let all = reliable && estimate.inertia_deviations.iter().all(|d| *d < INERTIA_LEARNED);
     let roots: Vec<String> = estimate.inertia_deviations.iter().map(|d| brief_to(2, *d)).collect();
     let meaning = "Of the inertia. One is learned where the deviation of the logarithm of its root is below 0.5; else it is what any \
                    body of this size has.";

@@ -226,7 +226,7 @@ fn bounds_of(estimate: &MotionEstimate) -> Result<Option<BoundsResult>, CliError
 }
 
 /// A message as a sentence of its own.
-fn sentence(text: &str) -> String {
+pub(super) fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
     let end = if text.ends_with(['.', '?', ')']) { "" } else { "." };

@@ -26,6 +26,8 @@ pub struct EstimateData {
     pub title: String,
     /// How far the result can be relied on.
     pub verdict: Verdict,
+    /// Why the log was taken for one of any palms, in one sentence.
+    pub note: String,
     /// What was sensed.
     pub log: ContactLog,
     /// Motion, mass, inertia and contact modes.

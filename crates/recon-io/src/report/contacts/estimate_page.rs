@@ -66,7 +66,7 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
     fill(PAGE, &parts, to)
 }
 
-/// The verdict in a sentence, and the warnings.
+/// The verdict in a sentence, the note and the warnings.
 fn verdict(data: &EstimateData) -> String {
     let word = match data.verdict.level {
         Level::Good => "Reliable",
@@ -79,7 +79,8 @@ fn verdict(data: &EstimateData) -> String {
         format!("<p class=\"notice {level}\"><strong>{word}</strong>{text}</p>\n")
     };
     let warnings = data.warnings.iter().map(|warning| notice(Level::Caution, "Warning", warning));
-    std::iter::once(notice(data.verdict.level, word, &data.verdict.text)).chain(warnings).collect()
+    let note = notice(Level::Neutral, "Note", &data.note);
+    [notice(data.verdict.level, word, &data.verdict.text), note].into_iter().chain(warnings).collect()
 }
 
 /// A row of the table of what the result rests on.

@@ -197,6 +197,7 @@ fn estimate() -> EstimateData {
     EstimateData {
         title: "<Fingers & table>".into(),
         verdict: Verdict { level: Level::Good, text: "All <is> well.".into() },
+        note: "Four palms & no more.".into(),
         curves: log.palms().iter().map(|palm| (0..count).map(|k| contact(palm, k)).collect()).collect(),
         truth: Some(states.iter().map(|state| (*state).into()).collect()),
         bounds: None,
@@ -222,6 +223,7 @@ fn the_page_of_an_estimate_shows_palms_object_modes_and_doubts() {
     let page = String::from_utf8(bytes).unwrap();
     assert!(page.contains("&lt;Fingers &amp; table&gt;") && !page.contains("{{") && !page.contains("NaN"));
     assert!(!page.contains("src=") && !page.contains("href") && page.contains("&lt;b&gt;mind&lt;/b&gt;"));
+    assert!(page.contains("</strong>Four palms &amp; no more.</p>"));
     assert!(page.contains("All &lt;is&gt; well.") && page.contains("About 1 &amp; good."));
     assert_eq!(page.matches("<figure").count(), 6);
     for palm in 1..=4 {
