@@ -86,12 +86,17 @@ The log is CSV (sensor log, version 1): t, and for each palm i the contact s1_i,
 the force f_i or torque tau_i. The scene gives gravity, mass and inertia; with --identify mass and inertia are estimated
 along, and those of the scene are not looked at. No initial guess is needed.
 
+A log of contacts (version 2) need not be of three flat palms without friction: of any one to five palms with forces in three axes,
+motion, mass and inertia are estimated together, with their deviations and with the contact modes, and the body is taken as
+unknown. The scene states the noise ([sensors]: contact_std, and force_std or force_share), and where all contacts are on one
+palm the size (object.size). motion.csv says at each sample whether it is relied on.
+
 The output folder appears as a whole or not at all: motion.csv, contact_curves.csv, radius_functions.csv, summary.json,
 lower_bound.ply, upper_bound.ply, report.html, which opens in any browser, and manifest.json, which lists them. With --export it holds the object for
 simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer to.
 
 The bounds hold at 95 % confidence for the noise of the sensors and the error of the motion, in the axes that bounds_frame in
-summary.json names. A motion that is not to be relied on gives none.
+summary.json names; of any palms in those of the world at the first sample. A motion that is not to be relied on gives none.
 
 With --without-forces the contacts and palm poses alone are fitted with the motion of an ellipsoid, its centre anywhere; mass
 and inertia of the scene are not looked at, and only inertia over mass is found. Then the folder holds motion.csv,

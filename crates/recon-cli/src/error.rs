@@ -3,7 +3,7 @@ use recon::object_dynamics::{
     ContactLogError, ContactSimulationError, LogError, NotThreePlanes, SceneError as DynamicsError,
     SimulationError,
 };
-use recon::observer::EstimateError;
+use recon::observer::{ContactEstimateError, EstimateError};
 use recon::shape_bounds::{
     AlphaError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
     SurfaceError, planar,
@@ -74,8 +74,29 @@ pub(crate) enum CliError {
     UnknownBody,
     #[error("{} has no [simulation]: give shape, palms and duration there, as in the scene that `recon demo` writes", path.display())]
     NothingToSimulate { path: PathBuf },
-    #[error("nothing is estimated from {} yet", path.display())]
+    #[error(
+        "without forces, motion is estimated on three flat palms through one point that rests, without friction, and {} is no log \
+         of those",
+        path.display()
+    )]
     NotThreePlanes { path: PathBuf, source: NotThreePlanes },
+    #[error(
+        "{} is no log of three flat palms without friction, and the estimate from contacts of any palms needs each palm's force in \
+         three axes, which palm {palm} does not measure: give the columns fx_{palm}, fy_{palm} and fz_{palm}",
+        path.display()
+    )]
+    NotThreeAxes { path: PathBuf, palm: usize, source: NotThreePlanes },
+    #[error(
+        "the estimate from contacts of any palms weighs readings by their noise, which the scene does not state: give {missing} in \
+         [sensors]"
+    )]
+    NoiseNotStated { missing: &'static str },
+    #[error(
+        "contacts on one palm at a time tell no size of the object: give its mean radius in m, about, in the scene as object.size"
+    )]
+    SizeNotStated,
+    #[error("the contacts give no motion")]
+    ContactEstimate(#[from] ContactEstimateError),
     #[error("the object's shape cannot be used")]
     Shape(#[from] recon::contact_kinematics::ShapeError),
     #[error("the scene cannot be simulated")]
@@ -189,6 +210,10 @@ impl CliError {
             | Self::UnknownBody
             | Self::NothingToSimulate { .. }
             | Self::NotThreePlanes { .. }
+            | Self::NotThreeAxes { .. }
+            | Self::NoiseNotStated { .. }
+            | Self::SizeNotStated
+            | Self::ContactEstimate(_)
             | Self::Shape(_)
             | Self::Dynamics(_)
             | Self::Simulation(_)

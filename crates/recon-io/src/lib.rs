@@ -38,17 +38,18 @@ pub use output::{
 pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};
 pub use report::{
-    Bound, Bounds, Evidence, EvidenceValue, Level, ModeSpan, MotionState, PalmContact, PalmTrack, ReportData,
-    ReportError, TrueShape, Verdict, mode_spans, planar_mode_spans, write_contact_report,
-    write_planar_contact_report, write_report,
+    Bound, Bounds, EstimateData, Evidence, EvidenceValue, Level, ModeSpan, MotionState, PalmContact,
+    PalmTrack, ReportData, ReportError, TrueShape, Verdict, estimated_mode_spans, mode_spans, mode_times,
+    planar_mode_spans, write_contact_report, write_estimate_report, write_planar_contact_report,
+    write_report,
 };
 pub use scene::{
     BoxedShape, KnownInertia, KnownPalm, PlanarBody, PlanarScene, Scene, SceneError, SceneErrorKind, Sensors,
     Shape, Simulation,
 };
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
-pub use summary::summary;
-pub use table::{write_contact_curves, write_motion, write_radius_functions};
+pub use summary::{INERTIA_LEARNED, estimate_summary, summary};
+pub use table::{write_contact_curves, write_estimated_motion, write_motion, write_radius_functions};
 pub use touches::{
     Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,
     read_contacts, read_touches, write_contacts,

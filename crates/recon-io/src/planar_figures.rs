@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 /// A line of a panel, in the panel's units.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FigureCurve {
     /// Its name in the legend.
     pub name: String,
@@ -13,10 +13,14 @@ pub struct FigureCurve {
     pub points: Vec<[f64; 2]>,
     /// Drawn as dots rather than as a line.
     pub dots: bool,
+    /// Half the height of a band about each point; empty for none.
+    pub half_heights: Vec<f64>,
+    /// What it is compared with, dashed; empty for nothing.
+    pub reference: Vec<[f64; 2]>,
 }
 
 /// One panel of the picture.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FigurePanel {
     /// Title.
     pub title: String,
@@ -26,13 +30,15 @@ pub struct FigurePanel {
     pub equal: bool,
     /// Curves.
     pub curves: Vec<FigureCurve>,
+    /// Stretches to the right over which the panel is shaded.
+    pub shaded: Vec<[f64; 2]>,
 }
 
 const SIZE: [f64; 2] = [460.0, 330.0];
 const MARGIN: [f64; 4] = [64.0, 30.0, 16.0, 44.0];
 /// Colours of the curves, of text, of axes and of the ground, on a light and on a dark screen.
 const STYLE: &str = "\
-.ground{fill:#fff}.text{fill:#222}.tick{fill:#555;font-size:10px}.axis{stroke:#555;fill:none}.grid{stroke:#e4e4e4}
+.ground{fill:#fff}.text{fill:#222}.tick{fill:#555;font-size:10px}.axis{stroke:#555;fill:none}.grid{stroke:#e4e4e4}.shade{fill:#888;fill-opacity:.16}
 .c0{color:#1b6ca8}.c1{color:#c0392b}.c2{color:#2e8b57}.c3{color:#8e44ad}.c4{color:#8a7a12}
 @media (prefers-color-scheme:dark){
 .ground{fill:#15181c}.text{fill:#e6e6e6}.tick{fill:#a8a8a8}.axis{stroke:#a8a8a8}.grid{stroke:#2b3036}
@@ -71,12 +77,17 @@ struct Frame {
 impl Frame {
     fn new(panel: &FigurePanel) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for point in panel.curves.iter().flat_map(|c| &c.points).filter(|p| p.iter().all(|v| v.is_finite())) {
+        let points = panel.curves.iter().flat_map(|c| c.points.iter().chain(&c.reference));
+        for point in points.filter(finite) {
             for i in 0..2 {
                 low[i] = low[i].min(point[i]);
                 high[i] = high[i].max(point[i]);
             }
         }
+        // Bands are shown whole as long as they leave the curves a third of the height.
+        let bands = panel.curves.iter().flat_map(|c| &c.half_heights).filter(|h| h.is_finite());
+        let room = bands.fold(0.0, |most: f64, h| most.max(*h)).min((high[1] - low[1]).max(0.0));
+        (low[1], high[1]) = (low[1] - room, high[1] + room);
         let inner = [SIZE[0] - MARGIN[0] - MARGIN[2], SIZE[1] - MARGIN[1] - MARGIN[3]];
         let mut scale = [1.0; 2];
         for i in 0..2 {
@@ -103,6 +114,12 @@ impl Frame {
         Self { low, scale }
     }
 
+    /// Where a point is, moved up or down into the panel.
+    fn place_within(&self, point: [f64; 2]) -> [f64; 2] {
+        let [x, y] = self.place(point);
+        [x, y.clamp(MARGIN[1], SIZE[1] - MARGIN[3])]
+    }
+
     fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let px = MARGIN[0] + (x - self.low[0]) * self.scale[0];
         let py = SIZE[1] - MARGIN[3] - (y - self.low[1]) * self.scale[1];
@@ -120,6 +137,15 @@ fn draw(panel: &FigurePanel) -> String {
         "<text class=\"text\" x=\"{}\" y=\"18\" font-weight=\"bold\">{title}</text>",
         MARGIN[0]
     );
+    for [from, to] in &panel.shaded {
+        let [from, to] = [from, to].map(|x| frame.place([*x, frame.low[1]])[0].clamp(MARGIN[0], right));
+        let (width, height) = (on_scale(to - from, 100.0, 3), bottom - MARGIN[1]);
+        let _ = writeln!(
+            out,
+            "<rect class=\"shade\" x=\"{from}\" y=\"{}\" width=\"{width}\" height=\"{height}\"/>",
+            MARGIN[1]
+        );
+    }
     ticks(&frame, &mut out);
     let _ = writeln!(out, "<path class=\"axis\" d=\"M{} {} V{bottom} H{right}\"/>", MARGIN[0], MARGIN[1]);
     let [across, up] = [0, 1].map(|i| escape(&panel.axes[i]));
@@ -134,6 +160,15 @@ fn draw(panel: &FigurePanel) -> String {
         MARGIN[1]
     );
     for (k, curve) in panel.curves.iter().enumerate() {
+        draw_band(curve, k % COLOURS, &frame, &mut out);
+    }
+    for (k, curve) in panel.curves.iter().enumerate() {
+        draw_line(
+            &curve.reference,
+            (k % COLOURS, " stroke-dasharray=\"5 4\" stroke-opacity=\".75\""),
+            &frame,
+            &mut out,
+        );
         draw_curve(curve, k % COLOURS, &frame, &mut out);
     }
     // Names in the line of the title, where no curve runs, the last one outermost.
@@ -149,17 +184,41 @@ fn draw(panel: &FigurePanel) -> String {
     out
 }
 
+fn finite(point: &&[f64; 2]) -> bool {
+    point.iter().all(|v| v.is_finite())
+}
+
+/// The band about a curve, broken where it has no height.
+fn draw_band(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut String) {
+    let pairs: Vec<_> = curve.points.iter().zip(&curve.half_heights).collect();
+    let there = |(point, height): &(&[f64; 2], &f64)| finite(point) && height.is_finite();
+    for piece in pairs.split(|pair| !there(pair)).filter(|piece| piece.len() > 1) {
+        let edge = |side: f64| move |&([x, y], h): &(&[f64; 2], &f64)| frame.place_within([*x, y + side * h]);
+        let around = piece.iter().map(edge(1.0)).chain(piece.iter().rev().map(edge(-1.0)));
+        let corners: Vec<String> = around.map(|[x, y]| format!("{x},{y}")).collect();
+        let _ = writeln!(
+            out,
+            "<polygon class=\"c{colour}\" points=\"{}\" fill=\"currentColor\" fill-opacity=\".2\"/>",
+            corners.join(" ")
+        );
+    }
+}
+
 fn draw_curve(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut String) {
-    let finite = |p: &[f64; 2]| p.iter().all(|v| v.is_finite());
     if curve.dots {
         let _ = writeln!(out, "<g class=\"c{colour}\" fill=\"currentColor\">");
-        for [x, y] in curve.points.iter().filter(|p| finite(p)).map(|&p| frame.place(p)) {
+        for [x, y] in curve.points.iter().filter(finite).map(|&p| frame.place(p)) {
             let _ = writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"1.2\"/>");
         }
         let _ = writeln!(out, "</g>");
         return;
     }
-    for piece in curve.points.split(|p| !finite(p)).filter(|piece| !piece.is_empty()) {
+    draw_line(&curve.points, (colour, ""), frame, out);
+}
+
+/// A line in a colour and with further attributes.
+fn draw_line(points: &[[f64; 2]], (colour, further): (usize, &str), frame: &Frame, out: &mut String) {
+    for piece in points.split(|p| !finite(&p)).filter(|piece| !piece.is_empty()) {
         let mut path: Vec<String> =
             piece.iter().map(|&p| frame.place(p).map(|v| v.to_string()).join(",")).collect();
         if path.len() == 1 {
@@ -169,7 +228,7 @@ fn draw_curve(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut Strin
         let _ = writeln!(
             out,
             "<polyline class=\"c{colour}\" points=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1.4\" \
-             stroke-linecap=\"round\"/>",
+             stroke-linecap=\"round\"{further}/>",
             path.join(" ")
         );
     }
@@ -250,12 +309,12 @@ mod tests {
             [5.0, 1.0],
             [6.0, 0.0],
         ];
-        let curve = FigureCurve { name: "slip".to_owned(), points, dots: false };
+        let curve = FigureCurve { name: "slip".to_owned(), points, ..FigureCurve::default() };
         let panel = FigurePanel {
             title: "t".to_owned(),
             axes: ["x".to_owned(), "y".to_owned()],
-            equal: false,
             curves: vec![curve],
+            ..FigurePanel::default()
         };
         let drawn = draw(&panel);
         let pieces: Vec<Vec<&str>> = drawn
@@ -270,13 +329,48 @@ mod tests {
     }
 
     #[test]
+    fn bands_are_as_high_as_stated_and_stay_in_the_panel() {
+        let points: Vec<[f64; 2]> = (0..3).map(|k| [f64::from(k), f64::from(k)]).collect();
+        let curve = FigureCurve {
+            points: points.clone(),
+            half_heights: vec![0.5, f64::NAN, 1e9],
+            ..FigureCurve::default()
+        };
+        let two = FigureCurve { half_heights: vec![0.5, 0.25, 1e9], ..curve.clone() };
+        let panel =
+            FigurePanel { curves: vec![curve, two], shaded: vec![[-5.0, 0.5]], ..FigurePanel::default() };
+        let drawn = draw(&panel);
+        // The first has a gap between single points; the second one is a polygon of six corners.
+        let polygon = drawn.split("<polygon").nth(1).unwrap().split("points=\"").nth(1).unwrap();
+        let corners: Vec<[f64; 2]> = polygon
+            .split('"')
+            .next()
+            .unwrap()
+            .split(' ')
+            .map(|corner| {
+                let (x, y) = corner.split_once(',').unwrap();
+                [x.parse().unwrap(), y.parse().unwrap()]
+            })
+            .collect();
+        assert_eq!((drawn.matches("<polygon").count(), corners.len()), (1, 6));
+        let frame = Frame::new(&panel);
+        let height = corners[5][1] - corners[0][1];
+        assert!((height - frame.scale[1]).abs() < 0.1, "{height} for {}", frame.scale[1]);
+        let (top, bottom) = (MARGIN[1], SIZE[1] - MARGIN[3]);
+        assert!(corners.iter().all(|[_, y]| (top..=bottom).contains(y)), "{corners:?}");
+        // The shade begins where the panel does.
+        assert!(drawn.contains(&format!("<rect class=\"shade\" x=\"{}\"", MARGIN[0])), "{drawn}");
+    }
+
+    #[test]
     fn empty_flat_and_broken_curves_are_drawn_without_nan() {
-        let curve = |points| FigureCurve { name: "a < b".to_owned(), points, dots: false };
+        let curve = |points| FigureCurve { name: "a < b".to_owned(), points, ..FigureCurve::default() };
         let panel = |points| FigurePanel {
             title: "t & u".to_owned(),
             axes: ["x".to_owned(), "y".to_owned()],
             equal: true,
             curves: vec![curve(points)],
+            ..FigurePanel::default()
         };
         let panels = [
             panel(vec![]),

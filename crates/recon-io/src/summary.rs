@@ -1,7 +1,78 @@
 //! `summary.json`: the figures of a reconstruction for programs.
 
-use crate::report::{Bounds, Departure, Evidence, EvidenceValue, ReportData, level};
+use crate::report::{
+    Bounds, Departure, EstimateData, Evidence, EvidenceValue, ReportData, estimated_mode_spans, level,
+    mode_times,
+};
+use glam::DMat3;
 use serde_json::{Map, Value, json};
+
+/// Deviation of the logarithm of the root of a second moment below which it was learned from the log.
+pub const INERTIA_LEARNED: f64 = 0.5;
+
+/// The figures of a motion that was estimated from contacts of any palms. Errors are over the samples that are relied on.
+#[must_use]
+pub fn estimate_summary(data: &EstimateData) -> Value {
+    let (times, found) = (data.log.times(), &data.estimate);
+    let relied = found.relied_on.iter().filter(|relied| **relied).count();
+    let duration = data.log.duration();
+    let palm = |i: usize| {
+        let [off, slides, sticks] =
+            mode_times(&estimated_mode_spans(times, found, i)).map(|seconds| seconds / duration);
+        json!({ "palm": i + 1, "off": off, "slides": slides, "sticks": sticks })
+    };
+    let departures: Option<Vec<Departure>> = data.truth.as_ref().filter(|_| relied > 0).map(|truth| {
+        let pairs = found.states.iter().zip(truth).zip(&found.relied_on).filter(|(_, relied)| **relied);
+        pairs.map(|((state, truth), _)| Departure::between(&(*state).into(), truth)).collect()
+    });
+    json!({
+        "recon": env!("CARGO_PKG_VERSION"),
+        "title": data.title,
+        "method": "motion, mass and inertia from contacts of any palms",
+        "status": if found.evidence.settled { "Converged" } else { "NotSettled" },
+        "verdict": { "level": level(data.verdict.level), "text": data.verdict.text },
+        "note": data.note,
+        "samples": times.len(),
+        "t_first_s": times.first(),
+        "t_last_s": times.last(),
+        "mass_kg": found.mass,
+        "std_mass_kg": found.mass_deviation * found.mass,
+        "inertia_kg_m2": rows(&found.inertia),
+        "std_log_second_moment_roots": found.inertia_deviations,
+        "inertia_learned": found.inertia_deviations.map(|deviation| deviation < INERTIA_LEARNED),
+        "relied_on_share": relied as f64 / times.len() as f64,
+        "mode_shares": (0..data.log.palms().len()).map(palm).collect::<Vec<_>>(),
+        "evidence": data.evidence.iter().map(evidence).collect::<Map<_, _>>(),
+        "bounds": data.bounds.as_ref().map(bounds),
+        "largest_error": departures.as_deref().map(|d| errors(d, largest_of)),
+        "rms_error": departures.as_deref().map(|d| errors(d, rms_of)),
+        "warnings": data.warnings,
+    })
+}
+
+fn rows(m: &DMat3) -> [[f64; 3]; 3] {
+    m.transpose().to_cols_array_2d()
+}
+
+fn largest_of(values: &mut dyn Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, f64::max)
+}
+
+fn rms_of(values: &mut dyn Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), v| (sum + v * v, count + 1.0));
+    if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
+}
+
+/// Errors of a motion, all samples taken together by `of`.
+fn errors(departures: &[Departure], of: fn(&mut dyn Iterator<Item = f64>) -> f64) -> Value {
+    let one = |value: fn(&Departure) -> f64| of(&mut departures.iter().map(value));
+    json!({
+        "position_m": one(|d| d.position),
+        "orientation_rad": one(|d| d.angle),
+        "velocity_m_per_s": one(|d| d.velocity),
+        "angular_velocity_rad_per_s": one(|d| d.angular_velocity),
+    })
+}
 
 /// The figures of a reconstruction. Numbers are at full precision, in SI units; a number that is not finite is null.
 #[must_use]
@@ -41,12 +112,7 @@ fn bounds(bounds: &Bounds) -> Value {
 }
 
 fn largest(departures: &[Departure]) -> Value {
-    let most = |of: fn(&Departure) -> f64| departures.iter().map(of).fold(0.0, f64::max);
-    json!({
-        "position_m": most(|d| d.position),
-        "orientation_rad": most(|d| d.angle),
-        "velocity_m_per_s": most(|d| d.velocity),
-        "angular_velocity_rad_per_s": most(|d| d.angular_velocity),
-        "radius_function_m": most(|d| d.radius),
-    })
+    let mut figures = errors(departures, largest_of);
+    figures["radius_function_m"] = json!(largest_of(&mut departures.iter().map(|d| d.radius)));
+    figures
 }

@@ -2,7 +2,8 @@
 
 use crate::log::TRUTH;
 use crate::number::exact;
-use crate::report::{MotionState, ReportData};
+use crate::report::{MotionState, PalmContact, ReportData};
+use recon::observer::ContactEstimate;
 use std::io::{self, Write};
 
 /// Writes the motion as `t` and the truth columns of the sensor-log format.
@@ -12,22 +13,71 @@ use std::io::{self, Write};
 pub fn write_motion(times: &[f64], motion: &[MotionState], mut to: impl Write) -> io::Result<()> {
     writeln!(to, "t,{}", TRUTH.join(","))?;
     for (t, state) in times.iter().zip(motion) {
-        let (p, q, v, w) = (state.p_WCm, state.R_WO, state.v_WCm, state.w_WO);
-        let row = [*t, p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z];
-        writeln!(to, "{}", row.map(exact).join(","))?;
+        writeln!(to, "{}", cells(*t, state).map(exact).join(","))?;
     }
     to.flush()
 }
 
-/// Writes the contact curves on the object: `palm, t, x, y, z, nx, ny, nz` in body axes, with outward normals, one
+/// Standard deviations of an estimated motion: centre of mass (m), velocity (m/s), angular velocity (rad/s) and turn since the first
+/// sample (rad), world axes.
+const DEVIATIONS: [&str; 12] = [
+    "std_cmx",
+    "std_cmy",
+    "std_cmz",
+    "std_vx",
+    "std_vy",
+    "std_vz",
+    "std_wx",
+    "std_wy",
+    "std_wz",
+    "std_turnx",
+    "std_turny",
+    "std_turnz",
+];
+
+/// Writes a motion estimated from contacts of `palms` palms: the columns of [`write_motion`], the deviations, the contact mode of each
+/// palm (`mode_i`: 0 off, 1 slides, 2 sticks) and `relied_on` (1 or 0).
+///
+/// # Errors
+/// Those of `to`.
+pub fn write_estimated_motion(
+    times: &[f64],
+    estimate: &ContactEstimate,
+    palms: usize,
+    mut to: impl Write,
+) -> io::Result<()> {
+    let modes: String = (1..=palms).map(|i| format!("mode_{i},")).collect();
+    writeln!(to, "t,{},{},{modes}relied_on", TRUTH.join(","), DEVIATIONS.join(","))?;
+    for (k, t) in times.iter().enumerate() {
+        let mut row = cells(*t, &estimate.states[k].into()).to_vec();
+        row.extend(estimate.deviations[k].iter().flat_map(|of| of.to_array()));
+        let numbers: Vec<String> = row.into_iter().map(exact).collect();
+        let modes: String =
+            estimate.modes[k].iter().take(palms).map(|mode| format!("{},", mode.number())).collect();
+        writeln!(to, "{},{modes}{}", numbers.join(","), u8::from(estimate.relied_on[k]))?;
+    }
+    to.flush()
+}
+
+/// A time and a state in the order of the truth columns.
+fn cells(t: f64, state: &MotionState) -> [f64; 14] {
+    let (p, q, v, w) = (state.p_WCm, state.R_WO, state.v_WCm, state.w_WO);
+    [t, p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z]
+}
+
+/// Writes the contact curves of some palms on the object: `palm, t, x, y, z, nx, ny, nz` in body axes, with outward normals, one
 /// palm after the other. [`crate::read_contacts`] reads the file.
 ///
 /// # Errors
 /// Those of `to`.
-pub fn write_contact_curves(data: &ReportData, mut to: impl Write) -> io::Result<()> {
+pub fn write_contact_curves(
+    times: &[f64],
+    palms: &[&[Option<PalmContact>]],
+    mut to: impl Write,
+) -> io::Result<()> {
     writeln!(to, "palm,t,x,y,z,nx,ny,nz")?;
-    for (i, palm) in data.palms.iter().enumerate() {
-        for (t, contact) in data.times.iter().zip(&palm.contacts) {
+    for (i, contacts) in palms.iter().enumerate() {
+        for (t, contact) in times.iter().zip(*contacts) {
             let Some(contact) = contact else { continue };
             let (p, n) = (contact.p_OC, contact.normal);
             writeln!(to, "{},{}", i + 1, [*t, p.x, p.y, p.z, n.x, n.y, n.z].map(exact).join(","))?;

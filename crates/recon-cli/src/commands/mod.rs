@@ -1,5 +1,6 @@
 //! The commands: from arguments to files and words.
 
+mod any_palms;
 mod bounds;
 mod check;
 mod demo;

@@ -221,18 +221,23 @@ fn points(made: &Reconstruction, to: &mut dyn Write) -> io::Result<()> {
 
 /// The paper's Figs. 2b and 3a (contact points), 2c (orientation) and 3b (errors, where the truth is known).
 fn panels(log: &PlanarLog, made: &Reconstruction) -> Vec<FigurePanel> {
-    let line = |name: &str, points: Vec<[f64; 2]>| FigureCurve { name: name.to_owned(), points, dots: false };
+    let line = |name: &str, points: Vec<[f64; 2]>| FigureCurve {
+        name: name.to_owned(),
+        points,
+        ..FigureCurve::default()
+    };
     let panel = |title: &str, unit: &str, curves| FigurePanel {
         title: title.to_owned(),
         axes: ["t in s".to_owned(), unit.to_owned()],
-        equal: false,
         curves,
+        ..FigurePanel::default()
     };
     let over = |pick: &dyn Fn(&Row) -> f64| made.rows.iter().map(|r| [r.t, pick(r)]).collect::<Vec<_>>();
     let shape = [0, 1].map(|i| FigureCurve {
         name: format!("palm {}", i + 1),
         points: made.rows.iter().map(|r| r.points[i].to_array()).collect(),
         dots: true,
+        ..FigureCurve::default()
     });
     let mut panels = vec![
         FigurePanel {
@@ -240,6 +245,7 @@ fn panels(log: &PlanarLog, made: &Reconstruction) -> Vec<FigurePanel> {
             axes: ["x in m".to_owned(), "y in m".to_owned()],
             equal: true,
             curves: shape.into(),
+            ..FigurePanel::default()
         },
         panel("Orientation", "phi0 in rad", vec![line("observed", over(&|r| r.phi0))]),
         panel(

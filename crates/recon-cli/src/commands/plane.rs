@@ -94,7 +94,7 @@ fn panels(made: &PlanarBounds) -> Vec<FigurePanel> {
     let closed = |name: &str, outline: &[DVec2]| FigureCurve {
         name: name.to_owned(),
         points: outline.iter().chain(outline.first()).map(|p| p.to_array()).collect(),
-        dots: false,
+        ..FigureCurve::default()
     };
     let [lower, upper] = &made.outlines;
     let mut curves = vec![closed("lower bound", lower), closed("upper bound", upper)];
@@ -102,23 +102,26 @@ fn panels(made: &PlanarBounds) -> Vec<FigurePanel> {
         name: "contacts".to_owned(),
         points: made.points.iter().map(DVec2::to_array).collect(),
         dots: true,
+        ..FigureCurve::default()
     });
     if !made.fitted.is_empty() {
         curves.push(closed("fit", &made.fitted));
     }
-    let gap = FigureCurve { name: "upper - lower".to_owned(), points: made.gaps.clone(), dots: false };
+    let gap =
+        FigureCurve { name: "upper - lower".to_owned(), points: made.gaps.clone(), ..FigureCurve::default() };
     vec![
         FigurePanel {
             title: "Bounds".to_owned(),
             axes: ["x in m".to_owned(), "y in m".to_owned()],
             equal: true,
             curves: curves.into_iter().filter(|c| !c.points.is_empty()).collect(),
+            ..FigurePanel::default()
         },
         FigurePanel {
             title: "Gap between the bounds".to_owned(),
             axes: ["direction of the normal in rad".to_owned(), "gap in m".to_owned()],
-            equal: false,
             curves: vec![gap],
+            ..FigurePanel::default()
         },
     ]
 }

@@ -1,7 +1,7 @@
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{Reconstruction, exported, reconstruct, three_palms, write_reconstruction_folder};
+use crate::pipeline::{LogOf, Reconstruction, exported, read_log, reconstruct, write_reconstruction_folder};
 use crate::progress::Progress;
 use recon_io::{FolderTarget, Scene, brief, brief_to};
 use serde_json::Value;
@@ -16,7 +16,12 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let target = target(args)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");
-    let (log, moved) = three_palms(&args.log, &scene)?;
+    let (log, moved) = match read_log(&args.log, &scene)? {
+        LogOf::ThreePalms(log, moved) => (log, moved),
+        LogOf::AnyPalms(log, why) => {
+            return super::any_palms::run(args, &scene, (*log, why), (target, progress), console);
+        }
+    };
     let name = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
     let mut made = reconstruct(log, &scene, &name, args.identify, &progress)?;
     made.data.warnings.extend(moved);

@@ -1,11 +1,12 @@
-use super::ContactRun;
 use super::Reconstruction;
 use super::bounds::{BoundsResult, LOWER, UPPER};
+use super::{AnyPalms, ContactRun};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
 use recon_io::{
-    FolderTarget, MotionState, OutputFolder, TriangleMesh, summary, write_contact_curves, write_contact_log,
-    write_contact_report, write_motion, write_ply, write_radius_functions, write_report,
+    FolderTarget, MotionState, OutputFolder, TriangleMesh, estimate_summary, summary, write_contact_curves,
+    write_contact_log, write_contact_report, write_estimate_report, write_estimated_motion, write_motion,
+    write_ply, write_radius_functions, write_report,
 };
 use serde_json::Value;
 use std::io::{self, Write};
@@ -21,13 +22,12 @@ pub(crate) fn write_reconstruction_folder(
 ) -> Result<Value, CliError> {
     let data = &made.data;
     let mut figures = summary(data);
-    if let Some(bounds) = figures["bounds"].as_object_mut() {
-        bounds.insert("contradiction_m".to_owned(), made.stands_out.into());
-    }
+    state_contradiction(&mut figures, made.stands_out);
     while_writing(|| {
         let mut folder = Folder(target.begin()?);
         folder.write("motion.csv", |to| write_motion(&data.times, &data.motion, to))?;
-        folder.write("contact_curves.csv", |to| write_contact_curves(data, to))?;
+        let palms = data.palms.each_ref().map(|palm| &palm.contacts[..]);
+        folder.write("contact_curves.csv", |to| write_contact_curves(&data.times, &palms, to))?;
         folder.write("radius_functions.csv", |to| write_radius_functions(data, to))?;
         folder.write_mesh(LOWER, "inside the object; metres, body axes", made.lower.as_ref())?;
         folder.write_mesh(UPPER, "around the object; metres, body axes", made.upper.as_ref())?;
@@ -35,6 +35,25 @@ pub(crate) fn write_reconstruction_folder(
             folder.write(name, |to| to.write_all(contents))?;
         }
         folder.write("report.html", |to| write_report(data, to))?;
+        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+        folder.commit()
+    })?;
+    Ok(figures)
+}
+
+/// Writes everything about a motion that was estimated from contacts of any palms; returns the summary.
+pub(crate) fn write_estimate_folder(target: FolderTarget, made: &AnyPalms) -> Result<Value, CliError> {
+    let data = &made.data;
+    let mut figures = estimate_summary(data);
+    state_contradiction(&mut figures, made.bounds.as_ref().map_or(0.0, |bounds| bounds.contradiction));
+    let (times, palms) = (data.log.times(), data.log.palms().len());
+    while_writing(|| {
+        let mut folder = Folder(target.begin()?);
+        folder.write("motion.csv", |to| write_estimated_motion(times, &data.estimate, palms, to))?;
+        let curves: Vec<_> = data.curves.iter().map(Vec::as_slice).collect();
+        folder.write("contact_curves.csv", |to| write_contact_curves(times, &curves, to))?;
+        folder.write_bounds(made.bounds.as_ref())?;
+        folder.write("report.html", |to| write_estimate_report(data, to))?;
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()
     })?;
@@ -52,9 +71,7 @@ pub(crate) fn write_touch_folder(
     while_writing(|| {
         let mut folder = Folder(target.begin()?);
         folder.write("motion.csv", |to| write_motion(times, motion, to))?;
-        let (lower, upper) = bounds.map_or((None, None), |b| (b.lower.as_ref(), b.upper.as_ref()));
-        folder.write_mesh(LOWER, "inside the object; metres, body axes", lower)?;
-        folder.write_mesh(UPPER, "around the object; metres, body axes", upper)?;
+        folder.write_bounds(bounds)?;
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()
     })
@@ -114,6 +131,13 @@ pub(crate) fn write_bounds_folder(
     })
 }
 
+/// Says how far the lower bound stands out of the upper one, m, where bounds are stated.
+fn state_contradiction(figures: &mut Value, stands_out: f64) {
+    if let Some(bounds) = figures["bounds"].as_object_mut() {
+        bounds.insert("contradiction_m".to_owned(), stands_out.into());
+    }
+}
+
 /// An output folder whose writing can be interrupted.
 struct Folder(OutputFolder);
 
@@ -125,6 +149,12 @@ impl Folder {
     ) -> Result<(), CliError> {
         check()?;
         Ok(self.0.write(name, |to| contents(&mut Checked(to)))?)
+    }
+
+    fn write_bounds(&mut self, bounds: Option<&BoundsResult>) -> Result<(), CliError> {
+        let (lower, upper) = bounds.map_or((None, None), |b| (b.lower.as_ref(), b.upper.as_ref()));
+        self.write_mesh(LOWER, "inside the object; metres, body axes", lower)?;
+        self.write_mesh(UPPER, "around the object; metres, body axes", upper)
     }
 
     fn write_mesh(&mut self, name: &str, comment: &str, mesh: Option<&TriangleMesh>) -> Result<(), CliError> {

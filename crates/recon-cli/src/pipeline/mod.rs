@@ -1,5 +1,8 @@
 //! From files' contents to results in memory, and from results to a folder.
 
+mod any_palms;
+mod any_palms_bounds;
+mod any_palms_words;
 mod body;
 mod bounds;
 mod concave;
@@ -18,6 +21,7 @@ mod simulate;
 mod sound;
 mod truth;
 
+pub(crate) use any_palms::{AnyPalms, AnyPalmsRequest, estimate_any_palms};
 pub(crate) use bounds::{BoundsResult, bounds, exact_bounds};
 pub(crate) use concave::concave_bounds;
 pub(crate) use contacts::{ContactRun, simulate_contacts};
@@ -25,12 +29,13 @@ pub(crate) use doubts::doubtful_fit;
 pub(crate) use export::exported;
 pub(crate) use fitted::{fit_words, fitted_shape};
 pub(crate) use folder::{
-    write_bounds_folder, write_contact_folder, write_files_folder, write_reconstruction_folder,
-    write_touch_folder,
+    write_bounds_folder, write_contact_folder, write_estimate_folder, write_files_folder,
+    write_reconstruction_folder, write_touch_folder,
 };
+pub(crate) use modes::describe_times;
 pub(crate) use planar_contacts::simulate_planar_contacts;
 pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};
-pub(crate) use read::three_palms;
+pub(crate) use read::{LogOf, read_log, three_palms};
 pub(crate) use reconstruct::{NOTABLE_NOISE, Reconstruction, reconstruct};
 pub(crate) use simulate::{Simulated, known_body, simulate};
 pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};

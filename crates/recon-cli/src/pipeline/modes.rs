@@ -1,7 +1,6 @@
 //! What a simulation through contact modes came to, in space and in the plane, for people and for programs.
 
-use recon::object_dynamics::ContactMode;
-use recon_io::ModeSpan;
+use recon_io::{ModeSpan, mode_times};
 use serde_json::{Map, Value, json};
 
 /// Changes and durations of contact modes.
@@ -20,12 +19,7 @@ pub(crate) struct ModesTold {
 impl ModesTold {
     /// Time that each contact is off, slides and sticks, s.
     fn times(&self) -> impl Iterator<Item = [f64; 3]> {
-        self.spans.iter().map(|spans| {
-            ContactMode::ALL.map(|mode| {
-                let lasting = spans.iter().filter(|span| span.mode == mode);
-                lasting.fold(0.0, |sum, span| sum + (span.end - span.start))
-            })
-        })
+        self.spans.iter().map(|spans| mode_times(spans))
     }
 
     /// For a person.
@@ -39,11 +33,7 @@ impl ModesTold {
             true => ", no change of modes".to_owned(),
             false => format!(", {count} change(s) of modes ({})", named.join(", ")),
         };
-        for (i, [off, slides, sticks]) in self.times().enumerate() {
-            let palm = i + 1;
-            text += &format!("\n  palm {palm}: off {off:.3} s, slides {slides:.3} s, sticks {sticks:.3} s");
-        }
-        text
+        text + &describe_times(&self.spans)
     }
 
     /// For a program.
@@ -59,4 +49,13 @@ impl ModesTold {
             "palms": self.times().enumerate().map(palm).collect::<Vec<_>>(),
         })
     }
+}
+
+/// What each contact does for how long, in a line for each.
+pub(crate) fn describe_times(spans: &[Vec<ModeSpan>]) -> String {
+    let line = |(i, spans): (usize, &Vec<ModeSpan>)| {
+        let [off, slides, sticks] = mode_times(spans);
+        format!("\n  palm {}: off {off:.3} s, slides {slides:.3} s, sticks {sticks:.3} s", i + 1)
+    };
+    spans.iter().enumerate().map(line).collect()
 }

@@ -24,7 +24,7 @@ pub(crate) const NOTABLE_NOISE: f64 = 1e-6;
 const MOST_SAMPLES: usize = 200_000;
 
 /// Confidence of bounds from noisy contacts.
-const CONFIDENCE: f64 = 0.95;
+pub(super) const CONFIDENCE: f64 = 0.95;
 
 /// Everything that was reconstructed from a log.
 pub(crate) struct Reconstruction {
@@ -226,7 +226,7 @@ fn bounds_of(estimate: &MotionEstimate) -> Result<Option<BoundsResult>, CliError
 }
 
 /// A message as a sentence of its own.
-fn sentence(text: &str) -> String {
+pub(super) fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
     let end = if text.ends_with(['.', '?', ')']) { "" } else { "." };

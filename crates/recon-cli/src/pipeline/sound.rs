@@ -106,11 +106,9 @@ pub(crate) fn motion_bounds(
     let curves = estimate.curves.each_ref().map(|curve| {
         let points = curve.points().iter().step_by(stride).zip(&noises);
         let noisy = |(point, pose): (&CurvePoint, &PoseNoise)| {
-            let n = point.n_O.get();
-            // A palm feels where in its plane it is touched.
-            let tangent = DMat3::IDENTITY - DMat3::from_cols(n * n.x, n * n.y, n * n.z);
-            let noise = ContactNoise { point: tangent * variance, normal: 0.0, pose: *pose };
-            NoisyContact { contact: ContactSample { point: point.beta_O, normal: point.n_O }, noise }
+            let contact = ContactSample { point: point.beta_O, normal: point.n_O };
+            let noise = ContactNoise { point: in_tangent(&contact, variance), normal: 0.0, pose: *pose };
+            NoisyContact { contact, noise }
         };
         points.map(noisy).collect::<Vec<_>>()
     });
@@ -118,17 +116,25 @@ pub(crate) fn motion_bounds(
     finished(&bounds, Vec::new()).map(Some)
 }
 
+/// Covariance of a contact whose palm feels where on its surface it is touched, with this variance in each tangent direction.
+pub(super) fn in_tangent(contact: &ContactSample, variance: f64) -> DMat3 {
+    let (a, b) = contact.normal.tangent_basis();
+    let square = |t: DVec3| DMat3::from_cols(t * t.x, t * t.y, t * t.z);
+    // From the tangents themselves: what is left of the identity has no better than rounding along an axis of the frame.
+    (square(a) + square(b)) * variance
+}
+
 /// Samples whose contacts bound the body, at most: more of them gain next to nothing.
 const SAMPLES: usize = 6000;
 /// Share of the odds of a failure that errors of the poses may have; the contacts' own margins hardly grow when they get less.
-const SHARE_OF_POSES: f64 = 0.9;
+pub(super) const SHARE_OF_POSES: f64 = 0.9;
 
 fn pose_noise(of: PoseCovariance) -> PoseNoise {
     PoseNoise { rotation: of.rotation, translation: of.translation, cross: of.cross }
 }
 
 /// Meshes and figures of bounds, of which each may be missing, and what is to be said then.
-fn finished(bounds: &CertainBounds, mut warnings: Vec<String>) -> Result<BoundsResult, CliError> {
+pub(super) fn finished(bounds: &CertainBounds, mut warnings: Vec<String>) -> Result<BoundsResult, CliError> {
     let solid = bounds.lower.as_ref().and_then(|lower| lower.solid());
     let lower = solid.map(|solid| own(solid.mesh())).transpose()?;
     let upper = bounds.upper.as_ref().map(|upper| own(upper.mesh())).transpose()?;

@@ -1,4 +1,4 @@
-//! Logs and scenes of palms of any shape: what is three planes through a point is estimated, and the rest refused by name.
+//! Logs and scenes of palms of any shape that are three planes through a point, without friction.
 
 use crate::common::{Scratch, Table, scene, scratch_with_log};
 use glam::DVec3;
@@ -85,14 +85,11 @@ fn three_planes_are_simulated_through_modes_and_estimated_from_their_log() {
     // The three fingertips and the table of another scene are not three planes.
     scratch.write("pick-up.toml", include_str!("../../scenes/pick-up.toml"));
     assert_eq!(scratch.run(&["simulate", "pick-up.toml", "-o", "four.csv"]).code, Some(0));
-    for further in [&[][..], &["--without-forces"]] {
-        let arguments =
-            [&["reconstruct", "four.csv", "--scene", "pick-up.toml", "-o", "no"][..], further].concat();
-        let run = scratch.run(&arguments);
-        assert_eq!(run.code, Some(3), "{}", run.stdout);
-        assert!(run.stderr.contains("four.csv") && run.stderr.contains("4 palm(s)"), "{}", run.stderr);
-        assert!(!scratch.path().join("no").exists());
-    }
+    let run =
+        scratch.run(&["reconstruct", "four.csv", "--scene", "pick-up.toml", "-o", "no", "--without-forces"]);
+    assert_eq!(run.code, Some(3), "{}", run.stdout);
+    assert!(run.stderr.contains("four.csv") && run.stderr.contains("4 palm(s)"), "{}", run.stderr);
+    assert!(!scratch.path().join("no").exists());
 }
 
 /// The same, each palm on a hinge along its horizontal axis, where a motor holds it.
@@ -159,8 +156,8 @@ fn motors_are_as_noisy_as_the_scene_says() {
 }
 
 #[test]
-fn what_is_not_known_yet_is_refused_by_name() {
-    let scratch = scratch("not-yet", DVec3::ZERO);
+fn what_is_neither_three_planes_nor_has_all_forces_is_refused_by_name() {
+    let scratch = scratch("neither", DVec3::ZERO);
     let refused = |arguments: &[&str], words: &[&str]| {
         let run = scratch.run(arguments);
         assert_eq!(run.code, Some(3), "{}{}", run.stdout, run.stderr);
@@ -172,9 +169,9 @@ fn what_is_not_known_yet_is_refused_by_name() {
     let known = scratch.read("any.toml");
     let reconstruct = ["reconstruct", "any.csv", "--scene", "bad.toml", "-o", "out"];
     scratch.write("bad.toml", &known.replacen("kind = \"flat\"", "kind = \"flat\"\nfriction = 0.3", 1));
-    refused(&reconstruct, &["any.csv", "friction of palm 1 is stated as 0.3"]);
+    refused(&reconstruct, &["any.csv", "friction of palm 1 is stated as 0.3", "fx_1, fy_1 and fz_1"]);
     scratch.write("bad.toml", &known.replacen("kind = \"flat\"", "kind = \"cylinder\"\nradius = 1e-3", 1));
-    refused(&reconstruct, &["palm 1 is a cylinder"]);
+    refused(&reconstruct, &["palm 1 is not flat but a cylinder", "fx_1, fy_1 and fz_1"]);
     scratch.write("bad.toml", &(known.clone() + PALM));
     refused(&reconstruct, &["any.csv", "has 3 palm(s)", "the scene has 4"]);
     scratch.write("bad.toml", known.split("[[palm]]").next().unwrap());
@@ -197,8 +194,8 @@ fn what_is_not_known_yet_is_refused_by_name() {
     let mut text = Vec::new();
     write_contact_log(&ContactLog::new(log.times().to_vec(), records, None).unwrap(), &mut text).unwrap();
     scratch.write("any.csv", std::str::from_utf8(&text).unwrap());
-    refused(
-        &["reconstruct", "any.csv", "--scene", "any.toml", "-o", "out"],
-        &["rubs", "1.0e-1 of the normal force"],
-    );
+    let rubbed = ["reconstruct", "any.csv", "--scene", "any.toml", "-o", "out"];
+    refused(&rubbed, &["does not state", "contact_std", "force_share"]);
+    let without = [&rubbed[..], &["--without-forces"]].concat();
+    refused(&without, &["any.csv", "friction is felt on palm", "1.0e-1 of the normal force"]);
 }

@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
+mod any_friction;
 mod any_palms;
 mod bad_input;
 mod bounds;

@@ -64,6 +64,15 @@ fn excess(scratch: &Scratch, log: &str, axes: DVec3, summary: &Value) -> [Option
         "mean pose" => to_body(&log, &motion),
         frame => panic!("{frame}"),
     };
+    out_of_ellipsoid(scratch, axes, (shift, turn))
+}
+
+/// The same of the bounds in the folder `out`, where `turn` and `shift` take their axes to the body's own.
+pub(crate) fn out_of_ellipsoid(
+    scratch: &Scratch,
+    axes: DVec3,
+    (shift, turn): (DVec3, DQuat),
+) -> [Option<f64>; 2] {
     let read = |name: &str| {
         let (corners, faces) = mesh(&fs::read(scratch.path().join("out").join(name)).ok()?);
         Some((corners.into_iter().map(|v| turn * v + shift).collect::<Vec<DVec3>>(), faces))

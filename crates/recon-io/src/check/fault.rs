@@ -36,6 +36,30 @@ pub enum Fault {
         /// As it stands there.
         text: String,
     },
+    /// A cell of a table is a number that its column cannot have.
+    #[error("{file}: line {line}, column `{column}` is `{text}`; it must be {must}")]
+    Range {
+        /// Its name.
+        file: String,
+        /// From 1, with the header.
+        line: usize,
+        /// By the header.
+        column: String,
+        /// As it stands there.
+        text: String,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// A motion is marked as relied on at another share of its rows than is stated.
+    #[error("motion.csv: {ones} of {rows} rows are relied on, stated is a share of {stated}")]
+    ReliedOn {
+        /// Rows.
+        rows: usize,
+        /// Those relied on.
+        ones: usize,
+        /// In summary.json.
+        stated: f64,
+    },
     /// A row of a table has too few cells or too many.
     #[error("{file}: line {line} has {found} cells; the header has {expected}")]
     Row {

@@ -4,7 +4,7 @@ use super::Fault;
 use serde_json::Value;
 
 /// Numbers that may be absent: there is no upper bound, no bound at all, or no truth to compare with.
-const MAY_BE_NULL: [&str; 9] = [
+const MAY_BE_NULL: [&str; 10] = [
     "bounds",
     "upper_volume_m3",
     "upper_area_m2",
@@ -12,6 +12,7 @@ const MAY_BE_NULL: [&str; 9] = [
     "largest_gap_m",
     "true_volume_m3",
     "largest_error",
+    "rms_error",
     "contradiction_m",
     "plane_seems_lower_m",
 ];

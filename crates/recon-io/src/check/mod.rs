@@ -100,6 +100,8 @@ struct Found {
     outlines: BTreeMap<String, outline::Outline>,
     /// An edge at which the surface that may be open is.
     open: Option<[u32; 2]>,
+    /// Of the table of a motion.
+    relied_on: table::LastColumn,
     /// What holds, in words.
     held: Vec<String>,
     faults: Vec<Fault>,
@@ -116,6 +118,10 @@ impl Found {
                     self.outlines.insert(file.to_owned(), outline::Outline(corners));
                 }
                 Err(fault) => self.faults.push(fault),
+            },
+            ("motion.csv", _) => match table::numbers(file, open()?, |row| self.relied_on.count(row))? {
+                None => self.held.push(format!("{file}: all numbers are finite")),
+                Some(fault) => self.faults.push(fault),
             },
             (_, "csv") => match table::numbers(file, open()?, |_| ())? {
                 None => self.held.push(format!("{file}: all numbers are finite")),
@@ -134,9 +140,23 @@ impl Found {
             Some(summary) => self.faults.extend(figures::faults(summary)),
             None => self.faults.push(Fault::Missing { file: SUMMARY.to_owned() }),
         }
+        self.check_relied_on();
         self.check_open();
         self.check_bounds();
         if self.faults.is_empty() { Ok(self.held) } else { Err(self.faults) }
+    }
+
+    /// That so many rows of the motion are marked as relied on as is stated.
+    fn check_relied_on(&mut self) {
+        let stated = self.summary.as_ref().and_then(|s| s["relied_on_share"].as_f64());
+        let table::LastColumn { rows, ones } = self.relied_on;
+        let Some(stated) = stated.filter(|_| rows > 0) else { return };
+        // A whole number of rows, but for the rounding of a share that was written and read.
+        if (stated * rows as f64 - ones as f64).abs() < 1e-6 {
+            self.held.push(format!("motion.csv: relied on at {ones} of {rows} rows, as stated"));
+        } else {
+            self.faults.push(Fault::ReliedOn { rows, ones, stated });
+        }
     }
 
     fn check_open(&mut self) {

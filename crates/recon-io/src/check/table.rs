@@ -10,6 +10,34 @@ const MAY_BE_NAN: [(&str, &str); 3] =
 /// Columns of a log that are empty or `nan` while a palm does not touch.
 const LOG: &str = "log.csv";
 
+/// How many rows a table has, and in how many of them the last number is 1.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LastColumn {
+    pub(super) rows: usize,
+    pub(super) ones: usize,
+}
+
+impl LastColumn {
+    pub(super) fn count(&mut self, row: &[f64]) {
+        self.rows += 1;
+        self.ones += usize::from(row.last() == Some(&1.0));
+    }
+}
+
+/// What the numbers of a column must be, and whether one is so.
+type Must = (&'static str, fn(f64) -> bool);
+
+/// By the names that columns of motions have: deviations, contact modes, and what is relied on.
+fn must(column: &str) -> Option<Must> {
+    if column.starts_with("std_") {
+        return Some(("zero or above", |number| number >= 0.0));
+    }
+    if column.starts_with("mode_") {
+        return Some(("0, 1 or 2", |number| [0.0, 1.0, 2.0].contains(&number)));
+    }
+    (column == "relied_on").then_some(("0 or 1", |number| [0.0, 1.0].contains(&number)))
+}
+
 /// Reads a table of numbers and gives each row to `each`.
 pub(super) fn numbers(
     file: &str,
@@ -34,7 +62,13 @@ pub(super) fn numbers(
                 empty && (file == LOG || MAY_BE_NAN.contains(&(file, column)))
             };
             match cell.parse::<f64>() {
-                Ok(number) if number.is_finite() => row.push(number),
+                Ok(number) if number.is_finite() => match must(column) {
+                    Some((must, is)) if !is(number) => {
+                        let (file, column, text) = (file.to_owned(), column.to_owned(), cell.to_owned());
+                        return Ok(Some(Fault::Range { file, line, column, text, must }));
+                    }
+                    _ => row.push(number),
+                },
                 _ if absent() => row.push(f64::NAN),
                 _ => {
                     let (file, column, text) = (file.to_owned(), column.to_owned(), cell.to_owned());

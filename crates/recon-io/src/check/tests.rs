@@ -142,6 +142,32 @@ fn tables_and_figures_without_a_number_are_named() {
         &results.spoilt("motion.csv", b"t,x\n0,1\n1\n".to_vec()),
         &["line 3 has 1 cells; the header has 2"],
     );
+    for (header, row, must) in [
+        ("t,std_cmx", "0,-1e-9", "zero or above"),
+        ("t,mode_2", "0,3", "0, 1 or 2"),
+        ("t,relied_on", "0,0.5", "0 or 1"),
+    ] {
+        let table = format!("{header}\n{row}\n").into_bytes();
+        let words = format!("line 2, column `{}` is `{}`; it must be {must}", &header[2..], &row[2..]);
+        assert_named(&results.spoilt("motion.csv", table), &[&words]);
+    }
+    assert_named(&results.spoilt("motion.csv", b"t,std_cmx,mode_1,relied_on\n0,0,2,1\n".to_vec()), &[]);
+    // Reading 1761 / 1801 from JSON ends in another last digit.
+    for (rows, ones, share, faults) in [
+        (4, 3, 0.75, &[][..]),
+        (1801, 1761, 1761.0 / 1801.0, &[]),
+        (4, 3, 0.5, &["3 of 4 rows are relied on, stated is a share of 0.5"]),
+        (1801, 1761, 1762.0 / 1801.0, &["1761 of 1801 rows are relied on"]),
+    ] {
+        let row = |k: usize| format!("{k},{}\n", u8::from(k < ones));
+        let table = "t,relied_on\n".to_owned() + &(0..rows).map(row).collect::<String>();
+        let mut stated = summary();
+        stated["relied_on_share"] = json!(share);
+        let bounds = results.files.iter().filter(|(name, _)| name.ends_with(".ply")).cloned();
+        let told = [("motion.csv", table), ("summary.json", stated.to_string())];
+        let told = told.map(|(name, text)| (name.to_owned(), text.into_bytes()));
+        assert_named(&results.faults(bounds.chain(told).collect()), faults);
+    }
     assert_named(
         &results.spoilt("summary.json", b"{".to_vec()),
         &["summary.json cannot be read", "summary.json is missing"],

@@ -219,14 +219,11 @@ impl ReportData {
     pub(crate) fn departures(&self) -> Option<Vec<Departure>> {
         let truth = self.truth.as_ref()?;
         let one = |(k, (a, b)): (usize, (&MotionState, &MotionState))| Departure {
-            position: a.p_WCm.distance(b.p_WCm),
-            angle: rotation_between(a.R_WO, b.R_WO),
-            velocity: a.v_WCm.distance(b.v_WCm),
-            angular_velocity: a.w_WO.distance(b.w_WO),
             radius: self.palms.iter().fold(0.0, |most: f64, palm| {
                 let error = palm.contacts[k].map_or(0.0, |c| c.radius - palm.frames[k].n.dot(b.p_WCm));
                 most.max(error.abs())
             }),
+            ..Departure::between(a, b)
         };
         Some(self.motion.iter().zip(truth).enumerate().map(one).collect())
     }
@@ -251,6 +248,19 @@ pub(crate) struct Departure {
     pub(crate) angular_velocity: f64,
     /// Of the worst of the three radius functions, m.
     pub(crate) radius: f64,
+}
+
+impl Departure {
+    /// Of two states of motion; nothing is said of radius functions.
+    pub(crate) fn between(a: &MotionState, b: &MotionState) -> Self {
+        Self {
+            position: a.p_WCm.distance(b.p_WCm),
+            angle: rotation_between(a.R_WO, b.R_WO),
+            velocity: a.v_WCm.distance(b.v_WCm),
+            angular_velocity: a.w_WO.distance(b.w_WO),
+            radius: 0.0,
+        }
+    }
 }
 
 /// Angle between two orientations in rad, exact for small ones too: `2 atan2(|v|, |w|)` of their quotient.

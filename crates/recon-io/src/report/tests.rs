@@ -127,7 +127,8 @@ fn summary_and_tables_hold_what_the_report_shows() {
     assert!(
         motion.starts_with("t,cmx,cmy,cmz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n") && motion.lines().count() == 21
     );
-    let curves = text(&|to| write_contact_curves(&data, to));
+    let palms = data.palms.each_ref().map(|palm| &palm.contacts[..]);
+    let curves = text(&|to| write_contact_curves(&data.times, &palms, to));
     assert_eq!(crate::parse_contacts(curves.as_bytes()).unwrap().concat().len(), 59);
     let radii = text(&|to| write_radius_functions(&data, to));
     assert!(radii.lines().last().unwrap().ends_with(",nan,1.0,1.0"));

@@ -26,6 +26,7 @@ pub(super) fn scene(file: SceneFile, folder: &Path) -> Result<Scene, Kind> {
         mass,
         inertia,
         curvature: curvature(&file.object)?,
+        size: file.object.size.map(|size| Kind::positive("object.size", size)).transpose()?,
         sensors,
         palm_inertia: palm_inertia(&file.palms)?.or_else(|| motor_inertia(palms.as_deref()?)),
         friction,
@@ -77,6 +78,10 @@ pub(super) fn sensors(table: &SensorsTable) -> Result<Sensors, Kind> {
         impulse_share: not_negative("impulse_share", table.impulse_share)?,
         torque_std: not_negative("torque_std", table.torque_std)?,
         contact_off_palm: not_negative("contact_off_palm", table.contact_off_palm)?,
+        contact_speed_std: table
+            .contact_speed_std
+            .map(|v| Kind::positive("sensors.contact_speed_std", v))
+            .transpose()?,
         sample_rate: table.sample_rate.map(|v| Kind::positive("sensors.sample_rate", v)).transpose()?,
     })
 }

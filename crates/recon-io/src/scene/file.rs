@@ -26,6 +26,7 @@ pub(super) struct ObjectTable {
     pub(super) principal_moments: Option<[f64; 3]>,
     pub(super) radii_of_gyration: Option<[f64; 3]>,
     pub(super) curvature_radii: Option<[f64; 2]>,
+    pub(super) size: Option<f64>,
 }
 
 #[derive(Default, Deserialize)]
@@ -38,6 +39,7 @@ pub(super) struct SensorsTable {
     pub(super) impulse_share: Option<f64>,
     pub(super) torque_std: Option<f64>,
     pub(super) contact_off_palm: Option<f64>,
+    pub(super) contact_speed_std: Option<f64>,
     pub(super) sample_rate: Option<f64>,
 }
 

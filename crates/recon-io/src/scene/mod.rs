@@ -31,6 +31,7 @@ use std::path::Path;
 /// mass = 1.0
 /// principal_moments = [1.0, 1.45, 2.05]     # or `inertia`, a 3 x 3 tensor in body axes, or `radii_of_gyration`
 /// curvature_radii = [0.4, 6.25]             # bounds on the principal radii of curvature
+/// size = 1.8                                # mean radius, about: where all contacts are on one palm, nothing else tells it
 ///
 /// [sensors]                                 # all optional; `recon simulate` puts this noise on its logs
 /// contact_std = 1e-3                        # standard deviation of s1 and s2
@@ -64,7 +65,8 @@ use std::path::Path;
 /// Palms of any number, shape, pose and motion stand in `[[palm]]` tables ([`KnownPalm`]) in place of `simulation.palms`.
 /// They do not determine where the object is: `[simulation]` then has `position` and may have `velocity` (world axes) and
 /// `in_flight = true` for an object that touches nothing yet. `[sensors]` may then have `force_share`, `impulse_std`, `impulse_share` and
-/// `torque_std`, and `contact_off_palm`, the largest distance of a contact point from its palm that a log may have.
+/// `torque_std`, `contact_off_palm`, the largest distance of a contact point from its palm that a log may have, and
+/// `contact_speed_std`, by which a contact's speed is off beside noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Gravitational acceleration `g` in m/s^2, at least zero; gravity is `(0, 0, -g)`.
@@ -75,6 +77,8 @@ pub struct Scene {
     pub inertia: Option<KnownInertia>,
     /// Bounds on its principal radii of curvature, in m.
     pub curvature: Option<CurvatureRadii>,
+    /// Its mean radius, in m.
+    pub size: Option<f64>,
     /// The sensors.
     pub sensors: Sensors,
     /// Moments of inertia of the palms about their axes, in kg m^2.
@@ -115,6 +119,9 @@ pub struct Sensors {
     pub torque_std: Option<f64>,
     /// Largest distance of a contact point from its palm that is taken for noise, in m.
     pub contact_off_palm: Option<f64>,
+    /// Standard deviation of what the condition of a contact (it neither parts nor sinks in, nor slips where it sticks) is off by
+    /// beside noise, in m/s: palms whose velocity is known no better, creep.
+    pub contact_speed_std: Option<f64>,
     /// Samples per second.
     pub sample_rate: Option<f64>,
 }

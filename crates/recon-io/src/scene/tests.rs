@@ -96,6 +96,8 @@ fn numbers_out_of_range_are_named() {
     assert_eq!(key_of("gravity = 9.81", "gravity = -9.81"), "gravity");
     assert_eq!(key_of("[0.4, 6.25]", "[6.25, 0.4]"), "object.curvature_radii[1]");
     assert_eq!(key_of("contact_std = 0.001", "contact_std = nan"), "sensors.contact_std");
+    assert_eq!(key_of("mass = 1.0", "mass = 1.0\nsize = 0.0"), "object.size");
+    assert_eq!(key_of("contact_std = 0.001", "contact_speed_std = 0.0"), "sensors.contact_speed_std");
     assert_eq!(key_of("duration = 4.2", "duration = 0"), "simulation.duration");
     assert_eq!(key_of("duration = 4.2", "duration = 1e300"), "simulation.duration");
     assert_eq!(key_of("[2.5, 2.0, 1.0]", "[2.5, 0.0, 1.0]"), "simulation.shape.semi_axes[1]");

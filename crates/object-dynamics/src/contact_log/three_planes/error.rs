@@ -2,17 +2,17 @@ use crate::LogError;
 use contact_kinematics::PalmError;
 use thiserror::Error;
 
-/// Why a log is not one of three flat frictionless palms through one point, which is all that the estimators know so far.
+/// Why a log is not one of three flat frictionless palms through one point, which the estimators of frictionless motion take.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum NotThreePlanes {
     /// Another number of palms.
-    #[error("log has {found} palm(s); motion is estimated from three so far")]
+    #[error("log has {found} palm(s), not three")]
     Count {
         /// How many.
         found: usize,
     },
     /// A palm that is not flat.
-    #[error("palm {palm} is a {kind}; motion is estimated on flat palms so far")]
+    #[error("palm {palm} is not flat but a {kind}")]
     Curved {
         /// Palm number from 1.
         palm: usize,
@@ -20,15 +20,12 @@ pub enum NotThreePlanes {
         kind: &'static str,
     },
     /// The planes meet in a line, or in none.
-    #[error(
-        "the palms' normals are parallel to one plane throughout the log: they meet in no single point, and motion is \
-         estimated on palms through one point so far"
-    )]
+    #[error("the palms' normals are parallel to one plane throughout the log: they meet in no single point")]
     NoPoint,
     /// The planes do not go through one point that rests.
     #[error(
         "palm {palm} passes the point in which the palms meet best at {distance:.1e} m (sample {sample}, t = {time} s; {limit:.1e} m \
-         would be taken for rounding or noise); motion is estimated on palms through one point that rests so far"
+         would be taken for rounding or noise)"
     )]
     Apart {
         /// Palm number from 1.
@@ -44,9 +41,9 @@ pub enum NotThreePlanes {
     },
     /// The tangential forces are more than noise.
     #[error(
-        "palm {palm} rubs: its tangential force is {ratio:.1e} of the normal force and agrees from sample to sample \
-         ({deviations:.0} deviations of what noise does); motion is estimated without friction so far. If it is the palm's \
-         orientation that is off, give the normal force alone"
+        "friction is felt on palm {palm}: its tangential force is {ratio:.1e} of the normal force and agrees from sample to \
+         sample ({deviations:.0} deviations of what noise does; if it is the palm's orientation that is off, give the normal \
+         force alone)"
     )]
     Rubs {
         /// Number from 1 of the palm where the ratio is largest.
@@ -57,10 +54,7 @@ pub enum NotThreePlanes {
         deviations: f64,
     },
     /// Friction is stated, and no sensor shows how much of it there is.
-    #[error(
-        "friction of palm {palm} is stated as {friction} and its sensor has the normal force alone; motion is estimated \
-         without friction so far"
-    )]
+    #[error("friction of palm {palm} is stated as {friction}, and its sensor has the normal force alone")]
     Friction {
         /// Palm number from 1.
         palm: usize,

@@ -11,8 +11,9 @@ const LEFT: f64 = 64.0;
 const ROW: f64 = 26.0;
 const BAND: f64 = 18.0;
 
-/// Bands of the spans of each palm over the simulated time, as one SVG element; marks at the times of the pictures.
-pub(super) fn bands(all: &[Vec<ModeSpan>], marks: &[f64]) -> String {
+/// Bands of the spans of each palm over the time, as one SVG element; marks at the times of the pictures, and a shade over stretches
+/// of time that are not relied on.
+pub(super) fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]]) -> String {
     let (start, end) = (all.first().and_then(|s| s.first()), all.first().and_then(|s| s.last()));
     let (start, end) = start.zip(end).map_or((0.0, 1.0), |(first, last)| (first.start, last.end));
     let place = |t: f64| on_scale(LEFT + (WIDTH - LEFT - 8.0) * (t - start) / (end - start), 100.0, 4);
@@ -40,6 +41,13 @@ pub(super) fn bands(all: &[Vec<ModeSpan>], marks: &[f64]) -> String {
         let _ = writeln!(
             out,
             "<rect class=\"frame\" x=\"{x}\" y=\"{y}\" width=\"{width:.2}\" height=\"{BAND}\"/>"
+        );
+    }
+    for [from, to] in doubtful {
+        let (x, width) = (place(*from), place(*to) - place(*from));
+        let _ = writeln!(
+            out,
+            "<rect class=\"doubtful\" x=\"{x}\" y=\"0\" width=\"{width:.2}\" height=\"{bottom}\"/>"
         );
     }
     for t in marks {

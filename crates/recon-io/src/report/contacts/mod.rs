@@ -1,6 +1,8 @@
-//! The report of a simulation through contact modes: pictures, bands of modes, curves.
+//! Reports of motions through contact modes, simulated or estimated: pictures, bands of modes, curves.
 
 mod bands;
+mod estimate;
+mod estimate_page;
 mod moment;
 mod page;
 mod picture;
@@ -12,5 +14,7 @@ mod view;
 #[cfg(test)]
 mod tests;
 
+pub use estimate::EstimateData;
+pub use estimate_page::write_estimate_report;
 pub use page::{write_contact_report, write_planar_contact_report};
-pub use spans::{ModeSpan, mode_spans, planar_mode_spans};
+pub use spans::{ModeSpan, estimated_mode_spans, mode_spans, mode_times, planar_mode_spans};

@@ -48,13 +48,13 @@ impl Shown {
         let curve = |name: &str, value: &dyn Fn(&Moment) -> f64| FigureCurve {
             name: name.to_owned(),
             points: kept.iter().map(|now| [now.t, value(now)]).collect(),
-            dots: false,
+            ..FigureCurve::default()
         };
         let panel = |title: &str, unit: &str, curves| FigurePanel {
             title: title.to_owned(),
             axes: ["t in s".to_owned(), unit.to_owned()],
-            equal: false,
             curves,
+            ..FigurePanel::default()
         };
         let of_palms = |value: &dyn Fn(&Moment, usize) -> f64| -> Vec<FigureCurve> {
             let palms = 0..self.spans.len();

@@ -11,7 +11,7 @@ use recon::object_dynamics::{ContactScene, ContactSimulation, planar};
 use std::io::{self, Write};
 
 const PAGE: &str = include_str!("../assets/contacts.html");
-const STYLE: &str = include_str!("../assets/contacts.css");
+pub(super) const STYLE: &str = include_str!("../assets/contacts.css");
 
 /// Writes a simulation through contact modes as one HTML page that needs nothing else: pictures, bands of modes, curves of force,
 /// slip and energy.
@@ -51,9 +51,6 @@ fn write(title: &str, shown: &Shown, to: impl Write) -> io::Result<()> {
         ("Turn at the end", brief_to(3, last.turn.to_degrees()), "degrees"),
         ("Energy not accounted for", brief_to(2, shown.energy_defect()), "J"),
     ];
-    let fact = |(name, value, unit): &(&str, String, &str)| {
-        format!("<div><dt>{name}</dt><dd>{value}<small>{unit}</small></dd></div>\n")
-    };
     let marks: Vec<f64> = shown.pictures.iter().map(|picture| picture.t).collect();
     let mut curves = Vec::new();
     write_figures(&shown.panels(), &mut curves)?;
@@ -63,8 +60,13 @@ fn write(title: &str, shown: &Shown, to: impl Write) -> io::Result<()> {
         ("facts", facts.iter().map(fact).collect()),
         ("pictures", drawn(&shown.pictures)),
         ("caption", shown.caption.to_owned()),
-        ("bands", bands(&shown.spans, &marks)),
+        ("bands", bands(&shown.spans, &marks, &[])),
         ("curves", String::from_utf8_lossy(&curves).into_owned()),
     ];
     fill(PAGE, &parts, to)
+}
+
+/// A key figure: name, value and unit.
+pub(super) fn fact((name, value, unit): &(&str, String, &str)) -> String {
+    format!("<div><dt>{name}</dt><dd>{value}<small>{unit}</small></dd></div>\n")
 }

@@ -5,7 +5,7 @@ use super::picture::{Line, Picture};
 use super::spans::mode_spans;
 use super::view::View;
 use glam::DVec3;
-use recon::contact_kinematics::{PalmSurface, SupportFunction};
+use recon::contact_kinematics::{PalmSurface, SupportFunction, SurfaceState};
 use recon::object_dynamics::{ContactInstant, ContactMode, ContactScene, ContactSimulation};
 use std::f64::consts::TAU;
 
@@ -52,7 +52,10 @@ fn picture<S: SupportFunction>(scene: &ContactScene<S>, now: &ContactInstant) ->
     let reach = reach(scene.body());
     let before = |i: &usize| view.nearness(now.contacts[*i].p_WC) > view.nearness(at.p_WCm);
     let (front, back): (Vec<usize>, Vec<usize>) = (0..scene.palms().len()).partition(before);
-    let palm = |i: usize| palm(&view, scene.palms()[i].surface, now, i, reach);
+    let palm = |i: usize| {
+        let (surface, at, p_WC) = (scene.palms()[i].surface, now.palms[i], now.contacts[i].p_WC);
+        palm(&view, i, &ShownPalm { surface, at, p_WC }, now.state.body.p_WCm, reach)
+    };
     let mut lines: Vec<Line> = back.into_iter().map(palm).collect();
     lines.push(Line::new("object", view.outline(scene.body(), at)));
     lines.extend(view.meridians(scene.body(), at).into_iter().map(|points| Line::new("meridian", points)));
@@ -63,26 +66,36 @@ fn picture<S: SupportFunction>(scene: &ContactScene<S>, now: &ContactInstant) ->
     Picture { t: now.state.t, lines }
 }
 
-fn palm(view: &View, surface: PalmSurface, now: &ContactInstant, i: usize, reach: f64) -> Line {
-    let (state, contact) = (&now.palms[i], &now.contacts[i]);
-    let centre = state.p_WP;
-    let points = match surface {
+/// A palm as it is drawn.
+pub(super) struct ShownPalm {
+    pub(super) surface: PalmSurface,
+    /// Its frame.
+    pub(super) at: SurfaceState,
+    /// The contact, or the point of the surface next to the object.
+    pub(super) p_WC: DVec3,
+}
+
+/// The palm `i` (from 0) about an object with its centre in `p_WCm` and of the size `reach`.
+pub(super) fn palm(view: &View, i: usize, shown: &ShownPalm, p_WCm: DVec3, reach: f64) -> Line {
+    let ShownPalm { surface, at, p_WC } = shown;
+    let centre = at.p_WP;
+    let points = match *surface {
         PalmSurface::Plane => {
             // Under the object, wherever the origin of the plane's frame is.
-            let n = state.R_WP.z_axis;
-            let foot = now.state.body.p_WCm - n * n.dot(now.state.body.p_WCm - centre);
+            let n = at.R_WP.z_axis;
+            let foot = p_WCm - n * n.dot(p_WCm - centre);
             let [a, b] = level_axes(n).map(|axis| BROAD * reach * axis);
             [a + b, b - a, -a - b, a - b, a + b].iter().map(|corner| view.place(foot + *corner)).collect()
         }
         PalmSurface::Sphere { radius } => view.arc(centre, radius, [0.0, TAU]),
         PalmSurface::Cup { radius } => {
-            let outwards = view.place(contact.p_WC - centre);
+            let outwards = view.place(*p_WC - centre);
             let middle = outwards.y.atan2(outwards.x);
             view.arc(centre, radius, [middle - CUP, middle + CUP])
         }
         PalmSurface::Cylinder { radius } => {
-            let along = state.R_WP.x_axis;
-            let middle = centre + along * along.dot(now.state.body.p_WCm - centre);
+            let along = at.R_WP.x_axis;
+            let middle = centre + along * along.dot(p_WCm - centre);
             let half = view.place(BROAD * reach * along);
             let side = radius * half.perp().normalize_or(glam::DVec2::X);
             let m = view.place(middle);

@@ -1,6 +1,7 @@
 //! What each contact does over time.
 
 use recon::object_dynamics::{ContactMode, ContactSimulation, planar};
+use recon::observer::ContactEstimate;
 
 /// A stretch of time over which a contact does the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +31,26 @@ pub fn planar_mode_spans(simulation: &planar::ContactSimulation, palm: usize) ->
     let (Some(first), Some(last)) = (instants.first(), instants.last()) else { return Vec::new() };
     let changes = simulation.events.iter().map(|event| (event.t, event.modes[palm]));
     spans(first.modes[palm], [first.t, last.t], changes)
+}
+
+/// The same of an estimate at the `times` of its log.
+#[must_use]
+pub fn estimated_mode_spans(times: &[f64], estimate: &ContactEstimate, palm: usize) -> Vec<ModeSpan> {
+    let (Some(&first), Some(&last), Some(modes)) = (times.first(), times.last(), estimate.modes.first())
+    else {
+        return Vec::new();
+    };
+    let changes = times.iter().zip(&estimate.modes).map(|(t, modes)| (*t, modes[palm]));
+    spans(modes[palm], [first, last], changes)
+}
+
+/// Time over which spans are off, slide and stick, s.
+#[must_use]
+pub fn mode_times(spans: &[ModeSpan]) -> [f64; 3] {
+    ContactMode::ALL.map(|mode| {
+        let lasting = spans.iter().filter(|span| span.mode == mode);
+        lasting.fold(0.0, |sum, span| sum + (span.end - span.start))
+    })
 }
 
 /// From the mode at the start and the times at which modes follow.

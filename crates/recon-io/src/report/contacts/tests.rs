@@ -1,6 +1,11 @@
-use super::{write_contact_report, write_planar_contact_report};
-use crate::{PlanarScene, Scene};
-use recon::object_dynamics::{ContactSimulation, SampleTimes, planar};
+use super::{EstimateData, write_contact_report, write_estimate_report, write_planar_contact_report};
+use crate::{
+    Evidence, EvidenceValue, Level, PalmContact, PlanarScene, Scene, Verdict, estimate_summary,
+    write_estimated_motion,
+};
+use glam::{DMat3, DVec3};
+use recon::object_dynamics::{ContactLog, ContactMode, ContactSimulation, MOST_PALMS, SampleTimes, planar};
+use recon::observer::{ContactEstimate, ContactEvidence, Reliability};
 
 const PICK_UP: &str = include_str!("../../../../recon-cli/scenes/pick-up.toml");
 const OTHERS: &str = r#"
@@ -147,4 +152,125 @@ shape = { kind = "ellipsoid", semi_axes = [0.035, 0.03, 0.025] }
     assert_eq!((strip.len(), strip[0]), (5, strip[4]));
     let side = |k: usize| (strip[k + 1][0] - strip[k][0]).hypot(strip[k + 1][1] - strip[k][1]);
     assert!((side(0) - side(2)).abs() < 0.3 && (side(1) - side(3)).abs() < 0.3 && side(0) > 2.0 * side(1));
+}
+
+/// An estimate of the fingertips' scene that is the truth, but for what is said of it.
+fn estimate() -> EstimateData {
+    let scene = Scene::parse(PICK_UP).unwrap();
+    let (start, times) = scene.contact_start().unwrap();
+    let world = scene.contact_scene().unwrap();
+    let run = world.simulate(&start, SampleTimes { rate: 50.0, ..times }, 1e-8).unwrap();
+    let log = ContactLog::from_simulation(&world, &run).unwrap();
+    let states = log.truth().unwrap().to_vec();
+    let count = states.len();
+    let modes = |k: usize| -> [ContactMode; MOST_PALMS] {
+        std::array::from_fn(|i| {
+            log.palms().get(i).and_then(|palm| palm.truth(k)).map_or(ContactMode::Off, |t| t.mode)
+        })
+    };
+    let estimate = ContactEstimate {
+        deviations: vec![[DVec3::splat(1e-3); 4]; count],
+        // The third sample to the fifth, and the last one.
+        relied_on: (0..count).map(|k| !(2..5).contains(&k) && k + 1 < count).collect(),
+        modes: (0..count).map(modes).collect(),
+        mass: 0.1,
+        mass_deviation: 0.02,
+        inertia: DMat3::from_diagonal(DVec3::new(3.05e-5, 3.7e-5, 4.25e-5)),
+        inertia_deviations: [0.1, 0.2, 0.7],
+        reliability: Reliability::Reliable,
+        evidence: ContactEvidence {
+            samples: count,
+            nodes: count,
+            conditions: 3 * count,
+            misfit: 1.0,
+            iterations: [5, 9],
+            settled: true,
+        },
+        states: states.clone(),
+    };
+    let contact = |palm: &recon::object_dynamics::LoggedPalm, k: usize| {
+        let touch = palm.touch(k).filter(|_| estimate.relied_on[k])?;
+        let turn = states[k].R_WO.inverse();
+        let (p_OC, normal) = (turn * (touch.p_WC - states[k].p_WCm), turn * -touch.n.get());
+        Some(PalmContact { p_WC: touch.p_WC, p_OC, normal, radius: p_OC.dot(normal) })
+    };
+    EstimateData {
+        title: "<Fingers & table>".into(),
+        verdict: Verdict { level: Level::Good, text: "All <is> well.".into() },
+        note: "Four palms & no more.".into(),
+        curves: log.palms().iter().map(|palm| (0..count).map(|k| contact(palm, k)).collect()).collect(),
+        truth: Some(states.iter().map(|state| (*state).into()).collect()),
+        bounds: None,
+        evidence: vec![Evidence {
+            key: "misfit".into(),
+            name: "Chi-squared".into(),
+            value: EvidenceValue::Number(1.0),
+            unit: String::new(),
+            meaning: "About 1 & good.".into(),
+            level: Level::Good,
+        }],
+        warnings: vec!["<b>mind</b>".into()],
+        log: log.split_truth().0,
+        estimate,
+    }
+}
+
+#[test]
+fn the_page_of_an_estimate_shows_palms_object_modes_and_doubts() {
+    let mut data = estimate();
+    let mut bytes = Vec::new();
+    write_estimate_report(&data, &mut bytes).unwrap();
+    let page = String::from_utf8(bytes).unwrap();
+    assert!(page.contains("&lt;Fingers &amp; table&gt;") && !page.contains("{{") && !page.contains("NaN"));
+    assert!(!page.contains("src=") && !page.contains("href") && page.contains("&lt;b&gt;mind&lt;/b&gt;"));
+    assert!(page.contains("</strong>Four palms &amp; no more.</p>"));
+    assert!(page.contains("All &lt;is&gt; well.") && page.contains("About 1 &amp; good."));
+    assert_eq!(page.matches("<figure").count(), 6);
+    for palm in 1..=4 {
+        assert_eq!(page.matches(&format!("class=\"palm p{palm}\"")).count(), 6);
+    }
+    // The object is drawn each time, the doubts over bands of modes and over each of four panels.
+    assert_eq!(page.matches("class=\"object\"").count(), 6);
+    assert_eq!(data.doubtful().len(), 2);
+    assert_eq!(page.matches("class=\"shade\"").count(), 8);
+    assert_eq!(page.matches("<rect class=\"doubtful\" x=").count(), 2);
+    let [first, last] = [data.doubtful()[0], data.doubtful()[1]];
+    for (found, expected) in first.iter().chain(&last).zip([0.03, 0.09, 0.99, 1.0]) {
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+    // Three components of three vectors and one turn, with their bands and the truth.
+    assert_eq!(
+        (page.matches("<polygon").count(), page.matches("stroke-dasharray=\"5 4\"").count()),
+        (10, 10)
+    );
+    data.estimate.modes.pop();
+    assert!(write_estimate_report(&data, Vec::new()).is_err());
+}
+
+#[test]
+fn table_and_summary_of_an_estimate_hold_what_is_relied_on() {
+    let mut data = estimate();
+    // An error where nothing is relied on does not count, another one does.
+    data.estimate.states[3].p_WCm.x += 1.0;
+    data.estimate.states[7].p_WCm.x += 1e-3;
+    let figures = estimate_summary(&data);
+    let count = data.log.times().len() as f64;
+    let error = |which: &str| figures[which]["position_m"].as_f64().unwrap();
+    assert!((error("largest_error") - 1e-3).abs() < 1e-12);
+    assert!((error("rms_error") - 1e-3 / (count - 4.0).sqrt()).abs() < 1e-12);
+    assert_eq!(figures["relied_on_share"].as_f64().unwrap(), (count - 4.0) / count);
+    assert_eq!(figures["inertia_learned"], serde_json::json!([true, true, false]));
+    let shares = figures["mode_shares"].as_array().unwrap();
+    assert!(shares.len() == 4 && shares[0]["off"].as_f64().unwrap() > 0.3, "{shares:?}");
+    let mut bytes = Vec::new();
+    write_estimated_motion(data.log.times(), &data.estimate, 4, &mut bytes).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!((rows.len(), rows[0].len()), (data.log.times().len() + 1, 14 + 12 + 4 + 1));
+    assert!(rows.iter().all(|row| row.len() == rows[0].len()));
+    assert_eq!(rows[0][14..18], ["std_cmx", "std_cmy", "std_cmz", "std_vx"]);
+    assert_eq!((rows[3][30], rows[6][30], rows[1][26]), ("0", "1", "2"));
+    // Without anything to rely on there are no errors to tell.
+    data.estimate.relied_on.fill(false);
+    assert!(estimate_summary(&data)["rms_error"].is_null());
 }

@@ -1,0 +1,81 @@
+//! `recon reconstruct` on logs of contacts that are not three planes without friction.
+
+use crate::cli::ReconstructArgs;
+use crate::console::Console;
+use crate::error::{CliError, Outcome};
+use crate::pipeline::{AnyPalmsRequest, describe_times, estimate_any_palms, write_estimate_folder};
+use crate::progress::Progress;
+use recon::object_dynamics::{ContactLog, NotThreePlanes};
+use recon_io::{EstimateData, FolderTarget, Level, Scene, brief, brief_to, estimated_mode_spans};
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::Path;
+
+pub(super) fn run(
+    args: &ReconstructArgs,
+    scene: &Scene,
+    (log, why): (ContactLog, NotThreePlanes),
+    (target, progress): (FolderTarget, Progress),
+    console: &Console,
+) -> Result<Outcome, CliError> {
+    if !args.export.is_empty() {
+        return Err(CliError::Option {
+            option: "export",
+            meant: "bodies between three flat palms without friction",
+            found: "contacts of other palms, or friction",
+            path: args.log.clone(),
+        });
+    }
+    let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
+    let request = AnyPalmsRequest { scene, path: &args.log, title: &title, identify: args.identify };
+    let made = estimate_any_palms(log, why, &request, &progress)?;
+    progress.step("writing the results");
+    let (mut figures, data) = (write_estimate_folder(target, &made)?, &made.data);
+    drop(progress);
+    figures["folder"] = args.output.to_string_lossy().into();
+    console.result(&describe(data, &figures, &args.output), &figures)?;
+    Ok(if data.verdict.level == Level::Good { Outcome::Done } else { Outcome::WithReservations })
+}
+
+fn describe(data: &EstimateData, figures: &Value, folder: &Path) -> String {
+    let found = &data.estimate;
+    let mut text = format!("{}\n{}\n", data.verdict.text, data.note);
+    for warning in &data.warnings {
+        let _ = writeln!(text, "Warning: {warning}");
+    }
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<22} {value}");
+    };
+    line("samples", format!("{} over {} s", data.log.times().len(), brief(data.log.duration())));
+    let deviation = brief_to(2, found.mass * found.mass_deviation);
+    line("mass", format!("{} kg, deviation {deviation} kg", brief(found.mass)));
+    let moments: Vec<String> = ["moment_x", "moment_y", "moment_z"]
+        .iter()
+        .filter_map(|key| figures["evidence"][key]["value"].as_f64())
+        .map(|moment| brief_to(4, moment))
+        .collect();
+    if !moments.is_empty() {
+        line("principal moments", format!("{} kg m^2", moments.join(", ")));
+    }
+    if let Some(bounds) = &data.bounds {
+        line("lower bound", format!("{} m^3", brief(bounds.lower.volume)));
+        if let Some(upper) = &bounds.upper {
+            line("upper bound", format!("{} m^3", brief(upper.volume)));
+            line("lower / upper", brief_to(4, bounds.lower.volume / upper.volume));
+        }
+    }
+    for (name, key, unit) in [
+        ("largest error: position", "position_m", "m"),
+        ("  orientation", "orientation_rad", "rad"),
+        ("  angular velocity", "angular_velocity_rad_per_s", "rad/s"),
+    ] {
+        if let Some(error) = figures["largest_error"][key].as_f64() {
+            line(name, format!("{error:.2e} {unit}"));
+        }
+    }
+    let spans: Vec<_> =
+        (0..data.log.palms().len()).map(|palm| estimated_mode_spans(data.log.times(), found, palm)).collect();
+    let times = describe_times(&spans);
+    let _ = write!(text, "{}\n{}", times.trim_start_matches('\n'), folder.join("report.html").display());
+    text
+}

@@ -1,0 +1,165 @@
+//! Motion, mass and inertia of an unknown body from contacts of any palms, with friction.
+
+use super::any_palms_bounds::estimate_bounds;
+use super::any_palms_words::{evidence, stated_body, verdict};
+use super::bounds::BoundsResult;
+use super::reconstruct::{CONFIDENCE, sentence};
+use super::truth::true_motion;
+use crate::error::CliError;
+use crate::progress::Progress;
+use glam::DVec3;
+use recon::object_dynamics::{ContactLog, LoggedPalm, NotThreePlanes, SensedAxes};
+use recon::observer::{
+    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, estimate_contacts,
+};
+use recon_io::{EstimateData, PalmContact, Scene};
+use std::error::Error;
+use std::path::Path;
+
+/// What contact conditions are off by where the scene does not say it, as a share of the natural speed `sqrt(g l)`: that by which
+/// contacts creep that stick in simulators.
+const FLOOR: f64 = 3e-5;
+
+/// What was asked for.
+pub(crate) struct AnyPalmsRequest<'a> {
+    pub(crate) scene: &'a Scene,
+    /// File of the log.
+    pub(crate) path: &'a Path,
+    pub(crate) title: &'a str,
+    /// Whether mass and inertia of the scene are not to be looked at.
+    pub(crate) identify: bool,
+}
+
+/// What contacts of any palms tell.
+pub(crate) struct AnyPalms {
+    pub(crate) data: EstimateData,
+    /// Bounds on the shape, where there are any.
+    pub(crate) bounds: Option<BoundsResult>,
+}
+
+/// Everything that contacts of any palms tell, and why the log is not one of three planes. Truth in the log is only compared
+/// with, never used.
+pub(crate) fn estimate_any_palms(
+    log: ContactLog,
+    why: NotThreePlanes,
+    request: &AnyPalmsRequest,
+    progress: &Progress,
+) -> Result<AnyPalms, CliError> {
+    let lacks = log.palms().iter().position(|palm| palm.force_axes() != Some(SensedAxes::Three));
+    if let Some(i) = lacks {
+        return Err(CliError::NotThreeAxes { path: request.path.to_owned(), palm: i + 1, source: why });
+    }
+    let options = options(&log, request.scene)?;
+    progress.step("estimating the motion");
+    let (log, truth) = log.split_truth();
+    let estimate = estimate_contacts(&log, None, &options).map_err(|error| match error {
+        ContactEstimateError::NoSize => CliError::SizeNotStated,
+        other => CliError::ContactEstimate(other),
+    })?;
+    let curves: Vec<_> = log.palms().iter().map(|palm| curve(palm, &estimate)).collect();
+    let truth = truth.filter(|truth| !truth.is_empty()).map(|truth| {
+        // The body's axes are those of the world at the first sample.
+        let axes = truth[0].R_WO.inverse() * estimate.states[0].R_WO;
+        true_motion(&truth, axes)
+    });
+    let mut warnings = Vec::new();
+    if !request.identify {
+        warnings.extend(stated_body(request.scene, &estimate));
+    }
+    warnings.extend(not_relied_on(&estimate));
+    progress.step("bounding the shape");
+    let bounds = match estimate_bounds(&log, &estimate, &curves, options.noise.contact, CONFIDENCE) {
+        Ok(bounds) => bounds,
+        Err(error) => {
+            let why = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+            warnings.push(format!("The contacts give no bounds under this motion ({why})."));
+            None
+        }
+    };
+    warnings.extend(bounds.iter().flat_map(|bounds| bounds.warnings.clone()));
+    if bounds.is_none() {
+        warnings
+            .push("There are no bounds on the shape: at no sample the pose is known well enough.".to_owned());
+    }
+    let bounds_at = bounds.is_some().then_some(CONFIDENCE);
+    let data = EstimateData {
+        title: request.title.to_owned(),
+        verdict: verdict(&estimate),
+        note: sentence(&format!("{why}; the estimate is that from contacts of any palms")),
+        evidence: evidence(&estimate, &options, bounds_at),
+        log,
+        estimate,
+        curves,
+        truth,
+        bounds: bounds.as_ref().map(|bounds| bounds.drawn.clone()),
+        warnings,
+    };
+    Ok(AnyPalms { data, bounds })
+}
+
+/// What the estimator is told, as the scene states it.
+fn options(log: &ContactLog, scene: &Scene) -> Result<ContactOptions, CliError> {
+    let sensors = &scene.sensors;
+    let forces = sensors.force_std.is_some() || sensors.force_share.is_some();
+    let missing = match (sensors.contact_std, forces) {
+        (Some(_), true) => None,
+        (None, true) => {
+            Some("contact_std (of a contact point in each tangent direction of its palm, m; such as 1e-4)")
+        }
+        (Some(_), false) => Some(
+            "force_std (of each axis of a force, N; such as 0.01) or force_share (as a share of it; such as 0.02)",
+        ),
+        (None, false) => Some(
+            "contact_std (of a contact point in each tangent direction of its palm, m; such as 1e-4) and force_std (of each axis of a \
+             force, N; such as 0.01) or force_share (as a share of it; such as 0.02)",
+        ),
+    };
+    if let Some(missing) = missing {
+        return Err(CliError::NoiseNotStated { missing });
+    }
+    let length = scene.size.or_else(|| size(log)).ok_or(CliError::SizeNotStated)?;
+    let noise = ContactNoiseLevel {
+        contact: sensors.contact_std.unwrap_or_default(),
+        force_fixed: sensors.force_std.unwrap_or_default(),
+        force_share: sensors.force_share.unwrap_or_default(),
+        floor: sensors.contact_speed_std.unwrap_or(FLOOR * (scene.gravity * length).sqrt()),
+    };
+    Ok(ContactOptions { noise, gravity: scene.gravity, size: scene.size })
+}
+
+/// Root mean square of the distance of contacts from the mean of those at the same time, m: about the size of the object. None
+/// where no two are touched at once.
+fn size(log: &ContactLog) -> Option<f64> {
+    let (mut squares, mut count) = (0.0, 0.0);
+    for k in 0..log.times().len() {
+        let contacts: Vec<DVec3> = log.palms().iter().filter_map(|palm| Some(palm.touch(k)?.p_WC)).collect();
+        if contacts.len() > 1 {
+            let mean = contacts.iter().sum::<DVec3>() / contacts.len() as f64;
+            squares += contacts.iter().map(|c| c.distance_squared(mean)).sum::<f64>();
+            count += contacts.len() as f64;
+        }
+    }
+    (squares > 0.0).then(|| f64::sqrt(squares / count))
+}
+
+/// Where a palm touches the object, at the samples that are relied on.
+fn curve(palm: &LoggedPalm, estimate: &ContactEstimate) -> Vec<Option<PalmContact>> {
+    let contact = |(k, state): (usize, &recon::object_dynamics::BodyState)| {
+        let touch = palm.touch(k).filter(|_| estimate.relied_on[k])?;
+        let turn = state.R_WO.inverse();
+        let (p_OC, normal) = (turn * (touch.p_WC - state.p_WCm), turn * -touch.n.get());
+        Some(PalmContact { p_WC: touch.p_WC, p_OC, normal, radius: p_OC.dot(normal) })
+    };
+    estimate.states.iter().enumerate().map(contact).collect()
+}
+
+/// What to say where the motion is relied on at some samples only.
+fn not_relied_on(estimate: &ContactEstimate) -> Option<String> {
+    let (all, doubtful) = (estimate.relied_on.len(), estimate.relied_on.iter().filter(|r| !**r).count());
+    (estimate.reliability.is_reliable() && doubtful > 0).then(|| {
+        format!(
+            "At {doubtful} of {all} samples the motion is not relied on (relied_on in motion.csv is 0): noise does not explain what is \
+             left there, or the deviations are too large for what they are made from."
+        )
+    })
+}

@@ -1,0 +1,215 @@
+//! An estimate from contacts of any palms in words and numbers for people.
+
+use glam::DVec3;
+use recon::object_dynamics::MassProperties;
+use recon::observer::{ContactEstimate, ContactOptions, Reason, Reliability};
+use recon_io::EvidenceValue::{Number, Text};
+use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Scene, Verdict, brief_to};
+
+/// Share of the samples whose motion must be relied on for a result without reservations.
+const ENOUGH: f64 = 0.5;
+
+/// Whether the estimate can be relied on, in one sentence.
+pub(super) fn verdict(estimate: &ContactEstimate) -> Verdict {
+    if let Reliability::Unreliable(reasons) = &estimate.reliability {
+        let reasons: Vec<String> = reasons.iter().map(ToString::to_string).collect();
+        let text = format!("Do not rely on this result: {}.", reasons.join("; "));
+        return Verdict { level: Level::Bad, text };
+    }
+    let (share, misfit) = (relied_on(estimate), estimate.evidence.misfit);
+    let text = format!(
+        "The fit settled, noise explains what is left (chi-squared {misfit:.2} a condition), and the motion is relied on at {} of the \
+         samples; of the three second moments of the inertia {} learned.",
+        percent(share),
+        learned(estimate)
+    );
+    Verdict { level: if share < ENOUGH { Level::Caution } else { Level::Good }, text }
+}
+
+/// Share of the samples whose motion is relied on.
+pub(super) fn relied_on(estimate: &ContactEstimate) -> f64 {
+    let relied = estimate.relied_on.iter().filter(|relied| **relied).count();
+    relied as f64 / estimate.relied_on.len().max(1) as f64
+}
+
+/// A share without the rounding that would make all of nearly all.
+fn percent(share: f64) -> String {
+    format!("{} %", brief_to(3, (1000.0 * share).floor() / 10.0))
+}
+
+fn learned(estimate: &ContactEstimate) -> &'static str {
+    match estimate.inertia_deviations.iter().filter(|deviation| **deviation < INERTIA_LEARNED).count() {
+        0 => "none is",
+        1 => "one is",
+        2 => "two are",
+        _ => "all are",
+    }
+}
+
+/// What the estimate rests on, row by row.
+pub(super) fn evidence(
+    estimate: &ContactEstimate,
+    options: &ContactOptions,
+    bounds_at: Option<f64>,
+) -> Vec<Evidence> {
+    let mut rows = body(estimate);
+    rows.extend(fit(estimate));
+    rows.extend(told(options));
+    rows.extend(bounds_at.map(|confidence| {
+        let meaning = "Both bounds hold with at least this probability for the noise of contacts and the deviations of the motion, \
+                       however these go together, in the axes of the world at the first sample.";
+        neutral("bounds_confidence", "Confidence of the bounds", Number(confidence), "", meaning)
+    }));
+    rows
+}
+
+/// Mass and inertia.
+fn body(estimate: &ContactEstimate) -> Vec<Evidence> {
+    let (mass, deviation) = (Number(estimate.mass), Number(estimate.mass * estimate.mass_deviation));
+    let mut rows = vec![
+        neutral("mass", "Mass", mass, "kg", "As estimated from the log."),
+        neutral("std_mass", "Uncertainty of the mass", deviation, "kg", "Standard deviation."),
+    ];
+    // A tensor that no body has, as rounding may leave one, has no moments to tell.
+    if let Ok(mass) = MassProperties::new(estimate.mass, estimate.inertia) {
+        let names = [("moment_x", "Least"), ("moment_y", "Middle"), ("moment_z", "Largest")];
+        for ((key, which), moment) in names.into_iter().zip(mass.principal().moments.to_array()) {
+            let meaning = "About the centre of mass, as estimated from the log.";
+            rows.push(neutral(key, &format!("{which} principal moment"), Number(moment), "kg m^2", meaning));
+        }
+    }
+    let reliable = estimate.reliability.is_reliable();
+    let all = reliable && estimate.inertia_deviations.iter().all(|d| *d < INERTIA_LEARNED);
+    let roots: Vec<String> = estimate.inertia_deviations.iter().map(|d| brief_to(2, *d)).collect();
+    let meaning = "Of the inertia. One is learned where the deviation of the logarithm of its root is below 0.5; else it is what any \
+                   body of this size has.";
+    let words = Text(format!("{} learned", learned(estimate)));
+    rows.push(Evidence {
+        level: if all { Level::Good } else { Level::Caution },
+        ..neutral("inertia_learned", "Second moments", words, "", meaning)
+    });
+    let meaning = "Standard deviations of the logarithms of their roots.";
+    rows.push(neutral("std_log_roots", "Uncertainty of second moments", Text(roots.join(", ")), "", meaning));
+    rows
+}
+
+/// How the fit went.
+fn fit(estimate: &ContactEstimate) -> Vec<Evidence> {
+    let e = &estimate.evidence;
+    let good_if = |good| if good { Level::Good } else { Level::Bad };
+    let explained = match &estimate.reliability {
+        Reliability::Reliable => true,
+        Reliability::Unreliable(reasons) => !reasons.iter().any(|r| matches!(r, Reason::Inconsistent { .. })),
+    };
+    let share = relied_on(estimate);
+    let nodes = "Motions that were solved for: contacts are averaged over the samples between them.";
+    let misfit = "About 1 where the stated noise explains what is left; all deviations are widened by its root above that.";
+    let count = |n: usize| EvidenceValue::Count(n as u64);
+    let settled = Text(if e.settled { "yes" } else { "no" }.to_owned());
+    vec![
+        neutral("samples", "Samples", count(e.samples), "", "Rows of the log."),
+        neutral("nodes", "Nodes", count(e.nodes), "", nodes),
+        neutral(
+            "conditions",
+            "Contact conditions",
+            count(e.conditions),
+            "",
+            "One a contact that slides, three a contact that sticks.",
+        ),
+        Evidence {
+            level: good_if(explained),
+            ..neutral("misfit", "Chi-squared a condition", Number(e.misfit), "", misfit)
+        },
+        neutral(
+            "iterations",
+            "Linearisations",
+            count(e.iterations[1]),
+            "",
+            "Of the coarse solution from nothing and the last one.",
+        ),
+        Evidence {
+            level: good_if(e.settled),
+            ..neutral(
+                "settled",
+                "Settled",
+                settled,
+                "",
+                "Whether less than half a standard deviation was left to gain.",
+            )
+        },
+        Evidence {
+            level: if share < ENOUGH { Level::Caution } else { Level::Good },
+            ..neutral(
+                "relied_on",
+                "Samples relied on",
+                Number(share),
+                "",
+                "Share of the samples whose motion is known to within its deviations.",
+            )
+        },
+    ]
+}
+
+/// What the estimator was told of the sensors.
+fn told(options: &ContactOptions) -> Vec<Evidence> {
+    let noise = &options.noise;
+    let tangent = "In each tangent direction of the palm, from the scene.";
+    let speed =
+        "What a contact condition may be off by beside noise: from the scene, or 3e-5 of the natural speed.";
+    vec![
+        neutral("noise_contact", "Noise of contact positions", Number(noise.contact), "m", tangent),
+        neutral(
+            "noise_force",
+            "Noise of forces, fixed",
+            Number(noise.force_fixed),
+            "N",
+            "Of each axis, from the scene.",
+        ),
+        neutral(
+            "noise_force_share",
+            "Noise of forces, growing",
+            Number(noise.force_share),
+            "",
+            "As a share of the force, from the scene.",
+        ),
+        neutral("contact_speed", "Speed of contacts", Number(noise.floor), "m/s", speed),
+    ]
+}
+
+/// A row that speaks neither for nor against the result.
+fn neutral(key: &str, name: &str, value: EvidenceValue, unit: &str, meaning: &str) -> Evidence {
+    let [key, name, unit, meaning] = [key, name, unit, meaning].map(str::to_owned);
+    Evidence { key, name, value, unit, meaning, level: Level::Neutral }
+}
+
+/// What to say of a body that is stated, and was estimated as an unknown one.
+pub(super) fn stated_body(scene: &Scene, estimate: &ContactEstimate) -> Option<String> {
+    let stated = scene.mass_properties().ok().flatten()?;
+    let mass = (estimate.mass / stated.mass()).ln();
+    let mut text = format!(
+        "The stated mass and inertia are not used: the object is taken as unknown. The estimated mass is off the stated one by {:+.1e} of it \
+         ({} of its deviations)",
+        mass.exp_m1(),
+        brief_to(2, mass.abs() / estimate.mass_deviation)
+    );
+    if let Ok(found) = MassProperties::new(estimate.mass, estimate.inertia) {
+        let [stated, found] = [stated, found].map(|mass| mass.principal().moments);
+        let share = (found / stated - DVec3::ONE).abs().max_element();
+        let roots = (log_roots(found) - log_roots(stated)).abs().max_element();
+        let deviation = estimate.inertia_deviations.into_iter().fold(0.0, f64::max);
+        text += &format!(", the principal moments are by up to {share:.1e} of themselves");
+        if roots.is_finite() && deviation > 0.0 {
+            text += &format!(
+                " (roots of second moments {} of the largest of their deviations)",
+                brief_to(2, roots / deviation)
+            );
+        }
+    }
+    Some(text + ".")
+}
+
+/// Logarithms of the roots of the second moments along the principal axes.
+fn log_roots(moments: DVec3) -> DVec3 {
+    let second = DVec3::splat(0.5 * moments.element_sum()) - moments;
+    DVec3::from_array(second.to_array().map(|s| 0.5 * s.ln()))
+}

@@ -1,0 +1,222 @@
+//! `recon reconstruct` on contacts with friction on any palms: from a simulated scene to a folder of results.
+
+use crate::common::{Scratch, Table};
+use crate::margins::out_of_ellipsoid;
+use glam::{DQuat, DVec3};
+use serde_json::Value;
+
+/// An ellipsoid that spins between three planes that rub.
+const SPINNING: &str = r#"
+gravity = 9.81
+[object]
+mass = 0.2
+principal_moments = [1.0e-4, 1.36e-4, 1.64e-4]
+[sensors]
+contact_std = 4e-5
+force_share = 0.004
+[palms]
+friction = 0.1
+[[palm]]
+kind = "flat"
+pose = { position = [0.037818573637, 0.0, -0.030010972519], normal = [-0.783326909627, 0.0, 0.621609968271] }
+[[palm]]
+kind = "flat"
+pose = { position = [-0.01322345916, 0.022903703116, -0.020986982389], normal = [0.391663454814, -0.678381003205, 0.621609968271] }
+[[palm]]
+kind = "flat"
+pose = { position = [-0.014623591974, -0.025328804288, -0.023209136393], normal = [0.391663454814, 0.678381003205, 0.621609968271] }
+[simulation]
+duration = 0.4
+sample_rate = 500.0
+position = [0.0, 0.0, 0.0]
+orientation = [0.9800665778412416, 0.08670640444138947, 0.17341280888277893, 0.043353202220694734]
+velocity = [0.06497225576597229, 0.03903398224498278, 0.0015911973322760883]
+angular_velocity = [3.0, -4.0, 8.0]
+seed = 2
+shape = { kind = "ellipsoid", semi_axes = [0.05, 0.04, 0.03] }
+"#;
+
+/// The same body thrown onto one plate that rubs.
+const ONE_PLATE: &str = r#"
+gravity = 9.81
+[object]
+mass = 0.2
+principal_moments = [1.0e-4, 1.36e-4, 1.64e-4]
+[sensors]
+contact_std = 4e-5
+force_share = 0.004
+[[palm]]
+kind = "flat"
+friction = 0.2
+pose = { position = [0.0, 0.0, 0.0] }
+[simulation]
+duration = 0.2
+sample_rate = 500.0
+position = [0.0, 0.0, 0.03]
+velocity = [0.3, 0.1, 0.0]
+angular_velocity = [0.0, 0.0, 5.0]
+shape = { kind = "ellipsoid", semi_axes = [0.05, 0.04, 0.03] }
+"#;
+
+/// A folder with a scene and its log.
+fn simulated(test: &str, scene: &str) -> Scratch {
+    let scratch = Scratch::new(test);
+    scratch.write("scene.toml", scene);
+    let run = scratch.run(&["simulate", "scene.toml", "-o", "log.csv", "--tolerance", "1e-9"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    scratch
+}
+
+/// Checks that `recon reconstruct` refuses a log in these words and writes nothing.
+fn refused(scratch: &Scratch, scene: &str, further: &[&str], (code, words): (i32, &[&str])) {
+    scratch.write("known.toml", scene);
+    let arguments = [&["reconstruct", "log.csv", "--scene", "known.toml", "-o", "out"], further].concat();
+    let run = scratch.run(&arguments);
+    assert_eq!(run.code, Some(code), "{}{}", run.stdout, run.stderr);
+    for word in words {
+        assert!(run.stderr.contains(word), "`{word}` is not in\n{}", run.stderr);
+    }
+    assert!(!scratch.path().join("out").exists());
+}
+
+fn vectors(table: &Table, stem: &str) -> Vec<DVec3> {
+    let places = ["x", "y", "z"].map(|axis| table.column(&format!("{stem}{axis}")));
+    table.rows.iter().map(|row| DVec3::from_array(places.map(|k| row[k].parse().unwrap()))).collect()
+}
+
+fn turns(table: &Table) -> Vec<DQuat> {
+    let (v, w) = (vectors(table, "q"), table.column("qw"));
+    let scalar = |row: &Vec<String>| row[w].parse().unwrap();
+    v.iter().zip(&table.rows).map(|(v, row)| DQuat::from_xyzw(v.x, v.y, v.z, scalar(row))).collect()
+}
+
+#[test]
+fn a_motion_with_friction_is_estimated_to_within_what_is_said() {
+    let scratch = simulated("friction", SPINNING);
+    let run = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out", "--json"]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let said: Value = serde_json::from_str(&run.stdout).unwrap();
+    let mut expected =
+        ["contact_curves.csv", "manifest.json", "motion.csv", "report.html", "summary.json"].to_vec();
+    for (key, file) in [("lower_volume_m3", "lower_bound.ply"), ("upper_volume_m3", "upper_bound.ply")] {
+        if said["bounds"][key].as_f64().is_some_and(|volume| volume > 0.0) {
+            expected.push(file);
+        }
+    }
+    expected.sort_unstable();
+    let mut names: Vec<_> = std::fs::read_dir(scratch.path().join("out"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(names, expected);
+    assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
+
+    let (log, motion) =
+        (Table::parse(&scratch.read("log.csv")), Table::parse(&scratch.read("out/motion.csv")));
+    assert_eq!(motion.rows.len(), log.rows.len());
+    assert!(motion.header.ends_with(&["mode_1", "mode_2", "mode_3", "relied_on"].map(str::to_owned)));
+    let relied = motion.column("relied_on");
+    assert!(motion.rows.iter().all(|row| row[relied] == "1"));
+    let mean = |errors: Vec<DVec3>, deviations: &str| {
+        let squares = errors.iter().zip(vectors(&motion, deviations)).map(|(e, s)| (*e / s).length_squared());
+        squares.sum::<f64>() / (3 * errors.len()) as f64
+    };
+    // Errors of neighbouring samples are alike: there are a few independent numbers in each mean.
+    for (stem, deviations) in [("cm", "std_cm"), ("v", "std_v"), ("w", "std_w")] {
+        let pairs = vectors(&log, stem).into_iter().zip(vectors(&motion, stem));
+        let mean = mean(pairs.map(|(truth, found)| found - truth).collect(), deviations);
+        assert!((0.1..4.0).contains(&mean), "{stem}: {mean}");
+    }
+    let (truth, found) = (turns(&log), turns(&motion));
+    let error = |(truth_k, found_k): (&DQuat, &DQuat)| {
+        (*found_k * found[0].inverse() * (*truth_k * truth[0].inverse()).inverse()).to_scaled_axis()
+    };
+    let turn = mean(truth.iter().zip(&found).map(error).collect(), "std_turn");
+    assert!((0.1..4.0).contains(&turn), "turn: {turn}");
+
+    let mass = said["mass_kg"].as_f64().unwrap();
+    let deviation = said["std_mass_kg"].as_f64().unwrap();
+    assert!((mass - 0.2).abs() < 4.0 * deviation && deviation < 2e-3, "{mass} {deviation}");
+    let warnings = said["warnings"].to_string();
+    assert!(warnings.contains("The stated mass and inertia are not used"), "{warnings}");
+    let why = said["note"].as_str().unwrap();
+    assert!(why.contains("Friction is felt on palm"), "{why}");
+    let shares = said["mode_shares"][0].as_object().unwrap();
+    let sum: f64 = ["off", "slides", "sticks"].iter().map(|mode| shares[*mode].as_f64().unwrap()).sum();
+    assert!((sum - 1.0).abs() < 1e-12);
+    // For a person, and without a look at the stated body.
+    let told = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out", "--identify"]);
+    for word in
+        ["relied on at 100 %", "contacts of any palms", "mass  ", "palm 3: off 0.000 s", "report.html"]
+    {
+        assert!(told.stdout.contains(word), "`{word}` is not in\n{}", told.stdout);
+    }
+    assert!(!told.stdout.contains("stated mass"), "{}", told.stdout);
+}
+
+/// Little friction, so that the body turns for long enough to be felt from all sides, and good sensors.
+#[test]
+fn the_body_is_between_its_bounds() {
+    let scene = SPINNING
+        .replace("friction = 0.1", "friction = 0.005")
+        .replace("duration = 0.4", "duration = 0.8")
+        .replace("contact_std = 4e-5", "contact_std = 4e-6")
+        .replace("force_share = 0.004", "force_share = 0.0004");
+    let scratch = simulated("between", &scene);
+    let run = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out", "--json"]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    // The bounds are in the axes of the world at the first sample.
+    let turn = turns(&Table::parse(&scratch.read("log.csv")))[0].inverse();
+    let axes = DVec3::new(0.05, 0.04, 0.03);
+    let excess = out_of_ellipsoid(&scratch, axes, (DVec3::ZERO, turn)).map(Option::unwrap);
+    // The margins at contacts are some twelve deviations of the pose.
+    assert!(excess.iter().all(|e| (-1e-3..=0.0).contains(e)), "{excess:?}");
+    let said: Value = serde_json::from_str(&run.stdout).unwrap();
+    let volume = 4.0 / 3.0 * std::f64::consts::PI * axes.element_product();
+    let shares =
+        ["lower_volume_m3", "upper_volume_m3"].map(|key| said["bounds"][key].as_f64().unwrap() / volume);
+    assert!(shares[0] > 0.3 && shares[1] < 5.0, "{shares:?}");
+    assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
+}
+
+#[test]
+fn contacts_of_one_palm_need_the_size_of_the_object() {
+    let scratch = simulated("one-plate", ONE_PLATE);
+    refused(&scratch, ONE_PLATE, &[], (3, &["object.size"]));
+    let sized = ONE_PLATE.replace("mass = 0.2", "mass = 0.2\nsize = 0.04");
+    scratch.write("sized.toml", &sized);
+    let run = scratch.run(&["reconstruct", "log.csv", "--scene", "sized.toml", "-o", "out", "--json"]);
+    // One plate may leave it open what the motion is: then that is said.
+    assert!(matches!(run.code, Some(0 | 4)), "{}{}", run.stdout, run.stderr);
+    assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
+    let said: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(run.code == Some(0), said["verdict"]["level"] == "good", "{said}");
+}
+
+#[test]
+fn what_neither_estimator_can_do_is_refused_by_name() {
+    let scratch = simulated("refused", ONE_PLATE);
+    let sized = ONE_PLATE.replace("mass = 0.2", "mass = 0.2\nsize = 0.04");
+    let without = |key: &str| {
+        sized
+            .lines()
+            .filter(|line| !line.starts_with(key))
+            .map(|line| format!("{line}\n"))
+            .collect::<String>()
+    };
+    refused(&scratch, &without("contact_std"), &[], (3, &["[sensors]", "contact_std", "1e-4"]));
+    refused(&scratch, &without("force_share"), &[], (3, &["[sensors]", "force_std", "force_share", "0.02"]));
+    refused(&scratch, &sized, &["--export", "mjcf"], (2, &["--export", "log.csv"]));
+    refused(&scratch, &sized, &["--without-forces"], (3, &["log.csv", "1 palm(s)"]));
+    refused(&scratch, &sized.replace("gravity = 9.81", "gravity = 0.0"), &[], (3, &["gravity"]));
+    // What a robot has whose palm feels no force.
+    let mut table = Table::parse(&scratch.read("log.csv"));
+    let kept: Vec<usize> =
+        (0..table.header.len()).filter(|&c| !table.header[c].starts_with(['f', 'J'])).collect();
+    let keep = |row: &[String]| kept.iter().map(|&c| row[c].clone()).collect::<Vec<_>>();
+    table.rows = table.rows.iter().map(|row| keep(row)).collect();
+    table.header = keep(&table.header);
+    scratch.write("log.csv", &table.text());
+    refused(&scratch, &sized, &[], (3, &["log.csv", "palm 1", "fx_1", "1 palm(s), not three"]));
+}
