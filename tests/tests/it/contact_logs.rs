@@ -229,7 +229,7 @@ fn full_contact_logs_obey_mechanics() {
 fn palms_with_friction_are_no_three_planes() {
     let log = read(&cases()[0], &excerpt("S2"));
     let refused = log.three_planes().unwrap_err().to_string();
-    assert!(refused.contains("rubs"), "{refused}");
+    assert!(refused.contains("friction is felt on palm 1"), "{refused}");
     let log = read(&cases()[1], &excerpt("S4"));
     let refused = log.three_planes().unwrap_err().to_string();
     assert!(refused.contains("palm 1 is a sphere"), "{refused}");

@@ -7,7 +7,7 @@
 use super::error::ContactSimulationError as Error;
 use super::field::Evaluated;
 use super::result::{ContactEvent, ContactEventKind as Kind};
-use super::run::Run;
+use super::run::{MOST_STEPS, Run};
 use super::step::{Stepped, Stepper};
 use crate::ContactMode;
 use crate::contacts::{MOST_PALMS, Modes, NO_DIRECTIONS};
@@ -35,8 +35,10 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
         let (state, tallies) = self.units.unpack(self.t, &self.y);
         let mut now = Stepped::new(state, tallies, self.blow_work, self.stretch.modes, self.stretch.guesses);
         let (mut h, shortest) = (self.crawl_step(), tolerance / self.units.rate);
+        // Of order 1 it takes many steps: four times those that are as long as the tolerance allows.
+        let share = (0.25 * MOST_STEPS as f64 * self.crawl_step() * self.units.rate).min(1.0);
         while self.t < last {
-            self.pace(self.t, &self.y.clone())?;
+            self.pace(self.t, &self.y.clone(), share)?;
             let until = self.next_stop(last, shortest);
             let left = until - self.t;
             let lands = h >= LANDS * left;

@@ -46,7 +46,7 @@ impl<S: SupportFunction> ContactScene<S> {
 
 /// Steps within one natural time after which a motion is taken to be too fast to be followed: smooth motion takes some tens,
 /// logs with a pose of each palm at every millisecond some hundreds.
-const MOST_STEPS: usize = 10_000;
+pub(super) const MOST_STEPS: usize = 10_000;
 
 pub(super) struct Run<'a, S, const N: usize> {
     pub(super) scene: &'a ContactScene<S>,
@@ -62,7 +62,7 @@ pub(super) struct Run<'a, S, const N: usize> {
     /// Work (in steps) since a time, s: more than time stepping takes is too much.
     pub(super) work: (f64, usize),
     /// Steps since the start, refused ones among them.
-    steps: usize,
+    steps: f64,
     pub(super) result: ContactSimulation,
 }
 
@@ -115,7 +115,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
             y: [0.0; N],
             blow_work: 0.0,
             work: (0.0, 0),
-            steps: 0,
+            steps: 0.0,
             result,
         };
         run.settle(state, &Tallies::default(), &closed, None)?;
@@ -150,11 +150,10 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         self.stretch.evaluate(self.scene, &self.units, state).map_err(|source| Error::Contact { t, source })
     }
 
-    /// Counts a step that begins at `t`, and refuses to go on where so many have led nowhere.
-    pub(super) fn pace(&mut self, t: f64, y: &[f64; N]) -> Result<(), Error> {
-        self.steps += 1;
-        let allowed = MOST_STEPS as f64 * (1.0 + t * self.units.rate);
-        if self.steps as f64 <= allowed {
+    /// Counts a step that begins at `t`, at its share of what is allowed, and refuses to go on where so many have led nowhere.
+    pub(super) fn pace(&mut self, t: f64, y: &[f64; N], share: f64) -> Result<(), Error> {
+        self.steps += share;
+        if self.steps <= MOST_STEPS as f64 * (1.0 + t * self.units.rate) {
             return Ok(());
         }
         Err(self.too_slow(&self.units.unpack(t, y).0))
@@ -166,7 +165,7 @@ impl<'a, S: SupportFunction, const N: usize> Run<'a, S, N> {
         let palms = (0..self.scene.palms().len()).map(palm);
         Error::TooSlow {
             t: state.t,
-            steps: self.steps,
+            steps: self.steps as usize,
             spin: state.body.w_WO.length(),
             speed: state.body.v_WCm.length(),
             palms: palms.fold(0.0, f64::max),

@@ -54,7 +54,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
                 (self.t, self.y) = (t, y);
                 break Reached::Limit;
             }
-            self.pace(t, &y)?;
+            self.pace(t, &y, 1.0)?;
             if self.crowded(t, 1) {
                 (self.t, self.y) = (t, y);
                 break Reached::Crowded;
