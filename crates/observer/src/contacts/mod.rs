@@ -1,6 +1,7 @@
 //! Motion, mass and inertia from contacts of any palms: nodes linked by measured impulses.
 
 mod cold;
+mod equations;
 mod estimate;
 mod flow;
 mod modes;

@@ -83,9 +83,9 @@ fn coarse(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
 /// The last solution, in which the inertia keeps its expected value along directions of which noise alone would tell.
 fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
     let first = solve::<CONSTANTS>(problem, start, FIRST, ENOUGH[1])?;
-    let claimed = first.equations.covariances(&problem.natural_information())?;
-    let frozen = claimed.frozen(problem, &first.equations, &first.unknowns)?;
-    problem.frozen = frozen;
+    let claimed = first.equations.covariances(&problem.natural_information());
+    let frozen = claimed.and_then(|claimed| claimed.frozen(problem, &first.equations, &first.unknowns));
+    problem.frozen = frozen.unwrap_or_default();
     let mut found = solve::<CONSTANTS>(problem, first.unknowns, MOST, ENOUGH[1])?;
     found.iterations += first.iterations;
     Some(found)

@@ -1,7 +1,8 @@
 //! Levenberg-Marquardt steps on a chain of nodes and the constants that all of them share.
 
+use super::equations::{Equations, Gradient};
 use super::flow::Transition;
-use super::problem::{Equations, Gradient, Problem, Trial, Unknowns};
+use super::problem::{Problem, Trial, Unknowns};
 use super::state::{MOTION, Tangent};
 use crate::least_squares::{LARGEST_DAMPING, RAISE, lowered};
 use nalgebra::{Cholesky, Const, DMatrix, SMatrix, SVector};

@@ -5,8 +5,9 @@
 //! information as the equations have it, `N` what noise adds to it on average and `C = B - N` what is left, the estimate departs from the truth by `C^-1`
 //! times a score of covariance `B`, so that its covariance is `C^-1 B C^-1`.
 
+use super::equations::Equations;
 use super::flow::Transition;
-use super::problem::{Equations, FROZEN, Problem, Unknowns};
+use super::problem::{FROZEN, Problem, Unknowns};
 use super::solve::Covariances;
 use super::state::{Body, Motion};
 use crate::three_palms::inertia_slope;

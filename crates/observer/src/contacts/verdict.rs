@@ -1,6 +1,7 @@
 //! What an estimate from contacts rests on, and which of its rows are to be relied on.
 
-use super::problem::{Equations, Problem, Units};
+use super::equations::Equations;
+use super::problem::{Problem, Units};
 use super::samples::Deviations;
 use crate::three_palms::{LARGEST_DEVIATION, LARGEST_MISFIT, Reason, Reliability};
 
