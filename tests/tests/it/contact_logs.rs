@@ -232,7 +232,7 @@ fn palms_with_friction_are_no_three_planes() {
     assert!(refused.contains("friction is felt on palm 1"), "{refused}");
     let log = read(&cases()[1], &excerpt("S4"));
     let refused = log.three_planes().unwrap_err().to_string();
-    assert!(refused.contains("palm 1 is a sphere"), "{refused}");
+    assert!(refused.contains("palm 1 is not flat but a sphere"), "{refused}");
 }
 
 #[test]
