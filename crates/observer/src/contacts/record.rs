@@ -107,11 +107,7 @@ impl Record {
     pub(super) fn free_blows(&mut self, impulse: f64, moment: f64, weight: f64) {
         let lost = |from: usize, to: usize| {
             let gone = |c: &&Contact| self.contacts[to].iter().all(|other| other.palm != c.palm);
-            self.contacts[from]
-                .iter()
-                .filter(gone)
-                .map(|c| c.f.length())
-                .fold(None, |most: Option<f64>, f| Some(most.map_or(f, |m| m.max(f))))
+            self.contacts[from].iter().filter(gone).map(|c| c.f.length()).reduce(f64::max)
         };
         let lasts = |k: usize| match (lost(k, k - 1), lost(k - 1, k)) {
             (Some(_), _) => BLOW,

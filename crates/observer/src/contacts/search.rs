@@ -34,7 +34,7 @@ const FIRST_TURN: f64 = 1e-5;
 /// A coarse solution from nothing and the last one from there, with one floor of the coarse conditions after the other until noise explains
 /// what is left, else the one that leaves least; and the linearisations before the last solution.
 pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
-    let coarse_nodes = coarse_nodes(problem);
+    let coarse_nodes = spaced(problem.record, COARSE * problem.units.length / problem.units.speed);
     let all_nodes: Vec<usize> = (0..problem.record.times.len()).collect();
     let mut best: Option<Solved<CONSTANTS>> = None;
     let mut frozen = Vec::new();
@@ -89,10 +89,6 @@ fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
     let mut found = solve::<CONSTANTS>(problem, first.unknowns, MOST, ENOUGH[1])?;
     found.iterations += first.iterations;
     Some(found)
-}
-
-pub(super) fn coarse_nodes(problem: &Problem) -> Vec<usize> {
-    spaced(problem.record, COARSE * problem.units.length / problem.units.speed)
 }
 
 /// Samples at least `apart` from each other, the first and the last among them, and those after blows.

@@ -1,5 +1,6 @@
 //! `recon reconstruct` on logs of contacts that are not three planes without friction.
 
+use super::reconstruct::bounds_and_errors;
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
@@ -57,21 +58,8 @@ fn describe(data: &EstimateData, figures: &Value, folder: &Path) -> String {
     if !moments.is_empty() {
         line("principal moments", format!("{} kg m^2", moments.join(", ")));
     }
-    if let Some(bounds) = &data.bounds {
-        line("lower bound", format!("{} m^3", brief(bounds.lower.volume)));
-        if let Some(upper) = &bounds.upper {
-            line("upper bound", format!("{} m^3", brief(upper.volume)));
-            line("lower / upper", brief_to(4, bounds.lower.volume / upper.volume));
-        }
-    }
-    for (name, key, unit) in [
-        ("largest error: position", "position_m", "m"),
-        ("  orientation", "orientation_rad", "rad"),
-        ("  angular velocity", "angular_velocity_rad_per_s", "rad/s"),
-    ] {
-        if let Some(error) = figures["largest_error"][key].as_f64() {
-            line(name, format!("{error:.2e} {unit}"));
-        }
+    for (name, value) in bounds_and_errors(data.bounds.as_ref(), figures) {
+        line(name, value);
     }
     let spans: Vec<_> =
         (0..data.log.palms().len()).map(|palm| estimated_mode_spans(data.log.times(), found, palm)).collect();

@@ -3,7 +3,7 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{LogOf, Reconstruction, exported, read_log, reconstruct, write_reconstruction_folder};
 use crate::progress::Progress;
-use recon_io::{FolderTarget, Scene, brief, brief_to};
+use recon_io::{Bounds, FolderTarget, Scene, brief, brief_to};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
@@ -63,24 +63,31 @@ fn describe(made: &Reconstruction, figures: &Value, folder: &Path) -> String {
     if let (Some(first), Some(last)) = (data.times.first(), data.times.last()) {
         line("samples", format!("{} over {} s", data.times.len(), brief(last - first)));
     }
-    if let Some(bounds) = &data.bounds {
-        line("lower bound", format!("{} m^3", brief(bounds.lower.volume)));
+    for (name, value) in bounds_and_errors(data.bounds.as_ref(), figures) {
+        line(name, value);
+    }
+    let _ = write!(text, "{}", folder.join("report.html").display());
+    text
+}
+
+/// Names and values of what is said of the bounds and, where the truth is known, of the largest errors.
+pub(super) fn bounds_and_errors(bounds: Option<&Bounds>, figures: &Value) -> Vec<(&'static str, String)> {
+    let mut lines = Vec::new();
+    if let Some(bounds) = bounds {
+        lines.push(("lower bound", format!("{} m^3", brief(bounds.lower.volume))));
         if let Some(upper) = &bounds.upper {
-            line("upper bound", format!("{} m^3", brief(upper.volume)));
-            line("lower / upper", brief_to(4, bounds.lower.volume / upper.volume));
+            lines.push(("upper bound", format!("{} m^3", brief(upper.volume))));
+            lines.push(("lower / upper", brief_to(4, bounds.lower.volume / upper.volume)));
         }
     }
-    let error = &figures["largest_error"];
-    let size = |key: &str, unit: &str| error[key].as_f64().map(|v| format!("{v:.2e} {unit}"));
     for (name, key, unit) in [
         ("largest error: position", "position_m", "m"),
         ("  orientation", "orientation_rad", "rad"),
         ("  angular velocity", "angular_velocity_rad_per_s", "rad/s"),
     ] {
-        if let Some(size) = size(key, unit) {
-            line(name, size);
+        if let Some(error) = figures["largest_error"][key].as_f64() {
+            lines.push((name, format!("{error:.2e} {unit}")));
         }
     }
-    let _ = write!(text, "{}", folder.join("report.html").display());
-    text
+    lines
 }
