@@ -1,10 +1,11 @@
 //! A start from nothing: twists that the contacts alone suggest.
 
+use super::body::Body;
 use super::noise::ContactNoiseLevel;
 use super::problem::{Problem, Unknowns};
 use super::record::{Contact, Record, six};
-use super::state::{Body, Motion};
-use crate::three_palms::{exponential, numbers_of_inertia};
+use super::state::Motion;
+use crate::three_palms::exponential;
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix6, Vector6};
 use object_dynamics::ContactMode;
@@ -18,7 +19,7 @@ pub(super) fn ball(record: &Record, gravity: f64, length: f64) -> Body {
     let time: f64 = record.intervals.iter().map(|i| i.h).sum();
     let mass = (forces.length() / (time * gravity)).max(f64::MIN_POSITIVE);
     let inertia = DMat3::from_diagonal(DVec3::splat(0.4 * mass * length * length));
-    Body::new(mass.ln(), numbers_of_inertia(inertia))
+    Body::free(mass.ln(), inertia)
 }
 
 /// Radius of the ball that fits contacts and normals of the same time best, m; none where no two normals differ.

@@ -1,3 +1,5 @@
+use super::axes::{Oriented, oriented};
+use super::body::CONSTANTS;
 use super::cold;
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
@@ -5,14 +7,15 @@ use super::problem::{Problem, Unknowns};
 use super::record::Record;
 use super::rows::Rows;
 use super::samples::at_all;
-use super::search::{CONSTANTS, problem, search};
+use super::search::{problem, search};
 use super::solve::{Covariances, Solved};
 use super::state::Motion;
 use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
 use crate::three_palms::Reliability;
-use glam::{DMat3, DVec3};
-use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::Matrix3;
+use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS, MassProperties};
 use std::ops::Range;
 
 /// Share of the information of natural units that may be added at each node against rounding.
@@ -114,15 +117,32 @@ fn with_modes(
     let mut problem = problem(log, options, length);
     let averaged = log.averaged(longest(&options.noise, &problem.units));
     problem.record = &averaged;
-    let (solved, before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
-    let covariances = solved.equations.covariances(&problem.natural_information());
-    let covariances =
-        covariances.and_then(|claimed| claimed.widened(&problem, &solved.equations, &solved.unknowns));
-    let covariances = covariances.ok_or(ContactEstimateError::Singular)?;
+    let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
+    let mut covariances = covariances(&problem, &solved)?;
+    if let Some(mass) = &options.body {
+        let known = oriented(&mut problem, &solved, &covariances.body, mass);
+        let Oriented { solved: known, doubt, iterations } = known.ok_or(ContactEstimateError::Singular)?;
+        before += solved.iterations + iterations - known.iterations;
+        solved = known;
+        covariances = self::covariances(&problem, &solved)?;
+        let mut axes = covariances.body.fixed_view_mut::<3, 3>(4, 4);
+        axes += Matrix3::identity() * (doubt * doubt);
+    }
     let slips = slips(&problem, &solved.unknowns);
     let iterations = [before, before + solved.iterations];
-    let found = estimate(log, &problem, modes, &solved, &covariances, iterations);
+    let found = estimate(log, &problem, modes, &solved, &covariances, iterations, options.body.as_ref());
     Ok((found, slips))
+}
+
+/// Without what noise alone makes the equations claim.
+fn covariances(
+    problem: &Problem,
+    solved: &Solved<CONSTANTS>,
+) -> Result<Covariances<CONSTANTS>, ContactEstimateError> {
+    let claimed = solved.equations.covariances(&problem.natural_information());
+    claimed
+        .and_then(|claimed| claimed.widened(problem, &solved.equations, &solved.unknowns))
+        .ok_or(ContactEstimateError::Singular)
 }
 
 fn slips(problem: &Problem, at: &Unknowns) -> Slips {
@@ -149,9 +169,13 @@ fn estimate(
     solved: &Solved<CONSTANTS>,
     covariances: &Covariances<CONSTANTS>,
     iterations: [usize; 2],
+    known: Option<&MassProperties>,
 ) -> ContactEstimate {
     let Solved { unknowns, equations, settled, .. } = solved;
     let body = &unknowns.body;
+    // The body's own axes in those of the first sample.
+    let own =
+        known.zip(body.axes()).map_or(DQuat::IDENTITY, |(mass, axes)| axes * mass.principal().axes.inverse());
     let evidence = ContactEvidence {
         samples: log.times.len(),
         nodes: problem.nodes.len(),
@@ -164,7 +188,7 @@ fn estimate(
         p_WCm: motion.p + log.origin,
         v_WCm: motion.v,
         w_WO: body.turn(motion.q, motion.L).w,
-        R_WO: motion.q,
+        R_WO: (motion.q * own).normalize(),
     };
     let (reliability, wider) = (evidence.reliability(), evidence.widening());
     let motion = at_all(log, problem, unknowns, covariances);
@@ -182,7 +206,7 @@ fn estimate(
         modes,
         mass: body.log_mass.exp(),
         mass_deviation: deviation(0),
-        inertia: body.inertia(),
+        inertia: known.map_or(body.inertia(), MassProperties::inertia),
         inertia_deviations: [deviation(1), deviation(2), deviation(3)],
         reliability,
         evidence,

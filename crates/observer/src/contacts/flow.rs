@@ -1,7 +1,8 @@
 //! A node's motion carried through the samples of its link by what was measured, with its derivatives.
 
+use super::body::Body;
 use super::record::{Interval, Wrench};
-use super::state::{Body, MOTION, Motion, Tangent, Turn};
+use super::state::{MOTION, Motion, Tangent, Turn};
 use crate::three_palms::{cross_matrix, exponential};
 use glam::{DQuat, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
@@ -116,7 +117,7 @@ impl<const P: usize> Carried<P> {
         (by_motion, by_body)
     }
 
-    /// Derivatives by the motion at the node and by the constants: logarithm of the mass, numbers of the inertia.
+    /// Derivatives by the motion at the node and by the constants: logarithm of the mass, those of the inertia.
     pub(super) fn derivatives(&self, body: &Body) -> (Transition, SMatrix<f64, MOTION, P>) {
         let mut by_motion = Transition::identity();
         by_motion.fixed_view_mut::<3, 3>(0, 3).copy_from(&(Matrix3::identity() * self.after));

@@ -1,5 +1,7 @@
 //! Motion, mass and inertia from contacts of any palms: nodes linked by measured impulses.
 
+mod axes;
+mod body;
 mod cold;
 mod equations;
 mod estimate;

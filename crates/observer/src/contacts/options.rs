@@ -1,7 +1,7 @@
 //! What the estimate from contacts is told, and why it refuses.
 
 use super::noise::ContactNoiseLevel;
-use object_dynamics::{ContactLog, ContactMode, MOST_PALMS, SensedAxes};
+use object_dynamics::{ContactLog, ContactMode, MOST_PALMS, MassProperties, SensedAxes};
 use thiserror::Error;
 
 /// Why there is no estimate.
@@ -59,6 +59,8 @@ pub struct ContactOptions {
     pub noise: ContactNoiseLevel,
     /// Gravity, m/s^2, along -z of the world.
     pub gravity: f64,
+    /// Mass and inertia of the body in axes of its own, where they are known; else they are estimated.
+    pub body: Option<MassProperties>,
     /// Mean radius of the body, m, where it is known; else from contacts on two palms or more.
     pub size: Option<f64>,
 }

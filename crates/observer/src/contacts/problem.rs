@@ -1,12 +1,13 @@
 //! Least squares over all nodes: links, contact conditions and what is known beforehand, linearised.
 
+use super::body::{Body, CONSTANTS};
 use super::equations::{Equations, LinkEquation, NodeEquations, SampleEquations};
 use super::flow::{Carried, Transition, link_information};
 use super::noise::ContactNoiseLevel;
 use super::record::{Record, Wrench};
 use super::rows::Rows;
 use super::solve::Step;
-use super::state::{Body, MOTION, Motion, Tangent, Turn};
+use super::state::{MOTION, Motion, Tangent, Turn};
 use crate::three_palms::{cross_matrix, exponential};
 use glam::{DQuat, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector6};
@@ -15,7 +16,7 @@ use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector6};
 /// chain would be rigid, and the equations singular in double precision. It adds a thousandth to the variance of a velocity.
 const LINK_FLOOR: f64 = 0.03;
 
-/// Information that keeps a combination of the body's numbers, where the conditions claim to have one.
+/// Information that keeps a combination of the body's constants, where the conditions claim to have one.
 pub(super) const FROZEN: f64 = 1e4;
 
 /// Natural units of a scene.
@@ -40,9 +41,9 @@ pub(super) struct Problem<'a> {
     /// What is known of the first motion: value and information of each number.
     pub(super) first: (Motion, Tangent),
     /// What is known of the body beforehand: values and information.
-    pub(super) body: (Body, SMatrix<f64, 7, 7>),
-    /// Combinations of the body's numbers that keep their value from beforehand.
-    pub(super) frozen: Vec<SVector<f64, 7>>,
+    pub(super) body: (Body, SMatrix<f64, CONSTANTS, CONSTANTS>),
+    /// Combinations of the body's constants that keep their value from beforehand.
+    pub(super) frozen: Vec<SVector<f64, CONSTANTS>>,
 }
 
 /// Unknowns: the motions at the nodes and the body's constants.
@@ -50,6 +51,17 @@ pub(super) struct Problem<'a> {
 pub(super) struct Unknowns {
     pub(super) motions: Vec<Motion>,
     pub(super) body: Body,
+}
+
+impl Unknowns {
+    /// The same motion of another body.
+    pub(super) fn with(&self, body: Body) -> Self {
+        let one = |motion: &Motion| {
+            let turn = self.body.turn(motion.q, motion.L);
+            Motion { L: body.inertia_along(turn.R) * turn.w, ..*motion }
+        };
+        Self { motions: self.motions.iter().map(one).collect(), body }
+    }
 }
 
 /// Where a step leads.
@@ -367,12 +379,12 @@ impl Problem<'_> {
         if P > 0 {
             let known = self.body_information();
             all.body += known.fixed_view::<P, P>(0, 0);
-            all.body_gradient += (known * self.body_departure(&at.body)).fixed_rows::<P>(0);
+            all.body_gradient += (known * at.body.from(&self.body.0)).fixed_rows::<P>(0);
         }
     }
 
     /// With what keeps the frozen combinations.
-    fn body_information(&self) -> SMatrix<f64, 7, 7> {
+    fn body_information(&self) -> SMatrix<f64, CONSTANTS, CONSTANTS> {
         self.frozen.iter().fold(self.body.1, |all, g| all + g * g.transpose() * FROZEN)
     }
 
@@ -383,16 +395,8 @@ impl Problem<'_> {
         if P == 0 {
             return cost;
         }
-        let d = self.body_departure(&at.body);
+        let d = at.body.from(&self.body.0);
         cost + (self.body_information() * d).dot(&d)
-    }
-
-    fn body_departure(&self, body: &Body) -> SVector<f64, 7> {
-        let known = &self.body.0;
-        SVector::from_fn(|i, _| match i {
-            0 => body.log_mass - known.log_mass,
-            _ => body.numbers[i - 1] - known.numbers[i - 1],
-        })
     }
 
     /// Noise of impulse and moment about the origin, with the moment about `p` and a floor.

@@ -1,8 +1,9 @@
 //! Contact conditions of one sample, with what noise of the contact does to them.
 
+use super::body::Body;
 use super::noise::ContactNoiseLevel;
 use super::record::Contact;
-use super::state::{Body, MOTION, Motion, Turn};
+use super::state::{MOTION, Motion, Turn};
 use glam::DVec3;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use object_dynamics::ContactMode;

@@ -1,10 +1,11 @@
 //! Motion and its deviations at all samples of a log, from those at the nodes.
 
+use super::body::Body;
 use super::flow::Carried;
 use super::problem::{Problem, Unknowns};
 use super::record::Record;
 use super::solve::Covariances;
-use super::state::{Body, MOTION, Motion, Tangent};
+use super::state::{MOTION, Motion, Tangent};
 use crate::three_palms::exponential;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix};
@@ -135,6 +136,10 @@ fn deviations<const P: usize>(
     to.fixed_view_mut::<3, MOTION>(6, 0).copy_from(&by_motion);
     if P > 0 {
         through.fixed_view_mut::<3, 6>(6, 1).copy_from(&by_body);
+        if body.axes().is_some() {
+            // The body's own axes are turned by the last three constants, in axes of the first sample.
+            through.fixed_view_mut::<3, 3>(9, 4).copy_from(&Matrix3::from(DMat3::from_quat(motion.q)));
+        }
     }
     let by_constants = to * follows + through;
     let covariance = to * own * to.transpose() + by_constants * covariances.body * by_constants.transpose();

@@ -1,5 +1,6 @@
 //! From nothing to the most probable motion and body: coarse solutions first, then all nodes.
 
+use super::body::CONSTANTS;
 use super::cold;
 use super::options::ContactOptions;
 use super::problem::{Problem, Units, Unknowns};
@@ -10,8 +11,6 @@ use crate::three_palms::LARGEST_MISFIT;
 use glam::{DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 
-/// Constants of an unknown body: logarithm of the mass, six numbers of the inertia tensor.
-pub(super) const CONSTANTS: usize = 7;
 /// Natural times from node to node in the coarse solution, whose contacts are carried there from the node before, and the
 /// floors of its conditions over the natural speed: the first one finds nearly all motions, the other one some of the rest.
 const COARSE: f64 = 0.08;
@@ -81,7 +80,7 @@ fn coarse(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
 }
 
 /// The last solution, in which the inertia keeps its expected value along directions of which noise alone would tell.
-fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
+pub(super) fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
     let first = solve::<CONSTANTS>(problem, start, FIRST, ENOUGH[1])?;
     let claimed = first.equations.covariances(&problem.natural_information());
     let frozen = claimed.and_then(|claimed| claimed.frozen(problem, &first.equations, &first.unknowns));

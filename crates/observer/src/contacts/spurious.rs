@@ -5,44 +5,41 @@
 //! information as the equations have it, `N` what noise adds to it on average and `C = B - N` what is left, the estimate departs from the truth by `C^-1`
 //! times a score of covariance `B`, so that its covariance is `C^-1 B C^-1`.
 
+use super::body::{Body, CONSTANTS, INERTIA};
 use super::equations::Equations;
 use super::flow::Transition;
 use super::problem::{FROZEN, Problem, Unknowns};
 use super::solve::Covariances;
-use super::state::{Body, Motion};
-use crate::three_palms::inertia_slope;
+use super::state::Motion;
 use glam::DMat3;
 use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen};
 
-/// Logarithm of the mass and six numbers of the inertia. The mass is known by gravity, which has no noise.
-const BODY: usize = 7;
-const NUMBERS: usize = 6;
 /// What of the information is left at least, in any direction: a deviation is then twenty times what the equations claim.
 const LEAST: f64 = 0.05;
 
-type OfBody = SMatrix<f64, BODY, BODY>;
+type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
 
 /// Shares of noise in the information that the equations claim on the body.
 struct Shares {
-    values: SVector<f64, BODY>,
+    values: SVector<f64, CONSTANTS>,
     /// Factor of the claimed covariance, its columns turned to the directions of the shares.
     axes: OfBody,
 }
 
-impl Covariances<BODY> {
-    /// Combinations of the body's numbers, in units of their claimed deviations, that are known better beforehand than an estimate makes
+impl Covariances<CONSTANTS> {
+    /// Combinations of the body's constants, in units of their claimed deviations, that are known better beforehand than an estimate makes
     /// them, whose variance is `B / C^2`. None where the covariance has no inverse.
     pub(super) fn frozen(
         &self,
         problem: &Problem,
-        equations: &Equations<BODY>,
+        equations: &Equations<CONSTANTS>,
         at: &Unknowns,
-    ) -> Option<Vec<SVector<f64, BODY>>> {
+    ) -> Option<Vec<SVector<f64, CONSTANTS>>> {
         let Shares { values, axes } = self.shares(equations, at)?;
         let rows = axes.try_inverse()?;
         let beforehand = axes.transpose() * problem.body.1 * axes;
         let better = |&i: &usize| beforehand[(i, i)] > (1.0 - values[i]).max(0.0).powi(2);
-        Some((0..BODY).filter(better).map(|i| rows.row(i).transpose()).collect())
+        Some((0..CONSTANTS).filter(better).map(|i| rows.row(i).transpose()).collect())
     }
 
     /// With the covariance of the body widened where noise poses as information, and by what was known beforehand of what is
@@ -50,7 +47,7 @@ impl Covariances<BODY> {
     pub(super) fn widened(
         self,
         problem: &Problem,
-        equations: &Equations<BODY>,
+        equations: &Equations<CONSTANTS>,
         at: &Unknowns,
     ) -> Option<Self> {
         let Shares { values, axes } = self.shares(equations, at)?;
@@ -58,21 +55,21 @@ impl Covariances<BODY> {
         let mut body = axes * OfBody::from_diagonal(&wider) * axes.transpose();
         let beforehand = problem.body.1.try_inverse()?;
         for combination in &problem.frozen {
-            // What a change of its value from beforehand would do to all numbers.
+            // What a change of its value from beforehand would do to all constants.
             let follows = self.body * combination * FROZEN;
             body += follows * follows.transpose() * combination.dot(&(beforehand * combination));
         }
         Some(Self { body, ..self })
     }
 
-    fn shares(&self, equations: &Equations<BODY>, at: &Unknowns) -> Option<Shares> {
+    fn shares(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Option<Shares> {
         // In units of the deviations as claimed: the information is one, and what noise adds to it a share.
         let factor = self.body.cholesky()?.l();
         let eigen = SymmetricEigen::new(factor.transpose() * self.spurious(equations, at) * factor);
         Some(Shares { values: eigen.eigenvalues, axes: factor * eigen.eigenvectors })
     }
 
-    fn spurious(&self, equations: &Equations<BODY>, at: &Unknowns) -> OfBody {
+    fn spurious(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> OfBody {
         let mut all = OfBody::zeros();
         for (j, link) in equations.links.iter().enumerate() {
             let (before, after, cross) = (&self.motions[j].0, &self.motions[j + 1].0, &self.next[j]);
@@ -84,22 +81,18 @@ impl Covariances<BODY> {
             let left = left.fixed_view::<3, 3>(6, 6).into_owned();
             let ends = [&at.motions[j], &at.motions[j + 1]];
             let noise = Spins::new(ends, &at.body, before, after, cross);
-            let slopes: [[Matrix3<f64>; 2]; NUMBERS] =
-                std::array::from_fn(|i| ends.map(|motion| slope(motion, &at.body, i)));
-            for i in 0..NUMBERS {
-                for k in 0..NUMBERS {
+            let slope =
+                |motion: &Motion, i| Matrix3::from(at.body.slope_along(DMat3::from_quat(motion.q), i));
+            let slopes: [[Matrix3<f64>; 2]; INERTIA] =
+                std::array::from_fn(|i| ends.map(|motion| slope(motion, i)));
+            for i in 0..INERTIA {
+                for k in 0..INERTIA {
                     all[(i + 1, k + 1)] += (left * noise.covariance(&slopes[i], &slopes[k])).trace();
                 }
             }
         }
         0.5 * (all + all.transpose())
     }
-}
-
-/// Derivative of the inertia in world axes by one of its numbers.
-fn slope(motion: &Motion, body: &Body, number: usize) -> Matrix3<f64> {
-    let R = DMat3::from_quat(motion.q);
-    Matrix3::from(R * inertia_slope(&body.numbers, number) * R.transpose())
 }
 
 /// Covariances of the angular velocities at the ends of a link.

@@ -1,6 +1,7 @@
 //! The motion at a node and the constants of the body.
 
-use crate::three_palms::{cross_matrix, inertia_of_numbers, inertia_slope, logarithm};
+use super::body::Body;
+use crate::three_palms::{cross_matrix, logarithm};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 
@@ -17,16 +18,6 @@ pub(super) struct Motion {
     pub(super) q: DQuat,
 }
 
-/// Mass and inertia about the centre of mass in body axes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Body {
-    pub(super) log_mass: f64,
-    pub(super) numbers: [f64; 6],
-    inverse_mass: f64,
-    inertia: DMat3,
-    inverse: DMat3,
-}
-
 /// What follows from motion and body at one time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
@@ -34,42 +25,6 @@ pub(super) struct Turn {
     /// Inverse inertia in world axes.
     pub(super) K: DMat3,
     pub(super) w: DVec3,
-}
-
-impl Body {
-    pub(super) fn new(log_mass: f64, numbers: [f64; 6]) -> Self {
-        let inertia = inertia_of_numbers(&numbers);
-        Self { log_mass, numbers, inverse_mass: (-log_mass).exp(), inertia, inverse: inertia.inverse() }
-    }
-
-    pub(super) fn inverse_mass(&self) -> f64 {
-        self.inverse_mass
-    }
-
-    pub(super) fn inertia(&self) -> DMat3 {
-        self.inertia
-    }
-
-    /// In world axes, of a body turned by `R`.
-    pub(super) fn inertia_along(&self, R: DMat3) -> DMat3 {
-        R * self.inertia * R.transpose()
-    }
-
-    pub(super) fn turn(&self, q: DQuat, L: DVec3) -> Turn {
-        let R = DMat3::from_quat(q);
-        let K = R * self.inverse * R.transpose();
-        Turn { R, K, w: K * L }
-    }
-
-    /// `-dI w` in world axes for each number of the inertia tensor: `K` times it is the change of the angular velocity.
-    pub(super) fn by_inertia(&self, turn: &Turn) -> [DVec3; 6] {
-        let w = turn.R.transpose() * turn.w;
-        std::array::from_fn(|i| -(turn.R * (inertia_slope(&self.numbers, i) * w)))
-    }
-
-    pub(super) fn moved(&self, log_mass: f64, by: &Vector6<f64>) -> Self {
-        Self::new(self.log_mass + log_mass, std::array::from_fn(|i| self.numbers[i] + by[i]))
-    }
 }
 
 impl Motion {

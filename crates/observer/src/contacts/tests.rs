@@ -1,14 +1,16 @@
+use super::body::Body;
 use super::cold;
 use super::problem::{Problem, Units, Unknowns};
 use super::record::Record;
 use super::solve::Step;
-use super::state::{Body, Motion, Tangent};
+use super::state::{Motion, Tangent};
 use super::*;
-use crate::three_palms::numbers_of_inertia;
 use contact_kinematics::{Direction, Ellipsoid, PalmSurface, SupportFunction, SurfaceMotion, SurfacePose};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 use object_dynamics::*;
+
+mod known;
 
 const G: f64 = 9.81;
 const SIZE: f64 = 0.04;
@@ -79,7 +81,7 @@ fn noisy(log: &ContactLog, noise: &ContactNoiseLevel, seed: u64) -> ContactLog {
 }
 
 fn options(noise: ContactNoiseLevel) -> ContactOptions {
-    ContactOptions { noise, gravity: G, size: None }
+    ContactOptions { noise, gravity: G, body: None, size: None }
 }
 
 /// Squared errors over variances, 12 numbers, mean over all samples, and the relative error of the mass.
@@ -114,7 +116,7 @@ fn off_solution(record: &Record, noise: ContactNoiseLevel, stride: usize) -> (Pr
     };
     let mut at = cold::start(&problem, body, DQuat::from_rotation_y(0.3));
     let inertia = DMat3::from_diagonal(DVec3::new(1.0, 1.4, 1.6)) * 1e-4;
-    at.body = Body::new(0.19f64.ln(), numbers_of_inertia(inertia));
+    at.body = Body::free(0.19f64.ln(), inertia);
     (problem, at)
 }
 
@@ -232,7 +234,7 @@ fn what_noise_hides_of_an_inertia_keeps_its_expected_value() {
     let noise = noise(1e-4, 0.01);
     let body = MassProperties::uniform_ellipsoid(0.2, DVec3::new(0.05, 0.04, 0.03)).unwrap();
     let R = DMat3::from_quat(exact.truth().unwrap()[0].R_WO);
-    let truth = numbers_of_inertia(R * body.inertia() * R.transpose());
+    let truth = crate::three_palms::numbers_of_inertia(R * body.inertia() * R.transpose());
     let (mut squares, mut runs) = (0.0, 0.0);
     for seed in 0..4 {
         let log = noisy(&exact, &noise, seed);
@@ -240,7 +242,7 @@ fn what_noise_hides_of_an_inertia_keeps_its_expected_value() {
         if !found.reliability.is_reliable() {
             continue;
         }
-        let numbers = numbers_of_inertia(found.inertia);
+        let numbers = crate::three_palms::numbers_of_inertia(found.inertia);
         runs += 1.0;
         for i in 0..3 {
             let error = numbers[i] - truth[i];

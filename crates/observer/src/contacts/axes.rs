@@ -1,0 +1,168 @@
+//! How the axes of a known body may lie in the motion that was found without knowing it.
+
+use super::body::{Body, CONSTANTS};
+use super::problem::Problem;
+use super::search::fine;
+use super::solve::Solved;
+use crate::least_squares::{LeastSquares, LevenbergMarquardt, NormalEquations};
+use crate::three_palms::{equivalent_orientations, exponential};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::{Cholesky, Const, SMatrix, SVector};
+use object_dynamics::MassProperties;
+use std::f64::consts::{SQRT_2, TAU};
+
+/// Orientations that are looked at: about 25 degrees from one to the next.
+const LOOKED_AT: usize = 400;
+/// How many of them are followed to where the inertia fits best, and from how many of those a motion is solved for.
+const FOLLOWED: usize = 12;
+const SOLVED: usize = 3;
+/// Orientations nearer to each other than these are one, rad: to follow, at the end.
+const ALIKE: f64 = 0.35;
+const SAME: f64 = 0.1;
+/// Logarithm of the odds from which on other axes are ruled out: one wrong in twenty thousand.
+const LEAST_LOG_ODDS: f64 = 10.0;
+/// Deviation of the logarithm of a constant that is known: as good as exact, and what pulls at it can still be told.
+const KNOWN: f64 = 1e-4;
+/// Deviation of an orientation of which nothing is known, about each axis, rad.
+const ANY_TURN: f64 = 1.8;
+
+type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
+
+/// The motion of a known body.
+pub(super) struct Oriented {
+    pub(super) solved: Solved<CONSTANTS>,
+    /// How far the axes are from those of the farthest other motion that is not much less probable, rad.
+    pub(super) doubt: f64,
+    /// Linearisations of all motions that were looked at.
+    pub(super) iterations: usize,
+}
+
+/// The most probable motion of a body with the mass properties `mass`, from that of an unknown body and the covariance of its constants.
+/// `problem` is left as it was solved. None where no choice of axes can be.
+pub(super) fn oriented(
+    problem: &mut Problem,
+    unknown: &Solved<CONSTANTS>,
+    covariance: &OfBody,
+    mass: &MassProperties,
+) -> Option<Oriented> {
+    let same = equivalent_orientations(mass);
+    let likely = Likely {
+        unknown: unknown.unknowns.body,
+        whitening: covariance.cholesky()?.inverse().cholesky()?,
+        mass,
+    };
+    let mut iterations = 0;
+    let mut found: Vec<(Solved<CONSTANTS>, Body, Vec<SVector<f64, CONSTANTS>>)> = Vec::new();
+    for R in likely.candidates(&same) {
+        let body = Body::turned(mass, R);
+        problem.body = (body, SMatrix::from_diagonal(&information()));
+        problem.frozen.clear();
+        let Some(solved) = fine(problem, unknown.unknowns.with(body)) else { continue };
+        iterations += solved.iterations;
+        found.push((solved, body, std::mem::take(&mut problem.frozen)));
+    }
+    found.sort_by(|a, b| a.0.equations.cost.total_cmp(&b.0.equations.cost));
+    let axes = |solved: &Solved<CONSTANTS>| solved.unknowns.body.axes().unwrap_or_default();
+    let mut found = found.into_iter();
+    let (solved, body, frozen) = found.next()?;
+    let odds = |other: &Solved<CONSTANTS>| 0.5 * (other.equations.cost - solved.equations.cost);
+    let open = found.filter(|(other, ..)| odds(other) < LEAST_LOG_ODDS);
+    let doubt = open.map(|(other, ..)| apart(axes(&solved), axes(&other), &HALF_TURNS)).fold(0.0, f64::max);
+    problem.body.0 = body;
+    problem.frozen = frozen;
+    Some(Oriented { solved, doubt, iterations })
+}
+
+/// What is known of the constants of a known body: all but the turn of its axes.
+fn information() -> SVector<f64, CONSTANTS> {
+    SVector::from_fn(|i, _| if i < 4 { KNOWN.powi(-2) } else { ANY_TURN.powi(-2) })
+}
+
+/// Turns of principal axes that change nothing.
+const HALF_TURNS: [DQuat; 4] = [
+    DQuat::IDENTITY,
+    DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0),
+    DQuat::from_xyzw(0.0, 1.0, 0.0, 0.0),
+    DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0),
+];
+
+/// Angle between two orientations of a body that looks the same in some.
+fn apart(a: DQuat, b: DQuat, same: &[DQuat; 4]) -> f64 {
+    same.iter().map(|turn| (a * *turn).angle_between(b)).fold(f64::INFINITY, f64::min)
+}
+
+/// Orientations, each as far from the others as so many can be: a spiral on the quaternions (Alexa 2022).
+fn orientation(i: usize) -> DQuat {
+    /// Root of `x^4 = x + 4`.
+    const PSI: f64 = 1.533_751_168_755_204_3;
+    let (s, n) = (i as f64 + 0.5, LOOKED_AT as f64);
+    let (r, R) = ((s / n).sqrt(), (1.0 - s / n).sqrt());
+    let (a, b) = (TAU * s / SQRT_2, TAU * s / PSI);
+    DQuat::from_xyzw(r * a.sin(), r * a.cos(), R * b.sin(), R * b.cos()).normalize()
+}
+
+/// How far an inertia is from the one that was found, in its covariance.
+struct Likely<'a> {
+    unknown: Body,
+    /// Factor of the information on the constants.
+    whitening: Cholesky<f64, Const<CONSTANTS>>,
+    mass: &'a MassProperties,
+}
+
+impl Likely<'_> {
+    fn residual(&self, R: DQuat) -> SVector<f64, CONSTANTS> {
+        let inertia = DMat3::from_quat(R);
+        let body = Body::free(self.mass.mass().ln(), inertia * self.mass.inertia() * inertia.transpose());
+        self.whitening.l().transpose() * body.from(&self.unknown)
+    }
+
+    /// Where the inertia fits best, best first.
+    fn candidates(&self, same: &[DQuat; 4]) -> Vec<DQuat> {
+        let sorted = |all: Vec<DQuat>| {
+            let mut costs: Vec<(f64, DQuat)> =
+                all.into_iter().map(|R| (self.residual(R).norm_squared(), R)).collect();
+            costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+            costs
+        };
+        let different = |all: Vec<(f64, DQuat)>, least: f64, most: usize| {
+            let mut kept: Vec<DQuat> = Vec::new();
+            for (_, R) in all {
+                if kept.len() < most && kept.iter().all(|other| apart(*other, R, same) > least) {
+                    kept.push(R);
+                }
+            }
+            kept
+        };
+        let first = different(sorted((0..LOOKED_AT).map(orientation).collect()), ALIKE, FOLLOWED);
+        let search = LevenbergMarquardt { step_tolerance: 1e-4, ..LevenbergMarquardt::default() };
+        let ends = first.into_iter().map(|R| search.fit(self, R).point).collect();
+        different(sorted(ends), SAME, SOLVED)
+    }
+}
+
+impl LeastSquares<3> for Likely<'_> {
+    type Point = DQuat;
+
+    fn linearise(&self, R: &DQuat) -> Option<NormalEquations<3>> {
+        /// Of central differences: their error is its square.
+        const STEP: f64 = 1e-4;
+        let slopes = DVec3::AXES.map(|axis| {
+            let at = |by: f64| self.residual(exponential(axis * by) * *R);
+            (at(STEP) - at(-STEP)) / (2.0 * STEP)
+        });
+        let residual = self.residual(*R);
+        let mut normal = NormalEquations::default();
+        for (i, value) in residual.iter().enumerate() {
+            normal.add(&SVector::from_fn(|j, _| slopes[j][i]), *value);
+        }
+        normal.cost.is_finite().then_some(normal)
+    }
+
+    fn cost(&self, R: &DQuat) -> Option<f64> {
+        Some(self.residual(*R).norm_squared()).filter(|cost| cost.is_finite())
+    }
+
+    fn retract(&self, R: &DQuat, step: &SVector<f64, 3>) -> DQuat {
+        (exponential(DVec3::new(step[0], step[1], step[2])) * *R).normalize()
+    }
+}
