@@ -81,6 +81,9 @@ fn twist(contacts: &[&Contact], centre: DVec3, length: f64, noise: &ContactNoise
             ContactMode::Off => {}
             ContactMode::Slide => {
                 add(contact.n, 1.0);
+                if contact.frictionless {
+                    continue;
+                }
                 let friction = contact.f.reject_from_normalized(contact.n);
                 let deviation = noise.force(contact.f);
                 let known = friction.length_squared();

@@ -1,13 +1,13 @@
-use super::axes::{Oriented, oriented};
-use super::body::CONSTANTS;
+use super::axes::oriented;
+use super::body::{Body, CONSTANTS};
 use super::cold;
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
-use super::problem::{Problem, Unknowns};
+use super::problem::Problem;
 use super::record::Record;
 use super::rows::Rows;
-use super::samples::at_all;
-use super::search::{problem, search};
+use super::samples::{Deviations, at_all};
+use super::search::{fine, fine_nodes, problem, refined, search};
 use super::solve::{Covariances, Solved};
 use super::state::Motion;
 use super::verdict::{ContactEvidence, relied_on, stretches};
@@ -22,6 +22,8 @@ use std::ops::Range;
 const MENDED: f64 = 1e-3;
 /// Natural times on either side over which the ratio of friction to normal force is averaged, to tell modes.
 const AVERAGED: f64 = 0.12;
+/// Natural times from sample to sample in a record that is searched, if there are many more.
+const THIN: f64 = 0.02;
 /// Conditions of a contact that sticks are contradicted beyond this: three numbers in their deviations go there once in a million.
 const CONTRADICTED: f64 = 30.7;
 /// How often modes are taken back.
@@ -67,8 +69,8 @@ pub fn estimate_contacts(
     options: &ContactOptions,
 ) -> Result<ContactEstimate, ContactEstimateError> {
     options.check()?;
-    check(log, modes)?;
-    let mut record = Record::new(log, &options.noise).ok_or(ContactEstimateError::NoContact)?;
+    check(log, modes, options)?;
+    let mut record = Record::new(log, options).ok_or(ContactEstimateError::NoContact)?;
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let ball = cold::ball(&record, options.gravity, length);
     let impulse = (options.gravity * length).sqrt() / ball.inverse_mass();
@@ -87,7 +89,7 @@ fn with_estimated_modes(
     length: f64,
 ) -> Result<ContactEstimate, ContactEstimateError> {
     let natural = length / (options.gravity * length).sqrt();
-    let mut modes = by_ratio(log, &options.noise, AVERAGED * natural);
+    let mut modes = by_ratio(log, options, AVERAGED * natural);
     for _ in 0..ROUNDS {
         let (found, slips) = with_modes(record, modes, options, length)?;
         if slips.is_empty() {
@@ -114,24 +116,60 @@ fn with_modes(
 ) -> Result<(ContactEstimate, Slips), ContactEstimateError> {
     record.set_modes(&modes);
     let log = &*record;
-    let mut problem = problem(log, options, length);
-    let averaged = log.averaged(longest(&options.noise, &problem.units));
-    problem.record = &averaged;
+    let natural = length / (options.gravity * length).sqrt();
+    let averaged = log.averaged(longest(&options.noise, natural));
+    let thinned = averaged.thinned(THIN * natural);
+    let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, length);
+    problem.body.0 = cold::ball(log, options.gravity, length);
     let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
-    let mut covariances = covariances(&problem, &solved)?;
+    let mut doubt = None;
     if let Some(mass) = &options.body {
-        let known = oriented(&mut problem, &solved, &covariances.body, mass);
-        let Oriented { solved: known, doubt, iterations } = known.ok_or(ContactEstimateError::Singular)?;
-        before += solved.iterations + iterations - known.iterations;
-        solved = known;
-        covariances = self::covariances(&problem, &solved)?;
+        let covariance = covariances(&problem, &solved)?.body;
+        let known = oriented(&mut problem, &solved, &covariance, mass);
+        let known = known.ok_or(ContactEstimateError::Singular)?;
+        before += solved.iterations + known.iterations - known.solved.iterations;
+        (solved, doubt) = (known.solved, Some(known.doubt));
+    }
+    if thinned.is_some() {
+        before += solved.iterations;
+        (problem, solved) = polished(&averaged, problem, &solved).ok_or(ContactEstimateError::Singular)?;
+    }
+    let mut covariances = covariances(&problem, &solved)?;
+    if let Some(doubt) = doubt {
         let mut axes = covariances.body.fixed_view_mut::<3, 3>(4, 4);
         axes += Matrix3::identity() * (doubt * doubt);
     }
-    let slips = slips(&problem, &solved.unknowns);
     let iterations = [before, before + solved.iterations];
-    let found = estimate(log, &problem, modes, &solved, &covariances, iterations, options.body.as_ref());
-    Ok((found, slips))
+    let motions = at_all(log, &problem, &solved.unknowns, &covariances);
+    let slips = slips(&problem, &motions, &solved.unknowns.body);
+    let found = Found { log, problem: &problem, solved: &solved, covariances: &covariances, iterations };
+    Ok((found.estimate(&motions, modes, options.body.as_ref()), slips))
+}
+
+/// The solution on a record of which another one was solved that has fewer of its samples.
+fn polished<'a>(
+    record: &'a Record,
+    thinned: Problem,
+    solved: &Solved<CONSTANTS>,
+) -> Option<(Problem<'a>, Solved<CONSTANTS>)> {
+    let place = |sample: &usize| record.samples.partition_point(|own| own < sample);
+    let nodes: Vec<usize> = thinned.node_samples().iter().map(place).collect();
+    let Problem { noise, friction, gravity, units, first, body, .. } = thinned;
+    let mut problem = Problem {
+        record,
+        noise,
+        friction,
+        gravity,
+        units,
+        first,
+        body,
+        nodes: Vec::new(),
+        frozen: Vec::new(),
+    };
+    problem.nodes = fine_nodes(&problem);
+    let start = refined(&problem, &nodes, &solved.unknowns);
+    let solved = fine(&mut problem, start)?;
+    Some((problem, solved))
 }
 
 /// Without what noise alone makes the equations claim.
@@ -145,11 +183,12 @@ fn covariances(
         .ok_or(ContactEstimateError::Singular)
 }
 
-fn slips(problem: &Problem, at: &Unknowns) -> Slips {
+fn slips(problem: &Problem, motions: &[(Motion, Deviations)], body: &Body) -> Slips {
     let record = problem.record;
     let mut slips = Vec::new();
-    for (j, motion) in problem.at_samples(at).iter().enumerate() {
-        let turn = at.body.turn(motion.q, motion.L);
+    for (j, &k) in record.samples.iter().enumerate() {
+        let motion = &motions[k].0;
+        let turn = body.turn(motion.q, motion.L);
         let from = record.samples[j.saturating_sub(1)];
         let to = record.samples.get(j + 1).copied().unwrap_or(record.samples[j]);
         for contact in record.contacts[j].iter().filter(|c| c.mode == ContactMode::Stick) {
@@ -162,53 +201,63 @@ fn slips(problem: &Problem, at: &Unknowns) -> Slips {
     slips
 }
 
-fn estimate(
-    log: &Record,
-    problem: &Problem,
-    modes: Vec<[ContactMode; MOST_PALMS]>,
-    solved: &Solved<CONSTANTS>,
-    covariances: &Covariances<CONSTANTS>,
+/// What was solved.
+struct Found<'a> {
+    log: &'a Record,
+    problem: &'a Problem<'a>,
+    solved: &'a Solved<CONSTANTS>,
+    covariances: &'a Covariances<CONSTANTS>,
     iterations: [usize; 2],
-    known: Option<&MassProperties>,
-) -> ContactEstimate {
-    let Solved { unknowns, equations, settled, .. } = solved;
-    let body = &unknowns.body;
-    // The body's own axes in those of the first sample.
-    let own =
-        known.zip(body.axes()).map_or(DQuat::IDENTITY, |(mass, axes)| axes * mass.principal().axes.inverse());
-    let evidence = ContactEvidence {
-        samples: log.times.len(),
-        nodes: problem.nodes.len(),
-        conditions: equations.conditions,
-        misfit: solved.misfit(),
-        iterations,
-        settled: *settled && covariances.mended <= MENDED,
-    };
-    let state = |motion: &Motion| BodyState {
-        p_WCm: motion.p + log.origin,
-        v_WCm: motion.v,
-        w_WO: body.turn(motion.q, motion.L).w,
-        R_WO: (motion.q * own).normalize(),
-    };
-    let (reliability, wider) = (evidence.reliability(), evidence.widening());
-    let motion = at_all(log, problem, unknowns, covariances);
-    let deviations: Vec<_> = motion.iter().map(|(_, of)| of.map(|of| of * wider)).collect();
-    let excess = stretches(problem, equations);
-    let one = |(k, of): (usize, &_)| {
-        let j = problem.record.samples.partition_point(|&node| node <= k).saturating_sub(1);
-        reliability.is_reliable() && relied_on(excess[j], of, &problem.units)
-    };
-    let deviation = |i: usize| covariances.body[(i, i)].max(0.0).sqrt() * wider;
-    ContactEstimate {
-        states: motion.iter().map(|(motion, _)| state(motion)).collect(),
-        relied_on: deviations.iter().enumerate().map(one).collect(),
-        deviations,
-        modes,
-        mass: body.log_mass.exp(),
-        mass_deviation: deviation(0),
-        inertia: known.map_or(body.inertia(), MassProperties::inertia),
-        inertia_deviations: [deviation(1), deviation(2), deviation(3)],
-        reliability,
-        evidence,
+}
+
+impl Found<'_> {
+    fn estimate(
+        &self,
+        motions: &[(Motion, Deviations)],
+        modes: Vec<[ContactMode; MOST_PALMS]>,
+        known: Option<&MassProperties>,
+    ) -> ContactEstimate {
+        let Self { log, problem, solved, covariances, iterations } = *self;
+        let Solved { unknowns, equations, settled, .. } = solved;
+        let body = &unknowns.body;
+        // The body's own axes in those of the first sample.
+        let own = known
+            .zip(body.axes())
+            .map_or(DQuat::IDENTITY, |(mass, axes)| axes * mass.principal().axes.inverse());
+        let evidence = ContactEvidence {
+            samples: log.times.len(),
+            nodes: problem.nodes.len(),
+            conditions: equations.conditions,
+            misfit: solved.misfit(),
+            iterations,
+            settled: *settled && covariances.mended <= MENDED,
+        };
+        let state = |motion: &Motion| BodyState {
+            p_WCm: motion.p + log.origin,
+            v_WCm: motion.v,
+            w_WO: body.turn(motion.q, motion.L).w,
+            R_WO: (motion.q * own).normalize(),
+        };
+        let (reliability, wider) = (evidence.reliability(), evidence.widening());
+        let deviations: Vec<_> = motions.iter().map(|(_, of)| of.map(|of| of * wider)).collect();
+        let nodes = problem.node_samples();
+        let excess = stretches(problem, equations);
+        let one = |(k, of): (usize, &_)| {
+            let j = nodes.partition_point(|&node| node <= k).saturating_sub(1);
+            reliability.is_reliable() && relied_on(excess[j], of, &problem.units)
+        };
+        let deviation = |i: usize| covariances.body[(i, i)].max(0.0).sqrt() * wider;
+        ContactEstimate {
+            states: motions.iter().map(|(motion, _)| state(motion)).collect(),
+            relied_on: deviations.iter().enumerate().map(one).collect(),
+            deviations,
+            modes,
+            mass: body.log_mass.exp(),
+            mass_deviation: deviation(0),
+            inertia: known.map_or(body.inertia(), MassProperties::inertia),
+            inertia_deviations: [deviation(1), deviation(2), deviation(3)],
+            reliability,
+            evidence,
+        }
     }
 }

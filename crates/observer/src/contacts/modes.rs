@@ -1,6 +1,7 @@
 //! Contact modes from the ratio of friction to normal force.
 
 use super::noise::ContactNoiseLevel;
+use super::options::ContactOptions;
 use object_dynamics::{ContactLog, ContactMode, LoggedPalm, MOST_PALMS};
 
 /// Quantile of a palm's ratios that is taken for that of sliding.
@@ -24,14 +25,20 @@ struct Ratio {
 /// the body never slides has a coefficient that is too small here: contacts near it lose conditions.
 pub(super) fn by_ratio(
     log: &ContactLog,
-    noise: &ContactNoiseLevel,
+    options: &ContactOptions,
     time: f64,
 ) -> Vec<[ContactMode; MOST_PALMS]> {
     let times = log.times();
     let mut modes = vec![[ContactMode::Off; MOST_PALMS]; times.len()];
     for (i, palm) in log.palms().iter().enumerate() {
+        if options.frictionless(palm) {
+            for k in (0..times.len()).filter(|&k| palm.touch(k).is_some()) {
+                modes[k][i] = ContactMode::Slide;
+            }
+            continue;
+        }
         let ratios = averaged(&ratios(palm, times.len()), times, time);
-        let slides = sliding(&ratios, noise);
+        let slides = sliding(&ratios, &options.noise);
         // A mean may be below that of sliding by the samples beside it: nearer than `time` to one that is not it tells nothing.
         let before = nearest(&slides, times, (0..times.len()).collect());
         let after = nearest(&slides, times, (0..times.len()).rev().collect());

@@ -1,7 +1,7 @@
 //! What the estimate from contacts is told, and why it refuses.
 
 use super::noise::ContactNoiseLevel;
-use object_dynamics::{ContactLog, ContactMode, MOST_PALMS, MassProperties, SensedAxes};
+use object_dynamics::{ContactLog, ContactMode, LoggedPalm, MOST_PALMS, MassProperties, SensedAxes};
 use thiserror::Error;
 
 /// Why there is no estimate.
@@ -12,7 +12,8 @@ pub enum ContactEstimateError {
     NoContact,
     /// A palm lacks the force.
     #[error(
-        "palm {palm} does not measure its force in three axes: the estimate from contacts needs all of it"
+        "palm {palm} does not measure its force in three axes, and is not known to be frictionless: the estimate from contacts needs one \
+         of them"
     )]
     NoForce {
         /// Number from 1.
@@ -59,6 +60,9 @@ pub struct ContactOptions {
     pub noise: ContactNoiseLevel,
     /// Gravity, m/s^2, along -z of the world.
     pub gravity: f64,
+    /// Coefficient of friction of the palms whose own the log does not state, if it is known. A palm without friction needs to measure its
+    /// normal force alone.
+    pub friction: Option<f64>,
     /// Mass and inertia of the body in axes of its own, where they are known; else they are estimated.
     pub body: Option<MassProperties>,
     /// Mean radius of the body, m, where it is known; else from contacts on two palms or more.
@@ -66,10 +70,16 @@ pub struct ContactOptions {
 }
 
 impl ContactOptions {
+    /// Whether a palm is known to be without friction.
+    pub(super) fn frictionless(&self, palm: &LoggedPalm) -> bool {
+        palm.friction().or(self.friction) == Some(0.0)
+    }
+
     pub(super) fn check(&self) -> Result<(), ContactEstimateError> {
         let above =
             [("gravity", self.gravity), ("size", self.size.unwrap_or(1.0)), ("floor", self.noise.floor)];
         let not_below = [
+            ("friction", self.friction.unwrap_or(0.0)),
             ("noise of contacts", self.noise.contact),
             ("fixed noise of forces", self.noise.force_fixed),
             ("noise of forces as a share", self.noise.force_share),
@@ -88,6 +98,7 @@ impl ContactOptions {
 pub(super) fn check(
     log: &ContactLog,
     modes: Option<&[[ContactMode; MOST_PALMS]]>,
+    options: &ContactOptions,
 ) -> Result<(), ContactEstimateError> {
     let samples = log.times().len();
     if samples < 2 {
@@ -96,6 +107,11 @@ pub(super) fn check(
     if let Some(modes) = modes.filter(|modes| modes.len() != samples) {
         return Err(ContactEstimateError::Modes { found: modes.len(), samples });
     }
-    let lacks = log.palms().iter().position(|palm| palm.force_axes() != Some(SensedAxes::Three));
+    let enough = |palm: &LoggedPalm| match palm.force_axes() {
+        Some(SensedAxes::Three) => true,
+        Some(SensedAxes::Normal) => options.frictionless(palm),
+        None => false,
+    };
+    let lacks = log.palms().iter().position(|palm| !enough(palm));
     lacks.map_or(Ok(()), |palm| Err(ContactEstimateError::NoForce { palm: palm + 1 }))
 }

@@ -205,6 +205,11 @@ impl Problem<'_> {
         (0..at.motions.len()).map(one).collect()
     }
 
+    /// The samples at which there are nodes, by their numbers in the log.
+    pub(super) fn node_samples(&self) -> Vec<usize> {
+        self.nodes.iter().map(|&k| self.record.samples[k]).collect()
+    }
+
     /// Motions at some samples by what was measured since sample `from`, with a motion there.
     pub(super) fn carried(&self, from: usize, motion: Motion, body: &Body, samples: &[usize]) -> Vec<Motion> {
         let mut carried = Carried::<0>::new(motion, body);
@@ -232,7 +237,7 @@ impl Problem<'_> {
     }
 
     /// Its deviation, m/s.
-    fn condition_deviation(&self) -> f64 {
+    pub(super) fn condition_deviation(&self) -> f64 {
         let Units { length, speed, .. } = self.units;
         self.noise.floor.max(self.noise.contact * speed / length)
     }

@@ -1,6 +1,7 @@
 //! What the estimator reads of a log: contacts at samples, and what the forces do between them.
 
 use super::noise::ContactNoiseLevel;
+use super::options::ContactOptions;
 use crate::three_palms::running_integral;
 use contact_kinematics::PalmSurface;
 use glam::{DMat3, DVec3};
@@ -28,6 +29,8 @@ pub(super) struct Contact {
     /// Shape operator of the palm in world axes, 1/m: how its normal turns along it.
     pub(super) shape: DMat3,
     pub(super) f: DVec3,
+    /// Whether the force is along the normal without friction, and so is its noise.
+    pub(super) frictionless: bool,
     pub(super) mode: ContactMode,
     /// Samples that it is the mean of.
     pub(super) samples: usize,
@@ -66,6 +69,14 @@ pub(super) struct Record {
     pub(super) intervals: Vec<Interval>,
 }
 
+impl Interval {
+    /// Variance of the impulse, of the moment as well at so long a lever, N^2 s^2.
+    pub(super) fn velocity_noise(&self, lever: f64) -> f64 {
+        let part = |i: usize| self.noise.fixed_view::<3, 3>(i, i).trace();
+        part(0).max(part(3) / (lever * lever))
+    }
+}
+
 impl Add for Wrench {
     type Output = Self;
     fn add(self, other: Self) -> Self {
@@ -81,8 +92,8 @@ impl Mul<f64> for Wrench {
 }
 
 impl Record {
-    /// Of a log whose palms measure forces of three axes, every contact sliding for now; none without a contact.
-    pub(super) fn new(log: &ContactLog, noise: &ContactNoiseLevel) -> Option<Self> {
+    /// Of a log whose palms measure forces of three axes or have no friction, every contact sliding for now; none without a contact.
+    pub(super) fn new(log: &ContactLog, options: &ContactOptions) -> Option<Self> {
         let times = log.times().to_vec();
         let points =
             || (0..times.len()).flat_map(|k| log.palms().iter().filter_map(move |palm| palm.touch(k)));
@@ -91,13 +102,15 @@ impl Record {
             return None;
         }
         let origin = points().map(|touch| touch.p_WC).sum::<DVec3>() / count as f64;
-        let contacts: Vec<Vec<Contact>> = (0..times.len()).map(|k| contacts_at(log, k, origin)).collect();
+        let frictionless: Vec<bool> = log.palms().iter().map(|palm| options.frictionless(palm)).collect();
+        let contacts: Vec<Vec<Contact>> =
+            (0..times.len()).map(|k| contacts_at(log, k, origin, &frictionless)).collect();
         let wrench = |contacts: &Vec<Contact>| {
             let of = |c: &Contact| Wrench { force: c.f, moment: c.c.cross(c.f) };
             contacts.iter().map(of).fold(Wrench::default(), Add::add)
         };
         let wrenches: Vec<Wrench> = contacts.iter().map(wrench).collect();
-        let intervals = intervals(log, &contacts, &wrenches, noise);
+        let intervals = intervals(log, &contacts, &wrenches, &options.noise);
         let samples = (0..times.len()).collect();
         Some(Self { times, samples, origin, contacts, wrenches, intervals })
     }
@@ -146,11 +159,13 @@ impl Record {
     }
 }
 
-fn contacts_at(log: &ContactLog, k: usize, origin: DVec3) -> Vec<Contact> {
+fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, frictionless: &[bool]) -> Vec<Contact> {
     let one = |(palm, logged): (usize, &object_dynamics::LoggedPalm)| {
         let touch = logged.touch(k)?;
         let motion = logged.motion(k);
         let n = touch.n.get();
+        let f = logged.force(k)?.vector;
+        let frictionless = frictionless[palm];
         Some(Contact {
             palm,
             c: touch.p_WC - origin,
@@ -158,7 +173,8 @@ fn contacts_at(log: &ContactLog, k: usize, origin: DVec3) -> Vec<Contact> {
             u: motion.material_velocity(touch.p_WC),
             W: motion.w_WP,
             shape: shape_operator(logged.surface(), n, motion.pose.R_WP * DVec3::X),
-            f: logged.force(k)?.vector,
+            f: if frictionless { f.project_onto_normalized(n) } else { f },
+            frictionless,
             mode: ContactMode::Slide,
             samples: 1,
         })
@@ -243,12 +259,11 @@ fn trapezoid(interval: &Interval, wrenches: &[Wrench]) -> Interval {
 /// What the noise of one contact does to the impulse and moment of an interval: samples are independent.
 fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, noise: &ContactNoiseLevel, h: f64) {
     let force = noise.force(contact.f) * h;
-    for axis in DVec3::AXES {
-        let moment = contact.c.cross(axis);
-        let column = six(axis, moment) * force;
+    let (a, b) = contact.n.any_orthonormal_pair();
+    for axis in [contact.n, a, b].into_iter().take(if contact.frictionless { 1 } else { 3 }) {
+        let column = six(axis, contact.c.cross(axis)) * force;
         covariance.ger(1.0, &column, &column, 1.0);
     }
-    let (a, b) = contact.n.any_orthonormal_pair();
     for tangent in [a, b] {
         let column = six(DVec3::ZERO, tangent.cross(contact.f)) * (noise.contact * h);
         covariance.ger(1.0, &column, &column, 1.0);

@@ -30,6 +30,9 @@ const BLURRED: f64 = 0.3;
 
 /// Direction across the friction of a contact that slides, and the standard deviation of its angle, rad; none where noise hides it.
 fn across_friction(contact: &Contact, noise: &ContactNoiseLevel) -> Option<(DVec3, f64)> {
+    if contact.frictionless {
+        return None;
+    }
     let friction = contact.f.reject_from_normalized(contact.n);
     let angle = noise.force(contact.f) / friction.length();
     let seen = contact.mode == ContactMode::Slide && angle < BLURRED;

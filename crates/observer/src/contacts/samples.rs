@@ -23,13 +23,13 @@ pub(super) fn at_all<const P: usize>(
     let own = problem.at_samples(found);
     let known: Vec<Deviations> =
         (0..own.len()).map(|j| deviations(&own[j], &found.body, j, covariances)).collect();
+    let nodes = problem.node_samples();
     let mut all = Vec::with_capacity(log.times.len());
     for j in 0..own.len() {
         all.push((own[j], known[j]));
-        if let Some(&end) = problem.record.samples.get(j + 1) {
-            let from = problem.record.samples[j];
-            let link = Link::new(log, problem, found, j, from..end);
-            all.extend((from + 1..end).map(|k| link.at(log, k, [&known[j], &known[j + 1]])));
+        if let Some(&end) = nodes.get(j + 1) {
+            let link = Link::new(log, problem, found, j, nodes[j]..end);
+            all.extend((nodes[j] + 1..end).map(|k| link.at(log, k, [&known[j], &known[j + 1]])));
         }
     }
     all

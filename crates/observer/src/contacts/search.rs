@@ -15,6 +15,8 @@ use nalgebra::{SMatrix, SVector};
 /// floors of its conditions over the natural speed: the first one finds nearly all motions, the other one some of the rest.
 const COARSE: f64 = 0.08;
 const COARSE_FLOORS: [f64; 2] = [1e-2, 1e-3];
+/// Share of a condition's deviation, of all in a link together, that noise of the forces may make in it to be left out between nodes.
+const NEGLIGIBLE: f64 = 0.1;
 /// How much better the inertia is taken for known at first, in information.
 const BALL: f64 = 30.0;
 /// Linearisations that each of the solutions may take.
@@ -33,8 +35,8 @@ const FIRST_TURN: f64 = 1e-5;
 /// A coarse solution from nothing and the last one from there, with one floor of the coarse conditions after the other until noise explains
 /// what is left, else the one that leaves least; and the linearisations before the last solution.
 pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
-    let coarse_nodes = spaced(problem.record, COARSE * problem.units.length / problem.units.speed);
-    let all_nodes: Vec<usize> = (0..problem.record.times.len()).collect();
+    let coarse_nodes = problem.record.spaced(COARSE * problem.units.length / problem.units.speed);
+    let all_nodes = fine_nodes(problem);
     let mut best: Option<Solved<CONSTANTS>> = None;
     let mut frozen = Vec::new();
     let mut before = 0;
@@ -90,14 +92,22 @@ pub(super) fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONS
     Some(found)
 }
 
-/// Samples at least `apart` from each other, the first and the last among them, and those after blows.
-fn spaced(record: &Record, apart: f64) -> Vec<usize> {
-    let times = &record.times;
-    let last = times.len() - 1;
-    let mut nodes = vec![0];
+/// Nodes of the last solution: each sample, or as far apart as noise of the forces does nothing to the conditions between.
+pub(super) fn fine_nodes(problem: &Problem) -> Vec<usize> {
+    let Problem { record, units, .. } = problem;
+    let farthest = COARSE * units.length / units.speed;
+    let limit = (NEGLIGIBLE * problem.condition_deviation() * units.mass).powi(2);
+    let last = record.times.len() - 1;
+    let (mut nodes, mut noise, mut conditions) = (vec![0], 0.0, 0.0);
     for k in 1..last {
-        if record.intervals[k - 1].blow || times[k] - times[nodes[nodes.len() - 1]] >= apart {
+        let interval = &record.intervals[k - 1];
+        noise += interval.velocity_noise(units.length);
+        conditions += record.contacts[k].len() as f64;
+        let after = record.intervals[k].velocity_noise(units.length);
+        let long = record.times[k + 1] - record.times[nodes[nodes.len() - 1]] > farthest;
+        if long || interval.blow || (noise + after) * conditions > limit {
             nodes.push(k);
+            (noise, conditions) = (0.0, 0.0);
         }
     }
     nodes.push(last);
@@ -131,7 +141,7 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, length: 
 }
 
 /// Motions at the nodes of `problem` by what was measured after the coarse node before each.
-fn refined(problem: &Problem, coarse: &[usize], unknowns: &Unknowns) -> Unknowns {
+pub(super) fn refined(problem: &Problem, coarse: &[usize], unknowns: &Unknowns) -> Unknowns {
     let mut motions = Vec::with_capacity(problem.nodes.len());
     for (j, &from) in coarse.iter().enumerate() {
         let end = coarse.get(j + 1).copied().unwrap_or(from + 1);

@@ -81,7 +81,7 @@ fn noisy(log: &ContactLog, noise: &ContactNoiseLevel, seed: u64) -> ContactLog {
 }
 
 fn options(noise: ContactNoiseLevel) -> ContactOptions {
-    ContactOptions { noise, gravity: G, body: None, size: None }
+    ContactOptions { noise, gravity: G, friction: None, body: None, size: None }
 }
 
 /// Squared errors over variances, 12 numbers, mean over all samples, and the relative error of the mass.
@@ -124,7 +124,7 @@ fn off_solution(record: &Record, noise: ContactNoiseLevel, stride: usize) -> (Pr
 fn the_gradient_is_that_of_the_cost() {
     let noise = noise(4e-4, 0.02);
     let log = noisy(&log(0.03, 1000.0), &noise, 3);
-    let mut record = Record::new(&log, &noise).unwrap();
+    let mut record = Record::new(&log, &options(noise)).unwrap();
     record.set_modes(&modes(&log));
     for stride in [1, 3] {
         let (problem, mut at) = off_solution(&record, noise, stride);

@@ -5,7 +5,6 @@
 //! deviations. A contact averaged over a window leaves the condition in the window's middle as it is, with less noise.
 
 use super::noise::ContactNoiseLevel;
-use super::problem::Units;
 use super::record::{Contact, Interval, Record, Wrench};
 use glam::DVec3;
 use nalgebra::{Matrix3, Matrix6, Vector3};
@@ -14,13 +13,15 @@ use std::ops::Range;
 /// Longest window over the natural time: as long as a parabola is enough.
 const LONGEST: f64 = 0.1;
 
+/// Samples for each that is kept, from which on thinning is worth it.
+const THINNED: usize = 3;
+
 /// Samples that a parabola is laid through at least.
 const FEWEST: usize = 5;
 
-/// Longest window to average contacts over, s: none where their noise is not what limits a condition.
-pub(super) fn longest(noise: &ContactNoiseLevel, units: &Units) -> f64 {
-    let rate = units.speed / units.length;
-    if noise.contact * rate > noise.floor { LONGEST / rate } else { 0.0 }
+/// Longest window to average contacts over, s, of a natural time: none where their noise is not what limits a condition.
+pub(super) fn longest(noise: &ContactNoiseLevel, natural: f64) -> f64 {
+    if noise.contact > noise.floor * natural { LONGEST * natural } else { 0.0 }
 }
 
 /// A window of samples in the middle one of which there is to be a node, and the samples around it with the same contacts in
@@ -109,6 +110,34 @@ impl Record {
             wrenches: windows.iter().map(wrench).collect(),
             intervals: middles.windows(2).map(|k| sum(&self.intervals[k[0]..k[1]])).collect(),
         }
+    }
+
+    /// Numbers of samples at least `apart` from each other, s, the first and the last among them, and those after blows.
+    pub(super) fn spaced(&self, apart: f64) -> Vec<usize> {
+        let times = &self.times;
+        let last = times.len() - 1;
+        let mut picked = vec![0];
+        for k in 1..last {
+            if self.intervals[k - 1].blow || times[k] - times[picked[picked.len() - 1]] >= apart {
+                picked.push(k);
+            }
+        }
+        picked.push(last);
+        picked.dedup();
+        picked
+    }
+
+    /// Without most of its samples, where there are many more than one in `apart`, s. What forces did in between is kept.
+    pub(super) fn thinned(&self, apart: f64) -> Option<Self> {
+        let picked = self.spaced(apart);
+        (THINNED * picked.len() <= self.times.len()).then(|| Self {
+            times: picked.iter().map(|&k| self.times[k]).collect(),
+            samples: picked.iter().map(|&k| self.samples[k]).collect(),
+            origin: self.origin,
+            contacts: picked.iter().map(|&k| self.contacts[k].clone()).collect(),
+            wrenches: picked.iter().map(|&k| self.wrenches[k]).collect(),
+            intervals: picked.windows(2).map(|k| sum(&self.intervals[k[0]..k[1]])).collect(),
+        })
     }
 
     /// Contacts of the sample in the middle of a window.

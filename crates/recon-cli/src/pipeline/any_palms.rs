@@ -124,7 +124,7 @@ fn options(log: &ContactLog, scene: &Scene) -> Result<ContactOptions, CliError> 
         force_share: sensors.force_share.unwrap_or_default(),
         floor: sensors.contact_speed_std.unwrap_or(FLOOR * (scene.gravity * length).sqrt()),
     };
-    Ok(ContactOptions { noise, gravity: scene.gravity, body: None, size: scene.size })
+    Ok(ContactOptions { noise, gravity: scene.gravity, friction: None, body: None, size: scene.size })
 }
 
 /// Root mean square of the distance of contacts from the mean of those at the same time, m: about the size of the object. None
