@@ -14,6 +14,8 @@ const BENT: f64 = 0.5;
 /// Fall of chi-squared that an undamped step from the end may still promise: half a standard deviation is left then at most, which
 /// makes errors larger by an eighth.
 const SETTLED: f64 = 0.25;
+/// Steps that are tried for each linearisation, at most on average.
+const TRIES: usize = 3;
 /// A step shorter than this in natural units is none.
 const NO_STEP: f64 = 1e-10;
 
@@ -123,6 +125,12 @@ impl<const P: usize> Equations<P> {
         -(nodes + step.body.dot(&self.body_gradient))
     }
 
+    /// Fall of the cost that an undamped step promises.
+    fn left(&self) -> f64 {
+        let whole = self.reduced(&Tangent::zeros(), 0.0).map(|reduced| reduced.step(&self.gradient()));
+        whole.map_or(f64::INFINITY, |step| self.promised(&step))
+    }
+
     /// `unit` is the information of a node whose deviations are the natural units.
     ///
     /// Where rounding leaves the equations indefinite, as little of it is added as mends them: a deviation then is no larger than a
@@ -169,15 +177,21 @@ pub(super) fn solve<const P: usize>(
     let mean =
         problem.condition_information() * equations.conditions as f64 / (problem.nodes.len() * MOTION) as f64;
     let (mut damping, mut raise, mut iterations) = (FIRST_DAMPING, RAISE, 1);
-    let mut done = false;
-    while iterations < most && !done && damping < LARGEST_DAMPING {
+    let (mut done, mut tries) = (false, 0);
+    while iterations < most && tries < TRIES * most && !done && damping < LARGEST_DAMPING {
+        tries += 1;
         let reduced = equations.reduced(&(unit * (damping * mean)), damping * mean);
         let step = reduced.as_ref().map(|reduced| reduced.step(&equations.gradient()));
         let promised = step.as_ref().map_or(f64::INFINITY, |step| equations.promised(step));
         let trial =
             reduced.zip(step.as_ref()).and_then(|(r, step)| tried(problem, &unknowns, &equations, &r, step));
         let short = step.as_ref().is_some_and(|step| length(step, &unit) < NO_STEP);
-        done = promised < enough || short;
+        // A heavily damped step promises little anywhere: what counts is what all of the step would gain.
+        let little = promised < enough || short;
+        done = little && equations.left() < SETTLED.max(enough);
+        if little && !done {
+            damping = lowered(damping, 1.0);
+        }
         match trial.filter(|trial| trial.cost < equations.cost) {
             Some(trial) => {
                 damping = lowered(damping, (equations.cost - trial.cost) / promised);
@@ -192,9 +206,7 @@ pub(super) fn solve<const P: usize>(
             }
         }
     }
-    // A heavily damped step promises little anywhere: what counts is what all of the step would gain.
-    let whole = equations.reduced(&Tangent::zeros(), 0.0).map(|reduced| reduced.step(&equations.gradient()));
-    let settled = whole.is_some_and(|step| equations.promised(&step) < SETTLED.max(enough));
+    let settled = equations.left() < SETTLED.max(enough);
     Some(Solved { unknowns, equations, iterations, settled })
 }
 
