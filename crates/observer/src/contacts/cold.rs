@@ -2,7 +2,7 @@
 
 use super::body::Body;
 use super::noise::ContactNoiseLevel;
-use super::problem::{Problem, Unknowns};
+use super::problem::{Problem, Units, Unknowns};
 use super::record::{Contact, Record, six};
 use super::state::Motion;
 use crate::three_palms::exponential;
@@ -13,13 +13,18 @@ use object_dynamics::ContactMode;
 /// Weight of no motion at all against one contact condition, in natural units.
 const RIDGE: f64 = 1e-2;
 
-/// A ball of the size `length`, with the mean force for its weight.
-pub(super) fn ball(record: &Record, gravity: f64, length: f64) -> Body {
+/// Units of a body of the size `length`, m, with the mean force for its weight.
+pub(super) fn units(record: &Record, gravity: f64, length: f64) -> Units {
     let forces: DVec3 = record.intervals.iter().map(|i| i.impulse.force).sum();
     let time: f64 = record.intervals.iter().map(|i| i.h).sum();
     let mass = (forces.length() / (time * gravity)).max(f64::MIN_POSITIVE);
-    let inertia = DMat3::from_diagonal(DVec3::splat(0.4 * mass * length * length));
-    Body::free(mass.ln(), inertia)
+    Units { length, speed: (gravity * length).sqrt(), mass }
+}
+
+/// A ball of the natural size and mass.
+pub(super) fn ball(units: &Units) -> Body {
+    let Units { length, mass, .. } = *units;
+    Body::free(mass.ln(), DMat3::from_diagonal(DVec3::splat(0.4 * mass * length * length)))
 }
 
 /// Radius of the ball that fits contacts and normals of the same time best, m; none where no two normals differ.

@@ -3,7 +3,7 @@ use super::body::{Body, CONSTANTS};
 use super::cold;
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
-use super::problem::Problem;
+use super::problem::{Problem, Units};
 use super::record::Record;
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
@@ -72,12 +72,12 @@ pub fn estimate_contacts(
     check(log, modes, options)?;
     let mut record = Record::new(log, options).ok_or(ContactEstimateError::NoContact)?;
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
-    let ball = cold::ball(&record, options.gravity, length);
-    let impulse = (options.gravity * length).sqrt() / ball.inverse_mass();
-    record.free_blows(impulse, impulse * length, options.gravity / ball.inverse_mass());
+    let units = cold::units(&record, options.gravity, length);
+    let impulse = units.speed * units.mass;
+    record.free_blows(impulse, impulse * length, options.gravity * units.mass);
     match modes {
-        Some(modes) => Ok(with_modes(&mut record, modes.to_vec(), options, length)?.0),
-        None => with_estimated_modes(log, &mut record, options, length),
+        Some(modes) => Ok(with_modes(&mut record, modes.to_vec(), options, units)?.0),
+        None => with_estimated_modes(log, &mut record, options, units),
     }
 }
 
@@ -86,12 +86,11 @@ fn with_estimated_modes(
     log: &ContactLog,
     record: &mut Record,
     options: &ContactOptions,
-    length: f64,
+    units: Units,
 ) -> Result<ContactEstimate, ContactEstimateError> {
-    let natural = length / (options.gravity * length).sqrt();
-    let mut modes = by_ratio(log, options, AVERAGED * natural);
+    let mut modes = by_ratio(log, options, AVERAGED * units.length / units.speed);
     for _ in 0..ROUNDS {
-        let (found, slips) = with_modes(record, modes, options, length)?;
+        let (found, slips) = with_modes(record, modes, options, units)?;
         if slips.is_empty() {
             return Ok(found);
         }
@@ -102,7 +101,7 @@ fn with_estimated_modes(
             }
         }
     }
-    Ok(with_modes(record, modes, options, length)?.0)
+    Ok(with_modes(record, modes, options, units)?.0)
 }
 
 /// Samples at which the motion contradicts that a contact sticks, and the palm.
@@ -112,15 +111,14 @@ fn with_modes(
     record: &mut Record,
     modes: Vec<[ContactMode; MOST_PALMS]>,
     options: &ContactOptions,
-    length: f64,
+    units: Units,
 ) -> Result<(ContactEstimate, Slips), ContactEstimateError> {
     record.set_modes(&modes);
     let log = &*record;
-    let natural = length / (options.gravity * length).sqrt();
-    let averaged = log.averaged(longest(&options.noise, natural));
-    let thinned = averaged.thinned(THIN * natural);
-    let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, length);
-    problem.body.0 = cold::ball(log, options.gravity, length);
+    let frictionless = log.contacts.iter().flatten().all(|contact| contact.frictionless);
+    let averaged = log.averaged(longest(&options.noise, &units, frictionless));
+    let thinned = averaged.thinned(THIN * units.length / units.speed);
+    let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
     let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
     let mut doubt = None;
     if let Some(mass) = &options.body {

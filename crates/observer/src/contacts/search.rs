@@ -115,11 +115,10 @@ pub(super) fn fine_nodes(problem: &Problem) -> Vec<usize> {
     nodes
 }
 
-pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, length: f64) -> Problem<'a> {
-    let body = cold::ball(record, options.gravity, length);
+pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: Units) -> Problem<'a> {
+    let Units { length, mass, .. } = units;
     let none = Motion { p: DVec3::ZERO, v: DVec3::ZERO, L: DVec3::ZERO, q: DQuat::IDENTITY };
     let information = |deviation: f64| 1.0 / (deviation * deviation);
-    let mass = body.log_mass.exp();
     // Entries beside the diagonal of the factor of the second moments are of the size of those on it.
     let entry = PRIOR * (0.2 * mass).sqrt() * length;
     let known = SVector::<f64, CONSTANTS>::from_fn(|i, _| match i {
@@ -134,9 +133,9 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, length: 
         gravity: DVec3::new(0.0, 0.0, -options.gravity),
         nodes: Vec::new(),
         frozen: Vec::new(),
-        units: Units { length, speed: (options.gravity * length).sqrt(), mass },
+        units,
         first: (none, Tangent::from_fn(|i, _| if i < 9 { 0.0 } else { information(FIRST_TURN) })),
-        body: (body, SMatrix::from_diagonal(&known)),
+        body: (cold::ball(&units), SMatrix::from_diagonal(&known)),
     }
 }
 
@@ -145,8 +144,9 @@ pub(super) fn refined(problem: &Problem, coarse: &[usize], unknowns: &Unknowns) 
     let mut motions = Vec::with_capacity(problem.nodes.len());
     for (j, &from) in coarse.iter().enumerate() {
         let end = coarse.get(j + 1).copied().unwrap_or(from + 1);
-        let within: Vec<usize> = problem.nodes.iter().copied().filter(|k| (from..end).contains(k)).collect();
-        motions.extend(problem.carried(from, unknowns.motions[j], &unknowns.body, &within));
+        let place = |k: usize| problem.nodes.partition_point(|&node| node < k);
+        let within = &problem.nodes[place(from)..place(end)];
+        motions.extend(problem.carried(from, unknowns.motions[j], &unknowns.body, within));
     }
     Unknowns { motions, body: unknowns.body }
 }

@@ -1,6 +1,6 @@
 use super::body::Body;
 use super::cold;
-use super::problem::{Problem, Units, Unknowns};
+use super::problem::{Problem, Unknowns};
 use super::record::Record;
 use super::solve::Step;
 use super::state::{Motion, Tangent};
@@ -101,7 +101,8 @@ fn errors(found: &ContactEstimate, log: &ContactLog) -> (f64, f64) {
 /// A problem on a short noisy log, with unknowns that are not its solution.
 fn off_solution(record: &Record, noise: ContactNoiseLevel, stride: usize) -> (Problem<'_>, Unknowns) {
     let last = record.times.len() - 1;
-    let body = cold::ball(record, G, SIZE);
+    let units = cold::units(record, G, SIZE);
+    let body = cold::ball(&units);
     let none = Motion { p: DVec3::ZERO, v: DVec3::ZERO, L: DVec3::ZERO, q: DQuat::IDENTITY };
     let problem = Problem {
         record,
@@ -109,7 +110,7 @@ fn off_solution(record: &Record, noise: ContactNoiseLevel, stride: usize) -> (Pr
         friction: false,
         gravity: DVec3::new(0.0, 0.0, -G),
         nodes: (0..last).step_by(stride).chain([last]).collect(),
-        units: Units { length: SIZE, speed: (G * SIZE).sqrt(), mass: body.log_mass.exp() },
+        units,
         first: (none, Tangent::from_element(1.0)),
         body: (body, SMatrix::identity()),
         frozen: Vec::new(),

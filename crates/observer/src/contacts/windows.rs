@@ -5,13 +5,14 @@
 //! deviations. A contact averaged over a window leaves the condition in the window's middle as it is, with less noise.
 
 use super::noise::ContactNoiseLevel;
+use super::problem::Units;
 use super::record::{Contact, Interval, Record, Wrench};
 use glam::DVec3;
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use std::ops::Range;
 
-/// Longest window over the natural time: as long as a parabola is enough.
-const LONGEST: f64 = 0.1;
+/// Longest window over the natural time, if contacts may begin to slide or stick within it: motions bend then, and it is not known when.
+const KINKED: f64 = 0.1;
 
 /// Samples for each that is kept, from which on thinning is worth it.
 const THINNED: usize = 3;
@@ -19,9 +20,18 @@ const THINNED: usize = 3;
 /// Samples that a parabola is laid through at least.
 const FEWEST: usize = 5;
 
-/// Longest window to average contacts over, s, of a natural time: none where their noise is not what limits a condition.
-pub(super) fn longest(noise: &ContactNoiseLevel, natural: f64) -> f64 {
-    if noise.contact > noise.floor * natural { LONGEST * natural } else { 0.0 }
+/// Longest window to average contacts over, s: none where their noise is not what limits a condition.
+///
+/// In natural units what a parabola leaves out of a smooth motion grows with the fourth power of the window: it is to be below the noise
+/// of a contact.
+pub(super) fn longest(noise: &ContactNoiseLevel, units: &Units, frictionless: bool) -> f64 {
+    let Units { length, speed, .. } = *units;
+    let natural = length / speed;
+    if noise.contact <= noise.floor * natural {
+        return 0.0;
+    }
+    let smooth = (noise.contact / length).sqrt().sqrt();
+    natural * if frictionless { smooth } else { KINKED.min(smooth) }
 }
 
 /// A window of samples in the middle one of which there is to be a node, and the samples around it with the same contacts in
