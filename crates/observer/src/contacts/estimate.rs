@@ -132,7 +132,9 @@ fn with_modes(
         before += solved.iterations;
         (problem, solved) = polished(&averaged, problem, &solved).ok_or(ContactEstimateError::Singular)?;
     }
-    let mut covariances = covariances(&problem, &solved)?;
+    let claimed = claimed(&problem, &solved)?;
+    let covariances = covariances(&problem, &solved)?.beyond_first_order(&problem, &solved, &claimed);
+    let mut covariances = covariances.ok_or(ContactEstimateError::Singular)?;
     if let Some(doubt) = doubt {
         let mut axes = covariances.body.fixed_view_mut::<3, 3>(4, 4);
         axes += Matrix3::identity() * (doubt * doubt);
@@ -175,10 +177,17 @@ fn covariances(
     problem: &Problem,
     solved: &Solved<CONSTANTS>,
 ) -> Result<Covariances<CONSTANTS>, ContactEstimateError> {
+    let widened = claimed(problem, solved)?.widened(problem, &solved.equations, &solved.unknowns);
+    widened.ok_or(ContactEstimateError::Singular)
+}
+
+/// As the equations have them.
+fn claimed(
+    problem: &Problem,
+    solved: &Solved<CONSTANTS>,
+) -> Result<Covariances<CONSTANTS>, ContactEstimateError> {
     let claimed = solved.equations.covariances(&problem.natural_information());
-    claimed
-        .and_then(|claimed| claimed.widened(problem, &solved.equations, &solved.unknowns))
-        .ok_or(ContactEstimateError::Singular)
+    claimed.ok_or(ContactEstimateError::Singular)
 }
 
 fn slips(problem: &Problem, motions: &[(Motion, Deviations)], body: &Body) -> Slips {

@@ -14,6 +14,7 @@ mod record;
 mod rows;
 mod samples;
 mod search;
+mod second_order;
 mod solve;
 mod spurious;
 mod state;

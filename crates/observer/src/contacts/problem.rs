@@ -4,7 +4,7 @@ use super::body::{Body, CONSTANTS};
 use super::equations::{Equations, LinkEquation, NodeEquations, SampleEquations};
 use super::flow::{Carried, Transition, link_information};
 use super::noise::ContactNoiseLevel;
-use super::record::{Record, Wrench};
+use super::record::{Contact, Record, Wrench};
 use super::rows::Rows;
 use super::solve::Step;
 use super::state::{MOTION, Motion, Tangent, Turn};
@@ -203,6 +203,30 @@ impl Problem<'_> {
             }
         };
         (0..at.motions.len()).map(one).collect()
+    }
+
+    /// The motion at each sample of the record.
+    fn at_all_samples(&self, at: &Unknowns) -> Vec<Motion> {
+        let own = self.at_samples(at);
+        let mut all = Vec::with_capacity(self.record.times.len());
+        for (j, &from) in self.nodes.iter().enumerate() {
+            let end = self.nodes.get(j + 1).copied().unwrap_or(from + 1);
+            let between: Vec<usize> = (from + 1..end).collect();
+            all.push(own[j]);
+            all.extend(self.carried(from, at.motions[j], &at.body, &between));
+        }
+        all
+    }
+
+    /// Sum of the logarithms of the determinants of the information of all conditions.
+    pub(super) fn conditions_log_information(&self, at: &Unknowns) -> f64 {
+        let one = |(contacts, motion): (&Vec<Contact>, &Motion)| -> f64 {
+            let turn = at.body.turn(motion.q, motion.L);
+            let rows =
+                contacts.iter().filter_map(|c| Rows::new(c, motion, &turn, &self.noise, self.friction));
+            rows.map(|rows| rows.log_information()).sum()
+        };
+        self.record.contacts.iter().zip(&self.at_all_samples(at)).map(one).sum()
     }
 
     /// The samples at which there are nodes, by their numbers in the log.

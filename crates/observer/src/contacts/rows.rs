@@ -105,6 +105,15 @@ impl Rows {
         Some(rows)
     }
 
+    /// Logarithm of the determinant of the information.
+    pub(super) fn log_information(&self) -> f64 {
+        let kept = Matrix3::from_fn(|i, j| match (i < self.count && j < self.count, i == j) {
+            (true, _) => self.information[(i, j)],
+            (false, same) => f64::from(same),
+        });
+        kept.determinant().ln()
+    }
+
     /// Squared residuals in their deviations.
     pub(super) fn cost(&self) -> f64 {
         (self.information * self.residual).dot(&self.residual)

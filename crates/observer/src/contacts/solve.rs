@@ -125,6 +125,13 @@ impl<const P: usize> Equations<P> {
         -(nodes + step.body.dot(&self.body_gradient))
     }
 
+    /// Logarithm of the determinant of the information on all motions for a given body. None where they are not positive definite.
+    pub(super) fn motions_log_information(&self) -> Option<f64> {
+        let reduced = self.reduced(&Tangent::zeros(), 0.0)?;
+        let one = |node: &Eliminated<P>| 2.0 * node.own.l_dirty().diagonal().map(f64::ln).sum();
+        Some(reduced.nodes.iter().map(one).sum())
+    }
+
     /// Fall of the cost that an undamped step promises.
     fn left(&self) -> f64 {
         let whole = self.reduced(&Tangent::zeros(), 0.0).map(|reduced| reduced.step(&self.gradient()));

@@ -1,0 +1,50 @@
+//! How far an estimate of the body is from what a linear model makes of it.
+//!
+//! The most probable motion and body together are not the most probable body: what counts for that is how many motions go with it as
+//! well. If that changes much over one deviation of a constant, the estimate may be off by more than its deviation says. To second order
+//! the most probable body is shifted by the slope of the logarithm of that volume (Tierney and Kadane 1986); the slope that is
+//! taken here feels noise itself, so that the shift says how large an error may be, and not which.
+
+use super::body::CONSTANTS;
+use super::problem::{Problem, Unknowns};
+use super::solve::{Covariances, Solved, Step};
+use nalgebra::SVector;
+
+/// Length of a difference, in claimed deviations.
+const STEP: f64 = 0.3;
+/// Deviation of the error, as a share of the shift.
+const SHARE: f64 = 0.3;
+
+impl Covariances<CONSTANTS> {
+    /// With the covariance of the body widened by what is beyond first order. `claimed` are those of the equations alone. None where the
+    /// problem cannot be evaluated a step away.
+    pub(super) fn beyond_first_order(
+        mut self,
+        problem: &Problem,
+        solved: &Solved<CONSTANTS>,
+        claimed: &Self,
+    ) -> Option<Self> {
+        let factor = claimed.body.cholesky()?.l();
+        let volume = |by: SVector<f64, CONSTANTS>| {
+            let motions = claimed.motions.iter().map(|(_, follows)| follows * by).collect();
+            let step = Step { motions, body: by };
+            log_volume(problem, &problem.trial(&solved.unknowns, &step, &solved.equations)?.unknowns)
+        };
+        let mut shift = SVector::<f64, CONSTANTS>::zeros();
+        for column in factor.column_iter() {
+            let step = column * STEP;
+            shift += column * ((volume(step)? - volume(-step)?) / (2.0 * STEP));
+        }
+        self.body += shift * shift.transpose() * (SHARE * SHARE);
+        Some(self)
+    }
+}
+
+/// Logarithm of the volume of the motions that go with a body about as well as the best one, less that of all readings.
+fn log_volume(problem: &Problem, at: &Unknowns) -> Option<f64> {
+    let equations = problem.linearise::<CONSTANTS>(at)?;
+    let links =
+        equations.links.iter().map(|link| link.information.cholesky().map(|of| of.determinant().ln()));
+    let readings = links.sum::<Option<f64>>()? + problem.conditions_log_information(at);
+    Some(0.5 * (readings - equations.motions_log_information()?)).filter(|volume| volume.is_finite())
+}
