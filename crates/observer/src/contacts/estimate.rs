@@ -115,8 +115,7 @@ fn with_modes(
 ) -> Result<(ContactEstimate, Slips), ContactEstimateError> {
     record.set_modes(&modes);
     let log = &*record;
-    let frictionless = log.contacts.iter().flatten().all(|contact| contact.frictionless);
-    let averaged = log.averaged(longest(&options.noise, &units, frictionless));
+    let averaged = log.averaged(longest(log, &options.noise, &units));
     let thinned = averaged.thinned(THIN * units.length / units.speed);
     let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
     let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;

@@ -14,6 +14,13 @@ use std::ops::Range;
 /// Longest window over the natural time, if contacts may begin to slide or stick within it: motions bend then, and it is not known when.
 const KINKED: f64 = 0.1;
 
+/// How much shorter the next window is that is tried, and how many are.
+const SHORTER: f64 = 0.7;
+const TRIED: usize = 6;
+
+/// Deviations of a normal variable that it is beyond once in a thousand.
+const UNLIKELY: f64 = 3.1;
+
 /// Samples for each that is kept, from which on thinning is worth it.
 const THINNED: usize = 3;
 
@@ -23,15 +30,39 @@ const FEWEST: usize = 5;
 /// Longest window to average contacts over, s: none where their noise is not what limits a condition.
 ///
 /// In natural units what a parabola leaves out of a smooth motion grows with the fourth power of the window: it is to be below the noise
-/// of a contact.
-pub(super) fn longest(noise: &ContactNoiseLevel, units: &Units, frictionless: bool) -> f64 {
+/// of a contact, by the size of the body and by the contacts themselves.
+pub(super) fn longest(record: &Record, noise: &ContactNoiseLevel, units: &Units) -> f64 {
     let Units { length, speed, .. } = *units;
     let natural = length / speed;
     if noise.contact <= noise.floor * natural {
         return 0.0;
     }
     let smooth = (noise.contact / length).sqrt().sqrt();
-    natural * if frictionless { smooth } else { KINKED.min(smooth) }
+    if record.contacts.iter().flatten().any(|contact| !contact.frictionless) {
+        return natural * KINKED.min(smooth);
+    }
+    let shorter = |longest: &f64| Some(longest * SHORTER);
+    let lengths = std::iter::successors(Some(natural * smooth), shorter).take(TRIED);
+    lengths.clone().find(|&longest| !bent(record, longest, noise.contact)).or(lengths.last()).unwrap_or(0.0)
+}
+
+/// Whether contacts depart from the parabolas through windows by more than noise does, at odds of a thousand to one.
+fn bent(record: &Record, longest: f64, deviation: f64) -> bool {
+    let (mut squares, mut freedoms) = (0.0, 0.0);
+    for window in windows(record, longest) {
+        for i in 0..record.contacts[window.middle()].len() {
+            let Some(parabola) = Parabola::new(&window, &record.times, |k| record.contacts[k][i].c) else {
+                continue;
+            };
+            for k in window.around.clone() {
+                let after = record.times[k] - record.times[window.middle()];
+                squares += (record.contacts[k][i].c - parabola.at(after)).length_squared();
+            }
+            freedoms += 2.0 * (window.around.len() as f64 - 3.0);
+        }
+    }
+    // Each sample is around three windows.
+    squares > deviation * deviation * (freedoms + UNLIKELY * (6.0 * freedoms).sqrt())
 }
 
 /// A window of samples in the middle one of which there is to be a node, and the samples around it with the same contacts in
@@ -79,28 +110,42 @@ fn windows(record: &Record, longest: f64) -> Vec<Window> {
     all
 }
 
+/// The parabola through the samples around a window, in time after its middle over `scale`. None with too few of them.
+struct Parabola {
+    scale: f64,
+    coefficients: Matrix3<f64>,
+}
+
+impl Parabola {
+    fn new(window: &Window, times: &[f64], value: impl Fn(usize) -> DVec3) -> Option<Self> {
+        if window.averaged() == 1 {
+            return None;
+        }
+        let scale = times[window.around.end - 1] - times[window.around.start];
+        let (mut normal, mut right) = (Matrix3::zeros(), Matrix3::zeros());
+        for k in window.around.clone() {
+            let s = (times[k] - times[window.middle()]) / scale;
+            let row = Vector3::new(1.0, s, s * s);
+            normal.ger(1.0, &row, &row, 1.0);
+            right.ger(1.0, &row, &Vector3::from(value(k)), 1.0);
+        }
+        Some(Self { scale, coefficients: normal.cholesky()?.solve(&right) })
+    }
+
+    /// Its value at a time after the middle.
+    fn at(&self, after: f64) -> DVec3 {
+        let s = after / self.scale;
+        let value = self.coefficients.transpose() * Vector3::new(1.0, s, s * s);
+        DVec3::new(value[0], value[1], value[2])
+    }
+}
+
 /// Value at the middle of a window: the mean, less what slope and bend of a parabola through the samples around add to it.
 fn at_middle(window: &Window, times: &[f64], value: impl Fn(usize) -> DVec3) -> DVec3 {
-    if window.averaged() == 1 {
-        return value(window.middle());
-    }
-    let own = &window.own;
-    let share = 1.0 / own.len() as f64;
-    let after = |k: usize| times[k] - times[window.middle()];
-    let mean = own.clone().map(&value).sum::<DVec3>() * share;
-    let scale = times[window.around.end - 1] - times[window.around.start];
-    let (mut normal, mut right) = (Matrix3::zeros(), Matrix3::zeros());
-    for k in window.around.clone() {
-        let s = after(k) / scale;
-        let row = Vector3::new(1.0, s, s * s);
-        normal.ger(1.0, &row, &row, 1.0);
-        right.ger(1.0, &row, &Vector3::from(value(k)), 1.0);
-    }
-    let Some(factor) = normal.cholesky() else { return mean };
-    let parabola = factor.solve(&right);
-    let moment = |power: i32| own.clone().map(|k| (after(k) / scale).powi(power)).sum::<f64>() * share;
-    let bend = parabola.row(1) * moment(1) + parabola.row(2) * moment(2);
-    mean - DVec3::new(bend[0], bend[1], bend[2])
+    let Some(parabola) = Parabola::new(window, times, &value) else { return value(window.middle()) };
+    let bend = |k: usize| parabola.at(times[k] - times[window.middle()]) - parabola.at(0.0);
+    let sum: DVec3 = window.own.clone().map(|k| value(k) - bend(k)).sum();
+    sum / window.own.len() as f64
 }
 
 impl Record {
