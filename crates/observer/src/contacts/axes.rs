@@ -5,7 +5,7 @@ use super::problem::Problem;
 use super::search::fine;
 use super::solve::Solved;
 use crate::least_squares::{LeastSquares, LevenbergMarquardt, NormalEquations};
-use crate::three_palms::{equivalent_orientations, exponential};
+use crate::three_palms::{Reason, equivalent_orientations, exponential};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
 use object_dynamics::MassProperties;
@@ -28,8 +28,15 @@ const ANY_TURN: f64 = 1.8;
 
 type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
 
+/// Squared departure of a known body from what was found without knowing it, of four degrees of freedom, beyond which it is another one:
+/// chance goes there once in a million. What it costs to explain the log by it must go there too, as where little is known of an inertia a
+/// covariance does not reach as far.
+const CONTRADICTED: f64 = 33.4;
+
 /// The motion of a known body.
 pub(super) struct Oriented {
+    /// Why it cannot be that body.
+    pub(super) against: Option<Reason>,
     pub(super) solved: Solved<CONSTANTS>,
     /// How far the axes are from those of the farthest other motion that is not much less probable, rad.
     pub(super) doubt: f64,
@@ -50,10 +57,13 @@ pub(super) fn oriented(
         unknown: unknown.unknowns.body,
         whitening: covariance.cholesky()?.inverse().cholesky()?,
         mass,
+        mass_deviation: covariance[(0, 0)].max(f64::MIN_POSITIVE).sqrt(),
     };
     let mut iterations = 0;
     let mut found: Vec<(Solved<CONSTANTS>, Body, Vec<SVector<f64, CONSTANTS>>)> = Vec::new();
-    for R in likely.candidates(&same) {
+    let candidates = likely.candidates(&same);
+    let against = candidates.first().and_then(|best| likely.against(*best));
+    for R in candidates {
         let body = Body::turned(mass, R);
         problem.body = (body, SMatrix::from_diagonal(&information()));
         problem.frozen.clear();
@@ -65,12 +75,14 @@ pub(super) fn oriented(
     let axes = |solved: &Solved<CONSTANTS>| solved.unknowns.body.axes().unwrap_or_default();
     let mut found = found.into_iter();
     let (solved, body, frozen) = found.next()?;
+    let dearer = solved.equations.cost - unknown.equations.cost > CONTRADICTED;
+    let against = against.filter(|_| unknown.explained() && dearer);
     let odds = |other: &Solved<CONSTANTS>| 0.5 * (other.equations.cost - solved.equations.cost);
     let open = found.filter(|(other, ..)| odds(other) < LEAST_LOG_ODDS);
     let doubt = open.map(|(other, ..)| apart(axes(&solved), axes(&other), &HALF_TURNS)).fold(0.0, f64::max);
     problem.body.0 = body;
     problem.frozen = frozen;
-    Some(Oriented { solved, doubt, iterations })
+    Some(Oriented { against, solved, doubt, iterations })
 }
 
 /// What is known of the constants of a known body: all but the turn of its axes.
@@ -107,6 +119,8 @@ struct Likely<'a> {
     /// Factor of the information on the constants.
     whitening: Cholesky<f64, Const<CONSTANTS>>,
     mass: &'a MassProperties,
+    /// Of the logarithm of the mass that was found.
+    mass_deviation: f64,
 }
 
 impl Likely<'_> {
@@ -114,6 +128,14 @@ impl Likely<'_> {
         let inertia = DMat3::from_quat(R);
         let body = Body::free(self.mass.mass().ln(), inertia * self.mass.inertia() * inertia.transpose());
         self.whitening.l().transpose() * body.from(&self.unknown)
+    }
+
+    /// Why the known body is not the one that was found, if it is not with its axes at the best place.
+    fn against(&self, R: DQuat) -> Option<Reason> {
+        let squares = self.residual(R).norm_squared();
+        let mass = self.unknown.log_mass - self.mass.mass().ln();
+        let deviations = mass.abs() / self.mass_deviation;
+        (squares > CONTRADICTED).then_some(Reason::OtherBody { mass: mass.exp(), deviations, squares })
     }
 
     /// Where the inertia fits best, best first.

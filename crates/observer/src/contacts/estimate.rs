@@ -12,7 +12,7 @@ use super::solve::{Covariances, Solved};
 use super::state::Motion;
 use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
-use crate::three_palms::Reliability;
+use crate::three_palms::{Reason, Reliability};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::Matrix3;
 use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS, MassProperties};
@@ -119,21 +119,19 @@ fn with_modes(
     let thinned = averaged.thinned(THIN * units.length / units.speed);
     let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
     let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
-    let mut doubt = None;
+    let (mut doubt, mut against) = (None, None);
     if let Some(mass) = &options.body {
         let covariance = covariances(&problem, &solved)?.body;
         let known = oriented(&mut problem, &solved, &covariance, mass);
         let known = known.ok_or(ContactEstimateError::Singular)?;
         before += solved.iterations + known.iterations - known.solved.iterations;
-        (solved, doubt) = (known.solved, Some(known.doubt));
+        (solved, doubt, against) = (known.solved, Some(known.doubt), known.against);
     }
     if thinned.is_some() {
         before += solved.iterations;
         (problem, solved) = polished(&averaged, problem, &solved).ok_or(ContactEstimateError::Singular)?;
     }
-    let claimed = claimed(&problem, &solved)?;
-    let covariances = covariances(&problem, &solved)?.beyond_first_order(&problem, &solved, &claimed);
-    let mut covariances = covariances.ok_or(ContactEstimateError::Singular)?;
+    let mut covariances = covariances(&problem, &solved)?;
     if let Some(doubt) = doubt {
         let mut axes = covariances.body.fixed_view_mut::<3, 3>(4, 4);
         axes += Matrix3::identity() * (doubt * doubt);
@@ -141,7 +139,8 @@ fn with_modes(
     let iterations = [before, before + solved.iterations];
     let motions = at_all(log, &problem, &solved.unknowns, &covariances);
     let slips = slips(&problem, &motions, &solved.unknowns.body);
-    let found = Found { log, problem: &problem, solved: &solved, covariances: &covariances, iterations };
+    let found =
+        Found { log, problem: &problem, solved: &solved, covariances: &covariances, iterations, against };
     Ok((found.estimate(&motions, modes, options.body.as_ref()), slips))
 }
 
@@ -171,22 +170,17 @@ fn polished<'a>(
     Some((problem, solved))
 }
 
-/// Without what noise alone makes the equations claim.
+/// Without what noise alone makes the equations claim, and with what is beyond first order.
 fn covariances(
     problem: &Problem,
     solved: &Solved<CONSTANTS>,
 ) -> Result<Covariances<CONSTANTS>, ContactEstimateError> {
-    let widened = claimed(problem, solved)?.widened(problem, &solved.equations, &solved.unknowns);
-    widened.ok_or(ContactEstimateError::Singular)
-}
-
-/// As the equations have them.
-fn claimed(
-    problem: &Problem,
-    solved: &Solved<CONSTANTS>,
-) -> Result<Covariances<CONSTANTS>, ContactEstimateError> {
-    let claimed = solved.equations.covariances(&problem.natural_information());
-    claimed.ok_or(ContactEstimateError::Singular)
+    let all = || {
+        let claimed = || solved.equations.covariances(&problem.natural_information());
+        let widened = claimed()?.widened(problem, &solved.equations, &solved.unknowns)?;
+        widened.beyond_first_order(problem, solved, &claimed()?.body)
+    };
+    all().ok_or(ContactEstimateError::Singular)
 }
 
 fn slips(problem: &Problem, motions: &[(Motion, Deviations)], body: &Body) -> Slips {
@@ -214,6 +208,8 @@ struct Found<'a> {
     solved: &'a Solved<CONSTANTS>,
     covariances: &'a Covariances<CONSTANTS>,
     iterations: [usize; 2],
+    /// Why a known body is not the one.
+    against: Option<Reason>,
 }
 
 impl Found<'_> {
@@ -223,7 +219,7 @@ impl Found<'_> {
         modes: Vec<[ContactMode; MOST_PALMS]>,
         known: Option<&MassProperties>,
     ) -> ContactEstimate {
-        let Self { log, problem, solved, covariances, iterations } = *self;
+        let Self { log, problem, solved, covariances, iterations, against } = *self;
         let Solved { unknowns, equations, settled, .. } = solved;
         let body = &unknowns.body;
         // The body's own axes in those of the first sample.
@@ -244,7 +240,10 @@ impl Found<'_> {
             w_WO: body.turn(motion.q, motion.L).w,
             R_WO: (motion.q * own).normalize(),
         };
-        let (reliability, wider) = (evidence.reliability(), evidence.widening());
+        let (mut reliability, wider) = (evidence.reliability(), evidence.widening());
+        if let Some(reason) = against {
+            reliability.add(reason);
+        }
         let deviations: Vec<_> = motions.iter().map(|(_, of)| of.map(|of| of * wider)).collect();
         let nodes = problem.node_samples();
         let excess = stretches(problem, equations);

@@ -7,7 +7,6 @@ use super::problem::{Problem, Units, Unknowns};
 use super::record::Record;
 use super::solve::{Solved, solve};
 use super::state::{Motion, Tangent};
-use crate::three_palms::LARGEST_MISFIT;
 use glam::{DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 
@@ -54,7 +53,7 @@ pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<
         let start = refined(problem, &coarse_nodes, &coarse.unknowns);
         before += coarse.iterations;
         let Some(found) = fine(problem, start) else { continue };
-        if found.settled && found.misfit() < LARGEST_MISFIT {
+        if found.explained() {
             return Some((found, before));
         }
         let better = best.as_ref().is_none_or(|best| found.equations.cost < best.equations.cost);

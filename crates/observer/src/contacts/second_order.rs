@@ -8,7 +8,7 @@
 use super::body::CONSTANTS;
 use super::problem::{Problem, Unknowns};
 use super::solve::{Covariances, Solved, Step};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// Length of a difference, in claimed deviations.
 const STEP: f64 = 0.3;
@@ -16,17 +16,17 @@ const STEP: f64 = 0.3;
 const SHARE: f64 = 0.3;
 
 impl Covariances<CONSTANTS> {
-    /// With the covariance of the body widened by what is beyond first order. `claimed` are those of the equations alone. None where the
+    /// With the covariance of the body widened by what is beyond first order; `claimed` is that of the equations alone. None where the
     /// problem cannot be evaluated a step away.
     pub(super) fn beyond_first_order(
         mut self,
         problem: &Problem,
         solved: &Solved<CONSTANTS>,
-        claimed: &Self,
+        claimed: &SMatrix<f64, CONSTANTS, CONSTANTS>,
     ) -> Option<Self> {
-        let factor = claimed.body.cholesky()?.l();
+        let factor = claimed.cholesky()?.l();
         let volume = |by: SVector<f64, CONSTANTS>| {
-            let motions = claimed.motions.iter().map(|(_, follows)| follows * by).collect();
+            let motions = self.motions.iter().map(|(_, follows)| follows * by).collect();
             let step = Step { motions, body: by };
             log_volume(problem, &problem.trial(&solved.unknowns, &step, &solved.equations)?.unknowns)
         };

@@ -5,6 +5,7 @@ use super::flow::Transition;
 use super::problem::{Problem, Trial, Unknowns};
 use super::state::{MOTION, Tangent};
 use crate::least_squares::{LARGEST_DAMPING, RAISE, lowered};
+use crate::three_palms::LARGEST_MISFIT;
 use nalgebra::{Cholesky, Const, DMatrix, SMatrix, SVector};
 
 /// First damping, as a share of the conditions' mean information.
@@ -30,6 +31,11 @@ pub(super) struct Solved<const P: usize> {
 }
 
 impl<const P: usize> Solved<P> {
+    /// Whether there is no more to gain and noise explains what is left.
+    pub(super) fn explained(&self) -> bool {
+        self.settled && self.misfit() < LARGEST_MISFIT
+    }
+
     /// Chi-squared over the number of conditions.
     pub(super) fn misfit(&self) -> f64 {
         self.equations.cost / self.equations.conditions.max(1) as f64

@@ -187,6 +187,15 @@ pub enum Reason {
         /// Chi-squared over its degrees of freedom; about 1 when all is as stated.
         misfit: f64,
     },
+    /// Mass and moments of inertia that were stated contradict those that the log has without them.
+    OtherBody {
+        /// What the mass of the log is of the stated one.
+        mass: f64,
+        /// How many of its deviations that is off.
+        deviations: f64,
+        /// Squared departure of mass and moments in their covariance, four degrees of freedom.
+        squares: f64,
+    },
     /// With this motion contacts lie outside the tangent planes of other contacts: no convex body does that.
     NotConvex {
         /// The farthest, in standard deviations.
@@ -240,6 +249,12 @@ impl fmt::Display for Reason {
                 "another motion explains the log about as well (this one is {:.1} times more probable): move the object \
                  for longer, or use better sensors",
                 log_odds.exp()
+            ),
+            Self::OtherBody { mass, deviations, squares } => write!(
+                f,
+                "the stated mass and inertia are not those of this object: without them the mass comes out {mass:.4} times as large, which is \
+                 {deviations:.1} deviations off, and mass and moments together depart by {squares:.0} where chance makes 4: state others, or \
+                 none"
             ),
             Self::NotConvex { deviations } => write!(
                 f,
