@@ -49,7 +49,7 @@ pub struct ContactEstimate {
     pub evidence: ContactEvidence,
 }
 
-/// Motion, mass and inertia of an unknown body from contacts of any palms and their forces in three axes, from no guess, with
+/// Motion, mass and inertia of an unknown body from contacts of any palms and their forces or impulses in three axes, from no guess, with
 /// the contact modes at all samples if they are known (`contacts.md`, sections 5 and 8).
 ///
 /// Nodes hold the motion, one a sample or one for a few samples whose contacts are averaged; measured impulses link them, and
@@ -64,27 +64,26 @@ pub fn estimate_contacts(
     options: &ContactOptions,
 ) -> Result<ContactEstimate, ContactEstimateError> {
     options.check()?;
-    check(log, modes)?;
+    check(log, &options.noise, modes)?;
     let mut record = Record::new(log, &options.noise).ok_or(ContactEstimateError::NoContact)?;
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let ball = cold::ball(&record, options.gravity, length);
     let impulse = (options.gravity * length).sqrt() / ball.inverse_mass();
-    record.free_blows(impulse, impulse * length, options.gravity / ball.inverse_mass());
+    record.mark_blows(impulse, impulse * length, options.gravity / ball.inverse_mass());
     match modes {
         Some(modes) => Ok(with_modes(&mut record, modes.to_vec(), options, length)?.0),
-        None => with_estimated_modes(log, &mut record, options, length),
+        None => with_estimated_modes(&mut record, options, length),
     }
 }
 
 /// With modes from the ratios of forces, those of the conditions that the motion contradicts taken back.
 fn with_estimated_modes(
-    log: &ContactLog,
     record: &mut Record,
     options: &ContactOptions,
     length: f64,
 ) -> Result<ContactEstimate, ContactEstimateError> {
     let natural = length / (options.gravity * length).sqrt();
-    let mut modes = by_ratio(log, &options.noise, AVERAGED * natural);
+    let mut modes = by_ratio(record, AVERAGED * natural);
     for _ in 0..ROUNDS {
         let (found, slips) = with_modes(record, modes, options, length)?;
         if slips.is_empty() {

@@ -1,7 +1,8 @@
 //! What the estimate from contacts is told, and why it refuses.
 
+use super::impulses::read;
 use super::noise::ContactNoiseLevel;
-use object_dynamics::{ContactLog, ContactMode, MOST_PALMS, SensedAxes};
+use object_dynamics::{ContactLog, ContactMode, LoggedPalm, MOST_PALMS, SensedAxes};
 use thiserror::Error;
 
 /// Why there is no estimate.
@@ -10,9 +11,10 @@ pub enum ContactEstimateError {
     /// Nothing was touched.
     #[error("no palm was touched at any sample: there is nothing to estimate from")]
     NoContact,
-    /// A palm lacks the force.
+    /// A palm lacks the force, and an impulse with its noise.
     #[error(
-        "palm {palm} does not measure its force in three axes: the estimate from contacts needs all of it"
+        "palm {palm} measures neither its force nor, with a stated noise, its impulse in three axes: the estimate from contacts needs \
+         all of one of them"
     )]
     NoForce {
         /// Number from 1.
@@ -71,6 +73,8 @@ impl ContactOptions {
             ("noise of contacts", self.noise.contact),
             ("fixed noise of forces", self.noise.force_fixed),
             ("noise of forces as a share", self.noise.force_share),
+            ("fixed noise of impulses", self.noise.impulse.map_or(0.0, |noise| noise.fixed)),
+            ("noise of impulses as a share", self.noise.impulse.map_or(0.0, |noise| noise.share)),
         ];
         let wrong = |must, possible: fn(f64) -> bool| {
             move |&(what, value): &(&'static str, f64)| {
@@ -85,6 +89,7 @@ impl ContactOptions {
 
 pub(super) fn check(
     log: &ContactLog,
+    noise: &ContactNoiseLevel,
     modes: Option<&[[ContactMode; MOST_PALMS]]>,
 ) -> Result<(), ContactEstimateError> {
     let samples = log.times().len();
@@ -94,6 +99,8 @@ pub(super) fn check(
     if let Some(modes) = modes.filter(|modes| modes.len() != samples) {
         return Err(ContactEstimateError::Modes { found: modes.len(), samples });
     }
-    let lacks = log.palms().iter().position(|palm| palm.force_axes() != Some(SensedAxes::Three));
+    let felt =
+        |palm: &LoggedPalm| palm.force_axes() == Some(SensedAxes::Three) || read(palm, noise).is_some();
+    let lacks = log.palms().iter().position(|palm| !felt(palm));
     lacks.map_or(Ok(()), |palm| Err(ContactEstimateError::NoForce { palm: palm + 1 }))
 }

@@ -70,12 +70,21 @@ fn modes(log: &ContactLog) -> Vec<[ContactMode; MOST_PALMS]> {
 }
 
 fn noise(contact: f64, force_share: f64) -> ContactNoiseLevel {
-    ContactNoiseLevel { contact, force_fixed: 0.0, force_share, floor: 3e-5 * (G * SIZE).sqrt() }
+    ContactNoiseLevel {
+        contact,
+        force_fixed: 0.0,
+        force_share,
+        impulse: None,
+        floor: 3e-5 * (G * SIZE).sqrt(),
+    }
 }
 
 fn noisy(log: &ContactLog, noise: &ContactNoiseLevel, seed: u64) -> ContactLog {
     let force = ChannelNoise { fixed: noise.force_fixed, share: noise.force_share };
-    log.with_noise(&ContactNoise { contact: noise.contact, force, ..ContactNoise::default() }, seed).unwrap()
+    let impulse =
+        noise.impulse.map_or(force, |noise| ChannelNoise { fixed: noise.fixed, share: noise.share });
+    let noise = ContactNoise { contact: noise.contact, force, impulse, ..ContactNoise::default() };
+    log.with_noise(&noise, seed).unwrap()
 }
 
 fn options(noise: ContactNoiseLevel) -> ContactOptions {
@@ -305,4 +314,25 @@ fn modes_are_told_from_forces() {
     }
     assert!(sticks > 300 && 2 * told > sticks, "{told} of {sticks} that stick");
     assert!(found.evidence.misfit < 1.5);
+}
+
+#[test]
+fn zz_fall() {
+    let (scene, start) = scene(0.1, 2e-3);
+    let exact =
+        simulated(&scene, &ContactStart { in_flight: true, ..ContactStart::touching(start) }, 0.6, 500.0);
+    for seed in 0..12 {
+        let noise = noise(4e-5, 0.004);
+        let log = noisy(&exact, &noise, seed);
+        for with in [false, true] {
+            let impulse = with.then_some(ImpulseNoise { fixed: 0.0, share: 0.004 });
+            let noise = ContactNoiseLevel { impulse, ..noise };
+            let found = estimate_contacts(&log, Some(&modes(&log)), &options(noise)).unwrap();
+            let (squares, mass) = errors(&found, &log);
+            println!(
+                "{seed} {with} {:?} {:?} relied {} squares {} mass {} of {} inertia {:?}",
+                found.reliability, found.evidence, found.relied_on.iter().filter(|r| **r).count(), squares / 12.0, mass, found.mass_deviation, found.inertia_deviations
+            );
+        }
+    }
 }
