@@ -154,7 +154,7 @@ fn case(file: &Log, (contact, share): (f64, f64), seconds: f64, seed: u64) -> An
     let force = ChannelNoise { fixed: 0.0, share };
     let log = log.with_noise(&ContactNoise { contact, force, ..ContactNoise::default() }, seed)?;
     let floor = FLOOR * (G * length).sqrt();
-    let noise = ContactNoiseLevel { contact, force_fixed: 0.0, force_share: share, floor };
+    let noise = ContactNoiseLevel { contact, force_fixed: 0.0, force_share: share, impulse: None, floor };
     let size = (file.palm_count() == 1).then_some(STATED_SIZE * length);
     Ok(Case { log, modes, options: ContactOptions { noise, gravity: G, size }, length })
 }

@@ -331,8 +331,48 @@ fn zz_fall() {
             let (squares, mass) = errors(&found, &log);
             println!(
                 "{seed} {with} {:?} {:?} relied {} squares {} mass {} of {} inertia {:?}",
-                found.reliability, found.evidence, found.relied_on.iter().filter(|r| **r).count(), squares / 12.0, mass, found.mass_deviation, found.inertia_deviations
+                found.reliability,
+                found.evidence,
+                found.relied_on.iter().filter(|r| **r).count(),
+                squares / 12.0,
+                mass,
+                found.mass_deviation,
+                found.inertia_deviations
             );
         }
+    }
+}
+
+#[test]
+fn zz_calm() {
+    for (rate, share, contact, t) in [
+        (500.0, 0.004, 4e-5, 0.8),
+        (1000.0, 0.004, 4e-5, 0.8),
+        (500.0, 0.0004, 4e-5, 0.8),
+        (500.0, 0.02, 4e-6, 0.8),
+    ] {
+        let exact = super::tests::log(t, rate);
+        let mut sums = [[0.0; 3]; 3];
+        for seed in 0..6 {
+            let noise = noise(contact, share);
+            let log = noisy(&exact, &noise, seed);
+            for with in 0..3 {
+                let mut log = log.clone();
+                if with == 2 {
+                    let mut records = log.records();
+                    records.iter_mut().for_each(|r| r.force = ForceChannel::Missing);
+                    log = ContactLog::new(log.times().to_vec(), records, log.truth().map(<[_]>::to_vec))
+                        .unwrap();
+                }
+                let impulse = (with > 0).then_some(ImpulseNoise { fixed: 0.0, share });
+                let noise = ContactNoiseLevel { impulse, ..noise };
+                let found = estimate_contacts(&log, Some(&modes(&exact)), &options(noise)).unwrap();
+                let (squares, mass) = errors(&found, &log);
+                sums[with][0] += squares / 72.0;
+                sums[with][1] += found.evidence.misfit / 6.0;
+                sums[with][2] += found.evidence.conditions as f64 / 6.0;
+            }
+        }
+        println!("{rate} {share} {contact}: {sums:.3?}");
     }
 }
