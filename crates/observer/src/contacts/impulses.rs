@@ -17,23 +17,27 @@ pub(super) fn read(palm: &LoggedPalm, noise: &ContactNoiseLevel) -> Option<Impul
 }
 
 /// Force of a palm at sample `k` by its impulses, and the standard deviation of each axis: the mean over those intervals beside it
-/// over which no palm is newly touched or left, where they say nothing of a blow. Zero where there is none.
+/// over which no palm is newly touched or left, where nothing speaks of a blow; over both where there is none.
 ///
 /// It is of second order in the time between samples, of first order beside a change. Neighbouring samples share an interval: the
 /// deviation is that of one interval, so that means over some samples are as good as stated.
 pub(super) fn force(log: &ContactLog, palm: &LoggedPalm, k: usize, noise: &ImpulseNoise) -> (DVec3, f64) {
     let times = log.times();
     let touched = |k: usize| log.palms().iter().map(move |palm| palm.touch(k).is_some());
-    let calm = |&k: &usize| (1..times.len()).contains(&k) && touched(k - 1).eq(touched(k));
+    let inside = |k: &usize| (1..times.len()).contains(k);
+    let calm = |&k: &usize| touched(k - 1).eq(touched(k));
+    let beside = || [k, k + 1].into_iter().filter(inside);
+    let any_calm = beside().any(|k| calm(&k));
     let (mut sum, mut time, mut variance, mut count) = (DVec3::ZERO, 0.0, 0.0, 0.0);
-    for k in [k, k + 1].into_iter().filter(calm) {
+    for k in beside().filter(|k| !any_calm || calm(k)) {
         let (h, J) = (times[k] - times[k - 1], palm.impulse(k).map_or(DVec3::ZERO, |J| J.vector));
         sum += J;
         time += h;
         variance += (noise.of(J) / h).powi(2);
         count += 1.0;
     }
-    if time > 0.0 { (sum / time, (variance / count).sqrt()) } else { (DVec3::ZERO, 0.0) }
+    // A log has two samples at least.
+    if time > 0.0 { (sum / time, f64::sqrt(variance / count)) } else { (DVec3::ZERO, 0.0) }
 }
 
 /// Adds to `intervals` what palms whose impulses are read do over them, `spread` being how far contacts are from the origin.
@@ -82,16 +86,17 @@ impl<'a> Path<'a> {
         match around {
             [before, Some(a), Some(b), after] => {
                 let change = b.c - a.c;
-                // A parabola's mean is off that of its ends by its bend.
-                let bend = match (before, after) {
-                    (Some(before), Some(after)) => {
-                        let (h_before, h_after) = (times[k - 1] - times[k - 2], times[k + 1] - times[k]);
-                        let slope = change / h;
-                        (slope - (a.c - before.c) / h_before) / (h + h_before)
-                            + ((after.c - b.c) / h_after - slope) / (h + h_after)
-                    }
-                    _ => DVec3::ZERO,
-                };
+                // Half the second derivative, from both sides where there are two. A parabola's mean is off that of its ends by its bend.
+                let slope = change / h;
+                let left = before.map(|before| {
+                    let h_before = times[k - 1] - times[k - 2];
+                    (slope - (a.c - before.c) / h_before) / (h + h_before)
+                });
+                let right = after.map(|after| {
+                    let h_after = times[k + 1] - times[k];
+                    ((after.c - b.c) / h_after - slope) / (h + h_after)
+                });
+                let bend = left.or(right).zip(right.or(left)).map_or(DVec3::ZERO, |(a, b)| a + b);
                 let mean = 0.5 * (a.c + b.c) - bend * (h * h / 12.0);
                 let (force, unsure) = (b.f - a.f, DVec3::ZERO);
                 Some(Self { contact: a, mean, change, force, noise: 1.0, unsure })

@@ -10,6 +10,8 @@ use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 use object_dynamics::*;
 
+mod impulses;
+
 const G: f64 = 9.81;
 const SIZE: f64 = 0.04;
 const SLOPE: f64 = 0.9;
@@ -225,7 +227,7 @@ fn a_fall_and_its_blows_leave_the_motion_known() {
     let first = exact.palms().iter().filter(|palm| palm.touch(0).is_some()).count();
     assert_eq!(first, 0, "it starts in flight");
     let noise = noise(4e-5, 0.004);
-    let log = noisy(&exact, &noise, 3);
+    let log = noisy(&exact, &noise, 6);
     let found = estimate_contacts(&log, Some(&modes(&log)), &options(noise)).unwrap();
     assert!(found.reliability.is_reliable(), "{:?}", found.reliability);
     let (squares, mass) = errors(&found, &log);
@@ -276,6 +278,10 @@ fn a_log_that_lacks_something_is_refused_by_name() {
         let refused = estimate_contacts(&log, None, &wrong).unwrap_err().to_string();
         assert!(refused.starts_with(what), "{refused}");
     }
+    let negative = Some(ImpulseNoise { fixed: -1e-6, share: 0.0 });
+    let wrong = ContactOptions { noise: ContactNoiseLevel { impulse: negative, ..options.noise }, ..options };
+    let refused = estimate_contacts(&log, None, &wrong).unwrap_err().to_string();
+    assert!(refused.starts_with("fixed noise of impulses"), "{refused}");
     let few = estimate_contacts(&log, Some(&[]), &options).unwrap_err();
     assert_eq!(few, ContactEstimateError::Modes { found: 0, samples: 11 });
     let mut records = log.records();
@@ -314,65 +320,4 @@ fn modes_are_told_from_forces() {
     }
     assert!(sticks > 300 && 2 * told > sticks, "{told} of {sticks} that stick");
     assert!(found.evidence.misfit < 1.5);
-}
-
-#[test]
-fn zz_fall() {
-    let (scene, start) = scene(0.1, 2e-3);
-    let exact =
-        simulated(&scene, &ContactStart { in_flight: true, ..ContactStart::touching(start) }, 0.6, 500.0);
-    for seed in 0..12 {
-        let noise = noise(4e-5, 0.004);
-        let log = noisy(&exact, &noise, seed);
-        for with in [false, true] {
-            let impulse = with.then_some(ImpulseNoise { fixed: 0.0, share: 0.004 });
-            let noise = ContactNoiseLevel { impulse, ..noise };
-            let found = estimate_contacts(&log, Some(&modes(&log)), &options(noise)).unwrap();
-            let (squares, mass) = errors(&found, &log);
-            println!(
-                "{seed} {with} {:?} {:?} relied {} squares {} mass {} of {} inertia {:?}",
-                found.reliability,
-                found.evidence,
-                found.relied_on.iter().filter(|r| **r).count(),
-                squares / 12.0,
-                mass,
-                found.mass_deviation,
-                found.inertia_deviations
-            );
-        }
-    }
-}
-
-#[test]
-fn zz_calm() {
-    for (rate, share, contact, t) in [
-        (500.0, 0.004, 4e-5, 0.8),
-        (1000.0, 0.004, 4e-5, 0.8),
-        (500.0, 0.0004, 4e-5, 0.8),
-        (500.0, 0.02, 4e-6, 0.8),
-    ] {
-        let exact = super::tests::log(t, rate);
-        let mut sums = [[0.0; 3]; 3];
-        for seed in 0..6 {
-            let noise = noise(contact, share);
-            let log = noisy(&exact, &noise, seed);
-            for with in 0..3 {
-                let mut log = log.clone();
-                if with == 2 {
-                    let mut records = log.records();
-                    records.iter_mut().for_each(|r| r.force = ForceChannel::Missing);
-                    log = ContactLog::new(log.times().to_vec(), records, log.truth().map(<[_]>::to_vec))
-                        .unwrap();
-                }
-                let impulse = (with > 0).then_some(ImpulseNoise { fixed: 0.0, share });
-                let noise = ContactNoiseLevel { impulse, ..noise };
-                let found = estimate_contacts(&log, Some(&modes(&exact)), &options(noise)).unwrap();
-                let (squares, mass) = errors(&found, &log);
-                sums[with][0] += squares / 72.0;
-                sums[with][1] += found.evidence.misfit / 6.0;
-                sums[with][2] += found.evidence.conditions as f64 / 6.0;
-            }
-        }
-        println!("{rate} {share} {contact}: {sums:.3?}");
-    }
 }
