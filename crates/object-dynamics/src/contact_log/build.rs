@@ -6,6 +6,7 @@ use super::palm::{LoggedMotion, LoggedPalm, Touch};
 use super::record::{
     ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, TwistSource, not_finite,
 };
+use super::twists::{Apart, against_poses};
 use crate::MOST_PALMS;
 use crate::modes::check_friction;
 use crate::series::{check_lengths, check_order};
@@ -155,6 +156,7 @@ impl Builder<'_> {
                 let states = states.into_iter().enumerate().map(state).collect::<Result<Vec<_>, _>>()?;
                 self.check_steps(&states)?;
                 self.check_twists(&states)?;
+                self.check_against_poses(&states)?;
                 let first = MeasuredMotion::at_rest(states[0].pose);
                 if states.iter().all(|state| *state == first) {
                     return Ok(LoggedMotion::Fixed(first.pose));
@@ -189,6 +191,15 @@ impl Builder<'_> {
             }
         }
         Ok(())
+    }
+
+    fn check_against_poses(&self, states: &[MeasuredMotion]) -> Result<(), Error> {
+        let Some(Apart { what, unit, sample, posed, stated, distance }) = against_poses(self.times, states)
+        else {
+            return Ok(());
+        };
+        let (palm, time) = (self.palm, self.times[sample]);
+        Err(Error::TwistAgainstPoses { what, unit, palm, sample, time, posed, stated, distance })
     }
 
     fn splined(&self, poses: &[SurfacePose]) -> Result<Vec<MeasuredMotion>, Error> {

@@ -105,6 +105,30 @@ pub enum ContactLogError {
         /// Largest accepted.
         most: f64,
     },
+    /// What a palm's twists say is not what its poses show.
+    #[error(
+        "the {what} of palm {palm} contradicts its poses: from the first sample to sample {sample} (t = {time} s) it adds up to \
+         {stated:.2e} {unit}, the poses move by {posed:.2e} {unit}, and these are {distance:.2e} {unit} apart; check its unit ({unit}/s), \
+         its sign and its axes (the world's), or leave out the columns of V and W, which then come from the poses"
+    )]
+    TwistAgainstPoses {
+        /// Which velocity.
+        what: &'static str,
+        /// Unit of the way.
+        unit: &'static str,
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0 of the sample up to which both are farthest apart.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// Way of the poses until then.
+        posed: f64,
+        /// Integral of the velocity.
+        stated: f64,
+        /// How far apart the two end.
+        distance: f64,
+    },
     /// A contact point is not on its palm.
     #[error(
         "contact of palm {palm} at sample {sample} (t = {time} s) is {distance} m off the palm's surface, and {limit} m is \
@@ -212,6 +236,7 @@ impl ContactLogError {
             | Self::Pose { sample, .. }
             | Self::ReadingNotFinite { sample, .. }
             | Self::TooFast { sample, .. }
+            | Self::TwistAgainstPoses { sample, .. }
             | Self::OffPalm { sample, .. }
             | Self::NoNormal { sample, .. }
             | Self::Pull { sample, .. }

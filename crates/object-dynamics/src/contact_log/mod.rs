@@ -9,6 +9,7 @@ mod palm;
 mod record;
 mod simulated;
 mod three_planes;
+mod twists;
 
 #[cfg(test)]
 mod tests;

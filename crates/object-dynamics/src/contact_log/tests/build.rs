@@ -251,3 +251,47 @@ fn readings_that_cannot_be_are_named_with_palm_sample_and_value() {
         ContactLogError::ReadingNotFinite { what: "impulse", sample: 2, .. }
     ));
 }
+
+#[test]
+fn twists_that_contradict_the_poses_are_named() {
+    let times = times(400);
+    let [_, measured] = moving(&times);
+    let made = |change: &dyn Fn(usize, &mut MeasuredMotion)| {
+        let mut record = measured.clone();
+        if let RecordedMotion::Measured(states) = &mut record.motion {
+            states.iter_mut().enumerate().for_each(|(k, state)| change(k, state));
+        }
+        ContactLog::new(times.clone(), vec![record], None)
+    };
+    assert!(made(&|_, _| {}).is_ok());
+    let wrong: [(&str, &str, &dyn Fn(usize, &mut MeasuredMotion)); 5] = [
+        ("degrees", "angular velocity (W)", &|_, state| state.w_WP *= 1.0_f64.to_degrees()),
+        ("radians for degrees", "angular velocity (W)", &|_, state| state.w_WP *= 1.0_f64.to_radians()),
+        ("sign", "angular velocity (W)", &|_, state| state.w_WP *= -1.0),
+        ("millimetres", "velocity (V)", &|_, state| state.v_WP *= 100.0),
+        ("kilometres", "velocity (V)", &|_, state| state.v_WP *= 1e-3),
+    ];
+    for (name, which, change) in wrong {
+        let error = made(change).unwrap_err();
+        assert!(
+            matches!(error, ContactLogError::TwistAgainstPoses { what, palm: 1, .. } if what == which),
+            "{name}: {error}"
+        );
+        assert!(error.to_string().contains("check its unit") && error.sample().is_some(), "{error}");
+    }
+    // Noise is no contradiction, of a palm that moves or of one that stands: 0.1 rad/s, 0.05 m/s.
+    let noise = |k: usize| {
+        DVec3::new((k * k % 17) as f64, (k * k % 13) as f64, (k * 7 % 11) as f64) / 8.0 - DVec3::ONE
+    };
+    let noisy = |k: usize, state: &mut MeasuredMotion| {
+        state.w_WP += 0.1 * noise(k);
+        state.v_WP += 0.05 * noise(k + 5);
+    };
+    assert!(made(&noisy).is_ok());
+    let still = made(&|k, state| {
+        let pose = SurfacePose { p_WP: DVec3::new(0.3, -0.2, 0.1), R_WP: DQuat::from_rotation_x(0.7) };
+        *state = MeasuredMotion { pose, v_WP: DVec3::ZERO, w_WP: DVec3::ZERO };
+        noisy(k, state);
+    });
+    assert!(still.is_ok(), "{}", still.unwrap_err());
+}
