@@ -14,7 +14,7 @@ const ROUNDING: f64 = 1e-6;
 
 /// A mass in kg.
 pub(super) fn mass(value: f64) -> Result<f64, Kind> {
-    let must = "from 1e-9 to 1e9: check its unit, which is kg";
+    let must = "above zero: from 1e-9 to 1e9; check its unit, which is kg";
     Kind::check("object.mass", value, must, |mass| MASSES.contains(&mass))
 }
 
