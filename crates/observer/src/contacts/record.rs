@@ -106,7 +106,7 @@ impl Record {
             log.palms().iter().map(|palm| impulses::read(palm, noise).is_none()).collect();
         let mut intervals = intervals(&times, &contacts, noise, &sampled);
         impulses::add(log, &contacts, noise, (square / count as f64).sqrt(), &mut intervals);
-        let wrenches = contacts.iter().map(|contacts| wrench(contacts)).collect();
+        let wrenches = contacts.iter().map(wrench).collect();
         let all_impulses = sampled.iter().all(|sampled| !sampled);
         let samples = (0..times.len()).collect();
         Some(Self { times, samples, origin, contacts, wrenches, intervals, all_impulses })
