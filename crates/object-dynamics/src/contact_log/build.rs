@@ -194,12 +194,11 @@ impl Builder<'_> {
     }
 
     fn check_against_poses(&self, states: &[MeasuredMotion]) -> Result<(), Error> {
-        let Some(Apart { what, unit, sample, posed, stated, distance }) = against_poses(self.times, states)
-        else {
+        let Some(Apart { what, sample, posed, stated, distance }) = against_poses(self.times, states) else {
             return Ok(());
         };
         let (palm, time) = (self.palm, self.times[sample]);
-        Err(Error::TwistAgainstPoses { what, unit, palm, sample, time, posed, stated, distance })
+        Err(Error::TwistAgainstPoses { what, palm, sample, time, posed, stated, distance })
     }
 
     fn splined(&self, poses: &[SurfacePose]) -> Result<Vec<MeasuredMotion>, Error> {

@@ -108,21 +108,19 @@ pub enum ContactLogError {
     /// What a palm's twists say is not what its poses show.
     #[error(
         "the {what} of palm {palm} contradicts its poses: from the first sample to sample {sample} (t = {time} s) it adds up to \
-         {stated:.2e} {unit}, the poses move by {posed:.2e} {unit}, and these are {distance:.2e} {unit} apart; check its unit ({unit}/s), \
-         its sign and its axes (the world's), or leave out the columns of V and W, which then come from the poses"
+         {stated:.2e}, the poses move by {posed:.2e}, and these are {distance:.2e} apart; check its unit, its sign and its axes (the \
+         world's), or leave out the columns of V and W, which then come from the poses"
     )]
     TwistAgainstPoses {
-        /// Which velocity.
+        /// Which velocity, with its unit.
         what: &'static str,
-        /// Unit of the way.
-        unit: &'static str,
         /// Palm number from 1.
         palm: usize,
         /// Index from 0 of the sample up to which both are farthest apart.
         sample: usize,
         /// Its time in s.
         time: f64,
-        /// Way of the poses until then.
+        /// Way of the poses until then, m or rad.
         posed: f64,
         /// Integral of the velocity.
         stated: f64,

@@ -17,7 +17,6 @@ const RESOLVED: f64 = 0.25;
 /// Ways of a palm since the first sample, by its poses and by its twists, where these are farthest apart.
 pub(super) struct Apart {
     pub(super) what: &'static str,
-    pub(super) unit: &'static str,
     pub(super) sample: usize,
     pub(super) posed: f64,
     pub(super) stated: f64,
@@ -41,19 +40,18 @@ pub(super) fn against_poses(times: &[f64], states: &[MeasuredMotion]) -> Option<
     let turns: Vec<DVec3> = pairs().map(turn).collect();
     let far = turns.iter().any(|turn| turn.length() > FAR);
     let moved = apart(times, &shifts().collect::<Vec<_>>(), &velocities);
-    let named = |what, unit| {
+    let named = |what| {
         move |(sample, [posed, stated, distance]): (usize, [f64; 3])| Apart {
             what,
-            unit,
             sample,
             posed,
             stated,
             distance,
         }
     };
-    moved.map(named("velocity (V)", "m")).or_else(|| {
+    moved.map(named("velocity (V, m/s)")).or_else(|| {
         let turned = if far { None } else { apart(times, &turns, &spins) };
-        turned.map(named("angular velocity (W)", "rad"))
+        turned.map(named("angular velocity (W, rad/s)"))
     })
 }
 

@@ -22,7 +22,7 @@ const BALL: f64 = 30.0;
 const MOST: usize = 60;
 /// The same of the last solution where blows are known by their impulses: the chain is stiff across them, and steps along a
 /// curved valley are short. Of twelve falls seven settle within 60, all within 240.
-const MOST_THROUGH_BLOWS: usize = 240;
+const MOST_THROUGH_BLOWS: usize = 400;
 /// Linearisations after which it is asked what of the inertia is learned.
 const FIRST: usize = 12;
 /// A step that promises less in units of chi-squared than these is not worth taking: coarse solution, last one.

@@ -256,7 +256,8 @@ fn readings_that_cannot_be_are_named_with_palm_sample_and_value() {
 fn twists_that_contradict_the_poses_are_named() {
     let times = times(400);
     let [_, measured] = moving(&times);
-    let made = |change: &dyn Fn(usize, &mut MeasuredMotion)| {
+    type Change<'a> = &'a dyn Fn(usize, &mut MeasuredMotion);
+    let made = |change: Change| {
         let mut record = measured.clone();
         if let RecordedMotion::Measured(states) = &mut record.motion {
             states.iter_mut().enumerate().for_each(|(k, state)| change(k, state));
@@ -264,12 +265,14 @@ fn twists_that_contradict_the_poses_are_named() {
         ContactLog::new(times.clone(), vec![record], None)
     };
     assert!(made(&|_, _| {}).is_ok());
-    let wrong: [(&str, &str, &dyn Fn(usize, &mut MeasuredMotion)); 5] = [
-        ("degrees", "angular velocity (W)", &|_, state| state.w_WP *= 1.0_f64.to_degrees()),
-        ("radians for degrees", "angular velocity (W)", &|_, state| state.w_WP *= 1.0_f64.to_radians()),
-        ("sign", "angular velocity (W)", &|_, state| state.w_WP *= -1.0),
-        ("millimetres", "velocity (V)", &|_, state| state.v_WP *= 100.0),
-        ("kilometres", "velocity (V)", &|_, state| state.v_WP *= 1e-3),
+    let wrong: [(&str, &str, Change); 5] = [
+        ("degrees", "angular velocity (W, rad/s)", &|_, state| state.w_WP *= 1.0_f64.to_degrees()),
+        ("radians for degrees", "angular velocity (W, rad/s)", &|_, state| {
+            state.w_WP *= 1.0_f64.to_radians()
+        }),
+        ("sign", "angular velocity (W, rad/s)", &|_, state| state.w_WP *= -1.0),
+        ("millimetres", "velocity (V, m/s)", &|_, state| state.v_WP *= 100.0),
+        ("kilometres", "velocity (V, m/s)", &|_, state| state.v_WP *= 1e-3),
     ];
     for (name, which, change) in wrong {
         let error = made(change).unwrap_err();
