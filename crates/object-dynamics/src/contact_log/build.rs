@@ -2,6 +2,7 @@
 
 use super::PalmHinge;
 use super::error::ContactLogError as Error;
+use super::impulses;
 use super::palm::{LoggedMotion, LoggedPalm, Touch};
 use super::record::{
     ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, TwistSource, not_finite,
@@ -45,6 +46,11 @@ pub(super) fn palms(
     let number = |(index, record)| Builder { palm: index + 1, times }.palm(record);
     let palms: Vec<LoggedPalm> = records.into_iter().enumerate().map(number).collect::<Result<_, _>>()?;
     check_pulls(times, &palms)?;
+    for (i, palm) in palms.iter().enumerate() {
+        if let Some(factor) = impulses::factor(times, palm) {
+            return Err(Error::ImpulseAgainstForce { palm: i + 1, factor });
+        }
+    }
     Ok(palms)
 }
 

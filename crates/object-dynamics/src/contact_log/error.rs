@@ -108,8 +108,8 @@ pub enum ContactLogError {
     /// What a palm's twists say is not what its poses show.
     #[error(
         "the {what} of palm {palm} contradicts its poses: from the first sample to sample {sample} (t = {time} s) it adds up to \
-         {stated:.2e}, the poses move by {posed:.2e}, and these are {distance:.2e} apart; check its unit, its sign and its axes (the \
-         world's), or leave out the columns of V and W, which then come from the poses"
+         {stated:.2e}, the poses move by {posed:.2e}, and these are {distance:.2e} apart; check its unit, its sign, its axes (the \
+         world's) and the times, or leave out the columns of V and W, which then come from the poses"
     )]
     TwistAgainstPoses {
         /// Which velocity, with its unit.
@@ -126,6 +126,17 @@ pub enum ContactLogError {
         stated: f64,
         /// How far apart the two end.
         distance: f64,
+    },
+    /// A palm's impulses are not those of its forces.
+    #[error(
+        "the impulses (J) of palm {palm} contradict its forces (f): from sample to sample they are {factor:.3e} times the integral of the \
+         forces, in the median; check the units of both (N s and N) and their signs, or leave out the columns that are wrong"
+    )]
+    ImpulseAgainstForce {
+        /// Palm number from 1.
+        palm: usize,
+        /// Median of their ratio.
+        factor: f64,
     },
     /// A contact point is not on its palm.
     #[error(
@@ -245,6 +256,7 @@ impl ContactLogError {
             | Self::Friction { .. }
             | Self::ChannelLength { .. }
             | Self::TwistFromPoses { .. }
+            | Self::ImpulseAgainstForce { .. }
             | Self::Hinge { .. }
             | Self::NoMotor { .. } => None,
         }

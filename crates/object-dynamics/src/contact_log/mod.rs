@@ -2,6 +2,7 @@
 
 mod build;
 mod error;
+mod impulses;
 mod motor;
 #[cfg(feature = "noise")]
 mod noise;
