@@ -16,7 +16,7 @@ const MOST_SAMPLES: f64 = 1e6;
 
 /// Checks every number and says each thing in one way. Files that a scene in `folder` names are beside it.
 pub(super) fn scene(file: SceneFile, folder: &Path) -> Result<Scene, Kind> {
-    let gravity = Kind::not_negative("gravity", file.gravity)?;
+    let gravity = possible::gravity(file.gravity)?;
     let (mass, inertia) = mass_and_inertia(&file.object)?;
     let sensors = sensors(&file.sensors)?;
     let friction = file.palms.friction.map(|f| Kind::not_negative("palms.friction", f)).transpose()?;

@@ -9,8 +9,16 @@ const MASSES: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 /// Greatest speed of an object at the start, m/s, and its greatest angular velocity, rad/s.
 const FASTEST: f64 = 1e3;
 const FASTEST_SPIN: f64 = 1e4;
+/// Greatest gravity, m/s^2: that of a fast centrifuge.
+const STRONGEST: f64 = 1e3;
 /// Rounding of what a moment of inertia is made from, as a share.
 const ROUNDING: f64 = 1e-6;
+
+/// Gravity in m/s^2.
+pub(super) fn gravity(value: f64) -> Result<f64, Kind> {
+    let must = "zero or above, and at most 1e3: check its unit, which is m/s^2";
+    Kind::check("gravity", value, must, |gravity| (0.0..=STRONGEST).contains(&gravity))
+}
 
 /// A mass in kg.
 pub(super) fn mass(value: f64) -> Result<f64, Kind> {

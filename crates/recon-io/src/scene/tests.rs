@@ -119,6 +119,11 @@ fn numbers_that_no_object_has_are_named() {
     let outside = with("mass = 1.0", "mass = 1e-3").unwrap_err();
     assert!(matches!(outside, Kind::MassOutside { reach, spread, .. } if spread > reach), "{outside}");
     assert!(outside.to_string().contains("check the units"), "{outside}");
+    let heavy = with("gravity = 9.81", "gravity = 9810").unwrap_err();
+    assert!(
+        heavy.to_string().contains("`gravity` is 9810") && heavy.to_string().contains("m/s^2"),
+        "{heavy}"
+    );
     let spins = with("[0.0, 0.3, 0.3]", "[0.0, 0.0, 3e5]").unwrap_err();
     assert!(
         matches!(&spins, Kind::Value { key, value, .. } if key.contains("angular_velocity") && *value == 3e5),

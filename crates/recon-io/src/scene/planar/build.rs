@@ -16,7 +16,7 @@ pub(super) fn scene(file: PlanarFile) -> Result<PlanarScene, Kind> {
     if !file.plane {
         return Err(Kind::Missing { what: "`plane = true`", mend: "give it in a scene of the plane" });
     }
-    let gravity = Kind::not_negative("gravity", file.gravity)?;
+    let gravity = possible::gravity(file.gravity)?;
     let sensors = sensors(&file.sensors)?;
     let object = PlanarObject { shape: body(&file.simulation.shape)?, mass: mass(&file.object)?, gravity };
     let friction = file.palms.friction.map(|f| Kind::not_negative("palms.friction", f)).transpose()?;
