@@ -44,6 +44,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "motion, mass and inertia from reference logs of any palms, from no guess",
     ),
     (
+        "contact_estimates_impulses",
+        "contact-estimates-impulses.md",
+        "motion, mass and inertia from measured impulses beside forces at samples",
+    ),
+    (
         "contact_estimates_random",
         "contact-estimates-random.md",
         "motion and mass on random scenes of three tilting palms, everything unknown",

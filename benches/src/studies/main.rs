@@ -47,6 +47,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("cold_start", || in_words(cold_start::main())),
     ("contact_changes", || in_words(contact_changes::main())),
     ("contact_estimates", || in_words(contact_estimates::main())),
+    ("contact_estimates_impulses", || in_words(contact_estimates::impulses::main())),
     ("contact_estimates_random", || in_words(contact_estimates::random::main())),
     ("contact_cost", || in_words(contact_cost::main())),
     ("contact_exports", || in_words(contact_exports::main())),

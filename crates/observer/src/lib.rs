@@ -18,7 +18,7 @@ mod three_palms;
 
 #[cfg(feature = "palms")]
 pub use contacts::{
-    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions,
+    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions, ImpulseNoise,
     estimate_contacts,
 };
 pub use core::{

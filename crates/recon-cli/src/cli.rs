@@ -86,9 +86,9 @@ The log is CSV (sensor log, version 1): t, and for each palm i the contact s1_i,
 the force f_i or torque tau_i. The scene gives gravity, mass and inertia; with --identify mass and inertia are estimated
 along, and those of the scene are not looked at. No initial guess is needed.
 
-A log of contacts (version 2) need not be of three flat palms without friction: of any one to five palms with forces in three axes,
+A log of contacts (version 2) need not be of three flat palms without friction: of any one to five palms with forces or impulses in three axes,
 motion, mass and inertia are estimated together, with their deviations and with the contact modes, and the body is taken as
-unknown. The scene states the noise ([sensors]: contact_std, and force_std or force_share), and where all contacts are on one
+unknown. The scene states the noise ([sensors]: contact_std, force_std or force_share, impulse_std or impulse_share), and where all contacts are on one
 palm the size (object.size). motion.csv says at each sample whether it is relied on.
 
 The output folder appears as a whole or not at all: motion.csv, contact_curves.csv, radius_functions.csv, summary.json,

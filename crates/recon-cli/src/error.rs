@@ -81,8 +81,9 @@ pub(crate) enum CliError {
     )]
     NotThreePlanes { path: PathBuf, source: NotThreePlanes },
     #[error(
-        "{} is no log of three flat palms without friction, and the estimate from contacts of any palms needs each palm's force in \
-         three axes, which palm {palm} does not measure: give the columns fx_{palm}, fy_{palm} and fz_{palm}",
+        "{} is no log of three flat palms without friction, and the estimate from contacts of any palms needs each palm's force or \
+         impulse in three axes, of which palm {palm} measures neither: give the columns fx_{palm}, fy_{palm} and fz_{palm} (N), or \
+         Jx_{palm}, Jy_{palm} and Jz_{palm} (N s)",
         path.display()
     )]
     NotThreeAxes { path: PathBuf, palm: usize, source: NotThreePlanes },
@@ -90,7 +91,7 @@ pub(crate) enum CliError {
         "the estimate from contacts of any palms weighs readings by their noise, which the scene does not state: give {missing} in \
          [sensors]"
     )]
-    NoiseNotStated { missing: &'static str },
+    NoiseNotStated { missing: String },
     #[error(
         "contacts on one palm at a time tell no size of the object: give its mean radius in m, about, in the scene as object.size"
     )]

@@ -13,6 +13,7 @@ mod output;
 mod planar_figures;
 mod plausibility;
 mod report;
+mod rows;
 mod scene;
 mod separator;
 mod stream;

@@ -2,6 +2,7 @@
 //!
 //! Arguments: the folder of the logs, seeds, scenes. Writes a Markdown table.
 
+pub(crate) mod impulses;
 pub(crate) mod random;
 
 use super::contact_logs::log::{Anything, Log};
@@ -152,9 +153,10 @@ fn case(file: &Log, (contact, share): (f64, f64), seconds: f64, seed: u64) -> An
     let length = file.semi_axes().element_sum() / 3.0;
     let contact = length * contact;
     let force = ChannelNoise { fixed: 0.0, share };
-    let log = log.with_noise(&ContactNoise { contact, force, ..ContactNoise::default() }, seed)?;
+    let noise = ContactNoise { contact, force, impulse: force, ..ContactNoise::default() };
+    let log = log.with_noise(&noise, seed)?;
     let floor = FLOOR * (G * length).sqrt();
-    let noise = ContactNoiseLevel { contact, force_fixed: 0.0, force_share: share, floor };
+    let noise = ContactNoiseLevel { contact, force_fixed: 0.0, force_share: share, impulse: None, floor };
     let size = (file.palm_count() == 1).then_some(STATED_SIZE * length);
     Ok(Case { log, modes, options: ContactOptions { noise, gravity: G, size }, length })
 }

@@ -105,8 +105,9 @@ impl Log {
         for i in 1..=self.palm_count() {
             let tail = format!("_{i}");
             let vectors = |stem| self.vectors(stem, &tail);
-            let (points, p, v, w, f) =
-                (vectors("p")?, vectors("P")?, vectors("V")?, vectors("W")?, vectors("f")?);
+            let (points, p, v, w) = (vectors("p")?, vectors("P")?, vectors("V")?, vectors("W")?);
+            let channel =
+                |stem| -> Anything<_> { Ok(ForceChannel::Three(vectors(stem)?[..times.len()].to_vec())) };
             let q = self.quaternions("Q", &tail)?;
             let states = (0..times.len())
                 .map(|k| Ok(MeasuredMotion { pose: SurfacePose::new(p[k], q[k])?, v_WP: v[k], w_WP: w[k] }));
@@ -127,8 +128,8 @@ impl Log {
                 friction: None,
                 motion: RecordedMotion::Measured(states?),
                 contacts: ContactPoints::World((0..times.len()).map(touched).collect()),
-                force: ForceChannel::Three(f[..times.len()].to_vec()),
-                impulse: ForceChannel::Missing,
+                force: channel("f")?,
+                impulse: channel("J")?,
                 torque: None,
                 hinge: None,
                 truth: None,

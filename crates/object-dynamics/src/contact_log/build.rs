@@ -2,10 +2,12 @@
 
 use super::PalmHinge;
 use super::error::ContactLogError as Error;
+use super::impulses;
 use super::palm::{LoggedMotion, LoggedPalm, Touch};
 use super::record::{
     ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, TwistSource, not_finite,
 };
+use super::twists::{Apart, against_poses};
 use crate::MOST_PALMS;
 use crate::modes::check_friction;
 use crate::series::{check_lengths, check_order};
@@ -44,6 +46,11 @@ pub(super) fn palms(
     let number = |(index, record)| Builder { palm: index + 1, times }.palm(record);
     let palms: Vec<LoggedPalm> = records.into_iter().enumerate().map(number).collect::<Result<_, _>>()?;
     check_pulls(times, &palms)?;
+    for (i, palm) in palms.iter().enumerate() {
+        if let Some(factor) = impulses::factor(times, palm) {
+            return Err(Error::ImpulseAgainstForce { palm: i + 1, factor });
+        }
+    }
     Ok(palms)
 }
 
@@ -155,6 +162,7 @@ impl Builder<'_> {
                 let states = states.into_iter().enumerate().map(state).collect::<Result<Vec<_>, _>>()?;
                 self.check_steps(&states)?;
                 self.check_twists(&states)?;
+                self.check_against_poses(&states)?;
                 let first = MeasuredMotion::at_rest(states[0].pose);
                 if states.iter().all(|state| *state == first) {
                     return Ok(LoggedMotion::Fixed(first.pose));
@@ -189,6 +197,14 @@ impl Builder<'_> {
             }
         }
         Ok(())
+    }
+
+    fn check_against_poses(&self, states: &[MeasuredMotion]) -> Result<(), Error> {
+        let Some(Apart { what, sample, posed, stated, distance }) = against_poses(self.times, states) else {
+            return Ok(());
+        };
+        let (palm, time) = (self.palm, self.times[sample]);
+        Err(Error::TwistAgainstPoses { what, palm, sample, time, posed, stated, distance })
     }
 
     fn splined(&self, poses: &[SurfacePose]) -> Result<Vec<MeasuredMotion>, Error> {

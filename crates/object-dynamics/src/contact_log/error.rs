@@ -105,6 +105,39 @@ pub enum ContactLogError {
         /// Largest accepted.
         most: f64,
     },
+    /// What a palm's twists say is not what its poses show.
+    #[error(
+        "the {what} of palm {palm} contradicts its poses: from the first sample to sample {sample} (t = {time} s) it adds up to \
+         {stated:.2e}, the poses move by {posed:.2e}, and these are {distance:.2e} apart; check its unit, its sign, its axes (the \
+         world's) and the times, or leave out the columns of V and W, which then come from the poses"
+    )]
+    TwistAgainstPoses {
+        /// Which velocity, with its unit.
+        what: &'static str,
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0 of the sample up to which both are farthest apart.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// Way of the poses until then, m or rad.
+        posed: f64,
+        /// Integral of the velocity.
+        stated: f64,
+        /// How far apart the two end.
+        distance: f64,
+    },
+    /// A palm's impulses are not those of its forces.
+    #[error(
+        "the impulses (J) of palm {palm} contradict its forces (f): from sample to sample they are {factor:.3e} times the integral of the \
+         forces, in the median; check the units of both (N s and N) and their signs, or leave out the columns that are wrong"
+    )]
+    ImpulseAgainstForce {
+        /// Palm number from 1.
+        palm: usize,
+        /// Median of their ratio.
+        factor: f64,
+    },
     /// A contact point is not on its palm.
     #[error(
         "contact of palm {palm} at sample {sample} (t = {time} s) is {distance} m off the palm's surface, and {limit} m is \
@@ -212,6 +245,7 @@ impl ContactLogError {
             | Self::Pose { sample, .. }
             | Self::ReadingNotFinite { sample, .. }
             | Self::TooFast { sample, .. }
+            | Self::TwistAgainstPoses { sample, .. }
             | Self::OffPalm { sample, .. }
             | Self::NoNormal { sample, .. }
             | Self::Pull { sample, .. }
@@ -222,6 +256,7 @@ impl ContactLogError {
             | Self::Friction { .. }
             | Self::ChannelLength { .. }
             | Self::TwistFromPoses { .. }
+            | Self::ImpulseAgainstForce { .. }
             | Self::Hinge { .. }
             | Self::NoMotor { .. } => None,
         }

@@ -2,6 +2,7 @@
 
 mod build;
 mod error;
+mod impulses;
 mod motor;
 #[cfg(feature = "noise")]
 mod noise;
@@ -9,6 +10,7 @@ mod palm;
 mod record;
 mod simulated;
 mod three_planes;
+mod twists;
 
 #[cfg(test)]
 mod tests;

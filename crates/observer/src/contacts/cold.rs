@@ -1,7 +1,6 @@
 //! A start from nothing: twists that the contacts alone suggest.
 
 use super::body::Body;
-use super::noise::ContactNoiseLevel;
 use super::problem::{Problem, Units, Unknowns};
 use super::record::{Contact, Record, six};
 use super::state::Motion;
@@ -56,7 +55,7 @@ pub(super) fn start(problem: &Problem, body: Body, orientation: DQuat) -> Unknow
             let within = |c: &&Contact| c.c + c.n * problem.units.length;
             centre = contacts.iter().map(within).sum::<DVec3>() / contacts.len() as f64;
         }
-        let (v, w) = twist(&contacts, centre, problem.units.length, &problem.noise);
+        let (v, w) = twist(&contacts, centre, problem.units.length);
         if let Some((t, before)) = last {
             let mean: DVec3 = 0.5 * (w + before);
             q = (exponential(mean * (record.times[k] - t)) * q).normalize();
@@ -71,7 +70,7 @@ pub(super) fn start(problem: &Problem, body: Body, orientation: DQuat) -> Unknow
 /// Velocity of `centre` and angular velocity that fit the conditions of some contacts, as small as they may be.
 ///
 /// Where friction is felt the slip is along it: a condition across it says what the normal one leaves open.
-fn twist(contacts: &[&Contact], centre: DVec3, length: f64, noise: &ContactNoiseLevel) -> (DVec3, DVec3) {
+fn twist(contacts: &[&Contact], centre: DVec3, length: f64) -> (DVec3, DVec3) {
     let mut normal = Matrix6::identity() * (RIDGE * contacts.len().max(1) as f64);
     let mut right = Vector6::zeros();
     for contact in contacts {
@@ -90,7 +89,7 @@ fn twist(contacts: &[&Contact], centre: DVec3, length: f64, noise: &ContactNoise
                     continue;
                 }
                 let friction = contact.f.reject_from_normalized(contact.n);
-                let deviation = noise.force(contact.f);
+                let deviation = contact.f_deviation;
                 let known = friction.length_squared();
                 if known > deviation * deviation {
                     let across = contact.n.cross(friction).normalize_or_zero();

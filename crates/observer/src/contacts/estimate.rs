@@ -54,7 +54,7 @@ pub struct ContactEstimate {
     pub evidence: ContactEvidence,
 }
 
-/// Motion, mass and inertia of an unknown body from contacts of any palms and their forces in three axes, from no guess, with
+/// Motion, mass and inertia of an unknown body from contacts of any palms and their forces or impulses in three axes, from no guess, with
 /// the contact modes at all samples if they are known (`contacts.md`, sections 5 and 8).
 ///
 /// Nodes hold the motion, one a sample or one for a few samples whose contacts are averaged; measured impulses link them, and
@@ -74,21 +74,20 @@ pub fn estimate_contacts(
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let units = cold::units(&record, options.gravity, length);
     let impulse = units.speed * units.mass;
-    record.free_blows(impulse, impulse * length, options.gravity * units.mass);
+    record.mark_blows(impulse, impulse * length, options.gravity * units.mass);
     match modes {
         Some(modes) => Ok(with_modes(&mut record, modes.to_vec(), options, units)?.0),
-        None => with_estimated_modes(log, &mut record, options, units),
+        None => with_estimated_modes(&mut record, options, units),
     }
 }
 
 /// With modes from the ratios of forces, those of the conditions that the motion contradicts taken back.
 fn with_estimated_modes(
-    log: &ContactLog,
     record: &mut Record,
     options: &ContactOptions,
     units: Units,
 ) -> Result<ContactEstimate, ContactEstimateError> {
-    let mut modes = by_ratio(log, options, AVERAGED * units.length / units.speed);
+    let mut modes = by_ratio(record, AVERAGED * units.length / units.speed);
     for _ in 0..ROUNDS {
         let (found, slips) = with_modes(record, modes, options, units)?;
         if slips.is_empty() {

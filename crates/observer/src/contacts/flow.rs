@@ -1,11 +1,12 @@
 //! A node's motion carried through the samples of its link by what was measured, with its derivatives.
 
 use super::body::Body;
+use super::noise::WrenchNoise;
 use super::record::{Interval, Wrench};
 use super::state::{MOTION, Motion, Tangent, Turn};
 use crate::three_palms::{cross_matrix, exponential};
 use glam::{DQuat, DVec3};
-use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// Derivatives of a motion by the motion at its node.
 pub(super) type Transition = SMatrix<f64, MOTION, MOTION>;
@@ -179,10 +180,9 @@ fn turned(q: DQuat, L: [DVec3; 2], rates: [DVec3; 2], body: &Body, h: f64) -> DQ
     (second * (first * q)).normalize()
 }
 
-/// Information of a link of duration `h`: the inverse covariance of what white noise of the forces, of covariance `noise`
-/// over the link with moments about the centre of mass, does to the motion. None where `noise` has no inverse.
-pub(super) fn link_information(noise: &Matrix6<f64>, h: f64, body: &Body, turn: &Turn) -> Option<Transition> {
-    let inverse = noise.cholesky()?.inverse();
+/// Information of a link of duration `h`: the inverse covariance of what `noise` of the forces over the link, with moments about
+/// the centre of mass, does to the motion. None where it has no inverse.
+pub(super) fn link_information(noise: &WrenchNoise, h: f64, body: &Body, turn: &Turn) -> Option<Transition> {
     let mass = 1.0 / body.inverse_mass();
     let inertia = Matrix3::from(body.inertia_along(turn.R));
     // Integrals of the wrench noise twice and once over time, from the motion.
@@ -192,11 +192,10 @@ pub(super) fn link_information(noise: &Matrix6<f64>, h: f64, body: &Body, turn: 
     let mut once = SMatrix::<f64, 6, MOTION>::zeros();
     once.fixed_view_mut::<3, 3>(0, 3).copy_from(&(Matrix3::identity() * mass));
     once.fixed_view_mut::<3, 3>(3, 6).copy_from(&Matrix3::identity());
-    let (s_twice, s_once) = (inverse * twice, inverse * once);
-    let mixed = twice.transpose() * s_once * (-6.0 / h);
-    let information = twice.transpose() * s_twice * (12.0 / (h * h))
-        + once.transpose() * s_once * 4.0
-        + mixed
-        + mixed.transpose();
-    Some(information)
+    // Of white noise the second integral is half the duration times the first, and the rest is independent of it.
+    let rest = twice - once * (0.5 * h);
+    let of_rest = noise.white * (h * h / 12.0) + noise.late;
+    let once_information = noise.white.cholesky()?.inverse();
+    let rest_information = of_rest.cholesky()?.inverse();
+    Some(once.transpose() * once_information * once + rest.transpose() * rest_information * rest)
 }

@@ -6,6 +6,7 @@ mod cold;
 mod equations;
 mod estimate;
 mod flow;
+mod impulses;
 mod modes;
 mod noise;
 mod options;
@@ -24,6 +25,6 @@ mod verdict;
 mod windows;
 
 pub use estimate::{ContactEstimate, estimate_contacts};
-pub use noise::ContactNoiseLevel;
+pub use noise::{ContactNoiseLevel, ImpulseNoise};
 pub use options::{ContactEstimateError, ContactOptions};
 pub use verdict::ContactEvidence;

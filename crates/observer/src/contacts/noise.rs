@@ -1,4 +1,6 @@
 use glam::DVec3;
+use nalgebra::Matrix6;
+use std::ops::{Add, AddAssign};
 
 /// Standard deviations of the white noise of sensors, as an estimator takes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,8 +11,19 @@ pub struct ContactNoiseLevel {
     pub force_fixed: f64,
     /// Of each axis of a force: a part that grows with it, as a share of its length.
     pub force_share: f64,
+    /// Of the impulses; none where they are not to be read.
+    pub impulse: Option<ImpulseNoise>,
     /// What a contact condition is off by beside that, m/s: palms whose velocity is known no better, creep.
     pub floor: f64,
+}
+
+/// Standard deviation of each axis of an impulse over one interval between samples. Intervals are independent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpulseNoise {
+    /// A fixed part, N s.
+    pub fixed: f64,
+    /// A part that grows with the impulse, as a share of its length.
+    pub share: f64,
 }
 
 impl ContactNoiseLevel {
@@ -18,4 +31,52 @@ impl ContactNoiseLevel {
     pub(super) fn force(&self, f: DVec3) -> f64 {
         self.force_fixed.hypot(self.force_share * f.length())
     }
+}
+
+impl ImpulseNoise {
+    /// Standard deviation of each axis of the impulse `J`, N s.
+    pub(super) fn of(&self, J: DVec3) -> f64 {
+        self.fixed.hypot(self.share * J.length())
+    }
+}
+
+/// Covariances of what forces, with their moments about the origin, do over some time.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct WrenchNoise {
+    /// Of their integral, made by noise that is white.
+    pub(super) white: Matrix6<f64>,
+    /// Of their integral over time and once more, beside what white noise makes of it: what acted is known, but not when.
+    pub(super) late: Matrix6<f64>,
+    /// How much of the trace of the force's part of `white` is noise of forces at samples, which both intervals beside one feel.
+    pub(super) sampled: f64,
+}
+
+impl WrenchNoise {
+    /// Share of the noise that is felt before the sample as well as after it; all where there is none.
+    pub(super) fn sampled_share(&self) -> f64 {
+        let all = force_trace(&self.white);
+        if all > 0.0 { self.sampled / all } else { 1.0 }
+    }
+}
+
+impl Add for WrenchNoise {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            white: self.white + other.white,
+            late: self.late + other.late,
+            sampled: self.sampled + other.sampled,
+        }
+    }
+}
+
+impl AddAssign for WrenchNoise {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+/// Sum of the variances of the three axes of the force.
+pub(super) fn force_trace(covariance: &Matrix6<f64>) -> f64 {
+    covariance.fixed_view::<3, 3>(0, 0).trace()
 }

@@ -1,5 +1,6 @@
 //! What the estimate from contacts is told, and why it refuses.
 
+use super::impulses::read;
 use super::noise::ContactNoiseLevel;
 use object_dynamics::{ContactLog, ContactMode, LoggedPalm, MOST_PALMS, MassProperties, SensedAxes};
 use thiserror::Error;
@@ -10,10 +11,10 @@ pub enum ContactEstimateError {
     /// Nothing was touched.
     #[error("no palm was touched at any sample: there is nothing to estimate from")]
     NoContact,
-    /// A palm lacks the force.
+    /// A palm lacks the force, and an impulse with its noise.
     #[error(
-        "palm {palm} does not measure its force in three axes, and is not known to be frictionless: the estimate from contacts needs one \
-         of them"
+        "palm {palm} measures neither its force nor, with a stated noise, its impulse in three axes, and is not known to be frictionless: the \
+         estimate from contacts needs all of one of them"
     )]
     NoForce {
         /// Number from 1.
@@ -83,6 +84,8 @@ impl ContactOptions {
             ("noise of contacts", self.noise.contact),
             ("fixed noise of forces", self.noise.force_fixed),
             ("noise of forces as a share", self.noise.force_share),
+            ("fixed noise of impulses", self.noise.impulse.map_or(0.0, |noise| noise.fixed)),
+            ("noise of impulses as a share", self.noise.impulse.map_or(0.0, |noise| noise.share)),
         ];
         let wrong = |must, possible: fn(f64) -> bool| {
             move |&(what, value): &(&'static str, f64)| {
@@ -107,11 +110,11 @@ pub(super) fn check(
     if let Some(modes) = modes.filter(|modes| modes.len() != samples) {
         return Err(ContactEstimateError::Modes { found: modes.len(), samples });
     }
-    let enough = |palm: &LoggedPalm| match palm.force_axes() {
+    let felt = |palm: &LoggedPalm| match palm.force_axes() {
         Some(SensedAxes::Three) => true,
-        Some(SensedAxes::Normal) => options.frictionless(palm),
-        None => false,
+        Some(SensedAxes::Normal) if options.frictionless(palm) => true,
+        _ => read(palm, &options.noise).is_some(),
     };
-    let lacks = log.palms().iter().position(|palm| !enough(palm));
+    let lacks = log.palms().iter().position(|palm| !felt(palm));
     lacks.map_or(Ok(()), |palm| Err(ContactEstimateError::NoForce { palm: palm + 1 }))
 }

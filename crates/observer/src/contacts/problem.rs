@@ -3,7 +3,7 @@
 use super::body::{Body, CONSTANTS};
 use super::equations::{Equations, LinkEquation, NodeEquations, SampleEquations};
 use super::flow::{Carried, Transition, link_information};
-use super::noise::ContactNoiseLevel;
+use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::record::{Contact, Record, Wrench};
 use super::rows::Rows;
 use super::solve::Step;
@@ -104,7 +104,7 @@ impl Problem<'_> {
                 let rows = self.rows(from, &carried.motion, &carried.turn, &at.body);
                 all.add(j, &rows, &Transition::identity(), &SMatrix::zeros());
             }
-            let mut noise = Matrix6::zeros();
+            let mut noise = WrenchNoise::default();
             for k in from..end {
                 let interval = &self.record.intervals[k];
                 carried.advance(interval, self.wrenches(k), &at.body, self.gravity);
@@ -156,7 +156,7 @@ impl Problem<'_> {
             let mut carried = Carried::<P>::new(moved, &after);
             let end = self.nodes.get(j + 1).copied().unwrap_or(self.nodes[j] + 1);
             let split = end == self.nodes[j] + 1 && j + 1 < at.motions.len();
-            let mut noise = Matrix6::zeros();
+            let mut noise = WrenchNoise::default();
             for k in self.nodes[j]..end {
                 if !split {
                     cost += self.rows_cost(k, &carried.motion, &carried.turn);
@@ -268,7 +268,7 @@ impl Problem<'_> {
 
     fn link_information<const P: usize>(
         &self,
-        noise: &Matrix6<f64>,
+        noise: &WrenchNoise,
         carried: &Carried<P>,
         body: &Body,
     ) -> Option<Transition> {
@@ -320,15 +320,17 @@ impl Problem<'_> {
     /// Share of a link's residual that the node's own sample has, if the link is one interval.
     ///
     /// The noise of a force at a sample is felt in the intervals before and after it, half in each. A link takes all of it, which leaves
-    /// links independent; the node is then the motion before it, and its contact is touched after half of it.
+    /// links independent; the node is then the motion before it, and its contact is touched after half of it. The noise of a measured
+    /// impulse is that of its interval, and all after the sample.
     ///
     /// A blow is after the sample before it.
     fn share(&self, j: usize) -> f64 {
-        if self.record.intervals[self.nodes[j]].blow {
+        let interval = &self.record.intervals[self.nodes[j]];
+        if interval.blow {
             return 0.0;
         }
         let samples = self.record.contacts[self.nodes[j]].first().map_or(1, |c| c.samples);
-        0.5 / samples as f64
+        0.5 * interval.noise.sampled_share() / samples as f64
     }
 
     /// Conditions of a node with a link of one interval after it.
@@ -428,17 +430,18 @@ impl Problem<'_> {
         cost + (self.body_information() * d).dot(&d)
     }
 
-    /// Noise of impulse and moment about the origin, with the moment about `p` and a floor.
-    pub(super) fn about(&self, noise: &Matrix6<f64>, p: DVec3) -> Matrix6<f64> {
+    /// Noise with the moment about `p` in place of the origin, and a floor.
+    pub(super) fn about(&self, noise: &WrenchNoise, p: DVec3) -> WrenchNoise {
         let mut shift = Matrix6::identity();
         shift.fixed_view_mut::<3, 3>(3, 0).copy_from(&Matrix3::from(-cross_matrix(p)));
-        let mut moved = shift * noise * shift.transpose();
+        let moved = |of: &Matrix6<f64>| shift * of * shift.transpose();
+        let mut white = moved(&noise.white);
         let deviation = LINK_FLOOR * self.condition_deviation() / (self.nodes.len() as f64).sqrt();
         let floor = self.units.mass * deviation;
         for i in 0..6 {
             let unit = if i < 3 { 1.0 } else { self.units.length };
-            moved[(i, i)] += (floor * unit).powi(2);
+            white[(i, i)] += (floor * unit).powi(2);
         }
-        moved
+        WrenchNoise { white, late: moved(&noise.late), ..*noise }
     }
 }

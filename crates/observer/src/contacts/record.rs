@@ -1,12 +1,13 @@
 //! What the estimator reads of a log: contacts at samples, and what the forces do between them.
 
-use super::noise::ContactNoiseLevel;
+use super::impulses;
+use super::noise::{ContactNoiseLevel, WrenchNoise, force_trace};
 use super::options::ContactOptions;
 use crate::three_palms::running_integral;
 use contact_kinematics::PalmSurface;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix6, Vector6};
-use object_dynamics::{ContactLog, ContactMode, MOST_PALMS};
+use object_dynamics::{ContactLog, ContactMode, LoggedPalm, MOST_PALMS, SensedAxes, SensedForce};
 use std::ops::{Add, Mul};
 
 /// Intervals from the one in which a contact closes that a blow is taken to last: soft ones are over a sample later.
@@ -29,6 +30,8 @@ pub(super) struct Contact {
     /// Shape operator of the palm in world axes, 1/m: how its normal turns along it.
     pub(super) shape: DMat3,
     pub(super) f: DVec3,
+    /// Standard deviation of each axis of the force, N.
+    pub(super) f_deviation: f64,
     /// Whether the force is along the normal without friction, and so is its noise.
     pub(super) frictionless: bool,
     pub(super) mode: ContactMode,
@@ -50,8 +53,7 @@ pub(super) struct Interval {
     pub(super) impulse: Wrench,
     /// Integral of the force times the time since the interval's start, N s^2.
     pub(super) first: DVec3,
-    /// Covariance of `impulse`; the moment about the origin.
-    pub(super) noise: Matrix6<f64>,
+    pub(super) noise: WrenchNoise,
     /// Whether a blow may have changed the velocities.
     pub(super) blow: bool,
 }
@@ -67,12 +69,14 @@ pub(super) struct Record {
     pub(super) contacts: Vec<Vec<Contact>>,
     pub(super) wrenches: Vec<Wrench>,
     pub(super) intervals: Vec<Interval>,
+    /// Whether the impulses of all palms are read.
+    pub(super) all_impulses: bool,
 }
 
 impl Interval {
     /// Variance of the impulse, of the moment as well at so long a lever, N^2 s^2.
     pub(super) fn velocity_noise(&self, lever: f64) -> f64 {
-        let part = |i: usize| self.noise.fixed_view::<3, 3>(i, i).trace();
+        let part = |i: usize| self.noise.white.fixed_view::<3, 3>(i, i).trace();
         part(0).max(part(3) / (lever * lever))
     }
 }
@@ -92,8 +96,14 @@ impl Mul<f64> for Wrench {
 }
 
 impl Record {
-    /// Of a log whose palms measure forces of three axes or have no friction, every contact sliding for now; none without a contact.
+    /// Of a log whose palms measure forces or impulses of three axes or have no friction, every contact sliding for now; none without a
+    /// contact.
+    ///
+    /// Where an impulse is read it counts for what happens between samples, and the force at samples for everything else: for the
+    /// direction of friction, the ratio by which modes are told, and how a force changes over an interval. The noises of both
+    /// are taken to be independent; where no force is measured, it is that of the impulses around.
     pub(super) fn new(log: &ContactLog, options: &ContactOptions) -> Option<Self> {
+        let noise = &options.noise;
         let times = log.times().to_vec();
         let points =
             || (0..times.len()).flat_map(|k| log.palms().iter().filter_map(move |palm| palm.touch(k)));
@@ -102,22 +112,24 @@ impl Record {
             return None;
         }
         let origin = points().map(|touch| touch.p_WC).sum::<DVec3>() / count as f64;
-        let frictionless: Vec<bool> = log.palms().iter().map(|palm| options.frictionless(palm)).collect();
+        let square = points().map(|touch| touch.p_WC.distance_squared(origin)).sum::<f64>();
         let contacts: Vec<Vec<Contact>> =
-            (0..times.len()).map(|k| contacts_at(log, k, origin, &frictionless)).collect();
-        let wrench = |contacts: &Vec<Contact>| {
-            let of = |c: &Contact| Wrench { force: c.f, moment: c.c.cross(c.f) };
-            contacts.iter().map(of).fold(Wrench::default(), Add::add)
-        };
-        let wrenches: Vec<Wrench> = contacts.iter().map(wrench).collect();
-        let intervals = intervals(log, &contacts, &wrenches, &options.noise);
+            (0..times.len()).map(|k| contacts_at(log, k, origin, options)).collect();
+        let sampled: Vec<bool> =
+            log.palms().iter().map(|palm| impulses::read(palm, noise).is_none()).collect();
+        let mut intervals = intervals(&times, &contacts, noise, &sampled);
+        impulses::add(log, &contacts, noise, (square / count as f64).sqrt(), &mut intervals);
+        let wrenches = contacts.iter().map(wrench).collect();
+        let all_impulses = sampled.iter().all(|sampled| !sampled);
         let samples = (0..times.len()).collect();
-        Some(Self { times, samples, origin, contacts, wrenches, intervals })
+        Some(Self { times, samples, origin, contacts, wrenches, intervals, all_impulses })
     }
 
-    /// Leaves open what the velocities change by, up to about `impulse` in N s and `moment` in N m s, where a contact closes, or opens while it
-    /// is pressed by more than a share of `weight` in N: a blow is over before a sample sees it, at a palm that may not be touched at any.
-    pub(super) fn free_blows(&mut self, impulse: f64, moment: f64, weight: f64) {
+    /// Marks the intervals over which there may be a blow: a contact closes, or opens while it is pressed by more than a share of `weight` in N.
+    ///
+    /// A blow is over before a sample sees it, at a palm that may not be touched at any. Where the impulses of all palms are read, it
+    /// is known but for its time; else what the velocities change by is left open, up to about `impulse` in N s and `moment` in N m s.
+    pub(super) fn mark_blows(&mut self, impulse: f64, moment: f64, weight: f64) {
         let lost = |from: usize, to: usize| {
             let gone = |c: &&Contact| self.contacts[to].iter().all(|other| other.palm != c.palm);
             self.contacts[from].iter().filter(gone).map(|c| c.f.length()).reduce(f64::max)
@@ -125,15 +137,20 @@ impl Record {
         let lasts = |k: usize| match (lost(k, k - 1), lost(k - 1, k)) {
             (Some(_), _) => BLOW,
             (None, Some(force)) if force > SUDDEN * weight => 1,
-            _ => 0,
+            _ => usize::from(self.intervals[k - 1].blow),
         };
-        let blows: Vec<usize> = (1..self.times.len()).map(lasts).collect();
-        for (k, lasts) in blows.into_iter().enumerate() {
-            for interval in self.intervals[k..].iter_mut().take(lasts).filter(|interval| !interval.blow) {
-                interval.blow = true;
-                for i in 0..6 {
-                    interval.noise[(i, i)] += if i < 3 { impulse } else { moment }.powi(2);
-                }
+        let mut blows = vec![false; self.intervals.len()];
+        for k in 1..self.times.len() {
+            blows[k - 1..].iter_mut().take(lasts(k)).for_each(|blow| *blow = true);
+        }
+        for (k, interval) in self.intervals.iter_mut().enumerate().filter(|(k, _)| blows[*k]) {
+            interval.blow = true;
+            if self.all_impulses {
+                interval.noise.late += late(interval, [&self.wrenches[k], &self.wrenches[k + 1]]);
+                continue;
+            }
+            for i in 0..6 {
+                interval.noise.white[(i, i)] += if i < 3 { impulse } else { moment }.powi(2);
             }
         }
     }
@@ -159,13 +176,27 @@ impl Record {
     }
 }
 
-fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, frictionless: &[bool]) -> Vec<Contact> {
-    let one = |(palm, logged): (usize, &object_dynamics::LoggedPalm)| {
+/// What a blow over an interval does to the second integral, at a time of which nothing is known: all that the forces at its ends
+/// do not make.
+fn late(interval: &Interval, ends: [&Wrench; 2]) -> Matrix6<f64> {
+    let h = interval.h;
+    let blow = interval.impulse + (*ends[0] + *ends[1]) * (-0.5 * h);
+    let column = six(blow.force, blow.moment) * (h / 12.0_f64.sqrt());
+    column * column.transpose()
+}
+
+fn wrench<'a>(contacts: impl IntoIterator<Item = &'a Contact>) -> Wrench {
+    let of = |c: &Contact| Wrench { force: c.f, moment: c.c.cross(c.f) };
+    contacts.into_iter().map(of).fold(Wrench::default(), Add::add)
+}
+
+fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, options: &ContactOptions) -> Vec<Contact> {
+    let one = |(palm, logged): (usize, &LoggedPalm)| {
         let touch = logged.touch(k)?;
         let motion = logged.motion(k);
         let n = touch.n.get();
-        let f = logged.force(k)?.vector;
-        let frictionless = frictionless[palm];
+        let frictionless = options.frictionless(logged);
+        let (f, f_deviation) = force_at(log, logged, k, &options.noise, frictionless)?;
         Some(Contact {
             palm,
             c: touch.p_WC - origin,
@@ -174,12 +205,29 @@ fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, frictionless: &[bool])
             W: motion.w_WP,
             shape: shape_operator(logged.surface(), n, motion.pose.R_WP * DVec3::X),
             f: if frictionless { f.project_onto_normalized(n) } else { f },
+            f_deviation,
             frictionless,
             mode: ContactMode::Slide,
             samples: 1,
         })
     };
     log.palms().iter().enumerate().filter_map(one).collect()
+}
+
+/// Force of a palm at a sample and the standard deviation of each axis: measured in three axes, else by its impulses.
+fn force_at(
+    log: &ContactLog,
+    palm: &LoggedPalm,
+    k: usize,
+    noise: &ContactNoiseLevel,
+    frictionless: bool,
+) -> Option<(DVec3, f64)> {
+    match palm.force(k) {
+        Some(SensedForce { vector, axes }) if frictionless || axes == SensedAxes::Three => {
+            Some((vector, noise.force(vector)))
+        }
+        _ => impulses::read(palm, noise).map(|noise| impulses::force(log, palm, k, &noise)),
+    }
 }
 
 /// How the normal `n` of a palm, whose axis is `axis`, turns along its surface.
@@ -189,15 +237,17 @@ fn shape_operator(surface: PalmSurface, n: DVec3, axis: DVec3) -> DMat3 {
     (DMat3::IDENTITY - outer(n)) * along + outer(axis.cross(n)) * (across - along)
 }
 
+/// By the forces at samples of those palms that are `sampled`.
 fn intervals(
-    log: &ContactLog,
+    times: &[f64],
     contacts: &[Vec<Contact>],
-    wrenches: &[Wrench],
     noise: &ContactNoiseLevel,
+    sampled: &[bool],
 ) -> Vec<Interval> {
-    let times = log.times();
+    let felt = |k: usize| contacts[k].iter().filter(|contact| sampled[contact.palm]);
+    let wrenches: Vec<Wrench> = (0..times.len()).map(|k| wrench(felt(k))).collect();
     let since: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
-    let sums = running_integral(&since, wrenches, Wrench::default());
+    let sums = running_integral(&since, &wrenches, Wrench::default());
     let timed: Vec<Wrench> = wrenches.iter().zip(&since).map(|(w, t)| *w * *t).collect();
     let firsts = running_integral(&since, &timed, Wrench::default());
     let fine: Vec<Interval> = (1..times.len())
@@ -206,11 +256,10 @@ fn intervals(
             let impulse = sums[k] + sums[k - 1] * -1.0;
             let first = firsts[k].force - firsts[k - 1].force - impulse.force * since[k - 1];
             // The noise of a sample is felt on both its sides; put into the interval after it alone it is white.
-            let mut noise_here = Matrix6::zeros();
-            for contact in &contacts[k - 1] {
-                add_noise(&mut noise_here, contact, noise, h);
-            }
-            Interval { h, impulse, first, noise: noise_here, blow: false }
+            let mut white = Matrix6::zeros();
+            felt(k - 1).for_each(|contact| add_noise(&mut white, contact, noise.contact, h));
+            let noise = WrenchNoise { white, ..WrenchNoise::default() };
+            Interval { h, impulse, first, noise, blow: false }
         })
         .collect();
     let rough: Vec<Interval> =
@@ -218,27 +267,29 @@ fn intervals(
     let differ = |(fine, rough): (&Interval, &Interval)| fine.impulse + rough.impulse * -1.0;
     let square = |pair| differ(pair).force.length_squared();
     let differences: f64 = fine.iter().zip(&rough).map(square).sum();
-    let expected: f64 = fine.iter().map(|i| RULES_DIFFER * i.noise.fixed_view::<3, 3>(0, 0).trace()).sum();
+    let expected: f64 = fine.iter().map(|i| RULES_DIFFER * force_trace(&i.noise.white)).sum();
     let all = if differences < 2.0 * expected { rough } else { fine };
-    all.into_iter().enumerate().map(|(k, interval)| doubted(k, interval, wrenches)).collect()
+    all.into_iter().enumerate().map(|(k, interval)| doubted(k, interval, &wrenches)).collect()
 }
 
 /// With what the interval after sample `k` may be off by, if a force jumps within it: nobody knows when.
 ///
 /// A jump is what a step between two samples is more than the mean of the steps beside it, and more than noise makes of it.
-fn doubted(k: usize, interval: Interval, wrenches: &[Wrench]) -> Interval {
-    let (Some(before), Some(after)) = (k.checked_sub(1).map(|k| wrenches[k]), wrenches.get(k + 2)) else {
-        return interval;
-    };
-    let h = interval.h;
-    let jump = (wrenches[k + 1] + wrenches[k] * -1.0) * 1.5 + (before + *after * -1.0) * 0.5;
-    let square = jump.force.length_squared();
-    // Noise of one sample makes five times its variance of a jump.
-    let noise = 5.0 * interval.noise.fixed_view::<3, 3>(0, 0).trace() / (h * h);
-    let seen = (1.0 - SEEN * noise / square.max(f64::MIN_POSITIVE)).max(0.0);
-    // Of a time that is uniform over the interval.
-    let column = six(jump.force, jump.moment) * (h * (seen / 12.0).sqrt());
-    Interval { noise: interval.noise + column * column.transpose(), ..interval }
+fn doubted(k: usize, mut interval: Interval, wrenches: &[Wrench]) -> Interval {
+    let white = &mut interval.noise.white;
+    if let (Some(before), Some(after)) = (k.checked_sub(1).map(|k| wrenches[k]), wrenches.get(k + 2)) {
+        let h = interval.h;
+        let jump = (wrenches[k + 1] + wrenches[k] * -1.0) * 1.5 + (before + *after * -1.0) * 0.5;
+        let square = jump.force.length_squared();
+        // Noise of one sample makes five times its variance of a jump.
+        let noise = 5.0 * force_trace(white) / (h * h);
+        let seen = (1.0 - SEEN * noise / square.max(f64::MIN_POSITIVE)).max(0.0);
+        // Of a time that is uniform over the interval.
+        let column = six(jump.force, jump.moment) * (h * (seen / 12.0).sqrt());
+        white.ger(1.0, &column, &column, 1.0);
+    }
+    interval.noise.sampled = force_trace(white);
+    interval
 }
 
 /// Times the variance that noise makes of a jump from which on it is one.
@@ -257,15 +308,20 @@ fn trapezoid(interval: &Interval, wrenches: &[Wrench]) -> Interval {
 }
 
 /// What the noise of one contact does to the impulse and moment of an interval: samples are independent.
-fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, noise: &ContactNoiseLevel, h: f64) {
-    let force = noise.force(contact.f) * h;
+fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, deviation: f64, h: f64) {
     let (a, b) = contact.n.any_orthonormal_pair();
     for axis in [contact.n, a, b].into_iter().take(if contact.frictionless { 1 } else { 3 }) {
-        let column = six(axis, contact.c.cross(axis)) * force;
+        let column = six(axis, contact.c.cross(axis)) * (contact.f_deviation * h);
         covariance.ger(1.0, &column, &column, 1.0);
     }
+    add_contact_noise(covariance, contact.n, contact.f * h, deviation);
+}
+
+/// What a contact that is off by `deviation` in each direction across the normal `n` does to the moment of an impulse.
+pub(super) fn add_contact_noise(covariance: &mut Matrix6<f64>, n: DVec3, impulse: DVec3, deviation: f64) {
+    let (a, b) = n.any_orthonormal_pair();
     for tangent in [a, b] {
-        let column = six(DVec3::ZERO, tangent.cross(contact.f)) * (noise.contact * h);
+        let column = six(DVec3::ZERO, tangent.cross(impulse)) * deviation;
         covariance.ger(1.0, &column, &column, 1.0);
     }
 }

@@ -29,12 +29,12 @@ const SLIP_ANGLE: f64 = 0.02;
 const BLURRED: f64 = 0.3;
 
 /// Direction across the friction of a contact that slides, and the standard deviation of its angle, rad; none where noise hides it.
-fn across_friction(contact: &Contact, noise: &ContactNoiseLevel) -> Option<(DVec3, f64)> {
+fn across_friction(contact: &Contact) -> Option<(DVec3, f64)> {
     if contact.frictionless {
         return None;
     }
     let friction = contact.f.reject_from_normalized(contact.n);
-    let angle = noise.force(contact.f) / friction.length();
+    let angle = contact.f_deviation / friction.length();
     let seen = contact.mode == ContactMode::Slide && angle < BLURRED;
     seen.then(|| (contact.n.cross(friction).normalize_or_zero(), angle.hypot(SLIP_ANGLE)))
 }
@@ -63,7 +63,7 @@ impl Rows {
     ) -> Option<Self> {
         let arm = contact.c - motion.p;
         let slip = motion.v + turn.w.cross(arm) - contact.u;
-        let across = if friction { across_friction(contact, noise) } else { None };
+        let across = if friction { across_friction(contact) } else { None };
         let (t1, t2) = match across {
             Some((across, _)) => (across, contact.n.cross(across)),
             None => contact.n.any_orthonormal_pair(),

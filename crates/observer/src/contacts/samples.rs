@@ -2,6 +2,7 @@
 
 use super::body::Body;
 use super::flow::Carried;
+use super::noise::WrenchNoise;
 use super::problem::{Problem, Unknowns};
 use super::record::Record;
 use super::solve::Covariances;
@@ -57,7 +58,7 @@ impl<'a> Link<'a> {
         samples: std::ops::Range<usize>,
     ) -> Self {
         let mut carried = Carried::<0>::new(found.motions[j], &found.body);
-        let (mut motions, mut noise) = (Vec::with_capacity(samples.len()), Matrix6::zeros());
+        let (mut motions, mut noise) = (Vec::with_capacity(samples.len()), WrenchNoise::default());
         for k in samples.clone() {
             carried.step(
                 &log.intervals[k],
@@ -72,7 +73,7 @@ impl<'a> Link<'a> {
             body: &found.body,
             duration: log.times[samples.end] - log.times[samples.start],
             left: found.motions[j + 1].from(&carried.motion),
-            noise: problem.about(&noise, carried.motion.p),
+            noise: problem.about(&noise, carried.motion.p).white,
             carried: motions,
             samples,
         }

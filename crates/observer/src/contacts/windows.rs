@@ -4,11 +4,11 @@
 //! both are of one size a node follows its own contact, and least squares over so many nodes find the body wrong by several of their
 //! deviations. A contact averaged over a window leaves the condition in the window's middle as it is, with less noise.
 
-use super::noise::ContactNoiseLevel;
+use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::problem::Units;
 use super::record::{Contact, Interval, Record, Wrench};
 use glam::DVec3;
-use nalgebra::{Matrix3, Matrix6, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
 
 /// Longest window over the natural time, if contacts may begin to slide or stick within it: motions bend then, and it is not known when.
@@ -163,6 +163,7 @@ impl Record {
             origin: self.origin,
             contacts: windows.iter().map(|window| self.smoothed(window)).collect(),
             wrenches: windows.iter().map(wrench).collect(),
+            all_impulses: self.all_impulses,
             intervals: middles.windows(2).map(|k| sum(&self.intervals[k[0]..k[1]])).collect(),
         }
     }
@@ -192,6 +193,7 @@ impl Record {
             contacts: picked.iter().map(|&k| self.contacts[k].clone()).collect(),
             wrenches: picked.iter().map(|&k| self.wrenches[k]).collect(),
             intervals: picked.windows(2).map(|k| sum(&self.intervals[k[0]..k[1]])).collect(),
+            all_impulses: self.all_impulses,
         })
     }
 
@@ -219,7 +221,7 @@ fn sum(intervals: &[Interval]) -> Interval {
         h: 0.0,
         impulse: Wrench::default(),
         first: DVec3::ZERO,
-        noise: Matrix6::zeros(),
+        noise: WrenchNoise::default(),
         blow: false,
     };
     intervals.iter().fold(none, |sum, interval| Interval {

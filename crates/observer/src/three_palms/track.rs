@@ -36,7 +36,7 @@ pub enum TrackError {
     },
     /// Neither a force nor a usable torque.
     #[error(
-        "palm {palm} has no contact force at t = {t} s: the log needs f_{palm}, or tau_{palm} with the palm's moment of inertia and a contact away from its axis; an ellipsoid is found from contacts alone (`estimate_without_forces`, `recon reconstruct --without-forces`)"
+        "palm {palm} has no contact force at t = {t} s: the log needs f_{palm}, or tau_{palm} with the palm's moment of inertia and a contact away from its axis (a log of contacts: fn_{palm}, or the impulse of every palm in three axes, Jx_{palm}, Jy_{palm}, Jz_{palm}); an ellipsoid is found from contacts alone (`estimate_without_forces`, `recon reconstruct --without-forces`)"
     )]
     NoForce {
         /// Palm number from 1.

@@ -10,9 +10,9 @@ use crate::progress::Progress;
 use glam::DVec3;
 use recon::object_dynamics::{ContactLog, LoggedPalm, NotThreePlanes, SensedAxes};
 use recon::observer::{
-    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, estimate_contacts,
+    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, ImpulseNoise, estimate_contacts,
 };
-use recon_io::{EstimateData, PalmContact, Scene};
+use recon_io::{EstimateData, PalmContact, Scene, Sensors};
 use std::error::Error;
 use std::path::Path;
 
@@ -45,8 +45,9 @@ pub(crate) fn estimate_any_palms(
     request: &AnyPalmsRequest,
     progress: &Progress,
 ) -> Result<AnyPalms, CliError> {
-    let lacks = log.palms().iter().position(|palm| palm.force_axes() != Some(SensedAxes::Three));
-    if let Some(i) = lacks {
+    let felt =
+        |palm: &LoggedPalm| [palm.force_axes(), palm.impulse_axes()].contains(&Some(SensedAxes::Three));
+    if let Some(i) = log.palms().iter().position(|palm| !felt(palm)) {
         return Err(CliError::NotThreeAxes { path: request.path.to_owned(), palm: i + 1, source: why });
     }
     let options = options(&log, request.scene)?;
@@ -67,6 +68,7 @@ pub(crate) fn estimate_any_palms(
         warnings.extend(stated_body(request.scene, &estimate));
     }
     warnings.extend(not_relied_on(&estimate));
+    warnings.extend(impulses_not_read(&log, &options));
     progress.step("bounding the shape");
     let bounds = match estimate_bounds(&log, &estimate, &curves, options.noise.contact, CONFIDENCE) {
         Ok(bounds) => bounds,
@@ -100,31 +102,46 @@ pub(crate) fn estimate_any_palms(
 /// What the estimator is told, as the scene states it.
 fn options(log: &ContactLog, scene: &Scene) -> Result<ContactOptions, CliError> {
     let sensors = &scene.sensors;
-    let forces = sensors.force_std.is_some() || sensors.force_share.is_some();
-    let missing = match (sensors.contact_std, forces) {
-        (Some(_), true) => None,
-        (None, true) => {
-            Some("contact_std (of a contact point in each tangent direction of its palm, m; such as 1e-4)")
-        }
-        (Some(_), false) => Some(
+    let three = Some(SensedAxes::Three);
+    let forces = log.palms().iter().any(|palm| palm.force_axes() == three);
+    let impulses = log.palms().iter().any(|palm| palm.force_axes() != three);
+    let impulse = impulse_noise(sensors);
+    let needed = [
+        (
+            sensors.contact_std.is_none(),
+            "contact_std (of a contact point in each tangent direction of its palm, m; such as 1e-4)",
+        ),
+        (
+            forces && sensors.force_std.or(sensors.force_share).is_none(),
             "force_std (of each axis of a force, N; such as 0.01) or force_share (as a share of it; such as 0.02)",
         ),
-        (None, false) => Some(
-            "contact_std (of a contact point in each tangent direction of its palm, m; such as 1e-4) and force_std (of each axis of a \
-             force, N; such as 0.01) or force_share (as a share of it; such as 0.02)",
+        (
+            impulses && impulse.is_none(),
+            "impulse_std (of each axis of an impulse from sample to sample, N s; such as 1e-5) or impulse_share (as a share of it; such \
+             as 0.02)",
         ),
-    };
-    if let Some(missing) = missing {
-        return Err(CliError::NoiseNotStated { missing });
+    ];
+    let missing: Vec<&str> =
+        needed.into_iter().filter(|(missing, _)| *missing).map(|(_, what)| what).collect();
+    if !missing.is_empty() {
+        return Err(CliError::NoiseNotStated { missing: missing.join(" and ") });
     }
     let length = scene.size.or_else(|| size(log)).ok_or(CliError::SizeNotStated)?;
     let noise = ContactNoiseLevel {
         contact: sensors.contact_std.unwrap_or_default(),
         force_fixed: sensors.force_std.unwrap_or_default(),
         force_share: sensors.force_share.unwrap_or_default(),
+        impulse,
         floor: sensors.contact_speed_std.unwrap_or(FLOOR * (scene.gravity * length).sqrt()),
     };
     Ok(ContactOptions { noise, gravity: scene.gravity, friction: None, body: None, size: scene.size })
+}
+
+/// Noise of impulses, where it is stated: without it they are not read.
+fn impulse_noise(sensors: &Sensors) -> Option<ImpulseNoise> {
+    sensors.impulse_std.or(sensors.impulse_share)?;
+    let [fixed, share] = [sensors.impulse_std, sensors.impulse_share].map(Option::unwrap_or_default);
+    Some(ImpulseNoise { fixed, share })
 }
 
 /// Root mean square of the distance of contacts from the mean of those at the same time, m: about the size of the object. None
@@ -161,5 +178,15 @@ fn not_relied_on(estimate: &ContactEstimate) -> Option<String> {
             "At {doubtful} of {all} samples the motion is not relied on (relied_on in motion.csv is 0): noise does not explain what is \
              left there, or the deviations are too large for what they are made from."
         )
+    })
+}
+
+/// What to say of impulses in the log that count for nothing.
+fn impulses_not_read(log: &ContactLog, options: &ContactOptions) -> Option<String> {
+    let measured = log.palms().iter().any(|palm| palm.impulse_axes() == Some(SensedAxes::Three));
+    (measured && options.noise.impulse.is_none()).then(|| {
+        "The log has impulses, which are not used: the scene does not state their noise ([sensors]: impulse_std or impulse_share). What \
+         happens between samples is taken from the forces at them, which miss blows."
+            .to_owned()
     })
 }

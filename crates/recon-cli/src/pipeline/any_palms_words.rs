@@ -153,10 +153,29 @@ fn fit(estimate: &ContactEstimate) -> Vec<Evidence> {
 /// What the estimator was told of the sensors.
 fn told(options: &ContactOptions) -> Vec<Evidence> {
     let noise = &options.noise;
+    let of_impulse = noise.impulse.map(|noise| {
+        let [fixed, share] = [noise.fixed, noise.share].map(Number);
+        [
+            neutral(
+                "noise_impulse",
+                "Noise of impulses, fixed",
+                fixed,
+                "N s",
+                "Of each axis, from sample to sample, from the scene.",
+            ),
+            neutral(
+                "noise_impulse_share",
+                "Noise of impulses, growing",
+                share,
+                "",
+                "As a share of the impulse, from the scene.",
+            ),
+        ]
+    });
     let tangent = "In each tangent direction of the palm, from the scene.";
     let speed =
         "What a contact condition may be off by beside noise: from the scene, or 3e-5 of the natural speed.";
-    vec![
+    let mut rows = vec![
         neutral("noise_contact", "Noise of contact positions", Number(noise.contact), "m", tangent),
         neutral(
             "noise_force",
@@ -172,8 +191,10 @@ fn told(options: &ContactOptions) -> Vec<Evidence> {
             "",
             "As a share of the force, from the scene.",
         ),
-        neutral("contact_speed", "Speed of contacts", Number(noise.floor), "m/s", speed),
-    ]
+    ];
+    rows.extend(of_impulse.into_iter().flatten());
+    rows.push(neutral("contact_speed", "Speed of contacts", Number(noise.floor), "m/s", speed));
+    rows
 }
 
 /// A row that speaks neither for nor against the result.

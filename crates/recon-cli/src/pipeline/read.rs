@@ -1,6 +1,6 @@
 use crate::error::CliError;
 use glam::DVec3;
-use recon::object_dynamics::{ContactLog, NotThreePlanes, SensorLog, ThreePlanes};
+use recon::object_dynamics::{ContactLog, LoggedPalm, NotThreePlanes, SensedAxes, SensorLog, ThreePlanes};
 use recon_io::{AnyLog, Scene, brief, read_any_log};
 use std::path::Path;
 
@@ -12,14 +12,31 @@ pub(crate) enum LogOf {
     AnyPalms(Box<ContactLog>, NotThreePlanes),
 }
 
-/// Reads a sensor log of either version.
+/// Reads a sensor log of either version, for an estimate that needs forces.
 pub(crate) fn read_log(path: &Path, scene: &Scene) -> Result<LogOf, CliError> {
+    read(path, scene, impulses_alone)
+}
+
+/// The same of what must be three flat palms through one point, without friction; forces are not needed.
+pub(crate) fn three_palms(path: &Path, scene: &Scene) -> Result<(SensorLog, Option<String>), CliError> {
+    match read(path, scene, |_| None)? {
+        LogOf::ThreePalms(log, moved) => Ok((log, moved)),
+        LogOf::AnyPalms(_, source) => Err(CliError::NotThreePlanes { path: path.to_owned(), source }),
+    }
+}
+
+fn read(
+    path: &Path,
+    scene: &Scene,
+    lacks: impl Fn(&ContactLog) -> Option<NotThreePlanes>,
+) -> Result<LogOf, CliError> {
     let log = match read_any_log(path, scene.palm_setups().as_deref())? {
         AnyLog::ThreePalms(log) => return Ok(LogOf::ThreePalms(log, None)),
         AnyLog::Contacts(log) => log,
     };
     let known_to = scene.sensors.contact_off_palm.unwrap_or(0.0);
-    Ok(match log.three_planes_within(known_to) {
+    let planes = log.three_planes_within(known_to).and_then(|planes| lacks(&log).map_or(Ok(planes), Err));
+    Ok(match planes {
         Err(why) => LogOf::AnyPalms(Box::new(log), why),
         Ok(ThreePlanes { log, p_WM, apart }) => {
             let [x, y, z] = p_WM.to_array().map(brief);
@@ -31,10 +48,11 @@ pub(crate) fn read_log(path: &Path, scene: &Scene) -> Result<LogOf, CliError> {
     })
 }
 
-/// The same of what must be three flat palms through one point, without friction.
-pub(crate) fn three_palms(path: &Path, scene: &Scene) -> Result<(SensorLog, Option<String>), CliError> {
-    match read_log(path, scene)? {
-        LogOf::ThreePalms(log, moved) => Ok((log, moved)),
-        LogOf::AnyPalms(_, source) => Err(CliError::NotThreePlanes { path: path.to_owned(), source }),
-    }
+/// The estimators of frictionless motion take forces: where one is known by its impulse alone, and all in three axes, the other one does.
+fn impulses_alone(log: &ContactLog) -> Option<NotThreePlanes> {
+    let three = Some(SensedAxes::Three);
+    let alone = |palm: &LoggedPalm| palm.force_axes().is_none() && !palm.has_torque();
+    let felt = |palm: &LoggedPalm| [palm.force_axes(), palm.impulse_axes()].contains(&three);
+    let palm = log.palms().iter().position(alone)?;
+    log.palms().iter().all(felt).then_some(NotThreePlanes::ImpulseAlone { palm: palm + 1 })
 }

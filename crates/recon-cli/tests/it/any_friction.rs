@@ -79,6 +79,17 @@ fn refused(scratch: &Scratch, scene: &str, further: &[&str], (code, words): (i32
     assert!(!scratch.path().join("out").exists());
 }
 
+/// A log without the columns whose names start so.
+fn without_columns(log: &str, starts: &[char]) -> String {
+    let mut table = Table::parse(log);
+    let kept: Vec<usize> =
+        (0..table.header.len()).filter(|&c| !table.header[c].starts_with(starts)).collect();
+    let keep = |row: &[String]| kept.iter().map(|&c| row[c].clone()).collect::<Vec<_>>();
+    table.rows = table.rows.iter().map(|row| keep(row)).collect();
+    table.header = keep(&table.header);
+    table.text()
+}
+
 fn vectors(table: &Table, stem: &str) -> Vec<DVec3> {
     let places = ["x", "y", "z"].map(|axis| table.column(&format!("{stem}{axis}")));
     table.rows.iter().map(|row| DVec3::from_array(places.map(|k| row[k].parse().unwrap()))).collect()
@@ -211,12 +222,56 @@ fn what_neither_estimator_can_do_is_refused_by_name() {
     refused(&scratch, &sized, &["--without-forces"], (3, &["log.csv", "1 palm(s)"]));
     refused(&scratch, &sized.replace("gravity = 9.81", "gravity = 0.0"), &[], (3, &["gravity"]));
     // What a robot has whose palm feels no force.
+    scratch.write("log.csv", &without_columns(&scratch.read("log.csv"), &['f', 'J']));
+    refused(&scratch, &sized, &[], (3, &["log.csv", "palm 1", "fx_1", "Jx_1", "1 palm(s), not three"]));
+}
+
+#[test]
+fn impulses_alone_give_the_motion_too() {
+    let scene = SPINNING.replace("force_share", "impulse_share = 0.004\nforce_share");
+    let scratch = simulated("impulses", &scene);
+    let with_forces = scratch.read("log.csv");
+    scratch.write("log.csv", &without_columns(&with_forces, &['f']));
+    refused(&scratch, SPINNING, &[], (3, &["[sensors]", "impulse_std", "impulse_share"]));
+    let run = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out", "--json"]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let said: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(said["evidence"]["noise_impulse_share"]["value"].as_f64(), Some(0.004));
+    let error = said["largest_error"]["position_m"].as_f64().unwrap();
+    assert!(error < 1e-3, "{error}");
+    assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
+    // Beside forces they count where their noise is stated, and else it is said that they do not.
+    scratch.write("log.csv", &with_forces);
+    scratch.write("silent.toml", SPINNING);
+    let unread = scratch.run(&["reconstruct", "log.csv", "--scene", "silent.toml", "-o", "unread"]);
+    assert!(unread.stdout.contains("impulses, which are not used"), "{}", unread.stdout);
+}
+
+/// Without friction three planes are those of the paper, whose estimator knows no impulses.
+#[test]
+fn three_frictionless_planes_with_impulses_alone_go_to_the_other_estimator() {
+    let scene = include_str!("../../scenes/three-tilting-palms.toml")
+        .replace("friction = 0.3", "friction = 0.0")
+        .replace("duration = 3.4", "duration = 0.1");
+    let scratch = simulated("three-impulses", &scene);
+    scratch.write("log.csv", &without_columns(&scratch.read("log.csv"), &['f']));
+    let run = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]);
+    assert!(
+        run.stdout.contains("Palm 1 measures the impulse of its force and not the force"),
+        "{}",
+        run.stdout
+    );
+    // Along the normal alone they are not enough, and the message says what is.
     let mut table = Table::parse(&scratch.read("log.csv"));
-    let kept: Vec<usize> =
-        (0..table.header.len()).filter(|&c| !table.header[c].starts_with(['f', 'J'])).collect();
-    let keep = |row: &[String]| kept.iter().map(|&c| row[c].clone()).collect::<Vec<_>>();
-    table.rows = table.rows.iter().map(|row| keep(row)).collect();
-    table.header = keep(&table.header);
+    for i in 1..=3 {
+        let place = table.column(&format!("Jz_{i}"));
+        table.header[place] = format!("Jn_{i}");
+        for axis in ["x", "y"] {
+            let place = table.column(&format!("J{axis}_{i}"));
+            table.header[place] = format!("other_{axis}_{i}");
+        }
+    }
     scratch.write("log.csv", &table.text());
-    refused(&scratch, &sized, &[], (3, &["log.csv", "palm 1", "fx_1", "1 palm(s), not three"]));
+    let run = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "normal"]);
+    assert!(run.code == Some(3) && run.stderr.contains("Jx_1, Jy_1, Jz_1"), "{}", run.stderr);
 }

@@ -194,3 +194,62 @@ fn command_lines_that_are_not_understood_have_their_own_code() {
     assert_eq!(help.code, Some(0));
     assert!(help.stdout.contains("Exit codes:") && help.stdout.contains("Examples:"));
 }
+
+#[test]
+fn a_log_that_was_cut_off_within_a_number_is_refused() {
+    let scratch = scratch_with_log("cut");
+    let good = scratch.read("log.csv");
+    // The last number without most of its digits, and without the end of its line alone.
+    let start = good.trim_end().rfind(',').unwrap() + 1;
+    scratch.write("bad.csv", &good[..start + 4]);
+    let line = format!("({})", good.lines().count());
+    refused(
+        &scratch,
+        &RECONSTRUCT,
+        3,
+        &["bad.csv", "last line", &line, "without a newline", "copy the file anew"],
+    );
+    let noise = ["--contact-noise", "1e-3", "--force-noise", "0.05"];
+    let follow = [&["follow", "bad.csv", "--scene", "scene.toml", "-o", "followed.csv"][..], &noise].concat();
+    let run = scratch.run(&follow);
+    assert!(run.code == Some(3) && run.stderr.contains("without a newline"), "{:?} {}", run.code, run.stderr);
+    scratch.write("whole.csv", good.trim_end());
+    let whole = scratch.run(&["reconstruct", "whole.csv", "--scene", "scene.toml", "-o", "out"]);
+    assert_eq!(whole.code, Some(0), "{}", whole.stderr);
+    let curves = scratch.read("out/contact_curves.csv");
+    let start = curves.trim_end().rfind(',').unwrap() + 1;
+    scratch.write("curves.csv", &curves[..start + 3]);
+    refused(&scratch, &["bounds", "curves.csv", "-o", "bounds"], 3, &["curves.csv", "without a newline"]);
+}
+
+#[test]
+fn a_planar_log_of_contacts_is_told_by_every_command() {
+    let scratch = Scratch::new("planar-contacts");
+    scratch
+        .write("scene.toml", "gravity = 9.81\n[[palm]]\nkind = \"flat\"\npose = { position = [0, 0, 0] }\n");
+    scratch.write("bad.csv", "t,px_1,py_1,Px_1,Py_1,angle_1,fx_1,fy_1\n0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0,1\n");
+    let told = ["planar log of version 2", "no command", "recon planar", "recon reconstruct"];
+    refused(&scratch, &RECONSTRUCT, 3, &told);
+    refused(&scratch, &["planar", "bad.csv", "-o", "out"], 3, &told);
+    refused(&scratch, &["follow", "bad.csv", "--scene", "scene.toml", "-o", "f.csv"], 3, &["mass"]);
+}
+
+#[test]
+fn scenes_that_are_possible_in_no_unit_are_refused_by_every_command() {
+    let scratch = Scratch::new("impossible");
+    let good = include_str!("../../scenes/three-tilting-palms.toml");
+    for (from, to, words) in [
+        ("mass = 0.2", "mass = 1e300", ["object.mass", "kg"]),
+        ("mass = 0.2", "mass = 1e-300", ["object.mass", "kg"]),
+        ("mass = 0.2", "mass = 2e-4", ["moments", "check the units"]),
+        (
+            "seed = 1",
+            "angular_velocity = [0.0, 0.0, 3e5]\nseed = 1",
+            ["simulation.angular_velocity", "rad/s"],
+        ),
+    ] {
+        scratch.write("scene.toml", &good.replacen(from, to, 1));
+        refused(&scratch, &["simulate", "scene.toml", "-o", "log.csv"], 3, &words);
+        refused(&scratch, &["export", "scene.toml", "-o", "model"], 3, &words);
+    }
+}

@@ -133,11 +133,20 @@ pub enum LogFileErrorKind {
     )]
     NoPalms,
     /// A log of general palms where one of palms through the origin is read.
-    #[error("has the columns px_i or sx_i of palms of any shape, and here logs of {read} are read")]
+    #[error(
+        "has the columns px_i or sx_i of palms of any shape, and here logs of {read} are read; `recon reconstruct` takes it"
+    )]
     AnyPalms {
         /// What is read, with its columns.
         read: &'static str,
     },
+    /// A log of contacts in the plane, from which nothing is estimated.
+    #[error(
+        "is a planar log of version 2 (px_i, py_i, angle_i), of which no command estimates a motion: `recon simulate --report` shows the \
+         scene that it is made from, `recon planar` takes logs of two palms hinged at the origin (t, phi1, phi2, s1, s2), `recon \
+         reconstruct` logs of palms in space (px_i, py_i, pz_i)"
+    )]
+    PlanarContacts,
     /// Log and scene have different numbers of palms.
     #[error("has {found} palm(s) by its columns px_i or sx_i where the scene has {expected}")]
     PalmCount {

@@ -1,10 +1,11 @@
 //! Planar sensor logs, version 1: two palms hinged at the origin.
 
 use super::columns::{Field, Header};
-use super::contacts::palms_in;
+use super::contacts::palms_in_space;
 use super::error::{LogFileError, LogFileErrorKind as Kind};
 use super::read::{Row, csv_error};
 use crate::number::exact;
+use crate::rows::rows;
 use glam::DVec2;
 use recon::object_dynamics::planar::{PlanarLog, PlanarLogError, PlanarSample, PlanarTruth};
 use std::io::{self, BufReader, Read, Write};
@@ -24,7 +25,7 @@ struct Columns {
 
 impl Columns {
     fn find(record: &csv::StringRecord) -> Result<Self, Kind> {
-        if palms_in(record) > 0 {
+        if palms_in_space(record)? > 0 {
             return Err(Kind::AnyPalms { read: "two palms hinged at the origin (phi1, phi2, s1, s2)" });
         }
         let header = Header::new(record);
@@ -62,9 +63,7 @@ pub fn read_planar_log(path: impl AsRef<Path>) -> Result<PlanarLog, LogFileError
 /// # Errors
 /// [`LogFileErrorKind`](super::LogFileErrorKind) names the line and the column.
 pub fn parse_planar_log(text: impl Read) -> Result<PlanarLog, Kind> {
-    let mut reader =
-        csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text);
-    let mut rows = reader.records();
+    let mut rows = rows(text);
     let header = rows.next().ok_or(Kind::Empty)?.map_err(csv_error)?;
     let columns = Columns::find(&header)?;
     let (mut samples, mut truth, mut lines) = (Vec::new(), Vec::new(), Vec::new());

@@ -1,6 +1,7 @@
 use super::columns::{Columns, Field, PalmColumns};
-use super::contacts::palms_in;
+use super::contacts::palms_in_space;
 use super::error::{LogFileError, LogFileErrorKind as Kind};
+use crate::rows::{Whole, read_error, rows};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame, PalmTriple};
 use recon::object_dynamics::{LogError, PalmReading, Sample, SensorLog, TrueState};
@@ -35,14 +36,12 @@ pub fn parse_log(text: impl Read) -> Result<SensorLog, Kind> {
 /// A CSV file whose header has been read.
 pub(super) struct Table<R> {
     pub(super) header: csv::StringRecord,
-    rows: csv::StringRecordsIntoIter<R>,
+    rows: csv::StringRecordsIntoIter<Whole<R>>,
 }
 
 impl<R: Read> Table<R> {
     pub(super) fn open(text: R) -> Result<Self, Kind> {
-        let mut reader = csv::ReaderBuilder::new();
-        reader.has_headers(false).flexible(true).trim(csv::Trim::All);
-        let mut rows = reader.from_reader(text).into_records();
+        let mut rows = rows(text);
         let header = rows.next().ok_or(Kind::Empty)?.map_err(csv_error)?;
         Ok(Self { header, rows })
     }
@@ -67,17 +66,11 @@ impl<R: Read> Table<R> {
 /// The columns of version 1; a header of version 2 is told as that.
 pub(super) fn three_palms(header: &csv::StringRecord) -> Result<Columns, Kind> {
     let read = "three flat palms through the origin (s1_i, s2_i)";
-    if palms_in(header) > 0 { Err(Kind::AnyPalms { read }) } else { Columns::find(header) }
+    if palms_in_space(header)? > 0 { Err(Kind::AnyPalms { read }) } else { Columns::find(header) }
 }
 
 pub(super) fn csv_error(error: csv::Error) -> Kind {
-    if !error.is_io_error() {
-        return Kind::Csv(error);
-    }
-    match error.into_kind() {
-        csv::ErrorKind::Io(io) => Kind::Read(io),
-        other => Kind::Read(std::io::Error::other(format!("{other:?}"))),
-    }
+    read_error(error).map_or_else(Kind::Csv, Kind::Read)
 }
 
 /// What has been read so far. `lines[k]` is the line of sample `k`.

@@ -1,6 +1,7 @@
 use super::columns::Columns;
 use super::error::LogFileErrorKind as Kind;
 use super::read::{Row, csv_error, three_palms};
+use crate::rows::{Whole, rows};
 use recon::object_dynamics::{LogError, Sample, SeriesError};
 use std::io::Read;
 
@@ -9,7 +10,7 @@ use std::io::Read;
 ///
 /// An error ends the samples.
 pub struct LogReader<R> {
-    rows: csv::StringRecordsIntoIter<R>,
+    rows: csv::StringRecordsIntoIter<Whole<R>>,
     columns: Columns,
     /// Samples so far, and the time of the latest, s.
     count: usize,
@@ -23,12 +24,7 @@ impl<R: Read> LogReader<R> {
     /// # Errors
     /// [`LogFileErrorKind`](super::LogFileErrorKind): no header, or one without a column that is needed.
     pub fn new(text: R) -> Result<Self, Kind> {
-        let mut rows = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .from_reader(text)
-            .into_records();
+        let mut rows = rows(text);
         let header = rows.next().ok_or(Kind::Empty)?.map_err(csv_error)?;
         Ok(Self { columns: three_palms(&header)?, rows, count: 0, latest: None, ended: false })
     }

@@ -1,5 +1,6 @@
 use super::file::{ObjectTable, PalmTable, PalmsTable, SceneFile, SensorsTable, ShapeTable, SimulationTable};
 use super::palms::palms as any_palms;
+use super::possible;
 use super::{KnownInertia, KnownPalm, Scene, SceneErrorKind as Kind, Sensors, Shape, Simulation};
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, MotionLaw, Palm, PalmTriple};
@@ -15,13 +16,13 @@ const MOST_SAMPLES: f64 = 1e6;
 
 /// Checks every number and says each thing in one way. Files that a scene in `folder` names are beside it.
 pub(super) fn scene(file: SceneFile, folder: &Path) -> Result<Scene, Kind> {
-    let gravity = Kind::not_negative("gravity", file.gravity)?;
+    let gravity = possible::gravity(file.gravity)?;
     let (mass, inertia) = mass_and_inertia(&file.object)?;
     let sensors = sensors(&file.sensors)?;
     let friction = file.palms.friction.map(|f| Kind::not_negative("palms.friction", f)).transpose()?;
     let palms = any_palms(file.palm, friction, folder)?;
     let simulation = file.simulation.map(|s| simulation(s, &sensors, palms.is_some())).transpose()?;
-    Ok(Scene {
+    let scene = Scene {
         gravity,
         mass,
         inertia,
@@ -32,7 +33,9 @@ pub(super) fn scene(file: SceneFile, folder: &Path) -> Result<Scene, Kind> {
         friction,
         palms,
         simulation,
-    })
+    };
+    possible::inertia_within_shape(&scene)?;
+    Ok(scene)
 }
 
 fn mass_and_inertia(table: &ObjectTable) -> Result<(Option<f64>, Option<KnownInertia>), Kind> {
@@ -51,7 +54,7 @@ fn mass_and_inertia(table: &ObjectTable) -> Result<(Option<f64>, Option<KnownIne
         let keys = given.iter().filter(|(_, i)| i.is_some()).map(|(key, _)| (*key).to_owned()).collect();
         return Err(Kind::Ambiguous { keys });
     }
-    let mass = table.mass.map(|m| Kind::positive("object.mass", m)).transpose()?;
+    let mass = table.mass.map(possible::mass).transpose()?;
     if let Some(inertia) = inertia {
         inertia.with_mass(mass.unwrap_or(1.0))?;
     }
@@ -125,7 +128,7 @@ fn simulation(table: SimulationTable, sensors: &Sensors, any_palms: bool) -> Res
         (l - 1.0).abs() <= UNIT_TOLERANCE
     })?;
     let (shape, offset) = shape(table.shape)?;
-    Ok(Simulation {
+    let simulation = Simulation {
         shape,
         offset,
         palms,
@@ -137,7 +140,9 @@ fn simulation(table: SimulationTable, sensors: &Sensors, any_palms: bool) -> Res
         duration,
         sample_rate,
         seed: table.seed,
-    })
+    };
+    possible::start(&simulation)?;
+    Ok(simulation)
 }
 
 fn vector(key: &str, values: [f64; 3], check: fn(&str, f64) -> Result<f64, Kind>) -> Result<DVec3, Kind> {

@@ -51,6 +51,19 @@ pub enum SceneErrorKind {
     /// Mass and inertia that no body has.
     #[error("`object`: {0}")]
     Mass(#[from] MassError),
+    /// Mass where the shape is not.
+    #[error(
+        "`object`: a mass of {mass} kg with its moments of inertia lies {spread:.2e} m from the centre of mass along an axis, beyond the \
+         {reach:.2e} m that `simulation.shape` reaches; check the units of mass, moments (kg m^2) and shape (m)"
+    )]
+    MassOutside {
+        /// Mass, kg.
+        mass: f64,
+        /// Root of the second moment along the axis over the mass, m.
+        spread: f64,
+        /// How far the shape reaches along it, m.
+        reach: f64,
+    },
     /// A palm that cannot be used.
     #[error("`simulation.palms` ({palm}): {source}")]
     Palm {

@@ -5,6 +5,7 @@ mod error;
 mod file;
 mod palms;
 mod planar;
+mod possible;
 mod shape;
 
 #[cfg(test)]

@@ -108,6 +108,30 @@ fn numbers_out_of_range_are_named() {
 }
 
 #[test]
+fn numbers_that_no_object_has_are_named() {
+    for mass in ["1e300", "1e-300", "2e9", "1e-10"] {
+        let refused = with("mass = 1.0", &format!("mass = {mass}")).unwrap_err();
+        assert!(matches!(&refused, Kind::Value { key, .. } if key == "object.mass"), "{refused}");
+        assert!(refused.to_string().contains("kg"), "{refused}");
+    }
+    // Half a kilogram with moments of a whole one may be a shell; a gram may not.
+    assert!(with("mass = 1.0", "mass = 0.5").is_ok());
+    let outside = with("mass = 1.0", "mass = 1e-3").unwrap_err();
+    assert!(matches!(outside, Kind::MassOutside { reach, spread, .. } if spread > reach), "{outside}");
+    assert!(outside.to_string().contains("check the units"), "{outside}");
+    let heavy = with("gravity = 9.81", "gravity = 9810").unwrap_err();
+    assert!(
+        heavy.to_string().contains("`gravity` is 9810") && heavy.to_string().contains("m/s^2"),
+        "{heavy}"
+    );
+    let spins = with("[0.0, 0.3, 0.3]", "[0.0, 0.0, 3e5]").unwrap_err();
+    assert!(
+        matches!(&spins, Kind::Value { key, value, .. } if key.contains("angular_velocity") && *value == 3e5),
+        "{spins}"
+    );
+}
+
+#[test]
 fn palms_that_cannot_hold_an_object_are_named() {
     let parallel = with("azimuth_deg = 30, slope_deg = 60", "azimuth_deg = 270, slope_deg = 60");
     assert!(matches!(parallel, Err(Kind::Palms(PalmError::Parallel { .. }))));

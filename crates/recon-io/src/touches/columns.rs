@@ -1,6 +1,7 @@
 //! Numbers from named columns of a CSV text.
 
 use super::error::TouchesErrorKind as Kind;
+use crate::rows::{read_error, rows};
 use std::io::Read;
 
 /// Numbers of one row: `N` columns that must be there and one that may be.
@@ -17,10 +18,9 @@ pub(super) fn read_columns<const N: usize>(
     required: [&'static str; N],
     groups: &[&'static str],
 ) -> Result<Vec<Numbers<N>>, Kind> {
-    let mut reader =
-        csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text);
-    let mut rows = reader.records();
-    let header = rows.next().ok_or(Kind::Empty)?.map_err(Kind::Csv)?;
+    let csv_error = |error| read_error(error).map_or_else(Kind::Csv, Kind::Read);
+    let mut rows = rows(text);
+    let header = rows.next().ok_or(Kind::Empty)?.map_err(csv_error)?;
     let find =
         |column: &str| header.iter().position(|name| name.trim_start_matches('\u{feff}').trim() == column);
     let mut places = [0; N];
@@ -33,7 +33,7 @@ pub(super) fn read_columns<const N: usize>(
     let group = groups.iter().find_map(|name| find(name).map(|place| (*name, place)));
     let mut numbers = Vec::new();
     for row in rows {
-        let row = row.map_err(Kind::Csv)?;
+        let row = row.map_err(csv_error)?;
         let line = row.position().map_or(0, csv::Position::line);
         let mut values = [0.0; N];
         for ((value, place), column) in values.iter_mut().zip(places).zip(required) {

@@ -251,3 +251,75 @@ fn readings_that_cannot_be_are_named_with_palm_sample_and_value() {
         ContactLogError::ReadingNotFinite { what: "impulse", sample: 2, .. }
     ));
 }
+
+#[test]
+fn twists_that_contradict_the_poses_are_named() {
+    let times = times(400);
+    let [_, measured] = moving(&times);
+    type Change<'a> = &'a dyn Fn(usize, &mut MeasuredMotion);
+    let made = |change: Change| {
+        let mut record = measured.clone();
+        if let RecordedMotion::Measured(states) = &mut record.motion {
+            states.iter_mut().enumerate().for_each(|(k, state)| change(k, state));
+        }
+        ContactLog::new(times.clone(), vec![record], None)
+    };
+    assert!(made(&|_, _| {}).is_ok());
+    let wrong: [(&str, &str, Change); 5] = [
+        ("degrees", "angular velocity (W, rad/s)", &|_, state| state.w_WP *= 1.0_f64.to_degrees()),
+        ("radians for degrees", "angular velocity (W, rad/s)", &|_, state| {
+            state.w_WP *= 1.0_f64.to_radians()
+        }),
+        ("sign", "angular velocity (W, rad/s)", &|_, state| state.w_WP *= -1.0),
+        ("millimetres", "velocity (V, m/s)", &|_, state| state.v_WP *= 100.0),
+        ("kilometres", "velocity (V, m/s)", &|_, state| state.v_WP *= 1e-3),
+    ];
+    for (name, which, change) in wrong {
+        let error = made(change).unwrap_err();
+        assert!(
+            matches!(error, ContactLogError::TwistAgainstPoses { what, palm: 1, .. } if what == which),
+            "{name}: {error}"
+        );
+        assert!(error.to_string().contains("check its unit") && error.sample().is_some(), "{error}");
+    }
+    // Noise is no contradiction, of a palm that moves or of one that stands: 0.1 rad/s, 0.05 m/s.
+    let noise = |k: usize| {
+        DVec3::new((k * k % 17) as f64, (k * k % 13) as f64, (k * 7 % 11) as f64) / 8.0 - DVec3::ONE
+    };
+    let noisy = |k: usize, state: &mut MeasuredMotion| {
+        state.w_WP += 0.1 * noise(k);
+        state.v_WP += 0.05 * noise(k + 5);
+    };
+    assert!(made(&noisy).is_ok());
+    let still = made(&|k, state| {
+        let pose = SurfacePose { p_WP: DVec3::new(0.3, -0.2, 0.1), R_WP: DQuat::from_rotation_x(0.7) };
+        *state = MeasuredMotion { pose, v_WP: DVec3::ZERO, w_WP: DVec3::ZERO };
+        noisy(k, state);
+    });
+    assert!(still.is_ok(), "{}", still.unwrap_err());
+}
+
+#[test]
+fn impulses_that_contradict_the_forces_are_named() {
+    let times = times(20);
+    let force = DVec3::new(0.3, 0.4, 1.2);
+    let made = |factor: f64, blow: f64| {
+        let sum = |t: &f64| force * (t * factor) + DVec3::Z * if *t > 9.5e-3 { blow } else { 0.0 };
+        let record = PalmRecord {
+            force: ForceChannel::Three(vec![force; 20]),
+            impulse: ForceChannel::Three(times.iter().map(sum).collect()),
+            ..palm(PalmSurface::Plane, DVec3::X * 0.01, 20)
+        };
+        ContactLog::new(times.clone(), vec![record], None)
+    };
+    // A blow of a hundred times the whole force is none of its samples.
+    assert!(made(1.0, 0.0).is_ok() && made(1.3, 0.0).is_ok() && made(1.0, 2.5).is_ok());
+    for wrong in [1e3, 1e-3, -1.0, 0.0] {
+        let error = made(wrong, 0.0).unwrap_err();
+        assert!(
+            matches!(error, ContactLogError::ImpulseAgainstForce { palm: 1, factor } if (factor - wrong).abs() <= 1e-9 * wrong.abs()),
+            "{error}"
+        );
+        assert!(error.to_string().contains("N s and N"), "{error}");
+    }
+}

@@ -129,7 +129,8 @@ fn a_motor_is_noisy_whether_or_not_its_palm_is_touched() {
     let mut records = log(DVec3::Z * -0.02, 0.0, 100.0).records();
     let ContactPoints::World(points) = &mut records[0].contacts else { unreachable!() };
     points[3] = None;
-    let exact = ContactLog::new((0..21).map(f64::from).collect(), records, None).unwrap();
+    let times = (0..21).map(|k| 0.01 * f64::from(k)).collect();
+    let exact = ContactLog::new(times, records, None).unwrap();
     let noisy = exact.with_noise(&ContactNoise { torque: 1e-3, ..ContactNoise::default() }, 5).unwrap();
     let changed = |k| noisy.palms()[0].torque(k) != exact.palms()[0].torque(k);
     assert!((0..21).all(changed));

@@ -61,6 +61,12 @@ pub enum NotThreePlanes {
         /// Coefficient of friction.
         friction: f64,
     },
+    /// Of a palm's force the impulse alone is measured.
+    #[error("palm {palm} measures the impulse of its force and not the force")]
+    ImpulseAlone {
+        /// Palm number from 1.
+        palm: usize,
+    },
     /// A palm has no frame.
     #[error("palm {palm} at sample {sample} (t = {time} s): {source}")]
     Frame {

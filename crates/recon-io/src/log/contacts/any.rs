@@ -1,7 +1,7 @@
 use super::super::error::{LogFileError, LogFileErrorKind as Kind};
 use super::super::read::Table;
 use super::PalmSetup;
-use super::columns::palms_in;
+use super::columns::palms_in_space;
 use super::read::contacts;
 use recon::object_dynamics::{ContactLog, SensorLog};
 use std::io::{BufReader, Read};
@@ -33,7 +33,7 @@ pub fn read_any_log(path: impl AsRef<Path>, palms: Option<&[PalmSetup]>) -> Resu
 /// [`LogFileErrorKind`](super::super::LogFileErrorKind) names the line and the column.
 pub fn parse_any_log(text: impl Read, palms: Option<&[PalmSetup]>) -> Result<AnyLog, Kind> {
     let table = Table::open(text)?;
-    if palms_in(&table.header) == 0 {
+    if palms_in_space(&table.header)? == 0 {
         return table.three_palms().map(AnyLog::ThreePalms);
     }
     contacts(table, palms.ok_or(Kind::NoPalms)?).map(AnyLog::Contacts)

@@ -44,6 +44,17 @@ pub(in crate::log) fn palms_in(header: &csv::StringRecord) -> usize {
     header.iter().filter_map(number).max().unwrap_or(0)
 }
 
+/// The same of palms in space: a header of the plane is told as that.
+pub(in crate::log) fn palms_in_space(header: &csv::StringRecord) -> Result<usize, Kind> {
+    let has = |stem: &str| header.iter().any(|name| name.trim().starts_with(stem));
+    match palms_in(header) {
+        palms if palms > 0 && !["pz_", "sx_"].into_iter().any(has) && has("angle_") => {
+            Err(Kind::PlanarContacts)
+        }
+        palms => Ok(palms),
+    }
+}
+
 /// A header with contact points of palms must have those of so many.
 pub(in crate::log) fn check_palms(header: &csv::StringRecord, expected: usize) -> Result<(), Kind> {
     match palms_in(header) {

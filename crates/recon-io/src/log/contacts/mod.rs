@@ -10,7 +10,7 @@ mod write;
 mod tests;
 
 pub use any::{AnyLog, parse_any_log, read_any_log};
-pub(super) use columns::{check_palms, palms_in};
+pub(super) use columns::{check_palms, palms_in_space};
 pub(crate) use poses::read_pose_table;
 pub use read::{parse_contact_log, read_contact_log};
 pub use write::write_contact_log;

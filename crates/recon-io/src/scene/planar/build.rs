@@ -5,6 +5,7 @@ use super::{PlanarBody, PlanarScene};
 use crate::scene::SceneErrorKind as Kind;
 use crate::scene::build::{sample_times, sensors};
 use crate::scene::palms::law;
+use crate::scene::possible;
 use glam::DVec2;
 use recon::contact_kinematics::planar::{
     Circle, Ellipse, FourierBody, MotionPart, PalmSurface, RoundedPolygon, SurfaceMotion, SurfacePose,
@@ -15,7 +16,7 @@ pub(super) fn scene(file: PlanarFile) -> Result<PlanarScene, Kind> {
     if !file.plane {
         return Err(Kind::Missing { what: "`plane = true`", mend: "give it in a scene of the plane" });
     }
-    let gravity = Kind::not_negative("gravity", file.gravity)?;
+    let gravity = possible::gravity(file.gravity)?;
     let sensors = sensors(&file.sensors)?;
     let object = PlanarObject { shape: body(&file.simulation.shape)?, mass: mass(&file.object)?, gravity };
     let friction = file.palms.friction.map(|f| Kind::not_negative("palms.friction", f)).transpose()?;
@@ -35,7 +36,7 @@ pub(super) fn scene(file: PlanarFile) -> Result<PlanarScene, Kind> {
 }
 
 fn mass(table: &ObjectTable) -> Result<PlanarMass, Kind> {
-    let mass = Kind::positive("object.mass", table.mass)?;
+    let mass = possible::mass(table.mass)?;
     let inertia = match (table.inertia, table.radius_of_gyration) {
         (Some(inertia), None) => Kind::positive("object.inertia", inertia)?,
         (None, Some(radius)) => mass * Kind::positive("object.radius_of_gyration", radius)?.powi(2),
