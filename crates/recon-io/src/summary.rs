@@ -15,7 +15,7 @@ pub const INERTIA_LEARNED: f64 = 0.5;
 pub fn estimate_summary(data: &EstimateData) -> Value {
     let (times, found) = (data.log.times(), &data.estimate);
     let relied = found.relied_on.iter().filter(|relied| **relied).count();
-    let duration = data.log.duration();
+    let (duration, unknown) = (data.log.duration(), found.axes_deviations.is_none());
     let palm = |i: usize| {
         let [off, slides, sticks] =
             mode_times(&estimated_mode_spans(times, found, i)).map(|seconds| seconds / duration);
@@ -36,10 +36,11 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         "t_first_s": times.first(),
         "t_last_s": times.last(),
         "mass_kg": found.mass,
-        "std_mass_kg": found.mass_deviation * found.mass,
+        "std_mass_kg": unknown.then_some(found.mass_deviation * found.mass),
         "inertia_kg_m2": rows(&found.inertia),
-        "std_log_second_moment_roots": found.inertia_deviations,
-        "inertia_learned": found.inertia_deviations.map(|deviation| deviation < INERTIA_LEARNED),
+        "std_log_second_moment_roots": unknown.then_some(found.inertia_deviations),
+        "inertia_learned": unknown.then(|| found.inertia_deviations.map(|deviation| deviation < INERTIA_LEARNED)),
+        "std_axes_rad": found.axes_deviations.map(|of| of.to_array()),
         "relied_on_share": relied as f64 / times.len() as f64,
         "mode_shares": (0..data.log.palms().len()).map(palm).collect::<Vec<_>>(),
         "evidence": data.evidence.iter().map(evidence).collect::<Map<_, _>>(),

@@ -14,7 +14,6 @@ use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
 use crate::three_palms::{Reason, Reliability};
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::Matrix3;
 use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS, MassProperties};
 use std::ops::Range;
 
@@ -32,7 +31,8 @@ const ROUNDS: usize = 6;
 /// Motion, mass and inertia of an unknown body.
 #[derive(Clone, Debug)]
 pub struct ContactEstimate {
-    /// Motion at all samples; body axes are those of the world at the first one.
+    /// Motion at all samples; axes of an unknown body are those of the world at the first one, those of a known one its own, up to half
+    /// turns about principal axes, which leave no trace.
     pub states: Vec<BodyState>,
     /// Standard deviations there: centre of mass (m), velocity (m/s), angular velocity (rad/s), turn since the first sample (rad), world axes.
     pub deviations: Vec<[DVec3; 4]>,
@@ -42,7 +42,10 @@ pub struct ContactEstimate {
     pub modes: Vec<[ContactMode; MOST_PALMS]>,
     /// Mass, kg.
     pub mass: f64,
-    /// Standard deviation of the logarithm of the mass.
+    /// Of a known body, standard deviations of how its own axes lie at the first sample, rad about the axes of the world: beyond 1 nothing is
+    /// known of that. None of an unknown body, whose axes are the world's there.
+    pub axes_deviations: Option<DVec3>,
+    /// Standard deviation of the logarithm of the mass; of a known body as good as none.
     pub mass_deviation: f64,
     /// Inertia about the centre of mass, body axes, kg m^2.
     pub inertia: DMat3,
@@ -130,16 +133,19 @@ fn with_modes(
         before += solved.iterations;
         (problem, solved) = polished(&averaged, problem, &solved).ok_or(ContactEstimateError::Singular)?;
     }
-    let mut covariances = covariances(&problem, &solved)?;
-    if let Some(doubt) = doubt {
-        let mut axes = covariances.body.fixed_view_mut::<3, 3>(4, 4);
-        axes += Matrix3::identity() * (doubt * doubt);
-    }
+    let covariances = covariances(&problem, &solved)?;
     let iterations = [before, before + solved.iterations];
     let motions = at_all(log, &problem, &solved.unknowns, &covariances);
     let slips = slips(&problem, &motions, &solved.unknowns.body);
-    let found =
-        Found { log, problem: &problem, solved: &solved, covariances: &covariances, iterations, against };
+    let found = Found {
+        log,
+        problem: &problem,
+        solved: &solved,
+        covariances: &covariances,
+        iterations,
+        doubt,
+        against,
+    };
     Ok((found.estimate(&motions, modes, options.body.as_ref()), slips))
 }
 
@@ -207,6 +213,8 @@ struct Found<'a> {
     solved: &'a Solved<CONSTANTS>,
     covariances: &'a Covariances<CONSTANTS>,
     iterations: [usize; 2],
+    /// How far its axes may be from where they were found, rad, if it is known.
+    doubt: Option<f64>,
     /// Why a known body is not the one.
     against: Option<Reason>,
 }
@@ -218,7 +226,7 @@ impl Found<'_> {
         modes: Vec<[ContactMode; MOST_PALMS]>,
         known: Option<&MassProperties>,
     ) -> ContactEstimate {
-        let Self { log, problem, solved, covariances, iterations, against } = *self;
+        let Self { log, problem, solved, covariances, iterations, doubt, against } = *self;
         let Solved { unknowns, equations, settled, .. } = solved;
         let body = &unknowns.body;
         // The body's own axes in those of the first sample.
@@ -256,7 +264,9 @@ impl Found<'_> {
             relied_on: deviations.iter().enumerate().map(one).collect(),
             deviations,
             modes,
-            mass: body.log_mass.exp(),
+            axes_deviations: doubt
+                .map(|doubt| DVec3::from_array([4, 5, 6].map(|i| deviation(i).hypot(doubt)))),
+            mass: known.map_or_else(|| body.log_mass.exp(), MassProperties::mass),
             mass_deviation: deviation(0),
             inertia: known.map_or(body.inertia(), MassProperties::inertia),
             inertia_deviations: [deviation(1), deviation(2), deviation(3)],

@@ -137,10 +137,6 @@ fn deviations<const P: usize>(
     to.fixed_view_mut::<3, MOTION>(6, 0).copy_from(&by_motion);
     if P > 0 {
         through.fixed_view_mut::<3, 6>(6, 1).copy_from(&by_body);
-        if body.axes().is_some() {
-            // The body's own axes are turned by the last three constants, in axes of the first sample.
-            through.fixed_view_mut::<3, 3>(9, 4).copy_from(&Matrix3::from(DMat3::from_quat(motion.q)));
-        }
     }
     let by_constants = to * follows + through;
     let covariance = to * own * to.transpose() + by_constants * covariances.body * by_constants.transpose();

@@ -10,6 +10,7 @@ use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 use object_dynamics::*;
 
+mod frictionless;
 mod impulses;
 mod known;
 

@@ -48,8 +48,14 @@ fn describe(data: &EstimateData, figures: &Value, folder: &Path) -> String {
         let _ = writeln!(text, "  {name:<22} {value}");
     };
     line("samples", format!("{} over {} s", data.log.times().len(), brief(data.log.duration())));
-    let deviation = brief_to(2, found.mass * found.mass_deviation);
-    line("mass", format!("{} kg, deviation {deviation} kg", brief(found.mass)));
+    let known = match found.axes_deviations {
+        Some(_) => "as stated".to_owned(),
+        None => format!("deviation {} kg", brief_to(2, found.mass * found.mass_deviation)),
+    };
+    line("mass", format!("{} kg, {known}", brief(found.mass)));
+    if let Some(axes) = figures["evidence"]["std_axes"]["value"].as_str() {
+        line("axes, deviations", format!("{axes} rad"));
+    }
     let moments: Vec<String> = ["moment_x", "moment_y", "moment_z"]
         .iter()
         .filter_map(|key| figures["evidence"][key]["value"].as_f64())

@@ -1,7 +1,7 @@
-//! Motion, mass and inertia of an unknown body from contacts of any palms, with friction.
+//! Motion of a body, with mass and inertia if they are unknown, from contacts of any palms.
 
 use super::any_palms_bounds::estimate_bounds;
-use super::any_palms_words::{evidence, stated_body, verdict};
+use super::any_palms_words::{evidence, verdict};
 use super::bounds::BoundsResult;
 use super::reconstruct::{CONFIDENCE, sentence};
 use super::truth::true_motion;
@@ -10,7 +10,8 @@ use crate::progress::Progress;
 use glam::DVec3;
 use recon::object_dynamics::{ContactLog, LoggedPalm, NotThreePlanes, SensedAxes};
 use recon::observer::{
-    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, ImpulseNoise, estimate_contacts,
+    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, ImpulseNoise,
+    estimate_contacts, nearest_turn,
 };
 use recon_io::{EstimateData, PalmContact, Scene, Sensors};
 use std::error::Error;
@@ -45,12 +46,14 @@ pub(crate) fn estimate_any_palms(
     request: &AnyPalmsRequest,
     progress: &Progress,
 ) -> Result<AnyPalms, CliError> {
-    let felt =
-        |palm: &LoggedPalm| [palm.force_axes(), palm.impulse_axes()].contains(&Some(SensedAxes::Three));
+    let felt = |palm: &LoggedPalm| by_force(palm) || palm.impulse_axes() == Some(SensedAxes::Three);
     if let Some(i) = log.palms().iter().position(|palm| !felt(palm)) {
         return Err(CliError::NotThreeAxes { path: request.path.to_owned(), palm: i + 1, source: why });
     }
-    let options = options(&log, request.scene)?;
+    let mut options = options(&log, request.scene)?;
+    if !request.identify {
+        options.body = request.scene.mass_properties().ok().flatten();
+    }
     progress.step("estimating the motion");
     let (log, truth) = log.split_truth();
     let estimate = estimate_contacts(&log, None, &options).map_err(|error| match error {
@@ -59,14 +62,12 @@ pub(crate) fn estimate_any_palms(
     })?;
     let curves: Vec<_> = log.palms().iter().map(|palm| curve(palm, &estimate)).collect();
     let truth = truth.filter(|truth| !truth.is_empty()).map(|truth| {
-        // The body's axes are those of the world at the first sample.
-        let axes = truth[0].R_WO.inverse() * estimate.states[0].R_WO;
+        let (at, found) = (truth[0].R_WO, estimate.states[0].R_WO);
+        // Axes of an unknown body are those of the world at the first sample, those of a known one its own but for half turns.
+        let axes = options.body.as_ref().map_or(at.inverse() * found, |mass| nearest_turn(mass, at, found));
         true_motion(&truth, axes)
     });
     let mut warnings = Vec::new();
-    if !request.identify {
-        warnings.extend(stated_body(request.scene, &estimate));
-    }
     warnings.extend(not_relied_on(&estimate));
     warnings.extend(impulses_not_read(&log, &options));
     progress.step("bounding the shape");
@@ -102,9 +103,8 @@ pub(crate) fn estimate_any_palms(
 /// What the estimator is told, as the scene states it.
 fn options(log: &ContactLog, scene: &Scene) -> Result<ContactOptions, CliError> {
     let sensors = &scene.sensors;
-    let three = Some(SensedAxes::Three);
-    let forces = log.palms().iter().any(|palm| palm.force_axes() == three);
-    let impulses = log.palms().iter().any(|palm| palm.force_axes() != three);
+    let forces = log.palms().iter().any(by_force);
+    let impulses = log.palms().iter().any(|palm| !by_force(palm));
     let impulse = impulse_noise(sensors);
     let needed = [
         (
@@ -135,6 +135,15 @@ fn options(log: &ContactLog, scene: &Scene) -> Result<ContactOptions, CliError> 
         floor: sensors.contact_speed_std.unwrap_or(FLOOR * (scene.gravity * length).sqrt()),
     };
     Ok(ContactOptions { noise, gravity: scene.gravity, friction: None, body: None, size: scene.size })
+}
+
+/// Whether the force of a palm is measured as far as there is any.
+fn by_force(palm: &LoggedPalm) -> bool {
+    match palm.force_axes() {
+        Some(SensedAxes::Three) => true,
+        Some(SensedAxes::Normal) => palm.friction() == Some(0.0),
+        None => false,
+    }
 }
 
 /// Noise of impulses, where it is stated: without it they are not read.

@@ -4,7 +4,7 @@ use glam::DVec3;
 use recon::object_dynamics::MassProperties;
 use recon::observer::{ContactEstimate, ContactOptions, Reason, Reliability};
 use recon_io::EvidenceValue::{Number, Text};
-use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Scene, Verdict, brief_to};
+use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Verdict, brief_to};
 
 /// Share of the samples whose motion must be relied on for a result without reservations.
 const ENOUGH: f64 = 0.5;
@@ -17,11 +17,14 @@ pub(super) fn verdict(estimate: &ContactEstimate) -> Verdict {
         return Verdict { level: Level::Bad, text };
     }
     let (share, misfit) = (relied_on(estimate), estimate.evidence.misfit);
+    let body = match estimate.axes_deviations {
+        Some(axes) => format!("mass and inertia are taken as stated, and {}", axes_known(axes)),
+        None => format!("of the three second moments of the inertia {} learned", learned(estimate)),
+    };
     let text = format!(
         "The fit settled, noise explains what is left (chi-squared {misfit:.2} a condition), and the motion is relied on at {} of the \
-         samples; of the three second moments of the inertia {} learned.",
+         samples; {body}.",
         percent(share),
-        learned(estimate)
     );
     Verdict { level: if share < ENOUGH { Level::Caution } else { Level::Good }, text }
 }
@@ -35,6 +38,14 @@ pub(super) fn relied_on(estimate: &ContactEstimate) -> f64 {
 /// A share without the rounding that would make all of nearly all.
 fn percent(share: f64) -> String {
     format!("{} %", brief_to(3, (1000.0 * share).floor() / 10.0))
+}
+
+/// How well the axes of a known body are known.
+fn axes_known(deviations: DVec3) -> String {
+    match deviations.max_element() {
+        most if most < 1.0 => format!("how its axes lie is known to {} rad", brief_to(2, most)),
+        _ => "how its axes lie cannot be told".to_owned(),
+    }
 }
 
 fn learned(estimate: &ContactEstimate) -> &'static str {
@@ -56,15 +67,46 @@ pub(super) fn evidence(
     rows.extend(fit(estimate));
     rows.extend(told(options));
     rows.extend(bounds_at.map(|confidence| {
-        let meaning = "Both bounds hold with at least this probability for the noise of contacts and the deviations of the motion, \
-                       however these go together, in the axes of the world at the first sample.";
-        neutral("bounds_confidence", "Confidence of the bounds", Number(confidence), "", meaning)
+        let axes = match estimate.axes_deviations {
+            None => "the axes of the world at the first sample",
+            Some(_) => "the axes of the object as they were found, which may lie as far off as is said of them",
+        };
+        let meaning = format!(
+            "Both bounds hold with at least this probability for the noise of contacts and the deviations of the motion, however these go \
+             together, in {axes}."
+        );
+        neutral("bounds_confidence", "Confidence of the bounds", Number(confidence), "", &meaning)
     }));
     rows
 }
 
+/// Mass and inertia that were stated, and how its axes lie.
+fn stated(estimate: &ContactEstimate, axes: DVec3) -> Vec<Evidence> {
+    let lies = axes_known(axes);
+    let deviations = axes.to_array().map(|of| brief_to(2, of)).join(", ");
+    let meaning =
+        "Standard deviations about the axes of the world at the first sample; beyond 1 nothing is known.";
+    vec![
+        neutral("mass", "Mass", Number(estimate.mass), "kg", "As the scene states it."),
+        Evidence {
+            level: if axes.max_element() < 1.0 { Level::Good } else { Level::Caution },
+            ..neutral(
+                "axes",
+                "Axes of the object",
+                Text(lies),
+                "",
+                "From its inertia, up to half turns about its principal axes.",
+            )
+        },
+        neutral("std_axes", "Uncertainty of the axes", Text(deviations), "rad", meaning),
+    ]
+}
+
 /// Mass and inertia.
 fn body(estimate: &ContactEstimate) -> Vec<Evidence> {
+    if let Some(axes) = estimate.axes_deviations {
+        return stated(estimate, axes);
+    }
     let (mass, deviation) = (Number(estimate.mass), Number(estimate.mass * estimate.mass_deviation));
     let mut rows = vec![
         neutral("mass", "Mass", mass, "kg", "As estimated from the log."),
@@ -201,36 +243,4 @@ fn told(options: &ContactOptions) -> Vec<Evidence> {
 fn neutral(key: &str, name: &str, value: EvidenceValue, unit: &str, meaning: &str) -> Evidence {
     let [key, name, unit, meaning] = [key, name, unit, meaning].map(str::to_owned);
     Evidence { key, name, value, unit, meaning, level: Level::Neutral }
-}
-
-/// What to say of a body that is stated, and was estimated as an unknown one.
-pub(super) fn stated_body(scene: &Scene, estimate: &ContactEstimate) -> Option<String> {
-    let stated = scene.mass_properties().ok().flatten()?;
-    let mass = (estimate.mass / stated.mass()).ln();
-    let mut text = format!(
-        "The stated mass and inertia are not used: the object is taken as unknown. The estimated mass is off the stated one by {:+.1e} of it \
-         ({} of its deviations)",
-        mass.exp_m1(),
-        brief_to(2, mass.abs() / estimate.mass_deviation)
-    );
-    if let Ok(found) = MassProperties::new(estimate.mass, estimate.inertia) {
-        let [stated, found] = [stated, found].map(|mass| mass.principal().moments);
-        let share = (found / stated - DVec3::ONE).abs().max_element();
-        let roots = (log_roots(found) - log_roots(stated)).abs().max_element();
-        let deviation = estimate.inertia_deviations.into_iter().fold(0.0, f64::max);
-        text += &format!(", the principal moments are by up to {share:.1e} of themselves");
-        if roots.is_finite() && deviation > 0.0 {
-            text += &format!(
-                " (roots of second moments {} of the largest of their deviations)",
-                brief_to(2, roots / deviation)
-            );
-        }
-    }
-    Some(text + ".")
-}
-
-/// Logarithms of the roots of the second moments along the principal axes.
-fn log_roots(moments: DVec3) -> DVec3 {
-    let second = DVec3::splat(0.5 * moments.element_sum()) - moments;
-    DVec3::from_array(second.to_array().map(|s| 0.5 * s.ln()))
 }

@@ -35,8 +35,10 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
         ("Samples", times.len().to_string(), ""),
         ("Relied on", brief_to(3, share.floor() / 10.0), "%"),
         ("Mass", brief_to(4, found.mass), "kg"),
-        ("Its deviation", brief_to(2, 100.0 * found.mass_deviation), "%"),
     ];
+    if found.axes_deviations.is_none() {
+        facts.push(("Its deviation", brief_to(2, 100.0 * found.mass_deviation), "%"));
+    }
     if let Some(bounds) = &data.bounds {
         let upper = bounds.upper.as_ref();
         facts.push(("Lower bound", brief_to(4, bounds.lower.volume), "m³"));

@@ -174,6 +174,7 @@ fn estimate() -> EstimateData {
         relied_on: (0..count).map(|k| !(2..5).contains(&k) && k + 1 < count).collect(),
         modes: (0..count).map(modes).collect(),
         mass: 0.1,
+        axes_deviations: None,
         mass_deviation: 0.02,
         inertia: DMat3::from_diagonal(DVec3::new(3.05e-5, 3.7e-5, 4.25e-5)),
         inertia_deviations: [0.1, 0.2, 0.7],

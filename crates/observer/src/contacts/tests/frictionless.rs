@@ -1,0 +1,51 @@
+//! Of palms without friction.
+
+use super::*;
+
+/// A log with the normal forces alone.
+fn normal_only(log: &ContactLog) -> ContactLog {
+    let one = |(i, record): (usize, PalmRecord)| {
+        let palm = &log.palms()[i];
+        let along = |k: usize| Some(palm.force(k)?.vector.dot(palm.touch(k)?.n.get()));
+        let force = (0..log.times().len()).map(|k| along(k).unwrap_or(0.0)).collect();
+        PalmRecord { force: ForceChannel::Normal(force), impulse: ForceChannel::Missing, ..record }
+    };
+    let palms = log.records().into_iter().enumerate().map(one).collect();
+    ContactLog::new(log.times().to_vec(), palms, log.truth().map(<[_]>::to_vec)).unwrap()
+}
+
+#[test]
+fn their_normal_force_is_enough() {
+    let exact = normal_only(&rubbed(0.4, 500.0, 0.0));
+    let noise = noise(4e-5, 0.004);
+    let (mut sum, runs) = (0.0, 6);
+    for seed in 0..runs {
+        let log = noisy(&exact, &noise, seed);
+        let found = estimate_contacts(&log, None, &options(noise)).unwrap();
+        assert!(found.reliability.is_reliable(), "{seed}: {:?}", found.reliability);
+        sum += errors(&found, &log).0;
+    }
+    let mean = sum / (12.0 * runs as f64);
+    assert!((0.3..2.0).contains(&mean), "squared errors are {mean} of what is said");
+}
+
+#[test]
+fn friction_that_is_not_ruled_out_needs_all_of_the_force() {
+    let log = normal_only(&rubbed(0.05, 500.0, 0.1));
+    let refused = estimate_contacts(&log, None, &options(noise(4e-5, 0.004)));
+    assert_eq!(refused.unwrap_err(), ContactEstimateError::NoForce { palm: 1 });
+}
+
+#[test]
+fn an_exact_log_gives_the_motion_to_what_integration_leaves() {
+    let log = normal_only(&rubbed(0.4, 1000.0, 0.0));
+    let noise = ContactNoiseLevel { floor: 1e-7 * (G * SIZE).sqrt(), ..noise(0.0, 0.0) };
+    let found = estimate_contacts(&log, None, &options(noise)).unwrap();
+    assert!(found.reliability.is_reliable(), "{:?}", found.reliability);
+    let pairs = found.states.iter().zip(log.truth().unwrap());
+    let worst = pairs.map(|(state, at)| state.p_WCm.distance(at.p_WCm)).fold(0.0, f64::max);
+    // Orientations are integrated to fourth order in the time between samples over the natural time.
+    let fourth = (1e-3 / (SIZE / G).sqrt()).powi(4);
+    assert!(worst < 3.0 * fourth * SIZE, "{worst} m");
+    assert!((found.mass / 0.2 - 1.0).abs() < fourth, "{}", found.mass);
+}
