@@ -1,5 +1,5 @@
 //! Cold start on random scenes without noise: how many come out right from no guess, and how long they take; with mass and
-//! inertia known, and with nothing known.
+//! inertia known, and with nothing known; by the estimators of three frictionless planes and by that from contacts of any palms.
 //!
 //! Usage: `cold_start [SCENES]` (200 by default). Prints tables in Markdown.
 
@@ -8,14 +8,17 @@ use glam::DQuat;
 use recon::contact_kinematics::{Ellipsoid, Palm};
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
-    InitialMotion, MassProperties, SampleTimes, SensorLog, Simulation, ThreePalmScene,
+    ContactLog, InitialMotion, MassProperties, SampleTimes, SensorLog, Simulation, ThreePalmScene,
 };
 use recon::observer::{
-    KnownBody, MotionEstimate, Reason, Reliability, UnknownBody, estimate_body, estimate_motion,
+    ContactEstimate, ContactNoiseLevel, ContactOptions, KnownBody, MotionEstimate, Reason, Reliability,
+    UnknownBody, estimate_body, estimate_contacts, estimate_motion,
 };
 use recon_tests::Random;
 use std::collections::BTreeMap;
 
+/// What conditions are off by, over the natural speed: double precision carries no less.
+const FLOOR: f64 = 1e-7;
 /// Error of the centre of mass that counts as right, m, and of the mass, relative.
 const RIGHT: f64 = 1e-6;
 
@@ -34,11 +37,11 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, error: f64, estimate: &MotionEstimate, milliseconds: f64) {
+    fn add(&mut self, error: f64, reliability: &Reliability, milliseconds: f64) {
         self.times.push(milliseconds);
         let right = error < RIGHT;
         self.right += usize::from(right);
-        match &estimate.reliability {
+        match reliability {
             Reliability::Unreliable(_) if right => self.doubted += 1,
             Reliability::Unreliable(reasons) => {
                 let why = reasons.first().map_or("no reason", kind);
@@ -82,17 +85,27 @@ pub(crate) fn main() -> Result<(), Failure> {
     let scenes: usize = crate::words().next().map_or(Ok(200), |a| a.parse())?;
     let mut random = Random::new(1);
     let (mut known, mut unknown) = (Tally::default(), Tally::default());
+    let mut from_contacts = [Tally::default(), Tally::default()];
     while known.times.len() < scenes {
         let Some((scene, simulation, log)) = scene(&mut random)? else { continue };
         let (mass, gravity) = (*scene.mass(), scene.gravity());
         let clock = ThreadTime::now();
         let estimate = estimate_motion(&log, &KnownBody { mass, gravity, palm_inertias: None, noise: None })?;
-        known.add(error(&estimate, &simulation), &estimate, 1e3 * clock.elapsed().as_secs_f64());
+        known.add(error(&estimate, &simulation), &estimate.reliability, 1e3 * clock.elapsed().as_secs_f64());
         let clock = ThreadTime::now();
         let body = estimate_body(&log, &UnknownBody { gravity, palm_inertias: None, noise: None })?;
         let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
         let of_mass = (body.body.mass.mass() / mass.mass() - 1.0).abs();
-        unknown.add(error(&body.motion, &simulation).max(of_mass), &body.motion, milliseconds);
+        unknown.add(error(&body.motion, &simulation).max(of_mass), &body.motion.reliability, milliseconds);
+        for (tally, body) in from_contacts.iter_mut().zip([Some(mass), None]) {
+            let clock = ThreadTime::now();
+            let found = contacts(&log, body, gravity.length(), scene.body())?;
+            let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
+            let of_mass = (found.mass / mass.mass() - 1.0).abs();
+            let pairs = found.states.iter().zip(&simulation.instants);
+            let error = pairs.map(|(s, now)| s.p_WCm.distance(now.touch.p_WCm)).fold(of_mass, f64::max);
+            tally.add(error, &found.reliability, milliseconds);
+        }
     }
     println!("# Cold start on random scenes\n\nMade by `cargo xtask study cold_start {scenes}`.\n");
     println!(
@@ -105,7 +118,20 @@ pub(crate) fn main() -> Result<(), Failure> {
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     println!("{}\n{}", known.row("known"), unknown.row("unknown"));
-    for (name, tally) in [("known", &known), ("unknown", &unknown)] {
+    let [known_body, unknown_body] = &mut from_contacts;
+    println!(
+        "{}\n{}",
+        known_body.row("known, from contacts of any palms"),
+        unknown_body.row("unknown, from contacts of any palms")
+    );
+    let [known_body, unknown_body] = &from_contacts;
+    let all = [
+        ("known", &known),
+        ("unknown", &unknown),
+        ("known, from contacts", known_body),
+        ("unknown, from contacts", unknown_body),
+    ];
+    for (name, tally) in all {
         if !tally.reasons.is_empty() {
             println!("\nReasons reported with {name} mass and inertia:");
         }
@@ -114,6 +140,20 @@ pub(crate) fn main() -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// The estimate from contacts of any palms that are known to be without friction.
+fn contacts(
+    log: &SensorLog,
+    body: Option<MassProperties>,
+    gravity: f64,
+    shape: &Ellipsoid,
+) -> Result<ContactEstimate, Failure> {
+    let length = shape.semi_axes().element_sum() / 3.0;
+    let floor = FLOOR * (gravity * length).sqrt();
+    let noise = ContactNoiseLevel { contact: 0.0, force_fixed: 0.0, force_share: 0.0, impulse: None, floor };
+    let options = ContactOptions { noise, gravity, friction: Some(0.0), body, size: None };
+    Ok(estimate_contacts(&ContactLog::try_from(log)?, None, &options)?)
 }
 
 /// A random scene with its motion and log; none if it loses contact within a second.

@@ -18,7 +18,7 @@ pub(super) fn verdict(estimate: &ContactEstimate) -> Verdict {
     }
     let (share, misfit) = (relied_on(estimate), estimate.evidence.misfit);
     let body = match estimate.axes_deviations {
-        Some(axes) => format!("mass and inertia are taken as stated, and {}", axes_known(axes)),
+        Some(axes) => format!("mass and inertia are taken as stated, and its axes are {}", axes_known(axes)),
         None => format!("of the three second moments of the inertia {} learned", learned(estimate)),
     };
     let text = format!(
@@ -43,8 +43,8 @@ fn percent(share: f64) -> String {
 /// How well the axes of a known body are known.
 fn axes_known(deviations: DVec3) -> String {
     match deviations.max_element() {
-        most if most < 1.0 => format!("how its axes lie is known to {} rad", brief_to(2, most)),
-        _ => "how its axes lie cannot be told".to_owned(),
+        most if most < 1.0 => format!("known to {} rad", brief_to(2, most)),
+        _ => "not known".to_owned(),
     }
 }
 
