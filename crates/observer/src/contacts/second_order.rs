@@ -35,7 +35,10 @@ impl Covariances<CONSTANTS> {
             let step = column * STEP;
             shift += column * ((volume(step)? - volume(-step)?) / (2.0 * STEP));
         }
-        self.body += shift * shift.transpose() * (SHARE * SHARE);
+        let error = shift * SHARE;
+        // However far it may be shifted, it is off by no more than what was known beforehand leaves.
+        let beforehand = (problem.body.1 * error).dot(&error);
+        self.body += error * error.transpose() / beforehand.max(1.0);
         Some(self)
     }
 }
