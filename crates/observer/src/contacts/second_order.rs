@@ -16,14 +16,32 @@ const STEP: f64 = 0.3;
 const SHARE: f64 = 0.3;
 
 impl Covariances<CONSTANTS> {
-    /// With the covariance of the body widened by what is beyond first order; `claimed` is that of the equations alone. None where the
-    /// problem cannot be evaluated a step away.
+    /// With the covariance of the body widened by what is beyond first order; `claimed` is that of the equations alone. Where the problem
+    /// cannot be evaluated a step away, the body is known no better than beforehand. None where nothing was known then.
     pub(super) fn beyond_first_order(
         mut self,
         problem: &Problem,
         solved: &Solved<CONSTANTS>,
         claimed: &SMatrix<f64, CONSTANTS, CONSTANTS>,
     ) -> Option<Self> {
+        let Some(shift) = self.shift(problem, solved, claimed) else {
+            self.body += problem.body.1.cholesky()?.inverse();
+            return Some(self);
+        };
+        let error = shift * SHARE;
+        // However far it may be shifted, it is off by no more than what was known beforehand leaves.
+        let beforehand = (problem.body.1 * error).dot(&error);
+        self.body += error * error.transpose() / beforehand.max(1.0);
+        Some(self)
+    }
+
+    /// From the most probable motion and body to the most probable body. None where the problem cannot be evaluated a step away.
+    fn shift(
+        &self,
+        problem: &Problem,
+        solved: &Solved<CONSTANTS>,
+        claimed: &SMatrix<f64, CONSTANTS, CONSTANTS>,
+    ) -> Option<SVector<f64, CONSTANTS>> {
         let factor = claimed.cholesky()?.l();
         let volume = |by: SVector<f64, CONSTANTS>| {
             let motions = self.motions.iter().map(|(_, follows)| follows * by).collect();
@@ -35,11 +53,7 @@ impl Covariances<CONSTANTS> {
             let step = column * STEP;
             shift += column * ((volume(step)? - volume(-step)?) / (2.0 * STEP));
         }
-        let error = shift * SHARE;
-        // However far it may be shifted, it is off by no more than what was known beforehand leaves.
-        let beforehand = (problem.body.1 * error).dot(&error);
-        self.body += error * error.transpose() / beforehand.max(1.0);
-        Some(self)
+        Some(shift)
     }
 }
 
