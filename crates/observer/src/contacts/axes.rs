@@ -72,14 +72,14 @@ pub(super) fn oriented(
         found.push((solved, body, std::mem::take(&mut problem.frozen)));
     }
     found.sort_by(|a, b| a.0.equations.cost.total_cmp(&b.0.equations.cost));
-    let axes = |solved: &Solved<CONSTANTS>| solved.unknowns.body.axes().unwrap_or_default();
+    let axes = |solved: &Solved<CONSTANTS>| solved.unknowns.body.orientation(mass);
     let mut found = found.into_iter();
     let (solved, body, frozen) = found.next()?;
     let dearer = solved.equations.cost - unknown.equations.cost > CONTRADICTED;
     let against = against.filter(|_| unknown.explained() && dearer);
     let odds = |other: &Solved<CONSTANTS>| 0.5 * (other.equations.cost - solved.equations.cost);
     let open = found.filter(|(other, ..)| odds(other) < LEAST_LOG_ODDS);
-    let doubt = open.map(|(other, ..)| apart(axes(&solved), axes(&other), &HALF_TURNS)).fold(0.0, f64::max);
+    let doubt = open.map(|(other, ..)| apart(axes(&solved), axes(&other), &same)).fold(0.0, f64::max);
     problem.body.0 = body;
     problem.frozen = frozen;
     Some(Oriented { against, solved, doubt, iterations })
@@ -89,14 +89,6 @@ pub(super) fn oriented(
 fn information() -> SVector<f64, CONSTANTS> {
     SVector::from_fn(|i, _| if i < 4 { KNOWN.powi(-2) } else { ANY_TURN.powi(-2) })
 }
-
-/// Turns of principal axes that change nothing.
-const HALF_TURNS: [DQuat; 4] = [
-    DQuat::IDENTITY,
-    DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0),
-    DQuat::from_xyzw(0.0, 1.0, 0.0, 0.0),
-    DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0),
-];
 
 /// Angle between two orientations of a body that looks the same in some.
 fn apart(a: DQuat, b: DQuat, same: &[DQuat; 4]) -> f64 {

@@ -76,11 +76,11 @@ impl Body {
         R * self.slopes[constant] * R.transpose()
     }
 
-    /// How the principal axes lie at the first sample, where that is a constant.
-    pub(super) fn axes(&self) -> Option<DQuat> {
+    /// How the own axes of a known body of the mass properties `mass` lie at the first sample; those of an unknown one are the world's there.
+    pub(super) fn orientation(&self, mass: &MassProperties) -> DQuat {
         match self.constants {
-            Constants::Free(_) => None,
-            Constants::Turned(_, axes) => Some(axes),
+            Constants::Free(_) => DQuat::IDENTITY,
+            Constants::Turned(_, axes) => axes * mass.principal().axes.inverse(),
         }
     }
 

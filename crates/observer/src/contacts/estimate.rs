@@ -181,9 +181,10 @@ fn covariances(
     solved: &Solved<CONSTANTS>,
 ) -> Result<Covariances<CONSTANTS>, ContactEstimateError> {
     let all = || {
-        let claimed = || solved.equations.covariances(&problem.natural_information());
-        let widened = claimed()?.widened(problem, &solved.equations, &solved.unknowns)?;
-        widened.beyond_first_order(problem, solved, &claimed()?.body)
+        let claimed = solved.equations.covariances(&problem.natural_information())?;
+        let of_body = claimed.body;
+        let widened = claimed.widened(problem, &solved.equations, &solved.unknowns)?;
+        widened.beyond_first_order(problem, solved, &of_body)
     };
     all().ok_or(ContactEstimateError::Singular)
 }
@@ -230,9 +231,7 @@ impl Found<'_> {
         let Solved { unknowns, equations, settled, .. } = solved;
         let body = &unknowns.body;
         // The body's own axes in those of the first sample.
-        let own = known
-            .zip(body.axes())
-            .map_or(DQuat::IDENTITY, |(mass, axes)| axes * mass.principal().axes.inverse());
+        let own = known.map_or(DQuat::IDENTITY, |mass| body.orientation(mass));
         let evidence = ContactEvidence {
             samples: log.times.len(),
             nodes: problem.nodes.len(),

@@ -39,13 +39,17 @@ fn across_friction(contact: &Contact) -> Option<(DVec3, f64)> {
     seen.then(|| (contact.n.cross(friction).normalize_or_zero(), angle.hypot(SLIP_ANGLE)))
 }
 
+/// The first `count` rows and columns, those of the identity elsewhere.
+fn kept(matrix: &Matrix3<f64>, count: usize) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, j| match (i < count && j < count, i == j) {
+        (true, _) => matrix[(i, j)],
+        (false, same) => f64::from(same),
+    })
+}
+
 /// Inverse of the first `count` rows and columns, zero elsewhere.
 fn inverse(covariance: &Matrix3<f64>, count: usize) -> Option<Matrix3<f64>> {
-    let kept = Matrix3::from_fn(|i, j| match (i < count && j < count, i == j) {
-        (true, _) => covariance[(i, j)],
-        (false, same) => f64::from(same),
-    });
-    let mut inverse = kept.cholesky()?.inverse();
+    let mut inverse = kept(covariance, count).cholesky()?.inverse();
     for i in count..3 {
         inverse[(i, i)] = 0.0;
     }
@@ -107,11 +111,7 @@ impl Rows {
 
     /// Logarithm of the determinant of the information.
     pub(super) fn log_information(&self) -> f64 {
-        let kept = Matrix3::from_fn(|i, j| match (i < self.count && j < self.count, i == j) {
-            (true, _) => self.information[(i, j)],
-            (false, same) => f64::from(same),
-        });
-        kept.determinant().ln()
+        kept(&self.information, self.count).determinant().ln()
     }
 
     /// Squared residuals in their deviations.

@@ -157,14 +157,20 @@ impl Record {
             let sum = self.wrenches[window.own.clone()].iter().fold(Wrench::default(), |sum, w| sum + *w);
             sum * (1.0 / window.own.len() as f64)
         };
+        let contacts = windows.iter().map(|window| self.smoothed(window)).collect();
+        self.picked(&middles, contacts, windows.iter().map(wrench).collect())
+    }
+
+    /// At some of its samples, with these contacts and wrenches there. What forces did in between is kept.
+    fn picked(&self, picked: &[usize], contacts: Vec<Vec<Contact>>, wrenches: Vec<Wrench>) -> Self {
         Self {
-            times: middles.iter().map(|&k| self.times[k]).collect(),
-            samples: middles.iter().map(|&k| self.samples[k]).collect(),
+            times: picked.iter().map(|&k| self.times[k]).collect(),
+            samples: picked.iter().map(|&k| self.samples[k]).collect(),
             origin: self.origin,
-            contacts: windows.iter().map(|window| self.smoothed(window)).collect(),
-            wrenches: windows.iter().map(wrench).collect(),
+            contacts,
+            wrenches,
+            intervals: picked.windows(2).map(|k| sum(&self.intervals[k[0]..k[1]])).collect(),
             all_impulses: self.all_impulses,
-            intervals: middles.windows(2).map(|k| sum(&self.intervals[k[0]..k[1]])).collect(),
         }
     }
 
@@ -183,17 +189,12 @@ impl Record {
         picked
     }
 
-    /// Without most of its samples, where there are many more than one in `apart`, s. What forces did in between is kept.
+    /// Without most of its samples, where there are many more than one in `apart`, s.
     pub(super) fn thinned(&self, apart: f64) -> Option<Self> {
         let picked = self.spaced(apart);
-        (THINNED * picked.len() <= self.times.len()).then(|| Self {
-            times: picked.iter().map(|&k| self.times[k]).collect(),
-            samples: picked.iter().map(|&k| self.samples[k]).collect(),
-            origin: self.origin,
-            contacts: picked.iter().map(|&k| self.contacts[k].clone()).collect(),
-            wrenches: picked.iter().map(|&k| self.wrenches[k]).collect(),
-            intervals: picked.windows(2).map(|k| sum(&self.intervals[k[0]..k[1]])).collect(),
-            all_impulses: self.all_impulses,
+        (THINNED * picked.len() <= self.times.len()).then(|| {
+            let contacts = picked.iter().map(|&k| self.contacts[k].clone()).collect();
+            self.picked(&picked, contacts, picked.iter().map(|&k| self.wrenches[k]).collect())
         })
     }
 
