@@ -161,7 +161,7 @@ fn contacts(
     let length = shape.semi_axes().element_sum() / 3.0;
     let floor = FLOOR * (gravity * length).sqrt();
     let noise = ContactNoiseLevel { contact: 0.0, force_fixed: 0.0, force_share: 0.0, impulse: None, floor };
-    let options = ContactOptions { noise, gravity, friction: Some(0.0), body, size: None };
+    let options = ContactOptions { friction: Some(0.0), body, ..ContactOptions::new(noise, gravity) };
     Ok(estimate_contacts(&ContactLog::try_from(log)?, None, &options)?)
 }
 

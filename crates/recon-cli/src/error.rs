@@ -88,11 +88,6 @@ pub(crate) enum CliError {
     )]
     NotThreeAxes { path: PathBuf, palm: usize, source: NotThreePlanes },
     #[error(
-        "the estimate from contacts of any palms weighs readings by their noise, which the scene does not state: give {missing} in \
-         [sensors]"
-    )]
-    NoiseNotStated { missing: String },
-    #[error(
         "contacts on one palm at a time tell no size of the object: give its mean radius in m, about, in the scene as object.size"
     )]
     SizeNotStated,
@@ -212,7 +207,6 @@ impl CliError {
             | Self::NothingToSimulate { .. }
             | Self::NotThreePlanes { .. }
             | Self::NotThreeAxes { .. }
-            | Self::NoiseNotStated { .. }
             | Self::SizeNotStated
             | Self::ContactEstimate(_)
             | Self::Shape(_)

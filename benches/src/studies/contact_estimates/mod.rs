@@ -158,12 +158,7 @@ fn case(file: &Log, (contact, share): (f64, f64), seconds: f64, seed: u64) -> An
     let floor = FLOOR * (G * length).sqrt();
     let noise = ContactNoiseLevel { contact, force_fixed: 0.0, force_share: share, impulse: None, floor };
     let size = (file.palm_count() == 1).then_some(STATED_SIZE * length);
-    Ok(Case {
-        log,
-        modes,
-        options: ContactOptions { noise, gravity: G, friction: None, body: None, size },
-        length,
-    })
+    Ok(Case { log, modes, options: ContactOptions { size, ..ContactOptions::new(noise, G) }, length })
 }
 
 /// Root mean squares of centre, velocity and rate in natural units, relative errors of mass and inertia, turn.

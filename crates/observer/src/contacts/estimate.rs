@@ -1,6 +1,7 @@
 use super::axes::oriented;
 use super::body::{Body, CONSTANTS};
 use super::cold;
+use super::joint::pose_errors;
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
 use super::problem::{Problem, Units};
@@ -12,7 +13,7 @@ use super::solve::{Covariances, Solved};
 use super::state::Motion;
 use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
-use crate::three_palms::{Reason, Reliability};
+use crate::three_palms::{PoseErrors, Reason, Reliability};
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS, MassProperties};
 use std::ops::Range;
@@ -51,6 +52,8 @@ pub struct ContactEstimate {
     pub inertia: DMat3,
     /// Standard deviations of the logarithms of the roots of the second moments: beyond 0.5 nothing much was learned.
     pub inertia_deviations: [f64; 3],
+    /// How far the poses that are relied on may be off, all of them together, for bounds on the shape; none unless asked for.
+    pub pose_errors: Option<PoseErrors>,
     /// Whether to believe it.
     pub reliability: Reliability,
     /// What it rests on.
@@ -146,7 +149,7 @@ fn with_modes(
         doubt,
         against,
     };
-    Ok((found.estimate(&motions, modes, options.body.as_ref()), slips))
+    Ok((found.estimate(&motions, modes, options), slips))
 }
 
 /// The solution on a record of which another one was solved that has fewer of its samples.
@@ -225,11 +228,11 @@ impl Found<'_> {
         &self,
         motions: &[(Motion, Deviations)],
         modes: Vec<[ContactMode; MOST_PALMS]>,
-        known: Option<&MassProperties>,
+        options: &ContactOptions,
     ) -> ContactEstimate {
         let Self { log, problem, solved, covariances, iterations, doubt, against } = *self;
         let Solved { unknowns, equations, settled, .. } = solved;
-        let body = &unknowns.body;
+        let (body, known) = (&unknowns.body, options.body.as_ref());
         // The body's own axes in those of the first sample.
         let own = known.map_or(DQuat::IDENTITY, |mass| body.orientation(mass));
         let evidence = ContactEvidence {
@@ -257,10 +260,14 @@ impl Found<'_> {
             let j = nodes.partition_point(|&node| node <= k).saturating_sub(1);
             reliability.is_reliable() && relied_on(excess[j], of, &problem.units)
         };
+        let relied_on: Vec<bool> = deviations.iter().enumerate().map(one).collect();
+        let sound: Vec<usize> = (0..nodes.len()).filter(|&j| relied_on[nodes[j]]).collect();
+        let joint = || pose_errors(problem, solved, covariances, &sound, (own, wider));
         let deviation = |i: usize| covariances.body[(i, i)].max(0.0).sqrt() * wider;
         ContactEstimate {
             states: motions.iter().map(|(motion, _)| state(motion)).collect(),
-            relied_on: deviations.iter().enumerate().map(one).collect(),
+            pose_errors: if options.pose_errors { joint() } else { None },
+            relied_on,
             deviations,
             modes,
             axes_deviations: doubt

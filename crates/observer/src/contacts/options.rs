@@ -68,9 +68,17 @@ pub struct ContactOptions {
     pub body: Option<MassProperties>,
     /// Mean radius of the body, m, where it is known; else from contacts on two palms or more.
     pub size: Option<f64>,
+    /// Whether to tell how far all poses together may be off, for bounds on the shape: a thousand motions are drawn for it.
+    pub pose_errors: bool,
 }
 
 impl ContactOptions {
+    /// Of a body of which nothing is known, without joint errors of poses. `gravity` in m/s^2.
+    #[must_use]
+    pub fn new(noise: ContactNoiseLevel, gravity: f64) -> Self {
+        Self { noise, gravity, friction: None, body: None, size: None, pose_errors: false }
+    }
+
     /// Whether a palm is known to be without friction.
     pub(super) fn frictionless(&self, palm: &LoggedPalm) -> bool {
         palm.friction().or(self.friction) == Some(0.0)

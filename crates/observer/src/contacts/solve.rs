@@ -49,7 +49,7 @@ pub(super) struct Step<const P: usize> {
 }
 
 /// A node of which the equations are solved for its own motion.
-struct Eliminated<const P: usize> {
+pub(super) struct Eliminated<const P: usize> {
     own: Cholesky<f64, Const<MOTION>>,
     /// By what its motion falls with that of the next node, and with the constants.
     next: Transition,
@@ -69,6 +69,7 @@ pub(super) struct Covariances<const P: usize> {
     /// Of each motion with the next one, for given constants.
     pub(super) next: Vec<Transition>,
     pub(super) body: SMatrix<f64, P, P>,
+    pub(super) chain: Vec<Eliminated<P>>,
     /// Information that was added against rounding, as a share of that of natural units at each node.
     pub(super) mended: f64,
 }
@@ -163,7 +164,24 @@ impl<const P: usize> Equations<P> {
         motions.reverse();
         next.reverse();
         next.pop();
-        Some(Covariances { motions, next, body: reduced.body, mended })
+        Some(Covariances { motions, next, body: reduced.body, chain: reduced.nodes, mended })
+    }
+}
+
+impl<const P: usize> Covariances<P> {
+    /// Errors of the motions at all nodes that go with one of the constants, from a standard normal vector for each node.
+    pub(super) fn drawn(&self, body: &SVector<f64, P>, mut normals: impl FnMut() -> Tangent) -> Vec<Tangent> {
+        let mut after = Tangent::zeros();
+        let mut one = |node: &Eliminated<P>| {
+            // Of covariance (L L')^-1.
+            let mut own = normals();
+            node.own.l_dirty().tr_solve_lower_triangular_mut(&mut own);
+            after = own - node.body * body - node.next * after;
+            after
+        };
+        let mut errors: Vec<Tangent> = self.chain.iter().rev().map(&mut one).collect();
+        errors.reverse();
+        errors
     }
 }
 

@@ -92,7 +92,7 @@ fn noisy(log: &ContactLog, noise: &ContactNoiseLevel, seed: u64) -> ContactLog {
 }
 
 fn options(noise: ContactNoiseLevel) -> ContactOptions {
-    ContactOptions { noise, gravity: G, friction: None, body: None, size: None }
+    ContactOptions::new(noise, G)
 }
 
 /// Squared errors over variances, 12 numbers, mean over all samples, and the relative error of the mass.

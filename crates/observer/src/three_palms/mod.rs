@@ -35,7 +35,9 @@ mod track;
 mod unknown_body;
 mod verdict;
 
+pub(crate) use pose_errors::{DRAWS, kept, normals, root, turned};
 pub(crate) use quadrature::running_integral;
+pub(crate) use random::Normal;
 pub(crate) use sensitivity::{cross_matrix, exponential, logarithm};
 pub(crate) use state_space::{inertia_of_numbers, inertia_slope, numbers_of_inertia};
 pub(crate) use verdict::{LARGEST_DEVIATION, LARGEST_MISFIT};

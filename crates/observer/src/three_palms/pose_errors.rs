@@ -11,7 +11,7 @@ use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Cholesky, SMatrix, SVector};
 
 /// Draws of the joint error: one in twenty is then known to some 0.7 %.
-pub(super) const DRAWS: usize = 1000;
+pub(crate) const DRAWS: usize = 1000;
 /// Nodes at which the errors are kept, at most: between them they go straight.
 const KEPT: usize = 400;
 /// What covariances are raised by, relative to the largest: next to nothing, but they can be inverted.
@@ -21,7 +21,7 @@ const RIDGE: f64 = 1e-9;
 pub(super) type Displacement = SVector<f64, 6>;
 
 /// A pose: position of the centre of mass, and orientation, body to world.
-pub(super) type Pose = (DVec3, DQuat);
+pub(crate) type Pose = (DVec3, DQuat);
 
 /// Covariance of a small rigid displacement of the body's axes: `x` goes to `x + theta x x + d`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,7 +114,7 @@ impl PoseErrors {
     /// From draws of poses about the `estimated` ones at some samples (`nodes`), each read as a motion that may be the true one;
     /// `lasting` (m) is the deviation of what shifts contacts beside the motion, in any direction. `principal` says that the draws
     /// have the true principal axes. None where no draw is left that is a motion.
-    pub(super) fn from_draws(
+    pub(crate) fn from_draws(
         nodes: Vec<usize>,
         estimated: &[Pose],
         draws: impl Iterator<Item = Vec<Pose>>,
@@ -173,7 +173,7 @@ const NEXT_TO_NO_TURN: f64 = 1e-3;
 const LASTING_SEED: u64 = 0x1a57;
 
 /// Indices of at most [`KEPT`] of `count` nodes, the first and the last among them.
-pub(super) fn kept(count: usize) -> Vec<usize> {
+pub(crate) fn kept(count: usize) -> Vec<usize> {
     let most = count.min(KEPT);
     (0..most).map(|k| k * count.saturating_sub(1) / most.saturating_sub(1).max(1)).collect()
 }
@@ -211,7 +211,7 @@ fn raised(mut covariance: SMatrix<f64, 6, 6>) -> SMatrix<f64, 6, 6> {
 }
 
 /// A matrix `A` with `A A'` a covariance, of any rank: columns without variance of their own are zero.
-pub(super) fn root<const N: usize>(covariance: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+pub(crate) fn root<const N: usize>(covariance: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
     let mut a = SMatrix::<f64, N, N>::zeros();
     for j in 0..N {
         let own = covariance[(j, j)] - (0..j).map(|k| a[(j, k)] * a[(j, k)]).sum::<f64>();
@@ -231,12 +231,12 @@ pub(super) fn root<const N: usize>(covariance: &SMatrix<f64, N, N>) -> SMatrix<f
 const ROUNDING: f64 = 1e-12;
 
 /// A vector of independent standard normals.
-pub(super) fn normals<const N: usize>(random: &mut Normal) -> SVector<f64, N> {
+pub(crate) fn normals<const N: usize>(random: &mut Normal) -> SVector<f64, N> {
     SVector::from_fn(|_, _| random.draw())
 }
 
 /// Orientation turned by a small rotation vector in world axes.
-pub(super) fn turned(q: DQuat, theta: DVec3) -> DQuat {
+pub(crate) fn turned(q: DQuat, theta: DVec3) -> DQuat {
     (exponential(theta) * q).normalize()
 }
 

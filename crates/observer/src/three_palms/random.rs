@@ -2,7 +2,7 @@
 
 /// A standard normal generator, the same on every machine: splitmix64 and the Box-Muller transform.
 #[derive(Default)]
-pub(super) struct Normal(u64);
+pub(crate) struct Normal(u64);
 
 impl Normal {
     fn uniform(&mut self) -> f64 {
@@ -15,11 +15,11 @@ impl Normal {
     }
 
     /// A generator of its own sequence for each seed.
-    pub(super) fn seeded(seed: u64) -> Self {
+    pub(crate) fn seeded(seed: u64) -> Self {
         Self(seed)
     }
 
-    pub(super) fn draw(&mut self) -> f64 {
+    pub(crate) fn draw(&mut self) -> f64 {
         let (a, b) = (self.uniform(), self.uniform());
         (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos()
     }

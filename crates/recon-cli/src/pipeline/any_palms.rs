@@ -13,7 +13,7 @@ use recon::observer::{
     ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, ImpulseNoise,
     estimate_contacts, nearest_turn,
 };
-use recon_io::{EstimateData, PalmContact, Scene, Sensors};
+use recon_io::{EstimateData, PalmContact, Scene};
 use std::error::Error;
 use std::path::Path;
 
@@ -100,41 +100,25 @@ pub(crate) fn estimate_any_palms(
     Ok(AnyPalms { data, bounds })
 }
 
-/// What the estimator is told, as the scene states it.
+/// What the estimator is told: as the scene states it, and the noise that it does not state from the roughness of the readings.
 fn options(log: &ContactLog, scene: &Scene) -> Result<ContactOptions, CliError> {
     let sensors = &scene.sensors;
-    let forces = log.palms().iter().any(by_force);
-    let impulses = log.palms().iter().any(|palm| !by_force(palm));
-    let impulse = impulse_noise(sensors);
-    let needed = [
-        (
-            sensors.contact_std.is_none(),
-            "contact_std (of a contact point in each tangent direction of its palm, m; such as 1e-4)",
-        ),
-        (
-            forces && sensors.force_std.or(sensors.force_share).is_none(),
-            "force_std (of each axis of a force, N; such as 0.01) or force_share (as a share of it; such as 0.02)",
-        ),
-        (
-            impulses && impulse.is_none(),
-            "impulse_std (of each axis of an impulse from sample to sample, N s; such as 1e-5) or impulse_share (as a share of it; such \
-             as 0.02)",
-        ),
-    ];
-    let missing: Vec<&str> =
-        needed.into_iter().filter(|(missing, _)| *missing).map(|(_, what)| what).collect();
-    if !missing.is_empty() {
-        return Err(CliError::NoiseNotStated { missing: missing.join(" and ") });
-    }
     let length = scene.size.or_else(|| size(log)).ok_or(CliError::SizeNotStated)?;
-    let noise = ContactNoiseLevel {
-        contact: sensors.contact_std.unwrap_or_default(),
-        force_fixed: sensors.force_std.unwrap_or_default(),
-        force_share: sensors.force_share.unwrap_or_default(),
-        impulse,
-        floor: sensors.contact_speed_std.unwrap_or(FLOOR * (scene.gravity * length).sqrt()),
+    let floor = sensors.contact_speed_std.unwrap_or(FLOOR * (scene.gravity * length).sqrt());
+    let rough = ContactNoiseLevel::by_roughness(log, floor);
+    let stated = |fixed: Option<f64>, share: Option<f64>| {
+        fixed.or(share).map(|_| [fixed, share].map(Option::unwrap_or_default))
     };
-    Ok(ContactOptions { noise, gravity: scene.gravity, friction: None, body: None, size: scene.size })
+    let [force_fixed, force_share] =
+        stated(sensors.force_std, sensors.force_share).unwrap_or([rough.force_fixed, rough.force_share]);
+    // Impulses beside forces are read where their noise is stated.
+    let alone = !log.palms().iter().all(by_force);
+    let impulse = stated(sensors.impulse_std, sensors.impulse_share)
+        .map(|[fixed, share]| ImpulseNoise { fixed, share })
+        .or(rough.impulse.filter(|_| alone));
+    let contact = sensors.contact_std.unwrap_or(rough.contact);
+    let noise = ContactNoiseLevel { contact, force_fixed, force_share, impulse, floor };
+    Ok(ContactOptions { size: scene.size, pose_errors: true, ..ContactOptions::new(noise, scene.gravity) })
 }
 
 /// Whether the force of a palm is measured as far as there is any.
@@ -144,13 +128,6 @@ fn by_force(palm: &LoggedPalm) -> bool {
         Some(SensedAxes::Normal) => palm.friction() == Some(0.0),
         None => false,
     }
-}
-
-/// Noise of impulses, where it is stated: without it they are not read.
-fn impulse_noise(sensors: &Sensors) -> Option<ImpulseNoise> {
-    sensors.impulse_std.or(sensors.impulse_share)?;
-    let [fixed, share] = [sensors.impulse_std, sensors.impulse_share].map(Option::unwrap_or_default);
-    Some(ImpulseNoise { fixed, share })
 }
 
 /// Root mean square of the distance of contacts from the mean of those at the same time, m: about the size of the object. None

@@ -1,5 +1,6 @@
 //! An estimate from contacts of any palms in words and numbers for people.
 
+use super::evidence::of_bounds;
 use glam::DVec3;
 use recon::object_dynamics::MassProperties;
 use recon::observer::{ContactEstimate, ContactOptions, Reason, Reliability};
@@ -66,17 +67,9 @@ pub(super) fn evidence(
     let mut rows = body(estimate);
     rows.extend(fit(estimate));
     rows.extend(told(options));
-    rows.extend(bounds_at.map(|confidence| {
-        let axes = match estimate.axes_deviations {
-            None => "the axes of the world at the first sample",
-            Some(_) => "the axes of the object as they were found, which may lie as far off as is said of them",
-        };
-        let meaning = format!(
-            "Both bounds hold with at least this probability for the noise of contacts and the deviations of the motion, however these go \
-             together, in {axes}."
-        );
-        neutral("bounds_confidence", "Confidence of the bounds", Number(confidence), "", &meaning)
-    }));
+    if let (Some(confidence), Some(errors)) = (bounds_at, &estimate.pose_errors) {
+        rows.extend(of_bounds(errors, confidence));
+    }
     rows
 }
 
@@ -203,18 +196,19 @@ fn told(options: &ContactOptions) -> Vec<Evidence> {
                 "Noise of impulses, fixed",
                 fixed,
                 "N s",
-                "Of each axis, from sample to sample, from the scene.",
+                "Of each axis, from sample to sample, from the scene or from the roughness of the readings.",
             ),
             neutral(
                 "noise_impulse_share",
                 "Noise of impulses, growing",
                 share,
                 "",
-                "As a share of the impulse, from the scene.",
+                "As a share of the impulse, from the scene or from the roughness of the readings.",
             ),
         ]
     });
-    let tangent = "In each tangent direction of the palm, from the scene.";
+    let tangent =
+        "In each tangent direction of the palm, from the scene or from the roughness of the readings.";
     let speed =
         "What a contact condition may be off by beside noise: from the scene, or 3e-5 of the natural speed.";
     let mut rows = vec![
@@ -224,14 +218,14 @@ fn told(options: &ContactOptions) -> Vec<Evidence> {
             "Noise of forces, fixed",
             Number(noise.force_fixed),
             "N",
-            "Of each axis, from the scene.",
+            "Of each axis, from the scene or from the roughness of the readings.",
         ),
         neutral(
             "noise_force_share",
             "Noise of forces, growing",
             Number(noise.force_share),
             "",
-            "As a share of the force, from the scene.",
+            "As a share of the force, from the scene or from the roughness of the readings.",
         ),
     ];
     rows.extend(of_impulse.into_iter().flatten());

@@ -1,7 +1,9 @@
 //! The estimator's evidence in words and numbers for people.
 
 use glam::DMat3;
-use recon::observer::{IdentifiedBody, MotionEstimate, OtherMotion, PoseAxes, Reliability, StartState};
+use recon::observer::{
+    IdentifiedBody, MotionEstimate, OtherMotion, PoseAxes, PoseErrors, Reliability, StartState,
+};
 use recon_io::{Evidence, EvidenceValue, Level, Verdict, brief_to};
 
 /// Unknowns of the estimate: centre of mass, velocity, angular momentum, orientation.
@@ -240,46 +242,7 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
         ));
     }
     if let (Some(confidence), Some(errors)) = (checks.bounds_at, &estimate.pose_errors) {
-        let shared = errors.shared();
-        let deviation = |m: DMat3| (m.x_axis.x + m.y_axis.y + m.z_axis.z).max(0.0).sqrt();
-        let mut add = |key: &str, name: &str, value, unit: &str, meaning: &str| {
-            rows.push(row(key, name, value, unit, meaning, neutral));
-        };
-        add(
-            "bounds_confidence",
-            "Confidence of the bounds",
-            number(confidence),
-            "",
-            "Both bounds hold with at least this probability for the noise of contacts and forces and for the error of the motion.",
-        );
-        add(
-            "bounds_frame",
-            "Axes of the bounds",
-            EvidenceValue::Text(
-                match errors.axes() {
-                    PoseAxes::Principal => "principal",
-                    PoseAxes::MeanPose => "mean pose",
-                }
-                .to_owned(),
-            ),
-            "",
-            "Principal: the bounds hold in the body's own axes. Mean pose: in body axes in which the estimated poses are right on the \
-             average over the samples, that is the body's own displaced by the mean error of the poses.",
-        );
-        add(
-            "std_bounds_turn",
-            "Turn of these axes",
-            number(deviation(shared.rotation)),
-            "rad",
-            "Standard deviation of how far they are turned against the body's own, all axes together.",
-        );
-        add(
-            "std_bounds_shift",
-            "Shift of these axes",
-            number(deviation(shared.translation)),
-            "m",
-            "Standard deviation of how far their origin is from the centre of mass.",
-        );
+        rows.extend(of_bounds(errors, confidence));
     }
     if let Some(body) = &checks.identified {
         let moments = body.mass.principal().moments;
@@ -296,6 +259,56 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
         }
     }
     rows
+}
+
+/// What bounds hold for, at which odds and in which axes.
+pub(super) fn of_bounds(errors: &PoseErrors, confidence: f64) -> [Evidence; 4] {
+    let shared = errors.shared();
+    let deviation = |m: DMat3| (m.x_axis.x + m.y_axis.y + m.z_axis.z).max(0.0).sqrt();
+    let axes = match errors.axes() {
+        PoseAxes::Principal => "principal",
+        PoseAxes::MeanPose => "mean pose",
+    };
+    let row = |key: &str, name: &str, value, unit: &str, meaning: &str| Evidence {
+        key: key.to_owned(),
+        name: name.to_owned(),
+        value,
+        unit: unit.to_owned(),
+        meaning: meaning.to_owned(),
+        level: Level::Neutral,
+    };
+    let number = EvidenceValue::Number;
+    [
+        row(
+            "bounds_confidence",
+            "Confidence of the bounds",
+            number(confidence),
+            "",
+            "Both bounds hold with at least this probability for the noise of contacts and forces and for the error of the motion.",
+        ),
+        row(
+            "bounds_frame",
+            "Axes of the bounds",
+            EvidenceValue::Text(axes.to_owned()),
+            "",
+            "Principal: the bounds hold in the body's own axes. Mean pose: in body axes in which the estimated poses are right on the \
+             average over the samples, that is the body's own displaced by the mean error of the poses.",
+        ),
+        row(
+            "std_bounds_turn",
+            "Turn of these axes",
+            number(deviation(shared.rotation)),
+            "rad",
+            "Standard deviation of how far they are turned against the body's own, all axes together.",
+        ),
+        row(
+            "std_bounds_shift",
+            "Shift of these axes",
+            number(deviation(shared.translation)),
+            "m",
+            "Standard deviation of how far their origin is from the centre of mass.",
+        ),
+    ]
 }
 
 /// Other motions, one after the other.

@@ -5,7 +5,7 @@ use super::doubts::Doubts;
 use crate::error::CliError;
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, CurvePoint};
-use recon::observer::{MotionEstimate, PoseCovariance};
+use recon::observer::{MotionEstimate, PoseCovariance, PoseErrors};
 use recon::shape_bounds::{
     BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, NoisyContact,
     Outlier, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, correlated_noise, estimate_noise,
@@ -93,26 +93,47 @@ pub(crate) fn motion_bounds(
     confidence: f64,
 ) -> Result<Option<BoundsResult>, CliError> {
     let Some(errors) = &estimate.pose_errors else { return Ok(None) };
+    let variance = estimate.evidence.noise.contact.powi(2);
+    let stride = estimate.motion.len().div_ceil(SAMPLES);
+    let curves = estimate.curves.each_ref().map(|curve| {
+        let posed = |(sample, point): (usize, &CurvePoint)| {
+            let contact = ContactSample { point: point.beta_O, normal: point.n_O };
+            PosedContact { sample, contact, point: in_tangent(&contact, variance), normal: 0.0 }
+        };
+        curve.points().iter().enumerate().step_by(stride).map(posed).collect::<Vec<_>>()
+    });
+    bounds_of_poses(errors, &curves, confidence)
+}
+
+/// A contact that an estimated pose of the body, that of a `sample`, brought into its axes.
+pub(super) struct PosedContact {
+    pub(super) sample: usize,
+    pub(super) contact: ContactSample,
+    /// Covariance of the point beside that of the pose, m^2.
+    pub(super) point: DMat3,
+    /// Deviation of the normal beside that of the pose, rad.
+    pub(super) normal: f64,
+}
+
+/// Bounds that hold at `confidence` for the noise of such contacts and the errors of the poses. None where these are known at no odds.
+pub(super) fn bounds_of_poses(
+    errors: &PoseErrors,
+    curves: &[Vec<PosedContact>],
+    confidence: f64,
+) -> Result<Option<BoundsResult>, CliError> {
     let alpha = 1.0 - confidence;
-    let poses = errors.deviations(1.0 - SHARE_OF_POSES * alpha);
-    if !poses.is_finite() {
+    let deviations = errors.deviations(1.0 - SHARE_OF_POSES * alpha);
+    if !deviations.is_finite() {
         return Ok(None);
     }
-    let variance = estimate.evidence.noise.contact.powi(2);
-    let samples = estimate.motion.len();
-    let stride = samples.div_ceil(SAMPLES);
-    let noises: Vec<PoseNoise> =
-        (0..samples).step_by(stride).map(|k| pose_noise(errors.covariance(k))).collect();
-    let curves = estimate.curves.each_ref().map(|curve| {
-        let points = curve.points().iter().step_by(stride).zip(&noises);
-        let noisy = |(point, pose): (&CurvePoint, &PoseNoise)| {
-            let contact = ContactSample { point: point.beta_O, normal: point.n_O };
-            let noise = ContactNoise { point: in_tangent(&contact, variance), normal: 0.0, pose: *pose };
-            NoisyContact { contact, noise }
-        };
-        points.map(noisy).collect::<Vec<_>>()
-    });
-    let bounds = CertainBounds::from_curves_of_poses(&curves, 1.0 - (1.0 - SHARE_OF_POSES) * alpha, poses)?;
+    let noisy = |of: &PosedContact| {
+        let PoseCovariance { rotation, translation, cross } = errors.covariance(of.sample);
+        let pose = PoseNoise { rotation, translation, cross };
+        NoisyContact { contact: of.contact, noise: ContactNoise { point: of.point, normal: of.normal, pose } }
+    };
+    let curves: Vec<Vec<_>> = curves.iter().map(|curve| curve.iter().map(noisy).collect()).collect();
+    let left = 1.0 - (1.0 - SHARE_OF_POSES) * alpha;
+    let bounds = CertainBounds::from_curves_of_poses(&curves, left, deviations)?;
     finished(&bounds, Vec::new()).map(Some)
 }
 
@@ -127,14 +148,10 @@ pub(super) fn in_tangent(contact: &ContactSample, variance: f64) -> DMat3 {
 /// Samples whose contacts bound the body, at most: more of them gain next to nothing.
 const SAMPLES: usize = 6000;
 /// Share of the odds of a failure that errors of the poses may have; the contacts' own margins hardly grow when they get less.
-pub(super) const SHARE_OF_POSES: f64 = 0.9;
-
-fn pose_noise(of: PoseCovariance) -> PoseNoise {
-    PoseNoise { rotation: of.rotation, translation: of.translation, cross: of.cross }
-}
+const SHARE_OF_POSES: f64 = 0.9;
 
 /// Meshes and figures of bounds, of which each may be missing, and what is to be said then.
-pub(super) fn finished(bounds: &CertainBounds, mut warnings: Vec<String>) -> Result<BoundsResult, CliError> {
+fn finished(bounds: &CertainBounds, mut warnings: Vec<String>) -> Result<BoundsResult, CliError> {
     let solid = bounds.lower.as_ref().and_then(|lower| lower.solid());
     let lower = solid.map(|solid| own(solid.mesh())).transpose()?;
     let upper = bounds.upper.as_ref().map(|upper| own(upper.mesh())).transpose()?;

@@ -1,7 +1,7 @@
 //! `recon reconstruct` on contacts with friction on any palms: from a simulated scene to a folder of results.
 
 use crate::common::{Scratch, Table};
-use crate::margins::out_of_ellipsoid;
+use crate::margins::out_of_truth;
 use glam::{DQuat, DVec3};
 use serde_json::Value;
 
@@ -221,13 +221,11 @@ fn the_body_is_between_its_bounds() {
         "--json",
     ]);
     assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
-    // The bounds are in the axes of the world at the first sample.
-    let turn = turns(&Table::parse(&scratch.read("log.csv")))[0].inverse();
-    let axes = DVec3::new(0.05, 0.04, 0.03);
-    let excess = out_of_ellipsoid(&scratch, axes, (DVec3::ZERO, turn)).map(Option::unwrap);
-    // The margins at contacts are some twelve deviations of the pose.
-    assert!(excess.iter().all(|e| (-1e-3..=0.0).contains(e)), "{excess:?}");
     let said: Value = serde_json::from_str(&run.stdout).unwrap();
+    let axes = DVec3::new(0.05, 0.04, 0.03);
+    let excess = out_of_truth(&scratch, &scratch.read("log.csv"), axes, &said).map(Option::unwrap);
+    // The margins at contacts are some four deviations of the pose.
+    assert!(excess.iter().all(|e| (-3e-4..=0.0).contains(e)), "{excess:?}");
     let volume = 4.0 / 3.0 * std::f64::consts::PI * axes.element_product();
     let shares =
         ["lower_volume_m3", "upper_volume_m3"].map(|key| said["bounds"][key].as_f64().unwrap() / volume);
@@ -253,15 +251,6 @@ fn contacts_of_one_palm_need_the_size_of_the_object() {
 fn what_neither_estimator_can_do_is_refused_by_name() {
     let scratch = simulated("refused", ONE_PLATE);
     let sized = ONE_PLATE.replace("mass = 0.2", "mass = 0.2\nsize = 0.04");
-    let without = |key: &str| {
-        sized
-            .lines()
-            .filter(|line| !line.starts_with(key))
-            .map(|line| format!("{line}\n"))
-            .collect::<String>()
-    };
-    refused(&scratch, &without("contact_std"), &[], (3, &["[sensors]", "contact_std", "1e-4"]));
-    refused(&scratch, &without("force_share"), &[], (3, &["[sensors]", "force_std", "force_share", "0.02"]));
     refused(&scratch, &sized, &["--export", "mjcf"], (2, &["--export", "log.csv"]));
     refused(&scratch, &sized, &["--without-forces"], (3, &["log.csv", "1 palm(s)"]));
     refused(&scratch, &sized.replace("gravity = 9.81", "gravity = 0.0"), &[], (3, &["gravity"]));
@@ -270,13 +259,35 @@ fn what_neither_estimator_can_do_is_refused_by_name() {
     refused(&scratch, &sized, &[], (3, &["log.csv", "palm 1", "fx_1", "Jx_1", "1 palm(s), not three"]));
 }
 
+/// What the scene does not state of the noise is taken from the readings.
+#[test]
+fn noise_that_is_not_stated_is_estimated() {
+    let scene = SPINNING.replace("force_share", "impulse_share = 0.004\nforce_share");
+    let scratch = simulated("unstated", &scene);
+    let with_forces = scratch.read("log.csv");
+    let (sensors, of_simulation) = scene.split_once("[sensors]").unwrap();
+    let (_, rest) = of_simulation.split_once("[palms]").unwrap();
+    scratch.write("silent.toml", &format!("{sensors}[palms]{rest}"));
+    for (log, key) in [(with_forces.clone(), "force"), (without_columns(&with_forces, &['f']), "impulse")] {
+        scratch.write("log.csv", &log);
+        let run = scratch.run(&["reconstruct", "log.csv", "--scene", "silent.toml", "-o", "out", "--json"]);
+        assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+        let said: Value = serde_json::from_str(&run.stdout).unwrap();
+        let noise = |key: &str| said["evidence"][format!("noise_{key}")]["value"].as_f64().unwrap();
+        // The median of some thousand numbers is known to a few hundredths.
+        assert!((noise("contact") / 4e-5 - 1.0).abs() < 0.1, "{said}");
+        assert!((noise(&format!("{key}_share")) / 0.004 - 1.0).abs() < 0.2, "{said}");
+        let error = said["largest_error"]["position_m"].as_f64().unwrap();
+        assert!(error < 1e-3, "{error}");
+    }
+}
+
 #[test]
 fn impulses_alone_give_the_motion_too() {
     let scene = SPINNING.replace("force_share", "impulse_share = 0.004\nforce_share");
     let scratch = simulated("impulses", &scene);
     let with_forces = scratch.read("log.csv");
     scratch.write("log.csv", &without_columns(&with_forces, &['f']));
-    refused(&scratch, SPINNING, &[], (3, &["[sensors]", "impulse_std", "impulse_share"]));
     let run = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out", "--json"]);
     assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
     let said: Value = serde_json::from_str(&run.stdout).unwrap();

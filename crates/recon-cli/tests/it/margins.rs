@@ -55,7 +55,7 @@ fn mesh(bytes: &[u8]) -> (Vec<DVec3>, Vec<[usize; 3]>) {
 
 /// How far the lower bound stands out of the true ellipsoid, and the ellipsoid out of the upper bound, m; negative inside. None
 /// for a bound that there is not.
-fn excess(scratch: &Scratch, log: &str, axes: DVec3, summary: &Value) -> [Option<f64>; 2] {
+pub(crate) fn out_of_truth(scratch: &Scratch, log: &str, axes: DVec3, summary: &Value) -> [Option<f64>; 2] {
     let (mut log, motion) = (Table::parse(log), Table::parse(&scratch.read("out/motion.csv")));
     log.rows.truncate(motion.rows.len());
     let (shift, turn) = match summary["evidence"]["bounds_frame"]["value"].as_str().unwrap() {
@@ -68,11 +68,7 @@ fn excess(scratch: &Scratch, log: &str, axes: DVec3, summary: &Value) -> [Option
 }
 
 /// The same of the bounds in the folder `out`, where `turn` and `shift` take their axes to the body's own.
-pub(crate) fn out_of_ellipsoid(
-    scratch: &Scratch,
-    axes: DVec3,
-    (shift, turn): (DVec3, DQuat),
-) -> [Option<f64>; 2] {
+fn out_of_ellipsoid(scratch: &Scratch, axes: DVec3, (shift, turn): (DVec3, DQuat)) -> [Option<f64>; 2] {
     let read = |name: &str| {
         let (corners, faces) = mesh(&fs::read(scratch.path().join("out").join(name)).ok()?);
         Some((corners.into_iter().map(|v| turn * v + shift).collect::<Vec<DVec3>>(), faces))
@@ -120,7 +116,7 @@ fn bounds_hold_on_logs_of_other_simulators() {
             &format!("gravity = {gravity}\n[object]\nmass = 1.0\nprincipal_moments = {moments:?}\n"),
         );
         let summary = reconstructed(&scratch, "log.csv");
-        let excess = excess(&scratch, &log, DVec3::from_array(axes), &summary);
+        let excess = out_of_truth(&scratch, &log, DVec3::from_array(axes), &summary);
         assert!(excess.iter().flatten().all(|e| (-1e-2..=0.0).contains(e)), "{name}: {excess:?}");
         assert_eq!(summary["evidence"]["bounds_frame"]["value"], "principal");
     }
@@ -140,7 +136,7 @@ fn bounds_hold_under_noise_and_keep_most_of_the_volume() {
         assert_eq!(scratch.run(&["simulate", "scene.toml", "-o", "log.csv"]).code, Some(0));
         let summary = reconstructed(&scratch, "log.csv");
         let lower = summary["bounds"]["lower_volume_m3"].as_f64().unwrap();
-        let excess = excess(&scratch, &scratch.read("log.csv"), axes, &summary);
+        let excess = out_of_truth(&scratch, &scratch.read("log.csv"), axes, &summary);
         if level == 0.0 {
             free = lower;
             // What the quadrature of the forces between samples leaves.

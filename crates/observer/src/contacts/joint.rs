@@ -1,0 +1,37 @@
+//! Errors of the poses of all nodes together, for bounds on the shape.
+
+use super::body::CONSTANTS;
+use super::problem::Problem;
+use super::solve::{Covariances, Solved};
+use crate::three_palms::{DRAWS, Normal, PoseErrors, kept, normals, root, turned};
+use glam::{DQuat, DVec3};
+
+/// Seed of what motions are drawn from.
+const SEED: u64 = 0x6a01;
+
+/// Joint errors of the poses at those nodes (by number) whose motion is relied on, in body axes that stand at `axes` in those of the first
+/// sample; all of them `wider` than the covariances say. None without such a node.
+pub(super) fn pose_errors(
+    problem: &Problem,
+    solved: &Solved<CONSTANTS>,
+    covariances: &Covariances<CONSTANTS>,
+    relied_on: &[usize],
+    (axes, wider): (DQuat, f64),
+) -> Option<PoseErrors> {
+    let mut random = Normal::seeded(SEED);
+    let nodes: Vec<usize> = kept(relied_on.len()).into_iter().map(|k| relied_on[k]).collect();
+    let samples = problem.node_samples();
+    let motions = &solved.unknowns.motions;
+    let poses: Vec<_> = nodes.iter().map(|&j| (motions[j].p, (motions[j].q * axes).normalize())).collect();
+    let body = root(&covariances.body);
+    let draw = |_: usize| {
+        let steps = covariances.drawn(&(body * normals(&mut random)), || normals(&mut random));
+        let moved = |(j, (p, q)): (&usize, &(DVec3, DQuat))| {
+            let part = |i: usize| DVec3::from_slice(&steps[*j].as_slice()[i..i + 3]) * wider;
+            (*p + part(0), turned(*q, part(9)))
+        };
+        nodes.iter().zip(&poses).map(moved).collect()
+    };
+    let draws = (0..DRAWS).map(draw);
+    PoseErrors::from_draws(nodes.iter().map(|&j| samples[j]).collect(), &poses, draws, 0.0, false)
+}

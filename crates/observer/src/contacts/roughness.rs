@@ -1,0 +1,219 @@
+//! Noise of the sensors from the roughness of their own readings.
+
+use super::noise::{ContactNoiseLevel, ImpulseNoise};
+use glam::DVec3;
+use object_dynamics::{ContactLog, LoggedPalm, SensedAxes, SensedForce};
+
+/// Readings in a row of which a cubic is taken off.
+const IN_A_ROW: usize = 5;
+/// Median of |x| for a standard normal x.
+const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
+/// Groups of forces by their size, at most, and the readings in one, at least.
+const GROUPS: usize = 12;
+const LEAST_IN_GROUP: usize = 40;
+/// Share of readings equal to the one before from which on they are counted in steps.
+const REPEATED: f64 = 0.1;
+/// Steps of readings that are rounding, as a share of the largest.
+const ROUNDING: f64 = 1e-9;
+
+impl ContactNoiseLevel {
+    /// Standard deviations of the white noise of a log's contacts, forces and impulses, by what of five readings in a row no cubic explains.
+    ///
+    /// The median of it is blind to outliers and to changes of contact modes. A sensor that counts in steps has the noise of these at
+    /// least. The noise of forces and impulses may grow with them. What of a smooth motion is rough between samples counts as noise.
+    /// `floor` (m/s) is taken as it is.
+    #[must_use]
+    pub fn by_roughness(log: &ContactLog, floor: f64) -> Self {
+        let [mut contacts, mut forces, mut impulses] = [Rough::default(), Rough::default(), Rough::default()];
+        for palm in log.palms() {
+            let normal = |k: usize| palm.touch(k).map_or(DVec3::Z, |touch| touch.n.get());
+            let own = |k: usize| palm.motion(k).pose.R_WP.inverse();
+            let tangents =
+                |k: usize| <[DVec3; 2]>::from((own(k) * normal(k)).any_orthonormal_pair()).to_vec();
+            contacts.add(log.times(), |k| in_palm(palm, k), tangents);
+            let add = |rough: &mut Rough, axes, reading: &dyn Fn(usize) -> Option<SensedForce>| {
+                let touched = |k: usize| reading(k).filter(|_| palm.touch(k).is_some());
+                match axes {
+                    Some(SensedAxes::Three) => {
+                        rough.add(
+                            log.times(),
+                            |k| Some(own(k) * touched(k)?.vector),
+                            |_| DVec3::AXES.to_vec(),
+                        );
+                    }
+                    Some(SensedAxes::Normal) => {
+                        let along = |k: usize| Some(DVec3::X * touched(k)?.vector.dot(normal(k)));
+                        rough.add(log.times(), along, |_| vec![DVec3::X]);
+                    }
+                    None => {}
+                }
+            };
+            add(&mut forces, palm.force_axes(), &|k| palm.force(k));
+            add(&mut impulses, palm.impulse_axes(), &|k| palm.impulse(k));
+        }
+        let [force_fixed, force_share] = forces.growing();
+        let any = !impulses.all.is_empty();
+        let [fixed, share] = impulses.growing();
+        let impulse = any.then_some(ImpulseNoise { fixed, share });
+        Self { contact: contacts.deviation(), force_fixed, force_share, impulse, floor }
+    }
+}
+
+/// The contact point as it is read: in the palm's own axes.
+fn in_palm(palm: &LoggedPalm, k: usize) -> Option<DVec3> {
+    let (touch, pose) = (palm.touch(k)?, palm.motion(k).pose);
+    Some(pose.R_WP.inverse() * (touch.p_WC - pose.p_WP))
+}
+
+/// What is rough about the readings of sensors of one kind.
+#[derive(Default)]
+struct Rough {
+    /// Size of a reading, and what of it no cubic explains: of unit variance for white noise of unit variance.
+    all: Vec<(f64, f64)>,
+    /// Differences of successive readings, without sign.
+    steps: Vec<f64>,
+}
+
+impl Rough {
+    /// Vectors as one sensor reads them, along those axes in which it does.
+    fn add(
+        &mut self,
+        times: &[f64],
+        reading: impl Fn(usize) -> Option<DVec3>,
+        axes: impl Fn(usize) -> Vec<DVec3>,
+    ) {
+        let readings: Vec<Option<DVec3>> = (0..times.len()).map(reading).collect();
+        for (k, pair) in readings.windows(2).enumerate() {
+            if let [Some(a), Some(b)] = pair {
+                self.steps.extend(axes(k).into_iter().map(|axis| (*b - *a).dot(axis).abs()));
+            }
+        }
+        for (k, row) in readings.windows(IN_A_ROW).enumerate() {
+            let middle = k + IN_A_ROW / 2;
+            let weights = beyond_cubic(&times[k..k + IN_A_ROW]);
+            let weighed = row.iter().zip(weights).map(|(reading, weight)| Some((*reading)? * weight));
+            let Some(rough) = weighed.sum::<Option<DVec3>>() else { continue };
+            let size = readings[middle].map_or(0.0, DVec3::length);
+            self.all.extend(axes(middle).into_iter().map(|axis| (size, rough.dot(axis).abs())));
+        }
+    }
+
+    /// Standard deviation of the noise.
+    fn deviation(&self) -> f64 {
+        deviation(self.all.iter().map(|(_, rough)| *rough).collect()).max(self.counted())
+    }
+
+    /// Of noise that grows with the readings: its fixed part, and its share of them.
+    fn growing(mut self) -> [f64; 2] {
+        self.all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let group = self.all.len().div_ceil(GROUPS).max(LEAST_IN_GROUP);
+        // Square of the size over the variance, and one over it, in each group: a line in the former has both parts.
+        let in_group = |group: &[(f64, f64)]| {
+            let size = group[group.len() / 2].0;
+            let variance = deviation(group.iter().map(|(_, rough)| *rough).collect()).powi(2);
+            (variance > 0.0).then(|| (1.0 / variance, size * size / variance))
+        };
+        let groups: Vec<_> = self.all.chunks(group).filter_map(in_group).collect();
+        let sum = |of: fn(&(f64, f64)) -> f64| groups.iter().map(of).sum::<f64>();
+        let (one, size) = (sum(|g| g.0), sum(|g| g.1));
+        let (ones, both, sizes) = (sum(|g| g.0 * g.0), sum(|g| g.0 * g.1), sum(|g| g.1 * g.1));
+        let alone = |of: f64, squares: f64| if squares > 0.0 { of / squares } else { 0.0 };
+        let determinant = ones * sizes - both * both;
+        let fixed = (one * sizes - size * both) / determinant;
+        let share = (size * ones - one * both) / determinant;
+        let [fixed, share] = match (fixed > 0.0, share > 0.0) {
+            (true, true) => [fixed, share],
+            (true, false) => [alone(one, ones), 0.0],
+            (false, true) => [0.0, alone(size, sizes)],
+            // Forces of one size, or no noise at all.
+            (false, false) => [alone(one, ones), 0.0],
+        };
+        [fixed.sqrt().max(self.counted()), share.sqrt()]
+    }
+
+    /// Of sensors that count in steps, the deviation of what that leaves out.
+    fn counted(&self) -> f64 {
+        let rounding = ROUNDING * self.steps.iter().copied().fold(0.0, f64::max);
+        let repeated = self.steps.iter().filter(|step| **step <= rounding).count() as f64;
+        let step = self.steps.iter().copied().filter(|step| *step > rounding).reduce(f64::min);
+        let counts = repeated >= REPEATED * self.steps.len() as f64;
+        step.filter(|_| counts).map_or(0.0, |step| step / 12.0_f64.sqrt())
+    }
+}
+
+/// Weights of readings at five times whose sum is zero for any cubic, and of unit variance for white noise of unit variance.
+fn beyond_cubic(times: &[f64]) -> [f64; IN_A_ROW] {
+    let all = times[IN_A_ROW - 1] - times[0];
+    let apart = |i: usize, j: usize| if i == j { 1.0 } else { (times[i] - times[j]) / all };
+    let weights: [f64; IN_A_ROW] =
+        std::array::from_fn(|i| (0..IN_A_ROW).map(|j| apart(i, j)).product::<f64>().recip());
+    let norm = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
+    weights.map(|w| w / norm)
+}
+
+/// Standard deviation of normal variables by the median of their absolute values; zero of none.
+fn deviation(mut absolute: Vec<f64>) -> f64 {
+    if absolute.is_empty() {
+        return 0.0;
+    }
+    let middle = absolute.len() / 2;
+    *absolute.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN_OF_NORMAL
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::three_palms::Normal;
+
+    /// A smooth vector with noise of its own kind.
+    fn rough(noise: impl Fn(&mut Normal, DVec3) -> DVec3) -> Rough {
+        let mut random = Normal::seeded(5);
+        // Samples come when they come.
+        let times: Vec<f64> = (0..8000).map(|k| 1e-3 * (f64::from(k) + 0.4 * random.draw().tanh())).collect();
+        let readings: Vec<DVec3> = times
+            .iter()
+            .map(|t| DVec3::new(t.sin(), t.cos(), 0.3 * t))
+            .map(|smooth| smooth + noise(&mut random, smooth))
+            .collect();
+        let mut rough = Rough::default();
+        rough.add(&times, |k| Some(readings[k]), |_| DVec3::AXES.to_vec());
+        rough
+    }
+
+    fn vector(random: &mut Normal) -> DVec3 {
+        DVec3::new(random.draw(), random.draw(), random.draw())
+    }
+
+    #[test]
+    fn a_smooth_signal_is_not_noise_and_noise_has_its_deviation() {
+        assert!(rough(|_, _| DVec3::ZERO).deviation() < 1e-11);
+        let found = rough(|random, _| 1e-3 * vector(random)).deviation();
+        // The median of 24000 correlated numbers is known to about a hundredth.
+        assert!((found / 1e-3 - 1.0).abs() < 0.04, "{found}");
+        // One reading in a hundred is nonsense.
+        let outliers = |random: &mut Normal, _: DVec3| {
+            let nonsense = if random.draw() > 2.33 { 10.0 } else { 1e-3 };
+            nonsense * vector(random)
+        };
+        let found = rough(outliers).deviation();
+        assert!((found / 1e-3 - 1.0).abs() < 0.15, "{found}");
+    }
+
+    #[test]
+    fn noise_that_grows_with_the_reading_is_told_from_noise_that_does_not() {
+        let [fixed, share] = rough(|random, smooth| 0.02 * smooth.length() * vector(random)).growing();
+        assert!((share / 0.02 - 1.0).abs() < 0.1 && fixed < 0.01, "{fixed} {share}");
+        let [fixed, share] = rough(|random, _| 0.01 * vector(random)).growing();
+        assert!((fixed.hypot(share) / 0.01 - 1.0).abs() < 0.1 && share < 0.004, "{fixed} {share}");
+    }
+
+    #[test]
+    fn sensors_that_count_in_steps_have_the_noise_of_these() {
+        let counted = |random: &mut Normal, smooth: DVec3| {
+            let _ = random;
+            (smooth * 50.0).round() / 50.0 - smooth
+        };
+        let found = rough(counted).deviation();
+        assert!((found / (0.02 / 12.0_f64.sqrt()) - 1.0).abs() < 0.01, "{found}");
+    }
+}
