@@ -1,7 +1,7 @@
 use recon::object_dynamics::planar as object_planar;
 use recon::object_dynamics::{
-    ContactLogError, ContactSimulationError, LogError, NotThreePlanes, SceneError as DynamicsError,
-    SimulationError,
+    ContactLogError, ContactSimulationError, LogError, MassError, NotThreePlanes,
+    SceneError as DynamicsError, SimulationError,
 };
 use recon::observer::{ContactEstimateError, EstimateError};
 use recon::shape_bounds::{
@@ -53,6 +53,10 @@ pub(crate) enum CliError {
     Curvature(#[from] CurvatureError),
     #[error("the bounds have no meshes")]
     Facets(#[from] FacetError),
+    #[error("the sensor log is not one of contacts")]
+    ContactLog(#[from] ContactLogError),
+    #[error("the inertia that was found is that of no body")]
+    Inertia(#[from] MassError),
     #[error("the contacts in the plane give no bounds")]
     PlanarBounds(#[from] planar::BoundsError),
     #[error("the contacts in the plane give no bounds under noise")]
@@ -193,6 +197,8 @@ impl CliError {
             | Self::Scene(_)
             | Self::Touches(_)
             | Self::NoisyBounds(_)
+            | Self::ContactLog(_)
+            | Self::Inertia(_)
             | Self::CorrelatedNoise { .. }
             | Self::RoundedNormals { .. }
             | Self::PoseBounds(_)

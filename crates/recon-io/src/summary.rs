@@ -15,7 +15,7 @@ pub const INERTIA_LEARNED: f64 = 0.5;
 pub fn estimate_summary(data: &EstimateData) -> Value {
     let (times, found) = (data.log.times(), &data.estimate);
     let relied = found.relied_on.iter().filter(|relied| **relied).count();
-    let (duration, unknown) = (data.log.duration(), found.axes_deviations.is_none());
+    let duration = data.log.duration();
     let palm = |i: usize| {
         let [off, slides, sticks] =
             mode_times(&estimated_mode_spans(times, found, i)).map(|seconds| seconds / duration);
@@ -25,7 +25,7 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         let pairs = found.states.iter().zip(truth).zip(&found.relied_on).filter(|(_, relied)| **relied);
         pairs.map(|((state, truth), _)| Departure::between(&(*state).into(), truth)).collect()
     });
-    json!({
+    let mut figures = json!({
         "recon": env!("CARGO_PKG_VERSION"),
         "title": data.title,
         "method": "motion, mass and inertia from contacts of any palms",
@@ -36,11 +36,7 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         "t_first_s": times.first(),
         "t_last_s": times.last(),
         "mass_kg": found.mass,
-        "std_mass_kg": unknown.then_some(found.mass_deviation * found.mass),
         "inertia_kg_m2": rows(&found.inertia),
-        "std_log_second_moment_roots": unknown.then_some(found.inertia_deviations),
-        "inertia_learned": unknown.then(|| found.inertia_deviations.map(|deviation| deviation < INERTIA_LEARNED)),
-        "std_axes_rad": found.axes_deviations.map(|of| of.to_array()),
         "relied_on_share": relied as f64 / times.len() as f64,
         "mode_shares": (0..data.log.palms().len()).map(palm).collect::<Vec<_>>(),
         "evidence": data.evidence.iter().map(evidence).collect::<Map<_, _>>(),
@@ -48,7 +44,16 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         "largest_error": departures.as_deref().map(|d| errors(d, largest_of)),
         "rms_error": departures.as_deref().map(|d| errors(d, rms_of)),
         "warnings": data.warnings,
-    })
+    });
+    match found.axes_deviations {
+        Some(of) => figures["std_axes_rad"] = json!(of.to_array()),
+        None => {
+            figures["std_mass_kg"] = json!(found.mass_deviation * found.mass);
+            figures["std_log_second_moment_roots"] = json!(found.inertia_deviations);
+            figures["inertia_learned"] = json!(found.inertia_deviations.map(|of| of < INERTIA_LEARNED));
+        }
+    }
+    figures
 }
 
 fn rows(m: &DMat3) -> [[f64; 3]; 3] {

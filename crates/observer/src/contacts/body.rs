@@ -3,7 +3,7 @@
 use super::state::Turn;
 use crate::three_palms::{exponential, inertia_of_numbers, inertia_slope, logarithm, numbers_of_inertia};
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::{SVector, Vector6};
+use nalgebra::{Matrix6, SMatrix, SVector, Vector6};
 use object_dynamics::MassProperties;
 
 /// Constants of a body: logarithm of the mass, six of the inertia.
@@ -74,6 +74,14 @@ impl Body {
     /// Its derivative by one of its constants.
     pub(super) fn slope_along(&self, R: DMat3, constant: usize) -> DMat3 {
         R * self.slopes[constant] * R.transpose()
+    }
+
+    /// Covariance of the entries xx, yy, zz, xy, xz, yz of the inertia, by that of the constants.
+    pub(super) fn inertia_covariance(&self, of: &SMatrix<f64, CONSTANTS, CONSTANTS>) -> Matrix6<f64> {
+        let entry =
+            |m: &DMat3, i: usize| [m.x_axis.x, m.y_axis.y, m.z_axis.z, m.x_axis.y, m.x_axis.z, m.y_axis.z][i];
+        let by_constants = Matrix6::from_fn(|i, j| entry(&self.slopes[j], i));
+        by_constants * of.fixed_view::<INERTIA, INERTIA>(1, 1) * by_constants.transpose()
     }
 
     /// How the own axes of a known body of the mass properties `mass` lie at the first sample; those of an unknown one are the world's there.

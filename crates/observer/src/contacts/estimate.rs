@@ -15,6 +15,7 @@ use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
 use crate::three_palms::{PoseErrors, Reason, Reliability};
 use glam::{DMat3, DQuat, DVec3};
+use nalgebra::{Matrix6, Vector6};
 use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS, MassProperties};
 use std::ops::Range;
 
@@ -50,6 +51,8 @@ pub struct ContactEstimate {
     pub mass_deviation: f64,
     /// Inertia about the centre of mass, body axes, kg m^2.
     pub inertia: DMat3,
+    /// Covariance of its entries xx, yy, zz, xy, xz, yz, (kg m^2)^2; zero of a known body.
+    pub inertia_covariance: [[f64; 6]; 6],
     /// Standard deviations of the logarithms of the roots of the second moments: beyond 0.5 nothing much was learned.
     pub inertia_deviations: [f64; 3],
     /// How far the poses that are relied on may be off, all of them together, for bounds on the shape; none unless asked for.
@@ -58,6 +61,16 @@ pub struct ContactEstimate {
     pub reliability: Reliability,
     /// What it rests on.
     pub evidence: ContactEvidence,
+}
+
+impl ContactEstimate {
+    /// Standard deviation of the moment of inertia about the unit vector `axis` (body axes) through the centre of mass, kg m^2.
+    #[must_use]
+    pub fn moment_deviation(&self, axis: DVec3) -> f64 {
+        let DVec3 { x, y, z } = axis;
+        let by_entry = Vector6::new(x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z);
+        by_entry.dot(&(Matrix6::from(self.inertia_covariance) * by_entry)).max(0.0).sqrt()
+    }
 }
 
 /// Motion, mass and inertia of an unknown body from contacts of any palms and their forces or impulses in three axes, from no guess, with
@@ -275,6 +288,10 @@ impl Found<'_> {
             mass: known.map_or_else(|| body.log_mass.exp(), MassProperties::mass),
             mass_deviation: deviation(0),
             inertia: known.map_or(body.inertia(), MassProperties::inertia),
+            inertia_covariance: match known {
+                Some(_) => Default::default(),
+                None => (body.inertia_covariance(&covariances.body) * (wider * wider)).into(),
+            },
             inertia_deviations: [deviation(1), deviation(2), deviation(3)],
             reliability,
             evidence,

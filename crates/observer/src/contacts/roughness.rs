@@ -4,8 +4,11 @@ use super::noise::{ContactNoiseLevel, ImpulseNoise};
 use glam::DVec3;
 use object_dynamics::{ContactLog, LoggedPalm, SensedAxes, SensedForce};
 
-/// Readings in a row of which a cubic is taken off.
-const IN_A_ROW: usize = 5;
+/// Readings in a row of which the polynomial of the last degree but one is taken off. What is left of noise is the same for all of them,
+/// of a smooth motion that is sampled rarely it falls.
+const IN_A_ROW: [usize; 3] = [5, 7, 9];
+/// What is left of a smooth motion falls by more than this: medians of noise differ by less.
+const LESS: f64 = 0.8;
 /// Median of |x| for a standard normal x.
 const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 /// Groups of forces by their size, at most, and the readings in one, at least.
@@ -17,14 +20,14 @@ const REPEATED: f64 = 0.1;
 const ROUNDING: f64 = 1e-9;
 
 impl ContactNoiseLevel {
-    /// Standard deviations of the white noise of a log's contacts, forces and impulses, by what of five readings in a row no cubic explains.
+    /// Standard deviations of the white noise of a log's contacts, forces and impulses, by what of some readings in a row no polynomial explains.
     ///
     /// The median of it is blind to outliers and to changes of contact modes. A sensor that counts in steps has the noise of these at
     /// least. The noise of forces and impulses may grow with them. What of a smooth motion is rough between samples counts as noise.
     /// `floor` (m/s) is taken as it is.
     #[must_use]
     pub fn by_roughness(log: &ContactLog, floor: f64) -> Self {
-        let [mut contacts, mut forces, mut impulses] = [Rough::default(), Rough::default(), Rough::default()];
+        let [mut contacts, mut forces, mut impulses] = [(); 3].map(|()| Rough::default());
         for palm in log.palms() {
             let normal = |k: usize| palm.touch(k).map_or(DVec3::Z, |touch| touch.n.get());
             let own = |k: usize| palm.motion(k).pose.R_WP.inverse();
@@ -52,9 +55,8 @@ impl ContactNoiseLevel {
             add(&mut impulses, palm.impulse_axes(), &|k| palm.impulse(k));
         }
         let [force_fixed, force_share] = forces.growing();
-        let any = !impulses.all.is_empty();
         let [fixed, share] = impulses.growing();
-        let impulse = any.then_some(ImpulseNoise { fixed, share });
+        let impulse = (!impulses.least().is_empty()).then_some(ImpulseNoise { fixed, share });
         Self { contact: contacts.deviation(), force_fixed, force_share, impulse, floor }
     }
 }
@@ -68,8 +70,8 @@ fn in_palm(palm: &LoggedPalm, k: usize) -> Option<DVec3> {
 /// What is rough about the readings of sensors of one kind.
 #[derive(Default)]
 struct Rough {
-    /// Size of a reading, and what of it no cubic explains: of unit variance for white noise of unit variance.
-    all: Vec<(f64, f64)>,
+    /// Size of a reading, and what of it no polynomial explains: of unit variance for white noise of unit variance.
+    all: [Vec<(f64, f64)>; IN_A_ROW.len()],
     /// Differences of successive readings, without sign.
     steps: Vec<f64>,
 }
@@ -88,32 +90,47 @@ impl Rough {
                 self.steps.extend(axes(k).into_iter().map(|axis| (*b - *a).dot(axis).abs()));
             }
         }
-        for (k, row) in readings.windows(IN_A_ROW).enumerate() {
-            let middle = k + IN_A_ROW / 2;
-            let weights = beyond_cubic(&times[k..k + IN_A_ROW]);
-            let weighed = row.iter().zip(weights).map(|(reading, weight)| Some((*reading)? * weight));
-            let Some(rough) = weighed.sum::<Option<DVec3>>() else { continue };
-            let size = readings[middle].map_or(0.0, DVec3::length);
-            self.all.extend(axes(middle).into_iter().map(|axis| (size, rough.dot(axis).abs())));
+        for (all, count) in self.all.iter_mut().zip(IN_A_ROW) {
+            for (k, row) in readings.windows(count).enumerate() {
+                let middle = k + count / 2;
+                let weights = beyond_polynomials(&times[k..k + count]);
+                let weighed = row.iter().zip(weights).map(|(reading, weight)| Some((*reading)? * weight));
+                let Some(rough) = weighed.sum::<Option<DVec3>>() else { continue };
+                let size = readings[middle].map_or(0.0, DVec3::length);
+                all.extend(axes(middle).into_iter().map(|axis| (size, rough.dot(axis).abs())));
+            }
         }
     }
 
     /// Standard deviation of the noise.
     fn deviation(&self) -> f64 {
-        deviation(self.all.iter().map(|(_, rough)| *rough).collect()).max(self.counted())
+        of(self.least()).max(self.counted())
+    }
+
+    /// What is rough over so few readings in a row that more of them would leave as much.
+    fn least(&self) -> &[(f64, f64)] {
+        let [first, rest @ ..] = &self.all;
+        let mut least = first;
+        for all in rest.iter().filter(|all| !all.is_empty()) {
+            if of(all) < LESS * of(least) {
+                least = all;
+            }
+        }
+        least
     }
 
     /// Of noise that grows with the readings: its fixed part, and its share of them.
-    fn growing(mut self) -> [f64; 2] {
-        self.all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let group = self.all.len().div_ceil(GROUPS).max(LEAST_IN_GROUP);
+    fn growing(&self) -> [f64; 2] {
+        let mut all = self.least().to_vec();
+        all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let group = all.len().div_ceil(GROUPS).max(LEAST_IN_GROUP);
         // Square of the size over the variance, and one over it, in each group: a line in the former has both parts.
         let in_group = |group: &[(f64, f64)]| {
             let size = group[group.len() / 2].0;
-            let variance = deviation(group.iter().map(|(_, rough)| *rough).collect()).powi(2);
+            let variance = of(group).powi(2);
             (variance > 0.0).then(|| (1.0 / variance, size * size / variance))
         };
-        let groups: Vec<_> = self.all.chunks(group).filter_map(in_group).collect();
+        let groups: Vec<_> = all.chunks(group).filter_map(in_group).collect();
         let sum = |of: fn(&(f64, f64)) -> f64| groups.iter().map(of).sum::<f64>();
         let (one, size) = (sum(|g| g.0), sum(|g| g.1));
         let (ones, both, sizes) = (sum(|g| g.0 * g.0), sum(|g| g.0 * g.1), sum(|g| g.1 * g.1));
@@ -141,18 +158,20 @@ impl Rough {
     }
 }
 
-/// Weights of readings at five times whose sum is zero for any cubic, and of unit variance for white noise of unit variance.
-fn beyond_cubic(times: &[f64]) -> [f64; IN_A_ROW] {
-    let all = times[IN_A_ROW - 1] - times[0];
+/// Weights of readings at some times whose sum is zero for any polynomial of a degree below the last, and of unit variance for white
+/// noise of unit variance.
+fn beyond_polynomials(times: &[f64]) -> Vec<f64> {
+    let all = times[times.len() - 1] - times[0];
     let apart = |i: usize, j: usize| if i == j { 1.0 } else { (times[i] - times[j]) / all };
-    let weights: [f64; IN_A_ROW] =
-        std::array::from_fn(|i| (0..IN_A_ROW).map(|j| apart(i, j)).product::<f64>().recip());
+    let weight = |i: usize| (0..times.len()).map(|j| apart(i, j)).product::<f64>().recip();
+    let weights: Vec<f64> = (0..times.len()).map(weight).collect();
     let norm = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
-    weights.map(|w| w / norm)
+    weights.into_iter().map(|w| w / norm).collect()
 }
 
 /// Standard deviation of normal variables by the median of their absolute values; zero of none.
-fn deviation(mut absolute: Vec<f64>) -> f64 {
+fn of(rough: &[(f64, f64)]) -> f64 {
+    let mut absolute: Vec<f64> = rough.iter().map(|(_, rough)| *rough).collect();
     if absolute.is_empty() {
         return 0.0;
     }
@@ -187,6 +206,12 @@ mod tests {
     #[test]
     fn a_smooth_signal_is_not_noise_and_noise_has_its_deviation() {
         assert!(rough(|_, _| DVec3::ZERO).deviation() < 1e-11);
+        // Twenty samples a radian leave 1e-7 of it beyond a cubic.
+        let rare = |k: u32| DVec3::splat((0.05 * f64::from(k)).sin());
+        let mut all = Rough::default();
+        let times: Vec<f64> = (0..400).map(f64::from).collect();
+        all.add(&times, |k| Some(rare(k as u32)), |_| vec![DVec3::X]);
+        assert!(of(&all.all[0]) > 3e-7 && all.deviation() < 1e-11, "{}", all.deviation());
         let found = rough(|random, _| 1e-3 * vector(random)).deviation();
         // The median of 24000 correlated numbers is known to about a hundredth.
         assert!((found / 1e-3 - 1.0).abs() < 0.04, "{found}");

@@ -1,37 +1,36 @@
-//! `recon reconstruct` on logs of contacts that are not three planes without friction.
+//! `recon reconstruct` on logs of contacts of any palms.
 
 use super::reconstruct::bounds_and_errors;
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{AnyPalmsRequest, describe_times, estimate_any_palms, write_estimate_folder};
+use crate::pipeline::{
+    AnyPalmsRequest, as_planes, describe_times, estimate_any_palms, exported, write_estimate_folder,
+};
 use crate::progress::Progress;
-use recon::object_dynamics::{ContactLog, NotThreePlanes};
-use recon_io::{EstimateData, FolderTarget, Level, Scene, brief, brief_to, estimated_mode_spans};
+use recon::object_dynamics::{ContactLog, SensorLog};
+use recon_io::{EstimateData, FolderTarget, Level, brief, brief_to, estimated_mode_spans};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
 
 pub(super) fn run(
     args: &ReconstructArgs,
-    scene: &Scene,
-    (log, why): (ContactLog, NotThreePlanes),
+    (log, request): (ContactLog, AnyPalmsRequest<'_>),
+    planes: Option<&SensorLog>,
     (target, progress): (FolderTarget, Progress),
     console: &Console,
 ) -> Result<Outcome, CliError> {
-    if !args.export.is_empty() {
-        return Err(CliError::Option {
-            option: "export",
-            meant: "bodies between three flat palms without friction",
-            found: "contacts of other palms, or friction",
-            path: args.log.clone(),
-        });
-    }
-    let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
-    let request = AnyPalmsRequest { scene, path: &args.log, title: &title, identify: args.identify };
-    let made = estimate_any_palms(log, why, &request, &progress)?;
+    let scene = request.scene;
+    let made = estimate_any_palms(log, request, &progress)?;
     progress.step("writing the results");
-    let (mut figures, data) = (write_estimate_folder(target, &made)?, &made.data);
+    let files = match args.export.is_empty() {
+        true => Vec::new(),
+        false => exported(&made.object()?, &args.export, args.export_shape)?,
+    };
+    let extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
+    let page = planes.map(|planes| as_planes(&made, planes, scene)).transpose()?;
+    let (mut figures, data) = (write_estimate_folder(target, &made, page.as_ref(), &extras)?, &made.data);
     drop(progress);
     figures["folder"] = args.output.to_string_lossy().into();
     console.result(&describe(data, &figures, &args.output), &figures)?;

@@ -39,7 +39,7 @@ fn fig5(args: &DemoArgs, text: &str, console: &Console) -> Result<Outcome, CliEr
     let title = "An ellipsoid on three palms (Fig. 5 of Moll and Erdmann, 2002)";
     let mut log = Vec::new();
     write_log(&simulated.log, &mut log).map_err(CliError::StandardOutput)?;
-    let made = reconstruct(simulated.log, &scene, title, false, &progress)?;
+    let made = reconstruct(simulated.log, &scene, title, (false, 1), &progress)?;
     progress.step("writing the results");
     let extras = [(SCENE.to_owned(), text.into()), ("log.csv".to_owned(), log)];
     let figures = write_reconstruction_folder(target, &made, &extras)?;

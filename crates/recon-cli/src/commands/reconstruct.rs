@@ -1,7 +1,10 @@
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{LogOf, Reconstruction, exported, read_log, reconstruct, write_reconstruction_folder};
+use crate::pipeline::{
+    AnyPalmsRequest, LogOf, Reconstruction, condensed, exported, noisy_planes, read_log, reconstruct,
+    refuse_unfelt, sentence, write_reconstruction_folder,
+};
 use crate::progress::Progress;
 use recon_io::{Bounds, FolderTarget, Scene, brief, brief_to};
 use serde_json::Value;
@@ -16,17 +19,26 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let target = target(args)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");
-    let (log, moved) = match read_log(&args.log, &scene)? {
+    let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
+    let read = read_log(&args.log, &scene)?;
+    let mut request = AnyPalmsRequest::new(&scene, &title, args.identify);
+    let (log, moved) = match read {
         LogOf::ThreePalms(log, moved) => (log, moved),
         LogOf::AnyPalms(log, why) => {
-            return super::any_palms::run(args, &scene, (*log, why), (target, progress), console);
+            refuse_unfelt(&log, &args.log, &why)?;
+            request.note = sentence(&format!("{why}; the estimate is that from contacts of any palms"));
+            return super::any_palms::run(args, (*log, request), None, (target, progress), console);
         }
     };
-    let name = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
-    let mut made = reconstruct(log, &scene, &name, args.identify, &progress)?;
+    let (log, together) = condensed(log);
+    if let Some(contacts) = noisy_planes(&log, &scene)? {
+        request.of_noisy_planes(&log, together, moved);
+        return super::any_palms::run(args, (contacts, request), Some(&log), (target, progress), console);
+    }
+    let mut made = reconstruct(log, &scene, &title, (args.identify, together), &progress)?;
     made.data.warnings.extend(moved);
     progress.step("writing the results");
-    let files = exported(&made, &args.export, args.export_shape)?;
+    let files = exported(&made.object(), &args.export, args.export_shape)?;
     let extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
     let figures = write_reconstruction_folder(target, &made, &extras)?;
     drop(progress);

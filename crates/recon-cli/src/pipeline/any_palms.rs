@@ -1,19 +1,22 @@
 //! Motion of a body, with mass and inertia if they are unknown, from contacts of any palms.
 
 use super::any_palms_bounds::estimate_bounds;
-use super::any_palms_words::{evidence, verdict};
+use super::any_palms_words::{Checks, evidence, verdict};
 use super::bounds::BoundsResult;
-use super::reconstruct::{CONFIDENCE, sentence};
+use super::export::Object;
+use super::reconstruct::{CONFIDENCE, NOTABLE_NOISE, margins};
 use super::truth::true_motion;
 use crate::error::CliError;
 use crate::progress::Progress;
-use glam::DVec3;
-use recon::object_dynamics::{ContactLog, LoggedPalm, NotThreePlanes, SensedAxes};
+use glam::{DMat3, DVec3};
+use recon::contact_kinematics::Direction;
+use recon::object_dynamics::{ContactLog, LoggedPalm, MassProperties, NotThreePlanes, SensedAxes};
 use recon::observer::{
     ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, ImpulseNoise,
     estimate_contacts, nearest_turn,
 };
-use recon_io::{EstimateData, PalmContact, Scene};
+use recon::shape_bounds::ContactSample;
+use recon_io::{EstimateData, MassDeviations, PalmContact, Scene};
 use std::error::Error;
 use std::path::Path;
 
@@ -24,11 +27,26 @@ const FLOOR: f64 = 3e-5;
 /// What was asked for.
 pub(crate) struct AnyPalmsRequest<'a> {
     pub(crate) scene: &'a Scene,
-    /// File of the log.
-    pub(crate) path: &'a Path,
     pub(crate) title: &'a str,
     /// Whether mass and inertia of the scene are not to be looked at.
     pub(crate) identify: bool,
+    /// Coefficient of friction of the palms that do not state one, if it is known.
+    pub(crate) friction: Option<f64>,
+    /// Samples of the log that were taken as one.
+    pub(crate) together: usize,
+    /// Why it is this estimate, in one sentence.
+    pub(crate) note: String,
+    /// What the reader must know beforehand.
+    pub(crate) warnings: Vec<String>,
+    /// Whether something in the log does not go with the scene.
+    pub(crate) implausible: bool,
+}
+
+impl<'a> AnyPalmsRequest<'a> {
+    pub(crate) fn new(scene: &'a Scene, title: &'a str, identify: bool) -> Self {
+        let (note, warnings) = Default::default();
+        Self { scene, title, identify, friction: None, together: 1, note, warnings, implausible: false }
+    }
 }
 
 /// What contacts of any palms tell.
@@ -36,21 +54,57 @@ pub(crate) struct AnyPalms {
     pub(crate) data: EstimateData,
     /// Bounds on the shape, where there are any.
     pub(crate) bounds: Option<BoundsResult>,
+    /// Noise of contacts, m.
+    pub(crate) contact_noise: f64,
 }
 
-/// Everything that contacts of any palms tell, and why the log is not one of three planes. Truth in the log is only compared
-/// with, never used.
+impl AnyPalms {
+    /// The object for simulators.
+    ///
+    /// # Errors
+    /// Where the inertia is that of no body, as rounding may leave one.
+    pub(crate) fn object(&self) -> Result<Object<'_>, CliError> {
+        let (data, found) = (&self.data, &self.data.estimate);
+        let entry = |i: usize| found.inertia_covariance[i][i].max(0.0).sqrt();
+        let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(entry);
+        let deviations = found.axes_deviations.is_none().then(|| MassDeviations {
+            mass: found.mass * found.mass_deviation,
+            inertia: DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]),
+        });
+        let sample = |contact: &PalmContact| ContactSample {
+            point: contact.p_OC,
+            normal: Direction::new_unchecked(contact.normal),
+        };
+        Ok(Object {
+            title: &data.title,
+            verdict: &data.verdict.text,
+            mass: MassProperties::new(found.mass, found.inertia)?,
+            deviations,
+            lower: self.bounds.as_ref().and_then(|bounds| bounds.lower.as_ref()),
+            upper: self.bounds.as_ref().and_then(|bounds| bounds.upper.as_ref()),
+            contacts: data.curves.iter().flatten().flatten().map(sample).collect(),
+            contact_noise: self.contact_noise,
+            start: found.states.first().map(|state| (*state).into()),
+        })
+    }
+}
+
+/// Refuses a log of which a palm measures too little of its force.
+pub(crate) fn refuse_unfelt(log: &ContactLog, path: &Path, why: &NotThreePlanes) -> Result<(), CliError> {
+    let felt = |palm: &LoggedPalm| by_force(palm) || palm.impulse_axes() == Some(SensedAxes::Three);
+    let lacks = log.palms().iter().position(|palm| !felt(palm));
+    let refused = |i| CliError::NotThreeAxes { path: path.to_owned(), palm: i + 1, source: why.clone() };
+    lacks.map_or(Ok(()), |i| Err(refused(i)))
+}
+
+/// Everything that contacts of any palms tell. Truth in the log is only compared with, never used.
 pub(crate) fn estimate_any_palms(
     log: ContactLog,
-    why: NotThreePlanes,
-    request: &AnyPalmsRequest,
+    request: AnyPalmsRequest,
     progress: &Progress,
 ) -> Result<AnyPalms, CliError> {
-    let felt = |palm: &LoggedPalm| by_force(palm) || palm.impulse_axes() == Some(SensedAxes::Three);
-    if let Some(i) = log.palms().iter().position(|palm| !felt(palm)) {
-        return Err(CliError::NotThreeAxes { path: request.path.to_owned(), palm: i + 1, source: why });
-    }
-    let mut options = options(&log, request.scene)?;
+    let mut options = options(&log, request.scene, request.together)?;
+    options.friction = request.friction;
     if !request.identify {
         options.body = request.scene.mass_properties().ok().flatten();
     }
@@ -67,7 +121,7 @@ pub(crate) fn estimate_any_palms(
         let axes = options.body.as_ref().map_or(at.inverse() * found, |mass| nearest_turn(mass, at, found));
         true_motion(&truth, axes)
     });
-    let mut warnings = Vec::new();
+    let mut warnings = request.warnings;
     warnings.extend(not_relied_on(&estimate));
     warnings.extend(impulses_not_read(&log, &options));
     progress.step("bounding the shape");
@@ -80,16 +134,26 @@ pub(crate) fn estimate_any_palms(
         }
     };
     warnings.extend(bounds.iter().flat_map(|bounds| bounds.warnings.clone()));
+    if let Some(bounds) = &bounds
+        && options.noise.contact > NOTABLE_NOISE * bounds.drawn.lower.volume.cbrt()
+    {
+        warnings.push(margins(options.noise.contact));
+    }
     if bounds.is_none() {
         warnings
             .push("There are no bounds on the shape: at no sample the pose is known well enough.".to_owned());
     }
-    let bounds_at = bounds.is_some().then_some(CONFIDENCE);
+    let checks = Checks {
+        implausible: request.implausible,
+        stands_out: bounds.as_ref().filter(|bounds| bounds.contradicts()).map(|bounds| bounds.contradiction),
+        bounds_at: bounds.is_some().then_some(CONFIDENCE),
+        together: request.together,
+    };
     let data = EstimateData {
         title: request.title.to_owned(),
-        verdict: verdict(&estimate),
-        note: sentence(&format!("{why}; the estimate is that from contacts of any palms")),
-        evidence: evidence(&estimate, &options, bounds_at),
+        verdict: verdict(&estimate, &checks),
+        note: request.note,
+        evidence: evidence(&estimate, &options, &checks),
         log,
         estimate,
         curves,
@@ -97,17 +161,19 @@ pub(crate) fn estimate_any_palms(
         bounds: bounds.as_ref().map(|bounds| bounds.drawn.clone()),
         warnings,
     };
-    Ok(AnyPalms { data, bounds })
+    Ok(AnyPalms { data, bounds, contact_noise: options.noise.contact })
 }
 
 /// What the estimator is told: as the scene states it, and the noise that it does not state from the roughness of the readings.
-fn options(log: &ContactLog, scene: &Scene) -> Result<ContactOptions, CliError> {
+fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOptions, CliError> {
     let sensors = &scene.sensors;
     let length = scene.size.or_else(|| size(log)).ok_or(CliError::SizeNotStated)?;
     let floor = sensors.contact_speed_std.unwrap_or(FLOOR * (scene.gravity * length).sqrt());
     let rough = ContactNoiseLevel::by_roughness(log, floor);
+    // Of means the noise is that of their samples over the root of how many there are.
+    let mean = 1.0 / (together as f64).sqrt();
     let stated = |fixed: Option<f64>, share: Option<f64>| {
-        fixed.or(share).map(|_| [fixed, share].map(Option::unwrap_or_default))
+        fixed.or(share).map(|_| [fixed, share].map(|of| mean * of.unwrap_or_default()))
     };
     let [force_fixed, force_share] =
         stated(sensors.force_std, sensors.force_share).unwrap_or([rough.force_fixed, rough.force_share]);
@@ -116,7 +182,7 @@ fn options(log: &ContactLog, scene: &Scene) -> Result<ContactOptions, CliError> 
     let impulse = stated(sensors.impulse_std, sensors.impulse_share)
         .map(|[fixed, share]| ImpulseNoise { fixed, share })
         .or(rough.impulse.filter(|_| alone));
-    let contact = sensors.contact_std.unwrap_or(rough.contact);
+    let contact = sensors.contact_std.map_or(rough.contact, |stated| mean * stated);
     let noise = ContactNoiseLevel { contact, force_fixed, force_share, impulse, floor };
     Ok(ContactOptions { size: scene.size, pose_errors: true, ..ContactOptions::new(noise, scene.gravity) })
 }

@@ -1,6 +1,6 @@
 //! An estimate from contacts of any palms in words and numbers for people.
 
-use super::evidence::of_bounds;
+use super::evidence::{of_bounds, samples_together};
 use glam::DVec3;
 use recon::object_dynamics::MassProperties;
 use recon::observer::{ContactEstimate, ContactOptions, Reason, Reliability};
@@ -10,10 +10,33 @@ use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Verdict, brief_t
 /// Share of the samples whose motion must be relied on for a result without reservations.
 const ENOUGH: f64 = 0.5;
 
+/// What speaks for or against an estimate beside its own evidence.
+pub(super) struct Checks {
+    /// Something in the log does not go with the scene.
+    pub(super) implausible: bool,
+    /// How far the lower bound stands out of the upper one, m, where that is worth a word.
+    pub(super) stands_out: Option<f64>,
+    /// Confidence of the bounds where there are any.
+    pub(super) bounds_at: Option<f64>,
+    /// Samples of the log that were taken as one.
+    pub(super) together: usize,
+}
+
 /// Whether the estimate can be relied on, in one sentence.
-pub(super) fn verdict(estimate: &ContactEstimate) -> Verdict {
-    if let Reliability::Unreliable(reasons) = &estimate.reliability {
-        let reasons: Vec<String> = reasons.iter().map(ToString::to_string).collect();
+pub(super) fn verdict(estimate: &ContactEstimate, checks: &Checks) -> Verdict {
+    let mut reasons: Vec<String> = match &estimate.reliability {
+        Reliability::Reliable => Vec::new(),
+        Reliability::Unreliable(reasons) => reasons.iter().map(ToString::to_string).collect(),
+    };
+    if checks.implausible {
+        reasons.push("log and scene do not go together (see the warnings)".to_owned());
+    }
+    if let Some(stands_out) = checks.stands_out {
+        reasons.push(format!(
+            "the contacts contradict each other by {stands_out:.1e} m beyond their margins, so the motion is wrong or the object is not convex"
+        ));
+    }
+    if !reasons.is_empty() {
         let text = format!("Do not rely on this result: {}.", reasons.join("; "));
         return Verdict { level: Level::Bad, text };
     }
@@ -62,12 +85,15 @@ fn learned(estimate: &ContactEstimate) -> &'static str {
 pub(super) fn evidence(
     estimate: &ContactEstimate,
     options: &ContactOptions,
-    bounds_at: Option<f64>,
+    checks: &Checks,
 ) -> Vec<Evidence> {
     let mut rows = body(estimate);
     rows.extend(fit(estimate));
     rows.extend(told(options));
-    if let (Some(confidence), Some(errors)) = (bounds_at, &estimate.pose_errors) {
+    if checks.together > 1 {
+        rows.push(samples_together(checks.together));
+    }
+    if let (Some(confidence), Some(errors)) = (checks.bounds_at, &estimate.pose_errors) {
         rows.extend(of_bounds(errors, confidence));
     }
     rows
@@ -108,9 +134,14 @@ fn body(estimate: &ContactEstimate) -> Vec<Evidence> {
     // A tensor that no body has, as rounding may leave one, has no moments to tell.
     if let Ok(mass) = MassProperties::new(estimate.mass, estimate.inertia) {
         let names = [("moment_x", "Least"), ("moment_y", "Middle"), ("moment_z", "Largest")];
-        for ((key, which), moment) in names.into_iter().zip(mass.principal().moments.to_array()) {
-            let meaning = "About the centre of mass, as estimated from the log.";
-            rows.push(neutral(key, &format!("{which} principal moment"), Number(moment), "kg m^2", meaning));
+        let principal = mass.principal();
+        for (i, (key, which)) in names.into_iter().enumerate() {
+            let (meaning, name) =
+                ("About the centre of mass, as estimated from the log.", format!("{which} principal moment"));
+            rows.push(neutral(key, &name, Number(principal.moments[i]), "kg m^2", meaning));
+            let deviation = Number(estimate.moment_deviation(principal.axes * DVec3::AXES[i]));
+            let (key, name) = (format!("std_{key}"), format!("Its uncertainty, {}", which.to_lowercase()));
+            rows.push(neutral(&key, &name, deviation, "kg m^2", "Standard deviation."));
         }
     }
     let reliable = estimate.reliability.is_reliable();

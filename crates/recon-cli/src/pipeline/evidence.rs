@@ -221,14 +221,7 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
         ),
     ];
     if checks.together > 1 {
-        rows.push(row(
-            "samples_together",
-            "Rows in a sample",
-            EvidenceValue::Count(checks.together as u64),
-            "",
-            "The log is denser than its motion needs: the means of so many rows are taken as one sample.",
-            neutral,
-        ));
+        rows.push(samples_together(checks.together));
     }
     if !estimate.others.is_empty() {
         rows.push(row(
@@ -259,6 +252,20 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
         }
     }
     rows
+}
+
+/// Of a log that was thinned by means.
+pub(super) fn samples_together(together: usize) -> Evidence {
+    Evidence {
+        key: "samples_together".to_owned(),
+        name: "Rows in a sample".to_owned(),
+        value: EvidenceValue::Count(together as u64),
+        unit: String::new(),
+        meaning:
+            "The log is denser than its motion needs: the means of so many rows are taken as one sample."
+                .to_owned(),
+        level: Level::Neutral,
+    }
 }
 
 /// What bounds hold for, at which odds and in which axes.

@@ -1,15 +1,19 @@
 //! The reconstructed object as a model for simulators.
 
-use super::Reconstruction;
 use crate::cli::{ExportAs, ShapeAs};
 use crate::error::CliError;
 use glam::DMat3;
 use recon::contact_kinematics::SupportFunction;
+use recon::object_dynamics::MassProperties;
 use recon::observer::IdentifiedBody;
 use recon::shape_bounds::{
-    ContactNoise, FitOptions, FittedBody, NoiseLevel, NoisyContact, ShapeFamily, ShapeFit, SkewEllipsoid,
+    ContactNoise, ContactSample, FitOptions, FittedBody, NoiseLevel, NoisyContact, ShapeFamily, ShapeFit,
+    SkewEllipsoid,
 };
-use recon_io::{ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel};
+use recon_io::{
+    ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, MotionState, ObjectModel,
+    TriangleMesh,
+};
 
 /// Misfit up to which contacts are those of an ellipsoid: this share of its size, and this many deviations of the
 /// contacts' noise. What is left then matters to no simulator.
@@ -17,9 +21,27 @@ const ELLIPSOIDAL: (f64, f64) = (1e-4, 5.0);
 /// Contacts that the ellipsoid is fitted to, at most.
 const FITTED: usize = 3000;
 
+/// A reconstructed object.
+pub(crate) struct Object<'a> {
+    pub(crate) title: &'a str,
+    pub(crate) verdict: &'a str,
+    /// Mass and inertia in the body axes of the estimate.
+    pub(crate) mass: MassProperties,
+    /// How well they are known where they were estimated.
+    pub(crate) deviations: Option<MassDeviations>,
+    /// Surfaces of the bounds.
+    pub(crate) lower: Option<&'a TriangleMesh>,
+    pub(crate) upper: Option<&'a TriangleMesh>,
+    /// All contacts, body axes, and the noise of their positions, m.
+    pub(crate) contacts: Vec<ContactSample>,
+    pub(crate) contact_noise: f64,
+    /// Motion at the first sample.
+    pub(crate) start: Option<MotionState>,
+}
+
 /// The files of the object in the given formats; none without formats.
 pub(crate) fn exported(
-    made: &Reconstruction,
+    made: &Object<'_>,
     formats: &[ExportAs],
     shape: ShapeAs,
 ) -> Result<Vec<ExportedFile>, CliError> {
@@ -31,23 +53,23 @@ pub(crate) fn exported(
         ExportAs::Urdf => ExportFormat::Urdf,
     };
     let (shape, words) = chosen(made, shape)?;
-    let seen = [("inner", &made.lower), ("outer", &made.upper)];
-    let seen = seen.into_iter().filter_map(|(name, mesh)| Some((name.to_owned(), mesh.clone()?)));
+    let seen = [("inner", made.lower), ("outer", made.upper)];
+    let seen = seen.into_iter().filter_map(|(name, mesh)| Some((name.to_owned(), mesh?.clone())));
     let model = ObjectModel {
         name: "object".to_owned(),
-        notes: [made.data.title.clone(), made.data.verdict.text.clone(), words].into(),
+        notes: [made.title.to_owned(), made.verdict.to_owned(), words].into(),
         mass: made.mass,
-        deviations: made.identified.as_ref().map(deviations),
+        deviations: made.deviations,
         shape,
         seen: seen.collect(),
-        start: made.data.motion.first().copied(),
+        start: made.start,
     };
     Ok(model.files(&formats.iter().map(format).collect::<Vec<_>>())?)
 }
 
 /// Deviations of the tensor's entries in principal axes. Off the diagonal they are those of the axes' directions; where
 /// two moments are equal these are open, and what is off the diagonal is as uncertain as the moments are.
-fn deviations(body: &IdentifiedBody) -> MassDeviations {
+pub(super) fn deviations(body: &IdentifiedBody) -> MassDeviations {
     let (moments, of) = (body.mass.principal().moments, body.moment_deviations);
     let off = |a: usize, b: usize, axis: usize| {
         let turned = (moments[a] - moments[b]).abs() * body.axis_deviations[axis];
@@ -59,13 +81,13 @@ fn deviations(body: &IdentifiedBody) -> MassDeviations {
 }
 
 /// The shape, and what it is in words.
-fn chosen(made: &Reconstruction, shape: ShapeAs) -> Result<(ExportShape, String), CliError> {
+fn chosen(made: &Object<'_>, shape: ShapeAs) -> Result<(ExportShape, String), CliError> {
     let bound = |name: &'static str| {
         let (mesh, reason) = match name {
-            "inner" => (&made.lower, "the contacts span no volume"),
-            _ => (&made.upper, "the contacts leave the object unbounded on some side"),
+            "inner" => (made.lower, "the contacts span no volume"),
+            _ => (made.upper, "the contacts leave the object unbounded on some side"),
         };
-        let mesh = mesh.clone().ok_or(ExportError::NoBound { name, reason })?;
+        let mesh = mesh.cloned().ok_or(ExportError::NoBound { name, reason })?;
         let words = format!("It collides with the {name} bound.");
         Ok((ExportShape::Mesh { name: name.to_owned(), mesh }, words))
     };
@@ -92,7 +114,7 @@ impl EllipsoidFit {
     }
 }
 
-fn fit(made: &Reconstruction) -> Result<EllipsoidFit, CliError> {
+fn fit(made: &Object<'_>) -> Result<EllipsoidFit, CliError> {
     let step = made.contacts.len().div_ceil(FITTED).max(1);
     let size = made.contacts.iter().map(|c| c.point.length()).fold(f64::MIN_POSITIVE, f64::max);
     // Only the share of points and normals in the noise matters: its size is estimated.

@@ -4,9 +4,9 @@ use super::{AnyPalms, ContactRun};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
 use recon_io::{
-    FolderTarget, MotionState, OutputFolder, TriangleMesh, estimate_summary, summary, write_contact_curves,
-    write_contact_log, write_contact_report, write_estimate_report, write_estimated_motion, write_motion,
-    write_ply, write_radius_functions, write_report,
+    FolderTarget, MotionState, OutputFolder, ReportData, TriangleMesh, estimate_summary, summary,
+    write_contact_curves, write_contact_log, write_contact_report, write_estimate_report,
+    write_estimated_motion, write_motion, write_ply, write_radius_functions, write_report,
 };
 use serde_json::Value;
 use std::io::{self, Write};
@@ -42,7 +42,14 @@ pub(crate) fn write_reconstruction_folder(
 }
 
 /// Writes everything about a motion that was estimated from contacts of any palms; returns the summary.
-pub(crate) fn write_estimate_folder(target: FolderTarget, made: &AnyPalms) -> Result<Value, CliError> {
+///
+/// `page` is what the page of three palms shows, where they are that.
+pub(crate) fn write_estimate_folder(
+    target: FolderTarget,
+    made: &AnyPalms,
+    page: Option<&ReportData>,
+    extras: &[Extra],
+) -> Result<Value, CliError> {
     let data = &made.data;
     let mut figures = estimate_summary(data);
     state_contradiction(&mut figures, made.bounds.as_ref().map_or(0.0, |bounds| bounds.contradiction));
@@ -53,7 +60,15 @@ pub(crate) fn write_estimate_folder(target: FolderTarget, made: &AnyPalms) -> Re
         let curves: Vec<_> = data.curves.iter().map(Vec::as_slice).collect();
         folder.write("contact_curves.csv", |to| write_contact_curves(times, &curves, to))?;
         folder.write_bounds(made.bounds.as_ref())?;
-        folder.write("report.html", |to| write_estimate_report(data, to))?;
+        for (name, contents) in extras {
+            folder.write(name, |to| to.write_all(contents))?;
+        }
+        if let Some(page) = page {
+            folder.write("radius_functions.csv", |to| write_radius_functions(page, to))?;
+            folder.write("report.html", |to| write_report(page, to))?;
+        } else {
+            folder.write("report.html", |to| write_estimate_report(data, to))?;
+        }
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()
     })?;

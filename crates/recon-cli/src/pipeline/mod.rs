@@ -13,6 +13,7 @@ mod export;
 mod fitted;
 mod folder;
 mod modes;
+mod noisy_planes;
 mod planar_contacts;
 mod plane;
 mod read;
@@ -21,7 +22,7 @@ mod simulate;
 mod sound;
 mod truth;
 
-pub(crate) use any_palms::{AnyPalms, AnyPalmsRequest, estimate_any_palms};
+pub(crate) use any_palms::{AnyPalms, AnyPalmsRequest, estimate_any_palms, refuse_unfelt};
 pub(crate) use bounds::{BoundsResult, bounds, exact_bounds};
 pub(crate) use concave::concave_bounds;
 pub(crate) use contacts::{ContactRun, simulate_contacts};
@@ -33,9 +34,10 @@ pub(crate) use folder::{
     write_reconstruction_folder, write_touch_folder,
 };
 pub(crate) use modes::describe_times;
+pub(crate) use noisy_planes::{as_planes, noisy_planes};
 pub(crate) use planar_contacts::simulate_planar_contacts;
 pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};
 pub(crate) use read::{LogOf, read_log, three_palms};
-pub(crate) use reconstruct::{NOTABLE_NOISE, Reconstruction, reconstruct};
+pub(crate) use reconstruct::{NOTABLE_NOISE, Reconstruction, condensed, reconstruct, sentence};
 pub(crate) use simulate::{Simulated, known_body, simulate};
 pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};

@@ -1,5 +1,6 @@
 use super::bounds::{BoundsResult, contradiction};
 use super::evidence::{Checks, evidence, verdict};
+use super::export::{Object, deviations};
 use super::simulate::known_body;
 use super::sound::motion_bounds;
 use super::truth::{true_motion, true_shape};
@@ -46,6 +47,21 @@ pub(crate) struct Reconstruction {
 }
 
 impl Reconstruction {
+    /// The object for simulators.
+    pub(crate) fn object(&self) -> Object<'_> {
+        Object {
+            title: &self.data.title,
+            verdict: &self.data.verdict.text,
+            mass: self.mass,
+            deviations: self.identified.as_ref().map(deviations),
+            lower: self.lower.as_ref(),
+            upper: self.upper.as_ref(),
+            contacts: self.contacts.clone(),
+            contact_noise: self.contact_noise,
+            start: self.data.motion.first().copied(),
+        }
+    }
+
     /// Whether the result may be relied on.
     pub(crate) fn is_reliable(&self) -> bool {
         self.data.verdict.level == Level::Good
@@ -57,14 +73,13 @@ pub(crate) fn reconstruct(
     log: SensorLog,
     scene: &Scene,
     title: &str,
-    identify: bool,
+    (identify, together): (bool, usize),
     progress: &Progress,
 ) -> Result<Reconstruction, CliError> {
     let known = if identify { None } else { Some(known_body(scene)?) };
     let odd = implausibilities(&log, scene);
     let mut warnings: Vec<String> = odd.iter().map(|w| sentence(&w.to_string())).collect();
     progress.step("estimating the motion");
-    let (log, together) = condensed(log);
     let (log, truth) = log.split_truth();
     let (mass, identified, mut estimate) =
         estimated(&log, scene, known, noise(scene, together)).map_err(|error| {
@@ -91,10 +106,7 @@ pub(crate) fn reconstruct(
     }
     let noise = estimate.evidence.noise.contact;
     if bounded.is_some() && noise > NOTABLE_NOISE * size {
-        warnings.push(format!(
-            "Contacts are noisy by {noise:.1e} m: the bounds have margins with which they hold at {:.0} % confidence.",
-            100.0 * CONFIDENCE
-        ));
+        warnings.push(margins(noise));
     }
     // Contacts that cannot even be compared contradict each other: the verdict on the motion says so.
     let stands_out = bounded.as_ref().map_or(0.0, |b| b.contradiction);
@@ -134,6 +146,14 @@ pub(crate) fn reconstruct(
     Ok(Reconstruction { data, lower, upper, stands_out, mass, identified, contacts, contact_noise })
 }
 
+/// What to say of bounds from noisy contacts.
+pub(super) fn margins(noise: f64) -> String {
+    format!(
+        "Contacts are noisy by {noise:.1e} m: the bounds have margins with which they hold at {:.0} % confidence.",
+        100.0 * CONFIDENCE
+    )
+}
+
 /// Body and motion; the body with its deviations where it is not known.
 fn estimated(
     log: &SensorLog,
@@ -153,7 +173,7 @@ fn estimated(
 }
 
 /// The log, or of a long one the means of so many samples.
-fn condensed(log: SensorLog) -> (SensorLog, usize) {
+pub(crate) fn condensed(log: SensorLog) -> (SensorLog, usize) {
     // Odd, so that the truth of the middle one is that of the mean's time.
     let together = log.samples().len().div_ceil(MOST_SAMPLES) | 1;
     match (together > 1).then(|| log.condensed(together)).flatten() {
@@ -226,7 +246,7 @@ fn bounds_of(estimate: &MotionEstimate) -> Result<Option<BoundsResult>, CliError
 }
 
 /// A message as a sentence of its own.
-pub(super) fn sentence(text: &str) -> String {
+pub(crate) fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
     let end = if text.ends_with(['.', '?', ')']) { "" } else { "." };

@@ -251,7 +251,7 @@ fn contacts_of_one_palm_need_the_size_of_the_object() {
 fn what_neither_estimator_can_do_is_refused_by_name() {
     let scratch = simulated("refused", ONE_PLATE);
     let sized = ONE_PLATE.replace("mass = 0.2", "mass = 0.2\nsize = 0.04");
-    refused(&scratch, &sized, &["--export", "mjcf"], (2, &["--export", "log.csv"]));
+    refused(&scratch, &sized, &["--export", "mjcf"], (3, &["no inner bound to export"]));
     refused(&scratch, &sized, &["--without-forces"], (3, &["log.csv", "1 palm(s)"]));
     refused(&scratch, &sized.replace("gravity = 9.81", "gravity = 0.0"), &[], (3, &["gravity"]));
     // What a robot has whose palm feels no force.

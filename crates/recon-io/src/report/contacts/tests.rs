@@ -170,6 +170,7 @@ fn estimate() -> EstimateData {
     };
     let estimate = ContactEstimate {
         pose_errors: None,
+        inertia_covariance: Default::default(),
         deviations: vec![[DVec3::splat(1e-3); 4]; count],
         // The third sample to the fifth, and the last one.
         relied_on: (0..count).map(|k| !(2..5).contains(&k) && k + 1 < count).collect(),
