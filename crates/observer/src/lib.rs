@@ -10,6 +10,8 @@
 #[cfg(feature = "palms")]
 mod contacts;
 mod core;
+#[cfg(feature = "palms")]
+mod faults;
 mod least_squares;
 #[cfg(feature = "palms")]
 pub mod planar;
@@ -26,6 +28,8 @@ pub use core::{
     NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start, Status, describe_direction, rk4,
     rk4_linearised, solve_batch, solve_batch_along, solve_batch_from,
 };
+#[cfg(feature = "palms")]
+pub use faults::{SensorFault, Suspect};
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
 pub use three_palms::{

@@ -5,6 +5,7 @@ use crate::report::{
     mode_times,
 };
 use glam::DMat3;
+use recon::observer::{SensorFault, Suspect};
 use serde_json::{Map, Value, json};
 
 /// Deviation of the logarithm of the root of a second moment below which it was learned from the log.
@@ -45,6 +46,10 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         "rms_error": departures.as_deref().map(|d| errors(d, rms_of)),
         "warnings": data.warnings,
     });
+    if !found.suspects.is_empty() {
+        figures["sensor_faults"] =
+            found.suspects.iter().filter(|of| of.deviation.is_finite()).map(fault).collect();
+    }
     match found.axes_deviations {
         Some(of) => figures["std_axes_rad"] = json!(of.to_array()),
         None => {
@@ -54,6 +59,29 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         }
     }
     figures
+}
+
+/// What the data say of a constant of the sensors.
+fn fault(of: &Suspect) -> Value {
+    let (kind, palm, axis) = match of.fault {
+        SensorFault::ForceGain { palm } => ("force_gain", Some(palm), None),
+        SensorFault::ForceBias { palm } => ("force_bias_n", Some(palm), None),
+        SensorFault::ForceDelay => ("force_delay_s", None, None),
+        SensorFault::ContactOffset { palm, axis } => ("contact_offset_m", Some(palm), Some(axis)),
+        SensorFault::PalmTilt { palm, axis } => ("palm_tilt_rad", Some(palm), Some(axis)),
+        SensorFault::Friction => ("friction", None, None),
+    };
+    let mut said = json!({ "constant": kind, "value": of.value, "std": of.deviation, "score": of.score() });
+    if let Some(palm) = palm {
+        said["palm"] = json!(palm);
+    }
+    if let Some(axis) = axis {
+        said["axis"] = json!(["x", "y"][axis.min(1)]);
+    }
+    if of.tolerated.is_finite() {
+        said["moves_motion_by_one_deviation"] = json!(of.tolerated);
+    }
+    said
 }
 
 fn rows(m: &DMat3) -> [[f64; 3]; 3] {

@@ -1,6 +1,7 @@
 //! Normal equations of a chain of nodes: what [`Problem`](super::problem::Problem) is linearised to.
 
 use super::flow::Transition;
+use super::solve::Step;
 use super::state::{MOTION, Tangent};
 use nalgebra::{SMatrix, SVector};
 
@@ -56,6 +57,13 @@ pub(super) struct SampleEquations<const P: usize> {
 pub(super) struct Gradient<const P: usize> {
     pub(super) motions: Vec<Tangent>,
     pub(super) body: SVector<f64, P>,
+}
+
+impl<const P: usize> Gradient<P> {
+    /// Along a step.
+    pub(super) fn dot(&self, step: &Step<P>) -> f64 {
+        self.motions.iter().zip(&step.motions).map(|(a, b)| a.dot(b)).sum::<f64>() + self.body.dot(&step.body)
+    }
 }
 
 impl<const P: usize> Equations<P> {

@@ -5,14 +5,16 @@ use super::joint::pose_errors;
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
 use super::problem::{Problem, Units};
-use super::record::Record;
+use super::record::{Contact, Record};
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{fine, fine_nodes, problem, refined, search};
 use super::solve::{Covariances, Solved};
 use super::state::Motion;
+use super::suspects::{Change, suspects};
 use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
+use crate::faults::Suspect;
 use crate::three_palms::{PoseErrors, Reason, Reliability};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix6, Vector6};
@@ -57,6 +59,8 @@ pub struct ContactEstimate {
     pub inertia_deviations: [f64; 3],
     /// How far the poses that are relied on may be off, all of them together, for bounds on the shape; none unless asked for.
     pub pose_errors: Option<PoseErrors>,
+    /// What the data say of constants of the sensors that were taken as known; none unless asked for, nor of a log that is as good as exact.
+    pub suspects: Vec<Suspect>,
     /// Whether to believe it.
     pub reliability: Reliability,
     /// What it rests on.
@@ -89,102 +93,128 @@ pub fn estimate_contacts(
 ) -> Result<ContactEstimate, ContactEstimateError> {
     options.check()?;
     check(log, modes, options)?;
-    let mut record = Record::new(log, options).ok_or(ContactEstimateError::NoContact)?;
+    let record = Record::new(log, options).ok_or(ContactEstimateError::NoContact)?;
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let units = cold::units(&record, options.gravity, length);
-    let impulse = units.speed * units.mass;
-    record.mark_blows(impulse, impulse * length, options.gravity * units.mass);
+    let source = Source { log, options, units };
+    let mut record = source.with_blows(record);
     match modes {
-        Some(modes) => Ok(with_modes(&mut record, modes.to_vec(), options, units)?.0),
-        None => with_estimated_modes(&mut record, options, units),
+        Some(modes) => Ok(source.with_modes(&mut record, modes.to_vec())?.0),
+        None => source.with_estimated_modes(&mut record),
     }
 }
 
-/// With modes from the ratios of forces, those of the conditions that the motion contradicts taken back.
-fn with_estimated_modes(
-    record: &mut Record,
-    options: &ContactOptions,
+/// What an estimate is made from.
+struct Source<'a> {
+    log: &'a ContactLog,
+    options: &'a ContactOptions,
     units: Units,
-) -> Result<ContactEstimate, ContactEstimateError> {
-    let mut modes = by_ratio(record, AVERAGED * units.length / units.speed);
-    for _ in 0..ROUNDS {
-        let (found, slips) = with_modes(record, modes, options, units)?;
-        if slips.is_empty() {
-            return Ok(found);
-        }
-        modes = found.modes;
-        for (samples, palm) in slips {
-            for mode in modes[samples].iter_mut().map(|modes| &mut modes[palm]) {
-                *mode = if *mode == ContactMode::Off { ContactMode::Off } else { ContactMode::Slide };
-            }
-        }
-    }
-    Ok(with_modes(record, modes, options, units)?.0)
 }
 
 /// Samples at which the motion contradicts that a contact sticks, and the palm.
 type Slips = Vec<(Range<usize>, usize)>;
 
-fn with_modes(
-    record: &mut Record,
-    modes: Vec<[ContactMode; MOST_PALMS]>,
-    options: &ContactOptions,
-    units: Units,
-) -> Result<(ContactEstimate, Slips), ContactEstimateError> {
-    record.set_modes(&modes);
-    let log = &*record;
-    let averaged = log.averaged(longest(log, &options.noise, &units));
-    let thinned = averaged.thinned(THIN * units.length / units.speed);
-    let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
-    let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
-    let (mut doubt, mut against) = (None, None);
-    if let Some(mass) = &options.body {
-        let covariance = covariances(&problem, &solved)?.body;
-        let known = oriented(&mut problem, &solved, &covariance, mass);
-        let known = known.ok_or(ContactEstimateError::Singular)?;
-        before += solved.iterations + known.iterations - known.solved.iterations;
-        (solved, doubt, against) = (known.solved, Some(known.doubt), known.against);
+impl Source<'_> {
+    fn with_blows(&self, mut record: Record) -> Record {
+        let impulse = self.units.speed * self.units.mass;
+        record.mark_blows(impulse, impulse * self.units.length, self.options.gravity * self.units.mass);
+        record
     }
-    if thinned.is_some() {
-        before += solved.iterations;
-        (problem, solved) = polished(&averaged, problem, &solved).ok_or(ContactEstimateError::Singular)?;
+
+    /// With modes from the ratios of forces, those of the conditions that the motion contradicts taken back.
+    fn with_estimated_modes(&self, record: &mut Record) -> Result<ContactEstimate, ContactEstimateError> {
+        let mut modes = by_ratio(record, AVERAGED * self.units.length / self.units.speed);
+        for _ in 0..ROUNDS {
+            let (found, slips) = self.with_modes(record, modes)?;
+            if slips.is_empty() {
+                return Ok(found);
+            }
+            modes = found.modes;
+            for (samples, palm) in slips {
+                for mode in modes[samples].iter_mut().map(|modes| &mut modes[palm]) {
+                    *mode = if *mode == ContactMode::Off { ContactMode::Off } else { ContactMode::Slide };
+                }
+            }
+        }
+        Ok(self.with_modes(record, modes)?.0)
     }
-    let covariances = covariances(&problem, &solved)?;
-    let iterations = [before, before + solved.iterations];
-    let motions = at_all(log, &problem, &solved.unknowns, &covariances);
-    let slips = slips(&problem, &motions, &solved.unknowns.body);
-    let found = Found {
-        log,
-        problem: &problem,
-        solved: &solved,
-        covariances: &covariances,
-        iterations,
-        doubt,
-        against,
-    };
-    Ok((found.estimate(&motions, modes, options), slips))
+
+    fn with_modes(
+        &self,
+        record: &mut Record,
+        modes: Vec<[ContactMode; MOST_PALMS]>,
+    ) -> Result<(ContactEstimate, Slips), ContactEstimateError> {
+        let Self { options, units, .. } = *self;
+        record.set_modes(&modes);
+        let log = &*record;
+        let longest = longest(log, &options.noise, &units);
+        let averaged = log.averaged(longest);
+        let thinned = averaged.thinned(THIN * units.length / units.speed);
+        let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
+        let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
+        let (mut doubt, mut against) = (None, None);
+        if let Some(mass) = &options.body {
+            let covariance = covariances(&problem, &solved)?.body;
+            let known = oriented(&mut problem, &solved, &covariance, mass);
+            let known = known.ok_or(ContactEstimateError::Singular)?;
+            before += solved.iterations + known.iterations - known.solved.iterations;
+            (solved, doubt, against) = (known.solved, Some(known.doubt), known.against);
+        }
+        if thinned.is_some() {
+            before += solved.iterations;
+            (problem, solved) =
+                polished(&averaged, &problem, &solved).ok_or(ContactEstimateError::Singular)?;
+        }
+        let covariances = covariances(&problem, &solved)?;
+        let iterations = [before, before + solved.iterations];
+        let motions = at_all(log, &problem, &solved.unknowns, &covariances);
+        let slips = slips(&problem, &motions, &solved.unknowns.body);
+        let suspects = match options.suspects && thinned.is_none() && slips.is_empty() {
+            true => self.suspects(&problem, &solved, &covariances, &motions, (&modes, longest)),
+            false => Vec::new(),
+        };
+        let found = Found {
+            log,
+            problem: &problem,
+            solved: &solved,
+            covariances: &covariances,
+            iterations,
+            doubt,
+            against,
+            suspects: &suspects,
+        };
+        Ok((found.estimate(&motions, modes, options), slips))
+    }
+
+    /// Scores of constants of the sensors at a solution whose contacts were averaged over windows of at most `longest`, s.
+    fn suspects(
+        &self,
+        problem: &Problem,
+        solved: &Solved<CONSTANTS>,
+        covariances: &Covariances<CONSTANTS>,
+        motions: &[(Motion, Deviations)],
+        (modes, longest): (&[[ContactMode; MOST_PALMS]], f64),
+    ) -> Vec<Suspect> {
+        let remade = |change: &Change| {
+            let apply = |k: usize, contact: &mut Contact, origin| change.apply(k, contact, origin);
+            let mut record = self.with_blows(Record::changed(self.log, self.options, apply)?);
+            record.set_modes(modes);
+            Some(record.averaged(longest))
+        };
+        suspects(problem, solved, covariances, (self.log, motions), remade).unwrap_or_default()
+    }
 }
 
 /// The solution on a record of which another one was solved that has fewer of its samples.
 fn polished<'a>(
     record: &'a Record,
-    thinned: Problem,
+    thinned: &Problem,
     solved: &Solved<CONSTANTS>,
 ) -> Option<(Problem<'a>, Solved<CONSTANTS>)> {
     let place = |sample: &usize| record.samples.partition_point(|own| own < sample);
     let nodes: Vec<usize> = thinned.node_samples().iter().map(place).collect();
-    let Problem { noise, friction, gravity, units, first, body, .. } = thinned;
-    let mut problem = Problem {
-        record,
-        noise,
-        friction,
-        gravity,
-        units,
-        first,
-        body,
-        nodes: Vec::new(),
-        frozen: Vec::new(),
-    };
+    let mut problem = thinned.on(record);
+    problem.frozen.clear();
     problem.nodes = fine_nodes(&problem);
     let start = refined(&problem, &nodes, &solved.unknowns);
     let solved = fine(&mut problem, start)?;
@@ -234,6 +264,7 @@ struct Found<'a> {
     doubt: Option<f64>,
     /// Why a known body is not the one.
     against: Option<Reason>,
+    suspects: &'a [Suspect],
 }
 
 impl Found<'_> {
@@ -243,7 +274,7 @@ impl Found<'_> {
         modes: Vec<[ContactMode; MOST_PALMS]>,
         options: &ContactOptions,
     ) -> ContactEstimate {
-        let Self { log, problem, solved, covariances, iterations, doubt, against } = *self;
+        let Self { log, problem, solved, covariances, iterations, doubt, against, suspects } = *self;
         let Solved { unknowns, equations, settled, .. } = solved;
         let (body, known) = (&unknowns.body, options.body.as_ref());
         // The body's own axes in those of the first sample.
@@ -263,7 +294,7 @@ impl Found<'_> {
             R_WO: (motion.q * own).normalize(),
         };
         let (mut reliability, wider) = (evidence.reliability(), evidence.widening());
-        if let Some(reason) = against {
+        for reason in against.into_iter().chain(ContactEvidence::against(suspects)) {
             reliability.add(reason);
         }
         let deviations: Vec<_> = motions.iter().map(|(_, of)| of.map(|of| of * wider)).collect();
@@ -279,6 +310,7 @@ impl Found<'_> {
         let deviation = |i: usize| covariances.body[(i, i)].max(0.0).sqrt() * wider;
         ContactEstimate {
             states: motions.iter().map(|(motion, _)| state(motion)).collect(),
+            suspects: suspects.to_vec(),
             pose_errors: if options.pose_errors { joint() } else { None },
             relied_on,
             deviations,

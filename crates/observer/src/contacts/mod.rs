@@ -12,6 +12,7 @@ mod modes;
 mod noise;
 mod options;
 mod problem;
+mod reach;
 mod record;
 mod roughness;
 mod rows;
@@ -21,6 +22,7 @@ mod second_order;
 mod solve;
 mod spurious;
 mod state;
+mod suspects;
 #[cfg(test)]
 mod tests;
 mod verdict;

@@ -70,13 +70,15 @@ pub struct ContactOptions {
     pub size: Option<f64>,
     /// Whether to tell how far all poses together may be off, for bounds on the shape: a thousand motions are drawn for it.
     pub pose_errors: bool,
+    /// Whether to test what is taken as known of the sensors.
+    pub suspects: bool,
 }
 
 impl ContactOptions {
     /// Of a body of which nothing is known, without joint errors of poses. `gravity` in m/s^2.
     #[must_use]
     pub fn new(noise: ContactNoiseLevel, gravity: f64) -> Self {
-        Self { noise, gravity, friction: None, body: None, size: None, pose_errors: false }
+        Self { noise, gravity, friction: None, body: None, size: None, pose_errors: false, suspects: false }
     }
 
     /// Whether a palm is known to be without friction.

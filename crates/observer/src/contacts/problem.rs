@@ -73,6 +73,13 @@ pub(super) struct Trial {
 }
 
 impl Problem<'_> {
+    /// The same on another record.
+    pub(super) fn on<'b>(&self, record: &'b Record) -> Problem<'b> {
+        let Self { noise, friction, gravity, units, first, body, .. } = *self;
+        let (nodes, frozen) = (self.nodes.clone(), self.frozen.clone());
+        Problem { record, noise, friction, gravity, nodes, units, first, body, frozen }
+    }
+
     fn wrenches(&self, k: usize) -> [&Wrench; 2] {
         [&self.record.wrenches[k], &self.record.wrenches[k + 1]]
     }
@@ -106,9 +113,8 @@ impl Problem<'_> {
             }
             let mut noise = WrenchNoise::default();
             for k in from..end {
-                let interval = &self.record.intervals[k];
-                carried.advance(interval, self.wrenches(k), &at.body, self.gravity);
-                noise += interval.noise;
+                self.advance(&mut carried, k, &at.body);
+                noise += self.record.intervals[k].noise;
                 if k + 1 < end {
                     let rows = self.rows(k + 1, &carried.motion, &carried.turn, &at.body);
                     let (F, E) = carried.derivatives(&at.body);
@@ -333,6 +339,26 @@ impl Problem<'_> {
         0.5 * interval.noise.sampled_share() / samples as f64
     }
 
+    /// The motion at the sample of a node with a link of one interval after it, and its derivatives by the motions at both ends and by the body.
+    pub(super) fn split<const P: usize>(
+        &self,
+        j: usize,
+        carried: &Carried<P>,
+        at: &Unknowns,
+    ) -> (Motion, [Transition; 2], SMatrix<f64, MOTION, P>) {
+        let share = self.share(j);
+        let motion = at.motions[j].kicked(&at.motions[j + 1].from(&carried.motion), share);
+        let kicked = |i: usize| if (3..9).contains(&i) { share } else { 0.0 };
+        let after = Transition::from_diagonal(&Tangent::from_fn(|i, _| kicked(i)));
+        let (F, E) = carried.derivatives(&at.body);
+        (motion, [Transition::identity() - after * F, after], -(after * E))
+    }
+
+    /// Carries a motion over the interval after sample `k`.
+    pub(super) fn advance<const P: usize>(&self, carried: &mut Carried<P>, k: usize, body: &Body) {
+        carried.advance(&self.record.intervals[k], self.wrenches(k), body, self.gravity);
+    }
+
     /// Conditions of a node with a link of one interval after it.
     fn add_split<const P: usize>(
         &self,
@@ -341,13 +367,8 @@ impl Problem<'_> {
         at: &Unknowns,
         all: &mut Equations<P>,
     ) {
-        let share = self.share(j);
-        let motion = at.motions[j].kicked(&at.motions[j + 1].from(&carried.motion), share);
+        let (motion, [before, after], by_body) = self.split(j, carried, at);
         let rows = self.rows(self.nodes[j], &motion, &at.body.turn(motion.q, motion.L), &at.body);
-        let kicked = |i: usize| if (3..9).contains(&i) { share } else { 0.0 };
-        let after = Transition::from_diagonal(&Tangent::from_fn(|i, _| kicked(i)));
-        let (F, E) = carried.derivatives(&at.body);
-        let (before, by_body) = (Transition::identity() - after * F, -(after * E));
         let through = rows.own * after;
         all.nodes[j].next += before.transpose() * through;
         let next = &mut all.nodes[j + 1];
@@ -412,6 +433,17 @@ impl Problem<'_> {
             all.body += known.fixed_view::<P, P>(0, 0);
             all.body_gradient += (known * at.body.from(&self.body.0)).fixed_rows::<P>(0);
         }
+    }
+
+    /// Equations without what keeps the frozen combinations.
+    pub(super) fn unfrozen(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Equations<CONSTANTS> {
+        let mut free = equations.clone();
+        let d = at.body.from(&self.body.0);
+        for g in &self.frozen {
+            free.body -= g * g.transpose() * FROZEN;
+            free.body_gradient -= g * (FROZEN * g.dot(&d));
+        }
+        free
     }
 
     /// With what keeps the frozen combinations.

@@ -103,6 +103,15 @@ impl Record {
     /// direction of friction, the ratio by which modes are told, and how a force changes over an interval. The noises of both
     /// are taken to be independent; where no force is measured, it is that of the impulses around.
     pub(super) fn new(log: &ContactLog, options: &ContactOptions) -> Option<Self> {
+        Self::changed(log, options, |_, _, _| {})
+    }
+
+    /// The same where each contact is changed first, with its sample and the record's origin.
+    pub(super) fn changed(
+        log: &ContactLog,
+        options: &ContactOptions,
+        change: impl Fn(usize, &mut Contact, DVec3),
+    ) -> Option<Self> {
         let noise = &options.noise;
         let times = log.times().to_vec();
         let points =
@@ -113,8 +122,11 @@ impl Record {
         }
         let origin = points().map(|touch| touch.p_WC).sum::<DVec3>() / count as f64;
         let square = points().map(|touch| touch.p_WC.distance_squared(origin)).sum::<f64>();
-        let contacts: Vec<Vec<Contact>> =
+        let mut contacts: Vec<Vec<Contact>> =
             (0..times.len()).map(|k| contacts_at(log, k, origin, options)).collect();
+        for (k, contacts) in contacts.iter_mut().enumerate() {
+            contacts.iter_mut().for_each(|contact| change(k, contact, origin));
+        }
         let sampled: Vec<bool> =
             log.palms().iter().map(|palm| impulses::read(palm, noise).is_none()).collect();
         let mut intervals = intervals(&times, &contacts, noise, &sampled);

@@ -57,7 +57,7 @@ pub(super) struct Eliminated<const P: usize> {
 }
 
 /// The chain with the nodes eliminated, first to last, and what is left for the constants.
-struct Reduced<const P: usize> {
+pub(super) struct Reduced<const P: usize> {
     nodes: Vec<Eliminated<P>>,
     body: SMatrix<f64, P, P>,
 }
@@ -76,7 +76,7 @@ pub(super) struct Covariances<const P: usize> {
 
 impl<const P: usize> Reduced<P> {
     /// The step that takes a gradient to zero.
-    fn step(&self, gradient: &Gradient<P>) -> Step<P> {
+    pub(super) fn step(&self, gradient: &Gradient<P>) -> Step<P> {
         let mut left = Vec::with_capacity(self.nodes.len());
         let (mut of_body, mut carried) = (gradient.body, Tangent::zeros());
         for (node, own) in self.nodes.iter().zip(&gradient.motions) {
@@ -145,13 +145,18 @@ impl<const P: usize> Equations<P> {
         whole.map_or(f64::INFINITY, |step| self.promised(&step))
     }
 
-    /// `unit` is the information of a node whose deviations are the natural units.
+    /// The equations with all nodes eliminated, and the share of information that was added to them. `unit` is the information of a node whose deviations are the natural units.
     ///
     /// Where rounding leaves the equations indefinite, as little of it is added as mends them: a deviation then is no larger than a
     /// natural unit over the root of that share of all nodes. None where a hundred of it are not enough.
-    pub(super) fn covariances(&self, unit: &Tangent) -> Option<Covariances<P>> {
+    pub(super) fn solver(&self, unit: &Tangent) -> Option<(Reduced<P>, f64)> {
         let with = |share: f64| Some((self.reduced(&(unit * share), 0.0)?, share));
-        let (reduced, mended) = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0].into_iter().find_map(with)?;
+        [0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0].into_iter().find_map(with)
+    }
+
+    /// As [`Self::solver`].
+    pub(super) fn covariances(&self, unit: &Tangent) -> Option<Covariances<P>> {
+        let (reduced, mended) = self.solver(unit)?;
         let mut motions = Vec::with_capacity(self.nodes.len());
         let mut next = Vec::with_capacity(self.nodes.len());
         let (mut after, mut follows) = (Transition::zeros(), SMatrix::<f64, MOTION, P>::zeros());
@@ -169,6 +174,13 @@ impl<const P: usize> Equations<P> {
 }
 
 impl<const P: usize> Covariances<P> {
+    /// Of the numbers of one of the motions.
+    pub(super) fn deviations(&self, (own, follows): &(Transition, SMatrix<f64, MOTION, P>)) -> Tangent {
+        (own + follows * self.body * follows.transpose())
+            .diagonal()
+            .map(|variance| variance.max(f64::MIN_POSITIVE).sqrt())
+    }
+
     /// Errors of the motions at all nodes that go with one of the constants, from a standard normal vector for each node.
     pub(super) fn drawn(&self, body: &SVector<f64, P>, mut normals: impl FnMut() -> Tangent) -> Vec<Tangent> {
         let mut after = Tangent::zeros();

@@ -13,6 +13,7 @@ use object_dynamics::*;
 mod frictionless;
 mod impulses;
 mod known;
+mod suspects;
 
 const G: f64 = 9.81;
 const SIZE: f64 = 0.04;

@@ -3,9 +3,11 @@
 use super::equations::Equations;
 use super::problem::{Problem, Units};
 use super::samples::Deviations;
+use crate::faults::Suspect;
 use crate::three_palms::{LARGEST_DEVIATION, LARGEST_MISFIT, Reason, Reliability};
 
-/// Standard deviations of a normal variable beyond which a stretch of the log is not explained by noise: once in a million.
+/// Standard deviations of a normal variable beyond which a stretch of the log is not explained by noise, or a constant of the sensors
+/// is not what it was taken for: once in a million.
 const UNEXPLAINED: f64 = 4.75;
 /// Length of a stretch in natural times.
 const STRETCH: f64 = 1.0;
@@ -37,6 +39,12 @@ impl ContactEvidence {
             reliability.add(Reason::Inconsistent { misfit: self.misfit });
         }
         reliability
+    }
+
+    /// The constant of the sensors that the data speak against most, where they do.
+    pub(super) fn against(suspects: &[Suspect]) -> Option<Reason> {
+        let most = suspects.iter().max_by(|a, b| a.score().abs().total_cmp(&b.score().abs()))?;
+        (most.score().abs() > UNEXPLAINED).then_some(Reason::Fault(*most))
     }
 
     /// What all deviations are to be multiplied by: a misfit that is left is noise that was not stated.

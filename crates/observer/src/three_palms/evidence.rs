@@ -4,6 +4,7 @@ use super::correlation::whiteness;
 use super::covariance::NoiseLevel;
 use super::momentum::{Row, Scales};
 use super::track::Track;
+use crate::faults::Suspect;
 use crate::least_squares::Observability;
 use glam::DVec3;
 use nalgebra::SVector;
@@ -187,6 +188,8 @@ pub enum Reason {
         /// Chi-squared over its degrees of freedom; about 1 when all is as stated.
         misfit: f64,
     },
+    /// Something that was taken as known of the sensors is not so.
+    Fault(Suspect),
     /// Mass and moments of inertia that were stated contradict those that the log has without them.
     OtherBody {
         /// What the mass of the log is of the stated one.
@@ -249,6 +252,10 @@ impl fmt::Display for Reason {
                 "another motion explains the log about as well (this one is {:.1} times more probable): move the object \
                  for longer, or use better sensors",
                 log_odds.exp()
+            ),
+            Self::Fault(suspect) => write!(
+                f,
+                "the data speak for a wrong constant of the sensors, most of all for this one: {suspect}"
             ),
             Self::OtherBody { mass, deviations, squares } => write!(
                 f,

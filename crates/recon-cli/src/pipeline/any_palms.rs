@@ -184,7 +184,13 @@ fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOp
         .or(rough.impulse.filter(|_| alone));
     let contact = sensors.contact_std.map_or(rough.contact, |stated| mean * stated);
     let noise = ContactNoiseLevel { contact, force_fixed, force_share, impulse, floor };
-    Ok(ContactOptions { size: scene.size, pose_errors: true, ..ContactOptions::new(noise, scene.gravity) })
+    let (pose_errors, suspects) = (true, true);
+    Ok(ContactOptions {
+        size: scene.size,
+        pose_errors,
+        suspects,
+        ..ContactOptions::new(noise, scene.gravity)
+    })
 }
 
 /// Whether the force of a palm is measured as far as there is any.

@@ -3,7 +3,7 @@
 use super::evidence::{of_bounds, samples_together};
 use glam::DVec3;
 use recon::object_dynamics::MassProperties;
-use recon::observer::{ContactEstimate, ContactOptions, Reason, Reliability};
+use recon::observer::{ContactEstimate, ContactOptions, Reason, Reliability, Suspect};
 use recon_io::EvidenceValue::{Number, Text};
 use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Verdict, brief_to};
 
@@ -90,6 +90,7 @@ pub(super) fn evidence(
     let mut rows = body(estimate);
     rows.extend(fit(estimate));
     rows.extend(told(options));
+    rows.extend(suspects(&estimate.suspects));
     if checks.together > 1 {
         rows.push(samples_together(checks.together));
     }
@@ -262,6 +263,41 @@ fn told(options: &ContactOptions) -> Vec<Evidence> {
     rows.extend(of_impulse.into_iter().flatten());
     rows.push(neutral("contact_speed", "Speed of contacts", Number(noise.floor), "m/s", speed));
     rows
+}
+
+/// What the data say of constants of the sensors, and how well these must be known: those that are farthest off, and those that matter
+/// most.
+fn suspects(all: &[Suspect]) -> Vec<Evidence> {
+    let sorted = |key: fn(&Suspect) -> f64| {
+        let mut sorted: Vec<&Suspect> = all.iter().filter(|suspect| key(suspect).is_finite()).collect();
+        sorted.sort_by(|a, b| key(a).total_cmp(&key(b)));
+        sorted
+    };
+    let most = sorted(|suspect| -suspect.score().abs());
+    let Some(first) = most.first() else { return Vec::new() };
+    let score =
+        |s: &&Suspect| format!("{} {} +- {}", s.fault, brief_to(2, s.value), brief_to(2, s.deviation));
+    let said: Vec<String> = most.iter().take(3).map(score).collect();
+    let mut kinds: Vec<&Suspect> = Vec::new();
+    for suspect in sorted(|suspect| suspect.tolerated) {
+        let kind = std::mem::discriminant(&suspect.fault);
+        if kinds.iter().all(|other| std::mem::discriminant(&other.fault) != kind) {
+            kinds.push(suspect);
+        }
+    }
+    let needed: Vec<String> =
+        kinds.iter().map(|s| format!("{} {}", s.fault, brief_to(2, s.tolerated))).collect();
+    let meaning = "What was taken as known of the sensors, and what it is to be off by as the data have it (score tests): those that are farthest \
+                   off in their deviations. Beyond 4.75 of them the result is not to be relied on.";
+    let matters = "Of each kind the one that matters most: an error as large as this, which need not be seen, moves some number of the \
+                   motion by one of its deviations.";
+    vec![
+        Evidence {
+            level: if first.score().abs() > 4.75 { Level::Bad } else { Level::Good },
+            ..neutral("sensor_faults", "Constants of the sensors", Text(said.join("; ")), "", meaning)
+        },
+        neutral("sensor_accuracy_needed", "Needed to be known to", Text(needed.join("; ")), "", matters),
+    ]
 }
 
 /// A row that speaks neither for nor against the result.

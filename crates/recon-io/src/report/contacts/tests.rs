@@ -170,6 +170,7 @@ fn estimate() -> EstimateData {
     };
     let estimate = ContactEstimate {
         pose_errors: None,
+        suspects: Vec::new(),
         inertia_covariance: Default::default(),
         deviations: vec![[DVec3::splat(1e-3); 4]; count],
         // The third sample to the fifth, and the last one.

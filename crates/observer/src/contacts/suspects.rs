@@ -1,0 +1,209 @@
+//! What the data speak against of what was taken as known of the sensors: a score test for each constant.
+//!
+//! With the motion and the body at their most probable, a constant `c` of the sensors that is not what it was taken for leaves a slope
+//! `g` of half the cost in it. Motion and body would follow it; what information on `c` is left then, `I`, says that it is off by `-g / I`, known to
+//! `1 / sqrt(I)`, and `g / sqrt(I)` is a standard normal number if nothing is wrong (Rao's score test).
+
+use super::body::{Body, CONSTANTS};
+use super::noise::{ContactNoiseLevel, force_trace};
+use super::problem::{Problem, Units};
+use super::reach::Residuals;
+use super::record::{Contact, Record};
+use super::samples::Deviations;
+use super::solve::{Covariances, Solved};
+use super::state::{Motion, Tangent};
+use crate::faults::{SensorFault, Suspect};
+use crate::three_palms::{Normal, exponential};
+use contact_kinematics::PalmSurface;
+use glam::DVec3;
+use object_dynamics::{ContactLog, LoggedPalm};
+
+/// What of the information on a constant must be left when motion and body have followed it, for the data to tell of it.
+const LEAST_LEFT: f64 = 1e-6;
+/// What of the information must not be noise that poses as such, for it to be corrected for that.
+const LEAST_SOUND: f64 = 0.3;
+/// Seed of noise that is drawn to see what of the information it makes.
+const SEED: u64 = 0xd31a;
+/// Natural times on either side over which slopes of forces are taken.
+const SMOOTH: f64 = 0.12;
+/// Step of differences, in natural units.
+const STEP: f64 = 1e-3;
+
+/// A change of what a log says, by a constant of the sensors that is not what it was taken for.
+pub(super) struct Change<'a> {
+    fault: SensorFault,
+    by: f64,
+    log: &'a ContactLog,
+    /// Motion at all samples, positions from the record's origin.
+    motions: &'a [(Motion, Deviations)],
+    body: &'a Body,
+    /// Time on either side over which slopes of forces are taken, s.
+    smooth: f64,
+    /// Noise to take in place of the forces, by palm and sample.
+    noise: Option<&'a [Vec<DVec3>]>,
+}
+
+/// Scores of all constants at a solution with its `motions` at all samples of `log`. `remade` makes the record that the problem is on from
+/// changed contacts.
+pub(super) fn suspects(
+    problem: &Problem,
+    solved: &Solved<CONSTANTS>,
+    covariances: &Covariances<CONSTANTS>,
+    (log, motions): (&ContactLog, &[(Motion, Deviations)]),
+    remade: impl Fn(&Change) -> Option<Record>,
+) -> Option<Vec<Suspect>> {
+    let unknowns = &solved.unknowns;
+    let equations = &problem.unfrozen(&solved.equations, unknowns);
+    let solver = equations.solver(&problem.natural_information())?.0;
+    let left_over = equations.gradient();
+    let followed = solver.step(&left_over);
+    let scale = solved.misfit().max(1.0);
+    let smooth = SMOOTH * problem.units.length / problem.units.speed;
+    let noisy = share_of_noise(problem.record);
+    let residuals = Residuals::new(problem, unknowns)?;
+    let deviations: Vec<Tangent> = covariances.motions.iter().map(|of| covariances.deviations(of)).collect();
+    let one = |fault: SensorFault| {
+        let step = STEP * fault.natural(&problem.units);
+        let at = |by: f64, noise| {
+            let record = remade(&Change { fault, by, log, motions, body: &unknowns.body, smooth, noise })?;
+            Residuals::new(&problem.on(&record), unknowns)
+        };
+        let told = |noise| {
+            let by = Residuals::slope(&at(step, noise)?, &at(-step, noise)?, 2.0 * step)?;
+            let (slope, own, mixed) = residuals.normal(equations, &by)?;
+            // What motion and body take up when they follow: the step of a gradient is minus the inverse times it.
+            let follows = solver.step(&mixed);
+            Some((slope + mixed.dot(&followed), own, own + mixed.dot(&follows), follows))
+        };
+        let (slope, own, left, follows) = told(None)?;
+        // Noise in the slopes of forces poses as information on their delay.
+        let spurious = match fault {
+            SensorFault::ForceDelay => told(Some(&drawn(log, &problem.noise)))?.2,
+            _ => 0.0,
+        };
+        let sound = left - spurious;
+        let tells = sound > (LEAST_LEFT * own).max(LEAST_SOUND * left) && left.is_finite();
+        // Noise that forces and their slope share poses as a wrong gain.
+        let posing = if matches!(fault, SensorFault::ForceGain { .. }) { noisy * own / left } else { 0.0 };
+        let (value, deviation) = match tells {
+            true => (-slope / sound, (scale * left / (sound * sound) + posing * posing).sqrt()),
+            false => (0.0, f64::INFINITY),
+        };
+        let moved = |(of, by): (&Tangent, &Tangent)| by.component_div(of).abs().max();
+        let most = deviations.iter().zip(&follows.motions).map(moved).fold(0.0, f64::max);
+        Some(Suspect { fault, value, deviation, tolerated: most.recip() })
+    };
+    Some(constants(log, problem).into_iter().filter_map(one).collect())
+}
+
+/// Noise of all forces, by palm and sample.
+fn drawn(log: &ContactLog, noise: &ContactNoiseLevel) -> Vec<Vec<DVec3>> {
+    let mut random = Normal::seeded(SEED);
+    let mut one = |palm: &LoggedPalm, k: usize| {
+        let deviation = palm.force(k).map_or(0.0, |force| noise.force(force.vector));
+        DVec3::new(random.draw(), random.draw(), random.draw()) * deviation
+    };
+    log.palms().iter().map(|palm| (0..log.times().len()).map(|k| one(palm, k)).collect()).collect()
+}
+
+/// Share of noise in the squares of the impulses.
+fn share_of_noise(record: &Record) -> f64 {
+    let noise: f64 = record.intervals.iter().map(|interval| force_trace(&interval.noise.white)).sum();
+    let all: f64 = record.intervals.iter().map(|interval| interval.impulse.force.length_squared()).sum();
+    if all > 0.0 { noise / all } else { 0.0 }
+}
+
+/// Constants that a log may have: forces that are measured at samples, flat palms for offsets, frictionless ones for friction.
+fn constants(log: &ContactLog, problem: &Problem) -> Vec<SensorFault> {
+    let mut all = Vec::new();
+    for (i, palm) in log.palms().iter().enumerate() {
+        let number = i + 1;
+        if !(0..log.times().len()).any(|k| palm.touch(k).is_some()) {
+            continue;
+        }
+        if palm.force_axes().is_some() && !problem.record.all_impulses {
+            all.push(SensorFault::ForceGain { palm: number });
+            all.push(SensorFault::ForceBias { palm: number });
+        }
+        for axis in 0..2 {
+            if palm.surface() == PalmSurface::Plane {
+                all.push(SensorFault::ContactOffset { palm: number, axis });
+            }
+            all.push(SensorFault::PalmTilt { palm: number, axis });
+        }
+    }
+    if !problem.record.all_impulses {
+        all.push(SensorFault::ForceDelay);
+    }
+    if problem.record.contacts.iter().flatten().any(|contact| contact.frictionless) {
+        all.push(SensorFault::Friction);
+    }
+    all
+}
+
+impl SensorFault {
+    /// Its natural unit.
+    fn natural(self, units: &Units) -> f64 {
+        let Units { length, speed, mass } = *units;
+        match self {
+            Self::ForceGain { .. } | Self::PalmTilt { .. } | Self::Friction => 1.0,
+            Self::ForceBias { .. } => mass * speed * speed / length,
+            Self::ForceDelay => length / speed,
+            Self::ContactOffset { .. } => length,
+        }
+    }
+}
+
+impl Change<'_> {
+    /// What a contact at sample `k` is then, its position from `origin`.
+    pub(super) fn apply(&self, k: usize, contact: &mut Contact, origin: DVec3) {
+        let palm = &self.log.palms()[contact.palm];
+        let (number, by) = (contact.palm + 1, self.by);
+        match self.fault {
+            SensorFault::ForceGain { palm } if palm == number => contact.f *= 1.0 + by,
+            SensorFault::ForceBias { palm } if palm == number => contact.f += contact.n * by,
+            SensorFault::ForceDelay => contact.f += self.slope_of_force(k, contact) * by,
+            SensorFault::ContactOffset { palm: of, axis } if of == number => {
+                let moved = palm.motion(k).pose.R_WP * (DVec3::AXES[axis] * by);
+                contact.c += moved;
+                contact.u += contact.W.cross(moved);
+            }
+            SensorFault::PalmTilt { palm: of, axis } if of == number => {
+                let pose = palm.motion(k).pose;
+                let turn = exponential(pose.R_WP * (DVec3::AXES[axis] * by));
+                let pivot = pose.p_WP - origin;
+                let moved = pivot + turn * (contact.c - pivot);
+                contact.u += contact.W.cross(moved - contact.c);
+                (contact.c, contact.n, contact.f) = (moved, turn * contact.n, turn * contact.f);
+            }
+            SensorFault::Friction if contact.frictionless => {
+                let motion = &self.motions[k].0;
+                let w = self.body.turn(motion.q, motion.L).w;
+                let slip = motion.v + w.cross(contact.c - motion.p) - contact.u;
+                let against = -slip.reject_from_normalized(contact.n).normalize_or_zero();
+                contact.f += against * (by * contact.f.dot(contact.n));
+            }
+            _ => {}
+        }
+    }
+
+    /// Of the line through the readings around, as far as the palm is touched: the noise of two neighbours would be taken for slope.
+    fn slope_of_force(&self, k: usize, contact: &Contact) -> DVec3 {
+        let (palm, times) = (&self.log.palms()[contact.palm], self.log.times());
+        let told = |k: usize| palm.touch(k).and_then(|_| palm.force(k)).map(|force| force.vector);
+        let at = |k: &usize| told(*k).map(|force| self.noise.map_or(force, |noise| noise[contact.palm][*k]));
+        let near = |other: &usize| (times[*other] - times[k]).abs() <= self.smooth && at(other).is_some();
+        let from = (0..k).rev().take_while(near).last().unwrap_or(k);
+        let to = (k + 1..times.len()).take_while(near).last().unwrap_or(k);
+        let count = (to + 1 - from) as f64;
+        let mean = times[from..=to].iter().sum::<f64>() / count;
+        let (mut sum, mut squares) = (DVec3::ZERO, 0.0);
+        for other in from..=to {
+            let since = times[other] - mean;
+            sum += at(&other).unwrap_or_default() * since;
+            squares += since * since;
+        }
+        let slope = if squares > 0.0 { sum / squares } else { DVec3::ZERO };
+        if contact.frictionless { slope.project_onto_normalized(contact.n) } else { slope }
+    }
+}

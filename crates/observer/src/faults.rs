@@ -1,0 +1,86 @@
+//! What may be wrong with sensors, and what data say of it.
+
+use std::fmt;
+
+/// A constant of the sensors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SensorFault {
+    /// Share by which the forces of a palm are more than it says.
+    ForceGain {
+        /// Number from 1.
+        palm: usize,
+    },
+    /// Force along the normal that a palm has beside what it says, N.
+    ForceBias {
+        /// Number from 1.
+        palm: usize,
+    },
+    /// Time by which all forces come late, s.
+    ForceDelay,
+    /// How far contacts are from where a palm says, along one of its axes, m.
+    ContactOffset {
+        /// Number from 1.
+        palm: usize,
+        /// Axis of the palm: 0 for x, 1 for y.
+        axis: usize,
+    },
+    /// How far a palm is turned about one of its axes through the origin of its frame, rad.
+    PalmTilt {
+        /// Number from 1.
+        palm: usize,
+        /// Axis of the palm: 0 for x, 1 for y.
+        axis: usize,
+    },
+    /// Friction of all palms that are taken for frictionless.
+    Friction,
+}
+
+/// What the data say of one such constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Suspect {
+    /// The constant.
+    pub fault: SensorFault,
+    /// What it is beside what it was taken for, to first order.
+    pub value: f64,
+    /// Standard deviation of that: infinite where the data cannot tell.
+    pub deviation: f64,
+    /// What it may be off by until some number of the motion is off by one of its deviations.
+    pub tolerated: f64,
+}
+
+impl Suspect {
+    /// The value in its deviations: a standard normal number where nothing is wrong.
+    #[must_use]
+    pub fn score(&self) -> f64 {
+        if self.deviation.is_finite() { self.value / self.deviation } else { 0.0 }
+    }
+}
+
+impl fmt::Display for SensorFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = |axis: usize| ["x", "y"][axis.min(1)];
+        match *self {
+            Self::ForceGain { palm } => write!(f, "gain of the forces of palm {palm} less 1"),
+            Self::ForceBias { palm } => write!(f, "bias of the forces of palm {palm} (N)"),
+            Self::ForceDelay => write!(f, "delay of the forces (s)"),
+            Self::ContactOffset { palm, axis } => {
+                write!(f, "offset of the contacts of palm {palm} along its {} axis (m)", name(axis))
+            }
+            Self::PalmTilt { palm, axis } => {
+                write!(f, "tilt of palm {palm} about its {} axis (rad)", name(axis))
+            }
+            Self::Friction => write!(f, "coefficient of friction"),
+        }
+    }
+}
+
+impl fmt::Display for Suspect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { fault, value, deviation, .. } = self;
+        write!(
+            f,
+            "{fault}, which comes out as {value:.2e} +- {deviation:.1e}, {:.1} deviations off",
+            self.score().abs()
+        )
+    }
+}
