@@ -78,6 +78,7 @@ fn kind(reason: &Reason) -> &'static str {
         Reason::Unobservable { .. } => "the log does not determine a direction of the unknowns",
         Reason::Biased { .. } => "shifted by noise",
         Reason::Ambiguous { .. } => "another motion fits as well",
+        Reason::Fault(_) => "a constant of the sensors is not as stated",
         Reason::OtherBody { .. } => "another body than was stated",
         Reason::NotConvex { .. } => "no convex body moves like that",
         Reason::Inconsistent { .. } => "data and motion disagree",
