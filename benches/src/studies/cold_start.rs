@@ -76,13 +76,13 @@ fn kind(reason: &Reason) -> &'static str {
     match reason {
         Reason::NotConverged { .. } => "the fit did not settle",
         Reason::Unobservable { .. } => "the log does not determine a direction of the unknowns",
-        Reason::Biased { .. } => "shifted by noise",
-        Reason::Ambiguous { .. } => "another motion fits as well",
+        Reason::Still { .. } => "hardly turns",
+        Reason::Unconfirmed => "not confirmed without the stated body",
+        Reason::TooShort { .. } => "too short for its noise",
+        Reason::Noisy { .. } => "too noisy for an estimate that is for exact logs",
         Reason::Fault(_) => "a constant of the sensors is not as stated",
         Reason::OtherBody { .. } => "another body than was stated",
-        Reason::NotConvex { .. } => "no convex body moves like that",
         Reason::Inconsistent { .. } => "data and motion disagree",
-        Reason::TooShort { .. } => "too short for its noise",
         Reason::Misfit { .. } => "more is left than noise explains",
     }
 }

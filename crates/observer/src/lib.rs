@@ -16,6 +16,8 @@ mod least_squares;
 #[cfg(feature = "palms")]
 pub mod planar;
 #[cfg(feature = "palms")]
+mod roughness;
+#[cfg(feature = "palms")]
 mod three_palms;
 
 #[cfg(feature = "palms")]
@@ -33,11 +35,10 @@ pub use faults::{SensorFault, Suspect};
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
 pub use three_palms::{
-    BodyEstimate, CurveUncertainty, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate,
-    MotionState, NoiseLevel, OtherMotion, PaperError, PaperMethod, PaperReconstruction, PaperStart, PoseAxes,
-    PoseCovariance, PoseErrors, PredictorCorrector, Quantity, Reason, Reliability, Scales, SensorConstant,
-    SensorEstimate, SensorPriors, StartState, Track, TrackError, UnknownBody, WeakDirection,
-    equivalent_orientations, estimate_body, estimate_body_from, estimate_motion, estimate_motion_and_sensors,
+    BodyEstimate, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate, MotionState,
+    NoiseLevel, PaperError, PaperMethod, PaperReconstruction, PaperStart, PoseAxes, PoseCovariance,
+    PoseErrors, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState, Track, TrackError,
+    UnknownBody, WeakDirection, equivalent_orientations, estimate_body, estimate_body_from, estimate_motion,
     estimate_motion_from, integrate_paper_system, nearest_turn,
 };
 #[cfg(feature = "palms")]

@@ -11,6 +11,7 @@ mod exported_scenes;
 mod failure_cases;
 mod failures_unknown_body;
 mod logs_of_other_simulators;
+mod noisy;
 mod paper_method;
 mod planar_basin;
 mod planar_common;

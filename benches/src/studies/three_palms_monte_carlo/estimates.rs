@@ -3,17 +3,16 @@
 use cpu_time::ThreadTime;
 use glam::DVec3;
 use recon::contact_kinematics::SupportFunction;
-use recon::object_dynamics::{Instant as Now, SensorLog, SensorNoise, ThreePalmScene};
-use recon::observer::{
-    KnownBody, MotionEstimate, NoiseLevel, StartState, UnknownBody, estimate_body, estimate_body_from,
-    estimate_motion, estimate_motion_from, nearest_turn,
-};
+use recon::object_dynamics::{ContactLog, Instant as Now, SensorLog, SensorNoise, ThreePalmScene};
+use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts, nearest_turn};
+
+/// What conditions are off by beside noise, as a share of the natural speed.
+const FLOOR: f64 = 3e-5;
 
 /// Errors and deviations of one estimate, and whether it is relied on.
 pub(crate) struct Estimated {
     pub(crate) errors: Vec<f64>,
     pub(crate) deviations: Vec<f64>,
-    pub(crate) covariance: Vec<Vec<f64>>,
     pub(crate) reliable: bool,
     /// Processor time.
     pub(crate) milliseconds: f64,
@@ -30,29 +29,11 @@ impl Estimated {
         self.errors.iter().all(|e| e.is_finite())
     }
 
-    /// What the covariance would be under noise that is larger by a factor.
+    /// What the deviations would be under noise that is larger by a factor.
     pub(crate) fn scaled(mut self, factor: f64) -> Self {
         self.deviations.iter_mut().for_each(|d| *d *= factor);
-        self.covariance.iter_mut().flatten().for_each(|c| *c *= factor * factor);
         self
     }
-}
-
-/// Another motion that an exact log leaves open.
-pub(crate) struct Other {
-    /// What it is off by.
-    pub(crate) errors: Vec<f64>,
-    /// Squared deviations by which the log has to be corrected for it.
-    pub(crate) corrections: f64,
-}
-
-/// Where an estimate starts.
-#[derive(Clone, Copy)]
-pub(crate) enum Begun {
-    /// From no guess.
-    Cold,
-    /// From the true motion and body.
-    AtTruth,
 }
 
 /// What a log is of, and what is known of that.
@@ -62,105 +43,64 @@ pub(crate) struct Experiment<'a, S> {
     pub(crate) now: &'a Now,
     /// Whether mass and inertia are unknown.
     pub(crate) unknown: bool,
+    /// Natural speed, m/s.
+    pub(crate) speed: f64,
 }
 
 impl<S: SupportFunction> Experiment<'_, S> {
     /// Estimates from a log and compares with the truth.
-    pub(crate) fn estimate(&self, log: &SensorLog, noise: SensorNoise, begun: Begun) -> Estimated {
-        let (scene, clock) = (self.scene, ThreadTime::now());
-        if self.unknown {
-            let known = UnknownBody { gravity: scene.gravity(), palm_inertias: None, noise: level(noise) };
-            let found = match begun {
-                Begun::Cold => estimate_body(log, &known),
-                Begun::AtTruth => estimate_body_from(log, &known, scene.mass(), &self.truth()),
-            };
-            let Ok(found) = found else { return refused(13, clock) };
-            let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
-            let mut errors = self.errors(&found.motion.start, 9);
-            let mut covariance = first(&found.motion, 9);
-            let body = &found.body;
-            let moments = body.mass.principal().moments - scene.mass().principal().moments;
-            errors.push(body.mass.mass() - scene.mass().mass());
-            errors.extend(moments.to_array());
-            let deviations: Vec<f64> =
-                std::iter::once(body.mass_deviation).chain(body.moment_deviations.to_array()).collect();
-            for (k, d) in deviations.iter().enumerate() {
-                covariance.iter_mut().for_each(|row| row.push(0.0));
-                covariance.push((0..10 + k).map(|j| if j == 9 + k { d * d } else { 0.0 }).collect());
-            }
-            outcome(errors, covariance, found.motion.reliability.is_reliable(), milliseconds)
+    pub(crate) fn estimate(&self, log: &SensorLog, noise: SensorNoise) -> Estimated {
+        let clock = ThreadTime::now();
+        let mass = *self.scene.mass();
+        let noise = ContactNoiseLevel {
+            contact: noise.contact,
+            force_fixed: noise.force,
+            force_share: 0.0,
+            impulse: None,
+            floor: FLOOR * self.speed,
+        };
+        let options = ContactOptions {
+            friction: Some(0.0),
+            body: (!self.unknown).then_some(mass),
+            ..ContactOptions::new(noise, self.scene.gravity().length())
+        };
+        let found =
+            ContactLog::try_from(log).ok().and_then(|log| estimate_contacts(&log, None, &options).ok());
+        let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
+        let Some(found) = found else { return refused(if self.unknown { 13 } else { 12 }, milliseconds) };
+        let (errors, deviations) = self.compared(&found);
+        let reliable = found.reliability.is_reliable() && found.relied_on[0];
+        Estimated { errors, deviations, reliable, milliseconds }
+    }
+
+    /// Errors and deviations of the state at the start, then of the axes, or of mass and principal moments.
+    fn compared(&self, found: &ContactEstimate) -> (Vec<f64>, Vec<f64>) {
+        let (state, now, mass) = (found.states[0], self.now, self.scene.mass());
+        let parts = [state.p_WCm - now.touch.p_WCm, state.v_WCm - now.rates.v_WCm, state.w_WO - now.w_WO];
+        let mut errors: Vec<f64> = parts.iter().flat_map(DVec3::to_array).collect();
+        let mut deviations: Vec<f64> = found.deviations[0][..3].iter().flat_map(DVec3::to_array).collect();
+        if let Some(axes) = found.axes_deviations {
+            let same = nearest_turn(mass, state.R_WO, now.R_WO);
+            let turn = (state.R_WO * same) * now.R_WO.inverse();
+            errors.extend((turn.xyz() * (2.0 * turn.w.signum())).to_array());
+            deviations.extend(axes.to_array());
         } else {
-            let found = match begun {
-                Begun::Cold => estimate_motion(log, &self.known(noise)),
-                Begun::AtTruth => estimate_motion_from(log, &self.known(noise), &self.truth()),
-            };
-            let Ok(found) = found else { return refused(12, clock) };
-            let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
-            let errors = self.errors(&found.start, 12);
-            outcome(errors, first(&found, 12), found.reliability.is_reliable(), milliseconds)
+            errors.push(found.mass - mass.mass());
+            deviations.push(found.mass * found.mass_deviation);
+            // Moments of what was found about the true principal axes: to first order its own.
+            let axes = now.R_WO * mass.principal().axes;
+            for (axis, moment) in DVec3::AXES.into_iter().zip(mass.principal().moments.to_array()) {
+                let axis = axes * axis;
+                errors.push(axis.dot(found.inertia * axis) - moment);
+                deviations.push(found.moment_deviation(axis));
+            }
         }
+        (errors, deviations)
     }
-
-    /// Other motions of a known body that an exact log leaves open under noise.
-    pub(crate) fn others(&self, log: &SensorLog, noise: SensorNoise) -> Vec<Other> {
-        if self.unknown {
-            return Vec::new();
-        }
-        let found = estimate_motion(log, &self.known(noise)).map(|found| found.others).unwrap_or_default();
-        found
-            .iter()
-            .map(|other| Other { errors: self.errors(&other.start, 12), corrections: other.corrections })
-            .collect()
-    }
-
-    fn known(&self, noise: SensorNoise) -> KnownBody {
-        let scene = self.scene;
-        KnownBody { mass: *scene.mass(), gravity: scene.gravity(), palm_inertias: None, noise: level(noise) }
-    }
-
-    fn truth(&self) -> StartState {
-        let now = self.now;
-        StartState {
-            p_WCm: now.touch.p_WCm,
-            v_WCm: now.rates.v_WCm,
-            L_WO: now.R_WO * (self.scene.mass().inertia() * (now.R_WO.inverse() * now.w_WO)),
-            R_WO: now.R_WO,
-        }
-    }
-
-    /// Errors of the first `count` numbers of the state at the start.
-    fn errors(&self, start: &StartState, count: usize) -> Vec<f64> {
-        let truth = self.truth();
-        let nearest = start.R_WO * nearest_turn(self.scene.mass(), start.R_WO, truth.R_WO);
-        let turn = nearest * truth.R_WO.inverse();
-        let parts = [
-            start.p_WCm - truth.p_WCm,
-            start.v_WCm - truth.v_WCm,
-            start.L_WO - truth.L_WO,
-            DVec3::new(turn.x, turn.y, turn.z) * 2.0 * turn.w.signum(),
-        ];
-        (0..count).map(|i| parts[i / 3][i % 3]).collect()
-    }
-}
-
-fn level(noise: SensorNoise) -> Option<NoiseLevel> {
-    Some(NoiseLevel { contact: noise.contact, force: noise.force })
-}
-
-/// Covariance of the first `count` numbers of the state at the start.
-fn first(found: &MotionEstimate, count: usize) -> Vec<Vec<f64>> {
-    (0..count).map(|i| (0..count).map(|j| found.covariance[(i, j)]).collect()).collect()
 }
 
 /// No estimate is a warning too.
-fn refused(count: usize, clock: ThreadTime) -> Estimated {
+fn refused(count: usize, milliseconds: f64) -> Estimated {
     let infinite = vec![f64::INFINITY; count];
-    let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
-    let covariance = vec![vec![0.0; count]; count];
-    Estimated { errors: infinite.clone(), deviations: infinite, covariance, reliable: false, milliseconds }
-}
-
-fn outcome(errors: Vec<f64>, covariance: Vec<Vec<f64>>, reliable: bool, milliseconds: f64) -> Estimated {
-    let deviations = (0..errors.len()).map(|i| covariance[i][i].max(0.0).sqrt()).collect();
-    Estimated { errors, deviations, covariance, reliable, milliseconds }
+    Estimated { errors: infinite.clone(), deviations: infinite, reliable: false, milliseconds }
 }

@@ -33,6 +33,9 @@ type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
 /// covariance does not reach as far.
 const CONTRADICTED: f64 = 33.4;
 
+/// What an unknown body may need more than a known one: half of what is left to gain where a fit has settled, twice over.
+const MISSED: f64 = 1.0;
+
 /// The motion of a known body.
 pub(super) struct Oriented {
     /// Why it cannot be that body.
@@ -44,9 +47,49 @@ pub(super) struct Oriented {
     pub(super) iterations: usize,
 }
 
-/// The most probable motion of a body with the mass properties `mass`, from that of an unknown body and the covariance of its constants.
-/// `problem` is left as it was solved. None where no choice of axes can be.
-pub(super) fn oriented(
+/// The most probable motion of a body with the mass properties `mass`, from that of an unknown body. `problem` is left as it was solved; `covariance`
+/// gives that of the body's constants. None where no choice of axes can be.
+///
+/// An unknown body has all motions of the known one. Where that explains the log better, the search for the unknown one has missed them: it is
+/// begun again from there, and the axes are looked for again from what it comes to.
+pub(super) fn known_motion(
+    problem: &mut Problem,
+    unknown: &Solved<CONSTANTS>,
+    mass: &MassProperties,
+    covariance: impl Fn(&Problem, &Solved<CONSTANTS>) -> Option<OfBody>,
+) -> Option<Oriented> {
+    let (free, frozen) = (problem.body, problem.frozen.clone());
+    let mut first = oriented(problem, unknown, &covariance(problem, unknown)?, mass)?;
+    if !unknown.explained() && first.against.is_none() {
+        first.against = Some(Reason::Unconfirmed);
+    }
+    let first = first;
+    if first.solved.equations.cost > unknown.equations.cost - MISSED {
+        return Some(first);
+    }
+    let (body, known) = (problem.body, std::mem::replace(&mut problem.frozen, frozen));
+    problem.body = free;
+    let found = first.solved.unknowns.body;
+    let start = first.solved.unknowns.with(Body::free(found.log_mass, found.inertia()));
+    let mut second = || {
+        let again = fine(problem, start)?;
+        let covariance = covariance(problem, &again)?;
+        let mut second = oriented(problem, &again, &covariance, mass)?;
+        second.iterations += again.iterations + first.iterations;
+        second.against = second.against.or(first.against);
+        Some(second)
+    };
+    match second().filter(|second| second.solved.equations.cost < first.solved.equations.cost) {
+        Some(second) => Some(second),
+        None => {
+            (problem.body, problem.frozen) = (body, known);
+            Some(first)
+        }
+    }
+}
+
+/// From that of an unknown body and the covariance of its constants.
+fn oriented(
     problem: &mut Problem,
     unknown: &Solved<CONSTANTS>,
     covariance: &OfBody,

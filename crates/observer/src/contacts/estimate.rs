@@ -1,4 +1,4 @@
-use super::axes::oriented;
+use super::axes::known_motion;
 use super::body::{Body, CONSTANTS};
 use super::cold;
 use super::joint::pose_errors;
@@ -29,6 +29,8 @@ const AVERAGED: f64 = 0.12;
 const THIN: f64 = 0.02;
 /// Conditions of a contact that sticks are contradicted beyond this: three numbers in their deviations go there once in a million.
 const CONTRADICTED: f64 = 30.7;
+/// Natural times that a noisy log must last at least: over less, the motion is hardly more than its start.
+const SHORTEST: f64 = 2.0;
 /// How often modes are taken back.
 const ROUNDS: usize = 6;
 
@@ -154,8 +156,9 @@ impl Source<'_> {
         let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
         let (mut doubt, mut against) = (None, None);
         if let Some(mass) = &options.body {
-            let covariance = covariances(&problem, &solved)?.body;
-            let known = oriented(&mut problem, &solved, &covariance, mass);
+            let covariance =
+                |problem: &Problem, of: &Solved<CONSTANTS>| Some(covariances(problem, of).ok()?.body);
+            let known = known_motion(&mut problem, &solved, mass, covariance);
             let known = known.ok_or(ContactEstimateError::Singular)?;
             before += solved.iterations + known.iterations - known.solved.iterations;
             (solved, doubt, against) = (known.solved, Some(known.doubt), known.against);
@@ -169,6 +172,9 @@ impl Source<'_> {
         let iterations = [before, before + solved.iterations];
         let motions = at_all(log, &problem, &solved.unknowns, &covariances);
         let slips = slips(&problem, &motions, &solved.unknowns.body);
+        let (duration, needed) =
+            (log.times[log.times.len() - 1] - log.times[0], SHORTEST * units.length / units.speed);
+        let short = (thinned.is_none() && duration < needed).then_some(Reason::TooShort { duration, needed });
         let suspects = match options.suspects && thinned.is_none() && slips.is_empty() {
             true => self.suspects(&problem, &solved, &covariances, &motions, (&modes, longest)),
             false => Vec::new(),
@@ -180,7 +186,7 @@ impl Source<'_> {
             covariances: &covariances,
             iterations,
             doubt,
-            against,
+            against: [short, against],
             suspects: &suspects,
         };
         Ok((found.estimate(&motions, modes, options), slips))
@@ -230,6 +236,7 @@ fn covariances(
         let claimed = solved.equations.covariances(&problem.natural_information())?;
         let of_body = claimed.body;
         let widened = claimed.widened(problem, &solved.equations, &solved.unknowns)?;
+        let widened = widened.centre_widened(&solved.equations, &solved.unknowns)?;
         widened.beyond_first_order(problem, solved, &of_body)
     };
     all().ok_or(ContactEstimateError::Singular)
@@ -262,8 +269,8 @@ struct Found<'a> {
     iterations: [usize; 2],
     /// How far its axes may be from where they were found, rad, if it is known.
     doubt: Option<f64>,
-    /// Why a known body is not the one.
-    against: Option<Reason>,
+    /// Why a known body is not the one, or a log is too short.
+    against: [Option<Reason>; 2],
     suspects: &'a [Suspect],
 }
 
@@ -294,7 +301,10 @@ impl Found<'_> {
             R_WO: (motion.q * own).normalize(),
         };
         let (mut reliability, wider) = (evidence.reliability(), evidence.widening());
-        for reason in against.into_iter().chain(ContactEvidence::against(suspects)) {
+        let spin = |(motion, of): &(Motion, Deviations)| (body.turn(motion.q, motion.L).w, of[2] * wider);
+        let spins: Vec<_> = problem.node_samples().iter().map(|&k| spin(&motions[k])).collect();
+        let against = against.into_iter().chain([ContactEvidence::still(&spins)]);
+        for reason in against.flatten().chain(ContactEvidence::against(suspects)) {
             reliability.add(reason);
         }
         let deviations: Vec<_> = motions.iter().map(|(_, of)| of.map(|of| of * wider)).collect();

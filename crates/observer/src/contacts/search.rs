@@ -20,9 +20,9 @@ const NEGLIGIBLE: f64 = 0.1;
 const BALL: f64 = 30.0;
 /// Linearisations that each of the solutions may take.
 const MOST: usize = 60;
-/// The same of the last solution where blows are known by their impulses: the chain is stiff across them, and steps along a
-/// curved valley are short. Of twelve falls seven settle within 60, all within 240.
-const MOST_THROUGH_BLOWS: usize = 400;
+/// The same of the last solution: where contacts are felt far better than forces, or blows are known by their impulses, the chain is stiff and steps
+/// along a curved valley are short. Of twelve falls seven settle within 60, all within 240.
+const MOST_OF_LAST: usize = 400;
 /// Linearisations after which it is asked what of the inertia is learned.
 const FIRST: usize = 12;
 /// A step that promises less in units of chi-squared than these is not worth taking: coarse solution, last one.
@@ -89,9 +89,7 @@ pub(super) fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONS
     let claimed = first.equations.covariances(&problem.natural_information());
     let frozen = claimed.and_then(|claimed| claimed.frozen(problem, &first.equations, &first.unknowns));
     problem.frozen = frozen.unwrap_or_default();
-    let through_blows = problem.record.all_impulses && problem.record.intervals.iter().any(|i| i.blow);
-    let most = if through_blows { MOST_THROUGH_BLOWS } else { MOST };
-    let mut found = solve::<CONSTANTS>(problem, first.unknowns, most, ENOUGH[1])?;
+    let mut found = solve::<CONSTANTS>(problem, first.unknowns, MOST_OF_LAST, ENOUGH[1])?;
     found.iterations += first.iterations;
     Some(found)
 }

@@ -6,12 +6,13 @@
 //! times a score of covariance `B`, so that its covariance is `C^-1 B C^-1`.
 
 use super::body::{Body, CONSTANTS, INERTIA};
-use super::equations::Equations;
+use super::equations::{Equations, LinkEquation};
 use super::flow::Transition;
 use super::problem::{FROZEN, Problem, Unknowns};
 use super::solve::Covariances;
-use super::state::Motion;
-use glam::DMat3;
+use super::state::{MOTION, Motion};
+use crate::three_palms::cross_matrix;
+use glam::{DMat3, DVec3};
 use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen};
 
 /// What of the information is left at least, in any direction: a deviation is then twenty times what the equations claim.
@@ -62,6 +63,57 @@ impl Covariances<CONSTANTS> {
         Some(Self { body, ..self })
     }
 
+    /// With the covariance of the centre of mass widened in the same way.
+    ///
+    /// Where it is in the body follows from how velocity changes with the spin: contacts tell the twist of the body, and forces how the
+    /// velocity of the centre changes, so that a link weighs a shift that turns with the body by the change of its product with the angular velocity.
+    pub(super) fn centre_widened(mut self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Option<Self> {
+        let first = self.motions[0].0.fixed_view::<3, 3>(0, 0).into_owned();
+        let factor = first.cholesky()?.l();
+        let eigen = SymmetricEigen::new(factor.transpose() * self.spurious_of_centre(equations, at) * factor);
+        let axes = factor * eigen.eigenvectors;
+        let more = eigen.eigenvalues.map(|share| (1.0 - share).clamp(LEAST, 1.0).powi(-2) - 1.0);
+        let more = axes * Matrix3::from_diagonal(&more) * axes.transpose();
+        let turned = at.motions[0].q.conjugate();
+        for ((own, _), motion) in self.motions.iter_mut().zip(&at.motions) {
+            // A shift in the world at the first node turns with the body.
+            let turn = Matrix3::from(DMat3::from_quat((motion.q * turned).normalize()));
+            let spin = Matrix3::from(cross_matrix(at.body.turn(motion.q, motion.L).w));
+            let mut by = SMatrix::<f64, MOTION, 3>::zeros();
+            by.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
+            by.fixed_view_mut::<3, 3>(3, 0).copy_from(&(spin * turn));
+            *own += by * more * by.transpose();
+        }
+        Some(self)
+    }
+
+    fn spurious_of_centre(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Matrix3<f64> {
+        let turned = at.motions[0].q.conjugate();
+        let mut all = Matrix3::zeros();
+        for (j, link) in equations.links.iter().enumerate() {
+            let left = self.left(j, link).fixed_view::<3, 3>(3, 3).into_owned();
+            let ends = [&at.motions[j], &at.motions[j + 1]];
+            let noise = Spins::new(ends, &at.body, &self.motions[j].0, &self.motions[j + 1].0, &self.next[j]);
+            let slopes: [[Matrix3<f64>; 2]; 3] = std::array::from_fn(|i| {
+                ends.map(|motion| Matrix3::from(cross_matrix(motion.q * turned * DVec3::AXES[i])))
+            });
+            for i in 0..3 {
+                for k in 0..3 {
+                    all[(i, k)] += (left * noise.covariance(&slopes[i], &slopes[k])).trace();
+                }
+            }
+        }
+        0.5 * (all + all.transpose())
+    }
+
+    /// What the residual of a link says of constants, the motions free to follow.
+    fn left(&self, j: usize, link: &LinkEquation<CONSTANTS>) -> Transition {
+        let (before, after, cross) = (&self.motions[j].0, &self.motions[j + 1].0, &self.next[j]);
+        let mixed = link.adjusted * cross;
+        let residual = after + link.adjusted * before * link.adjusted.transpose() - mixed - mixed.transpose();
+        link.information - link.information * residual * link.information
+    }
+
     fn shares(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Option<Shares> {
         // In units of the deviations as claimed: the information is one, and what noise adds to it a share.
         let factor = self.body.cholesky()?.l();
@@ -72,15 +124,9 @@ impl Covariances<CONSTANTS> {
     fn spurious(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> OfBody {
         let mut all = OfBody::zeros();
         for (j, link) in equations.links.iter().enumerate() {
-            let (before, after, cross) = (&self.motions[j].0, &self.motions[j + 1].0, &self.next[j]);
-            let mixed = link.adjusted * cross;
-            let residual =
-                after + link.adjusted * before * link.adjusted.transpose() - mixed - mixed.transpose();
-            // What a residual says of the constants, the motions free to follow.
-            let left = link.information - link.information * residual * link.information;
-            let left = left.fixed_view::<3, 3>(6, 6).into_owned();
+            let left = self.left(j, link).fixed_view::<3, 3>(6, 6).into_owned();
             let ends = [&at.motions[j], &at.motions[j + 1]];
-            let noise = Spins::new(ends, &at.body, before, after, cross);
+            let noise = Spins::new(ends, &at.body, &self.motions[j].0, &self.motions[j + 1].0, &self.next[j]);
             let slope =
                 |motion: &Motion, i| Matrix3::from(at.body.slope_along(DMat3::from_quat(motion.q), i));
             let slopes: [[Matrix3<f64>; 2]; INERTIA] =

@@ -5,6 +5,7 @@ use super::problem::{Problem, Units};
 use super::samples::Deviations;
 use crate::faults::Suspect;
 use crate::three_palms::{LARGEST_DEVIATION, LARGEST_MISFIT, Reason, Reliability};
+use glam::DVec3;
 
 /// Standard deviations of a normal variable beyond which a stretch of the log is not explained by noise, or a constant of the sensors
 /// is not what it was taken for: once in a million.
@@ -39,6 +40,16 @@ impl ContactEvidence {
             reliability.add(Reason::Inconsistent { misfit: self.misfit });
         }
         reliability
+    }
+
+    /// Whether a body hardly turns, by its angular velocities at the nodes and their deviations.
+    pub(super) fn still(spins: &[(DVec3, DVec3)]) -> Option<Reason> {
+        let mean = spins.iter().map(|(w, _)| *w).sum::<DVec3>() / spins.len().max(1) as f64;
+        let change = |(w, deviation): &(DVec3, DVec3)| {
+            ((*w - mean).abs() / deviation.max(DVec3::splat(f64::MIN_POSITIVE))).max_element()
+        };
+        let deviations = spins.iter().map(change).fold(0.0, f64::max);
+        (deviations < UNEXPLAINED).then_some(Reason::Still { deviations })
     }
 
     /// The constant of the sensors that the data speak against most, where they do.

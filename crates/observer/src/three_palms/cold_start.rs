@@ -4,12 +4,9 @@
 use super::clean::information_inverse;
 use super::covariance::{NoiseLevel, Sampling, propagate};
 use super::estimate::WORTH_ADJUSTING;
-use super::evidence::Reason;
 use super::momentum::{MomentumProblem, Scales, StartState, UNKNOWNS};
 use super::track::{Node, Track, smoothing_variance};
-use crate::least_squares::{
-    Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability,
-};
+use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt, Observability};
 use contact_kinematics::PalmTriple;
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::MassProperties;
@@ -76,9 +73,6 @@ pub(super) const EXPLAINED: f64 = 1.4;
 const LONG_ENOUGH: f64 = 3.0;
 /// Least damping that a fit of more data begins with.
 const CONTINUED: f64 = 1e-6;
-/// Multiple of the residual that sensor noise leaves, above which a fit is taken as wrong even if adjusting the data makes up
-/// for it: 2.0 was the most seen with a motion that is right and relied on, 2.8 with one that is wrong.
-pub(super) const WRONG: f64 = 2.4;
 /// Fits on the way: good enough to start the next from.
 pub(super) const COARSE: LevenbergMarquardt =
     LevenbergMarquardt { iterations: 25, step_tolerance: 1e-6, damping: 1e-2, prior: 0.0 };
@@ -193,35 +187,6 @@ pub(super) fn fit_near(
     let problem = MomentumProblem::new(&thin, mass, scales, f64::INFINITY);
     let fit = LevenbergMarquardt { damping: 1e-4, ..COARSE }.fit(&problem, near);
     (fit.status != FitStatus::Failed).then_some(fit)
-}
-
-/// The contact conditions of the thinned track, linearised at a motion, in whatever way it was found.
-pub(super) fn conditions_at(
-    track: &Track,
-    mass: &MassProperties,
-    scales: Scales,
-    at: &StartState,
-) -> Option<NormalEquations<UNKNOWNS>> {
-    let thin = track.thinned(stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME));
-    MomentumProblem::new(&thin, mass, scales, f64::INFINITY).linearise(at)
-}
-
-/// What a fit of the thinned track leaves of noisy data where noise does not explain it, m/s: residual and explanation.
-///
-/// Adjusting the data can make up for a wrong motion, where they say little about it.
-pub(super) fn unexplained(
-    track: &Track,
-    mass: &MassProperties,
-    noise: &NoiseLevel,
-    fit: &Fit<StartState, UNKNOWNS>,
-) -> Option<Reason> {
-    let scales = scales(track, mass);
-    let per_node = stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME);
-    let thin = track.thinned(per_node);
-    let explained =
-        Search { track: &thin, mass, scales, noise: *noise, sampling: sampling(per_node) }.explained(fit);
-    let residual = fit.normal.rms();
-    (residual > WRONG * explained).then_some(Reason::Misfit { residual, explained })
 }
 
 pub(super) struct Search<'a> {

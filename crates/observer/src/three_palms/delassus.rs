@@ -1,6 +1,5 @@
 //! How an impulse of one palm changes the speed of another's contact.
 
-use contact_kinematics::PalmFrame;
 use glam::{DMat3, DVec3};
 
 /// A palm's push on the body: its normal, and that crossed with the contact from the centre of mass.
@@ -12,11 +11,6 @@ pub(super) struct Push {
 }
 
 impl Push {
-    /// Of a frictionless palm at the contact `p_WC` on a body with its centre of mass at `p_WCm`.
-    pub(super) fn new(frame: &PalmFrame, p_WC: DVec3, p_WCm: DVec3) -> Self {
-        Self { normal: frame.n, arm: frame.n.cross(p_WC - p_WCm) }
-    }
-
     /// Change of the speed along this normal by a unit impulse along the `other`: an entry of the Delassus matrix, 1/kg.
     pub(super) fn speed_by(&self, other: &Self, mass: f64, inverse_inertia: DMat3) -> f64 {
         self.normal.dot(other.normal) / mass + self.arm.dot(inverse_inertia * other.arm)
@@ -26,7 +20,7 @@ impl Push {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use contact_kinematics::Direction;
+    use contact_kinematics::{Direction, PalmFrame};
 
     /// The matrix is that of a kinetic energy: symmetric, and of two equal pushes through the centre of mass one over the mass.
     #[test]
@@ -35,10 +29,10 @@ mod tests {
         let (a, b) = (frame(DVec3::new(0.2, 0.1, 1.0)), frame(DVec3::new(-0.6, 0.3, 0.8)));
         let inverse = DMat3::from_diagonal(DVec3::new(1.0, 0.5, 0.25));
         let p = DVec3::new(0.1, -0.2, 0.9);
-        let (x, y) =
-            (Push::new(&a, DVec3::new(0.3, 0.2, -0.1), p), Push::new(&b, DVec3::new(-0.7, 0.1, 0.2), p));
+        let push = |frame: &PalmFrame, p_WC: DVec3| Push { normal: frame.n, arm: frame.n.cross(p_WC - p) };
+        let (x, y) = (push(&a, DVec3::new(0.3, 0.2, -0.1)), push(&b, DVec3::new(-0.7, 0.1, 0.2)));
         assert!((x.speed_by(&y, 2.0, inverse) - y.speed_by(&x, 2.0, inverse)).abs() < 1e-15);
-        let through = Push::new(&a, p - a.n * 0.7, p);
+        let through = push(&a, p - a.n * 0.7);
         assert!((through.speed_by(&through, 2.0, inverse) - 0.5).abs() < 1e-15);
     }
 }

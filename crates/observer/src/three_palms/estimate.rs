@@ -1,22 +1,17 @@
-use super::alternatives::{OtherMotion, refine_best};
 use super::clean::{Clean, clean_covariance, stride};
-use super::cold_start::{cold_start, conditions_at, fit_near, scales, unexplained};
-use super::convexity::largest_violation;
+use super::cold_start::{cold_start, fit_near, scales};
 use super::covariance::NoiseLevel;
-use super::curves::CurveUncertainty;
-use super::evidence::{Evidence, Reason, Reliability, WeakDirection};
+use super::evidence::{Evidence, Reliability, WeakDirection};
 use super::momentum::{MomentumProblem, MotionState, Row, Scales, StartState, UNKNOWNS};
 use super::noise::noise_level;
 use super::orientations::nearest_to_identity;
 use super::polish::polish_all;
 use super::pose_errors::{self, PoseErrors};
-use super::refine::{Refined, Setting};
-use super::state_space::Constant;
 use super::track::{Track, TrackError};
-use super::verdict::{LARGEST_DEVIATION, LARGEST_MISFIT, LARGEST_PLAIN_DEVIATION, judge};
-use crate::least_squares::{Fit, FitStatus, LeastSquares, Observability};
+use super::verdict::judge;
+use crate::least_squares::{LeastSquares, Observability};
 use contact_kinematics::{ContactCurve, CurveError};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use nalgebra::SMatrix;
 use object_dynamics::{MassProperties, SensorLog};
 use thiserror::Error;
@@ -78,14 +73,8 @@ pub struct MotionEstimate {
     pub curves: [ContactCurve; 3],
     /// Radius function values at the contacts, m: one triple a sample.
     pub radii: Vec<[f64; 3]>,
-    /// Uncertainty of the curves at some of the samples, where data were adjusted; empty for logs without noise to speak
-    /// of.
-    pub uncertainty: Vec<CurveUncertainty>,
     /// How far all poses together may be off, for bounds on the shape. None where not a single motion could be drawn.
     pub pose_errors: Option<PoseErrors>,
-    /// Other motions that were found where the log leaves room for them, those that need the smallest corrections first. Only
-    /// looked for where mass and inertia are known.
-    pub others: Vec<OtherMotion>,
     /// Covariance of the start: centre of mass (m), velocity (m/s), angular momentum (kg m^2/s), orientation (rotation
     /// vector in world axes, rad), three each.
     pub covariance: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
@@ -110,7 +99,7 @@ pub fn estimate_motion(log: &SensorLog, known: &KnownBody) -> Result<MotionEstim
     let scales = scales(&track, &known.mass);
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
     let best = cold_start(&track, &known.mass, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
-    estimate_near(&track, known, scales, noise, &best)
+    clean_estimate(&track, known, scales, noise, best.point)
 }
 
 /// As [`estimate_motion`] from a start that is known to be near, without a search: the minimum that it lies above.
@@ -126,7 +115,7 @@ pub fn estimate_motion_from(
     let scales = scales(&track, &known.mass);
     let best = fit_near(&track, &known.mass, scales, *near).ok_or(EstimateError::NoFit)?;
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
-    estimate_near(&track, known, scales, noise, &best)
+    clean_estimate(&track, known, scales, noise, best.point)
 }
 
 fn track(log: &SensorLog, known: &KnownBody) -> Result<Track, EstimateError> {
@@ -134,21 +123,6 @@ fn track(log: &SensorLog, known: &KnownBody) -> Result<Track, EstimateError> {
         return Err(EstimateError::Gravity { gravity: known.gravity });
     }
     Track::new(log, known.mass.mass(), known.gravity, known.palm_inertias).map_err(EstimateError::Track)
-}
-
-/// The estimate that a fit of the thinned track leads to.
-fn estimate_near(
-    track: &Track,
-    known: &KnownBody,
-    scales: Scales,
-    noise: NoiseLevel,
-    best: &Fit<StartState, UNKNOWNS>,
-) -> Result<MotionEstimate, EstimateError> {
-    if noise.contact > WORTH_ADJUSTING * scales.length {
-        let setting = Setting { scales, noise, constants: &[], deviations: &[], axes_chosen: false };
-        return noisy_estimate::<UNKNOWNS>(track, known, &setting, best).map(|(estimate, _)| estimate);
-    }
-    clean_estimate(track, known, scales, noise, best.point)
 }
 
 /// The least-squares motion of a log with next to no noise, from a start that is near.
@@ -181,100 +155,20 @@ fn clean_estimate(
     let weakest = weakest_direction(&covariance);
     let evidence =
         Evidence::new(track, &residuals, predicted, &observability, weakest, noise, fit.iterations);
-    let reliability = judge(&evidence, fit.status, &scales, LARGEST_PLAIN_DEVIATION);
+    let reliability = judge(&evidence, fit.status, &scales);
     let curves = super::curves::contact_curves(track, &motion)?;
     let radii = super::curves::radii(track, &motion);
     let covariance = unscale(&covariance, &scales);
-    let (uncertainty, others) = (Vec::new(), Vec::new());
     Ok(MotionEstimate {
         start: fit.point,
         motion,
         curves,
         radii,
-        uncertainty,
         pose_errors,
-        others,
         covariance,
         evidence,
         reliability,
     })
-}
-
-/// The most probable motion, from the best fit of the contact conditions on a thinned track; constants among the states
-/// are estimated with it.
-fn noisy_estimate<const N: usize>(
-    track: &Track,
-    known: &KnownBody,
-    setting: &Setting<'_>,
-    best: &Fit<StartState, UNKNOWNS>,
-) -> Result<(MotionEstimate, Refined<N>), EstimateError> {
-    let (mass, scales, noise) = (&known.mass, setting.scales, setting.noise);
-    let chosen = refine_best::<N>(track, mass, setting, &best.point)?;
-    let (log_odds, others, replaced, refined) =
-        (chosen.log_odds(), chosen.others, chosen.replaced, chosen.refined);
-    let problem = MomentumProblem::new(track, mass, scales, f64::INFINITY);
-    let states = refined.states();
-    let motion = problem.motion_through(&refined.nodes, &states);
-    let residuals = problem.residuals_along(&motion);
-    let predicted = problem.expected_through(&refined.nodes, &motion, &noise);
-    let misfit = refined.misfit(N);
-    let conditions = conditions_at(track, mass, scales, &states[0]).ok_or(EstimateError::NoFit)?;
-    let observability = Observability::new(&conditions.information);
-    let covariance = refined.solution.covariances[0];
-    let by_block = scales.by_block();
-    let scaled = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|i, j| {
-        covariance[(i, j)] / (by_block[i / 3] * by_block[j / 3])
-    });
-    let (weakest, iterations) = (weakest_direction(&scaled), refined.solution.iterations);
-    let evidence = Evidence {
-        bias: refined.shift,
-        log_odds,
-        ..Evidence::new(track, &residuals, predicted, &observability, weakest, noise, iterations)
-    };
-    let status = if refined.settled() { FitStatus::Converged } else { FitStatus::Stalled };
-    let mut reliability = judge(&evidence, status, &scales, LARGEST_DEVIATION);
-    reliability.check_length(track, &scales);
-    if misfit.is_nan() || misfit > LARGEST_MISFIT {
-        reliability.add(Reason::Inconsistent { misfit });
-    }
-    // With constants of the sensors among the unknowns, what is left before they are found says nothing.
-    if !replaced && setting.constants.is_empty() {
-        unexplained(track, mass, &noise, best).into_iter().for_each(|reason| reliability.add(reason));
-    }
-    let curves = super::curves::contact_curves(track, &motion)?;
-    let radii = super::curves::radii(track, &motion);
-    let covariance = covariance.fixed_view::<UNKNOWNS, UNKNOWNS>(0, 0).into_owned();
-    let uncertainty = super::curves::uncertainty(track, &refined, DQuat::IDENTITY);
-    reliability.check_convexity(largest_violation(track, &refined.nodes, &motion, &uncertainty));
-    let start = states[0];
-    let estimate = MotionEstimate {
-        start,
-        motion,
-        curves,
-        radii,
-        uncertainty,
-        pose_errors: refined.pose_errors(DQuat::IDENTITY, misfit, true),
-        others,
-        covariance,
-        evidence,
-        reliability,
-    };
-    Ok((estimate, refined))
-}
-
-/// As [`estimate_motion`], with constants of the sensors among the states.
-pub(super) fn estimate_with_constants<const N: usize>(
-    track: &Track,
-    known: &KnownBody,
-    constants: &[Constant],
-    deviations: &[f64],
-) -> Result<(MotionEstimate, Refined<N>), EstimateError> {
-    let scales = scales(track, &known.mass);
-    let noise = floored(known.noise.unwrap_or_else(|| noise_level(track)), track, &scales);
-    let noise = NoiseLevel { contact: noise.contact.max(WORTH_ADJUSTING * scales.length), ..noise };
-    let best = cold_start(track, &known.mass, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
-    let setting = Setting { scales, noise, constants, deviations, axes_chosen: false };
-    noisy_estimate(track, known, &setting, &best)
 }
 
 pub(super) fn floored(noise: NoiseLevel, track: &Track, scales: &Scales) -> NoiseLevel {

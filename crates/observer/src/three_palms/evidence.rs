@@ -1,8 +1,7 @@
 use super::clean::{RANK_TOLERANCE, root_mean_square};
-use super::cold_start::natural_time;
 use super::correlation::whiteness;
 use super::covariance::NoiseLevel;
-use super::momentum::{Row, Scales};
+use super::momentum::Row;
 use super::track::Track;
 use crate::faults::Suspect;
 use crate::least_squares::Observability;
@@ -34,12 +33,6 @@ pub struct Evidence {
     pub weakest: WeakDirection,
     /// Sensor noise that the covariance is computed from.
     pub noise: NoiseLevel,
-    /// Largest shift of an unknown by as much noise again, in its own standard deviations: what averages do not remove.
-    /// Zero where the noise is too small to shift anything.
-    pub bias: f64,
-    /// Logarithm of how many times more probable this motion is than the most probable other one that was found and that needs
-    /// larger corrections of the data; infinite where there is none, or where noise leaves no room for one.
-    pub log_odds: f64,
     /// Linearisations in the last fit.
     pub iterations: usize,
 }
@@ -69,8 +62,6 @@ impl Evidence {
             smallest_information: smallest,
             weakest,
             noise,
-            bias: 0.0,
-            log_odds: f64::INFINITY,
             iterations,
         }
     }
@@ -173,16 +164,6 @@ pub enum Reason {
         /// Which.
         direction: WeakDirection,
     },
-    /// Noise shifts the estimate by more than its covariance covers.
-    Biased {
-        /// Largest shift of an unknown, in its standard deviations.
-        shift: f64,
-    },
-    /// Another motion explains the log about as well.
-    Ambiguous {
-        /// Logarithm of how many times more probable the estimate is; negative where the other one is.
-        log_odds: f64,
-    },
     /// Contacts and forces had to be corrected by more than their noise.
     Inconsistent {
         /// Chi-squared over its degrees of freedom; about 1 when all is as stated.
@@ -199,17 +180,24 @@ pub enum Reason {
         /// Squared departure of mass and moments in their covariance, four degrees of freedom.
         squares: f64,
     },
-    /// With this motion contacts lie outside the tangent planes of other contacts: no convex body does that.
-    NotConvex {
-        /// The farthest, in standard deviations.
+    /// The body hardly turns: where its centre of mass is, and its inertia, follow from how the spin changes.
+    Still {
+        /// Largest change of the angular velocity from its mean, in its deviations.
         deviations: f64,
     },
+    /// Without the stated mass and inertia the search leads to no motion, so that nothing confirms the one that was found with them.
+    Unconfirmed,
     /// The log is noisy and short beside the time in which the body falls its own length.
     TooShort {
         /// Length of the log, s.
         duration: f64,
         /// Length that is needed, s.
         needed: f64,
+    },
+    /// The log is noisy, and the estimate one for exact logs.
+    Noisy {
+        /// Standard deviation of a contact coordinate, m.
+        contact: f64,
     },
     /// The motion found leaves more than noise.
     Misfit {
@@ -231,28 +219,6 @@ impl fmt::Display for Reason {
                 "the log does not determine the {direction}: standard deviation {:.2e} of its natural size",
                 direction.deviation
             ),
-            Self::Biased { shift } if shift.is_infinite() => write!(
-                f,
-                "with as much noise again the estimate leads nowhere: move the object faster or for longer, or use better \
-                 sensors"
-            ),
-            Self::Biased { shift } => write!(
-                f,
-                "as much noise again shifts the estimate by {shift:.1} of its standard deviations: the motion is too slow \
-                 or too short for these sensors"
-            ),
-            Self::Ambiguous { log_odds } if *log_odds < 0.0 => write!(
-                f,
-                "another motion needs the data corrected by more and is yet the more probable one (log odds {:.0}): move the \
-                 object for longer, or use better sensors",
-                -log_odds
-            ),
-            Self::Ambiguous { log_odds } => write!(
-                f,
-                "another motion explains the log about as well (this one is {:.1} times more probable): move the object \
-                 for longer, or use better sensors",
-                log_odds.exp()
-            ),
             Self::Fault(suspect) => write!(
                 f,
                 "the data speak for a wrong constant of the sensors, most of all for this one: {suspect}"
@@ -263,20 +229,28 @@ impl fmt::Display for Reason {
                  {deviations:.1} deviations off, and mass and moments together depart by {squares:.0} where chance makes 4: state others, or \
                  none"
             ),
-            Self::NotConvex { deviations } => write!(
-                f,
-                "with this motion contacts lie up to {deviations:.1} standard deviations outside planes that the body \
-                 touches elsewhere: a wrong motion, or a body that is not convex"
-            ),
             Self::Inconsistent { misfit } => write!(
                 f,
                 "contacts and forces had to be corrected by {:.2} times their noise: a wrong motion, a wrong constant of \
                  body or sensors (a force gain, say), or more noise than was stated",
                 misfit.sqrt()
             ),
+            Self::Still { deviations } => write!(
+                f,
+                "the body hardly turns: its angular velocity changes by {deviations:.1} of its deviations at most, and where its centre of mass is \
+                 follows from such changes"
+            ),
+            Self::Unconfirmed => write!(
+                f,
+                "without the stated mass and inertia the search leads to no motion that explains the log, so that nothing confirms this one"
+            ),
             Self::TooShort { duration, needed } => write!(
                 f,
                 "{duration:.2} s of noisy data are too short for a body of this size: at least {needed:.2} s are needed"
+            ),
+            Self::Noisy { contact } => write!(
+                f,
+                "contacts are noisy by {contact:.1e} m, and the momentum form is for exact logs: estimate from contacts of any palms"
             ),
             Self::Misfit { residual, explained } if !explained.is_finite() => write!(
                 f,
@@ -292,28 +266,7 @@ impl fmt::Display for Reason {
     }
 }
 
-/// Natural times that a noisy log must last at least: over less, the motion is hardly more than its start.
-const SHORTEST: f64 = 2.0;
-
-/// Standard deviations by which a contact may lie outside a tangent plane: beyond the largest of some ten thousand pairs.
-const LARGEST_VIOLATION: f64 = 6.0;
-
 impl Reliability {
-    /// Refuses to rely on a noisy log that is too short.
-    pub(super) fn check_length(&mut self, track: &Track, scales: &Scales) {
-        let (duration, needed) = (track.duration(), SHORTEST * natural_time(track, scales.length));
-        if duration < needed {
-            self.add(Reason::TooShort { duration, needed });
-        }
-    }
-
-    /// Refuses to rely on a motion that leaves no room for a convex body.
-    pub(crate) fn check_convexity(&mut self, violation: f64) {
-        if violation.is_nan() || violation > LARGEST_VIOLATION {
-            self.add(Reason::NotConvex { deviations: violation });
-        }
-    }
-
     /// One more reason.
     pub(crate) fn add(&mut self, reason: Reason) {
         match self {

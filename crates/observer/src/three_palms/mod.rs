@@ -1,10 +1,7 @@
 //! Three palms in space.
 
-mod alternatives;
-mod by_body;
 mod clean;
 mod cold_start;
-mod convexity;
 mod correlation;
 mod covariance;
 mod curves;
@@ -12,7 +9,6 @@ mod delassus;
 mod estimate;
 mod evidence;
 mod momentum;
-mod most_probable;
 mod no_force;
 mod noise;
 mod orientations;
@@ -20,17 +16,13 @@ mod paper_method;
 mod paper_system;
 mod polish;
 mod pose_errors;
-mod prior;
 mod quadrature;
 mod random;
-mod refine;
 mod sensitivity;
-mod sensors;
 mod state_space;
 mod streaming;
 #[cfg(test)]
 mod test_scenes;
-mod through;
 mod track;
 mod unknown_body;
 mod verdict;
@@ -42,9 +34,7 @@ pub(crate) use sensitivity::{cross_matrix, exponential, logarithm};
 pub(crate) use state_space::{inertia_of_numbers, inertia_slope, numbers_of_inertia};
 pub(crate) use verdict::{LARGEST_DEVIATION, LARGEST_MISFIT};
 
-pub use alternatives::OtherMotion;
 pub use covariance::NoiseLevel;
-pub use curves::CurveUncertainty;
 pub use estimate::{EstimateError, KnownBody, MotionEstimate, estimate_motion, estimate_motion_from};
 pub use evidence::{Evidence, Quantity, Reason, Reliability, WeakDirection};
 pub use momentum::{MotionState, Scales, StartState};
@@ -56,7 +46,6 @@ pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
 pub use pose_errors::{PoseAxes, PoseCovariance, PoseErrors};
-pub use sensors::{SensorConstant, SensorEstimate, SensorPriors, estimate_motion_and_sensors};
 pub use streaming::{MotionStream, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 pub use track::{Track, TrackError};
 pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body, estimate_body_from};

@@ -80,6 +80,15 @@ pub(super) struct Kinematics {
 }
 
 impl<'a> MomentumProblem<'a> {
+    /// The contact conditions along a motion, m/s.
+    pub(super) fn residuals_along(&self, motion: &[MotionState]) -> Vec<[f64; 3]> {
+        let residual = |k: usize, m: &MotionState| {
+            let at = Kinematics { v: m.v_WCm, p: m.p_WCm, L: DVec3::ZERO };
+            std::array::from_fn(|i| self.residual(k, i, &at, m.w_WO))
+        };
+        motion.iter().enumerate().map(|(k, m)| residual(k, m)).collect()
+    }
+
     /// Of the samples up to `window` seconds after the start.
     pub(super) fn new(track: &'a Track, mass: &'a MassProperties, scales: Scales, window: f64) -> Self {
         let end = track.t.partition_point(|&t| t <= window + 1e-12).max(2).min(track.t.len());

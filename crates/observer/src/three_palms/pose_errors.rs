@@ -5,7 +5,6 @@
 //! somewhere: relative to it the poses are known better than each alone. The joint distribution is drawn from.
 
 use super::random::Normal;
-use super::refine::Refined;
 use super::sensitivity::{exponential, logarithm};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Cholesky, SMatrix, SVector};
@@ -238,42 +237,6 @@ pub(crate) fn normals<const N: usize>(random: &mut Normal) -> SVector<f64, N> {
 /// Orientation turned by a small rotation vector in world axes.
 pub(crate) fn turned(q: DQuat, theta: DVec3) -> DQuat {
     (exponential(theta) * q).normalize()
-}
-
-impl<const N: usize> Refined<N> {
-    /// Joint errors of the poses at the nodes, in body axes that stand at `axes` in the model's: what is linear in the noise, and
-    /// what the covariances were widened by; all of it larger by the root of the `misfit` where that is above 1.
-    pub(super) fn pose_errors(&self, axes: DQuat, misfit: f64, principal: bool) -> Option<PoseErrors> {
-        let mut random = Normal::seeded(MOTION_SEED);
-        let kept = kept(self.nodes.len());
-        let states = self.states();
-        let poses: Vec<Pose> =
-            kept.iter().map(|&k| (states[k].p_WCm, (states[k].R_WO * axes).normalize())).collect();
-        let first = root(&self.solution.report.covariance);
-        let links: Vec<_> =
-            self.solution.links.iter().map(|link| (link.transition, root(&link.noise))).collect();
-        let grown = misfit.max(1.0).sqrt();
-        let draw = |_: usize| {
-            let of_pairs: Vec<f64> = self.shifts.iter().map(|_| random.draw()).collect();
-            let pairs = (self.shifts.len().max(1) as f64).sqrt();
-            let mut deviation: SVector<f64, N> = first * normals(&mut random);
-            let mut places = kept.iter().zip(&poses).peekable();
-            let mut drawn = Vec::with_capacity(kept.len());
-            for k in 0..self.nodes.len() {
-                if let Some((transition, noise)) = k.checked_sub(1).and_then(|before| links.get(before)) {
-                    deviation = transition * deviation + noise * normals(&mut random);
-                }
-                let Some((_, (p, q))) = places.next_if(|(at, _)| **at == k) else { continue };
-                let beyond = self.shifts.iter().zip(&of_pairs).map(|(shift, z)| shift[k] * (z / pairs));
-                let all = (deviation + beyond.sum::<SVector<f64, N>>()) * grown;
-                let part = |block: usize| DVec3::new(all[3 * block], all[3 * block + 1], all[3 * block + 2]);
-                drawn.push((*p + part(0), turned(*q, part(3))));
-            }
-            drawn
-        };
-        let nodes = kept.iter().map(|&k| self.nodes[k]).collect();
-        PoseErrors::from_draws(nodes, &poses, (0..DRAWS).map(draw), 0.0, principal)
-    }
 }
 
 /// Joint errors of the poses of a motion that follows from its start alone: `covariance` is that of the unknowns, `poses` gives

@@ -1,10 +1,8 @@
 //! The estimator's evidence in words and numbers for people.
 
 use glam::DMat3;
-use recon::observer::{
-    IdentifiedBody, MotionEstimate, OtherMotion, PoseAxes, PoseErrors, Reliability, StartState,
-};
-use recon_io::{Evidence, EvidenceValue, Level, Verdict, brief_to};
+use recon::observer::{IdentifiedBody, MotionEstimate, PoseAxes, PoseErrors, Reliability};
+use recon_io::{Evidence, EvidenceValue, Level, Verdict};
 
 /// Unknowns of the estimate: centre of mass, velocity, angular momentum, orientation.
 const UNKNOWNS: usize = 12;
@@ -223,17 +221,6 @@ pub(crate) fn evidence(estimate: &MotionEstimate, checks: &Checks) -> Vec<Eviden
     if checks.together > 1 {
         rows.push(samples_together(checks.together));
     }
-    if !estimate.others.is_empty() {
-        rows.push(row(
-            "other_motions",
-            "Other motions",
-            EvidenceValue::Text(in_words(&estimate.others, &estimate.start)),
-            "",
-            "Motions that the log may also be of: how far the body is turned against this one at the first sample, by how many \
-             squared deviations more data must be corrected for it, and how many times less probable it is.",
-            Level::Caution,
-        ));
-    }
     if let (Some(confidence), Some(errors)) = (checks.bounds_at, &estimate.pose_errors) {
         rows.extend(of_bounds(errors, confidence));
     }
@@ -316,41 +303,4 @@ pub(super) fn of_bounds(errors: &PoseErrors, confidence: f64) -> [Evidence; 4] {
             "Standard deviation of how far their origin is from the centre of mass.",
         ),
     ]
-}
-
-/// Other motions, one after the other.
-fn in_words(others: &[OtherMotion], taken: &StartState) -> String {
-    let one = |other: &OtherMotion| {
-        let turned = other.start.R_WO.angle_between(taken.R_WO).to_degrees();
-        format!(
-            "turned by {turned:.0} deg, +{} squared deviations, e^{}",
-            brief_to(2, other.corrections),
-            brief_to(2, other.log_odds)
-        )
-    };
-    others.iter().map(one).collect::<Vec<_>>().join("; ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::{DQuat, DVec3};
-
-    #[test]
-    fn other_motions_are_told_apart_in_words() {
-        let start = |angle: f64| StartState {
-            p_WCm: DVec3::ZERO,
-            v_WCm: DVec3::ZERO,
-            L_WO: DVec3::ZERO,
-            R_WO: DQuat::from_rotation_z(angle),
-        };
-        let other =
-            |angle: f64, corrections, log_odds| OtherMotion { start: start(angle), corrections, log_odds };
-        let words = in_words(
-            &[other(0.5, 12.4, 30.0), other(-1.0, 40.0, -8.2), other(1.0, 3e300, -2e200)],
-            &start(0.0),
-        );
-        let expected = "turned by 29 deg, +12 squared deviations, e^30; turned by 57 deg, +40 squared deviations, e^-8.2; turned by 57 deg, +3e300 squared deviations, e^-2e200";
-        assert_eq!(words, expected);
-    }
 }

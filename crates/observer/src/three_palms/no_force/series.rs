@@ -68,7 +68,7 @@ impl TouchSeries {
 
     /// Standard deviation of the contacts' noise by their roughness, m.
     pub(super) fn noise(&self) -> f64 {
-        roughness((0..6).map(|c| self.contacts.iter().map(|s| s[c / 2][c % 2]).collect()))
+        roughness(&self.t, |i, k| self.contacts[k][i])
     }
 
     /// Where the normals at the contacts of the first sample pass each other most closely, and the mean distance of the

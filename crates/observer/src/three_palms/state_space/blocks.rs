@@ -1,61 +1,34 @@
 //! Inputs of the state-space model from a track: a node for every few samples.
 
-use super::input::{NodeInput, PalmTouch, PalmWrench, Touch, Wrench};
+use super::input::{NodeInput, PalmTouch, Touch, Wrench};
 use crate::three_palms::quadrature::running_integral_into;
 use crate::three_palms::track::Track;
 use glam::DVec3;
 use nalgebra::{Matrix3, Vector3};
-use std::ops::{Add, Mul, Range};
-
-/// Running integrals for one palm at one time, with the first moment about the start of the track.
-#[derive(Clone, Copy, Debug, Default)]
-struct Running {
-    force: Wrench,
-    unit: Wrench,
-}
-
-impl Add for Running {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self { force: self.force + other.force, unit: self.unit + other.unit }
-    }
-}
-
-impl Mul<f64> for Running {
-    type Output = Self;
-    fn mul(self, factor: f64) -> Self {
-        Self { force: self.force * factor, unit: self.unit * factor }
-    }
-}
+use std::ops::Range;
 
 /// Integrals of one palm and their rates at every sample.
 #[derive(Debug, Default)]
 struct Series {
-    rates: Vec<Running>,
-    integrals: Vec<Running>,
+    rates: Vec<Wrench>,
+    integrals: Vec<Wrench>,
 }
 
 impl Series {
-    fn new(track: &Track, palm: usize) -> Self {
-        let mut series = Self::default();
-        series.fill(track, palm);
-        series
-    }
-
     /// Of a track, in place of what there was.
     fn fill(&mut self, track: &Track, palm: usize) {
         let one = |(node, &t): (&crate::three_palms::track::Node, &f64)| {
             let n = node.palms[palm].frame.n;
             let unit = Wrench { impulse: n, first: n * t, torque: node.p_WC[palm].cross(n) };
-            Running { force: unit * node.forces[palm], unit }
+            unit * node.forces[palm]
         };
         self.rates.clear();
         self.rates.extend(track.nodes.iter().zip(&track.t).map(one));
-        running_integral_into(&track.t, &self.rates, Running::default(), &mut self.integrals);
+        running_integral_into(&track.t, &self.rates, Wrench::default(), &mut self.integrals);
     }
 
     /// Cubic Hermite interpolation between samples.
-    fn at(&self, t: &[f64], time: f64) -> Running {
+    fn at(&self, t: &[f64], time: f64) -> Wrench {
         let next = t.partition_point(|&t| t < time).clamp(1, t.len() - 1);
         let (a, b) = (next - 1, next);
         let h = t[b] - t[a];
@@ -88,49 +61,6 @@ impl Block {
     }
 }
 
-/// Cuts samples into blocks of about `stride`: an odd number in each, so that the node is the mean time of its block and
-/// no acceleration (forces are noisy) is needed to bring the mean to the node. The first and the last sample stand alone:
-/// there the motion is wanted.
-pub(crate) fn blocks(samples: usize, stride: usize) -> Vec<Block> {
-    let reach = stride.saturating_sub(1) / 2;
-    let single = |start: usize| Block { start, reach: 0 };
-    let mut all = vec![single(0)];
-    let last = samples.saturating_sub(1);
-    let mut start = 1;
-    while start < last {
-        let reach = reach.min((last - start - 1) / 2);
-        all.push(Block { start, reach });
-        start += 2 * reach + 1;
-    }
-    if last > 0 {
-        all.push(single(last));
-    }
-    all
-}
-
-/// Inputs of the nodes of some blocks. Contacts in derivatives, and forces and torques in the curvature of the motion over
-/// a block, are smoothed over `reach` seconds on either side.
-pub(crate) fn block_inputs(track: &Track, blocks: &[Block], reach: f64) -> Vec<NodeInput> {
-    let t: Vec<f64> = blocks.iter().map(|b| track.t[b.node()]).collect();
-    let touches: Vec<Touch> = blocks.iter().map(|block| touch(track, block)).collect();
-    let touches = smoothed(&t, touches, reach);
-    let series: [Series; 3] = std::array::from_fn(|palm| Series::new(track, palm));
-    (0..blocks.len())
-        .map(|k| {
-            let before = k.saturating_sub(1);
-            let (from, here) = (touches[before], touches[k]);
-            let duration = t[k] - t[before];
-            NodeInput {
-                duration,
-                halves: halves(&track.t, &series, t[before], duration, &from, &here),
-                correction: DVec3::ZERO,
-                from,
-                here,
-            }
-        })
-        .collect()
-}
-
 /// Inputs of one node after the other, on buffers that are made once.
 #[derive(Debug, Default)]
 pub(crate) struct NodeInputs {
@@ -146,28 +76,21 @@ impl NodeInputs {
         let start = track.t[from.node()];
         let duration = track.t[here.node()] - start;
         let (from, here) = (touch(track, from), touch(track, here));
-        let halves = halves(&track.t, &self.series, start, duration, &from, &here);
+        let halves = halves(&track.t, &self.series, start, duration);
         NodeInput { duration, halves, correction: DVec3::ZERO, from, here }
     }
 
     /// Input of a first node, with nothing before it.
     pub(crate) fn first(track: &Track, here: &Block) -> NodeInput {
         let here = touch(track, here);
-        let halves = [[PalmWrench::default(); 3]; 2];
+        let halves = [[Wrench::default(); 3]; 2];
         NodeInput { duration: 0.0, halves, correction: DVec3::ZERO, from: here, here }
     }
 }
 
-fn halves(
-    t: &[f64],
-    series: &[Series; 3],
-    start: f64,
-    duration: f64,
-    from: &Touch,
-    here: &Touch,
-) -> [[PalmWrench; 3]; 2] {
+fn halves(t: &[f64], series: &[Series; 3], start: f64, duration: f64) -> [[Wrench; 3]; 2] {
     if duration <= 0.0 {
-        return [[PalmWrench::default(); 3]; 2];
+        return [[Wrench::default(); 3]; 2];
     }
     let half = 0.5 * duration;
     std::array::from_fn(|part| {
@@ -176,12 +99,7 @@ fn halves(
             let (a, b) = (series[i].at(t, begin), series[i].at(t, begin + half));
             let change = b + a * -1.0;
             // The first moment about the start of the half.
-            let moved = |w: Wrench| Wrench { first: w.first - w.impulse * begin, ..w };
-            let rise = here.palms[i].force[0] - from.palms[i].force[0];
-            let arm = 0.5 * (from.palms[i].arm[0] + here.palms[i].arm[0]);
-            let size = 0.5 * rise.dot(from.palms[i].frame.n);
-            let rate = Wrench { impulse: 0.5 * rise, first: rise * (0.25 * half), torque: -arm * size };
-            PalmWrench { force: moved(change.force), unit: moved(change.unit), rate }
+            Wrench { first: change.first - change.impulse * begin, ..change }
         })
     })
 }
@@ -227,23 +145,6 @@ fn touch(track: &Track, block: &Block) -> Touch {
     }
 }
 
-/// Arms for derivatives, forces and torques with their rates: at each node a parabola fitted to the nodes within `reach`
-/// seconds.
-fn smoothed(t: &[f64], touches: Vec<Touch>, reach: f64) -> Vec<Touch> {
-    let mut all = touches.clone();
-    let samples: Vec<f64> = touches.iter().map(|touch| touch.samples).collect();
-    for (k, touch) in all.iter_mut().enumerate() {
-        let Some(parabola) = Parabola::new(t, &samples, k, reach) else { continue };
-        for (i, palm) in touch.palms.iter_mut().enumerate() {
-            palm.smooth_arm = parabola.value(|j| touches[j].palms[i].arm[0]);
-            palm.own_share = parabola.weights[k - parabola.start][0];
-            palm.force = parabola.value_and_slope(|j| touches[j].palms[i].force[0]);
-            palm.torque = parabola.value_and_slope(|j| touches[j].palms[i].torque[0]);
-        }
-    }
-    all
-}
-
 /// Replaces the arms in derivatives by smoothed ones of contacts that an estimate has adjusted.
 ///
 /// A derivative must not hold the noise that it is multiplied with: not that of its own condition, and, since noise of the
@@ -274,9 +175,8 @@ pub(crate) fn set_adjusted_arms<'a>(
 /// Weights of a least-squares parabola through the nodes about one of them.
 struct Parabola {
     start: usize,
-    /// Weights for value, slope times `reach`, and curvature at the node.
-    weights: Vec<Vector3<f64>>,
-    reach: f64,
+    /// Weights of the value at the node.
+    weights: Vec<f64>,
 }
 
 impl Parabola {
@@ -289,18 +189,10 @@ impl Parabola {
         let weigh = |j: usize| powers(j) * samples[j];
         let normal: Matrix3<f64> = (start..=end).map(|j| weigh(j) * powers(j).transpose()).sum();
         let inverse = (end >= start + 3).then(|| normal.try_inverse()).flatten()?;
-        Some(Self { start, weights: (start..=end).map(|j| inverse * weigh(j)).collect(), reach })
-    }
-
-    fn sum(&self, row: usize, part: &impl Fn(usize) -> DVec3) -> DVec3 {
-        self.weights.iter().zip(self.start..).map(|(w, j)| part(j) * w[row]).sum()
+        Some(Self { start, weights: (start..=end).map(|j| (inverse * weigh(j))[0]).collect() })
     }
 
     fn value(&self, part: impl Fn(usize) -> DVec3) -> DVec3 {
-        self.sum(0, &part)
-    }
-
-    fn value_and_slope(&self, part: impl Fn(usize) -> DVec3) -> [DVec3; 2] {
-        [self.sum(0, &part), self.sum(1, &part) / self.reach]
+        self.weights.iter().zip(self.start..).map(|(w, j)| part(j) * *w).sum()
     }
 }

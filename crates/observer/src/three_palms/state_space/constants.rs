@@ -1,4 +1,4 @@
-//! Constants of body and sensors that may join the motion as states.
+//! Constants of the body that may join the motion as states.
 
 use super::inertia::{INERTIA_NUMBERS, inertia_of_numbers, numbers_of_inertia};
 use crate::three_palms::momentum::Scales;
@@ -12,14 +12,6 @@ pub(crate) enum Constant {
     LogMass,
     /// One of the six free numbers of the inertia tensor, body axes.
     Inertia(usize),
-    /// Factor between the force that a sensor reports and the force, to be multiplied with what is reported.
-    ForceGain(usize),
-    /// Force, N, to be added to what the sensor reports (times its gain).
-    ForceBias(usize),
-    /// To be added to the sensor coordinate `s1` or `s2` of a palm, m.
-    ContactOffset(usize, usize),
-    /// The force at a sample is what was reported so much later, s.
-    ForceDelay,
 }
 
 /// Mass and inertia: the seven constants of a body of which nothing is known.
@@ -44,33 +36,20 @@ impl Constant {
             "product of inertia xz",
             "product of inertia yz",
         ];
-        const GAIN: [&str; 3] = ["force gain of palm 1", "force gain of palm 2", "force gain of palm 3"];
-        const BIAS: [&str; 3] = ["force bias of palm 1", "force bias of palm 2", "force bias of palm 3"];
-        const OFFSET: [[&str; 2]; 3] = [
-            ["offset of s1 of palm 1", "offset of s2 of palm 1"],
-            ["offset of s1 of palm 2", "offset of s2 of palm 2"],
-            ["offset of s1 of palm 3", "offset of s2 of palm 3"],
-        ];
         match self {
             Self::LogMass => "mass",
             Self::Inertia(number) => INERTIA[number],
-            Self::ForceGain(palm) => GAIN[palm],
-            Self::ForceBias(palm) => BIAS[palm],
-            Self::ContactOffset(palm, axis) => OFFSET[palm][axis],
-            Self::ForceDelay => "delay of the forces",
         }
     }
 
     /// Natural size of a change.
     pub(crate) fn scale(self, scales: &Scales) -> f64 {
-        let time = scales.length / scales.velocity;
         match self {
             // Off the diagonal of the factor: its own size, the root of a moment.
-            Self::Inertia(number) if number >= 3 => (scales.momentum * time).sqrt(),
-            Self::LogMass | Self::Inertia(_) | Self::ForceGain(_) => 1.0,
-            Self::ForceBias(_) => scales.momentum / scales.length / time,
-            Self::ContactOffset(..) => scales.length,
-            Self::ForceDelay => time,
+            Self::Inertia(number) if number >= 3 => {
+                (scales.momentum * scales.length / scales.velocity).sqrt()
+            }
+            Self::LogMass | Self::Inertia(_) => 1.0,
         }
     }
 }
@@ -84,27 +63,15 @@ pub(crate) struct Parameters {
     pub(crate) inertia: [f64; INERTIA_NUMBERS],
     /// Inverse of the inertia tensor, body axes.
     pub(crate) inverse_inertia: DMat3,
-    /// Factors of the forces.
-    pub(crate) gains: [f64; 3],
-    /// Forces to be added, N.
-    pub(crate) biases: [f64; 3],
-    /// To be added to the sensor coordinates, m.
-    pub(crate) offsets: [[f64; 2]; 3],
-    /// Delay of the forces against the contacts, s.
-    pub(crate) delay: f64,
 }
 
 impl Parameters {
-    /// A body on perfect sensors.
+    /// Of a body.
     pub(crate) fn new(mass: &MassProperties) -> Self {
         Self {
             mass: mass.mass(),
             inertia: numbers_of_inertia(mass.inertia()),
             inverse_inertia: mass.inverse_inertia(),
-            gains: [1.0; 3],
-            biases: [0.0; 3],
-            offsets: [[0.0; 2]; 3],
-            delay: 0.0,
         }
     }
 
@@ -113,10 +80,6 @@ impl Parameters {
         match constant {
             Constant::LogMass => self.mass.ln(),
             Constant::Inertia(number) => self.inertia[number],
-            Constant::ForceGain(palm) => self.gains[palm],
-            Constant::ForceBias(palm) => self.biases[palm],
-            Constant::ContactOffset(palm, axis) => self.offsets[palm][axis],
-            Constant::ForceDelay => self.delay,
         }
     }
 
@@ -130,10 +93,6 @@ impl Parameters {
                     self.inertia[number] = value;
                     inertia_changed = true;
                 }
-                Constant::ForceGain(palm) => self.gains[palm] = value,
-                Constant::ForceBias(palm) => self.biases[palm] = value,
-                Constant::ContactOffset(palm, axis) => self.offsets[palm][axis] = value,
-                Constant::ForceDelay => self.delay = value,
             }
         }
         if inertia_changed {
@@ -141,10 +100,5 @@ impl Parameters {
             self.inverse_inertia = inertia_of_numbers(&self.inertia).inverse();
         }
         self
-    }
-
-    /// Inertia tensor, body axes, kg m^2.
-    pub(crate) fn inertia_tensor(&self) -> DMat3 {
-        inertia_of_numbers(&self.inertia)
     }
 }

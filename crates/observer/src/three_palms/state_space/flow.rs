@@ -1,7 +1,7 @@
 //! One interval of the motion with its derivative and its noise.
 
 use super::constants::{Constant, Parameters};
-use super::input::{NodeInput, PalmWrench, Wrench};
+use super::input::{NodeInput, Wrench};
 use super::model::{Condition, MOTION_STATES, Motion, ThreePalmModel, Turn};
 use crate::three_palms::sensitivity::{cross_matrix, logarithm};
 use glam::{DMat3, DQuat, DVec3};
@@ -16,8 +16,6 @@ pub(super) struct Step<'a, const N: usize> {
     motion: Motion,
     parameters: Parameters,
     conditions: [Condition<N>; 3],
-    /// Corrections of the contacts by offset and foot, world, m.
-    shifts: [DVec3; 3],
     /// Wrench over the first half and over the whole.
     wrenches: [Wrench; 2],
     /// Angular momentum and orientation at the middle and at the end.
@@ -36,22 +34,14 @@ impl<'a, const N: usize> Step<'a, N> {
         let shifts = std::array::from_fn(|i| {
             let frame = &input.from.palms[i].frame;
             let foot = held * conditions[i].foot;
-            let shift = |axis: usize| foot * conditions[i].by_contact[axis] + parameters.offsets[i][axis];
+            let shift = |axis: usize| foot * conditions[i].by_contact[axis];
             shift(0) * frame.t1 + shift(1) * frame.t2
         });
         let half = input.duration * 0.5;
-        let [first, second] = input.halves.each_ref().map(|palms| total(&parameters, palms, &shifts));
+        let [first, second] = input.halves.each_ref().map(|palms| total(palms, &shifts));
         let wrenches = [first, first.then(half, second)];
-        let mut step = Self {
-            model,
-            input,
-            motion,
-            parameters,
-            conditions,
-            shifts,
-            wrenches,
-            later: [(motion.L, motion.q); 2],
-        };
+        let mut step =
+            Self { model, input, motion, parameters, conditions, wrenches, later: [(motion.L, motion.q); 2] };
         let middle_L = step.momentum(half, &first);
         let end_L = step.momentum(input.duration, &step.wrenches[1]);
         let (middle, end) = step.turned(middle_L, end_L);
@@ -114,11 +104,6 @@ impl<'a, const N: usize> Step<'a, N> {
     /// Derivative of the end by the start.
     pub(super) fn transition(&self, constants: &[Constant]) -> SMatrix<f64, N, N> {
         let h = self.input.duration;
-        // As many as there are constants, of N places: nothing is allocated here.
-        let mut changes = [[Wrench::default(); 2]; N];
-        for (change, &constant) in changes.iter_mut().zip(constants) {
-            *change = self.by_constant(constant);
-        }
         let identity = DMat3::IDENTITY;
         let [mut p, mut v] = [Columns::<N>::zeros(); 2];
         put(&mut p, 0, identity);
@@ -126,8 +111,8 @@ impl<'a, const N: usize> Step<'a, N> {
         put(&mut v, 1, identity);
         let mut start_L = Columns::<N>::zeros();
         put(&mut start_L, 2, identity);
-        let middle_L = self.momentum_slope(0, 0.5 * h, &changes, constants);
-        let end_L = self.momentum_slope(1, h, &changes, constants);
+        let middle_L = self.momentum_slope(0, constants);
+        let end_L = self.momentum_slope(1, constants);
         let turning = |(L, q): (DVec3, DQuat), by_L: &Columns<N>| self.turning_slope(q, L, by_L, constants);
         let slopes = [
             turning((self.motion.L, self.motion.q), &start_L),
@@ -136,14 +121,10 @@ impl<'a, const N: usize> Step<'a, N> {
         ];
         let theta = advance(&slopes, h);
         let mass = self.parameters.mass;
-        for (j, (constant, [_, change])) in constants.iter().zip(&changes).enumerate() {
-            let mut impulse = change.impulse / mass;
-            let mut travel = (change.impulse * h - change.first) / mass;
-            if *constant == Constant::LogMass {
-                let wrench = self.adjusted(1);
-                impulse = -wrench.impulse / mass;
-                travel = -(wrench.impulse * h - wrench.first) / mass;
-            }
+        for (j, _) in constants.iter().enumerate().filter(|(_, constant)| **constant == Constant::LogMass) {
+            let wrench = self.adjusted(1);
+            let impulse = -wrench.impulse / mass;
+            let travel = -(wrench.impulse * h - wrench.first) / mass;
             v.set_column(MOTION_STATES + j, &impulse.into());
             p.set_column(MOTION_STATES + j, &travel.into());
         }
@@ -154,70 +135,22 @@ impl<'a, const N: usize> Step<'a, N> {
         all
     }
 
-    /// Change of the wrench over the first half and over the whole with a constant.
-    fn by_constant(&self, constant: Constant) -> [Wrench; 2] {
-        let of = |halves: &dyn Fn(&[PalmWrench; 3]) -> Wrench| {
-            let [first, second] = self.input.halves.each_ref().map(halves);
-            [first, first.then(0.5 * self.input.duration, second)]
-        };
-        let turned = |wrench: Wrench, shift: DVec3| Wrench {
-            torque: wrench.torque + shift.cross(wrench.impulse),
-            ..wrench
-        };
-        match constant {
-            Constant::LogMass | Constant::Inertia(_) => [Wrench::default(); 2],
-            Constant::ForceGain(i) => {
-                of(&|palms| turned(palms[i].force + palms[i].rate * self.parameters.delay, self.shifts[i]))
-            }
-            Constant::ForceBias(i) => of(&|palms| turned(palms[i].unit, self.shifts[i])),
-            Constant::ForceDelay => of(&|palms| {
-                let one = |i: usize| turned(palms[i].rate, self.shifts[i]) * self.parameters.gains[i];
-                one(0) + one(1) + one(2)
-            }),
-            Constant::ContactOffset(i, axis) => {
-                let frame = &self.input.from.palms[i].frame;
-                let along = [frame.t1, frame.t2][axis];
-                of(&|palms| Wrench {
-                    torque: along.cross(reported(&self.parameters, &palms[i], i).impulse),
-                    ..Wrench::default()
-                })
-            }
-        }
-    }
-
     /// Derivative of the angular momentum after the time `s`; `part` is the first half or the whole.
-    fn momentum_slope(
-        &self,
-        part: usize,
-        s: f64,
-        changes: &[[Wrench; 2]],
-        constants: &[Constant],
-    ) -> Columns<N> {
-        let Motion { p, v, .. } = self.motion;
-        let (wrench, g, mass) = (self.adjusted(part), self.model.gravity, self.parameters.mass);
+    fn momentum_slope(&self, part: usize, constants: &[Constant]) -> Columns<N> {
+        let (wrench, mass) = (self.adjusted(part), self.parameters.mass);
         let mut L = Columns::<N>::zeros();
         // -dp x impulse = impulse x dp.
         put(&mut L, 0, cross_matrix(wrench.impulse));
         put(&mut L, 1, cross_matrix(wrench.first));
         put(&mut L, 2, DMat3::IDENTITY);
-        for (j, (constant, change)) in constants.iter().zip(changes).enumerate() {
-            let change = &change[part];
-            let second = change.first * s - change.impulse * (s * s / 6.0);
-            let mut slope =
-                change.torque - p.cross(change.impulse) - v.cross(change.first) - 0.5 * g.cross(second);
-            if *constant == Constant::LogMass {
-                slope += wrench.impulse.cross(wrench.first) / mass;
-            }
-            L.set_column(MOTION_STATES + j, &slope.into());
+        for (j, _) in constants.iter().enumerate().filter(|(_, constant)| **constant == Constant::LogMass) {
+            L.set_column(MOTION_STATES + j, &(wrench.impulse.cross(wrench.first) / mass).into());
         }
         // The foot of the contact depends on the state before.
         let held = held(self.input);
         for i in 0..3 {
             let (condition, frame) = (&self.conditions[i], &self.input.from.palms[i].frame);
-            let impulse: DVec3 = self.input.halves[..=part]
-                .iter()
-                .map(|palms| reported(&self.parameters, &palms[i], i).impulse)
-                .sum();
+            let impulse: DVec3 = self.input.halves[..=part].iter().map(|palms| palms[i].impulse).sum();
             let along = condition.by_contact[0] * frame.t1 + condition.by_contact[1] * frame.t2;
             let kick: SVector<f64, 3> = (along.cross(impulse) * (held * condition.foot_slope)).into();
             L.ger(1.0, &kick, &condition.row, 1.0);
@@ -270,12 +203,10 @@ impl<'a, const N: usize> Step<'a, N> {
         for i in 0..3 {
             let palm = &self.input.from.palms[i];
             let n = palm.normal[0];
-            let of_force =
-                (self.model.noise.force * self.parameters.gains[i]).powi(2) * h * self.input.from.spacing;
+            let of_force = self.model.noise.force.powi(2) * h * self.input.from.spacing;
             let lever = -0.5 * (palm.arm[0] + self.input.here.palms[i].arm[0]) - self.motion.p.cross(n);
             add(of_force, n / self.parameters.mass, lever);
-            let impulse: DVec3 =
-                self.input.halves.iter().map(|palms| reported(&self.parameters, &palms[i], i).impulse).sum();
+            let impulse: DVec3 = self.input.halves.iter().map(|palms| palms[i].impulse).sum();
             let [a, b] = self.conditions[i].by_contact;
             let size = a.hypot(b);
             let (a, b) = if size > 0.0 { (a / size, b / size) } else { (1.0, 0.0) };
@@ -298,15 +229,10 @@ fn held(input: &NodeInput) -> f64 {
     if block < input.duration { block / input.duration } else { 1.0 }
 }
 
-/// The wrench of one palm with its constants.
-fn reported(parameters: &Parameters, palm: &PalmWrench, i: usize) -> Wrench {
-    (palm.force + palm.rate * parameters.delay) * parameters.gains[i] + palm.unit * parameters.biases[i]
-}
-
 /// The wrench of all palms about contacts that are shifted.
-fn total(parameters: &Parameters, palms: &[PalmWrench; 3], shifts: &[DVec3; 3]) -> Wrench {
+fn total(palms: &[Wrench; 3], shifts: &[DVec3; 3]) -> Wrench {
     (0..3).fold(Wrench::default(), |sum, i| {
-        let wrench = reported(parameters, &palms[i], i);
+        let wrench = palms[i];
         sum + Wrench { torque: wrench.torque + shifts[i].cross(wrench.impulse), ..wrench }
     })
 }

@@ -44,17 +44,6 @@ impl Wrench {
     }
 }
 
-/// Integrals for one palm over an interval.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PalmWrench {
-    /// Of the force as reported.
-    pub(crate) force: Wrench,
-    /// Of a unit force.
-    pub(crate) unit: Wrench,
-    /// Of the rate of the reported force.
-    pub(crate) rate: Wrench,
-}
-
 /// One palm over the block of samples about a node. Moments are means of a quantity times 1, `u`, `u^2 / 2`, with `u`
 /// the time from the node.
 #[derive(Clone, Copy, Debug)]
@@ -99,7 +88,7 @@ pub(crate) struct NodeInput {
     /// Time since the node before, s; zero at the first.
     pub(crate) duration: f64,
     /// Integrals over the first and the second half of that time, by palm.
-    pub(crate) halves: [[PalmWrench; 3]; 2],
+    pub(crate) halves: [[Wrench; 3]; 2],
     /// What the estimate before this one adds to the impulse of the whole interval, N s, for derivatives: noise in them
     /// passes for information, and it is the same noise that the estimate weighs.
     pub(crate) correction: DVec3,

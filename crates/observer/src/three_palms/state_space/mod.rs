@@ -1,4 +1,4 @@
-//! Three palms as a [`Model`](crate::Model): the momentum form in state space, with constants of body and sensors as
+//! Three palms as a [`Model`](crate::Model): the momentum form in state space, with constants of the body as
 //! states where they are unknown.
 
 mod blocks;
@@ -10,8 +10,10 @@ mod model;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use blocks::{Block, NodeInputs, block_inputs, blocks, set_adjusted_arms};
-pub(crate) use constants::{BODY, Constant, Parameters};
+pub(crate) use blocks::{Block, NodeInputs, set_adjusted_arms};
+#[cfg(test)]
+use constants::Constant;
+pub(crate) use constants::{BODY, Parameters};
 pub(crate) use inertia::{INERTIA_NUMBERS, inertia_of_numbers, inertia_slope, numbers_of_inertia};
 pub(crate) use input::{NodeInput, Touch};
 pub(crate) use model::{MOTION_STATES, ThreePalmModel};

@@ -13,7 +13,7 @@
 use super::constants::{Constant, Parameters};
 use super::flow::Step;
 use super::inertia::inertia_slope;
-use super::input::{NodeInput, PalmTouch, Touch};
+use super::input::{NodeInput, Touch};
 use crate::core::Model;
 use crate::three_palms::covariance::NoiseLevel;
 use crate::three_palms::delassus::Push;
@@ -132,11 +132,6 @@ impl<const N: usize> ThreePalmModel<N> {
         self.scales.velocity / self.scales.length
     }
 
-    /// Variance of a contact coordinate, m^2.
-    pub(crate) fn contact_variance(&self) -> f64 {
-        self.noise.contact * self.noise.contact
-    }
-
     /// Contact noise over the natural length.
     pub(crate) fn relative_noise(&self) -> f64 {
         self.noise.contact / self.scales.length
@@ -183,24 +178,6 @@ impl<const N: usize> ThreePalmModel<N> {
         })
     }
 
-    /// Sum of the logarithms of the variances of the conditions, as distances of the contacts from their lines.
-    pub(crate) fn log_variances(&self, x: &SVector<f64, N>, touch: &Touch) -> f64 {
-        let conditions = self.conditions(x, touch);
-        let log = |(condition, slide): (&Condition<N>, f64)| {
-            let [a, b] = condition.by_contact;
-            (condition.variance / (a * a + b * b + slide)).ln()
-        };
-        conditions.iter().zip(touch.slide_variance).map(log).sum()
-    }
-
-    /// What chi-squared lacks at a node of its expectation: a turning rate that is uncertain makes a condition count for less
-    /// than it is worth on the average.
-    pub(crate) fn shortfall(&self, x: &SVector<f64, N>, touch: &Touch) -> f64 {
-        let conditions = self.conditions(x, touch);
-        let of_contact = self.contact_variance() / touch.samples;
-        conditions.iter().zip(touch.slide_variance).map(|(c, slide)| of_contact * slide / c.variance).sum()
-    }
-
     /// Derivative of `axis . w` by the states.
     fn turning_row(
         &self,
@@ -242,13 +219,10 @@ impl<const N: usize> ThreePalmModel<N> {
     ) -> Condition<N> {
         let palm = &touch.palms[i];
         let (frame, n) = (&palm.frame, palm.normal[0]);
-        let [_, o2] = parameters.offsets[i];
-        let offset = offset(parameters, i, palm);
-        let arm = palm.arm[0] + offset;
+        let arm = palm.arm[0];
         let curved: f64 =
             (0..2).map(|k| palm.normal[k + 1].dot(rates.u[k]) - palm.arm[k + 1].dot(rates.w[k])).sum();
-        let value =
-            n.dot(motion.v + motion.p.cross(turn.w)) - arm.dot(turn.w) + palm.lift - o2 * palm.rate + curved;
+        let value = n.dot(motion.v + motion.p.cross(turn.w)) - arm.dot(turn.w) + palm.lift + curved;
         let by_contact = [-turn.w.dot(frame.t2), turn.w.dot(frame.t1) - palm.rate];
         let of_contact = self.noise.contact * self.noise.contact / touch.samples;
         let floor = CONDITION_FLOOR * self.scales.velocity;
@@ -261,20 +235,13 @@ impl<const N: usize> ThreePalmModel<N> {
         let foot = -of_contact * (value / variance).max(-farthest).min(farthest);
         // The part of the arm's noise that the condition itself holds is taken out with the foot.
         let own = foot * palm.own_share;
-        let adjusted = palm.smooth_arm + offset + own * (by_contact[0] * frame.t2 - by_contact[1] * frame.t1);
+        let adjusted = palm.smooth_arm + own * (by_contact[0] * frame.t2 - by_contact[1] * frame.t1);
         // de = n . dv + (w x n) . dp - a . dw, a = n x (c - p).
         let a = adjusted - n.cross(motion.p);
         let mut row = self.turning_row(-a, motion, parameters, turn);
         for axis in 0..3 {
             row[axis] = turn.w.cross(n)[axis];
             row[3 + axis] = n[axis];
-        }
-        for (j, constant) in self.constants.iter().enumerate() {
-            if let Constant::ContactOffset(palm, axis) = *constant
-                && palm == i
-            {
-                row[MOTION_STATES + j] = by_contact[axis];
-            }
         }
         Condition { value, row, by_contact, variance, foot, foot_slope }
     }
@@ -293,7 +260,7 @@ impl<const N: usize> ThreePalmModel<N> {
         let push = |i: usize| {
             let palm = &touch.palms[i];
             let n = palm.normal[0];
-            Push { normal: n, arm: palm.arm[0] + offset(parameters, i, palm) - n.cross(motion.p) }
+            Push { normal: n, arm: palm.arm[0] - n.cross(motion.p) }
         };
         let own = push(i);
         let by = |other: usize| own.speed_by(&push(other), parameters.mass, turn.K);
@@ -322,8 +289,7 @@ impl BlockRates {
         if touch.samples <= 1.0 {
             return Self { u: [DVec3::ZERO; 2], w: [DVec3::ZERO; 2] };
         }
-        let sum =
-            |part: &dyn Fn(usize) -> DVec3| (0..3).map(|i| parameters.gains[i] * part(i)).sum::<DVec3>();
+        let sum = |part: &dyn Fn(usize) -> DVec3| (0..3).map(part).sum::<DVec3>();
         let force: [DVec3; 2] = std::array::from_fn(|k| sum(&|i| touch.palms[i].force[k]));
         let torque: [DVec3; 2] = std::array::from_fn(|k| sum(&|i| touch.palms[i].torque[k]));
         let Motion { p, v, L, .. } = *motion;
@@ -341,12 +307,6 @@ impl BlockRates {
             w: [dw, ddw],
         }
     }
-}
-
-/// What the offset of a palm's sensor adds to the arm `n x c`: `n x t1 = t2`, `n x t2 = -t1`.
-fn offset(parameters: &Parameters, i: usize, palm: &PalmTouch) -> DVec3 {
-    let [o1, o2] = parameters.offsets[i];
-    o1 * palm.frame.t2 - o2 * palm.frame.t1
 }
 
 pub(super) fn unpack<const N: usize>(x: &SVector<f64, N>) -> Motion {

@@ -7,12 +7,17 @@
 
 use super::tracker::{MEMORY_OF_NODES, Tracker, WINDOW, sample};
 use crate::core::{Model, Portion, Smoother, Start};
-use crate::three_palms::most_probable::{FIRST_SLIDE, PASSES, STEP_TOLERANCE};
 use crate::three_palms::state_space::{MOTION_STATES, NodeInput, ThreePalmModel, set_adjusted_arms};
 use glam::DVec3;
 use nalgebra::SVector;
 use std::collections::VecDeque;
 
+/// Length of a step at which the iteration has settled, in relative contact noise.
+const STEP_TOLERANCE: f64 = 0.01;
+/// Deviation, in natural units, of the turning rates in the first pass: the start is not better known.
+const FIRST_SLIDE: f64 = 0.1;
+/// Passes: each takes from the one before what derivatives and weights must not take from noisy data.
+const PASSES: usize = 3;
 /// Damping of a step: as a prior that knows the natural sizes, it keeps what is not observed from running away.
 const DAMPING: f64 = 1.0;
 /// Chi-squared over its degrees of freedom below which noise explains the data. Right motions leave 1 within a few

@@ -10,7 +10,6 @@ use super::tracker::Tracked;
 use super::tracking::{Latest, Tracking};
 use crate::three_palms::cold_start::{natural_time, rest_state};
 use crate::three_palms::momentum::Scales;
-use crate::three_palms::refine::SMOOTHED_NATURAL_TIMES;
 use crate::three_palms::state_space::{Block, MOTION_STATES, NodeInput, NodeInputs, Touch};
 use crate::three_palms::track::Track;
 use glam::DMat3;
@@ -28,6 +27,8 @@ const FEWEST: usize = 8;
 const PATIENCE: f64 = 1.15;
 /// Nodes that a sample's work goes through, times the square of the states: about the work of a step of the tracker.
 const PORTION: usize = 3600;
+/// Natural times over which contacts are smoothed, on either side, where derivatives are taken.
+const SMOOTHED_NATURAL_TIMES: f64 = 0.125;
 /// Nodes that a motion must have foretold before it is stated.
 const PROBATION: usize = 15;
 /// Pieces of work in a second: where samples are few, each does more.

@@ -1,30 +1,24 @@
 //! Motion, mass and inertia with the evidence for them.
 
 use super::principal::{PrincipalFrame, principal_frame};
-use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem, MASS, constants};
-use super::search::{fit_near, mass_of_weight, scales_of_ball, search, unexplained};
-use crate::least_squares::{Fit, FitStatus, LeastSquares, Observability};
+use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem};
+use super::search::{fit_near, mass_of_weight, scales_of_ball, search};
+use crate::least_squares::{FitStatus, LeastSquares, Observability};
 use crate::three_palms::clean::{Clean, clean_covariance, stride};
-use crate::three_palms::convexity::largest_violation;
-use crate::three_palms::estimate::{EstimateError, MotionEstimate, WORTH_ADJUSTING, floored};
-use crate::three_palms::evidence::{Evidence, Reason, WeakDirection};
+use crate::three_palms::estimate::{EstimateError, MotionEstimate, floored};
+use crate::three_palms::evidence::{Evidence, WeakDirection};
 use crate::three_palms::momentum::{MomentumProblem, MotionState, Scales, StartState};
 use crate::three_palms::noise::noise_level;
 use crate::three_palms::polish::{Conditions, polish_all};
 use crate::three_palms::pose_errors::{self, Pose};
-use crate::three_palms::refine::{Refined, Setting, refine};
-use crate::three_palms::state_space::{BODY, MOTION_STATES, Parameters, numbers_of_inertia};
+use crate::three_palms::state_space::{BODY, MOTION_STATES, numbers_of_inertia};
 use crate::three_palms::track::Track;
-use crate::three_palms::verdict::{LARGEST_DEVIATION, LARGEST_MISFIT, LARGEST_PLAIN_DEVIATION, judge};
+use crate::three_palms::verdict::judge;
 use crate::three_palms::{NoiseLevel, PoseErrors, curves};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 use object_dynamics::{MassProperties, SensorLog};
 
-/// Largest deviation of a body of which nothing is known, in natural sizes, where noise shifts it by no more than the second
-/// number of its deviations; squared errors were three times their variances where more of both was let pass.
-const LARGEST_STEADY_DEVIATION: f64 = 0.2;
-const STEADY: f64 = 0.5;
 /// States of the model: motion, mass and inertia.
 pub(crate) const STATES: usize = MOTION_STATES + BODY.len();
 
@@ -75,7 +69,7 @@ pub fn estimate_body(log: &SensorLog, known: &UnknownBody) -> Result<BodyEstimat
     let (track, scales) = track(log, known)?;
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
     let found = search(&track, scales, noise).into_iter().next().ok_or(EstimateError::NoFit)?;
-    estimate_near(&track, scales, noise, &found)
+    clean_estimate(&track, scales, noise, found.point)
 }
 
 /// As [`estimate_body`] from a body and a start of its motion that are known to be near, without a search: the minimum that
@@ -98,7 +92,7 @@ pub fn estimate_body_from(
     };
     let noise = floored(known.noise.unwrap_or_else(|| noise_level(&track)), &track, &scales);
     let found = fit_near(&track, scales, near).ok_or(EstimateError::NoFit)?;
-    estimate_near(&track, scales, noise, &found)
+    clean_estimate(&track, scales, noise, found.point)
 }
 
 fn track(log: &SensorLog, known: &UnknownBody) -> Result<(Track, Scales), EstimateError> {
@@ -112,43 +106,8 @@ fn track(log: &SensorLog, known: &UnknownBody) -> Result<(Track, Scales), Estima
     Ok((track, scales))
 }
 
-/// The estimate that a fit of the thinned track leads to.
-fn estimate_near(
-    track: &Track,
-    scales: Scales,
-    noise: NoiseLevel,
-    found: &Fit<BodyPoint, BODY_UNKNOWNS>,
-) -> Result<BodyEstimate, EstimateError> {
-    if noise.contact > WORTH_ADJUSTING * scales.length {
-        adjusted_estimate(track, scales, noise, found)
-    } else {
-        clean_estimate(track, scales, noise, found.point)
-    }
-}
-
-/// The most probable body and motion of a noisy log, with no verdict on them.
-pub(crate) fn most_probable_body(track: &Track, noise: NoiseLevel) -> Option<Refined<STATES>> {
-    let track = track.of_mass(mass_of_weight(track)?);
-    let scales = scales_of_ball(&track)?;
-    let found = search(&track, scales, noise).into_iter().next()?;
-    refined_near(&track, scales, noise, &found).ok()
-}
-
-fn refined_near(
-    track: &Track,
-    scales: Scales,
-    noise: NoiseLevel,
-    fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
-) -> Result<Refined<STATES>, EstimateError> {
-    let mass = fit.point.mass().ok_or(EstimateError::NoFit)?;
-    let setting = Setting { scales, noise, constants: constants(), deviations: &[], axes_chosen: true };
-    let track = track.of_mass(mass.mass());
-    refine(&track, &mass, Parameters::new(&mass), &fit.point.start, &setting)
-        .map_err(|_| EstimateError::NoFit)
-}
-
 /// What an estimate is put together from.
-struct Found<'a> {
+struct Found {
     scales: Scales,
     /// Mass, in axes of the world at the start.
     mass: MassProperties,
@@ -163,8 +122,6 @@ struct Found<'a> {
     noise: NoiseLevel,
     iterations: usize,
     status: FitStatus,
-    /// The adjustment of the data, where there was one.
-    refined: Option<&'a Refined<STATES>>,
 }
 
 /// The least-squares body and motion of a log with next to no noise, from a start that is near.
@@ -214,86 +171,29 @@ fn clean_estimate(
         noise,
         iterations: fit.iterations,
         status: fit.status,
-        refined: None,
     };
     assemble(&track, found, joint)
-}
-
-/// The most probable body and motion, data adjusted with them.
-fn adjusted_estimate(
-    track: &Track,
-    scales: Scales,
-    noise: NoiseLevel,
-    fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
-) -> Result<BodyEstimate, EstimateError> {
-    let mut refined = refined_near(track, scales, noise, fit)?;
-    refined.widen(track, &noise);
-    let (mass, start) = of_state(&refined)?;
-    let track = track.of_mass(mass.mass());
-    let problem = MomentumProblem::new(&track, &mass, scales, f64::INFINITY);
-    let motion = problem.motion_through(&refined.nodes, &refined.states());
-    let residuals = problem.residuals_along(&motion);
-    let predicted = problem.expected_through(&refined.nodes, &motion, &noise);
-    let status = if refined.settled() { FitStatus::Converged } else { FitStatus::Stalled };
-    let found = Found {
-        scales,
-        mass,
-        start,
-        motion,
-        residuals,
-        predicted,
-        covariance: body_covariance(&refined),
-        observability: Observability::new(&fit.normal.information),
-        noise,
-        iterations: fit.iterations + refined.solution.iterations,
-        status,
-        refined: Some(&refined),
-    };
-    let misfit = refined.misfit(BODY_UNKNOWNS);
-    let mut estimate = assemble(&track, found, |axes| refined.pose_errors(axes, misfit, false))?;
-    if let Some(reason) = unexplained(&track, scales, &noise, fit) {
-        estimate.motion.reliability.add(reason);
-    }
-    Ok(estimate)
 }
 
 /// The estimate; `joint` gives the errors of the poses in body axes that stand so in those of the world at the start.
 fn assemble(
     track: &Track,
-    found: Found<'_>,
+    found: Found,
     joint: impl FnOnce(DQuat) -> Option<PoseErrors>,
 ) -> Result<BodyEstimate, EstimateError> {
     let evidence = evidence(track, &found);
-    let Found { scales, mass, start, motion, covariance, status, refined, .. } = found;
-    let limit = match refined {
-        Some(refined) if refined.shift < STEADY => LARGEST_STEADY_DEVIATION,
-        Some(_) => LARGEST_DEVIATION,
-        None => LARGEST_PLAIN_DEVIATION,
-    };
-    let mut reliability = judge(&evidence, status, &scales, limit);
-    if let Some(refined) = refined {
-        let misfit = refined.misfit(BODY_UNKNOWNS);
-        if misfit.is_nan() || misfit > LARGEST_MISFIT {
-            reliability.add(Reason::Inconsistent { misfit });
-        }
-        reliability.check_length(track, &scales);
-    }
+    let Found { scales, mass, start, motion, covariance, status, .. } = found;
+    let reliability = judge(&evidence, status, &scales);
     let frame = principal_frame(&mass, &covariance).ok_or(EstimateError::NoFit)?;
     let PrincipalFrame { body, axes, covariance } = frame;
     // From the axes of the world at the start to the principal ones.
     let turned: Vec<_> = motion.into_iter().map(|m| MotionState { R_WO: m.R_WO * axes, ..m }).collect();
-    let uncertainty = refined.map_or_else(Vec::new, |r| curves::uncertainty(track, r, axes));
-    if let Some(refined) = refined {
-        reliability.check_convexity(largest_violation(track, &refined.nodes, &turned, &uncertainty));
-    }
     let motion = MotionEstimate {
         start: StartState { R_WO: axes, ..start },
         curves: curves::contact_curves(track, &turned)?,
         radii: curves::radii(track, &turned),
         motion: turned,
-        uncertainty,
         pose_errors: joint(axes),
-        others: Vec::new(),
         covariance,
         evidence,
         reliability,
@@ -301,7 +201,7 @@ fn assemble(
     Ok(BodyEstimate { body, motion })
 }
 
-fn evidence(track: &Track, found: &Found<'_>) -> Evidence {
+fn evidence(track: &Track, found: &Found) -> Evidence {
     let sizes = BodyProblem::new(track, found.scales, f64::INFINITY).sizes();
     let scaled = SMatrix::<f64, BODY_UNKNOWNS, BODY_UNKNOWNS>::from_fn(|i, j| {
         found.covariance[(i, j)] / (sizes[i] * sizes[j])
@@ -311,25 +211,6 @@ fn evidence(track: &Track, found: &Found<'_>) -> Evidence {
         &spectrum.directions.column(BODY_UNKNOWNS - 1).into_owned(),
         spectrum.eigenvalues[BODY_UNKNOWNS - 1].max(0.0).sqrt(),
     );
-    let Found { residuals, predicted, observability, noise, iterations, refined, .. } = found;
-    Evidence {
-        bias: refined.map_or(0.0, |refined| refined.shift),
-        ..Evidence::new(track, residuals, *predicted, observability, weakest, *noise, *iterations)
-    }
-}
-
-/// Mass, in axes of the world at the start, and the start of the motion in the first state.
-fn of_state(refined: &Refined<STATES>) -> Result<(MassProperties, StartState), EstimateError> {
-    let first = &refined.solution.states[0];
-    let parameters = refined.model.parameters(first);
-    let mass = MassProperties::new(parameters.mass, parameters.inertia_tensor())
-        .map_err(|_| EstimateError::NoFit)?;
-    Ok((mass, StartState { R_WO: DQuat::IDENTITY, ..refined.model.motion(first) }))
-}
-
-/// Covariance of the 16 unknowns: the orientation at the start is chosen and drops out.
-fn body_covariance(refined: &Refined<STATES>) -> SMatrix<f64, BODY_UNKNOWNS, BODY_UNKNOWNS> {
-    let all = &refined.solution.covariances[0];
-    let place = |i: usize| if i < MASS { i } else { i + 3 };
-    SMatrix::from_fn(|i, j| all[(place(i), place(j))])
+    let Found { residuals, predicted, observability, noise, iterations, .. } = found;
+    Evidence::new(track, residuals, *predicted, observability, weakest, *noise, *iterations)
 }

@@ -6,7 +6,7 @@ use crate::least_squares::{LeastSquares, NormalEquations};
 use crate::three_palms::momentum::{Scales, StartState, by_state, momentum};
 use crate::three_palms::polish::Conditions;
 use crate::three_palms::sensitivity::{SensitivityStep, Turning};
-use crate::three_palms::state_space::{BODY, Constant, inertia_of_numbers, inertia_slope};
+use crate::three_palms::state_space::{BODY, inertia_of_numbers, inertia_slope};
 use crate::three_palms::track::{Integrals, Track};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::SVector;
@@ -283,11 +283,6 @@ impl Conditions<BODY_UNKNOWNS> for BodyProblem<'_> {
         self.each_row(point, &self.body(point)?, |_, rows, _| all.push(rows));
         Some(all)
     }
-}
-
-/// The constants in the order of the unknowns.
-pub(super) fn constants() -> &'static [Constant] {
-    &BODY
 }
 
 #[cfg(test)]

@@ -7,11 +7,10 @@ use super::problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem};
 use crate::least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, Observability};
 use crate::three_palms::clean::information_inverse;
 use crate::three_palms::cold_start::{
-    EXPLAINED, GROWTH, SAMPLES_PER_NATURAL_TIME, SEARCHED_PER_NATURAL_TIME, WRONG, continuing,
-    from_normal_speeds, natural_time, next_to_nothing, rest_state, sampling, scales, stride,
+    EXPLAINED, GROWTH, SAMPLES_PER_NATURAL_TIME, SEARCHED_PER_NATURAL_TIME, continuing, from_normal_speeds,
+    natural_time, next_to_nothing, rest_state, sampling, scales, stride,
 };
 use crate::three_palms::covariance::{NoiseLevel, Sampling, propagate};
-use crate::three_palms::evidence::Reason;
 use crate::three_palms::momentum::{MomentumProblem, Scales};
 use crate::three_palms::polish::polish;
 use crate::three_palms::state_space::numbers_of_inertia;
@@ -126,20 +125,6 @@ fn follow(
     }
     let all = BodyProblem::new(thin, scales, f64::INFINITY);
     polish(&all, &all, 1, fit.point, STEPS)
-}
-
-/// As for a known body: what a fit of the thinned track leaves of noisy data where noise does not explain it.
-pub(super) fn unexplained(
-    track: &Track,
-    scales: Scales,
-    noise: &NoiseLevel,
-    fit: &Fit<BodyPoint, BODY_UNKNOWNS>,
-) -> Option<Reason> {
-    let per_node = stride(track, natural_time(track, scales.length), SAMPLES_PER_NATURAL_TIME);
-    let sampling = sampling(per_node);
-    let explained = explained(&track.thinned(per_node), scales, noise, sampling, fit)?;
-    let residual = fit.normal.rms();
-    (residual > WRONG * explained).then_some(Reason::Misfit { residual, explained })
 }
 
 /// Whether what is left of the data is noise, or next to nothing.

@@ -1,0 +1,194 @@
+//! What of the readings of a sensor is noise: what no polynomial through some of them in a row explains.
+
+use glam::DVec3;
+
+/// Readings in a row of which the polynomial of the last degree but one is taken off. What is left of noise is the same for all of them,
+/// of a smooth motion that is sampled rarely it falls.
+const IN_A_ROW: [usize; 3] = [5, 7, 9];
+/// What is left of a smooth motion falls by more than this: medians of noise differ by less.
+const LESS: f64 = 0.8;
+/// Median of |x| for a standard normal x.
+const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
+/// Groups of forces by their size, at most, and the readings in one, at least.
+const GROUPS: usize = 12;
+const LEAST_IN_GROUP: usize = 40;
+/// Share of readings equal to the one before from which on they are counted in steps.
+const REPEATED: f64 = 0.1;
+/// Steps of readings that are rounding, as a share of the largest.
+const ROUNDING: f64 = 1e-9;
+
+/// What is rough about the readings of sensors of one kind.
+#[derive(Default)]
+pub(crate) struct Rough {
+    /// Size of a reading, and what of it no polynomial explains: of unit variance for white noise of unit variance.
+    all: [Vec<(f64, f64)>; IN_A_ROW.len()],
+    /// Differences of successive readings, without sign.
+    steps: Vec<f64>,
+}
+
+impl Rough {
+    /// Vectors as one sensor reads them, along those axes in which it does.
+    pub(crate) fn add(
+        &mut self,
+        times: &[f64],
+        reading: impl Fn(usize) -> Option<DVec3>,
+        axes: impl Fn(usize) -> Vec<DVec3>,
+    ) {
+        let readings: Vec<Option<DVec3>> = (0..times.len()).map(reading).collect();
+        for (k, pair) in readings.windows(2).enumerate() {
+            if let [Some(a), Some(b)] = pair {
+                self.steps.extend(axes(k).into_iter().map(|axis| (*b - *a).dot(axis).abs()));
+            }
+        }
+        for (all, count) in self.all.iter_mut().zip(IN_A_ROW) {
+            for (k, row) in readings.windows(count).enumerate() {
+                let middle = k + count / 2;
+                let weights = beyond_polynomials(&times[k..k + count]);
+                let weighed = row.iter().zip(weights).map(|(reading, weight)| Some((*reading)? * weight));
+                let Some(rough) = weighed.sum::<Option<DVec3>>() else { continue };
+                let size = readings[middle].map_or(0.0, DVec3::length);
+                all.extend(axes(middle).into_iter().map(|axis| (size, rough.dot(axis).abs())));
+            }
+        }
+    }
+
+    /// Standard deviation of the noise.
+    pub(crate) fn deviation(&self) -> f64 {
+        of(self.least()).max(self.counted())
+    }
+
+    /// What is rough over so few readings in a row that more of them would leave as much.
+    pub(crate) fn least(&self) -> &[(f64, f64)] {
+        let [first, rest @ ..] = &self.all;
+        let mut least = first;
+        for all in rest.iter().filter(|all| !all.is_empty()) {
+            if of(all) < LESS * of(least) {
+                least = all;
+            }
+        }
+        least
+    }
+
+    /// Of noise that grows with the readings: its fixed part, and its share of them.
+    pub(crate) fn growing(&self) -> [f64; 2] {
+        let mut all = self.least().to_vec();
+        all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let group = all.len().div_ceil(GROUPS).max(LEAST_IN_GROUP);
+        // Square of the size over the variance, and one over it, in each group: a line in the former has both parts.
+        let in_group = |group: &[(f64, f64)]| {
+            let size = group[group.len() / 2].0;
+            let variance = of(group).powi(2);
+            (variance > 0.0).then(|| (1.0 / variance, size * size / variance))
+        };
+        let groups: Vec<_> = all.chunks(group).filter_map(in_group).collect();
+        let sum = |of: fn(&(f64, f64)) -> f64| groups.iter().map(of).sum::<f64>();
+        let (one, size) = (sum(|g| g.0), sum(|g| g.1));
+        let (ones, both, sizes) = (sum(|g| g.0 * g.0), sum(|g| g.0 * g.1), sum(|g| g.1 * g.1));
+        let alone = |of: f64, squares: f64| if squares > 0.0 { of / squares } else { 0.0 };
+        let determinant = ones * sizes - both * both;
+        let fixed = (one * sizes - size * both) / determinant;
+        let share = (size * ones - one * both) / determinant;
+        let [fixed, share] = match (fixed > 0.0, share > 0.0) {
+            (true, true) => [fixed, share],
+            (true, false) => [alone(one, ones), 0.0],
+            (false, true) => [0.0, alone(size, sizes)],
+            // Forces of one size, or no noise at all.
+            (false, false) => [alone(one, ones), 0.0],
+        };
+        [fixed.sqrt().max(self.counted()), share.sqrt()]
+    }
+
+    /// Of sensors that count in steps, the deviation of what that leaves out.
+    fn counted(&self) -> f64 {
+        let rounding = ROUNDING * self.steps.iter().copied().fold(0.0, f64::max);
+        let repeated = self.steps.iter().filter(|step| **step <= rounding).count() as f64;
+        let step = self.steps.iter().copied().filter(|step| *step > rounding).reduce(f64::min);
+        let counts = repeated >= REPEATED * self.steps.len() as f64;
+        step.filter(|_| counts).map_or(0.0, |step| step / 12.0_f64.sqrt())
+    }
+}
+
+/// Weights of readings at some times whose sum is zero for any polynomial of a degree below the last, and of unit variance for white
+/// noise of unit variance.
+fn beyond_polynomials(times: &[f64]) -> Vec<f64> {
+    let all = times[times.len() - 1] - times[0];
+    let apart = |i: usize, j: usize| if i == j { 1.0 } else { (times[i] - times[j]) / all };
+    let weight = |i: usize| (0..times.len()).map(|j| apart(i, j)).product::<f64>().recip();
+    let weights: Vec<f64> = (0..times.len()).map(weight).collect();
+    let norm = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
+    weights.into_iter().map(|w| w / norm).collect()
+}
+
+/// Standard deviation of normal variables by the median of their absolute values; zero of none.
+fn of(rough: &[(f64, f64)]) -> f64 {
+    let mut absolute: Vec<f64> = rough.iter().map(|(_, rough)| *rough).collect();
+    if absolute.is_empty() {
+        return 0.0;
+    }
+    let middle = absolute.len() / 2;
+    *absolute.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN_OF_NORMAL
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::three_palms::Normal;
+
+    /// A smooth vector with noise of its own kind.
+    fn rough(noise: impl Fn(&mut Normal, DVec3) -> DVec3) -> Rough {
+        let mut random = Normal::seeded(5);
+        // Samples come when they come.
+        let times: Vec<f64> = (0..8000).map(|k| 1e-3 * (f64::from(k) + 0.4 * random.draw().tanh())).collect();
+        let readings: Vec<DVec3> = times
+            .iter()
+            .map(|t| DVec3::new(t.sin(), t.cos(), 0.3 * t))
+            .map(|smooth| smooth + noise(&mut random, smooth))
+            .collect();
+        let mut rough = Rough::default();
+        rough.add(&times, |k| Some(readings[k]), |_| DVec3::AXES.to_vec());
+        rough
+    }
+
+    fn vector(random: &mut Normal) -> DVec3 {
+        DVec3::new(random.draw(), random.draw(), random.draw())
+    }
+
+    #[test]
+    fn a_smooth_signal_is_not_noise_and_noise_has_its_deviation() {
+        assert!(rough(|_, _| DVec3::ZERO).deviation() < 1e-11);
+        // Twenty samples a radian leave 1e-7 of it beyond a cubic.
+        let rare = |k: u32| DVec3::splat((0.05 * f64::from(k)).sin());
+        let mut all = Rough::default();
+        let times: Vec<f64> = (0..400).map(f64::from).collect();
+        all.add(&times, |k| Some(rare(k as u32)), |_| vec![DVec3::X]);
+        assert!(of(&all.all[0]) > 3e-7 && all.deviation() < 1e-11, "{}", all.deviation());
+        let found = rough(|random, _| 1e-3 * vector(random)).deviation();
+        // The median of 24000 correlated numbers is known to about a hundredth.
+        assert!((found / 1e-3 - 1.0).abs() < 0.04, "{found}");
+        // One reading in a hundred is nonsense.
+        let outliers = |random: &mut Normal, _: DVec3| {
+            let nonsense = if random.draw() > 2.33 { 10.0 } else { 1e-3 };
+            nonsense * vector(random)
+        };
+        let found = rough(outliers).deviation();
+        assert!((found / 1e-3 - 1.0).abs() < 0.15, "{found}");
+    }
+
+    #[test]
+    fn noise_that_grows_with_the_reading_is_told_from_noise_that_does_not() {
+        let [fixed, share] = rough(|random, smooth| 0.02 * smooth.length() * vector(random)).growing();
+        assert!((share / 0.02 - 1.0).abs() < 0.1 && fixed < 0.01, "{fixed} {share}");
+        let [fixed, share] = rough(|random, _| 0.01 * vector(random)).growing();
+        assert!((fixed.hypot(share) / 0.01 - 1.0).abs() < 0.1 && share < 0.004, "{fixed} {share}");
+    }
+
+    #[test]
+    fn sensors_that_count_in_steps_have_the_noise_of_these() {
+        let counted = |random: &mut Normal, smooth: DVec3| {
+            let _ = random;
+            (smooth * 50.0).round() / 50.0 - smooth
+        };
+        let found = rough(counted).deviation();
+        assert!((found / (0.02 / 12.0_f64.sqrt()) - 1.0).abs() < 0.01, "{found}");
+    }
+}
