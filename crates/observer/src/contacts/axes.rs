@@ -71,7 +71,7 @@ pub(super) fn known_motion(
     problem.body = free;
     let found = first.solved.unknowns.body;
     let start = first.solved.unknowns.with(Body::free(found.log_mass, found.inertia()));
-    let mut second = || {
+    let second = || {
         let again = fine(problem, start)?;
         let covariance = covariance(problem, &again)?;
         let mut second = oriented(problem, &again, &covariance, mass)?;
