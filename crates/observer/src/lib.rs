@@ -22,8 +22,9 @@ mod three_palms;
 
 #[cfg(feature = "palms")]
 pub use contacts::{
-    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions, ImpulseNoise,
-    estimate_contacts,
+    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions, ForceReading,
+    ImpulseNoise, MotionStream, PalmSensed, PlaneReadings, StreamBody, StreamError, StreamEstimate,
+    StreamMotion, StreamOptions, StreamPalm, StreamStage, estimate_contacts,
 };
 pub use core::{
     Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Link, Model, NewtonEstimate,
@@ -43,6 +44,5 @@ pub use three_palms::{
 };
 #[cfg(feature = "palms")]
 pub use three_palms::{
-    Closure, KnownTouch, MotionStream, NoForceError, NoForceEstimate, NoForceEvidence, StreamBody,
-    StreamError, StreamEstimate, StreamOptions, StreamStage, TouchShape, estimate_without_forces,
+    Closure, KnownTouch, NoForceError, NoForceEstimate, NoForceEvidence, TouchShape, estimate_without_forces,
 };

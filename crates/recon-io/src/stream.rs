@@ -10,16 +10,16 @@ use std::io::{self, Write};
 pub struct StreamRow {
     /// s.
     pub t: f64,
-    /// The motion.
-    pub motion: MotionState,
-    /// Standard deviation of the centre of mass, all axes together, m.
-    pub std_cm: f64,
-    /// The same of its velocity, m/s.
-    pub std_v: f64,
+    /// The motion; none before one was found.
+    pub motion: Option<MotionState>,
+    /// Standard deviations of centre of mass (m), velocity (m/s), angular velocity (rad/s) and orientation (rad), all axes together.
+    pub deviations: [f64; 4],
     /// A word for how it stands.
     pub stage: &'static str,
-    /// Mean squared innovation over what is expected; NaN while there is no motion.
-    pub innovation: f64,
+    /// Whether it is to be relied on, to within its deviations.
+    pub relied_on: bool,
+    /// Squared corrections of the latest readings over what is expected; NaN while there is no motion.
+    pub misfit: f64,
     /// Mass and its standard deviation, kg, where they are estimated.
     pub mass: Option<[f64; 2]>,
 }
@@ -29,7 +29,8 @@ pub struct StreamRow {
 /// # Errors
 /// Those of `to`.
 pub fn write_stream_header(mut to: impl Write) -> io::Result<()> {
-    writeln!(to, "t,{},std_cm,std_v,stage,innovation,mass,std_mass", TRUTH.join(","))
+    let more = "std_cm,std_v,std_w,std_turn,stage,relied_on,misfit,mass,std_mass";
+    writeln!(to, "t,{},{more}", TRUTH.join(","))
 }
 
 /// Writes a row, with numbers that read back bit for bit; `nan` where there is none.
@@ -37,10 +38,13 @@ pub fn write_stream_header(mut to: impl Write) -> io::Result<()> {
 /// # Errors
 /// Those of `to`.
 pub fn write_stream_row(row: &StreamRow, mut to: impl Write) -> io::Result<()> {
-    let (p, q, v, w) = (row.motion.p_WCm, row.motion.R_WO, row.motion.v_WCm, row.motion.w_WO);
-    let numbers =
-        [row.t, p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z, row.std_cm, row.std_v];
+    let motion = row.motion.map_or([f64::NAN; 13], |motion| {
+        let (p, q, v, w) = (motion.p_WCm, motion.R_WO, motion.v_WCm, motion.w_WO);
+        [p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z]
+    });
     let [mass, std_mass] = row.mass.unwrap_or([f64::NAN; 2]);
-    let rest = [row.innovation, mass, std_mass].map(exact).join(",");
-    writeln!(to, "{},{},{rest}", numbers.map(exact).join(","), row.stage)
+    let numbers: Vec<String> =
+        [row.t].iter().chain(&motion).chain(&row.deviations).map(|x| exact(*x)).collect();
+    let rest = [row.misfit, mass, std_mass].map(exact).join(",");
+    writeln!(to, "{},{},{},{rest}", numbers.join(","), row.stage, u8::from(row.relied_on))
 }

@@ -12,16 +12,13 @@ use crate::MOST_PALMS;
 use crate::modes::check_friction;
 use crate::series::{check_lengths, check_order};
 use contact_kinematics::{
-    CurvatureRadii, Direction, FASTEST_PALM, FASTEST_TURN, PalmSurface, PoseTable, SurfaceError, SurfacePose,
+    CurvatureRadii, FASTEST_PALM, FASTEST_TURN, PalmSurface, PoseTable, SurfaceError, SurfacePose,
     SurfaceState,
 };
 use glam::DVec3;
 
 /// A force may pull by noise up to this share of the largest force of the log.
 const PULL_BY_NOISE: f64 = 0.1;
-/// Rounding of a point that was turned into palm axes and back, in units of rounding of its coordinates: a point that is as
-/// near as this to the surface stands on it, and is left alone. So what was once put there stays where it is.
-const TURNED: f64 = 16.0 * f64::EPSILON;
 /// Length of a quaternion that differs from 1 by its own rounding alone.
 const UNIT_TO_ROUNDING: f64 = 2.0 * f64::EPSILON;
 
@@ -248,7 +245,7 @@ impl Builder<'_> {
             let frame = pose.at_rest();
             let p_W = if in_palm { frame.to_world(point) } else { point };
             let (touch, distance) =
-                put_on(surface, &frame, p_W).ok_or(Error::NoNormal { palm, sample, time })?;
+                Touch::on(surface, &frame, p_W).ok_or(Error::NoNormal { palm, sample, time })?;
             // A limit that is not a number limits nothing.
             if distance.abs() > limit {
                 return Err(Error::OffPalm { palm, sample, time, distance, limit });
@@ -270,19 +267,6 @@ fn while_touched(mut force: ForceChannel, touches: &[Option<Touch>]) -> ForceCha
         }
     }
     force
-}
-
-/// The nearest point of the surface with its normal, and how far off it the point was, m.
-fn put_on(surface: PalmSurface, frame: &SurfaceState, p_W: DVec3) -> Option<(Touch, f64)> {
-    let p_P = frame.to_palm(p_W);
-    let near = surface.nearest(p_P)?;
-    let rounding = TURNED * (p_W.length() + frame.p_WP.length() + p_P.length());
-    let on_it = near.distance.abs() <= rounding;
-    let p_WC = if on_it { p_W } else { frame.to_world(near.p_P) };
-    // From the point as it stands in the log, so that it is the same whenever the log is read again.
-    let n_P = surface.nearest(frame.to_palm(p_WC))?.n_P;
-    let n = Direction::new(frame.R_WP * n_P.get()).ok()?;
-    Some((Touch { p_WC, n }, if on_it { 0.0 } else { near.distance }))
 }
 
 /// The pose with its quaternion at unit length; one that is unit to rounding stays as it is, digit by digit.

@@ -3,8 +3,12 @@ use super::record::{
     ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, SensedAxes, TrueContact,
     TwistSource,
 };
-use contact_kinematics::{Direction, PalmSurface, SurfacePose};
+use contact_kinematics::{Direction, PalmSurface, SurfacePose, SurfaceState};
 use glam::DVec3;
+
+/// Rounding of a point that was turned into palm axes and back, in units of rounding of its coordinates: a point that is as
+/// near as this to the surface stands on it, and is left alone. So what was once put there stays where it is.
+const TURNED: f64 = 16.0 * f64::EPSILON;
 
 /// A palm of a log and its readings. Samples are counted from 0 as in [`super::ContactLog::times`].
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +49,23 @@ pub struct SensedForce {
 pub(super) enum LoggedMotion {
     Fixed(SurfacePose),
     Moving { states: Vec<MeasuredMotion>, twists: TwistSource },
+}
+
+impl Touch {
+    /// The point of a palm's surface nearest to the world point `p_W` (m), and how far off it that was, m. None where the surface has no
+    /// normal, as at the centre of a sphere.
+    #[must_use]
+    pub fn on(surface: PalmSurface, frame: &SurfaceState, p_W: DVec3) -> Option<(Self, f64)> {
+        let p_P = frame.to_palm(p_W);
+        let near = surface.nearest(p_P)?;
+        let rounding = TURNED * (p_W.length() + frame.p_WP.length() + p_P.length());
+        let on_it = near.distance.abs() <= rounding;
+        let p_WC = if on_it { p_W } else { frame.to_world(near.p_P) };
+        // From the point as it stands in the log, so that it is the same whenever the log is read again.
+        let n_P = surface.nearest(frame.to_palm(p_WC))?.n_P;
+        let n = Direction::new(frame.R_WP * n_P.get()).ok()?;
+        Some((Self { p_WC, n }, if on_it { 0.0 } else { near.distance }))
+    }
 }
 
 impl LoggedPalm {

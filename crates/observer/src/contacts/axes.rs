@@ -107,9 +107,7 @@ fn oriented(
     let candidates = likely.candidates(&same);
     let against = candidates.first().and_then(|best| likely.against(*best));
     for R in candidates {
-        let body = Body::turned(mass, R);
-        problem.body = (body, SMatrix::from_diagonal(&information()));
-        problem.frozen.clear();
+        let body = problem.take_known(mass, R);
         let Some(solved) = fine(problem, unknown.unknowns.with(body)) else { continue };
         iterations += solved.iterations;
         found.push((solved, body, std::mem::take(&mut problem.frozen)));
@@ -128,9 +126,16 @@ fn oriented(
     Some(Oriented { against, solved, doubt, iterations })
 }
 
-/// What is known of the constants of a known body: all but the turn of its axes.
-fn information() -> SVector<f64, CONSTANTS> {
-    SVector::from_fn(|i, _| if i < 4 { KNOWN.powi(-2) } else { ANY_TURN.powi(-2) })
+impl Problem<'_> {
+    /// Takes a body of the mass properties `mass` for known, all but how its axes lie: about `R`.
+    pub(super) fn take_known(&mut self, mass: &MassProperties, R: DQuat) -> Body {
+        let body = Body::turned(mass, R);
+        let deviation = |i: usize| if i < 4 { KNOWN } else { ANY_TURN };
+        let information = SVector::<f64, CONSTANTS>::from_fn(|i, _| deviation(i).powi(-2));
+        self.body = (body, SMatrix::from_diagonal(&information));
+        self.frozen.clear();
+        body
+    }
 }
 
 /// Angle between two orientations of a body that looks the same in some.

@@ -24,9 +24,9 @@ use std::ops::Range;
 /// Share of the information of natural units that may be added at each node against rounding.
 const MENDED: f64 = 1e-3;
 /// Natural times on either side over which the ratio of friction to normal force is averaged, to tell modes.
-const AVERAGED: f64 = 0.12;
+pub(super) const AVERAGED: f64 = 0.12;
 /// Natural times from sample to sample in a record that is searched, if there are many more.
-const THIN: f64 = 0.02;
+pub(super) const THIN: f64 = 0.02;
 /// Conditions of a contact that sticks are contradicted beyond this: three numbers in their deviations go there once in a million.
 const CONTRADICTED: f64 = 30.7;
 /// Natural times that a noisy log must last at least: over less, the motion is hardly more than its start.
@@ -120,6 +120,7 @@ impl Source<'_> {
     fn with_blows(&self, mut record: Record) -> Record {
         let impulse = self.units.speed * self.units.mass;
         record.mark_blows(impulse, impulse * self.units.length, self.options.gravity * self.units.mass);
+        record.doubt_gaps(self.units.length / self.units.speed);
         record
     }
 
@@ -228,7 +229,7 @@ fn polished<'a>(
 }
 
 /// Without what noise alone makes the equations claim, and with what is beyond first order.
-fn covariances(
+pub(super) fn covariances(
     problem: &Problem,
     solved: &Solved<CONSTANTS>,
 ) -> Result<Covariances<CONSTANTS>, ContactEstimateError> {
@@ -242,7 +243,7 @@ fn covariances(
     all().ok_or(ContactEstimateError::Singular)
 }
 
-fn slips(problem: &Problem, motions: &[(Motion, Deviations)], body: &Body) -> Slips {
+pub(super) fn slips(problem: &Problem, motions: &[(Motion, Deviations)], body: &Body) -> Slips {
     let record = problem.record;
     let mut slips = Vec::new();
     for (j, &k) in record.samples.iter().enumerate() {

@@ -180,6 +180,26 @@ fn turned(q: DQuat, L: [DVec3; 2], rates: [DVec3; 2], body: &Body, h: f64) -> DQ
     (second * (first * q)).normalize()
 }
 
+/// What `noise` of the forces over a time `h`, with moments about the centre of mass, does to the motion at its end.
+pub(super) fn link_covariance(noise: &WrenchNoise, h: f64, body: &Body, turn: &Turn) -> Transition {
+    let (m, K) = (body.inverse_mass(), Matrix3::from(turn.K));
+    let one = Matrix3::identity();
+    // Of the wrench's impulse: white noise moves the path by half of it, and what is left of the path is independent of it.
+    let mut impulse = SMatrix::<f64, MOTION, 6>::zeros();
+    let mut rest = impulse;
+    let set = |of: &mut SMatrix<f64, MOTION, 6>, row: usize, column: usize, block: Matrix3<f64>| {
+        of.fixed_view_mut::<3, 3>(row, column).copy_from(&block);
+    };
+    set(&mut impulse, 0, 0, one * (0.5 * h * m));
+    set(&mut impulse, 3, 0, one * m);
+    set(&mut impulse, 6, 3, one);
+    set(&mut impulse, 9, 3, K * (0.5 * h));
+    set(&mut rest, 0, 0, one * m);
+    set(&mut rest, 9, 3, K);
+    let of_rest = noise.white * (h * h / 12.0) + noise.late;
+    impulse * noise.white * impulse.transpose() + rest * of_rest * rest.transpose()
+}
+
 /// Information of a link of duration `h`: the inverse covariance of what `noise` of the forces over the link, with moments about
 /// the centre of mass, does to the motion. None where it has no inverse.
 pub(super) fn link_information(noise: &WrenchNoise, h: f64, body: &Body, turn: &Turn) -> Option<Transition> {

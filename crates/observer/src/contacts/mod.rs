@@ -6,6 +6,7 @@ mod cold;
 mod equations;
 mod estimate;
 mod flow;
+mod gaps;
 mod impulses;
 mod joint;
 mod modes;
@@ -22,6 +23,7 @@ mod second_order;
 mod solve;
 mod spurious;
 mod state;
+mod stream;
 mod suspects;
 #[cfg(test)]
 mod tests;
@@ -31,4 +33,8 @@ mod windows;
 pub use estimate::{ContactEstimate, estimate_contacts};
 pub use noise::{ContactNoiseLevel, ImpulseNoise};
 pub use options::{ContactEstimateError, ContactOptions};
+pub use stream::{
+    ForceReading, MotionStream, PalmSensed, PlaneReadings, StreamBody, StreamError, StreamEstimate,
+    StreamMotion, StreamOptions, StreamPalm, StreamStage,
+};
 pub use verdict::ContactEvidence;

@@ -7,7 +7,9 @@ use crate::three_palms::running_integral;
 use contact_kinematics::PalmSurface;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix6, Vector6};
-use object_dynamics::{ContactLog, ContactMode, LoggedPalm, MOST_PALMS, SensedAxes, SensedForce};
+use object_dynamics::{
+    ContactLog, ContactMode, LoggedPalm, MOST_PALMS, MeasuredMotion, SensedAxes, SensedForce, Touch,
+};
 use std::ops::{Add, Mul};
 
 /// Intervals from the one in which a contact closes that a blow is taken to last: soft ones are over a sample later.
@@ -73,7 +75,41 @@ pub(super) struct Record {
     pub(super) all_impulses: bool,
 }
 
+impl Contact {
+    /// From the world's origin, sliding for now; of the force (N) the standard deviation of each axis as well.
+    pub(super) fn new(
+        palm: usize,
+        surface: PalmSurface,
+        touch: &Touch,
+        motion: &MeasuredMotion,
+        (force, f_deviation): (DVec3, f64),
+        frictionless: bool,
+    ) -> Self {
+        let n = touch.n.get();
+        Self {
+            palm,
+            c: touch.p_WC,
+            n,
+            u: motion.material_velocity(touch.p_WC),
+            W: motion.w_WP,
+            shape: shape_operator(surface, n, motion.pose.R_WP * DVec3::X),
+            f: if frictionless { force.project_onto_normalized(n) } else { force },
+            f_deviation,
+            frictionless,
+            mode: ContactMode::Slide,
+            samples: 1,
+        }
+    }
+}
+
 impl Interval {
+    /// By the wrenches at its ends.
+    pub(super) fn trapezoid(h: f64, wrenches: [&Wrench; 2], noise: WrenchNoise) -> Self {
+        let impulse = (*wrenches[0] + *wrenches[1]) * (0.5 * h);
+        let first = (wrenches[0].force + 2.0 * wrenches[1].force) * (h * h / 6.0);
+        Self { h, impulse, first, noise, blow: false }
+    }
+
     /// Variance of the impulse, of the moment as well at so long a lever, N^2 s^2.
     pub(super) fn velocity_noise(&self, lever: f64) -> f64 {
         let part = |i: usize| self.noise.white.fixed_view::<3, 3>(i, i).trace();
@@ -197,31 +233,18 @@ fn late(interval: &Interval, ends: [&Wrench; 2]) -> Matrix6<f64> {
     column * column.transpose()
 }
 
-fn wrench<'a>(contacts: impl IntoIterator<Item = &'a Contact>) -> Wrench {
+pub(super) fn wrench<'a>(contacts: impl IntoIterator<Item = &'a Contact>) -> Wrench {
     let of = |c: &Contact| Wrench { force: c.f, moment: c.c.cross(c.f) };
     contacts.into_iter().map(of).fold(Wrench::default(), Add::add)
 }
 
 fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, options: &ContactOptions) -> Vec<Contact> {
     let one = |(palm, logged): (usize, &LoggedPalm)| {
-        let touch = logged.touch(k)?;
-        let motion = logged.motion(k);
-        let n = touch.n.get();
         let frictionless = options.frictionless(logged);
-        let (f, f_deviation) = force_at(log, logged, k, &options.noise, frictionless)?;
-        Some(Contact {
-            palm,
-            c: touch.p_WC - origin,
-            n,
-            u: motion.material_velocity(touch.p_WC),
-            W: motion.w_WP,
-            shape: shape_operator(logged.surface(), n, motion.pose.R_WP * DVec3::X),
-            f: if frictionless { f.project_onto_normalized(n) } else { f },
-            f_deviation,
-            frictionless,
-            mode: ContactMode::Slide,
-            samples: 1,
-        })
+        let touch = logged.touch(k)?;
+        let force = force_at(log, logged, k, &options.noise, frictionless)?;
+        let felt = Contact::new(palm, logged.surface(), &touch, &logged.motion(k), force, frictionless);
+        Some(Contact { c: felt.c - origin, ..felt })
     };
     log.palms().iter().enumerate().filter_map(one).collect()
 }
@@ -274,8 +297,11 @@ fn intervals(
             Interval { h, impulse, first, noise, blow: false }
         })
         .collect();
-    let rough: Vec<Interval> =
-        (1..times.len()).map(|k| trapezoid(&fine[k - 1], &wrenches[k - 1..=k])).collect();
+    let rough = |k: usize| {
+        let Interval { h, noise, .. } = fine[k - 1];
+        Interval::trapezoid(h, [&wrenches[k - 1], &wrenches[k]], noise)
+    };
+    let rough: Vec<Interval> = (1..times.len()).map(rough).collect();
     let differ = |(fine, rough): (&Interval, &Interval)| fine.impulse + rough.impulse * -1.0;
     let square = |pair| differ(pair).force.length_squared();
     let differences: f64 = fine.iter().zip(&rough).map(square).sum();
@@ -312,15 +338,8 @@ const SEEN: f64 = 9.0;
 /// Where noise makes all of it, the trapezoidal rule is as good, and what its noise does is known exactly.
 const RULES_DIFFER: f64 = 2.0 * (11.0 * 11.0 + 93.0 * 93.0 + 82.0 * 82.0) / (1440.0 * 1440.0);
 
-fn trapezoid(interval: &Interval, wrenches: &[Wrench]) -> Interval {
-    let h = interval.h;
-    let impulse = (wrenches[0] + wrenches[1]) * (0.5 * h);
-    let first = (wrenches[0].force + 2.0 * wrenches[1].force) * (h * h / 6.0);
-    Interval { impulse, first, ..*interval }
-}
-
 /// What the noise of one contact does to the impulse and moment of an interval: samples are independent.
-fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, deviation: f64, h: f64) {
+pub(super) fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, deviation: f64, h: f64) {
     let (a, b) = contact.n.any_orthonormal_pair();
     for axis in [contact.n, a, b].into_iter().take(if contact.frictionless { 1 } else { 3 }) {
         let column = six(axis, contact.c.cross(axis)) * (contact.f_deviation * h);

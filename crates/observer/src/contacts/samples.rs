@@ -124,7 +124,7 @@ impl<'a> Link<'a> {
 }
 
 /// At node `j`, with the angular velocity in place of the angular momentum.
-fn deviations<const P: usize>(
+pub(super) fn deviations<const P: usize>(
     motion: &Motion,
     body: &Body,
     j: usize,

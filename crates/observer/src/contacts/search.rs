@@ -89,6 +89,9 @@ pub(super) fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONS
     let claimed = first.equations.covariances(&problem.natural_information());
     let frozen = claimed.and_then(|claimed| claimed.frozen(problem, &first.equations, &first.unknowns));
     problem.frozen = frozen.unwrap_or_default();
+    if problem.frozen.is_empty() && first.settled {
+        return Some(first);
+    }
     let mut found = solve::<CONSTANTS>(problem, first.unknowns, MOST_OF_LAST, ENOUGH[1])?;
     found.iterations += first.iterations;
     Some(found)

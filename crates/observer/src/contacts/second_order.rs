@@ -12,6 +12,9 @@ use nalgebra::{SMatrix, SVector};
 
 /// Length of a difference, in claimed deviations.
 const STEP: f64 = 0.3;
+/// Deviations of logarithms of constants, and of turns in rad, up to which nothing is looked at: the shift adds a hundredth to a variance there,
+/// and takes twice the time of the solution.
+const SMALL: f64 = 0.02;
 /// Deviation of the error, as a share of the shift.
 const SHARE: f64 = 0.3;
 
@@ -24,6 +27,9 @@ impl Covariances<CONSTANTS> {
         solved: &Solved<CONSTANTS>,
         claimed: &SMatrix<f64, CONSTANTS, CONSTANTS>,
     ) -> Option<Self> {
+        if claimed.diagonal().max() < SMALL * SMALL {
+            return Some(self);
+        }
         let Some(shift) = self.shift(problem, solved, claimed) else {
             self.body += problem.body.1.cholesky()?.inverse();
             return Some(self);

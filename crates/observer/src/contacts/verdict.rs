@@ -9,7 +9,7 @@ use glam::DVec3;
 
 /// Standard deviations of a normal variable beyond which a stretch of the log is not explained by noise, or a constant of the sensors
 /// is not what it was taken for: once in a million.
-const UNEXPLAINED: f64 = 4.75;
+pub(super) const UNEXPLAINED: f64 = 4.75;
 /// Length of a stretch in natural times.
 const STRETCH: f64 = 1.0;
 

@@ -8,8 +8,6 @@ mod newton;
 mod node;
 mod report;
 mod rk4;
-#[cfg(feature = "palms")]
-mod smoother;
 mod window;
 
 pub use batch::{BatchOptions, BatchSolution, solve_batch, solve_batch_along, solve_batch_from};
@@ -21,6 +19,4 @@ pub use node::Link;
 pub(crate) use report::direction_words;
 pub use report::{ObserverError, Report, Status, describe_direction};
 pub use rk4::{rk4, rk4_linearised};
-#[cfg(feature = "palms")]
-pub(crate) use smoother::{Portion, Smoother};
 pub use window::Start;

@@ -113,19 +113,6 @@ pub struct NewtonObserver<Mo: Model<N, M>, const N: usize, const M: usize> {
 }
 
 impl<Mo: Model<N, M>, const N: usize, const M: usize> NewtonObserver<Mo, N, M> {
-    /// An observer in whose window there are samples already; none where the options are not usable.
-    #[cfg(feature = "palms")]
-    pub(super) fn going_on(
-        model: Mo,
-        options: NewtonOptions,
-        samples: VecDeque<Sample<Mo::Input, M>>,
-        window: Window<N, M>,
-    ) -> Option<Self> {
-        let start = Start::guess(*window.states().next()?);
-        let observer = Self::new(model, options, start).ok()?;
-        Some(Self { samples, window, ..observer })
-    }
-
     /// An observer that has seen no sample yet; `start` is the state at the first one.
     ///
     /// # Errors
@@ -195,12 +182,6 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> NewtonObserver<Mo, N, M> {
     pub fn amend(&mut self, back: usize, sample: Sample<Mo::Input, M>) -> bool {
         let slot = self.samples.len().checked_sub(back + 1).and_then(|k| self.samples.get_mut(k));
         slot.map(|old| *old = sample).is_some()
-    }
-
-    /// The sample so many before the newest, to be changed as in [`Self::amend`].
-    #[cfg(feature = "palms")]
-    pub(crate) fn sample_mut(&mut self, back: usize) -> Option<&mut Sample<Mo::Input, M>> {
-        self.samples.len().checked_sub(back + 1).and_then(|k| self.samples.get_mut(k))
     }
 
     /// Whether the next sample pushes the oldest one out of the window.

@@ -279,12 +279,6 @@ impl<const N: usize, const M: usize> Window<N, M> {
         first - self.nodes.iter().map(of_noise).sum::<f64>()
     }
 
-    /// Covariance of node `k`, all data considered, from that of the node before.
-    #[cfg(feature = "palms")]
-    pub(super) fn next_covariance(&self, k: usize, before: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
-        self.nodes[k].carried(before)
-    }
-
     /// Covariances of all states, oldest first, from that of the first.
     pub(super) fn covariances(&self, first: SMatrix<f64, N, N>) -> Vec<SMatrix<f64, N, N>> {
         let mut p = first;

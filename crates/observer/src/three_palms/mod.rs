@@ -5,9 +5,9 @@ mod cold_start;
 mod correlation;
 mod covariance;
 mod curves;
-mod delassus;
 mod estimate;
 mod evidence;
+mod inertia;
 mod momentum;
 mod no_force;
 mod noise;
@@ -19,19 +19,17 @@ mod pose_errors;
 mod quadrature;
 mod random;
 mod sensitivity;
-mod state_space;
-mod streaming;
 #[cfg(test)]
 mod test_scenes;
 mod track;
 mod unknown_body;
 mod verdict;
 
+pub(crate) use inertia::{inertia_of_numbers, inertia_slope, numbers_of_inertia};
 pub(crate) use pose_errors::{DRAWS, kept, normals, root, turned};
 pub(crate) use quadrature::running_integral;
 pub(crate) use random::Normal;
 pub(crate) use sensitivity::{cross_matrix, exponential, logarithm};
-pub(crate) use state_space::{inertia_of_numbers, inertia_slope, numbers_of_inertia};
 pub(crate) use verdict::{LARGEST_DEVIATION, LARGEST_MISFIT};
 
 pub use covariance::NoiseLevel;
@@ -46,6 +44,5 @@ pub use paper_method::{
     PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
 pub use pose_errors::{PoseAxes, PoseCovariance, PoseErrors};
-pub use streaming::{MotionStream, StreamBody, StreamError, StreamEstimate, StreamOptions, StreamStage};
 pub use track::{Track, TrackError};
 pub use unknown_body::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body, estimate_body_from};

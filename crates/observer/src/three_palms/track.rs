@@ -90,20 +90,7 @@ pub(super) struct Integrals {
     rates: [DVec3; 4],
 }
 
-impl Integrals {
-    /// Impulse, first moment, moment and curl a while after these, which belong to the time `t0` of a body of `mass` under
-    /// `gravity`, from those that begin here.
-    fn after(&self, t0: f64, mass: f64, gravity: DVec3, local: &[DVec3; 4]) -> [DVec3; 4] {
-        let [impulse, first_moment, moment, curl] = *local;
-        let travel = (self.position - 0.5 * gravity * t0 * t0) * mass;
-        [
-            self.impulse + impulse,
-            self.first_moment + impulse * t0 + first_moment,
-            self.moment + moment - self.position.cross(impulse) - self.velocity.cross(first_moment),
-            self.curl + curl + travel.cross(impulse) + self.impulse.cross(first_moment),
-        ]
-    }
-}
+impl Integrals {}
 
 /// The part of a log in contact with all palms, prepared for the momentum form.
 #[derive(Clone, Debug)]
@@ -183,20 +170,6 @@ impl Track {
         Self { t, nodes, integrals, middle, mass, gravity, start }
     }
 
-    /// Its nodes and times alone become those given: without integrals, which most uses need.
-    pub(super) fn set_nodes(&mut self, nodes: impl Iterator<Item = (f64, Node)> + Clone) {
-        self.start = nodes.clone().next().map_or(0.0, |(t, _)| t);
-        self.t.clear();
-        self.t.extend(nodes.clone().map(|(t, _)| t - self.start));
-        self.nodes.clear();
-        self.nodes.extend(nodes.map(|(_, node)| node));
-    }
-
-    /// A track of the same nodes with its integrals.
-    pub(super) fn integrated(&self) -> Self {
-        self.with_nodes(self.nodes.clone())
-    }
-
     /// The same track, thinned or not, for a body of another mass, kg.
     pub(super) fn of_mass(&self, mass: f64) -> Self {
         let excess = 1.0 / mass - 1.0 / self.mass;
@@ -216,11 +189,6 @@ impl Track {
         all
     }
 
-    /// Other contacts and forces at the same times.
-    pub(super) fn with_nodes(&self, nodes: Vec<Node>) -> Self {
-        Self::assemble(self.t.clone(), nodes, self.mass, self.gravity, self.start)
-    }
-
     /// Every `stride`-th sample, with the integrals of all of them and contacts smoothed over the samples left out.
     pub(super) fn thinned(&self, stride: usize) -> Self {
         let stride = stride.max(1);
@@ -237,54 +205,6 @@ impl Track {
             })
             .collect();
         Self { t, nodes, integrals, middle, mass: self.mass, gravity: self.gravity, start: self.start }
-    }
-
-    /// A track without nodes, with room for some, that [`Self::extend`] makes longer.
-    pub(super) fn growing(mass: f64, gravity: DVec3, start: f64, room: usize) -> Self {
-        Self {
-            t: Vec::with_capacity(room),
-            nodes: Vec::with_capacity(room),
-            integrals: Vec::with_capacity(room),
-            middle: Vec::with_capacity(room),
-            mass,
-            gravity,
-            start,
-        }
-    }
-
-    /// Appends node `k` of a short track, with its contacts smoothed over `reach` samples on either side; the short
-    /// track begins where this one ends so far. What [`Self::thinned`] gives of the whole, piece by piece.
-    pub(super) fn extend(&mut self, piece: &Self, k: usize, reach: usize) {
-        let node = piece.smoothed(k, reach);
-        let local = &piece.integrals[k];
-        let (Some(&t0), Some(&base)) = (self.t.last(), self.integrals.last()) else {
-            self.t.push(0.0);
-            self.nodes.push(node);
-            self.integrals.push(Integrals { rates: local.rates, ..Integrals::default() });
-            return;
-        };
-        let u = piece.t[k];
-        let next = piece.t.partition_point(|&t| t < 0.5 * u).clamp(1, piece.t.len() - 1);
-        let halfway = interpolate(&piece.t, &piece.integrals, 0.5 * u, next);
-        let (mass, gravity) = (self.mass, self.gravity);
-        self.middle.push(base.after(t0, mass, gravity, &halfway));
-        let local_values = [local.impulse, local.first_moment, local.moment, local.curl];
-        let [impulse, first_moment, moment, curl] = base.after(t0, mass, gravity, &local_values);
-        let force = local.rates[0];
-        let position = base.position + base.velocity * u + local.position;
-        let turning = local.rates[2] - (base.position + base.velocity * u).cross(force);
-        let travel = (position - 0.5 * gravity * (t0 + u) * (t0 + u)) * mass;
-        self.integrals.push(Integrals {
-            impulse,
-            first_moment,
-            moment,
-            velocity: base.velocity + local.velocity,
-            position,
-            curl,
-            rates: [force, force * (t0 + u), turning, travel.cross(force)],
-        });
-        self.t.push(t0 + u);
-        self.nodes.push(node);
     }
 
     /// The same samples with time running backwards: frictionless motion obeys the same laws with all velocities

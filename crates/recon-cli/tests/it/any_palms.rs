@@ -178,7 +178,8 @@ fn what_is_neither_three_planes_nor_has_all_forces_is_refused_by_name() {
     refused(&reconstruct, &["any.csv", "[[palm]] for each"]);
     let noise = ["--contact-noise", "1e-3", "--force-noise", "1e-3"];
     let follow = [&["follow", "any.csv", "--scene", "any.toml"][..], &noise].concat();
-    refused(&follow, &["any.csv", "px_i", "three flat palms"]);
+    let run = scratch.run(&follow);
+    assert!(run.code == Some(0) && run.stderr.contains("the motion is known"), "{}", run.stderr);
     // Forces that rub.
     let log = ContactLog::try_from(&read_log(scratch.path().join("log.csv")).unwrap()).unwrap();
     let mut records = log.records();

@@ -1,6 +1,8 @@
 //! `recon follow` and `recon reconstruct --without-forces`: a noisy log from a file and from a pipe, and bad input.
 
 use crate::common::{Scratch, Table};
+use recon::object_dynamics::ContactLog;
+use recon_io::{read_log, write_contact_log};
 use std::fs::File;
 use std::process::Stdio;
 
@@ -13,7 +15,7 @@ principal_moments = [2.665, 1.885, 1.3]
 contact_std = 2.5e-3
 force_std = 0.065
 [simulation]
-duration = 3.0
+duration = 5.0
 sample_rate = 1000.0
 orientation = [1.0, 0.0, 0.0, 0.0]
 angular_velocity = [0.2, 0.3, -0.4]
@@ -50,10 +52,10 @@ fn the_motion_is_followed_from_a_file_and_from_a_pipe() {
     let (scratch, log) = scratch("follow");
     let run = scratch.run(&["follow", "log.csv", "--scene", "scene.toml", "-o", "motion.csv"]);
     assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
-    assert!(run.stdout.contains("a motion from t = "), "{}", run.stdout);
+    assert!(run.stdout.contains("the motion is known from "), "{}", run.stdout);
     let table = scratch.read("motion.csv");
     let motion = Table::parse(&table);
-    assert_eq!(motion.rows.len(), 30);
+    assert_eq!(motion.rows.len(), 51);
     assert_eq!(motion.rows[0][motion.column("stage")], "gathering");
     // Rows stand at multiples of 0.1 s, samples at those of 0.001 s.
     for (row, stage) in motion.rows.iter().map(|row| row[motion.column("stage")].as_str()).enumerate() {
@@ -70,7 +72,7 @@ fn the_motion_is_followed_from_a_file_and_from_a_pipe() {
         assert!(error(["cmx", "cmy", "cmz"]) < 5.0 * number(&motion, row, "std_cm"), "row {row}");
         assert!(error(["vx", "vy", "vz"]) < 5.0 * number(&motion, row, "std_v"), "row {row}");
     }
-    assert_eq!(motion.rows[29][motion.column("stage")], "tracking");
+    assert_eq!(motion.rows[50][motion.column("stage")], "tracking");
 
     let pipe = File::open(scratch.path().join("log.csv")).unwrap();
     let piped =
@@ -81,9 +83,34 @@ fn the_motion_is_followed_from_a_file_and_from_a_pipe() {
     let lines = scratch.run(&["follow", "log.csv", "--scene", "scene.toml", "--every", "0.5", "--json"]);
     let objects: Vec<serde_json::Value> =
         lines.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    assert_eq!(objects.len(), 6);
-    assert_eq!(objects[5]["stage"], "tracking");
-    assert!(objects[0]["innovation"].is_null());
+    assert_eq!(objects.len(), 11);
+    assert_eq!(objects[10]["stage"], "tracking");
+    assert!(objects[0]["misfit"].is_null());
+}
+
+/// As palms of any shape.
+#[test]
+fn the_motion_is_followed_on_any_palms() {
+    let (scratch, _) = scratch("follow-any");
+    let log = ContactLog::try_from(&read_log(scratch.path().join("log.csv")).unwrap()).unwrap();
+    let mut text = Vec::new();
+    write_contact_log(&log, &mut text).unwrap();
+    scratch.write("any.csv", std::str::from_utf8(&text).unwrap());
+    let palm = "[[palm]]\nkind = \"flat\"\n";
+    scratch.write("any.toml", &(SCENE.split("[simulation]").next().unwrap().to_owned() + &palm.repeat(3)));
+    let followed = |log: &str, scene: &str| {
+        let run = scratch.run(&["follow", log, "--scene", scene, "--identify", "-o", "motion.csv"]);
+        assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+        Table::parse(&scratch.read("motion.csv"))
+    };
+    let (planes, any) = (followed("log.csv", "scene.toml"), followed("any.csv", "any.toml"));
+    assert_eq!(planes.rows.len(), any.rows.len());
+    for row in 40..planes.rows.len() {
+        for column in ["cmx", "vz", "std_w", "mass"] {
+            let [a, b] = [&planes, &any].map(|table| number(table, row, column));
+            assert!((a - b).abs() < 1e-6, "row {row}, {column}: {a} {b}");
+        }
+    }
 }
 
 #[test]
@@ -97,7 +124,7 @@ fn a_log_without_forces_gives_the_ellipsoid() {
     let figures: serde_json::Value = serde_json::from_str(&scratch.read("recon-out/summary.json")).unwrap();
     for (axis, expected) in [1.0, 2.0, 2.5].into_iter().enumerate() {
         let found = figures["semi_axes_m"][axis].as_f64().unwrap();
-        // Means over 3 s of contacts noisy by 2.5e-3 m.
+        // Means over 5 s of contacts noisy by 2.5e-3 m.
         assert!((found - expected).abs() < 2e-3, "{found} {expected}");
     }
     assert!(

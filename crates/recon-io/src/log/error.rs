@@ -132,6 +132,14 @@ pub enum LogFileErrorKind {
         "has the columns of palms of any shape, which say nothing of the shapes; give a scene with a [[palm]] for each"
     )]
     NoPalms,
+    /// A palm of a log of general palms whose samples are followed has no force.
+    #[error(
+        "palm {palm} has no force: samples are followed with columns fx_{palm}, fy_{palm}, fz_{palm}, or fn_{palm} without friction"
+    )]
+    NoForce {
+        /// From 1.
+        palm: usize,
+    },
     /// A log of general palms where one of palms through the origin is read.
     #[error(
         "has the columns px_i or sx_i of palms of any shape, and here logs of {read} are read; `recon reconstruct` takes it"

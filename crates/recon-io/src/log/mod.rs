@@ -14,13 +14,14 @@ mod write;
 mod tests;
 
 pub use contacts::{
-    AnyLog, PalmSetup, parse_any_log, parse_contact_log, read_any_log, read_contact_log, write_contact_log,
+    AnyLog, ContactRows, PalmSetup, parse_any_log, parse_contact_log, read_any_log, read_contact_log,
+    write_contact_log,
 };
 pub use error::{LogFileError, LogFileErrorKind};
 pub use planar::{parse_planar_log, read_planar_log, write_planar_log};
 pub use planar_contacts::{parse_planar_contact_log, read_planar_contact_log, write_planar_contact_log};
 pub use read::{parse_log, read_log};
-pub use reader::LogReader;
+pub use reader::{LogReader, PlaneRows};
 pub use write::write_log;
 
 pub(crate) use columns::TRUTH;

@@ -208,6 +208,13 @@ proptest! {
     }
 }
 
+fn planes<R: std::io::Read>(reader: LogReader<R>) -> super::PlaneRows<R> {
+    match reader {
+        LogReader::ThreePalms(rows) => *rows,
+        LogReader::Contacts(_) => panic!("not of three planes"),
+    }
+}
+
 #[test]
 fn samples_come_one_by_one_as_from_the_whole_log() {
     let text = |table: &Table| {
@@ -217,11 +224,11 @@ fn samples_come_one_by_one_as_from_the_whole_log() {
     };
     let good = Table::good();
     let one_by_one: Vec<Sample> =
-        LogReader::new(text(&good).as_bytes()).unwrap().map(Result::unwrap).collect();
+        planes(LogReader::new(text(&good).as_bytes(), None).unwrap()).map(Result::unwrap).collect();
     assert_eq!(one_by_one, good.parse().unwrap().samples());
     // An error names its line, and ends the samples.
     let stuck = Table::good().set(1, "t", "0");
-    let mut samples = LogReader::new(Cursor::new(text(&stuck))).unwrap();
+    let mut samples = planes(LogReader::new(Cursor::new(text(&stuck)), None).unwrap());
     assert!(samples.next().unwrap().is_ok());
     let error = samples.next().unwrap().unwrap_err();
     assert!(
@@ -232,5 +239,5 @@ fn samples_come_one_by_one_as_from_the_whole_log() {
         "{error}"
     );
     assert!(samples.next().is_none());
-    assert!(matches!(LogReader::new("".as_bytes()), Err(Kind::Empty)));
+    assert!(matches!(LogReader::new("".as_bytes(), None), Err(Kind::Empty)));
 }

@@ -5,7 +5,7 @@ use super::series::{Nodes, TouchSeries};
 use super::shape::FreeEllipsoid;
 use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt};
 use crate::three_palms::cold_start::orientations;
-use crate::three_palms::state_space::numbers_of_inertia;
+use crate::three_palms::inertia::numbers_of_inertia;
 use glam::DVec3;
 
 /// Semi-axes of the ellipsoids tried, as shares of the ball's radius.

@@ -7,20 +7,17 @@ use crate::least_squares::{FitStatus, LeastSquares, Observability};
 use crate::three_palms::clean::{Clean, clean_covariance, stride};
 use crate::three_palms::estimate::{EstimateError, MotionEstimate, floored};
 use crate::three_palms::evidence::{Evidence, WeakDirection};
+use crate::three_palms::inertia::numbers_of_inertia;
 use crate::three_palms::momentum::{MomentumProblem, MotionState, Scales, StartState};
 use crate::three_palms::noise::noise_level;
 use crate::three_palms::polish::{Conditions, polish_all};
 use crate::three_palms::pose_errors::{self, Pose};
-use crate::three_palms::state_space::{BODY, MOTION_STATES, numbers_of_inertia};
 use crate::three_palms::track::Track;
 use crate::three_palms::verdict::judge;
 use crate::three_palms::{NoiseLevel, PoseErrors, curves};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 use object_dynamics::{MassProperties, SensorLog};
-
-/// States of the model: motion, mass and inertia.
-pub(crate) const STATES: usize = MOTION_STATES + BODY.len();
 
 /// What is known beside the log of a body of which nothing is known.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,4 @@ mod principal;
 mod problem;
 mod search;
 
-pub(crate) use estimate::STATES;
 pub use estimate::{BodyEstimate, IdentifiedBody, UnknownBody, estimate_body, estimate_body_from};
-pub(crate) use problem::{BODY_UNKNOWNS, BodyPoint, BodyProblem};
-pub(crate) use search::{begin, mass_of_weight, scales_of_ball, spins};

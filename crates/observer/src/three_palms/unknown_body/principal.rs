@@ -3,8 +3,8 @@
 use super::estimate::IdentifiedBody;
 use super::problem::{BODY_UNKNOWNS, MASS};
 use crate::three_palms::equivalent_orientations;
+use crate::three_palms::inertia::{inertia_slope, numbers_of_inertia};
 use crate::three_palms::momentum::UNKNOWNS;
-use crate::three_palms::state_space::{inertia_slope, numbers_of_inertia};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::SMatrix;
 use object_dynamics::MassProperties;

@@ -3,10 +3,10 @@
 //! The axes of the inertia tensor are the world's at the start, so that the orientation there is no unknown: 16 remain.
 
 use crate::least_squares::{LeastSquares, NormalEquations};
+use crate::three_palms::inertia::{inertia_of_numbers, inertia_slope};
 use crate::three_palms::momentum::{Scales, StartState, by_state, momentum};
 use crate::three_palms::polish::Conditions;
 use crate::three_palms::sensitivity::{SensitivityStep, Turning};
-use crate::three_palms::state_space::{BODY, inertia_of_numbers, inertia_slope};
 use crate::three_palms::track::{Integrals, Track};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::SVector;
@@ -86,7 +86,13 @@ impl<'a> BodyProblem<'a> {
     /// Natural sizes of the unknowns.
     pub(super) fn sizes(&self) -> BodyRow {
         let blocks = self.scales.by_block();
-        BodyRow::from_fn(|i, _| if i < MASS { blocks[i / 3] } else { BODY[i - MASS].scale(&self.scales) })
+        // Off the diagonal of the factor of the second moments: its own size, the root of a moment. Else logarithms.
+        let root = (self.scales.momentum * self.scales.length / self.scales.velocity).sqrt();
+        BodyRow::from_fn(|i, _| match i {
+            i if i < MASS => blocks[i / 3],
+            i if i > MASS + 3 => root,
+            _ => 1.0,
+        })
     }
 
     fn body(&self, point: &BodyPoint) -> Option<Body> {
@@ -289,7 +295,7 @@ impl Conditions<BODY_UNKNOWNS> for BodyProblem<'_> {
 mod tests {
     use super::*;
     use crate::three_palms::cold_start::scales;
-    use crate::three_palms::state_space::numbers_of_inertia;
+    use crate::three_palms::inertia::numbers_of_inertia;
     use crate::three_palms::test_scenes::on_swinging_palms;
 
     /// The gradient is that of the sum of squares, far from the solution, on moving palms, at a mass that is not the

@@ -11,9 +11,9 @@ use crate::three_palms::cold_start::{
     natural_time, next_to_nothing, rest_state, sampling, scales, stride,
 };
 use crate::three_palms::covariance::{NoiseLevel, Sampling, propagate};
+use crate::three_palms::inertia::numbers_of_inertia;
 use crate::three_palms::momentum::{MomentumProblem, Scales};
 use crate::three_palms::polish::polish;
-use crate::three_palms::state_space::numbers_of_inertia;
 use crate::three_palms::track::Track;
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::MassProperties;

@@ -4,6 +4,7 @@ mod any;
 mod columns;
 mod poses;
 mod read;
+mod reader;
 mod write;
 
 #[cfg(test)]
@@ -13,6 +14,7 @@ pub use any::{AnyLog, parse_any_log, read_any_log};
 pub(super) use columns::{check_palms, palms_in_space};
 pub(crate) use poses::read_pose_table;
 pub use read::{parse_contact_log, read_contact_log};
+pub use reader::ContactRows;
 pub use write::write_contact_log;
 
 use recon::contact_kinematics::{PalmSurface, SurfacePose};

@@ -9,6 +9,7 @@ use recon::object_dynamics::{
     ContactLog, ContactMode, ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion,
     TrueContact, TrueState,
 };
+use recon::observer::{ForceReading, PalmSensed};
 use std::io::{BufReader, Read};
 use std::path::Path;
 
@@ -56,7 +57,7 @@ pub(super) fn contacts(table: Table<impl Read>, palms: &[PalmSetup]) -> Result<C
 }
 
 /// One palm while its rows come.
-struct Palm<'a> {
+pub(super) struct Palm<'a> {
     /// From 1.
     number: usize,
     columns: &'a PalmColumns,
@@ -66,7 +67,7 @@ struct Palm<'a> {
 }
 
 impl<'a> Palm<'a> {
-    fn new(number: usize, setup: &PalmSetup, columns: &'a PalmColumns) -> Result<Self, Kind> {
+    pub(super) fn new(number: usize, setup: &PalmSetup, columns: &'a PalmColumns) -> Result<Self, Kind> {
         let nowhere = SurfacePose { p_WP: DVec3::ZERO, R_WP: DQuat::IDENTITY };
         let fixed = match (&columns.pose, setup.pose) {
             (_, Some(pose)) => pose,
@@ -101,7 +102,7 @@ impl<'a> Palm<'a> {
         Ok(Self { number, columns, fixed, record })
     }
 
-    fn push(&mut self, row: &Row) -> Result<(), Kind> {
+    pub(super) fn push(&mut self, row: &Row) -> Result<(), Kind> {
         let contact = self.contact(row)?;
         self.push_motion(row)?;
         match (&mut self.record.force, &self.columns.force) {
@@ -130,6 +131,27 @@ impl<'a> Palm<'a> {
             ContactPoints::World(points) | ContactPoints::Palm(points) => points.push(contact),
         }
         Ok(())
+    }
+
+    /// What the latest row says; none without a force.
+    pub(super) fn sensed(&self) -> Option<PalmSensed> {
+        let (pose, twist) = match &self.record.motion {
+            RecordedMotion::Fixed(pose) => (*pose, None),
+            RecordedMotion::Poses(poses) => (*poses.last()?, None),
+            RecordedMotion::Measured(states) => {
+                states.last().map(|state| (state.pose, Some([state.v_WP, state.w_WP])))?
+            }
+        };
+        let contact = match &self.record.contacts {
+            ContactPoints::World(points) => *points.last()?,
+            ContactPoints::Palm(points) => points.last()?.map(|point| pose.at_rest().to_world(point)),
+        };
+        let force = match &self.record.force {
+            ForceChannel::Missing => return None,
+            ForceChannel::Normal(values) => ForceReading::Normal(*values.last()?),
+            ForceChannel::Three(vectors) => ForceReading::Three(*vectors.last()?),
+        };
+        Some(PalmSensed { pose, twist, contact, force })
     }
 
     fn contact(&self, row: &Row) -> Result<Option<DVec3>, Kind> {

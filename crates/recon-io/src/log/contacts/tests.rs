@@ -145,7 +145,19 @@ fn the_header_tells_the_version() {
     assert_eq!(any, AnyLog::Contacts(parse_contact_log(text.as_bytes(), &palms).unwrap()));
     assert!(matches!(parse_any_log(text.as_bytes(), None), Err(Kind::NoPalms)));
     assert!(matches!(super::super::parse_log(text.as_bytes()), Err(Kind::AnyPalms { .. })));
-    assert!(matches!(super::super::LogReader::new(text.as_bytes()), Err(Kind::AnyPalms { .. })));
+    let reader = |palms| super::super::LogReader::new(text.as_bytes(), palms);
+    assert!(matches!(reader(None), Err(Kind::NoPalms)));
+    let Ok(super::super::LogReader::Contacts(rows)) = reader(Some(&palms)) else { panic!("no contacts") };
+    let (AnyLog::Contacts(log), rows) = (any, rows.map(Result::unwrap).collect::<Vec<_>>()) else {
+        panic!("no contacts")
+    };
+    assert_eq!(rows.iter().map(|row| row.0).collect::<Vec<_>>(), log.times());
+    for (k, (_, sensed)) in rows.iter().enumerate() {
+        for (palm, sensed) in log.palms().iter().zip(sensed) {
+            assert_eq!(sensed.pose, palm.motion(k).pose);
+            assert_eq!(sensed.contact.is_some(), palm.touch(k).is_some());
+        }
+    }
     let one = "t,s1_1,s2_1,nx_1,ny_1,nz_1,s1_2,s2_2,nx_2,ny_2,nz_2,s1_3,s2_3,nx_3,ny_3,nz_3";
     let row = "0.1,0.2,0.6,0,0.8,0.1,0.2,-0.3,0.5196,0.8,0.1,0.2,-0.3,-0.5196,0.8";
     let text = [one, &format!("0,{row}"), &format!("1,{row}")].join("\n");

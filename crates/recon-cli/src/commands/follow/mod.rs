@@ -1,24 +1,25 @@
+//! `recon follow`: the motion sample by sample, as a log is written or read.
+
+mod input;
+mod spans;
+
 use crate::cli::FollowArgs;
 use crate::console::{Console, listened};
 use crate::error::{CliError, Outcome};
 use crate::interrupt::{Checked, check, while_writing};
-use crate::pipeline::known_body;
+use crate::pipeline::{FLOOR, known_body};
 use crate::progress::Progress;
-use glam::DVec3;
-use recon::object_dynamics::Sample;
-use recon::observer::{MotionStream, NoiseLevel, StreamEstimate, StreamOptions, StreamStage};
-use recon_io::{
-    FileTarget, LogFileError, LogReader, OutputError, Scene, is_standard_output, write_stream_header,
-    write_stream_row,
+use input::Samples;
+use recon::observer::{
+    ContactNoiseLevel, ContactOptions, MotionStream, StreamEstimate, StreamOptions, StreamStage,
 };
+use recon_io::{FileTarget, OutputError, Scene, is_standard_output, write_stream_header, write_stream_row};
 use recon_io::{MotionState, StreamRow};
 use serde_json::{Value, json};
-use std::fs::File;
-use std::io::{self, BufReader, Read, Write};
+use spans::Spans;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Samples from which the rate is taken where it is not stated.
-const FIRST: usize = 21;
 /// Share of the interval between rows by which rounding moves a sample's time at most.
 const ROUNDING: f64 = 1e-6;
 
@@ -27,20 +28,15 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     let inputs: Vec<_> = [&args.log].into_iter().chain(&args.scene).cloned().collect();
     let target = output.map(|path| FileTarget::new(path, &inputs)).transpose()?;
     let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::UnknownBody)?;
-    let mass = if args.identify { None } else { Some(known_body(&scene)?) };
-    let noise = noise(args, &scene).ok_or(CliError::StreamNoise)?;
-    let mut samples = Samples::open(&args.log)?;
-    let options = StreamOptions {
-        mass,
-        gravity: DVec3::new(0.0, 0.0, -scene.gravity),
-        palm_inertias: scene.palm_inertia,
-        noise,
-        sample_rate: match args.rate {
-            Some(rate) => rate,
-            None => samples.rate()?,
-        },
+    let body = if args.identify { None } else { Some(known_body(&scene)?) };
+    let mut samples = Samples::open(&args.log, &scene)?;
+    let noise = noise(args, &scene, &mut samples)?;
+    let contacts = ContactOptions { body, size: scene.size, ..ContactOptions::new(noise, scene.gravity) };
+    let sample_rate = match args.rate {
+        Some(rate) => rate,
+        None => samples.rate()?,
     };
-    let stream = MotionStream::new(options)?;
+    let stream = MotionStream::new(samples.palms()?, StreamOptions { contacts, sample_rate })?;
     let progress = Progress::new(1, console.is_json() || output.is_none());
     progress.step("following the motion");
     let followed = match output.zip(target) {
@@ -70,54 +66,25 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     followed.tell(console, output.map(PathBuf::as_path))
 }
 
-fn noise(args: &FollowArgs, scene: &Scene) -> Option<NoiseLevel> {
-    let contact = args.contact_noise.or(scene.sensors.contact_std)?;
-    Some(NoiseLevel { contact, force: args.force_noise.or(scene.sensors.force_std)? })
-}
-
-/// The samples of a log as they come, with the place that errors name.
-struct Samples<'a> {
-    path: &'a Path,
-    reader: LogReader<Box<dyn Read>>,
-    /// Read ahead, latest first.
-    ahead: Vec<Sample>,
-}
-
-impl<'a> Samples<'a> {
-    fn open(path: &'a Path) -> Result<Self, CliError> {
-        let in_file = |kind| CliError::Log(LogFileError { path: path.to_owned(), kind });
-        let text: Box<dyn Read> = if path.as_os_str() == "-" {
-            Box::new(io::stdin())
-        } else {
-            Box::new(BufReader::new(File::open(path).map_err(|e| in_file(e.into()))?))
-        };
-        Ok(Self { path, reader: LogReader::new(text).map_err(in_file)?, ahead: Vec::new() })
+fn noise(args: &FollowArgs, scene: &Scene, samples: &mut Samples<'_>) -> Result<ContactNoiseLevel, CliError> {
+    let sensors = &scene.sensors;
+    let contact = args.contact_noise.or(sensors.contact_std).ok_or(CliError::StreamNoise)?;
+    let fixed = args.force_noise.or(sensors.force_std);
+    if fixed.or(sensors.force_share).is_none() {
+        return Err(CliError::StreamNoise);
     }
-
-    fn read(&mut self) -> Result<Option<Sample>, CliError> {
-        let sample = self.reader.next().transpose();
-        sample.map_err(|kind| CliError::Log(LogFileError { path: self.path.to_owned(), kind }))
-    }
-
-    fn next(&mut self) -> Result<Option<Sample>, CliError> {
-        match self.ahead.pop() {
-            Some(sample) => Ok(Some(sample)),
-            None => self.read(),
-        }
-    }
-
-    /// Samples a second, from the first of them: the median interval, which a gap does not move.
-    fn rate(&mut self) -> Result<f64, CliError> {
-        while self.ahead.len() < FIRST {
-            let Some(sample) = self.read()? else { break };
-            self.ahead.push(sample);
-        }
-        let mut intervals: Vec<f64> = self.ahead.windows(2).map(|w| w[1].t - w[0].t).collect();
-        intervals.sort_by(f64::total_cmp);
-        self.ahead.reverse();
-        let too_few = CliError::TooFewSamples { found: self.ahead.len(), needed: 2 };
-        intervals.get(intervals.len() / 2).map(|interval| 1.0 / interval).ok_or(too_few)
-    }
+    let length = match scene.size {
+        Some(size) => Some(size),
+        None => samples.size()?,
+    };
+    let floor = sensors.contact_speed_std.or(length.map(|length| FLOOR * (scene.gravity * length).sqrt()));
+    Ok(ContactNoiseLevel {
+        contact,
+        force_fixed: fixed.unwrap_or_default(),
+        force_share: sensors.force_share.unwrap_or_default(),
+        impulse: None,
+        floor: floor.ok_or(CliError::SizeNotStated)?,
+    })
 }
 
 /// Why following ended: nothing takes the rows, or anything else.
@@ -174,8 +141,7 @@ struct Followed {
     /// Samples that could not be used, and what was wrong with the first of them.
     left_out: usize,
     why: Option<String>,
-    /// Time of the first motion, s.
-    found: Option<f64>,
+    spans: Spans,
     last: Option<StreamEstimate>,
 }
 
@@ -186,47 +152,44 @@ impl Run<'_> {
         if !self.json {
             write_stream_header(&mut to)?;
         }
-        while let Some(sample) = samples.next()? {
+        while let Some((t, sensed)) = samples.next()? {
             check()?;
-            followed.samples += 1;
-            let estimate = match self.stream.push(&sample) {
+            let estimate = match self.stream.push(t, &sensed) {
                 Ok(estimate) => estimate,
-                // A log in which nothing can be used fails; a sample of one that can is left out.
-                Err(error) if followed.last.is_none() => return Err(CliError::Stream(error).into()),
                 Err(error) => {
-                    followed.left_out += 1;
-                    followed.why.get_or_insert_with(|| error.to_string());
+                    samples.leave_out(error, followed.last.is_some())?;
                     continue;
                 }
             };
-            let Some(estimate) = estimate else { continue };
             let before = followed.last.replace(estimate).map(|e| e.stage);
-            self.tell(before, &estimate, &mut followed);
-            let t = estimate.motion.t;
+            self.tell(before, &estimate);
+            followed.spans.take(t, estimate.stage == StreamStage::Tracking);
             if rows.due(t) {
                 self.row(&estimate, &mut to)?;
             }
         }
         to.flush()?;
-        Ok(followed)
+        let left_out = samples.left_out + self.stream.left_out();
+        Ok(Followed { samples: samples.rows, left_out, why: samples.why, ..followed })
     }
 
     /// Says when a motion is found, and when the data contradict it.
-    fn tell(&self, before: Option<StreamStage>, estimate: &StreamEstimate, followed: &mut Followed) {
-        let t = estimate.motion.t;
-        let [cm, v] = deviations(estimate);
+    fn tell(&self, before: Option<StreamStage>, estimate: &StreamEstimate) {
+        let t = estimate.t;
         match (before, estimate.stage) {
             (Some(StreamStage::Tracking), StreamStage::Contradicted) => {
                 self.console.note(&format!("t = {t:.3} s: the data contradict the motion"));
             }
-            (Some(StreamStage::Tracking), _)
-            | (_, StreamStage::Gathering | StreamStage::Searching { .. }) => {}
-            (_, StreamStage::Contradicted) => {}
+            (Some(StreamStage::Tracking), StreamStage::Searching { .. }) => {
+                self.console.note(&format!("t = {t:.3} s: the motion is not known well enough"));
+            }
+            (Some(StreamStage::Tracking), _) => {}
             (_, StreamStage::Tracking) => {
-                followed.found.get_or_insert(t);
+                let [cm, v, ..] = deviations(estimate);
                 self.console
                     .note(&format!("t = {t:.3} s: the motion is known to {cm:.1e} m and {v:.1e} m/s"));
             }
+            _ => {}
         }
     }
 
@@ -237,27 +200,24 @@ impl Run<'_> {
 }
 
 fn stream_row(estimate: &StreamEstimate) -> StreamRow {
-    let motion = &estimate.motion;
-    let [std_cm, std_v] = deviations(estimate);
+    let body = estimate.motion.map(|motion| motion.body).filter(|body| body.mass_deviation > 0.0);
     StreamRow {
-        t: motion.t,
-        motion: MotionState {
-            p_WCm: motion.p_WCm,
-            R_WO: motion.R_WO,
-            v_WCm: motion.v_WCm,
-            w_WO: motion.w_WO,
-        },
-        std_cm,
-        std_v,
+        t: estimate.t,
+        motion: estimate.motion.map(|motion| motion.state.into()),
+        deviations: deviations(estimate),
         stage: name(estimate.stage),
-        innovation: estimate.innovation,
-        mass: estimate.body.map(|b| [b.mass, b.mass_deviation]),
+        relied_on: estimate.stage == StreamStage::Tracking,
+        misfit: estimate.motion.map_or(f64::NAN, |motion| motion.misfit),
+        mass: body.map(|body| [body.mass, body.mass_deviation]),
     }
 }
 
-/// Standard deviations of position and velocity, all axes together.
-fn deviations(estimate: &StreamEstimate) -> [f64; 2] {
-    [0, 3].map(|first| (first..first + 3).map(|i| estimate.covariance[(i, i)]).sum::<f64>().sqrt())
+/// Standard deviations of position, velocity, angular velocity and orientation, all axes together; no numbers without a motion.
+fn deviations(estimate: &StreamEstimate) -> [f64; 4] {
+    let of = |motion: &recon::observer::StreamMotion, first: usize| {
+        (first..first + 3).map(|i| motion.covariance[(i, i)]).sum::<f64>().sqrt()
+    };
+    [0, 3, 6, 9].map(|first| estimate.motion.as_ref().map_or(f64::NAN, |motion| of(motion, first)))
 }
 
 fn name(stage: StreamStage) -> &'static str {
@@ -270,18 +230,22 @@ fn name(stage: StreamStage) -> &'static str {
 }
 
 fn object(row: &StreamRow) -> Value {
-    let MotionState { p_WCm, R_WO, v_WCm, w_WO } = row.motion;
+    let motion = |of: fn(MotionState) -> Value| row.motion.map(of);
+    let [cm, v, w, turn] = row.deviations;
     json!({
         "t_s": row.t,
         "stage": row.stage,
-        "p_WCm_m": p_WCm.to_array(),
-        "R_WO_wxyz": [R_WO.w, R_WO.x, R_WO.y, R_WO.z],
-        "v_WCm_m_per_s": v_WCm.to_array(),
-        "w_WO_rad_per_s": w_WO.to_array(),
-        "std_position_m": row.std_cm,
-        "std_velocity_m_per_s": row.std_v,
-        // No number before there is a motion: null.
-        "innovation": row.innovation,
+        "relied_on": row.relied_on,
+        // No numbers before there is a motion: null.
+        "p_WCm_m": motion(|m| json!(m.p_WCm.to_array())),
+        "R_WO_wxyz": motion(|m| json!([m.R_WO.w, m.R_WO.x, m.R_WO.y, m.R_WO.z])),
+        "v_WCm_m_per_s": motion(|m| json!(m.v_WCm.to_array())),
+        "w_WO_rad_per_s": motion(|m| json!(m.w_WO.to_array())),
+        "std_position_m": cm,
+        "std_velocity_m_per_s": v,
+        "std_angular_velocity_rad_per_s": w,
+        "std_orientation_rad": turn,
+        "misfit": row.misfit,
         "mass_kg": row.mass.map(|m| m[0]),
         "std_mass_kg": row.mass.map(|m| m[1]),
     })
@@ -290,21 +254,23 @@ fn object(row: &StreamRow) -> Value {
 impl Followed {
     fn tell(&self, console: &Console, output: Option<&Path>) -> Result<Outcome, CliError> {
         let last = self.last.ok_or(CliError::TooFewSamples { found: self.samples, needed: 2 })?;
-        let [cm, v] = deviations(&last);
+        let [cm, v, ..] = deviations(&last);
         let end = match last.stage {
             StreamStage::Tracking => format!("at the end it is known to {cm:.1e} m and {v:.1e} m/s"),
             StreamStage::Contradicted => "at the end the data contradict it".to_owned(),
-            StreamStage::Gathering | StreamStage::Searching { .. } => "at the end there is none".to_owned(),
+            StreamStage::Gathering | StreamStage::Searching { .. } => "at the end it is not known".to_owned(),
         };
-        let found = match self.found {
-            Some(t) => format!("a motion from t = {t:.3} s on; {end}"),
-            None => {
-                "no motion: the log is too short, moves too little, or is not that of this body".to_owned()
-            }
+        let found = if self.spans.is_empty() {
+            "no motion: the log is too short, moves too little, or is not that of this body".to_owned()
+        } else {
+            format!("the motion is known {}; {end}", self.spans)
         };
         let mut text = format!("{} samples, {found}", self.samples);
+        if self.left_out > 0 {
+            text += &format!("\n{} samples could not be used", self.left_out);
+        }
         if let Some(why) = &self.why {
-            text += &format!("\n{} samples could not be used; the first: {why}", self.left_out);
+            text += &format!("; the first: {why}");
         }
         match output {
             Some(path) => {
@@ -312,7 +278,8 @@ impl Followed {
                     "table": path.to_string_lossy(),
                     "samples": self.samples,
                     "left_out": self.left_out,
-                    "found_t_s": self.found,
+                    "found_t_s": self.spans.first(),
+                    "known_s": self.spans.all(),
                     "stage": name(last.stage),
                     "std_position_m": cm,
                     "std_velocity_m_per_s": v,

@@ -1,0 +1,210 @@
+//! What is asked of the thread when, and the estimate at each sample.
+
+use super::estimate::{StreamError, StreamEstimate, StreamOptions, StreamStage};
+use super::front::Front;
+use super::sample::{Felt, PalmSensed, Raw, StreamPalm};
+use super::thread::Worker;
+use super::window::{Asked, LEFT_OUT, LONGEST, Outcome, Solution, Window};
+use crate::contacts::options::ContactEstimateError;
+use glam::DVec3;
+use object_dynamics::MOST_PALMS;
+use std::collections::VecDeque;
+
+/// Natural times after which a window that follows a motion is taken, and the next one is asked for.
+const FOLLOWED: f64 = 0.5;
+/// Natural times after which a search is taken.
+const SEARCHED: f64 = 1.0;
+/// Samples of the first task, which tells the natural time; after as many more it is taken.
+const FIRST: usize = 20;
+/// Samples that a task is given at least.
+const FEWEST: usize = 4;
+/// Natural times from one search that found nothing to the next.
+const PATIENCE: f64 = 1.0;
+
+/// The motion of a body on palms, sample by sample; mass and inertia are estimated along where they are not known.
+///
+/// A palm that is not touched gives no condition; where none is, the body flies.
+pub struct MotionStream {
+    palms: Vec<StreamPalm>,
+    options: StreamOptions,
+    worker: Worker,
+    /// Samples that the thread has not been given.
+    fresh: Vec<Raw>,
+    /// Memory for them while the thread has the other.
+    spare: Vec<Raw>,
+    /// Forces since the end of the latest window, oldest first.
+    felt: VecDeque<Felt>,
+    front: Option<Front>,
+    /// Number of the sample at which the task that was begun is taken.
+    due: Option<usize>,
+    /// Number of the sample at which the next one begins.
+    next: usize,
+    asked: Asked,
+    /// Natural time, s, once it is known.
+    natural: Option<f64>,
+    stage: StreamStage,
+    rounds: usize,
+    count: usize,
+    left_out: usize,
+    latest: f64,
+}
+
+impl MotionStream {
+    /// A stream that has seen no sample yet.
+    ///
+    /// # Errors
+    /// [`StreamError`] names the option that cannot be used; [`StreamError::Thread`] where the system gives no thread.
+    pub fn new(palms: Vec<StreamPalm>, options: StreamOptions) -> Result<Self, StreamError> {
+        options.check()?;
+        if !(1..=MOST_PALMS).contains(&palms.len()) {
+            return Err(StreamError::Palms { found: palms.len(), expected: MOST_PALMS, t: 0.0 });
+        }
+        let worker = Worker::new(Window::new(palms.clone(), options.contacts))?;
+        Ok(Self {
+            palms,
+            options,
+            worker,
+            fresh: Vec::with_capacity(2 * FIRST),
+            spare: Vec::with_capacity(2 * FIRST),
+            natural: None,
+            felt: VecDeque::with_capacity(4 * FIRST),
+            front: None,
+            due: None,
+            next: FIRST,
+            asked: Asked::Search,
+            stage: StreamStage::Gathering,
+            rounds: 0,
+            count: 0,
+            left_out: 0,
+            latest: f64::NEG_INFINITY,
+        })
+    }
+
+    /// Samples that the latest windows could not be read with, and were left out of.
+    #[must_use]
+    pub fn left_out(&self) -> usize {
+        self.left_out
+    }
+
+    /// Takes what the palms sense at the time `t` (s) and returns the motion there.
+    ///
+    /// # Errors
+    /// [`StreamError::Time`], [`StreamError::Palms`], [`StreamError::Reading`] or [`StreamError::NoForce`] for a sample that cannot be used (it
+    /// is left out); [`StreamError::Thread`] where the thread that estimates is gone.
+    pub fn push(&mut self, t: f64, sensed: &[PalmSensed]) -> Result<StreamEstimate, StreamError> {
+        let raw = self.checked(t, sensed)?;
+        self.latest = t;
+        self.count += 1;
+        let contacts = &self.options.contacts;
+        let frictionless = |palm: &StreamPalm| palm.friction.or(contacts.friction) == Some(0.0);
+        let felt = raw.felt(&self.palms, frictionless, &contacts.noise);
+        self.fresh.push(raw);
+        self.felt.push_back(felt);
+        if let Some(front) = &mut self.front {
+            front.advance(&felt);
+        }
+        if self.due.is_some_and(|due| raw.number >= due) {
+            let (outcome, memory) = self.worker.take()?;
+            self.due = None;
+            self.take(outcome, memory, raw.number);
+        }
+        if self.due.is_none() && raw.number >= self.next {
+            self.begin(raw.number)?;
+        }
+        let motion = self.front.as_ref().map(Front::motion);
+        let gapped = self.front.as_ref().is_some_and(|front| front.gapped);
+        let stage = if gapped && self.stage == StreamStage::Tracking { self.searching() } else { self.stage };
+        Ok(StreamEstimate { t, motion, stage, touching: felt.touching })
+    }
+
+    fn checked(&self, t: f64, sensed: &[PalmSensed]) -> Result<Raw, StreamError> {
+        let previous = self.latest;
+        if !(t > previous && t.is_finite()) {
+            return Err(StreamError::Time { t, previous });
+        }
+        let (found, expected) = (sensed.len(), self.palms.len());
+        if found != expected {
+            return Err(StreamError::Palms { found, expected, t });
+        }
+        let mut palms = [None; MOST_PALMS];
+        for (i, (palm, kept)) in sensed.iter().zip(&mut palms).enumerate() {
+            palm.check(i + 1, t)?;
+            let normal = matches!(palm.force, super::ForceReading::Normal(_));
+            let friction = self.palms[i].friction.or(self.options.contacts.friction);
+            if normal && friction != Some(0.0) {
+                return Err(ContactEstimateError::NoForce { palm: i + 1 }.into());
+            }
+            *kept = Some(*palm);
+        }
+        Ok(Raw { number: self.count, t, palms })
+    }
+
+    fn begin(&mut self, number: usize) -> Result<(), StreamError> {
+        // A window ends with its newest sample, but for those that it is not read with.
+        while self.felt.front().is_some_and(|felt| felt.number + LEFT_OUT < number) {
+            self.felt.pop_front();
+        }
+        let fresh = std::mem::replace(&mut self.fresh, std::mem::take(&mut self.spare));
+        self.worker.begin(fresh, self.asked)?;
+        let wait = match self.asked {
+            Asked::Follow => self.samples(FOLLOWED),
+            Asked::Search => self.samples(SEARCHED),
+        };
+        self.due = Some(number + wait);
+        Ok(())
+    }
+
+    /// So many natural times in samples.
+    fn samples(&self, times: f64) -> usize {
+        let natural = self.natural.map_or(0.0, |natural| times * natural * self.options.sample_rate);
+        if self.natural.is_none() { FIRST } else { (natural as usize).max(FEWEST) }
+    }
+
+    fn take(&mut self, outcome: Outcome, memory: Vec<Raw>, number: usize) {
+        self.spare = memory;
+        self.natural = outcome.natural;
+        self.left_out += outcome.left_out;
+        self.next = number;
+        let found = outcome.solution.filter(|solution| solution.explained);
+        if let Some(front) = found.and_then(|solution| self.front(solution)) {
+            // What the window before has foretold is confirmed.
+            let confirmed =
+                self.front.as_ref().is_some_and(|before| !before.gapped && before.foretold(&front));
+            let relied_on = front.solution().relied_on && confirmed;
+            self.rounds += usize::from(!relied_on);
+            self.stage = if relied_on { StreamStage::Tracking } else { self.searching() };
+            self.front = Some(front);
+            self.asked = Asked::Follow;
+            return;
+        }
+        self.rounds += usize::from(outcome.lacks.is_none());
+        // What is followed no more for long is forgotten.
+        let longest = self.natural.map_or(0.0, |natural| LONGEST * natural);
+        if self.front.as_ref().is_some_and(|front| self.latest - front.solution().t > longest) {
+            self.front = None;
+        }
+        self.stage = match (&self.front, outcome.lacks.is_none()) {
+            (Some(_), _) => StreamStage::Contradicted,
+            (None, true) => self.searching(),
+            (None, false) => StreamStage::Gathering,
+        };
+        if self.asked == Asked::Search {
+            self.next = number + self.samples(outcome.lacks.unwrap_or(PATIENCE));
+        }
+        self.asked = Asked::Search;
+    }
+
+    fn searching(&self) -> StreamStage {
+        StreamStage::Searching { rounds: self.rounds }
+    }
+
+    /// At the newest sample, from the end of a window.
+    fn front(&self, solution: Solution) -> Option<Front> {
+        let from = self.felt.iter().position(|felt| felt.number == solution.number)?;
+        let mut felt = self.felt.iter().skip(from);
+        let gravity = DVec3::new(0.0, 0.0, -self.options.contacts.gravity);
+        let mut front = Front::new(solution, *felt.next()?, gravity);
+        felt.for_each(|felt| front.advance(felt));
+        Some(front)
+    }
+}

@@ -1,0 +1,351 @@
+//! The motion over a window of the latest samples.
+
+use super::estimate::StreamBody;
+use super::sample::{ForceReading, PalmSensed, Raw, StreamPalm};
+use crate::contacts::axes::known_motion;
+use crate::contacts::body::{Body, CONSTANTS};
+use crate::contacts::cold;
+use crate::contacts::estimate::{AVERAGED, THIN, covariances};
+use crate::contacts::flow::{Carried, Transition};
+use crate::contacts::modes::by_ratio;
+use crate::contacts::options::ContactOptions;
+use crate::contacts::problem::{Problem, Units, Unknowns};
+use crate::contacts::record::Record;
+use crate::contacts::search::{fine, fine_nodes, problem, search};
+use crate::contacts::solve::{Covariances, Solved};
+use crate::contacts::state::{MOTION, Motion};
+use crate::contacts::verdict::{ContactEvidence, relied_on, stretches};
+use crate::contacts::windows::longest;
+use crate::three_palms::Reliability;
+use glam::DQuat;
+use nalgebra::{Matrix3, Matrix6, SMatrix};
+use object_dynamics::{ContactLog, ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion};
+use std::collections::VecDeque;
+
+/// Longest window in natural times: a body that is held turns by some radians in it, and so shows its inertia.
+pub(super) const LONGEST: f64 = 20.0;
+/// Shortest one: a motion of fewer natural times is hardly more than its start.
+const SHORTEST: f64 = 5.0;
+/// Natural times over which it is looked what the trapezoidal rule misses, for gaps after a window.
+const GAP: f64 = 0.2;
+/// Samples that are left out at most because a window cannot be read with them.
+pub(super) const LEFT_OUT: usize = 8;
+
+/// What a window is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Asked {
+    /// A motion from nothing.
+    Search,
+    /// The motion of the window before, on later data.
+    Follow,
+}
+
+/// The motion at the end of a window.
+#[derive(Clone, Debug)]
+pub(super) struct Solution {
+    /// Number of the sample at its end, and its time, s.
+    pub(super) number: usize,
+    pub(super) t: f64,
+    /// From the world's origin.
+    pub(super) motion: Motion,
+    pub(super) body: Body,
+    /// Own axes of a known body in those of the motion.
+    pub(super) own: DQuat,
+    pub(super) known: bool,
+    /// Covariance of the motion for given constants of the body, how it follows those, and their covariance.
+    pub(super) covariance: Transition,
+    pub(super) follows: SMatrix<f64, MOTION, CONSTANTS>,
+    pub(super) of_body: SMatrix<f64, CONSTANTS, CONSTANTS>,
+    /// Covariance of the turn of the motion's axes from where a motion was found to this window's start.
+    pub(super) turned: Matrix3<f64>,
+    pub(super) stated: StreamBody,
+    pub(super) misfit: f64,
+    /// What the trapezoidal rule misses of an impulse over a time, s, about the world's origin.
+    pub(super) missed: (f64, Matrix6<f64>),
+    /// Whether the data do not speak against it, and whether it is known well enough at its end.
+    pub(super) explained: bool,
+    pub(super) relied_on: bool,
+}
+
+/// What came of a window.
+#[derive(Debug)]
+pub(super) struct Outcome {
+    /// Natural time, s, if contacts tell the size.
+    pub(super) natural: Option<f64>,
+    /// Natural times by which the window is too short to look for a motion.
+    pub(super) lacks: Option<f64>,
+    pub(super) solution: Option<Solution>,
+    /// Samples that could not be used.
+    pub(super) left_out: usize,
+}
+
+/// A solved window, to begin the next one from.
+struct Before {
+    /// Motions at nodes, from the world's origin, by numbers of samples; covariances of their turns.
+    nodes: Vec<(usize, Motion, Matrix3<f64>)>,
+    body: Body,
+    turned: Matrix3<f64>,
+}
+
+/// The latest samples, and the motion that they were last found to have.
+pub(super) struct Window {
+    palms: Vec<StreamPalm>,
+    options: ContactOptions,
+    samples: VecDeque<Raw>,
+    before: Option<Before>,
+}
+
+impl Window {
+    pub(super) fn new(palms: Vec<StreamPalm>, options: ContactOptions) -> Self {
+        Self { palms, options, samples: VecDeque::new(), before: None }
+    }
+
+    /// Takes later samples and does what is asked for.
+    pub(super) fn work(&mut self, fresh: &[Raw], asked: Asked) -> Outcome {
+        self.samples.extend(fresh);
+        let mut outcome = Outcome { natural: None, lacks: Some(0.0), solution: None, left_out: 0 };
+        let (log, left_out) = self.log();
+        outcome.left_out = left_out;
+        let Some((log, record)) = log.and_then(|log| Record::new(&log, &self.options).map(|r| (log, r)))
+        else {
+            self.forget(None);
+            return outcome;
+        };
+        let Some(length) = self.options.size.or_else(|| cold::size(&record)) else {
+            self.forget(None);
+            return outcome;
+        };
+        let units = cold::units(&record, self.options.gravity, length);
+        let natural = length / units.speed;
+        outcome.natural = Some(natural);
+        outcome.lacks = Some(SHORTEST - log.duration() / natural).filter(|lacks| *lacks > 0.0);
+        if outcome.lacks.is_none() {
+            outcome.solution = self.solution(record, units, asked);
+        }
+        self.forget(Some(natural));
+        outcome
+    }
+
+    /// Drops what is older than the longest window: up to a node of the latest solution, where the next one begins.
+    fn forget(&mut self, natural: Option<f64>) {
+        let (Some(last), Some(natural)) = (self.samples.back().map(|raw| raw.t), natural) else {
+            // Without a size there is nothing to begin from.
+            let most = self.samples.len().saturating_sub(2);
+            self.samples.drain(..most);
+            self.before = None;
+            return;
+        };
+        let old = |raw: &Raw| last - raw.t > LONGEST * natural;
+        let mut dropped = self.samples.partition_point(old);
+        if let Some(before) = &self.before {
+            let number = self.samples.get(dropped).map_or(0, |raw| raw.number);
+            let kept = before.nodes.partition_point(|node| node.0 <= number).saturating_sub(1);
+            dropped = before
+                .nodes
+                .get(kept)
+                .map_or(0, |node| self.samples.partition_point(|raw| raw.number < node.0));
+        }
+        self.samples.drain(..dropped);
+    }
+
+    /// The samples as a log, without those that cannot be read in it, and how many those are.
+    fn log(&mut self) -> (Option<ContactLog>, usize) {
+        for left_out in 0..=LEFT_OUT {
+            let times = self.samples.iter().map(|raw| raw.t).collect();
+            let records = (0..self.palms.len()).map(|i| self.record(i)).collect();
+            match ContactLog::new(times, records, None) {
+                Ok(log) => return (Some(log), left_out),
+                Err(error) => match error.sample() {
+                    Some(sample) if sample < self.samples.len() => {
+                        self.samples.remove(sample);
+                    }
+                    _ => return (None, left_out),
+                },
+            }
+        }
+        (None, LEFT_OUT)
+    }
+
+    fn record(&self, i: usize) -> PalmRecord {
+        let StreamPalm { surface, friction } = self.palms[i];
+        let sensed = || self.samples.iter().filter_map(move |raw| raw.palms[i]);
+        let measured =
+            |s: PalmSensed| s.twist.map(|[v_WP, w_WP]| MeasuredMotion { pose: s.pose, v_WP, w_WP });
+        let motion = match sensed().map(measured).collect::<Option<Vec<_>>>() {
+            Some(states) => RecordedMotion::Measured(states),
+            None => RecordedMotion::Poses(sensed().map(|s| s.pose).collect()),
+        };
+        let normal = |s: PalmSensed| match s.force {
+            ForceReading::Normal(f) => Some(f),
+            ForceReading::Three(_) => None,
+        };
+        let three = |s: PalmSensed| match s.force {
+            ForceReading::Normal(_) => None,
+            ForceReading::Three(f) => Some(f),
+        };
+        let (forces, vectors): (Option<Vec<_>>, Option<Vec<_>>) =
+            (sensed().map(normal).collect(), sensed().map(three).collect());
+        let missing = ForceChannel::Missing;
+        PalmRecord {
+            surface,
+            friction,
+            motion,
+            contacts: ContactPoints::World(sensed().map(|s| s.contact).collect()),
+            force: forces.map(ForceChannel::Normal).or(vectors.map(ForceChannel::Three)).unwrap_or(missing),
+            impulse: ForceChannel::Missing,
+            torque: None,
+            hinge: None,
+            truth: None,
+            largest_offset: f64::INFINITY,
+        }
+    }
+
+    fn solution(&mut self, mut record: Record, units: Units, asked: Asked) -> Option<Solution> {
+        let Units { length, speed, mass } = units;
+        let (natural, impulse) = (length / speed, speed * mass);
+        record.mark_blows(impulse, impulse * length, self.options.gravity * mass);
+        record.doubt_gaps(natural);
+        let modes = by_ratio(&record, AVERAGED * natural);
+        record.set_modes(&modes);
+        let averaged = record.averaged(longest(&record, &self.options.noise, &units));
+        let thinned = averaged.thinned(THIN * natural);
+        let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), &self.options, units);
+        let (solved, against) = match asked {
+            Asked::Search => self.found(&mut problem)?,
+            Asked::Follow => (self.followed(&record, &mut problem)?, false),
+        };
+        let covariances = covariances(&problem, &solved).ok()?;
+        let mut solution = self.taken(&problem, &solved, &covariances, against);
+        solution.missed = (GAP * natural, record.missed_in_world(GAP * natural));
+        Some(solution)
+    }
+
+    /// From nothing; whether the body is another one than was stated.
+    fn found(&mut self, problem: &mut Problem) -> Option<(Solved<CONSTANTS>, bool)> {
+        self.before = None;
+        let (solved, _) = search(problem, &self.options)?;
+        let Some(mass) = &self.options.body else { return Some((solved, false)) };
+        let covariance =
+            |problem: &Problem, of: &Solved<CONSTANTS>| Some(covariances(problem, of).ok()?.body);
+        let known = known_motion(problem, &solved, mass, covariance)?;
+        Some((known.solved, known.against.is_some()))
+    }
+
+    /// From the window before, whose axes go on.
+    fn followed(&self, record: &Record, problem: &mut Problem) -> Option<Solved<CONSTANTS>> {
+        let before = self.before.as_ref()?;
+        if let Some(mass) = &self.options.body {
+            problem.take_known(mass, before.body.orientation(mass));
+        }
+        problem.nodes = fine_nodes(problem);
+        let nodes = problem.node_samples();
+        let mut motions = Vec::with_capacity(nodes.len());
+        let (mut known, mut nodes) = (before.nodes.iter().peekable(), nodes.into_iter().peekable());
+        let mut carried: Option<Carried<0>> = None;
+        for (k, raw) in self.samples.iter().enumerate() {
+            while let Some((_, motion, _)) = known.next_if(|node| node.0 <= raw.number) {
+                let from_origin = Motion { p: motion.p - record.origin, ..*motion };
+                carried = Some(Carried::new(from_origin, &before.body));
+            }
+            let carried = carried.as_mut()?;
+            if nodes.next_if_eq(&k).is_some() {
+                motions.push(carried.motion);
+            }
+            if let Some(interval) = record.intervals.get(k) {
+                let ends = [&record.wrenches[k], &record.wrenches[k + 1]];
+                carried.step(interval, ends, &before.body, problem.gravity);
+            }
+        }
+        problem.first.0.q = motions.first()?.q;
+        fine(problem, Unknowns { motions, body: before.body })
+    }
+
+    /// Keeps a solution to begin the next one from.
+    fn taken(
+        &mut self,
+        problem: &Problem,
+        solved: &Solved<CONSTANTS>,
+        covariances: &Covariances<CONSTANTS>,
+        against: bool,
+    ) -> Solution {
+        let Solved { unknowns, equations, .. } = solved;
+        let (body, origin) = (unknowns.body, problem.record.origin);
+        let samples = problem.node_samples();
+        let last = samples.len() - 1;
+        let number = |j: usize| self.samples.get(samples[j]).map_or(0, |raw| raw.number);
+        let from_world = |motion: &Motion| Motion { p: motion.p + origin, ..*motion };
+        let evidence = ContactEvidence {
+            samples: self.samples.len(),
+            nodes: samples.len(),
+            conditions: equations.conditions,
+            misfit: solved.misfit(),
+            iterations: [0, solved.iterations],
+            settled: solved.settled,
+        };
+        let (wider, mut reliability) = (evidence.widening(), evidence.reliability());
+        let deviations = |j: usize| {
+            crate::contacts::samples::deviations(&unknowns.motions[j], &body, j, covariances)
+                .map(|of| of * wider)
+        };
+        let spin = |j: usize| {
+            let motion = &unknowns.motions[j];
+            (body.turn(motion.q, motion.L).w, deviations(j)[2])
+        };
+        let still = ContactEvidence::still(&(0..=last).map(spin).collect::<Vec<_>>());
+        let excess = stretches(problem, equations)[last];
+        let well_known = relied_on(excess, &deviations(last), &problem.units) && still.is_none();
+        if against {
+            reliability.add(crate::three_palms::Reason::Unconfirmed);
+        }
+        let turn = |j: usize| -> Matrix3<f64> {
+            let (own, follows) = &covariances.motions[j];
+            let all = own + follows * covariances.body * follows.transpose();
+            all.fixed_view::<3, 3>(9, 9) * (wider * wider)
+        };
+        // How far the axes of the motion may have turned against the body up to where this window begins.
+        let since = self.before.as_ref().map_or_else(Matrix3::zeros, |before| {
+            let at = before.nodes.partition_point(|node| node.0 <= number(0)).saturating_sub(1);
+            before.turned + before.nodes.get(at).map_or_else(Matrix3::zeros, |node| node.2)
+        });
+        let known = self.options.body;
+        let turned = if known.is_some() { Matrix3::zeros() } else { since };
+        let nodes = (0..=last).map(|j| (number(j), from_world(&unknowns.motions[j]), turn(j))).collect();
+        let square = wider * wider;
+        let (covariance, follows) = &covariances.motions[last];
+        let solution = Solution {
+            number: number(last),
+            t: self.samples.get(samples[last]).map_or(f64::NAN, |raw| raw.t),
+            motion: from_world(&unknowns.motions[last]),
+            body,
+            own: known.as_ref().map_or(DQuat::IDENTITY, |mass| body.orientation(mass)),
+            known: known.is_some(),
+            covariance: covariance * square,
+            follows: *follows,
+            of_body: covariances.body * square,
+            turned,
+            stated: match &known {
+                Some(mass) => StreamBody {
+                    mass: mass.mass(),
+                    mass_deviation: 0.0,
+                    inertia: mass.inertia(),
+                    inertia_covariance: Default::default(),
+                },
+                None => StreamBody {
+                    mass: body.log_mass.exp(),
+                    mass_deviation: body.log_mass.exp() * (covariances.body[(0, 0)] * square).max(0.0).sqrt(),
+                    inertia: body.inertia(),
+                    inertia_covariance: (body.inertia_covariance(&covariances.body) * square).into(),
+                },
+            },
+            misfit: evidence.misfit,
+            missed: (0.0, Matrix6::zeros()),
+            explained: reliability == Reliability::Reliable
+                && excess <= crate::contacts::verdict::UNEXPLAINED,
+            relied_on: well_known,
+        };
+        if solution.explained {
+            self.before = Some(Before { nodes, body, turned });
+        }
+        solution
+    }
+}
