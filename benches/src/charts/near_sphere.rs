@@ -1,13 +1,12 @@
 //! Failure sweep: a body that becomes a ball, whose orientation leaves no trace in the log.
 
 use super::parallel_palms::judged;
-use super::shared::{error_in_deviations, estimate, exact_log, warning};
+use super::shared::{error_in_deviations, estimate, exact_log, noisy_estimate, start_in_deviations, warning};
 use super::{Chart, Drawn};
 use crate::{Axis, Budget, Subject, Sweep};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, Palm};
 use recon::object_dynamics::{InitialMotion, MassProperties, SensorNoise, ThreePalmScene};
-use recon::observer::NoiseLevel;
 
 pub(super) const CHART: Chart =
     Chart { name: "sweep-near-sphere", about: "object towards a sphere: right, reported or silent", draw };
@@ -17,7 +16,7 @@ const DEPARTURES: [f64; 8] = [0.5, 0.2, 0.1, 0.05, 0.02, 1e-2, 1e-3, 1e-4];
 
 fn draw(_: Budget) -> Drawn {
     let mut clean = Subject::new("momentum form, no noise");
-    let mut noisy = Subject::new("momentum form, 0.1 % and 1 % noise");
+    let mut noisy = Subject::new("from contacts, 0.1 % and 1 % noise");
     for d in DEPARTURES {
         let axes = DVec3::new(1.0, 1.0 + d, 1.0 + 2.0 * d);
         let palm = |azimuth: f64| Palm::fixed(azimuth.to_radians(), 60f64.to_radians());
@@ -28,7 +27,7 @@ fn draw(_: Budget) -> Drawn {
         let start = InitialMotion { R_WO, w_WO: DVec3::new(0.2, 0.3, 0.5) };
         let (simulation, log) = exact_log(&scene, start, 3.0, 500.0)?;
         let now = &simulation.instants[0];
-        clean = match estimate(&scene, &log, None) {
+        clean = match estimate(&scene, &log) {
             Ok(found) => {
                 let error = error_in_deviations(&found, scene.mass(), now);
                 judged(clean, d, error, warning(&found.reliability))
@@ -36,19 +35,15 @@ fn draw(_: Budget) -> Drawn {
             Err(error) => clean.refused(d, error.to_string()),
         };
         let noise = SensorNoise { contact: 1e-3, force: 0.065, torque: 0.0 };
-        let level = NoiseLevel { contact: noise.contact, force: noise.force };
         for seed in 0..3 {
-            noisy = match estimate(&scene, &log.with_noise(&noise, seed)?, Some(level)) {
-                Ok(found) => {
-                    let error = error_in_deviations(&found, scene.mass(), now);
-                    judged(noisy, d, error, warning(&found.reliability))
-                }
-                Err(error) => noisy.refused(d, error.to_string()),
+            noisy = match noisy_estimate(&scene, &log.with_noise(&noise, seed)?, &noise) {
+                Ok(found) => judged(noisy, d, start_in_deviations(&found, now), warning(&found.reliability)),
+                Err(error) => noisy.refused(d, error),
             };
         }
     }
     let sweep = Sweep::new("sweep-near-sphere", "Object towards a sphere", 5.0)
-        .subtitle("semi-axes 1, 1 + d, 1 + 2 d, 3 s at 500 Hz; largest error of the 12 unknowns in its own reported deviations; right: within 5")
+        .subtitle("semi-axes 1, 1 + d, 1 + 2 d, 3 s at 500 Hz; largest error of the 12 unknowns (with noise of centre of mass, velocity and angular velocity) at the start in its own deviations; right: within 5")
         .axes(Axis::log("departure d from the sphere", "1"), Axis::log("largest error", "reported deviations"))
         .subject(clean)
         .subject(noisy);

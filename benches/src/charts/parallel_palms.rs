@@ -1,14 +1,12 @@
 //! Failure sweep: two palms that turn towards each other.
 
-use super::shared::{centre_error, error_in_deviations, estimate, exact_log, warning};
+use super::shared::{centre_error, estimate, exact_log, noisy_estimate, start_in_deviations, warning};
 use super::{Chart, Drawn};
 use crate::{Axis, Budget, Subject, Sweep};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, Palm};
 use recon::object_dynamics::{InitialMotion, MassProperties, SensorNoise, ThreePalmScene};
-use recon::observer::{
-    NoiseLevel, PaperMethod, PaperStart, PredictorCorrector, Track, integrate_paper_system,
-};
+use recon::observer::{PaperMethod, PaperStart, PredictorCorrector, Track, integrate_paper_system};
 
 pub(super) const CHART: Chart =
     Chart { name: "sweep-parallel-palms", about: "palms towards parallel: right, reported or silent", draw };
@@ -22,7 +20,7 @@ const LARGEST_AMPLIFICATION: f64 = 1e6;
 fn draw(_: Budget) -> Drawn {
     let mut exact = Subject::new("momentum form, no guess");
     let mut paper = Subject::new("(35)-(37), Adams, exact start");
-    let mut noisy = Subject::new("momentum form, 0.1 % and 1 % noise");
+    let mut noisy = Subject::new("from contacts, 0.1 % and 1 % noise");
     for degrees in ANGLES {
         let (scene, start) = match scene(degrees) {
             Ok(scene) => scene,
@@ -41,7 +39,7 @@ fn draw(_: Budget) -> Drawn {
                 continue;
             }
         };
-        exact = match estimate(&scene, &log, None) {
+        exact = match estimate(&scene, &log) {
             Ok(found) => {
                 judged(exact, degrees, centre_error(&found, &simulation), warning(&found.reliability))
             }
@@ -68,13 +66,11 @@ fn draw(_: Budget) -> Drawn {
             Err(error) => paper.refused(degrees, error.to_string()),
         };
         for seed in 0..5 {
-            let level = NoiseLevel { contact: NOISE.contact, force: NOISE.force };
-            noisy = match estimate(&scene, &log.with_noise(&NOISE, seed)?, Some(level)) {
+            noisy = match noisy_estimate(&scene, &log.with_noise(&NOISE, seed)?, &NOISE) {
                 Ok(found) => {
-                    let error = error_in_deviations(&found, scene.mass(), now);
-                    judged(noisy, degrees, error, warning(&found.reliability))
+                    judged(noisy, degrees, start_in_deviations(&found, now), warning(&found.reliability))
                 }
-                Err(error) => noisy.refused(degrees, error.to_string()),
+                Err(error) => noisy.refused(degrees, error),
             };
         }
     }
@@ -87,7 +83,7 @@ fn draw(_: Budget) -> Drawn {
         .subject(exact)
         .subject(paper);
     let with_noise = Sweep::new("sweep-parallel-palms-noise", "Palms towards parallel, with noise", 5.0)
-        .subtitle("largest error of the 12 unknowns in its own reported deviations, 5 seeds; right: within 5")
+        .subtitle("largest error of centre of mass, velocity and angular velocity at the start in its own deviations, 5 seeds; right: within 5")
         .axes(angle(), Axis::log("largest error", "reported deviations"))
         .subject(noisy);
     Ok(vec![clean.into(), with_noise.into()])

@@ -1,14 +1,12 @@
 //! Reconstruction of the paper's Fig. 5 motion: cost against error by length of log and by sample rate, for the
 //! estimator that needs no guess and for the paper's own integration from exact initial conditions.
 
-use super::shared::{centre_error, estimate, exact_log};
+use super::shared::{centre_error, estimate, exact_log, noisy_estimate};
 use super::{Chart, Drawn};
 use crate::{Axis, Budget, Method, Study, WorkPrecision};
 use recon::contact_kinematics::Ellipsoid;
 use recon::object_dynamics::{SensorLog, SensorNoise, Simulation, ThreePalmScene};
-use recon::observer::{
-    NoiseLevel, PaperMethod, PaperStart, PredictorCorrector, Track, integrate_paper_system,
-};
+use recon::observer::{PaperMethod, PaperStart, PredictorCorrector, Track, integrate_paper_system};
 
 pub(super) const BY_WINDOW: Chart = Chart {
     name: "reconstruction-by-window",
@@ -33,23 +31,29 @@ fn by_window(budget: Budget) -> Drawn {
     let durations = [1.0, 1.5, 2.0, 3.0, 4.2];
     let logs = durations.map(|duration| exact_log(&scene, start, duration, 1000.0));
     let logs = logs.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let noises =
-        [("no noise", 0.0, 0.0), ("0.1 % and 1 % noise", 1e-3, 1e-2), ("1 % and 1 % noise", 1e-2, 1e-2)];
-    let mut noisy: Vec<(&str, f64, SensorLog, &Simulation, Option<NoiseLevel>)> = Vec::new();
+    let noises = [("0.1 % and 1 % noise", 1e-3, 1e-2), ("1 % and 1 % noise", 1e-2, 1e-2)];
+    let mut noisy: Vec<(&str, f64, SensorLog, &Simulation, SensorNoise)> = Vec::new();
     for ((simulation, log), duration) in logs.iter().zip(durations) {
         for (name, contact, force) in noises {
             let noise = SensorNoise { contact: contact * SIZE, force: force * LOAD, torque: 0.0 };
-            let level = (contact > 0.0).then_some(NoiseLevel { contact: noise.contact, force: noise.force });
-            noisy.push((name, duration, log.with_noise(&noise, 1)?, simulation, level));
+            noisy.push((name, duration, log.with_noise(&noise, 1)?, simulation, noise));
         }
     }
     let method = PaperMethod { scheme: PredictorCorrector::Adams4, enforce_constraint: false };
     let foreign = recon_io::parse_log(MUJOCO.as_bytes())?;
     let truth = foreign.truth().ok_or("MuJoCo's log has no truth columns")?.to_vec();
     let mut study = Study::new();
-    for (name, duration, log, simulation, level) in &noisy {
-        let run = || estimate(&scene, log, *level);
-        study.fallible_case(*name, format!("{duration} s"), run, |found| centre_error(found, simulation));
+    for ((simulation, log), duration) in logs.iter().zip(durations) {
+        let run = || estimate(&scene, log);
+        study
+            .fallible_case("no noise", format!("{duration} s"), run, |found| centre_error(found, simulation));
+    }
+    for (name, duration, log, simulation, noise) in &noisy {
+        let run = || noisy_estimate(&scene, log, noise);
+        study.fallible_case(*name, format!("{duration} s"), run, |found| {
+            let pairs = found.states.iter().zip(&simulation.instants);
+            pairs.map(|(state, now)| state.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max)
+        });
     }
     for ((simulation, log), duration) in logs.iter().zip(durations) {
         let run = || integrate(&scene, log, simulation, method);
@@ -58,7 +62,7 @@ fn by_window(budget: Budget) -> Drawn {
     study.fallible_case(
         "MuJoCo's log at 100 Hz",
         "4.2 s",
-        || estimate(&scene, &foreign, None),
+        || estimate(&scene, &foreign),
         |found| found.motion.iter().zip(&truth).map(|(m, t)| m.p_WCm.distance(t.p_WCm)).fold(0.0, f64::max),
     );
     let chart =
@@ -87,7 +91,7 @@ fn by_rate(budget: Budget) -> Drawn {
         study.fallible_case(
             "momentum form, no guess",
             setting.clone(),
-            move || estimate(scene, log, None),
+            move || estimate(scene, log),
             move |found| centre_error(found, simulation),
         );
         for (name, scheme, enforce_constraint) in [

@@ -4,11 +4,12 @@ use glam::DVec3;
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
-    InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, Simulation, SimulationError,
-    ThreePalmScene,
+    ContactLog, InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation,
+    SimulationError, ThreePalmScene,
 };
 use recon::observer::{
-    EstimateError, KnownBody, MotionEstimate, NoiseLevel, Reliability, estimate_motion, nearest_turn,
+    ContactEstimate, ContactNoiseLevel, ContactOptions, EstimateError, KnownBody, MotionEstimate,
+    Reliability, estimate_contacts, estimate_motion, nearest_turn,
 };
 
 /// A simulation close to rounding, and its log without truth.
@@ -23,19 +24,45 @@ pub(super) fn exact_log<S: SupportFunction>(
     Ok((simulation, log))
 }
 
-/// Estimate with the scene's mass and inertia known, and the noise where it is stated.
+/// Estimate with the scene's mass and inertia known, from an exact log.
 pub(super) fn estimate<S: SupportFunction>(
     scene: &ThreePalmScene<S>,
     log: &SensorLog,
-    noise: Option<NoiseLevel>,
 ) -> Result<MotionEstimate, EstimateError> {
     let known = KnownBody {
         mass: *scene.mass(),
         gravity: scene.gravity(),
         palm_inertias: scene.palm_inertias(),
-        noise,
+        noise: None,
     };
     estimate_motion(log, &known)
+}
+
+/// What conditions are off by beside noise, as a share of the natural speed of a body of one metre.
+const FLOOR: f64 = 1e-4;
+
+/// The same from a noisy log, as one of contacts.
+pub(super) fn noisy_estimate<S: SupportFunction>(
+    scene: &ThreePalmScene<S>,
+    log: &SensorLog,
+    noise: &SensorNoise,
+) -> Result<ContactEstimate, String> {
+    let (contact, force_fixed) = (noise.contact, noise.force);
+    let level = ContactNoiseLevel { contact, force_fixed, force_share: 0.0, impulse: None, floor: FLOOR };
+    let options = ContactOptions {
+        friction: Some(0.0),
+        body: Some(*scene.mass()),
+        ..ContactOptions::new(level, scene.gravity().length())
+    };
+    let log = ContactLog::try_from(log).map_err(|error| error.to_string())?;
+    estimate_contacts(&log, None, &options).map_err(|error| error.to_string())
+}
+
+/// Largest error of centre of mass, velocity and angular velocity at the first sample, in its own stated deviations.
+pub(super) fn start_in_deviations(estimate: &ContactEstimate, truth: &Instant) -> f64 {
+    let (state, deviations) = (estimate.states[0], estimate.deviations[0]);
+    let errors = [state.p_WCm - truth.touch.p_WCm, state.v_WCm - truth.rates.v_WCm, state.w_WO - truth.w_WO];
+    errors.iter().zip(deviations).map(|(error, of)| (error.abs() / of).max_element()).fold(0.0, f64::max)
 }
 
 /// Largest error of the centre of mass over the log, m.

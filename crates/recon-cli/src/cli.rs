@@ -96,7 +96,7 @@ lower_bound.ply, upper_bound.ply, report.html, which opens in any browser, and m
 simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer to.
 
 The bounds hold at 95 % confidence for the noise of the sensors and the error of the motion, in the axes that bounds_frame in
-summary.json names; of any palms in those of the world at the first sample. A motion that is not to be relied on gives none.
+summary.json names. A motion that is not to be relied on gives none.
 
 With --without-forces the contacts and palm poses alone are fitted with the motion of an ellipsoid, its centre anywhere; mass
 and inertia of the scene are not looked at, and only inertia over mass is found. Then the folder holds motion.csv,
@@ -135,13 +135,14 @@ pub(crate) struct ReconstructArgs {
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The log is CSV as for `recon reconstruct`, a file or standard input (`-`), taken line by line: a robot may be writing it. The
-scene gives gravity, mass and inertia (with --identify these are estimated along), and the noise of the sensors where no
+The log is CSV as for `recon reconstruct`, of three planes or of any palms with forces, a file or standard input (`-`), taken line
+by line: a robot may be writing it. The scene gives gravity, mass and inertia (with --identify these are estimated along), and the noise of the sensors where no
 option does.
 
-The result is a table (CSV): t, position, orientation, velocity and angular velocity as in motion.csv; std_cm (m) and std_v
-(m/s), standard deviations of all axes together; stage (gathering, searching, tracking, contradicted); innovation, about 1
-where all is as stated; mass (kg) and std_mass. Before a motion is found it is that of a body at rest, known to its size.
+The result is a table (CSV): t, position, orientation, velocity and angular velocity as in motion.csv; std_cm (m), std_v (m/s),
+std_w (rad/s) and std_turn (rad), standard deviations of all axes together; stage (gathering, searching, tracking,
+contradicted); relied_on; misfit, about 1 where all is as stated; mass (kg) and std_mass. Without a motion they are nan. At the end
+it says when the motion was known and when not.
 With --json it is one object a line.
 
 Examples:
