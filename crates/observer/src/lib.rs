@@ -2,7 +2,8 @@
 //!
 //! The generic part needs a [`Model`] (flow, output, linearisation) and knows nothing about palms: the Newton-method
 //! observer on a moving window ([`NewtonObserver`]), all samples at once ([`solve_batch`]) and the extended Kalman filter
-//! ([`ExtendedKalmanFilter`]). Each estimate comes with a [`Report`]: status, residual, rank, smallest information and its
+//! ([`ExtendedKalmanFilter`]), and for a system that changes its mode a bank of filters, one for each ([`Bank`]). Each
+//! estimate of one model comes with a [`Report`]: status, residual, rank, smallest information and its
 //! direction, condition, covariance.
 //!
 //! The feature `palms` (on by default) adds the estimators of shape and motion from touch.
@@ -27,9 +28,11 @@ pub use contacts::{
     StreamMotion, StreamOptions, StreamPalm, StreamStage, estimate_contacts,
 };
 pub use core::{
-    Arrival, BatchOptions, BatchSolution, EkfEstimate, ExtendedKalmanFilter, Link, Model, NewtonEstimate,
-    NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start, Status, describe_direction, rk4,
-    rk4_linearised, solve_batch, solve_batch_along, solve_batch_from,
+    Arrival, Bank, BankError, BankOptions, BatchOptions, BatchSolution, Branch, EkfEstimate,
+    ExtendedKalmanFilter, Gaussian, Hypothesis, Jump, KalmanMember, Landing, Link, Member, Memory, ModeState,
+    Model, Modes, NewtonEstimate, NewtonObserver, NewtonOptions, ObserverError, Report, Sample, Start,
+    Status, describe_direction, jump, match_rotations, rk4, rk4_linearised, rotation_difference,
+    rotation_retract, rotation_slope, smooth_backward, solve_batch, solve_batch_along, solve_batch_from,
 };
 #[cfg(feature = "palms")]
 pub use faults::{SensorFault, Suspect};

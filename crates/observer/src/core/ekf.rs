@@ -1,5 +1,6 @@
 //! The extended Kalman filter: the cheap rival.
 
+use super::kalman::{correct, predict};
 use super::model::{Model, Sample};
 use super::newton::check_start;
 use super::report::{ObserverError, Report, ScaledInformation, Status};
@@ -47,32 +48,17 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> ExtendedKalmanFilter<Mo, N
     /// Takes a sample: predicts over its interval (not for the first one) and corrects.
     pub fn push(&mut self, sample: &Sample<Mo::Input, M>) {
         if self.samples > 0 {
-            let (state, transition) = self.model.flow(&self.state, &sample.input);
-            self.covariance = transition * self.covariance * transition.transpose();
-            if let Some(q) = self.model.process_noise(&self.state, &sample.input) {
-                self.covariance += q;
-            }
-            self.state = state;
+            predict(&self.model, &mut self.state, &mut self.covariance, &sample.input);
         }
         self.samples += 1;
-        let (y, h) = self.model.output(&self.state, &sample.input);
-        // One step from where the outputs were linearised, built up channel by channel.
-        let mut step = SVector::<f64, N>::zeros();
-        for channel in (0..M).filter(|&c| sample.information[c] > 0.0) {
-            let row = h.row(channel).transpose();
-            let noise = 1.0 / sample.information[channel];
-            let ph = self.covariance * row;
-            // Positive: the noise variance is, and the covariance is kept semidefinite.
-            let variance = row.dot(&ph) + noise;
-            let gain = ph / variance;
-            let residual = sample.measured[channel] - y[channel] - row.dot(&step);
-            step += gain * residual;
-            let keep = SMatrix::identity() - gain * row.transpose();
-            self.covariance = keep * self.covariance * keep.transpose() + gain * gain.transpose() * noise;
-            self.innovation += INNOVATION_MEMORY * (residual * residual / variance - self.innovation);
-        }
-        self.state = self.model.retract(&self.state, &step);
-        self.covariance = (self.covariance + self.covariance.transpose()) * 0.5;
+        let channel = |c: usize| {
+            (sample.information[c] > 0.0).then(|| (sample.measured[c], 1.0 / sample.information[c]))
+        };
+        let innovation = &mut self.innovation;
+        let seen = |_: usize, residual: f64, variance: f64| {
+            *innovation += INNOVATION_MEMORY * (residual * residual / variance - *innovation);
+        };
+        correct(&self.model, &mut self.state, &mut self.covariance, &sample.input, channel, seen);
     }
 
     /// The state.

@@ -1,8 +1,10 @@
 //! Observers for any system with a flow, an output and their linearisations; nothing here knows palms.
 
+mod bank;
 mod batch;
 mod eigen;
 mod ekf;
+mod kalman;
 mod model;
 mod newton;
 mod node;
@@ -10,6 +12,11 @@ mod report;
 mod rk4;
 mod window;
 
+pub use bank::{
+    Bank, BankError, BankOptions, Branch, Gaussian, Hypothesis, Jump, KalmanMember, Landing, Member, Memory,
+    ModeState, Modes, jump, match_rotations, rotation_difference, rotation_retract, rotation_slope,
+    smooth_backward,
+};
 pub use batch::{BatchOptions, BatchSolution, solve_batch, solve_batch_along, solve_batch_from};
 pub use ekf::{EkfEstimate, ExtendedKalmanFilter};
 pub use model::{Model, Sample};

@@ -41,6 +41,13 @@ pub trait Model<const N: usize, const M: usize> {
         to - from
     }
 
+    /// Derivative of `difference(retract(to, step), from)` with respect to `step`, at zero: the identity in a vector space,
+    /// the inverse of the right Jacobian for rotations ([`rotation_slope`](crate::rotation_slope)). Only a bank of modes asks
+    /// for it, when it merges estimates that lie apart.
+    fn difference_slope(&self, _to: &SVector<f64, N>, _from: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+        SMatrix::identity()
+    }
+
     /// Natural size of each state: the yardstick of ranks, conditions and of what counts as observed.
     fn scales(&self) -> SVector<f64, N>;
 

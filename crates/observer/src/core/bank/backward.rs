@@ -1,0 +1,172 @@
+//! Modes and states after the fact, backward from what a bank recorded.
+
+use super::bank::ModeState;
+use super::error::BankError;
+use super::gaussian::{Branch, Gaussian};
+use super::log_weights::log_sum_exp;
+use super::system::Modes;
+use nalgebra::{DMatrix, DVector};
+
+/// Modes and states at each sample given all samples, from `filtered`, what [`Bank::mode_states`](crate::Bank::mode_states) said
+/// after each one, and the `inputs` of the same samples.
+///
+/// Backward over each pair of modes with its jump, in the space of the later mode; what the future says is the smoothed
+/// Gaussian divided by the predicted one. With one mode it is the smoother of Rauch, Tung and Striebel, and exact where the
+/// model is linear. With several it is **not reliable**: what a mode holds is not one Gaussian (it was entered at different
+/// times), and probabilities beyond 0.99 are wrong about ten times as often as they say. For the modes use
+/// [`Bank::smoothed`](crate::Bank::smoothed) with eight hypotheses or more; this function adds states. States that are no vector
+/// space are treated as if they were one.
+///
+/// # Errors
+/// [`BankError::Size`] for lists of unequal length or states that are not those of the modes; [`BankError::Covariance`] for a
+/// covariance that is not positive definite.
+pub fn smooth_backward<I>(
+    modes: &Modes<I>,
+    filtered: &[Vec<ModeState>],
+    inputs: &[I],
+) -> Result<Vec<Vec<ModeState>>, BankError> {
+    if inputs.len() != filtered.len() {
+        let (found, needed) = (inputs.len(), filtered.len());
+        return Err(BankError::Size { what: "list of inputs", mode: 0, found, needed });
+    }
+    for states in filtered {
+        check(modes, states)?;
+    }
+    let mut smoothed = filtered.to_vec();
+    for k in (1..filtered.len()).rev() {
+        smoothed[k - 1] = step(modes, &filtered[k - 1], &inputs[k], &smoothed[k], k)?;
+    }
+    Ok(smoothed)
+}
+
+fn check<I>(modes: &Modes<I>, states: &[ModeState]) -> Result<(), BankError> {
+    if states.len() != modes.count() {
+        let (found, needed) = (states.len(), modes.count());
+        return Err(BankError::Size { what: "list of modes", mode: 0, found, needed });
+    }
+    for (mode, state) in states.iter().enumerate() {
+        let needed = modes.member(mode).states();
+        if !state.state.is_of_size(needed) {
+            return Err(BankError::Size { what: "state", mode, found: state.state.mean.len(), needed });
+        }
+    }
+    Ok(())
+}
+
+/// One mode before and the prediction of the mode after from it.
+struct Pair {
+    from: usize,
+    log_weight: f64,
+    predicted: Gaussian,
+    /// Covariance of the state before and the predicted one.
+    cross: DMatrix<f64>,
+}
+
+/// From the sample after to the one before.
+fn step<I>(
+    modes: &Modes<I>,
+    before: &[ModeState],
+    input: &I,
+    after: &[ModeState],
+    sample: usize,
+) -> Result<Vec<ModeState>, BankError> {
+    // Branches of each mode before, with their joint probability with a mode after.
+    let mut branches: Vec<Vec<Branch>> = before.iter().map(|_| Vec::new()).collect();
+    for (to, then) in after.iter().enumerate().filter(|(_, then)| then.probability > 0.0) {
+        let mut pairs = predictions(modes, before, to, input);
+        let total = log_sum_exp(pairs.iter().map(|p| p.log_weight));
+        pairs.iter_mut().for_each(|p| p.log_weight -= total);
+        let future =
+            Future::new(modes, to, &pairs, &then.state).ok_or(BankError::Covariance { mode: to, sample })?;
+        let told: Vec<(f64, Gaussian)> = pairs
+            .iter()
+            .map(|pair| future.tell(pair, &before[pair.from].state))
+            .collect::<Option<_>>()
+            .ok_or(BankError::Covariance { mode: to, sample })?;
+        let of = |(pair, (log_odds, _)): (&Pair, &(f64, Gaussian))| pair.log_weight + log_odds;
+        let total = log_sum_exp(pairs.iter().zip(&told).map(of));
+        for (pair, (log_odds, gaussian)) in pairs.iter().zip(told) {
+            let weight = then.probability * (pair.log_weight + log_odds - total).exp();
+            branches[pair.from].push(Branch { weight, gaussian });
+        }
+    }
+    Ok(branches.into_iter().enumerate().map(|(mode, of)| merged(modes, mode, of, &before[mode])).collect())
+}
+
+/// What every mode before predicts for mode `to`.
+fn predictions<I>(modes: &Modes<I>, before: &[ModeState], to: usize, input: &I) -> Vec<Pair> {
+    let possible = before
+        .iter()
+        .enumerate()
+        .filter(|(from, b)| b.probability > 0.0 && modes.log_switch(*from, to) > f64::NEG_INFINITY);
+    possible
+        .map(|(from, b)| {
+            let member = modes.member(to);
+            let mut predicted = Gaussian::zeros(member.states());
+            modes.land(from, to, &b.state, input, &mut predicted);
+            let flow = member.transition(&predicted, input);
+            let whole =
+                modes.jump(from, to).map_or_else(|| flow.clone(), |jump| &flow * jump.map(&b.state, input));
+            member.predict(&mut predicted, input);
+            let cross = &b.state.covariance * whole.transpose();
+            Pair { from, log_weight: b.probability.ln() + modes.log_switch(from, to), predicted, cross }
+        })
+        .collect()
+}
+
+/// What the samples after say about the predicted state of one mode: a Gaussian in information form.
+struct Future {
+    information: DMatrix<f64>,
+    vector: DVector<f64>,
+}
+
+impl Future {
+    /// The smoothed Gaussian divided by the predicted one. None where a covariance cannot be inverted.
+    fn new<I>(modes: &Modes<I>, to: usize, pairs: &[Pair], smoothed: &Gaussian) -> Option<Self> {
+        let branches: Vec<Branch> = pairs
+            .iter()
+            .map(|p| Branch { weight: p.log_weight.exp(), gaussian: p.predicted.clone() })
+            .collect();
+        let mut predicted = Gaussian::zeros(smoothed.mean.len());
+        modes.member(to).merge(&branches, &mut predicted);
+        let (after, before) = (inverse(&smoothed.covariance)?, inverse(&predicted.covariance)?);
+        let vector = &after * &smoothed.mean - &before * &predicted.mean;
+        // Where the future seems to take information away, moments were matched that are not Gaussian.
+        let mut eigen = (after - before).symmetric_eigen();
+        eigen.eigenvalues.apply(|v| *v = v.max(0.0));
+        Some(Self { information: eigen.recompose(), vector })
+    }
+
+    /// Logarithm of what the future adds to a pair's odds, and the state before given that pair and the future.
+    fn tell(&self, pair: &Pair, before: &Gaussian) -> Option<(f64, Gaussian)> {
+        let Pair { predicted: Gaussian { mean, covariance: p }, cross, .. } = pair;
+        let b = DMatrix::identity(mean.len(), mean.len()) + p * &self.information;
+        let lu = b.clone().lu();
+        let surprise = &self.vector - &self.information * mean;
+        let told_covariance = lu.solve(p)?;
+        let quadratic = surprise.dot(&(&told_covariance * &surprise));
+        let log_odds = -0.5 * lu.determinant().ln() + self.vector.dot(mean)
+            - 0.5 * mean.dot(&(&self.information * mean))
+            + 0.5 * quadratic;
+        let gain = cross * inverse(p)?;
+        let told_mean = lu.solve(&(mean + p * &self.vector))?;
+        let covariance = &before.covariance + &gain * (told_covariance - p) * gain.transpose();
+        let covariance = (&covariance + covariance.transpose()) * 0.5;
+        Some((log_odds, Gaussian { mean: &before.mean + gain * (told_mean - mean), covariance }))
+    }
+}
+
+fn inverse(covariance: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    covariance.clone().cholesky().map(|c| c.inverse())
+}
+
+/// One mode before, from its branches; as it was where none of them has any probability.
+fn merged<I>(modes: &Modes<I>, mode: usize, mut branches: Vec<Branch>, filtered: &ModeState) -> ModeState {
+    let probability: f64 = branches.iter().map(|b| b.weight).sum();
+    let mut state = filtered.state.clone();
+    if probability > 0.0 {
+        branches.iter_mut().for_each(|b| b.weight /= probability);
+        modes.member(mode).merge(&branches, &mut state);
+    }
+    ModeState { probability, state }
+}

@@ -1,0 +1,50 @@
+//! How a bank works.
+
+use super::error::BankError;
+
+/// What a bank remembers of the past.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Memory {
+    /// One Gaussian for each mode, merged before the update: the interacting multiple model of H. A. P. Blom and
+    /// Y. Bar-Shalom (IEEE Trans. Automatic Control 33 (1988) 780-783). The cheapest; who has just switched is at once averaged
+    /// with who has long been there, so switches are seen late where the mode's own states tell them apart.
+    MergedBeforeUpdate,
+    /// This many hypotheses about mode and time of the last switch after each sample, at least one for each mode. Those that come
+    /// into a mode at a sample are one hypothesis; the lightest is merged into the nearest switch time of its mode.
+    Hypotheses(usize),
+}
+
+/// How a [`Bank`](crate::Bank) works.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BankOptions {
+    /// What is remembered of the past.
+    pub memory: Memory,
+    /// Probability that may be given up at each sample, from 0 to below 1, to run fewer hypotheses; with zero all are run. Its sum
+    /// is kept: [`Bank::lost`](crate::Bank::lost).
+    pub drop: f64,
+    /// Samples, the newest included, over which modes are smoothed; with zero they are not. Costs that many numbers for each
+    /// mode and hypothesis, copied at each sample.
+    pub lag: usize,
+}
+
+impl Default for BankOptions {
+    /// Eight hypotheses, nothing given up, no smoothing.
+    fn default() -> Self {
+        Self { memory: Memory::Hypotheses(8), drop: 0.0, lag: 0 }
+    }
+}
+
+impl BankOptions {
+    /// The largest number of hypotheses after a sample, for that many modes.
+    pub(super) fn check(&self, modes: usize) -> Result<usize, BankError> {
+        if !(0.0..1.0).contains(&self.drop) {
+            let (what, needed) = ("probability to drop", "from zero to below one");
+            return Err(BankError::Value { what, value: self.drop, needed });
+        }
+        match self.memory {
+            Memory::MergedBeforeUpdate => Ok(modes),
+            Memory::Hypotheses(found) if found < modes => Err(BankError::Hypotheses { found, needed: modes }),
+            Memory::Hypotheses(kept) => Ok(kept),
+        }
+    }
+}
