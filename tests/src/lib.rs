@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
+pub mod belt;
+
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{
     Ellipsoid, MinkowskiSum, Monomial, MotionLaw, Palm, PolynomialSupport, SupportFunction,

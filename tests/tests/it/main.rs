@@ -11,6 +11,8 @@ mod exported_scenes;
 mod failure_cases;
 mod failures_unknown_body;
 mod logs_of_other_simulators;
+mod mode_bank;
+mod mode_bank_on_a_belt;
 mod noisy;
 mod paper_method;
 mod planar_basin;

@@ -85,11 +85,13 @@ impl<I> Bank<I> {
             self.drop_light()
         };
         self.weigh(input, measured)?;
-        let log_density = self.next.log_total();
-        if log_density == f64::NEG_INFINITY {
+        let total = self.next.log_total();
+        if total == f64::NEG_INFINITY {
             return Err(BankError::NoLikelihood { sample });
         }
-        self.next.divide(log_density);
+        self.next.divide(total);
+        // Without outputs the total is one to rounding.
+        let log_density = if measured.iter().any(Option::is_some) { total } else { 0.0 };
         self.note_modes();
         self.merge_lightest();
         std::mem::swap(&mut self.now, &mut self.next);

@@ -1,0 +1,211 @@
+//! Banks of modes against the numbers of another implementation (`tests/data/modes.json`).
+
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use recon::observer::{
+    Bank, BankOptions, Gaussian, KalmanMember, Landing, Member, Memory, ModeState, Model, Modes, jump,
+    match_rotations, smooth_backward,
+};
+use recon_tests::belt::{Filling, belt_velocity, modes, start};
+use serde_json::Value;
+
+const TOLERANCE: f64 = 1e-10;
+const IMM: BankOptions = BankOptions { memory: Memory::MergedBeforeUpdate, drop: 0.0, lag: 0 };
+
+fn oracle() -> Value {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/modes.json");
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// All numbers of nested lists, row by row.
+fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(entries) => entries.iter().flat_map(numbers).collect(),
+        number => vec![number.as_f64().unwrap()],
+    }
+}
+
+fn vector<const N: usize>(value: &Value) -> SVector<f64, N> {
+    SVector::from_column_slice(&numbers(value))
+}
+
+fn matrix<const R: usize, const C: usize>(value: &Value) -> SMatrix<f64, R, C> {
+    SMatrix::from_row_slice(&numbers(value))
+}
+
+fn near(what: &str, found: &[f64], expected: &Value) {
+    let expected = numbers(expected);
+    assert_eq!(found.len(), expected.len(), "{what}");
+    for (f, e) in found.iter().zip(&expected) {
+        assert!((f - e).abs() <= TOLERANCE * e.abs().max(1.0), "{what}: {f} {e}");
+    }
+}
+
+/// `x' = F x + b`, `y = H x + d`, from a table.
+struct Affine<const N: usize> {
+    f: SMatrix<f64, N, N>,
+    b: SVector<f64, N>,
+    q: SMatrix<f64, N, N>,
+    h: SMatrix<f64, 1, N>,
+    d: SVector<f64, 1>,
+}
+
+impl<const N: usize> Model<N, 1> for Affine<N> {
+    type Input = ();
+    fn flow(&self, x: &SVector<f64, N>, (): &()) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        (self.f * x + self.b, self.f)
+    }
+    fn output(&self, x: &SVector<f64, N>, (): &()) -> (SVector<f64, 1>, SMatrix<f64, 1, N>) {
+        (self.h * x + self.d, self.h)
+    }
+    fn process_noise(&self, _: &SVector<f64, N>, (): &()) -> Option<SMatrix<f64, N, N>> {
+        Some(self.q)
+    }
+    fn scales(&self) -> SVector<f64, N> {
+        SVector::from_element(1.0)
+    }
+    fn names(&self) -> [&'static str; N] {
+        ["state"; N]
+    }
+}
+
+fn member<const N: usize>(model: &Value) -> Box<dyn Member<()>> {
+    let affine: Affine<N> = Affine {
+        f: matrix(&model["F"]),
+        b: vector(&model["b"]),
+        q: matrix(&model["Q"]),
+        h: matrix(&model["H"]),
+        d: vector(&model["d"]),
+    };
+    Box::new(KalmanMember::new(affine, vector::<1>(&model["R"])).unwrap())
+}
+
+fn state<const N: usize>(input: &Value, mode: usize) -> ModeState {
+    let state = Gaussian::new(&vector::<N>(&input["x"][mode]), &matrix::<N, N>(&input["P"][mode]));
+    ModeState { probability: input["mu"][mode].as_f64().unwrap(), state }
+}
+
+fn switches(modes: Vec<Box<dyn Member<()>>>, table: &Value) -> Modes<()> {
+    let rows = [numbers(&table[0]), numbers(&table[1])];
+    Modes::new(modes, &[&rows[0], &rows[1]]).unwrap()
+}
+
+/// With the jumps between two states and three.
+fn with_jumps(modes: Modes<()>, table: &Value) -> Modes<()> {
+    let (there, back) = (&table["0->1"], &table["1->0"]);
+    let (a, o, n) = (matrix::<3, 2>(&there["A"]), vector::<3>(&there["a"]), matrix::<3, 3>(&there["N"]));
+    let entry = jump(move |x: &SVector<f64, 2>, (): &()| Landing { state: a * x + o, map: a, noise: n });
+    let (a, o, n) = (matrix::<2, 3>(&back["A"]), vector::<2>(&back["a"]), matrix::<2, 2>(&back["N"]));
+    let exit = jump(move |x: &SVector<f64, 3>, (): &()| Landing { state: a * x + o, map: a, noise: n });
+    modes.with_jump(0, 1, entry).unwrap().with_jump(1, 0, exit).unwrap()
+}
+
+/// One step from a state after a sample: the bank sees that sample as one in which nothing was measured.
+fn one_step(modes: Modes<()>, start: &[ModeState], case: &Value) {
+    let mut bank = Bank::new(modes, start, IMM).unwrap();
+    assert_eq!(bank.push(&(), &[None]).unwrap(), 0.0);
+    let y = case["input"]["y"][0].as_f64().unwrap();
+    let output = &case["output"];
+    near("log-evidence", &[bank.push(&(), &[Some(y)]).unwrap()], &output["logev"]);
+    near("probabilities", &[bank.probability(0), bank.probability(1)], &output["mu"]);
+    check_states(&bank.mode_states(), &output["x"], &output["P"]);
+}
+
+fn check_states(states: &[ModeState], means: &Value, covariances: &Value) {
+    assert_eq!(states.len(), 2);
+    for (mode, of_mode) in states.iter().enumerate() {
+        near("state", of_mode.state.mean.as_slice(), &means[mode]);
+        // A covariance is symmetric: columns are rows.
+        near("covariance", of_mode.state.covariance.as_slice(), &covariances[mode]);
+    }
+}
+
+#[test]
+fn a_step_of_equal_states_is_that_of_filterpy() {
+    let case = &oracle()["equal_step"];
+    let input = &case["input"];
+    let modes =
+        switches(vec![member::<2>(&input["models"][0]), member::<2>(&input["models"][1])], &input["Pi"]);
+    one_step(modes, &[state::<2>(input, 0), state::<2>(input, 1)], case);
+}
+
+#[test]
+fn a_step_of_unequal_states_is_that_of_the_oracle() {
+    let case = &oracle()["unequal_step"];
+    let input = &case["input"];
+    let members = vec![member::<2>(&input["models"][0]), member::<3>(&input["models"][1])];
+    let modes = with_jumps(switches(members, &input["Pi"]), &input["jump"]);
+    one_step(modes, &[state::<2>(input, 0), state::<3>(input, 1)], case);
+}
+
+/// States and modes of the sample before, given one more: the oracle's Gaussian division. Its probability of the mode lies
+/// within 2e-6 of that of the exact branches.
+#[test]
+fn a_step_backward_is_that_of_the_oracle() {
+    let oracle = oracle();
+    let (before, case) = (&oracle["unequal_step"], &oracle["smooth_step"]);
+    let input = &case["input"];
+    let members = vec![member::<2>(&input["models"][0]), member::<3>(&input["models"][1])];
+    let modes = with_jumps(switches(members, &before["input"]["Pi"]), &input["jump"]);
+    let pair = |of: &Value| vec![state::<2>(of, 0), state::<3>(of, 1)];
+    let filtered = [pair(&before["output"]), pair(&input["filtered_k1"])];
+    let smoothed = smooth_backward(&modes, &filtered, &[(), ()]).unwrap();
+    let expected = &case["output"]["gauss"];
+    let probabilities = [smoothed[0][0].probability, smoothed[0][1].probability];
+    near("probabilities", &probabilities, &expected["mu_s"]);
+    check_states(&smoothed[0], &expected["x_s"], &expected["P_s"]);
+    let exact = numbers(&case["exact_branches"]["smoothed_mode_k"]);
+    assert!((probabilities[1] - exact[1]).abs() < 2e-6);
+    assert_eq!(smoothed[1], filtered[1]);
+}
+
+#[test]
+fn twelve_samples_merged_before_the_update_are_the_oracle_s() {
+    let toy = &oracle()["toy"];
+    let mut bank = Bank::new(modes(Filling::Prior), &start(), IMM).unwrap();
+    for (k, y) in numbers(&toy["y"]).into_iter().enumerate() {
+        bank.push(&belt_velocity(k), &[Some(y)]).unwrap();
+        near("slides", &[bank.probability(1)], &toy["imm_P_slide"][k]);
+    }
+    near("log-evidence", &[bank.log_evidence()], &toy["imm_log_evidence"]);
+}
+
+/// All 4096 sequences of modes, by the oracle: what is lost by merging beyond the last switch is less than 0.008, and most of it
+/// is gone already with eight hypotheses.
+#[test]
+fn twelve_samples_with_all_switch_times_are_nearly_exact() {
+    let toy = &oracle()["toy"];
+    let mut last = f64::INFINITY;
+    for (kept, filtered, smoothed, evidence) in [(8, 0.05, 0.05, 0.2), (24, 0.008, 0.01, 0.01)] {
+        let options = BankOptions { memory: Memory::Hypotheses(kept), drop: 0.0, lag: 12 };
+        let mut bank = Bank::new(modes(Filling::Prior), &start(), options).unwrap();
+        let mut errors = Vec::new();
+        for (k, y) in numbers(&toy["y"]).into_iter().enumerate() {
+            bank.push(&belt_velocity(k), &[Some(y)]).unwrap();
+            errors.push((bank.probability(1) - toy["exact_filter_P_slide"][k].as_f64().unwrap()).abs());
+            let common = bank.common(&[&[0, 1], &[0, 2]]).unwrap();
+            for (found, exact) in common.mean.iter().zip(numbers(&toy["exact_mean_p_mu"][k])) {
+                assert!((found - exact).abs() < 1e-3, "{kept} at {k}: {found} {exact}");
+            }
+        }
+        let largest = errors.iter().copied().fold(0.0, f64::max);
+        assert!(largest < filtered && largest < last, "{kept}: {errors:?}");
+        last = largest;
+        for (k, exact) in numbers(&toy["exact_smoothed_P_slide"]).into_iter().enumerate() {
+            let found = bank.smoothed(11 - k, 1).unwrap();
+            assert!((found - exact).abs() < smoothed, "{kept} at {k}: {found} {exact}");
+        }
+        let exact = toy["exact_log_evidence"].as_f64().unwrap();
+        assert!((bank.log_evidence() - exact).abs() < evidence, "{kept}: {} {exact}", bank.log_evidence());
+    }
+}
+
+#[test]
+fn rotations_are_merged_as_by_the_oracle() {
+    let case = &oracle()["rotation_moment_match"];
+    let weighted: Vec<(f64, Vector3<f64>, Matrix3<f64>)> = (0..3)
+        .map(|i| (case["w"][i].as_f64().unwrap(), vector(&case["rotvec"][i]), matrix(&case["P"][i])))
+        .collect();
+    let (mean, covariance) = match_rotations(&weighted).unwrap();
+    near("mean", mean.as_slice(), &case["mean_rotvec"]);
+    near("covariance", covariance.as_slice(), &case["cov_right_perturbation"]);
+}

@@ -1,0 +1,1 @@
+//! What a bank's odds are worth, over many runs of a body on a belt.
