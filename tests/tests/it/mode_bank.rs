@@ -11,9 +11,13 @@ use serde_json::Value;
 const TOLERANCE: f64 = 1e-10;
 const IMM: BankOptions = BankOptions { memory: Memory::MergedBeforeUpdate, drop: 0.0, lag: 0 };
 
-fn oracle() -> Value {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/modes.json");
+fn file(name: &str) -> Value {
+    let path = format!("{}/data/{name}", env!("CARGO_MANIFEST_DIR"));
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn oracle() -> Value {
+    file("modes.json")
 }
 
 /// All numbers of nested lists, row by row.
@@ -41,20 +45,20 @@ fn near(what: &str, found: &[f64], expected: &Value) {
 }
 
 /// `x' = F x + b`, `y = H x + d`, from a table.
-struct Affine<const N: usize> {
+struct Affine<const N: usize, const M: usize> {
     f: SMatrix<f64, N, N>,
     b: SVector<f64, N>,
     q: SMatrix<f64, N, N>,
-    h: SMatrix<f64, 1, N>,
-    d: SVector<f64, 1>,
+    h: SMatrix<f64, M, N>,
+    d: SVector<f64, M>,
 }
 
-impl<const N: usize> Model<N, 1> for Affine<N> {
+impl<const N: usize, const M: usize> Model<N, M> for Affine<N, M> {
     type Input = ();
     fn flow(&self, x: &SVector<f64, N>, (): &()) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
         (self.f * x + self.b, self.f)
     }
-    fn output(&self, x: &SVector<f64, N>, (): &()) -> (SVector<f64, 1>, SMatrix<f64, 1, N>) {
+    fn output(&self, x: &SVector<f64, N>, (): &()) -> (SVector<f64, M>, SMatrix<f64, M, N>) {
         (self.h * x + self.d, self.h)
     }
     fn process_noise(&self, _: &SVector<f64, N>, (): &()) -> Option<SMatrix<f64, N, N>> {
@@ -68,15 +72,16 @@ impl<const N: usize> Model<N, 1> for Affine<N> {
     }
 }
 
-fn member<const N: usize>(model: &Value) -> Box<dyn Member<()>> {
-    let affine: Affine<N> = Affine {
+/// Without an entry `b` or `d` the model is linear.
+fn member<const N: usize, const M: usize>(model: &Value) -> Box<dyn Member<()>> {
+    let affine: Affine<N, M> = Affine {
         f: matrix(&model["F"]),
-        b: vector(&model["b"]),
+        b: if model["b"].is_null() { SVector::zeros() } else { vector(&model["b"]) },
         q: matrix(&model["Q"]),
         h: matrix(&model["H"]),
-        d: vector(&model["d"]),
+        d: if model["d"].is_null() { SVector::zeros() } else { vector(&model["d"]) },
     };
-    Box::new(KalmanMember::new(affine, vector::<1>(&model["R"])).unwrap())
+    Box::new(KalmanMember::new(affine, vector::<M>(&model["R"])).unwrap())
 }
 
 fn state<const N: usize>(input: &Value, mode: usize) -> ModeState {
@@ -85,8 +90,9 @@ fn state<const N: usize>(input: &Value, mode: usize) -> ModeState {
 }
 
 fn switches(modes: Vec<Box<dyn Member<()>>>, table: &Value) -> Modes<()> {
-    let rows = [numbers(&table[0]), numbers(&table[1])];
-    Modes::new(modes, &[&rows[0], &rows[1]]).unwrap()
+    let rows: Vec<Vec<f64>> = table.as_array().unwrap().iter().map(numbers).collect();
+    let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+    Modes::new(modes, &rows).unwrap()
 }
 
 /// With the jumps between two states and three.
@@ -123,16 +129,64 @@ fn check_states(states: &[ModeState], means: &Value, covariances: &Value) {
 fn a_step_of_equal_states_is_that_of_filterpy() {
     let case = &oracle()["equal_step"];
     let input = &case["input"];
-    let modes =
-        switches(vec![member::<2>(&input["models"][0]), member::<2>(&input["models"][1])], &input["Pi"]);
+    let modes = switches(
+        vec![member::<2, 1>(&input["models"][0]), member::<2, 1>(&input["models"][1])],
+        &input["Pi"],
+    );
     one_step(modes, &[state::<2>(input, 0), state::<2>(input, 1)], case);
+}
+
+/// Over a whole log, of a model in which both modes have `N` states. Filterpy works in the linear domain, in another order.
+fn whole_log<const N: usize, const M: usize>(case: &Value) {
+    let members: Vec<_> = case["models"].as_array().unwrap().iter().map(member::<N, M>).collect();
+    let state =
+        Gaussian::new(&vector::<N>(&case["x"]), &SMatrix::from_diagonal(&vector::<N>(&case["variances"])));
+    let start: Vec<ModeState> = numbers(&case["mu"])
+        .into_iter()
+        .map(|probability| ModeState { probability, state: state.clone() })
+        .collect();
+    let mut bank = Bank::new(switches(members, &case["Pi"]), &start, IMM).unwrap();
+    bank.push(&(), &[None; M]).unwrap();
+    let rows: [usize; N] = std::array::from_fn(|i| i);
+    let rows = vec![&rows[..]; start.len()];
+    let (samples, steps) = (case["y"].as_array().unwrap(), case["steps"].as_array().unwrap());
+    assert!(samples.len() == steps.len() && samples.len() >= 40);
+    let within = |what: &str, found: f64, expected: f64| {
+        assert!((found - expected).abs() <= 1e-9 * expected.abs().max(1.0), "{what}: {found} {expected}");
+    };
+    for (sample, step) in samples.iter().zip(steps) {
+        let measured = vector::<M>(sample);
+        bank.push(&(), &std::array::from_fn::<_, M, _>(|c| Some(measured[c]))).unwrap();
+        for (mode, expected) in numbers(&step["mu"]).into_iter().enumerate() {
+            within("probability", bank.probability(mode), expected);
+        }
+        let mixed = bank.common(&rows).unwrap();
+        mixed.mean.iter().zip(numbers(&step["x"])).for_each(|(f, e)| within("state", *f, e));
+    }
+    let mixed = bank.common(&rows).unwrap();
+    mixed
+        .covariance
+        .iter()
+        .zip(numbers(&case["mixed_P"]))
+        .for_each(|(f, e)| within("mixed covariance", *f, e));
+    for (of_mode, expected) in bank.mode_states().iter().zip(case["last_P"].as_array().unwrap()) {
+        let found = of_mode.state.covariance.iter();
+        found.zip(numbers(expected)).for_each(|(f, e)| within("covariance", *f, e));
+    }
+}
+
+#[test]
+fn whole_logs_of_equal_states_are_those_of_filterpy() {
+    let file = file("filterpy_imm.json");
+    whole_log::<6, 2>(&file["crassidis_4_6"]);
+    whole_log::<2, 1>(&file["three_models"]);
 }
 
 #[test]
 fn a_step_of_unequal_states_is_that_of_the_oracle() {
     let case = &oracle()["unequal_step"];
     let input = &case["input"];
-    let members = vec![member::<2>(&input["models"][0]), member::<3>(&input["models"][1])];
+    let members = vec![member::<2, 1>(&input["models"][0]), member::<3, 1>(&input["models"][1])];
     let modes = with_jumps(switches(members, &input["Pi"]), &input["jump"]);
     one_step(modes, &[state::<2>(input, 0), state::<3>(input, 1)], case);
 }
@@ -144,7 +198,7 @@ fn a_step_backward_is_that_of_the_oracle() {
     let oracle = oracle();
     let (before, case) = (&oracle["unequal_step"], &oracle["smooth_step"]);
     let input = &case["input"];
-    let members = vec![member::<2>(&input["models"][0]), member::<3>(&input["models"][1])];
+    let members = vec![member::<2, 1>(&input["models"][0]), member::<3, 1>(&input["models"][1])];
     let modes = with_jumps(switches(members, &before["input"]["Pi"]), &input["jump"]);
     let pair = |of: &Value| vec![state::<2>(of, 0), state::<3>(of, 1)];
     let filtered = [pair(&before["output"]), pair(&input["filtered_k1"])];
