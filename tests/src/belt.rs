@@ -77,11 +77,18 @@ impl Model<3, 1> for Slide {
 
 /// What fills the velocity of a body that begins to slide.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Filling {
-    /// The belt's velocity, with the spread that it has in truth.
-    Prior,
-    /// Zero, without any: what padding the smaller state with zeros comes to.
-    Zeros,
+pub struct Entry {
+    /// Mean, as a share of the belt's velocity.
+    pub share: f64,
+    /// Standard deviation.
+    pub deviation: f64,
+}
+
+impl Entry {
+    /// As the motions are drawn.
+    pub const TRUE: Self = Self { share: 1.0, deviation: ENTRY };
+    /// What padding the smaller state with zeros comes to.
+    pub const ZEROS: Self = Self { share: 0.0, deviation: 0.0 };
 }
 
 /// The two modes; the velocity at the start of sliding is filled as said.
@@ -89,21 +96,17 @@ pub enum Filling {
 /// # Panics
 /// Never: the constants are usable.
 #[must_use]
-pub fn modes(filling: Filling) -> Modes<f64> {
+pub fn modes(entry: Entry) -> Modes<f64> {
     let variance = SVector::<f64, 1>::new(NOISE * NOISE);
     let members = vec![
         Box::new(KalmanMember::new(Stick, variance).unwrap()) as _,
         Box::new(KalmanMember::new(Slide, variance).unwrap()) as _,
     ];
     let switches: [&[f64]; 2] = [&[1.0 - SWITCH, SWITCH], &[SWITCH, 1.0 - SWITCH]];
-    let slides = jump(move |x: &SVector<f64, 2>, belt: &f64| {
-        let (velocity, variance) =
-            if filling == Filling::Prior { (*belt, ENTRY * ENTRY) } else { (0.0, 0.0) };
-        Landing {
-            state: SVector::<f64, 3>::new(x[0], velocity, x[1]),
-            map: SMatrix::<f64, 3, 2>::new(1.0, 0.0, 0.0, 0.0, 0.0, 1.0),
-            noise: SMatrix::from_diagonal(&SVector::<f64, 3>::new(0.0, variance, 0.0)),
-        }
+    let slides = jump(move |x: &SVector<f64, 2>, belt: &f64| Landing {
+        state: SVector::<f64, 3>::new(x[0], entry.share * belt, x[1]),
+        map: SMatrix::<f64, 3, 2>::new(1.0, 0.0, 0.0, 0.0, 0.0, 1.0),
+        noise: SMatrix::from_diagonal(&SVector::<f64, 3>::new(0.0, entry.deviation.powi(2), 0.0)),
     });
     let sticks = jump(|x: &SVector<f64, 3>, _: &f64| Landing {
         state: SVector::<f64, 2>::new(x[0], x[2]),

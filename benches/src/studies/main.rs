@@ -19,6 +19,7 @@ mod contact_estimates;
 mod contact_exports;
 mod contact_logs;
 mod contact_wedging;
+mod mode_bank;
 mod no_force;
 mod planar_contacts;
 mod planar_costs;
@@ -53,6 +54,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("contact_exports", || in_words(contact_exports::main())),
     ("contact_logs", || in_words(contact_logs::main())),
     ("contact_wedging", || in_words(contact_wedging::main())),
+    ("mode_bank", || in_words(mode_bank::main())),
     ("no_force", || in_words(no_force::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_costs", || in_words(planar_costs::main())),

@@ -5,7 +5,7 @@ use recon::observer::{
     Bank, BankOptions, Gaussian, KalmanMember, Landing, Member, Memory, ModeState, Model, Modes, jump,
     match_rotations, smooth_backward,
 };
-use recon_tests::belt::{Filling, belt_velocity, modes, start};
+use recon_tests::belt::{Entry, belt_velocity, modes, start};
 use serde_json::Value;
 
 const TOLERANCE: f64 = 1e-10;
@@ -215,7 +215,7 @@ fn a_step_backward_is_that_of_the_oracle() {
 #[test]
 fn twelve_samples_merged_before_the_update_are_the_oracle_s() {
     let toy = &oracle()["toy"];
-    let mut bank = Bank::new(modes(Filling::Prior), &start(), IMM).unwrap();
+    let mut bank = Bank::new(modes(Entry::TRUE), &start(), IMM).unwrap();
     for (k, y) in numbers(&toy["y"]).into_iter().enumerate() {
         bank.push(&belt_velocity(k), &[Some(y)]).unwrap();
         near("slides", &[bank.probability(1)], &toy["imm_P_slide"][k]);
@@ -231,7 +231,7 @@ fn twelve_samples_with_all_switch_times_are_nearly_exact() {
     let mut last = f64::INFINITY;
     for (kept, filtered, smoothed, evidence) in [(8, 0.05, 0.05, 0.2), (24, 0.008, 0.01, 0.01)] {
         let options = BankOptions { memory: Memory::Hypotheses(kept), drop: 0.0, lag: 12 };
-        let mut bank = Bank::new(modes(Filling::Prior), &start(), options).unwrap();
+        let mut bank = Bank::new(modes(Entry::TRUE), &start(), options).unwrap();
         let mut errors = Vec::new();
         for (k, y) in numbers(&toy["y"]).into_iter().enumerate() {
             bank.push(&belt_velocity(k), &[Some(y)]).unwrap();

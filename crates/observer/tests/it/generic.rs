@@ -44,7 +44,7 @@ impl Model<3, 2> for Linear {
 }
 
 /// A deterministic, irregular sequence in (-1, 1).
-fn wobble(k: usize, salt: f64) -> f64 {
+pub(crate) fn wobble(k: usize, salt: f64) -> f64 {
     ((k as f64 + 1.0) * (12.9898 + salt)).sin()
 }
 

@@ -1,9 +1,8 @@
 //! The bank: hypotheses are carried over a sample, weighed by it, and merged again.
 
 use super::error::BankError;
-use super::gaussian::{Branch, Gaussian};
+use super::gaussian::Gaussian;
 use super::hypothesis::{Hypothesis, Store};
-use super::log_weights::log_sum_exp;
 use super::mixture::Mixture;
 use super::options::{BankOptions, Memory};
 use super::system::{Modes, check_sum};
@@ -19,15 +18,15 @@ pub struct ModeState {
 
 /// Observers of several modes of a system side by side, weighed by how well each predicts the same outputs.
 pub struct Bank<I> {
-    modes: Modes<I>,
-    options: BankOptions,
-    now: Store,
+    pub(super) modes: Modes<I>,
+    pub(super) options: BankOptions,
+    pub(super) now: Store,
     /// What `now` becomes; in its place only when a sample went through.
     next: Store,
     mixture: Mixture,
-    samples: usize,
-    log_evidence: f64,
-    lost: f64,
+    pub(super) samples: usize,
+    pub(super) log_evidence: f64,
+    pub(super) lost: f64,
 }
 
 impl<I> Bank<I> {
@@ -40,12 +39,12 @@ impl<I> Bank<I> {
     pub fn new(modes: Modes<I>, start: &[ModeState], options: BankOptions) -> Result<Self, BankError> {
         modes.check_jumps()?;
         let count = modes.count();
-        let kept = options.check(count)?;
         if start.len() != count {
             return Err(BankError::Size { what: "start", mode: 0, found: start.len(), needed: count });
         }
         check_sum("start probabilities", start.iter().map(|s| s.probability))?;
         let sizes: Vec<usize> = (0..count).map(|mode| modes.member(mode).states()).collect();
+        let kept = options.check(count, sizes.iter().copied().max().unwrap_or(0))?;
         let mut now = Store::new(&sizes, kept + 1, options.lag);
         for (mode, ModeState { probability, state }) in start.iter().enumerate() {
             check_start(state, mode, sizes[mode])?;
@@ -77,21 +76,13 @@ impl<I> Bank<I> {
             return Err(BankError::NotFinite { what: "reading", mode, sample });
         }
         self.next.clear();
-        let lost = if sample == 0 {
+        if sample == 0 {
             self.copy();
-            0.0
         } else {
             self.switch(input);
-            self.drop_light()
-        };
-        self.weigh(input, measured)?;
-        let total = self.next.log_total();
-        if total == f64::NEG_INFINITY {
-            return Err(BankError::NoLikelihood { sample });
         }
-        self.next.divide(total);
-        // Without outputs the total is one to rounding.
-        let log_density = if measured.iter().any(Option::is_some) { total } else { 0.0 };
+        let log_density = self.weigh(input, measured)?;
+        let lost = self.drop_light();
         self.note_modes();
         self.merge_lightest();
         std::mem::swap(&mut self.now, &mut self.next);
@@ -121,6 +112,9 @@ impl<I> Bank<I> {
                 let stays = from == to && self.options.memory != Memory::MergedBeforeUpdate;
                 for hypothesis in self.now.of(from) {
                     let log_weight = hypothesis.log_weight + log_switch;
+                    if log_weight == f64::NEG_INFINITY {
+                        continue;
+                    }
                     if stays {
                         keep(hypothesis, log_weight, &mut self.next);
                     } else {
@@ -140,10 +134,51 @@ impl<I> Bank<I> {
         }
     }
 
+    /// Corrects every hypothesis and weighs it. Returns the logarithm of the density of all together.
+    fn weigh(&mut self, input: &I, measured: &[Option<f64>]) -> Result<f64, BankError> {
+        let sample = self.samples;
+        let any = measured.iter().any(Option::is_some);
+        let mut largest = f64::NEG_INFINITY;
+        for hypothesis in self.next.all_mut() {
+            let mode = hypothesis.mode;
+            hypothesis.log_density = 0.0;
+            if any {
+                let member = self.modes.member(mode);
+                let log_density = member.correct(&mut hypothesis.state, input, measured);
+                hypothesis.log_density = log_density.ok_or(BankError::Covariance { mode, sample })?;
+            }
+            if hypothesis.log_density.is_nan() || hypothesis.log_density == f64::INFINITY {
+                return Err(BankError::NotFinite { what: "likelihood", mode, sample });
+            }
+            if !hypothesis.state.is_finite() {
+                return Err(BankError::NotFinite { what: "state", mode, sample });
+            }
+            if hypothesis.state.has_negative_variance() {
+                return Err(BankError::Covariance { mode, sample });
+            }
+            largest = largest.max(hypothesis.log_density);
+        }
+        if largest == f64::NEG_INFINITY {
+            return Err(BankError::NoLikelihood { sample });
+        }
+        // Against the largest: a weight would drown in the density of an outlier.
+        self.next.all_mut().for_each(|h| h.log_weight += h.log_density - largest);
+        let total = self.next.log_total();
+        if total == f64::NEG_INFINITY {
+            return Err(BankError::NoLikelihood { sample });
+        }
+        self.next.divide(total);
+        // Without outputs the total is one to rounding.
+        Ok(if any { largest + total } else { 0.0 })
+    }
+
     /// Gives up the lightest hypotheses as long as the mass of all that go stays within the options' share. What goes comes
-    /// back through the switches.
+    /// back through the switches; as it is weighed before it goes, also through rare ones.
     fn drop_light(&mut self) -> f64 {
         let mut gone = 0.0;
+        if self.options.drop == 0.0 {
+            return gone;
+        }
         while let Some((mode, index)) = self.next.lightest(1) {
             let mass = self.next.of(mode)[index].probability();
             if gone + mass > self.options.drop || self.next.count() == 1 {
@@ -157,29 +192,6 @@ impl<I> Bank<I> {
             self.next.divide(kept);
         }
         gone
-    }
-
-    fn weigh(&mut self, input: &I, measured: &[Option<f64>]) -> Result<(), BankError> {
-        let sample = self.samples;
-        let any = measured.iter().any(Option::is_some);
-        for hypothesis in self.next.all_mut() {
-            let mode = hypothesis.mode;
-            if any {
-                let member = self.modes.member(mode);
-                let log_density = member.correct(&mut hypothesis.state, input, measured);
-                hypothesis.log_weight += log_density.ok_or(BankError::Covariance { mode, sample })?;
-            }
-            if hypothesis.log_weight.is_nan() || hypothesis.log_weight == f64::INFINITY {
-                return Err(BankError::NotFinite { what: "likelihood", mode, sample });
-            }
-            if !hypothesis.state.is_finite() {
-                return Err(BankError::NotFinite { what: "state", mode, sample });
-            }
-            if hypothesis.state.covariance.diagonal().iter().any(|v| *v < 0.0) {
-                return Err(BankError::Covariance { mode, sample });
-            }
-        }
-        Ok(())
     }
 
     /// Writes the mode of this sample into every path.
@@ -211,123 +223,6 @@ impl<I> Bank<I> {
             self.mixture.merge_into(&self.modes, &mut self.next.of_mut(mode)[other]);
             self.next.remove(mode, index);
         }
-    }
-
-    /// The modes and their switches.
-    #[must_use]
-    pub fn modes(&self) -> &Modes<I> {
-        &self.modes
-    }
-
-    /// Samples taken.
-    #[must_use]
-    pub fn samples(&self) -> usize {
-        self.samples
-    }
-
-    /// Logarithm of the density of all that was measured.
-    #[must_use]
-    pub fn log_evidence(&self) -> f64 {
-        self.log_evidence
-    }
-
-    /// Sum of the probabilities that were given up ([`BankOptions::drop`]): if the model is true, the expected probability that
-    /// the true hypothesis is among the lost ones, and over the threshold `a` divided by `a`, a bound of the probability that
-    /// the lost ones ever had more than `a` (Doob: a posterior probability is a martingale).
-    #[must_use]
-    pub fn lost(&self) -> f64 {
-        self.lost
-    }
-
-    /// Probability of a mode given all samples so far; zero for a mode that there is not.
-    #[must_use]
-    pub fn probability(&self, mode: usize) -> f64 {
-        if mode < self.modes.count() {
-            log_sum_exp(self.now.of(mode).iter().map(|h| h.log_weight)).exp()
-        } else {
-            0.0
-        }
-    }
-
-    /// What the bank holds, mode by mode.
-    pub fn hypotheses(&self) -> impl Iterator<Item = &Hypothesis> {
-        self.now.all()
-    }
-
-    /// Probability that the mode was `mode` so many samples before the newest, given all so far. None beyond the options' lag
-    /// or the first sample.
-    #[must_use]
-    pub fn smoothed(&self, back: usize, mode: usize) -> Option<f64> {
-        if back >= self.samples.min(self.options.lag) || mode >= self.modes.count() {
-            return None;
-        }
-        let row = (self.samples - 1 - back) % self.options.lag;
-        let of = |h: &Hypothesis| h.probability() * h.path[row * self.modes.count() + mode];
-        Some(self.now.all().map(of).sum())
-    }
-
-    /// Each mode with its probability and its state; a mode without any hypothesis has probability zero and a state of zeros.
-    /// Allocates.
-    #[must_use]
-    pub fn mode_states(&self) -> Vec<ModeState> {
-        let of = |mode| {
-            let member = self.modes.member(mode);
-            let mut state = Gaussian::zeros(member.states());
-            let total = log_sum_exp(self.now.of(mode).iter().map(|h| h.log_weight));
-            if total == f64::NEG_INFINITY {
-                return ModeState { probability: 0.0, state };
-            }
-            let branch =
-                |h: &Hypothesis| Branch { weight: (h.log_weight - total).exp(), gaussian: h.state.clone() };
-            let branches: Vec<Branch> = self.now.of(mode).iter().map(branch).collect();
-            member.merge(&branches, &mut state);
-            ModeState { probability: total.exp(), state }
-        };
-        (0..self.modes.count()).map(of).collect()
-    }
-
-    /// Mean and covariance, over all modes, of what they have in common: `rows[mode]` names the entries of that mode's state, in
-    /// the same order for every mode. The entries are averaged as numbers: not for orientations. Allocates.
-    ///
-    /// # Errors
-    /// [`BankError::Size`] for rows that do not fit the modes or each other.
-    pub fn common(&self, rows: &[&[usize]]) -> Result<Gaussian, BankError> {
-        let count = self.modes.count();
-        if rows.len() != count {
-            return Err(BankError::Size { what: "list of rows", mode: 0, found: rows.len(), needed: count });
-        }
-        for (mode, of_mode) in rows.iter().enumerate() {
-            let needed = rows[0].len();
-            if of_mode.len() != needed {
-                return Err(BankError::Size { what: "rows", mode, found: of_mode.len(), needed });
-            }
-            let states = self.modes.member(mode).states();
-            if let Some(&row) = of_mode.iter().find(|r| **r >= states) {
-                return Err(BankError::Size {
-                    what: "state, short of its rows,",
-                    mode,
-                    found: states,
-                    needed: row + 1,
-                });
-            }
-        }
-        let mut common = Gaussian::zeros(rows[0].len());
-        let entry = |h: &Hypothesis, i: usize| h.state.mean[rows[h.mode][i]];
-        for h in self.now.all() {
-            for i in 0..common.mean.len() {
-                common.mean[i] += h.probability() * entry(h, i);
-            }
-        }
-        for h in self.now.all() {
-            for (i, &row) in rows[h.mode].iter().enumerate() {
-                for (j, &column) in rows[h.mode].iter().enumerate() {
-                    let apart = (entry(h, i) - common.mean[i]) * (entry(h, j) - common.mean[j]);
-                    common.covariance[(i, j)] +=
-                        h.probability() * (h.state.covariance[(row, column)] + apart);
-                }
-            }
-        }
-        Ok(common)
     }
 }
 

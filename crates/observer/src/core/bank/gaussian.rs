@@ -61,6 +61,11 @@ impl Gaussian {
         self.covariance.copy_from(&other.covariance);
     }
 
+    /// Whether an entry of the diagonal says that the covariance is none.
+    pub(super) fn has_negative_variance(&self) -> bool {
+        (0..self.mean.len()).any(|i| self.covariance[(i, i)] < 0.0)
+    }
+
     /// Whether all entries are numbers.
     pub(super) fn is_finite(&self) -> bool {
         self.mean.iter().chain(self.covariance.iter()).all(|v| v.is_finite())

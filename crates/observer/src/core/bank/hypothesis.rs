@@ -9,6 +9,8 @@ pub struct Hypothesis {
     pub(super) mode: usize,
     pub(super) since: usize,
     pub(super) log_weight: f64,
+    /// Of the sample that is being taken in.
+    pub(super) log_density: f64,
     pub(super) state: Gaussian,
     /// Probability of each mode at the latest samples if this hypothesis is true; a ring with one row a sample.
     pub(super) path: Vec<f64>,
@@ -57,6 +59,7 @@ impl Store {
                 mode,
                 since: 0,
                 log_weight: f64::NEG_INFINITY,
+                log_density: 0.0,
                 state: Gaussian::zeros(size),
                 path: vec![0.0; path * states.len()],
             };

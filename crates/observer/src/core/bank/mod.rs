@@ -1,8 +1,10 @@
 //! Banks: several modes of a system side by side, weighed by how well each predicts the outputs.
 //!
 //! [`Modes`] holds what does not change with the data: a [`Member`] for each mode, the probabilities of switches, and the
-//! [`jump`]s that say what a switch does to the state. A [`Bank`] takes samples. `bank.rs` is the way of a sample.
+//! [`jump`]s that say what a switch does to the state. A [`Bank`] takes samples. `bank.rs` is the way of a sample,
+//! `answers.rs` what can be asked.
 
+mod answers;
 mod backward;
 #[expect(clippy::module_inception, reason = "the bank of the module of banks")]
 mod bank;
@@ -14,6 +16,7 @@ mod log_weights;
 mod member;
 mod merge;
 mod mixture;
+mod odds;
 mod options;
 mod rotation;
 mod system;
@@ -25,6 +28,7 @@ pub use gaussian::{Branch, Gaussian};
 pub use hypothesis::Hypothesis;
 pub use jump::{Jump, Landing, jump};
 pub use member::{KalmanMember, Member};
+pub use odds::Odds;
 pub use options::{BankOptions, Memory};
 pub use rotation::{match_rotations, rotation_difference, rotation_retract, rotation_slope};
 pub use system::Modes;

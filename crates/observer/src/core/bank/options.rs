@@ -19,13 +19,16 @@ pub enum Memory {
 pub struct BankOptions {
     /// What is remembered of the past.
     pub memory: Memory,
-    /// Probability that may be given up at each sample, from 0 to below 1, to run fewer hypotheses; with zero all are run. Its sum
+    /// Probability that may be given up after each sample, from 0 to below 1, to run fewer hypotheses; with zero none is. Its sum
     /// is kept: [`Bank::lost`](crate::Bank::lost).
     pub drop: f64,
     /// Samples, the newest included, over which modes are smoothed; with zero they are not. Costs that many numbers for each
     /// mode and hypothesis, copied at each sample.
     pub lag: usize,
 }
+
+/// Most numbers that a bank makes room for: four gigabytes.
+const MOST_NUMBERS: f64 = 536_870_912.0;
 
 impl Default for BankOptions {
     /// Eight hypotheses, nothing given up, no smoothing.
@@ -35,16 +38,27 @@ impl Default for BankOptions {
 }
 
 impl BankOptions {
-    /// The largest number of hypotheses after a sample, for that many modes.
-    pub(super) fn check(&self, modes: usize) -> Result<usize, BankError> {
+    /// The largest number of hypotheses after a sample, for that many modes, the largest of them with so many states.
+    pub(super) fn check(&self, modes: usize, states: usize) -> Result<usize, BankError> {
         if !(0.0..1.0).contains(&self.drop) {
             let (what, needed) = ("probability to drop", "from zero to below one");
             return Err(BankError::Value { what, value: self.drop, needed });
         }
-        match self.memory {
-            Memory::MergedBeforeUpdate => Ok(modes),
-            Memory::Hypotheses(found) if found < modes => Err(BankError::Hypotheses { found, needed: modes }),
-            Memory::Hypotheses(kept) => Ok(kept),
+        let kept = match self.memory {
+            Memory::MergedBeforeUpdate => modes,
+            Memory::Hypotheses(found) if found < modes => {
+                return Err(BankError::Hypotheses { found, needed: modes });
+            }
+            Memory::Hypotheses(kept) => kept,
+        };
+        // Two stores and the branches of a mixture, each with room for all in one mode.
+        let each = (states * (states + 1)) as f64 + self.lag as f64 * modes as f64;
+        let value = 3.0 * modes as f64 * (kept as f64 + 1.0) * each;
+        if value > MOST_NUMBERS {
+            let what = "number of numbers that the hypotheses and their paths take";
+            let needed = "at most 2^29: keep fewer hypotheses, or smooth over a shorter lag";
+            return Err(BankError::Value { what, value, needed });
         }
+        Ok(kept)
     }
 }

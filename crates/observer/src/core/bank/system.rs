@@ -32,21 +32,7 @@ impl<I> Modes<I> {
         if let Some(mode) = members.iter().position(|m| m.outputs() != outputs) {
             return Err(BankError::Outputs { mode, found: members[mode].outputs(), needed: outputs });
         }
-        if switches.len() != count {
-            let what = "table of switches (its rows)";
-            return Err(BankError::Size { what, mode: 0, found: switches.len(), needed: count });
-        }
-        for (mode, row) in switches.iter().enumerate() {
-            if row.len() != count {
-                let what = "row of switch probabilities";
-                return Err(BankError::Size { what, mode, found: row.len(), needed: count });
-            }
-            check_sum("switch probabilities", row.iter().copied()).map_err(|error| match error {
-                BankError::Sum { sum, .. } => BankError::RowSum { mode, sum },
-                other => other,
-            })?;
-        }
-        let log_switches = switches.iter().flat_map(|row| row.iter().map(|p| p.ln())).collect();
+        let log_switches = log_switches(count, switches)?;
         Ok(Self { members, log_switches, jumps: (0..count * count).map(|_| None).collect() })
     }
 
@@ -116,6 +102,25 @@ impl<I> Modes<I> {
             None => landed.copy_from(state),
         }
     }
+}
+
+/// Logarithms of the switch probabilities, row by row.
+pub(super) fn log_switches(count: usize, switches: &[&[f64]]) -> Result<Vec<f64>, BankError> {
+    if switches.len() != count {
+        let what = "table of switches (its rows)";
+        return Err(BankError::Size { what, mode: 0, found: switches.len(), needed: count });
+    }
+    for (mode, row) in switches.iter().enumerate() {
+        if row.len() != count {
+            let what = "row of switch probabilities";
+            return Err(BankError::Size { what, mode, found: row.len(), needed: count });
+        }
+        check_sum("switch probabilities", row.iter().copied()).map_err(|error| match error {
+            BankError::Sum { sum, .. } => BankError::RowSum { mode, sum },
+            other => other,
+        })?;
+    }
+    Ok(switches.iter().flat_map(|row| row.iter().map(|p| p.ln())).collect())
 }
 
 /// Probabilities: each from zero to one, all together one.
