@@ -85,6 +85,7 @@ impl<I> Bank<I> {
         let lost = self.drop_light();
         self.note_modes();
         self.merge_lightest();
+        self.check_states()?;
         std::mem::swap(&mut self.now, &mut self.next);
         self.samples += 1;
         self.log_evidence += log_density;
@@ -150,12 +151,6 @@ impl<I> Bank<I> {
             if hypothesis.log_density.is_nan() || hypothesis.log_density == f64::INFINITY {
                 return Err(BankError::NotFinite { what: "likelihood", mode, sample });
             }
-            if !hypothesis.state.is_finite() {
-                return Err(BankError::NotFinite { what: "state", mode, sample });
-            }
-            if hypothesis.state.has_negative_variance() {
-                return Err(BankError::Covariance { mode, sample });
-            }
             largest = largest.max(hypothesis.log_density);
         }
         if largest == f64::NEG_INFINITY {
@@ -163,11 +158,10 @@ impl<I> Bank<I> {
         }
         // Against the largest: a weight would drown in the density of an outlier.
         self.next.all_mut().for_each(|h| h.log_weight += h.log_density - largest);
-        let total = self.next.log_total();
+        let total = self.next.normalise();
         if total == f64::NEG_INFINITY {
             return Err(BankError::NoLikelihood { sample });
         }
-        self.next.divide(total);
         // Without outputs the total is one to rounding.
         Ok(if any { largest + total } else { 0.0 })
     }
@@ -187,10 +181,7 @@ impl<I> Bank<I> {
             gone += mass;
             self.next.remove(mode, index);
         }
-        if gone > 0.0 {
-            let kept = self.next.log_total();
-            self.next.divide(kept);
-        }
+        self.next.normalise();
         gone
     }
 
@@ -205,6 +196,19 @@ impl<I> Bank<I> {
             here.fill(0.0);
             here[hypothesis.mode] = 1.0;
         }
+    }
+
+    fn check_states(&self) -> Result<(), BankError> {
+        let sample = self.samples;
+        for &Hypothesis { mode, ref state, .. } in self.next.all() {
+            if !state.is_finite() {
+                return Err(BankError::NotFinite { what: "state", mode, sample });
+            }
+            if state.has_negative_variance() {
+                return Err(BankError::Covariance { mode, sample });
+            }
+        }
+        Ok(())
     }
 
     /// As long as there are more hypotheses than are kept, the lightest joins the one of its mode whose switch time is

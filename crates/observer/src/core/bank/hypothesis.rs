@@ -1,7 +1,7 @@
 //! What a bank holds: hypotheses about the mode and the time of its last switch.
 
 use super::gaussian::Gaussian;
-use super::log_weights::log_sum_exp;
+use super::log_weights::log_sum;
 
 /// One hypothesis: which mode it is and since when, how probable that is, and the state if it is so.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,14 +104,14 @@ impl Store {
         self.used.iter().sum()
     }
 
-    /// Logarithm of the sum of all weights.
-    pub(super) fn log_total(&self) -> f64 {
-        log_sum_exp(self.all().map(|h| h.log_weight))
-    }
-
-    /// Divides all weights by a number that is given as its logarithm.
-    pub(super) fn divide(&mut self, log_total: f64) {
-        self.all_mut().for_each(|h| h.log_weight -= log_total);
+    /// Divides all weights by their sum, and returns its logarithm; minus infinity, with the weights as they were, if there is
+    /// none.
+    pub(super) fn normalise(&mut self) -> f64 {
+        let (largest, rest) = log_sum(self.all().map(|h| h.log_weight));
+        if largest > f64::NEG_INFINITY {
+            self.all_mut().for_each(|h| h.log_weight = h.log_weight - largest - rest);
+        }
+        largest + rest
     }
 
     /// The lightest hypothesis, as mode and index, among modes that have at least so many.

@@ -2,11 +2,18 @@
 
 /// Logarithm of the sum of exponentials, safe from under- and overflow; minus infinity of none.
 pub(super) fn log_sum_exp(logs: impl Iterator<Item = f64> + Clone) -> f64 {
+    let (largest, rest) = log_sum(logs);
+    largest + rest
+}
+
+/// The same in two parts, the largest logarithm and what the others add to it. To divide by the sum, subtract one after the
+/// other: beside a very large one the other would be lost.
+pub(super) fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let largest = logs.clone().fold(f64::NEG_INFINITY, f64::max);
     if largest == f64::NEG_INFINITY {
-        return largest;
+        return (largest, 0.0);
     }
-    largest + logs.map(|l| (l - largest).exp()).sum::<f64>().ln()
+    (largest, logs.map(|l| (l - largest).exp()).sum::<f64>().ln())
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::gaussian::{Branch, Gaussian};
 use super::hypothesis::Hypothesis;
-use super::log_weights::log_sum_exp;
+use super::log_weights::log_sum;
 use super::system::Modes;
 
 /// Branches of one mode at a time.
@@ -55,12 +55,12 @@ impl Mixture {
     /// Puts all branches into one: weight, state and path. There is at least one.
     pub(super) fn merge_into<I>(&mut self, modes: &Modes<I>, into: &mut Hypothesis) {
         let branches = &mut self.rooms[self.mode][..self.used];
-        let total = log_sum_exp(self.log_weights[..self.used].iter().copied());
+        let (largest, rest) = log_sum(self.log_weights[..self.used].iter().copied());
         for (branch, log_weight) in branches.iter_mut().zip(&self.log_weights) {
-            branch.weight = (log_weight - total).exp();
+            branch.weight = (log_weight - largest - rest).exp();
         }
         modes.member(self.mode).merge(branches, &mut into.state);
-        into.log_weight = total;
+        into.log_weight = largest + rest;
         into.path.fill(0.0);
         for (branch, path) in branches.iter().zip(&self.paths) {
             into.path.iter_mut().zip(path).for_each(|(sum, p)| *sum += branch.weight * p);

@@ -1,7 +1,7 @@
 //! Odds of modes whose observers keep to themselves.
 
 use super::error::BankError;
-use super::log_weights::log_sum_exp;
+use super::log_weights::{log_sum, log_sum_exp};
 use super::system::{check_sum, log_switches};
 
 /// Odds between modes whose observers run apart, each on its own data, and do not mix: observers on a moving window
@@ -56,6 +56,11 @@ impl Odds {
         if let Some(mode) = log_densities.iter().position(|l| l.is_nan() || *l == f64::INFINITY) {
             return Err(BankError::NotFinite { what: "likelihood", mode, sample });
         }
+        // Against the largest: a weight would drown in the density of an outlier.
+        let likeliest = log_densities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if likeliest == f64::NEG_INFINITY {
+            return Err(BankError::NoLikelihood { sample });
+        }
         for (to, log_density) in log_densities.iter().enumerate() {
             let from = self.log_weights.iter().enumerate();
             let predicted = if sample == 0 {
@@ -63,16 +68,16 @@ impl Odds {
             } else {
                 log_sum_exp(from.map(|(from, weight)| weight + self.log_switches[from * count + to]))
             };
-            self.next[to] = predicted + log_density;
+            self.next[to] = predicted + (log_density - likeliest);
         }
-        let total = log_sum_exp(self.next.iter().copied());
-        if total == f64::NEG_INFINITY {
+        let (largest, rest) = log_sum(self.next.iter().copied());
+        if largest == f64::NEG_INFINITY {
             return Err(BankError::NoLikelihood { sample });
         }
-        self.next.iter_mut().for_each(|weight| *weight -= total);
+        self.next.iter_mut().for_each(|weight| *weight = *weight - largest - rest);
         std::mem::swap(&mut self.log_weights, &mut self.next);
         self.samples += 1;
-        Ok(total)
+        Ok(likeliest + largest + rest)
     }
 
     /// Probability of a mode; zero for a mode that there is not.

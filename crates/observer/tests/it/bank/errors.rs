@@ -165,6 +165,20 @@ fn a_covariance_that_is_lost_on_the_way_is_named() {
     assert_eq!(bank.push(&(), &[None, None]), Err(BankError::Covariance { mode: 1, sample: 1 }));
 }
 
+/// A tie at densities in which every weight drowns, and then a mode that alone explains the next sample: found by the test below.
+#[test]
+fn odds_are_probabilities_beyond_any_outlier() {
+    let mut bank = Bank::new(modes(0.2), &start(), BankOptions::default()).unwrap();
+    for y in [[Some(-3e40), Some(0.0)], [None, Some(0.0)], [Some(0.0), None], [None, Some(2e193)]] {
+        bank.push(&(), &y).unwrap_or_default();
+        assert!((bank.probability(0) + bank.probability(1) - 1.0).abs() < 1e-12);
+    }
+    let mut bank = Bank::new(modes(0.2), &start(), BankOptions::default()).unwrap();
+    bank.push(&(), &[Some(-1.85e79), None]).unwrap();
+    // Both predict the position with the same variance: what was measured says nothing about the mode.
+    assert!((bank.probability(0) - 0.7).abs() < 1e-12, "{}", bank.probability(0));
+}
+
 proptest! {
     /// Whatever is read, there is an answer: probabilities that sum to one, or an error after which they still do.
     #[test]
