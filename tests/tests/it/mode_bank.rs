@@ -9,7 +9,7 @@ use recon_tests::belt::{Entry, belt_velocity, modes, start};
 use serde_json::Value;
 
 const TOLERANCE: f64 = 1e-10;
-const IMM: BankOptions = BankOptions { memory: Memory::MergedBeforeUpdate, drop: 0.0, lag: 0 };
+const IMM: BankOptions = BankOptions { memory: Memory::MergedBeforeUpdate, drop: 0.0, skip: 0.0, lag: 0 };
 
 fn file(name: &str) -> Value {
     let path = format!("{}/data/{name}", env!("CARGO_MANIFEST_DIR"));
@@ -230,7 +230,7 @@ fn twelve_samples_with_all_switch_times_are_nearly_exact() {
     let toy = &oracle()["toy"];
     let mut last = f64::INFINITY;
     for (kept, filtered, smoothed, evidence) in [(8, 0.05, 0.05, 0.2), (24, 0.008, 0.01, 0.01)] {
-        let options = BankOptions { memory: Memory::Hypotheses(kept), drop: 0.0, lag: 12 };
+        let options = BankOptions { memory: Memory::Hypotheses(kept), drop: 0.0, skip: 0.0, lag: 12 };
         let mut bank = Bank::new(modes(Entry::TRUE), &start(), options).unwrap();
         let mut errors = Vec::new();
         for (k, y) in numbers(&toy["y"]).into_iter().enumerate() {

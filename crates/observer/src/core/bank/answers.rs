@@ -26,7 +26,8 @@ impl<I> Bank<I> {
         self.log_evidence
     }
 
-    /// Sum of the probabilities that were given up ([`BankOptions::drop`]): if the model is true, the expected probability that
+    /// Sum of the probabilities that were given up ([`BankOptions::drop`](crate::BankOptions::drop),
+    /// [`BankOptions::skip`](crate::BankOptions::skip)): if the model is true, the expected probability that
     /// the true hypothesis is among the lost ones, and over the threshold `a` divided by `a`, a bound of the probability that
     /// the lost ones ever had more than `a` (Doob: a posterior probability is a martingale).
     #[must_use]

@@ -7,6 +7,9 @@ use super::mixture::Mixture;
 use super::options::{BankOptions, Memory};
 use super::system::{Modes, check_sum};
 
+/// Difference of a covariance from its transpose, as a share of its largest entry, that passes for rounding.
+const ASYMMETRY: f64 = 1e-9;
+
 /// A mode with its probability and its state: how a bank starts, and what it says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeState {
@@ -17,6 +20,80 @@ pub struct ModeState {
 }
 
 /// Observers of several modes of a system side by side, weighed by how well each predicts the same outputs.
+///
+/// The modes may have states of different size. Each sample is one step of all hypotheses, and a hypothesis is a mode and the
+/// time of its last switch; [`Memory`] says how many are kept. A bank makes nothing on the way: all room is made at the start.
+///
+/// A cart coasts (position and speed), or someone pushes it (the push is a state too); only its position is measured:
+///
+/// ```
+/// use nalgebra::{SMatrix, SVector};
+/// use observer::{Bank, BankOptions, Gaussian, KalmanMember, Landing, Model, ModeState, Modes, jump};
+///
+/// const DT: f64 = 0.05; // s
+///
+/// /// Position and speed, or position, speed and acceleration.
+/// struct Cart<const N: usize>;
+///
+/// impl<const N: usize> Model<N, 1> for Cart<N> {
+///     type Input = ();
+///     fn flow(&self, x: &SVector<f64, N>, (): &()) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+///         let f = SMatrix::from_fn(|i, j| match j as i32 - i as i32 { 0 => 1.0, 1 => DT, 2 => 0.5 * DT * DT, _ => 0.0 });
+///         (f * x, f)
+///     }
+///     fn output(&self, x: &SVector<f64, N>, (): &()) -> (SVector<f64, 1>, SMatrix<f64, 1, N>) {
+///         (SVector::<f64, 1>::new(x[0]), SMatrix::from_fn(|_, j| f64::from(u8::from(j == 0))))
+///     }
+///     fn process_noise(&self, _: &SVector<f64, N>, (): &()) -> Option<SMatrix<f64, N, N>> {
+///         Some(SMatrix::identity() * 1e-8)
+///     }
+///     fn scales(&self) -> SVector<f64, N> { SVector::from_element(1.0) }
+///     fn names(&self) -> [&'static str; N] {
+///         std::array::from_fn(|i| ["position", "speed", "acceleration"][i])
+///     }
+/// }
+///
+/// # fn main() -> Result<(), observer::BankError> {
+/// let variance = SVector::<f64, 1>::new(0.005 * 0.005); // of the position, the same sensor in both modes
+/// let coasts = Box::new(KalmanMember::new(Cart::<2>, variance)?);
+/// let pushed = Box::new(KalmanMember::new(Cart::<3>, variance)?);
+/// // One switch in a hundred samples; when a push begins it is drawn from what a hand can do, and at its end it is gone.
+/// let modes = Modes::new(vec![coasts, pushed], &[&[0.99, 0.01], &[0.01, 0.99]])?
+///     .with_jump(0, 1, jump(|x: &SVector<f64, 2>, (): &()| Landing {
+///         state: SVector::<f64, 3>::new(x[0], x[1], 0.0),
+///         map: SMatrix::<f64, 3, 2>::identity(),
+///         noise: SMatrix::from_diagonal(&SVector::<f64, 3>::new(0.0, 0.0, 2.0 * 2.0)),
+///     }))?
+///     .with_jump(1, 0, jump(|x: &SVector<f64, 3>, (): &()| Landing {
+///         state: SVector::<f64, 2>::new(x[0], x[1]),
+///         map: SMatrix::<f64, 2, 3>::identity(),
+///         noise: SMatrix::zeros(),
+///     }))?;
+/// let rest = Gaussian::new::<2>(&SVector::zeros(), &SMatrix::identity());
+/// let push = Gaussian::new::<3>(&SVector::zeros(), &SMatrix::identity());
+/// let start = [ModeState { probability: 0.99, state: rest }, ModeState { probability: 0.01, state: push }];
+/// let mut bank = Bank::new(modes, &start, BankOptions { lag: 20, ..BankOptions::default() })?;
+///
+/// // Coasts at 0.5 m/s for 2 s, then is pushed with 1.5 m/s^2.
+/// for k in 0..70 {
+///     let t = f64::from(k) * DT;
+///     let truth = 0.5 * t + 0.75 * (t - 2.0).max(0.0).powi(2);
+///     let noise = 0.005 * (f64::from(k * k) * 0.7).sin();
+///     bank.push(&(), &[Some(truth + noise)])?;
+///     if k == 40 {
+///         assert!(bank.probability(0) > 0.9); // the push has only just begun
+///     }
+/// }
+/// assert!(bank.probability(1) > 0.9);
+/// let push = &bank.mode_states()[1].state;
+/// assert!((push.mean[2] - 1.5).abs() < 3.0 * push.covariance[(2, 2)].sqrt());
+/// // What both modes know, over both: position and speed. And what was the mode 19 samples ago, now that more is known?
+/// let common = bank.common(&[&[0, 1], &[0, 1]])?;
+/// assert!((common.mean[1] - (0.5 + 1.5 * 1.45)).abs() < 0.1);
+/// assert!(bank.smoothed(19, 1).is_some_and(|p| p > 0.99));
+/// # Ok(())
+/// # }
+/// ```
 pub struct Bank<I> {
     pub(super) modes: Modes<I>,
     pub(super) options: BankOptions,
@@ -76,13 +153,18 @@ impl<I> Bank<I> {
             return Err(BankError::NotFinite { what: "reading", mode, sample });
         }
         self.next.clear();
+        let BankOptions { skip, drop, .. } = self.options;
+        let mut lost = 0.0;
         if sample == 0 {
             self.copy();
         } else {
             self.switch(input);
+            lost += self.next.give_up(|mass, _| mass < skip);
+            self.predict(input);
         }
         let log_density = self.weigh(input, measured)?;
-        let lost = self.drop_light();
+        // What goes comes back through the switches; as it is weighed before it goes, also through rare ones.
+        lost += self.next.give_up(|_, gone| drop > 0.0 && gone <= drop);
         self.note_modes();
         self.merge_lightest();
         self.check_states()?;
@@ -130,6 +212,9 @@ impl<I> Bank<I> {
                 self.mixture.merge_into(&self.modes, newcomer);
             }
         }
+    }
+
+    fn predict(&mut self, input: &I) {
         for hypothesis in self.next.all_mut() {
             self.modes.member(hypothesis.mode).predict(&mut hypothesis.state, input);
         }
@@ -164,25 +249,6 @@ impl<I> Bank<I> {
         }
         // Without outputs the total is one to rounding.
         Ok(if any { largest + total } else { 0.0 })
-    }
-
-    /// Gives up the lightest hypotheses as long as the mass of all that go stays within the options' share. What goes comes
-    /// back through the switches; as it is weighed before it goes, also through rare ones.
-    fn drop_light(&mut self) -> f64 {
-        let mut gone = 0.0;
-        if self.options.drop == 0.0 {
-            return gone;
-        }
-        while let Some((mode, index)) = self.next.lightest(1) {
-            let mass = self.next.of(mode)[index].probability();
-            if gone + mass > self.options.drop || self.next.count() == 1 {
-                break;
-            }
-            gone += mass;
-            self.next.remove(mode, index);
-        }
-        self.next.normalise();
-        gone
     }
 
     /// Writes the mode of this sample into every path.
@@ -236,6 +302,10 @@ fn check_start(state: &Gaussian, mode: usize, needed: usize) -> Result<(), BankE
     }
     if !state.is_finite() {
         return Err(BankError::NotFinite { what: "start", mode, sample: 0 });
+    }
+    let asymmetry = (&state.covariance - state.covariance.transpose()).amax();
+    if asymmetry > ASYMMETRY * state.covariance.amax() {
+        return Err(BankError::Covariance { mode, sample: 0 });
     }
     state.covariance.clone().cholesky().map(|_| ()).ok_or(BankError::Covariance { mode, sample: 0 })
 }

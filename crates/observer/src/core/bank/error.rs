@@ -127,9 +127,9 @@ pub enum BankError {
         /// Number of modes.
         needed: usize,
     },
-    /// A covariance is not positive definite.
+    /// A covariance is not symmetric and positive definite.
     #[error(
-        "the covariance of mode {mode} at sample {sample} is not positive definite; check its start, its jumps and its noise"
+        "the covariance of mode {mode} at sample {sample} is not symmetric and positive definite; check its start, its jumps and its noise"
     )]
     Covariance {
         /// The mode.
@@ -138,7 +138,9 @@ pub enum BankError {
         sample: usize,
     },
     /// What was given or computed is not finite.
-    #[error("the {what} of entry or mode {mode} at sample {sample} is not finite")]
+    #[error(
+        "the {what} of entry or mode {mode} at sample {sample} is not finite; leave it out, or scale the quantities"
+    )]
     NotFinite {
         /// What it is.
         what: &'static str,

@@ -114,6 +114,24 @@ impl Store {
         largest + rest
     }
 
+    /// Removes the lightest hypothesis, and the next, as long as `goes` says so of its probability and of that of all that are
+    /// then gone; the last one stays. Returns what went; the others are normalised.
+    pub(super) fn give_up(&mut self, goes: impl Fn(f64, f64) -> bool) -> f64 {
+        let mut gone = 0.0;
+        while let Some((mode, index)) = self.lightest(1) {
+            let mass = self.of(mode)[index].probability();
+            if self.count() == 1 || !goes(mass, gone + mass) {
+                break;
+            }
+            gone += mass;
+            self.remove(mode, index);
+        }
+        if gone > 0.0 {
+            self.normalise();
+        }
+        gone
+    }
+
     /// The lightest hypothesis, as mode and index, among modes that have at least so many.
     pub(super) fn lightest(&self, at_least: usize) -> Option<(usize, usize)> {
         let modes = (0..self.used.len()).filter(|m| self.used[*m] >= at_least);

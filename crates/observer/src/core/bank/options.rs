@@ -22,6 +22,10 @@ pub struct BankOptions {
     /// Probability that may be given up after each sample, from 0 to below 1, to run fewer hypotheses; with zero none is. Its sum
     /// is kept: [`Bank::lost`](crate::Bank::lost).
     pub drop: f64,
+    /// Probability, from 0 to below 1, under which a hypothesis is not even run, before a sample is weighed; what is skipped
+    /// is counted as given up. Keep it well below the probability of every switch that matters: a switch that is less likely
+    /// is never tried, however clearly the data speak for it.
+    pub skip: f64,
     /// Samples, the newest included, over which modes are smoothed; with zero they are not. Costs that many numbers for each
     /// mode and hypothesis, copied at each sample.
     pub lag: usize,
@@ -33,16 +37,17 @@ const MOST_NUMBERS: f64 = 536_870_912.0;
 impl Default for BankOptions {
     /// Eight hypotheses, nothing given up, no smoothing.
     fn default() -> Self {
-        Self { memory: Memory::Hypotheses(8), drop: 0.0, lag: 0 }
+        Self { memory: Memory::Hypotheses(8), drop: 0.0, skip: 0.0, lag: 0 }
     }
 }
 
 impl BankOptions {
     /// The largest number of hypotheses after a sample, for that many modes, the largest of them with so many states.
     pub(super) fn check(&self, modes: usize, states: usize) -> Result<usize, BankError> {
-        if !(0.0..1.0).contains(&self.drop) {
-            let (what, needed) = ("probability to drop", "from zero to below one");
-            return Err(BankError::Value { what, value: self.drop, needed });
+        for (what, value) in [("probability to drop", self.drop), ("probability to skip", self.skip)] {
+            if !(0.0..1.0).contains(&value) {
+                return Err(BankError::Value { what, value, needed: "from zero to below one" });
+            }
         }
         let kept = match self.memory {
             Memory::MergedBeforeUpdate => modes,

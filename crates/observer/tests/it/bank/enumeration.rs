@@ -109,7 +109,7 @@ fn with_switches_one_way_a_bank_is_exact() {
     let readings = readings(10);
     let exact = enumerate(0.0, &readings);
     assert_eq!(exact[9].len(), 11);
-    let options = BankOptions { memory: Memory::Hypotheses(11), drop: 0.0, lag: 10 };
+    let options = BankOptions { memory: Memory::Hypotheses(11), drop: 0.0, skip: 0.0, lag: 10 };
     let mut bank = Bank::new(modes(0.0), &start(), options).unwrap();
     for (k, y) in readings.iter().enumerate() {
         bank.push(&(), y).unwrap();
@@ -145,7 +145,8 @@ fn with_switches_both_ways_every_switch_time_is_nearly_exact() {
     let exact = enumerate(0.2, &readings);
     assert_eq!(exact[9].len(), 1024);
     let worst = |memory| {
-        let mut bank = Bank::new(modes(0.2), &start(), BankOptions { memory, drop: 0.0, lag: 0 }).unwrap();
+        let mut bank =
+            Bank::new(modes(0.2), &start(), BankOptions { memory, drop: 0.0, skip: 0.0, lag: 0 }).unwrap();
         let mut worst: f64 = 0.0;
         for (y, sequences) in readings.iter().zip(&exact) {
             bank.push(&(), y).unwrap();

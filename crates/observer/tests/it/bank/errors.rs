@@ -97,6 +97,10 @@ fn unusable_starts_and_options_are_named() {
         with(&|s, _| s[1].state.covariance[(2, 2)] = -1e-3),
         Some(BankError::Covariance { mode: 1, sample: 0 })
     );
+    assert_eq!(
+        with(&|s, _| s[1].state.covariance[(0, 2)] += 1e-3),
+        Some(BankError::Covariance { mode: 1, sample: 0 })
+    );
     // Semidefinite is not definite.
     assert_eq!(
         with(&|s, _| s[0].state.covariance = DMatrix::from_element(2, 2, 1.0)),
@@ -114,8 +118,9 @@ fn unusable_starts_and_options_are_named() {
         with(&|_, o| o.memory = Memory::Hypotheses(1)),
         Some(BankError::Hypotheses { found: 1, needed: 2 })
     );
-    for drop in [1.0, -1e-3, f64::NAN] {
-        assert!(matches!(with(&|_, o| o.drop = drop), Some(BankError::Value { .. })));
+    for share in [1.0, -1e-3, f64::NAN] {
+        assert!(matches!(with(&|_, o| o.drop = share), Some(BankError::Value { .. })));
+        assert!(matches!(with(&|_, o| o.skip = share), Some(BankError::Value { .. })));
     }
     for (hypotheses, lag) in [(usize::MAX, 0), (8, usize::MAX), (1 << 20, 1 << 10)] {
         let change = |o: &mut BankOptions| (o.memory, o.lag) = (Memory::Hypotheses(hypotheses), lag);

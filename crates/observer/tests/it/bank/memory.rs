@@ -128,7 +128,7 @@ fn no_more_hypotheses_than_are_kept() {
 #[test]
 fn no_sample_allocates() {
     for memory in [Memory::MergedBeforeUpdate, Memory::Hypotheses(8)] {
-        let mut bank = bank(0.2, BankOptions { memory, drop: 1e-6, lag: 6 });
+        let mut bank = bank(0.2, BankOptions { memory, drop: 1e-6, skip: 1e-9, lag: 6 });
         let readings = readings(50);
         let mut merged = 0;
         let counted = allocation_counter::measure(|| {

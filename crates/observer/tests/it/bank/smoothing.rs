@@ -47,7 +47,8 @@ fn one_mode_backward_is_the_batch_solution() {
 fn the_pass_backward_is_near_the_paths_but_not_equal() {
     let readings = readings(12);
     let run = |memory, lag| {
-        let mut bank = Bank::new(modes(0.0), &start(), BankOptions { memory, drop: 0.0, lag }).unwrap();
+        let mut bank =
+            Bank::new(modes(0.0), &start(), BankOptions { memory, drop: 0.0, skip: 0.0, lag }).unwrap();
         let each = |y: &[Option<f64>; 2]| {
             bank.push(&(), y).unwrap();
             bank.mode_states()
