@@ -19,7 +19,7 @@ use nalgebra::{DMatrix, DVector};
 ///
 /// # Errors
 /// [`BankError::Size`] for lists of unequal length or states that are not those of the modes; [`BankError::Covariance`] for a
-/// covariance that is not positive definite.
+/// covariance that is not positive definite; the errors of rates ([`Modes::with_rates`]).
 pub fn smooth_backward<I>(
     modes: &Modes<I>,
     filtered: &[Vec<ModeState>],
@@ -70,10 +70,14 @@ fn step<I>(
     after: &[ModeState],
     sample: usize,
 ) -> Result<Vec<ModeState>, BankError> {
+    let mut log_rows = vec![vec![0.0; modes.count()]; modes.count()];
+    for (from, (state, row)) in before.iter().zip(&mut log_rows).enumerate() {
+        modes.log_row(from, &state.state, input, row)?;
+    }
     // Branches of each mode before, with their joint probability with a mode after.
     let mut branches: Vec<Vec<Branch>> = before.iter().map(|_| Vec::new()).collect();
     for (to, then) in after.iter().enumerate().filter(|(_, then)| then.probability > 0.0) {
-        let mut pairs = predictions(modes, before, to, input);
+        let mut pairs = predictions(modes, before, &log_rows, to, input);
         let total = log_sum_exp(pairs.iter().map(|p| p.log_weight));
         pairs.iter_mut().for_each(|p| p.log_weight -= total);
         let future =
@@ -94,11 +98,17 @@ fn step<I>(
 }
 
 /// What every mode before predicts for mode `to`.
-fn predictions<I>(modes: &Modes<I>, before: &[ModeState], to: usize, input: &I) -> Vec<Pair> {
+fn predictions<I>(
+    modes: &Modes<I>,
+    before: &[ModeState],
+    log_rows: &[Vec<f64>],
+    to: usize,
+    input: &I,
+) -> Vec<Pair> {
     let possible = before
         .iter()
         .enumerate()
-        .filter(|(from, b)| b.probability > 0.0 && modes.log_switch(*from, to) > f64::NEG_INFINITY);
+        .filter(|(from, b)| b.probability > 0.0 && log_rows[*from][to] > f64::NEG_INFINITY);
     possible
         .map(|(from, b)| {
             let member = modes.member(to);
@@ -109,7 +119,7 @@ fn predictions<I>(modes: &Modes<I>, before: &[ModeState], to: usize, input: &I) 
                 modes.jump(from, to).map_or_else(|| flow.clone(), |jump| &flow * jump.map(&b.state, input));
             member.predict(&mut predicted, input);
             let cross = &b.state.covariance * whole.transpose();
-            Pair { from, log_weight: b.probability.ln() + modes.log_switch(from, to), predicted, cross }
+            Pair { from, log_weight: b.probability.ln() + log_rows[from][to], predicted, cross }
         })
         .collect()
 }

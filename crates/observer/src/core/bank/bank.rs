@@ -141,7 +141,8 @@ impl<I> Bank<I> {
     /// was measured, given all before it. Allocates nothing.
     ///
     /// # Errors
-    /// [`BankError::Readings`] and [`BankError::NotFinite`] for an unusable sample; [`BankError::Covariance`],
+    /// [`BankError::Readings`] and [`BankError::NotFinite`] for an unusable sample; [`BankError::RowSum`] and
+    /// [`BankError::Value`] for rates ([`Modes::with_rates`]) that are no probabilities; [`BankError::Covariance`],
     /// [`BankError::NotFinite`] and [`BankError::NoLikelihood`] where the modes cannot deal with it. The bank is then as before.
     pub fn push(&mut self, input: &I, measured: &[Option<f64>]) -> Result<f64, BankError> {
         let sample = self.samples;
@@ -158,7 +159,7 @@ impl<I> Bank<I> {
         if sample == 0 {
             self.copy();
         } else {
-            self.switch(input);
+            self.switch(input)?;
             lost += self.next.give_up(|mass, _| mass < skip);
             self.predict(input);
         }
@@ -184,17 +185,16 @@ impl<I> Bank<I> {
 
     /// Those that stay go on each by itself; those that come into a mode from others become one hypothesis of it, or, merged
     /// before the update, join those that stay.
-    fn switch(&mut self, input: &I) {
+    fn switch(&mut self, input: &I) -> Result<(), BankError> {
+        for Hypothesis { mode, state, log_row, .. } in self.now.all_mut() {
+            self.modes.log_row(*mode, state, input, log_row)?;
+        }
         for to in 0..self.modes.count() {
             self.mixture.clear();
             for from in 0..self.modes.count() {
-                let log_switch = self.modes.log_switch(from, to);
-                if log_switch == f64::NEG_INFINITY {
-                    continue;
-                }
                 let stays = from == to && self.options.memory != Memory::MergedBeforeUpdate;
                 for hypothesis in self.now.of(from) {
-                    let log_weight = hypothesis.log_weight + log_switch;
+                    let log_weight = hypothesis.log_weight + hypothesis.log_row[to];
                     if log_weight == f64::NEG_INFINITY {
                         continue;
                     }
@@ -212,6 +212,7 @@ impl<I> Bank<I> {
                 self.mixture.merge_into(&self.modes, newcomer);
             }
         }
+        Ok(())
     }
 
     fn predict(&mut self, input: &I) {

@@ -11,6 +11,8 @@ pub struct Hypothesis {
     pub(super) log_weight: f64,
     /// Of the sample that is being taken in.
     pub(super) log_density: f64,
+    /// Logarithms of the probabilities to go on to each mode.
+    pub(super) log_row: Vec<f64>,
     pub(super) state: Gaussian,
     /// Probability of each mode at the latest samples if this hypothesis is true; a ring with one row a sample.
     pub(super) path: Vec<f64>,
@@ -60,6 +62,7 @@ impl Store {
                 since: 0,
                 log_weight: f64::NEG_INFINITY,
                 log_density: 0.0,
+                log_row: vec![0.0; states.len()],
                 state: Gaussian::zeros(size),
                 path: vec![0.0; path * states.len()],
             };

@@ -8,6 +8,9 @@ use super::member::Member;
 /// Probabilities must sum to one this exactly.
 const SUM: f64 = 1e-9;
 
+/// Fills a row of switch probabilities from the state in a mode and the input of the interval that follows.
+type Rates<I> = Box<dyn Fn(&Gaussian, &I, &mut [f64]) + Send>;
+
 /// The modes of a system and the switches between them: all that does not change with the data.
 pub struct Modes<I> {
     members: Vec<Box<dyn Member<I>>>,
@@ -15,6 +18,8 @@ pub struct Modes<I> {
     log_switches: Vec<f64>,
     /// By row; none where states are copied.
     jumps: Vec<Option<Box<dyn Jump<I>>>>,
+    /// By mode; none where the row is that of the table.
+    rates: Vec<Option<Rates<I>>>,
 }
 
 impl<I> Modes<I> {
@@ -33,7 +38,8 @@ impl<I> Modes<I> {
             return Err(BankError::Outputs { mode, found: members[mode].outputs(), needed: outputs });
         }
         let log_switches = log_switches(count, switches)?;
-        Ok(Self { members, log_switches, jumps: (0..count * count).map(|_| None).collect() })
+        let jumps = (0..count * count).map(|_| None).collect();
+        Ok(Self { members, log_switches, jumps, rates: (0..count).map(|_| None).collect() })
     }
 
     /// With a map of states for the switch from one mode to another.
@@ -54,6 +60,26 @@ impl<I> Modes<I> {
             return Err(BankError::Jump { from, to, found, needed });
         }
         self.jumps[from * count + to] = Some(jump);
+        Ok(self)
+    }
+
+    /// With probabilities of the switches from one mode that depend on its state and on the input of the interval that follows:
+    /// `rates` fills the row. Where the table has a zero it must too.
+    ///
+    /// This is the place of a condition that one mode has and others have not, such as that nothing slides while it sticks: as an
+    /// output of that mode alone it would make odds depend on its unit. As a probability to switch of
+    /// `h exp(-|s|^2 / (2 c^2))` at a slip `s` it is a number, and its mean over a Gaussian slip with mean `m` and covariance
+    /// `P`, of `d` components, is `h (2 pi)^(d / 2) c^d N(m; 0, P + c^2)`. What the switch says of the state belongs into the jump.
+    ///
+    /// # Errors
+    /// [`BankError::NoMode`] for a mode that there is not. Rows that are no probabilities are errors of [`Bank::push`](crate::Bank::push).
+    pub fn with_rates(
+        mut self,
+        from: usize,
+        rates: impl Fn(&Gaussian, &I, &mut [f64]) + Send + 'static,
+    ) -> Result<Self, BankError> {
+        let last = self.members.len() - 1;
+        *self.rates.get_mut(from).ok_or(BankError::NoMode { mode: from, last })? = Some(Box::new(rates));
         Ok(self)
     }
 
@@ -87,8 +113,37 @@ impl<I> Modes<I> {
         &*self.members[mode]
     }
 
-    pub(super) fn log_switch(&self, from: usize, to: usize) -> f64 {
+    fn log_switch(&self, from: usize, to: usize) -> f64 {
         self.log_switches[from * self.count() + to]
+    }
+
+    /// Logarithms of the probabilities to go from a mode in this state to each mode.
+    pub(super) fn log_row(
+        &self,
+        from: usize,
+        state: &Gaussian,
+        input: &I,
+        row: &mut [f64],
+    ) -> Result<(), BankError> {
+        let count = self.count();
+        let table = &self.log_switches[from * count..(from + 1) * count];
+        let Some(rates) = &self.rates[from] else {
+            row.copy_from_slice(table);
+            return Ok(());
+        };
+        row.fill(0.0);
+        rates(state, input, row);
+        check_row(from, row)?;
+        if let Some(to) = (0..count).find(|&to| row[to] > 0.0 && table[to] == f64::NEG_INFINITY) {
+            let what = "rate of a switch that the table excludes";
+            return Err(BankError::Value {
+                what,
+                value: row[to],
+                needed: "zero, or the table's entry above zero",
+            });
+        }
+        row.iter_mut().for_each(|p| *p = p.ln());
+        Ok(())
     }
 
     pub(super) fn jump(&self, from: usize, to: usize) -> Option<&dyn Jump<I>> {
@@ -104,6 +159,13 @@ impl<I> Modes<I> {
     }
 }
 
+fn check_row(mode: usize, row: &[f64]) -> Result<(), BankError> {
+    check_sum("switch probability", row.iter().copied()).map_err(|error| match error {
+        BankError::Sum { sum, .. } => BankError::RowSum { mode, sum },
+        other => other,
+    })
+}
+
 /// Logarithms of the switch probabilities, row by row.
 pub(super) fn log_switches(count: usize, switches: &[&[f64]]) -> Result<Vec<f64>, BankError> {
     if switches.len() != count {
@@ -115,10 +177,7 @@ pub(super) fn log_switches(count: usize, switches: &[&[f64]]) -> Result<Vec<f64>
             let what = "row of switch probabilities";
             return Err(BankError::Size { what, mode, found: row.len(), needed: count });
         }
-        check_sum("switch probabilities", row.iter().copied()).map_err(|error| match error {
-            BankError::Sum { sum, .. } => BankError::RowSum { mode, sum },
-            other => other,
-        })?;
+        check_row(mode, row)?;
     }
     Ok(switches.iter().flat_map(|row| row.iter().map(|p| p.ln())).collect())
 }

@@ -4,6 +4,7 @@ mod enumeration;
 mod errors;
 mod evidence;
 mod memory;
+mod rates;
 mod rotations;
 mod smoothing;
 mod target;
