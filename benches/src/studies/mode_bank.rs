@@ -3,7 +3,7 @@
 use cpu_time::ThreadTime;
 use nalgebra::{SMatrix, SVector};
 use recon::observer::{
-    Bank, BankError, BankOptions, Gaussian, KalmanMember, Memory, ModeState, Model, Modes,
+    Bank, BankError, BankOptions, Gaussian, KalmanMember, Memory, ModeState, Model, Modes, smooth_backward,
 };
 use recon_tests::belt::{Entry, belt_velocity, modes, run, start};
 use std::time::Duration;
@@ -89,6 +89,22 @@ pub(crate) fn main() -> Result<(), BankError> {
             cost(options)?
         );
     }
+    println!("\n## Modes after the fact\n");
+    println!(
+        "Paths: what each hypothesis remembers of its modes. Backward: states and modes by `smooth_backward`.\n"
+    );
+    println!("| smoother | mean error against exact paths | Brier | confident, wrong |");
+    println!("|---|---|---|---|");
+    for (name, memory) in [
+        ("paths of all", EXACT),
+        ("paths of 16", Memory::Hypotheses(16)),
+        ("paths of 8", eight),
+        ("paths, merged before the update", Memory::MergedBeforeUpdate),
+    ] {
+        smoothed(name, &tell(Entry::TRUE, with(memory, SAMPLES))?.smoothed, &exact);
+    }
+    smoothed("backward, merged before the update", &backward(Memory::MergedBeforeUpdate)?, &exact);
+    smoothed("backward from 8", &backward(eight)?, &exact);
     println!("\n## What fills the velocity at the start of sliding\n");
     println!("Merged before the update, but for the last column: eight hypotheses.\n");
     println!("| filling | error: mean, 99 %, largest | Brier | confident, wrong | mean error with eight |");
@@ -107,7 +123,7 @@ pub(crate) fn main() -> Result<(), BankError> {
         println!(
             "| {name} | {} | {brier:.4} | {} | {:.4} |",
             told.errors(&exact),
-            told.confident(),
+            told.confident(&told.filtered),
             mean(&eight.off(&exact))
         );
     }
@@ -168,11 +184,11 @@ impl Told {
         mean(&odds.iter().zip(&self.slides).map(off).collect::<Vec<_>>())
     }
 
-    fn confident(&self) -> String {
-        let sure = self.filtered.iter().zip(&self.slides).filter(|(p, _)| p.max(1.0 - **p) > CONFIDENT);
+    fn confident(&self, odds: &[f64]) -> String {
+        let sure = odds.iter().zip(&self.slides).filter(|(p, _)| p.max(1.0 - **p) > CONFIDENT);
         let (count, wrong) =
             sure.fold((0, 0), |(n, w), (p, slides)| (n + 1, w + u32::from((*p > 0.5) != *slides)));
-        let share = f64::from(count) / self.filtered.len() as f64;
+        let share = f64::from(count) / odds.len() as f64;
         format!("{share:.3}, {:.4}", f64::from(wrong) / f64::from(count.max(1)))
     }
 }
@@ -188,11 +204,33 @@ fn kept(name: &str, memory: Memory, exact: &Told) -> Result<(), BankError> {
         told.errors(exact),
         told.brier(&told.filtered),
         told.brier(&told.smoothed),
-        told.confident(),
+        told.confident(&told.filtered),
         mean(&told.log_evidence) - mean(&exact.log_evidence),
         cost(with(memory, 0))?
     );
     Ok(())
+}
+
+fn smoothed(name: &str, odds: &[f64], exact: &Told) {
+    let off: Vec<f64> = odds.iter().zip(&exact.smoothed).map(|(a, b)| (a - b).abs()).collect();
+    println!("| {name} | {:.4} | {:.4} | {} |", mean(&off), exact.brier(odds), exact.confident(odds));
+}
+
+/// Probabilities of sliding by the pass backward.
+fn backward(memory: Memory) -> Result<Vec<f64>, BankError> {
+    let mut odds = Vec::new();
+    let inputs: Vec<f64> = (0..SAMPLES).map(belt_velocity).collect();
+    for seed in 0..RUNS {
+        let mut bank = Bank::new(modes(Entry::TRUE), &start(), with(memory, 0))?;
+        let mut filtered = Vec::new();
+        for (input, (_, y)) in inputs.iter().zip(run(seed, SAMPLES)) {
+            bank.push(input, &[Some(y)])?;
+            filtered.push(bank.mode_states());
+        }
+        let states = smooth_backward(bank.modes(), &filtered, &inputs)?;
+        odds.extend(states.iter().map(|modes| modes[1].probability));
+    }
+    Ok(odds)
 }
 
 /// Microseconds a sample.

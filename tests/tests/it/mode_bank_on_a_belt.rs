@@ -3,7 +3,7 @@
 //! The reference keeps every switch time and merges what lies beyond the last switch; against all sequences of modes it is off
 //! by 2e-4 in the mean.
 
-use recon::observer::{Bank, BankOptions, Memory};
+use recon::observer::{Bank, BankOptions, Memory, smooth_backward};
 use recon_tests::belt::{Entry, belt_velocity, modes, run, start};
 
 const RUNS: u64 = 40;
@@ -138,4 +138,31 @@ fn what_is_given_up_is_bounded_and_told() {
         );
     }
     assert!(exact.iter().all(|o| o.lost == 0.0));
+}
+
+/// The pass backward adds states; its modes are nearer to the exact ones than the filter's, and farther than the paths of a bank
+/// that keeps enough.
+#[test]
+fn the_pass_backward_lies_between_filter_and_paths() {
+    let exact = all(Entry::TRUE, with(EVERY_SWITCH, SAMPLES));
+    let paths = all(Entry::TRUE, with(Memory::Hypotheses(16), SAMPLES));
+    let inputs: Vec<f64> = (0..SAMPLES).map(belt_velocity).collect();
+    let backward = |seed| {
+        let options = with(Memory::MergedBeforeUpdate, 0);
+        let mut bank = Bank::new(modes(Entry::TRUE), &start(), options).unwrap();
+        let mut filtered = Vec::new();
+        for (input, (_, y)) in inputs.iter().zip(run(seed, SAMPLES)) {
+            bank.push(input, &[Some(y)]).unwrap();
+            filtered.push(bank.mode_states());
+        }
+        let states = smooth_backward(bank.modes(), &filtered, &inputs).unwrap();
+        states.iter().map(|modes| modes[1].probability).collect()
+    };
+    let off = |smoothed: &dyn Fn(u64) -> Vec<f64>| {
+        let of = |seed: u64| smoothed(seed).into_iter().zip(exact[seed as usize].smoothed.clone());
+        mean((0..RUNS).flat_map(of).map(|(a, b)| (a - b).abs()))
+    };
+    let (filtered, backward) = (off(&|seed| exact[seed as usize].filtered.clone()), off(&backward));
+    let paths = off(&|seed| paths[seed as usize].smoothed.clone());
+    assert!(backward < 0.25 * filtered && backward > 2.0 * paths, "{filtered} {backward} {paths}");
 }

@@ -139,12 +139,26 @@ impl Future {
             .collect();
         let mut predicted = Gaussian::zeros(smoothed.mean.len());
         modes.member(to).merge(&branches, &mut predicted);
-        let (after, before) = (inverse(&smoothed.covariance)?, inverse(&predicted.covariance)?);
-        let vector = &after * &smoothed.mean - &before * &predicted.mean;
-        // Where the future seems to take information away, moments were matched that are not Gaussian.
-        let mut eigen = (after - before).symmetric_eigen();
-        eigen.eigenvalues.apply(|v| *v = v.max(0.0));
-        Some(Self { information: eigen.recompose(), vector })
+        // In deviations of the predicted state, so that units do not matter to what is cut off below.
+        let root = predicted.covariance.cholesky()?.unpack();
+        let whitened = root.solve_lower_triangular(&smoothed.covariance)?.transpose();
+        let mut eigen = root.solve_lower_triangular(&whitened)?.symmetric_eigen();
+        // Smoothed mean along each eigenvector, and then what the future says of it: information, and that times the mean.
+        let mut told = eigen.eigenvectors.transpose()
+            * root.solve_lower_triangular(&(&smoothed.mean - &predicted.mean))?;
+        for (value, told) in eigen.eigenvalues.iter_mut().zip(told.iter_mut()) {
+            if *value <= 0.0 {
+                return None;
+            }
+            // Where the future seems to take information away, moments were matched that are not Gaussian: it says nothing.
+            *told = if *value < 1.0 { *told / *value } else { 0.0 };
+            *value = (1.0 / *value - 1.0).max(0.0);
+        }
+        let back = root.transpose();
+        let half = back.solve_upper_triangular(&eigen.eigenvectors)?;
+        let information = &half * DMatrix::from_diagonal(&eigen.eigenvalues) * half.transpose();
+        let vector = half * told + &information * predicted.mean;
+        Some(Self { information, vector })
     }
 
     /// Logarithm of what the future adds to a pair's odds, and the state before given that pair and the future.
