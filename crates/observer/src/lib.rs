@@ -29,10 +29,11 @@ pub use contacts::{
 };
 pub use core::{
     Arrival, Bank, BankError, BankOptions, BatchOptions, BatchSolution, Branch, EkfEstimate,
-    ExtendedKalmanFilter, Gaussian, Hypothesis, Jump, KalmanMember, Landing, Link, Member, Memory, ModeState,
-    Model, Modes, NewtonEstimate, NewtonObserver, NewtonOptions, ObserverError, Odds, Report, Sample, Start,
-    Status, describe_direction, jump, match_rotations, rk4, rk4_linearised, rotation_difference,
-    rotation_retract, rotation_slope, smooth_backward, solve_batch, solve_batch_along, solve_batch_from,
+    ExtendedKalmanFilter, Gaussian, Hypothesis, Jump, KalmanMember, Landing, Link, Member, Memory, ModeLabel,
+    ModeState, Model, Modes, NewtonEstimate, NewtonObserver, NewtonOptions, ObserverError, Odds, Report,
+    Sample, Start, Status, describe_direction, jump, match_rotations, rk4, rk4_linearised,
+    rotation_difference, rotation_retract, rotation_slope, smooth_backward, solve_batch, solve_batch_along,
+    solve_batch_from,
 };
 #[cfg(feature = "palms")]
 pub use faults::{SensorFault, Suspect};

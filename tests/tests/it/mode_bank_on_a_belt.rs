@@ -3,7 +3,7 @@
 //! The reference keeps every switch time and merges what lies beyond the last switch; against all sequences of modes it is off
 //! by 2e-4 in the mean.
 
-use recon::observer::{Bank, BankOptions, Memory, smooth_backward};
+use recon::observer::{Bank, BankOptions, Memory, ModeLabel, smooth_backward};
 use recon_tests::belt::{Entry, belt_velocity, modes, run, start};
 
 const RUNS: u64 = 40;
@@ -105,6 +105,31 @@ fn odds_mean_what_they_say() {
     assert!(wrong * 100 < confident, "{wrong} of {confident}");
     // A run holds about four episodes: 160 of them, whose share of sliding has a deviation of some 0.04.
     assert!((sum - f64::from(sliding as u32)).abs() < 0.04 * samples, "{sum} {sliding} of {samples}");
+}
+
+/// A label that waits for 75 % changes not much more often than the mode does; one that follows the likelier mode flutters. Both
+/// are right about as often.
+#[test]
+fn a_label_that_waits_does_not_flutter() {
+    let odds = all(Entry::TRUE, with(Memory::Hypotheses(8), 0));
+    let mut truth = 0;
+    let mut told = [(0.5, 0, 0), (0.75, 0, 0)];
+    for (odds, seed) in odds.iter().zip(0..) {
+        let run = run(seed, SAMPLES);
+        truth += run.windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
+        for (level, changes, right) in &mut told {
+            let mut label = ModeLabel::new(*level).unwrap();
+            let labels: Vec<usize> = odds.filtered.iter().map(|p| label.follow([1.0 - p, *p])).collect();
+            *changes += labels.windows(2).filter(|pair| pair[0] != pair[1]).count();
+            *right += labels.iter().zip(&run).filter(|(l, (slides, _))| **l == usize::from(*slides)).count();
+        }
+    }
+    let [(_, flutters, hasty), (_, waits, patient)] = told;
+    assert!(waits < truth + truth / 4 && flutters > 2 * waits, "{truth} {flutters} {waits}");
+    assert!(hasty * 100 > patient * 98 && patient * 100 > hasty * 96, "{hasty} {patient}");
+    assert!(
+        ModeLabel::new(0.49).is_err() && ModeLabel::new(1.0).is_err() && ModeLabel::new(f64::NAN).is_err()
+    );
 }
 
 /// Zeros in place of the velocity that sticking does not have pull the velocity to zero at every sample.

@@ -14,8 +14,8 @@ mod window;
 
 pub use bank::{
     Bank, BankError, BankOptions, Branch, Gaussian, Hypothesis, Jump, KalmanMember, Landing, Member, Memory,
-    ModeState, Modes, Odds, jump, match_rotations, rotation_difference, rotation_retract, rotation_slope,
-    smooth_backward,
+    ModeLabel, ModeState, Modes, Odds, jump, match_rotations, rotation_difference, rotation_retract,
+    rotation_slope, smooth_backward,
 };
 pub use batch::{BatchOptions, BatchSolution, solve_batch, solve_batch_along, solve_batch_from};
 pub use ekf::{EkfEstimate, ExtendedKalmanFilter};
