@@ -11,11 +11,11 @@ use nalgebra::{DMatrix, DVector};
 /// after each one, and the `inputs` of the same samples.
 ///
 /// Backward over each pair of modes with its jump, in the space of the later mode; what the future says is the smoothed
-/// Gaussian divided by the predicted one. With one mode it is the smoother of Rauch, Tung and Striebel, and exact where the
-/// model is linear. With several it is **not reliable**: what a mode holds is not one Gaussian (it was entered at different
-/// times), and probabilities beyond 0.99 are wrong about ten times as often as they say. For the modes use
-/// [`Bank::smoothed`](crate::Bank::smoothed) with eight hypotheses or more; this function adds states. States that are no vector
-/// space are treated as if they were one.
+/// Gaussian divided by the predicted one, and nothing where that would take information away. With one mode it is the smoother
+/// of Rauch, Tung and Striebel, and exact where the model is linear. With several it is **not reliable**: what a mode holds is
+/// not one Gaussian (it was entered at different times). Where it was measured, probabilities beyond 0.99 were wrong twice as
+/// often as those of exact paths (`docs/observer-banks.md`). For the modes use [`Bank::smoothed`](crate::Bank::smoothed) with
+/// eight hypotheses or more; this function adds states. States that are no vector space are treated as if they were one.
 ///
 /// # Errors
 /// [`BankError::Size`] for lists of unequal length or states that are not those of the modes; [`BankError::Covariance`] for a
