@@ -8,3 +8,4 @@ mod rates;
 mod rotations;
 mod smoothing;
 mod target;
+mod units;

@@ -97,6 +97,31 @@ fn odds_do_not_depend_on_the_world_s_axes() {
     }
 }
 
+/// What a bank merges are rotations: one step in which nothing turns and nothing is measured.
+#[test]
+fn a_bank_merges_as_rotations_are_matched() {
+    let member = || {
+        let model = Attitude { bias: Vector3::zeros(), g: Vector3::z() };
+        Box::new(KalmanMember::new(model, Vector3::from_element(0.5)).unwrap()) as _
+    };
+    let modes = Modes::new(vec![member(), member()], &[&[0.8, 0.2], &[0.3, 0.7]]).unwrap();
+    let rotations = [Vector3::new(0.3, -0.4, 1.0), Vector3::new(-0.2, 0.2, 1.4)];
+    let p =
+        [Vector3::new(0.02, 0.01, 0.05), Vector3::new(0.1, 0.04, 0.03)].map(|v| Matrix3::from_diagonal(&v));
+    let at = |i: usize, probability| ModeState { probability, state: Gaussian::new(&rotations[i], &p[i]) };
+    let options = BankOptions { memory: Memory::MergedBeforeUpdate, ..BankOptions::default() };
+    let mut bank = Bank::new(modes, &[at(0, 0.6), at(1, 0.4)], options).unwrap();
+    for _ in 0..2 {
+        bank.push(&Vector3::zeros(), &[None; 3]).unwrap();
+    }
+    let stayed = 0.6 * 0.8 / (0.6 * 0.8 + 0.4 * 0.3);
+    let weighted = [(stayed, rotations[0], p[0]), (1.0 - stayed, rotations[1], p[1])];
+    let (mean, covariance) = match_rotations(&weighted).unwrap();
+    let found = bank.mode_states()[0].state.read::<3>();
+    assert!((found.0 - mean).amax() < 1e-13);
+    assert!((found.1 - covariance - Matrix3::identity() * 1e-4).amax() < 1e-13);
+}
+
 /// The slope against differences of the step itself, from next to nothing to nearly half a turn.
 #[test]
 fn the_slope_is_the_derivative_of_the_difference() {
