@@ -2,9 +2,9 @@
 //!
 //! The generic part needs a [`Model`] (flow, output, linearisation) and knows nothing about palms: the Newton-method
 //! observer on a moving window ([`NewtonObserver`]), all samples at once ([`solve_batch`]) and the extended Kalman filter
-//! ([`ExtendedKalmanFilter`]), and for a system that changes its mode a bank of filters, one for each ([`Bank`]). Each
-//! estimate of one model comes with a [`Report`]: status, residual, rank, smallest information and its
-//! direction, condition, covariance.
+//! ([`ExtendedKalmanFilter`]). Each estimate comes with a [`Report`]: status, residual, rank, smallest information and its
+//! direction, condition, covariance. For a system that changes between modes there is a bank of filters, one for each
+//! ([`Bank`]), which says how probable each mode is.
 //!
 //! The feature `palms` (on by default) adds the estimators of shape and motion from touch.
 

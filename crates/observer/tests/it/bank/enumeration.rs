@@ -18,11 +18,13 @@ fn dynamic<const R: usize, const C: usize>(m: &nalgebra::SMatrix<f64, R, C>) -> 
     DMatrix::from_column_slice(R, C, m.as_slice())
 }
 
-/// The switch in plain matrices: the third state is dropped or drawn.
+/// The states of each mode.
+const SIZES: [usize; 3] = [2, 3, 1];
+
+/// The switch in plain matrices: what the new mode lacks is dropped, an acceleration is drawn.
 fn switched(s: &Sequence, to: usize, probability: f64) -> Sequence {
-    let size = 2 + to;
-    let from = s.x.len();
-    let map = DMatrix::from_fn(size, from, |i, j| f64::from(u8::from(i == j && (i < 2 || size == from))));
+    let (size, from) = (SIZES[to], s.x.len());
+    let map = DMatrix::identity(size, from);
     let mut p = &map * &s.p * map.transpose();
     if size > from {
         p[(2, 2)] += ENTRY * ENTRY;
@@ -33,10 +35,10 @@ fn switched(s: &Sequence, to: usize, probability: f64) -> Sequence {
 }
 
 fn predicted(s: Sequence) -> Sequence {
-    let (f, q) = if s.x.len() == 2 {
-        (dynamic(&cruise_flow()), dynamic(&cruise_noise()))
-    } else {
-        (dynamic(&driven_flow()), dynamic(&driven_noise()))
+    let (f, q) = match s.x.len() {
+        1 => (DMatrix::identity(1, 1), dynamic(&cruise_noise()).view((0, 0), (1, 1)).into_owned()),
+        2 => (dynamic(&cruise_flow()), dynamic(&cruise_noise())),
+        _ => (dynamic(&driven_flow()), dynamic(&driven_noise())),
     };
     Sequence { x: &f * &s.x, p: &f * &s.p * f.transpose() + q, ..s }
 }
@@ -62,10 +64,14 @@ fn corrected(s: Sequence, y: &[Option<f64>; 2]) -> Sequence {
 }
 
 /// All sequences after each sample.
-fn enumerate(back: f64, readings: &[[Option<f64>; 2]]) -> Vec<Vec<Sequence>> {
-    let table = [[0.85, 0.15], [back, 1.0 - back]];
-    let mut now: Vec<Sequence> = start()
-        .into_iter()
+fn enumerate<const K: usize>(
+    table: [[f64; K]; K],
+    start: &[ModeState],
+    readings: &[[Option<f64>; 2]],
+) -> Vec<Vec<Sequence>> {
+    let mut now: Vec<Sequence> = start
+        .iter()
+        .cloned()
         .enumerate()
         .map(|(mode, s)| Sequence {
             modes: vec![mode],
@@ -81,7 +87,7 @@ fn enumerate(back: f64, readings: &[[Option<f64>; 2]]) -> Vec<Vec<Sequence>> {
             .iter()
             .flat_map(|s| {
                 let from = *s.modes.last().unwrap();
-                (0..2)
+                (0..K)
                     .filter(move |to| table[from][*to] > 0.0)
                     .map(move |to| switched(s, to, table[from][to]))
             })
@@ -104,45 +110,67 @@ fn probability(sequences: &[Sequence], sample: usize, mode: usize) -> f64 {
 
 /// Where no switch leads back, mode and switch time are the whole sequence, and nothing is merged: filtered and smoothed modes,
 /// evidence and the moments of the common states are exact.
+fn assert_exact(
+    modes: Modes<()>,
+    start: &[ModeState],
+    exact: &[Vec<Sequence>],
+    common: &[usize],
+) -> Bank<()> {
+    let options = BankOptions { memory: Memory::Hypotheses(23), drop: 0.0, skip: 0.0, lag: 10 };
+    let count = modes.count();
+    let mut bank = Bank::new(modes, start, options).unwrap();
+    for (k, (y, sequences)) in readings(exact.len()).iter().zip(exact).enumerate() {
+        bank.push(&(), y).unwrap();
+        assert_eq!(bank.hypotheses().count(), sequences.len());
+        assert!((bank.log_evidence() - evidence(sequences)).abs() < 1e-10, "evidence at {k}");
+        for mode in 0..count {
+            for back in 0..=k {
+                let expected = probability(sequences, k - back, mode);
+                let found = bank.smoothed(back, mode).unwrap();
+                assert!((found - expected).abs() < 1e-10, "{k} back {back}: {found} {expected}");
+            }
+            assert!((bank.probability(mode) - probability(sequences, k, mode)).abs() < 1e-10);
+        }
+        let weight = |s: &Sequence| (s.log_joint - evidence(sequences)).exp();
+        let size = common.len();
+        let mean: DVector<f64> = sequences.iter().map(|s| s.x.rows(0, size) * weight(s)).sum();
+        let spread = |s: &Sequence| {
+            let d = s.x.rows(0, size) - &mean;
+            (s.p.view((0, 0), (size, size)) + &d * d.transpose()) * weight(s)
+        };
+        let covariance: DMatrix<f64> = sequences.iter().map(spread).sum();
+        let found = bank.common(&vec![common; count]).unwrap();
+        assert!((found.mean - mean).amax() < 1e-10, "mean at {k}");
+        assert!((found.covariance - covariance).amax() < 1e-10, "covariance at {k}");
+    }
+    bank
+}
+
 #[test]
 fn with_switches_one_way_a_bank_is_exact() {
-    let readings = readings(10);
-    let exact = enumerate(0.0, &readings);
+    let exact = enumerate([[0.85, 0.15], [0.0, 1.0]], &start(), &readings(10));
     assert_eq!(exact[9].len(), 11);
-    let options = BankOptions { memory: Memory::Hypotheses(11), drop: 0.0, skip: 0.0, lag: 10 };
-    let mut bank = Bank::new(modes(0.0), &start(), options).unwrap();
-    for (k, y) in readings.iter().enumerate() {
-        bank.push(&(), y).unwrap();
-        let sequences = &exact[k];
-        assert!((bank.log_evidence() - evidence(sequences)).abs() < 1e-10, "evidence at {k}");
-        for back in 0..=k {
-            let expected = probability(sequences, k - back, 1);
-            let found = bank.smoothed(back, 1).unwrap();
-            assert!((found - expected).abs() < 1e-10, "{k} back {back}: {found} {expected}");
-        }
-        assert!((bank.probability(1) - probability(sequences, k, 1)).abs() < 1e-10);
-        let common = bank.common(&[&[0, 1], &[0, 1]]).unwrap();
-        let weight = |s: &Sequence| (s.log_joint - evidence(sequences)).exp();
-        let mean: DVector<f64> = sequences.iter().map(|s| s.x.rows(0, 2) * weight(s)).sum();
-        let covariance: DMatrix<f64> = sequences
-            .iter()
-            .map(|s| {
-                let d = s.x.rows(0, 2) - &mean;
-                (s.p.view((0, 0), (2, 2)) + &d * d.transpose()) * weight(s)
-            })
-            .sum();
-        assert!((common.mean - mean).amax() < 1e-10, "mean at {k}");
-        assert!((common.covariance - covariance).amax() < 1e-10, "covariance at {k}");
-    }
+    let bank = assert_exact(modes(0.0), &start(), &exact, &[0, 1]);
     // Without data it would be 0.84.
     assert!(bank.probability(1) > 0.97);
+}
+
+/// Two states, three and one.
+#[test]
+fn with_three_modes_of_unequal_size_a_bank_is_exact() {
+    let (modes, start) = three_modes();
+    let exact = enumerate(ENDS, &start, &readings(10));
+    assert_eq!(exact[9].len(), 21);
+    let bank = assert_exact(modes, &start, &exact, &[0]);
+    // The target does not rest.
+    assert!(bank.probability(2) < 0.01);
 }
 
 /// With switches both ways 1024 sequences go into 20 hypotheses; what is lost is what lies beyond the last switch.
 #[test]
 fn with_switches_both_ways_every_switch_time_is_nearly_exact() {
     let readings = readings(10);
-    let exact = enumerate(0.2, &readings);
+    let exact = enumerate([[0.85, 0.15], [0.2, 0.8]], &start(), &readings);
     assert_eq!(exact[9].len(), 1024);
     let worst = |memory| {
         let mut bank =

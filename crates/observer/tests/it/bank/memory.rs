@@ -142,3 +142,15 @@ fn no_sample_allocates() {
     // What counts is at work.
     assert!(allocation_counter::measure(|| drop(bank(0.2, BankOptions::default()))).count_total > 0);
 }
+
+/// A bank is used where samples arrive, which may be another thread than the one that made it.
+#[test]
+fn a_bank_may_change_threads() {
+    let (mut here, mut there) = (bank(0.2, BankOptions::default()), bank(0.2, BankOptions::default()));
+    let readings = readings(10);
+    let odds = |bank: &mut Bank<()>| {
+        readings.iter().map(|y| bank.push(&(), y).unwrap()).sum::<f64>() + bank.probability(1)
+    };
+    let elsewhere = std::thread::scope(|scope| scope.spawn(|| odds(&mut there)).join().unwrap());
+    assert_eq!(odds(&mut here), elsewhere);
+}

@@ -14,6 +14,8 @@ pub(super) const OUTPUTS: [f64; 4] = [1.0, 0.0, 0.3, 1.0];
 
 pub(super) struct Cruise;
 pub(super) struct Driven;
+/// The target rests: a position, whose noise is that of cruising; both outputs see it.
+pub(super) struct Resting;
 
 pub(super) fn cruise_flow() -> SMatrix<f64, 2, 2> {
     SMatrix::<f64, 2, 2>::new(1.0, DT, 0.0, 1.0)
@@ -71,6 +73,26 @@ impl Model<3, 2> for Driven {
     }
 }
 
+impl Model<1, 2> for Resting {
+    type Input = ();
+    fn flow(&self, x: &SVector<f64, 1>, (): &()) -> (SVector<f64, 1>, SMatrix<f64, 1, 1>) {
+        (*x, SMatrix::identity())
+    }
+    fn output(&self, x: &SVector<f64, 1>, (): &()) -> (SVector<f64, 2>, SMatrix<f64, 2, 1>) {
+        let h = SMatrix::<f64, 2, 1>::new(OUTPUTS[0], OUTPUTS[2]);
+        (h * x, h)
+    }
+    fn process_noise(&self, _: &SVector<f64, 1>, (): &()) -> Option<SMatrix<f64, 1, 1>> {
+        Some(cruise_noise().fixed_view::<1, 1>(0, 0).into_owned())
+    }
+    fn scales(&self) -> SVector<f64, 1> {
+        SVector::from_element(1.0)
+    }
+    fn names(&self) -> [&'static str; 1] {
+        ["position"]
+    }
+}
+
 pub(super) fn member<Mo, const N: usize>(model: Mo) -> Box<dyn Member<()>>
 where
     Mo: Model<N, 2, Input = ()> + Send + 'static,
@@ -102,6 +124,29 @@ pub(super) fn modes(back: f64) -> Modes<()> {
     let modes = Modes::new(members, &[&[0.85, 0.15], &[back, 1.0 - back]]).unwrap();
     modes.with_jump(0, 1, drives()).unwrap().with_jump(1, 0, cruises()).unwrap()
 }
+
+/// The velocity is gone.
+fn rests() -> Box<dyn Jump<()>> {
+    jump(|x: &SVector<f64, 2>, (): &()| Landing {
+        state: SVector::<f64, 1>::new(x[0]),
+        map: SMatrix::<f64, 1, 2>::new(1.0, 0.0),
+        noise: SMatrix::zeros(),
+    })
+}
+
+/// Three modes; from cruise, mode 0, the target is driven or rests for ever.
+pub(super) fn three_modes() -> (Modes<()>, Vec<ModeState>) {
+    let members = vec![member(Cruise), member(Driven), member(Resting)];
+    let modes = Modes::new(members, &[&ENDS[0], &ENDS[1], &ENDS[2]]).unwrap();
+    let modes = modes.with_jump(0, 1, drives()).unwrap().with_jump(0, 2, rests()).unwrap();
+    let [mut cruise, driven] = start();
+    cruise.probability = 0.5;
+    let state = Gaussian::new(&SVector::<f64, 1>::new(0.15), &SMatrix::<f64, 1, 1>::new(0.2));
+    (modes, vec![cruise, driven, ModeState { probability: 0.2, state }])
+}
+
+/// The switches of [`three_modes`].
+pub(super) const ENDS: [[f64; 3]; 3] = [[0.75, 0.15, 0.1], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 pub(super) fn start() -> [ModeState; 2] {
     let cruise =
