@@ -2,6 +2,7 @@
 
 mod bank;
 mod batch;
+mod density;
 mod eigen;
 mod ekf;
 mod kalman;

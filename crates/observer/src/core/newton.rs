@@ -1,5 +1,6 @@
 //! The Newton-method observer on a moving window.
 
+use super::density::log_density;
 use super::model::{Model, Sample};
 use super::report::{ObserverError, Report, Status};
 use super::window::{Start, Window};
@@ -194,6 +195,15 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> NewtonObserver<Mo, N, M> {
     #[must_use]
     pub fn estimate(&self) -> Option<&NewtonEstimate<N>> {
         self.last.as_ref()
+    }
+
+    /// Logarithm of the density of the newest sample, given the others of the window and what was carried into it: what
+    /// [`Odds`](crate::Odds) takes. As good as the estimate is converged, and exact for a linear model. None before the first
+    /// sample, and where nothing but that sample tells its outputs.
+    #[must_use]
+    pub fn log_density(&self) -> Option<f64> {
+        let (estimate, sample) = (self.last.as_ref()?, self.samples.back()?);
+        log_density(&self.model, sample, &estimate.state, &estimate.report.covariance)
     }
 
     /// States of the window, oldest first.

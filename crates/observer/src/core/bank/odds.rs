@@ -5,7 +5,8 @@ use super::log_weights::{log_sum, log_sum_exp};
 use super::system::{check_sum, log_switches};
 
 /// Odds between modes whose observers run apart, each on its own data, and do not mix: observers on a moving window
-/// ([`BatchSolution::log_evidence`](crate::BatchSolution::log_evidence)), or models that differ in a constant. A
+/// ([`NewtonObserver::log_density`](crate::NewtonObserver::log_density),
+/// [`BatchSolution::log_evidence`](crate::BatchSolution::log_evidence)), or models that differ in a constant. A
 /// [`Bank`](crate::Bank) mixes states too, and is what to use where modes change.
 ///
 /// ```

@@ -53,6 +53,47 @@ fn evidence_grows_by_the_density_of_the_innovation() {
     }
 }
 
+/// Log-densities of each sample by an observer on a moving window, which is full after five samples.
+fn of_windows<Mo: Model<N, 2, Input = ()>, const N: usize>(model: Mo, mode: usize) -> Vec<Option<f64>> {
+    let options = NewtonOptions { window: 5, steps: 1, damping: 0.0, arrival: Arrival::Carry(1.0) };
+    let mut observer = NewtonObserver::new(model, options, prior::<N>(mode)).unwrap();
+    assert_eq!(observer.log_density(), None);
+    let one = |sample| {
+        observer.push(sample);
+        observer.log_density()
+    };
+    samples(14).into_iter().map(one).collect()
+}
+
+/// An observer on a window tells the density of its newest sample from what that sample left of itself.
+#[test]
+fn a_window_tells_the_density_of_its_newest_sample() {
+    let cases = [
+        (of_windows(Cruise, 0), innovations(member(Cruise), 0, 14)),
+        (of_windows(Driven, 1), innovations(member(Driven), 1, 14)),
+    ];
+    for (found, expected) in cases {
+        for (k, (found, expected)) in found.into_iter().zip(expected).enumerate() {
+            assert!((found.unwrap() - expected).abs() < 1e-12, "{k}: {found:?} {expected}");
+        }
+    }
+}
+
+/// One sample of a state of which nothing else is known fits itself.
+#[test]
+fn a_sample_that_nothing_predicted_has_no_density() {
+    let options = NewtonOptions { window: 5, steps: 1, damping: 0.0, arrival: Arrival::Forget };
+    let guess = Start::guess(SVector::<f64, 2>::zeros());
+    let mut observer = NewtonObserver::new(Cruise, options, guess).unwrap();
+    let first = samples(1)[0];
+    observer.push(first);
+    assert_eq!(observer.log_density(), None);
+    for sample in samples(8) {
+        observer.push(sample);
+    }
+    assert!(observer.log_density().is_some());
+}
+
 /// Costs alone leave out how much narrower a sample makes the estimate; on these data by more than a tenth of a unit for at least
 /// one sample.
 #[test]
