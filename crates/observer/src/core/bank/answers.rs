@@ -4,7 +4,7 @@ use super::bank::{Bank, ModeState};
 use super::error::BankError;
 use super::gaussian::{Branch, Gaussian};
 use super::hypothesis::Hypothesis;
-use super::log_weights::log_sum_exp;
+use super::log_weights::{log_sum, log_sum_exp};
 use super::system::Modes;
 
 impl<I> Bank<I> {
@@ -27,9 +27,9 @@ impl<I> Bank<I> {
     }
 
     /// Sum of the probabilities that were given up ([`BankOptions::drop`](crate::BankOptions::drop),
-    /// [`BankOptions::skip`](crate::BankOptions::skip)): if the model is true, the expected probability that
-    /// the true hypothesis is among the lost ones, and over the threshold `a` divided by `a`, a bound of the probability that
-    /// the lost ones ever had more than `a` (Doob: a posterior probability is a martingale).
+    /// [`BankOptions::skip`](crate::BankOptions::skip)). If the model is true, the truth is among what went with at most this
+    /// probability; and the probability that what went ever comes to have more than a share `a` is at most this over `a`
+    /// (a posterior probability is a martingale; Doob).
     #[must_use]
     pub fn lost(&self) -> f64 {
         self.lost
@@ -69,15 +69,17 @@ impl<I> Bank<I> {
         let of = |mode| {
             let member = self.modes.member(mode);
             let mut state = Gaussian::zeros(member.states());
-            let total = log_sum_exp(self.now.of(mode).iter().map(|h| h.log_weight));
-            if total == f64::NEG_INFINITY {
+            let (largest, rest) = log_sum(self.now.of(mode).iter().map(|h| h.log_weight));
+            if largest == f64::NEG_INFINITY {
                 return ModeState { probability: 0.0, state };
             }
-            let branch =
-                |h: &Hypothesis| Branch { weight: (h.log_weight - total).exp(), gaussian: h.state.clone() };
+            let branch = |h: &Hypothesis| Branch {
+                weight: (h.log_weight - largest - rest).exp(),
+                gaussian: h.state.clone(),
+            };
             let branches: Vec<Branch> = self.now.of(mode).iter().map(branch).collect();
             member.merge(&branches, &mut state);
-            ModeState { probability: total.exp(), state }
+            ModeState { probability: (largest + rest).exp(), state }
         };
         (0..self.modes.count()).map(of).collect()
     }
@@ -103,7 +105,7 @@ impl<I> Bank<I> {
                     what: "state, short of its rows,",
                     mode,
                     found: states,
-                    needed: row + 1,
+                    needed: row.saturating_add(1),
                 });
             }
         }

@@ -4,7 +4,7 @@ use super::bank::ModeState;
 use super::error::BankError;
 use super::gaussian::{Branch, Gaussian};
 use super::log_weights::log_sum_exp;
-use super::system::Modes;
+use super::system::{Modes, check_sum};
 use nalgebra::{DMatrix, DVector};
 
 /// Modes and states at each sample given all samples, from `filtered`, what [`Bank::mode_states`](crate::Bank::mode_states) said
@@ -18,7 +18,8 @@ use nalgebra::{DMatrix, DVector};
 /// eight hypotheses or more; this function adds states. States that are no vector space are treated as if they were one.
 ///
 /// # Errors
-/// [`BankError::Size`] for lists of unequal length or states that are not those of the modes; [`BankError::Covariance`] for a
+/// [`BankError::Size`] for lists of unequal length or states that are not those of the modes; [`BankError::NotFinite`],
+/// [`BankError::Sum`] and [`BankError::Value`] for what is no state and no probabilities; [`BankError::Covariance`] for a
 /// covariance that is not positive definite; the errors of rates ([`Modes::with_rates`]).
 pub fn smooth_backward<I>(
     modes: &Modes<I>,
@@ -29,8 +30,8 @@ pub fn smooth_backward<I>(
         let (found, needed) = (inputs.len(), filtered.len());
         return Err(BankError::Size { what: "list of inputs", mode: 0, found, needed });
     }
-    for states in filtered {
-        check(modes, states)?;
+    for (sample, states) in filtered.iter().enumerate() {
+        check(modes, states, sample)?;
     }
     let mut smoothed = filtered.to_vec();
     for k in (1..filtered.len()).rev() {
@@ -39,7 +40,7 @@ pub fn smooth_backward<I>(
     Ok(smoothed)
 }
 
-fn check<I>(modes: &Modes<I>, states: &[ModeState]) -> Result<(), BankError> {
+fn check<I>(modes: &Modes<I>, states: &[ModeState], sample: usize) -> Result<(), BankError> {
     if states.len() != modes.count() {
         let (found, needed) = (states.len(), modes.count());
         return Err(BankError::Size { what: "list of modes", mode: 0, found, needed });
@@ -49,8 +50,11 @@ fn check<I>(modes: &Modes<I>, states: &[ModeState]) -> Result<(), BankError> {
         if !state.state.is_of_size(needed) {
             return Err(BankError::Size { what: "state", mode, found: state.state.mean.len(), needed });
         }
+        if !state.state.is_finite() {
+            return Err(BankError::NotFinite { what: "state", mode, sample });
+        }
     }
-    Ok(())
+    check_sum("mode probabilities", states.iter().map(|s| s.probability))
 }
 
 /// One mode before and the prediction of the mode after from it.
@@ -71,8 +75,9 @@ fn step<I>(
     sample: usize,
 ) -> Result<Vec<ModeState>, BankError> {
     let mut log_rows = vec![vec![0.0; modes.count()]; modes.count()];
-    for (from, (state, row)) in before.iter().zip(&mut log_rows).enumerate() {
-        modes.log_row(from, &state.state, input, row)?;
+    let possible = before.iter().enumerate().filter(|(_, b)| b.probability > 0.0);
+    for (from, b) in possible {
+        modes.log_row(from, &b.state, input, &mut log_rows[from])?;
     }
     // Branches of each mode before, with their joint probability with a mode after.
     let mut branches: Vec<Vec<Branch>> = before.iter().map(|_| Vec::new()).collect();

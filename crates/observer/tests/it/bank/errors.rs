@@ -132,6 +132,7 @@ fn unusable_starts_and_options_are_named() {
     assert!(matches!(bank.common(&[&[0]]), Err(BankError::Size { .. })));
     assert!(matches!(bank.common(&[&[0], &[0, 1]]), Err(BankError::Size { mode: 1, .. })));
     assert!(matches!(bank.common(&[&[2], &[2]]), Err(BankError::Size { mode: 0, found: 2, needed: 3, .. })));
+    assert!(matches!(bank.common(&[&[usize::MAX], &[2]]), Err(BankError::Size { mode: 0, .. })));
     assert!(bank.probability(2) == 0.0 && bank.smoothed(0, 0).is_none());
 }
 

@@ -83,5 +83,11 @@ fn what_does_not_fit_is_named() {
     let mut singular = filtered.clone();
     singular[2][0].state.covariance.fill(0.0);
     assert_eq!(error(&singular, &[(); 3]), Some(BankError::Covariance { mode: 0, sample: 2 }));
+    let mut nan = filtered.clone();
+    nan[0][1].state.mean[0] = f64::NAN;
+    assert!(matches!(error(&nan, &[(); 3]), Some(BankError::NotFinite { mode: 1, sample: 0, .. })));
+    let mut more = filtered.clone();
+    more[1][0].probability = 0.8;
+    assert!(matches!(error(&more, &[(); 3]), Some(BankError::Sum { .. })));
     assert_eq!(error(&[], &[]), None);
 }
