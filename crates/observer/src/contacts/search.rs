@@ -85,6 +85,11 @@ fn coarse(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
 
 /// The last solution, in which the inertia keeps its expected value along directions of which noise alone would tell.
 pub(super) fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
+    fine_within(problem, start, MOST_OF_LAST)
+}
+
+/// The same in so many linearisations beyond those after which it is asked what of the inertia is learned.
+pub(super) fn fine_within(problem: &mut Problem, start: Unknowns, most: usize) -> Option<Solved<CONSTANTS>> {
     let first = solve::<CONSTANTS>(problem, start, FIRST, ENOUGH[1])?;
     let claimed = first.equations.covariances(&problem.natural_information());
     let frozen = claimed.and_then(|claimed| claimed.frozen(problem, &first.equations, &first.unknowns));
@@ -92,7 +97,7 @@ pub(super) fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONS
     if problem.frozen.is_empty() && first.settled {
         return Some(first);
     }
-    let mut found = solve::<CONSTANTS>(problem, first.unknowns, MOST_OF_LAST, ENOUGH[1])?;
+    let mut found = solve::<CONSTANTS>(problem, first.unknowns, most, ENOUGH[1])?;
     found.iterations += first.iterations;
     Some(found)
 }

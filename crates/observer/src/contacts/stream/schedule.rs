@@ -59,6 +59,9 @@ impl MotionStream {
         if !(1..=MOST_PALMS).contains(&palms.len()) {
             return Err(StreamError::Palms { found: palms.len(), expected: MOST_PALMS, t: 0.0 });
         }
+        if palms.len() == 1 && options.contacts.size.is_none() {
+            return Err(ContactEstimateError::NoSize.into());
+        }
         let worker = Worker::new(Window::new(palms.clone(), options.contacts))?;
         Ok(Self {
             palms,

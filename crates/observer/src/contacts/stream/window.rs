@@ -11,7 +11,7 @@ use crate::contacts::modes::by_ratio;
 use crate::contacts::options::ContactOptions;
 use crate::contacts::problem::{Problem, Units, Unknowns};
 use crate::contacts::record::Record;
-use crate::contacts::search::{fine, fine_nodes, problem, search};
+use crate::contacts::search::{fine_nodes, fine_within, problem, search};
 use crate::contacts::solve::{Covariances, Solved};
 use crate::contacts::state::{MOTION, Motion};
 use crate::contacts::verdict::{ContactEvidence, relied_on, stretches};
@@ -26,6 +26,8 @@ use std::collections::VecDeque;
 pub(super) const LONGEST: f64 = 20.0;
 /// Shortest one: a motion of fewer natural times is hardly more than its start.
 const SHORTEST: f64 = 5.0;
+/// Linearisations within which a motion that goes on settles, beyond the first ones: most take four in all.
+const FOLLOWED: usize = 30;
 /// Natural times over which it is looked what the trapezoidal rule misses, for gaps after a window.
 const GAP: f64 = 0.2;
 /// Samples that are left out at most because a window cannot be read with them.
@@ -257,7 +259,7 @@ impl Window {
             }
         }
         problem.first.0.q = motions.first()?.q;
-        fine(problem, Unknowns { motions, body: before.body })
+        fine_within(problem, Unknowns { motions, body: before.body }, FOLLOWED)
     }
 
     /// Keeps a solution to begin the next one from.
