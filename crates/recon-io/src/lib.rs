@@ -4,6 +4,8 @@
 //! Errors of reading name the file, the line or key, the value and the mend. What is written as a whole appears as a
 //! whole or not at all ([`OutputFolder`], [`AtomicFile`]).
 
+#[cfg(feature = "mcap")]
+mod bag;
 mod check;
 mod export;
 mod log;
@@ -21,6 +23,11 @@ mod summary;
 mod table;
 mod touches;
 
+#[cfg(feature = "mcap")]
+pub use bag::{
+    Bag, BagError, BagErrorKind, BagTransform, Joint, Message, MessageKind, Reading, Topic, Unread, is_bag,
+    parse_bag, read_bag,
+};
 pub use check::{CheckError, Fault, check, check_unwritten, outline_stands_out, stands_out};
 pub use export::{
     ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel, SceneModel,
