@@ -142,6 +142,18 @@ pub enum BagErrorKind {
         /// The key that would say it.
         key: String,
     },
+    /// Readings of one topic in several frames.
+    #[error(
+        "topic `{topic}` has readings in several frames ({found}); record them on topics of their own, or name one by `{key}`"
+    )]
+    ManyFrames {
+        /// The topic.
+        topic: String,
+        /// The frames.
+        found: String,
+        /// The key that would say one.
+        key: String,
+    },
     /// A frame that no transform leads to.
     #[error(
         "{asked} is in frame `{frame}`, which no transform joins with `{to}`; frames that are: {known}. Name another by `{key}` in the \
@@ -202,7 +214,7 @@ pub enum BagErrorKind {
     #[error(
         "clocks disagree: contacts of `{topic}` come {ahead:.6} s (deviation {deviation:.1e} s) after those that `{other}` gives, as the path of \
          the contact on palm {palm} tells; say so by [[clock]] topic = \"{topic}\", ahead = {ahead:.6} in the mapping, or that it is \
-         not so by `clocks = \"as stamped\"`"
+         not so by `clocks_as_stamped = true`"
     )]
     ClocksDisagree {
         /// Topic of contacts.

@@ -1,6 +1,7 @@
 //! Against bags and numbers of another implementation (`tests/data/mcap`), whose provenance is in `tests/data/README.md`.
 
 mod broken;
+mod joined;
 mod reference;
 
 use super::{Bag, Topic};
