@@ -8,7 +8,7 @@ use glam::DVec3;
 use recon::object_dynamics::Sample;
 use recon::observer::{MotionStream, NoiseLevel, StreamEstimate, StreamOptions, StreamStage};
 use recon_io::{
-    FileTarget, LogFileError, LogReader, OutputError, Scene, is_standard_output, write_stream_header,
+    FileTarget, LogFileError, LogReader, OutputError, Scene, is_bag, is_standard_output, write_stream_header,
     write_stream_row,
 };
 use recon_io::{MotionState, StreamRow};
@@ -29,6 +29,9 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::UnknownBody)?;
     let mass = if args.identify { None } else { Some(known_body(&scene)?) };
     let noise = noise(args, &scene).ok_or(CliError::StreamNoise)?;
+    if is_bag(&args.log) {
+        return Err(CliError::BagFollowed { path: args.log.clone() });
+    }
     let mut samples = Samples::open(&args.log)?;
     let options = StreamOptions {
         mass,

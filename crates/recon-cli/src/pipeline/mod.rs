@@ -37,7 +37,7 @@ pub(crate) use modes::describe_times;
 pub(crate) use noisy_planes::{as_planes, noisy_planes};
 pub(crate) use planar_contacts::simulate_planar_contacts;
 pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};
-pub(crate) use read::{LogOf, read_log, three_palms};
+pub(crate) use read::{LogOf, LogSource, ReadLog, read_log, read_mapped, three_palms};
 pub(crate) use reconstruct::{NOTABLE_NOISE, Reconstruction, condensed, reconstruct, sentence};
 pub(crate) use simulate::{Simulated, known_body, simulate};
 pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};
