@@ -98,7 +98,8 @@ palm the size (object.size). motion.csv says at each sample whether it is relied
 
 The output folder appears as a whole or not at all: motion.csv, contact_curves.csv, radius_functions.csv, summary.json,
 lower_bound.ply, upper_bound.ply, report.html, which opens in any browser, and manifest.json, which lists them. With --export it holds the object for
-simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer to.
+simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer to. With --mcap it holds result.mcap, a bag that Foxglove
+shows: motion with covariance, contacts, forces and bounds, at the stamps of the bag that was read.
 
 The bounds hold at 95 % confidence for the noise of the sensors and the error of the motion, in the axes that bounds_frame in
 summary.json names; of any palms in those of the world at the first sample. A motion that is not to be relied on gives none.
@@ -111,7 +112,7 @@ Examples:
   recon reconstruct log.csv --scene scene.toml -o out
   recon reconstruct log.csv --scene scene.toml -o out --identify --export mjcf,urdf
   recon reconstruct log.csv --scene scene.toml -o out --without-forces
-  recon reconstruct bag.mcap --mapping map.toml --scene scene.toml -o out
+  recon reconstruct bag.mcap --mapping map.toml --scene scene.toml -o out --mcap
   recon reconstruct log.csv --scene scene.toml -o out --json | jq .bounds")]
 pub(crate) struct ReconstructArgs {
     /// Sensor log (CSV, or a bag of ROS 2 in MCAP)
@@ -137,6 +138,9 @@ pub(crate) struct ReconstructArgs {
     /// Write the object for simulators too, in these formats
     #[arg(long, value_delimiter = ',', value_name = "FORMATS")]
     pub(crate) export: Vec<ExportAs>,
+    /// Write motion, contacts, forces and bounds as a bag too (result.mcap), for Foxglove and Rerun
+    #[arg(long, conflicts_with = "without_forces")]
+    pub(crate) mcap: bool,
     /// Shape of the exported object
     #[arg(long, default_value = "auto", requires = "export")]
     pub(crate) export_shape: ShapeAs,

@@ -41,6 +41,8 @@ pub(crate) enum CliError {
     Log(#[from] LogFileError),
     #[error("the bag cannot be used")]
     Bag(#[from] BagError),
+    #[error("the results make no bag")]
+    ResultBag(#[source] std::io::Error),
     #[error("the mapping of topics cannot be used")]
     Mapping(#[from] MappingError),
     #[error("{} is an MCAP bag: give the mapping of its topics by --mapping; `recon inspect {} -o map.toml` drafts one", path.display(), path.display())]
@@ -203,6 +205,7 @@ impl CliError {
             Self::Output(OutputError::Certificate { .. })
             | Self::Picture(_)
             | Self::Facets(_)
+            | Self::ResultBag(_)
             | Self::Mesh(_)
             | Self::Signals(_)
             | Self::PlanarDemo(_) => 1,

@@ -27,8 +27,9 @@ mod touches;
 pub use bag::{
     Bag, BagError, BagErrorKind, BagLog, BagMapping, BagOverview, BagTransform, BagUnits, ForceOn, Joint,
     JointTopic, MappingDraft, MappingError, MappingErrorKind, Message, MessageKind, PalmClock, PalmTopics,
-    Pitch, Reading, TaxelTopic, TaxelValue, TimeOf, Topic, TopicClock, TopicGap, TopicOverview, Unread,
-    clocks_of_bag, draft_mapping, is_bag, log_of_bag, overview, palms_of, parse_bag, read_bag,
+    Pitch, Reading, ResultBag, ResultContact, ResultPose, TaxelTopic, TaxelValue, TimeOf, Topic, TopicClock,
+    TopicGap, TopicOverview, Unread, clocks_of_bag, draft_mapping, is_bag, log_of_bag, overview, palms_of,
+    parse_bag, read_bag,
 };
 pub use check::{CheckError, Fault, check, check_unwritten, outline_stands_out, stands_out};
 pub use export::{

@@ -15,13 +15,22 @@ pub(crate) enum LogOf {
     AnyPalms(Box<ContactLog>, NotThreePlanes),
 }
 
+/// Where a log stands in time and space.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct LogStand {
+    /// Time of a bag at which that of the log is zero, ns.
+    pub(crate) epoch: i64,
+    /// Where the origin of its positions is in the world, m.
+    pub(crate) origin: DVec3,
+}
+
 /// A sensor log that was read.
 pub(crate) struct ReadLog {
     pub(crate) log: LogOf,
     /// What is to be said of it.
     pub(crate) warnings: Vec<String>,
-    /// Time of a bag at which that of the log is zero, ns.
-    pub(crate) epoch: Option<i64>,
+    /// Where it stands in time and space.
+    pub(crate) stand: LogStand,
 }
 
 /// Where a log is, and what is known beside it.
@@ -53,20 +62,21 @@ fn read(
     lacks: impl Fn(&ContactLog) -> Option<NotThreePlanes>,
 ) -> Result<ReadLog, CliError> {
     let LogSource { path, scene, mapping } = from;
-    let (log, mut warnings, epoch) = if is_bag(path) {
+    let (log, mut warnings, mut stand) = if is_bag(path) {
         let mapping = mapping.ok_or_else(|| CliError::NoMapping { path: path.to_owned() })?;
         let made = read_mapped(path, &BagMapping::read(mapping)?, Some(scene))?;
         made.notes.iter().for_each(|note| console.note(note));
-        (made.log, made.warnings, Some(made.epoch))
+        (made.log, made.warnings, LogStand { epoch: made.epoch, ..LogStand::default() })
     } else {
         if mapping.is_some() {
             return Err(CliError::MappingOfNoBag { path: path.to_owned() });
         }
         match read_any_log(path, scene.palm_setups().as_deref())? {
             AnyLog::ThreePalms(log) => {
-                return Ok(ReadLog { log: LogOf::ThreePalms(log), warnings: Vec::new(), epoch: None });
+                let (log, warnings, stand) = (LogOf::ThreePalms(log), Vec::new(), LogStand::default());
+                return Ok(ReadLog { log, warnings, stand });
             }
-            AnyLog::Contacts(log) => (log, Vec::new(), None),
+            AnyLog::Contacts(log) => (log, Vec::new(), LogStand::default()),
         }
     };
     let known_to = scene.sensors.contact_off_palm.unwrap_or(0.0);
@@ -79,18 +89,15 @@ fn read(
                 "The palms meet in ({x}, {y}, {z}) m, to within {apart:.1e} m: all positions are seen from there."
             );
             warnings.extend((p_WM != DVec3::ZERO).then_some(moved));
+            stand.origin = p_WM;
             LogOf::ThreePalms(log)
         }
     };
-    Ok(ReadLog { log, warnings, epoch })
+    Ok(ReadLog { log, warnings, stand })
 }
 
 /// Reads a bag by a mapping, with what a scene says of the palms.
-pub(crate) fn read_mapped(
-    path: &Path,
-    mapping: &BagMapping,
-    scene: Option<&Scene>,
-) -> Result<BagLog, CliError> {
+fn read_mapped(path: &Path, mapping: &BagMapping, scene: Option<&Scene>) -> Result<BagLog, CliError> {
     let in_file = |kind| BagError { path: path.to_owned(), kind };
     let bag = read_bag(path)?;
     Ok(palms_of(mapping, scene).and_then(|palms| log_of_bag(&bag, mapping, &palms)).map_err(in_file)?)

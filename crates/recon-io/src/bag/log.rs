@@ -295,23 +295,27 @@ fn base(source: Source, streams: &[PalmStreams]) -> Result<(String, Vec<f64>), K
     )
 }
 
-/// The contacts of each palm in its own axes, where a topic of contacts tells them, and whether forces there point to the
-/// palm's origin.
-pub(super) fn contacts_in_palms(bag: &Bag, mapping: &BagMapping) -> Vec<Option<(Vec<DVec3>, bool)>> {
+/// Contacts of a palm by their topic, and the sum of its forces, in its own axes.
+pub(super) struct FeltInPalm {
+    /// Contacts, m.
+    pub(super) contacts: Vec<DVec3>,
+    /// Sum of forces, N.
+    pub(super) force: DVec3,
+}
+
+/// What is felt of each palm, where topics tell it.
+pub(super) fn felt_in_palms(bag: &Bag, mapping: &BagMapping) -> Vec<Option<FeltInPalm>> {
     let clock = Clock::of_mapping(bag, mapping, &mapped_topics(mapping));
     let (Ok(frames), Ok(setups)) = (Frames::of(bag, &clock), palms_of(mapping, None)) else {
         return Vec::new();
     };
     let source = Source { bag, mapping, clock: &clock, frames: &frames };
     let of = |(i, setup): (usize, &PalmSetup)| {
-        let palm = source
-            .palm(i + 1, &mapping.palms[i], setup)
-            .ok()
-            .filter(|_| mapping.palms[i].contact.is_some())?;
-        let contacts: Vec<DVec3> = palm.touches.points.iter().flatten().copied().collect();
-        let force: DVec3 = palm.wrench.iter().flat_map(|wrench| wrench.forces.values()).sum();
-        let middle: DVec3 = contacts.iter().sum();
-        Some((contacts, force.dot(middle) < 0.0))
+        let palm = source.palm(i + 1, &mapping.palms[i], setup).ok()?;
+        let stated = mapping.palms[i].contact.is_some();
+        let contacts = palm.touches.points.iter().flatten().copied().filter(|_| stated).collect();
+        let force = palm.wrench.iter().flat_map(|wrench| wrench.forces.values()).sum();
+        Some(FeltInPalm { contacts, force })
     };
     setups.iter().enumerate().map(of).collect()
 }

@@ -12,6 +12,7 @@ mod message;
 mod palm;
 mod read;
 mod records;
+mod result;
 mod samples;
 mod silences;
 mod topic;
@@ -28,5 +29,6 @@ pub use mapping::{
 };
 pub use message::{BagTransform, Joint, MessageKind, Reading};
 pub use read::{Bag, is_bag, parse_bag, read_bag};
+pub use result::{ResultBag, ResultContact, ResultPose};
 pub use silences::TopicGap;
 pub use topic::{Message, Topic};

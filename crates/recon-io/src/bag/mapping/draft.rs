@@ -1,10 +1,12 @@
 //! A mapping drafted from what a bag holds.
 
-use super::{BagMapping, PalmTopics, Pitch, TaxelTopic, TaxelValue, TopicClock, described, guess_shape};
+use super::{
+    BagMapping, ForceOn, PalmTopics, Pitch, TaxelTopic, TaxelValue, TopicClock, described, guess_shape,
+};
 use crate::bag::clock::Clock;
 use crate::bag::error::BagErrorKind;
 use crate::bag::frames::{Frames, plain};
-use crate::bag::log::{PalmClock, clocks_of_bag, contacts_in_palms, palms_of};
+use crate::bag::log::{FeltInPalm, PalmClock, clocks_of_bag, felt_in_palms, palms_of};
 use crate::bag::message::{MessageKind, Reading};
 use crate::bag::read::Bag;
 use crate::bag::topic::Topic;
@@ -51,13 +53,24 @@ pub fn draft_mapping(bag: &Bag, name: &str) -> Result<MappingDraft, BagErrorKind
         palms: palms.iter().map(|palm| palm.topics.clone()).collect(),
         clocks: Vec::new(),
     };
-    for (i, found) in contacts_in_palms(bag, &mapping).into_iter().enumerate() {
-        let Some(surface) = found.and_then(|(contacts, inward)| guess_shape(&contacts, inward)) else {
-            continue;
-        };
+    for (i, felt) in felt_in_palms(bag, &mapping).into_iter().enumerate() {
+        let Some(FeltInPalm { contacts, force }) = felt else { continue };
+        let inward = force.dot(contacts.iter().sum()) < 0.0;
+        let Some(surface) = guess_shape(&contacts, inward) else { continue };
         mapping.palms[i].kind = Some(surface.name().to_owned());
         mapping.palms[i].radius = surface.radius();
-        remarks.push(format!("The contacts of palm {} lie on one that is {}.", i + 1, described(surface)));
+        remarks.push(format!("The contacts of palm {} lie as on one of kind {}.", i + 1, described(surface)));
+        // Palms push: a flat one whose force points into it tells the force on itself.
+        if surface == PalmSurface::Plane && force.z < 0.0 {
+            mapping.palms[i].force_on = ForceOn::Palm;
+            remarks.push(format!("The force of palm {} points into it: it is that on the palm.", i + 1));
+        }
+    }
+    for topic in bag.topics.values().filter(|topic| topic.kind == Ok(MessageKind::Joints)) {
+        remarks.push(format!(
+            "{} has states of joints; a palm's `joint` takes the torque of its motor from there.",
+            topic.name
+        ));
     }
     let clocks =
         palms_of(&mapping, None).and_then(|setups| clocks_of_bag(bag, &mapping, &setups)).unwrap_or_default();
@@ -126,7 +139,12 @@ impl Palms<'_> {
             let name = Some(topic.name.clone());
             let alone = self.all.iter().all(|palm| palm.topics.wrench.is_none());
             match self.palm_of(&frame, &space(&topic.name)) {
-                Some(palm) if palm.topics.contact.is_none() => palm.topics.contact = name,
+                Some(palm) if palm.topics.contact.is_none() => {
+                    palm.topics.contact = name;
+                    if frame.is_empty() && topic.count > 0 {
+                        palm.remarks.push(format!("{} names no frame: `contact_frame` says it", topic.name));
+                    }
+                }
                 Some(_) => {}
                 None if alone => {
                     self.add(topic, |topics| topics.contact = name);
@@ -171,9 +189,11 @@ impl Palms<'_> {
         let found = found.or_else(|| self.all.iter().position(beside).filter(|_| by_name))?;
         let names = self.frames.names();
         let lost = |its: &String| !names.contains(&its.as_str());
+        // A sensor that stands in the frame of the contacts: that is the palm, unless contacts are told in the world.
+        let in_it = |its: &String| self.frames.is_in(its, frame) && self.frames.root(frame) != frame;
         let palm = &mut self.all[found];
         // The frame of the other topic stands where that of the first one is lost.
-        if known && palm.topics.frame.as_ref().is_none_or(lost) {
+        if known && palm.topics.frame.as_ref().is_none_or(|its| lost(its) || in_it(its)) {
             palm.topics.frame = Some(frame.to_owned());
         }
         Some(palm)
@@ -292,9 +312,10 @@ fn write_palm(text: &mut String, palm: &PalmTopics) {
         }
     }
     if let Some(wrench) = &palm.wrench {
+        let on = if palm.force_on == ForceOn::Palm { "palm" } else { "object" };
         let _ = writeln!(
             text,
-            "wrench = {wrench:?}\nforce_on = \"object\"    # or \"palm\", as many sensors measure it"
+            "wrench = {wrench:?}\nforce_on = {on:?}    # the body on which it acts: object, or palm, as many sensors measure it"
         );
     }
     if let Some(contact) = &palm.contact {

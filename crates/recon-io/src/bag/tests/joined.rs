@@ -2,10 +2,10 @@
 
 use super::{bag, expected};
 use crate::bag::{
-    Bag, BagErrorKind as Kind, BagLog, BagMapping, clocks_of_bag, draft_mapping, log_of_bag, overview,
-    palms_of,
+    Bag, BagErrorKind as Kind, BagLog, BagMapping, BagTransform, ForceOn, Joint, JointTopic, MessageKind,
+    Reading, clocks_of_bag, draft_mapping, log_of_bag, overview, palms_of,
 };
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use recon::contact_kinematics::PalmSurface;
 use recon::object_dynamics::{ContactLog, ForceChannel};
 use serde_json::Value;
@@ -223,7 +223,9 @@ fn an_overview_tells_rates_gaps_and_clocks() {
         }
     }
     let text = overview.text();
-    for words in ["its clock is ahead", "comes 0.003 s", "sphere of radius 0.012 m", "the clocks disagree"] {
+    for words in
+        ["its clock is ahead", "comes 0.003 s", "kind sphere of radius 0.012 m", "the clocks disagree"]
+    {
         assert!(text.contains(words), "`{words}` is not in\n{text}");
     }
     assert!(overview.json()["clocks"][0]["disagrees"].as_bool().unwrap());
@@ -328,7 +330,7 @@ fn what_a_mapping_names_must_be_there() {
     // A palm's force that is measured on the palm pushes the other way.
     refused(
         &|m| {
-            m.palms.iter_mut().for_each(|palm| palm.force_on = crate::ForceOn::Palm);
+            m.palms.iter_mut().for_each(|palm| palm.force_on = ForceOn::Palm);
         },
         &["palm"],
     );
@@ -350,4 +352,69 @@ fn mappings_say_what_is_wrong_with_them() {
     refused("wrold = \"w\"", &["wrold"]);
     refused("[[palm]]\nwrench = \"/w\"\n[[clock]]\ntopic = \"/w\"\nahead = 1e9", &["clock[1].ahead"]);
     refused("[units]\nforce = 0.0\n[[palm]]\nwrench = \"/w\"", &["units.force"]);
+}
+
+/// A force that points into a flat palm is that on the palm, and the draft says so.
+#[test]
+fn a_force_on_the_palm_is_told_by_its_sign() {
+    let mut bag = bag("whole_short.mcap");
+    let whole = log(&bag, &drafted(&bag)).unwrap();
+    for message in &mut bag.topics.get_mut("/palm_2/wrench").unwrap().messages {
+        let Reading::Wrench(wrench) = &mut message.reading else { panic!() };
+        *wrench = wrench.map(|v| -v);
+    }
+    let mapping = drafted(&bag);
+    let on_palm: Vec<bool> = mapping.palms.iter().map(|palm| palm.force_on == ForceOn::Palm).collect();
+    assert_eq!(on_palm, [false, true, false]);
+    assert_eq!(log(&bag, &mapping).unwrap().log, whole.log);
+}
+
+/// The readings of a sensor that is set off and turned in the palm are those in the palm's axes.
+#[test]
+fn wrenches_of_a_frame_of_their_own_are_moved_into_the_palm() {
+    let mut bag = bag("whole_short.mcap");
+    let whole = log(&bag, &from_wrenches(drafted(&bag))).unwrap();
+    let p = DVec3::new(0.1, -0.2, 0.3);
+    let R = DQuat::from_scaled_axis(DVec3::new(0.3, 0.2, 0.1));
+    let statics = &mut bag.topics.get_mut("/tf_static").unwrap().messages[0];
+    let Reading::Transforms(all) = &mut statics.reading else { panic!() };
+    let pose = [p.x, p.y, p.z, R.x, R.y, R.z, R.w];
+    all.push(BagTransform { stamp: statics.stamp, parent: "palm_1".into(), child: "sensor".into(), pose });
+    for message in &mut bag.topics.get_mut("/palm_1/wrench").unwrap().messages {
+        let Reading::Wrench([a, b, c, d, e, f]) = &mut message.reading else { panic!() };
+        let (force, torque) = (DVec3::new(*a, *b, *c), DVec3::new(*d, *e, *f));
+        let (force, torque) = (R.inverse() * force, R.inverse() * (torque - p.cross(force)));
+        ([*a, *b, *c], [*d, *e, *f]) = (force.to_array(), torque.to_array());
+        message.frame = "sensor".into();
+    }
+    let mut mapping = from_wrenches(drafted(&bag));
+    // The contacts are in the palm, in which the sensor stands.
+    assert_eq!(mapping.palms[0].frame.as_deref(), Some("palm_1"));
+    mapping.palms.iter_mut().for_each(|palm| palm.kind = Some("flat".to_owned()));
+    let moved = log(&bag, &mapping).unwrap();
+    for k in 0..whole.log.times().len() {
+        let [a, b] = [&moved, &whole].map(|made| made.log.palms()[0].touch(k).unwrap().p_WC);
+        assert!(a.distance(b) < 1e-13, "{k} {a} {b}");
+    }
+}
+
+#[test]
+fn torques_of_motors_come_from_joint_states() {
+    let mut bag = bag("whole_short.mcap");
+    let mut joints = bag.topics["/palm_1/wrench"].clone();
+    joints.name = "/joint_states".to_owned();
+    (joints.kind, joints.schema) = (Ok(MessageKind::Joints), MessageKind::Joints.name().to_owned());
+    for (k, message) in joints.messages.iter_mut().enumerate() {
+        let effort = Some(k as f64).filter(|_| k > 0);
+        message.reading = Reading::Joints(vec![Joint { name: "hinge".into(), position: None, effort }]);
+    }
+    bag.topics.insert(joints.name.clone(), joints);
+    let mut mapping = drafted(&bag);
+    let joint = |name: &str| Some(JointTopic { topic: "/joint_states".to_owned(), name: name.to_owned() });
+    mapping.palms[2].joint = joint("hinge");
+    let made = log(&bag, &mapping).unwrap();
+    let torques: Vec<_> = (0..3).map(|k| made.log.palms()[2].torque(k)).collect();
+    assert_eq!(torques, [None, Some(1.0), Some(2.0)]);
+    mapping.palms[2].joint = joint("elbow");
+    assert!(log(&bag, &mapping).unwrap_err().to_string().contains("`elbow`"));
 }
