@@ -5,7 +5,7 @@ use crate::cli::InspectArgs;
 use crate::console::{Console, listened};
 use crate::error::{CliError, Outcome};
 use recon_io::{
-    BagError, BagLog, BagMapping, FileTarget, Scene, brief, is_standard_output, log_of_bag, overview,
+    BagErrorKind, BagLog, BagMapping, FileTarget, Scene, brief, is_standard_output, log_of_bag, overview,
     palms_of, read_bag, write_contact_log,
 };
 use serde_json::json;
@@ -21,7 +21,7 @@ pub(crate) fn run(args: &InspectArgs, console: &Console) -> Result<Outcome, CliE
     let csv_to = args.csv.as_ref().map(target).transpose()?;
     let scene = args.scene.as_ref().map(Scene::read).transpose()?;
     let stated = args.mapping.as_ref().map(BagMapping::read).transpose()?;
-    let in_file = |kind| BagError { path: args.bag.clone(), kind };
+    let in_file = |kind: BagErrorKind| kind.in_file(&args.bag);
     let bag = read_bag(&args.bag)?;
     let name = args.bag.file_name().unwrap_or(args.bag.as_os_str()).to_string_lossy();
     let found = overview(&bag, &name).map_err(in_file)?;

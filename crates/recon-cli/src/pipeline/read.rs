@@ -3,7 +3,7 @@ use crate::error::CliError;
 use glam::DVec3;
 use recon::object_dynamics::{ContactLog, LoggedPalm, NotThreePlanes, SensedAxes, SensorLog, ThreePlanes};
 use recon_io::{
-    AnyLog, BagError, BagLog, BagMapping, Scene, brief, is_bag, log_of_bag, palms_of, read_any_log, read_bag,
+    AnyLog, BagLog, BagMapping, Scene, brief, is_bag, log_of_bag, palms_of, read_any_log, read_bag,
 };
 use std::path::Path;
 
@@ -98,9 +98,10 @@ fn read(
 
 /// Reads a bag by a mapping, with what a scene says of the palms.
 fn read_mapped(path: &Path, mapping: &BagMapping, scene: Option<&Scene>) -> Result<BagLog, CliError> {
-    let in_file = |kind| BagError { path: path.to_owned(), kind };
     let bag = read_bag(path)?;
-    Ok(palms_of(mapping, scene).and_then(|palms| log_of_bag(&bag, mapping, &palms)).map_err(in_file)?)
+    Ok(palms_of(mapping, scene)
+        .and_then(|palms| log_of_bag(&bag, mapping, &palms))
+        .map_err(|kind| kind.in_file(path))?)
 }
 
 /// The estimators of frictionless motion take forces: where one is known by its impulse alone, and all in three axes, the other one does.

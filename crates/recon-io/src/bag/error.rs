@@ -11,7 +11,15 @@ pub struct BagError {
     /// The file.
     pub path: PathBuf,
     /// What is wrong.
-    pub kind: BagErrorKind,
+    pub kind: Box<BagErrorKind>,
+}
+
+impl BagErrorKind {
+    /// The same of a file.
+    #[must_use]
+    pub fn in_file(self, path: impl Into<PathBuf>) -> BagError {
+        BagError { path: path.into(), kind: Box::new(self) }
+    }
 }
 
 /// What is wrong with a bag, or with what a mapping says of it. Places are bytes from the start of the file; times are stamps,
@@ -171,14 +179,22 @@ pub enum BagErrorKind {
         /// The key that would say another.
         key: String,
     },
-    /// Frames that stand in each other in a circle, or in two others.
-    #[error("frame `{frame}` stands in `{first}` and in `{second}`; a frame has one parent")]
+    /// Frames that stand in each other in a circle.
+    #[error("frame `{frame}` stands in itself, by the transforms above it; record those of one tree")]
+    Circle {
+        /// One of the frames.
+        frame: String,
+    },
+    /// A frame that stands in two others.
+    #[error(
+        "frame `{frame}` stands in `{first}` and in `{second}`; a frame has one parent: leave one of these transforms out of the bag"
+    )]
     TwoParents {
         /// The frame.
         frame: String,
         /// One parent.
         first: String,
-        /// Another, or itself where it is a circle.
+        /// Another.
         second: String,
     },
     /// A transform that is none.

@@ -37,39 +37,21 @@ pub(super) struct Way<'a> {
 impl Frames {
     /// All transforms of a bag, at times of its clock.
     pub(super) fn of(bag: &Bag, clock: &Clock) -> Result<Self, Kind> {
-        let mut edges: BTreeMap<String, (String, String, bool, Vec<(f64, SurfacePose)>)> = BTreeMap::new();
+        let mut gathered: BTreeMap<String, Gathered> = BTreeMap::new();
         for topic in bag.topics.values() {
-            let fixed = topic.name.ends_with("tf_static");
             for message in &topic.messages {
                 let Reading::Transforms(all) = &message.reading else { break };
-                for BagTransform { stamp, parent, child, pose } in all {
-                    let (parent, child) = (plain(parent), plain(child));
-                    let t = clock.of_transform(&topic.name, message, *stamp);
-                    let [x, y, z, i, j, k, w] = *pose;
-                    let pose = SurfacePose::new(DVec3::new(x, y, z), DQuat::from_xyzw(i, j, k, w))
-                        .map_err(|source| Kind::Transform { frame: child.to_owned(), t, source })?;
-                    let edge = edges
-                        .entry(child.to_owned())
-                        .or_insert_with(|| (parent.to_owned(), topic.name.clone(), fixed, Vec::new()));
-                    if edge.0 != parent {
-                        let (frame, first) = (child.to_owned(), edge.0.clone());
-                        return Err(Kind::TwoParents { frame, first, second: parent.to_owned() });
-                    }
-                    edge.3.push((t, pose));
+                for transform in all {
+                    let t = clock.of_transform(&topic.name, message, transform.stamp);
+                    gather(&mut gathered, &topic.name, t, transform)?;
                 }
             }
         }
-        let edges: BTreeMap<String, Edge> = edges
-            .into_iter()
-            .map(|(child, (parent, topic, fixed, poses))| {
-                (child, Edge { parent, topic, place: place(fixed, poses) })
-            })
-            .collect();
+        let edges = gathered.into_iter().map(|(child, gathered)| (child, gathered.edge())).collect();
         let frames = Self { edges };
         for frame in frames.edges.keys() {
             if frames.above(frame).len() > frames.edges.len() {
-                let (frame, circle) = (frame.clone(), frame.clone());
-                return Err(Kind::TwoParents { frame, first: "itself".to_owned(), second: circle });
+                return Err(Kind::Circle { frame: frame.clone() });
             }
         }
         Ok(frames)
@@ -134,6 +116,43 @@ fn root_of<'a>(above: &[&'a Edge], frame: &'a str) -> &'a str {
 /// Frames of the first version of tf began with a slash.
 pub(super) fn plain(frame: &str) -> &str {
     frame.trim_start_matches('/')
+}
+
+/// Poses of a frame in its parent, as they come.
+struct Gathered {
+    parent: String,
+    topic: String,
+    poses: Vec<(f64, SurfacePose)>,
+}
+
+impl Gathered {
+    fn edge(self) -> Edge {
+        let Self { parent, topic, poses } = self;
+        Edge { place: place(topic.ends_with("tf_static"), poses), parent, topic }
+    }
+}
+
+fn gather(
+    all: &mut BTreeMap<String, Gathered>,
+    topic: &str,
+    t: f64,
+    transform: &BagTransform,
+) -> Result<(), Kind> {
+    let (parent, child) = (plain(&transform.parent), plain(&transform.child));
+    let [x, y, z, i, j, k, w] = transform.pose;
+    let pose = SurfacePose::new(DVec3::new(x, y, z), DQuat::from_xyzw(i, j, k, w))
+        .map_err(|source| Kind::Transform { frame: child.to_owned(), t, source })?;
+    let known = all.entry(child.to_owned()).or_insert_with(|| Gathered {
+        parent: parent.to_owned(),
+        topic: topic.to_owned(),
+        poses: Vec::new(),
+    });
+    if known.parent != parent {
+        let (frame, first) = (child.to_owned(), known.parent.clone());
+        return Err(Kind::TwoParents { frame, first, second: parent.to_owned() });
+    }
+    known.poses.push((t, pose));
+    Ok(())
 }
 
 fn place(fixed: bool, mut poses: Vec<(f64, SurfacePose)>) -> Place {

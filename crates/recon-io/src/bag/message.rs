@@ -249,8 +249,11 @@ fn image(from: &mut Cdr) -> Result<Reading, CdrError> {
     Ok(Reading::Taxels { rows, columns, values: (0..rows).flat_map(row).collect() })
 }
 
+/// The value of a pixel.
+type PixelValue = fn(&[u8]) -> f64;
+
 /// Bytes of a pixel of one channel, and how they are read.
-fn pixel(encoding: &str, big: bool) -> Option<(usize, fn(&[u8]) -> f64)> {
+fn pixel(encoding: &str, big: bool) -> Option<(usize, PixelValue)> {
     fn of<const N: usize>(bytes: &[u8]) -> [u8; N] {
         let mut array = [0; N];
         array.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);

@@ -29,9 +29,8 @@ pub struct Bag {
 /// [`BagError`] names the file and the place.
 pub fn read_bag(path: impl AsRef<Path>) -> Result<Bag, BagError> {
     let path = path.as_ref();
-    let in_file = |kind| BagError { path: path.to_owned(), kind };
-    let file = std::fs::File::open(path).map_err(|error| in_file(error.into()))?;
-    parse_bag(BufReader::with_capacity(1 << 18, file)).map_err(in_file)
+    let file = std::fs::File::open(path).map_err(|error| Kind::from(error).in_file(path))?;
+    parse_bag(BufReader::with_capacity(1 << 18, file)).map_err(|kind| kind.in_file(path))
 }
 
 /// The same from bytes, as they come.

@@ -37,7 +37,7 @@ fn bytes_of_another_encoder_are_read() {
         (from.i32("sec"), from.u32("nanosec"), from.text("frame")),
         (Ok(1_760_000_000), Ok(0), Ok("palm_1"))
     );
-    assert_eq!(from.f64s("point"), Ok([7.2175502711900003e-16, 4.3391721008899999, 0.0]));
+    assert_eq!(from.f64s("point"), Ok([7.217_550_271_19e-16, 4.339_172_100_89, 0.0]));
     assert_eq!(from.end(), Ok(()));
 }
 

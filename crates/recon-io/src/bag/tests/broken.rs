@@ -81,7 +81,7 @@ proptest! {
 
     #[test]
     fn no_bytes_after_the_magic_make_it_panic(bytes in proptest::collection::vec(any::<u8>(), 0..300), operation in 0..20_u8, length in 0..300_u64) {
-        let head = [&mcap::MAGIC[..], &[operation], &length.to_le_bytes()].concat();
+        let head = [mcap::MAGIC, &[operation], &length.to_le_bytes()].concat();
         let _ = parse_bag(&[head, bytes].concat()[..]);
     }
 }
