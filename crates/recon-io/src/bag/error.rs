@@ -331,6 +331,18 @@ pub enum Unread {
         /// As found.
         found: String,
     },
+    /// Its definition has other fields than those that are read.
+    #[error(
+        "its definition of `{schema}` has the fields {found}, where {expected} are read; convert it to the message of ROS 2 of that name"
+    )]
+    Definition {
+        /// Name of the schema.
+        schema: String,
+        /// Types of its fields, lists in brackets.
+        found: String,
+        /// Those of the message that is read.
+        expected: String,
+    },
     /// Its messages are encoded otherwise.
     #[error(
         "its messages have the encoding `{found}`; `cdr` is read. Record with the mcap storage of rosbag2"

@@ -3,6 +3,7 @@
 
 mod cdr;
 mod clock;
+mod definition;
 mod error;
 mod frames;
 mod inspect;

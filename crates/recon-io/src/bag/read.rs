@@ -1,8 +1,9 @@
+use super::definition::{expected, fields};
 use super::error::{BagError, BagErrorKind as Kind, Unread};
 use super::message::{Decoded, MessageKind, Names, decode};
 use super::records::{End, Raw, Unpacker, walk};
 use super::topic::{Message, Topic};
-use mcap::records::{Channel, Record, op};
+use mcap::records::{Channel, Record, SchemaHeader, op};
 use std::collections::{BTreeMap, HashMap};
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -75,8 +76,8 @@ pub fn is_bag(path: impl AsRef<Path>) -> bool {
 #[derive(Default)]
 struct Reader {
     bag: Bag,
-    /// Name and encoding of schemas by number.
-    schemas: HashMap<u16, (String, String)>,
+    /// Schemas by number.
+    schemas: HashMap<u16, Schema>,
     /// Channels by number; with the name of the topic.
     channels: HashMap<u16, Channel>,
     names: Names,
@@ -95,8 +96,10 @@ impl Reader {
         let fault = |detail: String| Kind::Record { place, what, detail };
         match mcap::parse_record(operation, contents).map_err(|error| fault(error.to_string()))? {
             Record::Header(header) => self.bag.library = header.library,
-            Record::Schema { header, .. } => {
-                self.schemas.insert(header.id, (header.name, header.encoding));
+            Record::Schema { header, data } => {
+                let kind = kind(&header.name, &header.encoding, &data);
+                let SchemaHeader { id, name, encoding } = header;
+                self.schemas.insert(id, Schema { name, encoding, kind });
             }
             Record::Channel(channel) => self.channel(channel),
             Record::Message { header, data } => {
@@ -134,9 +137,17 @@ impl Reader {
         if self.channels.get(&channel.id) == Some(&channel) {
             return;
         }
-        let (schema, schema_encoding) = self.schemas.get(&channel.schema_id).cloned().unwrap_or_default();
+        // A number of no schema says that there is none.
+        let known = self.schemas.get(&channel.schema_id);
+        let (schema, schema_encoding) =
+            known.map(|s| (s.name.clone(), s.encoding.clone())).unwrap_or_default();
+        let kind =
+            known.map_or_else(|| Err(Unread::Schema { schema: String::new() }), |schema| schema.kind.clone());
         let message_encoding = channel.message_encoding.clone();
-        let kind = kind(&schema, &schema_encoding, &message_encoding);
+        let kind = kind.and_then(|kind| match message_encoding.as_str() {
+            "cdr" => Ok(kind),
+            found => Err(Unread::MessageEncoding { found: found.to_owned() }),
+        });
         if let Some(known) = self.bag.topics.get_mut(&channel.topic) {
             known.channels += 1;
             if known.schema != schema {
@@ -163,13 +174,27 @@ impl Reader {
     }
 }
 
-fn kind(schema: &str, schema_encoding: &str, message_encoding: &str) -> Result<MessageKind, Unread> {
-    let kind = MessageKind::of(schema).ok_or_else(|| Unread::Schema { schema: schema.to_owned() })?;
-    if !["ros2msg", "ros2idl"].contains(&schema_encoding) {
-        return Err(Unread::SchemaEncoding { found: schema_encoding.to_owned() });
+/// A schema, and what is read by it.
+struct Schema {
+    name: String,
+    encoding: String,
+    kind: Result<MessageKind, Unread>,
+}
+
+fn kind(name: &str, encoding: &str, definition: &[u8]) -> Result<MessageKind, Unread> {
+    let kind = MessageKind::of(name).ok_or_else(|| Unread::Schema { schema: name.to_owned() })?;
+    match encoding {
+        "ros2msg" => {}
+        // Its language is another, and recorders write it for messages that are defined so alone.
+        "ros2idl" => return Ok(kind),
+        found => return Err(Unread::SchemaEncoding { found: found.to_owned() }),
     }
-    match message_encoding {
-        "cdr" => Ok(kind),
-        found => Err(Unread::MessageEncoding { found: found.to_owned() }),
+    let expected = expected(kind);
+    // Definitions that refer to what is not there are not looked at: each message is checked as it is read.
+    match std::str::from_utf8(definition).ok().and_then(|text| fields(name, text)) {
+        Some(found) if !found.is_empty() && found != expected => {
+            Err(Unread::Definition { schema: name.to_owned(), found, expected })
+        }
+        _ => Ok(kind),
     }
 }

@@ -88,11 +88,17 @@ proptest! {
 
 /// A bag whose chunks are not packed, so that damage meets the records in them, and without checksums that would see it.
 fn plain_bag() -> Vec<u8> {
+    points(None, "")
+}
+
+/// A bag of twenty points, packed or not, with this definition.
+fn points(packed: Option<mcap::Compression>, definition: &str) -> Vec<u8> {
     let mut to = std::io::Cursor::new(Vec::new());
     let options =
-        mcap::WriteOptions::new().compression(None).calculate_chunk_crcs(false).chunk_size(Some(500));
+        mcap::WriteOptions::new().compression(packed).calculate_chunk_crcs(false).chunk_size(Some(500));
     let mut writer = options.create(&mut to).unwrap();
-    let schema = writer.add_schema("geometry_msgs/msg/PointStamped", "ros2msg", b"").unwrap();
+    let schema =
+        writer.add_schema("geometry_msgs/msg/PointStamped", "ros2msg", definition.as_bytes()).unwrap();
     let channel = writer.add_channel(schema, "/point", "cdr", &Default::default()).unwrap();
     for k in 0..20_u32 {
         let mut message = crate::bag::cdr::CdrWriter::new();
@@ -115,4 +121,19 @@ fn plain_bag() -> Vec<u8> {
 fn chunks_that_are_not_packed_are_read() {
     let bag = parse_bag(&plain_bag()[..]).unwrap();
     assert_eq!((topic(&bag, "/point").messages.len(), bag.cut), (20, None));
+}
+
+#[test]
+fn chunks_that_are_packed_by_lz4_are_read() {
+    let bag = parse_bag(&points(Some(mcap::Compression::Lz4), "")[..]).unwrap();
+    assert_eq!((topic(&bag, "/point").messages.len(), bag.cut), (20, None));
+}
+
+/// A message of a known name with other fields would be read as what it is not.
+#[test]
+fn other_definitions_of_a_known_name_are_refused() {
+    let bag = parse_bag(&points(None, "float32 x\nfloat32 y\nfloat32 z\n")[..]).unwrap();
+    let topic = topic(&bag, "/point");
+    let Err(Unread::Definition { found, .. }) = &topic.kind else { panic!("{:?}", topic.kind) };
+    assert_eq!((found.as_str(), topic.count, topic.messages.len()), ("float32 float32 float32", 20, 0));
 }
