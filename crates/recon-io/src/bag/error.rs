@@ -284,6 +284,12 @@ pub enum BagErrorKind {
         /// The key that says so.
         key: String,
     },
+    /// No palm to make a log of.
+    #[error("has no topic of wrenches, contacts or taxels that is read; there are: {found}")]
+    NoPalms {
+        /// Topics with what they hold.
+        found: String,
+    },
     /// The scene has another number of palms than the mapping.
     #[error(
         "the mapping has {mapped} [[palm]] table(s) where the scene has {palms} palm(s); give one for each, in the same order"

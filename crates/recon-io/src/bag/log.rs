@@ -99,6 +99,9 @@ fn alike(a: PalmSurface, b: PalmSurface) -> bool {
 /// of one palm tell different times.
 pub fn log_of_bag(bag: &Bag, mapping: &BagMapping, palms: &[PalmSetup]) -> Result<BagLog, Kind> {
     refuse_cut(bag, mapping)?;
+    if mapping.palms.is_empty() {
+        return Err(Kind::NoPalms { found: bag.listed() });
+    }
     if palms.len() != mapping.palms.len() {
         return Err(Kind::PalmCount { mapped: mapping.palms.len(), palms: palms.len() });
     }

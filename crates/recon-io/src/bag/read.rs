@@ -21,6 +21,15 @@ pub struct Bag {
     pub cut: Option<u64>,
 }
 
+impl Bag {
+    /// Topics with what they hold, in one line.
+    pub(super) fn listed(&self) -> String {
+        let about = |topic: &Topic| format!("{} ({})", topic.name, topic.schema);
+        let all: Vec<String> = self.topics.values().map(about).collect();
+        if all.is_empty() { "none".to_owned() } else { all.join(", ") }
+    }
+}
+
 /// Reads a bag.
 ///
 /// A bag that was cut off is read up to there, and [`Bag::cut`] says so. Topics that are not understood have a count and a

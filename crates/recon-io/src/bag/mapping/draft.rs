@@ -72,6 +72,9 @@ pub fn draft_mapping(bag: &Bag, name: &str) -> Result<MappingDraft, BagErrorKind
             topic.name
         ));
     }
+    if mapping.palms.is_empty() {
+        remarks.push("No palm was found: no topic of wrenches, contacts or taxels is read.".to_owned());
+    }
     let clocks =
         palms_of(&mapping, None).and_then(|setups| clocks_of_bag(bag, &mapping, &setups)).unwrap_or_default();
     for PalmClock { contact, offset, disagrees, .. } in &clocks {

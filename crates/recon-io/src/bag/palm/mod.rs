@@ -127,11 +127,9 @@ impl<'a> Source<'a> {
     }
 
     pub(super) fn topic(self, topic: &str, asked: &str) -> Result<&'a Topic, Kind> {
-        self.bag.topics.get(topic).ok_or_else(|| {
-            let about = |topic: &Topic| format!("{} ({})", topic.name, topic.schema);
-            let found: Vec<String> = self.bag.topics.values().map(about).collect();
-            Kind::NoTopic { topic: topic.to_owned(), asked: asked.to_owned(), found: found.join(", ") }
-        })
+        let (topic_name, found) = (topic.to_owned(), || self.bag.listed());
+        let missing = || Kind::NoTopic { topic: topic_name, asked: asked.to_owned(), found: found() };
+        self.bag.topics.get(topic).ok_or_else(missing)
     }
 
     /// Refuses readings that are not finite, or leaves them out where the mapping says so.

@@ -418,3 +418,48 @@ fn torques_of_motors_come_from_joint_states() {
     mapping.palms[2].joint = joint("elbow");
     assert!(log(&bag, &mapping).unwrap_err().to_string().contains("`elbow`"));
 }
+
+#[test]
+fn a_bag_without_palms_says_what_there_is() {
+    let mut bag = bag("whole_short.mcap");
+    bag.topics.retain(|name, _| name == "/truth/pose");
+    let found = overview(&bag, "a.mcap").unwrap();
+    assert!(found.text().contains("No palm was found"), "{}", found.text());
+    let error = log(&bag, &found.draft.mapping).unwrap_err().to_string();
+    assert!(error.contains("/truth/pose (geometry_msgs/msg/PoseStamped)"), "{error}");
+}
+
+#[test]
+fn transforms_that_are_no_tree_are_refused() {
+    let with = |links: &[(&str, &str)]| {
+        let mut bag = bag("whole_short.mcap");
+        let statics = &mut bag.topics.get_mut("/tf_static").unwrap().messages[0];
+        let Reading::Transforms(all) = &mut statics.reading else { panic!() };
+        all.extend(links.iter().map(|(parent, child)| BagTransform {
+            stamp: statics.stamp,
+            parent: (*parent).into(),
+            child: (*child).into(),
+            pose: [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        }));
+        draft_mapping(&bag, "a.mcap").unwrap_err().to_string()
+    };
+    let circle = with(&[("palm_3", "world")]);
+    assert!(circle.contains("stands in itself"), "{circle}");
+    let two = with(&[("table", "palm_2")]);
+    assert!(two.contains("`palm_2` stands in `world` and in `table`"), "{two}");
+}
+
+#[test]
+fn stamps_that_were_never_set_are_told_and_log_times_taken() {
+    let mut bag = bag("whole_short.mcap");
+    bag.topics.get_mut("/palm_1/contact").unwrap().messages.iter_mut().for_each(|message| message.stamp = 0);
+    let mut mapping = drafted(&super::bag("whole_short.mcap"));
+    let error = log(&bag, &mapping).unwrap_err().to_string();
+    for words in ["`/palm_1/contact`", "stamp 0 ns occurs 201 times", "time = \"log\""] {
+        assert!(error.contains(words), "{error}");
+    }
+    let (topic, time) = ("/palm_1/contact".to_owned(), crate::TimeOf::Log);
+    mapping.clocks.push(crate::TopicClock { topic, ahead: 0.0, time });
+    let whole = super::bag("whole_short.mcap");
+    assert_eq!(log(&bag, &mapping).unwrap().log, log(&whole, &mapping).unwrap().log);
+}
