@@ -5,14 +5,11 @@ use super::error::BagErrorKind;
 use super::mapping::{MappingDraft, draft_mapping};
 use super::message::Reading;
 use super::read::Bag;
-use super::silences::{TopicGap, gaps, said};
+use super::silences::{MOST_GAPS, TopicGap, gaps, said};
 use super::topic::Topic;
 use crate::brief_to;
 use serde_json::{Value, json};
 use std::fmt::Write;
-
-/// Gaps of a topic that are told one by one.
-const MOST_GAPS: usize = 8;
 
 /// What a bag holds.
 #[derive(Clone, Debug, PartialEq)]

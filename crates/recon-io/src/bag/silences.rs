@@ -6,6 +6,9 @@ use super::topic::{Message, Topic};
 use crate::brief_to;
 use recon::object_dynamics::Rhythm;
 
+/// Gaps of a topic that are told one by one.
+pub(super) const MOST_GAPS: usize = 8;
+
 /// An interval without messages of a topic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TopicGap {
@@ -41,10 +44,17 @@ pub(super) fn gaps(topic: &Topic, clock: &Clock) -> (Option<f64>, Vec<TopicGap>)
     (rhythm.period, rhythm.silences.iter().map(gap).collect())
 }
 
-/// The gaps of a topic in words.
+/// The gaps of a topic in words: one by one if they are few, else the longest and how many there are.
 pub(super) fn silences(source: Source, topic: &str) -> Vec<String> {
     let Some(found) = source.bag.topics.get(topic) else { return Vec::new() };
-    gaps(found, source.clock).1.iter().map(|gap| format!("{topic} {}.", said(gap))).collect()
+    let (_, gaps) = gaps(found, source.clock);
+    if gaps.len() <= MOST_GAPS {
+        return gaps.iter().map(|gap| format!("{topic} {}.", said(gap))).collect();
+    }
+    let longest = gaps.iter().max_by(|a, b| (a.to - a.from).total_cmp(&(b.to - b.from)));
+    let missing: usize = gaps.iter().map(|gap| gap.missing).sum();
+    let of = format!("{topic} is silent {} times, with {missing} messages missing by its period", gaps.len());
+    longest.map(|gap| format!("{of}; the longest time it {}.", said(gap))).into_iter().collect()
 }
 
 /// A gap in words, as in `has nothing from t = 0.599 to 0.64 s: 40 messages are missing (numbers 600 to 639)`.

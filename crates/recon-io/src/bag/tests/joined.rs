@@ -463,3 +463,18 @@ fn stamps_that_were_never_set_are_told_and_log_times_taken() {
     let whole = super::bag("whole_short.mcap");
     assert_eq!(log(&bag, &mapping).unwrap().log, log(&whole, &mapping).unwrap().log);
 }
+
+/// A topic that falls silent again and again is told in one sentence.
+#[test]
+fn many_silences_are_told_together() {
+    let mut bag = bag("whole_short.mcap");
+    let mapping = drafted(&bag);
+    let messages = &mut bag.topics.get_mut("/palm_1/wrench").unwrap().messages;
+    messages.retain(|message| message.sequence % 10 != 5 && !(50..53).contains(&message.sequence));
+    let made = log(&bag, &mapping).unwrap();
+    let said: Vec<_> = made.warnings.iter().filter(|w| w.starts_with("/palm_1/wrench")).collect();
+    let expected = "/palm_1/wrench is silent 21 times, with 23 messages missing by its period; the longest time it has nothing from \
+                    t = 0.049 to 0.053 s: 3 messages are missing (numbers 50 to 52).";
+    assert_eq!(said, [expected]);
+    assert_eq!(made.log.times().len(), 201 - 23);
+}
