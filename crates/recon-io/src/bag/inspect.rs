@@ -1,7 +1,7 @@
 //! What a bag holds, in words and numbers.
 
 use super::clock::Clock;
-use super::error::BagErrorKind;
+use super::error::{BagErrorKind, Unread};
 use super::mapping::{MappingDraft, draft_mapping};
 use super::message::Reading;
 use super::read::Bag;
@@ -34,7 +34,7 @@ pub struct TopicOverview {
     /// How many messages it has.
     pub count: usize,
     /// Why they are not read.
-    pub unread: Option<String>,
+    pub unread: Option<Unread>,
     /// First and last stamp, s since the first of the bag.
     pub span: Option<[f64; 2]>,
     /// Messages a second, by the median of the time between two.
@@ -79,7 +79,7 @@ impl TopicOverview {
             name: topic.name.clone(),
             schema: topic.schema.clone(),
             count: topic.count,
-            unread: topic.kind.as_ref().err().map(ToString::to_string),
+            unread: topic.kind.clone().err(),
             span: first.zip(last).map(|(first, last)| [first, last]),
             rate: period.filter(|period| *period > 0.0).map(f64::recip),
             latency: latency(topic),
@@ -158,7 +158,8 @@ impl BagOverview {
         let gap = |gap: &TopicGap| json!({ "from_s": gap.from, "to_s": gap.to, "missing": gap.missing, "sequences": gap.sequences.map(|(a, b)| [a, b]) });
         let topic = |topic: &TopicOverview| {
             json!({
-                "name": topic.name, "schema": topic.schema, "messages": topic.count, "unread": topic.unread,
+                "name": topic.name, "schema": topic.schema, "messages": topic.count,
+                "unread": topic.unread.as_ref().map(ToString::to_string),
                 "span_s": topic.span, "rate_hz": topic.rate, "latency_s": topic.latency,
                 "gaps": topic.gaps.iter().map(gap).collect::<Vec<_>>(), "frames": topic.frames,
                 "not_finite": topic.not_finite.map(|(count, t)| json!({ "messages": count, "first_t_s": t })),
@@ -186,9 +187,13 @@ impl TopicOverview {
         let mut line = |remark: String| {
             let _ = writeln!(text, "    {remark}");
         };
-        if let Some(why) = &self.unread {
-            line(format!("not read: {why}"));
-        } else if self.count == 0 {
+        match &self.unread {
+            None => {}
+            // Bags hold much that has nothing to do with contacts: no need to say each time what has.
+            Some(Unread::Schema { .. }) => line("not read: a message of another kind".to_owned()),
+            Some(why) => line(format!("not read: {why}")),
+        }
+        if self.count == 0 && self.unread.is_none() {
             line("is announced and has no message".to_owned());
         }
         for gap in self.gaps.iter().take(MOST_GAPS) {

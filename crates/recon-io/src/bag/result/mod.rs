@@ -180,7 +180,7 @@ impl ResultBag<'_> {
         let duration = self.times.last().zip(self.times.first()).map_or(0.0, |(last, first)| last - first);
         let most = (duration * MOST_MARKERS).max(1.0);
         // A cast from f64 saturates.
-        ((self.times.len() as f64 / most).ceil() as usize).max(1)
+        ((self.times.len().saturating_sub(1) as f64 / most).ceil() as usize).max(1)
     }
 
     fn time(&self, t: f64) -> i64 {
