@@ -478,3 +478,18 @@ fn many_silences_are_told_together() {
     assert_eq!(said, [expected]);
     assert_eq!(made.log.times().len(), 201 - 23);
 }
+
+/// Palms whose readings are all told in the world are told apart by the names of their topics.
+#[test]
+fn palms_of_one_frame_are_told_apart_by_name() {
+    let mut bag = bag("whole_short.mcap");
+    for topic in bag.topics.values_mut().filter(|topic| topic.name.starts_with("/palm_")) {
+        topic.messages.iter_mut().for_each(|message| message.frame = "world".into());
+    }
+    let mapping = draft_mapping(&bag, "a.mcap").unwrap().mapping;
+    for (i, palm) in mapping.palms.iter().enumerate() {
+        let [wrench, contact] = ["wrench", "contact"].map(|what| format!("/palm_{}/{what}", i + 1));
+        assert_eq!((&palm.wrench, &palm.contact), (&Some(wrench), &Some(contact)));
+    }
+    assert_eq!(mapping.palms.len(), 3);
+}

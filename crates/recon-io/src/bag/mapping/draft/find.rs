@@ -98,7 +98,9 @@ impl Palms<'_> {
         };
         let beside = |palm: &DraftPalm| palm.space == space && !space.is_empty();
         let by_name = self.all.iter().filter(|palm| beside(palm)).count() == 1;
-        let found = self.all.iter().position(stands);
+        // Of several palms whose readings are told in one frame it is the one of that name.
+        let both = self.all.iter().position(|palm| stands(palm) && beside(palm));
+        let found = both.or_else(|| self.all.iter().position(stands));
         let found = found.or_else(|| self.all.iter().position(beside).filter(|_| by_name))?;
         let names = self.frames.names();
         let lost = |its: &String| !names.contains(&its.as_str());
