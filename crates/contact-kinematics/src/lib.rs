@@ -27,6 +27,7 @@ pub use support::{
     SupportFunction, SupportJet, Translated, check_convex, principal_radii,
 };
 pub use surface::{
-    BodyPlace, ContactError, FASTEST_PALM, FASTEST_TURN, MotionPart, PalmSurface, PoseTable, SurfaceContact,
-    SurfaceError, SurfaceMotion, SurfacePoint, SurfacePose, SurfaceRates, SurfaceState,
+    BodyPlace, ContactError, FASTEST_PALM, FASTEST_TURN, MotionPart, PalmSurface, PoseTable, Pressed,
+    PressureError, SurfaceContact, SurfaceError, SurfaceMotion, SurfacePoint, SurfacePose, SurfaceRates,
+    SurfaceState, TaxelArray,
 };

@@ -15,6 +15,7 @@ mod noise;
 pub mod planar;
 mod series;
 mod state;
+mod streams;
 mod three_palms;
 
 #[cfg(feature = "noise")]
@@ -39,6 +40,7 @@ pub use modes::{ContactMode, FrictionError, MOST_FRICTION, check_friction};
 pub use noise::SensorNoise;
 pub use series::SeriesError;
 pub use state::BodyState;
+pub use streams::{ClockOffset, PoseTrack, Rhythm, Silence, Track, TrackError, TurnAndShift, clock_offset};
 pub use three_palms::{
     Accelerations, End, InitialMotion, Instant, MultiplierSolution, SampleTimes, SceneError, Simulation,
     SimulationError, ThreePalmScene,

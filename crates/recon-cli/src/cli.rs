@@ -18,6 +18,7 @@ Examples:
   recon demo                                        the paper's Fig. 5, from nothing to a report
   recon simulate scene.toml -o log.csv              a sensor log of a known object
   recon reconstruct log.csv --scene scene.toml -o out   shape, motion and bounds from a log
+  recon inspect bag.mcap -o map.toml                what a robot's log (ROS 2, MCAP) holds, and a mapping of its topics
   recon follow - --scene scene.toml                 the motion as it becomes known, from a running log
   recon bounds out/contact_curves.csv -o bounds     bounds from contact points and normals alone
   recon check out                                   whether results hold, by their files alone";
@@ -40,6 +41,8 @@ pub(crate) enum Command {
     Simulate(SimulateArgs),
     /// Reconstruct motion, contact curves and bounds from a sensor log
     Reconstruct(ReconstructArgs),
+    /// Look over a bag of ROS 2 (MCAP): topics, rates, gaps, clocks; and draft the mapping of its topics
+    Inspect(InspectArgs),
     /// Follow the motion sample by sample, as a log is written or at the pace of reading it
     Follow(FollowArgs),
     /// Bound a convex object from contact points with outward normals, or from its poses above a plane
@@ -86,6 +89,8 @@ The log is CSV (sensor log, version 1): t, and for each palm i the contact s1_i,
 the force f_i or torque tau_i. The scene gives gravity, mass and inertia; with --identify mass and inertia are estimated
 along, and those of the scene are not looked at. No initial guess is needed.
 
+A log may be a bag of ROS 2 (MCAP) too: --mapping says which of its topics are which readings of which palm, and `recon inspect` drafts it.
+
 A log of contacts (version 2) need not be of three flat palms without friction: of any one to five palms with forces or impulses in three axes,
 motion, mass and inertia are estimated together, with their deviations and with the contact modes, and the body is taken as
 unknown. The scene states the noise ([sensors]: contact_std, force_std or force_share, impulse_std or impulse_share), and where all contacts are on one
@@ -93,7 +98,8 @@ palm the size (object.size). motion.csv says at each sample whether it is relied
 
 The output folder appears as a whole or not at all: motion.csv, contact_curves.csv, radius_functions.csv, summary.json,
 lower_bound.ply, upper_bound.ply, report.html, which opens in any browser, and manifest.json, which lists them. With --export it holds the object for
-simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer to.
+simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer to. With --mcap it holds result.mcap, a bag that Foxglove
+shows: motion with covariance, contacts, forces and bounds, at the stamps of the bag that was read.
 
 The bounds hold at 95 % confidence for the noise of the sensors and the error of the motion, in the axes that bounds_frame in
 summary.json names. A motion that is not to be relied on gives none.
@@ -106,13 +112,17 @@ Examples:
   recon reconstruct log.csv --scene scene.toml -o out
   recon reconstruct log.csv --scene scene.toml -o out --identify --export mjcf,urdf
   recon reconstruct log.csv --scene scene.toml -o out --without-forces
+  recon reconstruct bag.mcap --mapping map.toml --scene scene.toml -o out --mcap
   recon reconstruct log.csv --scene scene.toml -o out --json | jq .bounds")]
 pub(crate) struct ReconstructArgs {
-    /// Sensor log (CSV)
+    /// Sensor log (CSV, or a bag of ROS 2 in MCAP)
     pub(crate) log: PathBuf,
     /// Scene file (TOML)
     #[arg(short, long)]
     pub(crate) scene: Option<PathBuf>,
+    /// Mapping of a bag's topics (TOML)
+    #[arg(short, long)]
+    pub(crate) mapping: Option<PathBuf>,
     /// Folder to write; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long, default_value = "recon-out")]
     pub(crate) output: PathBuf,
@@ -128,9 +138,46 @@ pub(crate) struct ReconstructArgs {
     /// Write the object for simulators too, in these formats
     #[arg(long, value_delimiter = ',', value_name = "FORMATS")]
     pub(crate) export: Vec<ExportAs>,
+    /// Write motion, contacts, forces and bounds as a bag too (result.mcap), for Foxglove and Rerun
+    #[arg(long, conflicts_with = "without_forces")]
+    pub(crate) mcap: bool,
     /// Shape of the exported object
     #[arg(long, default_value = "auto", requires = "export")]
     pub(crate) export_shape: ShapeAs,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Read are WrenchStamped, PointStamped, PoseStamped, TFMessage, JointState, Image of one number a pixel, TactileState, and
+recon_msgs/Contact (its definition comes with recon-io, in ros/recon_msgs). Topics come with their rates, gaps (by stamps and by the recorder's numbers),
+latencies and frames. Where a palm has contacts and a wrench, their clocks are compared: the contacts that the wrench gives go
+the same way, earlier or later.
+
+The mapping that is drafted names a frame, topics and, where contacts tell it, the shape of each palm, and clocks that are
+ahead. Look it over: nothing in a bag says on which body a force acts. With --mapping that mapping is used, and its log is told.
+
+Exit code 4 says that the bag was cut off.
+
+Examples:
+  recon inspect bag.mcap
+  recon inspect bag.mcap -o map.toml
+  recon inspect bag.mcap --mapping map.toml --scene scene.toml --csv log.csv
+  recon inspect bag.mcap --json | jq .clocks")]
+pub(crate) struct InspectArgs {
+    /// Bag (MCAP)
+    pub(crate) bag: PathBuf,
+    /// File to write the drafted mapping to (TOML) [default: standard output]
+    #[arg(short, long, conflicts_with = "mapping")]
+    pub(crate) output: Option<PathBuf>,
+    /// Mapping to use in place of the drafted one (TOML)
+    #[arg(short, long)]
+    pub(crate) mapping: Option<PathBuf>,
+    /// Scene file (TOML), for the palms' shapes
+    #[arg(short, long)]
+    pub(crate) scene: Option<PathBuf>,
+    /// Sensor log to write (CSV, version 2)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) csv: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]

@@ -8,7 +8,10 @@ use recon::shape_bounds::{
     AlphaError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
     SurfaceError, planar,
 };
-use recon_io::{CheckError, ExportError, LogFileError, MeshError, OutputError, SceneError, TouchesError};
+use recon_io::{
+    BagError, CheckError, ExportError, LogFileError, MappingError, MeshError, OutputError, SceneError,
+    TouchesError,
+};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use thiserror::Error;
@@ -36,6 +39,18 @@ impl Outcome {
 pub(crate) enum CliError {
     #[error("the sensor log cannot be used")]
     Log(#[from] LogFileError),
+    #[error("the bag cannot be used")]
+    Bag(#[from] BagError),
+    #[error("the results make no bag")]
+    ResultBag(#[source] std::io::Error),
+    #[error("the mapping of topics cannot be used")]
+    Mapping(#[from] MappingError),
+    #[error("{} is an MCAP bag: give the mapping of its topics by --mapping; `recon inspect {} -o map.toml` drafts one", path.display(), path.display())]
+    NoMapping { path: PathBuf },
+    #[error("--mapping is for MCAP bags, and {} is none", path.display())]
+    MappingOfNoBag { path: PathBuf },
+    #[error("{} is an MCAP bag, and only CSV is followed; `recon inspect {} --csv log.csv` makes one of it", path.display(), path.display())]
+    BagFollowed { path: PathBuf },
     #[error("the scene cannot be used")]
     Scene(#[from] SceneError),
     #[error("the contacts or poses cannot be used")]
@@ -190,10 +205,15 @@ impl CliError {
             Self::Output(OutputError::Certificate { .. })
             | Self::Picture(_)
             | Self::Facets(_)
+            | Self::ResultBag(_)
             | Self::Mesh(_)
             | Self::Signals(_)
             | Self::PlanarDemo(_) => 1,
             Self::Log(_)
+            | Self::Bag(_)
+            | Self::Mapping(_)
+            | Self::NoMapping { .. }
+            | Self::BagFollowed { .. }
             | Self::Scene(_)
             | Self::Touches(_)
             | Self::NoisyBounds(_)
@@ -240,7 +260,7 @@ impl CliError {
             | Self::Check(_)
             | Self::Fit(_)
             | Self::Bounds(_) => 3,
-            Self::Option { .. } => 2,
+            Self::Option { .. } | Self::MappingOfNoBag { .. } => 2,
             Self::Output(_) | Self::StandardOutput(_) => 5,
             Self::Interrupted => 130,
         })

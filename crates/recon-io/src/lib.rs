@@ -4,6 +4,8 @@
 //! Errors of reading name the file, the line or key, the value and the mend. What is written as a whole appears as a
 //! whole or not at all ([`OutputFolder`], [`AtomicFile`]).
 
+#[cfg(feature = "mcap")]
+mod bag;
 mod check;
 mod export;
 mod log;
@@ -21,6 +23,14 @@ mod summary;
 mod table;
 mod touches;
 
+#[cfg(feature = "mcap")]
+pub use bag::{
+    Bag, BagError, BagErrorKind, BagLog, BagMapping, BagOverview, BagTransform, BagUnits, ForceOn, Joint,
+    JointTopic, MappingDraft, MappingError, MappingErrorKind, Message, MessageKind, PalmClock, PalmTopics,
+    Pitch, Reading, ResultBag, ResultContact, ResultPose, TaxelTopic, TaxelValue, TimeOf, Topic, TopicClock,
+    TopicGap, TopicOverview, Unread, clocks_of_bag, draft_mapping, is_bag, log_of_bag, overview, palms_of,
+    parse_bag, read_bag,
+};
 pub use check::{CheckError, Fault, check, check_unwritten, outline_stands_out, stands_out};
 pub use export::{
     ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel, SceneModel,

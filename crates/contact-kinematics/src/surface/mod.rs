@@ -6,6 +6,7 @@ mod forward;
 mod motion;
 mod nearest;
 mod pose;
+mod pressure;
 mod rates;
 mod table;
 
@@ -14,6 +15,7 @@ pub use error::{ContactError, FASTEST_PALM, FASTEST_TURN, SurfaceError};
 pub use motion::{MotionPart, SurfaceMotion};
 pub use nearest::SurfacePoint;
 pub use pose::{SurfacePose, SurfaceState};
+pub use pressure::{Pressed, PressureError, TaxelArray};
 pub use rates::SurfaceRates;
 pub use table::PoseTable;
 

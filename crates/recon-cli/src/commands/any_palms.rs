@@ -5,7 +5,8 @@ use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
-    AnyPalmsRequest, as_planes, describe_times, estimate_any_palms, exported, write_estimate_folder,
+    AnyPalmsRequest, LogStand, as_planes, bag_of_any_palms, describe_times, estimate_any_palms, exported,
+    write_estimate_folder,
 };
 use crate::progress::Progress;
 use recon::object_dynamics::{ContactLog, SensorLog};
@@ -16,7 +17,7 @@ use std::path::Path;
 
 pub(super) fn run(
     args: &ReconstructArgs,
-    (log, request): (ContactLog, AnyPalmsRequest<'_>),
+    (log, request, stand): (ContactLog, AnyPalmsRequest<'_>, LogStand),
     planes: Option<&SensorLog>,
     (target, progress): (FolderTarget, Progress),
     console: &Console,
@@ -28,7 +29,10 @@ pub(super) fn run(
         true => Vec::new(),
         false => exported(&made.object()?, &args.export, args.export_shape)?,
     };
-    let extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
+    let mut extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
+    if args.mcap {
+        extras.push(bag_of_any_palms(&made, stand)?);
+    }
     let page = planes.map(|planes| as_planes(&made, planes, scene)).transpose()?;
     let (mut figures, data) = (write_estimate_folder(target, &made, page.as_ref(), &extras)?, &made.data);
     drop(progress);

@@ -6,6 +6,7 @@ mod check;
 mod demo;
 mod export;
 mod follow;
+mod inspect;
 mod planar;
 mod plane;
 mod reconstruct;
@@ -21,6 +22,7 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
     match command {
         Command::Simulate(args) => simulate::run(args, console),
         Command::Reconstruct(args) => reconstruct::run(args, console),
+        Command::Inspect(args) => inspect::run(args, console),
         Command::Follow(args) => follow::run(args, console),
         Command::Bounds(args) => bounds::run(args, console),
         Command::Planar(args) => planar::run(args, console),

@@ -2,8 +2,8 @@ use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
-    AnyPalmsRequest, LogOf, Reconstruction, condensed, exported, noisy_planes, read_log, reconstruct,
-    refuse_unfelt, sentence, write_reconstruction_folder,
+    AnyPalmsRequest, LogOf, LogSource, ReadLog, Reconstruction, bag_of_planes, condensed, exported,
+    noisy_planes, normal_forces, read_log, reconstruct, refuse_unfelt, sentence, write_reconstruction_folder,
 };
 use crate::progress::Progress;
 use recon_io::{Bounds, FolderTarget, Scene, brief, brief_to};
@@ -20,34 +20,51 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");
     let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
-    let read = read_log(&args.log, &scene)?;
+    let ReadLog { log, warnings, stand } = read_log(source(args, &scene), console)?;
     let mut request = AnyPalmsRequest::new(&scene, &title, args.identify);
-    let (log, moved) = match read {
-        LogOf::ThreePalms(log, moved) => (log, moved),
+    let log = match log {
+        LogOf::ThreePalms(log) => log,
         LogOf::AnyPalms(log, why) => {
             refuse_unfelt(&log, &args.log, &why)?;
+            request.warnings = warnings;
             request.note = sentence(&format!("{why}; the estimate is that from contacts of any palms"));
-            return super::any_palms::run(args, (*log, request), None, (target, progress), console);
+            return super::any_palms::run(args, (*log, request, stand), None, (target, progress), console);
         }
     };
     let (log, together) = condensed(log);
     if let Some(contacts) = noisy_planes(&log, &scene)? {
-        request.of_noisy_planes(&log, together, moved);
-        return super::any_palms::run(args, (contacts, request), Some(&log), (target, progress), console);
+        request.of_noisy_planes(&log, together, warnings);
+        return super::any_palms::run(
+            args,
+            (contacts, request, stand),
+            Some(&log),
+            (target, progress),
+            console,
+        );
     }
+    let forces = normal_forces(&log);
     let mut made = reconstruct(log, &scene, &title, (args.identify, together), &progress)?;
-    made.data.warnings.extend(moved);
+    made.data.warnings.extend(warnings);
     progress.step("writing the results");
     let files = exported(&made.object(), &args.export, args.export_shape)?;
-    let extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
+    let mut extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
+    if args.mcap {
+        extras.push(bag_of_planes(&made, &forces, stand)?);
+    }
     let figures = write_reconstruction_folder(target, &made, &extras)?;
     drop(progress);
     tell(console, &made, figures, &args.output)
 }
 
+/// Where the log is.
+pub(super) fn source<'a>(args: &'a ReconstructArgs, scene: &'a Scene) -> LogSource<'a> {
+    LogSource { path: &args.log, scene, mapping: args.mapping.as_deref() }
+}
+
 /// Where the results go.
 pub(super) fn target(args: &ReconstructArgs) -> Result<FolderTarget, CliError> {
-    let inputs: Vec<_> = std::iter::once(&args.log).chain(&args.scene).cloned().collect();
+    let inputs: Vec<_> =
+        std::iter::once(&args.log).chain(&args.scene).chain(&args.mapping).cloned().collect();
     Ok(FolderTarget::new(&args.output, &inputs, args.force)?)
 }
 

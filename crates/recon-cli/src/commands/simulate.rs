@@ -128,7 +128,7 @@ fn write_any(log: &MadeLog, to: impl Write) -> io::Result<()> {
     }
 }
 
-fn write(
+pub(super) fn write(
     target: FileTarget,
     path: &Path,
     contents: impl Fn(&mut dyn Write) -> io::Result<()>,

@@ -19,7 +19,7 @@ pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let target = super::reconstruct::target(args)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");
-    let (log, moved) = three_palms(&args.log, &scene)?;
+    let (log, mut warnings) = three_palms(super::reconstruct::source(args, &scene), console)?;
     let (log, _) = log.split_truth();
     progress.step("estimating motion and shape");
     let known = KnownTouch {
@@ -28,7 +28,6 @@ pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     };
     let found = estimate_without_forces(&log, &known)?;
     progress.step("bounding the shape");
-    let mut warnings: Vec<String> = moved.into_iter().collect();
     let noise = found.evidence.noise_explains;
     let bounded = if noise > NOTABLE_NOISE * found.shape.semi_axes.max_element() {
         warnings.push(format!(

@@ -51,7 +51,7 @@ fn with_forces(log: ContactLog, scene: &Scene) -> Result<ContactLog, CliError> {
 
 impl AnyPalmsRequest<'_> {
     /// Of a noisy log of three planes, each sample the mean of so many.
-    pub(crate) fn of_noisy_planes(&mut self, log: &SensorLog, together: usize, moved: Option<String>) {
+    pub(crate) fn of_noisy_planes(&mut self, log: &SensorLog, together: usize, said: Vec<String>) {
         let odd = implausibilities(log, self.scene);
         self.friction = Some(0.0);
         self.together = together;
@@ -59,7 +59,7 @@ impl AnyPalmsRequest<'_> {
             "Three flat palms without friction, and noise: the estimate is that from contacts of any palms."
                 .to_owned();
         self.implausible = !odd.is_empty();
-        self.warnings = odd.iter().map(|odd| sentence(&odd.to_string())).chain(moved).collect();
+        self.warnings = odd.iter().map(|odd| sentence(&odd.to_string())).chain(said).collect();
     }
 }
 

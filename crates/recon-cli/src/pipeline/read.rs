@@ -1,51 +1,107 @@
+use crate::console::Console;
 use crate::error::CliError;
 use glam::DVec3;
 use recon::object_dynamics::{ContactLog, LoggedPalm, NotThreePlanes, SensedAxes, SensorLog, ThreePlanes};
-use recon_io::{AnyLog, Scene, brief, read_any_log};
+use recon_io::{
+    AnyLog, BagLog, BagMapping, Scene, brief, is_bag, log_of_bag, palms_of, read_any_log, read_bag,
+};
 use std::path::Path;
 
 /// What a sensor log is estimated as.
 pub(crate) enum LogOf {
-    /// Three flat palms through one point, without friction; with what is to be said of that.
-    ThreePalms(SensorLog, Option<String>),
+    /// Three flat palms through one point, without friction.
+    ThreePalms(SensorLog),
     /// Contacts of any palms; with why they are not the former.
     AnyPalms(Box<ContactLog>, NotThreePlanes),
 }
 
-/// Reads a sensor log of either version, for an estimate that needs forces.
-pub(crate) fn read_log(path: &Path, scene: &Scene) -> Result<LogOf, CliError> {
-    read(path, scene, impulses_alone)
+/// Where a log stands in time and space.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct LogStand {
+    /// Time of a bag at which that of the log is zero, ns.
+    pub(crate) epoch: i64,
+    /// Where the origin of its positions is in the world, m.
+    pub(crate) origin: DVec3,
+}
+
+/// A sensor log that was read.
+pub(crate) struct ReadLog {
+    pub(crate) log: LogOf,
+    /// What is to be said of it.
+    pub(crate) warnings: Vec<String>,
+    /// Where it stands in time and space.
+    pub(crate) stand: LogStand,
+}
+
+/// Where a log is, and what is known beside it.
+#[derive(Clone, Copy)]
+pub(crate) struct LogSource<'a> {
+    pub(crate) path: &'a Path,
+    pub(crate) scene: &'a Scene,
+    /// Mapping of the topics of a bag.
+    pub(crate) mapping: Option<&'a Path>,
+}
+
+/// Reads a sensor log of either version or a bag, for an estimate that needs forces.
+pub(crate) fn read_log(from: LogSource, console: &Console) -> Result<ReadLog, CliError> {
+    read(from, console, impulses_alone)
 }
 
 /// The same of what must be three flat palms through one point, without friction; forces are not needed.
-pub(crate) fn three_palms(path: &Path, scene: &Scene) -> Result<(SensorLog, Option<String>), CliError> {
-    match read(path, scene, |_| None)? {
-        LogOf::ThreePalms(log, moved) => Ok((log, moved)),
-        LogOf::AnyPalms(_, source) => Err(CliError::NotThreePlanes { path: path.to_owned(), source }),
+pub(crate) fn three_palms(from: LogSource, console: &Console) -> Result<(SensorLog, Vec<String>), CliError> {
+    let read = read(from, console, |_| None)?;
+    match read.log {
+        LogOf::ThreePalms(log) => Ok((log, read.warnings)),
+        LogOf::AnyPalms(_, source) => Err(CliError::NotThreePlanes { path: from.path.to_owned(), source }),
     }
 }
 
 fn read(
-    path: &Path,
-    scene: &Scene,
+    from: LogSource,
+    console: &Console,
     lacks: impl Fn(&ContactLog) -> Option<NotThreePlanes>,
-) -> Result<LogOf, CliError> {
-    let log = match read_any_log(path, scene.palm_setups().as_deref())? {
-        AnyLog::ThreePalms(log) => return Ok(LogOf::ThreePalms(log, None)),
-        AnyLog::Contacts(log) => log,
+) -> Result<ReadLog, CliError> {
+    let LogSource { path, scene, mapping } = from;
+    let (log, mut warnings, mut stand) = if is_bag(path) {
+        let mapping = mapping.ok_or_else(|| CliError::NoMapping { path: path.to_owned() })?;
+        let made = read_mapped(path, &BagMapping::read(mapping)?, Some(scene))?;
+        made.notes.iter().for_each(|note| console.note(note));
+        (made.log, made.warnings, LogStand { epoch: made.epoch, ..LogStand::default() })
+    } else {
+        if mapping.is_some() {
+            return Err(CliError::MappingOfNoBag { path: path.to_owned() });
+        }
+        match read_any_log(path, scene.palm_setups().as_deref())? {
+            AnyLog::ThreePalms(log) => {
+                let (log, warnings, stand) = (LogOf::ThreePalms(log), Vec::new(), LogStand::default());
+                return Ok(ReadLog { log, warnings, stand });
+            }
+            AnyLog::Contacts(log) => (log, Vec::new(), LogStand::default()),
+        }
     };
     let known_to = scene.sensors.contact_off_palm.unwrap_or(0.0);
     let planes = log.three_planes_within(known_to).and_then(|planes| lacks(&log).map_or(Ok(planes), Err));
-    Ok(match planes {
+    let log = match planes {
         Err(why) => LogOf::AnyPalms(Box::new(log), why),
         Ok(ThreePlanes { log, p_WM, apart }) => {
             let [x, y, z] = p_WM.to_array().map(brief);
             let moved = format!(
                 "The palms meet in ({x}, {y}, {z}) m, to within {apart:.1e} m: all positions are seen from there."
             );
-            LogOf::ThreePalms(log, (p_WM != DVec3::ZERO).then_some(moved))
+            warnings.extend((p_WM != DVec3::ZERO).then_some(moved));
+            stand.origin = p_WM;
+            LogOf::ThreePalms(log)
         }
-    })
+    };
+    Ok(ReadLog { log, warnings, stand })
+}
+
+/// Reads a bag by a mapping, with what a scene says of the palms.
+fn read_mapped(path: &Path, mapping: &BagMapping, scene: Option<&Scene>) -> Result<BagLog, CliError> {
+    let bag = read_bag(path)?;
+    Ok(palms_of(mapping, scene)
+        .and_then(|palms| log_of_bag(&bag, mapping, &palms))
+        .map_err(|kind| kind.in_file(path))?)
 }
 
 /// The estimators of frictionless motion take forces: where one is known by its impulse alone, and all in three axes, the other one does.

@@ -7,6 +7,7 @@
 mod any_friction;
 mod any_palms;
 mod bad_input;
+mod bags;
 mod bounds;
 mod bounds_noise;
 mod bounds_shapes;

@@ -8,6 +8,8 @@ mod place;
 #[cfg(test)]
 mod tests;
 
+#[cfg(feature = "mcap")]
+pub(crate) use checksum::Checksum;
 pub use checksum::Summed;
 pub use file::{AtomicFile, FileTarget};
 pub use folder::{FolderTarget, OutputFolder};

@@ -13,7 +13,9 @@ use input::Samples;
 use recon::observer::{
     ContactNoiseLevel, ContactOptions, MotionStream, StreamEstimate, StreamOptions, StreamStage,
 };
-use recon_io::{FileTarget, OutputError, Scene, is_standard_output, write_stream_header, write_stream_row};
+use recon_io::{
+    FileTarget, OutputError, Scene, is_bag, is_standard_output, write_stream_header, write_stream_row,
+};
 use recon_io::{MotionState, StreamRow};
 use serde_json::{Value, json};
 use spans::Spans;
@@ -28,6 +30,9 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     let inputs: Vec<_> = [&args.log].into_iter().chain(&args.scene).cloned().collect();
     let target = output.map(|path| FileTarget::new(path, &inputs)).transpose()?;
     let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::UnknownBody)?;
+    if is_bag(&args.log) {
+        return Err(CliError::BagFollowed { path: args.log.clone() });
+    }
     let body = if args.identify { None } else { Some(known_body(&scene)?) };
     let mut samples = Samples::open(&args.log, &scene)?;
     let noise = noise(args, &scene, &mut samples)?;
