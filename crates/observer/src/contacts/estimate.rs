@@ -120,7 +120,6 @@ impl Source<'_> {
     fn with_blows(&self, mut record: Record) -> Record {
         let impulse = self.units.speed * self.units.mass;
         record.mark_blows(impulse, impulse * self.units.length, self.options.gravity * self.units.mass);
-        record.doubt_gaps(self.units.length / self.units.speed);
         record
     }
 
@@ -151,6 +150,8 @@ impl Source<'_> {
         record.set_modes(&modes);
         let log = &*record;
         let longest = longest(log, &options.noise, &units);
+        let open = log.with_gaps_open(units.length / units.speed);
+        let log = open.as_ref().unwrap_or(log);
         let averaged = log.averaged(longest);
         let thinned = averaged.thinned(THIN * units.length / units.speed);
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
@@ -206,7 +207,8 @@ impl Source<'_> {
             let apply = |k: usize, contact: &mut Contact, origin| change.apply(k, contact, origin);
             let mut record = self.with_blows(Record::changed(self.log, self.options, apply)?);
             record.set_modes(modes);
-            Some(record.averaged(longest))
+            let open = record.with_gaps_open(self.units.length / self.units.speed);
+            Some(open.as_ref().unwrap_or(&record).averaged(longest))
         };
         suspects(problem, solved, covariances, (self.log, motions), remade).unwrap_or_default()
     }

@@ -53,6 +53,12 @@ impl<const P: usize> Carried<P> {
         body: &Body,
         gravity: DVec3,
     ) {
+        if interval.parts > 1 {
+            for (part, [a, b]) in interval.in_parts(wrenches) {
+                self.advance(&part, [&a, &b], body, gravity);
+            }
+            return;
+        }
         let before = *self;
         self.step(interval, wrenches, body, gravity);
         let h = interval.h;
@@ -67,6 +73,12 @@ impl<const P: usize> Carried<P> {
 
     /// The motion alone.
     pub(super) fn step(&mut self, interval: &Interval, wrenches: [&Wrench; 2], body: &Body, gravity: DVec3) {
+        if interval.parts > 1 {
+            for (part, [a, b]) in interval.in_parts(wrenches) {
+                self.step(&part, [&a, &b], body, gravity);
+            }
+            return;
+        }
         let (h, m) = (interval.h, body.inverse_mass());
         let (force, first) = (interval.impulse.force, interval.first);
         let second = h * force - first;

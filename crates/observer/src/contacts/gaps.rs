@@ -11,40 +11,95 @@ const BENT: f64 = 0.01;
 const PLACES: usize = 64;
 /// Times of a gap between which what is known of one serves another.
 const ALIKE: f64 = 1.2;
+/// Natural times that a motion is carried in one step over a gap, and steps at most.
+const STEP: f64 = 0.05;
+const MOST: f64 = 200.0;
+/// Shares of a gap over which slopes at its ends are taken: next to none without noise.
+const SLOPES: [f64; 2] = [0.0, 0.25];
+
+/// How forces go on over a gap.
+#[derive(Clone, Copy)]
+enum Rule {
+    /// From one end to the other along a line: the trapezoidal rule.
+    Line,
+    /// By a cubic with their slopes at both ends, taken over such a share of the gap or one sample.
+    Cubic(f64),
+}
+
+/// A rule for gaps of about one length, and the mean square of what it misses.
+#[derive(Clone, Copy)]
+struct Known {
+    h: f64,
+    rule: Rule,
+    missed: Matrix6<f64>,
+}
 
 impl Record {
-    /// Takes the trapezoidal rule over gaps in the samples, and leaves open what it misses over so long a time elsewhere. Gaps of the impulses
-    /// that palms measure are none. `natural` is the natural time, s.
-    pub(super) fn doubt_gaps(&mut self, natural: f64) {
-        if self.all_impulses {
-            return;
-        }
+    /// With forces carried over gaps in the samples by the rule that misses less over so long a time elsewhere, and that left open; none
+    /// without gaps. Gaps of the impulses that palms measure are none. `natural` is the natural time, s.
+    pub(super) fn with_gaps_open(&self, natural: f64) -> Option<Self> {
         let mut usual: Vec<f64> = self.intervals.iter().map(|interval| interval.h).collect();
         usual.sort_by(f64::total_cmp);
-        let Some(usual) = usual.get(usual.len() / 2) else { return };
-        let longest = (LONG * usual).max(BENT * natural);
+        let longest = (LONG * usual.get(usual.len() / 2)?).max(BENT * natural);
         let gaps: Vec<usize> = (0..self.intervals.len()).filter(|&k| self.intervals[k].h > longest).collect();
-        let mut known: Vec<(f64, Matrix6<f64>)> = Vec::new();
+        if self.all_impulses || gaps.is_empty() {
+            return None;
+        }
+        let sums = self.running();
+        let mut known: Vec<Known> = Vec::new();
+        let mut open = self.clone();
         for k in gaps {
             let h = self.intervals[k].h;
-            let alike =
-                known.iter().find(|(of, _)| (1.0..ALIKE).contains(&(of / h))).map(|(_, missed)| *missed);
-            let missed = alike.unwrap_or_else(|| {
-                known.push((h * ALIKE.sqrt(), self.missed(h * ALIKE.sqrt())));
-                known[known.len() - 1].1
+            let alike = known.iter().find(|of| (1.0..ALIKE).contains(&(of.h / h))).copied();
+            let Known { rule, missed, .. } = alike.unwrap_or_else(|| {
+                let new = self.known(&sums, h * ALIKE.sqrt());
+                known.push(new);
+                new
             });
-            let interval = &mut self.intervals[k];
+            let (impulse, first) = self.ruled(k, k + 1, rule);
+            let interval = &mut open.intervals[k];
             let mut noise = interval.noise;
             noise.white += missed;
-            let wrenches = [&self.wrenches[k], &self.wrenches[k + 1]];
-            *interval = Interval { blow: interval.blow, ..Interval::trapezoid(h, wrenches, noise) };
+            let parts = (h / (STEP * natural)).ceil().clamp(1.0, MOST) as usize;
+            *interval = Interval { impulse, first: first.force, noise, parts, ..*interval };
+        }
+        Some(open)
+    }
+
+    fn known(&self, sums: &[Wrench], h: f64) -> Known {
+        let of = |rule| Known { h, rule, missed: self.missed(sums, h, rule) };
+        let force = |of: &Known| of.missed.fixed_view::<3, 3>(0, 0).trace();
+        SLOPES
+            .map(Rule::Cubic)
+            .map(of)
+            .into_iter()
+            .fold(of(Rule::Line), |best, new| if force(&new) < force(&best) { new } else { best })
+    }
+
+    /// Integrals of wrench, and of wrench times time, from one sample to another by the wrenches at them and beyond.
+    fn ruled(&self, from: usize, to: usize, rule: Rule) -> (Wrench, Wrench) {
+        let (times, wrenches) = (&self.times, &self.wrenches);
+        let (h, a, b) = (times[to] - times[from], wrenches[from], wrenches[to]);
+        let slope = |i: usize, j: usize| (wrenches[j] + wrenches[i] * -1.0) * (1.0 / (times[j] - times[i]));
+        let share = if let Rule::Cubic(share) = rule { share } else { 0.0 };
+        let before = times.partition_point(|t| *t < times[from] - share * h).min(from.saturating_sub(1));
+        let after =
+            times.partition_point(|t| *t < times[to] + share * h).clamp(to + 1, times.len().max(to + 1));
+        match rule {
+            Rule::Cubic(_) if before < from && after < times.len() => {
+                let (s, e) = (slope(before, from), slope(to, after));
+                let impulse = (a + b) * (0.5 * h) + (s + e * -1.0) * (h * h / 12.0);
+                let first =
+                    a * (0.15 * h * h) + b * (0.35 * h * h) + (s * (1.0 / 30.0) + e * -0.05) * (h * h * h);
+                (impulse, first)
+            }
+            _ => ((a + b) * (0.5 * h), (a + b * 2.0) * (h * h / 6.0)),
         }
     }
 
-    /// Mean square of what the trapezoidal rule misses of an impulse over a time `h`, s, with its moment about the record's origin.
-    pub(super) fn missed(&self, h: f64) -> Matrix6<f64> {
+    /// Mean square of what a rule misses of an impulse over a time `h`, s, with its moment about the record's origin.
+    fn missed(&self, sums: &[Wrench], h: f64, rule: Rule) -> Matrix6<f64> {
         let times = &self.times;
-        let sums: Vec<Wrench> = self.running();
         let last = times.len() - 1;
         let (mut all, mut count) = (Matrix6::zeros(), 0);
         let apart = (last / PLACES).max(1);
@@ -54,8 +109,7 @@ impl Record {
             if to > last || times[to] - times[from] > ALIKE * h || to < from + 2 {
                 continue;
             }
-            let ends = (self.wrenches[from] + self.wrenches[to]) * (0.5 * (times[to] - times[from]));
-            let missed = ends + (sums[to] + sums[from] * -1.0) * -1.0;
+            let missed = self.ruled(from, to, rule).0 + (sums[to] + sums[from] * -1.0) * -1.0;
             let column = six(missed.force, missed.moment);
             all.ger(1.0, &column, &column, 1.0);
             count += 1;
@@ -84,10 +138,10 @@ impl Record {
         sums
     }
 
-    /// What is missed over a time, with moments about the world's origin.
+    /// What the trapezoidal rule misses over a time, with moments about the world's origin.
     pub(super) fn missed_in_world(&self, h: f64) -> Matrix6<f64> {
         let mut shift = Matrix6::identity();
         shift.fixed_view_mut::<3, 3>(3, 0).copy_from(&Matrix3::from(cross_matrix(self.origin)));
-        shift * self.missed(h) * shift.transpose()
+        shift * self.missed(&self.running(), h, Rule::Line) * shift.transpose()
     }
 }

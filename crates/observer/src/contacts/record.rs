@@ -58,10 +58,12 @@ pub(super) struct Interval {
     pub(super) noise: WrenchNoise,
     /// Whether a blow may have changed the velocities.
     pub(super) blow: bool,
+    /// Steps in which a motion is carried over it: more than one over a gap.
+    pub(super) parts: usize,
 }
 
 /// Samples of a log.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Record {
     pub(super) times: Vec<f64>,
     /// Numbers of the log's samples at these times.
@@ -107,7 +109,29 @@ impl Interval {
     pub(super) fn trapezoid(h: f64, wrenches: [&Wrench; 2], noise: WrenchNoise) -> Self {
         let impulse = (*wrenches[0] + *wrenches[1]) * (0.5 * h);
         let first = (wrenches[0].force + 2.0 * wrenches[1].force) * (h * h / 6.0);
-        Self { h, impulse, first, noise, blow: false }
+        Self { h, impulse, first, noise, blow: false, parts: 1 }
+    }
+
+    /// In its parts, each with the wrenches at its ends: a parabola through those at the ends with the impulse that there was.
+    pub(super) fn in_parts(&self, [start, end]: [&Wrench; 2]) -> impl Iterator<Item = (Self, [Wrench; 2])> {
+        let (h, count) = (self.h, self.parts as f64);
+        let (start, change) = (*start, *end + *start * -1.0);
+        // In time over the duration: `start + s change + s (1 - s) bulge`.
+        let bulge = (self.impulse * (1.0 / h) + (start + *end) * -0.5) * 6.0;
+        let (noise, blow) = (self.noise, self.blow);
+        let at = move |s: f64| start + change * s + bulge * (s * (1.0 - s));
+        // Integrals from 0 to `s`, of the wrench and of it times time, over the duration and its square.
+        let once = move |s: f64| start * s + change * (s * s / 2.0) + bulge * (s * s / 2.0 - s.powi(3) / 3.0);
+        let timed = move |s: f64| {
+            start * (s * s / 2.0) + change * (s.powi(3) / 3.0) + bulge * (s.powi(3) / 3.0 - s.powi(4) / 4.0)
+        };
+        (0..self.parts).map(move |i| {
+            let (a, b) = (i as f64 / count, (i as f64 + 1.0) / count);
+            let impulse = (once(b) + once(a) * -1.0) * h;
+            let first = (timed(b) + timed(a) * -1.0) * (h * h) + impulse * (-a * h);
+            let part = Self { h: h / count, impulse, first: first.force, noise, blow, parts: 1 };
+            (part, [at(a), at(b)])
+        })
     }
 
     /// Variance of the impulse, of the moment as well at so long a lever, N^2 s^2.
@@ -294,7 +318,7 @@ fn intervals(
             let mut white = Matrix6::zeros();
             felt(k - 1).for_each(|contact| add_noise(&mut white, contact, noise.contact, h));
             let noise = WrenchNoise { white, ..WrenchNoise::default() };
-            Interval { h, impulse, first, noise, blow: false }
+            Interval { h, impulse, first, noise, blow: false, parts: 1 }
         })
         .collect();
     let rough = |k: usize| {
@@ -314,6 +338,7 @@ fn intervals(
 ///
 /// A jump is what a step between two samples is more than the mean of the steps beside it, and more than noise makes of it.
 fn doubted(k: usize, mut interval: Interval, wrenches: &[Wrench]) -> Interval {
+    interval.noise.sampled = force_trace(&interval.noise.white);
     let white = &mut interval.noise.white;
     if let (Some(before), Some(after)) = (k.checked_sub(1).map(|k| wrenches[k]), wrenches.get(k + 2)) {
         let h = interval.h;
@@ -326,7 +351,6 @@ fn doubted(k: usize, mut interval: Interval, wrenches: &[Wrench]) -> Interval {
         let column = six(jump.force, jump.moment) * (h * (seen / 12.0).sqrt());
         white.ger(1.0, &column, &column, 1.0);
     }
-    interval.noise.sampled = force_trace(white);
     interval
 }
 

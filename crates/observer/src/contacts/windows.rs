@@ -224,6 +224,7 @@ fn sum(intervals: &[Interval]) -> Interval {
         first: DVec3::ZERO,
         noise: WrenchNoise::default(),
         blow: false,
+        parts: 1,
     };
     intervals.iter().fold(none, |sum, interval| Interval {
         h: sum.h + interval.h,
@@ -231,5 +232,6 @@ fn sum(intervals: &[Interval]) -> Interval {
         first: sum.first + interval.first + interval.impulse.force * sum.h,
         noise: sum.noise + interval.noise,
         blow: sum.blow || interval.blow,
+        parts: sum.parts + interval.parts - 1,
     })
 }

@@ -206,15 +206,17 @@ impl Window {
         let Units { length, speed, mass } = units;
         let (natural, impulse) = (length / speed, speed * mass);
         record.mark_blows(impulse, impulse * length, self.options.gravity * mass);
-        record.doubt_gaps(natural);
         let modes = by_ratio(&record, AVERAGED * natural);
         record.set_modes(&modes);
-        let averaged = record.averaged(longest(&record, &self.options.noise, &units));
+        let longest = longest(&record, &self.options.noise, &units);
+        let open = record.with_gaps_open(natural);
+        let record = open.as_ref().unwrap_or(&record);
+        let averaged = record.averaged(longest);
         let thinned = averaged.thinned(THIN * natural);
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), &self.options, units);
         let (solved, against) = match asked {
             Asked::Search => self.found(&mut problem)?,
-            Asked::Follow => (self.followed(&record, &mut problem)?, false),
+            Asked::Follow => (self.followed(record, &mut problem)?, false),
         };
         let covariances = covariances(&problem, &solved).ok()?;
         let mut solution = self.taken(&problem, &solved, &covariances, against);
