@@ -1,7 +1,9 @@
 //! Failure sweep: a body that becomes a ball, whose orientation leaves no trace in the log.
 
 use super::parallel_palms::judged;
-use super::shared::{error_in_deviations, estimate, exact_log, noisy_estimate, start_in_deviations, warning};
+use super::shared::{
+    doubt, error_in_deviations, estimate, exact_log, noisy_estimate, start_in_deviations, warning,
+};
 use super::{Chart, Drawn};
 use crate::{Axis, Budget, Subject, Sweep};
 use glam::{DQuat, DVec3};
@@ -37,7 +39,7 @@ fn draw(_: Budget) -> Drawn {
         let noise = SensorNoise { contact: 1e-3, force: 0.065, torque: 0.0 };
         for seed in 0..3 {
             noisy = match noisy_estimate(&scene, &log.with_noise(&noise, seed)?, &noise) {
-                Ok(found) => judged(noisy, d, start_in_deviations(&found, now), warning(&found.reliability)),
+                Ok(found) => judged(noisy, d, start_in_deviations(&found, now), doubt(&found)),
                 Err(error) => noisy.refused(d, error),
             };
         }

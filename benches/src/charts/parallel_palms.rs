@@ -1,6 +1,6 @@
 //! Failure sweep: two palms that turn towards each other.
 
-use super::shared::{centre_error, estimate, exact_log, noisy_estimate, start_in_deviations, warning};
+use super::shared::{centre_error, doubt, estimate, exact_log, noisy_estimate, start_in_deviations, warning};
 use super::{Chart, Drawn};
 use crate::{Axis, Budget, Subject, Sweep};
 use glam::{DQuat, DVec3};
@@ -67,9 +67,7 @@ fn draw(_: Budget) -> Drawn {
         };
         for seed in 0..5 {
             noisy = match noisy_estimate(&scene, &log.with_noise(&NOISE, seed)?, &NOISE) {
-                Ok(found) => {
-                    judged(noisy, degrees, start_in_deviations(&found, now), warning(&found.reliability))
-                }
+                Ok(found) => judged(noisy, degrees, start_in_deviations(&found, now), doubt(&found)),
                 Err(error) => noisy.refused(degrees, error),
             };
         }

@@ -86,6 +86,12 @@ pub(super) fn error_in_deviations(estimate: &MotionEstimate, mass: &MassProperti
     (0..12).map(|i| parts[i / 3][i % 3].abs() / estimate.covariance[(i, i)].sqrt()).fold(0.0, f64::max)
 }
 
+/// Why not to believe an estimate from contacts at the first sample, if there is a reason.
+pub(super) fn doubt(estimate: &ContactEstimate) -> Option<String> {
+    let there = || (!estimate.relied_on[0]).then(|| "the first sample is not relied on".to_owned());
+    warning(&estimate.reliability).or_else(there)
+}
+
 /// The first reason not to believe an estimate, if there is one.
 pub(super) fn warning(reliability: &Reliability) -> Option<String> {
     match reliability {
