@@ -48,8 +48,8 @@ pub(crate) struct Experiment<'a, S> {
 }
 
 impl<S: SupportFunction> Experiment<'_, S> {
-    /// Estimates from a log and compares with the truth.
-    pub(crate) fn estimate(&self, log: &SensorLog, noise: SensorNoise) -> Estimated {
+    /// Estimates from a log of such a noise, the floor of the conditions taken `share` times, and compares with the truth.
+    pub(crate) fn estimate(&self, log: &SensorLog, noise: SensorNoise, share: f64) -> Estimated {
         let clock = ThreadTime::now();
         let mass = *self.scene.mass();
         let noise = ContactNoiseLevel {
@@ -57,7 +57,7 @@ impl<S: SupportFunction> Experiment<'_, S> {
             force_fixed: noise.force,
             force_share: 0.0,
             impulse: None,
-            floor: FLOOR * self.speed,
+            floor: share * FLOOR * self.speed,
         };
         let options = ContactOptions {
             friction: Some(0.0),

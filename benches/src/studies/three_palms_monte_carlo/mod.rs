@@ -205,10 +205,10 @@ fn line_of<S: SupportFunction>(
     };
     let experiment =
         Experiment { scene, now: &simulation.instants[0], unknown, speed: (9.81 * LENGTH).sqrt() };
-    let bound = experiment.estimate(&clean, level(SMALL)).scaled(1.0 / SMALL);
+    let bound = experiment.estimate(&clean, level(SMALL), SMALL).scaled(1.0 / SMALL);
     let mut runs = Vec::new();
     for seed in seeds {
-        runs.push(experiment.estimate(&clean.with_noise(&level(1.0), seed)?, level(1.0)));
+        runs.push(experiment.estimate(&clean.with_noise(&level(1.0), seed)?, level(1.0), 1.0));
     }
     let sizes = sizes(scene, unknown);
     let counted: Vec<usize> = (0..sizes.len()).filter(|&i| bound.deviations[i] < PRIOR * sizes[i]).collect();

@@ -30,7 +30,7 @@ pub(super) const THIN: f64 = 0.02;
 /// Conditions of a contact that sticks are contradicted beyond this: three numbers in their deviations go there once in a million.
 const CONTRADICTED: f64 = 30.7;
 /// Natural times that a noisy log must last at least: over less, the motion is hardly more than its start.
-const SHORTEST: f64 = 2.0;
+const SHORTEST: f64 = 4.0;
 /// How often modes are taken back.
 const ROUNDS: usize = 6;
 
