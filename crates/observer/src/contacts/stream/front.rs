@@ -2,7 +2,7 @@
 
 use super::estimate::StreamMotion;
 use super::sample::Felt;
-use super::window::Solution;
+use super::solution::Solution;
 use crate::contacts::body::CONSTANTS;
 use crate::contacts::flow::{Carried, Transition, link_covariance};
 use crate::contacts::noise::{WrenchNoise, force_trace};

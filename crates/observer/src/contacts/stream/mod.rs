@@ -13,6 +13,7 @@ mod front;
 mod planes;
 mod sample;
 mod schedule;
+mod solution;
 #[cfg(test)]
 mod tests;
 mod thread;

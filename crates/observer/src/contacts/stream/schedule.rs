@@ -3,8 +3,9 @@
 use super::estimate::{StreamError, StreamEstimate, StreamOptions, StreamStage};
 use super::front::Front;
 use super::sample::{Felt, PalmSensed, Raw, StreamPalm};
+use super::solution::Solution;
 use super::thread::Worker;
-use super::window::{Asked, LEFT_OUT, LONGEST, Outcome, Solution, Window};
+use super::window::{Asked, LEFT_OUT, LONGEST, Outcome, Window};
 use crate::contacts::options::ContactEstimateError;
 use glam::DVec3;
 use object_dynamics::MOST_PALMS;

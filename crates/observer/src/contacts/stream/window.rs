@@ -1,24 +1,21 @@
 //! The motion over a window of the latest samples.
 
-use super::estimate::StreamBody;
 use super::sample::{ForceReading, PalmSensed, Raw, StreamPalm};
+use super::solution::{Of, Solution};
 use crate::contacts::axes::known_motion;
 use crate::contacts::body::{Body, CONSTANTS};
 use crate::contacts::cold;
 use crate::contacts::estimate::{AVERAGED, THIN, covariances};
-use crate::contacts::flow::{Carried, Transition};
+use crate::contacts::flow::Carried;
 use crate::contacts::modes::by_ratio;
 use crate::contacts::options::ContactOptions;
 use crate::contacts::problem::{Problem, Units, Unknowns};
 use crate::contacts::record::Record;
 use crate::contacts::search::{fine_nodes, fine_within, problem, search};
-use crate::contacts::solve::{Covariances, Solved};
-use crate::contacts::state::{MOTION, Motion};
-use crate::contacts::verdict::{ContactEvidence, relied_on, stretches};
+use crate::contacts::solve::Solved;
+use crate::contacts::state::Motion;
 use crate::contacts::windows::longest;
-use crate::three_palms::Reliability;
-use glam::DQuat;
-use nalgebra::{Matrix3, Matrix6, SMatrix};
+use nalgebra::{Matrix3, Matrix6};
 use object_dynamics::{ContactLog, ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion};
 use std::collections::VecDeque;
 
@@ -40,33 +37,6 @@ pub(super) enum Asked {
     Search,
     /// The motion of the window before, on later data.
     Follow,
-}
-
-/// The motion at the end of a window.
-#[derive(Clone, Debug)]
-pub(super) struct Solution {
-    /// Number of the sample at its end, and its time, s.
-    pub(super) number: usize,
-    pub(super) t: f64,
-    /// From the world's origin.
-    pub(super) motion: Motion,
-    pub(super) body: Body,
-    /// Own axes of a known body in those of the motion.
-    pub(super) own: DQuat,
-    pub(super) known: bool,
-    /// Covariance of the motion for given constants of the body, how it follows those, and their covariance.
-    pub(super) covariance: Transition,
-    pub(super) follows: SMatrix<f64, MOTION, CONSTANTS>,
-    pub(super) of_body: SMatrix<f64, CONSTANTS, CONSTANTS>,
-    /// Covariance of the turn of the motion's axes from where a motion was found to this window's start.
-    pub(super) turned: Matrix3<f64>,
-    pub(super) stated: StreamBody,
-    pub(super) misfit: f64,
-    /// What the trapezoidal rule misses of an impulse over a time, s, about the world's origin.
-    pub(super) missed: (f64, Matrix6<f64>),
-    /// Whether the data do not speak against it, and whether it is known well enough at its end.
-    pub(super) explained: bool,
-    pub(super) relied_on: bool,
 }
 
 /// What came of a window.
@@ -219,9 +189,8 @@ impl Window {
             Asked::Follow => (self.followed(record, &mut problem)?, false),
         };
         let covariances = covariances(&problem, &solved).ok()?;
-        let mut solution = self.taken(&problem, &solved, &covariances, against);
-        solution.missed = (GAP * natural, record.missed_in_world(GAP * natural));
-        Some(solution)
+        let of = Of { problem: &problem, solved: &solved, covariances: &covariances, against };
+        Some(self.taken(&of, (GAP * natural, record.missed_in_world(GAP * natural))))
     }
 
     /// From nothing; whether the body is another one than was stated.
@@ -265,90 +234,22 @@ impl Window {
     }
 
     /// Keeps a solution to begin the next one from.
-    fn taken(
-        &mut self,
-        problem: &Problem,
-        solved: &Solved<CONSTANTS>,
-        covariances: &Covariances<CONSTANTS>,
-        against: bool,
-    ) -> Solution {
-        let Solved { unknowns, equations, .. } = solved;
-        let (body, origin) = (unknowns.body, problem.record.origin);
-        let samples = problem.node_samples();
-        let last = samples.len() - 1;
-        let number = |j: usize| self.samples.get(samples[j]).map_or(0, |raw| raw.number);
-        let from_world = |motion: &Motion| Motion { p: motion.p + origin, ..*motion };
-        let evidence = ContactEvidence {
-            samples: self.samples.len(),
-            nodes: samples.len(),
-            conditions: equations.conditions,
-            misfit: solved.misfit(),
-            iterations: [0, solved.iterations],
-            settled: solved.settled,
-        };
-        let (wider, mut reliability) = (evidence.widening(), evidence.reliability());
-        let deviations = |j: usize| {
-            crate::contacts::samples::deviations(&unknowns.motions[j], &body, j, covariances)
-                .map(|of| of * wider)
-        };
-        let spin = |j: usize| {
-            let motion = &unknowns.motions[j];
-            (body.turn(motion.q, motion.L).w, deviations(j)[2])
-        };
-        let still = ContactEvidence::still(&(0..=last).map(spin).collect::<Vec<_>>());
-        let excess = stretches(problem, equations)[last];
-        let well_known = relied_on(excess, &deviations(last), &problem.units) && still.is_none();
-        if against {
-            reliability.add(crate::three_palms::Reason::Unconfirmed);
-        }
-        let turn = |j: usize| -> Matrix3<f64> {
-            let (own, follows) = &covariances.motions[j];
-            let all = own + follows * covariances.body * follows.transpose();
-            all.fixed_view::<3, 3>(9, 9) * (wider * wider)
-        };
+    fn taken(&mut self, of: &Of, missed: (f64, Matrix6<f64>)) -> Solution {
+        let samples = of.problem.node_samples();
+        let raw = |j: usize| samples.get(j).and_then(|&k| self.samples.get(k));
+        let number = |j: usize| raw(j).map_or(0, |raw| raw.number);
         // How far the axes of the motion may have turned against the body up to where this window begins.
-        let since = self.before.as_ref().map_or_else(Matrix3::zeros, |before| {
+        let since = self.before.as_ref().filter(|_| self.options.body.is_none());
+        let turned = since.map_or_else(Matrix3::zeros, |before| {
             let at = before.nodes.partition_point(|node| node.0 <= number(0)).saturating_sub(1);
             before.turned + before.nodes.get(at).map_or_else(Matrix3::zeros, |node| node.2)
         });
-        let known = self.options.body;
-        let turned = if known.is_some() { Matrix3::zeros() } else { since };
-        let nodes = (0..=last).map(|j| (number(j), from_world(&unknowns.motions[j]), turn(j))).collect();
-        let square = wider * wider;
-        let (covariance, follows) = &covariances.motions[last];
-        let solution = Solution {
-            number: number(last),
-            t: self.samples.get(samples[last]).map_or(f64::NAN, |raw| raw.t),
-            motion: from_world(&unknowns.motions[last]),
-            body,
-            own: known.as_ref().map_or(DQuat::IDENTITY, |mass| body.orientation(mass)),
-            known: known.is_some(),
-            covariance: covariance * square,
-            follows: *follows,
-            of_body: covariances.body * square,
-            turned,
-            stated: match &known {
-                Some(mass) => StreamBody {
-                    mass: mass.mass(),
-                    mass_deviation: 0.0,
-                    inertia: mass.inertia(),
-                    inertia_covariance: Default::default(),
-                },
-                None => StreamBody {
-                    mass: body.log_mass.exp(),
-                    mass_deviation: body.log_mass.exp() * (covariances.body[(0, 0)] * square).max(0.0).sqrt(),
-                    inertia: body.inertia(),
-                    inertia_covariance: (body.inertia_covariance(&covariances.body) * square).into(),
-                },
-            },
-            misfit: evidence.misfit,
-            missed: (0.0, Matrix6::zeros()),
-            explained: reliability == Reliability::Reliable
-                && excess <= crate::contacts::verdict::UNEXPLAINED,
-            relied_on: well_known,
-        };
+        let last = samples.len() - 1;
+        let at = (number(last), raw(last).map_or(f64::NAN, |raw| raw.t));
+        let solution = Solution::new(of, at, self.options.body.as_ref(), turned, missed);
         if solution.explained {
-            self.before = Some(Before { nodes, body, turned });
+            let nodes = (0..=last).map(|j| (number(j), of.motion(j), of.turn(j))).collect();
+            self.before = Some(Before { nodes, body: solution.body, turned });
         }
         solution
     }

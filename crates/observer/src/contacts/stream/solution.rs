@@ -1,0 +1,148 @@
+//! The motion at the end of a window, and whether to believe it.
+
+use super::estimate::StreamBody;
+use crate::contacts::body::{Body, CONSTANTS};
+use crate::contacts::flow::Transition;
+use crate::contacts::problem::Problem;
+use crate::contacts::samples::{Deviations, deviations};
+use crate::contacts::solve::{Covariances, Solved};
+use crate::contacts::state::{MOTION, Motion};
+use crate::contacts::verdict::{ContactEvidence, UNEXPLAINED, relied_on, stretches};
+use glam::DQuat;
+use nalgebra::{Matrix3, Matrix6, SMatrix};
+use object_dynamics::MassProperties;
+
+/// What was solved.
+pub(super) struct Of<'a> {
+    pub(super) problem: &'a Problem<'a>,
+    pub(super) solved: &'a Solved<CONSTANTS>,
+    pub(super) covariances: &'a Covariances<CONSTANTS>,
+    /// Whether the body is another one than was stated.
+    pub(super) against: bool,
+}
+
+/// The motion at the end of a window.
+#[derive(Clone, Debug)]
+pub(super) struct Solution {
+    /// Number of the sample at its end, and its time, s.
+    pub(super) number: usize,
+    pub(super) t: f64,
+    /// From the world's origin.
+    pub(super) motion: Motion,
+    pub(super) body: Body,
+    /// Own axes of a known body in those of the motion.
+    pub(super) own: DQuat,
+    pub(super) known: bool,
+    /// Covariance of the motion for given constants of the body, how it follows those, and their covariance.
+    pub(super) covariance: Transition,
+    pub(super) follows: SMatrix<f64, MOTION, CONSTANTS>,
+    pub(super) of_body: SMatrix<f64, CONSTANTS, CONSTANTS>,
+    /// Covariance of the turn of the motion's axes from where a motion was found to this window's start.
+    pub(super) turned: Matrix3<f64>,
+    pub(super) stated: StreamBody,
+    pub(super) misfit: f64,
+    /// What the trapezoidal rule misses of an impulse over a time, s, about the world's origin.
+    pub(super) missed: (f64, Matrix6<f64>),
+    /// Whether the data do not speak against it, and whether it is known well enough at its end.
+    pub(super) explained: bool,
+    pub(super) relied_on: bool,
+}
+
+impl Of<'_> {
+    /// At node `j`, from the world's origin.
+    pub(super) fn motion(&self, j: usize) -> Motion {
+        let motion = &self.solved.unknowns.motions[j];
+        Motion { p: motion.p + self.problem.record.origin, ..*motion }
+    }
+
+    /// Covariance of the turn from the window's start to node `j`.
+    pub(super) fn turn(&self, j: usize) -> Matrix3<f64> {
+        let (own, follows) = &self.covariances.motions[j];
+        let all = own + follows * self.covariances.body * follows.transpose();
+        all.fixed_view::<3, 3>(9, 9) * self.evidence().widening().powi(2)
+    }
+
+    fn evidence(&self) -> ContactEvidence {
+        let Self { problem, solved, .. } = self;
+        ContactEvidence {
+            samples: problem.record.times.len(),
+            nodes: problem.nodes.len(),
+            conditions: solved.equations.conditions,
+            misfit: solved.misfit(),
+            iterations: [0, solved.iterations],
+            settled: solved.settled,
+        }
+    }
+
+    fn deviations(&self, j: usize) -> Deviations {
+        let unknowns = &self.solved.unknowns;
+        let wider = self.evidence().widening();
+        deviations(&unknowns.motions[j], &unknowns.body, j, self.covariances).map(|of| of * wider)
+    }
+
+    /// Whether the data do not speak against it, and whether it is known well enough at its end.
+    fn verdict(&self) -> [bool; 2] {
+        let (unknowns, last) = (&self.solved.unknowns, self.problem.nodes.len() - 1);
+        let spin = |j: usize| {
+            let motion = &unknowns.motions[j];
+            (unknowns.body.turn(motion.q, motion.L).w, self.deviations(j)[2])
+        };
+        let still = ContactEvidence::still(&(0..=last).map(spin).collect::<Vec<_>>());
+        let excess = stretches(self.problem, &self.solved.equations)[last];
+        let well_known = relied_on(excess, &self.deviations(last), &self.problem.units);
+        let explained = self.evidence().reliability().is_reliable() && !self.against && excess <= UNEXPLAINED;
+        [explained, well_known && still.is_none()]
+    }
+
+    fn stated(&self, known: Option<&MassProperties>) -> StreamBody {
+        let (body, of_body) = (&self.solved.unknowns.body, &self.covariances.body);
+        let square = self.evidence().widening().powi(2);
+        match known {
+            Some(mass) => StreamBody {
+                mass: mass.mass(),
+                mass_deviation: 0.0,
+                inertia: mass.inertia(),
+                inertia_covariance: Default::default(),
+            },
+            None => StreamBody {
+                mass: body.log_mass.exp(),
+                mass_deviation: body.log_mass.exp() * (of_body[(0, 0)] * square).max(0.0).sqrt(),
+                inertia: body.inertia(),
+                inertia_covariance: (body.inertia_covariance(of_body) * square).into(),
+            },
+        }
+    }
+}
+
+impl Solution {
+    /// `at` the sample of a number and a time, s, of a body that may be `known`.
+    pub(super) fn new(
+        of: &Of,
+        (number, t): (usize, f64),
+        known: Option<&MassProperties>,
+        turned: Matrix3<f64>,
+        missed: (f64, Matrix6<f64>),
+    ) -> Self {
+        let last = of.problem.nodes.len() - 1;
+        let (body, square) = (of.solved.unknowns.body, of.evidence().widening().powi(2));
+        let (covariance, follows) = &of.covariances.motions[last];
+        let [explained, relied_on] = of.verdict();
+        Self {
+            number,
+            t,
+            motion: of.motion(last),
+            body,
+            own: known.map_or(DQuat::IDENTITY, |mass| body.orientation(mass)),
+            known: known.is_some(),
+            covariance: covariance * square,
+            follows: *follows,
+            of_body: of.covariances.body * square,
+            turned,
+            stated: of.stated(known),
+            misfit: of.solved.misfit(),
+            missed,
+            explained,
+            relied_on,
+        }
+    }
+}
