@@ -68,8 +68,11 @@ impl<const N: usize> Walk<N> {
         self.under[from] = below(bins.lower[0]);
         self.over[from] = 1.0 - below(bins.upper[N - 1]);
         let (mut first, mut beyond) = (N, 0);
+        let mut to_lower = self.under[from];
         for to in 0..N {
-            let share = (below(bins.upper[to]) - below(bins.lower[to])).max(0.0);
+            let to_upper = below(bins.upper[to]);
+            let share = (to_upper - to_lower).max(0.0);
+            to_lower = to_upper;
             self.shares[from][to] = share;
             if share > LEAST {
                 first = first.min(to);
@@ -99,9 +102,14 @@ impl<const N: usize> Walk<N> {
                 ((integral_below((-edge - a) / step) - integral_below((-edge - b) / step)) * step / (b - a))
                     .max(0.0)
             };
-            let mut back = 0.0;
+            let (mut back, mut left) = (0.0, self.under[from]);
             for to in 0..N {
-                let mirrored = share * (below(bins.lower[to]) - below(bins.upper[to])).max(0.0);
+                if left <= LEAST {
+                    break;
+                }
+                let beyond = below(bins.upper[to]);
+                let mirrored = share * (left - beyond).max(0.0);
+                left = beyond;
                 if mirrored > LEAST {
                     back += mirrored;
                     self.shares[from][to] += mirrored;

@@ -7,6 +7,8 @@ use super::normal::below;
 pub(super) const SPEEDS: usize = 36;
 pub(super) const RATIOS: usize = 40;
 
+/// Time steps within this share of each other are taken as one.
+const SAME: f64 = 0.02;
 /// The time that the numbers below are of, s.
 const UNIT: f64 = 1e-3;
 /// Deviation of a millisecond's change of the speed, in shares of the natural speed, and of the ratio over the friction.
@@ -81,9 +83,9 @@ impl Steps {
         }
     }
 
-    /// Made anew where the time step is another.
+    /// Made anew where the time step is another. Clocks jitter, and the walks are no better known than this.
     pub(super) fn follow(&mut self, dt: f64) {
-        if dt != self.dt {
+        if (dt - self.dt).abs() > SAME * self.dt {
             *self = Self::new(dt);
         }
     }
