@@ -43,8 +43,8 @@ impl Ratio {
         log_density(self.size - expected, self.deviation.powi(2) + spread) + self.log_direction()
     }
 
-    /// Log-density of `rho` where the ratio is anywhere in the disc of radius `friction` with the same density. With noise
-    /// that grows away from the disc's edge as the ratio does; the normaliser is exact.
+    /// Log-density of `rho` where the ratio is anywhere in the disc of radius `friction` with the same density. Noise blurs the
+    /// disc's edge; the normaliser is exact.
     #[cfg_attr(
         not(test),
         expect(dead_code, reason = "the form without memory is the oracle's: chains replace it")
