@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
 pub mod belt;
+pub mod contact_modes;
 
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{

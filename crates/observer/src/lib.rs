@@ -9,6 +9,8 @@
 //! The feature `palms` (on by default) adds the estimators of shape and motion from touch.
 
 #[cfg(feature = "palms")]
+mod contact_modes;
+#[cfg(feature = "palms")]
 mod contacts;
 mod core;
 #[cfg(feature = "palms")]
@@ -21,6 +23,11 @@ mod roughness;
 #[cfg(feature = "palms")]
 mod three_palms;
 
+#[cfg(feature = "palms")]
+pub use contact_modes::{
+    ContactFriction, ContactModes, ContactModesError, ContactModesOptions, ContactOdds, ContactReading,
+    ContactSeen, ContactSlip, LearnedFriction, TwistError,
+};
 #[cfg(feature = "palms")]
 pub use contacts::{
     ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions, ForceReading,

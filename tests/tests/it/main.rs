@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
 mod contact_logs;
+mod contact_modes;
 mod contacts_oracle;
 mod estimate_motion;
 mod exported_scenes;

@@ -5,9 +5,13 @@
 
 use contact_kinematics::{Ellipsoid, MotionLaw, Palm};
 use glam::{DQuat, DVec3};
+use nalgebra::{Matrix2, Matrix2x6, Matrix6, Vector2};
 use object_dynamics::integrate::Tolerance;
 use object_dynamics::{InitialMotion, MassProperties, Sample, SampleTimes, SensorNoise, ThreePalmScene};
-use observer::{ContactNoiseLevel, ContactOptions, MotionStream, PlaneReadings, StreamOptions, StreamStage};
+use observer::{
+    ContactFriction, ContactModes, ContactModesOptions, ContactNoiseLevel, ContactOptions, ContactReading,
+    ContactSeen, ContactSlip, MotionStream, PlaneReadings, StreamOptions, StreamStage, TwistError,
+};
 
 const NOISE: ContactNoiseLevel =
     ContactNoiseLevel { contact: 2.5e-3, force_fixed: 0.065, force_share: 0.0, impulse: None, floor: 1e-4 };
@@ -52,4 +56,27 @@ fn no_sample_allocates_once_a_motion_is_followed() {
         assert!(followed > 1000 && searching > 0, "{followed} {searching}");
         assert_eq!(allocated, 0);
     }
+}
+
+#[test]
+fn contact_modes_allocate_at_set_up_alone() {
+    let slip = ContactSlip { velocity: Vector2::new(-0.05, 0.0), covariance: Matrix2::identity() * 4e-6 };
+    let (normal_force, friction, force_deviation) = (2.0, Vector2::new(0.6, 0.0), 0.04);
+    let reading =
+        ContactReading { normal_force, friction, force_deviation, slip: Some(slip), touches: false };
+    let seen = [ContactSeen::Read(reading), ContactSeen::Off, ContactSeen::Missing];
+    let frictions =
+        [ContactFriction::Unknown { material: 0 }, ContactFriction::Known(0.3), ContactFriction::Known(0.5)];
+    let mut modes = ContactModes::new(&frictions, ContactModesOptions::new(0.6, 0.01, 1.0)).unwrap();
+    let (slopes, covariance) = ([Matrix2x6::identity(); 3], Matrix6::identity() * 1e-6);
+    let counted = allocation_counter::measure(|| {
+        for dt in [1e-3, 2e-3, 1e-3] {
+            modes.push(dt, &seen).unwrap();
+            modes
+                .push_with_twist(dt, &seen, &TwistError { slopes: &slopes, covariance: &covariance })
+                .unwrap();
+        }
+    });
+    assert_eq!(counted.count_total, 0);
+    assert!(allocation_counter::measure(|| drop(modes.clone())).count_total > 0, "the counter counts");
 }

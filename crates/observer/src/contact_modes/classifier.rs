@@ -1,0 +1,337 @@
+//! The way of a sample.
+
+use super::contact::{Contact, Force, Modes};
+use super::error::ContactModesError;
+use super::friction::{ContactFriction, FrictionGrid, LearnedFriction};
+use super::options::ContactModesOptions;
+use super::reading::{ContactReading, ContactSeen, Place, turned};
+use super::steps::Steps;
+use super::twist::{Row, TwistError, left_out};
+use crate::core::ModeLabel;
+use nalgebra::{Matrix2, Matrix6, Vector2};
+use object_dynamics::ContactMode;
+
+/// Longest time step, s.
+const LONGEST: f64 = 1000.0;
+/// Time before the first sample for which modes are drawn, s: the start is no switch, and any will do.
+const FIRST: f64 = 1e-3;
+/// Times that each contact's odds are set from what the others then say of the twist.
+const SWEEPS: usize = 3;
+/// Largest slope of a slip by the twist times the twist's deviation, in natural speeds.
+const MOST: f64 = 1e9;
+
+/// Probabilities of the modes of a contact. They sum to one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactOdds {
+    /// That it does not touch.
+    pub off: f64,
+    /// That it slides.
+    pub slide: f64,
+    /// That it sticks.
+    pub stick: f64,
+}
+
+/// Tells sample by sample whether contacts slide, stick or are off, and how sure that is. A sample allocates nothing.
+///
+/// Between near its friction cone and slow sliding little is to be seen: then probabilities stay between the two for as long
+/// as it takes. Limits and figures: `docs/contact-modes.md` of the repository.
+///
+/// ```
+/// use nalgebra::{Matrix2, Vector2};
+/// use observer::{ContactFriction, ContactModes, ContactModesOptions, ContactReading, ContactSeen, ContactSlip};
+/// # fn main() -> Result<(), observer::ContactModesError> {
+/// let options = ContactModesOptions::new(0.6, 0.01, 1.0);
+/// let mut modes = ContactModes::new(&[ContactFriction::Known(0.3)], options)?;
+/// let slip = ContactSlip { velocity: Vector2::new(-0.05, 0.0), covariance: Matrix2::identity() * 4e-6 };
+/// let (normal_force, friction, force_deviation) = (2.0, Vector2::new(0.6, 0.0), 0.04);
+/// let reading = ContactReading { normal_force, friction, force_deviation, slip: Some(slip), touches: false };
+/// for _ in 0..5 {
+///     modes.push(1e-3, &[ContactSeen::Read(reading)])?;
+/// }
+/// assert!(modes.odds(0).is_some_and(|odds| odds.slide > 0.99));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct ContactModes {
+    options: ContactModesOptions,
+    steps: Steps,
+    grids: Vec<FrictionGrid>,
+    /// The grid of each contact.
+    grid_of: Vec<usize>,
+    contacts: Vec<Contact>,
+    odds: Vec<Modes>,
+    labels: Vec<ModeLabel>,
+    told: Vec<ContactMode>,
+    rows: Vec<Row>,
+    samples: usize,
+}
+
+impl ContactModes {
+    /// For contacts of these frictions, which all begin with every mode alike.
+    ///
+    /// # Errors
+    /// Where there is no contact, a friction is not from 1e-3 to 10, or an option is not usable.
+    pub fn new(
+        frictions: &[ContactFriction],
+        options: ContactModesOptions,
+    ) -> Result<Self, ContactModesError> {
+        options.check()?;
+        let label = ModeLabel::new(options.label_level)?;
+        if frictions.is_empty() {
+            return Err(ContactModesError::NoContact);
+        }
+        let (mut grids, mut grid_of): (Vec<FrictionGrid>, Vec<usize>) = (Vec::new(), Vec::new());
+        for (contact, friction) in frictions.iter().enumerate() {
+            let same = match *friction {
+                ContactFriction::Known(value) if !(1e-3..=10.0).contains(&value) => {
+                    return Err(ContactModesError::Friction { contact, value });
+                }
+                ContactFriction::Known(_) => None,
+                ContactFriction::Unknown { material } => {
+                    grids.iter().position(|grid| grid.material == Some(material))
+                }
+            };
+            grid_of.push(same.unwrap_or(grids.len()));
+            if same.is_none() {
+                grids.push(match *friction {
+                    ContactFriction::Known(value) => FrictionGrid::known(value),
+                    ContactFriction::Unknown { material } => FrictionGrid::unknown(material),
+                });
+            }
+        }
+        let steps = Steps::new(FIRST);
+        let count = frictions.len();
+        Ok(Self {
+            options,
+            contacts: grid_of.iter().map(|grid| Contact::new(&grids[*grid], &steps)).collect(),
+            steps,
+            grids,
+            grid_of,
+            odds: vec![[1.0 / 3.0; 3]; count],
+            labels: vec![label; count],
+            told: vec![ContactMode::Off; count],
+            rows: vec![Row::NONE; count],
+            samples: 0,
+        })
+    }
+
+    /// Takes a sample, `dt` seconds after the one before (before the first, any time above zero), with slips whose errors are
+    /// independent of each other. Returns the logarithm of its density given all before: forces in N, ratios as such, slips in
+    /// natural speeds, raised to [`ContactModesOptions::slip_weight`]. What was not read has no density; a contact that is known
+    /// to be off, or does not press, has that of its being off.
+    ///
+    /// # Errors
+    /// Where time does not go on, or a reading is missing, not a number, has no noise or is beyond reason; then everything stays
+    /// as it was before.
+    pub fn push(&mut self, dt: f64, seen: &[ContactSeen]) -> Result<f64, ContactModesError> {
+        self.check(dt, seen)?;
+        self.advance(dt, seen);
+        self.weigh_slips(seen, None);
+        Ok(self.settle(dt, seen))
+    }
+
+    /// The same, where all slips come from one twist: the covariance of each is that of its own error alone, and what the twist's
+    /// error adds is learned from the other contacts, as far as they stick. The density that is returned takes slips one
+    /// by one, each given the others; it is not that of all of them.
+    ///
+    /// # Errors
+    /// As [`Self::push`], and where the twist's covariance is not positive definite, or there is not a slope for each contact.
+    pub fn push_with_twist(
+        &mut self,
+        dt: f64,
+        seen: &[ContactSeen],
+        twist: &TwistError<'_>,
+    ) -> Result<f64, ContactModesError> {
+        self.check(dt, seen)?;
+        let information = self.check_twist(twist)?;
+        self.advance(dt, seen);
+        self.weigh_slips(seen, Some((twist, &information)));
+        Ok(self.settle(dt, seen))
+    }
+
+    /// Of a contact after the last sample; none of one that there is not.
+    #[must_use]
+    pub fn odds(&self, contact: usize) -> Option<ContactOdds> {
+        self.odds.get(contact).map(|&[off, slide, stick]| ContactOdds { off, slide, stick })
+    }
+
+    /// The mode to act on: it changes only where another is more likely than [`ContactModesOptions::label_level`]. None of a
+    /// contact that there is not, and before the first sample.
+    #[must_use]
+    pub fn label(&self, contact: usize) -> Option<ContactMode> {
+        if self.samples == 0 { None } else { self.told.get(contact).copied() }
+    }
+
+    /// The friction of a contact that was not known: none before one of its material has slid, with slips read, for 10 ms with a
+    /// probability of 0.99, for what sticks has only a lower bound; none where it was stated.
+    #[must_use]
+    pub fn friction(&self, contact: usize) -> Option<LearnedFriction> {
+        self.grid_of.get(contact).and_then(|grid| self.grids[*grid].learned())
+    }
+
+    /// Samples taken.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
+    fn check(&self, dt: f64, seen: &[ContactSeen]) -> Result<(), ContactModesError> {
+        let sample = self.samples;
+        if !(dt > 0.0 && dt < LONGEST) {
+            return Err(ContactModesError::TimeStep { sample, value: dt });
+        }
+        self.check_count("readings", seen.len())?;
+        for (contact, seen) in seen.iter().enumerate() {
+            if let ContactSeen::Read(reading) = seen {
+                reading.check(Place { contact, sample }, &self.options)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_count(&self, what: &'static str, found: usize) -> Result<(), ContactModesError> {
+        let (sample, needed) = (self.samples, self.contacts.len());
+        if found == needed {
+            Ok(())
+        } else {
+            Err(ContactModesError::Contacts { what, sample, found, needed })
+        }
+    }
+
+    /// The inverse of the twist's covariance.
+    fn check_twist(&self, twist: &TwistError<'_>) -> Result<Matrix6<f64>, ContactModesError> {
+        self.check_count("slopes", twist.slopes.len())?;
+        let sample = self.samples;
+        let refused = ContactModesError::TwistCovariance { sample };
+        let covariance = twist.covariance;
+        let asymmetry = (covariance - covariance.transpose()).amax();
+        // False of what is not a number as well.
+        let symmetric = asymmetry <= 1e-9 * covariance.amax();
+        let Some(root) = covariance.cholesky().filter(|_| symmetric) else { return Err(refused) };
+        let inverse = root.inverse();
+        if !inverse.iter().all(|entry| entry.is_finite()) {
+            return Err(refused);
+        }
+        for (contact, slope) in twist.slopes.iter().enumerate() {
+            let at = Place { contact, sample };
+            slope.iter().try_for_each(|entry| at.finite("slope of the slip by the twist", *entry))?;
+            let speed = slope.amax() * covariance.diagonal().max().sqrt() / self.options.natural_speed;
+            at.within("slope of the slip by the twist, in natural speeds a deviation", speed, MOST)?;
+        }
+        Ok(inverse)
+    }
+
+    /// A time step on, and the forces.
+    fn advance(&mut self, dt: f64, seen: &[ContactSeen]) {
+        self.steps.follow(if self.samples == 0 { FIRST } else { dt });
+        for (i, contact) in self.contacts.iter_mut().enumerate() {
+            if self.samples > 0 {
+                contact.predict(&self.steps);
+            }
+            let force = match &seen[i] {
+                ContactSeen::Missing => Force::Silent,
+                ContactSeen::Off => Force::Off,
+                ContactSeen::Read(reading) => reading.force(&self.options),
+            };
+            contact.weigh_force(&force, &self.grids[self.grid_of[i]], &self.steps);
+        }
+    }
+
+    fn weigh_slips(&mut self, seen: &[ContactSeen], twist: Option<(&TwistError<'_>, &Matrix6<f64>)>) {
+        if let Some((twist, information)) = twist {
+            for i in 0..self.contacts.len() {
+                self.odds[i] = self.contacts[i].average(&self.grids[self.grid_of[i]].weights);
+                self.set_row(i, &seen[i], twist);
+            }
+            for _ in 0..SWEEPS {
+                for i in 0..self.contacts.len() {
+                    let Some((reading, error)) = self.shared(i, &seen[i], Some((twist, information))) else {
+                        continue;
+                    };
+                    let (slip, turn) = self.slip(reading, error);
+                    let weight = self.options.slip_weight;
+                    self.odds[i] = self.contacts[i].try_slip(&slip, turn, weight, &self.steps);
+                    self.set_row(i, &seen[i], twist);
+                }
+            }
+        }
+        for i in 0..self.contacts.len() {
+            let Some((reading, error)) = self.shared(i, &seen[i], twist) else { continue };
+            let (slip, turn) = self.slip(reading, error);
+            self.contacts[i].weigh_slip(&slip, turn, self.options.slip_weight, &self.steps);
+        }
+    }
+
+    /// The reading of a contact with a slip, and what the others say of the slip's error.
+    #[expect(clippy::type_complexity, reason = "mean and covariance, of two numbers")]
+    fn shared<'a>(
+        &self,
+        i: usize,
+        seen: &'a ContactSeen,
+        twist: Option<(&TwistError<'_>, &Matrix6<f64>)>,
+    ) -> Option<(&'a ContactReading, Option<(Vector2<f64>, Matrix2<f64>)>)> {
+        let ContactSeen::Read(reading) = seen else { return None };
+        reading.slip?;
+        let error = twist.map(|(twist, information)| {
+            let slope = &twist.slopes[i];
+            // Were rounding to spoil it, there is still what the twist alone says.
+            let alone = || (Vector2::zeros(), slope * twist.covariance * slope.transpose());
+            left_out(&self.rows, i, information, slope).unwrap_or_else(alone)
+        });
+        Some((reading, error))
+    }
+
+    fn slip(
+        &self,
+        reading: &ContactReading,
+        error: Option<(Vector2<f64>, Matrix2<f64>)>,
+    ) -> (super::density::Slip, f64) {
+        let (u, turn) = reading.direction();
+        let (mut velocity, mut covariance) = reading
+            .slip
+            .map_or((Vector2::zeros(), Matrix2::identity()), |slip| (slip.velocity, slip.covariance));
+        if let Some((mean, spread)) = error {
+            velocity -= mean;
+            covariance += spread;
+        }
+        (turned(&velocity, &covariance, &u, self.options.natural_speed), turn)
+    }
+
+    fn set_row(&mut self, i: usize, seen: &ContactSeen, twist: &TwistError<'_>) {
+        self.rows[i] = match seen {
+            ContactSeen::Read(ContactReading { slip: Some(slip), .. }) => Row::new(
+                &twist.slopes[i],
+                &slip.velocity,
+                &slip.covariance,
+                self.odds[i],
+                self.options.natural_speed,
+            ),
+            _ => Row::NONE,
+        };
+    }
+
+    /// Frictions, odds and labels after a sample; the logarithm of its density.
+    fn settle(&mut self, dt: f64, seen: &[ContactSeen]) -> f64 {
+        let mut log_density = 0.0;
+        for (g, grid) in self.grids.iter_mut().enumerate() {
+            let of_grid = self.contacts.iter_mut().zip(&self.grid_of).filter(|(_, own)| **own == g);
+            log_density += grid.gather(of_grid.map(|(contact, _)| &mut contact.log_evidence));
+        }
+        for (i, contact) in self.contacts.iter_mut().enumerate() {
+            let grid = &mut self.grids[self.grid_of[i]];
+            self.odds[i] = contact.average(&grid.weights);
+            // Forces alone take any plateau of the ratio for sliding: what is learned of friction needs a slip that was read.
+            if matches!(seen[i], ContactSeen::Read(ContactReading { slip: Some(_), .. })) {
+                grid.count(self.odds[i][1], dt);
+            }
+            self.told[i] = match self.labels[i].follow(self.odds[i]) {
+                0 => ContactMode::Off,
+                1 => ContactMode::Slide,
+                _ => ContactMode::Stick,
+            };
+        }
+        self.samples += 1;
+        log_density
+    }
+}

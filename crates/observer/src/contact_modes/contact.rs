@@ -1,0 +1,123 @@
+//! One contact at every coefficient of friction that it may have.
+
+use super::chain::{Chain, Likelihood};
+use super::density::{Ratio, Slip};
+use super::friction::FrictionGrid;
+use super::steps::{RATIOS, SPEEDS, Steps};
+
+/// Probabilities of one contact's modes, in the order off, slide, stick.
+pub(super) type Modes = [f64; 3];
+
+/// A chain for each friction, and how likely all was that this contact read, for each friction.
+#[derive(Clone, Debug)]
+pub(super) struct Contact {
+    chains: Vec<Chain>,
+    pub(super) log_evidence: Vec<f64>,
+    likelihood: Likelihood,
+    /// Sum over the frictions, by their weights: what the slip is weighed against.
+    mean: Chain,
+}
+
+/// What a contact's forces tell.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Force {
+    /// Nothing.
+    Silent,
+    /// It does not touch, for sure.
+    Off,
+    /// It touches, but its force tells nothing.
+    Touches,
+    /// It presses.
+    Presses {
+        ratio: Ratio,
+        /// Log-densities of the normal force where it touches and where it does not; the latter is minus infinity where it
+        /// is known to touch.
+        touching: f64,
+        off: f64,
+    },
+}
+
+impl Contact {
+    pub(super) fn new(grid: &FrictionGrid, steps: &Steps) -> Self {
+        let chain = Chain::new(steps);
+        Self {
+            chains: vec![chain.clone(); grid.values.len()],
+            log_evidence: vec![0.0; grid.values.len()],
+            likelihood: Likelihood::NONE,
+            mean: chain,
+        }
+    }
+
+    /// One time step on.
+    pub(super) fn predict(&mut self, steps: &Steps) {
+        self.chains.iter_mut().for_each(|chain| chain.predict(steps));
+    }
+
+    /// Weighs all by the forces.
+    pub(super) fn weigh_force(&mut self, force: &Force, grid: &FrictionGrid, steps: &Steps) {
+        match force {
+            Force::Silent => return,
+            Force::Off => {
+                let (speeds, ratios) = ([f64::NEG_INFINITY; SPEEDS], [f64::NEG_INFINITY; RATIOS]);
+                self.likelihood = Likelihood { off: 0.0, speeds, ratios };
+            }
+            Force::Touches => {
+                self.likelihood = Likelihood { off: f64::NEG_INFINITY, ..Likelihood::NONE };
+            }
+            Force::Presses { off, .. } => self.likelihood.off = *off,
+        }
+        for (i, friction) in grid.values.iter().enumerate() {
+            let mut shift = 0.0;
+            if let Force::Presses { ratio, touching, off } = force {
+                self.likelihood.of_ratio(steps, ratio, *friction);
+                // The common factor of the modes that touch is taken to the other side.
+                self.likelihood.off = off - touching;
+                shift = *touching;
+            }
+            self.log_evidence[i] += self.chains[i].weigh(&self.likelihood) + shift;
+        }
+    }
+
+    /// Weighs all by the slip. `turn` is the deviation of the direction of friction, rad; `weight` the power of the density.
+    pub(super) fn weigh_slip(&mut self, slip: &Slip, turn: f64, weight: f64, steps: &Steps) {
+        self.set_slip(slip, turn, weight, steps);
+        for (chain, log_evidence) in self.chains.iter_mut().zip(&mut self.log_evidence) {
+            *log_evidence += chain.weigh(&self.likelihood);
+        }
+    }
+
+    /// What the modes would be with this slip, without taking it; needs [`Self::average`] before.
+    pub(super) fn try_slip(&mut self, slip: &Slip, turn: f64, weight: f64, steps: &Steps) -> Modes {
+        self.set_slip(slip, turn, weight, steps);
+        let mut chain = self.mean.clone();
+        chain.weigh(&self.likelihood);
+        of(&chain)
+    }
+
+    fn set_slip(&mut self, slip: &Slip, turn: f64, weight: f64, steps: &Steps) {
+        self.likelihood.off = weight * slip.log_off();
+        self.likelihood.ratios = [weight * slip.log_sticking(); RATIOS];
+        for (k, log) in self.likelihood.speeds.iter_mut().enumerate() {
+            let (speed, spread) = (steps.speeds.middle(k), steps.speeds.variance(k));
+            *log = weight * slip.log_sliding(speed, spread, turn);
+        }
+    }
+
+    /// The mean of all chains by these weights of the frictions.
+    pub(super) fn average(&mut self, weights: &[f64]) -> Modes {
+        let mean = &mut self.mean;
+        *mean = Chain { off: 0.0, speeds: [0.0; SPEEDS], ratios: [0.0; RATIOS] };
+        for (weight, chain) in weights.iter().zip(&self.chains) {
+            mean.off += weight * chain.off;
+            mean.speeds.iter_mut().zip(&chain.speeds).for_each(|(sum, mass)| *sum += weight * mass);
+            mean.ratios.iter_mut().zip(&chain.ratios).for_each(|(sum, mass)| *sum += weight * mass);
+        }
+        of(mean)
+    }
+}
+
+fn of(chain: &Chain) -> Modes {
+    let modes = [chain.off, chain.slides(), chain.sticks()];
+    let all: f64 = modes.iter().sum();
+    modes.map(|mass| mass / all)
+}

@@ -1,0 +1,115 @@
+//! Coefficients of friction: one that is known, or a grid of what it may be.
+
+/// The grid of an unknown friction: this many values, alike in ratio, from lowest to highest.
+const VALUES: usize = 160;
+const LOWEST: f64 = 0.1;
+const HIGHEST: f64 = 1.2;
+/// Time that something must have slid before its friction is told, s, and how probable sliding must be for its time to count.
+const SLID: f64 = 0.01;
+const SURE: f64 = 0.99;
+
+/// What is known of the friction of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactFriction {
+    /// Its coefficient, from 1e-3 to 10. One that is too high is the bad side: sticking is then told where contacts slide, with
+    /// confidence.
+    Known(f64),
+    /// A coefficient from 0.1 to 1.2, the same for all contacts that give this number. What one of them tells by sliding helps
+    /// the others; a contact that never slides alone cannot know.
+    Unknown {
+        /// Any number that names the pair of materials.
+        material: usize,
+    },
+}
+
+/// A coefficient of friction that was learned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LearnedFriction {
+    /// Its mean.
+    pub coefficient: f64,
+    /// Its standard deviation, not below that of a step of the grid, 0.5 % of the coefficient.
+    pub deviation: f64,
+}
+
+/// What the contacts of one material may have, and how likely that is.
+#[derive(Clone, Debug)]
+pub(super) struct FrictionGrid {
+    /// None where the friction is known.
+    pub(super) material: Option<usize>,
+    pub(super) values: Vec<f64>,
+    /// Given all samples of the material; sum to one.
+    pub(super) weights: Vec<f64>,
+    logs: Vec<f64>,
+    /// Logarithm of what the evidence summed to after the last sample, beside what was taken away.
+    last: f64,
+    /// Time for which one of its contacts slid, s.
+    slid: f64,
+}
+
+impl FrictionGrid {
+    pub(super) fn known(friction: f64) -> Self {
+        Self {
+            material: None,
+            values: vec![friction],
+            weights: vec![1.0],
+            logs: vec![0.0],
+            last: 0.0,
+            slid: 0.0,
+        }
+    }
+
+    pub(super) fn unknown(material: usize) -> Self {
+        let ratio = (HIGHEST / LOWEST).powf(1.0 / (VALUES - 1) as f64);
+        let values = (0..VALUES).map(|k| LOWEST * ratio.powi(k as i32)).collect();
+        let weights = vec![1.0 / VALUES as f64; VALUES];
+        Self { material: Some(material), values, weights, logs: vec![0.0; VALUES], last: 0.0, slid: 0.0 }
+    }
+
+    /// Takes the evidence of all its contacts, and takes the largest of its sums away from each contact's, so that they stay
+    /// small. Returns the logarithm of the density of what was new in it.
+    ///
+    /// Given the friction the contacts are independent: the product of their densities is exact.
+    pub(super) fn gather<'a>(&mut self, evidence: impl Iterator<Item = &'a mut Vec<f64>>) -> f64 {
+        let count = self.values.len() as f64;
+        self.logs.fill(-count.ln());
+        let mut taken = 0.0;
+        for logs in evidence {
+            let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            logs.iter_mut().for_each(|log| *log -= largest);
+            self.logs.iter_mut().zip(logs.iter()).for_each(|(sum, log)| *sum += log);
+            taken += largest;
+        }
+        let largest = self.logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = self.logs.iter().map(|log| (log - largest).exp()).sum();
+        self.weights
+            .iter_mut()
+            .zip(&self.logs)
+            .for_each(|(weight, log)| *weight = (log - largest).exp() / sum);
+        let new = taken + (largest + sum.ln() - self.last);
+        self.last = largest + sum.ln();
+        new
+    }
+
+    /// Counts the time in which a contact of its slid.
+    pub(super) fn count(&mut self, slides: f64, dt: f64) {
+        if slides >= SURE {
+            self.slid += dt;
+        }
+    }
+
+    /// None where it was known from the start, and while nothing slid for long enough: what sticks has only a lower bound.
+    pub(super) fn learned(&self) -> Option<LearnedFriction> {
+        self.material?;
+        // A sum of steps is not exact.
+        if self.slid < SLID * (1.0 - 1e-9) {
+            return None;
+        }
+        let mean = |of: &dyn Fn(f64) -> f64| -> f64 {
+            self.weights.iter().zip(&self.values).map(|(weight, value)| weight * of(*value)).sum()
+        };
+        let coefficient = mean(&|value| value);
+        let step = coefficient * (HIGHEST / LOWEST).ln() / (VALUES - 1) as f64;
+        let variance = mean(&|value| (value - coefficient).powi(2)) + step.powi(2) / 12.0;
+        Some(LearnedFriction { coefficient, deviation: variance.sqrt() })
+    }
+}

@@ -1,0 +1,29 @@
+//! Whether contacts slide, stick or are off, sample by sample, and how sure that is: from forces and, where there is one, an
+//! estimate of the slip.
+//!
+//! Each mode gives a density of the same outputs (`density.rs`), and remembers what changes slowly: sliding its speed, sticking
+//! the ratio of friction to normal force, on bins (`bins.rs`, `steps.rs`, `chain.rs`). A friction that is not known is carried
+//! as a grid (`friction.rs`, `contact.rs`). Slips of several contacts share the error of one twist (`twist.rs`).
+//! `classifier.rs` is the way of a sample.
+
+mod bins;
+mod chain;
+mod classifier;
+mod contact;
+mod density;
+mod error;
+mod friction;
+mod normal;
+mod options;
+mod reading;
+mod steps;
+#[cfg(test)]
+mod tests;
+mod twist;
+
+pub use classifier::{ContactModes, ContactOdds};
+pub use error::ContactModesError;
+pub use friction::{ContactFriction, LearnedFriction};
+pub use options::ContactModesOptions;
+pub use reading::{ContactReading, ContactSeen, ContactSlip};
+pub use twist::TwistError;
