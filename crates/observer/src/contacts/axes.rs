@@ -26,8 +26,6 @@ const KNOWN: f64 = 1e-4;
 /// Deviation of an orientation of which nothing is known, about each axis, rad.
 const ANY_TURN: f64 = 1.8;
 
-type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
-
 /// Squared departure of a known body from what was found without knowing it, of four degrees of freedom, beyond which it is another one:
 /// chance goes there once in a million. What it costs to explain the log by it must go there too, as where little is known of an inertia a
 /// covariance does not reach as far.
@@ -47,8 +45,8 @@ pub(super) struct Oriented {
     pub(super) iterations: usize,
 }
 
-/// The most probable motion of a body with the mass properties `mass`, from that of an unknown body. `problem` is left as it was solved; `covariance`
-/// gives that of the body's constants. None where no choice of axes can be.
+/// The most probable motion of a body with the mass properties `mass`, from that of an unknown body. `problem` is left as it was solved. None where no
+/// choice of axes can be.
 ///
 /// An unknown body has all motions of the known one. Where that explains the log better, the search for the unknown one has missed them: it is
 /// begun again from there, and the axes are looked for again from what it comes to.
@@ -56,14 +54,11 @@ pub(super) fn known_motion(
     problem: &mut Problem,
     unknown: &Solved<CONSTANTS>,
     mass: &MassProperties,
-    covariance: impl Fn(&Problem, &Solved<CONSTANTS>) -> Option<OfBody>,
 ) -> Option<Oriented> {
     let (free, frozen) = (problem.body, problem.frozen.clone());
-    let mut first = oriented(problem, unknown, &covariance(problem, unknown)?, mass)?;
-    if !unknown.explained() && first.against.is_none() {
-        first.against = Some(Reason::Unconfirmed);
-    }
-    let first = first;
+    let first = oriented(problem, unknown, mass)?;
+    let unconfirmed = (!unknown.explained()).then_some(Reason::Unconfirmed);
+    let first = Oriented { against: first.against.or(unconfirmed), ..first };
     if first.solved.equations.cost > unknown.equations.cost - MISSED {
         return Some(first);
     }
@@ -73,8 +68,7 @@ pub(super) fn known_motion(
     let start = first.solved.unknowns.with(Body::free(found.log_mass, found.inertia()));
     let second = || {
         let again = fine(problem, start)?;
-        let covariance = covariance(problem, &again)?;
-        let mut second = oriented(problem, &again, &covariance, mass)?;
+        let mut second = oriented(problem, &again, mass)?;
         second.iterations += again.iterations + first.iterations;
         second.against = second.against.or(first.against);
         Some(second)
@@ -88,13 +82,9 @@ pub(super) fn known_motion(
     }
 }
 
-/// From that of an unknown body and the covariance of its constants.
-fn oriented(
-    problem: &mut Problem,
-    unknown: &Solved<CONSTANTS>,
-    covariance: &OfBody,
-    mass: &MassProperties,
-) -> Option<Oriented> {
+/// From that of an unknown body.
+fn oriented(problem: &mut Problem, unknown: &Solved<CONSTANTS>, mass: &MassProperties) -> Option<Oriented> {
+    let covariance = unknown.covariances(problem)?.body;
     let same = equivalent_orientations(mass);
     let likely = Likely {
         unknown: unknown.unknowns.body,

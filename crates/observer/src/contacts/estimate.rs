@@ -118,8 +118,7 @@ type Slips = Vec<(Range<usize>, usize)>;
 
 impl Source<'_> {
     fn with_blows(&self, mut record: Record) -> Record {
-        let impulse = self.units.speed * self.units.mass;
-        record.mark_blows(impulse, impulse * self.units.length, self.options.gravity * self.units.mass);
+        record.mark_blows(&self.units, self.options.gravity);
         record
     }
 
@@ -158,9 +157,7 @@ impl Source<'_> {
         let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
         let (mut doubt, mut against) = (None, None);
         if let Some(mass) = &options.body {
-            let covariance =
-                |problem: &Problem, of: &Solved<CONSTANTS>| Some(covariances(problem, of).ok()?.body);
-            let known = known_motion(&mut problem, &solved, mass, covariance);
+            let known = known_motion(&mut problem, &solved, mass);
             let known = known.ok_or(ContactEstimateError::Singular)?;
             before += solved.iterations + known.iterations - known.solved.iterations;
             (solved, doubt, against) = (known.solved, Some(known.doubt), known.against);
@@ -170,7 +167,7 @@ impl Source<'_> {
             (problem, solved) =
                 polished(&averaged, &problem, &solved).ok_or(ContactEstimateError::Singular)?;
         }
-        let covariances = covariances(&problem, &solved)?;
+        let covariances = solved.covariances(&problem).ok_or(ContactEstimateError::Singular)?;
         let iterations = [before, before + solved.iterations];
         let motions = at_all(log, &problem, &solved.unknowns, &covariances);
         let slips = slips(&problem, &motions, &solved.unknowns.body);
@@ -230,22 +227,7 @@ fn polished<'a>(
     Some((problem, solved))
 }
 
-/// Without what noise alone makes the equations claim, and with what is beyond first order.
-pub(super) fn covariances(
-    problem: &Problem,
-    solved: &Solved<CONSTANTS>,
-) -> Result<Covariances<CONSTANTS>, ContactEstimateError> {
-    let all = || {
-        let claimed = solved.equations.covariances(&problem.natural_information())?;
-        let of_body = claimed.body;
-        let widened = claimed.widened(problem, &solved.equations, &solved.unknowns)?;
-        let widened = widened.centre_widened(&solved.equations, &solved.unknowns)?;
-        widened.beyond_first_order(problem, solved, &of_body)
-    };
-    all().ok_or(ContactEstimateError::Singular)
-}
-
-pub(super) fn slips(problem: &Problem, motions: &[(Motion, Deviations)], body: &Body) -> Slips {
+fn slips(problem: &Problem, motions: &[(Motion, Deviations)], body: &Body) -> Slips {
     let record = problem.record;
     let mut slips = Vec::new();
     for (j, &k) in record.samples.iter().enumerate() {

@@ -81,9 +81,9 @@ impl ContactOptions {
         Self { noise, gravity, friction: None, body: None, size: None, pose_errors: false, suspects: false }
     }
 
-    /// Whether a palm is known to be without friction.
-    pub(super) fn frictionless(&self, palm: &LoggedPalm) -> bool {
-        palm.friction().or(self.friction) == Some(0.0)
+    /// Whether a palm of such a coefficient, where its own is known, is known to be without friction.
+    pub(super) fn frictionless(&self, friction: Option<f64>) -> bool {
+        friction.or(self.friction) == Some(0.0)
     }
 
     pub(super) fn check(&self) -> Result<(), ContactEstimateError> {
@@ -122,7 +122,7 @@ pub(super) fn check(
     }
     let felt = |palm: &LoggedPalm| match palm.force_axes() {
         Some(SensedAxes::Three) => true,
-        Some(SensedAxes::Normal) if options.frictionless(palm) => true,
+        Some(SensedAxes::Normal) if options.frictionless(palm.friction()) => true,
         _ => read(palm, &options.noise).is_some(),
     };
     let lacks = log.palms().iter().position(|palm| !felt(palm));

@@ -3,6 +3,7 @@
 use super::impulses;
 use super::noise::{ContactNoiseLevel, WrenchNoise, force_trace};
 use super::options::ContactOptions;
+use super::problem::Units;
 use crate::three_palms::running_integral;
 use contact_kinematics::PalmSurface;
 use glam::{DMat3, DVec3};
@@ -197,11 +198,14 @@ impl Record {
         Some(Self { times, samples, origin, contacts, wrenches, intervals, all_impulses })
     }
 
-    /// Marks the intervals over which there may be a blow: a contact closes, or opens while it is pressed by more than a share of `weight` in N.
+    /// Marks the intervals over which there may be a blow: a contact closes, or opens while it is pressed by more than a share of the weight under
+    /// `gravity`, m/s^2.
     ///
     /// A blow is over before a sample sees it, at a palm that may not be touched at any. Where the impulses of all palms are read, it
-    /// is known but for its time; else what the velocities change by is left open, up to about `impulse` in N s and `moment` in N m s.
-    pub(super) fn mark_blows(&mut self, impulse: f64, moment: f64, weight: f64) {
+    /// is known but for its time; else what the velocities change by is left open, up to about the natural sizes.
+    pub(super) fn mark_blows(&mut self, units: &Units, gravity: f64) {
+        let impulse = units.speed * units.mass;
+        let (moment, weight) = (impulse * units.length, gravity * units.mass);
         let lost = |from: usize, to: usize| {
             let gone = |c: &&Contact| self.contacts[to].iter().all(|other| other.palm != c.palm);
             self.contacts[from].iter().filter(gone).map(|c| c.f.length()).reduce(f64::max)
@@ -264,7 +268,7 @@ pub(super) fn wrench<'a>(contacts: impl IntoIterator<Item = &'a Contact>) -> Wre
 
 fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, options: &ContactOptions) -> Vec<Contact> {
     let one = |(palm, logged): (usize, &LoggedPalm)| {
-        let frictionless = options.frictionless(logged);
+        let frictionless = options.frictionless(logged.friction());
         let touch = logged.touch(k)?;
         let force = force_at(log, logged, k, &options.noise, frictionless)?;
         let felt = Contact::new(palm, logged.surface(), &touch, &logged.motion(k), force, frictionless);

@@ -18,10 +18,21 @@ const SMALL: f64 = 0.02;
 /// Deviation of the error, as a share of the shift.
 const SHARE: f64 = 0.3;
 
+impl Solved<CONSTANTS> {
+    /// Without what noise alone makes the equations claim, and with what is beyond first order. None where the equations are singular.
+    pub(super) fn covariances(&self, problem: &Problem) -> Option<Covariances<CONSTANTS>> {
+        let claimed = self.equations.covariances(&problem.natural_information())?;
+        let of_body = claimed.body;
+        let widened = claimed.widened(problem, &self.equations, &self.unknowns)?;
+        let widened = widened.centre_widened(&self.equations, &self.unknowns)?;
+        widened.beyond_first_order(problem, self, &of_body)
+    }
+}
+
 impl Covariances<CONSTANTS> {
     /// With the covariance of the body widened by what is beyond first order; `claimed` is that of the equations alone. Where the problem
     /// cannot be evaluated a step away, the body is known no better than beforehand. None where nothing was known then.
-    pub(super) fn beyond_first_order(
+    fn beyond_first_order(
         mut self,
         problem: &Problem,
         solved: &Solved<CONSTANTS>,

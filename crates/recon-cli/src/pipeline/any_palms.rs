@@ -22,7 +22,7 @@ use std::path::Path;
 
 /// What contact conditions are off by where the scene does not say it, as a share of the natural speed `sqrt(g l)`: that by which
 /// contacts creep that stick in simulators.
-pub(crate) const FLOOR: f64 = 3e-5;
+const FLOOR: f64 = 3e-5;
 
 /// What was asked for.
 pub(crate) struct AnyPalmsRequest<'a> {
@@ -168,7 +168,7 @@ pub(crate) fn estimate_any_palms(
 fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOptions, CliError> {
     let sensors = &scene.sensors;
     let length = scene.size.or_else(|| size(log)).ok_or(CliError::SizeNotStated)?;
-    let floor = sensors.contact_speed_std.unwrap_or(FLOOR * (scene.gravity * length).sqrt());
+    let floor = condition_floor(scene, length);
     let rough = ContactNoiseLevel::by_roughness(log, floor);
     // Of means the noise is that of their samples over the root of how many there are.
     let mean = 1.0 / (together as f64).sqrt();
@@ -191,6 +191,18 @@ fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOp
         suspects,
         ..ContactOptions::new(noise, scene.gravity)
     })
+}
+
+/// What conditions are off by beside noise, m/s, of a body of the size `length`, m: as the scene states it.
+pub(crate) fn condition_floor(scene: &Scene, length: f64) -> f64 {
+    scene.sensors.contact_speed_std.unwrap_or(FLOOR * (scene.gravity * length).sqrt())
+}
+
+/// Root mean square of the distance of points from their mean, m; 0 of none.
+pub(crate) fn spread(points: impl Iterator<Item = DVec3> + Clone) -> f64 {
+    let count = points.clone().count().max(1) as f64;
+    let mean = points.clone().sum::<DVec3>() / count;
+    (points.map(|p| p.distance_squared(mean)).sum::<f64>() / count).sqrt()
 }
 
 /// Whether the force of a palm is measured as far as there is any.

@@ -23,7 +23,9 @@ mod simulate;
 mod sound;
 mod truth;
 
-pub(crate) use any_palms::{AnyPalms, AnyPalmsRequest, FLOOR, estimate_any_palms, refuse_unfelt};
+pub(crate) use any_palms::{
+    AnyPalms, AnyPalmsRequest, condition_floor, estimate_any_palms, refuse_unfelt, spread,
+};
 pub(crate) use bounds::{BoundsResult, bounds, exact_bounds};
 pub(crate) use concave::concave_bounds;
 pub(crate) use contacts::{ContactRun, simulate_contacts};

@@ -1,6 +1,6 @@
 //! Noisy logs of three flat palms without friction: the estimate is that from contacts of any palms, the page that of three palms.
 
-use super::any_palms::{AnyPalms, AnyPalmsRequest};
+use super::any_palms::{AnyPalms, AnyPalmsRequest, spread};
 use super::reconstruct::sentence;
 use super::truth::true_shape;
 use crate::error::CliError;
@@ -21,10 +21,7 @@ pub(crate) fn noisy_planes(log: &SensorLog, scene: &Scene) -> Result<Option<Cont
         return Ok(None);
     }
     let points = contacts.palms().iter().flat_map(|palm| (0..log.samples().len()).map(|k| palm.touch(k)));
-    let points = || points.clone().flatten().map(|touch| touch.p_WC);
-    let mean = points().sum::<DVec3>() / points().count().max(1) as f64;
-    let size =
-        (points().map(|p| p.distance_squared(mean)).sum::<f64>() / points().count().max(1) as f64).sqrt();
+    let size = spread(points.flatten().map(|touch| touch.p_WC));
     let rough = || ContactNoiseLevel::by_roughness(&contacts, 0.0).contact;
     let noise = scene.sensors.contact_std.unwrap_or_else(rough);
     Ok((noise > EXACT * size).then_some(contacts))

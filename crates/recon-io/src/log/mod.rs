@@ -4,6 +4,7 @@
 mod columns;
 mod contacts;
 mod error;
+mod ordered;
 mod planar;
 mod planar_contacts;
 mod read;

@@ -1,7 +1,7 @@
 //! What a stream is told at a sample.
 
 use super::estimate::StreamError;
-use crate::contacts::noise::ContactNoiseLevel;
+use crate::contacts::options::ContactOptions;
 use crate::contacts::record::{Contact, Wrench, add_noise, wrench};
 use contact_kinematics::{PalmSurface, SurfacePose};
 use glam::DVec3;
@@ -92,13 +92,7 @@ impl PalmSensed {
     }
 
     /// The contact, from the world's origin; none while there is none, or where the palm's surface has no normal.
-    fn felt(
-        &self,
-        i: usize,
-        palm: &StreamPalm,
-        frictionless: bool,
-        noise: &ContactNoiseLevel,
-    ) -> Option<Contact> {
+    fn felt(&self, i: usize, palm: &StreamPalm, options: &ContactOptions) -> Option<Contact> {
         let (touch, _) = Touch::on(palm.surface, &self.pose.at_rest(), self.contact?)?;
         let force = match self.force {
             ForceReading::Normal(f) => f * touch.n.get(),
@@ -106,17 +100,19 @@ impl PalmSensed {
         };
         let [v_WP, w_WP] = self.twist.unwrap_or_default();
         let motion = MeasuredMotion { pose: self.pose, v_WP, w_WP };
-        Some(Contact::new(i, palm.surface, &touch, &motion, (force, noise.force(force)), frictionless))
+        Some(Contact::new(
+            i,
+            palm.surface,
+            &touch,
+            &motion,
+            (force, options.noise.force(force)),
+            options.frictionless(palm.friction),
+        ))
     }
 }
 
 impl Raw {
-    pub(super) fn felt(
-        &self,
-        palms: &[StreamPalm],
-        frictionless: impl Fn(&StreamPalm) -> bool,
-        noise: &ContactNoiseLevel,
-    ) -> Felt {
+    pub(super) fn felt(&self, palms: &[StreamPalm], options: &ContactOptions) -> Felt {
         let mut felt = Felt {
             number: self.number,
             t: self.t,
@@ -125,10 +121,10 @@ impl Raw {
             touching: [false; MOST_PALMS],
         };
         for (i, (palm, sensed)) in palms.iter().zip(&self.palms).enumerate() {
-            let contact = sensed.as_ref().and_then(|sensed| sensed.felt(i, palm, frictionless(palm), noise));
+            let contact = sensed.as_ref().and_then(|sensed| sensed.felt(i, palm, options));
             if let Some(contact) = contact {
                 felt.wrench = felt.wrench + wrench([&contact]);
-                add_noise(&mut felt.noise, &contact, noise.contact, 1.0);
+                add_noise(&mut felt.noise, &contact, options.noise.contact, 1.0);
                 felt.touching[i] = true;
             }
         }

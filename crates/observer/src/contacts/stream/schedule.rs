@@ -99,9 +99,7 @@ impl MotionStream {
         let raw = self.checked(t, sensed)?;
         self.latest = t;
         self.count += 1;
-        let contacts = &self.options.contacts;
-        let frictionless = |palm: &StreamPalm| palm.friction.or(contacts.friction) == Some(0.0);
-        let felt = raw.felt(&self.palms, frictionless, &contacts.noise);
+        let felt = raw.felt(&self.palms, &self.options.contacts);
         self.fresh.push(raw);
         self.felt.push_back(felt);
         if let Some(front) = &mut self.front {
@@ -134,8 +132,7 @@ impl MotionStream {
         for (i, (palm, kept)) in sensed.iter().zip(&mut palms).enumerate() {
             palm.check(i + 1, t)?;
             let normal = matches!(palm.force, super::ForceReading::Normal(_));
-            let friction = self.palms[i].friction.or(self.options.contacts.friction);
-            if normal && friction != Some(0.0) {
+            if normal && !self.options.contacts.frictionless(self.palms[i].friction) {
                 return Err(ContactEstimateError::NoForce { palm: i + 1 }.into());
             }
             *kept = Some(*palm);

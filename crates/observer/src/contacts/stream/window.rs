@@ -5,7 +5,7 @@ use super::solution::{Of, Solution};
 use crate::contacts::axes::known_motion;
 use crate::contacts::body::{Body, CONSTANTS};
 use crate::contacts::cold;
-use crate::contacts::estimate::{AVERAGED, THIN, covariances};
+use crate::contacts::estimate::{AVERAGED, THIN};
 use crate::contacts::flow::Carried;
 use crate::contacts::modes::by_ratio;
 use crate::contacts::options::ContactOptions;
@@ -173,9 +173,8 @@ impl Window {
     }
 
     fn solution(&mut self, mut record: Record, units: Units, asked: Asked) -> Option<Solution> {
-        let Units { length, speed, mass } = units;
-        let (natural, impulse) = (length / speed, speed * mass);
-        record.mark_blows(impulse, impulse * length, self.options.gravity * mass);
+        let natural = units.length / units.speed;
+        record.mark_blows(&units, self.options.gravity);
         let modes = by_ratio(&record, AVERAGED * natural);
         record.set_modes(&modes);
         let longest = longest(&record, &self.options.noise, &units);
@@ -188,7 +187,7 @@ impl Window {
             Asked::Search => self.found(&mut problem)?,
             Asked::Follow => (self.followed(record, &mut problem)?, false),
         };
-        let covariances = covariances(&problem, &solved).ok()?;
+        let covariances = solved.covariances(&problem)?;
         let of = Of { problem: &problem, solved: &solved, covariances: &covariances, against };
         Some(self.taken(&of, (GAP * natural, record.missed_in_world(GAP * natural))))
     }
@@ -198,9 +197,7 @@ impl Window {
         self.before = None;
         let (solved, _) = search(problem, &self.options)?;
         let Some(mass) = &self.options.body else { return Some((solved, false)) };
-        let covariance =
-            |problem: &Problem, of: &Solved<CONSTANTS>| Some(covariances(problem, of).ok()?.body);
-        let known = known_motion(problem, &solved, mass, covariance)?;
+        let known = known_motion(problem, &solved, mass)?;
         Some((known.solved, known.against.is_some()))
     }
 

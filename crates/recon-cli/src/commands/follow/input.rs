@@ -1,7 +1,7 @@
 //! The samples of a log as they come, whatever its palms.
 
 use crate::error::CliError;
-use glam::DVec3;
+use crate::pipeline::spread;
 use recon::object_dynamics::Sample;
 use recon::observer::{ForceReading, PalmSensed, PlaneReadings, StreamError, StreamPalm};
 use recon_io::{LogFileError, LogReader, Scene};
@@ -137,11 +137,7 @@ impl<'a> Samples<'a> {
     /// Root mean square of the distance of contacts from their mean in the first samples, m; none where there is one at most.
     pub(super) fn size(&mut self) -> Result<Option<f64>, CliError> {
         self.first()?;
-        let points: Vec<DVec3> =
-            self.ahead.iter().flat_map(|(_, sensed)| sensed.iter().filter_map(|s| s.contact)).collect();
-        let count = points.len().max(1) as f64;
-        let mean = points.iter().sum::<DVec3>() / count;
-        let square = points.iter().map(|p| p.distance_squared(mean)).sum::<f64>() / count;
-        Ok((square > 0.0).then(|| square.sqrt()))
+        let spread = spread(self.ahead.iter().flat_map(|(_, sensed)| sensed).filter_map(|s| s.contact));
+        Ok((spread > 0.0).then_some(spread))
     }
 }

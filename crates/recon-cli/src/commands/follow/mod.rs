@@ -7,7 +7,7 @@ use crate::cli::FollowArgs;
 use crate::console::{Console, listened};
 use crate::error::{CliError, Outcome};
 use crate::interrupt::{Checked, check, while_writing};
-use crate::pipeline::{FLOOR, known_body};
+use crate::pipeline::{condition_floor, known_body};
 use crate::progress::Progress;
 use input::Samples;
 use recon::observer::{
@@ -82,7 +82,7 @@ fn noise(args: &FollowArgs, scene: &Scene, samples: &mut Samples<'_>) -> Result<
         Some(size) => Some(size),
         None => samples.size()?,
     };
-    let floor = sensors.contact_speed_std.or(length.map(|length| FLOOR * (scene.gravity * length).sqrt()));
+    let floor = length.map(|length| condition_floor(scene, length)).or(sensors.contact_speed_std);
     Ok(ContactNoiseLevel {
         contact,
         force_fixed: fixed.unwrap_or_default(),
