@@ -17,6 +17,8 @@ use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen};
 
 /// What of the information is left at least, in any direction: a deviation is then twenty times what the equations claim.
 const LEAST: f64 = 0.05;
+/// Share of the information that was there beforehand from which on a combination keeps its value by itself.
+const KEPT: f64 = 0.99;
 
 type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
 
@@ -39,7 +41,10 @@ impl Covariances<CONSTANTS> {
         let Shares { values, axes } = self.shares(equations, at)?;
         let rows = axes.try_inverse()?;
         let beforehand = axes.transpose() * problem.body.1 * axes;
-        let better = |&i: &usize| beforehand[(i, i)] > (1.0 - values[i]).max(0.0).powi(2);
+        let better = |&i: &usize| {
+            let known = beforehand[(i, i)];
+            known < KEPT && known > (1.0 - values[i]).max(0.0).powi(2)
+        };
         Some((0..CONSTANTS).filter(better).map(|i| rows.row(i).transpose()).collect())
     }
 
