@@ -9,6 +9,7 @@ mod contact_log;
 mod contacts;
 mod error;
 mod hybrid;
+mod in_space;
 mod log;
 mod mass;
 mod motion;
@@ -26,6 +27,7 @@ pub use hybrid::{
     BodyState, ContactEvent, ContactEventKind, ContactInstant, ContactInstantError, ContactSimulation,
     ContactSimulationError, ContactStart, FieldError, PalmContactError, StartError,
 };
+pub use in_space::{in_plane, in_space, turn_in_space};
 pub use log::{PlanarLog, PlanarSample, PlanarTruth};
 pub use mass::{PlanarMass, PlanarMassError};
 pub use motion::{ConstantRates, HarmonicPalms, PairMotion};

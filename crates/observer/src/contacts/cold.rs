@@ -80,7 +80,7 @@ fn twist(contacts: &[&Contact], centre: DVec3, length: f64) -> (DVec3, DVec3) {
             normal.ger(weight, &row, &row, 1.0);
             right += row * (weight * e.dot(contact.u));
         };
-        let (t1, t2) = contact.n.any_orthonormal_pair();
+        let [t1, t2] = contact.tangents();
         match contact.mode {
             ContactMode::Off => {}
             ContactMode::Slide => {

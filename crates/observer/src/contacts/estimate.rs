@@ -4,6 +4,7 @@ use super::cold;
 use super::joint::pose_errors;
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
+use super::plane;
 use super::problem::{Problem, Units};
 use super::record::{Contact, Record};
 use super::rows::Rows;
@@ -156,7 +157,15 @@ impl Source<'_> {
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
         let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
         let (mut doubt, mut against) = (None, None);
-        if let Some(mass) = &options.body {
+        if let Some(mass) = options.body.as_ref().filter(|_| options.planar) {
+            let fitted = |problem: &mut Problem, unknown: &Solved<CONSTANTS>, body| {
+                fine(problem, unknown.unknowns.with(body))
+            };
+            let known = plane::known_motion(&mut problem, &solved, mass, fitted);
+            let (known, reason) = known.ok_or(ContactEstimateError::Singular)?;
+            before += solved.iterations;
+            (solved, doubt, against) = (known, Some(0.0), reason);
+        } else if let Some(mass) = &options.body {
             let known = known_motion(&mut problem, &solved, mass);
             let known = known.ok_or(ContactEstimateError::Singular)?;
             before += solved.iterations + known.iterations - known.solved.iterations;

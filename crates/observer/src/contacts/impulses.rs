@@ -135,7 +135,7 @@ impl<'a> Path<'a> {
             let column = six(axis, self.mean.cross(axis)) * deviation;
             white.ger(1.0, &column, &column, 1.0);
         }
-        add_contact_noise(white, self.contact.n, J, contact * self.noise.sqrt());
+        add_contact_noise(white, self.contact, J, contact * self.noise.sqrt());
         let column = six(DVec3::ZERO, self.unsure.cross(J));
         white.ger(1.0, &column, &column, 1.0);
     }

@@ -12,6 +12,7 @@ mod joint;
 mod modes;
 mod noise;
 mod options;
+mod plane;
 mod problem;
 mod reach;
 mod record;

@@ -72,13 +72,24 @@ pub struct ContactOptions {
     pub pose_errors: bool,
     /// Whether to test what is taken as known of the sensors.
     pub suspects: bool,
+    /// Whether all motion is in the plane of the world's x and z: the object moves in it and turns about its normal.
+    pub planar: bool,
 }
 
 impl ContactOptions {
     /// Of a body of which nothing is known, without joint errors of poses. `gravity` in m/s^2.
     #[must_use]
     pub fn new(noise: ContactNoiseLevel, gravity: f64) -> Self {
-        Self { noise, gravity, friction: None, body: None, size: None, pose_errors: false, suspects: false }
+        Self {
+            noise,
+            gravity,
+            friction: None,
+            body: None,
+            size: None,
+            pose_errors: false,
+            suspects: false,
+            planar: false,
+        }
     }
 
     /// Whether a palm of such a coefficient, where its own is known, is known to be without friction.

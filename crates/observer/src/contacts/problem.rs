@@ -4,6 +4,7 @@ use super::body::{Body, CONSTANTS};
 use super::equations::{Equations, LinkEquation, NodeEquations, SampleEquations};
 use super::flow::{Carried, Transition, link_information};
 use super::noise::{ContactNoiseLevel, WrenchNoise};
+use super::plane;
 use super::record::{Contact, Record, Wrench};
 use super::rows::Rows;
 use super::solve::Step;
@@ -44,6 +45,8 @@ pub(super) struct Problem<'a> {
     pub(super) body: (Body, SMatrix<f64, CONSTANTS, CONSTANTS>),
     /// Combinations of the body's constants that keep their value from beforehand.
     pub(super) frozen: Vec<SVector<f64, CONSTANTS>>,
+    /// Whether all motion is in the plane of x and z.
+    pub(super) planar: bool,
 }
 
 /// Unknowns: the motions at the nodes and the body's constants.
@@ -75,9 +78,9 @@ pub(super) struct Trial {
 impl Problem<'_> {
     /// The same on another record.
     pub(super) fn on<'b>(&self, record: &'b Record) -> Problem<'b> {
-        let Self { noise, friction, gravity, units, first, body, .. } = *self;
+        let Self { noise, friction, gravity, units, first, body, planar, .. } = *self;
         let (nodes, frozen) = (self.nodes.clone(), self.frozen.clone());
-        Problem { record, noise, friction, gravity, nodes, units, first, body, frozen }
+        Problem { record, noise, friction, gravity, nodes, units, first, body, frozen, planar }
     }
 
     fn wrenches(&self, k: usize) -> [&Wrench; 2] {
@@ -428,6 +431,10 @@ impl Problem<'_> {
             node.own[(i, i)] += information[i];
             node.gradient[i] += information[i] * d[i];
         }
+        if self.planar {
+            let held = plane::held().component_mul(&self.natural_information());
+            all.nodes.iter_mut().for_each(|node| node.own += Transition::from_diagonal(&held));
+        }
         if P > 0 {
             let known = self.body_information();
             all.body += known.fixed_view::<P, P>(0, 0);
@@ -473,6 +480,9 @@ impl Problem<'_> {
         for i in 0..6 {
             let unit = if i < 3 { 1.0 } else { self.units.length };
             white[(i, i)] += (floor * unit).powi(2);
+        }
+        if self.planar {
+            white += plane::unfelt(&self.units);
         }
         WrenchNoise { white, late: moved(&noise.late), ..*noise }
     }

@@ -37,6 +37,8 @@ pub(super) struct Contact {
     pub(super) f_deviation: f64,
     /// Whether the force is along the normal without friction, and so is its noise.
     pub(super) frictionless: bool,
+    /// Whether it moves in the plane of x and z alone.
+    pub(super) planar: bool,
     pub(super) mode: ContactMode,
     /// Samples that it is the mean of.
     pub(super) samples: usize,
@@ -87,6 +89,7 @@ impl Contact {
         motion: &MeasuredMotion,
         (force, f_deviation): (DVec3, f64),
         frictionless: bool,
+        planar: bool,
     ) -> Self {
         let n = touch.n.get();
         Self {
@@ -99,9 +102,20 @@ impl Contact {
             f: if frictionless { force.project_onto_normalized(n) } else { force },
             f_deviation,
             frictionless,
+            planar,
             mode: ContactMode::Slide,
             samples: 1,
         }
+    }
+
+    /// Unit vectors along the palm, normal to each other; in the plane the first one is in it.
+    pub(super) fn tangents(&self) -> [DVec3; 2] {
+        if self.planar { [self.n.cross(DVec3::Y), DVec3::Y] } else { self.n.any_orthonormal_pair().into() }
+    }
+
+    /// Directions along the palm that it may move in.
+    pub(super) fn freedoms(&self) -> usize {
+        if self.planar { 1 } else { 2 }
     }
 }
 
@@ -271,7 +285,9 @@ fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, options: &ContactOptio
         let frictionless = options.frictionless(logged.friction());
         let touch = logged.touch(k)?;
         let force = force_at(log, logged, k, &options.noise, frictionless)?;
-        let felt = Contact::new(palm, logged.surface(), &touch, &logged.motion(k), force, frictionless);
+        let motion = logged.motion(k);
+        let felt =
+            Contact::new(palm, logged.surface(), &touch, &motion, force, frictionless, options.planar);
         Some(Contact { c: felt.c - origin, ..felt })
     };
     log.palms().iter().enumerate().filter_map(one).collect()
@@ -368,18 +384,23 @@ const RULES_DIFFER: f64 = 2.0 * (11.0 * 11.0 + 93.0 * 93.0 + 82.0 * 82.0) / (144
 
 /// What the noise of one contact does to the impulse and moment of an interval: samples are independent.
 pub(super) fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, deviation: f64, h: f64) {
-    let (a, b) = contact.n.any_orthonormal_pair();
-    for axis in [contact.n, a, b].into_iter().take(if contact.frictionless { 1 } else { 3 }) {
+    let [a, b] = contact.tangents();
+    let axes = if contact.frictionless { 1 } else { 1 + contact.freedoms() };
+    for axis in [contact.n, a, b].into_iter().take(axes) {
         let column = six(axis, contact.c.cross(axis)) * (contact.f_deviation * h);
         covariance.ger(1.0, &column, &column, 1.0);
     }
-    add_contact_noise(covariance, contact.n, contact.f * h, deviation);
+    add_contact_noise(covariance, contact, contact.f * h, deviation);
 }
 
-/// What a contact that is off by `deviation` in each direction across the normal `n` does to the moment of an impulse.
-pub(super) fn add_contact_noise(covariance: &mut Matrix6<f64>, n: DVec3, impulse: DVec3, deviation: f64) {
-    let (a, b) = n.any_orthonormal_pair();
-    for tangent in [a, b] {
+/// What a contact that is off by `deviation` in each direction along the palm does to the moment of an impulse.
+pub(super) fn add_contact_noise(
+    covariance: &mut Matrix6<f64>,
+    contact: &Contact,
+    impulse: DVec3,
+    deviation: f64,
+) {
+    for tangent in contact.tangents().into_iter().take(contact.freedoms()) {
         let column = six(DVec3::ZERO, tangent.cross(impulse)) * deviation;
         covariance.ger(1.0, &column, &column, 1.0);
     }

@@ -10,15 +10,21 @@ impl ContactNoiseLevel {
     ///
     /// The median of it is blind to outliers and to changes of contact modes. A sensor that counts in steps has the noise of these at
     /// least. The noise of forces and impulses may grow with them. What of a smooth motion is rough between samples counts as noise.
-    /// `floor` (m/s) is taken as it is.
+    /// `floor` (m/s) is taken as it is. In a log of the plane of x and z nothing is felt along y.
     #[must_use]
-    pub fn by_roughness(log: &ContactLog, floor: f64) -> Self {
+    pub fn by_roughness(log: &ContactLog, floor: f64, planar: bool) -> Self {
         let [mut contacts, mut forces, mut impulses] = [(); 3].map(|()| Rough::default());
         for palm in log.palms() {
             let normal = |k: usize| palm.touch(k).map_or(DVec3::Z, |touch| touch.n.get());
             let own = |k: usize| palm.motion(k).pose.R_WP.inverse();
-            let tangents =
-                |k: usize| <[DVec3; 2]>::from((own(k) * normal(k)).any_orthonormal_pair()).to_vec();
+            let tangents = |k: usize| match planar {
+                true => vec![own(k) * normal(k).cross(DVec3::Y)],
+                false => <[DVec3; 2]>::from((own(k) * normal(k)).any_orthonormal_pair()).to_vec(),
+            };
+            let everywhere = || match planar {
+                true => vec![DVec3::X, DVec3::Z],
+                false => DVec3::AXES.to_vec(),
+            };
             contacts.add(log.times(), |k| in_palm(palm, k), tangents);
             let add = |rough: &mut Rough, axes, reading: &dyn Fn(usize) -> Option<SensedForce>| {
                 let touched = |k: usize| reading(k).filter(|_| palm.touch(k).is_some());
@@ -27,7 +33,7 @@ impl ContactNoiseLevel {
                         rough.add(
                             log.times(),
                             |k| Some(own(k) * touched(k)?.vector),
-                            |_| DVec3::AXES.to_vec(),
+                            |_| everywhere(),
                         );
                     }
                     Some(SensedAxes::Normal) => {

@@ -30,7 +30,7 @@ const BLURRED: f64 = 0.3;
 
 /// Direction across the friction of a contact that slides, and the standard deviation of its angle, rad; none where noise hides it.
 fn across_friction(contact: &Contact) -> Option<(DVec3, f64)> {
-    if contact.frictionless {
+    if contact.frictionless || contact.planar {
         return None;
     }
     let friction = contact.f.reject_from_normalized(contact.n);
@@ -68,16 +68,17 @@ impl Rows {
         let arm = contact.c - motion.p;
         let slip = motion.v + turn.w.cross(arm) - contact.u;
         let across = if friction { across_friction(contact) } else { None };
-        let (t1, t2) = match across {
-            Some((across, _)) => (across, contact.n.cross(across)),
-            None => contact.n.any_orthonormal_pair(),
+        let [t1, t2] = match across {
+            Some((across, _)) => [across, contact.n.cross(across)],
+            None => contact.tangents(),
         };
         let axes = [contact.n, t1, t2];
         let count = match contact.mode {
             ContactMode::Off => return None,
             ContactMode::Slide => 1 + usize::from(across.is_some()),
-            ContactMode::Stick => 3,
+            ContactMode::Stick => 1 + contact.freedoms(),
         };
+        let sticks = contact.mode == ContactMode::Stick;
         // What a shift of the contact along a tangent does to each condition.
         let turning = turn.w - contact.W;
         let mut covariance = Matrix3::identity() * (noise.floor * noise.floor);
@@ -85,7 +86,7 @@ impl Rows {
         let mut shifts = [Vector3::zeros(); 2];
         for (tangent, stored) in [t1, t2].into_iter().zip(&mut shifts) {
             let shift = turning.cross(tangent);
-            let bend = if count < 3 { slip.dot(contact.shape * tangent) } else { 0.0 };
+            let bend = if sticks { 0.0 } else { slip.dot(contact.shape * tangent) };
             let column = Vector3::new(shift.dot(axes[0]) + bend, shift.dot(t1), shift.dot(t2)) * deviation;
             covariance.ger(1.0, &column, &column, 1.0);
             *stored = column;
@@ -103,7 +104,7 @@ impl Rows {
         let share = if length > farthest { farthest / length } else { 1.0 };
         let foot = (foot[0] * t1 + foot[1] * t2) * share;
         rows.arm += foot;
-        if count < 3 {
+        if !sticks {
             rows.axes[0] += contact.shape * foot;
         }
         Some(rows)

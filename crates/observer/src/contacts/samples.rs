@@ -3,6 +3,7 @@
 use super::body::Body;
 use super::flow::Carried;
 use super::noise::WrenchNoise;
+use super::plane;
 use super::problem::{Problem, Unknowns};
 use super::record::Record;
 use super::solve::Covariances;
@@ -32,6 +33,9 @@ pub(super) fn at_all<const P: usize>(
             let link = Link::new(log, problem, found, j, nodes[j]..end);
             all.extend((nodes[j] + 1..end).map(|k| link.at(log, k, [&known[j], &known[j + 1]])));
         }
+    }
+    if problem.planar {
+        all.iter_mut().for_each(|(_, deviations)| plane::flatten(deviations));
     }
     all
 }

@@ -3,6 +3,7 @@
 use super::body::CONSTANTS;
 use super::cold;
 use super::options::ContactOptions;
+use super::plane;
 use super::problem::{Problem, Units, Unknowns};
 use super::record::Record;
 use super::solve::{Solved, solve};
@@ -136,6 +137,11 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: U
         1..=3 => information(PRIOR),
         _ => information(entry),
     });
+    let first = Tangent::from_fn(|i, _| if i < 9 { 0.0 } else { information(FIRST_TURN) });
+    let body = match options.planar {
+        true => plane::body(&cold::ball(&units), PRIOR_MASS, PRIOR),
+        false => (cold::ball(&units), SMatrix::from_diagonal(&known)),
+    };
     Problem {
         record,
         noise: options.noise,
@@ -144,8 +150,9 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: U
         nodes: Vec::new(),
         frozen: Vec::new(),
         units,
-        first: (none, Tangent::from_fn(|i, _| if i < 9 { 0.0 } else { information(FIRST_TURN) })),
-        body: (cold::ball(&units), SMatrix::from_diagonal(&known)),
+        first: (none, first),
+        body,
+        planar: options.planar,
     }
 }
 

@@ -116,6 +116,7 @@ fn share_of_noise(record: &Record) -> f64 {
 /// Constants that a log may have: forces that are measured at samples, flat palms for offsets, frictionless ones for friction.
 fn constants(log: &ContactLog, problem: &Problem) -> Vec<SensorFault> {
     let mut all = Vec::new();
+    let planar = problem.record.contacts.iter().flatten().any(|contact| contact.planar);
     for (i, palm) in log.palms().iter().enumerate() {
         let number = i + 1;
         if !(0..log.times().len()).any(|k| palm.touch(k).is_some()) {
@@ -126,10 +127,13 @@ fn constants(log: &ContactLog, problem: &Problem) -> Vec<SensorFault> {
             all.push(SensorFault::ForceBias { palm: number });
         }
         for axis in 0..2 {
-            if palm.surface() == PalmSurface::Plane {
+            // In the plane contacts are along the palm's x axis, and palms turn about its y axis.
+            if palm.surface() == PalmSurface::Plane && !(planar && axis == 1) {
                 all.push(SensorFault::ContactOffset { palm: number, axis });
             }
-            all.push(SensorFault::PalmTilt { palm: number, axis });
+            if !(planar && axis == 0) {
+                all.push(SensorFault::PalmTilt { palm: number, axis });
+            }
         }
     }
     if !problem.record.all_impulses {

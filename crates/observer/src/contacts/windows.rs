@@ -58,7 +58,8 @@ fn bent(record: &Record, longest: f64, deviation: f64) -> bool {
                 let after = record.times[k] - record.times[window.middle()];
                 squares += (record.contacts[k][i].c - parabola.at(after)).length_squared();
             }
-            freedoms += 2.0 * (window.around.len() as f64 - 3.0);
+            let axes = record.contacts[window.middle()][i].freedoms() as f64;
+            freedoms += axes * (window.around.len() as f64 - 3.0);
         }
     }
     // Each sample is around three windows.

@@ -7,6 +7,7 @@ mod constants;
 mod doubt;
 mod error;
 mod estimate;
+mod estimate_contacts;
 mod force_driven;
 mod input;
 mod observer;
@@ -23,6 +24,9 @@ pub use constants::{Constant, PlanarNominal, Side};
 pub use doubt::Doubt;
 pub use error::PlanarEstimateError;
 pub use estimate::PlanarEstimate;
+pub use estimate_contacts::{
+    PlaneDeviations, PlaneEstimate, PlaneEstimateError, PlaneOptions, estimate_plane, plane_noise,
+};
 pub use force_driven::ForceDriven;
 pub use input::{InputBuilder, PairInput, PairStage, planar_samples};
 pub use observer::PlanarObserver;

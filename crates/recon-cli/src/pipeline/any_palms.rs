@@ -169,7 +169,7 @@ fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOp
     let sensors = &scene.sensors;
     let length = scene.size.or_else(|| size(log)).ok_or(CliError::SizeNotStated)?;
     let floor = condition_floor(scene, length);
-    let rough = ContactNoiseLevel::by_roughness(log, floor);
+    let rough = ContactNoiseLevel::by_roughness(log, floor, false);
     // Of means the noise is that of their samples over the root of how many there are.
     let mean = 1.0 / (together as f64).sqrt();
     let stated = |fixed: Option<f64>, share: Option<f64>| {

@@ -22,7 +22,7 @@ pub(crate) fn noisy_planes(log: &SensorLog, scene: &Scene) -> Result<Option<Cont
     }
     let points = contacts.palms().iter().flat_map(|palm| (0..log.samples().len()).map(|k| palm.touch(k)));
     let size = spread(points.flatten().map(|touch| touch.p_WC));
-    let rough = || ContactNoiseLevel::by_roughness(&contacts, 0.0).contact;
+    let rough = || ContactNoiseLevel::by_roughness(&contacts, 0.0, false).contact;
     let noise = scene.sensors.contact_std.unwrap_or_else(rough);
     Ok((noise > EXACT * size).then_some(contacts))
 }

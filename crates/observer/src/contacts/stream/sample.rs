@@ -107,6 +107,7 @@ impl PalmSensed {
             &motion,
             (force, options.noise.force(force)),
             options.frictionless(palm.friction),
+            options.planar,
         ))
     }
 }

@@ -1,0 +1,88 @@
+//! What is different where all motion is in the plane of x and z: five numbers of a motion and five of a body are what they are.
+
+use super::body::{Body, CONSTANTS};
+use super::problem::{Problem, Units};
+use super::samples::Deviations;
+use super::solve::Solved;
+use super::state::Tangent;
+use crate::three_palms::Reason;
+use glam::{DQuat, DVec3};
+use nalgebra::{Matrix6, SMatrix, SVector, Vector2, Vector6};
+use object_dynamics::MassProperties;
+
+/// Information that holds at each node what cannot be otherwise, in natural units: it is free to be what it is, which is zero, and the equations
+/// are to be no worse for it.
+const HELD: f64 = 1e4;
+/// Deviation of the logarithm of a constant that is known: as good as exact, and what pulls at it can still be told.
+const KNOWN: f64 = 1e-4;
+/// Squared departure of a known body's mass and moment of inertia from what was found without knowing them, beyond which it is another one:
+/// two numbers in their deviations go there once in a million. What it costs to explain the log by it must go there too.
+const CONTRADICTED: f64 = 27.6;
+
+type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
+
+/// Information that holds positions and velocities along y, momenta and turns about x and z, in natural units.
+pub(super) fn held() -> Tangent {
+    let across = |i: usize| if i < 6 { i % 3 == 1 } else { i % 3 != 1 };
+    Tangent::from_fn(|i, _| if across(i) { HELD } else { 0.0 })
+}
+
+/// Noise of the impulses and moments across the plane over a link, large enough for nodes not to hold each other there: a rigid chain is what
+/// makes the equations singular in double precision.
+pub(super) fn unfelt(units: &Units) -> Matrix6<f64> {
+    let impulse = units.mass * units.speed;
+    let moment = impulse * units.length;
+    Matrix6::from_diagonal(&Vector6::new(0.0, impulse, 0.0, moment, 0.0, moment).map(|noise| noise * noise))
+}
+
+/// Without deviations of what cannot be otherwise.
+pub(super) fn flatten(deviations: &mut Deviations) {
+    let along = [DVec3::new(1.0, 0.0, 1.0), DVec3::Y];
+    for (i, of) in deviations.iter_mut().enumerate() {
+        *of *= along[i / 2];
+    }
+}
+
+/// How the constants of a body change with the logarithm of the root of its moment of inertia about y.
+fn swell() -> SVector<f64, CONSTANTS> {
+    SVector::from_fn(|i, _| if i == 1 || i == 3 { 1.0 } else { 0.0 })
+}
+
+/// A body of the mass and the moment of inertia about y of `of`, as it is known beforehand: by the deviations of the logarithms of its mass and
+/// of the root of that moment. What else there is of an inertia does not show in the plane and is held.
+pub(super) fn body(of: &Body, mass: f64, root: f64) -> (Body, OfBody) {
+    let moment = of.inertia().y_axis.y;
+    let ball = MassProperties::from_principal(of.log_mass.exp(), DVec3::splat(moment));
+    let body = ball.map_or(*of, |ball| Body::turned(&ball, DQuat::IDENTITY));
+    let swell = swell() / swell().norm();
+    let mut information = (OfBody::identity() - swell * swell.transpose()) * KNOWN.powi(-2);
+    // Both of the roots change by as much.
+    information += swell * swell.transpose() * (2.0 * root * root).recip();
+    information[(0, 0)] = mass.powi(-2);
+    (body, information)
+}
+
+/// The motion of a known body, and why it cannot be that one; `problem` is left as it was solved.
+pub(super) fn known_motion(
+    problem: &mut Problem,
+    unknown: &Solved<CONSTANTS>,
+    mass: &MassProperties,
+    solve: impl Fn(&mut Problem, &Solved<CONSTANTS>, Body) -> Option<Solved<CONSTANTS>>,
+) -> Option<(Solved<CONSTANTS>, Option<Reason>)> {
+    let claimed = unknown.covariances(problem)?.body;
+    let swell = swell() / swell().norm_squared();
+    let of_two = SMatrix::<f64, 2, CONSTANTS>::from_fn(|i, j| if i == 1 { swell[j] } else { f64::from(j == 0) });
+    let covariance = of_two * claimed * of_two.transpose();
+    let found = &unknown.unknowns.body;
+    let moment = |body: &Body| 0.5 * body.inertia().y_axis.y.ln();
+    let (known, information) = body(&Body::turned(mass, DQuat::IDENTITY), KNOWN, KNOWN);
+    let departure = Vector2::new(found.log_mass - known.log_mass, moment(found) - moment(&known));
+    let squares = (covariance.try_inverse()? * departure).dot(&departure);
+    problem.body = (known, information);
+    problem.frozen.clear();
+    let solved = solve(problem, unknown, known)?;
+    let dearer = solved.equations.cost - unknown.equations.cost > CONTRADICTED;
+    let deviations = departure[0].abs() / covariance[(0, 0)].sqrt();
+    let other = Reason::OtherBody { mass: found.log_mass.exp(), deviations, squares };
+    Some((solved, (squares > CONTRADICTED && dearer && unknown.explained()).then_some(other)))
+}

@@ -1,0 +1,136 @@
+//! The estimate from contacts of any palms ([`estimate_contacts`]) in the plane.
+
+use crate::contacts::{ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions};
+use crate::contacts::estimate_contacts;
+use crate::{Reliability, Suspect};
+use glam::{DVec2, DVec3};
+use object_dynamics::planar::{BodyState, ContactLog, PlanarMass, in_plane};
+use object_dynamics::{ContactLogError, ContactMode, MOST_PALMS, MassProperties, MassError};
+use std::f64::consts::{PI, TAU};
+use thiserror::Error;
+
+/// How [`estimate_plane`] works.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaneOptions {
+    /// Noise of the sensors; where it is not known, of [`plane_noise`].
+    pub noise: ContactNoiseLevel,
+    /// Gravity, m/s^2, along -y.
+    pub gravity: f64,
+    /// Coefficient of friction of each palm, where it is known; of those without one nothing is known. One of zero pushes along its normal.
+    pub friction: Vec<Option<f64>>,
+    /// Mass and moment of inertia of the body, where they are known; else they are estimated.
+    pub body: Option<PlanarMass>,
+    /// Mean radius of the body, m, where it is known; else from contacts on two palms or more.
+    pub size: Option<f64>,
+    /// Whether to test what is taken as known of the sensors.
+    pub suspects: bool,
+}
+
+/// Why there is no estimate.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum PlaneEstimateError {
+    /// The log.
+    #[error(transparent)]
+    Log(#[from] ContactLogError),
+    /// The mass and inertia that are known.
+    #[error(transparent)]
+    Mass(#[from] MassError),
+    /// The estimate.
+    #[error(transparent)]
+    Estimate(#[from] ContactEstimateError),
+}
+
+/// Standard deviations of what is known at one sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlaneDeviations {
+    /// Of the centre of mass, m.
+    pub p_WCm: DVec2,
+    /// Of the turn since the first sample, rad.
+    pub phi0: f64,
+    /// Of the velocity of the centre of mass, m/s.
+    pub v_WCm: DVec2,
+    /// Of the angular velocity, rad/s.
+    pub omega0: f64,
+}
+
+/// Motion and shape of a body in the plane, and its mass and moment of inertia.
+#[derive(Clone, Debug)]
+pub struct PlaneEstimate {
+    /// Motion at all samples; the axes of the body are those of the world at the first one.
+    pub states: Vec<BodyState>,
+    /// Standard deviations there.
+    pub deviations: Vec<PlaneDeviations>,
+    /// Whether a sample's motion is to be relied on: to within its deviations.
+    pub relied_on: Vec<bool>,
+    /// Contact modes at all samples.
+    pub modes: Vec<[ContactMode; MOST_PALMS]>,
+    /// Mass (kg) and the standard deviation of its logarithm.
+    pub mass: (f64, f64),
+    /// Moment of inertia about the centre of mass and its standard deviation, kg m^2; none of a known body.
+    pub inertia: (f64, f64),
+    /// What the data say of constants of the sensors that were taken as known; none unless asked for.
+    pub suspects: Vec<Suspect>,
+    /// Whether to believe it.
+    pub reliability: Reliability,
+    /// What it rests on.
+    pub evidence: ContactEvidence,
+}
+
+/// Noise of the sensors of a log by the roughness of their readings; `floor` (m/s) is what contact conditions are off by beside that.
+///
+/// # Errors
+/// [`ContactLogError`] for a log that one of space does not take.
+pub fn plane_noise(log: &ContactLog, floor: f64) -> Result<ContactNoiseLevel, ContactLogError> {
+    Ok(ContactNoiseLevel::by_roughness(&log.in_space(&[])?, floor, true))
+}
+
+/// Motion, mass and moment of inertia of a body from contacts of any palms in the plane and their forces, from no guess: the estimate of
+/// space, of a motion that is held in a plane.
+///
+/// # Errors
+/// [`PlaneEstimateError`].
+pub fn estimate_plane(log: &ContactLog, options: &PlaneOptions) -> Result<PlaneEstimate, PlaneEstimateError> {
+    let in_space = log.in_space(&options.friction)?;
+    // Of a known body all three moments are the one that shows.
+    let ball = |known: &PlanarMass| MassProperties::from_principal(known.mass(), DVec3::splat(known.inertia()));
+    let body = options.body.as_ref().map(ball).transpose()?;
+    let of_space = ContactOptions {
+        body,
+        size: options.size,
+        suspects: options.suspects,
+        planar: true,
+        ..ContactOptions::new(options.noise, options.gravity)
+    };
+    Ok(PlaneEstimate::from(estimate_contacts(&in_space, None, &of_space)?))
+}
+
+impl From<ContactEstimate> for PlaneEstimate {
+    fn from(of: ContactEstimate) -> Self {
+        let mut phi0 = 0.0;
+        let states = of.states.iter().enumerate().map(|(k, state)| {
+            let turned = of.states[0].R_WO.conjugate() * state.R_WO;
+            let angle = 2.0 * f64::atan2(-turned.y, turned.w);
+            // Of all angles that are as good the nearest to the one before.
+            phi0 = if k == 0 { 0.0 } else { phi0 + (angle - phi0 + PI).rem_euclid(TAU) - PI };
+            let (p_WCm, v_WCm) = (in_plane(state.p_WCm), in_plane(state.v_WCm));
+            BodyState { p_WCm, phi0, v_WCm, omega0: -state.w_WO.y }
+        });
+        let deviations = of.deviations.iter().map(|[p, v, w, turn]| PlaneDeviations {
+            p_WCm: in_plane(*p),
+            phi0: turn.y,
+            v_WCm: in_plane(*v),
+            omega0: w.y,
+        });
+        Self {
+            states: states.collect(),
+            deviations: deviations.collect(),
+            mass: (of.mass, of.mass_deviation),
+            inertia: (of.inertia.y_axis.y, of.moment_deviation(DVec3::Y)),
+            relied_on: of.relied_on,
+            modes: of.modes,
+            suspects: of.suspects,
+            reliability: of.reliability,
+            evidence: of.evidence,
+        }
+    }
+}
