@@ -31,7 +31,6 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "three-palms-timing.md",
         "three palms from no guess and from nearby: time and accuracy, beside SciPy",
     ),
-    ("planar_monte_carlo", "planar-monte-carlo.md", "planar observers against the Cramer-Rao bound"),
     (
         "contact_changes",
         "contact-changes.md",
@@ -70,7 +69,6 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "planar-contacts.md",
         "planar bodies on any palms: what a run keeps to, what it refuses",
     ),
-    ("planar_costs", "planar-costs.md", "cost of the planar observers beside their accuracy"),
     (
         "shape_fits",
         "shape-fits.md",

@@ -22,8 +22,6 @@ mod contact_wedging;
 mod mode_bank;
 mod no_force;
 mod planar_contacts;
-mod planar_costs;
-mod planar_monte_carlo;
 mod shape_fits;
 mod streaming;
 mod three_palms_monte_carlo;
@@ -57,8 +55,6 @@ const STUDIES: &[(&str, Run)] = &[
     ("mode_bank", || in_words(mode_bank::main())),
     ("no_force", || in_words(no_force::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),
-    ("planar_costs", || in_words(planar_costs::main())),
-    ("planar_monte_carlo", || in_words(planar_monte_carlo::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),
     ("tilting_palms", || in_words(tilting_palms::main())),

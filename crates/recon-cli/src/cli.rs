@@ -330,6 +330,13 @@ pub(crate) struct BoundsArgs {
     pub(crate) force: bool,
 }
 
+impl PlanarArgs {
+    /// kg m^2.
+    pub(crate) fn palm_inertias(&self) -> [f64; 2] {
+        [0, 1].map(|i| self.palm_inertias.get(i).copied().unwrap_or_default())
+    }
+}
+
 /// A family of shapes to fit.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(crate) enum FitAs {
@@ -359,12 +366,13 @@ impl FitAs {
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The log is CSV (planar log, version 1): t, phi1, phi2, s1, s2 and f1, f2 or tau1, tau2. With forces, mass and inertia the
-motion is observed sample by sample; without any of them the shape is fitted to contacts and palm angles alone. Without a
-log the scene of the paper's Fig. 3 is simulated first.
+The log is CSV (planar log, version 1): t, phi1, phi2, s1, s2 and f1, f2 or tau1, tau2. With forces the motion is estimated
+from no guess, and mass and inertia with it where they are not stated; without forces the shape is fitted to contacts and palm
+angles alone. Without a log the scene of the paper's Fig. 3 is simulated first. Logs of any palms in the plane, with friction,
+go through `recon reconstruct --scene` with a scene that says `plane = true`.
 
 The output folder appears as a whole or not at all: motion.csv, contact_points.csv, summary.json and figures.svg (shape,
-orientation, radius functions and, where the log has the truth, their errors: the paper's Figs. 2b, 2c, 3a, 3b).
+orientation, centre of mass, radius functions and, where the log has the truth, errors: the paper's Figs. 2b, 2c, 3a, 3b).
 
 Examples:
   recon planar
@@ -382,12 +390,15 @@ pub(crate) struct PlanarArgs {
     /// Gravity in m/s^2
     #[arg(long, default_value_t = 9.81, value_parser = positive)]
     pub(crate) gravity: f64,
-    /// Standard deviation of the contact readings in m; 0 for exact ones
-    #[arg(long, default_value_t = 0.0, value_parser = not_negative)]
-    pub(crate) contact_noise: f64,
-    /// Standard deviation of the forces in N; 0 for exact ones
-    #[arg(long, default_value_t = 0.0, value_parser = not_negative)]
-    pub(crate) force_noise: f64,
+    /// Standard deviation of the contact readings in m [default: by the roughness of the readings]
+    #[arg(long, value_parser = not_negative)]
+    pub(crate) contact_noise: Option<f64>,
+    /// Standard deviation of the forces in N [default: by the roughness of the readings]
+    #[arg(long, value_parser = not_negative)]
+    pub(crate) force_noise: Option<f64>,
+    /// Moments of inertia of both palms about the hinge in kg m^2, for logs with torques in place of forces [default: 0 0]
+    #[arg(long, num_args = 2, value_names = ["I1", "I2"], value_parser = not_negative)]
+    pub(crate) palm_inertias: Vec<f64>,
     /// Highest harmonic of the shape, where it is fitted without forces
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=20))]
     pub(crate) order: u8,

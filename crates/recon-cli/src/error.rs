@@ -158,13 +158,16 @@ pub(crate) enum CliError {
     #[error("--without-forces needs a scene file (--scene), for gravity")]
     NoGravity,
     #[error("the planar log gives no motion")]
-    PlanarEstimate(#[from] recon::observer::planar::PlanarEstimateError),
+    PlanarEstimate(#[from] recon::observer::planar::PlaneEstimateError),
+    #[error("the planar log gives no shape")]
+    PlanarShape(#[from] recon::observer::planar::PlanarEstimateError),
     #[error(
-        "the planar log gives no estimate: it spans {seconds} s, and a first one needs {needed} s for an object of about {length} m (lengths are in metres, times in seconds)"
+        "{path}: has neither forces nor torques of both palms at every sample, or a contact at the hinge, where a torque has no lever: \
+         `recon planar` fits a shape to contacts alone"
     )]
-    PlanarTooShort { seconds: f64, needed: f64, length: f64 },
+    PlanarForces { path: PathBuf },
     #[error(
-        "without forces, mass and inertia the shape is fitted to noisy contacts: give --contact-noise in m"
+        "without forces the shape is fitted to noisy contacts: give --contact-noise in m"
     )]
     PlanarNoise,
     #[error("the planar demo cannot be simulated: {0}")]
@@ -254,7 +257,8 @@ impl CliError {
             | Self::WithoutForces(_)
             | Self::NoGravity
             | Self::PlanarEstimate(_)
-            | Self::PlanarTooShort { .. }
+            | Self::PlanarShape(_)
+            | Self::PlanarForces { .. }
             | Self::PlanarNoise
             | Self::Export(_)
             | Self::Check(_)

@@ -55,7 +55,7 @@ pub use report::{
     write_report,
 };
 pub use scene::{
-    BoxedShape, KnownInertia, KnownPalm, PlanarBody, PlanarScene, Scene, SceneError, SceneErrorKind, Sensors,
+    BoxedShape, KnownInertia, KnownPalm, PlanarBody, PlanarKnown, PlanarScene, Scene, SceneError, SceneErrorKind, Sensors,
     Shape, Simulation,
 };
 pub use stream::{StreamRow, write_stream_header, write_stream_row};

@@ -18,7 +18,6 @@ mod noisy;
 mod paper_method;
 mod planar_basin;
 mod planar_common;
-mod planar_constants;
 mod planar_dynamic;
 mod planar_failures;
 mod planar_faults;

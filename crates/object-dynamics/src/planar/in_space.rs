@@ -4,6 +4,7 @@
 //! them.
 
 use super::contact_log::{ContactLog as PlanarContactLog, ContactLogSample, PalmSample};
+use super::lagrange::lagrange;
 use super::log::{PlanarLog, PlanarSample, PlanarTruth};
 use crate::contact_log::{ContactLog, ContactLogError, ContactPoints, ForceChannel, PalmRecord, RecordedMotion};
 use crate::BodyState;
@@ -153,20 +154,10 @@ fn acceleration(samples: &[PlanarSample], k: usize, palm: usize) -> f64 {
     let from = k.saturating_sub(count / 2).min(samples.len() - count);
     let around = &samples[from..from + count];
     let angle = |s: &PlanarSample| if palm == 0 { s.angles[0] } else { s.angles[0] + s.angles[1] };
-    let nodes: Vec<f64> = around.iter().map(|s| s.t - samples[k].t).collect();
-    // Newton's divided differences, and the second derivative of his form at zero.
-    let mut differences: Vec<f64> = around.iter().map(angle).collect();
-    for order in 1..count {
-        for i in (order..count).rev() {
-            differences[i] = (differences[i] - differences[i - 1]) / (nodes[i] - nodes[i - order]);
-        }
-    }
-    let mut value = [0.0; 3];
-    for i in (0..count).rev() {
-        let [p, d, dd] = value;
-        value = [differences[i] - nodes[i] * p, p - nodes[i] * d, 2.0 * d - nodes[i] * dd];
-    }
-    value[2]
+    let base = angle(&around[0]);
+    // Relative to the first angle: the weights add up to zero, and large angles would cancel.
+    let one = |s: &PlanarSample| lagrange(around.iter().map(|s| s.t), s.t, samples[k].t)[2] * (angle(s) - base);
+    around.iter().map(one).sum()
 }
 
 #[cfg(test)]

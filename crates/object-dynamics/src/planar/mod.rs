@@ -10,6 +10,7 @@ mod contacts;
 mod error;
 mod hybrid;
 mod in_space;
+mod lagrange;
 mod log;
 mod mass;
 mod motion;
@@ -28,6 +29,7 @@ pub use hybrid::{
     ContactSimulationError, ContactStart, FieldError, PalmContactError, StartError,
 };
 pub use in_space::{in_plane, in_space, turn_in_space};
+pub use lagrange::lagrange;
 pub use log::{PlanarLog, PlanarSample, PlanarTruth};
 pub use mass::{PlanarMass, PlanarMassError};
 pub use motion::{ConstantRates, HarmonicPalms, PairMotion};

@@ -125,6 +125,7 @@ fn off_solution(record: &Record, noise: ContactNoiseLevel, stride: usize) -> (Pr
         units,
         first: (none, Tangent::from_element(1.0)),
         body: (body, SMatrix::identity()),
+        planar: false,
         frozen: Vec::new(),
     };
     let mut at = cold::start(&problem, body, DQuat::from_rotation_y(0.3));

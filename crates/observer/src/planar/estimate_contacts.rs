@@ -5,7 +5,7 @@ use crate::contacts::estimate_contacts;
 use crate::{Reliability, Suspect};
 use glam::{DVec2, DVec3};
 use object_dynamics::planar::{BodyState, ContactLog, PlanarMass, in_plane};
-use object_dynamics::{ContactLogError, ContactMode, MOST_PALMS, MassProperties, MassError};
+use object_dynamics::{ContactLogError, ContactMode, LoggedPalm, MOST_PALMS, MassError, MassProperties};
 use std::f64::consts::{PI, TAU};
 use thiserror::Error;
 
@@ -53,6 +53,17 @@ pub struct PlaneDeviations {
     pub omega0: f64,
 }
 
+/// A contact on the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneContact {
+    /// From the centre of mass, body axes, m.
+    pub p_OC: DVec2,
+    /// Outward unit normal, body axes.
+    pub normal: DVec2,
+    /// Radius function there, `p_OC . normal`, m.
+    pub radius: f64,
+}
+
 /// Motion and shape of a body in the plane, and its mass and moment of inertia.
 #[derive(Clone, Debug)]
 pub struct PlaneEstimate {
@@ -62,6 +73,8 @@ pub struct PlaneEstimate {
     pub deviations: Vec<PlaneDeviations>,
     /// Whether a sample's motion is to be relied on: to within its deviations.
     pub relied_on: Vec<bool>,
+    /// Contacts of each palm on the body, at all samples where there is one: the shape, point by point.
+    pub contacts: Vec<Vec<Option<PlaneContact>>>,
     /// Contact modes at all samples.
     pub modes: Vec<[ContactMode; MOST_PALMS]>,
     /// Mass (kg) and the standard deviation of its logarithm.
@@ -101,11 +114,11 @@ pub fn estimate_plane(log: &ContactLog, options: &PlaneOptions) -> Result<PlaneE
         planar: true,
         ..ContactOptions::new(options.noise, options.gravity)
     };
-    Ok(PlaneEstimate::from(estimate_contacts(&in_space, None, &of_space)?))
+    Ok(PlaneEstimate::new(estimate_contacts(&in_space, None, &of_space)?, &in_space))
 }
 
-impl From<ContactEstimate> for PlaneEstimate {
-    fn from(of: ContactEstimate) -> Self {
+impl PlaneEstimate {
+    fn new(of: ContactEstimate, log: &object_dynamics::ContactLog) -> Self {
         let mut phi0 = 0.0;
         let states = of.states.iter().enumerate().map(|(k, state)| {
             let turned = of.states[0].R_WO.conjugate() * state.R_WO;
@@ -115,15 +128,25 @@ impl From<ContactEstimate> for PlaneEstimate {
             let (p_WCm, v_WCm) = (in_plane(state.p_WCm), in_plane(state.v_WCm));
             BodyState { p_WCm, phi0, v_WCm, omega0: -state.w_WO.y }
         });
+        let states: Vec<BodyState> = states.collect();
         let deviations = of.deviations.iter().map(|[p, v, w, turn]| PlaneDeviations {
             p_WCm: in_plane(*p),
             phi0: turn.y,
             v_WCm: in_plane(*v),
             omega0: w.y,
         });
+        let contact = |palm: &LoggedPalm, k: usize| {
+            let touch = palm.touch(k)?;
+            let (normal, back) = (in_plane(-touch.n.get()), DVec2::from_angle(-states[k].phi0));
+            let p_OC = back.rotate(in_plane(touch.p_WC) - states[k].p_WCm);
+            let normal = back.rotate(normal);
+            Some(PlaneContact { p_OC, normal, radius: p_OC.dot(normal) })
+        };
+        let of_palm = |palm| (0..states.len()).map(|k| contact(palm, k)).collect();
         Self {
-            states: states.collect(),
+            contacts: log.palms().iter().map(of_palm).collect(),
             deviations: deviations.collect(),
+            states,
             mass: (of.mass, of.mass_deviation),
             inertia: (of.inertia.y_axis.y, of.moment_deviation(DVec3::Y)),
             relied_on: of.relied_on,

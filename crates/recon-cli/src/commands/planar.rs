@@ -1,28 +1,32 @@
-use crate::cli::PlanarArgs;
+use crate::cli::{PlanarArgs, ReconstructArgs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::interrupt::{check, while_writing};
+use crate::interrupt::while_writing;
+use crate::pipeline::{PlanarMotion, hinged_pair, planar_motion};
 use crate::progress::Progress;
 use glam::DVec2;
 use recon::contact_kinematics::planar::FourierBody;
 use recon::object_dynamics::planar::{
     ConstantRates, PlanarLog, PlanarMass, PlanarObject, PlanarStart, simulate_prescribed,
 };
-use recon::observer::planar::{
-    NaturalScale, PlanarNominal, PlanarObserver, PlanarObserverOptions, ShapeFitOptions, fit_shape,
-};
+use recon::observer::planar::{ShapeFitOptions, fit_shape};
 use recon_io::{
-    FigureCurve, FigurePanel, FolderTarget, brief, read_planar_log, write_figures, write_planar_log,
+    FigureCurve, FigurePanel, FolderTarget, PlanarScene, brief, read_planar_contact_log, read_planar_log,
+    write_figures, write_planar_log,
 };
 use serde_json::{Value, json};
 use std::io::{self, Write};
+use std::path::Path;
 
-/// Natural times before the first estimate: from six on a start without a guess succeeds.
-const STARTING_TIMES: f64 = 6.0;
-/// The observer doubts a start below 1.5.
-const SHORTEST_TIMES: f64 = 1.6;
+/// What was made of a planar log.
+enum Made {
+    /// Motion from contacts and forces.
+    Motion(Box<PlanarMotion>),
+    /// Shape and motion from contacts alone.
+    Fit(Fitted),
+}
 
-/// One row of the result.
+/// One row of a fit.
 struct Row {
     t: f64,
     phi0: f64,
@@ -31,8 +35,8 @@ struct Row {
     points: [DVec2; 2],
 }
 
-/// Everything that is written.
-struct Reconstruction {
+/// A shape that was fitted without forces.
+struct Fitted {
     rows: Vec<Row>,
     figures: Value,
     warnings: Vec<String>,
@@ -49,15 +53,59 @@ pub(crate) fn run(args: &PlanarArgs, console: &Console) -> Result<Outcome, CliEr
         (None, None) => return Err(CliError::PlanarDemo("no scene".to_owned())),
     };
     progress.step("reconstructing shape and motion");
-    let sensed = log.samples().iter().all(|s| s.forces.is_some() || s.torques.is_some());
-    let made = match mass.filter(|_| sensed) {
-        Some(mass) => observe(args, &log, mass)?,
-        None => fit(args, &log)?,
+    let made = match log.contact_log(args.palm_inertias()) {
+        Some(contacts) => {
+            let known = hinged_pair(args.gravity, mass, args.contact_noise, args.force_noise);
+            Made::Motion(Box::new(planar_motion(contacts, &known)?))
+        }
+        None => Made::Fit(fit(args, &log)?),
     };
-    write(target, args.log.is_none(), &log, &made)?;
+    let simulated = args.log.is_none().then_some(&log);
+    finish(made, target, simulated, (progress, &args.output), console)
+}
+
+/// A log of a scene in the plane: of any palms, or of two hinged ones where the scene has none.
+pub(crate) fn reconstruct(args: &ReconstructArgs, scene: &Path, console: &Console) -> Result<Outcome, CliError> {
+    let mut known = PlanarScene::read_known(scene)?;
+    let target = FolderTarget::new(&args.output, &[args.log.clone(), scene.to_owned()], args.force)?;
+    let progress = Progress::new(2, console.is_json());
+    progress.step("reading the log");
+    if args.identify {
+        known.mass = None;
+    }
+    let log = if known.palms.is_empty() {
+        known.palms = hinged_pair(known.gravity, None, None, None).palms;
+        let log = read_planar_log(&args.log)?;
+        log.contact_log([0.0; 2]).ok_or_else(|| CliError::PlanarForces { path: args.log.clone() })?
+    } else {
+        let surfaces: Vec<_> = known.palms.iter().map(|(surface, _)| *surface).collect();
+        read_planar_contact_log(&args.log, &surfaces)?
+    };
+    progress.step("estimating the motion");
+    let made = planar_motion(log, &known)?;
+    finish(Made::Motion(Box::new(made)), target, None, (progress, &args.output), console)
+}
+
+/// Writes the folder and tells of it.
+fn finish(
+    made: Made,
+    target: FolderTarget,
+    log: Option<&PlanarLog>,
+    (progress, folder): (Progress, &Path),
+    console: &Console,
+) -> Result<Outcome, CliError> {
+    let figures = match &made {
+        Made::Motion(made) => made.figures(),
+        Made::Fit(made) => made.figures.clone(),
+    };
+    write(target, log, &made, &figures)?;
     drop(progress);
-    console.result(&describe(args, &made), &made.figures)?;
-    Ok(if made.warnings.is_empty() { Outcome::Done } else { Outcome::WithReservations })
+    let (text, sound) = match &made {
+        Made::Motion(made) => (made.describe(), made.is_reliable()),
+        Made::Fit(made) => (describe(made), made.warnings.is_empty()),
+    };
+    console.result(&format!("{text}  written to             {}\n", folder.display()), &figures)?;
+    Ok(if sound { Outcome::Done } else { Outcome::WithReservations })
 }
 
 fn known_mass(args: &PlanarArgs) -> Result<Option<PlanarMass>, CliError> {
@@ -79,65 +127,11 @@ fn demo() -> Result<(PlanarLog, PlanarMass), CliError> {
     Ok((run.log().map_err(|e| failed(&e))?, mass))
 }
 
-fn observe(args: &PlanarArgs, log: &PlanarLog, mass: PlanarMass) -> Result<Reconstruction, CliError> {
-    let nominal = PlanarNominal {
-        mass,
-        gravity: args.gravity,
-        contact_deviation: args.contact_noise,
-        force_deviation: args.force_noise,
-    };
-    let samples = log.samples();
-    let seconds = samples[samples.len() - 1].t - samples[0].t;
-    // A short log still gives a result: the first estimate comes at half of it, if that is long enough to be believed.
-    let scale = NaturalScale::from_sample(&samples[0], args.gravity)?;
-    let time = scale.time();
-    let settle = (STARTING_TIMES * time).min((0.5 * seconds).max(SHORTEST_TIMES * time));
-    let options = PlanarObserverOptions { settle: Some(settle), ..Default::default() };
-    let mut observer = PlanarObserver::<5>::new(nominal, &[], options)?;
-    let (mut rows, mut warnings, mut last) = (Vec::new(), Vec::new(), None);
-    for sample in log.samples() {
-        check()?;
-        match observer.push(sample) {
-            Ok(Some(e)) => {
-                let omega0 = e.state[4];
-                rows.push(Row { t: e.t, phi0: e.phi0, omega0, radii: e.radii, points: e.contact_points });
-                last = Some(e);
-            }
-            Ok(None) => {}
-            Err(error) if last.is_some() => {
-                warnings.push(format!("ends early: {error}"));
-                break;
-            }
-            Err(error) => return Err(error.into()),
-        }
-    }
-    let last = last.ok_or(CliError::PlanarTooShort { seconds, needed: settle, length: scale.length })?;
-    if let Some(doubt) = last.doubt {
-        warnings.push(format!("not to be relied on: {doubt:?}"));
-    }
-    let figures = json!({
-        "method": "Newton observer, forces measured",
-        "window_s": observer.window(),
-        "natural_time_s": time,
-        "natural_length_m": scale.length,
-        "status": format!("{:?}", last.report.status),
-        "residual": last.report.residual,
-        "rank": last.report.rank,
-        "condition": last.report.condition,
-        "smallest_information": last.report.smallest_information,
-        "radius_deviation_m": last.radius_deviations,
-        "warnings": warnings,
-    });
-    Ok(Reconstruction { rows, figures, warnings })
-}
-
-fn fit(args: &PlanarArgs, log: &PlanarLog) -> Result<Reconstruction, CliError> {
-    if args.contact_noise <= 0.0 {
-        return Err(CliError::PlanarNoise);
-    }
+fn fit(args: &PlanarArgs, log: &PlanarLog) -> Result<Fitted, CliError> {
+    let contact_deviation = args.contact_noise.filter(|noise| *noise > 0.0).ok_or(CliError::PlanarNoise)?;
     let options = ShapeFitOptions {
         order: usize::from(args.order),
-        contact_deviation: args.contact_noise,
+        contact_deviation,
         gravity: args.gravity,
     };
     let made = fit_shape(log, &options)?;
@@ -180,22 +174,27 @@ fn fit(args: &PlanarArgs, log: &PlanarLog) -> Result<Reconstruction, CliError> {
         "least_known": made.direction,
         "warnings": warnings,
     });
-    Ok(Reconstruction { rows, figures, warnings })
+    Ok(Fitted { rows, figures, warnings })
 }
 
-fn write(
-    target: FolderTarget,
-    with_log: bool,
-    log: &PlanarLog,
-    made: &Reconstruction,
-) -> Result<(), CliError> {
+fn write(target: FolderTarget, log: Option<&PlanarLog>, made: &Made, figures: &Value) -> Result<(), CliError> {
     while_writing(|| {
         let mut folder = target.begin()?;
-        folder.write("motion.csv", |to| motion(made, to))?;
-        folder.write("contact_points.csv", |to| points(made, to))?;
-        folder.write("figures.svg", |to| write_figures(&panels(log, made), to))?;
-        folder.write("summary.json", |to| writeln!(to, "{:#}", made.figures))?;
-        if with_log {
+        match made {
+            Made::Motion(made) => {
+                folder.write("motion.csv", |to| made.write_motion(to))?;
+                folder.write("contact_points.csv", |to| made.write_points(to))?;
+                folder.write("radius_functions.csv", |to| made.write_radii(to))?;
+                folder.write("figures.svg", |to| write_figures(&made.panels(), to))?;
+            }
+            Made::Fit(made) => {
+                folder.write("motion.csv", |to| motion(made, to))?;
+                folder.write("contact_points.csv", |to| points(made, to))?;
+                folder.write("figures.svg", |to| write_figures(&panels(made), to))?;
+            }
+        }
+        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+        if let Some(log) = log {
             folder.write("log.csv", |to| write_planar_log(log, to))?;
         }
         folder.commit()?;
@@ -203,14 +202,14 @@ fn write(
     })
 }
 
-fn motion(made: &Reconstruction, to: &mut dyn Write) -> io::Result<()> {
+fn motion(made: &Fitted, to: &mut dyn Write) -> io::Result<()> {
     writeln!(to, "t,phi0,omega0,r_1,r_2")?;
     made.rows.iter().try_for_each(|r| {
         writeln!(to, "{:?},{:?},{:?},{:?},{:?}", r.t, r.phi0, r.omega0, r.radii[0], r.radii[1])
     })
 }
 
-fn points(made: &Reconstruction, to: &mut dyn Write) -> io::Result<()> {
+fn points(made: &Fitted, to: &mut dyn Write) -> io::Result<()> {
     writeln!(to, "palm,t,x,y")?;
     (0..2).try_for_each(|i| {
         made.rows
@@ -219,11 +218,11 @@ fn points(made: &Reconstruction, to: &mut dyn Write) -> io::Result<()> {
     })
 }
 
-/// The paper's Figs. 2b and 3a (contact points), 2c (orientation) and 3b (errors, where the truth is known).
-fn panels(log: &PlanarLog, made: &Reconstruction) -> Vec<FigurePanel> {
-    let line = |name: &str, points: Vec<[f64; 2]>| FigureCurve {
+/// Contact points, orientation and radius functions.
+fn panels(made: &Fitted) -> Vec<FigurePanel> {
+    let over = |name: &str, pick: &dyn Fn(&Row) -> f64| FigureCurve {
         name: name.to_owned(),
-        points,
+        points: made.rows.iter().map(|r| [r.t, pick(r)]).collect(),
         ..FigureCurve::default()
     };
     let panel = |title: &str, unit: &str, curves| FigurePanel {
@@ -232,14 +231,13 @@ fn panels(log: &PlanarLog, made: &Reconstruction) -> Vec<FigurePanel> {
         curves,
         ..FigurePanel::default()
     };
-    let over = |pick: &dyn Fn(&Row) -> f64| made.rows.iter().map(|r| [r.t, pick(r)]).collect::<Vec<_>>();
     let shape = [0, 1].map(|i| FigureCurve {
         name: format!("palm {}", i + 1),
         points: made.rows.iter().map(|r| r.points[i].to_array()).collect(),
         dots: true,
         ..FigureCurve::default()
     });
-    let mut panels = vec![
+    vec![
         FigurePanel {
             title: "Shape: contact points on the object".to_owned(),
             axes: ["x in m".to_owned(), "y in m".to_owned()],
@@ -247,63 +245,24 @@ fn panels(log: &PlanarLog, made: &Reconstruction) -> Vec<FigurePanel> {
             curves: shape.into(),
             ..FigurePanel::default()
         },
-        panel("Orientation", "phi0 in rad", vec![line("observed", over(&|r| r.phi0))]),
+        panel("Orientation", "phi0 in rad", vec![over("phi0", &|r| r.phi0)]),
         panel(
             "Radius functions at the contacts",
             "r in m",
-            vec![line("r1", over(&|r| r.radii[0])), line("r2", over(&|r| r.radii[1]))],
+            vec![over("r1", &|r| r.radii[0]), over("r2", &|r| r.radii[1])],
         ),
-    ];
-    let Some(truth) = log.truth() else { return panels };
-    let first = truth[0].phi0;
-    let rows: Vec<_> = log.samples().iter().zip(truth).collect();
-    // Below the observed one, which begins later.
-    panels[1].curves.insert(0, line("true", rows.iter().map(|(s, t)| [s.t, t.phi0 - first]).collect()));
-    let errors = made.rows.iter().filter_map(|r| {
-        let k = rows.partition_point(|(s, _)| s.t < r.t);
-        let (sample, truth) = rows.get(k)?;
-        let normals = sample.palms().ok()?.normals();
-        let radius = |i: usize| r.radii[i] - normals[i].dot(truth.p_WCm);
-        Some([r.t, radius(0), radius(1), r.phi0 - (truth.phi0 - first)])
-    });
-    let errors: Vec<[f64; 4]> = errors.collect();
-    let column = |i: usize| errors.iter().map(|e| [e[0], e[i]]).collect::<Vec<_>>();
-    panels.push(panel(
-        "Errors",
-        "m, rad",
-        vec![
-            line("error in r1", column(1)),
-            line("error in r2", column(2)),
-            line("error in phi0", column(3)),
-        ],
-    ));
-    panels
+    ]
 }
 
-fn describe(args: &PlanarArgs, made: &Reconstruction) -> String {
+fn describe(made: &Fitted) -> String {
     let mut text: String = made.warnings.iter().map(|w| format!("Warning: {w}\n")).collect();
     let last = made.rows.last().map_or(f64::NAN, |r| r.t);
     let first = made.rows.first().map_or(f64::NAN, |r| r.t);
     text += &format!("{} estimates from t = {} s to {} s\n", made.rows.len(), brief(first), brief(last));
-    for key in [
-        "method",
-        "status",
-        "residual",
-        "natural_length_m",
-        "window_s",
-        "gyration_squared_m2",
-        "radius_deviation_m",
-    ] {
-        if let Some(value) = made.figures.get(key) {
-            let value = match (value.as_f64(), value.as_str()) {
-                (Some(number), _) => brief(number),
-                (None, Some(word)) => word.to_owned(),
-                (None, None) => value.as_array().map_or(value.to_string(), |all| {
-                    all.iter().filter_map(Value::as_f64).map(brief).collect::<Vec<_>>().join(", ")
-                }),
-            };
-            text += &format!("  {key:<22} {value}\n");
-        }
+    for key in ["method", "status", "residual", "gyration_squared_m2"] {
+        let Some(value) = made.figures.get(key) else { continue };
+        let value = value.as_f64().map_or_else(|| value.as_str().unwrap_or_default().to_owned(), brief);
+        text += &format!("  {key:<22} {value}\n");
     }
-    text + &format!("  written to             {}\n", args.output.display())
+    text
 }

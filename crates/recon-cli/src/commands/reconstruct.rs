@@ -6,7 +6,7 @@ use crate::pipeline::{
     noisy_planes, normal_forces, read_log, reconstruct, refuse_unfelt, sentence, write_reconstruction_folder,
 };
 use crate::progress::Progress;
-use recon_io::{Bounds, FolderTarget, Scene, brief, brief_to};
+use recon_io::{Bounds, FolderTarget, Scene, SceneErrorKind, brief, brief_to};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
@@ -15,7 +15,13 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     if args.without_forces {
         return super::without_forces::run(args, console);
     }
-    let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::UnknownBody)?;
+    let path = args.scene.as_ref().ok_or(CliError::UnknownBody)?;
+    let scene = match Scene::read(path) {
+        Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
+            return super::planar::reconstruct(args, path, console);
+        }
+        read => read?,
+    };
     let target = target(args)?;
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");

@@ -22,7 +22,7 @@ use std::path::Path;
 
 /// What contact conditions are off by where the scene does not say it, as a share of the natural speed `sqrt(g l)`: that by which
 /// contacts creep that stick in simulators.
-const FLOOR: f64 = 3e-5;
+pub(super) const FLOOR: f64 = 3e-5;
 
 /// What was asked for.
 pub(crate) struct AnyPalmsRequest<'a> {

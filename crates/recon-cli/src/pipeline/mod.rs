@@ -15,6 +15,7 @@ mod folder;
 mod modes;
 mod noisy_planes;
 mod planar_contacts;
+mod planar_motion;
 mod plane;
 mod read;
 mod reconstruct;
@@ -39,6 +40,7 @@ pub(crate) use folder::{
 pub(crate) use modes::describe_times;
 pub(crate) use noisy_planes::{as_planes, noisy_planes};
 pub(crate) use planar_contacts::simulate_planar_contacts;
+pub(crate) use planar_motion::{PlanarMotion, hinged_pair, planar_motion};
 pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};
 pub(crate) use read::{LogOf, LogSource, LogStand, ReadLog, read_log, three_palms};
 pub(crate) use reconstruct::{NOTABLE_NOISE, Reconstruction, condensed, reconstruct, sentence};

@@ -5,8 +5,7 @@ use glam::DVec2;
 use std::io::{self, BufRead};
 
 /// Columns in which `nan` says that there is nothing: radius functions of a palm that does not touch.
-const MAY_BE_NAN: [(&str, &str); 3] =
-    [("radius_functions.csv", "r_1"), ("radius_functions.csv", "r_2"), ("radius_functions.csv", "r_3")];
+const MAY_BE_NAN: (&str, [&str; 5]) = ("radius_functions.csv", ["r_1", "r_2", "r_3", "r_4", "r_5"]);
 /// Columns of a log that are empty or `nan` while a palm does not touch.
 const LOG: &str = "log.csv";
 
@@ -59,7 +58,7 @@ pub(super) fn numbers(
             let column = columns.get(k).map_or("", String::as_str);
             let absent = || {
                 let empty = cell.is_empty() || cell == "nan";
-                empty && (file == LOG || MAY_BE_NAN.contains(&(file, column)))
+                empty && (file == LOG || (MAY_BE_NAN.0 == file && MAY_BE_NAN.1.contains(&column)))
             };
             match cell.parse::<f64>() {
                 Ok(number) if number.is_finite() => match must(column) {

@@ -13,7 +13,7 @@ mod tests;
 
 pub use error::{SceneError, SceneErrorKind};
 pub use palms::{BoxedShape, KnownPalm};
-pub use planar::{PlanarBody, PlanarScene};
+pub use planar::{PlanarBody, PlanarKnown, PlanarScene};
 
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, Palm};

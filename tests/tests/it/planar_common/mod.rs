@@ -3,12 +3,10 @@
 #![allow(dead_code, reason = "each test file uses its part of the shared scenes")]
 
 use glam::DVec2;
-use nalgebra::SVector;
 use recon::contact_kinematics::planar::{Ellipse, FourierBody, RadiusBounds, RadiusFunction, RadiusJet};
-use recon::object_dynamics::planar::{
-    ConstantRates, PlanarMass, PlanarObject, PlanarSample, PlanarStart, PlanarTruth,
-};
-use recon::observer::planar::{PlanarEstimate, PlanarObserver};
+use recon::object_dynamics::planar::{ConstantRates, PlanarMass, PlanarObject, PlanarStart, PlanarTruth};
+use recon::observer::ContactNoiseLevel;
+use recon::observer::planar::{PlaneEstimate, PlaneOptions};
 use serde_json::Value;
 
 /// Shape of a scene.
@@ -79,17 +77,43 @@ pub(crate) fn times(rate: f64, duration: f64) -> Vec<f64> {
     (0..=count).map(|k| f64::from(k) / rate).collect()
 }
 
-/// `(cm, v, omega0)` of the truth.
-pub(crate) fn state(truth: &PlanarTruth) -> SVector<f64, 5> {
-    let (p, v) = (truth.p_WCm, truth.v_WCm);
-    SVector::<f64, 5>::new(p.x, p.y, v.x, v.y, truth.omega0)
+/// Noise of contacts (m) and forces (N), with what conditions of a body of the size `length` are off by beside that.
+pub(crate) fn noise_level(contact: f64, force: f64, length: f64) -> ContactNoiseLevel {
+    let floor = 3e-5 * (9.81 * length).sqrt();
+    ContactNoiseLevel { contact, force_fixed: force, force_share: 0.0, impulse: None, floor }
 }
 
-/// What an observer says at the last of some samples.
-pub(crate) fn last_estimate<const N: usize>(
-    mut observer: PlanarObserver<N>,
-    samples: impl IntoIterator<Item = PlanarSample>,
-) -> PlanarEstimate<N> {
-    let estimates = samples.into_iter().filter_map(|sample| observer.push(&sample).unwrap());
-    estimates.last().unwrap()
+/// What is told of two palms without friction.
+pub(crate) fn options(noise: ContactNoiseLevel, gravity: f64, body: Option<PlanarMass>) -> PlaneOptions {
+    PlaneOptions { noise, gravity, friction: vec![Some(0.0); 2], body, size: None, suspects: true }
+}
+
+/// Errors of an estimate at the samples that are relied on: largest of the centre of mass (m), of the turn (rad), and of any number in
+/// its deviations; mean square of centre, velocity and angular velocity in theirs.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Errors {
+    pub(crate) place: f64,
+    pub(crate) turn: f64,
+    pub(crate) worst: f64,
+    pub(crate) mean: f64,
+    pub(crate) relied_on: usize,
+}
+
+pub(crate) fn errors(estimate: &PlaneEstimate, truth: &[PlanarTruth]) -> Errors {
+    let (mut all, mut sum) = (Errors::default(), 0.0);
+    for (k, truth_now) in truth.iter().enumerate().filter(|(k, _)| estimate.relied_on[*k]) {
+        let (state, of) = (&estimate.states[k], &estimate.deviations[k]);
+        let (p, v) = (state.p_WCm - truth_now.p_WCm, state.v_WCm - truth_now.v_WCm);
+        let turn = state.phi0 - (truth_now.phi0 - truth[0].phi0);
+        let [p_in, v_in] = [p / of.p_WCm, v / of.v_WCm];
+        let spin = (state.omega0 - truth_now.omega0) / of.omega0;
+        let five = [p_in.x, p_in.y, v_in.x, v_in.y, spin];
+        all.place = all.place.max(p.length());
+        all.turn = all.turn.max(turn.abs());
+        all.worst = five.iter().fold(all.worst, |most, e| most.max(e.abs()));
+        sum += five.iter().map(|e| e * e).sum::<f64>() / 5.0;
+        all.relied_on += 1;
+    }
+    all.mean = sum / all.relied_on.max(1) as f64;
+    all
 }

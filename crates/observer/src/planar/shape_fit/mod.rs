@@ -4,9 +4,9 @@ mod evidence;
 mod integrate;
 mod model;
 mod palm_series;
+mod scale;
 
 use super::error::PlanarEstimateError;
-use super::scale::NaturalScale;
 use crate::{ObserverError, Status};
 use contact_kinematics::planar::{FourierBody, ShapeError};
 use integrate::Normal;
@@ -14,6 +14,7 @@ use model::PalmInstant;
 use nalgebra::{DMatrix, DVector};
 use object_dynamics::planar::{PlanarLog, PlanarSample};
 use palm_series::palm_series;
+use scale::NaturalScale;
 
 /// Parameters before the Fourier coefficients: angular velocity, logarithm of the squared radius of gyration.
 const MOTION: usize = 2;

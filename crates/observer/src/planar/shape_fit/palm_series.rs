@@ -1,8 +1,7 @@
 //! Palm angles of a log with their rates and accelerations, at the samples and in the middle between them.
 
-use super::super::polynomial::lagrange;
 use super::model::PalmInstant;
-use object_dynamics::planar::PlanarSample;
+use object_dynamics::planar::{PlanarSample, lagrange};
 
 /// Samples that a polynomial is laid through.
 const NODES: usize = 6;

@@ -1,7 +1,7 @@
 //! From what stands in a file to a checked scene. Every error names the key.
 
 use super::file::{KindName, ObjectTable, PalmTable, PlanarFile, PoseTable, ShapeTable, SimulationTable};
-use super::{PlanarBody, PlanarScene};
+use super::{PlanarBody, PlanarKnown, PlanarScene};
 use crate::scene::SceneErrorKind as Kind;
 use crate::scene::build::{sample_times, sensors};
 use crate::scene::palms::law;
@@ -13,26 +13,53 @@ use recon::contact_kinematics::planar::{
 use recon::object_dynamics::planar::{BodyState, ContactScene, PlanarMass, PlanarObject, ScenePalm};
 
 pub(super) fn scene(file: PlanarFile) -> Result<PlanarScene, Kind> {
-    if !file.plane {
-        return Err(Kind::Missing { what: "`plane = true`", mend: "give it in a scene of the plane" });
-    }
-    let gravity = possible::gravity(file.gravity)?;
-    let sensors = sensors(&file.sensors)?;
-    let object = PlanarObject { shape: body(&file.simulation.shape)?, mass: mass(&file.object)?, gravity };
-    let friction = file.palms.friction.map(|f| Kind::not_negative("palms.friction", f)).transpose()?;
+    let PlanarKnown { gravity, mass, sensors, .. } = known(&file)?;
+    let table = file.simulation.as_ref().ok_or(Kind::Missing {
+        what: "`[simulation]`",
+        mend: "a simulation needs the shape of the object, its start, duration and sample_rate",
+    })?;
+    let missing = Kind::Missing { what: "`[object]`", mend: "a simulation needs the object's mass and inertia" };
+    let object = PlanarObject { shape: body(&table.shape)?, mass: mass.ok_or(missing)?, gravity };
+    let friction = palms_friction(&file)?;
     let palm = |(i, table): (usize, &PalmTable)| palm(i + 1, table, friction);
     let palms = file.palm.iter().enumerate().map(palm).collect::<Result<Vec<_>, _>>()?;
     let count = palms.len();
     let world = ContactScene::new(object, palms).map_err(Kind::PlanarContacts)?;
-    let times = sample_times(file.simulation.duration, file.simulation.sample_rate, &sensors)?;
+    let times = sample_times(table.duration, table.sample_rate, &sensors)?;
     Ok(PlanarScene {
         world,
         sensors,
-        start: start(&file.simulation)?,
-        touches: touches(&file.simulation.touches, count)?,
+        start: start(table)?,
+        touches: touches(&table.touches, count)?,
         times,
-        seed: file.simulation.seed,
+        seed: table.seed,
     })
+}
+
+/// What an estimate may know.
+pub(super) fn known(file: &PlanarFile) -> Result<PlanarKnown, Kind> {
+    if !file.plane {
+        return Err(Kind::Missing { what: "`plane = true`", mend: "give it in a scene of the plane" });
+    }
+    let common = palms_friction(file)?;
+    let palm = |(i, table): (usize, &PalmTable)| {
+        Ok((surface(i + 1, table)?, own_friction(i + 1, table)?.or(common)))
+    };
+    Ok(PlanarKnown {
+        gravity: possible::gravity(file.gravity)?,
+        mass: file.object.as_ref().map(mass).transpose()?,
+        palms: file.palm.iter().enumerate().map(palm).collect::<Result<_, Kind>>()?,
+        sensors: sensors(&file.sensors)?,
+    })
+}
+
+fn palms_friction(file: &PlanarFile) -> Result<Option<f64>, Kind> {
+    file.palms.friction.map(|f| Kind::not_negative("palms.friction", f)).transpose()
+}
+
+fn own_friction(number: usize, table: &PalmTable) -> Result<Option<f64>, Kind> {
+    let key = format!("palm[{number}].friction");
+    table.friction.map(|f| Kind::not_negative(&key, f)).transpose()
 }
 
 fn mass(table: &ObjectTable) -> Result<PlanarMass, Kind> {
@@ -76,22 +103,26 @@ fn body(table: &ShapeTable) -> Result<PlanarBody, Kind> {
 fn palm(number: usize, table: &PalmTable, friction: Option<f64>) -> Result<ScenePalm, Kind> {
     let key = |name: &str| format!("palm[{number}].{name}");
     let missing = |key| Kind::MissingOfPalm { palm: number, key };
+    let placed = table.pose.as_ref().ok_or(missing("pose"))?;
+    let motion = SurfaceMotion { pose: pose(&key("pose"), placed)?, parts: parts(number, table)? };
+    let friction = own_friction(number, table)?.or(friction).ok_or(missing("friction"))?;
+    Ok(ScenePalm { surface: surface(number, table)?, motion, friction })
+}
+
+fn surface(number: usize, table: &PalmTable) -> Result<PalmSurface, Kind> {
+    let key = format!("palm[{number}].radius");
     let radius = || {
-        let radius = table.radius.ok_or(missing("radius"))?;
-        Kind::positive(&key("radius"), radius)
+        let radius = table.radius.ok_or(Kind::MissingOfPalm { palm: number, key: "radius" })?;
+        Kind::positive(&key, radius)
     };
-    let surface = match (table.kind, table.radius) {
+    Ok(match (table.kind, table.radius) {
         (KindName::Line, None) => PalmSurface::Line,
-        (KindName::Line, Some(radius)) => {
-            let must = "left out: a line has none";
-            return Err(Kind::Value { key: key("radius"), value: radius, must });
+        (KindName::Line, Some(value)) => {
+            return Err(Kind::Value { key, value, must: "left out: a line has none" });
         }
         (KindName::Arc, _) => PalmSurface::Arc { radius: radius()? },
         (KindName::Cup, _) => PalmSurface::Cup { radius: radius()? },
-    };
-    let own = table.friction.map(|f| Kind::not_negative(&key("friction"), f)).transpose()?;
-    let motion = SurfaceMotion { pose: pose(&key("pose"), &table.pose)?, parts: parts(number, table)? };
-    Ok(ScenePalm { surface, motion, friction: own.or(friction).ok_or(missing("friction"))? })
+    })
 }
 
 fn pose(key: &str, table: &PoseTable) -> Result<SurfacePose, Kind> {

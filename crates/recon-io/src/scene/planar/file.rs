@@ -16,14 +16,14 @@ pub(in crate::scene) struct Whether {
 pub(super) struct PlanarFile {
     pub(super) plane: bool,
     pub(super) gravity: f64,
-    pub(super) object: ObjectTable,
+    pub(super) object: Option<ObjectTable>,
     #[serde(default)]
     pub(super) sensors: SensorsTable,
     #[serde(default)]
     pub(super) palms: PalmsTable,
     #[serde(default)]
     pub(super) palm: Vec<PalmTable>,
-    pub(super) simulation: SimulationTable,
+    pub(super) simulation: Option<SimulationTable>,
 }
 
 #[derive(Deserialize)]
@@ -46,7 +46,7 @@ pub(super) struct PalmTable {
     pub(super) kind: KindName,
     pub(super) radius: Option<f64>,
     pub(super) friction: Option<f64>,
-    pub(super) pose: PoseTable,
+    pub(super) pose: Option<PoseTable>,
     #[serde(default)]
     pub(super) motion: Vec<PartTable>,
 }

@@ -10,9 +10,9 @@ pub(super) use file::Whether;
 
 use super::{SceneError, SceneErrorKind, Sensors};
 use recon::contact_kinematics::planar::{
-    Circle, Ellipse, FourierBody, RadiusBounds, RadiusFunction, RadiusJet, RoundedPolygon,
+    Circle, Ellipse, FourierBody, PalmSurface, RadiusBounds, RadiusFunction, RadiusJet, RoundedPolygon,
 };
-use recon::object_dynamics::planar::{BodyState, ContactNoise, ContactScene};
+use recon::object_dynamics::planar::{BodyState, ContactNoise, ContactScene, PlanarMass};
 use recon::object_dynamics::{ChannelNoise, SampleTimes};
 use std::path::Path;
 
@@ -71,6 +71,19 @@ pub struct PlanarScene {
     pub seed: u64,
 }
 
+/// What a scene of the plane tells an estimate: whoever has a log needs no `[simulation]`, and no pose of a palm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanarKnown {
+    /// Gravity, m/s^2, along -y.
+    pub gravity: f64,
+    /// Mass and moment of inertia, where they are stated.
+    pub mass: Option<PlanarMass>,
+    /// Shape of each palm, and its coefficient of friction where it is stated.
+    pub palms: Vec<(PalmSurface, Option<f64>)>,
+    /// The sensors.
+    pub sensors: Sensors,
+}
+
 /// An outline of a kind that is known when the program runs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PlanarBody {
@@ -122,6 +135,17 @@ impl PlanarScene {
     /// [`SceneErrorKind`] names the key.
     pub fn parse(text: &str) -> Result<Self, SceneErrorKind> {
         build::scene(toml::from_str(text)?)
+    }
+
+    /// Reads what a scene file of the plane tells an estimate.
+    ///
+    /// # Errors
+    /// [`SceneError`] names the file and the key.
+    pub fn read_known(path: impl AsRef<Path>) -> Result<PlanarKnown, SceneError> {
+        let path = path.as_ref();
+        let in_file = |kind| SceneError { path: path.to_owned(), kind };
+        let text = std::fs::read_to_string(path).map_err(|e| in_file(e.into()))?;
+        build::known(&toml::from_str(&text).map_err(|e: toml::de::Error| in_file(e.into()))?).map_err(in_file)
     }
 
     /// Noise on every channel of its log; zero where the scene says nothing.

@@ -1,15 +1,15 @@
 //! The size and time that are natural to a scene.
 
-use super::error::PlanarEstimateError;
+use crate::planar::PlanarEstimateError;
 use object_dynamics::planar::PlanarSample;
 
 /// Length of the object and the time in which gravity moves it by that length.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NaturalScale {
+pub(super) struct NaturalScale {
     /// Length in m.
-    pub length: f64,
+    pub(super) length: f64,
     /// Gravity in m/s^2.
-    pub gravity: f64,
+    pub(super) gravity: f64,
 }
 
 impl NaturalScale {
@@ -18,7 +18,7 @@ impl NaturalScale {
     /// # Errors
     /// [`PlanarEstimateError::LostContact`] where a contact is missing, [`PlanarEstimateError::Value`] for a gravity or a
     /// contact that is not positive.
-    pub fn from_sample(sample: &PlanarSample, gravity: f64) -> Result<Self, PlanarEstimateError> {
+    pub(super) fn from_sample(sample: &PlanarSample, gravity: f64) -> Result<Self, PlanarEstimateError> {
         if !(gravity > 0.0 && gravity.is_finite()) {
             return Err(PlanarEstimateError::Value { what: "gravity", value: gravity, needed: "positive" });
         }
@@ -39,19 +39,14 @@ impl NaturalScale {
 
     /// Natural time `sqrt(L / g)` in s.
     #[must_use]
-    pub fn time(&self) -> f64 {
+    pub(super) fn time(&self) -> f64 {
         (self.length / self.gravity).sqrt()
     }
 
-    /// Natural speed `sqrt(g L)` in m/s.
-    #[must_use]
-    pub fn speed(&self) -> f64 {
-        (self.length * self.gravity).sqrt()
-    }
 
     /// Natural angular velocity `sqrt(g / L)` in rad/s.
     #[must_use]
-    pub fn rate(&self) -> f64 {
+    pub(super) fn rate(&self) -> f64 {
         (self.gravity / self.length).sqrt()
     }
 }

@@ -1,0 +1,336 @@
+//! Motion, mass and shape of a body in the plane from contacts of any palms.
+
+use super::any_palms::FLOOR;
+use crate::error::CliError;
+use recon::object_dynamics::planar::{BodyState, ContactLog, PlanarMass, PlanarTruth};
+use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
+use recon::observer::{ContactNoiseLevel, ImpulseNoise, Reliability};
+use recon_io::{FigureCurve, FigurePanel, PlanarKnown, Sensors, brief};
+use serde_json::{Value, json};
+use std::io::{self, Write};
+
+/// Share of the samples whose motion must be relied on for a result without reservations.
+const ENOUGH: f64 = 0.5;
+
+/// A log in the plane and what was estimated from it.
+pub(crate) struct PlanarMotion {
+    log: ContactLog,
+    noise: ContactNoiseLevel,
+    estimate: PlaneEstimate,
+    known_body: bool,
+}
+
+/// Estimates the motion; truth in the log is only compared with.
+pub(crate) fn planar_motion(log: ContactLog, known: &PlanarKnown) -> Result<PlanarMotion, CliError> {
+    let noise = noise(&log, known)?;
+    let options = PlaneOptions {
+        noise,
+        gravity: known.gravity,
+        friction: known.palms.iter().map(|(_, friction)| *friction).collect(),
+        body: known.mass,
+        size: None,
+        suspects: true,
+    };
+    let estimate = estimate_plane(&log, &options)?;
+    Ok(PlanarMotion { log, noise, estimate, known_body: known.mass.is_some() })
+}
+
+/// As it is stated, and what is not from the roughness of the readings.
+fn noise(log: &ContactLog, known: &PlanarKnown) -> Result<ContactNoiseLevel, CliError> {
+    let Sensors { contact_std, force_std, force_share, impulse_std, impulse_share, contact_speed_std, .. } =
+        known.sensors;
+    let floor = contact_speed_std.unwrap_or(FLOOR * (known.gravity * size(log)).sqrt());
+    let rough = plane_noise(log, floor).map_err(recon::observer::planar::PlaneEstimateError::from)?;
+    let stated = |fixed: Option<f64>, share: Option<f64>| {
+        fixed.or(share).map(|_| [fixed, share].map(Option::unwrap_or_default))
+    };
+    let [force_fixed, force_share] =
+        stated(force_std, force_share).unwrap_or([rough.force_fixed, rough.force_share]);
+    let impulse = stated(impulse_std, impulse_share).map(|[fixed, share]| ImpulseNoise { fixed, share });
+    let contact = contact_std.unwrap_or(rough.contact);
+    Ok(ContactNoiseLevel { contact, force_fixed, force_share, impulse, floor })
+}
+
+/// Root mean square of the distance of contacts from the mean of those at the same time, m.
+fn size(log: &ContactLog) -> f64 {
+    let (mut squares, mut count) = (0.0, 0.0_f64);
+    for sample in log.samples() {
+        let contacts: Vec<_> = sample.palms.iter().filter_map(|palm| palm.p_WC).collect();
+        let mean = contacts.iter().sum::<glam::DVec2>() / contacts.len().max(1) as f64;
+        squares += contacts.iter().map(|c| c.distance_squared(mean)).sum::<f64>();
+        count += contacts.len() as f64;
+    }
+    (squares / count.max(1.0)).sqrt()
+}
+
+impl PlanarMotion {
+    /// Whether it is to be relied on, at most samples.
+    pub(crate) fn is_reliable(&self) -> bool {
+        self.estimate.reliability.is_reliable() && self.share() >= ENOUGH
+    }
+
+    fn share(&self) -> f64 {
+        let relied = self.estimate.relied_on.iter().filter(|relied| **relied).count();
+        relied as f64 / self.estimate.relied_on.len().max(1) as f64
+    }
+
+    /// What the reader must know.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        if let Reliability::Unreliable(reasons) = &self.estimate.reliability {
+            let reasons: Vec<String> = reasons.iter().map(ToString::to_string).collect();
+            all.push(format!("not to be relied on: {}", reasons.join("; ")));
+        } else if self.share() < 1.0 {
+            let doubtful = self.estimate.relied_on.iter().filter(|relied| !**relied).count();
+            all.push(format!(
+                "at {doubtful} of {} samples the motion is not relied on (relied_on in motion.csv is 0)",
+                self.estimate.relied_on.len()
+            ));
+        }
+        all
+    }
+
+    /// Numbers for summary.json.
+    pub(crate) fn figures(&self) -> Value {
+        let Self { estimate, noise, .. } = self;
+        let evidence = &estimate.evidence;
+        let last = estimate.deviations.last().copied().unwrap_or_default();
+        let suspects = estimate.suspects.iter().map(|suspect| {
+            let mut told = json!({ "constant": suspect.fault.to_string(), "can_be_told": suspect.deviation.is_finite() });
+            for (key, value) in [
+                ("value", suspect.value),
+                ("deviation", suspect.deviation),
+                ("score", suspect.score()),
+                ("tolerated", suspect.tolerated),
+            ] {
+                if suspect.deviation.is_finite() && value.is_finite() {
+                    told[key] = value.into();
+                }
+            }
+            told
+        });
+        let mut figures = json!({
+            "method": "contacts and forces, nodes linked by measured impulses",
+            "status": if evidence.settled { "Converged" } else { "OutOfIterations" },
+            "reliable": estimate.reliability.is_reliable(),
+            "relied_on_share": self.share(),
+            "mass_kg": estimate.mass.0,
+            "inertia_kg_m2": estimate.inertia.0,
+            "body_as_stated": self.known_body,
+            "samples": evidence.samples,
+            "nodes": evidence.nodes,
+            "conditions": evidence.conditions,
+            "chi_squared": evidence.misfit,
+            "iterations": evidence.iterations,
+            "noise": {
+                "contact_m": noise.contact,
+                "force_n": noise.force_fixed,
+                "force_share": noise.force_share,
+                "contact_speed_m_per_s": noise.floor,
+            },
+            "deviation_at_the_end": {
+                "position_m": last.p_WCm.to_array(),
+                "turn_rad": last.phi0,
+                "velocity_m_per_s": last.v_WCm.to_array(),
+                "angular_velocity_rad_per_s": last.omega0,
+            },
+            "suspects": suspects.collect::<Vec<_>>(),
+            "warnings": self.warnings(),
+        });
+        if !self.known_body {
+            figures["mass_deviation_kg"] = (estimate.mass.0 * estimate.mass.1).into();
+            figures["inertia_deviation_kg_m2"] = estimate.inertia.1.into();
+        }
+        if let Some(errors) = self.errors() {
+            let most = |of: fn(&[f64; 4]) -> f64| errors.iter().map(of).fold(0.0, f64::max);
+            figures["largest_error"] =
+                json!({ "position_m": most(|e| e[1].hypot(e[2])), "turn_rad": most(|e| e[3].abs()) });
+        }
+        figures
+    }
+
+    /// In words for the console.
+    pub(crate) fn describe(&self) -> String {
+        let estimate = &self.estimate;
+        let mut text: String = self.warnings().iter().map(|w| format!("Warning: {w}\n")).collect();
+        let times = self.log.samples();
+        text += &format!(
+            "{} samples from t = {} s to {} s\n",
+            times.len(),
+            brief(times[0].t),
+            brief(times[times.len() - 1].t)
+        );
+        let mut line = |name: &str, value: String| text += &format!("  {name:<22} {value}\n");
+        let as_stated = |(value, deviation): (f64, f64), unit: &str| match self.known_body {
+            true => format!("{} {unit} as stated", brief(value)),
+            false => format!("{} +- {} {unit}", brief(value), brief(deviation)),
+        };
+        let (mass, share) = estimate.mass;
+        line("mass", as_stated((mass, mass * share), "kg"));
+        line("moment of inertia", as_stated(estimate.inertia, "kg m^2"));
+        line("chi-squared", format!("{} a condition", brief(estimate.evidence.misfit)));
+        line("relied on", format!("{} % of the samples", brief((1000.0 * self.share()).floor() / 10.0)));
+        if let Some(last) = estimate.deviations.last() {
+            let place = last.p_WCm.max_element();
+            line("known at the end to", format!("{} m, {} rad", brief(place), brief(last.phi0)));
+        }
+        text
+    }
+
+    /// The motion, a row a sample.
+    pub(crate) fn write_motion(&self, to: &mut dyn Write) -> io::Result<()> {
+        let palms = self.estimate.contacts.len();
+        write!(to, "t,x,y,phi0,vx,vy,omega0,std_x,std_y,std_phi0,std_vx,std_vy,std_omega0")?;
+        (1..=palms).try_for_each(|i| write!(to, ",mode_{i}"))?;
+        writeln!(to, ",relied_on")?;
+        for (k, sample) in self.log.samples().iter().enumerate() {
+            let BodyState { p_WCm: p, phi0, v_WCm: v, omega0 } = self.estimate.states[k];
+            let of = self.estimate.deviations[k];
+            write!(to, "{:?},{:?},{:?},{phi0:?},{:?},{:?},{omega0:?}", sample.t, p.x, p.y, v.x, v.y)?;
+            write!(to, ",{:?},{:?},{:?}", of.p_WCm.x, of.p_WCm.y, of.phi0)?;
+            write!(to, ",{:?},{:?},{:?}", of.v_WCm.x, of.v_WCm.y, of.omega0)?;
+            for mode in &self.estimate.modes[k][..palms] {
+                write!(to, ",{}", mode.number())?;
+            }
+            writeln!(to, ",{}", u8::from(self.estimate.relied_on[k]))?;
+        }
+        Ok(())
+    }
+
+    /// The radius function at the contact of each palm, m: `nan` where it is not touched.
+    pub(crate) fn write_radii(&self, to: &mut dyn Write) -> io::Result<()> {
+        write!(to, "t")?;
+        (1..=self.estimate.contacts.len()).try_for_each(|i| write!(to, ",r_{i}"))?;
+        writeln!(to)?;
+        for (k, sample) in self.log.samples().iter().enumerate() {
+            write!(to, "{:?}", sample.t)?;
+            for contacts in &self.estimate.contacts {
+                write!(to, ",{}", contacts[k].map_or("nan".to_owned(), |c| format!("{:?}", c.radius)))?;
+            }
+            writeln!(to)?;
+        }
+        Ok(())
+    }
+
+    /// The shape, point by point, at samples that are relied on.
+    pub(crate) fn write_points(&self, to: &mut dyn Write) -> io::Result<()> {
+        writeln!(to, "palm,t,x,y,nx,ny")?;
+        for (i, contacts) in self.estimate.contacts.iter().enumerate() {
+            let rows = self.log.samples().iter().zip(contacts).zip(&self.estimate.relied_on);
+            for ((sample, contact), relied_on) in rows {
+                if let Some(c) = contact.filter(|_| *relied_on) {
+                    let (p, n) = (c.p_OC, c.normal);
+                    writeln!(to, "{},{:?},{:?},{:?},{:?},{:?}", i + 1, sample.t, p.x, p.y, n.x, n.y)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Time and errors of place (m) and turn (rad) at samples that are relied on, where the truth is known.
+    fn errors(&self) -> Option<Vec<[f64; 4]>> {
+        let truth = self.log.truth()?;
+        let one = |(k, truth_now): (usize, &PlanarTruth)| {
+            let state = &self.estimate.states[k];
+            let off = state.p_WCm - truth_now.p_WCm;
+            let turn = state.phi0 - (truth_now.phi0 - truth[0].phi0);
+            self.estimate.relied_on[k].then_some([self.log.samples()[k].t, off.x, off.y, turn])
+        };
+        Some(truth.iter().enumerate().filter_map(one).collect())
+    }
+
+    /// The paper's Figs. 2b and 3a (contact points), 2c (orientation) and 3b (errors, where the truth is known); bands of two deviations,
+    /// shaded where the motion is not relied on.
+    pub(crate) fn panels(&self) -> Vec<FigurePanel> {
+        let times: Vec<f64> = self.log.samples().iter().map(|sample| sample.t).collect();
+        let shaded = shaded(&times, &self.estimate.relied_on);
+        let panel = |title: &str, unit: &str, curves| FigurePanel {
+            title: title.to_owned(),
+            axes: ["t in s".to_owned(), unit.to_owned()],
+            curves,
+            shaded: shaded.clone(),
+            ..FigurePanel::default()
+        };
+        let line = |name: String, points: Vec<[f64; 2]>, half_heights: Vec<f64>| FigureCurve {
+            name,
+            points,
+            half_heights,
+            ..FigureCurve::default()
+        };
+        let relied = |k: &usize| self.estimate.relied_on[*k];
+        let shape = self.estimate.contacts.iter().enumerate().map(|(i, contacts)| FigureCurve {
+            name: format!("palm {}", i + 1),
+            points: (0..times.len())
+                .filter(relied)
+                .filter_map(|k| contacts[k].map(|c| c.p_OC.to_array()))
+                .collect(),
+            dots: true,
+            ..FigureCurve::default()
+        });
+        let shape: Vec<FigureCurve> = shape.filter(|curve| !curve.points.is_empty()).collect();
+        let over = |pick: &dyn Fn(usize) -> f64| (0..times.len()).map(|k| [times[k], pick(k)]).collect::<Vec<_>>();
+        let turn = FigureCurve {
+            reference: self.log.truth().map_or_else(Vec::new, |truth| {
+                truth.iter().zip(&times).map(|(at, t)| [*t, at.phi0 - truth[0].phi0]).collect()
+            }),
+            ..line(
+                "phi0".to_owned(),
+                over(&|k| self.estimate.states[k].phi0),
+                self.estimate.deviations.iter().map(|of| 2.0 * of.phi0).collect(),
+            )
+        };
+        let place = ["x", "y"].into_iter().enumerate().map(|(i, name)| {
+            let bands = self.estimate.deviations.iter().map(|of| 2.0 * of.p_WCm[i]).collect();
+            line(name.to_owned(), over(&|k| self.estimate.states[k].p_WCm[i]), bands)
+        });
+        let radii = self.estimate.contacts.iter().enumerate().map(|(i, contacts)| {
+            let radius = |k: usize| contacts[k].map_or(f64::NAN, |contact| contact.radius);
+            line(format!("r{}", i + 1), over(&radius), Vec::new())
+        });
+        let mut panels = vec![
+            FigurePanel {
+                title: "Shape: contact points on the object".to_owned(),
+                axes: ["x in m".to_owned(), "y in m".to_owned()],
+                equal: true,
+                curves: shape,
+                ..FigurePanel::default()
+            },
+            panel("Orientation, with two deviations", "phi0 in rad", vec![turn]),
+            panel("Centre of mass, with two deviations", "m", place.collect()),
+            panel("Radius functions at the contacts", "r in m", radii.collect()),
+        ];
+        if let Some(errors) = self.errors().filter(|errors| !errors.is_empty()) {
+            let names = ["error in x (m)", "error in y (m)", "error in phi0 (rad)"];
+            let curves = names.into_iter().enumerate().map(|(i, name)| {
+                line(name.to_owned(), errors.iter().map(|e| [e[0], e[i + 1]]).collect(), Vec::new())
+            });
+            panels.push(panel("Errors", "m, rad", curves.collect()));
+        }
+        panels
+    }
+}
+
+/// Stretches of time over which nothing is relied on.
+fn shaded(times: &[f64], relied_on: &[bool]) -> Vec<[f64; 2]> {
+    let mut all: Vec<[f64; 2]> = Vec::new();
+    for (k, t) in times.iter().enumerate().filter(|(k, _)| !relied_on[*k]) {
+        let from = times[k.saturating_sub(1)];
+        match all.last_mut() {
+            Some(last) if last[1] >= from => last[1] = *t,
+            _ => all.push([from, *t]),
+        }
+    }
+    all
+}
+
+/// What is known beside a log of two palms hinged at the origin, without friction.
+pub(crate) fn hinged_pair(
+    gravity: f64,
+    mass: Option<PlanarMass>,
+    contact_std: Option<f64>,
+    force_std: Option<f64>,
+) -> PlanarKnown {
+    let sensors = Sensors { contact_std, force_std, ..Sensors::default() };
+    let line = (recon::contact_kinematics::planar::PalmSurface::Line, Some(0.0));
+    PlanarKnown { gravity, mass, palms: vec![line; 2], sensors }
+}
