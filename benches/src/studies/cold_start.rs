@@ -77,6 +77,8 @@ fn kind(reason: &Reason) -> &'static str {
         Reason::NotConverged { .. } => "the fit did not settle",
         Reason::Unobservable { .. } => "the log does not determine a direction of the unknowns",
         Reason::Still { .. } => "hardly turns",
+        Reason::Ambiguous { .. } => "another motion as good",
+        Reason::Unchanging { .. } => "readings hardly change",
         Reason::Unconfirmed => "not confirmed without the stated body",
         Reason::TooShort { .. } => "too short for its noise",
         Reason::Noisy { .. } => "too noisy for an estimate that is for exact logs",

@@ -166,9 +166,7 @@ pub(crate) enum CliError {
          `recon planar` fits a shape to contacts alone"
     )]
     PlanarForces { path: PathBuf },
-    #[error(
-        "without forces the shape is fitted to noisy contacts: give --contact-noise in m"
-    )]
+    #[error("without forces the shape is fitted to noisy contacts: give --contact-noise in m")]
     PlanarNoise,
     #[error("the planar demo cannot be simulated: {0}")]
     PlanarDemo(String),

@@ -55,8 +55,8 @@ pub use report::{
     write_report,
 };
 pub use scene::{
-    BoxedShape, KnownInertia, KnownPalm, PlanarBody, PlanarKnown, PlanarScene, Scene, SceneError, SceneErrorKind, Sensors,
-    Shape, Simulation,
+    BoxedShape, KnownInertia, KnownPalm, PlanarBody, PlanarKnown, PlanarScene, Scene, SceneError,
+    SceneErrorKind, Sensors, Shape, Simulation,
 };
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
 pub use summary::{INERTIA_LEARNED, estimate_summary, summary};

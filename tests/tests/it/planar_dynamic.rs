@@ -64,14 +64,20 @@ fn figure_3_of_the_paper() {
     let (object, motion, start) = scene("F3_paper_scale_rotating");
     let run = simulate_prescribed(&object, &motion, start, &times(1000.0, 1.4), 1e-14).unwrap();
     let log = run.log().unwrap().contact_log([0.0; 2]).unwrap();
-    let noise = plane_noise(&log, noise_level(0.0, 0.0, 2.0).floor).unwrap();
+    let noise = plane_noise(&log, &[Some(0.0); 2], noise_level(0.0, 0.0, 2.0).floor).unwrap();
     for body in [Some(object.mass), None] {
         let estimate = estimate_plane(&log, &options(noise, object.gravity, body)).unwrap();
         let off = errors(&estimate, log.truth().unwrap());
-        println!("Fig. 3 run: error {:.1e} m, {:.1e} rad, mass known: {}", off.place, off.turn, body.is_some());
+        println!(
+            "Fig. 3 run: error {:.1e} m, {:.1e} rad, mass known: {}",
+            off.place,
+            off.turn,
+            body.is_some()
+        );
         assert!(estimate.reliability.is_reliable() && off.relied_on == run.samples.len());
         assert!(off.place < 1e-8 && off.turn < 1e-8, "{off:?}");
-        let [mass, inertia] = [estimate.mass.0 / object.mass.mass(), estimate.inertia.0 / object.mass.inertia()];
+        let [mass, inertia] =
+            [estimate.mass.0 / object.mass.mass(), estimate.inertia.0 / object.mass.inertia()];
         assert!((mass - 1.0).abs() < 1e-8 && (inertia - 1.0).abs() < 1e-7, "{mass} {inertia}");
         // Radius functions of the contacts that are handed out.
         for (k, s) in run.samples.iter().enumerate() {
@@ -92,15 +98,14 @@ fn exact_logs_are_right_within_what_they_say() {
         for (rate, most) in [(1000.0, 1e-6), (250.0, 2e-5), (100.0, 1e-3)] {
             let run = simulate_prescribed(&object, &motion, start, &times(rate, 1.0), 1e-13).unwrap();
             let log = run.log().unwrap().contact_log([0.0; 2]).unwrap();
-            let noise = plane_noise(&log, noise_level(0.0, 0.0, SIZE).floor).unwrap();
+            let noise = plane_noise(&log, &[Some(0.0); 2], noise_level(0.0, 0.0, SIZE).floor).unwrap();
             let estimate = estimate_plane(&log, &options(noise, object.gravity, Some(object.mass))).unwrap();
             let off = errors(&estimate, log.truth().unwrap());
             println!("{name} at {rate} Hz: {off:?} {:?}", estimate.evidence);
-            if estimate.reliability.is_reliable() {
-                assert!(off.place < most * SIZE && off.worst < 5.0, "{name} {rate}: {off:?}");
-            } else {
-                assert!(rate < 200.0, "{name} {rate}: {:?}", estimate.reliability);
-            }
+            assert!(estimate.reliability.is_reliable(), "{name} {rate}: {:?}", estimate.reliability);
+            // What interpolation of rare samples leaves is no white noise: right on average, and farther off at some samples.
+            assert!(off.place < most * SIZE && off.mean < 1.0, "{name} {rate}: {off:?}");
+            assert!(rate < 200.0 || off.worst < 5.0, "{name} {rate}: {off:?}");
         }
     }
 }
@@ -121,9 +126,15 @@ fn noisy_logs_are_right_within_their_deviations() {
                 let told = options(noise_level(1e-4, 0.01 * weight, SIZE), object.gravity, body);
                 let estimate = estimate_plane(&log, &told).unwrap();
                 let off = errors(&estimate, log.truth().unwrap());
-                println!("{name} at {rate} Hz, seed {seed}: {off:?}, chi-squared {:.2}", estimate.evidence.misfit);
+                println!(
+                    "{name} at {rate} Hz, seed {seed}: {off:?}, chi-squared {:.2}",
+                    estimate.evidence.misfit
+                );
                 assert!(estimate.reliability.is_reliable(), "{:?}", estimate.reliability);
-                assert!(off.relied_on == run.samples.len() && off.worst < 5.0, "{name} {rate} {seed}: {off:?}");
+                assert!(
+                    off.relied_on == run.samples.len() && off.worst < 5.0,
+                    "{name} {rate} {seed}: {off:?}"
+                );
                 (mean, runs) = (mean + off.mean, runs + 1.0);
             }
         }
@@ -158,7 +169,7 @@ fn torques_of_palms_with_inertia() {
     let exact = PlanarLog::new(loaded.collect(), clean.truth().map(<[_]>::to_vec)).unwrap();
     let estimate = |inertias: [f64; 2], body| {
         let contacts = exact.contact_log(inertias).unwrap();
-        let noise = plane_noise(&contacts, noise_level(0.0, 0.0, SIZE).floor).unwrap();
+        let noise = plane_noise(&contacts, &[Some(0.0); 2], noise_level(0.0, 0.0, SIZE).floor).unwrap();
         estimate_plane(&contacts, &options(noise, object.gravity, body)).unwrap()
     };
     for body in [Some(object.mass), None] {
@@ -169,7 +180,10 @@ fn torques_of_palms_with_inertia() {
         let against = |reason: &Reason| {
             matches!(reason, Reason::Inconsistent { .. } | Reason::Fault(_) | Reason::OtherBody { .. })
         };
-        assert!(matches!(&wrong, Reliability::Unreliable(reasons) if reasons.iter().any(against)), "{wrong:?}");
+        assert!(
+            matches!(&wrong, Reliability::Unreliable(reasons) if reasons.iter().any(against)),
+            "{wrong:?}"
+        );
     }
     let bare = exact.samples().iter().map(|s| PlanarSample { torques: None, ..*s }).collect();
     assert!(PlanarLog::new(bare, None).unwrap().contact_log(inertias).is_none());

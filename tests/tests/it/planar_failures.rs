@@ -38,7 +38,8 @@ fn wedge() -> ConstantRates {
 /// Rows of five seeds that are relied on, as a share. None of them is farther off than five deviations.
 fn relied_on(name: &str, case: &Case<impl RadiusFunction>, known: bool) -> f64 {
     let weight = case.object.mass.mass() * case.object.gravity;
-    let run = simulate_prescribed(&case.object, &case.motion, case.start, &times(case.rate, case.lasts), 1e-13);
+    let run =
+        simulate_prescribed(&case.object, &case.motion, case.start, &times(case.rate, case.lasts), 1e-13);
     let run = run.unwrap();
     assert!(run.lost.is_none(), "{:?}", run.lost);
     let force = case.force_share * weight;

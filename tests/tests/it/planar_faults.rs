@@ -43,7 +43,10 @@ fn wrong_constants_are_noticed() {
         ("mass 2 %", estimate(&log(|_, _| {}), 1.02, 1.02)),
         ("inertia 10 %", estimate(&log(|_, _| {}), 1.0, 1.1)),
         ("a palm half a degree off", estimate(&log(|_, s| s.angles[1] += 0.5_f64.to_radians()), 1.0, 1.0)),
-        ("bias of 2 % of the weight", estimate(&log(|_, s| s.forces = s.forces.map(|[a, b]| [a + 0.04, b])), 1.0, 1.0)),
+        (
+            "bias of 2 % of the weight",
+            estimate(&log(|_, s| s.forces = s.forces.map(|[a, b]| [a + 0.04, b])), 1.0, 1.0),
+        ),
     ] {
         println!("{name}: {:?}", made.reliability);
         assert!(!made.reliability.is_reliable(), "{name}");
@@ -88,7 +91,7 @@ fn gaps_and_lost_contacts_are_got_over() {
 #[test]
 fn noise_is_estimated() {
     let log = log(|_, _| {}).contact_log([0.0; 2]).unwrap();
-    let noise = plane_noise(&log, 0.0).unwrap();
+    let noise = plane_noise(&log, &[Some(0.0); 2], 0.0).unwrap();
     println!("{noise:?}");
     assert!((noise.contact / CONTACT - 1.0).abs() < 0.1 && (noise.force_fixed / FORCE - 1.0).abs() < 0.2);
 }

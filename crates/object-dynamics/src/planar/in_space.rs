@@ -6,8 +6,10 @@
 use super::contact_log::{ContactLog as PlanarContactLog, ContactLogSample, PalmSample};
 use super::lagrange::lagrange;
 use super::log::{PlanarLog, PlanarSample, PlanarTruth};
-use crate::contact_log::{ContactLog, ContactLogError, ContactPoints, ForceChannel, PalmRecord, RecordedMotion};
 use crate::BodyState;
+use crate::contact_log::{
+    ContactLog, ContactLogError, ContactPoints, ForceChannel, PalmRecord, RecordedMotion,
+};
 use contact_kinematics::planar::PalmSurface as PlanarSurface;
 use contact_kinematics::{PalmSurface, SurfacePose, planar};
 use glam::{DQuat, DVec2, DVec3};
@@ -156,7 +158,8 @@ fn acceleration(samples: &[PlanarSample], k: usize, palm: usize) -> f64 {
     let angle = |s: &PlanarSample| if palm == 0 { s.angles[0] } else { s.angles[0] + s.angles[1] };
     let base = angle(&around[0]);
     // Relative to the first angle: the weights add up to zero, and large angles would cancel.
-    let one = |s: &PlanarSample| lagrange(around.iter().map(|s| s.t), s.t, samples[k].t)[2] * (angle(s) - base);
+    let one =
+        |s: &PlanarSample| lagrange(around.iter().map(|s| s.t), s.t, samples[k].t)[2] * (angle(s) - base);
     around.iter().map(one).sum()
 }
 
@@ -179,8 +182,10 @@ mod tests {
     fn accelerations_of_polynomials_are_exact() {
         let at = |t: f64| 0.2 + t - 1.5 * t * t + 0.4 * t.powi(5);
         let times = [0.0, 0.01, 0.025, 0.03, 0.04, 0.06, 0.07, 0.08];
-        let samples: Vec<PlanarSample> =
-            times.iter().map(|&t| PlanarSample { t, angles: [at(t), 1.0], ..PlanarSample::default() }).collect();
+        let samples: Vec<PlanarSample> = times
+            .iter()
+            .map(|&t| PlanarSample { t, angles: [at(t), 1.0], ..PlanarSample::default() })
+            .collect();
         for (k, t) in times.iter().enumerate() {
             for palm in 0..2 {
                 let error = acceleration(&samples, k, palm) - (8.0 * t.powi(3) - 3.0);

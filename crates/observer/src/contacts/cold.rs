@@ -6,7 +6,7 @@ use super::record::{Contact, Record, six};
 use super::state::Motion;
 use crate::three_palms::exponential;
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use object_dynamics::ContactMode;
 
 /// Weight of no motion at all against one contact condition, in natural units.
@@ -65,6 +65,32 @@ pub(super) fn start(problem: &Problem, body: Body, orientation: DQuat) -> Unknow
         motions.push(Motion { p: centre, v, L, q });
     }
     Unknowns { motions, body }
+}
+
+/// A body that turns at a constant angular velocity, with the velocities that contacts leave it.
+pub(super) fn turning(problem: &Problem, body: Body, w: DVec3) -> Unknowns {
+    let of_contacts = start(problem, body, DQuat::IDENTITY);
+    let times = &problem.record.times;
+    let one = |(motion, &k): (Motion, &usize)| {
+        let contacts: Vec<_> = problem.record.contacts[k].iter().collect();
+        let q = exponential(w * (times[k] - times[0]));
+        let L = body.inertia_along(DMat3::from_quat(q)) * w;
+        Motion { v: along(&contacts, motion.p, w), L, q, ..motion }
+    };
+    let motions = of_contacts.motions.into_iter().zip(&problem.nodes).map(one).collect();
+    Unknowns { motions, body }
+}
+
+/// Velocity of `centre` that fits the normal conditions of some contacts at an angular velocity, as small as it may be.
+fn along(contacts: &[&Contact], centre: DVec3, w: DVec3) -> DVec3 {
+    let mut normal = Matrix3::identity() * RIDGE;
+    let mut right = Vector3::zeros();
+    for contact in contacts.iter().filter(|contact| contact.mode != ContactMode::Off) {
+        let n = Vector3::from(contact.n);
+        normal.ger(1.0, &n, &n, 1.0);
+        right += n * contact.n.dot(contact.u - w.cross(contact.c - centre));
+    }
+    normal.cholesky().map_or(DVec3::ZERO, |factor| DVec3::from_slice(factor.solve(&right).as_slice()))
 }
 
 /// Velocity of `centre` and angular velocity that fit the conditions of some contacts, as small as they may be.

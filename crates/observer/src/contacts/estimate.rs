@@ -7,6 +7,7 @@ use super::options::{ContactEstimateError, ContactOptions, check};
 use super::plane;
 use super::problem::{Problem, Units};
 use super::record::{Contact, Record};
+use super::rivals::{decided, still};
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{fine, fine_nodes, problem, refined, search};
@@ -176,6 +177,10 @@ impl Source<'_> {
             (problem, solved) =
                 polished(&averaged, &problem, &solved).ok_or(ContactEstimateError::Singular)?;
         }
+        let mut open = if options.planar { still(log, &options.noise, &units) } else { None };
+        if options.planar && open.is_none() {
+            (solved, open) = decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
+        }
         let covariances = solved.covariances(&problem).ok_or(ContactEstimateError::Singular)?;
         let iterations = [before, before + solved.iterations];
         let motions = at_all(log, &problem, &solved.unknowns, &covariances);
@@ -194,7 +199,7 @@ impl Source<'_> {
             covariances: &covariances,
             iterations,
             doubt,
-            against: [short, against],
+            against: [short, against, open],
             suspects: &suspects,
         };
         Ok((found.estimate(&motions, modes, options), slips))
@@ -263,8 +268,8 @@ struct Found<'a> {
     iterations: [usize; 2],
     /// How far its axes may be from where they were found, rad, if it is known.
     doubt: Option<f64>,
-    /// Why a known body is not the one, or a log is too short.
-    against: [Option<Reason>; 2],
+    /// Why a known body is not the one, a log is too short, or another motion as good.
+    against: [Option<Reason>; 3],
     suspects: &'a [Suspect],
 }
 

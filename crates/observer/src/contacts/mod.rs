@@ -16,6 +16,7 @@ mod plane;
 mod problem;
 mod reach;
 mod record;
+mod rivals;
 mod roughness;
 mod rows;
 mod samples;

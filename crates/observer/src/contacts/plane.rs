@@ -71,7 +71,8 @@ pub(super) fn known_motion(
 ) -> Option<(Solved<CONSTANTS>, Option<Reason>)> {
     let claimed = unknown.covariances(problem)?.body;
     let swell = swell() / swell().norm_squared();
-    let of_two = SMatrix::<f64, 2, CONSTANTS>::from_fn(|i, j| if i == 1 { swell[j] } else { f64::from(j == 0) });
+    let of_two =
+        SMatrix::<f64, 2, CONSTANTS>::from_fn(|i, j| if i == 1 { swell[j] } else { f64::from(j == 0) });
     let covariance = of_two * claimed * of_two.transpose();
     let found = &unknown.unknowns.body;
     let moment = |body: &Body| 0.5 * body.inertia().y_axis.y.ln();

@@ -286,8 +286,7 @@ fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, options: &ContactOptio
         let touch = logged.touch(k)?;
         let force = force_at(log, logged, k, &options.noise, frictionless)?;
         let motion = logged.motion(k);
-        let felt =
-            Contact::new(palm, logged.surface(), &touch, &motion, force, frictionless, options.planar);
+        let felt = Contact::new(palm, logged.surface(), &touch, &motion, force, frictionless, options.planar);
         Some(Contact { c: felt.c - origin, ..felt })
     };
     log.palms().iter().enumerate().filter_map(one).collect()

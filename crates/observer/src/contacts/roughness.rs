@@ -29,14 +29,11 @@ impl ContactNoiseLevel {
             let add = |rough: &mut Rough, axes, reading: &dyn Fn(usize) -> Option<SensedForce>| {
                 let touched = |k: usize| reading(k).filter(|_| palm.touch(k).is_some());
                 match axes {
-                    Some(SensedAxes::Three) => {
-                        rough.add(
-                            log.times(),
-                            |k| Some(own(k) * touched(k)?.vector),
-                            |_| everywhere(),
-                        );
+                    // Without friction a force is along the normal, and across it nothing is rough.
+                    Some(SensedAxes::Three) if palm.friction() != Some(0.0) => {
+                        rough.add(log.times(), |k| Some(own(k) * touched(k)?.vector), |_| everywhere());
                     }
-                    Some(SensedAxes::Normal) => {
+                    Some(_) => {
                         let along = |k: usize| Some(DVec3::X * touched(k)?.vector.dot(normal(k)));
                         rough.add(log.times(), along, |_| vec![DVec3::X]);
                     }

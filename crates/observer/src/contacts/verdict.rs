@@ -10,6 +10,8 @@ use glam::DVec3;
 /// Standard deviations of a normal variable beyond which a stretch of the log is not explained by noise, or a constant of the sensors
 /// is not what it was taken for: once in a million.
 pub(super) const UNEXPLAINED: f64 = 4.75;
+/// The same once in ten thousand.
+const UNLIKELY: f64 = 3.7;
 /// Length of a stretch in natural times.
 const STRETCH: f64 = 1.0;
 
@@ -36,7 +38,10 @@ impl ContactEvidence {
         if !self.settled {
             reliability.add(Reason::NotConverged { iterations: self.iterations[1] });
         }
-        if self.misfit.is_nan() || self.misfit > LARGEST_MISFIT {
+        // Of few conditions chance alone makes more.
+        let conditions = self.conditions as f64;
+        let chance = excess(self.misfit * conditions, conditions) < UNLIKELY;
+        if self.misfit.is_nan() || (self.misfit > LARGEST_MISFIT && !chance) {
             reliability.add(Reason::Inconsistent { misfit: self.misfit });
         }
         reliability

@@ -1,7 +1,9 @@
 //! The estimate from contacts of any palms ([`estimate_contacts`]) in the plane.
 
-use crate::contacts::{ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions};
 use crate::contacts::estimate_contacts;
+use crate::contacts::{
+    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions,
+};
 use crate::{Reliability, Suspect};
 use glam::{DVec2, DVec3};
 use object_dynamics::planar::{BodyState, ContactLog, PlanarMass, in_plane};
@@ -89,12 +91,17 @@ pub struct PlaneEstimate {
     pub evidence: ContactEvidence,
 }
 
-/// Noise of the sensors of a log by the roughness of their readings; `floor` (m/s) is what contact conditions are off by beside that.
+/// Noise of the sensors of a log by the roughness of their readings, of palms of the given coefficients of friction where they are known;
+/// `floor` (m/s) is what contact conditions are off by beside that.
 ///
 /// # Errors
 /// [`ContactLogError`] for a log that one of space does not take.
-pub fn plane_noise(log: &ContactLog, floor: f64) -> Result<ContactNoiseLevel, ContactLogError> {
-    Ok(ContactNoiseLevel::by_roughness(&log.in_space(&[])?, floor, true))
+pub fn plane_noise(
+    log: &ContactLog,
+    friction: &[Option<f64>],
+    floor: f64,
+) -> Result<ContactNoiseLevel, ContactLogError> {
+    Ok(ContactNoiseLevel::by_roughness(&log.in_space(friction)?, floor, true))
 }
 
 /// Motion, mass and moment of inertia of a body from contacts of any palms in the plane and their forces, from no guess: the estimate of
@@ -105,7 +112,8 @@ pub fn plane_noise(log: &ContactLog, floor: f64) -> Result<ContactNoiseLevel, Co
 pub fn estimate_plane(log: &ContactLog, options: &PlaneOptions) -> Result<PlaneEstimate, PlaneEstimateError> {
     let in_space = log.in_space(&options.friction)?;
     // Of a known body all three moments are the one that shows.
-    let ball = |known: &PlanarMass| MassProperties::from_principal(known.mass(), DVec3::splat(known.inertia()));
+    let ball =
+        |known: &PlanarMass| MassProperties::from_principal(known.mass(), DVec3::splat(known.inertia()));
     let body = options.body.as_ref().map(ball).transpose()?;
     let of_space = ContactOptions {
         body,

@@ -12,7 +12,8 @@ mod shape_fit;
 pub use authors::{AuthorsFields, AuthorsState};
 pub use error::PlanarEstimateError;
 pub use estimate_contacts::{
-    PlaneContact, PlaneDeviations, PlaneEstimate, PlaneEstimateError, PlaneOptions, estimate_plane, plane_noise,
+    PlaneContact, PlaneDeviations, PlaneEstimate, PlaneEstimateError, PlaneOptions, estimate_plane,
+    plane_noise,
 };
 pub use quasistatic::{
     HeightFit, QuasistaticError, QuasistaticPath, QuasistaticPoint, height_from_closure,

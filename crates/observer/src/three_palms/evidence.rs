@@ -187,6 +187,18 @@ pub enum Reason {
     },
     /// Without the stated mass and inertia the search leads to no motion, so that nothing confirms the one that was found with them.
     Unconfirmed,
+    /// Contacts and forces hardly change beyond noise: rest, slow rocking, or a disc.
+    Unchanging {
+        /// Largest spread of the contacts of a palm, in natural lengths, noise taken out.
+        contacts: f64,
+        /// Largest spread of the whole force, in weights, noise taken out.
+        forces: f64,
+    },
+    /// Another motion explains the log as well.
+    Ambiguous {
+        /// How far it is from this one, in deviations of the velocities or positions.
+        apart: f64,
+    },
     /// The log is noisy and short beside the time in which the body falls its own length.
     TooShort {
         /// Length of the log, s.
@@ -239,6 +251,15 @@ impl fmt::Display for Reason {
                 f,
                 "the body hardly turns: its angular velocity changes by {deviations:.1} of its deviations at most, and where its centre of mass is \
                  follows from such changes"
+            ),
+            Self::Unchanging { contacts, forces } => write!(
+                f,
+                "the readings hardly change beyond their noise (contacts by {contacts:.3} of the body's size, the whole force by {forces:.3} of \
+                 the weight): at rest, rocking slowly, or round, a body shows no motion"
+            ),
+            Self::Ambiguous { apart } => write!(
+                f,
+                "another motion explains the log as well, {apart:.0} deviations away: the readings change too little to tell which"
             ),
             Self::Unconfirmed => write!(
                 f,

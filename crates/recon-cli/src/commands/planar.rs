@@ -65,7 +65,11 @@ pub(crate) fn run(args: &PlanarArgs, console: &Console) -> Result<Outcome, CliEr
 }
 
 /// A log of a scene in the plane: of any palms, or of two hinged ones where the scene has none.
-pub(crate) fn reconstruct(args: &ReconstructArgs, scene: &Path, console: &Console) -> Result<Outcome, CliError> {
+pub(crate) fn reconstruct(
+    args: &ReconstructArgs,
+    scene: &Path,
+    console: &Console,
+) -> Result<Outcome, CliError> {
     let mut known = PlanarScene::read_known(scene)?;
     let target = FolderTarget::new(&args.output, &[args.log.clone(), scene.to_owned()], args.force)?;
     let progress = Progress::new(2, console.is_json());
@@ -129,11 +133,8 @@ fn demo() -> Result<(PlanarLog, PlanarMass), CliError> {
 
 fn fit(args: &PlanarArgs, log: &PlanarLog) -> Result<Fitted, CliError> {
     let contact_deviation = args.contact_noise.filter(|noise| *noise > 0.0).ok_or(CliError::PlanarNoise)?;
-    let options = ShapeFitOptions {
-        order: usize::from(args.order),
-        contact_deviation,
-        gravity: args.gravity,
-    };
+    let options =
+        ShapeFitOptions { order: usize::from(args.order), contact_deviation, gravity: args.gravity };
     let made = fit_shape(log, &options)?;
     let radius = |theta: f64| {
         let (mut r, mut d) = (0.0, 0.0);
@@ -177,7 +178,12 @@ fn fit(args: &PlanarArgs, log: &PlanarLog) -> Result<Fitted, CliError> {
     Ok(Fitted { rows, figures, warnings })
 }
 
-fn write(target: FolderTarget, log: Option<&PlanarLog>, made: &Made, figures: &Value) -> Result<(), CliError> {
+fn write(
+    target: FolderTarget,
+    log: Option<&PlanarLog>,
+    made: &Made,
+    figures: &Value,
+) -> Result<(), CliError> {
     while_writing(|| {
         let mut folder = target.begin()?;
         match made {

@@ -37,10 +37,13 @@ pub(crate) fn planar_motion(log: ContactLog, known: &PlanarKnown) -> Result<Plan
 
 /// As it is stated, and what is not from the roughness of the readings.
 fn noise(log: &ContactLog, known: &PlanarKnown) -> Result<ContactNoiseLevel, CliError> {
-    let Sensors { contact_std, force_std, force_share, impulse_std, impulse_share, contact_speed_std, .. } =
-        known.sensors;
+    let Sensors {
+        contact_std, force_std, force_share, impulse_std, impulse_share, contact_speed_std, ..
+    } = known.sensors;
     let floor = contact_speed_std.unwrap_or(FLOOR * (known.gravity * size(log)).sqrt());
-    let rough = plane_noise(log, floor).map_err(recon::observer::planar::PlaneEstimateError::from)?;
+    let friction: Vec<_> = known.palms.iter().map(|(_, friction)| *friction).collect();
+    let rough =
+        plane_noise(log, &friction, floor).map_err(recon::observer::planar::PlaneEstimateError::from)?;
     let stated = |fixed: Option<f64>, share: Option<f64>| {
         fixed.or(share).map(|_| [fixed, share].map(Option::unwrap_or_default))
     };
@@ -268,7 +271,8 @@ impl PlanarMotion {
             ..FigureCurve::default()
         });
         let shape: Vec<FigureCurve> = shape.filter(|curve| !curve.points.is_empty()).collect();
-        let over = |pick: &dyn Fn(usize) -> f64| (0..times.len()).map(|k| [times[k], pick(k)]).collect::<Vec<_>>();
+        let over =
+            |pick: &dyn Fn(usize) -> f64| (0..times.len()).map(|k| [times[k], pick(k)]).collect::<Vec<_>>();
         let turn = FigureCurve {
             reference: self.log.truth().map_or_else(Vec::new, |truth| {
                 truth.iter().zip(&times).map(|(at, t)| [*t, at.phi0 - truth[0].phi0]).collect()

@@ -43,7 +43,6 @@ impl NaturalScale {
         (self.length / self.gravity).sqrt()
     }
 
-
     /// Natural angular velocity `sqrt(g / L)` in rad/s.
     #[must_use]
     pub(super) fn rate(&self) -> f64 {

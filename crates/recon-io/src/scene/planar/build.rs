@@ -18,7 +18,8 @@ pub(super) fn scene(file: PlanarFile) -> Result<PlanarScene, Kind> {
         what: "`[simulation]`",
         mend: "a simulation needs the shape of the object, its start, duration and sample_rate",
     })?;
-    let missing = Kind::Missing { what: "`[object]`", mend: "a simulation needs the object's mass and inertia" };
+    let missing =
+        Kind::Missing { what: "`[object]`", mend: "a simulation needs the object's mass and inertia" };
     let object = PlanarObject { shape: body(&table.shape)?, mass: mass.ok_or(missing)?, gravity };
     let friction = palms_friction(&file)?;
     let palm = |(i, table): (usize, &PalmTable)| palm(i + 1, table, friction);
