@@ -1,0 +1,175 @@
+//! Where a touch may pay, and how much.
+
+use super::cap::{Caps, Growth};
+use crate::limits::Limits;
+use contact_kinematics::Direction;
+use glam::DVec3;
+use shape_bounds::{Gap, Polyhedron, ShapeBounds, SolidHull, SupportWalk};
+
+/// Heights at which the body may meet the touch, as shares of the way between the bounds: the middles of three equal parts.
+const HEIGHTS: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
+/// Corners of which the exact score is looked at. With fewer, all are; with more, those with the largest cells.
+const SCORED: usize = 400;
+/// Directions out of reach that are named.
+const NAMED: usize = 8;
+
+/// A touch that may be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Candidate {
+    pub(super) along: Direction,
+    /// From the upper bound to the lower one.
+    pub(super) ray: [DVec3; 2],
+    /// Expected loss of volume between the bounds in m^3, or length of the gap in m.
+    pub(super) score: f64,
+}
+
+/// What is scored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Score {
+    /// Expected loss of volume.
+    Volume,
+    /// Distance of a corner of the upper bound from the lower one.
+    Distance,
+}
+
+/// Candidates within reach, in a fixed order, and the directions of the best ones out of reach.
+pub(super) struct Candidates {
+    pub(super) within: Vec<Candidate>,
+    pub(super) out_of_reach: Vec<Candidate>,
+}
+
+impl Candidates {
+    /// Directions that would pay and cannot be had, the best first.
+    pub(super) fn named_out_of_reach(&self) -> Vec<Vec<f64>> {
+        let mut lost = self.out_of_reach.clone();
+        lost.sort_by(|a, b| b.score.total_cmp(&a.score));
+        lost.iter().take(NAMED).map(|c| c.along.get().to_array().to_vec()).collect()
+    }
+}
+
+/// All candidates: towards each corner of the upper bound from its nearest point of the lower one, and along the normal of each
+/// facet of the lower one. `margins` are what noise takes of a new contact, outwards and inwards, in m.
+pub(super) fn candidates(
+    bounds: &ShapeBounds,
+    upper: &Polyhedron,
+    score: Score,
+    margins: (f64, f64),
+    limits: &Limits<Direction>,
+) -> Candidates {
+    let corners = largest_cells(upper);
+    let gaps = bounds.gaps_at(&corners);
+    let at_corners = corners.iter().zip(gaps).filter_map(|(corner, gap)| Some((*corner as u32, gap?)));
+    let mut found = Candidates { within: Vec::new(), out_of_reach: Vec::new() };
+    let mut scorer = bounds.lower().solid().map(|lower| Scorer::new(upper, lower, margins));
+    let mut take = |along: Direction, ray: [DVec3; 2], corner: u32, distance: Option<f64>| {
+        let value = match (score, &mut scorer) {
+            (Score::Volume, Some(scorer)) => scorer.volume(along, ray, corner),
+            // Without a lower bound of any volume the farthest corner is the best there is.
+            _ => distance.unwrap_or(0.0),
+        };
+        let candidate = Candidate { along, ray, score: value };
+        if limits.allow(along) {
+            found.within.push(candidate);
+            return;
+        }
+        found.out_of_reach.push(candidate);
+        if let Some(near) = limits.nearest(along) {
+            let value = match (score, &mut scorer) {
+                (Score::Volume, Some(scorer)) => scorer.volume(near, ray, corner),
+                _ => bounds.gap_along(near) - margins.0 - margins.1,
+            };
+            found.within.push(Candidate { along: near, ray, score: value });
+        }
+    };
+    for (corner, Gap { direction, outer, inner, distance }) in at_corners {
+        take(direction, [outer, inner], corner, Some(distance));
+    }
+    if score == Score::Volume
+        && let Some(lower) = bounds.lower().solid()
+    {
+        for (along, centre, summit) in facets(lower, upper) {
+            take(along, [upper.vertices()[summit as usize], centre], summit, None);
+        }
+    }
+    found
+}
+
+/// The corners of the upper bound, or the [`SCORED`] with the largest cells if there are more, in the order of their numbers. The cell
+/// of a corner is the tetrahedron that it makes with the contacts of its three faces.
+fn largest_cells(upper: &Polyhedron) -> Vec<usize> {
+    let mut corners: Vec<usize> = (0..upper.vertices().len()).collect();
+    if corners.len() > SCORED {
+        let size = |corner: usize| {
+            let v = upper.vertices()[corner];
+            let [a, b, c] = upper.faces_at(corner).map(|f| upper.face_half_spaces()[f as usize].point - v);
+            a.cross(b).dot(c).abs()
+        };
+        let sizes: Vec<f64> = corners.iter().map(|k| size(*k)).collect();
+        corners.select_nth_unstable_by(SCORED, |a, b| sizes[*b].total_cmp(&sizes[*a]).then(a.cmp(b)));
+        corners.truncate(SCORED);
+        corners.sort_unstable();
+    }
+    corners
+}
+
+/// Normals of facets of the lower bound, their centres and the corner of the upper bound above them: all of them, or the
+/// [`SCORED`] with the most room above them.
+fn facets(lower: &SolidHull, upper: &Polyhedron) -> Vec<(Direction, DVec3, u32)> {
+    let caps = Caps::new(upper);
+    let mut summit = 0;
+    let one = |facet: usize| {
+        let [a, b, c] = lower.corners(facet);
+        let twice = (b - a).cross(c - a);
+        let along = Direction::new(twice).ok()?;
+        // From the facet before: near it, as facets are numbered along the surface.
+        summit = caps.summit(along.get(), summit);
+        let room = (upper.vertices()[summit as usize] - a).dot(twice);
+        Some((facet, room, (along, (a + b + c) / 3.0, summit)))
+    };
+    let mut found: Vec<_> = (0..lower.triangles().len()).filter_map(one).collect();
+    if found.len() > SCORED {
+        found.select_nth_unstable_by(SCORED, |x, y| y.1.total_cmp(&x.1).then(x.0.cmp(&y.0)));
+        found.truncate(SCORED);
+        found.sort_unstable_by_key(|f| f.0);
+    }
+    found.into_iter().map(|(_, _, facet)| facet).collect()
+}
+
+/// Expected losses.
+struct Scorer<'a> {
+    upper: &'a Polyhedron,
+    lower: &'a SolidHull,
+    caps: Caps<'a>,
+    growth: Growth<'a>,
+    walk: SupportWalk<'a>,
+    margins: (f64, f64),
+}
+
+impl<'a> Scorer<'a> {
+    fn new(upper: &'a Polyhedron, lower: &'a SolidHull, margins: (f64, f64)) -> Self {
+        let (caps, growth, walk) = (Caps::new(upper), Growth::new(lower), SupportWalk::new(lower));
+        Self { upper, lower, caps, growth, walk, margins }
+    }
+
+    /// Mean over [`HEIGHTS`] of what the upper bound loses to the half-space there and the lower one gains by a point of the segment
+    /// `ray` there.
+    fn volume(&mut self, along: Direction, [outer, inner]: [DVec3; 2], corner: u32) -> f64 {
+        let u = along.get();
+        let near = self.walk.farthest_corner(u);
+        let low = self.lower.vertices()[near].dot(u);
+        let summit = self.caps.summit(u, corner);
+        let high = self.upper.vertices()[summit as usize].dot(u);
+        if high <= low {
+            return 0.0;
+        }
+        let (from, to) = (inner.dot(u), outer.dot(u));
+        let one = |share: f64| {
+            let height = low + share * (high - low);
+            let cut = self.caps.volume_beyond(u, height + self.margins.0, summit);
+            let along_ray = ((height - self.margins.1 - from) / (to - from)).clamp(0.0, 1.0);
+            let point = if along_ray.is_finite() { inner.lerp(outer, along_ray) } else { inner };
+            cut + self.growth.volume_with(point, near as u32)
+        };
+        HEIGHTS.into_iter().map(one).sum::<f64>() / HEIGHTS.len() as f64
+    }
+}
