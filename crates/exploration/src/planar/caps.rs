@@ -1,5 +1,6 @@
 //! What lies between the bounds, piece by piece.
 
+use super::knowledge::Prospects;
 use crate::limits::Limits;
 use glam::DVec2;
 use shape_bounds::planar::{ConvexPolygon, Direction, ShapeBounds};
@@ -36,25 +37,37 @@ impl Candidates {
         lost.iter().take(NAMED).map(|c| c.along.get().to_array().to_vec()).collect()
     }
 
-    fn take(&mut self, candidate: Candidate, limits: &Limits<Direction>, score: impl Fn(Direction) -> f64) {
+    fn take(
+        &mut self,
+        candidate: Candidate,
+        prospects: &Prospects<'_>,
+        limits: &Limits<Direction>,
+        score: impl Fn(Direction) -> f64,
+    ) {
         if limits.allow(candidate.along) {
-            self.within.push(candidate);
+            let score = prospects.worth(candidate.along) * candidate.score;
+            self.within.push(Candidate { score, ..candidate });
             return;
         }
         self.out_of_reach.push(candidate);
         if let Some(along) = limits.nearest(candidate.along) {
-            self.within.push(Candidate { along, score: score(along), ..candidate });
+            let score = prospects.worth(along) * score(along);
+            self.within.push(Candidate { along, score, ..candidate });
         }
     }
 }
 
 /// For each edge of the lower bound the touch along its normal, with the area that it is expected to take off what is between the
-/// bounds beyond the edge: all of it is one triangle for exact contacts. `margins` are what noise takes of a new contact, outwards
-/// and inwards, in m.
-pub(super) fn by_area(bounds: &ShapeBounds, margins: (f64, f64), limits: &Limits<Direction>) -> Candidates {
+/// bounds beyond the edge: all of it is one triangle for exact contacts.
+pub(super) fn by_area(
+    bounds: &ShapeBounds,
+    prospects: &Prospects<'_>,
+    limits: &Limits<Direction>,
+) -> Candidates {
     let mut found = Candidates::default();
     let (Some(lower), Some(upper)) = (bounds.lower().polygon(), bounds.upper().bounded()) else {
-        return found;
+        // Without a lower bound of any area the farthest corner is the best there is.
+        return by_distance(bounds, prospects, limits);
     };
     let (lower, upper) = (lower.shape(), upper.shape());
     let mut summit = 0;
@@ -62,9 +75,9 @@ pub(super) fn by_area(bounds: &ShapeBounds, margins: (f64, f64), limits: &Limits
         let Ok(along) = Direction::new(-(b - a).perp()) else { continue };
         summit = climb(upper, along.get(), summit);
         let top = upper.vertices()[summit];
-        let score = expected_loss(upper, [a, b], along, summit, margins);
+        let score = expected_loss(upper, [a, b], along, summit, prospects);
         let candidate = Candidate { along, ray: [top, a.midpoint(b)], score };
-        found.take(candidate, limits, |near| loss_along(lower, upper, near, margins));
+        found.take(candidate, prospects, limits, |near| loss_along(lower, upper, near, prospects));
     }
     found
 }
@@ -72,15 +85,19 @@ pub(super) fn by_area(bounds: &ShapeBounds, margins: (f64, f64), limits: &Limits
 /// For each corner of the upper bound the touch from its nearest point of the lower one, with their distance.
 pub(super) fn by_distance(
     bounds: &ShapeBounds,
-    margins: (f64, f64),
+    prospects: &Prospects<'_>,
     limits: &Limits<Direction>,
 ) -> Candidates {
     let mut found = Candidates::default();
-    for gap in bounds.gaps() {
-        let candidate = Candidate { along: gap.direction, ray: [gap.outer, gap.inner], score: gap.distance };
-        found.take(candidate, limits, |near| {
+    let gaps = bounds.gaps();
+    let middle = gaps.iter().map(|gap| gap.inner).sum::<DVec2>() / gaps.len().max(1) as f64;
+    for gap in gaps {
+        // Deeper than the nearest point, which may be a contact that a ray would only meet again.
+        let ray = [gap.outer, gap.inner.midpoint(middle)];
+        let candidate = Candidate { along: gap.direction, ray, score: gap.distance };
+        found.take(candidate, prospects, limits, |near| {
             let (low, high) = bounds.support(near);
-            high - low - margins.0 - margins.1
+            high - low - prospects.out - prospects.inwards
         });
     }
     found
@@ -107,30 +124,35 @@ fn expected_loss(
     [a, b]: [DVec2; 2],
     along: Direction,
     summit: usize,
-    margins: (f64, f64),
+    prospects: &Prospects<'_>,
 ) -> f64 {
     let u = along.get();
     let (low, high) = (a.dot(u), upper.vertices()[summit].dot(u));
     if high <= low {
         return 0.0;
     }
-    if margins == (0.0, 0.0) {
+    if prospects.out == 0.0 && prospects.inwards == 0.0 {
         return OF_A_TRIANGLE * area_beyond(upper, u, low, summit);
     }
     let one = |share: f64| {
         let height = low + share * (high - low);
-        let gained = 0.5 * a.distance(b) * (height - margins.1 - low).max(0.0);
-        area_beyond(upper, u, height + margins.0, summit) + gained
+        let gained = 0.5 * a.distance(b) * (height - prospects.inwards - low).max(0.0);
+        area_beyond(upper, u, height + prospects.out, summit) + gained
     };
     HEIGHTS.into_iter().map(one).sum::<f64>() / HEIGHTS.len() as f64
 }
 
 /// The same along any direction: what the upper bound loses alone.
-fn loss_along(lower: &ConvexPolygon, upper: &ConvexPolygon, along: Direction, margins: (f64, f64)) -> f64 {
+fn loss_along(
+    lower: &ConvexPolygon,
+    upper: &ConvexPolygon,
+    along: Direction,
+    prospects: &Prospects<'_>,
+) -> f64 {
     let u = along.get();
     let summit = climb(upper, u, 0);
     let (low, high) = (lower.support(along), upper.vertices()[summit].dot(u));
-    let one = |share: f64| area_beyond(upper, u, low + share * (high - low) + margins.0, summit);
+    let one = |share: f64| area_beyond(upper, u, low + share * (high - low) + prospects.out, summit);
     if high > low { HEIGHTS.into_iter().map(one).sum::<f64>() / HEIGHTS.len() as f64 } else { 0.0 }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::confidence::Confidence;
 use crate::goal::Goal;
+use crate::heading::Heading;
 use crate::knowledge::{Knowledge, KnowledgeError, Measures};
 use glam::DVec2;
 use shape_bounds::planar::{
@@ -30,6 +31,33 @@ pub struct PlanarKnowledge {
     bounds: Option<ShapeBounds>,
 }
 
+/// Normals closer than so many of their deviations are those of one place: a touch there repeats another.
+const REPEATED: f64 = 4.0;
+
+/// What a new contact is worth under noise.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Prospects<'a> {
+    /// How far its half-plane is expected to be moved out, in m; zero for exact contacts.
+    pub(super) out: f64,
+    /// How far its point is expected to be moved in, in m.
+    pub(super) inwards: f64,
+    /// Angle in rad below which two touches are at one place as far as can be told.
+    alike: f64,
+    contacts: &'a [ContactSample],
+}
+
+impl Prospects<'_> {
+    /// Share of its score that a touch along `along` can have after all that were made there before: noise of the normals keeps a bound
+    /// away from a flat, which looks like room to gain, and the next touch has the same noise.
+    pub(super) fn worth(&self, along: Direction) -> f64 {
+        if self.alike == 0.0 {
+            return 1.0;
+        }
+        let repeats = self.contacts.iter().filter(|c| c.normal.angle_to(along) < self.alike).count();
+        1.0 / ((1 + repeats) as f64).powi(2)
+    }
+}
+
 impl PlanarKnowledge {
     /// Of no contacts, which are to be exact.
     #[must_use]
@@ -55,14 +83,15 @@ impl PlanarKnowledge {
         self.bounds.as_ref()
     }
 
-    /// How far a new contact is expected to move the bounds the wrong way, in m: its half-plane out, and its point in. Zero for
-    /// exact contacts.
-    #[must_use]
-    pub fn margins(&self) -> (f64, f64) {
+    /// What noise takes of the next touch.
+    pub(super) fn prospects(&self) -> Prospects<'_> {
         let share = |n: Noise| n.confidence.share(self.contacts.len() + 1).map(|share| (n, share));
         match self.noise.map(share) {
-            Some(Ok((noise, share))) => margins(noise, share),
-            _ => (0.0, 0.0),
+            Some(Ok((noise, share))) => {
+                let (out, inwards) = margins(noise, share);
+                Prospects { out, inwards, alike: REPEATED * noise.normal, contacts: &self.contacts }
+            }
+            _ => Prospects { out: 0.0, inwards: 0.0, alike: 0.0, contacts: &self.contacts },
         }
     }
 
@@ -81,6 +110,17 @@ impl PlanarKnowledge {
                 | NoiseError::Bounds(BoundsError::TooFew { .. }),
             ) => Ok(None),
             Err(reason) => Err(KnowledgeError::Plane { touch, reason }),
+        }
+    }
+
+    /// The exact bounds without a contact that was refused after it was taken in: a contradiction may show only then.
+    fn start_over(&mut self) {
+        self.exact = IncrementalBounds::new();
+        for contact in &self.contacts {
+            // Each was taken before, and is again.
+            if self.exact.insert(contact).is_err() {
+                break;
+            }
         }
     }
 
@@ -120,6 +160,7 @@ impl Knowledge for PlanarKnowledge {
         let taken = self.update(&contact);
         if taken.is_err() {
             self.contacts.pop();
+            self.start_over();
         }
         taken
     }

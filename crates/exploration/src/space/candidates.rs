@@ -1,6 +1,7 @@
 //! Where a touch may pay, and how much.
 
 use super::cap::{Caps, Growth};
+use super::knowledge::Prospects;
 use crate::limits::Limits;
 use contact_kinematics::Direction;
 use glam::DVec3;
@@ -17,7 +18,8 @@ const NAMED: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
     pub(super) along: Direction,
-    /// From the upper bound to the lower one.
+    /// From the upper bound to a point between contacts: not to the nearest point of the lower bound, which may be a contact, that a
+    /// ray would only meet again.
     pub(super) ray: [DVec3; 2],
     /// Expected loss of volume between the bounds in m^3, or length of the gap in m.
     pub(super) score: f64,
@@ -48,26 +50,28 @@ impl Candidates {
 }
 
 /// All candidates: towards each corner of the upper bound from its nearest point of the lower one, and along the normal of each
-/// facet of the lower one. `margins` are what noise takes of a new contact, outwards and inwards, in m.
+/// facet of the lower one.
 pub(super) fn candidates(
     bounds: &ShapeBounds,
     upper: &Polyhedron,
     score: Score,
-    margins: (f64, f64),
+    prospects: &Prospects<'_>,
     limits: &Limits<Direction>,
 ) -> Candidates {
     let corners = largest_cells(upper);
     let gaps = bounds.gaps_at(&corners);
     let at_corners = corners.iter().zip(gaps).filter_map(|(corner, gap)| Some((*corner as u32, gap?)));
     let mut found = Candidates { within: Vec::new(), out_of_reach: Vec::new() };
-    let mut scorer = bounds.lower().solid().map(|lower| Scorer::new(upper, lower, margins));
-    let mut take = |along: Direction, ray: [DVec3; 2], corner: u32, distance: Option<f64>| {
+    let mut scorer =
+        bounds.lower().solid().map(|lower| Scorer::new(upper, lower, (prospects.out, prospects.inwards)));
+    let mut take = |along: Direction, segment: [DVec3; 2], aim: DVec3, corner: u32, distance: Option<f64>| {
+        let ray = [segment[0], aim];
         let value = match (score, &mut scorer) {
-            (Score::Volume, Some(scorer)) => scorer.volume(along, ray, corner),
+            (Score::Volume, Some(scorer)) => scorer.volume(along, segment, corner),
             // Without a lower bound of any volume the farthest corner is the best there is.
             _ => distance.unwrap_or(0.0),
         };
-        let candidate = Candidate { along, ray, score: value };
+        let candidate = Candidate { along, ray, score: prospects.worth(along) * value };
         if limits.allow(along) {
             found.within.push(candidate);
             return;
@@ -75,23 +79,30 @@ pub(super) fn candidates(
         found.out_of_reach.push(candidate);
         if let Some(near) = limits.nearest(along) {
             let value = match (score, &mut scorer) {
-                (Score::Volume, Some(scorer)) => scorer.volume(near, ray, corner),
-                _ => bounds.gap_along(near) - margins.0 - margins.1,
+                (Score::Volume, Some(scorer)) => scorer.volume(near, segment, corner),
+                _ => bounds.gap_along(near) - prospects.out - prospects.inwards,
             };
-            found.within.push(Candidate { along: near, ray, score: value });
+            found.within.push(Candidate { along: near, ray, score: prospects.worth(near) * value });
         }
     };
     for (corner, Gap { direction, outer, inner, distance }) in at_corners {
-        take(direction, [outer, inner], corner, Some(distance));
+        let aim = between_contacts(upper, corner);
+        take(direction, [outer, inner], aim, corner, Some(distance));
     }
     if score == Score::Volume
         && let Some(lower) = bounds.lower().solid()
     {
         for (along, centre, summit) in facets(lower, upper) {
-            take(along, [upper.vertices()[summit as usize], centre], summit, None);
+            take(along, [upper.vertices()[summit as usize], centre], centre, summit, None);
         }
     }
     found
+}
+
+/// The middle of the contacts of the three faces at a corner.
+fn between_contacts(upper: &Polyhedron, corner: u32) -> DVec3 {
+    let [a, b, c] = upper.faces_at(corner as usize).map(|f| upper.face_half_spaces()[f as usize].point);
+    (a + b + c) / 3.0
 }
 
 /// The corners of the upper bound, or the [`SCORED`] with the largest cells if there are more, in the order of their numbers. The cell
@@ -143,16 +154,18 @@ struct Scorer<'a> {
     growth: Growth<'a>,
     walk: SupportWalk<'a>,
     margins: (f64, f64),
+    /// What the gap `1 - L / U` gains by a loss of `U` over what it gains by a growth of `L`: `L / U`.
+    weight: f64,
 }
 
 impl<'a> Scorer<'a> {
     fn new(upper: &'a Polyhedron, lower: &'a SolidHull, margins: (f64, f64)) -> Self {
         let (caps, growth, walk) = (Caps::new(upper), Growth::new(lower), SupportWalk::new(lower));
-        Self { upper, lower, caps, growth, walk, margins }
+        Self { upper, lower, caps, growth, walk, margins, weight: lower.volume() / upper.volume() }
     }
 
-    /// Mean over [`HEIGHTS`] of what the upper bound loses to the half-space there and the lower one gains by a point of the segment
-    /// `ray` there.
+    /// Mean over [`HEIGHTS`] of what the upper bound loses to the half-space there, times `weight`, and the lower one gains by a point
+    /// of the segment `ray` there.
     fn volume(&mut self, along: Direction, [outer, inner]: [DVec3; 2], corner: u32) -> f64 {
         let u = along.get();
         let near = self.walk.farthest_corner(u);
@@ -168,7 +181,7 @@ impl<'a> Scorer<'a> {
             let cut = self.caps.volume_beyond(u, height + self.margins.0, summit);
             let along_ray = ((height - self.margins.1 - from) / (to - from)).clamp(0.0, 1.0);
             let point = if along_ray.is_finite() { inner.lerp(outer, along_ray) } else { inner };
-            cut + self.growth.volume_with(point, near as u32)
+            self.weight * cut + self.growth.volume_with(point, near as u32)
         };
         HEIGHTS.into_iter().map(one).sum::<f64>() / HEIGHTS.len() as f64
     }

@@ -6,7 +6,9 @@ use crate::heading::Heading;
 use crate::knowledge::Knowledge;
 use crate::planner::{PlanError, Proposal, Reason, Situation};
 use contact_kinematics::Direction;
+use glam::DVec3;
 use shape_bounds::{Intersection, Polyhedron, ShapeBounds};
+use std::f64::consts::FRAC_PI_2;
 
 /// What there is to plan on.
 pub(super) enum Stage<'a> {
@@ -39,6 +41,15 @@ pub(super) fn stage<'a>(
 
 /// A touch along a direction without end. Out of reach, none of its neighbours in reach must be one that was made already.
 fn close<'a>(open: &[Direction], situation: &Situation<'a, SpaceKnowledge>) -> Result<Stage<'a>, PlanError> {
+    // No touch ends a direction that is at right angles to all that can be reached, or behind them.
+    let sum: DVec3 = open.iter().map(|d| d.get()).sum();
+    let middle = Direction::new(sum).ok();
+    let hopeless =
+        |d: &Direction| situation.limits.nearest(*d).is_none_or(|h| h.angle_to(*d) > FRAC_PI_2 - SAME);
+    let lost: Vec<Direction> = middle.into_iter().chain(open.iter().copied()).filter(hopeless).collect();
+    if !lost.is_empty() {
+        return Err(out_of_reach(&lost));
+    }
     let known = situation.known.contacts();
     let is_new = |along: &Direction| known.iter().all(|c| c.normal.angle_to(*along) > SAME);
     let reachable = open.iter().filter_map(|d| situation.limits.nearest(*d)).find(is_new);

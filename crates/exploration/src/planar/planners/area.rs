@@ -33,8 +33,8 @@ impl Planner<PlanarKnowledge> for AreaGreedy {
             Stage::Due(proposal) => return Ok(proposal),
             Stage::Closed(bounds, upper) => (bounds, upper),
         };
-        let margins = situation.known.margins();
-        let found = by_area(bounds, margins, situation.limits);
+        let prospects = situation.known.prospects();
+        let found = by_area(bounds, &prospects, situation.limits);
         Ok(proposal(best(&found, NOTHING * upper.area())?, Reason::Best))
     }
 }

@@ -36,8 +36,8 @@ impl Planner<PlanarKnowledge> for HausdorffGreedy {
             Stage::Closed(bounds, upper) => (bounds, upper),
         };
         let least = NOTHING * upper.perimeter();
-        let margins = situation.known.margins();
-        let found = by_distance(bounds, margins, situation.limits);
+        let prospects = situation.known.prospects();
+        let found = by_distance(bounds, &prospects, situation.limits);
         Ok(proposal(best(&found, least)?, Reason::Best))
     }
 }

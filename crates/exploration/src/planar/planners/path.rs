@@ -2,9 +2,10 @@ use super::super::PlanarKnowledge;
 use super::super::caps::{Candidates, by_area, by_distance};
 use super::super::opening::{Stage, stage};
 use super::width::width_touch;
-use super::{NOTHING, best, proposal};
+use super::{NOTHING, OVERESTIMATE, best, proposal};
 use crate::goal::Goal;
 use crate::heading::Heading;
+use crate::knowledge::Knowledge;
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
 use shape_bounds::planar::Direction;
 
@@ -36,6 +37,10 @@ impl PathAware {
     }
 }
 
+/// Where the best touch is expected to come this near to the goal, or nearer, in terms of what is left, only touches that are expected
+/// to reach it are near enough: one that is spared is worth more than its way.
+const NEARLY: f64 = 1.3;
+
 impl Planner<PlanarKnowledge> for PathAware {
     fn name(&self) -> &'static str {
         "path-aware"
@@ -49,20 +54,33 @@ impl Planner<PlanarKnowledge> for PathAware {
             Stage::Due(proposal) => return Ok(proposal),
             Stage::Closed(bounds, upper) => (bounds, upper),
         };
-        let margins = situation.known.margins();
+        let prospects = situation.known.prospects();
         let (found, share, least) = match situation.goal {
-            Goal::Gap(_) => (by_area(bounds, margins, situation.limits), self.share, NOTHING * upper.area()),
+            Goal::Gap(_) => {
+                (by_area(bounds, &prospects, situation.limits), self.share, NOTHING * upper.area())
+            }
             // The area of a cell goes with its height to the power 3/2 where it lies along a smooth outline.
             Goal::Hausdorff(_) => {
-                let found = by_distance(bounds, margins, situation.limits);
+                let found = by_distance(bounds, &prospects, situation.limits);
                 (found, self.share.powf(2.0 / 3.0), NOTHING * upper.perimeter())
             }
             Goal::Width { along, .. } => return width_touch(situation, *along),
         };
         let best = best(&found, least)?;
-        let chosen = situation.here.map_or(best, |here| nearest(&found, share * best.score, here, best));
+        let finish = last_step(situation, upper.area());
+        let enough = if finish < NEARLY * best.score { finish.min(best.score) } else { 0.0 };
+        let enough = enough.max(share * best.score);
+        let chosen = situation.here.map_or(best, |here| nearest(&found, enough, here, best));
         let reason = if chosen == best { Reason::Best } else { Reason::Near };
         Ok(proposal(chosen, reason))
+    }
+}
+
+/// The score that is expected to reach the goal in one touch; infinite where the score is not in the unit of the goal.
+fn last_step(situation: &Situation<'_, PlanarKnowledge>, upper: f64) -> f64 {
+    match situation.goal {
+        Goal::Gap(goal) => (situation.known.measures().gap() - goal) * upper / OVERESTIMATE,
+        _ => f64::INFINITY,
     }
 }
 

@@ -4,7 +4,7 @@ use super::super::opening::{Stage, stage};
 use super::{NOTHING, best, proposal};
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
 use contact_kinematics::Direction;
-use shape_bounds::ShapeBounds;
+use shape_bounds::{Polyhedron, ShapeBounds};
 
 /// Touches where the bounds are furthest apart: along the line from the corner of the upper bound that is farthest from the lower
 /// one to its nearest point there.
@@ -24,9 +24,11 @@ impl HausdorffGreedy {
 }
 
 /// The largest gap as a candidate, by a search that makes few corners exact.
-fn largest(bounds: &ShapeBounds) -> Option<Candidate> {
+fn largest(bounds: &ShapeBounds, upper: &Polyhedron) -> Option<Candidate> {
     let gap = bounds.largest_gap()?;
-    Some(Candidate { along: gap.direction, ray: [gap.outer, gap.inner], score: gap.distance })
+    // Deeper than the nearest point, which may be a contact that a ray would only meet again.
+    let aim = gap.inner.midpoint(upper.moments().centroid);
+    Some(Candidate { along: gap.direction, ray: [gap.outer, aim], score: gap.distance })
 }
 
 impl Planner<SpaceKnowledge> for HausdorffGreedy {
@@ -44,13 +46,13 @@ impl Planner<SpaceKnowledge> for HausdorffGreedy {
         };
         let least = NOTHING * upper.moments().area.sqrt();
         if situation.limits.are_none() {
-            return match largest(bounds).filter(|c| c.score > least) {
+            return match largest(bounds, upper).filter(|c| c.score > least) {
                 Some(candidate) => Ok(proposal(candidate, Reason::Best)),
                 None => Err(PlanError::NothingToGain),
             };
         }
-        let margins = situation.known.margins();
-        let found = candidates(bounds, upper, Score::Distance, margins, situation.limits);
+        let prospects = situation.known.prospects();
+        let found = candidates(bounds, upper, Score::Distance, &prospects, situation.limits);
         Ok(proposal(best(&found, least)?, Reason::Best))
     }
 }

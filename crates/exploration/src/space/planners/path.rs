@@ -2,9 +2,10 @@ use super::super::SpaceKnowledge;
 use super::super::candidates::{Candidates, Score, candidates};
 use super::super::opening::{Stage, stage};
 use super::width::width_touch;
-use super::{NOTHING, best, proposal};
+use super::{NOTHING, OVERESTIMATE, best, proposal};
 use crate::goal::Goal;
 use crate::heading::Heading;
+use crate::knowledge::Knowledge;
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
 use contact_kinematics::Direction;
 
@@ -19,11 +20,11 @@ pub struct PathAware {
     share: f64,
 }
 
-/// Share of the best score that is enough: 0.51 of the way for 1.04 of the touches.
-const SHARE: f64 = 0.5;
+/// Share of the best score that is enough: on 150 bodies 0.56 of the way of a greedy planner for 1.03 of its touches (means).
+const SHARE: f64 = 0.55;
 
 impl PathAware {
-    /// With these first touches and a share of 0.5.
+    /// With these first touches and a share of 0.55.
     #[must_use]
     pub fn new(start: Vec<Direction>) -> Self {
         Self { start, share: SHARE }
@@ -35,6 +36,10 @@ impl PathAware {
         Self { share: share.clamp(0.0, 1.0), ..self }
     }
 }
+
+/// Where the best touch is expected to come this near to the goal, or nearer, in terms of what is left, only touches that are expected
+/// to reach it are near enough: one that is spared is worth more than its way.
+const NEARLY: f64 = 1.3;
 
 impl Planner<SpaceKnowledge> for PathAware {
     fn name(&self) -> &'static str {
@@ -55,12 +60,23 @@ impl Planner<SpaceKnowledge> for PathAware {
             Goal::Hausdorff(_) => (Score::Distance, self.share.sqrt(), NOTHING * upper.moments().area.sqrt()),
             Goal::Width { along, .. } => return width_touch(situation, *along),
         };
-        let margins = situation.known.margins();
-        let found = candidates(bounds, upper, score, margins, situation.limits);
+        let prospects = situation.known.prospects();
+        let found = candidates(bounds, upper, score, &prospects, situation.limits);
         let best = best(&found, least)?;
-        let chosen = situation.here.map_or(best, |here| nearest(&found, share * best.score, here, best));
+        let finish = last_step(situation, upper.volume());
+        let enough = if finish < NEARLY * best.score { finish.min(best.score) } else { 0.0 };
+        let enough = enough.max(share * best.score);
+        let chosen = situation.here.map_or(best, |here| nearest(&found, enough, here, best));
         let reason = if chosen == best { Reason::Best } else { Reason::Near };
         Ok(proposal(chosen, reason))
+    }
+}
+
+/// The score that is expected to reach the goal in one touch; infinite where the score is not in the unit of the goal.
+fn last_step(situation: &Situation<'_, SpaceKnowledge>, upper: f64) -> f64 {
+    match situation.goal {
+        Goal::Gap(goal) => (situation.known.measures().gap() - goal) * upper / OVERESTIMATE,
+        _ => f64::INFINITY,
     }
 }
 

@@ -6,7 +6,7 @@ use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
 use contact_kinematics::Direction;
 
 /// Touches where the volume between the bounds is expected to shrink most: the mean over heights at which the body may be met of
-/// what the upper bound loses and the lower one gains.
+/// what the upper bound loses and the lower one gains, weighted as they count in the gap.
 #[derive(Clone, Debug)]
 pub struct VolumeGreedy {
     start: Vec<Direction>,
@@ -33,8 +33,8 @@ impl Planner<SpaceKnowledge> for VolumeGreedy {
             Stage::Due(proposal) => return Ok(proposal),
             Stage::Closed(bounds, upper) => (bounds, upper),
         };
-        let margins = situation.known.margins();
-        let found = candidates(bounds, upper, Score::Volume, margins, situation.limits);
+        let prospects = situation.known.prospects();
+        let found = candidates(bounds, upper, Score::Volume, &prospects, situation.limits);
         Ok(proposal(best(&found, NOTHING * upper.volume())?, Reason::Best))
     }
 }

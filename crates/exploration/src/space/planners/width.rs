@@ -1,4 +1,5 @@
 use super::super::SpaceKnowledge;
+use super::super::knowledge::Prospects;
 use crate::heading::Heading;
 use crate::knowledge::Knowledge;
 use crate::planner::{PlanError, Proposal, Reason, Situation};
@@ -15,7 +16,7 @@ pub(super) fn width_touch(
     };
     let mut sides = [along, -along];
     sides.sort_by(|a, b| room(*b).total_cmp(&room(*a)));
-    let (out, inwards) = situation.known.margins();
+    let Prospects { out, inwards, .. } = situation.known.prospects();
     // Exact: beyond rounding. With noise: what a new touch leaves itself cannot be gained.
     let size = situation.known.mean_width();
     let gains = |d: &Direction| room(*d) > (1e-12 * size).max(out + inwards);
