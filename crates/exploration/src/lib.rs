@@ -32,6 +32,7 @@
 mod certificate;
 mod confidence;
 mod finger;
+mod gaussian;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
 mod goal;

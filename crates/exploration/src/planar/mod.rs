@@ -10,6 +10,6 @@ mod simulated;
 mod start;
 
 pub use knowledge::{Noise, PlanarKnowledge};
-pub use planners::{AreaGreedy, FixedSweep, HausdorffGreedy, PathAware, RandomTouches};
+pub use planners::{AreaGreedy, FixedSweep, GaussianVariance, HausdorffGreedy, PathAware, RandomTouches};
 pub use simulated::SimulatedFinger;
 pub use start::{even_start, turned_start};

@@ -10,7 +10,7 @@ use shape_bounds::{Gap, Polyhedron, ShapeBounds, SolidHull, SupportWalk};
 /// Heights at which the body may meet the touch, as shares of the way between the bounds: the middles of three equal parts.
 const HEIGHTS: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
 /// Corners of which the exact score is looked at. With fewer, all are; with more, those with the largest cells.
-const SCORED: usize = 400;
+const SCORED: usize = 200;
 /// Directions out of reach that are named.
 const NAMED: usize = 8;
 
@@ -58,7 +58,7 @@ pub(super) fn candidates(
     prospects: &Prospects<'_>,
     limits: &Limits<Direction>,
 ) -> Candidates {
-    let corners = largest_cells(upper);
+    let corners = largest_cells(upper, score);
     let gaps = bounds.gaps_at(&corners);
     let at_corners = corners.iter().zip(gaps).filter_map(|(corner, gap)| Some((*corner as u32, gap?)));
     let mut found = Candidates { within: Vec::new(), out_of_reach: Vec::new() };
@@ -106,14 +106,18 @@ fn between_contacts(upper: &Polyhedron, corner: u32) -> DVec3 {
 }
 
 /// The corners of the upper bound, or the [`SCORED`] with the largest cells if there are more, in the order of their numbers. The cell
-/// of a corner is the tetrahedron that it makes with the contacts of its three faces.
-fn largest_cells(upper: &Polyhedron) -> Vec<usize> {
+/// of a corner is the tetrahedron that it makes with the contacts of its three faces, measured by its volume or by its height.
+fn largest_cells(upper: &Polyhedron, score: Score) -> Vec<usize> {
     let mut corners: Vec<usize> = (0..upper.vertices().len()).collect();
     if corners.len() > SCORED {
         let size = |corner: usize| {
             let v = upper.vertices()[corner];
             let [a, b, c] = upper.faces_at(corner).map(|f| upper.face_half_spaces()[f as usize].point - v);
-            a.cross(b).dot(c).abs()
+            let volume = a.cross(b).dot(c).abs();
+            match score {
+                Score::Volume => volume,
+                Score::Distance => volume / (b - a).cross(c - a).length().max(f64::MIN_POSITIVE),
+            }
         };
         let sizes: Vec<f64> = corners.iter().map(|k| size(*k)).collect();
         corners.select_nth_unstable_by(SCORED, |a, b| sizes[*b].total_cmp(&sizes[*a]).then(a.cmp(b)));

@@ -11,7 +11,7 @@ mod simulated;
 mod start;
 
 pub use knowledge::{Noise, SpaceKnowledge};
-pub use planners::{FixedSweep, HausdorffGreedy, PathAware, RandomTouches, VolumeGreedy};
+pub use planners::{FixedSweep, GaussianVariance, HausdorffGreedy, PathAware, RandomTouches, VolumeGreedy};
 pub use sequence::low_discrepancy;
 pub use simulated::SimulatedFinger;
 pub use start::{tetrahedron, turned_tetrahedron};

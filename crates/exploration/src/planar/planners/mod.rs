@@ -2,6 +2,7 @@
 
 mod area;
 
+mod gaussian;
 mod hausdorff;
 mod path;
 mod random;
@@ -11,6 +12,7 @@ mod width;
 
 pub use area::AreaGreedy;
 
+pub use gaussian::GaussianVariance;
 pub use hausdorff::HausdorffGreedy;
 pub use path::PathAware;
 pub use random::RandomTouches;

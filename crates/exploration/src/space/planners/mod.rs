@@ -1,5 +1,6 @@
 //! Planners in space. All begin with the same few touches, and close the upper bound if those have not.
 
+mod gaussian;
 mod hausdorff;
 mod path;
 mod random;
@@ -7,6 +8,7 @@ mod sweep;
 mod volume;
 mod width;
 
+pub use gaussian::GaussianVariance;
 pub use hausdorff::HausdorffGreedy;
 pub use path::PathAware;
 pub use random::RandomTouches;
