@@ -131,17 +131,28 @@ fn largest_cells(upper: &Polyhedron, score: Score) -> Vec<usize> {
 /// [`SCORED`] with the most room above them.
 fn facets(lower: &SolidHull, upper: &Polyhedron) -> Vec<(Direction, DVec3, u32)> {
     let caps = Caps::new(upper);
-    let mut summit = 0;
-    let one = |facet: usize| {
+    let count = lower.triangles().len();
+    let mut found = Vec::with_capacity(count);
+    // From facet to neighbouring facet, so that each climb starts where the one before it ended, nearby.
+    let (mut queue, mut met) = (vec![(0, 0)], vec![false; count]);
+    met[0] = true;
+    while let Some((facet, start)) = queue.pop() {
         let [a, b, c] = lower.corners(facet);
         let twice = (b - a).cross(c - a);
-        let along = Direction::new(twice).ok()?;
-        // From the facet before: near it, as facets are numbered along the surface.
-        summit = caps.summit(along.get(), summit);
-        let room = (upper.vertices()[summit as usize] - a).dot(twice);
-        Some((facet, room, (along, (a + b + c) / 3.0, summit)))
-    };
-    let mut found: Vec<_> = (0..lower.triangles().len()).filter_map(one).collect();
+        let along = Direction::new(twice);
+        let summit = along.map_or(start, |along| caps.summit(along.get(), start));
+        if let Ok(along) = along {
+            let room = (upper.vertices()[summit as usize] - a).dot(twice);
+            found.push((facet, room, (along, (a + b + c) / 3.0, summit)));
+        }
+        for next in lower.neighbours()[facet].map(|f| f as usize) {
+            if !met[next] {
+                met[next] = true;
+                queue.push((next, summit));
+            }
+        }
+    }
+    found.sort_unstable_by_key(|f| f.0);
     if found.len() > SCORED {
         found.select_nth_unstable_by(SCORED, |x, y| y.1.total_cmp(&x.1).then(x.0.cmp(&y.0)));
         found.truncate(SCORED);
