@@ -72,6 +72,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
     ),
     ("planar_costs", "planar-costs.md", "cost of the planar observers beside their accuracy"),
     (
+        "reaching",
+        "exploration.md",
+        "touches and way that planners take to a gap, false certificates under noise",
+    ),
+    (
         "shape_fits",
         "shape-fits.md",
         "shapes fitted to contacts against the Cramer-Rao bound, and their choice",

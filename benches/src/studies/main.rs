@@ -24,6 +24,7 @@ mod no_force;
 mod planar_contacts;
 mod planar_costs;
 mod planar_monte_carlo;
+mod reaching;
 mod shape_fits;
 mod streaming;
 mod three_palms_monte_carlo;
@@ -59,6 +60,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_costs", || in_words(planar_costs::main())),
     ("planar_monte_carlo", || in_words(planar_monte_carlo::main())),
+    ("reaching", || in_words(reaching::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),
     ("tilting_palms", || in_words(tilting_palms::main())),
