@@ -56,4 +56,4 @@ pub use limits::{Cone, Limits, LimitsError};
 pub use planner::{PlanError, Planner, Proposal, Reason, Situation};
 pub use random::Source;
 pub use reach::{ExploreError, Step, Task, explore};
-pub use theory::{least_touches, touches_predicted};
+pub use theory::{least_gap, least_touches, touches_predicted};

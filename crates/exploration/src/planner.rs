@@ -24,6 +24,22 @@ pub enum Reason {
     Variance,
 }
 
+impl Reason {
+    /// In a few words, for people.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Open => "closes an open side",
+            Self::Best => "pays most",
+            Self::Near => "near, and pays nearly as much",
+            Self::Width => "the width that is asked for",
+            Self::Sequence => "next of a sequence",
+            Self::Variance => "least sure",
+        }
+    }
+}
+
 /// A touch to be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proposal<K: Knowledge> {

@@ -32,6 +32,21 @@ pub fn least_touches(dimension: usize, gap: f64) -> f64 {
     touches.max((dimension + 1) as f64)
 }
 
+/// The gap that the best `touches` leave around an ellipse (`dimension` 2) or ellipsoid (3): [`least_touches`] the other way round. 1
+/// below the least number of touches, NaN for other dimensions.
+#[must_use]
+pub fn least_gap(dimension: usize, touches: usize) -> f64 {
+    let n = touches as f64;
+    if touches <= dimension && (dimension == 2 || dimension == 3) {
+        return 1.0;
+    }
+    match dimension {
+        2 => PI * PI / (n * n + PI * PI / 3.0),
+        3 => (OUTSIDE + INSIDE) * 12.0 * PI / (n + OUTSIDE * 12.0 * PI),
+        _ => f64::NAN,
+    }
+}
+
 /// Touches in all that `goal` is expected to take when `touches` have left a gap of `gap`: gaps fall as `n^(-2/(d-1))`.
 ///
 /// From 6 touches at 30 % it says 10.4 for 10 % in the plane, where 11 were measured.
@@ -57,6 +72,15 @@ mod tests {
         for (gap, formula) in [(0.3, 25.2), (0.2, 39.3), (0.1, 81.6)] {
             assert!((least_touches(3, gap) - formula).abs() < 0.05, "{}", least_touches(3, gap));
         }
+    }
+
+    #[test]
+    fn the_least_gap_is_the_inverse_of_the_least_touches() {
+        for (dimension, touches) in [(2, 6), (2, 20), (3, 20), (3, 300)] {
+            let gap = least_gap(dimension, touches);
+            assert!((least_touches(dimension, gap) - touches as f64).abs() < 1e-9 * touches as f64);
+        }
+        assert_eq!(least_gap(3, 3), 1.0);
     }
 
     #[test]
