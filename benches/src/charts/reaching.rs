@@ -28,8 +28,8 @@ fn draw(_: Budget) -> Drawn {
     let chart = |name: &str, title: &str, methods: Vec<Method>| {
         Diagram::from(
             WorkPrecision::new(name, title)
-                .subtitle("median touches of 50 bodies of five families until the gap is below a value; dashed: n* of ellipsoids")
-                .axes(Axis::log("gap", "1"), Axis::log("touches", "1"))
+                .subtitle("median touches of 50 bodies of five families until the gap is below a value")
+                .axes(Axis::linear("gap", "1"), Axis::linear("touches", "1"))
                 .methods(methods),
         )
     };
@@ -53,6 +53,6 @@ fn method(name: &str, traces: &[Trace], last: f64) -> Method {
 }
 
 fn line(dimension: usize, last: f64) -> Method {
-    let theory = Method::recorded("n*, no planner below", "asymptotic formula");
+    let theory = Method::new("n* of ellipsoids (formula)");
     goals(last).fold(theory, |m, goal| m.point(format!("{goal:.3}"), goal, least_touches(dimension, goal)))
 }

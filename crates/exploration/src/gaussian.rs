@@ -8,7 +8,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Length of the kernel over the radius of the sphere: of 0.5, 1 and 2 the one that needs the fewest touches and stalls least.
+/// Length of the kernel over the radius of the sphere: of 1, 2 and 4, tried on twenty bodies, none needed clearly fewer touches.
 pub(crate) const LENGTH: f64 = 2.0;
 /// Variance of what is observed: far below what is asked of the shape. Raised tenfold until the matrix can be factored.
 const NUGGET: f64 = 1e-9;

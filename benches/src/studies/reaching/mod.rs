@@ -50,6 +50,7 @@ pub(crate) fn main() -> Result<(), Failure> {
     distance_table(bodies)?;
     noise::tables(bodies, noisy)?;
     cost::table()?;
+    println!("{}", include_str!("outro.md").trim_end());
     Ok(())
 }
 
