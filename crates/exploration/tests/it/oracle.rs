@@ -12,7 +12,7 @@ use serde_json::Value;
 const TOLERANCE: f64 = 1e-9;
 
 fn cases(dimension: u64) -> Vec<Value> {
-    let text = include_str!("data/explore.json");
+    let text = include_str!("../data/explore.json");
     let all: Value = serde_json::from_str(text).unwrap();
     let is_it = |case: &&Value| case["dimension"] == dimension;
     let found: Vec<Value> = all["cases"].as_array().unwrap().iter().filter(is_it).cloned().collect();
