@@ -4,21 +4,30 @@ use super::Side;
 use recon::exploration::{Goal, Heading, Knowledge, Outcome, Proposal, least_gap, least_touches};
 use recon_io::{ExplorationPage, FigureCurve, FigurePanel, Level, TouchRow, Verdict, brief_to};
 
+/// The course of an exploration.
+#[derive(Default)]
+pub(super) struct Course {
+    /// Touches in order.
+    pub(super) rows: Vec<TouchRow>,
+    /// Sizes of both bounds after each.
+    pub(super) sizes: Vec<[f64; 2]>,
+    /// Way in all, in rad.
+    pub(super) way: f64,
+}
+
 /// Everything that the page shows.
 pub(super) fn page<S: Side>(
     title: &str,
     known: &S::Known,
     ended: &Outcome<<S::Known as Knowledge>::Heading>,
     statement: &str,
-    mut rows: Vec<TouchRow>,
-    sizes: &[[f64; 2]],
+    Course { mut rows, sizes, way }: Course,
     next: Option<&Proposal<S::Known>>,
-    way: f64,
 ) -> ExplorationPage {
     let certificate = ended.certificate();
     let level = if ended.is_reached() { Level::Good } else { Level::Caution };
     let goal = certificate.goal;
-    let mut panels = vec![progress_panel(S::DIMENSION, &rows, &goal), sizes_panel(sizes, S::UNIT)];
+    let mut panels = vec![progress_panel(S::DIMENSION, &rows, &goal), sizes_panel(&sizes, S::UNIT)];
     panels.extend(S::pictures(known, next.map(|p| p.along.coordinates()).as_deref()));
     if let Some(next) = next {
         let along = next.along.coordinates();

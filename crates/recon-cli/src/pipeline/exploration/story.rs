@@ -1,7 +1,7 @@
 //! What was touched, why, and what is proven.
 
 use super::Side;
-use super::page::page;
+use super::page::{Course, page};
 use super::settings::{Settings, words_of};
 use super::side::{AnyFinger, Drawn};
 use crate::error::{CliError, Outcome as Exit};
@@ -36,12 +36,12 @@ pub(crate) fn explored<S: Side>(
     let mut known = S::nothing(settings)?;
     let mut planner = S::planner(settings);
     let task = Task { spending: settings.spending(), width, ..Task::new(goal, settings.budget) };
-    let (mut rows, mut sizes): (Vec<TouchRow>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
-    let (mut before, mut way) = (f64::INFINITY, 0.0);
+    let mut course = Course::default();
+    let mut before = f64::INFINITY;
     let ended = explore(&mut known, &mut *planner, finger, &task, |step, _| {
-        way += step.turned;
-        rows.push(row::<S>(step, before));
-        sizes.push([step.lower, step.upper]);
+        course.way += step.turned;
+        course.rows.push(row::<S>(step, before));
+        course.sizes.push([step.lower, step.upper]);
         before = step.progress;
         watch(step.touch, &forecast(S::DIMENSION, step, &goal));
     })?;
@@ -56,8 +56,8 @@ pub(crate) fn explored<S: Side>(
         "settings": settings.figures(),
         "proof": proof(&ended),
         "bounds": S::bounds(&known),
-        "way_rad": way,
-        "touches": rows.iter().map(touch_figures).collect::<Vec<_>>(),
+        "way_rad": course.way,
+        "touches": course.rows.iter().map(touch_figures).collect::<Vec<_>>(),
         "warnings": [],
     });
     if exit == Exit::WithReservations {
@@ -72,14 +72,14 @@ pub(crate) fn explored<S: Side>(
     let text = format!(
         "{title}\n  {statement}\n  touches                {}\n  way                    {} rad\n",
         certificate.touches,
-        brief_to(3, way)
+        brief_to(3, course.way)
     );
     let drawn = S::drawn(&known)?;
     let mut files = vec![S::contacts_file(&known)?];
     files.extend(drawn.files()?);
     let mut report = Vec::new();
     write_exploration_report(
-        &page::<S>(title, &known, &ended, &statement, rows, &sizes, next.as_ref(), way),
+        &page::<S>(title, &known, &ended, &statement, course, next.as_ref()),
         &mut report,
     )
     .map_err(CliError::Page)?;
