@@ -24,6 +24,7 @@
 
 mod diagram;
 mod machine;
+pub mod reaching;
 mod timing;
 
 pub mod charts;

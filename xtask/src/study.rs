@@ -70,6 +70,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "planar bodies on any palms: what a run keeps to, what it refuses",
     ),
     (
+        "reaching",
+        "exploration.md",
+        "touches and way that planners take to a gap, false certificates under noise",
+    ),
+    (
         "shape_fits",
         "shape-fits.md",
         "shapes fitted to contacts against the Cramer-Rao bound, and their choice",

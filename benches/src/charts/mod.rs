@@ -8,6 +8,7 @@ mod mujoco;
 mod near_sphere;
 mod parallel_palms;
 mod planar_bounds;
+mod reaching;
 mod reconstruction;
 mod shared;
 
@@ -37,6 +38,7 @@ pub const ALL: &[Chart] = &[
     near_sphere::CHART,
     contact_loss::CHART,
     planar_bounds::CHART,
+    reaching::CHART,
 ];
 
 #[cfg(test)]

@@ -1,5 +1,9 @@
 //! What can be asked for on the command line.
 
+mod explore;
+
+pub(crate) use explore::{ExploreArgs, GoalArgs, NextArgs, PlannerAs, Until, until};
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -21,6 +25,8 @@ Examples:
   recon inspect bag.mcap -o map.toml                what a robot's log (ROS 2, MCAP) holds, and a mapping of its topics
   recon follow - --scene scene.toml                 the motion as it becomes known, from a running log
   recon bounds out/contact_curves.csv -o bounds     bounds from contact points and normals alone
+  recon explore scene.toml --until gap=0.1 -o out   touches an object until its shape is proven
+  recon next out                                    where to touch next, from the contacts so far
   recon check out                                   whether results hold, by their files alone";
 
 /// Shape, motion and bounds of an unknown smooth convex object, from touch alone.
@@ -55,6 +61,10 @@ pub(crate) enum Command {
     Export(ExportArgs),
     /// Check a folder of results again, by its files alone
     Check(CheckArgs),
+    /// Touch a scene's object where it pays most, until its shape is proven to a goal
+    Explore(ExploreArgs),
+    /// Say where to touch next, from the contacts known so far
+    Next(NextArgs),
 }
 
 #[derive(Args, Debug)]

@@ -191,6 +191,20 @@ pub(crate) enum CliError {
     Output(#[from] OutputError),
     #[error("the results do not hold")]
     Check(#[from] CheckError),
+    #[error("the object cannot be explored")]
+    Explore(#[from] recon::exploration::ExploreError),
+    #[error("the confidence cannot be stated")]
+    Confidence(#[from] recon::exploration::ConfidenceError),
+    #[error("the goal cannot be had: {0}")]
+    Goal(String),
+    #[error(
+        "{} says no goal: give one by --until, as gap=0.1, or a folder of `recon explore`", path.display()
+    )]
+    NoGoal { path: PathBuf },
+    #[error("{} cannot be read as the summary of an exploration: {what}", path.display())]
+    NotExplored { path: PathBuf, what: String },
+    #[error("{} holds poses; where to touch next is asked of contacts", path.display())]
+    PosesExplored { path: PathBuf },
     #[error("standard output cannot be written")]
     StandardOutput(#[source] std::io::Error),
     #[error("interrupted; nothing is left half-written")]
@@ -259,6 +273,12 @@ impl CliError {
             | Self::PlanarForces { .. }
             | Self::PlanarNoise
             | Self::Export(_)
+            | Self::Explore(_)
+            | Self::Confidence(_)
+            | Self::Goal(_)
+            | Self::NoGoal { .. }
+            | Self::NotExplored { .. }
+            | Self::PosesExplored { .. }
             | Self::Check(_)
             | Self::Fit(_)
             | Self::Bounds(_) => 3,

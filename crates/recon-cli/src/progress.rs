@@ -11,14 +11,14 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// The steps of a command, shown as `[####    ] 2/4 estimating the motion`.
 pub(crate) struct Progress {
     bar: ProgressBar,
-    step: Arc<Mutex<&'static str>>,
+    step: Arc<Mutex<String>>,
 }
 
 impl Progress {
     /// Begins work of `steps` steps; `quiet` shows nothing.
     pub(crate) fn new(steps: u64, quiet: bool) -> Self {
         let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(steps) };
-        let step = Arc::new(Mutex::new(""));
+        let step = Arc::new(Mutex::new(String::new()));
         let shown = Arc::clone(&step);
         let late = move |state: &ProgressState, line: &mut dyn Write| {
             if state.elapsed() > PATIENCE {
@@ -36,8 +36,13 @@ impl Progress {
 
     /// Begins the next step.
     pub(crate) fn step(&self, what: &'static str) {
-        *locked(&self.step) = what;
+        self.say(what);
         self.bar.inc(1);
+    }
+
+    /// Says how far the present step is.
+    pub(crate) fn say(&self, what: &str) {
+        what.clone_into(&mut locked(&self.step));
     }
 }
 
@@ -47,7 +52,7 @@ impl Drop for Progress {
     }
 }
 
-fn locked<'a>(step: &'a Mutex<&'static str>) -> MutexGuard<'a, &'static str> {
+fn locked(step: &Mutex<String>) -> MutexGuard<'_, String> {
     // A word cannot be left half-set by a panic elsewhere.
     step.lock().unwrap_or_else(PoisonError::into_inner)
 }

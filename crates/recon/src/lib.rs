@@ -1,9 +1,11 @@
-//! Shape, motion and bounds of an unknown convex object from touch: the four core crates under one name.
+//! Shape, motion and bounds of an unknown convex object from touch: the five core crates under one name.
 //!
 //! This facade adds nothing of its own; each crate can be used alone.
 
 #[doc(inline)]
 pub use contact_kinematics;
+#[doc(inline)]
+pub use exploration;
 #[doc(inline)]
 pub use object_dynamics;
 #[doc(inline)]

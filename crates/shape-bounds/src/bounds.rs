@@ -151,6 +151,15 @@ impl ShapeBounds {
             .collect()
     }
 
+    /// The gaps at `corners` of the upper bound, each an index into its vertices: [`Self::gaps`] for few of many. `None` where the
+    /// gap is below rounding, the upper bound is unbounded or has no such corner.
+    #[must_use]
+    pub fn gaps_at(&self, corners: &[usize]) -> Vec<Option<Gap>> {
+        let count = self.upper.bounded().map_or(0, |upper| upper.vertices().len());
+        let Some(mut search) = self.gap_search() else { return vec![None; corners.len()] };
+        corners.iter().map(|k| if *k < count { search.at_corner(*k, 0.0) } else { None }).collect()
+    }
+
     /// Those of [`Self::gaps`] that are above `least` (m): much cheaper where few are.
     pub(crate) fn gaps_above(&self, least: f64) -> Vec<Gap> {
         let Some(mut search) = self.gap_search() else { return Vec::new() };

@@ -12,19 +12,24 @@ const ITERATIONS: usize = 200;
 
 /// The nearest point of a body, as far as found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Nearest {
+pub struct Nearest {
     /// A point of the body; its distance is at least the true one.
-    pub(crate) point: DVec3,
+    pub point: DVec3,
     /// Unit vector from the body to the query; zero if the query is in the body.
-    pub(crate) direction: DVec3,
+    pub direction: DVec3,
     /// The body has no point nearer than this in m: the query's height over the supporting plane across `direction`.
-    pub(crate) certified: f64,
+    pub certified: f64,
 }
 
 /// Nearest point to `query` of the body whose farthest point along `d` is `support(d)`; `start` are one to three of its points,
-/// the nearer the better: from one alone that is near beside the nearest, the first direction is along the surface.
-pub(crate) fn nearest(query: DVec3, start: &[DVec3], mut support: impl FnMut(DVec3) -> DVec3) -> Nearest {
+/// the nearer the better: from one alone that is near beside the nearest, the first direction is along the surface. All in m.
+///
+/// Without a start, the support point along the x axis is one.
+pub fn nearest(query: DVec3, start: &[DVec3], mut support: impl FnMut(DVec3) -> DVec3) -> Nearest {
     let mut simplex: Vec<DVec3> = start.iter().map(|p| *p - query).collect();
+    if simplex.is_empty() {
+        simplex.push(support(DVec3::X) - query);
+    }
     let mut closest = reduce(&mut simplex);
     let mut best = Nearest { point: closest + query, direction: DVec3::ZERO, certified: 0.0 };
     for _ in 0..ITERATIONS {

@@ -54,6 +54,7 @@ pub use curvature::{
     BallHull, BallIntersection, ConvexMeasures, CurvatureBounds, CurvatureError, RoundedHull,
     RoundedIntersection, SharpBounds,
 };
+pub use distance::{Nearest, nearest};
 pub use faceted::FacetError;
 pub use fit::{
     COMPARED, Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel,
@@ -63,6 +64,7 @@ pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
 pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
 pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
+pub use noise::quantile;
 pub use noise::{
     CertainBounds, ContactNoise, NoiseDoubt, NoiseError, NoisyContact, Outlier, PoseNoise, correlated_noise,
     estimate_noise, independence_is_tested, with_noise_as_found, without_outliers,

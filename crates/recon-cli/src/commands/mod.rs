@@ -4,9 +4,11 @@ mod any_palms;
 mod bounds;
 mod check;
 mod demo;
+mod explore;
 mod export;
 mod follow;
 mod inspect;
+mod next;
 mod planar;
 mod plane;
 mod reconstruct;
@@ -29,5 +31,7 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
         Command::Demo(args) => demo::run(args, console),
         Command::Export(args) => export::run(args, console),
         Command::Check(args) => check::run(args, console),
+        Command::Explore(args) => explore::run(args, console),
+        Command::Next(args) => next::run(args),
     }
 }

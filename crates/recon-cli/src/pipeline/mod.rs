@@ -9,6 +9,7 @@ mod concave;
 mod contacts;
 mod doubts;
 mod evidence;
+mod exploration;
 mod export;
 mod fitted;
 mod folder;
@@ -31,6 +32,7 @@ pub(crate) use bounds::{BoundsResult, bounds, exact_bounds};
 pub(crate) use concave::concave_bounds;
 pub(crate) use contacts::{ContactRun, simulate_contacts};
 pub(crate) use doubts::doubtful_fit;
+pub(crate) use exploration::{Explored, InPlane, InSpace, Settings, explored, goal_of, next_touch, until_of};
 pub(crate) use export::exported;
 pub(crate) use fitted::{fit_words, fitted_shape};
 pub(crate) use folder::{

@@ -14,6 +14,7 @@ mod bounds_shapes;
 mod check;
 mod common;
 mod end_to_end;
+mod explore;
 mod export;
 mod follow;
 #[cfg(unix)]

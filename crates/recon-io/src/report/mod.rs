@@ -3,6 +3,7 @@
 mod contacts;
 mod data;
 mod encode;
+mod exploration;
 mod page;
 
 #[cfg(test)]
@@ -16,6 +17,7 @@ pub use data::{
     Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
     ReportError, TrueShape, Verdict,
 };
+pub use exploration::{ExplorationPage, TouchRow, write_exploration_report};
 pub use page::write_report;
 
 pub(crate) use data::Departure;

@@ -65,7 +65,8 @@ impl Polyhedron {
     }
 
     /// For each corner, those at the other ends of its three edges.
-    pub(crate) fn vertex_neighbours(&self) -> &[[u32; 3]] {
+    #[must_use]
+    pub fn vertex_neighbours(&self) -> &[[u32; 3]] {
         self.dual.neighbours()
     }
 
@@ -80,8 +81,9 @@ impl Polyhedron {
         self.dual.facets_around(face as u32)
     }
 
-    /// The faces at a corner.
-    pub(crate) fn faces_at(&self, corner: usize) -> [u32; 3] {
+    /// The three faces at a corner, of those that [`Self::face`] numbers.
+    #[must_use]
+    pub fn faces_at(&self, corner: usize) -> [u32; 3] {
         self.dual.triangles()[corner]
     }
 

@@ -160,7 +160,7 @@ impl SolidHull {
     }
 
     /// The facets around corner `vertex`, anticlockwise from outside.
-    pub(crate) fn facets_around(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+    pub fn facets_around(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
         let first = self.facet_at[vertex as usize];
         std::iter::successors(Some(first), move |facet| {
             let next = self.next_around(vertex, *facet).0;

@@ -36,8 +36,8 @@ impl<'a> SupportWalk<'a> {
         self.corner
     }
 
-    /// Makes the next climb start at a corner.
-    pub(crate) fn start_at(&mut self, corner: u32) {
+    /// Makes the next climb start at a corner, an index into [`SolidHull::vertices`].
+    pub fn start_at(&mut self, corner: u32) {
         self.corner = corner;
     }
 

@@ -9,7 +9,7 @@ mod model;
 pub(crate) mod outliers;
 mod polynomial;
 mod pose;
-pub(crate) mod quantile;
+pub mod quantile;
 mod roughness;
 #[cfg(test)]
 mod stated_tests;

@@ -4,19 +4,22 @@
 ///
 /// From the tail bound `Q(z) < phi(z) / z`, which at the small probabilities used here is a few per cent above the tail
 /// itself, that is a few thousandths of a standard deviation.
-pub(crate) fn normal(alpha: f64) -> f64 {
+#[must_use]
+pub fn normal(alpha: f64) -> f64 {
     solve(alpha, |z| (-z * z / 2.0).exp() / (z * TAU_ROOT))
 }
 
 /// `r` such that the length of a vector of three independent standard normals exceeds it with probability at most
 /// `alpha`: `P = 2 Q(r) + sqrt(2 / pi) r exp(-r^2 / 2)`, with the same bound on `Q`.
-pub(crate) fn length3(alpha: f64) -> f64 {
+#[must_use]
+pub fn length3(alpha: f64) -> f64 {
     solve(alpha, |r| 2.0 * (-r * r / 2.0).exp() * (1.0 / r + r) / TAU_ROOT)
 }
 
 /// Length that a vector of six independent standard normals exceeds with probability `alpha`:
 /// `P = exp(-q) (1 + q + q^2 / 2)` with `q = r^2 / 2`, exact.
-pub(crate) fn length6(alpha: f64) -> f64 {
+#[must_use]
+pub fn length6(alpha: f64) -> f64 {
     solve(alpha, |r| {
         let q = 0.5 * r * r;
         (-q).exp() * (1.0 + q + 0.5 * q * q)
@@ -24,7 +27,8 @@ pub(crate) fn length6(alpha: f64) -> f64 {
 }
 
 /// Length that a vector of two independent standard normals exceeds with probability `alpha`: exact (Rayleigh).
-pub(crate) fn length2(alpha: f64) -> f64 {
+#[must_use]
+pub fn length2(alpha: f64) -> f64 {
     (-2.0 * alpha.ln()).sqrt()
 }
 

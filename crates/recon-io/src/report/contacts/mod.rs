@@ -4,7 +4,7 @@ mod bands;
 mod estimate;
 mod estimate_page;
 mod moment;
-mod page;
+pub(super) mod page;
 mod picture;
 mod plane;
 mod space;

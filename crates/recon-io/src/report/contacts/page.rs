@@ -11,7 +11,7 @@ use recon::object_dynamics::{ContactScene, ContactSimulation, planar};
 use std::io::{self, Write};
 
 const PAGE: &str = include_str!("../assets/contacts.html");
-pub(super) const STYLE: &str = include_str!("../assets/contacts.css");
+pub(in crate::report) const STYLE: &str = include_str!("../assets/contacts.css");
 
 /// Writes a simulation through contact modes as one HTML page that needs nothing else: pictures, bands of modes, curves of force,
 /// slip and energy.
@@ -67,6 +67,6 @@ fn write(title: &str, shown: &Shown, to: impl Write) -> io::Result<()> {
 }
 
 /// A key figure: name, value and unit.
-pub(super) fn fact((name, value, unit): &(&str, String, &str)) -> String {
+pub(in crate::report) fn fact((name, value, unit): &(&str, String, &str)) -> String {
     format!("<div><dt>{name}</dt><dd>{value}<small>{unit}</small></dd></div>\n")
 }

@@ -1,0 +1,156 @@
+//! Runs in the plane.
+
+use super::{Bodies, Named, Trace, in_threads};
+use exploration::generators::{Family, Outline, outline};
+use exploration::planar::{
+    AreaGreedy, FixedSweep, GaussianVariance, HausdorffGreedy, Noise, PathAware, PlanarKnowledge,
+    RandomTouches, SimulatedFinger, turned_start,
+};
+use exploration::{
+    Confidence, ExploreError, Goal, Heading, Knowledge, Motion, Outcome, PlanError, Planner, Proposal,
+    Situation, Spending, Task, explore,
+};
+use glam::DVec3;
+use recon::shape_bounds::nearest;
+use recon::shape_bounds::planar::{ContactSample, Direction, ShapeBounds};
+use std::time::Instant;
+
+/// Any planner in the plane.
+pub type AnyPlanner = dyn Planner<PlanarKnowledge>;
+
+/// All that are compared. Those without a choice of start have the simplex.
+pub const PLANNERS: [Named<AnyPlanner>; 6] = [
+    Named { name: "path-aware", make: |seed| Box::new(PathAware::new(turned_start(5, seed))) },
+    Named { name: "area-greedy", make: |seed| Box::new(AreaGreedy::new(turned_start(5, seed))) },
+    Named { name: "Hausdorff-greedy", make: |seed| Box::new(HausdorffGreedy::new(turned_start(3, seed))) },
+    Named { name: "Gaussian process", make: |seed| Box::new(GaussianVariance::new(turned_start(3, seed))) },
+    Named { name: "golden-angle sweep", make: |seed| Box::new(FixedSweep::new(turned_start(3, seed))) },
+    Named { name: "random", make: |seed| Box::new(RandomTouches::new(turned_start(3, seed), seed)) },
+];
+
+/// Measures the time of another planner.
+struct Timed<'a> {
+    inner: &'a mut AnyPlanner,
+    seconds: f64,
+}
+
+impl Planner<PlanarKnowledge> for Timed<'_> {
+    fn name(&self) -> &'static str {
+        self.inner.name()
+    }
+
+    fn next(
+        &mut self,
+        situation: &Situation<'_, PlanarKnowledge>,
+    ) -> Result<Proposal<PlanarKnowledge>, PlanError> {
+        let start = Instant::now();
+        let proposal = self.inner.next(situation);
+        self.seconds += start.elapsed().as_secs_f64();
+        proposal
+    }
+}
+
+/// One run on a body with exact touches.
+///
+/// # Errors
+/// Those of the exploration.
+pub fn run(
+    make: fn(u64) -> Box<AnyPlanner>,
+    family: Family,
+    seed: u64,
+    goal: Goal<Direction>,
+    most: usize,
+) -> Result<Trace, ExploreError> {
+    let mut known = PlanarKnowledge::exact();
+    let mut finger = SimulatedFinger::new(outline(family, seed), Motion::Plane);
+    let mut inner = make(seed);
+    let mut planner = Timed { inner: &mut *inner, seconds: 0.0 };
+    let (mut progress, mut way, mut sum) = (Vec::new(), Vec::new(), 0.0);
+    explore(&mut known, &mut planner, &mut finger, &Task::new(goal, most), |step, _| {
+        sum += step.turned;
+        progress.push(step.progress);
+        way.push(sum);
+    })?;
+    Ok(Trace { family, progress, way, seconds: planner.seconds })
+}
+
+/// The runs of a planner on all bodies, to a gap.
+///
+/// # Errors
+/// The first error of a run.
+pub fn runs(
+    planner: &Named<AnyPlanner>,
+    bodies: Bodies,
+    gap: f64,
+    most: usize,
+) -> Result<Vec<Trace>, ExploreError> {
+    let all: Vec<_> = bodies.all().collect();
+    in_threads(&all, |(family, seed)| run(planner.make, *family, *seed, Goal::Gap(gap), most))
+        .into_iter()
+        .collect()
+}
+
+/// Mean width of a body in m.
+#[must_use]
+pub fn mean_width(body: &Outline) -> f64 {
+    let lattice = Direction::spread(720);
+    2.0 * lattice.iter().map(|u| body(*u).dot(u.get())).sum::<f64>() / lattice.len() as f64
+}
+
+/// What a run under noise came to.
+#[derive(Clone, Copy, Debug)]
+pub struct Certified {
+    /// Touches, if the goal was proven.
+    pub touches: Option<usize>,
+    /// Whether the body lies between the bounds.
+    pub holds: bool,
+    /// Whether the gap that is stated is no less than that of exact contacts at the same places.
+    pub bounds_gap: bool,
+}
+
+/// One run under noise: points off by `level` of the mean width per axis, normals by twice `level` rad.
+///
+/// # Errors
+/// Those of the exploration.
+pub fn certified_run(
+    family: Family,
+    seed: u64,
+    noise_seed: u64,
+    level: f64,
+    goal: f64,
+    spending: Spending,
+) -> Result<Certified, ExploreError> {
+    let body = outline(family, seed);
+    let point = level * mean_width(&body);
+    let normal = 2.0 * level;
+    let confidence = Confidence::new(0.95, spending)
+        .map_err(|reason| ExploreError::Knowledge(exploration::KnowledgeError::Confidence(reason)))?;
+    let mut known = PlanarKnowledge::noisy(Noise { point, normal, confidence });
+    let mut finger =
+        SimulatedFinger::new(outline(family, seed), Motion::Plane).with_noise(point, normal, noise_seed);
+    let mut planner = PathAware::new(turned_start(5, noise_seed));
+    let task = Task { spending: Some(spending), ..Task::new(Goal::Gap(goal), 400) };
+    let mut exact = Vec::new();
+    let ended = explore(&mut known, &mut planner, &mut finger, &task, |step, _| {
+        let along = step.proposal.along;
+        exact.push(ContactSample { point: body(along), normal: along });
+    })?;
+    let proven = ended.certificate().proven;
+    let touches = matches!(ended, Outcome::Reached(_)).then_some(known.touches());
+    let true_gap = ShapeBounds::from_contacts(&exact).map_or(1.0, |b| 1.0 - b.lower_area() / b.upper_area());
+    let holds = known.bounds().is_none_or(|bounds| between(&body, bounds));
+    Ok(Certified { touches, holds, bounds_gap: proven >= true_gap - 1e-12 })
+}
+
+/// Whether the body holds every corner of the lower bound and no half-plane of the upper one cuts it: exact, but for rounding.
+fn between(body: &Outline, bounds: &ShapeBounds) -> bool {
+    let support = |d: DVec3| Direction::new(d.truncate()).map_or(DVec3::ZERO, |d| body(d).extend(0.0));
+    let corners = bounds.lower().polygon().map_or(&[][..], |p| p.shape().vertices());
+    let inside = corners.iter().all(|v| nearest(v.extend(0.0), &[], support).certified <= 1e-12);
+    let around = |region: &recon::shape_bounds::planar::Region| {
+        region.shape().edges().all(|(a, b)| {
+            Direction::new(-(b - a).perp()).is_ok_and(|n| body(n).dot(n.get()) <= a.dot(n.get()) + 1e-12)
+        })
+    };
+    inside && bounds.upper().bounded().is_none_or(around)
+}

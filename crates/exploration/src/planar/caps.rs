@@ -1,0 +1,228 @@
+//! What lies between the bounds, piece by piece.
+
+use super::knowledge::Prospects;
+use crate::limits::Limits;
+use glam::DVec2;
+use shape_bounds::planar::{ConvexPolygon, Direction, ShapeBounds};
+
+/// Heights at which the body may meet the touch, as shares of the way between the bounds: the middles of three equal parts.
+const HEIGHTS: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
+/// Mean over [`HEIGHTS`] of the share of a triangle that a touch along the normal of its base takes off: `s` at the bottom, and
+/// `(1 - s)^2` at the top.
+const OF_A_TRIANGLE: f64 = 0.5 + 35.0 / 108.0;
+/// Directions out of reach that are named.
+const NAMED: usize = 8;
+
+/// A touch that may be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Candidate {
+    pub(super) along: Direction,
+    /// From the upper bound to the lower one.
+    pub(super) ray: [DVec2; 2],
+    /// Expected loss of area between the bounds in m^2, or length of the gap in m.
+    pub(super) score: f64,
+}
+
+/// Candidates within reach, in a fixed order, and the best ones out of reach.
+#[derive(Default)]
+pub(super) struct Candidates {
+    pub(super) within: Vec<Candidate>,
+    pub(super) out_of_reach: Vec<Candidate>,
+}
+
+impl Candidates {
+    pub(super) fn named_out_of_reach(&self) -> Vec<Vec<f64>> {
+        let mut lost = self.out_of_reach.clone();
+        lost.sort_by(|a, b| b.score.total_cmp(&a.score));
+        lost.iter().take(NAMED).map(|c| c.along.get().to_array().to_vec()).collect()
+    }
+
+    fn take(
+        &mut self,
+        candidate: Candidate,
+        prospects: &Prospects<'_>,
+        limits: &Limits<Direction>,
+        score: impl Fn(Direction) -> f64,
+    ) {
+        if limits.allow(candidate.along) {
+            let score = prospects.worth(candidate.along) * candidate.score;
+            self.within.push(Candidate { score, ..candidate });
+            return;
+        }
+        self.out_of_reach.push(candidate);
+        if let Some(along) = limits.nearest(candidate.along) {
+            let score = prospects.worth(along) * score(along);
+            self.within.push(Candidate { along, score, ..candidate });
+        }
+    }
+}
+
+/// For each edge of the lower bound the touch along its normal, with the area that it is expected to take off what is between the
+/// bounds beyond the edge: all of it is one triangle for exact contacts.
+pub(super) fn by_area(
+    bounds: &ShapeBounds,
+    prospects: &Prospects<'_>,
+    limits: &Limits<Direction>,
+) -> Candidates {
+    let mut found = Candidates::default();
+    let (Some(lower), Some(upper)) = (bounds.lower().polygon(), bounds.upper().bounded()) else {
+        // Without a lower bound of any area the farthest corner is the best there is.
+        return by_distance(bounds, prospects, limits);
+    };
+    let (lower, upper) = (lower.shape(), upper.shape());
+    let mut summit = 0;
+    for (a, b) in lower.edges() {
+        let Ok(along) = Direction::new(-(b - a).perp()) else { continue };
+        summit = climb(upper, along.get(), summit);
+        let top = upper.vertices()[summit];
+        let score = expected_loss(upper, [a, b], along, summit, prospects);
+        let candidate = Candidate { along, ray: [top, a.midpoint(b)], score };
+        found.take(candidate, prospects, limits, |near| loss_along(lower, upper, near, prospects));
+    }
+    found
+}
+
+/// For each corner of the upper bound the touch from its nearest point of the lower one, with their distance.
+pub(super) fn by_distance(
+    bounds: &ShapeBounds,
+    prospects: &Prospects<'_>,
+    limits: &Limits<Direction>,
+) -> Candidates {
+    let mut found = Candidates::default();
+    let gaps = bounds.gaps();
+    let middle = gaps.iter().map(|gap| gap.inner).sum::<DVec2>() / gaps.len().max(1) as f64;
+    for gap in gaps {
+        // Deeper than the nearest point, which may be a contact that a ray would only meet again.
+        let ray = [gap.outer, gap.inner.midpoint(middle)];
+        let candidate = Candidate { along: gap.direction, ray, score: gap.distance };
+        found.take(candidate, prospects, limits, |near| {
+            let (low, high) = bounds.support(near);
+            high - low - prospects.out - prospects.inwards
+        });
+    }
+    found
+}
+
+/// The corner farthest along `u`, from `start` around the outline.
+fn climb(shape: &ConvexPolygon, u: DVec2, start: usize) -> usize {
+    let (corners, count) = (shape.vertices(), shape.vertices().len());
+    let mut here = start;
+    for _ in 0..count {
+        let sides = [(here + 1) % count, (here + count - 1) % count];
+        let higher = sides.into_iter().find(|k| corners[*k].dot(u) > corners[here].dot(u));
+        match higher {
+            Some(next) => here = next,
+            None => break,
+        }
+    }
+    here
+}
+
+/// Expected loss of area by a touch along the normal of the edge `[a, b]` of the lower bound.
+fn expected_loss(
+    upper: &ConvexPolygon,
+    [a, b]: [DVec2; 2],
+    along: Direction,
+    summit: usize,
+    prospects: &Prospects<'_>,
+) -> f64 {
+    let u = along.get();
+    let (low, high) = (a.dot(u), upper.vertices()[summit].dot(u));
+    if high <= low {
+        return 0.0;
+    }
+    if prospects.out == 0.0 && prospects.inwards == 0.0 {
+        return OF_A_TRIANGLE * area_beyond(upper, u, low, summit);
+    }
+    let one = |share: f64| {
+        let height = low + share * (high - low);
+        let gained = 0.5 * a.distance(b) * (height - prospects.inwards - low).max(0.0);
+        area_beyond(upper, u, height + prospects.out, summit) + gained
+    };
+    HEIGHTS.into_iter().map(one).sum::<f64>() / HEIGHTS.len() as f64
+}
+
+/// The same along any direction: what the upper bound loses alone.
+fn loss_along(
+    lower: &ConvexPolygon,
+    upper: &ConvexPolygon,
+    along: Direction,
+    prospects: &Prospects<'_>,
+) -> f64 {
+    let u = along.get();
+    let summit = climb(upper, u, 0);
+    let (low, high) = (lower.support(along), upper.vertices()[summit].dot(u));
+    let one = |share: f64| area_beyond(upper, u, low + share * (high - low) + prospects.out, summit);
+    if high > low { HEIGHTS.into_iter().map(one).sum::<f64>() / HEIGHTS.len() as f64 } else { 0.0 }
+}
+
+/// Area of the polygon where `u . y > t`, by triangles from the summit to both sides.
+fn area_beyond(shape: &ConvexPolygon, u: DVec2, t: f64, summit: usize) -> f64 {
+    let (corners, count) = (shape.vertices(), shape.vertices().len());
+    let top = corners[summit];
+    if top.dot(u) <= t {
+        return 0.0;
+    }
+    let side = |step: usize| {
+        let mut area = 0.0;
+        let mut previous = top;
+        let mut at = summit;
+        for _ in 0..count {
+            at = (at + step) % count;
+            let (from, to) = (previous.dot(u) - t, corners[at].dot(u) - t);
+            let end = if to > 0.0 {
+                corners[at]
+            } else {
+                previous + (corners[at] - previous) * (from / (from - to))
+            };
+            area += (previous - top).perp_dot(end - top).abs();
+            previous = end;
+            if to <= 0.0 {
+                break;
+            }
+        }
+        (area, previous)
+    };
+    let ((forwards, left), (backwards, right)) = (side(1), side(count - 1));
+    0.5 * (forwards + backwards + (left - top).perp_dot(right - top).abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Source;
+    use shape_bounds::planar::{ContactSample, HalfPlane, Intersection};
+
+    /// Oracle: the upper bound made anew with one half-plane more.
+    #[test]
+    fn areas_beyond_a_line_are_those_of_a_new_bound() {
+        let mut source = Source::new(3);
+        let mut compared = 0;
+        for count in [4, 7, 20] {
+            let axes = DVec2::new(2.0, 1.0);
+            let contacts: Vec<ContactSample> = (0..count)
+                .map(|k| {
+                    let n =
+                        Direction::from_angle(f64::from(k) * 6.3 / f64::from(count) + 0.2 * source.unit());
+                    let point = axes * axes * n.get() / (axes * n.get()).length();
+                    ContactSample { point, normal: n }
+                })
+                .collect();
+            let bounds = ShapeBounds::from_contacts(&contacts).unwrap();
+            let Some(upper) = bounds.upper().bounded() else { continue };
+            for _ in 0..50 {
+                let along = Direction::from_angle(source.between(0.0, 7.0));
+                let (low, high) = bounds.support(along);
+                let t = source.between(low, high);
+                let summit = climb(upper.shape(), along.get(), 0);
+                let mut all: Vec<HalfPlane> = contacts.iter().map(ContactSample::half_plane).collect();
+                all.push(HalfPlane { point: along.get() * t, normal: along, margin: 0.0 });
+                let Ok(Intersection::Bounded(rest)) = Intersection::of(&all) else { panic!("open") };
+                let area = area_beyond(upper.shape(), along.get(), t, summit);
+                assert!((area - (upper.shape().area() - rest.shape().area())).abs() < 1e-12);
+                compared += 1;
+            }
+        }
+        assert!(compared >= 100);
+    }
+}

@@ -1,0 +1,80 @@
+//! A finger that touches a body which is computed.
+
+use super::PlanarKnowledge;
+use crate::finger::{Finger, Motion, TouchError};
+use crate::planner::Proposal;
+use crate::random::Source;
+use glam::{DVec2, DVec3};
+use shape_bounds::nearest;
+use shape_bounds::planar::ContactSample;
+use shape_bounds::planar::Direction;
+
+/// Touches the convex body whose farthest point along a direction is `support(direction)`, with seeded normal noise.
+pub struct SimulatedFinger<F> {
+    support: F,
+    motion: Motion,
+    point: f64,
+    normal: f64,
+    source: Source,
+}
+
+/// Steps along a ray at most: each takes the ray to a plane that separates it from the body.
+const STEPS: usize = 500;
+/// A ray has arrived when it is this near, relative to its length.
+const ARRIVED: f64 = 1e-12;
+
+impl<F: Fn(Direction) -> DVec2> SimulatedFinger<F> {
+    /// Without noise.
+    #[must_use]
+    pub fn new(support: F, motion: Motion) -> Self {
+        Self { support, motion, point: 0.0, normal: 0.0, source: Source::new(0) }
+    }
+
+    /// With normal noise: standard deviations of a point per axis, in m, and of a normal, in rad.
+    #[must_use]
+    pub fn with_noise(self, point: f64, normal: f64, seed: u64) -> Self {
+        Self { point, normal, source: Source::new(seed), ..self }
+    }
+
+    /// Where the ray from `from` towards `to` meets the body, and the normal there: steps to the plane that separates the ray's
+    /// end from the body (van den Bergen, "Ray casting against general convex objects", 2004).
+    fn cast(&self, from: DVec2, to: DVec2) -> Result<(DVec2, Direction), TouchError> {
+        let along = to - from;
+        let length = along.length();
+        // In the plane z = 0 of space, where the search for the nearest point is at home.
+        let support =
+            |d: DVec3| Direction::new(d.truncate()).map_or(DVec2::NAN, |d| (self.support)(d)).extend(0.0);
+        let (mut here, mut normal) = (from, None);
+        for _ in 0..STEPS {
+            let near = nearest(here.extend(0.0), &[], support);
+            let towards = near.direction.truncate();
+            let facing = towards.dot(along);
+            if near.certified <= ARRIVED * length {
+                break;
+            }
+            if facing >= 0.0 {
+                return Err(TouchError::Missed);
+            }
+            normal = Direction::new(towards).ok();
+            here -= along * (near.certified / facing);
+        }
+        let normal = normal.or_else(|| Direction::new(-along).ok()).ok_or(TouchError::Missed)?;
+        Ok((here, normal))
+    }
+}
+
+impl<F: Fn(Direction) -> DVec2> Finger<PlanarKnowledge> for SimulatedFinger<F> {
+    fn touch(&mut self, proposal: &Proposal<PlanarKnowledge>) -> Result<ContactSample, TouchError> {
+        let (point, normal) = match (self.motion, proposal.ray) {
+            (Motion::Ray, Some([from, to])) => self.cast(from, to)?,
+            _ => ((self.support)(proposal.along), proposal.along),
+        };
+        let tilt = normal.get().perp() * (self.source.normal() * self.normal);
+        let point = point + DVec2::new(self.source.normal(), self.source.normal()) * self.point;
+        let normal = Direction::new(normal.get() + tilt).map_err(|_| TouchError::NotFinite)?;
+        if !point.is_finite() {
+            return Err(TouchError::NotFinite);
+        }
+        Ok(ContactSample { point, normal })
+    }
+}

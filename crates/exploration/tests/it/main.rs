@@ -1,0 +1,9 @@
+//! Planners on bodies, from the first touch to the proof.
+//!
+//! One binary: each one more costs a link of everything.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
+
+mod closed_loop;
+mod oracle;
+mod reaching;

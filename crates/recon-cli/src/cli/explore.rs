@@ -1,0 +1,146 @@
+//! Arguments of `explore` and `next`.
+
+use super::{confidence, finite, not_negative};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// What decides where to touch.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub(crate) enum PlannerAs {
+    /// The nearest of the touches that pay nearly as much as the best: start here
+    PathAware,
+    /// The touch that is expected to shrink the volume (area) between the bounds most
+    Volume,
+    /// The touch where the bounds are furthest apart
+    Hausdorff,
+    /// Where a Gaussian process is least sure: to compare with
+    Gaussian,
+    /// A fixed sequence, spread evenly: to compare with
+    Sweep,
+    /// Any direction: to compare with
+    Random,
+}
+
+/// What is to be known, and how it is touched: of `explore` and `next`.
+#[derive(Args, Debug)]
+pub(crate) struct GoalArgs {
+    /// What decides where to touch [default: path-aware]
+    #[arg(long, value_enum)]
+    pub(crate) planner: Option<PlannerAs>,
+    /// Seed of what is drawn: the start's orientation, random touches, noise [default: 1]
+    #[arg(long)]
+    pub(crate) seed: Option<u64>,
+    /// Touches at most; the confidence is shared among so many [default: 60 in the plane, 200 in space]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) budget: Option<u32>,
+    /// Standard deviation per axis of the contact points, m [default: exact contacts]
+    #[arg(long, value_name = "M", requires = "normal_noise", value_parser = not_negative)]
+    pub(crate) contact_noise: Option<f64>,
+    /// Standard deviation of the normals about each tangent axis, rad
+    #[arg(long, value_name = "RAD", requires = "contact_noise", value_parser = not_negative)]
+    pub(crate) normal_noise: Option<f64>,
+    /// Confidence under noise, for all touches that may be made together [default: 0.95]
+    #[arg(long, value_parser = confidence)]
+    pub(crate) confidence: Option<f64>,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The object is that of the scene's [simulation], in space or in the plane. A planner that sees contacts alone says where it is
+touched; the lower bound is the hull of the contacts, the upper one the intersection of their half-spaces, and the gap what is
+between them over the upper one. Goals: gap=0.1, hausdorff=0.01 (largest distance of the bounds, m), width=0.001@1,0,0 (width
+along a direction, to within so many m).
+
+With --contact-noise and --normal-noise touches are noisy, and the bounds hold at the confidence for all touches of the budget
+together, however they are chosen and whenever the looking ends. A goal below what the noise leaves is refused.
+
+The output folder appears as a whole or not at all: contacts.csv, the bounds, summary.json (goal, proof, each touch and why), and
+report.html. `recon next` goes on from there.
+
+Examples:
+  recon explore scene.toml --until gap=0.1
+  recon explore scene.toml --until gap=0.2 --contact-noise 1e-3 --normal-noise 2e-3 -o out
+  recon explore scene.toml --until hausdorff=0.05 --planner hausdorff -o out
+  recon explore scene.toml --until width=0.001@0,0,1 --json | jq .proof")]
+pub(crate) struct ExploreArgs {
+    /// Scene file (TOML)
+    pub(crate) scene: PathBuf,
+    /// What is to be proven: gap=SHARE, hausdorff=M or width=M@X,Y,Z
+    #[arg(long, value_name = "GOAL", value_parser = until)]
+    pub(crate) until: Until,
+    #[command(flatten)]
+    pub(crate) goal: GoalArgs,
+    /// Touch along rays rather than with a plane (line)
+    #[arg(long)]
+    pub(crate) rays: bool,
+    /// Folder to write; what an earlier run wrote there and nobody changed is replaced
+    #[arg(short, long)]
+    pub(crate) output: Option<PathBuf>,
+    /// Write beside files in the folder that recon did not write; these are never replaced or removed
+    #[arg(long, requires = "output")]
+    pub(crate) force: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Reads contacts.csv (x, y, z and nx, ny, nz; in the plane x, y and nx, ny) from a folder of `recon explore`, or a file of contacts,
+to which contacts may have been added since, and prints JSON: whether the goal is proven, and else the direction along which to
+touch, a ray for a finger that moves on one, what the touch is expected to gain, and how many touches are expected in all. Goal and
+settings are those of the folder's summary.json unless they are given.
+
+Examples:
+  recon next out
+  recon next contacts.csv --until gap=0.1 | jq .action.along")]
+pub(crate) struct NextArgs {
+    /// Folder of `recon explore`, or contacts (CSV)
+    pub(crate) input: PathBuf,
+    /// What is to be proven: gap=SHARE, hausdorff=M or width=M@X,Y,Z [default: that of the folder]
+    #[arg(long, value_name = "GOAL", value_parser = until)]
+    pub(crate) until: Option<Until>,
+    #[command(flatten)]
+    pub(crate) goal: GoalArgs,
+}
+
+/// A goal as it is written on the command line.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Until {
+    /// `gap=SHARE`
+    Gap(f64),
+    /// `hausdorff=M`
+    Hausdorff(f64),
+    /// `width=M@X,Y,Z`
+    Width(f64, Vec<f64>),
+}
+
+/// Reads a goal.
+pub(crate) fn until(text: &str) -> Result<Until, String> {
+    let wrong = || format!("`{text}` is no goal; write gap=0.1, hausdorff=0.01 or width=0.001@1,0,0");
+    let (kind, value) = text.split_once('=').ok_or_else(wrong)?;
+    match kind {
+        "gap" => Ok(Until::Gap(finite(value)?)),
+        "hausdorff" => Ok(Until::Hausdorff(finite(value)?)),
+        "width" => {
+            let (within, along) = value.split_once('@').ok_or_else(wrong)?;
+            let along = along.split(',').map(|c| finite(c.trim())).collect::<Result<Vec<_>, _>>()?;
+            if matches!(along.len(), 2 | 3) { Ok(Until::Width(finite(within)?, along)) } else { Err(wrong()) }
+        }
+        _ => Err(wrong()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn goals_are_read_and_what_is_none_is_named() {
+        assert_eq!(until("gap=0.1"), Ok(Until::Gap(0.1)));
+        assert_eq!(until("hausdorff=1e-3"), Ok(Until::Hausdorff(1e-3)));
+        assert_eq!(until("width=0.5@0, 0,1"), Ok(Until::Width(0.5, vec![0.0, 0.0, 1.0])));
+        for wrong in
+            ["", "gap", "gap=", "gap=nan", "gap=inf", "width=1", "width=1@1", "width=1@1,2,3,4", "size=1"]
+        {
+            assert!(until(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,69 @@
+use crate::cli::ExploreArgs;
+use crate::console::Console;
+use crate::error::{CliError, Outcome};
+use crate::pipeline::{Explored, InPlane, InSpace, Settings, explored, goal_of, write_files_folder};
+use crate::progress::Progress;
+use glam::{DVec2, DVec3};
+use recon::contact_kinematics::planar::RadiusFunction;
+use recon::contact_kinematics::{Direction, SupportFunction};
+use recon::exploration::{Motion, planar, space};
+use recon::shape_bounds::planar as flat;
+use recon_io::{FolderTarget, PlanarScene, Scene, SceneErrorKind};
+use serde_json::Value;
+use std::slice;
+
+pub(crate) fn run(args: &ExploreArgs, console: &Console) -> Result<Outcome, CliError> {
+    let inputs = slice::from_ref(&args.scene);
+    let target =
+        args.output.as_ref().map(|folder| FolderTarget::new(folder, inputs, args.force)).transpose()?;
+    let progress = Progress::new(args.goal.budget.map_or(0, u64::from), console.is_json());
+    progress.step("reading the scene");
+    let made = match Scene::read(&args.scene) {
+        Ok(scene) => in_space(args, &scene, &progress)?,
+        Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => in_plane(args, &progress)?,
+        Err(error) => return Err(error.into()),
+    };
+    match target {
+        Some(folder) => write_files_folder(folder, &made.files, &made.figures)?,
+        None => made.drawn.check(&made.figures)?,
+    }
+    drop(progress);
+    console.result(&made.text, &made.figures)?;
+    Ok(made.exit)
+}
+
+fn motion(args: &ExploreArgs) -> Motion {
+    if args.rays { Motion::Ray } else { Motion::Plane }
+}
+
+fn title(args: &ExploreArgs) -> String {
+    args.scene.file_stem().map_or_else(|| "scene".to_owned(), |name| name.to_string_lossy().into_owned())
+}
+
+fn in_space(args: &ExploreArgs, scene: &Scene, progress: &Progress) -> Result<Explored, CliError> {
+    let nothing = || CliError::NothingToSimulate { path: args.scene.clone() };
+    let body = scene.simulation.as_ref().ok_or_else(nothing)?.body()?;
+    let settings = Settings::new(&args.goal, &Value::Null, 3);
+    let support = |n: Direction| -> DVec3 { body.point(n) };
+    let [point, normal] = settings.noise.map_or([0.0; 2], |(noise, _)| noise);
+    let mut finger =
+        space::SimulatedFinger::new(support, motion(args)).with_noise(point, normal, settings.seed);
+    let goal = goal_of::<InSpace>(&args.until)?;
+    // The scene's size is a mean radius.
+    let width = scene.size.map(|radius| 2.0 * radius);
+    progress.step("touching");
+    explored::<InSpace>(&title(args), goal, &settings, width, &mut finger, |_, words| progress.say(words))
+}
+
+fn in_plane(args: &ExploreArgs, progress: &Progress) -> Result<Explored, CliError> {
+    let scene = PlanarScene::read(&args.scene)?;
+    let body = &scene.world.object().shape;
+    let settings = Settings::new(&args.goal, &Value::Null, 2);
+    let support = |n: flat::Direction| -> DVec2 { body.point(n.angle()) };
+    let [point, normal] = settings.noise.map_or([0.0; 2], |(noise, _)| noise);
+    let mut finger =
+        planar::SimulatedFinger::new(support, motion(args)).with_noise(point, normal, settings.seed);
+    let goal = goal_of::<InPlane>(&args.until)?;
+    progress.step("touching");
+    explored::<InPlane>(&title(args), goal, &settings, None, &mut finger, |_, words| progress.say(words))
+}

@@ -1,0 +1,39 @@
+use crate::cli::NextArgs;
+use crate::console::Console;
+use crate::error::{CliError, Outcome};
+use crate::pipeline::{InPlane, InSpace, Settings, goal_of, next_touch, until_of};
+use recon_io::{Touches, read_touches};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+pub(crate) fn run(args: &NextArgs) -> Result<Outcome, CliError> {
+    let (contacts, earlier) = inputs(&args.input)?;
+    let until = args.until.clone().or_else(|| until_of(&earlier));
+    let until = until.ok_or_else(|| CliError::NoGoal { path: args.input.clone() })?;
+    let (told, exit) = match read_touches(&contacts)? {
+        Touches::Contacts { curves, .. } => {
+            let settings = Settings::new(&args.goal, &earlier, 3);
+            next_touch::<InSpace>(&curves.concat(), goal_of::<InSpace>(&until)?, &settings)?
+        }
+        Touches::PlanarContacts { curves, .. } => {
+            let settings = Settings::new(&args.goal, &earlier, 2);
+            next_touch::<InPlane>(&curves.concat(), goal_of::<InPlane>(&until)?, &settings)?
+        }
+        Touches::Poses(_) => return Err(CliError::PosesExplored { path: contacts }),
+    };
+    // For a program in any case: there is nothing else to say.
+    Console::new(true).result("", &told)?;
+    Ok(exit)
+}
+
+/// The file of contacts, and the summary beside it where a folder is named.
+fn inputs(input: &Path) -> Result<(PathBuf, Value), CliError> {
+    if !input.is_dir() {
+        return Ok((input.to_owned(), Value::Null));
+    }
+    let path = input.join("summary.json");
+    let wrong = |what: String| CliError::NotExplored { path: path.clone(), what };
+    let text = std::fs::read_to_string(&path).map_err(|e| wrong(e.to_string()))?;
+    let summary = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+    Ok((input.join("contacts.csv"), summary))
+}

@@ -1,0 +1,101 @@
+//! What an exploration is asked to do, from the command line and from the summary of an earlier one.
+
+use super::Side;
+use crate::cli::{GoalArgs, PlannerAs, Until, until};
+use crate::error::CliError;
+use clap::ValueEnum;
+use recon::exploration::{Confidence, Goal, Heading, Knowledge, Spending};
+use serde_json::{Value, json};
+
+const CONFIDENCE: f64 = 0.95;
+/// Touches at most in the plane and in space: some four times what ten and twenty per cent take.
+const BUDGETS: [u32; 2] = [60, 200];
+
+/// Everything but the goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Settings {
+    pub(crate) planner: PlannerAs,
+    pub(crate) seed: u64,
+    pub(crate) budget: usize,
+    /// Standard deviations of points (m) and normals (rad), and the confidence.
+    pub(crate) noise: Option<([f64; 2], f64)>,
+}
+
+impl Settings {
+    /// As given, else as in the summary of an earlier exploration, else as always.
+    pub(crate) fn new(args: &GoalArgs, earlier: &Value, dimension: usize) -> Self {
+        let was = &earlier["settings"];
+        let number = |key: &str| was[key].as_f64();
+        let planner = was["planner"].as_str().and_then(|name| PlannerAs::from_str(name, false).ok());
+        let given = args.contact_noise.zip(args.normal_noise);
+        let noise = given.or_else(|| number("contact_noise_m").zip(number("normal_noise_rad")));
+        let confidence = args.confidence.or_else(|| number("confidence")).unwrap_or(CONFIDENCE);
+        let always = BUDGETS[usize::from(dimension == 3)];
+        let budget = args.budget.map(u64::from).or_else(|| was["budget"].as_u64());
+        Self {
+            planner: args.planner.or(planner).unwrap_or(PlannerAs::PathAware),
+            seed: args.seed.or_else(|| was["seed"].as_u64()).unwrap_or(1),
+            budget: budget.unwrap_or(u64::from(always)) as usize,
+            noise: noise.map(|(point, normal)| ([point, normal], confidence)),
+        }
+    }
+
+    /// As [`Settings::new`] reads them.
+    pub(crate) fn figures(&self) -> Value {
+        let planner = self.planner.to_possible_value();
+        let mut figures = json!({
+            "planner": planner.as_ref().map_or("", |p| p.get_name()),
+            "seed": self.seed,
+            "budget": self.budget,
+        });
+        if let Some(([point, normal], confidence)) = self.noise {
+            figures["contact_noise_m"] = point.into();
+            figures["normal_noise_rad"] = normal.into();
+            figures["confidence"] = confidence.into();
+        }
+        figures
+    }
+
+    /// How the confidence is shared; none for exact contacts.
+    pub(crate) fn spending(&self) -> Option<Spending> {
+        self.noise.map(|_| Spending::Budget(self.budget))
+    }
+
+    /// Noise of contacts with the confidence of the bounds.
+    pub(crate) fn stated_noise(&self) -> Result<Option<([f64; 2], Confidence)>, CliError> {
+        let stated = |(noise, level)| {
+            Confidence::new(level, Spending::Budget(self.budget)).map(|confidence| (noise, confidence))
+        };
+        Ok(self.noise.map(stated).transpose()?)
+    }
+}
+
+type HeadingOf<S> = <<S as Side>::Known as Knowledge>::Heading;
+
+/// The goal on one side.
+pub(crate) fn goal_of<S: Side>(asked: &Until) -> Result<Goal<HeadingOf<S>>, CliError> {
+    Ok(match asked {
+        Until::Gap(gap) => Goal::Gap(*gap),
+        Until::Hausdorff(distance) => Goal::Hausdorff(*distance),
+        Until::Width(within, along) => Goal::Width {
+            along: S::heading(along).map_err(|what| CliError::Goal(format!("its direction {what}")))?,
+            within: *within,
+        },
+    })
+}
+
+/// The goal as text, as [`until`] reads it.
+pub(super) fn words_of<H: Heading>(goal: &Goal<H>) -> String {
+    match goal {
+        Goal::Width { along, within } => {
+            let along: Vec<String> = along.coordinates().iter().map(f64::to_string).collect();
+            format!("width={within}@{}", along.join(","))
+        }
+        other => format!("{}={}", other.kind(), other.value()),
+    }
+}
+
+/// The goal of an earlier exploration.
+pub(crate) fn until_of(earlier: &Value) -> Option<Until> {
+    earlier["goal"]["until"].as_str().and_then(|text| until(text).ok())
+}

@@ -1,0 +1,138 @@
+//! Where to touch next, from a scene to a proof.
+
+use crate::common::Scratch;
+use serde_json::Value;
+
+const SPACE: &str = include_str!("../../scenes/fig5.toml");
+const PLANE: &str = r#"
+plane = true
+gravity = 9.81
+[object]
+mass = 0.2
+inertia = 1e-4
+[palms]
+friction = 0.3
+[[palm]]
+kind = "line"
+pose = { position = [0.0, 0.0], angle_deg = 10.0 }
+[simulation]
+duration = 1.0
+sample_rate = 1000.0
+position = [0.0, 0.05]
+touches = [1]
+shape = { kind = "ellipse", semi_axes = [0.05, 0.03] }
+"#;
+
+fn scratch(name: &str) -> Scratch {
+    let scratch = Scratch::new(name);
+    scratch.write("space.toml", SPACE).write("plane.toml", PLANE);
+    scratch
+}
+
+fn json(scratch: &Scratch, arguments: &[&str], code: i32) -> Value {
+    let run = scratch.run(arguments);
+    assert_eq!(run.code, Some(code), "{arguments:?} {}{}", run.stdout, run.stderr);
+    serde_json::from_str(&run.stdout).unwrap()
+}
+
+#[test]
+fn an_object_is_touched_until_its_gap_is_proven_and_the_folder_holds() {
+    let scratch = scratch("explore");
+    for (scene, gap, most, size, truth) in [
+        ("plane.toml", "gap=0.1", 12, "area_m2", std::f64::consts::PI * 0.05 * 0.03),
+        ("space.toml", "gap=0.25", 40, "volume_m3", 4.0 / 3.0 * std::f64::consts::PI * 2.5 * 2.0),
+    ] {
+        let made = json(&scratch, &["explore", scene, "--until", gap, "-o", "out", "--json"], 0);
+        assert_eq!(made["proof"]["reached"], true);
+        let touches = made["proof"]["touches"].as_u64().unwrap();
+        assert!(touches <= most && made["touches"].as_array().unwrap().len() as u64 == touches);
+        let [lower, upper] =
+            ["lower", "upper"].map(|name| made["bounds"][format!("{name}_{size}")].as_f64().unwrap());
+        assert!(lower < truth && truth < upper, "{lower} {truth} {upper}");
+        let proven = made["proof"]["at_most"].as_f64().unwrap();
+        assert!((1.0 - lower / upper - proven).abs() < 1e-12);
+        assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
+        let page = scratch.read("out/report.html");
+        assert!(page.contains("Gap over touches") && page.contains("Bounds over touches"));
+        assert!(page.contains("<td>next</td>"));
+        // What is done needs no further touch; a finer goal does, and the folder's settings are kept.
+        assert_eq!(json(&scratch, &["next", "out"], 0)["done"], true);
+        let next = json(&scratch, &["next", "out", "--until", "gap=0.05"], 0);
+        assert_eq!((&next["done"], next["touches"].as_u64()), (&Value::Bool(false), Some(touches)));
+        assert!(next["touches_predicted"].as_u64().unwrap() > touches);
+        let along: Vec<f64> =
+            next["action"]["along"].as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).collect();
+        assert!((along.iter().map(|c| c * c).sum::<f64>() - 1.0).abs() < 1e-12, "{along:?}");
+        assert!(next["action"]["ray"]["from_m"].is_array());
+    }
+}
+
+/// `next` after each touch, by hand, is what `explore` does in one go.
+#[test]
+fn the_loop_can_be_closed_by_whoever_has_the_finger() {
+    let scratch = scratch("explore-by-hand");
+    let made = json(&scratch, &["explore", "plane.toml", "--until", "gap=0.1", "-o", "out", "--json"], 0);
+    let all = scratch.read("out/contacts.csv");
+    let lines: Vec<&str> = all.lines().collect();
+    for known in 5..lines.len() - 1 {
+        scratch.write("so-far.csv", &(lines[..=known].join("\n") + "\n"));
+        let next = json(&scratch, &["next", "so-far.csv", "--until", "gap=0.1"], 0);
+        let along = |value: &Value| -> Vec<f64> {
+            value.as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).collect()
+        };
+        let (told, made) = (along(&next["action"]["along"]), along(&made["touches"][known]["along"]));
+        assert!(
+            told.iter().zip(&made).all(|(a, b)| (a - b).abs() < 1e-9),
+            "touch {known}: {told:?} {made:?}"
+        );
+    }
+}
+
+#[test]
+fn noise_is_proven_against_and_what_it_forbids_is_refused() {
+    let scratch = scratch("explore-noise");
+    let noise = ["--contact-noise", "4.5e-3", "--normal-noise", "2e-3"];
+    let with = |rest: &[&'static str]| [&["explore", "space.toml", "--json"], rest, &noise].concat();
+    let made = json(&scratch, &with(&["--until", "gap=0.3", "-o", "out"]), 0);
+    assert_eq!(made["proof"]["confidence"], 0.95);
+    assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
+    assert_eq!(json(&scratch, &["next", "out"], 0)["confidence"], 0.95);
+    let refused = scratch.run(&with(&["--until", "gap=0.01"]));
+    assert_eq!(refused.code, Some(3));
+    assert!(refused.stderr.contains("below what the noise leaves"), "{}", refused.stderr);
+    // A budget that is too small ends with what is proven, and says so.
+    let short = json(&scratch, &with(&["--until", "gap=0.2", "--budget", "12"]), 4);
+    assert_eq!(
+        (short["proof"]["reached"].as_bool(), short["proof"]["touches"].as_u64()),
+        (Some(false), Some(12))
+    );
+    assert!(short["warnings"][0].as_str().unwrap().contains("all touches that were allowed for"));
+}
+
+#[test]
+fn other_goals_planners_and_fingers_are_taken_and_bad_ones_named() {
+    let scratch = scratch("explore-goals");
+    let width = json(&scratch, &["explore", "space.toml", "--until", "width=1e-6@0,0,1", "--json"], 0);
+    assert_eq!(width["proof"]["touches"], 6);
+    for planner in ["volume", "hausdorff", "gaussian", "sweep", "random"] {
+        let arguments =
+            ["explore", "plane.toml", "--until", "gap=0.3", "--planner", planner, "--rays", "--json"];
+        assert_eq!(json(&scratch, &arguments, 0)["settings"]["planner"], planner);
+    }
+    for (goal, words, code) in [
+        ("gap=0", "goal 0", 3),
+        ("gap=-1", "no gap is below 0", 3),
+        ("gap", "is no goal", 2),
+        ("width=0.1@0,1", "in space it has three", 3),
+        ("width=0.1@0,0,0", "direction", 3),
+    ] {
+        let run = scratch.run(&["explore", "space.toml", "--until", goal]);
+        assert_eq!(run.code, Some(code), "{goal}: {}", run.stderr);
+        assert!(run.stderr.contains(words), "{goal}: {}", run.stderr);
+    }
+    let run = scratch.run(&["next", "nothing-here.csv", "--until", "gap=0.1"]);
+    assert_eq!(run.code, Some(3));
+    scratch.write("contacts.csv", "x,y,nx,ny\n1,0,1,0\n");
+    let run = scratch.run(&["next", "contacts.csv"]);
+    assert!(run.code == Some(3) && run.stderr.contains("--until"), "{}", run.stderr);
+}

@@ -1,0 +1,138 @@
+//! The page of an exploration: what is proven, what each touch brought, where the next one would be.
+
+use super::contacts::page::{STYLE, fact};
+use super::encode::level;
+use super::page::{escape_text, fill, head};
+use super::{Level, Verdict};
+use crate::number::brief_to;
+use crate::planar_figures::{FigurePanel, write_figures};
+use std::io::{self, Write};
+
+const PAGE: &str = include_str!("assets/exploration.html");
+/// Wide tables scroll, and numbers stand under each other.
+const TABLE: &str = "\n#touches td { font-variant-numeric: tabular-nums; white-space: nowrap; }\n";
+
+/// One touch, as the table of the page shows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchRow {
+    /// Number of the touch; none for one that is yet to be made.
+    pub touch: Option<usize>,
+    /// Why there.
+    pub why: String,
+    /// Unit vector along which the body was touched.
+    pub along: Vec<f64>,
+    /// Where it was met, in m; none for one that is yet to be made.
+    pub point: Option<Vec<f64>>,
+    /// Way from the touch before, in rad.
+    pub turned: f64,
+    /// What it was expected to gain, in the unit of the progress.
+    pub expected: Option<f64>,
+    /// What it gained.
+    pub gained: Option<f64>,
+    /// What is left after it.
+    pub progress: Option<f64>,
+}
+
+/// What the page shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExplorationPage {
+    /// Title.
+    pub title: String,
+    /// What is proven, in a sentence.
+    pub verdict: Verdict,
+    /// Key figures: name, value, unit.
+    pub facts: Vec<(&'static str, String, &'static str)>,
+    /// What the touches are to bring down, as the head of its column.
+    pub progress: String,
+    /// Pictures, two in a row.
+    pub panels: Vec<FigurePanel>,
+    /// What the pictures show.
+    pub caption: String,
+    /// Touches in order, the next one last.
+    pub touches: Vec<TouchRow>,
+}
+
+/// Writes an exploration as one HTML page that needs nothing else.
+///
+/// # Errors
+/// Those of `to`.
+pub fn write_exploration_report(page: &ExplorationPage, to: impl Write) -> io::Result<()> {
+    let mut curves = Vec::new();
+    write_figures(&page.panels, &mut curves)?;
+    let word = match page.verdict.level {
+        Level::Good => "Proven",
+        Level::Caution => "Not proven",
+        Level::Bad => "Refused",
+        Level::Neutral => "Note",
+    };
+    let verdict = format!(
+        "<p class=\"notice {}\"><strong>{word}</strong>{}</p>\n",
+        level(page.verdict.level),
+        escape_text(&page.verdict.text)
+    );
+    let parts = [
+        ("head", head(&page.title, &(STYLE.to_owned() + TABLE))?),
+        ("title", escape_text(&page.title)),
+        ("verdict", verdict),
+        ("facts", page.facts.iter().map(fact).collect()),
+        ("curves", String::from_utf8_lossy(&curves).into_owned()),
+        ("caption", escape_text(&page.caption)),
+        ("progress", escape_text(&page.progress)),
+        ("touches", page.touches.iter().map(row).collect()),
+    ];
+    fill(PAGE, &parts, to)
+}
+
+fn row(touch: &TouchRow) -> String {
+    let vector = |v: &[f64]| v.iter().map(|c| format!("{c:.3}")).collect::<Vec<_>>().join(", ");
+    let optional = |v: Option<f64>| v.map_or_else(|| "–".to_owned(), |v| brief_to(3, v));
+    let cells = [
+        touch.touch.map_or_else(|| "next".to_owned(), |n| n.to_string()),
+        escape_text(&touch.why),
+        vector(&touch.along),
+        touch.point.as_ref().map_or_else(|| "–".to_owned(), |p| vector(p)),
+        format!("{:.2}", touch.turned),
+        optional(touch.expected),
+        optional(touch.gained),
+        optional(touch.progress),
+    ];
+    let cells: String = cells.iter().map(|cell| format!("<td>{cell}</td>")).collect();
+    format!("        <tr>{cells}</tr>\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_holds_every_touch_and_loads_nothing() {
+        let touch = TouchRow {
+            touch: Some(1),
+            why: "a < b".to_owned(),
+            along: vec![0.0, 1.0],
+            point: Some(vec![0.25, 2.0]),
+            turned: 0.5,
+            expected: None,
+            gained: Some(0.125),
+            progress: Some(0.25),
+        };
+        let next = TouchRow { touch: None, point: None, gained: None, progress: None, ..touch.clone() };
+        let page = ExplorationPage {
+            title: "An <egg>".to_owned(),
+            verdict: Verdict { level: Level::Good, text: "gap & all".to_owned() },
+            facts: vec![("Touches", "1".to_owned(), "")],
+            progress: "Gap".to_owned(),
+            panels: vec![FigurePanel::default()],
+            caption: "c".to_owned(),
+            touches: vec![touch, next],
+        };
+        let mut out = Vec::new();
+        write_exploration_report(&page, &mut out).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert!(
+            text.contains("An &lt;egg&gt;") && text.contains("gap &amp; all") && text.contains("a &lt; b")
+        );
+        assert!(text.contains("<td>0.250, 2.000</td>") && text.contains("<td>next</td>"));
+        assert!(!text.contains("{{") && !text.contains("http-equiv=\"refresh\"") && !text.contains("src="));
+    }
+}
