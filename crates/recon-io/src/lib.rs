@@ -36,10 +36,10 @@ pub use export::{
     ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel, SceneModel,
 };
 pub use log::{
-    AnyLog, ContactRows, LogFileError, LogFileErrorKind, LogReader, PalmSetup, PlaneRows, parse_any_log,
-    parse_contact_log, parse_log, parse_planar_contact_log, parse_planar_log, read_any_log, read_contact_log,
-    read_log, read_planar_contact_log, read_planar_log, write_contact_log, write_log,
-    write_planar_contact_log, write_planar_log,
+    AnyLog, ContactRows, LogFileError, LogFileErrorKind, LogReader, PalmSetup, PlaneRows, RowReader,
+    RowSample, log_of_columns, parse_any_log, parse_contact_log, parse_log, parse_planar_contact_log,
+    parse_planar_log, read_any_log, read_contact_log, read_log, read_planar_contact_log, read_planar_log,
+    write_contact_log, write_log, write_planar_contact_log, write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use number::{brief, brief_to, with_brief_numbers};
@@ -63,5 +63,5 @@ pub use summary::{INERTIA_LEARNED, estimate_summary, summary};
 pub use table::{write_contact_curves, write_estimated_motion, write_motion, write_radius_functions};
 pub use touches::{
     Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,
-    read_contacts, read_touches, write_contacts,
+    read_contacts, read_touches, touches_of_columns, write_contacts,
 };
