@@ -37,16 +37,7 @@ impl Console {
 
     /// Prints an error with its chain of causes.
     pub(crate) fn error(&self, error: &CliError) {
-        let mut causes = Vec::new();
-        let mut cause = error.source();
-        while let Some(inner) = cause {
-            // Some errors print their source as a part of their own text; then it is not said twice.
-            let text = inner.to_string();
-            if !causes.last().is_some_and(|last: &String| last.contains(&text)) {
-                causes.push(text);
-            }
-            cause = inner.source();
-        }
+        let causes = causes(error);
         let text = if self.json {
             format!("{:#}", json!({ "error": error.to_string(), "causes": causes }))
         } else {
@@ -58,6 +49,21 @@ impl Console {
         };
         let _ = writeln!(io::stderr().lock(), "{text}");
     }
+}
+
+/// What an error says was its cause, and the cause of that.
+pub(crate) fn causes(error: &CliError) -> Vec<String> {
+    let mut causes = Vec::new();
+    let mut cause = error.source();
+    while let Some(inner) = cause {
+        // Some errors print their source as a part of their own text; then it is not said twice.
+        let text = inner.to_string();
+        if !causes.last().is_some_and(|last: &String| last.contains(&text)) {
+            causes.push(text);
+        }
+        cause = inner.source();
+    }
+    causes
 }
 
 /// A reader that has gone away, such as `head`, has had what it wanted.

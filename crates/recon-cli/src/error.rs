@@ -13,7 +13,6 @@ use recon_io::{
     TouchesError,
 };
 use std::path::PathBuf;
-use std::process::ExitCode;
 use thiserror::Error;
 
 /// How a command ended that did not fail.
@@ -26,10 +25,10 @@ pub(crate) enum Outcome {
 }
 
 impl Outcome {
-    pub(crate) fn exit_code(self) -> ExitCode {
+    pub(crate) fn code(self) -> u8 {
         match self {
-            Self::Done => ExitCode::SUCCESS,
-            Self::WithReservations => ExitCode::from(4),
+            Self::Done => 0,
+            Self::WithReservations => 4,
         }
     }
 }
@@ -200,8 +199,8 @@ pub(crate) enum CliError {
 
 impl CliError {
     /// The code of each kind is told in `recon --help`.
-    pub(crate) fn exit_code(&self) -> ExitCode {
-        ExitCode::from(match self {
+    pub(crate) fn code(&self) -> u8 {
+        match self {
             Self::Output(OutputError::Certificate { .. })
             | Self::Picture(_)
             | Self::Facets(_)
@@ -263,6 +262,6 @@ impl CliError {
             Self::Option { .. } | Self::MappingOfNoBag { .. } => 2,
             Self::Output(_) | Self::StandardOutput(_) => 5,
             Self::Interrupted => 130,
-        })
+        }
     }
 }

@@ -1,47 +1,13 @@
-//! `recon reconstruct` on logs of contacts of any palms.
+//! What `recon reconstruct` says of contacts of any palms.
 
 use super::reconstruct::bounds_and_errors;
-use crate::cli::ReconstructArgs;
-use crate::console::Console;
-use crate::error::{CliError, Outcome};
-use crate::pipeline::{
-    AnyPalmsRequest, LogStand, as_planes, bag_of_any_palms, describe_times, estimate_any_palms, exported,
-    write_estimate_folder,
-};
-use crate::progress::Progress;
-use recon::object_dynamics::{ContactLog, SensorLog};
-use recon_io::{EstimateData, FolderTarget, Level, brief, brief_to, estimated_mode_spans};
+use crate::pipeline::describe_times;
+use recon_io::{EstimateData, brief, brief_to, estimated_mode_spans};
 use serde_json::Value;
 use std::fmt::Write;
-use std::path::Path;
 
-pub(super) fn run(
-    args: &ReconstructArgs,
-    (log, request, stand): (ContactLog, AnyPalmsRequest<'_>, LogStand),
-    planes: Option<&SensorLog>,
-    (target, progress): (FolderTarget, Progress),
-    console: &Console,
-) -> Result<Outcome, CliError> {
-    let scene = request.scene;
-    let made = estimate_any_palms(log, request, &progress)?;
-    progress.step("writing the results");
-    let files = match args.export.is_empty() {
-        true => Vec::new(),
-        false => exported(&made.object()?, &args.export, args.export_shape)?,
-    };
-    let mut extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
-    if args.mcap {
-        extras.push(bag_of_any_palms(&made, stand)?);
-    }
-    let page = planes.map(|planes| as_planes(&made, planes, scene)).transpose()?;
-    let (mut figures, data) = (write_estimate_folder(target, &made, page.as_ref(), &extras)?, &made.data);
-    drop(progress);
-    figures["folder"] = args.output.to_string_lossy().into();
-    console.result(&describe(data, &figures, &args.output), &figures)?;
-    Ok(if data.verdict.level == Level::Good { Outcome::Done } else { Outcome::WithReservations })
-}
-
-fn describe(data: &EstimateData, figures: &Value, folder: &Path) -> String {
+/// What contacts of any palms tell, in words; `figures` are those of its summary.
+pub(super) fn describe(data: &EstimateData, figures: &Value) -> String {
     let found = &data.estimate;
     let mut text = format!("{}\n{}\n", data.verdict.text, data.note);
     for warning in &data.warnings {
@@ -73,6 +39,6 @@ fn describe(data: &EstimateData, figures: &Value, folder: &Path) -> String {
     let spans: Vec<_> =
         (0..data.log.palms().len()).map(|palm| estimated_mode_spans(data.log.times(), found, palm)).collect();
     let times = describe_times(&spans);
-    let _ = write!(text, "{}\n{}", times.trim_start_matches('\n'), folder.join("report.html").display());
+    let _ = writeln!(text, "{}", times.trim_start_matches('\n'));
     text
 }

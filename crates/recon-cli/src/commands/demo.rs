@@ -3,7 +3,7 @@ use crate::cli::{DemoArgs, DemoScene};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
-    reconstruct, simulate, simulate_contacts, write_contact_folder, write_reconstruction_folder,
+    Estimated, normal_forces, reconstruct, simulate, simulate_contacts, write_contact_folder,
 };
 use crate::progress::Progress;
 use recon_io::{FolderTarget, Scene, SceneError, SceneModel, write_log};
@@ -39,10 +39,12 @@ fn fig5(args: &DemoArgs, text: &str, console: &Console) -> Result<Outcome, CliEr
     let title = "An ellipsoid on three palms (Fig. 5 of Moll and Erdmann, 2002)";
     let mut log = Vec::new();
     write_log(&simulated.log, &mut log).map_err(CliError::StandardOutput)?;
+    let forces = normal_forces(&simulated.log);
     let made = reconstruct(simulated.log, &scene, title, (false, 1), &progress)?;
     progress.step("writing the results");
     let extras = [(SCENE.to_owned(), text.into()), ("log.csv".to_owned(), log)];
-    let figures = write_reconstruction_folder(target, &made, &extras)?;
+    let made = Estimated::Planes(Box::new(made), forces);
+    let figures = made.write(target, &extras)?;
     drop(progress);
     tell(console, &made, figures, &args.output)
 }

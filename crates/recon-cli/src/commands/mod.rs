@@ -1,16 +1,16 @@
 //! The commands: from arguments to files and words.
 
 mod any_palms;
-mod bounds;
+pub(crate) mod bounds;
 mod check;
 mod demo;
 mod export;
-mod follow;
+pub(crate) mod follow;
 mod inspect;
 mod planar;
 mod plane;
-mod reconstruct;
-mod simulate;
+pub(crate) mod reconstruct;
+pub(crate) mod simulate;
 mod without_forces;
 
 use crate::cli::Command;

@@ -1,10 +1,7 @@
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{
-    AnyPalmsRequest, LogOf, LogSource, ReadLog, Reconstruction, bag_of_planes, condensed, exported,
-    noisy_planes, normal_forces, read_log, reconstruct, refuse_unfelt, sentence, write_reconstruction_folder,
-};
+use crate::pipeline::{Asked, Estimated, LogSource, Reconstruction, estimated, read_log};
 use crate::progress::Progress;
 use recon_io::{Bounds, FolderTarget, Scene, brief, brief_to};
 use serde_json::Value;
@@ -20,38 +17,13 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let progress = Progress::new(4, console.is_json());
     progress.step("reading the log");
     let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
-    let ReadLog { log, warnings, stand } = read_log(source(args, &scene), console)?;
-    let mut request = AnyPalmsRequest::new(&scene, &title, args.identify);
-    let log = match log {
-        LogOf::ThreePalms(log) => log,
-        LogOf::AnyPalms(log, why) => {
-            refuse_unfelt(&log, &args.log, &why)?;
-            request.warnings = warnings;
-            request.note = sentence(&format!("{why}; the estimate is that from contacts of any palms"));
-            return super::any_palms::run(args, (*log, request, stand), None, (target, progress), console);
-        }
-    };
-    let (log, together) = condensed(log);
-    if let Some(contacts) = noisy_planes(&log, &scene)? {
-        request.of_noisy_planes(&log, together, warnings);
-        return super::any_palms::run(
-            args,
-            (contacts, request, stand),
-            Some(&log),
-            (target, progress),
-            console,
-        );
-    }
-    let forces = normal_forces(&log);
-    let mut made = reconstruct(log, &scene, &title, (args.identify, together), &progress)?;
-    made.data.warnings.extend(warnings);
+    let read = read_log(source(args, &scene), console)?;
+    let stand = read.stand;
+    let asked = Asked { path: &args.log, scene: &scene, title: &title, identify: args.identify };
+    let made = estimated(read, &asked, &progress)?;
     progress.step("writing the results");
-    let files = exported(&made.object(), &args.export, args.export_shape)?;
-    let mut extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
-    if args.mcap {
-        extras.push(bag_of_planes(&made, &forces, stand)?);
-    }
-    let figures = write_reconstruction_folder(target, &made, &extras)?;
+    let extras = made.extras(&args.export, args.export_shape, args.mcap.then_some(stand))?;
+    let figures = made.write(target, &extras)?;
     drop(progress);
     tell(console, &made, figures, &args.output)
 }
@@ -71,16 +43,25 @@ pub(super) fn target(args: &ReconstructArgs) -> Result<FolderTarget, CliError> {
 /// Prints what came out.
 pub(super) fn tell(
     console: &Console,
-    made: &Reconstruction,
+    made: &Estimated,
     mut figures: Value,
     folder: &Path,
 ) -> Result<Outcome, CliError> {
     figures["folder"] = folder.to_string_lossy().into();
-    console.result(&describe(made, &figures, folder), &figures)?;
+    let text = format!("{}{}", describe(made, &figures), folder.join("report.html").display());
+    console.result(&text, &figures)?;
     Ok(if made.is_reliable() { Outcome::Done } else { Outcome::WithReservations })
 }
 
-fn describe(made: &Reconstruction, figures: &Value, folder: &Path) -> String {
+/// What came out, in words; `figures` are those of its summary.
+pub(crate) fn describe(made: &Estimated, figures: &Value) -> String {
+    match made {
+        Estimated::Planes(made, _) => of_planes(made, figures),
+        Estimated::AnyPalms(made, _) => super::any_palms::describe(&made.data, figures),
+    }
+}
+
+fn of_planes(made: &Reconstruction, figures: &Value) -> String {
     let data = &made.data;
     let mut text = format!("{}\n", data.verdict.text);
     for warning in &data.warnings {
@@ -95,7 +76,6 @@ fn describe(made: &Reconstruction, figures: &Value, folder: &Path) -> String {
     for (name, value) in bounds_and_errors(data.bounds.as_ref(), figures) {
         line(name, value);
     }
-    let _ = write!(text, "{}", folder.join("report.html").display());
     text
 }
 

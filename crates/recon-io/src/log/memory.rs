@@ -61,14 +61,14 @@ pub struct RowReader {
 
 enum Format {
     ThreePalms(Box<Columns>),
-    Contacts(ContactColumns, Vec<PalmSetup>),
+    Contacts(Box<ContactColumns>, Vec<PalmSetup>),
 }
 
 /// What a row of a log says.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RowSample {
     /// Version 1.
-    ThreePalms(Sample),
+    ThreePalms(Box<Sample>),
     /// Version 2: time in s, and what the palms sense.
     Contacts(f64, Vec<PalmSensed>),
 }
@@ -86,7 +86,7 @@ impl RowReader {
             let palms = palms.ok_or(Kind::NoPalms)?;
             let columns = ContactColumns::find(&header, palms.len())?;
             check_setups(&columns, palms)?;
-            Format::Contacts(columns, palms.to_vec())
+            Format::Contacts(Box::new(columns), palms.to_vec())
         };
         Ok(Self { format, times: Times::default(), rows: 0 })
     }
@@ -105,7 +105,7 @@ impl RowReader {
         self.rows += 1;
         let (time, sample) = match &self.format {
             Format::ThreePalms(columns) => {
-                row.sample(columns).map(|sample| (sample.t, RowSample::ThreePalms(sample)))?
+                row.sample(columns).map(|sample| (sample.t, RowSample::ThreePalms(Box::new(sample))))?
             }
             Format::Contacts(columns, palms) => {
                 let (t, palms) = contact_sample(&row, columns, palms)?;
@@ -183,7 +183,7 @@ mod tests {
         assert!(rows.is_of_three_palms());
         let row = |k: usize| columns.iter().map(|column| column[k]).collect::<Vec<f64>>();
         for (k, sample) in log.samples().iter().enumerate() {
-            assert_eq!(rows.take(&row(k)).unwrap(), RowSample::ThreePalms(*sample));
+            assert_eq!(rows.take(&row(k)).unwrap(), RowSample::ThreePalms(Box::new(*sample)));
         }
         assert!(matches!(rows.take(&row(0)), Err(Kind::Samples { line: Some(2), .. })));
         assert!(matches!(rows.take(&[0.0]), Err(Kind::FieldCount { line: 3, expected: 19, found: 1 })));
