@@ -1,0 +1,53 @@
+//! Surfaces.
+
+use crate::arrays::{flat3, table};
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use recon_io::TriangleMesh;
+
+/// A surface of triangles.
+#[pyclass(frozen, module = "recon")]
+pub(crate) struct Mesh {
+    mesh: TriangleMesh,
+    volume: Option<f64>,
+    vertices: PyOnceLock<Py<PyArray2<f64>>>,
+    triangles: PyOnceLock<Py<PyArray2<u32>>>,
+}
+
+impl Mesh {
+    /// With the volume of what it bounds, m^3, where that is known otherwise than from its corners.
+    pub(crate) fn new(mesh: &TriangleMesh, volume: Option<f64>) -> Self {
+        Self { mesh: mesh.clone(), volume, vertices: PyOnceLock::new(), triangles: PyOnceLock::new() }
+    }
+}
+
+#[pymethods]
+impl Mesh {
+    /// Corners, (v, 3), m, body axes.
+    #[getter]
+    fn vertices(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
+        let made = || table(py, flat3(self.mesh.vertices.iter().copied()), 3).map(Bound::unbind);
+        Ok(self.vertices.get_or_try_init(py, made)?.clone_ref(py))
+    }
+
+    /// Numbers of the corners of each triangle, (t, 3), counter-clockwise from outside.
+    #[getter]
+    fn triangles(&self, py: Python<'_>) -> PyResult<Py<PyArray2<u32>>> {
+        let made =
+            || table(py, self.mesh.triangles.iter().flatten().copied().collect(), 3).map(Bound::unbind);
+        Ok(self.triangles.get_or_try_init(py, made)?.clone_ref(py))
+    }
+
+    /// Volume, m^3; None of surfaces that are no bounds.
+    #[getter]
+    fn volume(&self) -> Option<f64> {
+        self.volume
+    }
+
+    fn __repr__(&self) -> String {
+        let (corners, triangles) = (self.mesh.vertices.len(), self.mesh.triangles.len());
+        let volume = self.volume.map_or(String::new(), |volume| format!(", {} m^3", recon_io::brief(volume)));
+        format!("<recon.Mesh: {corners} corners, {triangles} triangles{volume}>")
+    }
+}
