@@ -107,6 +107,8 @@ class Mesh:
     @property
     def volume(self) -> float | None:
         """Volume, m^3; None of surfaces that are no bounds."""
+    def write(self, path: _Path) -> None:
+        """Writes the surface as `.ply` (with all digits), `.stl` or `.glb` (both with seven), m, whole or not at all."""
 
 class Reconstruction:
     """Everything that a log tells. Arrays cannot be written to; parts of the motion share its memory."""
@@ -204,13 +206,14 @@ class Reconstruction:
         *,
         export: Sequence[str] = (),
         export_shape: str = "auto",
+        mesh: Sequence[str] = (),
         mcap: bool = False,
         force: bool = False,
     ) -> None:
         """Writes the folder that the command writes, whole or not at all.
 
-        export: "mjcf", "urdf": the object for simulators, with export_shape "auto", "ellipsoid", "inner" or "outer". mcap: a bag for
-        Foxglove too. force: write beside files that recon did not write, which are never replaced. Raises OutputError.
+        export: "mjcf", "urdf": the object for simulators, with export_shape "auto", "ellipsoid", "inner" or "outer". mesh: "stl", "glb": the
+        bounds in these formats beside PLY. mcap: a bag for Foxglove too. force: write beside files that recon did not write, which are never replaced. Raises OutputError.
         """
     def _repr_html_(self) -> str: ...
     def __len__(self) -> int: ...
@@ -263,8 +266,9 @@ class Bounds:
     @property
     def smooth_surface(self) -> Mesh | None:
         """Smooth surface through points and normals of a body that need not be convex; an approximation."""
-    def write(self, folder: _Path, *, force: bool = False) -> None:
-        """Writes the folder that the command writes; `force` writes beside files that recon did not write."""
+    def write(self, folder: _Path, *, mesh: Sequence[str] = (), force: bool = False) -> None:
+        """Writes the folder that the command writes; `mesh` names formats beside PLY ("stl", "glb"), `force` writes beside files that recon
+        did not write."""
 
 class Follower:
     def __init__(self, names: Sequence[str], scene: Scene, words: Sequence[str]) -> None: ...

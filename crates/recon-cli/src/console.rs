@@ -9,11 +9,18 @@ use std::io::{self, ErrorKind, Write};
 /// Standard output and standard error, as text or as JSON.
 pub(crate) struct Console {
     json: bool,
+    quiet: bool,
 }
 
 impl Console {
-    pub(crate) fn new(json: bool) -> Self {
-        Self { json }
+    /// As JSON for a program; `quiet` leaves out what is said beside results and errors.
+    pub(crate) fn new(json: bool, quiet: bool) -> Self {
+        Self { json, quiet }
+    }
+
+    /// Whether nobody wants to be told how work goes on.
+    pub(crate) fn is_quiet(&self) -> bool {
+        self.json || self.quiet
     }
 
     /// Whether a program is reading.
@@ -29,7 +36,7 @@ impl Console {
 
     /// Says something beside the result; a program reads it from the result instead.
     pub(crate) fn note(&self, text: &str) {
-        if !self.json {
+        if !self.is_quiet() {
             // Without anyone to read notes there is nothing to be done.
             let _ = writeln!(io::stderr().lock(), "{}", with_brief_numbers(text));
         }

@@ -42,6 +42,18 @@ pub(crate) enum CliError {
     Bag(#[from] BagError),
     #[error("the results make no bag")]
     ResultBag(#[source] std::io::Error),
+    #[error("the folder {} cannot be read", path.display())]
+    Folder { path: PathBuf, source: std::io::Error },
+    #[error("{} holds no logs: CSV files, or bags of ROS 2 (MCAP)", path.display())]
+    NoLogs { path: PathBuf },
+    #[error("{} has the name of another log but for its ending, and both would be written into one folder: rename one", path.display())]
+    SameName { path: PathBuf },
+    #[error("`{name}` is no format; these are: {names}")]
+    NoFormat { name: String, names: String },
+    #[error(
+        "a sensor log is read with its scene (--scene): gravity, and of palms that are not three planes through the origin what they are"
+    )]
+    LogNeedsScene,
     #[error("the mapping of topics cannot be used")]
     Mapping(#[from] MappingError),
     #[error("{} is an MCAP bag: give the mapping of its topics by --mapping; `recon inspect {} -o map.toml` drafts one", path.display(), path.display())]
@@ -185,6 +197,8 @@ pub(crate) enum CliError {
         "no shape can be fitted to the contacts (for an export, --export-shape inner takes the bound instead)"
     )]
     Fit(#[from] FitError),
+    #[error("a mesh cannot be written in this format")]
+    MeshFormat(#[source] std::io::Error),
     #[error("the result cannot be written")]
     Output(#[from] OutputError),
     #[error("the results do not hold")]
@@ -206,12 +220,17 @@ impl CliError {
             | Self::Facets(_)
             | Self::ResultBag(_)
             | Self::Mesh(_)
+            | Self::MeshFormat(_)
             | Self::Signals(_)
             | Self::PlanarDemo(_) => 1,
             Self::Log(_)
             | Self::Bag(_)
             | Self::Mapping(_)
             | Self::NoMapping { .. }
+            | Self::Folder { .. }
+            | Self::NoLogs { .. }
+            | Self::LogNeedsScene
+            | Self::SameName { .. }
             | Self::BagFollowed { .. }
             | Self::Scene(_)
             | Self::Touches(_)
@@ -259,7 +278,7 @@ impl CliError {
             | Self::Check(_)
             | Self::Fit(_)
             | Self::Bounds(_) => 3,
-            Self::Option { .. } | Self::MappingOfNoBag { .. } => 2,
+            Self::Option { .. } | Self::NoFormat { .. } | Self::MappingOfNoBag { .. } => 2,
             Self::Output(_) | Self::StandardOutput(_) => 5,
             Self::Interrupted => 130,
         }

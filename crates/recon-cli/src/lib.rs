@@ -35,7 +35,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
             return u8::try_from(usage.exit_code()).unwrap_or(2);
         }
     };
-    let console = Console::new(cli.json);
+    let console = Console::new(cli.json, cli.quiet);
     let result = interrupt::install().and_then(|()| commands::run(&cli.command, &console));
     match result {
         Ok(outcome) => outcome.code(),

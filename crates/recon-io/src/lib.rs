@@ -10,6 +10,7 @@ mod check;
 mod export;
 mod log;
 mod mesh;
+mod mesh_formats;
 mod number;
 mod output;
 mod planar_figures;
@@ -42,9 +43,10 @@ pub use log::{
     write_contact_log, write_log, write_planar_contact_log, write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
+pub use mesh_formats::{write_glb, write_stl};
 pub use number::{brief, brief_to, with_brief_numbers};
 pub use output::{
-    AtomicFile, FileTarget, FolderTarget, OutputError, OutputFolder, Summed, is_standard_output,
+    AtomicFile, FileTarget, FolderTarget, OutputError, OutputFolder, Summed, fingerprint, is_standard_output,
 };
 pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};

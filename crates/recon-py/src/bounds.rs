@@ -144,10 +144,13 @@ impl Bounds {
         self.made.surface("smooth_surface.ply").map(|mesh| Mesh::new(mesh, None))
     }
 
-    /// Writes the folder that the command writes; `force` writes beside files that recon did not write.
-    #[pyo3(signature = (folder, *, force=false))]
-    fn write(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
-        py.detach(|| self.made.write(&folder, force)).map_err(raised)
+    /// Writes the folder that the command writes; `mesh` names formats beside PLY ("stl", "glb"), `force` writes beside files that recon did
+    /// not write.
+    #[pyo3(signature = (folder, *, mesh=Vec::new(), force=false))]
+    fn write(&self, py: Python<'_>, folder: PathBuf, mesh: Vec<String>, force: bool) -> PyResult<()> {
+        let mut words: Vec<String> = mesh.iter().map(|format| format!("--mesh={format}")).collect();
+        words.extend(force.then(|| "--force".to_owned()));
+        py.detach(|| self.made.write(&folder, &words)).map_err(raised)
     }
 
     fn __repr__(&self) -> String {

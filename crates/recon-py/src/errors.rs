@@ -74,3 +74,8 @@ pub(crate) fn raised(failure: Failure) -> PyErr {
 pub(crate) fn input(message: String) -> PyErr {
     raised(Failure { kind: FailureKind::Input, message })
 }
+
+/// A result that cannot be written.
+pub(crate) fn output(message: String) -> PyErr {
+    raised(Failure { kind: FailureKind::Output, message })
+}

@@ -1,10 +1,13 @@
 //! Surfaces.
 
 use crate::arrays::{flat3, table};
+use crate::errors::{input, output};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use recon_io::TriangleMesh;
+use recon_io::{FileTarget, TriangleMesh, write_glb, write_ply, write_stl};
+use std::io::Write;
+use std::path::PathBuf;
 
 /// A surface of triangles.
 #[pyclass(frozen, module = "recon")]
@@ -43,6 +46,27 @@ impl Mesh {
     #[getter]
     fn volume(&self) -> Option<f64> {
         self.volume
+    }
+
+    /// Writes the surface as `.ply` (with all digits), `.stl` or `.glb` (both with seven), m, whole or not at all.
+    fn write(&self, path: PathBuf) -> PyResult<()> {
+        let ending =
+            path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let name = path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let failed = |error: std::io::Error| output(format!("{}: {error}", path.display()));
+        let mut bytes = Vec::new();
+        match ending.as_str() {
+            "ply" => write_ply(&self.mesh, "metres", &mut bytes).map_err(failed)?,
+            "stl" => write_stl(&self.mesh, &name, &mut bytes).map_err(failed)?,
+            "glb" => write_glb(&self.mesh, &name, &mut bytes).map_err(failed)?,
+            _ => {
+                return Err(input(format!("{} ends in `{ending}`; give .ply, .stl or .glb", path.display())));
+            }
+        }
+        let target = FileTarget::new(&path, &[]).and_then(FileTarget::begin);
+        let mut file = target.map_err(|error| output(error.to_string()))?;
+        file.write_all(&bytes).map_err(failed)?;
+        file.commit().map_err(|error| output(error.to_string()))
     }
 
     fn __repr__(&self) -> String {

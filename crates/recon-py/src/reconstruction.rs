@@ -297,15 +297,17 @@ impl Reconstruction {
 
     /// Writes the folder that the command writes, whole or not at all: motion.csv, contact_curves.csv, summary.json, meshes, report.html.
     ///
-    /// export: "mjcf", "urdf": the object for simulators, with export_shape "auto", "ellipsoid", "inner" or "outer". mcap: a bag for
-    /// Foxglove too. force: write beside files that recon did not write, which are never replaced. Raises OutputError.
-    #[pyo3(signature = (folder, *, export=Vec::new(), export_shape="auto", mcap=false, force=false))]
+    /// export: "mjcf", "urdf": the object for simulators, with export_shape "auto", "ellipsoid", "inner" or "outer". mesh: "stl", "glb": the
+    /// bounds in these formats beside PLY. mcap: a bag for Foxglove too. force: write beside files that recon did not write, which are never replaced. Raises OutputError.
+    #[pyo3(signature = (folder, *, export=Vec::new(), export_shape="auto", mesh=Vec::new(), mcap=false, force=false))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn write(
         &self,
         py: Python<'_>,
         folder: PathBuf,
         export: Vec<String>,
         export_shape: &str,
+        mesh: Vec<String>,
         mcap: bool,
         force: bool,
     ) -> PyResult<()> {
@@ -313,6 +315,7 @@ impl Reconstruction {
         if !export.is_empty() {
             words.push(format!("--export-shape={export_shape}"));
         }
+        words.extend(mesh.iter().map(|format| format!("--mesh={format}")));
         words.extend(mcap.then(|| "--mcap".to_owned()));
         words.extend(force.then(|| "--force".to_owned()));
         py.detach(|| self.made.write(&folder, &words)).map_err(raised)

@@ -1,10 +1,10 @@
 use super::plane;
-use crate::cli::{BoundsArgs, FitAs};
+use crate::cli::{BoundsArgs, FitAs, MeshAs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
     BoundsResult, Noise, PlanarBounds, PlanarRequest, concave_bounds, doubtful_fit, exact_bounds, fit_words,
-    fitted_shape, noisy_bounds, planar_bounds, pose_bounds, sharp_bounds, write_bounds_folder,
+    fitted_shape, meshes_as, noisy_bounds, planar_bounds, pose_bounds, sharp_bounds, write_bounds_folder,
 };
 use crate::progress::Progress;
 use recon::contact_kinematics::CurvatureRadii;
@@ -25,14 +25,14 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
     let inputs = slice::from_ref(&args.input);
     let target =
         args.output.as_ref().map(|folder| FolderTarget::new(folder, inputs, args.force)).transpose()?;
-    let progress = Progress::new(2, console.is_json());
+    let progress = Progress::new(2, console.is_quiet());
     progress.step("reading contacts or poses");
     let touches = read_touches(&args.input)?;
     progress.step("bounding the shape");
     let made = bounded(args, &touches)?;
     let figures = made.figures();
     match target {
-        Some(folder) => made.write(folder, &figures)?,
+        Some(folder) => made.write(folder, &args.mesh, &figures)?,
         None => made.check(&figures)?,
     }
     drop(progress);
@@ -93,9 +93,18 @@ impl Bounded {
     }
 
     /// Writes the folder.
-    pub(crate) fn write(&self, folder: FolderTarget, figures: &Value) -> Result<(), CliError> {
+    pub(crate) fn write(
+        &self,
+        folder: FolderTarget,
+        formats: &[MeshAs],
+        figures: &Value,
+    ) -> Result<(), CliError> {
         match self {
-            Self::Space { made, .. } => write_bounds_folder(folder, made, figures),
+            Self::Space { made, .. } => {
+                let others = made.others.iter().map(|(name, _, mesh)| (*name, mesh));
+                let extras = meshes_as(made.surfaces().into_iter().chain(others), formats)?;
+                write_bounds_folder(folder, made, &extras, figures)
+            }
             Self::Plane { made, .. } => plane::write_folder(folder, made, figures),
         }
     }
@@ -186,6 +195,7 @@ fn check_options(args: &BoundsArgs, touches: &Touches) -> Result<(), CliError> {
         Touches::PlanarContacts { .. } => {
             let of_space = [
                 (args.concave, "concave", "contacts in space"),
+                (!args.mesh.is_empty(), "mesh", "contacts in space"),
                 (!in_plane, "fit ball, ellipsoid, superquadric or harmonics", "contacts in space"),
                 (args.rho_max.is_some() && !exact, "rho-max beside noise", "contacts in space"),
             ];

@@ -33,7 +33,7 @@ pub(crate) fn run(args: &DemoArgs, console: &Console) -> Result<Outcome, CliErro
 fn fig5(args: &DemoArgs, text: &str, console: &Console) -> Result<Outcome, CliError> {
     let scene = Scene::parse(text).map_err(in_scene)?;
     let target = FolderTarget::new(&args.output, &[], args.force)?;
-    let progress = Progress::new(4, console.is_json());
+    let progress = Progress::new(4, console.is_quiet());
     progress.step("simulating");
     let simulated = simulate(&scene, Path::new(SCENE), TOLERANCE)?;
     let title = "An ellipsoid on three palms (Fig. 5 of Moll and Erdmann, 2002)";
@@ -53,7 +53,7 @@ fn fig5(args: &DemoArgs, text: &str, console: &Console) -> Result<Outcome, CliEr
 fn any_palms(args: &DemoArgs, title: &str, text: &str, console: &Console) -> Result<Outcome, CliError> {
     let scene = Scene::parse(text).map_err(in_scene)?;
     let target = FolderTarget::new(&args.output, &[], args.force)?;
-    let progress = Progress::new(2, console.is_json());
+    let progress = Progress::new(2, console.is_quiet());
     progress.step("simulating");
     let run = simulate_contacts(&scene, Path::new(SCENE), CONTACT_TOLERANCE)?;
     progress.step("writing the results");

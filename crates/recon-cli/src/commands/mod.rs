@@ -1,12 +1,18 @@
 //! The commands: from arguments to files and words.
 
+mod answers;
 mod any_palms;
+mod batch;
 pub(crate) mod bounds;
 mod check;
+mod check_input;
 mod demo;
 mod export;
 pub(crate) mod follow;
+mod formats;
+mod init;
 mod inspect;
+mod manual;
 mod planar;
 mod plane;
 pub(crate) mod reconstruct;
@@ -22,6 +28,7 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
     match command {
         Command::Simulate(args) => simulate::run(args, console),
         Command::Reconstruct(args) => reconstruct::run(args, console),
+        Command::Batch(args) => batch::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Follow(args) => follow::run(args, console),
         Command::Bounds(args) => bounds::run(args, console),
@@ -29,5 +36,10 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
         Command::Demo(args) => demo::run(args, console),
         Command::Export(args) => export::run(args, console),
         Command::Check(args) => check::run(args, console),
+        Command::Init(args) => init::run(args, console),
+        Command::Formats(args) => formats::run(args, console),
+        Command::CheckInput(args) => check_input::run(args, console),
+        Command::Completions(args) => manual::completions(args),
+        Command::Man => manual::page(),
     }
 }

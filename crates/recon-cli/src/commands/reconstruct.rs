@@ -1,9 +1,10 @@
+use super::answers::{Advice, bounds_and_errors, evidence, of_body};
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{Asked, Estimated, LogSource, Reconstruction, estimated, read_log};
+use crate::pipeline::{Asked, Estimated, LogSource, Reconstruction, estimated, meshes_as, read_log};
 use crate::progress::Progress;
-use recon_io::{Bounds, FolderTarget, Scene, brief, brief_to};
+use recon_io::{FolderTarget, Scene, brief, brief_to};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
@@ -14,7 +15,7 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     }
     let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::UnknownBody)?;
     let target = target(args)?;
-    let progress = Progress::new(4, console.is_json());
+    let progress = Progress::new(4, console.is_quiet());
     progress.step("reading the log");
     let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
     let read = read_log(source(args, &scene), console)?;
@@ -22,7 +23,8 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let asked = Asked { path: &args.log, scene: &scene, title: &title, identify: args.identify };
     let made = estimated(read, &asked, &progress)?;
     progress.step("writing the results");
-    let extras = made.extras(&args.export, args.export_shape, args.mcap.then_some(stand))?;
+    let mut extras = made.extras(&args.export, args.export_shape, args.mcap.then_some(stand))?;
+    extras.extend(meshes_as(made.surfaces(), &args.mesh)?);
     let figures = made.write(target, &extras)?;
     drop(progress);
     tell(console, &made, figures, &args.output)
@@ -73,30 +75,26 @@ fn of_planes(made: &Reconstruction, figures: &Value) -> String {
     if let (Some(first), Some(last)) = (data.times.first(), data.times.last()) {
         line("samples", format!("{} over {} s", data.times.len(), brief(last - first)));
     }
+    for (name, value) in of_body(&made.mass, figures) {
+        line(name, value);
+    }
+    let known = ["std_position", "std_velocity", "std_orientation"].map(|key| evidence(figures, key));
+    if let [Some(position), Some(velocity), Some(turn)] = known {
+        let [position, velocity, turn] = [position, velocity, turn].map(|std| brief_to(2, std));
+        line("motion known to", format!("{position} m, {velocity} m/s, {turn} rad (std)"));
+    }
+    if let Some(weakest) = figures["evidence"]["weakest"]["value"].as_str() {
+        line("least certain", weakest.to_owned());
+    }
     for (name, value) in bounds_and_errors(data.bounds.as_ref(), figures) {
         line(name, value);
     }
+    let advice = Advice {
+        reliable: made.is_reliable(),
+        bounds: data.bounds.as_ref(),
+        identified: made.identified.is_some(),
+        learned: true,
+    };
+    line("next", advice.next().to_owned());
     text
-}
-
-/// Names and values of what is said of the bounds and, where the truth is known, of the largest errors.
-pub(super) fn bounds_and_errors(bounds: Option<&Bounds>, figures: &Value) -> Vec<(&'static str, String)> {
-    let mut lines = Vec::new();
-    if let Some(bounds) = bounds {
-        lines.push(("lower bound", format!("{} m^3", brief(bounds.lower.volume))));
-        if let Some(upper) = &bounds.upper {
-            lines.push(("upper bound", format!("{} m^3", brief(upper.volume))));
-            lines.push(("lower / upper", brief_to(4, bounds.lower.volume / upper.volume)));
-        }
-    }
-    for (name, key, unit) in [
-        ("largest error: position", "position_m", "m"),
-        ("  orientation", "orientation_rad", "rad"),
-        ("  angular velocity", "angular_velocity_rad_per_s", "rad/s"),
-    ] {
-        if let Some(error) = figures["largest_error"][key].as_f64() {
-            lines.push((name, format!("{error:.2e} {unit}")));
-        }
-    }
-    lines
 }

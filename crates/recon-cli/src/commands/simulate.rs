@@ -27,7 +27,7 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Cli
         Ok::<_, CliError>((target, path))
     });
     let page = page.transpose()?;
-    let progress = Progress::new(2, console.is_json());
+    let progress = Progress::new(2, console.is_quiet());
     progress.step("simulating");
     let mut made = match &scene {
         AnyScene::Plane(scene) => in_the_plane(scene, args)?,

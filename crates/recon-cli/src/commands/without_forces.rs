@@ -10,7 +10,7 @@ use recon_io::Scene;
 pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, CliError> {
     let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::NoGravity)?;
     let target = super::reconstruct::target(args)?;
-    let progress = Progress::new(4, console.is_json());
+    let progress = Progress::new(4, console.is_quiet());
     progress.step("reading the log");
     let (log, warnings) = three_palms(super::reconstruct::source(args, &scene), console)?;
     let made = without_forces(log, warnings, &scene, &progress)?;

@@ -125,14 +125,17 @@ impl Bounded {
         }
     }
 
-    /// Writes the folder that the command writes; with `force` beside files that recon did not write.
+    /// Writes the folder that the command writes; `options` are `--force` and `--mesh`.
     ///
     /// # Errors
     /// Where it cannot be written, or does not hold.
-    pub fn write(&self, folder: &Path, force: bool) -> Result<(), Failure> {
-        let target =
-            FolderTarget::new(folder, std::slice::from_ref(&self.path), force).map_err(CliError::from)?;
-        Ok(self.made.write(target, &self.figures)?)
+    pub fn write(&self, folder: &Path, options: &[String]) -> Result<(), Failure> {
+        let mut words = options.to_vec();
+        words.push("--output=folder".to_owned());
+        let args = arguments(&self.path, &words)?;
+        let inputs = std::slice::from_ref(&self.path);
+        let target = FolderTarget::new(folder, inputs, args.force).map_err(CliError::from)?;
+        Ok(self.made.write(target, &args.mesh, &self.figures)?)
     }
 }
 

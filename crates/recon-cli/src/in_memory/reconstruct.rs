@@ -5,8 +5,8 @@ use crate::cli::{Command, ReconstructArgs};
 use crate::commands::reconstruct::describe;
 use crate::error::CliError;
 use crate::pipeline::{
-    Asked, Estimated, LogOf, LogStand, WithoutForces, estimate_figures, estimated, reconstruction_figures,
-    sorted_with_forces, sorted_without_forces, without_forces,
+    Asked, Estimated, LogOf, LogStand, WithoutForces, estimate_figures, estimated, meshes_as,
+    reconstruction_figures, sorted_with_forces, sorted_without_forces, without_forces,
 };
 use crate::progress::{Progress, Watch};
 use glam::{DMat3, DVec3};
@@ -254,7 +254,7 @@ impl Reconstructed {
         Ok(Some(page))
     }
 
-    /// Writes the folder that the command writes; `options` are `--force`, `--export`, `--export-shape` and `--mcap`.
+    /// Writes the folder that the command writes; `options` are `--force`, `--export`, `--export-shape`, `--mesh` and `--mcap`.
     ///
     /// # Errors
     /// Where it cannot be written, or does not hold.
@@ -265,7 +265,8 @@ impl Reconstructed {
         match &self.made {
             Made::Estimated(made) => {
                 let bag = args.mcap.then_some(self.stand);
-                let extras = made.extras(&args.export, args.export_shape, bag)?;
+                let mut extras = made.extras(&args.export, args.export_shape, bag)?;
+                extras.extend(meshes_as(made.surfaces(), &args.mesh)?);
                 made.write(target, &extras)?;
             }
             Made::WithoutForces(made) => {

@@ -193,6 +193,12 @@ fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOp
     })
 }
 
+/// The noise of a log by the roughness of its readings.
+pub(crate) fn noise_by_roughness(log: &ContactLog, scene: &Scene) -> ContactNoiseLevel {
+    let length = scene.size.or_else(|| size(log)).unwrap_or_default();
+    ContactNoiseLevel::by_roughness(log, condition_floor(scene, length))
+}
+
 /// What conditions are off by beside noise, m/s, of a body of the size `length`, m: as the scene states it.
 pub(crate) fn condition_floor(scene: &Scene, length: f64) -> f64 {
     scene.sensors.contact_speed_std.unwrap_or(FLOOR * (scene.gravity * length).sqrt())

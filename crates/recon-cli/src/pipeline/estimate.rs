@@ -1,6 +1,7 @@
 //! From a log that was read to everything it tells, by whichever estimator it is for.
 
 use super::any_palms::{AnyPalms, AnyPalmsRequest, estimate_any_palms, refuse_unfelt};
+use super::bounds::{BoundsResult, LOWER, UPPER};
 use super::export::exported;
 use super::folder::{Extra, write_estimate_folder, write_reconstruction_folder};
 use super::noisy_planes::{as_planes, noisy_planes};
@@ -10,7 +11,7 @@ use super::result_bag::{bag_of_any_palms, bag_of_planes, normal_forces};
 use crate::cli::{ExportAs, ShapeAs};
 use crate::error::CliError;
 use crate::progress::Progress;
-use recon_io::{FolderTarget, Level, ReportData, Scene};
+use recon_io::{FolderTarget, Level, ReportData, Scene, TriangleMesh};
 use serde_json::Value;
 use std::path::Path;
 
@@ -84,6 +85,17 @@ impl Estimated {
             });
         }
         Ok(extras)
+    }
+
+    /// The surfaces of the bounds by the names of their files.
+    pub(crate) fn surfaces(&self) -> Vec<(&'static str, &TriangleMesh)> {
+        match self {
+            Self::Planes(made, _) => {
+                let both = [(LOWER, made.lower.as_ref()), (UPPER, made.upper.as_ref())];
+                both.into_iter().filter_map(|(name, mesh)| Some((name, mesh?))).collect()
+            }
+            Self::AnyPalms(made, _) => made.bounds.as_ref().map(BoundsResult::surfaces).unwrap_or_default(),
+        }
     }
 
     /// Writes its folder; returns the summary.

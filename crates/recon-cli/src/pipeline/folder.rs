@@ -144,6 +144,7 @@ pub(crate) fn write_files_folder(
 pub(crate) fn write_bounds_folder(
     target: FolderTarget,
     made: &BoundsResult,
+    extras: &[Extra],
     figures: &Value,
 ) -> Result<(), CliError> {
     while_writing(|| {
@@ -152,6 +153,9 @@ pub(crate) fn write_bounds_folder(
         folder.write_mesh(UPPER, "around the object; metres", made.upper.as_ref())?;
         for (name, comment, mesh) in &made.others {
             folder.write_mesh(name, comment, Some(mesh))?;
+        }
+        for (name, contents) in extras {
+            folder.write(name, |to| to.write_all(contents))?;
         }
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()

@@ -13,6 +13,7 @@ mod evidence;
 mod export;
 mod fitted;
 mod folder;
+mod meshes;
 mod modes;
 mod noisy_planes;
 mod planar_contacts;
@@ -25,7 +26,7 @@ mod sound;
 mod truth;
 mod without_forces;
 
-pub(crate) use any_palms::{AnyPalms, condition_floor, spread};
+pub(crate) use any_palms::{AnyPalms, condition_floor, noise_by_roughness, spread};
 pub(crate) use bounds::{BoundsResult, exact_bounds};
 pub(crate) use concave::concave_bounds;
 pub(crate) use contacts::{ContactRun, simulate_contacts};
@@ -35,6 +36,7 @@ pub(crate) use fitted::{fit_words, fitted_shape};
 pub(crate) use folder::{
     estimate_figures, reconstruction_figures, write_bounds_folder, write_contact_folder, write_files_folder,
 };
+pub(crate) use meshes::meshes_as;
 pub(crate) use modes::describe_times;
 pub(crate) use planar_contacts::simulate_planar_contacts;
 pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};

@@ -8,6 +8,7 @@ mod any_friction;
 mod any_palms;
 mod bad_input;
 mod bags;
+mod batch;
 mod bounds;
 mod bounds_noise;
 mod bounds_shapes;
@@ -16,6 +17,7 @@ mod common;
 mod end_to_end;
 mod export;
 mod follow;
+mod guides;
 #[cfg(unix)]
 mod interrupted;
 mod margins;

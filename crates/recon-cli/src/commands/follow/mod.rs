@@ -42,7 +42,7 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
         None => samples.rate()?,
     };
     let stream = MotionStream::new(samples.palms()?, StreamOptions { contacts, sample_rate })?;
-    let progress = Progress::new(1, console.is_json() || output.is_none());
+    let progress = Progress::new(1, console.is_quiet() || output.is_none());
     progress.step("following the motion");
     let followed = match output.zip(target) {
         Some((path, target)) => while_writing(|| {
