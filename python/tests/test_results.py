@@ -119,3 +119,16 @@ def test_a_ball_is_fitted_by_a_ball() -> None:
     assert abs(values[-1] - 0.05) < 1e-12 and abs(values[-2] - 0.01) < 1e-12
     assert made.covariance.shape == (len(values), len(values)) and made.residual < 1e-12
     assert made.mesh.vertices.shape[1] == 3 and "+-" in repr(made)
+
+
+def test_surfaces_are_written_as_ply_stl_and_gltf(result: recon.Reconstruction, tmp_path: Path) -> None:
+    mesh = result.lower_bound
+    for ending, start in (("ply", b"ply"), ("stl", b"binary STL"), ("glb", b"glTF")):
+        mesh.write(tmp_path / f"lower.{ending}")
+        assert (tmp_path / f"lower.{ending}").read_bytes().startswith(start)
+    stl = np.frombuffer((tmp_path / "lower.stl").read_bytes()[84:], dtype=[("v", "<f4", (4, 3)), ("-", "<u2")])
+    assert np.allclose(stl["v"][:, 1:], mesh.vertices[mesh.triangles], rtol=1e-6, atol=1e-6)
+    with pytest.raises(recon.InputError, match=".ply, .stl or .glb"):
+        mesh.write(tmp_path / "lower.obj")
+    result.write(tmp_path / "out", mesh=["stl"], export=["mjcf"])
+    assert (tmp_path / "out" / "upper_bound.stl").is_file() and (tmp_path / "out" / "object.xml").is_file()
