@@ -18,6 +18,7 @@ mod end_to_end;
 mod export;
 mod follow;
 mod guides;
+mod in_memory;
 #[cfg(unix)]
 mod interrupted;
 mod margins;
