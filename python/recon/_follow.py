@@ -45,10 +45,24 @@ class Estimate(NamedTuple):
 def _estimate(row: tuple[Any, ...]) -> Estimate:
     t, motion, deviations, stage, reliable, misfit, mass = row
     mass, std_mass = mass or (float("nan"), float("nan"))
+    x, y, z, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz = motion
+    std_position, std_velocity, std_angular_velocity, std_turn = deviations
     return Estimate(
-        t, tuple(motion[0:3]), tuple(motion[3:7]), tuple(motion[7:10]), tuple(motion[10:13]),
-        *deviations, stage, reliable, misfit, mass, std_mass,
-    )  # fmt: skip
+        t=t,
+        position=(x, y, z),
+        orientation=(qw, qx, qy, qz),
+        velocity=(vx, vy, vz),
+        angular_velocity=(wx, wy, wz),
+        std_position=std_position,
+        std_velocity=std_velocity,
+        std_angular_velocity=std_angular_velocity,
+        std_turn=std_turn,
+        stage=stage,
+        reliable=reliable,
+        misfit=misfit,
+        mass=mass,
+        std_mass=std_mass,
+    )
 
 
 class Follower:

@@ -31,9 +31,9 @@ def columns(of: Log | Reconstruction | Following) -> dict[str, Array]:
         table |= {"stage": of.stages, "relied_on": of.reliable, "misfit": of.misfit}
         return table | {"mass": of.mass[:, 0], "std_mass": of.mass[:, 1]}
     stds = {"cm": of.position_std, "v": of.velocity_std, "w": of.angular_velocity_std, "turn": of.turn_std}
-    for name, values in stds.items():
-        if values is not None:
-            table |= {f"std_{name}{axis}": values[:, k] for k, axis in enumerate("xyz")}
+    for name, std in stds.items():
+        if std is not None:
+            table |= {f"std_{name}{axis}": std[:, k] for k, axis in enumerate("xyz")}
     if of.modes is not None:
         table |= {f"mode_{i + 1}": of.modes[:, i] for i in range(of.modes.shape[1])}
     return table | {"relied_on": of.relied_on}
@@ -49,7 +49,7 @@ def to_frame(of: Log | Reconstruction | Following) -> pandas.DataFrame:
 def save(of: Log | Reconstruction | Following, path: str | os.PathLike[str]) -> None:
     """Writes the columns as `.npz` (NumPy), `.npy` (a structured array), or `.parquet`, which needs pyarrow."""
     ending = os.path.splitext(os.fspath(path))[1].lower()
-    table = columns(of)
+    table: dict[str, Any] = columns(of)
     if ending == ".npz":
         np.savez(path, **table)
     elif ending == ".npy":
@@ -58,8 +58,8 @@ def save(of: Log | Reconstruction | Following, path: str | os.PathLike[str]) -> 
             records[name] = values
         np.save(path, records)
     elif ending == ".parquet":
-        import pyarrow
-        import pyarrow.parquet
+        import pyarrow  # type: ignore[import-untyped, unused-ignore]
+        import pyarrow.parquet  # type: ignore[import-untyped, unused-ignore]
 
         pyarrow.parquet.write_table(pyarrow.table({name: pyarrow.array(np.ascontiguousarray(v)) for name, v in table.items()}), path)
     else:

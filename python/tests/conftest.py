@@ -80,3 +80,11 @@ def files(tmp_path_factory: pytest.TempPathFactory, command: str) -> Path:
     (folder / "scene.toml").write_text(text.replace("duration = 4.2", "duration = 1.5"), encoding="utf-8")
     run(command, "simulate", str(folder / "scene.toml"), "-o", str(folder / "log.csv"))
     return folder
+
+
+@pytest.fixture(scope="session")
+def small(tmp_path_factory: pytest.TempPathFactory, command: str) -> Path:
+    """What `recon init` gives: an object of a few centimetres, whose motion is found within the log."""
+    folder = tmp_path_factory.mktemp("small") / "start"
+    run(command, "init", str(folder))
+    return folder

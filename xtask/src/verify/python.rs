@@ -26,7 +26,7 @@ pub(crate) fn check() -> Result<Outcome, String> {
             std::fs::remove_dir_all(old).map_err(|error| format!("{}: {error}", old.display()))?;
         }
     }
-    run(program(python).args(["-m", "maturin", "build", "--locked", "--out"]).arg(&wheels))?;
+    run(program(python).args(["-m", "maturin", "build", "--release", "--locked", "--out"]).arg(&wheels))?;
     let wheel = std::fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
     let wheel = wheel.filter_map(Result::ok).next().ok_or("maturin wrote no wheel")?.path();
     run(program(python).args(["-m", "zipfile", "-e"]).arg(&wheel).arg(&unpacked))?;
