@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from io import StringIO
@@ -211,7 +212,8 @@ def follow(
     """
     known = _scene(scene)
     if isinstance(source, Log) or not (hasattr(source, "columns") or isinstance(source, dict)):
-        names, columns = _columns_of_log(log(source, known))
+        made = log(source, known)
+        names, columns = _columns_of_file(source, made) if isinstance(source, (str, os.PathLike)) else _columns_of_log(made)
     else:
         names, columns = columns_of(source)
     follower = Follower(names, known, rate=rate, identify=identify, contact_noise=contact_noise, force_noise=force_noise)
@@ -226,6 +228,18 @@ def follow(
         mass=np.array([row[12:14] for row in rows], dtype=np.float64).reshape(-1, 2),
         left_out=follower.left_out,
     )
+
+
+def _columns_of_file(path: str | os.PathLike[str], made: Log) -> tuple[list[str], list[Array]]:
+    """Names and columns of a log's file as they stand there: what was read has unit vectors whose last digits may be others."""
+    try:
+        with open(path, encoding="utf-8-sig") as file:
+            names = [name.strip() for name in file.readline().split(",")]
+            values = np.loadtxt(file, delimiter=",", ndmin=2)
+    except ValueError:
+        # A bag, or columns that are no numbers, which a log may have beside its own.
+        return _columns_of_log(made)
+    return names, list(np.ascontiguousarray(values.T))
 
 
 def _columns_of_log(made: Log) -> tuple[list[str], list[Array]]:
