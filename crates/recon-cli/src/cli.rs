@@ -17,11 +17,17 @@ Exit codes:
   5    a result cannot be written; what stood there before stands there still
   130  interrupted; nothing is left half-written";
 
+const SHORT: &str = "`recon demo` shows what it does; `recon init` gives files to begin from; `--help` has examples and exit codes.";
+
 const EXAMPLES: &str = "\
 Examples:
   recon demo                                        the paper's Fig. 5, from nothing to a report
+  recon init start                                  a commented scene, a log and contacts to begin from
+  recon check-input log.csv --scene scene.toml      what is understood of a log: units, rates, gaps, noise, touches
+  recon formats                                     columns, frames and units of all files
   recon simulate scene.toml -o log.csv              a sensor log of a known object
   recon reconstruct log.csv --scene scene.toml -o out   shape, motion and bounds from a log
+  recon batch logs --scene scene.toml -o results    all logs of a folder, on all cores, and a table of what came out
   recon inspect bag.mcap -o map.toml                what a robot's log (ROS 2, MCAP) holds, and a mapping of its topics
   recon follow - --scene scene.toml                 the motion as it becomes known, from a running log
   recon bounds out/contact_curves.csv -o bounds     bounds from contact points and normals alone
@@ -31,11 +37,14 @@ Examples:
 
 /// Shape, motion and bounds of an unknown smooth convex object, from touch alone.
 #[derive(Debug, Parser)]
-#[command(name = "recon", version, after_help = format!("{EXAMPLES}\n\n{EXIT_CODES}"), propagate_version = true)]
+#[command(name = "recon", version, after_help = SHORT, after_long_help = format!("{EXAMPLES}\n\n{EXIT_CODES}"), propagate_version = true)]
 pub(crate) struct Cli {
     /// Print results as JSON on standard output, and errors as JSON on standard error
     #[arg(long, global = true)]
     pub(crate) json: bool,
+    /// Say nothing but results and errors: no progress, no notes
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
     /// What to do
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -47,6 +56,8 @@ pub(crate) enum Command {
     Simulate(SimulateArgs),
     /// Reconstruct motion, contact curves and bounds from a sensor log
     Reconstruct(ReconstructArgs),
+    /// Reconstruct all logs of a folder, on all cores
+    Batch(BatchArgs),
     /// Look over a bag of ROS 2 (MCAP): topics, rates, gaps, clocks; and draft the mapping of its topics
     Inspect(InspectArgs),
     /// Follow the motion sample by sample, as a log is written or at the pace of reading it
@@ -65,10 +76,20 @@ pub(crate) enum Command {
     Explore(ExploreArgs),
     /// Say where to touch next, from the contacts known so far
     Next(NextArgs),
+    /// Write files to begin from: a commented scene, a log, a list of contacts
+    Init(InitArgs),
+    /// Tell the columns, frames and units of files
+    Formats(FormatsArgs),
+    /// Tell what is understood of a log or a list of contacts, before anything is estimated
+    CheckInput(CheckInputArgs),
+    /// Write completions of the command line for a shell
+    Completions(CompletionsArgs),
+    /// Write the manual page
+    Man,
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_long_help = "\
 The scene is a TOML file with gravity, [object] mass and inertia, and [simulation] shape, palms, start and duration.
 `recon demo` writes one (scene.toml) to begin from. The log holds the truth beside the readings; noise is put on the
 readings where [sensors] gives its standard deviations. Palms of any number, shape and motion, with friction, stand in
@@ -94,7 +115,7 @@ pub(crate) struct SimulateArgs {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_long_help = "\
 The log is CSV (sensor log, version 1): t, and for each palm i the contact s1_i, s2_i, the normal nx_i, ny_i, nz_i and
 the force f_i or torque tau_i. The scene gives gravity, mass and inertia; with --identify mass and inertia are estimated
 along, and those of the scene are not looked at. No initial guess is needed.
@@ -121,6 +142,7 @@ summary.json and, where contacts are exact, the bounds.
 Examples:
   recon reconstruct log.csv --scene scene.toml -o out
   recon reconstruct log.csv --scene scene.toml -o out --identify --export mjcf,urdf
+  recon reconstruct log.csv --scene scene.toml -o out --mesh stl,glb
   recon reconstruct log.csv --scene scene.toml -o out --without-forces
   recon reconstruct bag.mcap --mapping map.toml --scene scene.toml -o out --mcap
   recon reconstruct log.csv --scene scene.toml -o out --json | jq .bounds")]
@@ -148,6 +170,9 @@ pub(crate) struct ReconstructArgs {
     /// Write the object for simulators too, in these formats
     #[arg(long, value_delimiter = ',', value_name = "FORMATS")]
     pub(crate) export: Vec<ExportAs>,
+    /// Write the meshes of the bounds in these formats too, beside PLY
+    #[arg(long, value_delimiter = ',', value_name = "FORMATS", conflicts_with = "without_forces")]
+    pub(crate) mesh: Vec<MeshAs>,
     /// Write motion, contacts, forces and bounds as a bag too (result.mcap), for Foxglove and Rerun
     #[arg(long, conflicts_with = "without_forces")]
     pub(crate) mcap: bool,
@@ -157,7 +182,43 @@ pub(crate) struct ReconstructArgs {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_long_help = "\
+Each CSV or MCAP file of the folder is a log. Its scene is the TOML file of the same name beside it, or else that of --scene. Results of `a.csv`
+are in the folder `a` of the output, as `recon reconstruct` writes them, and results.csv there has a row for each log: whether it is relied on, mass and
+inertia with deviations, bounds, and why not. index.html shows all of them small.
+
+What is done is not done again: results that hold, of the same log, scene and options by length and CRC-32, are kept, so that a run that was
+interrupted goes on where it ended. A log that cannot be used is named and skipped; then the exit code is 4, as where a
+result is not to be relied on.
+
+Examples:
+  recon batch logs --scene scene.toml -o results
+  recon batch logs --scene scene.toml -o results --identify --jobs 4")]
+pub(crate) struct BatchArgs {
+    /// Folder of logs
+    pub(crate) folder: PathBuf,
+    /// Scene file (TOML) of the logs that have none of their own
+    #[arg(short, long)]
+    pub(crate) scene: Option<PathBuf>,
+    /// Mapping of the topics of bags (TOML)
+    #[arg(short, long)]
+    pub(crate) mapping: Option<PathBuf>,
+    /// Folder to write
+    #[arg(short, long, default_value = "recon-batch")]
+    pub(crate) output: PathBuf,
+    /// Estimate mass and inertia too, with their deviations
+    #[arg(long)]
+    pub(crate) identify: bool,
+    /// Write the objects for simulators too, in these formats
+    #[arg(long, value_delimiter = ',', value_name = "FORMATS")]
+    pub(crate) export: Vec<ExportAs>,
+    /// Logs at a time [default: as many as there are cores]
+    #[arg(short, long, value_parser = at_least_one)]
+    pub(crate) jobs: Option<usize>,
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
 Read are WrenchStamped, PointStamped, PoseStamped, TFMessage, JointState, Image of one number a pixel, TactileState, and
 recon_msgs/Contact (its definition comes with recon-io, in ros/recon_msgs). Topics come with their rates, gaps (by stamps and by the recorder's numbers),
 latencies and frames. Where a palm has contacts and a wrench, their clocks are compared: the contacts that the wrench gives go
@@ -191,7 +252,7 @@ pub(crate) struct InspectArgs {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_long_help = "\
 The log is CSV as for `recon reconstruct`, of three planes or of any palms with forces, a file or standard input (`-`), taken line
 by line: a robot may be writing it. The scene gives gravity, mass and inertia (with --identify these are estimated along), and the noise of the sensors where no
 option does.
@@ -240,6 +301,25 @@ pub(crate) enum ExportAs {
     Urdf,
 }
 
+/// A format of meshes beside PLY. Coordinates have seven digits in both.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub(crate) enum MeshAs {
+    /// Binary STL, in metres: for printers and CAD
+    Stl,
+    /// Binary glTF 2.0, in metres: for viewers and browsers
+    Glb,
+}
+
+impl MeshAs {
+    /// What its files end in.
+    pub(crate) fn ending(self) -> &'static str {
+        match self {
+            Self::Stl => "stl",
+            Self::Glb => "glb",
+        }
+    }
+}
+
 /// What an exported object collides with.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub(crate) enum ShapeAs {
@@ -254,7 +334,7 @@ pub(crate) enum ShapeAs {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_long_help = "\
 Contacts are CSV with the columns x, y, z (m) and nx, ny, nz (outward unit normal), in any one frame of the object; a
 column `palm` or `curve` numbers the curves along which they were traced. They are taken as exact unless their noise is
 stated or estimated: then the bounds hold at the stated confidence, and contacts that cannot be right are left out and
@@ -332,6 +412,9 @@ pub(crate) struct BoundsArgs {
     /// Standard deviation of the plane's height from run to run, m
     #[arg(long, value_name = "M", value_parser = not_negative)]
     pub(crate) run_height_deviation: Option<f64>,
+    /// Write the meshes in these formats too, beside PLY
+    #[arg(long, value_delimiter = ',', value_name = "FORMATS", requires = "output")]
+    pub(crate) mesh: Vec<MeshAs>,
     /// Folder to write the meshes and summary.json to; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
@@ -375,7 +458,7 @@ impl FitAs {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_long_help = "\
 The log is CSV (planar log, version 1): t, phi1, phi2, s1, s2 and f1, f2 or tau1, tau2. With forces the motion is estimated
 from no guess, and mass and inertia with it where they are not stated; without forces the shape is fitted to contacts and palm
 angles alone. Without a log the scene of the paper's Fig. 3 is simulated first. Logs of any palms in the plane, with friction,
@@ -421,7 +504,7 @@ pub(crate) struct PlanarArgs {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_long_help = "\
 Scenes of palms that move, with friction, are simulated through the changes of contact modes: the folder then holds the
 scene, its log (version 2), the scene for MuJoCo (scene.xml), summary.json and a report with pictures, bands of modes, forces,
 slip and energy.
@@ -443,7 +526,7 @@ pub(crate) struct DemoArgs {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_long_help = "\
 The scene is one that `recon simulate` takes, with [[palm]] tables. The folder appears as a whole or not at all: scene.xml (MJCF)
 with the object in its first state (keyframe `start`), palms, friction, springs and motors, the meshes of shapes that MuJoCo
 does not know, summary.json and manifest.json. Joints `palm_i_j` follow the parts of a palm's motion: whoever steps the model sets them by the laws in its
@@ -475,7 +558,7 @@ pub(crate) enum DemoScene {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_long_help = "\
 What every command checks before it writes a folder, done again by code that had no part in making the results: the files
 are those that recon wrote (sizes and CRC-32 in manifest.json), all numbers are finite, meshes are closed and turned one
 way, bounds are convex, as large as stated, and the lower one lies inside the upper one (by exact signs; what rounding or
@@ -487,6 +570,65 @@ Examples:
 pub(crate) struct CheckArgs {
     /// Folder that recon wrote
     pub(crate) folder: PathBuf,
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
+The folder holds scene.toml (what is known of a scene, each key explained), log.csv (what palms felt in it), contacts.csv (points with
+normals), and summary.json with the commands to go on with. Put your own numbers in their places.
+
+Examples:
+  recon init
+  recon init start && recon reconstruct start/log.csv --scene start/scene.toml -o out")]
+pub(crate) struct InitArgs {
+    /// Folder to write
+    #[arg(default_value = "recon-init")]
+    pub(crate) folder: PathBuf,
+    /// Write beside files in the folder that recon did not write; these are never replaced or removed
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
+Examples:
+  recon formats
+  recon formats log-2
+  recon formats --json | jq '.[].name'")]
+pub(crate) struct FormatsArgs {
+    /// Name of one format [default: all of them]
+    pub(crate) name: Option<String>,
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
+Nothing is estimated. Told are the kind of file, palms with shapes and poses, rate and gaps, which palm touches when, what is measured and how
+noisy it is (as stated, or by the roughness of the readings), whether units go together, and which estimator takes the log.
+Exit code 4 says that something does not go together.
+
+Examples:
+  recon check-input log.csv --scene scene.toml
+  recon check-input contacts.csv
+  recon check-input log.csv --scene scene.toml --json | jq .gaps")]
+pub(crate) struct CheckInputArgs {
+    /// Sensor log (CSV, or a bag of ROS 2 in MCAP), contacts or poses (CSV)
+    pub(crate) input: PathBuf,
+    /// Scene file (TOML); logs need one
+    #[arg(short, long)]
+    pub(crate) scene: Option<PathBuf>,
+    /// Mapping of a bag's topics (TOML)
+    #[arg(short, long)]
+    pub(crate) mapping: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
+Examples:
+  recon completions bash > ~/.local/share/bash-completion/completions/recon
+  recon completions zsh > ~/.zfunc/_recon")]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    pub(crate) shell: clap_complete::Shell,
 }
 
 fn fit(text: &str) -> Result<FitAs, String> {
@@ -510,6 +652,10 @@ fn fit(text: &str) -> Result<FitAs, String> {
                 .to_owned())
         }
     }
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|count| *count > 0).ok_or_else(|| "give a whole number from 1 on".to_owned())
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

@@ -9,11 +9,18 @@ use std::io::{self, ErrorKind, Write};
 /// Standard output and standard error, as text or as JSON.
 pub(crate) struct Console {
     json: bool,
+    quiet: bool,
 }
 
 impl Console {
-    pub(crate) fn new(json: bool) -> Self {
-        Self { json }
+    /// As JSON for a program; `quiet` leaves out what is said beside results and errors.
+    pub(crate) fn new(json: bool, quiet: bool) -> Self {
+        Self { json, quiet }
+    }
+
+    /// Whether nobody wants to be told how work goes on.
+    pub(crate) fn is_quiet(&self) -> bool {
+        self.json || self.quiet
     }
 
     /// Whether a program is reading.
@@ -29,7 +36,7 @@ impl Console {
 
     /// Says something beside the result; a program reads it from the result instead.
     pub(crate) fn note(&self, text: &str) {
-        if !self.json {
+        if !self.is_quiet() {
             // Without anyone to read notes there is nothing to be done.
             let _ = writeln!(io::stderr().lock(), "{}", with_brief_numbers(text));
         }
@@ -37,16 +44,7 @@ impl Console {
 
     /// Prints an error with its chain of causes.
     pub(crate) fn error(&self, error: &CliError) {
-        let mut causes = Vec::new();
-        let mut cause = error.source();
-        while let Some(inner) = cause {
-            // Some errors print their source as a part of their own text; then it is not said twice.
-            let text = inner.to_string();
-            if !causes.last().is_some_and(|last: &String| last.contains(&text)) {
-                causes.push(text);
-            }
-            cause = inner.source();
-        }
+        let causes = causes(error);
         let text = if self.json {
             format!("{:#}", json!({ "error": error.to_string(), "causes": causes }))
         } else {
@@ -58,6 +56,21 @@ impl Console {
         };
         let _ = writeln!(io::stderr().lock(), "{text}");
     }
+}
+
+/// What an error says was its cause, and the cause of that.
+pub(crate) fn causes(error: &CliError) -> Vec<String> {
+    let mut causes = Vec::new();
+    let mut cause = error.source();
+    while let Some(inner) = cause {
+        // Some errors print their source as a part of their own text; then it is not said twice.
+        let text = inner.to_string();
+        if !causes.last().is_some_and(|last: &String| last.contains(&text)) {
+            causes.push(text);
+        }
+        cause = inner.source();
+    }
+    causes
 }
 
 /// A reader that has gone away, such as `head`, has had what it wanted.

@@ -13,7 +13,6 @@ use recon_io::{
     TouchesError,
 };
 use std::path::PathBuf;
-use std::process::ExitCode;
 use thiserror::Error;
 
 /// How a command ended that did not fail.
@@ -26,10 +25,10 @@ pub(crate) enum Outcome {
 }
 
 impl Outcome {
-    pub(crate) fn exit_code(self) -> ExitCode {
+    pub(crate) fn code(self) -> u8 {
         match self {
-            Self::Done => ExitCode::SUCCESS,
-            Self::WithReservations => ExitCode::from(4),
+            Self::Done => 0,
+            Self::WithReservations => 4,
         }
     }
 }
@@ -43,6 +42,18 @@ pub(crate) enum CliError {
     Bag(#[from] BagError),
     #[error("the results make no bag")]
     ResultBag(#[source] std::io::Error),
+    #[error("the folder {} cannot be read", path.display())]
+    Folder { path: PathBuf, source: std::io::Error },
+    #[error("{} holds no logs: CSV files, or bags of ROS 2 (MCAP)", path.display())]
+    NoLogs { path: PathBuf },
+    #[error("{} has the name of another log but for its ending, and both would be written into one folder: rename one", path.display())]
+    SameName { path: PathBuf },
+    #[error("`{name}` is no format; these are: {names}")]
+    NoFormat { name: String, names: String },
+    #[error(
+        "a sensor log is read with its scene (--scene): gravity, and of palms that are not three planes through the origin what they are"
+    )]
+    LogNeedsScene,
     #[error("the mapping of topics cannot be used")]
     Mapping(#[from] MappingError),
     #[error("{} is an MCAP bag: give the mapping of its topics by --mapping; `recon inspect {} -o map.toml` drafts one", path.display(), path.display())]
@@ -187,6 +198,8 @@ pub(crate) enum CliError {
         "no shape can be fitted to the contacts (for an export, --export-shape inner takes the bound instead)"
     )]
     Fit(#[from] FitError),
+    #[error("a mesh cannot be written in this format")]
+    MeshFormat(#[source] std::io::Error),
     #[error("the result cannot be written")]
     Output(#[from] OutputError),
     #[error("the results do not hold")]
@@ -215,19 +228,24 @@ pub(crate) enum CliError {
 
 impl CliError {
     /// The code of each kind is told in `recon --help`.
-    pub(crate) fn exit_code(&self) -> ExitCode {
-        ExitCode::from(match self {
+    pub(crate) fn code(&self) -> u8 {
+        match self {
             Self::Output(OutputError::Certificate { .. })
             | Self::Picture(_)
             | Self::Facets(_)
             | Self::ResultBag(_)
             | Self::Mesh(_)
+            | Self::MeshFormat(_)
             | Self::Signals(_)
             | Self::PlanarDemo(_) => 1,
             Self::Log(_)
             | Self::Bag(_)
             | Self::Mapping(_)
             | Self::NoMapping { .. }
+            | Self::Folder { .. }
+            | Self::NoLogs { .. }
+            | Self::LogNeedsScene
+            | Self::SameName { .. }
             | Self::BagFollowed { .. }
             | Self::Scene(_)
             | Self::Touches(_)
@@ -282,9 +300,9 @@ impl CliError {
             | Self::Check(_)
             | Self::Fit(_)
             | Self::Bounds(_) => 3,
-            Self::Option { .. } | Self::MappingOfNoBag { .. } => 2,
+            Self::Option { .. } | Self::NoFormat { .. } | Self::MappingOfNoBag { .. } => 2,
             Self::Output(_) | Self::StandardOutput(_) => 5,
             Self::Interrupted => 130,
-        })
+        }
     }
 }

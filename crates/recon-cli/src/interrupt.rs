@@ -3,10 +3,11 @@
 
 use crate::error::CliError;
 use std::io::{self, Write};
-use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
 
 static ASKED: AtomicBool = AtomicBool::new(false);
-static WRITING: AtomicBool = AtomicBool::new(false);
+/// Threads that are writing.
+static WRITING: AtomicUsize = AtomicUsize::new(0);
 
 /// Begins to listen.
 pub(crate) fn install() -> Result<(), CliError> {
@@ -14,19 +15,33 @@ pub(crate) fn install() -> Result<(), CliError> {
         ASKED.store(true, SeqCst);
         // Writing is announced before `ASKED` is read (below), and `ASKED` is set before `WRITING` is read (here):
         // one of the two sides sees the other.
-        if !WRITING.load(SeqCst) {
-            let _ = writeln!(io::stderr(), "recon: {}", CliError::Interrupted);
-            std::process::exit(130);
-        }
+        end_unless_writing();
     })
     .map_err(CliError::Signals)
 }
 
+/// Ends the program, unless a thread of it is writing.
+fn end_unless_writing() {
+    if WRITING.load(SeqCst) == 0 {
+        let _ = writeln!(io::stderr(), "recon: {}", CliError::Interrupted);
+        std::process::exit(130);
+    }
+}
+
+/// Whether the user has asked to stop; ends the program then, unless another thread of it is writing.
+pub(crate) fn asked() -> bool {
+    let asked = ASKED.load(SeqCst);
+    if asked {
+        end_unless_writing();
+    }
+    asked
+}
+
 /// Runs `write`, which must check for interruption ([`Checked`], [`check`]) and clean up when it fails.
 pub(crate) fn while_writing<T>(write: impl FnOnce() -> Result<T, CliError>) -> Result<T, CliError> {
-    WRITING.store(true, SeqCst);
+    WRITING.fetch_add(1, SeqCst);
     let result = check().and_then(|()| write());
-    WRITING.store(false, SeqCst);
+    WRITING.fetch_sub(1, SeqCst);
     // Whatever error an interruption shows up as, it is one.
     if result.is_err() {
         check()?

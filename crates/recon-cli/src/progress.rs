@@ -1,5 +1,6 @@
-//! A bar for work that takes over a second, on a terminal only.
+//! What is told while work goes on: a bar on a terminal for what takes over a second, or a caller in the same program.
 
+use crate::error::CliError;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -8,10 +9,14 @@ use std::time::Duration;
 /// How long work may take before a bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// Is told each step as it begins, and says whether to go on.
+pub type Watch = Box<dyn Fn(&'static str) -> bool + Send + Sync>;
+
 /// The steps of a command, shown as `[####    ] 2/4 estimating the motion`.
 pub(crate) struct Progress {
     bar: ProgressBar,
     step: Arc<Mutex<String>>,
+    watch: Option<Watch>,
 }
 
 impl Progress {
@@ -31,7 +36,21 @@ impl Progress {
             bar.set_style(style.with_key("late", late));
         }
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self { bar, step }
+        Self { bar, step, watch: None }
+    }
+
+    /// Begins work of which `watch` is told instead.
+    pub(crate) fn watched(watch: Option<Watch>) -> Self {
+        Self { bar: ProgressBar::hidden(), step: Arc::default(), watch }
+    }
+
+    /// Begins the next step, unless whoever watches wants no more of it.
+    pub(crate) fn begin(&self, what: &'static str) -> Result<(), CliError> {
+        self.step(what);
+        match &self.watch {
+            Some(watch) if !watch(what) => Err(CliError::Interrupted),
+            _ => Ok(()),
+        }
     }
 
     /// Begins the next step.

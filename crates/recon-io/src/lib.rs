@@ -10,6 +10,7 @@ mod check;
 mod export;
 mod log;
 mod mesh;
+mod mesh_formats;
 mod number;
 mod output;
 mod planar_figures;
@@ -36,15 +37,16 @@ pub use export::{
     ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel, SceneModel,
 };
 pub use log::{
-    AnyLog, ContactRows, LogFileError, LogFileErrorKind, LogReader, PalmSetup, PlaneRows, parse_any_log,
-    parse_contact_log, parse_log, parse_planar_contact_log, parse_planar_log, read_any_log, read_contact_log,
-    read_log, read_planar_contact_log, read_planar_log, write_contact_log, write_log,
-    write_planar_contact_log, write_planar_log,
+    AnyLog, ContactRows, LogFileError, LogFileErrorKind, LogReader, PalmSetup, PlaneRows, RowReader,
+    RowSample, log_of_columns, parse_any_log, parse_contact_log, parse_log, parse_planar_contact_log,
+    parse_planar_log, read_any_log, read_contact_log, read_log, read_planar_contact_log, read_planar_log,
+    write_contact_log, write_log, write_planar_contact_log, write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
+pub use mesh_formats::{write_glb, write_stl};
 pub use number::{brief, brief_to, with_brief_numbers};
 pub use output::{
-    AtomicFile, FileTarget, FolderTarget, OutputError, OutputFolder, Summed, is_standard_output,
+    AtomicFile, FileTarget, FolderTarget, OutputError, OutputFolder, Summed, fingerprint, is_standard_output,
 };
 pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};
@@ -63,5 +65,5 @@ pub use summary::{INERTIA_LEARNED, estimate_summary, summary};
 pub use table::{write_contact_curves, write_estimated_motion, write_motion, write_radius_functions};
 pub use touches::{
     Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,
-    read_contacts, read_touches, write_contacts,
+    read_contacts, read_touches, touches_of_columns, write_contacts,
 };

@@ -8,6 +8,7 @@ mod builds;
 mod extras;
 mod licences;
 mod paths;
+mod python;
 mod spdx;
 mod versions;
 
@@ -36,6 +37,11 @@ const STEPS: &[Step] = &[
     step("tests", "all tests and doctests of the workspace", builds::tests),
     step("alone", "each core crate and its tests compile and lint with its own features only", builds::alone),
     step("features", "each Cargo feature builds without the others", builds::features),
+    step(
+        "python",
+        "the package for Python and its tests, where there is a Python with maturin",
+        python::check,
+    ),
     optional("hack", "cargo-hack: all combinations of features build", extras::hack),
     optional(
         "semver",

@@ -1,47 +1,15 @@
-//! `recon reconstruct` on logs of contacts of any palms.
+//! What `recon reconstruct` says of contacts of any palms.
 
-use super::reconstruct::bounds_and_errors;
-use crate::cli::ReconstructArgs;
-use crate::console::Console;
-use crate::error::{CliError, Outcome};
-use crate::pipeline::{
-    AnyPalmsRequest, LogStand, as_planes, bag_of_any_palms, describe_times, estimate_any_palms, exported,
-    write_estimate_folder,
-};
-use crate::progress::Progress;
-use recon::object_dynamics::{ContactLog, SensorLog};
-use recon_io::{EstimateData, FolderTarget, Level, brief, brief_to, estimated_mode_spans};
+use super::answers::{Advice, bounds_and_errors, of_body};
+use crate::pipeline::describe_times;
+use recon::object_dynamics::MassProperties;
+use recon::observer::ContactEstimate;
+use recon_io::{EstimateData, INERTIA_LEARNED, Level, brief, brief_to, estimated_mode_spans};
 use serde_json::Value;
 use std::fmt::Write;
-use std::path::Path;
 
-pub(super) fn run(
-    args: &ReconstructArgs,
-    (log, request, stand): (ContactLog, AnyPalmsRequest<'_>, LogStand),
-    planes: Option<&SensorLog>,
-    (target, progress): (FolderTarget, Progress),
-    console: &Console,
-) -> Result<Outcome, CliError> {
-    let scene = request.scene;
-    let made = estimate_any_palms(log, request, &progress)?;
-    progress.step("writing the results");
-    let files = match args.export.is_empty() {
-        true => Vec::new(),
-        false => exported(&made.object()?, &args.export, args.export_shape)?,
-    };
-    let mut extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
-    if args.mcap {
-        extras.push(bag_of_any_palms(&made, stand)?);
-    }
-    let page = planes.map(|planes| as_planes(&made, planes, scene)).transpose()?;
-    let (mut figures, data) = (write_estimate_folder(target, &made, page.as_ref(), &extras)?, &made.data);
-    drop(progress);
-    figures["folder"] = args.output.to_string_lossy().into();
-    console.result(&describe(data, &figures, &args.output), &figures)?;
-    Ok(if data.verdict.level == Level::Good { Outcome::Done } else { Outcome::WithReservations })
-}
-
-fn describe(data: &EstimateData, figures: &Value, folder: &Path) -> String {
+/// What contacts of any palms tell, in words; `figures` are those of its summary.
+pub(super) fn describe(data: &EstimateData, figures: &Value) -> String {
     let found = &data.estimate;
     let mut text = format!("{}\n{}\n", data.verdict.text, data.note);
     for warning in &data.warnings {
@@ -51,28 +19,38 @@ fn describe(data: &EstimateData, figures: &Value, folder: &Path) -> String {
         let _ = writeln!(text, "  {name:<22} {value}");
     };
     line("samples", format!("{} over {} s", data.log.times().len(), brief(data.log.duration())));
-    let known = match found.axes_deviations {
-        Some(_) => "as stated".to_owned(),
-        None => format!("deviation {} kg", brief_to(2, found.mass * found.mass_deviation)),
-    };
-    line("mass", format!("{} kg, {known}", brief(found.mass)));
+    // A tensor that no body has, as rounding may leave one, has no moments to tell.
+    match MassProperties::new(found.mass, found.inertia) {
+        Ok(body) => of_body(&body, figures).into_iter().for_each(|(name, value)| line(name, value)),
+        Err(_) => line("mass", format!("{} kg", brief(found.mass))),
+    }
     if let Some(axes) = figures["evidence"]["std_axes"]["value"].as_str() {
         line("axes, deviations", format!("{axes} rad"));
     }
-    let moments: Vec<String> = ["moment_x", "moment_y", "moment_z"]
-        .iter()
-        .filter_map(|key| figures["evidence"][key]["value"].as_f64())
-        .map(|moment| brief_to(4, moment))
-        .collect();
-    if !moments.is_empty() {
-        line("principal moments", format!("{} kg m^2", moments.join(", ")));
+    if let Some([position, velocity, _, turn]) = largest(found) {
+        let [position, velocity, turn] = [position, velocity, turn].map(|std| brief_to(2, std));
+        line("motion known to", format!("{position} m, {velocity} m/s, {turn} rad (largest std relied on)"));
     }
     for (name, value) in bounds_and_errors(data.bounds.as_ref(), figures) {
         line(name, value);
     }
+    let advice = Advice {
+        reliable: data.verdict.level == Level::Good,
+        bounds: data.bounds.as_ref(),
+        identified: found.axes_deviations.is_none(),
+        learned: found.inertia_deviations.iter().all(|deviation| *deviation < INERTIA_LEARNED),
+    };
+    line("next", advice.next().to_owned());
     let spans: Vec<_> =
         (0..data.log.palms().len()).map(|palm| estimated_mode_spans(data.log.times(), found, palm)).collect();
     let times = describe_times(&spans);
-    let _ = write!(text, "{}\n{}", times.trim_start_matches('\n'), folder.join("report.html").display());
+    let _ = writeln!(text, "{}", times.trim_start_matches('\n'));
     text
+}
+
+/// The largest standard deviations, all axes together, at the samples that are relied on; none where there is no such sample.
+fn largest(found: &ContactEstimate) -> Option<[f64; 4]> {
+    let relied = found.deviations.iter().zip(&found.relied_on).filter(|(_, relied)| **relied);
+    let sizes = relied.map(|(of, _)| of.map(|std| std.length()));
+    sizes.reduce(|a, b| std::array::from_fn(|i| a[i].max(b[i])))
 }

@@ -1,10 +1,10 @@
 use super::plane;
-use crate::cli::{BoundsArgs, FitAs};
+use crate::cli::{BoundsArgs, FitAs, MeshAs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
-    BoundsResult, Noise, PlanarRequest, concave_bounds, doubtful_fit, exact_bounds, fit_words, fitted_shape,
-    noisy_bounds, pose_bounds, sharp_bounds, write_bounds_folder,
+    BoundsResult, Noise, PlanarBounds, PlanarRequest, concave_bounds, doubtful_fit, exact_bounds, fit_words,
+    fitted_shape, meshes_as, noisy_bounds, planar_bounds, pose_bounds, sharp_bounds, write_bounds_folder,
 };
 use crate::progress::Progress;
 use recon::contact_kinematics::CurvatureRadii;
@@ -25,15 +25,36 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
     let inputs = slice::from_ref(&args.input);
     let target =
         args.output.as_ref().map(|folder| FolderTarget::new(folder, inputs, args.force)).transpose()?;
-    let progress = Progress::new(2, console.is_json());
+    let progress = Progress::new(2, console.is_quiet());
     progress.step("reading contacts or poses");
     let touches = read_touches(&args.input)?;
-    check_options(args, &touches)?;
     progress.step("bounding the shape");
-    let (made, about, what) = match touches {
+    let made = bounded(args, &touches)?;
+    let figures = made.figures();
+    match target {
+        Some(folder) => made.write(folder, &args.mesh, &figures)?,
+        None => made.check(&figures)?,
+    }
+    drop(progress);
+    console.result(&made.describe(), &figures)?;
+    Ok(if made.is_whole() { Outcome::Done } else { Outcome::WithReservations })
+}
+
+/// Bounds, and what is to be said about them.
+pub(crate) enum Bounded {
+    /// In space, of so many contacts or poses.
+    Space { made: Box<BoundsResult>, about: Value, what: String },
+    /// Of so many contacts in the plane.
+    Plane { made: Box<PlanarBounds>, count: usize },
+}
+
+/// Bounds from what `args.input` held.
+pub(crate) fn bounded(args: &BoundsArgs, touches: &Touches) -> Result<Bounded, CliError> {
+    check_options(args, touches)?;
+    Ok(match touches {
         Touches::PlanarContacts { curves, .. } => {
-            drop(progress);
-            return plane::run(&curves, &planar_request(args), target, console);
+            let made = Box::new(planar_bounds(curves, &planar_request(args))?);
+            Bounded::Plane { made, count: curves.iter().map(Vec::len).sum() }
         }
         Touches::Poses(runs) => {
             let count = runs.iter().map(Vec::len).sum::<usize>();
@@ -42,24 +63,73 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
                 deviation: args.height_deviation.unwrap_or(0.0),
                 run_deviation: args.run_height_deviation.unwrap_or(0.0),
             };
-            let (made, about) = pose_bounds(&runs, plane, confidence(args), args.tight)?;
-            (made, about, format!("{count} poses in {} runs", runs.len()))
+            let (made, about) = pose_bounds(runs, plane, confidence(args), args.tight)?;
+            let what = format!("{count} poses in {} runs", runs.len());
+            Bounded::Space { made: Box::new(made), about, what }
         }
         Touches::Contacts { curves, .. } => {
-            let (made, about) = of_contacts(args, &curves)?;
-            (made, about, format!("{} contacts", curves.iter().map(Vec::len).sum::<usize>()))
+            let (made, about) = of_contacts(args, curves)?;
+            let what = format!("{} contacts", curves.iter().map(Vec::len).sum::<usize>());
+            Bounded::Space { made: Box::new(made), about, what }
         }
-    };
-    let figures = figures(&made, &what, &about);
-    match target {
-        Some(folder) => write_bounds_folder(folder, &made, &figures)?,
-        None => check_unwritten(&figures, &made.surfaces(), &[])?,
+    })
+}
+
+impl Bounded {
+    /// The summary.
+    pub(crate) fn figures(&self) -> Value {
+        match self {
+            Self::Space { made, about, what } => figures(made, what, about),
+            Self::Plane { made, count } => plane::figures(made, *count),
+        }
     }
-    drop(progress);
-    console.result(&describe(&made, &what, &about), &figures)?;
-    let refused = about["fit"]["status"] == "refused";
-    let whole = made.lower.is_some() && made.upper.is_some() && !made.contradicts() && !refused;
-    Ok(if whole { Outcome::Done } else { Outcome::WithReservations })
+
+    /// The summary in words.
+    pub(crate) fn describe(&self) -> String {
+        match self {
+            Self::Space { made, about, what } => describe(made, what, about),
+            Self::Plane { made, count } => plane::describe(made, *count),
+        }
+    }
+
+    /// Writes the folder.
+    pub(crate) fn write(
+        &self,
+        folder: FolderTarget,
+        formats: &[MeshAs],
+        figures: &Value,
+    ) -> Result<(), CliError> {
+        match self {
+            Self::Space { made, .. } => {
+                let others = made.others.iter().map(|(name, _, mesh)| (*name, mesh));
+                let extras = meshes_as(made.surfaces().into_iter().chain(others), formats)?;
+                write_bounds_folder(folder, made, &extras, figures)
+            }
+            Self::Plane { made, .. } => plane::write_folder(folder, made, figures),
+        }
+    }
+
+    /// Checks what is not written.
+    pub(crate) fn check(&self, figures: &Value) -> Result<(), CliError> {
+        match self {
+            Self::Space { made, .. } => check_unwritten(figures, &made.surfaces(), &[])?,
+            Self::Plane { made, .. } => check_unwritten(figures, &[], &made.drawn_outlines())?,
+        }
+        Ok(())
+    }
+
+    /// Whether there is all that was asked for.
+    pub(crate) fn is_whole(&self) -> bool {
+        let (about, whole) = match self {
+            Self::Space { made, about, .. } => {
+                (about, made.lower.is_some() && made.upper.is_some() && !made.contradicts())
+            }
+            Self::Plane { made, .. } => {
+                (&made.about, made.outlines.iter().all(|outline| !outline.is_empty()))
+            }
+        };
+        whole && about["fit"]["status"] != "refused"
+    }
 }
 
 fn of_contacts(args: &BoundsArgs, curves: &[Vec<ContactSample>]) -> Result<(BoundsResult, Value), CliError> {
@@ -125,6 +195,7 @@ fn check_options(args: &BoundsArgs, touches: &Touches) -> Result<(), CliError> {
         Touches::PlanarContacts { .. } => {
             let of_space = [
                 (args.concave, "concave", "contacts in space"),
+                (!args.mesh.is_empty(), "mesh", "contacts in space"),
                 (!in_plane, "fit ball, ellipsoid, superquadric or harmonics", "contacts in space"),
                 (args.rho_max.is_some() && !exact, "rho-max beside noise", "contacts in space"),
             ];

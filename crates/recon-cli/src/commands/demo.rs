@@ -3,7 +3,7 @@ use crate::cli::{DemoArgs, DemoScene};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
-    reconstruct, simulate, simulate_contacts, write_contact_folder, write_reconstruction_folder,
+    Estimated, normal_forces, reconstruct, simulate, simulate_contacts, write_contact_folder,
 };
 use crate::progress::Progress;
 use recon_io::{FolderTarget, Scene, SceneError, SceneModel, write_log};
@@ -33,16 +33,18 @@ pub(crate) fn run(args: &DemoArgs, console: &Console) -> Result<Outcome, CliErro
 fn fig5(args: &DemoArgs, text: &str, console: &Console) -> Result<Outcome, CliError> {
     let scene = Scene::parse(text).map_err(in_scene)?;
     let target = FolderTarget::new(&args.output, &[], args.force)?;
-    let progress = Progress::new(4, console.is_json());
+    let progress = Progress::new(4, console.is_quiet());
     progress.step("simulating");
     let simulated = simulate(&scene, Path::new(SCENE), TOLERANCE)?;
     let title = "An ellipsoid on three palms (Fig. 5 of Moll and Erdmann, 2002)";
     let mut log = Vec::new();
     write_log(&simulated.log, &mut log).map_err(CliError::StandardOutput)?;
+    let forces = normal_forces(&simulated.log);
     let made = reconstruct(simulated.log, &scene, title, (false, 1), &progress)?;
     progress.step("writing the results");
     let extras = [(SCENE.to_owned(), text.into()), ("log.csv".to_owned(), log)];
-    let figures = write_reconstruction_folder(target, &made, &extras)?;
+    let made = Estimated::Planes(Box::new(made), forces);
+    let figures = made.write(target, &extras)?;
     drop(progress);
     tell(console, &made, figures, &args.output)
 }
@@ -51,7 +53,7 @@ fn fig5(args: &DemoArgs, text: &str, console: &Console) -> Result<Outcome, CliEr
 fn any_palms(args: &DemoArgs, title: &str, text: &str, console: &Console) -> Result<Outcome, CliError> {
     let scene = Scene::parse(text).map_err(in_scene)?;
     let target = FolderTarget::new(&args.output, &[], args.force)?;
-    let progress = Progress::new(2, console.is_json());
+    let progress = Progress::new(2, console.is_quiet());
     progress.step("simulating");
     let run = simulate_contacts(&scene, Path::new(SCENE), CONTACT_TOLERANCE)?;
     progress.step("writing the results");

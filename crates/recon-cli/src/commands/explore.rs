@@ -16,7 +16,7 @@ pub(crate) fn run(args: &ExploreArgs, console: &Console) -> Result<Outcome, CliE
     let inputs = slice::from_ref(&args.scene);
     let target =
         args.output.as_ref().map(|folder| FolderTarget::new(folder, inputs, args.force)).transpose()?;
-    let progress = Progress::new(args.goal.budget.map_or(0, u64::from), console.is_json());
+    let progress = Progress::new(args.goal.budget.map_or(0, u64::from), console.is_quiet());
     progress.step("reading the scene");
     let made = match Scene::read(&args.scene) {
         Ok(scene) => in_space(args, &scene, &progress)?,

@@ -1,18 +1,24 @@
 //! The commands: from arguments to files and words.
 
+mod answers;
 mod any_palms;
-mod bounds;
+mod batch;
+pub(crate) mod bounds;
 mod check;
+mod check_input;
 mod demo;
 mod explore;
 mod export;
-mod follow;
+pub(crate) mod follow;
+mod formats;
+mod init;
 mod inspect;
+mod manual;
 mod next;
 mod planar;
 mod plane;
-mod reconstruct;
-mod simulate;
+pub(crate) mod reconstruct;
+pub(crate) mod simulate;
 mod without_forces;
 
 use crate::cli::Command;
@@ -24,6 +30,7 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
     match command {
         Command::Simulate(args) => simulate::run(args, console),
         Command::Reconstruct(args) => reconstruct::run(args, console),
+        Command::Batch(args) => batch::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Follow(args) => follow::run(args, console),
         Command::Bounds(args) => bounds::run(args, console),
@@ -33,5 +40,10 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
         Command::Check(args) => check::run(args, console),
         Command::Explore(args) => explore::run(args, console),
         Command::Next(args) => next::run(args),
+        Command::Init(args) => init::run(args, console),
+        Command::Formats(args) => formats::run(args, console),
+        Command::CheckInput(args) => check_input::run(args, console),
+        Command::Completions(args) => manual::completions(args),
+        Command::Man => manual::page(),
     }
 }

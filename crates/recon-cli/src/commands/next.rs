@@ -22,7 +22,7 @@ pub(crate) fn run(args: &NextArgs) -> Result<Outcome, CliError> {
         Touches::Poses(_) => return Err(CliError::PosesExplored { path: contacts }),
     };
     // For a program in any case: there is nothing else to say.
-    Console::new(true).result("", &told)?;
+    Console::new(true, false).result("", &told)?;
     Ok(exit)
 }
 

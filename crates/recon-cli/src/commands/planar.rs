@@ -44,7 +44,7 @@ struct Fitted {
 
 pub(crate) fn run(args: &PlanarArgs, console: &Console) -> Result<Outcome, CliError> {
     let target = FolderTarget::new(&args.output, args.log.as_slice(), args.force)?;
-    let progress = Progress::new(2, console.is_json());
+    let progress = Progress::new(2, console.is_quiet());
     progress.step("reading the log");
     let demo = args.log.is_none().then(demo).transpose()?;
     let (log, mass) = match (&args.log, demo) {
@@ -72,7 +72,7 @@ pub(crate) fn reconstruct(
 ) -> Result<Outcome, CliError> {
     let mut known = PlanarScene::read_known(scene)?;
     let target = FolderTarget::new(&args.output, &[args.log.clone(), scene.to_owned()], args.force)?;
-    let progress = Progress::new(2, console.is_json());
+    let progress = Progress::new(2, console.is_quiet());
     progress.step("reading the log");
     if args.identify {
         known.mass = None;

@@ -1,36 +1,15 @@
 //! `recon bounds` for contacts in the plane.
 
-use crate::console::Console;
-use crate::error::{CliError, Outcome};
+use crate::error::CliError;
 use crate::interrupt::while_writing;
-use crate::pipeline::{PlanarBounds, PlanarRequest, fit_words, planar_bounds};
+use crate::pipeline::{PlanarBounds, fit_words};
 use glam::DVec2;
-use recon::shape_bounds::planar::ContactSample;
-use recon_io::{FigureCurve, FigurePanel, FolderTarget, brief, brief_to, check_unwritten, write_figures};
+use recon_io::{FigureCurve, FigurePanel, FolderTarget, brief, brief_to, write_figures};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-pub(super) fn run(
-    curves: &[Vec<ContactSample>],
-    request: &PlanarRequest,
-    target: Option<FolderTarget>,
-    console: &Console,
-) -> Result<Outcome, CliError> {
-    let made = planar_bounds(curves, request)?;
-    let count = curves.iter().map(Vec::len).sum::<usize>();
-    let figures = figures(&made, count);
-    match target {
-        Some(folder) => write_folder(folder, &made, &figures)?,
-        None => check_unwritten(&figures, &[], &made.drawn_outlines())?,
-    }
-    console.result(&describe(&made, count), &figures)?;
-    let refused = made.about["fit"]["status"] == "refused";
-    let whole = made.outlines.iter().all(|outline| !outline.is_empty()) && !refused;
-    Ok(if whole { Outcome::Done } else { Outcome::WithReservations })
-}
-
-fn figures(made: &PlanarBounds, count: usize) -> Value {
+pub(super) fn figures(made: &PlanarBounds, count: usize) -> Value {
     let [lower, upper] = made.areas;
     json!({
         "recon": env!("CARGO_PKG_VERSION"),
@@ -47,7 +26,7 @@ fn figures(made: &PlanarBounds, count: usize) -> Value {
     })
 }
 
-fn describe(made: &PlanarBounds, count: usize) -> String {
+pub(super) fn describe(made: &PlanarBounds, count: usize) -> String {
     let mut text: String = made.warnings.iter().map(|w| format!("Warning: {w}\n")).collect();
     let _ = writeln!(text, "{count} contacts in the plane");
     if let Some(confidence) = made.about["confidence"].as_f64() {
@@ -68,7 +47,11 @@ fn describe(made: &PlanarBounds, count: usize) -> String {
     text
 }
 
-fn write_folder(target: FolderTarget, made: &PlanarBounds, figures: &Value) -> Result<(), CliError> {
+pub(super) fn write_folder(
+    target: FolderTarget,
+    made: &PlanarBounds,
+    figures: &Value,
+) -> Result<(), CliError> {
     while_writing(|| {
         let mut folder = target.begin()?;
         folder.write("bounds.svg", |to| write_figures(&panels(made), to))?;

@@ -1,12 +1,10 @@
+use super::answers::{Advice, bounds_and_errors, evidence, of_body};
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{
-    AnyPalmsRequest, LogOf, LogSource, ReadLog, Reconstruction, bag_of_planes, condensed, exported,
-    noisy_planes, normal_forces, read_log, reconstruct, refuse_unfelt, sentence, write_reconstruction_folder,
-};
+use crate::pipeline::{Asked, Estimated, LogSource, Reconstruction, estimated, meshes_as, read_log};
 use crate::progress::Progress;
-use recon_io::{Bounds, FolderTarget, Scene, SceneErrorKind, brief, brief_to};
+use recon_io::{FolderTarget, Scene, SceneErrorKind, brief, brief_to};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
@@ -23,41 +21,17 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
         read => read?,
     };
     let target = target(args)?;
-    let progress = Progress::new(4, console.is_json());
+    let progress = Progress::new(4, console.is_quiet());
     progress.step("reading the log");
     let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
-    let ReadLog { log, warnings, stand } = read_log(source(args, &scene), console)?;
-    let mut request = AnyPalmsRequest::new(&scene, &title, args.identify);
-    let log = match log {
-        LogOf::ThreePalms(log) => log,
-        LogOf::AnyPalms(log, why) => {
-            refuse_unfelt(&log, &args.log, &why)?;
-            request.warnings = warnings;
-            request.note = sentence(&format!("{why}; the estimate is that from contacts of any palms"));
-            return super::any_palms::run(args, (*log, request, stand), None, (target, progress), console);
-        }
-    };
-    let (log, together) = condensed(log);
-    if let Some(contacts) = noisy_planes(&log, &scene)? {
-        request.of_noisy_planes(&log, together, warnings);
-        return super::any_palms::run(
-            args,
-            (contacts, request, stand),
-            Some(&log),
-            (target, progress),
-            console,
-        );
-    }
-    let forces = normal_forces(&log);
-    let mut made = reconstruct(log, &scene, &title, (args.identify, together), &progress)?;
-    made.data.warnings.extend(warnings);
+    let read = read_log(source(args, &scene), console)?;
+    let stand = read.stand;
+    let asked = Asked { path: &args.log, scene: &scene, title: &title, identify: args.identify };
+    let made = estimated(read, &asked, &progress)?;
     progress.step("writing the results");
-    let files = exported(&made.object(), &args.export, args.export_shape)?;
-    let mut extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
-    if args.mcap {
-        extras.push(bag_of_planes(&made, &forces, stand)?);
-    }
-    let figures = write_reconstruction_folder(target, &made, &extras)?;
+    let mut extras = made.extras(&args.export, args.export_shape, args.mcap.then_some(stand))?;
+    extras.extend(meshes_as(made.surfaces(), &args.mesh)?);
+    let figures = made.write(target, &extras)?;
     drop(progress);
     tell(console, &made, figures, &args.output)
 }
@@ -77,16 +51,25 @@ pub(super) fn target(args: &ReconstructArgs) -> Result<FolderTarget, CliError> {
 /// Prints what came out.
 pub(super) fn tell(
     console: &Console,
-    made: &Reconstruction,
+    made: &Estimated,
     mut figures: Value,
     folder: &Path,
 ) -> Result<Outcome, CliError> {
     figures["folder"] = folder.to_string_lossy().into();
-    console.result(&describe(made, &figures, folder), &figures)?;
+    let text = format!("{}{}", describe(made, &figures), folder.join("report.html").display());
+    console.result(&text, &figures)?;
     Ok(if made.is_reliable() { Outcome::Done } else { Outcome::WithReservations })
 }
 
-fn describe(made: &Reconstruction, figures: &Value, folder: &Path) -> String {
+/// What came out, in words; `figures` are those of its summary.
+pub(crate) fn describe(made: &Estimated, figures: &Value) -> String {
+    match made {
+        Estimated::Planes(made, _) => of_planes(made, figures),
+        Estimated::AnyPalms(made, _) => super::any_palms::describe(&made.data, figures),
+    }
+}
+
+fn of_planes(made: &Reconstruction, figures: &Value) -> String {
     let data = &made.data;
     let mut text = format!("{}\n", data.verdict.text);
     for warning in &data.warnings {
@@ -98,31 +81,26 @@ fn describe(made: &Reconstruction, figures: &Value, folder: &Path) -> String {
     if let (Some(first), Some(last)) = (data.times.first(), data.times.last()) {
         line("samples", format!("{} over {} s", data.times.len(), brief(last - first)));
     }
+    for (name, value) in of_body(&made.mass, figures) {
+        line(name, value);
+    }
+    let known = ["std_position", "std_velocity", "std_orientation"].map(|key| evidence(figures, key));
+    if let [Some(position), Some(velocity), Some(turn)] = known {
+        let [position, velocity, turn] = [position, velocity, turn].map(|std| brief_to(2, std));
+        line("motion known to", format!("{position} m, {velocity} m/s, {turn} rad (std)"));
+    }
+    if let Some(weakest) = figures["evidence"]["weakest"]["value"].as_str() {
+        line("least certain", weakest.to_owned());
+    }
     for (name, value) in bounds_and_errors(data.bounds.as_ref(), figures) {
         line(name, value);
     }
-    let _ = write!(text, "{}", folder.join("report.html").display());
+    let advice = Advice {
+        reliable: made.is_reliable(),
+        bounds: data.bounds.as_ref(),
+        identified: made.identified.is_some(),
+        learned: true,
+    };
+    line("next", advice.next().to_owned());
     text
-}
-
-/// Names and values of what is said of the bounds and, where the truth is known, of the largest errors.
-pub(super) fn bounds_and_errors(bounds: Option<&Bounds>, figures: &Value) -> Vec<(&'static str, String)> {
-    let mut lines = Vec::new();
-    if let Some(bounds) = bounds {
-        lines.push(("lower bound", format!("{} m^3", brief(bounds.lower.volume))));
-        if let Some(upper) = &bounds.upper {
-            lines.push(("upper bound", format!("{} m^3", brief(upper.volume))));
-            lines.push(("lower / upper", brief_to(4, bounds.lower.volume / upper.volume)));
-        }
-    }
-    for (name, key, unit) in [
-        ("largest error: position", "position_m", "m"),
-        ("  orientation", "orientation_rad", "rad"),
-        ("  angular velocity", "angular_velocity_rad_per_s", "rad/s"),
-    ] {
-        if let Some(error) = figures["largest_error"][key].as_f64() {
-            lines.push((name, format!("{error:.2e} {unit}")));
-        }
-    }
-    lines
 }

@@ -27,12 +27,11 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Cli
         Ok::<_, CliError>((target, path))
     });
     let page = page.transpose()?;
-    let progress = Progress::new(2, console.is_json());
+    let progress = Progress::new(2, console.is_quiet());
     progress.step("simulating");
     let mut made = match &scene {
         AnyScene::Plane(scene) => in_the_plane(scene, args)?,
-        AnyScene::Space(scene) if scene.palms.is_some() => any_palms(scene, args)?,
-        AnyScene::Space(scene) => three_palms(scene, args)?,
+        AnyScene::Space(scene) => in_space(scene, args)?,
     };
     progress.step("writing the log");
     let to_standard_output = target.is_none();
@@ -73,18 +72,26 @@ impl AnyScene {
 }
 
 /// A log of space or of the plane.
-enum MadeLog {
+pub(crate) enum MadeLog {
     Space(AnyLog),
     Plane(planar::ContactLog),
 }
 
 /// A simulated log and what is said of it.
-struct Made {
-    log: MadeLog,
-    report: Option<Vec<u8>>,
-    text: String,
-    figures: Value,
-    outcome: Outcome,
+pub(crate) struct Made {
+    pub(crate) log: MadeLog,
+    pub(crate) report: Option<Vec<u8>>,
+    pub(crate) text: String,
+    pub(crate) figures: Value,
+    pub(crate) outcome: Outcome,
+}
+
+/// Simulates a scene of space.
+pub(crate) fn in_space(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
+    match scene.palms {
+        Some(_) => any_palms(scene, args),
+        None => three_palms(scene, args),
+    }
 }
 
 fn any_palms(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {

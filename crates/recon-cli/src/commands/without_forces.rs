@@ -3,147 +3,21 @@
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{BoundsResult, NOTABLE_NOISE, bounds, three_palms, write_touch_folder};
+use crate::pipeline::{three_palms, without_forces};
 use crate::progress::Progress;
-use glam::{DMat3, DVec3};
-use recon::contact_kinematics::{Direction, PalmFrame};
-use recon::object_dynamics::SensorLog;
-use recon::observer::{KnownTouch, NoForceEstimate, estimate_without_forces};
-use recon::shape_bounds::ContactSample;
-use recon_io::{MotionState, Scene, brief};
-use serde_json::{Value, json};
-use std::error::Error;
+use recon_io::Scene;
 
 pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, CliError> {
     let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::NoGravity)?;
     let target = super::reconstruct::target(args)?;
-    let progress = Progress::new(4, console.is_json());
+    let progress = Progress::new(4, console.is_quiet());
     progress.step("reading the log");
-    let (log, mut warnings) = three_palms(super::reconstruct::source(args, &scene), console)?;
-    let (log, _) = log.split_truth();
-    progress.step("estimating motion and shape");
-    let known = KnownTouch {
-        gravity: DVec3::new(0.0, 0.0, -scene.gravity),
-        contact_noise: scene.sensors.contact_std.filter(|noise| *noise > 0.0),
-    };
-    let found = estimate_without_forces(&log, &known)?;
-    progress.step("bounding the shape");
-    let noise = found.evidence.noise_explains;
-    let bounded = if noise > NOTABLE_NOISE * found.shape.semi_axes.max_element() {
-        warnings.push(format!(
-            "There are no bounds on the shape: means of contacts are noisy by {noise:.1e} m, and without forces it is not known \
-             how far that moves the poses. The fitted ellipsoid comes with its deviations."
-        ));
-        None
-    } else {
-        match bounds(&contacts(&log, &found)) {
-            Ok(mut bounded) => {
-                warnings.append(&mut bounded.warnings);
-                Some(bounded)
-            }
-            Err(error) => {
-                let why = error.source().map_or_else(|| error.to_string(), ToString::to_string);
-                warnings.push(format!("The contacts give no bounds under this motion ({why})."));
-                None
-            }
-        }
-    };
+    let (log, warnings) = three_palms(super::reconstruct::source(args, &scene), console)?;
+    let made = without_forces(log, warnings, &scene, &progress)?;
     progress.step("writing the results");
-    let figures = figures(&found, bounded.as_ref(), &warnings);
-    let times: Vec<f64> = found.motion.iter().map(|m| m.t).collect();
-    let motion: Vec<MotionState> = found
-        .motion
-        .iter()
-        .map(|m| MotionState { p_WCm: m.p_WCm, R_WO: m.R_WO, v_WCm: m.v_WCm, w_WO: m.w_WO })
-        .collect();
-    write_touch_folder(target, &times, &motion, bounded.as_ref(), &figures)?;
+    let figures = made.write(target)?;
     drop(progress);
-    console.result(&describe(args, &found, bounded.as_ref(), &warnings), &figures)?;
-    Ok(if bounded.is_some() { Outcome::Done } else { Outcome::WithReservations })
-}
-
-/// Contacts in body axes with outward normals, at the nodes of the estimate.
-fn contacts(log: &SensorLog, found: &NoForceEstimate) -> Vec<ContactSample> {
-    let mut all = Vec::new();
-    for motion in &found.motion {
-        let samples = log.samples();
-        // Nodes stand at samples.
-        let after = samples.partition_point(|s| s.t < motion.t - 1e-9);
-        let Some(sample) = samples.get(after) else { continue };
-        let turn = motion.R_WO.inverse();
-        for palm in &sample.palms {
-            let Some((frame, s)) = PalmFrame::from_normal(palm.normal).ok().zip(palm.contact) else {
-                continue;
-            };
-            let point = turn * (frame.contact_from_sensor(s) - motion.p_WCm);
-            let normal = Direction::new_unchecked(turn * -frame.n);
-            all.push(ContactSample { point, normal });
-        }
-    }
-    all
-}
-
-fn six(m: &DMat3) -> [f64; 6] {
-    [m.x_axis.x, m.y_axis.y, m.z_axis.z, m.y_axis.x, m.z_axis.x, m.z_axis.y]
-}
-
-fn figures(found: &NoForceEstimate, bounded: Option<&BoundsResult>, warnings: &[String]) -> Value {
-    let NoForceEstimate { shape, evidence, covariance, .. } = found;
-    let deviations = |first: usize| -> Vec<f64> {
-        (first..first + 6).map(|i| covariance[(i, i)].max(0.0).sqrt()).collect()
-    };
-    let q = shape.orientation;
-    json!({
-        "method": "motion of an ellipsoid fitted to contacts and palm poses",
-        "status": format!("{:?}", evidence.status),
-        "semi_axes_m": shape.semi_axes.to_array(),
-        "centre_m": shape.centre.to_array(),
-        "orientation_wxyz": [q.w, q.x, q.y, q.z],
-        "inertia_over_mass_m2": six(&found.inertia_per_mass),
-        "std_inertia_over_mass_m2": deviations(12),
-        "samples": evidence.samples,
-        "residual_rms_m": evidence.residual_rms,
-        "noise_explains_m": evidence.noise_explains,
-        "rank": evidence.rank,
-        "condition": evidence.condition,
-        "weakest": evidence.weakest,
-        "weakest_deviation": evidence.weakest_deviation,
-        "bounds": bounded.map(|b| json!({
-            "lower_volume_m3": b.drawn.lower.volume,
-            "upper_volume_m3": b.drawn.upper.as_ref().map(|u| u.volume),
-            "contradiction_m": b.contradiction,
-        })),
-        "warnings": warnings,
-    })
-}
-
-fn describe(
-    args: &ReconstructArgs,
-    found: &NoForceEstimate,
-    bounded: Option<&BoundsResult>,
-    warnings: &[String],
-) -> String {
-    let NoForceEstimate { shape, evidence, .. } = found;
-    let a = shape.semi_axes;
-    let mut lines = vec![format!(
-        "An ellipsoid in its motion fits the contacts to {:.1e} m (noise: {:.1e} m); the least certain is {} ({:.1e}).",
-        evidence.residual_rms, evidence.noise_explains, evidence.weakest, evidence.weakest_deviation
-    )];
-    lines.extend(warnings.iter().map(|w| format!("Warning: {w}")));
-    lines.push(format!("  semi-axes              {}, {}, {} m", brief(a.x), brief(a.y), brief(a.z)));
-    let c = shape.centre;
-    lines.push(format!(
-        "  centre                 ({}, {}, {}) m from the centre of mass",
-        brief(c.x),
-        brief(c.y),
-        brief(c.z)
-    ));
-    if let Some(bounded) = bounded {
-        lines.push(format!("  lower bound            {} m^3", brief(bounded.drawn.lower.volume)));
-        if let Some(upper) = &bounded.drawn.upper {
-            lines.push(format!("  upper bound            {} m^3", brief(upper.volume)));
-        }
-    }
-    lines.push(args.output.display().to_string());
-    lines.join("\n")
+    let text = format!("{}\n{}", made.describe(), args.output.display());
+    console.result(&text, &figures)?;
+    Ok(if made.bounded.is_some() { Outcome::Done } else { Outcome::WithReservations })
 }

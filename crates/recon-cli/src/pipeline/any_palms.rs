@@ -108,7 +108,7 @@ pub(crate) fn estimate_any_palms(
     if !request.identify {
         options.body = request.scene.mass_properties().ok().flatten();
     }
-    progress.step("estimating the motion");
+    progress.begin("estimating the motion")?;
     let (log, truth) = log.split_truth();
     let estimate = estimate_contacts(&log, None, &options).map_err(|error| match error {
         ContactEstimateError::NoSize => CliError::SizeNotStated,
@@ -124,7 +124,7 @@ pub(crate) fn estimate_any_palms(
     let mut warnings = request.warnings;
     warnings.extend(not_relied_on(&estimate));
     warnings.extend(impulses_not_read(&log, &options));
-    progress.step("bounding the shape");
+    progress.begin("bounding the shape")?;
     let bounds = match estimate_bounds(&log, &estimate, &curves, options.noise.contact, CONFIDENCE) {
         Ok(bounds) => bounds,
         Err(error) => {
@@ -191,6 +191,12 @@ fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOp
         suspects,
         ..ContactOptions::new(noise, scene.gravity)
     })
+}
+
+/// The noise of a log by the roughness of its readings.
+pub(crate) fn noise_by_roughness(log: &ContactLog, scene: &Scene) -> ContactNoiseLevel {
+    let length = scene.size.or_else(|| size(log)).unwrap_or_default();
+    ContactNoiseLevel::by_roughness(log, condition_floor(scene, length), false)
 }
 
 /// What conditions are off by beside noise, m/s, of a body of the size `length`, m: as the scene states it.

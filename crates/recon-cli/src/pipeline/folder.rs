@@ -14,6 +14,20 @@ use std::io::{self, Write};
 /// A further file of a folder: its name and its contents.
 pub(crate) type Extra = (String, Vec<u8>);
 
+/// The summary of a reconstruction.
+pub(crate) fn reconstruction_figures(made: &Reconstruction) -> Value {
+    let mut figures = summary(&made.data);
+    state_contradiction(&mut figures, made.stands_out);
+    figures
+}
+
+/// The summary of a motion that was estimated from contacts of any palms.
+pub(crate) fn estimate_figures(made: &AnyPalms) -> Value {
+    let mut figures = estimate_summary(&made.data);
+    state_contradiction(&mut figures, made.bounds.as_ref().map_or(0.0, |bounds| bounds.contradiction));
+    figures
+}
+
 /// Writes everything about a reconstruction; returns the summary.
 pub(crate) fn write_reconstruction_folder(
     target: FolderTarget,
@@ -21,8 +35,7 @@ pub(crate) fn write_reconstruction_folder(
     extras: &[Extra],
 ) -> Result<Value, CliError> {
     let data = &made.data;
-    let mut figures = summary(data);
-    state_contradiction(&mut figures, made.stands_out);
+    let figures = reconstruction_figures(made);
     while_writing(|| {
         let mut folder = Folder(target.begin()?);
         folder.write("motion.csv", |to| write_motion(&data.times, &data.motion, to))?;
@@ -51,8 +64,7 @@ pub(crate) fn write_estimate_folder(
     extras: &[Extra],
 ) -> Result<Value, CliError> {
     let data = &made.data;
-    let mut figures = estimate_summary(data);
-    state_contradiction(&mut figures, made.bounds.as_ref().map_or(0.0, |bounds| bounds.contradiction));
+    let figures = estimate_figures(made);
     let (times, palms) = (data.log.times(), data.log.palms().len());
     while_writing(|| {
         let mut folder = Folder(target.begin()?);
@@ -132,6 +144,7 @@ pub(crate) fn write_files_folder(
 pub(crate) fn write_bounds_folder(
     target: FolderTarget,
     made: &BoundsResult,
+    extras: &[Extra],
     figures: &Value,
 ) -> Result<(), CliError> {
     while_writing(|| {
@@ -140,6 +153,9 @@ pub(crate) fn write_bounds_folder(
         folder.write_mesh(UPPER, "around the object; metres", made.upper.as_ref())?;
         for (name, comment, mesh) in &made.others {
             folder.write_mesh(name, comment, Some(mesh))?;
+        }
+        for (name, contents) in extras {
+            folder.write(name, |to| to.write_all(contents))?;
         }
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()

@@ -42,6 +42,23 @@ pub(crate) struct LogSource<'a> {
     pub(crate) mapping: Option<&'a Path>,
 }
 
+/// A sensor log as a file or memory has it, before it is known how it is estimated.
+#[derive(Clone)]
+pub(crate) struct LoadedLog {
+    pub(crate) log: AnyLog,
+    /// What was done to a bag.
+    pub(crate) notes: Vec<String>,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) stand: LogStand,
+}
+
+impl From<AnyLog> for LoadedLog {
+    fn from(log: AnyLog) -> Self {
+        let (notes, warnings, stand) = Default::default();
+        Self { log, notes, warnings, stand }
+    }
+}
+
 /// Reads a sensor log of either version or a bag, for an estimate that needs forces.
 pub(crate) fn read_log(from: LogSource, console: &Console) -> Result<ReadLog, CliError> {
     read(from, console, impulses_alone)
@@ -61,23 +78,46 @@ fn read(
     console: &Console,
     lacks: impl Fn(&ContactLog) -> Option<NotThreePlanes>,
 ) -> Result<ReadLog, CliError> {
+    let loaded = load(from)?;
+    loaded.notes.iter().for_each(|note| console.note(note));
+    Ok(sorted(loaded, from.scene, lacks))
+}
+
+/// Reads a sensor log of either version or a bag.
+pub(crate) fn load(from: LogSource) -> Result<LoadedLog, CliError> {
     let LogSource { path, scene, mapping } = from;
-    let (log, mut warnings, mut stand) = if is_bag(path) {
+    if is_bag(path) {
         let mapping = mapping.ok_or_else(|| CliError::NoMapping { path: path.to_owned() })?;
         let made = read_mapped(path, &BagMapping::read(mapping)?, Some(scene))?;
-        made.notes.iter().for_each(|note| console.note(note));
-        (made.log, made.warnings, LogStand { epoch: made.epoch, ..LogStand::default() })
-    } else {
-        if mapping.is_some() {
-            return Err(CliError::MappingOfNoBag { path: path.to_owned() });
-        }
-        match read_any_log(path, scene.palm_setups().as_deref())? {
-            AnyLog::ThreePalms(log) => {
-                let (log, warnings, stand) = (LogOf::ThreePalms(log), Vec::new(), LogStand::default());
-                return Ok(ReadLog { log, warnings, stand });
-            }
-            AnyLog::Contacts(log) => (log, Vec::new(), LogStand::default()),
-        }
+        let stand = LogStand { epoch: made.epoch, ..LogStand::default() };
+        let log = AnyLog::Contacts(made.log);
+        return Ok(LoadedLog { log, notes: made.notes, warnings: made.warnings, stand });
+    }
+    if mapping.is_some() {
+        return Err(CliError::MappingOfNoBag { path: path.to_owned() });
+    }
+    Ok(read_any_log(path, scene.palm_setups().as_deref())?.into())
+}
+
+/// The log as what it is estimated, for an estimate that needs forces.
+pub(crate) fn sorted_with_forces(loaded: LoadedLog, scene: &Scene) -> ReadLog {
+    sorted(loaded, scene, impulses_alone)
+}
+
+/// The log as what it is estimated, without a look at its forces.
+pub(crate) fn sorted_without_forces(loaded: LoadedLog, scene: &Scene) -> ReadLog {
+    sorted(loaded, scene, |_| None)
+}
+
+fn sorted(
+    loaded: LoadedLog,
+    scene: &Scene,
+    lacks: impl Fn(&ContactLog) -> Option<NotThreePlanes>,
+) -> ReadLog {
+    let LoadedLog { log, mut warnings, mut stand, .. } = loaded;
+    let log = match log {
+        AnyLog::ThreePalms(log) => return ReadLog { log: LogOf::ThreePalms(log), warnings, stand },
+        AnyLog::Contacts(log) => log,
     };
     let known_to = scene.sensors.contact_off_palm.unwrap_or(0.0);
     let planes = log.three_planes_within(known_to).and_then(|planes| lacks(&log).map_or(Ok(planes), Err));
@@ -93,7 +133,7 @@ fn read(
             LogOf::ThreePalms(log)
         }
     };
-    Ok(ReadLog { log, warnings, stand })
+    ReadLog { log, warnings, stand }
 }
 
 /// Reads a bag by a mapping, with what a scene says of the palms.

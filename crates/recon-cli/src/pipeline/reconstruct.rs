@@ -79,7 +79,7 @@ pub(crate) fn reconstruct(
     let known = if identify { None } else { Some(known_body(scene)?) };
     let odd = implausibilities(&log, scene);
     let mut warnings: Vec<String> = odd.iter().map(|w| sentence(&w.to_string())).collect();
-    progress.step("estimating the motion");
+    progress.begin("estimating the motion")?;
     let (log, truth) = log.split_truth();
     let (mass, identified, mut estimate) =
         estimated(&log, scene, known, noise(scene, together)).map_err(|error| {
@@ -93,7 +93,7 @@ pub(crate) fn reconstruct(
     let palms = tracks(&log, &estimate)?;
     // Of long logs there is no room for what is not needed any more.
     drop(log);
-    progress.step("bounding the shape");
+    progress.begin("bounding the shape")?;
     let contacts = samples(&palms);
     let size = size(&palms);
     let bounded = bounds_of(&estimate)?;

@@ -8,6 +8,7 @@ mod any_friction;
 mod any_palms;
 mod bad_input;
 mod bags;
+mod batch;
 mod bounds;
 mod bounds_noise;
 mod bounds_shapes;
@@ -17,6 +18,8 @@ mod end_to_end;
 mod explore;
 mod export;
 mod follow;
+mod guides;
+mod in_memory;
 #[cfg(unix)]
 mod interrupted;
 mod margins;

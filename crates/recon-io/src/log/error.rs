@@ -53,6 +53,18 @@ pub enum LogFileErrorKind {
         /// Fields in the row.
         found: usize,
     },
+    /// Columns in memory that are not of one length.
+    #[error(
+        "column `{column}` has {found} values where the first column has {expected}; give all of them the same number"
+    )]
+    ColumnLength {
+        /// Name of the column.
+        column: String,
+        /// Its length.
+        found: usize,
+        /// That of the first one.
+        expected: usize,
+    },
     /// A field is not a number.
     #[error("line {line}, column `{column}`: `{text}` is not a number")]
     NotANumber {

@@ -4,6 +4,7 @@
 mod columns;
 mod contacts;
 mod error;
+mod memory;
 mod ordered;
 mod planar;
 mod planar_contacts;
@@ -19,6 +20,7 @@ pub use contacts::{
     write_contact_log,
 };
 pub use error::{LogFileError, LogFileErrorKind};
+pub use memory::{RowReader, RowSample, log_of_columns};
 pub use planar::{parse_planar_log, read_planar_log, write_planar_log};
 pub use planar_contacts::{parse_planar_contact_log, read_planar_contact_log, write_planar_contact_log};
 pub use read::{parse_log, read_log};

@@ -7,15 +7,13 @@ use std::io::Read;
 /// Rows of a log one by one as its lines come, in order of time; an error ends them.
 pub(super) struct Ordered<R> {
     rows: csv::StringRecordsIntoIter<Whole<R>>,
-    /// Samples so far, and the time of the latest, s.
-    count: usize,
-    latest: Option<f64>,
+    times: Times,
     ended: bool,
 }
 
 impl<R: Read> Ordered<R> {
     pub(super) fn new(rows: csv::StringRecordsIntoIter<Whole<R>>) -> Self {
-        Self { rows, count: 0, latest: None, ended: false }
+        Self { rows, times: Times::default(), ended: false }
     }
 
     /// The next row as what `read` makes of it, and its time, s.
@@ -38,13 +36,29 @@ impl<R: Read> Ordered<R> {
         read: impl FnOnce(&Row) -> Result<(f64, T), Kind>,
     ) -> Result<T, Kind> {
         let record = record.map_err(csv_error)?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let (time, sample) = read(&Row { record: &record, line })?;
+        let row = Row::of(&record);
+        let (time, sample) = read(&row)?;
+        self.times.take(time, row.line)?;
+        Ok(sample)
+    }
+}
+
+/// Times that must increase.
+#[derive(Default)]
+pub(super) struct Times {
+    /// Samples so far, and the time of the latest, s.
+    pub(super) count: usize,
+    latest: Option<f64>,
+}
+
+impl Times {
+    /// Takes the time (s) of the sample that stands in `line`.
+    pub(super) fn take(&mut self, time: f64, line: u64) -> Result<(), Kind> {
         if let Some(previous) = self.latest.filter(|latest| time <= *latest) {
             let series = SeriesError::TimeNotIncreasing { sample: self.count, time, previous };
             return Err(Kind::Samples { line: Some(line), source: LogError::Series(series) });
         }
         (self.count, self.latest) = (self.count + 1, Some(time));
-        Ok(sample)
+        Ok(())
     }
 }

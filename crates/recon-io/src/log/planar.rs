@@ -69,15 +69,14 @@ pub fn parse_planar_log(text: impl Read) -> Result<PlanarLog, Kind> {
     let (mut samples, mut truth, mut lines) = (Vec::new(), Vec::new(), Vec::new());
     for row in rows {
         let record = row.map_err(csv_error)?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let row = Row { record: &record, line };
+        let row = Row::of(&record);
         row.check_count(columns.count)?;
         samples.push(sample(&row, &columns)?);
         if let Some(fields) = &columns.truth {
             let [cmx, cmy, phi0, vx, vy, omega0] = row.vector(fields)?;
             truth.push(PlanarTruth { p_WCm: DVec2::new(cmx, cmy), phi0, v_WCm: DVec2::new(vx, vy), omega0 });
         }
-        lines.push(line);
+        lines.push(row.line);
     }
     let truth = (!truth.is_empty()).then_some(truth);
     PlanarLog::new(samples, truth).map_err(|source| Kind::PlanarSamples {

@@ -33,19 +33,35 @@ pub fn parse_log(text: impl Read) -> Result<SensorLog, Kind> {
     Table::open(text)?.three_palms()
 }
 
-/// A CSV file whose header has been read.
-pub(super) struct Table<R> {
+/// A table whose header is known: the rest of a CSV file, or columns in memory.
+pub(super) struct Table<S> {
     pub(super) header: csv::StringRecord,
-    rows: csv::StringRecordsIntoIter<Whole<R>>,
+    pub(super) rows: S,
 }
 
-impl<R: Read> Table<R> {
+/// Rows of a table, one after the other.
+pub(super) trait EachRow {
+    fn each_row(self, take: impl FnMut(&Row) -> Result<(), Kind>) -> Result<(), Kind>;
+}
+
+impl<R: Read> Table<csv::StringRecordsIntoIter<Whole<R>>> {
     pub(super) fn open(text: R) -> Result<Self, Kind> {
         let mut rows = rows(text);
         let header = rows.next().ok_or(Kind::Empty)?.map_err(csv_error)?;
         Ok(Self { header, rows })
     }
+}
 
+impl<R: Read> EachRow for csv::StringRecordsIntoIter<Whole<R>> {
+    fn each_row(self, mut take: impl FnMut(&Row) -> Result<(), Kind>) -> Result<(), Kind> {
+        for row in self {
+            take(&Row::of(&row.map_err(csv_error)?))?;
+        }
+        Ok(())
+    }
+}
+
+impl<S: EachRow> Table<S> {
     pub(super) fn three_palms(self) -> Result<SensorLog, Kind> {
         let columns = three_palms(&self.header)?;
         let mut rows = Rows::default();
@@ -53,13 +69,8 @@ impl<R: Read> Table<R> {
         rows.finish()
     }
 
-    pub(super) fn each_row(self, mut take: impl FnMut(&Row) -> Result<(), Kind>) -> Result<(), Kind> {
-        for row in self.rows {
-            let record = row.map_err(csv_error)?;
-            let line = record.position().map_or(0, csv::Position::line);
-            take(&Row { record: &record, line })?;
-        }
-        Ok(())
+    pub(super) fn each_row(self, take: impl FnMut(&Row) -> Result<(), Kind>) -> Result<(), Kind> {
+        self.rows.each_row(take)
     }
 }
 
@@ -102,15 +113,30 @@ impl Rows {
     }
 }
 
-/// One row with its line number.
+/// One row with its line number; of columns in memory with its number from 0.
 pub(super) struct Row<'a> {
-    pub(super) record: &'a csv::StringRecord,
+    pub(super) cells: Cells<'a>,
     pub(super) line: u64,
+}
+
+/// What stands in a row.
+pub(super) enum Cells<'a> {
+    Text(&'a csv::StringRecord),
+    Numbers(&'a [f64]),
+}
+
+impl<'a> Row<'a> {
+    pub(super) fn of(record: &'a csv::StringRecord) -> Self {
+        Self { cells: Cells::Text(record), line: record.position().map_or(0, csv::Position::line) }
+    }
 }
 
 impl Row<'_> {
     pub(super) fn check_count(&self, expected: usize) -> Result<(), Kind> {
-        let found = self.record.len();
+        let found = match self.cells {
+            Cells::Text(record) => record.len(),
+            Cells::Numbers(numbers) => numbers.len(),
+        };
         if found == expected { Ok(()) } else { Err(Kind::FieldCount { line: self.line, expected, found }) }
     }
 
@@ -123,7 +149,10 @@ impl Row<'_> {
     }
 
     pub(super) fn number(&self, field: &Field) -> Result<f64, Kind> {
-        let text = self.record.get(field.index).unwrap_or_default();
+        let text = match self.cells {
+            Cells::Numbers(numbers) => return Ok(numbers.get(field.index).copied().unwrap_or(f64::NAN)),
+            Cells::Text(record) => record.get(field.index).unwrap_or_default(),
+        };
         text.parse().map_err(|_| Kind::NotANumber {
             line: self.line,
             column: field.name.clone(),

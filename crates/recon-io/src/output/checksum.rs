@@ -1,4 +1,6 @@
+use std::fs::File;
 use std::io::{self, Read, Write};
+use std::path::Path;
 
 /// CRC-32 as in gzip and zip (IEEE 802.3, reflected): whatever is changed within four bytes that follow each other is
 /// seen for certain, everything else but once in 2^32.
@@ -34,6 +36,16 @@ const TABLES: [[u32; 256]; 8] = {
     }
     tables
 };
+
+/// Length of a file and CRC-32 of what it holds, as eight hexadecimal digits: a file whose fingerprint has not changed has not either, but once in
+/// 2^32.
+///
+/// # Errors
+/// Those of reading it.
+pub fn fingerprint(path: impl AsRef<Path>) -> io::Result<(u64, String)> {
+    let sum = Checksum::of(File::open(path)?)?;
+    Ok((sum.bytes(), sum.hex()))
+}
 
 impl Default for Checksum {
     fn default() -> Self {

@@ -10,7 +10,7 @@ mod tests;
 
 #[cfg(feature = "mcap")]
 pub(crate) use checksum::Checksum;
-pub use checksum::Summed;
+pub use checksum::{Summed, fingerprint};
 pub use file::{AtomicFile, FileTarget};
 pub use folder::{FolderTarget, OutputFolder};
 pub use place::is_standard_output;

@@ -1,6 +1,6 @@
 //! Contact points with outward normals: `x, y, z, nx, ny, nz`.
 
-use super::columns::{by_group, read_columns};
+use super::columns::{CURVES, Numbers, by_group, read_columns};
 use super::error::{TouchesError, TouchesErrorKind};
 use crate::number::exact;
 use glam::DVec3;
@@ -12,7 +12,7 @@ use std::path::Path;
 /// Largest departure of a normal's length from 1: three printed digits are off by 9e-4.
 pub(super) const UNIT_TOLERANCE: f64 = 1e-3;
 
-const COLUMNS: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
+pub(super) const COLUMNS: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
 /// Reads contact points with outward normals, curve by curve.
 ///
@@ -39,8 +39,13 @@ pub fn parse_contacts(text: impl Read) -> Result<Vec<Vec<ContactSample>>, Touche
 pub(super) fn contacts_and_rounding(
     text: impl Read,
 ) -> Result<(Vec<Vec<ContactSample>>, f64), TouchesErrorKind> {
+    of_rows(read_columns(text, COLUMNS, &CURVES)?)
+}
+
+/// The same from numbers.
+pub(super) fn of_rows(rows: Vec<Numbers<6>>) -> Result<(Vec<Vec<ContactSample>>, f64), TouchesErrorKind> {
     let (mut contacts, mut rounding) = (Vec::new(), 0.0_f64);
-    for row in read_columns(text, COLUMNS, &["palm", "curve"])? {
+    for row in rows {
         let [x, y, z, nx, ny, nz] = row.values;
         let normal = Direction::from_unit(DVec3::new(nx, ny, nz), UNIT_TOLERANCE)
             .map_err(|source| TouchesErrorKind::Normal { line: row.line, source })?;

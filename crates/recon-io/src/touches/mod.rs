@@ -4,11 +4,13 @@
 mod columns;
 mod contacts;
 mod error;
+mod memory;
 mod planar;
 mod poses;
 
 pub use contacts::{parse_contacts, read_contacts, write_contacts};
 pub use error::{TouchesError, TouchesErrorKind};
+pub use memory::touches_of_columns;
 pub use planar::parse_planar_contacts;
 pub use poses::parse_poses;
 

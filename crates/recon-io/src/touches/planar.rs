@@ -1,13 +1,13 @@
 //! Contact points with outward normals in the plane: `x, y, nx, ny`.
 
-use super::columns::{by_group, read_columns};
+use super::columns::{CURVES, Numbers, by_group, read_columns};
 use super::contacts::UNIT_TOLERANCE;
 use super::error::TouchesErrorKind;
 use glam::DVec2;
 use recon::shape_bounds::planar::{ContactSample, Direction};
 use std::io::Read;
 
-const COLUMNS: [&str; 4] = ["x", "y", "nx", "ny"];
+pub(super) const COLUMNS: [&str; 4] = ["x", "y", "nx", "ny"];
 
 /// Whether a header is one of contacts in the plane: normals in it, and nothing of a third axis.
 pub(super) fn is_planar(header: &str) -> bool {
@@ -29,8 +29,13 @@ pub fn parse_planar_contacts(text: impl Read) -> Result<Vec<Vec<ContactSample>>,
 pub(super) fn contacts_and_rounding(
     text: impl Read,
 ) -> Result<(Vec<Vec<ContactSample>>, f64), TouchesErrorKind> {
+    of_rows(read_columns(text, COLUMNS, &CURVES)?)
+}
+
+/// The same from numbers.
+pub(super) fn of_rows(rows: Vec<Numbers<4>>) -> Result<(Vec<Vec<ContactSample>>, f64), TouchesErrorKind> {
     let (mut contacts, mut rounding) = (Vec::new(), 0.0_f64);
-    for row in read_columns(text, COLUMNS, &["palm", "curve"])? {
+    for row in rows {
         let [x, y, nx, ny] = row.values;
         let normal = Direction::from_unit(DVec2::new(nx, ny), UNIT_TOLERANCE)
             .map_err(|source| TouchesErrorKind::PlanarNormal { line: row.line, source })?;

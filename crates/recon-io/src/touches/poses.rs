@@ -1,6 +1,6 @@
 //! Poses of a body above a plane: `qw, qx, qy, qz, px, py, pz`.
 
-use super::columns::{by_group, read_columns};
+use super::columns::{Numbers, RUNS, by_group, read_columns};
 use super::error::TouchesErrorKind;
 use glam::{DQuat, DVec3};
 use recon::shape_bounds::BodyPose;
@@ -9,7 +9,7 @@ use std::io::Read;
 /// Largest departure of a quaternion's length from 1: measured ones are rounded, other things are not near it.
 const UNIT_TOLERANCE: f64 = 1e-3;
 
-const COLUMNS: [&str; 7] = ["qw", "qx", "qy", "qz", "px", "py", "pz"];
+pub(super) const COLUMNS: [&str; 7] = ["qw", "qx", "qy", "qz", "px", "py", "pz"];
 
 /// Reads poses from CSV text: a unit quaternion `qw, qx, qy, qz` (body to world) and a position `px, py, pz` (m) of the body's origin above a world whose z points up. Where
 /// there is a column `toss` or `run`, a new run begins where its number changes; where there is a column `frame`, it must
@@ -20,8 +20,20 @@ const COLUMNS: [&str; 7] = ["qw", "qx", "qy", "qz", "px", "py", "pz"];
 pub fn parse_poses(mut text: impl Read) -> Result<Vec<Vec<BodyPose>>, TouchesErrorKind> {
     let mut all = Vec::new();
     text.read_to_end(&mut all)?;
-    let rows = read_columns(&all[..], COLUMNS, &["toss", "run"])?;
-    check_frames(&all)?;
+    let rows = read_columns(&all[..], COLUMNS, &RUNS)?;
+    let frames = match read_columns(&all[..], ["frame"], &RUNS) {
+        Err(TouchesErrorKind::MissingColumn { .. }) => Vec::new(),
+        frames => frames?,
+    };
+    of_rows(rows, &frames)
+}
+
+/// The same from numbers, with those of the frames where they are numbered.
+pub(super) fn of_rows(
+    rows: Vec<Numbers<7>>,
+    frames: &[Numbers<1>],
+) -> Result<Vec<Vec<BodyPose>>, TouchesErrorKind> {
+    check_frames(frames)?;
     let mut poses = Vec::with_capacity(rows.len());
     for row in rows {
         let [w, x, y, z, px, py, pz] = row.values;
@@ -36,11 +48,7 @@ pub fn parse_poses(mut text: impl Read) -> Result<Vec<Vec<BodyPose>>, TouchesErr
 }
 
 /// Margins of the bounds rest on differences between neighbouring frames, which a gap would falsify.
-fn check_frames(text: &[u8]) -> Result<(), TouchesErrorKind> {
-    let rows = match read_columns(text, ["frame"], &["toss", "run"]) {
-        Err(TouchesErrorKind::MissingColumn { .. }) => return Ok(()),
-        rows => rows?,
-    };
+fn check_frames(rows: &[Numbers<1>]) -> Result<(), TouchesErrorKind> {
     for pair in rows.windows(2) {
         let ([before], [frame]) = (pair[0].values, pair[1].values);
         if pair[0].group == pair[1].group && frame != before + 1.0 {

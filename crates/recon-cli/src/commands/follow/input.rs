@@ -11,10 +11,10 @@ use std::io::{self, BufReader, Read};
 use std::path::Path;
 
 /// Samples from which the rate and about the size are taken where they are not stated.
-const FIRST: usize = 21;
+pub(crate) const FIRST: usize = 21;
 
 /// What palms sense at a time, s.
-type Sensed = (f64, Vec<PalmSensed>);
+pub(crate) type Sensed = (f64, Vec<PalmSensed>);
 
 /// With the place that errors name.
 pub(super) struct Samples<'a> {
@@ -59,13 +59,7 @@ impl<'a> Samples<'a> {
     /// Palms whose friction is not stated and that measure their normal force alone are taken to have none.
     pub(super) fn palms(&mut self) -> Result<Vec<StreamPalm>, CliError> {
         self.first()?;
-        let mut palms = self.palms.clone();
-        for (palm, sensed) in palms.iter_mut().zip(self.ahead.iter().flat_map(|(_, sensed)| sensed)) {
-            if matches!(sensed.force, ForceReading::Normal(_)) {
-                palm.friction = palm.friction.or(Some(0.0));
-            }
-        }
-        Ok(palms)
+        Ok(without_friction(self.palms.clone(), self.ahead.front().map(|(_, sensed)| &sensed[..])))
     }
 
     pub(super) fn next(&mut self) -> Result<Option<Sensed>, CliError> {
@@ -127,17 +121,37 @@ impl<'a> Samples<'a> {
     /// Samples a second, from the first of them: the median interval, which a gap does not move.
     pub(super) fn rate(&mut self) -> Result<f64, CliError> {
         self.first()?;
-        let times: Vec<f64> = self.ahead.iter().map(|sample| sample.0).collect();
-        let mut intervals: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-        intervals.sort_by(f64::total_cmp);
-        let too_few = CliError::TooFewSamples { found: self.ahead.len(), needed: 2 };
-        intervals.get(intervals.len() / 2).map(|interval| 1.0 / interval).ok_or(too_few)
+        rate_of(self.ahead.iter())
     }
 
     /// Root mean square of the distance of contacts from their mean in the first samples, m; none where there is one at most.
     pub(super) fn size(&mut self) -> Result<Option<f64>, CliError> {
         self.first()?;
-        let spread = spread(self.ahead.iter().flat_map(|(_, sensed)| sensed).filter_map(|s| s.contact));
-        Ok((spread > 0.0).then_some(spread))
+        Ok(size_of(self.ahead.iter()))
     }
+}
+
+/// Palms whose friction is not stated and that measure their normal force alone are taken to have none.
+pub(crate) fn without_friction(mut palms: Vec<StreamPalm>, first: Option<&[PalmSensed]>) -> Vec<StreamPalm> {
+    for (palm, sensed) in palms.iter_mut().zip(first.unwrap_or_default()) {
+        if matches!(sensed.force, ForceReading::Normal(_)) {
+            palm.friction = palm.friction.or(Some(0.0));
+        }
+    }
+    palms
+}
+
+/// Samples a second: the median interval, which a gap does not move.
+pub(crate) fn rate_of<'a>(samples: impl Iterator<Item = &'a Sensed>) -> Result<f64, CliError> {
+    let times: Vec<f64> = samples.map(|sample| sample.0).collect();
+    let mut intervals: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    intervals.sort_by(f64::total_cmp);
+    let too_few = CliError::TooFewSamples { found: times.len(), needed: 2 };
+    intervals.get(intervals.len() / 2).map(|interval| 1.0 / interval).ok_or(too_few)
+}
+
+/// Root mean square of the distance of contacts from their mean, m; none where there is one at most.
+pub(crate) fn size_of<'a>(samples: impl Iterator<Item = &'a Sensed> + Clone) -> Option<f64> {
+    let spread = spread(samples.flat_map(|(_, sensed)| sensed).filter_map(|s| s.contact));
+    (spread > 0.0).then_some(spread)
 }

@@ -1,6 +1,6 @@
 //! `recon follow`: the motion sample by sample, as a log is written or read.
 
-mod input;
+pub(crate) mod input;
 mod spans;
 
 use crate::cli::FollowArgs;
@@ -35,14 +35,14 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     }
     let body = if args.identify { None } else { Some(known_body(&scene)?) };
     let mut samples = Samples::open(&args.log, &scene)?;
-    let noise = noise(args, &scene, &mut samples)?;
+    let noise = noise(args, &scene, || samples.size())?;
     let contacts = ContactOptions { body, size: scene.size, ..ContactOptions::new(noise, scene.gravity) };
     let sample_rate = match args.rate {
         Some(rate) => rate,
         None => samples.rate()?,
     };
     let stream = MotionStream::new(samples.palms()?, StreamOptions { contacts, sample_rate })?;
-    let progress = Progress::new(1, console.is_json() || output.is_none());
+    let progress = Progress::new(1, console.is_quiet() || output.is_none());
     progress.step("following the motion");
     let followed = match output.zip(target) {
         Some((path, target)) => while_writing(|| {
@@ -71,7 +71,12 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     followed.tell(console, output.map(PathBuf::as_path))
 }
 
-fn noise(args: &FollowArgs, scene: &Scene, samples: &mut Samples<'_>) -> Result<ContactNoiseLevel, CliError> {
+/// What is known of the sensors' noise; `size` is about that of the object, m, where the first samples tell it.
+pub(crate) fn noise(
+    args: &FollowArgs,
+    scene: &Scene,
+    size: impl FnOnce() -> Result<Option<f64>, CliError>,
+) -> Result<ContactNoiseLevel, CliError> {
     let sensors = &scene.sensors;
     let contact = args.contact_noise.or(sensors.contact_std).ok_or(CliError::StreamNoise)?;
     let fixed = args.force_noise.or(sensors.force_std);
@@ -80,7 +85,7 @@ fn noise(args: &FollowArgs, scene: &Scene, samples: &mut Samples<'_>) -> Result<
     }
     let length = match scene.size {
         Some(size) => Some(size),
-        None => samples.size()?,
+        None => size()?,
     };
     let floor = length.map(|length| condition_floor(scene, length)).or(sensors.contact_speed_std);
     Ok(ContactNoiseLevel {
@@ -204,7 +209,8 @@ impl Run<'_> {
     }
 }
 
-fn stream_row(estimate: &StreamEstimate) -> StreamRow {
+/// An estimate as a row of the table.
+pub(crate) fn stream_row(estimate: &StreamEstimate) -> StreamRow {
     let body = estimate.motion.map(|motion| motion.body).filter(|body| body.mass_deviation > 0.0);
     StreamRow {
         t: estimate.t,

@@ -9,7 +9,7 @@ const STEMS: [&str; 34] = [
 ];
 
 /// Where each quantity stands in a row.
-pub(super) struct Columns {
+pub(in crate::log) struct Columns {
     pub(super) count: usize,
     pub(super) t: Field,
     pub(super) palms: Vec<PalmColumns>,
@@ -65,7 +65,7 @@ pub(in crate::log) fn check_palms(header: &csv::StringRecord, expected: usize) -
 
 impl Columns {
     /// Finds the columns of so many palms by name in a header row.
-    pub(super) fn find(record: &csv::StringRecord, palms: usize) -> Result<Self, Kind> {
+    pub(in crate::log) fn find(record: &csv::StringRecord, palms: usize) -> Result<Self, Kind> {
         let header = Header::new(record);
         check_palms(record, palms)?;
         let palm = |i: usize| Palm { header: &header, number: i }.columns();

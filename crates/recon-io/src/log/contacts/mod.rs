@@ -11,10 +11,13 @@ mod write;
 mod tests;
 
 pub use any::{AnyLog, parse_any_log, read_any_log};
+pub(super) use columns::Columns as ContactColumns;
 pub(super) use columns::{check_palms, palms_in_space};
 pub(crate) use poses::read_pose_table;
+pub(super) use read::contacts;
 pub use read::{parse_contact_log, read_contact_log};
 pub use reader::ContactRows;
+pub(super) use reader::{check_setups, sample as contact_sample};
 pub use write::write_contact_log;
 
 use recon::contact_kinematics::{PalmSurface, SurfacePose};

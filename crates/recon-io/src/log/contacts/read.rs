@@ -1,6 +1,6 @@
 use super::super::columns::Field;
 use super::super::error::{LogFileError, LogFileErrorKind as Kind};
-use super::super::read::{Row, Table};
+use super::super::read::{EachRow, Row, Table};
 use super::PalmSetup;
 use super::columns::{Columns, ForceColumns, PalmColumns};
 use glam::{DQuat, DVec3};
@@ -33,7 +33,7 @@ pub fn parse_contact_log(text: impl Read, palms: &[PalmSetup]) -> Result<Contact
     contacts(Table::open(text)?, palms)
 }
 
-pub(super) fn contacts(table: Table<impl Read>, palms: &[PalmSetup]) -> Result<ContactLog, Kind> {
+pub(in crate::log) fn contacts(table: Table<impl EachRow>, palms: &[PalmSetup]) -> Result<ContactLog, Kind> {
     let columns = Columns::find(&table.header, palms.len())?;
     let palm = |(i, setup)| Palm::new(i + 1, setup, &columns.palms[i]);
     let mut palms = palms.iter().enumerate().map(palm).collect::<Result<Vec<_>, _>>()?;

@@ -22,15 +22,22 @@ impl<R: Read> ContactRows<R> {
         palms: &[PalmSetup],
     ) -> Result<Self, Kind> {
         let columns = Columns::find(header, palms.len())?;
-        // Whether a palm has a pose is known from the header.
-        for (i, setup) in palms.iter().enumerate() {
-            Palm::new(i + 1, setup, &columns.palms[i])?;
-        }
+        check_setups(&columns, palms)?;
         Ok(Self { rows: Ordered::new(rows), columns, palms: palms.to_vec() })
     }
 }
 
-fn sample(row: &Row, columns: &Columns, palms: &[PalmSetup]) -> Result<(f64, Vec<PalmSensed>), Kind> {
+/// Whether each palm has a pose: that is known from the header.
+pub(in crate::log) fn check_setups(columns: &Columns, palms: &[PalmSetup]) -> Result<(), Kind> {
+    palms.iter().enumerate().try_for_each(|(i, setup)| Palm::new(i + 1, setup, &columns.palms[i]).map(|_| ()))
+}
+
+/// What a row says: time and palms.
+pub(in crate::log) fn sample(
+    row: &Row,
+    columns: &Columns,
+    palms: &[PalmSetup],
+) -> Result<(f64, Vec<PalmSensed>), Kind> {
     row.check_count(columns.count)?;
     let t = row.finite(&columns.t)?;
     let sensed = |(i, setup): (usize, &PalmSetup)| {

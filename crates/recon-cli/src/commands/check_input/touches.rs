@@ -1,0 +1,65 @@
+//! What is understood of contacts or poses.
+
+use super::Understood;
+use recon_io::{Touches, brief, brief_to};
+use serde_json::json;
+
+/// Normals of five digits or more pass for exact.
+const EXACT_NORMALS: f64 = 1e-5;
+
+pub(super) fn told(found: &Touches) -> Understood {
+    let (kind, lengths, rounding, span) = match found {
+        Touches::Contacts { curves, rounding } => {
+            let points = curves.iter().flatten().map(|contact| contact.point.to_array().to_vec());
+            ("contacts in space", curves.iter().map(Vec::len).collect(), Some(*rounding), span(points))
+        }
+        Touches::PlanarContacts { curves, rounding } => {
+            let points = curves.iter().flatten().map(|contact| contact.point.to_array().to_vec());
+            ("contacts in the plane", curves.iter().map(Vec::len).collect(), Some(*rounding), span(points))
+        }
+        Touches::Poses(runs) => {
+            let points = runs.iter().flatten().map(|pose| pose.p_WO.to_array().to_vec());
+            ("poses above a plane", runs.iter().map(Vec::len).collect::<Vec<_>>(), None, span(points))
+        }
+    };
+    let count = lengths.iter().sum::<usize>();
+    let extents: Vec<String> = span.iter().map(|of| brief(*of)).collect();
+    let mut lines = vec![
+        ("kind".to_owned(), kind.to_owned()),
+        ("rows".to_owned(), format!("{count} in {} curves or runs", lengths.len())),
+        ("extent".to_owned(), format!("{} m along the axes", extents.join(" x "))),
+    ];
+    let mut warnings = Vec::new();
+    if let Some(off) = rounding {
+        lines.push(("lengths of normals".to_owned(), format!("off 1 by {} at most", brief_to(2, off))));
+        if off > EXACT_NORMALS {
+            warnings.push(
+                "Normals are rounded too much for contacts that are taken as exact: state the noise, or let it be estimated \
+                 (--estimate-noise)."
+                    .to_owned(),
+            );
+        }
+    }
+    if span.iter().any(|of| *of > 100.0) {
+        warnings.push(format!(
+            "The points are {} m apart: are they in metres?",
+            brief(span.iter().fold(0.0, |a: f64, b| a.max(*b)))
+        ));
+    }
+    let figures = json!({
+        "kind": kind, "rows": count, "curves": lengths, "extent_m": span, "normals_off_by": rounding,
+    });
+    Understood { lines, figures, warnings }
+}
+
+/// Extent of points along each axis.
+fn span(points: impl Iterator<Item = Vec<f64>>) -> Vec<f64> {
+    let mut ends: Vec<[f64; 2]> = Vec::new();
+    for point in points {
+        ends.resize(point.len(), [f64::INFINITY, f64::NEG_INFINITY]);
+        for ([low, high], x) in ends.iter_mut().zip(point) {
+            (*low, *high) = (low.min(x), high.max(x));
+        }
+    }
+    ends.iter().map(|[low, high]| high - low).collect()
+}

@@ -1,0 +1,29 @@
+//! The pipeline without files.
+//!
+//! Options are words as on the command line (`--contact-noise=1e-4`), so that both are one thing with one set of limits and messages.
+
+mod bounds;
+mod failure;
+mod follower;
+mod log;
+mod options;
+mod reconstruct;
+mod simulate;
+
+pub use bounds::{Bounded, Outlines};
+pub use failure::{Failure, FailureKind};
+pub use follower::Follower;
+pub use log::Log;
+pub use reconstruct::{Body, Reconstructed};
+pub use simulate::Simulated;
+
+use crate::error::CliError;
+use std::path::Path;
+
+/// Checks a folder of results by its files alone, as `recon check` does; returns what held.
+///
+/// # Errors
+/// What does not hold.
+pub fn check(folder: &Path) -> Result<Vec<String>, Failure> {
+    Ok(recon_io::check(folder).map_err(CliError::from)?)
+}

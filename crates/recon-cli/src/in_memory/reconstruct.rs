@@ -1,0 +1,289 @@
+use super::failure::Failure;
+use super::log::Log;
+use super::options::{parsed, unlike};
+use crate::cli::{Command, ReconstructArgs};
+use crate::commands::reconstruct::describe;
+use crate::error::CliError;
+use crate::pipeline::{
+    Asked, Estimated, LogOf, LogStand, WithoutForces, estimate_figures, estimated, meshes_as,
+    reconstruction_figures, sorted_with_forces, sorted_without_forces, without_forces,
+};
+use crate::progress::{Progress, Watch};
+use glam::{DMat3, DVec3};
+use recon_io::{
+    Bounds, Evidence, FolderTarget, Level, MotionState, PalmContact, Scene, TriangleMesh,
+    write_estimate_report, write_report,
+};
+use serde_json::Value;
+use std::path::Path;
+
+/// Everything that a log tells: what `recon reconstruct` writes into a folder.
+pub struct Reconstructed {
+    made: Made,
+    stand: LogStand,
+    log: Log,
+    figures: Value,
+    text: String,
+}
+
+enum Made {
+    Estimated(Estimated),
+    WithoutForces(Box<WithoutForces>),
+}
+
+/// Mass and inertia in the body axes of the estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// kg.
+    pub mass: f64,
+    /// About the centre of mass, kg m^2.
+    pub inertia: DMat3,
+    /// Standard deviations of mass and of the entries of the inertia, where these were estimated.
+    pub deviations: Option<(f64, DMat3)>,
+}
+
+impl Reconstructed {
+    /// Motion, contacts, bounds, and where it is asked for mass and inertia. `options` are `--identify` and `--without-forces`. Truth in
+    /// the log is only compared with.
+    ///
+    /// # Errors
+    /// Why the log gives no estimate; or `watch` wanted no more.
+    pub fn of(log: &Log, scene: &Scene, options: &[String], watch: Option<Watch>) -> Result<Self, Failure> {
+        let args = arguments(options, None)?;
+        let progress = Progress::watched(watch);
+        let title = log.title();
+        let loaded = log.loaded.as_ref().clone();
+        let (made, stand) = if args.without_forces {
+            let read = sorted_without_forces(loaded, scene);
+            let planes = match read.log {
+                LogOf::ThreePalms(planes) => planes,
+                LogOf::AnyPalms(_, source) => {
+                    return Err(CliError::NotThreePlanes { path: log.path.clone(), source }.into());
+                }
+            };
+            let (planes, _) = planes.split_truth();
+            let made = without_forces(planes, read.warnings, scene, &progress)?;
+            (Made::WithoutForces(Box::new(made)), read.stand)
+        } else {
+            let read = sorted_with_forces(loaded, scene);
+            let stand = read.stand;
+            let asked = Asked { path: &log.path, scene, title: &title, identify: args.identify };
+            (Made::Estimated(estimated(read, &asked, &progress)?), stand)
+        };
+        let figures = match &made {
+            Made::Estimated(Estimated::Planes(made, _)) => reconstruction_figures(made),
+            Made::Estimated(Estimated::AnyPalms(made, _)) => estimate_figures(made),
+            Made::WithoutForces(made) => made.figures(),
+        };
+        let text = match &made {
+            Made::Estimated(made) => describe(made, &figures),
+            Made::WithoutForces(made) => made.describe(),
+        };
+        let text = recon_io::with_brief_numbers(text.trim_end());
+        Ok(Self { made, stand, log: log.clone(), figures, text })
+    }
+
+    /// What `summary.json` holds.
+    pub fn summary(&self) -> &Value {
+        &self.figures
+    }
+
+    /// What the command prints.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether the result may be relied on, and why or why not.
+    pub fn verdict(&self) -> (bool, String) {
+        match &self.made {
+            Made::Estimated(made @ Estimated::Planes(of, _)) => {
+                (made.is_reliable(), of.data.verdict.text.clone())
+            }
+            Made::Estimated(made @ Estimated::AnyPalms(of, _)) => {
+                (made.is_reliable(), of.data.verdict.text.clone())
+            }
+            Made::WithoutForces(made) => {
+                (true, made.describe().lines().next().unwrap_or_default().to_owned())
+            }
+        }
+    }
+
+    /// Whether bounds and all else that was asked for are there and may be relied on: what the command's exit code 0 says.
+    pub fn is_whole(&self) -> bool {
+        match &self.made {
+            Made::Estimated(made) => made.is_reliable(),
+            Made::WithoutForces(made) => made.bounded.is_some(),
+        }
+    }
+
+    /// What the reader must know.
+    pub fn warnings(&self) -> &[String] {
+        match &self.made {
+            Made::Estimated(Estimated::Planes(made, _)) => &made.data.warnings,
+            Made::Estimated(Estimated::AnyPalms(made, _)) => &made.data.warnings,
+            Made::WithoutForces(made) => &made.warnings,
+        }
+    }
+
+    /// What the estimate rests on, row by row; none without forces, where the summary has all of it.
+    pub fn evidence(&self) -> &[Evidence] {
+        match &self.made {
+            Made::Estimated(Estimated::Planes(made, _)) => &made.data.evidence,
+            Made::Estimated(Estimated::AnyPalms(made, _)) => &made.data.evidence,
+            Made::WithoutForces(_) => &[],
+        }
+    }
+
+    /// How much each row of the evidence speaks for the result, in a word.
+    pub fn level(evidence: &Evidence) -> &'static str {
+        match evidence.level {
+            Level::Good => "good",
+            Level::Caution => "caution",
+            Level::Bad => "bad",
+            Level::Neutral => "neutral",
+        }
+    }
+
+    /// Times of the motion, s.
+    pub fn times(&self) -> Vec<f64> {
+        match &self.made {
+            Made::Estimated(Estimated::Planes(made, _)) => made.data.times.clone(),
+            Made::Estimated(Estimated::AnyPalms(made, _)) => made.data.log.times().to_vec(),
+            Made::WithoutForces(made) => made.times(),
+        }
+    }
+
+    /// The motion at these times.
+    pub fn motion(&self) -> Vec<MotionState> {
+        match &self.made {
+            Made::Estimated(Estimated::Planes(made, _)) => made.data.motion.clone(),
+            Made::Estimated(Estimated::AnyPalms(made, _)) => {
+                made.data.estimate.states.iter().map(|state| (*state).into()).collect()
+            }
+            Made::WithoutForces(made) => made.motion(),
+        }
+    }
+
+    /// Standard deviations at these times: centre of mass (m), velocity (m/s), angular velocity (rad/s), turn since the first sample
+    /// (rad), world axes. Known of contacts of any palms.
+    pub fn deviations(&self) -> Option<&[[DVec3; 4]]> {
+        Some(&self.any_palms()?.estimate.deviations)
+    }
+
+    /// Whether the motion of a sample is relied on to within its deviations, where that is known sample by sample.
+    pub fn relied_on(&self) -> Option<&[bool]> {
+        Some(&self.any_palms()?.estimate.relied_on)
+    }
+
+    /// Contact modes of the palms at these times: 0 (off), 1 (slides), 2 (sticks). Known of contacts of any palms.
+    pub fn modes(&self) -> Option<Vec<Vec<u8>>> {
+        let data = self.any_palms()?;
+        let palms = data.log.palms().len();
+        Some(
+            data.estimate
+                .modes
+                .iter()
+                .map(|modes| modes[..palms].iter().map(|m| m.number()).collect())
+                .collect(),
+        )
+    }
+
+    fn any_palms(&self) -> Option<&recon_io::EstimateData> {
+        match &self.made {
+            Made::Estimated(Estimated::AnyPalms(made, _)) => Some(&made.data),
+            _ => None,
+        }
+    }
+
+    /// Where each palm touched the object at these times.
+    pub fn contacts(&self) -> Vec<&[Option<PalmContact>]> {
+        match &self.made {
+            Made::Estimated(Estimated::Planes(made, _)) => {
+                made.data.palms.iter().map(|palm| &palm.contacts[..]).collect()
+            }
+            Made::Estimated(Estimated::AnyPalms(made, _)) => {
+                made.data.curves.iter().map(Vec::as_slice).collect()
+            }
+            Made::WithoutForces(_) => Vec::new(),
+        }
+    }
+
+    /// Bounds on the shape with their volumes; the meshes in them are for drawing.
+    pub fn bounds(&self) -> Option<&Bounds> {
+        match &self.made {
+            Made::Estimated(Estimated::Planes(made, _)) => made.data.bounds.as_ref(),
+            Made::Estimated(Estimated::AnyPalms(made, _)) => made.data.bounds.as_ref(),
+            Made::WithoutForces(made) => made.bounded.as_ref().map(|bounded| &bounded.drawn),
+        }
+    }
+
+    /// Surfaces of the lower and the upper bound, from all contacts.
+    pub fn surfaces(&self) -> [Option<&TriangleMesh>; 2] {
+        let bounded = match &self.made {
+            Made::Estimated(Estimated::Planes(made, _)) => return [made.lower.as_ref(), made.upper.as_ref()],
+            Made::Estimated(Estimated::AnyPalms(made, _)) => made.bounds.as_ref(),
+            Made::WithoutForces(made) => made.bounded.as_ref(),
+        };
+        bounded.map_or([None, None], |bounds| [bounds.lower.as_ref(), bounds.upper.as_ref()])
+    }
+
+    /// Mass and inertia; none without forces.
+    pub fn body(&self) -> Option<Body> {
+        let Made::Estimated(made) = &self.made else { return None };
+        let object = match made {
+            Estimated::Planes(made, _) => made.object(),
+            Estimated::AnyPalms(made, _) => made.object().ok()?,
+        };
+        let deviations = object.deviations.map(|of| (of.mass, of.inertia));
+        Some(Body { mass: object.mass.mass(), inertia: object.mass.inertia(), deviations })
+    }
+
+    /// The page that the command writes; none without forces.
+    ///
+    /// # Errors
+    /// Where a number of it is not finite, which is a fault of recon.
+    pub fn report(&self) -> Result<Option<Vec<u8>>, Failure> {
+        let mut page = Vec::new();
+        let written = match &self.made {
+            Made::Estimated(Estimated::Planes(made, _)) => write_report(&made.data, &mut page),
+            Made::Estimated(Estimated::AnyPalms(_, Some(planes))) => write_report(planes, &mut page),
+            Made::Estimated(Estimated::AnyPalms(made, None)) => write_estimate_report(&made.data, &mut page),
+            Made::WithoutForces(_) => return Ok(None),
+        };
+        written.map_err(CliError::Page)?;
+        Ok(Some(page))
+    }
+
+    /// Writes the folder that the command writes; `options` are `--force`, `--export`, `--export-shape`, `--mesh` and `--mcap`.
+    ///
+    /// # Errors
+    /// Where it cannot be written, or does not hold.
+    pub fn write(&self, folder: &Path, options: &[String]) -> Result<(), Failure> {
+        let args = arguments(options, Some(folder))?;
+        let inputs = [self.log.path.clone()];
+        let target = FolderTarget::new(folder, &inputs, args.force).map_err(CliError::from)?;
+        match &self.made {
+            Made::Estimated(made) => {
+                let bag = args.mcap.then_some(self.stand);
+                let mut extras = made.extras(&args.export, args.export_shape, bag)?;
+                extras.extend(meshes_as(made.surfaces(), &args.mesh)?);
+                made.write(target, &extras)?;
+            }
+            Made::WithoutForces(made) => {
+                made.write(target)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn arguments(options: &[String], folder: Option<&Path>) -> Result<ReconstructArgs, Failure> {
+    let mut words = options.to_vec();
+    words.push("log".to_owned());
+    match parsed("reconstruct", &words)? {
+        Command::Reconstruct(args) => {
+            Ok(ReconstructArgs { output: folder.map_or(args.output, Path::to_owned), ..args })
+        }
+        _ => Err(unlike("reconstruct")),
+    }
+}

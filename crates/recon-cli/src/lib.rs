@@ -1,0 +1,47 @@
+//! The command `recon`, and what it does for programs that have their readings in memory and want results there.
+//!
+//! [`main`] is the command itself: arguments, files, words and exit codes. [`Log`], [`Reconstructed`], [`Bounded`], [`Simulated`] and
+//! [`Follower`] are the same pipeline without files, for fronts in other languages: from the same numbers they make the same results, to the
+//! last bit.
+
+mod cli;
+mod commands;
+mod console;
+mod error;
+mod in_memory;
+mod interrupt;
+mod pipeline;
+mod progress;
+
+pub use in_memory::{
+    Body, Bounded, Failure, FailureKind, Follower, Log, Outlines, Reconstructed, Simulated, check,
+};
+pub use progress::Watch;
+
+use clap::Parser;
+use cli::Cli;
+use console::Console;
+use std::ffi::OsString;
+
+/// Runs the command with these arguments, the first of which is its name; returns its exit code, which `recon --help` explains.
+///
+/// From then on Ctrl-C, SIGTERM and SIGHUP end the process, or the writing of files that was begun.
+pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
+    let cli = match Cli::try_parse_from(args) {
+        Ok(cli) => cli,
+        Err(usage) => {
+            // Help goes to standard output, mistakes to standard error; where nobody listens, nothing is lost.
+            let _ = usage.print();
+            return u8::try_from(usage.exit_code()).unwrap_or(2);
+        }
+    };
+    let console = Console::new(cli.json, cli.quiet);
+    let result = interrupt::install().and_then(|()| commands::run(&cli.command, &console));
+    match result {
+        Ok(outcome) => outcome.code(),
+        Err(error) => {
+            console.error(&error);
+            error.code()
+        }
+    }
+}

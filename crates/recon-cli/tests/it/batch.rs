@@ -1,0 +1,117 @@
+//! Many logs: each as if it were alone, what is broken named, what is done kept.
+
+use crate::common::{Scratch, Table, scene};
+use serde_json::Value;
+use std::fs;
+use std::time::SystemTime;
+
+/// A folder `logs` of two logs with spins of their own and one that was spoiled.
+fn logs(test: &str) -> Scratch {
+    let scratch = Scratch::new(test);
+    fs::create_dir(scratch.path().join("logs")).unwrap();
+    scratch.write("scene.toml", &scene());
+    for (name, spin) in [("slow", "[0.0, 0.3, 0.3]"), ("fast one", "[0.0, 0.4, 0.2]")] {
+        scratch.write("made.toml", &scene().replace("[0.0, 0.3, 0.3]", spin));
+        let run = scratch.run(&["simulate", "made.toml", "-o", &format!("logs/{name}.csv")]);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+    }
+    let mut spoiled = Table::parse(&scratch.read("logs/slow.csv"));
+    spoiled.set(7, "f_2", "strong");
+    scratch.write("logs/spoiled.csv", &spoiled.text());
+    scratch.write("logs/notes.txt", "no log");
+    scratch
+}
+
+fn batch(scratch: &Scratch, more: &[&str]) -> (Option<i32>, Value) {
+    let run =
+        scratch.run(&[&["batch", "logs", "--scene", "scene.toml", "-o", "out", "--json"], more].concat());
+    (run.code, serde_json::from_str(&run.stdout).unwrap_or_else(|_| panic!("{}{}", run.stdout, run.stderr)))
+}
+
+/// The table without the times it took.
+fn table(scratch: &Scratch) -> Vec<String> {
+    let text = scratch.read("out/results.csv");
+    let columns = Table::parse(&text);
+    let seconds = columns.column("seconds");
+    let without = |line: &str| {
+        let cells = line.split(',').enumerate().filter(|(i, _)| *i != seconds);
+        cells.map(|(_, cell)| cell).collect::<Vec<_>>().join(",")
+    };
+    text.lines().map(without).collect()
+}
+
+#[test]
+fn each_log_is_as_if_it_were_alone_and_a_broken_one_is_named() {
+    let scratch = logs("batch");
+    let (code, said) = batch(&scratch, &["--identify"]);
+    assert_eq!(code, Some(4));
+    assert_eq!([&said["logs"], &said["relied_on"], &said["skipped"]], [3, 2, 1]);
+    let rows = said["rows"].as_array().unwrap();
+    assert_eq!(rows[2]["log"], "spoiled.csv");
+    let why = rows[2]["why"].as_str().unwrap();
+    assert!(why.contains("line 9") && why.contains("f_2") && why.contains("strong"), "{why}");
+    assert!(!scratch.path().join("out/spoiled").exists());
+    // Alone.
+    let alone =
+        scratch.run(&["reconstruct", "logs/slow.csv", "--scene", "scene.toml", "--identify", "-o", "alone"]);
+    assert_eq!(alone.code, Some(0), "{}", alone.stderr);
+    for file in ["motion.csv", "summary.json", "lower_bound.ply", "report.html"] {
+        let bytes = |folder: &str| fs::read(scratch.path().join(folder).join(file)).unwrap();
+        assert_eq!(bytes("alone"), bytes("out/slow"), "{file}");
+    }
+    let summary: Value = serde_json::from_str(&scratch.read("alone/summary.json")).unwrap();
+    let told = Table::parse(&scratch.read("out/results.csv"));
+    let cell = |name: &str| told.rows[1][told.column(name)].parse::<f64>().unwrap();
+    assert_eq!(Some(cell("mass_kg")), summary["evidence"]["mass"]["value"].as_f64());
+    assert!(cell("std_mass_kg") > 0.0 && cell("lower_volume_m3") > 0.0);
+    // The page shows all of them, and where to go on.
+    let page = scratch.read("out/index.html");
+    assert_eq!(page.matches("<article>").count(), 3);
+    assert_eq!(page.matches("<polyline").count(), 6, "three axes of two motions");
+    assert!(page.contains("fast%20one/report.html") && !page.contains("http"));
+}
+
+#[test]
+fn what_is_done_is_kept_and_what_has_changed_is_done_again() {
+    let scratch = logs("batch-again");
+    let (_, first) = batch(&scratch, &["--jobs", "2"]);
+    assert_eq!(first["done_before"], 0);
+    let (made, written) = (table(&scratch), || -> SystemTime {
+        fs::metadata(scratch.path().join("out/slow/motion.csv")).unwrap().modified().unwrap()
+    });
+    let before = written();
+    let (code, again) = batch(&scratch, &["--jobs", "1"]);
+    assert_eq!((code, &again["done_before"]), (Some(4), &2.into()));
+    assert_eq!((written(), table(&scratch)), (before, made), "kept, with the same table");
+    // A folder that no longer holds, as after an interruption elsewhere; and another log of the same name.
+    let motion = scratch.read("out/slow/motion.csv");
+    fs::remove_dir_all(scratch.path().join("out/slow")).unwrap();
+    let fast = scratch.read("logs/fast one.csv");
+    scratch.write("logs/fast one.csv", &scratch.read("logs/slow.csv"));
+    let (_, third) = batch(&scratch, &[]);
+    assert_eq!(third["done_before"], 0);
+    assert_eq!(scratch.read("out/slow/motion.csv"), motion);
+    assert_eq!(scratch.read("out/fast one/motion.csv"), motion);
+    // Other options: nothing of it is taken as done.
+    scratch.write("logs/fast one.csv", &fast);
+    assert_eq!(batch(&scratch, &["--identify"]).1["done_before"], 0);
+}
+
+#[test]
+fn a_log_has_the_scene_of_its_name_and_bad_folders_are_named() {
+    let scratch = logs("batch-scenes");
+    // A scene that does not go with the log, of its name.
+    scratch.write("logs/slow.toml", &scene().replace("gravity = 9.81", "gravity = 1.62"));
+    let (_, said) = batch(&scratch, &[]);
+    assert_eq!(said["relied_on"], 1, "{said}");
+    let refused = |folder: &str, word: &str| {
+        let run = scratch.run(&["batch", folder, "--scene", "scene.toml", "-o", "other"]);
+        assert_eq!(run.code, Some(3));
+        assert!(run.stderr.contains(word), "{}", run.stderr);
+    };
+    refused("nowhere", "nowhere");
+    fs::create_dir(scratch.path().join("empty")).unwrap();
+    refused("empty", "no logs");
+    scratch.write("logs/slow.mcap", "");
+    refused("logs", "rename one");
+}

@@ -1,0 +1,93 @@
+//! The motion sample by sample.
+
+use crate::arrays::wxyz;
+use crate::errors::{input, raised};
+use crate::scene::Scene;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use recon_cli::Follower as Made;
+use recon_io::StreamRow;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A row of the table of `recon follow`: 24 entries, of which two are a word and a mark.
+type Row = (f64, [f64; 13], [f64; 4], &'static str, bool, f64, Option<[f64; 2]>);
+
+/// Follows a motion row by row.
+#[pyclass(frozen, module = "recon._recon")]
+pub(crate) struct Follower {
+    // One push at a time, whichever thread it comes from.
+    made: Mutex<Made>,
+    width: usize,
+}
+
+impl Follower {
+    fn locked(&self) -> MutexGuard<'_, Made> {
+        self.made.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn check(&self, found: usize) -> PyResult<()> {
+        let expected = self.width;
+        let wrong = || input(format!("the row has {found} values where there are {expected} columns"));
+        if found == expected { Ok(()) } else { Err(wrong()) }
+    }
+}
+
+#[pymethods]
+impl Follower {
+    #[new]
+    fn new(names: Vec<String>, scene: &Scene, words: Vec<String>) -> PyResult<Self> {
+        let made = Made::new(&names, scene.scene.clone(), &words).map_err(raised)?;
+        Ok(Self { made: Mutex::new(made), width: names.len() })
+    }
+
+    /// The estimates that a row makes known.
+    fn push(&self, py: Python<'_>, row: Vec<f64>) -> PyResult<Vec<Row>> {
+        self.check(row.len())?;
+        let made = py.detach(|| self.locked().push(&row)).map_err(raised)?;
+        Ok(made.iter().map(told).collect())
+    }
+
+    /// The same of a row that is an array.
+    fn push_array(&self, py: Python<'_>, row: PyReadonlyArray1<'_, f64>) -> PyResult<Vec<Row>> {
+        self.push(py, row.as_array().to_vec())
+    }
+
+    /// The same of many rows, (n, columns).
+    fn push_all(&self, py: Python<'_>, rows: PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Row>> {
+        self.check(rows.shape()[1])?;
+        let rows: Vec<Vec<f64>> = rows.as_array().rows().into_iter().map(|row| row.to_vec()).collect();
+        let mut all = Vec::with_capacity(rows.len());
+        // Ctrl-C is looked at every so often: a push takes microseconds.
+        for some in rows.chunks(500) {
+            let made = py.detach(|| {
+                let mut follower = self.locked();
+                some.iter().map(|row| follower.push(row)).collect::<Result<Vec<_>, _>>()
+            });
+            all.extend(made.map_err(raised)?.iter().flatten().map(told));
+            py.check_signals()?;
+        }
+        Ok(all)
+    }
+
+    /// The estimates that were held back.
+    fn finish(&self, py: Python<'_>) -> PyResult<Vec<Row>> {
+        let made = py.detach(|| self.locked().finish()).map_err(raised)?;
+        Ok(made.iter().map(told).collect())
+    }
+
+    /// Samples that could not be used, and what was wrong with the first of them.
+    fn left_out(&self) -> (usize, Option<String>) {
+        let follower = self.locked();
+        let (count, why) = follower.left_out();
+        (count, why.map(str::to_owned))
+    }
+}
+
+fn told(row: &StreamRow) -> Row {
+    let motion = row.motion.map_or([f64::NAN; 13], |motion| {
+        let (p, [qw, qx, qy, qz]) = (motion.p_WCm, wxyz(motion.R_WO));
+        let (v, w) = (motion.v_WCm, motion.w_WO);
+        [p.x, p.y, p.z, qw, qx, qy, qz, v.x, v.y, v.z, w.x, w.y, w.z]
+    });
+    (row.t, motion, row.deviations, row.stage, row.relied_on, row.misfit, row.mass)
+}

@@ -1,0 +1,90 @@
+"""What the tests share: scenes, logs, and the command that they compare with."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import recon
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENES = ROOT / "crates" / "recon-cli" / "scenes"
+
+
+@pytest.fixture(scope="session")
+def command() -> str:
+    """The command: RECON_COMMAND, one that cargo built, or the script that came with the package."""
+    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    built = [target / profile / "recon" for profile in ("release", "debug")]
+    found = [os.environ.get("RECON_COMMAND"), *(str(path) for path in built if path.is_file()), shutil.which("recon")]
+    names = [name for name in found if name]
+    assert names, "no command `recon`: build it (cargo build -p recon-cli), or install the package"
+    return names[0]
+
+
+def run(command: str, *words: str, codes: tuple[int, ...] = (0,)) -> subprocess.CompletedProcess[str]:
+    made = subprocess.run([command, *words], capture_output=True, text=True, check=False)
+    assert made.returncode in codes, f"{words}: {made.returncode}\n{made.stderr}"
+    return made
+
+
+@pytest.fixture(scope="session")
+def fig5() -> dict[str, object]:
+    """The scene of the paper's Fig. 5, over 1.5 s."""
+    azimuths = (270.0, 30.0, 150.0)
+    return {
+        "gravity": 9.81,
+        "object": {"mass": 1.0, "principal_moments": [1.0, 1.45, 2.05]},
+        "simulation": {
+            "duration": 1.5,
+            "sample_rate": 1000.0,
+            "orientation": [1.0, 0.0, 0.0, 0.0],
+            "angular_velocity": [0.0, 0.3, 0.3],
+            "shape": {"kind": "ellipsoid", "semi_axes": [2.5, 2.0, 1.0]},
+            "palms": [{"azimuth_deg": azimuth, "slope_deg": 60.0} for azimuth in azimuths],
+        },
+    }
+
+
+@pytest.fixture(scope="session")
+def simulation(fig5: dict[str, object]) -> recon.Simulation:
+    return recon.simulate(fig5)
+
+
+@pytest.fixture(scope="session")
+def log(simulation: recon.Simulation) -> recon.Log:
+    return simulation.log
+
+
+@pytest.fixture(scope="session")
+def result(log: recon.Log, fig5: dict[str, object]) -> recon.Reconstruction:
+    return recon.reconstruct(log, fig5)
+
+
+@pytest.fixture(scope="session")
+def palms_scene() -> str:
+    """Three fingertips that take an ellipsoid from a table, with friction and noise."""
+    return str(SCENES / "pick-up.toml")
+
+
+@pytest.fixture(scope="session")
+def files(tmp_path_factory: pytest.TempPathFactory, command: str) -> Path:
+    """A folder with the scene of Fig. 5 over 1.5 s and its log, as the command makes them."""
+    folder = tmp_path_factory.mktemp("fig5")
+    text = (SCENES / "fig5.toml").read_text(encoding="utf-8")
+    assert "duration = 4.2" in text
+    (folder / "scene.toml").write_text(text.replace("duration = 4.2", "duration = 1.5"), encoding="utf-8")
+    run(command, "simulate", str(folder / "scene.toml"), "-o", str(folder / "log.csv"))
+    return folder
+
+
+@pytest.fixture(scope="session")
+def small(tmp_path_factory: pytest.TempPathFactory, command: str) -> Path:
+    """What `recon init` gives: an object of a few centimetres, whose motion is found within the log."""
+    folder = tmp_path_factory.mktemp("small") / "start"
+    run(command, "init", str(folder))
+    return folder

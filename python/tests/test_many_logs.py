@@ -1,0 +1,71 @@
+"""Mapping over logs: the example's table, in one process, with Ray, and the command's."""
+
+from __future__ import annotations
+
+import csv
+import importlib.util
+import math
+import os
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+import recon
+from conftest import ROOT, run
+
+EXAMPLE = ROOT / "python" / "examples" / "many_logs.py"
+
+
+@pytest.fixture(scope="module")
+def example() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("many_logs", EXAMPLE)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def logs(files: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three logs of one scene, of which the last is broken."""
+    folder = tmp_path_factory.mktemp("logs")
+    text = (files / "log.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    (folder / "a.csv").write_text("".join(text), encoding="utf-8")
+    (folder / "b.csv").write_text("".join(text[:1001]), encoding="utf-8")
+    (folder / "c.csv").write_text("".join(text[:50]) + "what,is,this\n", encoding="utf-8")
+    return folder
+
+
+def same(a: dict[str, Any], b: dict[str, Any]) -> bool:
+    nan = [name for name, value in a.items() if isinstance(value, float) and math.isnan(value)]
+    return list(a) == list(b) and all(math.isnan(b[name]) if name in nan else a[name] == b[name] for name in a)
+
+
+def test_one_process_has_the_numbers_of_the_command(example: ModuleType, files: Path, logs: Path, tmp_path: Path, command: str) -> None:
+    scene = str(files / "scene.toml")
+    run(command, "batch", str(logs), "--scene", scene, "--identify", "-o", str(tmp_path / "out"), codes=(4,))
+    with open(tmp_path / "out" / "results.csv", newline="", encoding="utf-8") as table:
+        theirs = list(csv.DictReader(table))
+    ours = example.in_one_process([str(path) for path in sorted(logs.iterdir())], scene)
+    assert [row["state"] for row in ours] == [row["state"] for row in theirs] == ["relied on", "relied on", "skipped"]
+    for mine, other in zip(ours, theirs):
+        for name in ("mass_kg", "std_mass_kg", "lower_volume_m3", "upper_volume_m3"):
+            assert mine[name] == float(other[name]) or math.isnan(mine[name]) and other[name] == "nan", name
+    assert "line 51" in ours[2]["why"] and "c.csv" in ours[2]["why"]
+
+
+def test_ray_makes_the_same_table(example: ModuleType, files: Path, logs: Path) -> None:
+    ray = pytest.importorskip("ray")
+    pytest.importorskip("ray.data")
+    paths, scene = [str(path) for path in sorted(logs.iterdir())], str(files / "scene.toml")
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False, runtime_env={"env_vars": {"PYTHONPATH": os.environ.get("PYTHONPATH", "")}})
+    try:
+        ours, theirs = example.in_one_process(paths, scene), example.with_ray(paths, scene)
+    finally:
+        ray.shutdown()
+    assert len(ours) == len(theirs) == 3
+    for a, b in zip(ours, theirs):
+        assert same(a, b), (a, b)
+    assert recon.reconstruct(paths[0], scene, identify=True).mass == theirs[0]["mass_kg"]

@@ -1,0 +1,63 @@
+//! The package for Python: built and tested where there is a Python with what that takes; nothing else needs one.
+
+use crate::cargo::{cargo, output, program, root, run};
+use crate::steps::Outcome;
+use std::path::PathBuf;
+use std::process::Stdio;
+
+/// What the tests cannot do without.
+const NEEDED: [&str; 3] = ["maturin", "numpy", "pytest"];
+
+/// Lints the crate, builds its wheel, unpacks that into the target folder, and runs the tests on it.
+pub(crate) fn check() -> Result<Outcome, String> {
+    run(&mut cargo("fmt --manifest-path crates/recon-py/Cargo.toml --check"))?;
+    let Some(python) = ["python3", "python"].into_iter().find(|name| imports(name, &NEEDED)) else {
+        let needed = NEEDED.join(", ");
+        return Ok(Outcome::Skipped(format!(
+            "no Python with {needed}: only the format of crates/recon-py was checked"
+        )));
+    };
+    run(&mut cargo("clippy --manifest-path crates/recon-py/Cargo.toml --locked -- -D warnings"))?;
+    run(&mut cargo("build -p recon-cli"))?;
+    let (wheels, unpacked) = (target().join("wheels"), target().join("python"));
+    // A wheel of an earlier commit is not what is tested.
+    for old in [&wheels, &unpacked] {
+        if old.exists() {
+            std::fs::remove_dir_all(old).map_err(|error| format!("{}: {error}", old.display()))?;
+        }
+    }
+    run(program(python).args(["-m", "maturin", "build", "--release", "--locked", "--out"]).arg(&wheels))?;
+    let wheel = std::fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
+    let wheel = wheel.filter_map(Result::ok).next().ok_or("maturin wrote no wheel")?.path();
+    run(program(python).args(["-m", "zipfile", "-e"]).arg(&wheel).arg(&unpacked))?;
+    let command = target().join("debug").join(format!("recon{}", std::env::consts::EXE_SUFFIX));
+    run(program(python)
+        .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
+        .env("PYTHONPATH", &unpacked)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .env("RECON_COMMAND", command))?;
+    Ok(Outcome::Passed)
+}
+
+/// Where cargo builds.
+fn target() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
+}
+
+/// Whether there is such a Python, and it has these modules.
+fn imports(python: &str, modules: &[&str]) -> bool {
+    let mut asked = program(python);
+    asked.args(["-c", &format!("import {}", modules.join(", "))]).stderr(Stdio::null());
+    output(&mut asked).is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_python_that_is_not_there_has_nothing() {
+        assert!(!imports("no-such-python", &["sys"]));
+        assert!(!imports("python3", &["no_such_module"]));
+    }
+}
