@@ -65,6 +65,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "random scenes of three tilting palms with friction on all three: which are simulated to the end",
     ),
     (
+        "planar_estimates",
+        "planar-estimates.md",
+        "motion in the plane from no guess: random bodies, noise, wrong constants",
+    ),
+    (
         "planar_contacts",
         "planar-contacts.md",
         "planar bodies on any palms: what a run keeps to, what it refuses",

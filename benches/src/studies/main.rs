@@ -22,6 +22,7 @@ mod contact_wedging;
 mod mode_bank;
 mod no_force;
 mod planar_contacts;
+mod planar_estimates;
 mod reaching;
 mod shape_fits;
 mod streaming;
@@ -56,6 +57,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("mode_bank", || in_words(mode_bank::main())),
     ("no_force", || in_words(no_force::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),
+    ("planar_estimates", || in_words(planar_estimates::main())),
     ("reaching", || in_words(reaching::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),

@@ -14,7 +14,7 @@ pub type AuthorsState = SVector<f64, 7>;
 /// The paper names the fields and leaves them to a report; they are written out here. Torques enter as measurements of
 /// the contact forces, `f_1 = tau_1 / s_1`, `f_2 = -tau_2 / s_2` (both counter-clockwise), so `f` has no part in `omega0'`.
 /// Singular where a contact stands still on the object (`z_i = 0`) or reaches the hinge; the regular coordinates of
-/// [`super::ForceDriven`] are not. The flow under given torques is exponentially unstable.
+/// [`estimate_plane`](super::estimate_plane) are not. The flow under given torques is exponentially unstable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AuthorsFields {
     /// Mass and moment of inertia.

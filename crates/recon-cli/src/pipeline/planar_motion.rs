@@ -5,7 +5,7 @@ use crate::error::CliError;
 use recon::object_dynamics::planar::{BodyState, ContactLog, PlanarMass, PlanarTruth};
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
 use recon::observer::{ContactNoiseLevel, ImpulseNoise, Reliability};
-use recon_io::{FigureCurve, FigurePanel, PlanarKnown, Sensors, brief};
+use recon_io::{FigureCurve, FigurePanel, PlanarKnown, Sensors, brief, brief_to};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
@@ -168,6 +168,7 @@ impl PlanarMotion {
             true => format!("{} {unit} as stated", brief(value)),
             false => format!("{} +- {} {unit}", brief(value), brief(deviation)),
         };
+        line("size, about", format!("{} m (lengths are in metres)", brief_to(3, size(&self.log))));
         let (mass, share) = estimate.mass;
         line("mass", as_stated((mass, mass * share), "kg"));
         line("moment of inertia", as_stated(estimate.inertia, "kg m^2"));

@@ -234,7 +234,7 @@ fn a_planar_log_of_contacts_is_told_by_every_command() {
     scratch
         .write("scene.toml", "gravity = 9.81\n[[palm]]\nkind = \"flat\"\npose = { position = [0, 0, 0] }\n");
     scratch.write("bad.csv", "t,px_1,py_1,Px_1,Py_1,angle_1,fx_1,fy_1\n0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0,1\n");
-    let told = ["planar log of version 2", "no command", "recon planar", "recon reconstruct"];
+    let told = ["planar log of version 2", "plane = true", "recon planar", "recon reconstruct"];
     refused(&scratch, &RECONSTRUCT, 3, &told);
     refused(&scratch, &["planar", "bad.csv", "-o", "out"], 3, &told);
     refused(&scratch, &["follow", "bad.csv", "--scene", "scene.toml", "-o", "f.csv"], 3, &["mass"]);

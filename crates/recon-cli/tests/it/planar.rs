@@ -18,9 +18,18 @@ fn the_demo_and_its_log_without_forces_agree_with_the_truth() {
     let truth = last_row(&log);
     let phi = truth[column("phi0")] - 5.85;
     let observed = last_row(&scratch.read("recon-planar/motion.csv"));
-    assert!((observed[1] - phi).abs() < 1e-8, "{observed:?} {phi}");
+    // Columns t, x, y, phi0; the last one says whether the row is relied on.
+    assert!((observed[3] - phi).abs() < 1e-8 && observed.last() == Some(&1.0), "{observed:?} {phi}");
     let figures = scratch.read("recon-planar/figures.svg");
-    assert!(figures.contains("error in r1") && !figures.contains("NaN"));
+    assert!(figures.contains("error in phi0") && !figures.contains("NaN"));
+    // The same with mass and inertia unknown, and by the way that logs of space go.
+    let unknown = scratch.run(&["planar", "recon-planar/log.csv", "-o", "unknown"]);
+    assert_eq!(unknown.code, Some(0), "{}{}", unknown.stdout, unknown.stderr);
+    scratch.write("scene.toml", "plane = true\ngravity = 9.81\n");
+    let arguments = ["reconstruct", "recon-planar/log.csv", "--scene", "scene.toml", "-o", "by-scene"];
+    let run = scratch.run(&arguments);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    assert_eq!(scratch.read("unknown/motion.csv"), scratch.read("by-scene/motion.csv"));
 
     // Contacts and palm angles alone; two radians of a body with three harmonics, fitted with three.
     let without: Vec<String> =
@@ -35,6 +44,62 @@ fn the_demo_and_its_log_without_forces_agree_with_the_truth() {
     assert!((fitted[1] - at_end).abs() < 1e-2, "{fitted:?} {at_end}");
 }
 
+/// A palm that rubs, one that sticks and slips, a fingertip: simulated, and estimated from the log with nothing known of the body.
+const RUBBED: &str = "plane = true
+gravity = 9.81
+[object]
+mass = 0.2
+inertia = 1.8e-4
+[sensors]
+contact_std = 1e-4
+force_std = 0.01
+[[palm]]
+kind = \"line\"
+friction = 0.3
+pose = { position = [0.0, 0.0], angle_deg = 45.0 }
+motion = [{ pivot = [0.0, 0.0], law = { kind = \"sinusoid\", amplitude = 0.3, frequency = 6.0 } }]
+[[palm]]
+kind = \"line\"
+friction = 0.2
+pose = { position = [0.0, 0.0], angle_deg = 315.0 }
+motion = [{ pivot = [0.0, 0.0], law = { kind = \"sinusoid\", amplitude = 0.2, frequency = 4.0 } }]
+[simulation]
+duration = 2.0
+sample_rate = 500.0
+position = [0.0, 0.06]
+touches = [1, 2]
+shape = { kind = \"ellipse\", semi_axes = [0.05, 0.035] }
+";
+
+#[test]
+fn palms_that_rub_are_estimated() {
+    let scratch = Scratch::new("planar-rubbed");
+    scratch.write("scene.toml", RUBBED);
+    let run = scratch.run(&["simulate", "scene.toml", "-o", "log.csv"]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    // Whoever has a log needs no simulation, and no poses of palms.
+    let known: String =
+        RUBBED.split("[simulation]").next().unwrap().lines().fold(String::new(), |all, line| {
+            let kept = !(line.starts_with("pose") || line.starts_with("motion"));
+            if kept { all + line + "\n" } else { all }
+        });
+    scratch.write("known.toml", &known);
+    for arguments in [&["--identify"][..], &[]] {
+        let all = [&["reconstruct", "log.csv", "--scene", "known.toml", "-o", "out"], arguments].concat();
+        let run = scratch.run(&all);
+        assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+        let summary: serde_json::Value = serde_json::from_str(&scratch.read("out/summary.json")).unwrap();
+        let number = |key: &str| summary[key].as_f64().unwrap();
+        assert!((number("mass_kg") - 0.2).abs() < 0.001 && number("relied_on_share") > 0.99, "{summary}");
+        assert!((number("inertia_kg_m2") - 1.8e-4).abs() < 1e-5, "{summary}");
+        // Noise of the contacts is 0.1 mm.
+        let errors = &summary["largest_error"];
+        assert!(errors["position_m"].as_f64().unwrap() < 1e-4 && errors["turn_rad"].as_f64().unwrap() < 0.01);
+    }
+    let run = scratch.run(&["check", "out"]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+}
+
 #[test]
 fn bad_input_is_refused() {
     let scratch = Scratch::new("planar-bad");
@@ -45,11 +110,11 @@ fn bad_input_is_refused() {
     scratch.write("degrees.csv", &format!("t,phi1,phi2,s1,s2,f1,f2\n{degrees}"));
     let millimetres = degrees.replace(",45,90,", ",0.7,1.6,");
     scratch.write("millimetres.csv", &format!("t,phi1,phi2,s1,s2,f1,f2\n{millimetres}"));
+    scratch.write("bare.csv", "t,phi1,phi2,s1,s2\n0,0.7,1.5,1,1\n1,0.7,1.5,1,1\n");
     let known = |file| vec!["planar", file, "--mass", "1", "--inertia", "1"];
     for (arguments, code, words) in [
         (known("degrees.csv"), 3, "radians"),
-        (known("millimetres.csv"), 3, "object of about 2110"),
-        (vec!["planar", "millimetres.csv"], 3, "--contact-noise"),
+        (vec!["planar", "bare.csv"], 3, "--contact-noise"),
         (vec!["planar", "none.csv"], 3, "none.csv"),
         (vec!["planar", "flat.csv", "--contact-noise", "1e-3"], 3, "line 3"),
         (vec!["planar", "word.csv", "--contact-noise", "1e-3"], 3, "`one` is not a number"),
@@ -61,4 +126,8 @@ fn bad_input_is_refused() {
         assert!(run.stderr.contains(words), "{arguments:?}: {}", run.stderr);
         assert!(!scratch.path().join("recon-planar").exists());
     }
+    // Millimetres for metres are no error, and readings that stand still no motion: both are told.
+    let run = scratch.run(&known("millimetres.csv"));
+    assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);
+    assert!(run.stdout.contains("hardly change") && run.stdout.contains("m (lengths are in metres)"));
 }

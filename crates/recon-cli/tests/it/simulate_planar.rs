@@ -134,7 +134,7 @@ fn what_cannot_be_is_told_and_leaves_no_log() {
     refused(SLOPE.replace("[0.0, 1.0]", "[0.0, 0.0]"), &["no room for the object", "palm 2"]);
     // A command that knows space alone.
     scratch.write("scene.toml", SLOPE);
-    let run = scratch.run(&["reconstruct", "scene.toml", "--scene", "scene.toml", "-o", "out"]);
+    let run = scratch.run(&["follow", "scene.toml", "--scene", "scene.toml", "-o", "out.csv"]);
     assert_eq!(run.code, Some(3), "{}", run.stdout);
     assert!(run.stderr.contains("scene in the plane"), "{}", run.stderr);
 }

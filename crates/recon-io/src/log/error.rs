@@ -160,11 +160,10 @@ pub enum LogFileErrorKind {
         /// What is read, with its columns.
         read: &'static str,
     },
-    /// A log of contacts in the plane, from which nothing is estimated.
+    /// A log of contacts in the plane where another one is read.
     #[error(
-        "is a planar log of version 2 (px_i, py_i, angle_i), of which no command estimates a motion: `recon simulate --report` shows the \
-         scene that it is made from, `recon planar` takes logs of two palms hinged at the origin (t, phi1, phi2, s1, s2), `recon \
-         reconstruct` logs of palms in space (px_i, py_i, pz_i)"
+        "is a planar log of version 2 (px_i, py_i, angle_i): `recon reconstruct` takes it with a scene that says `plane = true` and has a \
+         [[palm]] for each palm; `recon planar` takes logs of two palms hinged at the origin (t, phi1, phi2, s1, s2)"
     )]
     PlanarContacts,
     /// Log and scene have different numbers of palms.

@@ -134,7 +134,7 @@ pub enum SceneErrorKind {
     Shape(ShapeError),
     /// A scene in the plane where one of space is needed.
     #[error(
-        "is a scene in the plane (`plane = true`), and here one of space is needed; `recon simulate` takes either"
+        "is a scene in the plane (`plane = true`), and here one of space is needed; `recon simulate` and `recon reconstruct` take either"
     )]
     InPlane,
     /// The object's outline.
