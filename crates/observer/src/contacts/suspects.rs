@@ -13,7 +13,7 @@ use super::samples::Deviations;
 use super::solve::{Covariances, Solved};
 use super::state::{Motion, Tangent};
 use crate::faults::{SensorFault, Suspect};
-use crate::three_palms::{Normal, exponential};
+use crate::three_palms::{LARGEST_DEVIATION, Normal, exponential};
 use contact_kinematics::PalmSurface;
 use glam::DVec3;
 use object_dynamics::{ContactLog, LoggedPalm};
@@ -89,6 +89,9 @@ pub(super) fn suspects(
             true => (-slope / sound, (scale * left / (sound * sound) + posing * posing).sqrt()),
             false => (0.0, f64::INFINITY),
         };
+        // A constant that is known no better than that is beyond what a linearisation tells.
+        let far = deviation > LARGEST_DEVIATION * fault.natural(&problem.units);
+        let (value, deviation) = if far { (0.0, f64::INFINITY) } else { (value, deviation) };
         let moved = |(of, by): (&Tangent, &Tangent)| by.component_div(of).abs().max();
         let most = deviations.iter().zip(&follows.motions).map(moved).fold(0.0, f64::max);
         Some(Suspect { fault, value, deviation, tolerated: most.recip() })
