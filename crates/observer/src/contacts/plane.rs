@@ -16,8 +16,8 @@ const HELD: f64 = 1e4;
 /// Deviation of the logarithm of a constant that is known: as good as exact, and what pulls at it can still be told.
 const KNOWN: f64 = 1e-4;
 /// Squared departure of a known body's mass and moment of inertia from what was found without knowing them, beyond which it is another one:
-/// two numbers in their deviations go there once in a thousand. What it costs to explain the log by it must go there too.
-const CONTRADICTED: f64 = 13.8;
+/// two numbers in their deviations go there once in a hundred. What it costs to explain the log by it must go there too.
+const CONTRADICTED: f64 = 9.2;
 
 type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
 
