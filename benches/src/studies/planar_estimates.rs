@@ -191,8 +191,8 @@ impl Scene {
     /// With all times shifted, s.
     fn log_at(&self, rate: f64, shift: f64) -> Result<PlanarLog, Failure> {
         let count = (LASTS * self.time * rate) as usize;
-        let times: Vec<f64> =
-            std::iter::once(0.0).chain((1..=count).map(|k| k as f64 / rate - shift)).collect();
+        let times = (1..=count).map(|k| k as f64 / rate - shift).filter(|t| *t > 0.0);
+        let times: Vec<f64> = std::iter::once(0.0).chain(times).collect();
         Ok(simulate_prescribed(&self.object, &self.palms, self.start, &times, 1e-12)?.log()?)
     }
 
@@ -216,15 +216,18 @@ impl Scene {
             Wrong::Bias => gains(&mut samples, [1.0, 1.0], 0.01 * self.weight()),
             Wrong::Palm => samples.iter_mut().for_each(|s| s.angles[1] += 0.5_f64.to_radians()),
             Wrong::ForcesLate | Wrong::ContactsLate => {
-                let late = self.log_at(rate, 0.004)?;
-                for (sample, late) in samples.iter_mut().zip(late.samples()).skip(1) {
+                const LATE: f64 = 0.004;
+                let late = self.log_at(rate, LATE)?;
+                // Samples before the first one that is late.
+                let early = samples.iter().take_while(|sample| sample.t - LATE <= 0.0).count();
+                for (sample, late) in samples[early..].iter_mut().zip(&late.samples()[1..]) {
                     match wrong {
                         Wrong::ForcesLate => sample.forces = late.forces,
                         _ => sample.contacts = late.contacts,
                     }
                 }
-                let count = samples.len().min(late.samples().len());
-                return Ok(PlanarLog::new(samples[1..count].to_vec(), Some(truth[1..count].to_vec()))?);
+                let end = samples.len().min(early + late.samples().len() - 1);
+                return Ok(PlanarLog::new(samples[early..end].to_vec(), Some(truth[early..end].to_vec()))?);
             }
             Wrong::Gap => {
                 let middle = samples[samples.len() / 2].t;
