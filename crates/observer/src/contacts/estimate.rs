@@ -159,10 +159,7 @@ impl Source<'_> {
         let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
         let (mut doubt, mut against) = (None, None);
         if let Some(mass) = options.body.as_ref().filter(|_| options.planar) {
-            let fitted = |problem: &mut Problem, unknown: &Solved<CONSTANTS>, body| {
-                fine(problem, unknown.unknowns.with(body))
-            };
-            let known = plane::known_motion(&mut problem, &solved, mass, fitted);
+            let known = plane::known_motion(&mut problem, &solved, mass);
             let (known, reason) = known.ok_or(ContactEstimateError::Singular)?;
             before += solved.iterations;
             (solved, doubt, against) = (known, Some(0.0), reason);
@@ -178,10 +175,13 @@ impl Source<'_> {
                 polished(&averaged, &problem, &solved).ok_or(ContactEstimateError::Singular)?;
         }
         let mut open = if options.planar { still(log, &options.noise, &units) } else { None };
+        let covariances;
         if options.planar && open.is_none() {
-            (solved, open) = decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
+            let decided = decided(&mut problem, solved);
+            (solved, covariances, open) = decided.ok_or(ContactEstimateError::Singular)?;
+        } else {
+            covariances = solved.covariances(&problem).ok_or(ContactEstimateError::Singular)?;
         }
-        let covariances = solved.covariances(&problem).ok_or(ContactEstimateError::Singular)?;
         let iterations = [before, before + solved.iterations];
         let motions = at_all(log, &problem, &solved.unknowns, &covariances);
         let slips = slips(&problem, &motions, &solved.unknowns.body);

@@ -3,6 +3,7 @@
 use super::body::{Body, CONSTANTS};
 use super::problem::{Problem, Units};
 use super::samples::Deviations;
+use super::search::fine;
 use super::solve::Solved;
 use super::state::Tangent;
 use crate::three_palms::Reason;
@@ -67,7 +68,6 @@ pub(super) fn known_motion(
     problem: &mut Problem,
     unknown: &Solved<CONSTANTS>,
     mass: &MassProperties,
-    solve: impl Fn(&mut Problem, &Solved<CONSTANTS>, Body) -> Option<Solved<CONSTANTS>>,
 ) -> Option<(Solved<CONSTANTS>, Option<Reason>)> {
     let claimed = unknown.covariances(problem)?.body;
     let swell = swell() / swell().norm_squared();
@@ -81,7 +81,7 @@ pub(super) fn known_motion(
     let squares = (covariance.try_inverse()? * departure).dot(&departure);
     problem.body = (known, information);
     problem.frozen.clear();
-    let solved = solve(problem, unknown, known)?;
+    let solved = fine(problem, unknown.unknowns.with(known))?;
     let dearer = solved.equations.cost - unknown.equations.cost > CONTRADICTED;
     let deviations = departure[0].abs() / covariance[(0, 0)].sqrt();
     let other = Reason::OtherBody { mass: found.log_mass.exp(), deviations, squares };

@@ -85,12 +85,12 @@ impl Spread {
     }
 }
 
-/// The most probable of the motions that are found in the plane, and whether another one cannot be ruled out. None where the
-/// equations are singular.
+/// The most probable of the motions that are found in the plane with its covariances, and whether another one cannot be ruled out. None where
+/// the equations are singular.
 pub(super) fn decided(
     problem: &mut Problem,
     found: Solved<CONSTANTS>,
-) -> Option<(Solved<CONSTANTS>, Option<Reason>)> {
+) -> Option<(Solved<CONSTANTS>, Covariances<CONSTANTS>, Option<Reason>)> {
     let rate = problem.units.speed / problem.units.length;
     let (frozen, body) = (problem.frozen.clone(), found.unknowns.body);
     let mut all = vec![(found, frozen)];
@@ -111,7 +111,7 @@ pub(super) fn decided(
         |(other, _): &&(Solved<CONSTANTS>, _)| other.equations.cost < solved.equations.cost + MORE_PROBABLE;
     let farthest = all.iter().filter(likely).map(|(other, _)| apart(&solved, other, &covariances));
     let apart = farthest.fold(0.0, f64::max);
-    Some((solved, (apart > BEYOND).then_some(Reason::Ambiguous { apart })))
+    Some((solved, covariances, (apart > BEYOND).then_some(Reason::Ambiguous { apart })))
 }
 
 /// Largest difference of velocities and positions of two motions, in deviations of the first.

@@ -16,7 +16,7 @@ use recon::observer::{
     estimate_contacts, nearest_turn,
 };
 use recon::shape_bounds::ContactSample;
-use recon_io::{EstimateData, MassDeviations, PalmContact, Scene};
+use recon_io::{EstimateData, MassDeviations, PalmContact, Scene, Sensors};
 use std::error::Error;
 use std::path::Path;
 
@@ -170,20 +170,11 @@ fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOp
     let length = scene.size.or_else(|| size(log)).ok_or(CliError::SizeNotStated)?;
     let floor = condition_floor(scene, length);
     let rough = ContactNoiseLevel::by_roughness(log, floor, false);
-    // Of means the noise is that of their samples over the root of how many there are.
-    let mean = 1.0 / (together as f64).sqrt();
-    let stated = |fixed: Option<f64>, share: Option<f64>| {
-        fixed.or(share).map(|_| [fixed, share].map(|of| mean * of.unwrap_or_default()))
-    };
-    let [force_fixed, force_share] =
-        stated(sensors.force_std, sensors.force_share).unwrap_or([rough.force_fixed, rough.force_share]);
     // Impulses beside forces are read where their noise is stated.
     let alone = !log.palms().iter().all(by_force);
-    let impulse = stated(sensors.impulse_std, sensors.impulse_share)
-        .map(|[fixed, share]| ImpulseNoise { fixed, share })
-        .or(rough.impulse.filter(|_| alone));
-    let contact = sensors.contact_std.map_or(rough.contact, |stated| mean * stated);
-    let noise = ContactNoiseLevel { contact, force_fixed, force_share, impulse, floor };
+    let rough = ContactNoiseLevel { impulse: rough.impulse.filter(|_| alone), ..rough };
+    // Of means the noise is that of their samples over the root of how many there are.
+    let noise = as_stated(sensors, rough, 1.0 / (together as f64).sqrt());
     let (pose_errors, suspects) = (true, true);
     Ok(ContactOptions {
         size: scene.size,
@@ -191,6 +182,20 @@ fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOp
         suspects,
         ..ContactOptions::new(noise, scene.gravity)
     })
+}
+
+/// The noise that the sensors are stated to have, times `mean`, and what is not stated by the roughness of the readings.
+pub(super) fn as_stated(sensors: &Sensors, rough: ContactNoiseLevel, mean: f64) -> ContactNoiseLevel {
+    let stated = |fixed: Option<f64>, share: Option<f64>| {
+        fixed.or(share).map(|_| [fixed, share].map(|of| mean * of.unwrap_or_default()))
+    };
+    let [force_fixed, force_share] =
+        stated(sensors.force_std, sensors.force_share).unwrap_or([rough.force_fixed, rough.force_share]);
+    let impulse = stated(sensors.impulse_std, sensors.impulse_share)
+        .map(|[fixed, share]| ImpulseNoise { fixed, share })
+        .or(rough.impulse);
+    let contact = sensors.contact_std.map_or(rough.contact, |stated| mean * stated);
+    ContactNoiseLevel { contact, force_fixed, force_share, impulse, ..rough }
 }
 
 /// The noise of a log by the roughness of its readings.

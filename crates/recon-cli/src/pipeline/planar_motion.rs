@@ -1,10 +1,10 @@
 //! Motion, mass and shape of a body in the plane from contacts of any palms.
 
-use super::any_palms::FLOOR;
+use super::any_palms::{FLOOR, as_stated};
 use crate::error::CliError;
 use recon::object_dynamics::planar::{BodyState, ContactLog, PlanarMass, PlanarTruth};
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
-use recon::observer::{ContactNoiseLevel, ImpulseNoise, Reliability};
+use recon::observer::{ContactNoiseLevel, Reliability};
 use recon_io::{FigureCurve, FigurePanel, PlanarKnown, Sensors, brief, brief_to};
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -37,21 +37,13 @@ pub(crate) fn planar_motion(log: ContactLog, known: &PlanarKnown) -> Result<Plan
 
 /// As it is stated, and what is not from the roughness of the readings.
 fn noise(log: &ContactLog, known: &PlanarKnown) -> Result<ContactNoiseLevel, CliError> {
-    let Sensors {
-        contact_std, force_std, force_share, impulse_std, impulse_share, contact_speed_std, ..
-    } = known.sensors;
-    let floor = contact_speed_std.unwrap_or(FLOOR * (known.gravity * size(log)).sqrt());
+    let sensors = &known.sensors;
+    let floor = sensors.contact_speed_std.unwrap_or(FLOOR * (known.gravity * size(log)).sqrt());
     let friction: Vec<_> = known.palms.iter().map(|(_, friction)| *friction).collect();
     let rough =
         plane_noise(log, &friction, floor).map_err(recon::observer::planar::PlaneEstimateError::from)?;
-    let stated = |fixed: Option<f64>, share: Option<f64>| {
-        fixed.or(share).map(|_| [fixed, share].map(Option::unwrap_or_default))
-    };
-    let [force_fixed, force_share] =
-        stated(force_std, force_share).unwrap_or([rough.force_fixed, rough.force_share]);
-    let impulse = stated(impulse_std, impulse_share).map(|[fixed, share]| ImpulseNoise { fixed, share });
-    let contact = contact_std.unwrap_or(rough.contact);
-    Ok(ContactNoiseLevel { contact, force_fixed, force_share, impulse, floor })
+    // Impulses are read where their noise is stated.
+    Ok(as_stated(sensors, ContactNoiseLevel { impulse: None, ..rough }, 1.0))
 }
 
 /// Root mean square of the distance of contacts from the mean of those at the same time, m.
