@@ -98,6 +98,11 @@ impl Body {
         Turn { R, K, w: K * L }
     }
 
+    /// Angular velocity, world axes, of a body turned by `q`.
+    pub(super) fn spin(&self, q: DQuat, L: DVec3) -> DVec3 {
+        q * (self.inverse * (q.conjugate() * L))
+    }
+
     /// `-dI w` in world axes for each constant of the inertia: `K` times it is the change of the angular velocity.
     pub(super) fn by_inertia(&self, turn: &Turn) -> [DVec3; INERTIA] {
         let w = turn.R.transpose() * turn.w;

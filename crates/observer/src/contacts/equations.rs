@@ -3,6 +3,7 @@
 use super::flow::Transition;
 use super::solve::Step;
 use super::state::{MOTION, Tangent};
+use glam::DVec3;
 use nalgebra::{SMatrix, SVector};
 
 /// Normal equations of one node.
@@ -42,15 +43,32 @@ pub(super) struct LinkEquation<const P: usize> {
     pub(super) adjusted_body: SMatrix<f64, MOTION, P>,
 }
 
-/// Normal equations of the conditions of one sample, by the motion at it.
-pub(super) struct SampleEquations<const P: usize> {
-    pub(super) own: Transition,
-    pub(super) to_body: SMatrix<f64, MOTION, P>,
-    pub(super) gradient: Tangent,
-    pub(super) body: SMatrix<f64, P, P>,
-    pub(super) body_gradient: SVector<f64, P>,
-    pub(super) cost: f64,
-    pub(super) conditions: usize,
+/// A condition, linearised: its value and its derivatives by a motion (centre of mass, velocity, angular momentum, turn) and by the
+/// body's constants.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row<const P: usize> {
+    pub(super) by_motion: [DVec3; 4],
+    pub(super) by_body: SVector<f64, P>,
+    pub(super) value: f64,
+}
+
+impl<const P: usize> Row<P> {
+    pub(super) fn tangent(&self) -> Tangent {
+        Tangent::from_fn(|i, _| self.by_motion[i / 3][i % 3])
+    }
+
+    pub(super) fn zero() -> Self {
+        Self { by_motion: [DVec3::ZERO; 4], by_body: SVector::zeros(), value: 0.0 }
+    }
+
+    /// Adds a multiple of another one.
+    pub(super) fn add(&mut self, factor: f64, other: &Self) {
+        for (own, other) in self.by_motion.iter_mut().zip(other.by_motion) {
+            *own += factor * other;
+        }
+        self.by_body.axpy(factor, &other.by_body, 1.0);
+        self.value += factor * other.value;
+    }
 }
 
 /// Half the gradient of a cost.
@@ -85,30 +103,34 @@ impl<const P: usize> Equations<P> {
         all
     }
 
-    /// Conditions at a motion whose derivatives are `F` by that of node `j` and `E` by the body.
-    pub(super) fn add(
-        &mut self,
-        j: usize,
-        rows: &SampleEquations<P>,
-        F: &Transition,
-        E: &SMatrix<f64, MOTION, P>,
-    ) {
-        self.cost += rows.cost;
-        self.conditions += rows.conditions;
-        if rows.conditions == 0 {
-            return;
-        }
+    /// A condition in its deviation, by the motion at node `j`.
+    pub(super) fn add(&mut self, j: usize, row: &Row<P>) {
+        let own = row.tangent();
         let node = &mut self.nodes[j];
-        node.cost += rows.cost;
-        node.conditions += rows.conditions;
-        let carried = rows.own * F;
-        node.own += F.transpose() * carried;
-        node.gradient += F.transpose() * rows.gradient;
+        node.own.ger(1.0, &own, &own, 1.0);
+        node.gradient.axpy(row.value, &own, 1.0);
+        node.cost += row.value * row.value;
+        node.conditions += 1;
+        self.cost += row.value * row.value;
+        self.conditions += 1;
         if P > 0 {
-            node.body += F.transpose() * rows.to_body + carried.transpose() * E;
-            let mixed = E.transpose() * rows.to_body;
-            self.body += E.transpose() * rows.own * E + mixed + mixed.transpose() + rows.body;
-            self.body_gradient += E.transpose() * rows.gradient + rows.body_gradient;
+            node.body.ger(1.0, &own, &row.by_body, 1.0);
+            self.body.ger(1.0, &row.by_body, &row.by_body, 1.0);
+            self.body_gradient.axpy(row.value, &row.by_body, 1.0);
+        }
+    }
+
+    /// The same where the condition falls with the motion at the next node too.
+    pub(super) fn add_split(&mut self, j: usize, row: &Row<P>, next: &[DVec3; 4]) {
+        self.add(j, row);
+        let own = row.tangent();
+        let after = Tangent::from_fn(|i, _| next[i / 3][i % 3]);
+        self.nodes[j].next.ger(1.0, &own, &after, 1.0);
+        let node = &mut self.nodes[j + 1];
+        node.own.ger(1.0, &after, &after, 1.0);
+        node.gradient.axpy(row.value, &after, 1.0);
+        if P > 0 {
+            node.body.ger(1.0, &after, &row.by_body, 1.0);
         }
     }
 }

@@ -1,12 +1,13 @@
 //! A node's motion carried through the samples of its link by what was measured, with its derivatives.
 
 use super::body::Body;
+use super::equations::Row;
 use super::noise::WrenchNoise;
 use super::record::{Interval, Wrench};
 use super::state::{MOTION, Motion, Tangent, Turn};
 use crate::three_palms::{cross_matrix, exponential};
-use glam::{DQuat, DVec3};
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
 
 /// Derivatives of a motion by the motion at its node.
 pub(super) type Transition = SMatrix<f64, MOTION, MOTION>;
@@ -130,6 +131,26 @@ impl<const P: usize> Carried<P> {
         (by_motion, by_body)
     }
 
+    /// A condition on the motion here as one on the motion at the node.
+    pub(super) fn at_node(&self, row: &Row<P>, body: &Body) -> Row<P> {
+        let [a, b, c, d] = row.by_motion;
+        let turn = self.turn_by_motion.tr_mul(&Vector3::from(d));
+        let by_turn = |i: usize| DVec3::new(turn[i], turn[i + 1], turn[i + 2]);
+        let by_motion = [
+            a + c.cross(self.impulse) + by_turn(0),
+            b + a * self.after + c.cross(self.first) + by_turn(3),
+            c + by_turn(6),
+            by_turn(9),
+        ];
+        let mut by_body = row.by_body;
+        if P > 0 {
+            let by_mass = c.dot(self.crossed) - a.dot(self.second) - b.dot(self.impulse);
+            by_body[0] += by_mass * body.inverse_mass();
+            by_body += self.turn_by_body.tr_mul(&Vector3::from(d));
+        }
+        Row { by_motion, by_body, value: row.value }
+    }
+
     /// Derivatives by the motion at the node and by the constants: logarithm of the mass, those of the inertia.
     pub(super) fn derivatives(&self, body: &Body) -> (Transition, SMatrix<f64, MOTION, P>) {
         let mut by_motion = Transition::identity();
@@ -181,7 +202,7 @@ impl<const P: usize> Carried<P> {
 /// commutator-free Lie group method of order 4 (Celledoni, Marthinsen, Owren 2003).
 fn turned(q: DQuat, L: [DVec3; 2], rates: [DVec3; 2], body: &Body, h: f64) -> DQuat {
     let middle = 0.5 * (L[0] + L[1]) + (rates[0] - rates[1]) * (h / 8.0);
-    let w = |q: DQuat, L: DVec3| body.turn(q, L).w;
+    let w = |q: DQuat, L: DVec3| body.spin(q, L);
     let k1 = w(q, L[0]);
     let half = exponential(k1 * (0.5 * h)) * q;
     let k2 = w(half, middle);
@@ -215,19 +236,32 @@ pub(super) fn link_covariance(noise: &WrenchNoise, h: f64, body: &Body, turn: &T
 /// Information of a link of duration `h`: the inverse covariance of what `noise` of the forces over the link, with moments about
 /// the centre of mass, does to the motion. None where it has no inverse.
 pub(super) fn link_information(noise: &WrenchNoise, h: f64, body: &Body, turn: &Turn) -> Option<Transition> {
-    let mass = 1.0 / body.inverse_mass();
-    let inertia = Matrix3::from(body.inertia_along(turn.R));
-    // Integrals of the wrench noise twice and once over time, from the motion.
-    let mut twice = SMatrix::<f64, 6, MOTION>::zeros();
-    twice.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Matrix3::identity() * mass));
-    twice.fixed_view_mut::<3, 3>(3, 9).copy_from(&inertia);
-    let mut once = SMatrix::<f64, 6, MOTION>::zeros();
-    once.fixed_view_mut::<3, 3>(0, 3).copy_from(&(Matrix3::identity() * mass));
-    once.fixed_view_mut::<3, 3>(3, 6).copy_from(&Matrix3::identity());
-    // Of white noise the second integral is half the duration times the first, and the rest is independent of it.
-    let rest = twice - once * (0.5 * h);
-    let of_rest = noise.white * (h * h / 12.0) + noise.late;
-    let once_information = noise.white.cholesky()?.inverse();
-    let rest_information = of_rest.cholesky()?.inverse();
-    Some(once.transpose() * once_information * once + rest.transpose() * rest_information * rest)
+    let mass = DMat3::IDENTITY * (1.0 / body.inverse_mass());
+    // The noise's first integral is that of the momenta, its second one mass times place and inertia times turn; of this half the
+    // duration times the first is the same, and the rest independent of it.
+    let rest = inverse(noise.white * (h * h / 12.0) + noise.late)?;
+    let mixed = rest * (-0.5 * h);
+    let once = inverse(noise.white)? + rest * (0.25 * h * h);
+    // Of force and moment: the numbers of a motion that their second integrals are, times what, and their first ones.
+    let places = [(0, mass), (3, body.inertia_along(turn.R))];
+    let momenta = [(1, mass), (2, DMat3::IDENTITY)];
+    let mut all = Transition::zeros();
+    let mut set = |i: usize, j: usize, block: DMat3| {
+        all.fixed_view_mut::<3, 3>(3 * i, 3 * j).copy_from(&Matrix3::from(block));
+    };
+    for (i, (place, A)) in places.into_iter().enumerate() {
+        for (j, (momentum, C)) in momenta.into_iter().enumerate() {
+            let block = |of: &Matrix6<f64>| DMat3::from(of.fixed_view::<3, 3>(3 * i, 3 * j).into_owned());
+            let crossed = A * block(&mixed) * C;
+            set(place, momentum, crossed);
+            set(momentum, place, crossed.transpose());
+            set(place, places[j].0, A * block(&rest) * places[j].1);
+            set(momenta[i].0, momentum, momenta[i].1 * block(&once) * C);
+        }
+    }
+    Some(all)
+}
+
+fn inverse(of: Matrix6<f64>) -> Option<Matrix6<f64>> {
+    Some(of.cholesky()?.inverse())
 }

@@ -1,7 +1,7 @@
 //! Least squares over all nodes: links, contact conditions and what is known beforehand, linearised.
 
 use super::body::{Body, CONSTANTS};
-use super::equations::{Equations, LinkEquation, NodeEquations, SampleEquations};
+use super::equations::{Equations, LinkEquation, NodeEquations, Row};
 use super::flow::{Carried, Transition, link_information};
 use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::plane;
@@ -111,17 +111,16 @@ impl Problem<'_> {
             let from = self.nodes[j];
             let end = self.nodes.get(j + 1).copied().unwrap_or(from);
             if end != from + 1 {
-                let rows = self.rows(from, &carried.motion, &carried.turn, &at.body);
-                all.add(j, &rows, &Transition::identity(), &SMatrix::zeros());
+                self.rows(from, &carried.motion, &carried.turn, &at.body, |row| all.add(j, &row));
             }
             let mut noise = WrenchNoise::default();
             for k in from..end {
                 self.advance(&mut carried, k, &at.body);
                 noise += self.record.intervals[k].noise;
                 if k + 1 < end {
-                    let rows = self.rows(k + 1, &carried.motion, &carried.turn, &at.body);
-                    let (F, E) = carried.derivatives(&at.body);
-                    all.add(j, &rows, &F, &E);
+                    self.rows(k + 1, &carried.motion, &carried.turn, &at.body, |row| {
+                        all.add(j, &carried.at_node(&row, &at.body));
+                    });
                 }
             }
             if end == from + 1 {
@@ -285,40 +284,24 @@ impl Problem<'_> {
         link_information(&noise, carried.after, body, &carried.turn)
     }
 
-    /// Sum over the conditions of a sample at a motion there.
+    /// The conditions of a sample at a motion there, each in its deviation.
     fn rows<const P: usize>(
         &self,
         k: usize,
         motion: &Motion,
         turn: &Turn,
         body: &Body,
-    ) -> SampleEquations<P> {
-        let mut all = SampleEquations {
-            own: Transition::zeros(),
-            to_body: SMatrix::zeros(),
-            gradient: Tangent::zeros(),
-            body: SMatrix::zeros(),
-            body_gradient: SVector::zeros(),
-            cost: 0.0,
-            conditions: 0,
-        };
-        for contact in &self.record.contacts[k] {
-            let Some(rows) = Rows::new(contact, motion, turn, &self.noise, self.friction) else { continue };
-            let weighted = rows.information * rows.residual;
-            all.cost += rows.cost();
-            all.conditions += rows.count;
-            let by_motion = rows.by_motion(motion, turn);
-            let w_motion = rows.information * by_motion;
-            all.own += by_motion.transpose() * w_motion;
-            all.gradient += by_motion.transpose() * weighted;
-            if P > 0 {
-                let by_body = rows.by_body::<P>(body, turn);
-                all.to_body += w_motion.transpose() * by_body;
-                all.body += by_body.transpose() * rows.information * by_body;
-                all.body_gradient += by_body.transpose() * weighted;
-            }
+        mut visit: impl FnMut(Row<P>),
+    ) {
+        let contacts = &self.record.contacts[k];
+        if contacts.is_empty() {
+            return;
         }
-        all
+        let changes = if P > 0 { body.by_inertia(turn) } else { Default::default() };
+        for contact in contacts {
+            let Some(rows) = Rows::new(contact, motion, turn, &self.noise, self.friction) else { continue };
+            rows.whitened(motion, turn, &changes).for_each(&mut visit);
+        }
     }
 
     fn rows_cost(&self, k: usize, motion: &Motion, turn: &Turn) -> f64 {
@@ -342,19 +325,25 @@ impl Problem<'_> {
         0.5 * interval.noise.sampled_share() / samples as f64
     }
 
-    /// The motion at the sample of a node with a link of one interval after it, and its derivatives by the motions at both ends and by the body.
-    pub(super) fn split<const P: usize>(
+    /// The motion at the sample of a node with a link of one interval after it.
+    pub(super) fn split<const P: usize>(&self, j: usize, carried: &Carried<P>, at: &Unknowns) -> Motion {
+        at.motions[j].kicked(&at.motions[j + 1].from(&carried.motion), self.share(j))
+    }
+
+    /// A condition on that motion as one on those at the node and the next one.
+    pub(super) fn split_row<const P: usize>(
         &self,
         j: usize,
         carried: &Carried<P>,
-        at: &Unknowns,
-    ) -> (Motion, [Transition; 2], SMatrix<f64, MOTION, P>) {
+        body: &Body,
+        row: &Row<P>,
+    ) -> (Row<P>, [DVec3; 4]) {
         let share = self.share(j);
-        let motion = at.motions[j].kicked(&at.motions[j + 1].from(&carried.motion), share);
-        let kicked = |i: usize| if (3..9).contains(&i) { share } else { 0.0 };
-        let after = Transition::from_diagonal(&Tangent::from_fn(|i, _| kicked(i)));
-        let (F, E) = carried.derivatives(&at.body);
-        (motion, [Transition::identity() - after * F, after], -(after * E))
+        let [_, v, L, _] = row.by_motion;
+        let after = [DVec3::ZERO, v * share, L * share, DVec3::ZERO];
+        let mut own = *row;
+        own.add(-1.0, &carried.at_node(&Row { by_motion: after, ..Row::zero() }, body));
+        (own, after)
     }
 
     /// Carries a motion over the interval after sample `k`.
@@ -370,17 +359,12 @@ impl Problem<'_> {
         at: &Unknowns,
         all: &mut Equations<P>,
     ) {
-        let (motion, [before, after], by_body) = self.split(j, carried, at);
-        let rows = self.rows(self.nodes[j], &motion, &at.body.turn(motion.q, motion.L), &at.body);
-        let through = rows.own * after;
-        all.nodes[j].next += before.transpose() * through;
-        let next = &mut all.nodes[j + 1];
-        next.own += after * through;
-        next.gradient += after * rows.gradient;
-        if P > 0 {
-            next.body += after * (rows.to_body + rows.own * by_body);
-        }
-        all.add(j, &rows, &before, &by_body);
+        let motion = self.split(j, carried, at);
+        let turn = at.body.turn(motion.q, motion.L);
+        self.rows(self.nodes[j], &motion, &turn, &at.body, |row| {
+            let (own, after) = self.split_row(j, carried, &at.body, &row);
+            all.add_split(j, &own, &after);
+        });
     }
 
     fn add_link<const P: usize>(

@@ -1,19 +1,19 @@
 //! What each contact condition says by itself, and what a change of the readings makes of it.
 
-use super::body::CONSTANTS;
-use super::equations::{Equations, Gradient};
-use super::flow::{Carried, Transition};
+use super::body::{Body, CONSTANTS};
+use super::equations::{Equations, Gradient, Row};
+use super::flow::Carried;
 use super::problem::{Problem, Unknowns};
 use super::rows::Rows;
-use super::state::{MOTION, Motion, Tangent};
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use super::state::{Motion, Tangent};
+use glam::DVec3;
+use nalgebra::{Matrix3, Vector3};
 
 /// Conditions of one contact, by the motions at a node and the next one, and by the body.
 struct Condition {
     node: usize,
-    own: SMatrix<f64, 3, MOTION>,
-    next: SMatrix<f64, 3, MOTION>,
-    body: SMatrix<f64, 3, CONSTANTS>,
+    /// By the motion at the node and the body, and by the motion at the next node.
+    rows: Vec<(Row<CONSTANTS>, [DVec3; 4])>,
     information: Matrix3<f64>,
     residual: Vector3<f64>,
 }
@@ -39,23 +39,22 @@ impl Residuals {
         for (j, &from) in nodes.iter().enumerate() {
             let mut carried = Carried::<CONSTANTS>::new(at.motions[j], &at.body);
             let end = nodes.get(j + 1).copied().unwrap_or(from);
-            let whole = [Transition::identity(), Transition::zeros()];
-            let mut add = |k: usize, motion: &Motion, [own, next]: [Transition; 2], body| {
-                conditions.extend(problem.conditions(j, k, motion, at, ([own, next], body)));
+            let mut add = |k: usize, motion: &Motion, at_nodes: &dyn Fn(Row<CONSTANTS>) -> _| {
+                conditions.extend(problem.conditions(j, k, motion, &at.body, at_nodes));
             };
+            let none = [DVec3::ZERO; 4];
             if end != from + 1 {
-                add(from, &carried.motion, whole, SMatrix::zeros());
+                add(from, &carried.motion, &|row| (row, none));
             }
             for k in from..end {
                 problem.advance(&mut carried, k, &at.body);
                 if k + 1 < end {
-                    let (F, E) = carried.derivatives(&at.body);
-                    add(k + 1, &carried.motion, [F, Transition::zeros()], E);
+                    add(k + 1, &carried.motion, &|row| (carried.at_node(&row, &at.body), none));
                 }
             }
             if end == from + 1 {
-                let (motion, [own, next], body) = problem.split(j, &carried, at);
-                add(from, &motion, [own, next], body);
+                let motion = problem.split(j, &carried, at);
+                add(from, &motion, &|row| problem.split_row(j, &carried, &at.body, &row));
             }
         }
         Some(Self { conditions, links })
@@ -93,37 +92,36 @@ impl Residuals {
             let weighted = condition.information * by;
             slope += weighted.dot(&condition.residual);
             own += weighted.dot(by);
-            mixed.motions[condition.node] += condition.own.transpose() * weighted;
-            if let Some(next) = mixed.motions.get_mut(condition.node + 1) {
-                *next += condition.next.transpose() * weighted;
+            for ((own, next), weight) in condition.rows.iter().zip(weighted.iter()) {
+                mixed.motions[condition.node] += own.tangent() * *weight;
+                if let Some(after) = mixed.motions.get_mut(condition.node + 1) {
+                    *after += Tangent::from_fn(|i, _| next[i / 3][i % 3]) * *weight;
+                }
+                mixed.body += own.by_body * *weight;
             }
-            mixed.body += condition.body.transpose() * weighted;
         }
         Some((slope, own, mixed))
     }
 }
 
 impl Problem<'_> {
-    /// Conditions at sample `k`, whose motion follows those of node `j` and the next and the body by these derivatives.
+    /// Conditions at sample `k` of the link after node `j`; `at_nodes` makes of one on the motion there one on those of node `j` and the next.
     fn conditions<'a>(
         &'a self,
         j: usize,
         k: usize,
         motion: &'a Motion,
-        at: &'a Unknowns,
-        ([own, next], body): ([Transition; 2], SMatrix<f64, MOTION, CONSTANTS>),
+        body: &Body,
+        at_nodes: &'a dyn Fn(Row<CONSTANTS>) -> (Row<CONSTANTS>, [DVec3; 4]),
     ) -> impl Iterator<Item = Condition> + 'a {
-        let turn = at.body.turn(motion.q, motion.L);
+        let turn = body.turn(motion.q, motion.L);
+        let changes = body.by_inertia(&turn);
         self.record.contacts[k].iter().filter_map(move |contact| {
             let rows = Rows::new(contact, motion, &turn, &self.noise, self.friction)?;
-            let by_motion = rows.by_motion(motion, &turn);
-            let by_body: SMatrix<f64, 3, CONSTANTS> = rows.by_body(&at.body, &turn);
             Some(Condition {
                 node: j,
-                own: by_motion * own,
-                next: by_motion * next,
-                body: by_motion * body + by_body,
-                information: rows.information,
+                rows: rows.linear(motion, &turn, &changes).map(at_nodes).collect(),
+                information: rows.information(),
                 residual: rows.residual,
             })
         })

@@ -1,11 +1,12 @@
 //! Contact conditions of one sample, with what noise of the contact does to them.
 
-use super::body::Body;
+use super::body::INERTIA;
+use super::equations::Row;
 use super::noise::ContactNoiseLevel;
 use super::record::Contact;
-use super::state::{MOTION, Motion, Turn};
+use super::state::{Motion, Turn};
 use glam::DVec3;
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, SVector, Vector3};
 use object_dynamics::ContactMode;
 
 /// Conditions of one contact: its normal one where it slides, with that across its friction if it is used, all three where it
@@ -18,8 +19,8 @@ pub(super) struct Rows {
     pub(super) residual: Vector3<f64>,
     /// From the centre of mass to the adjusted contact.
     pub(super) arm: DVec3,
-    /// Information of the conditions: inverse covariance, rows and columns that do not count are zero.
-    pub(super) information: Matrix3<f64>,
+    /// Makes the values independent and of unit variance: lower, rows and columns that do not count are zero.
+    whitening: Matrix3<f64>,
 }
 
 /// Standard deviations that a contact is moved by at most.
@@ -39,19 +40,23 @@ fn across_friction(contact: &Contact) -> Option<(DVec3, f64)> {
     seen.then(|| (contact.n.cross(friction).normalize_or_zero(), angle.hypot(SLIP_ANGLE)))
 }
 
-/// The first `count` rows and columns, those of the identity elsewhere.
-fn kept(matrix: &Matrix3<f64>, count: usize) -> Matrix3<f64> {
-    Matrix3::from_fn(|i, j| match (i < count && j < count, i == j) {
-        (true, _) => matrix[(i, j)],
-        (false, same) => f64::from(same),
-    })
-}
-
-/// Inverse of the first `count` rows and columns, zero elsewhere.
-fn inverse(covariance: &Matrix3<f64>, count: usize) -> Option<Matrix3<f64>> {
-    let mut inverse = kept(covariance, count).cholesky()?.inverse();
-    for i in count..3 {
-        inverse[(i, i)] = 0.0;
+/// Inverse of the lower factor of the first `count` rows and columns of a covariance, zero elsewhere: it makes their values independent and
+/// of unit variance. None where they have no inverse.
+fn whitening(covariance: &Matrix3<f64>, count: usize) -> Option<Matrix3<f64>> {
+    let (mut factor, mut inverse) = (Matrix3::zeros(), Matrix3::zeros());
+    for i in 0..count {
+        for k in 0..=i {
+            let left: f64 = covariance[(i, k)] - (0..k).map(|m| factor[(i, m)] * factor[(k, m)]).sum::<f64>();
+            factor[(i, k)] = if i == k { left.max(0.0).sqrt() } else { left / factor[(k, k)] };
+        }
+        let own = 1.0 / factor[(i, i)];
+        for k in 0..i {
+            inverse[(i, k)] = -own * (k..i).map(|m| factor[(i, m)] * inverse[(m, k)]).sum::<f64>();
+        }
+        inverse[(i, i)] = own;
+        if !own.is_finite() {
+            return None;
+        }
     }
     Some(inverse)
 }
@@ -94,10 +99,10 @@ impl Rows {
         if let Some((_, angle)) = across {
             covariance[(1, 1)] += (angle * slip.dot(t2)).powi(2);
         }
-        let information = inverse(&covariance, count)?;
+        let whitening = whitening(&covariance, count)?;
         let residual = Vector3::from_fn(|i, _| if i < count { axes[i].dot(slip) } else { 0.0 });
-        let mut rows = Self { axes, count, residual, arm, information };
-        let pull = information * residual;
+        let mut rows = Self { axes, count, residual, arm, whitening };
+        let pull = whitening.tr_mul(&(whitening * residual));
         let foot = shifts.map(|column| -(deviation * column.dot(&pull)));
         let farthest = FARTHEST_FOOT * deviation;
         let length = foot[0].hypot(foot[1]);
@@ -110,42 +115,52 @@ impl Rows {
         Some(rows)
     }
 
+    /// Inverse covariance of the values, zero for those that do not count.
+    pub(super) fn information(&self) -> Matrix3<f64> {
+        self.whitening.tr_mul(&self.whitening)
+    }
+
     /// Logarithm of the determinant of the information.
     pub(super) fn log_information(&self) -> f64 {
-        kept(&self.information, self.count).determinant().ln()
+        2.0 * (0..self.count).map(|i| self.whitening[(i, i)].ln()).sum::<f64>()
     }
 
     /// Squared residuals in their deviations.
     pub(super) fn cost(&self) -> f64 {
-        (self.information * self.residual).dot(&self.residual)
+        (self.whitening * self.residual).norm_squared()
     }
 
-    /// Derivatives by the motion at the sample.
-    pub(super) fn by_motion(&self, motion: &Motion, turn: &Turn) -> SMatrix<f64, 3, MOTION> {
-        let mut rows = SMatrix::<f64, 3, MOTION>::zeros();
-        for (i, e) in self.axes.into_iter().enumerate().take(self.count) {
+    /// The conditions, linearised at a motion; `changes` of the angular velocity are those by the constants of the inertia.
+    pub(super) fn linear<const P: usize>(
+        &self,
+        motion: &Motion,
+        turn: &Turn,
+        changes: &[DVec3; INERTIA],
+    ) -> impl ExactSizeIterator<Item = Row<P>> {
+        (0..self.count).map(|i| {
+            let e = self.axes[i];
             let b = self.arm.cross(e);
             let by_L = turn.K * b;
-            let by_turn = turn.w.cross(b) + by_L.cross(motion.L);
-            let parts = [-e.cross(turn.w), e, by_L, by_turn];
-            let row = SVector::<f64, MOTION>::from_fn(|j, _| parts[j / 3][j % 3]);
-            rows.set_row(i, &row.transpose());
-        }
-        rows
+            let by_motion = [-e.cross(turn.w), e, by_L, turn.w.cross(b) + by_L.cross(motion.L)];
+            // Constants: logarithm of the mass, of which a condition knows nothing, those of the inertia.
+            let by_body = SVector::from_fn(|j, _| if j > 0 { by_L.dot(changes[j - 1]) } else { 0.0 });
+            Row { by_motion, by_body, value: self.residual[i] }
+        })
     }
 
-    /// Derivatives by the constants of the body at a given motion.
-    pub(super) fn by_body<const P: usize>(&self, body: &Body, turn: &Turn) -> SMatrix<f64, 3, P> {
-        let mut rows = SMatrix::<f64, 3, P>::zeros();
-        if P > 0 {
-            let changes = body.by_inertia(turn).map(|change| turn.K * change);
-            for (i, e) in self.axes.into_iter().enumerate().take(self.count) {
-                let b = self.arm.cross(e);
-                for (j, change) in changes.iter().enumerate() {
-                    rows[(i, j + 1)] = b.dot(*change);
-                }
-            }
-        }
-        rows
+    /// The same in their deviations, and independent.
+    pub(super) fn whitened<const P: usize>(
+        &self,
+        motion: &Motion,
+        turn: &Turn,
+        changes: &[DVec3; INERTIA],
+    ) -> impl Iterator<Item = Row<P>> {
+        let mut linear = [Row::zero(); 3];
+        linear.iter_mut().zip(self.linear(motion, turn, changes)).for_each(|(to, row)| *to = row);
+        (0..self.count).map(move |i| {
+            let mut row = Row::zero();
+            (0..=i).for_each(|k| row.add(self.whitening[(i, k)], &linear[k]));
+            row
+        })
     }
 }

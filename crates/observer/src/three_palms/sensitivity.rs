@@ -126,10 +126,18 @@ pub(crate) fn cross_matrix(v: DVec3) -> DMat3 {
 
 /// `exp [v]x` as a quaternion, exact for small `v` too.
 pub(crate) fn exponential(v: DVec3) -> DQuat {
-    let angle = v.length();
-    // sin(a/2) / a; the series is exact to rounding below 1e-4.
-    let ratio = if angle < 1e-4 { 0.5 - angle * angle / 48.0 } else { (0.5 * angle).sin() / angle };
-    DQuat::from_xyzw(ratio * v.x, ratio * v.y, ratio * v.z, (0.5 * angle).cos())
+    let square = 0.25 * v.length_squared();
+    // sin(a/2) / a and cos(a/2): the series are exact to rounding below a half of 0.05.
+    let (ratio, w) = if square < 2.5e-3 {
+        let sine = 1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0)));
+        let cosine =
+            1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)));
+        (0.5 * sine, cosine)
+    } else {
+        let half = square.sqrt();
+        (half.sin() / (2.0 * half), half.cos())
+    };
+    DQuat::from_xyzw(ratio * v.x, ratio * v.y, ratio * v.z, w)
 }
 
 /// The rotation vector of a unit quaternion, of length at most pi: `exponential` undone.
