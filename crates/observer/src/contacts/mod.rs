@@ -11,6 +11,7 @@ mod impulses;
 mod joint;
 mod modes;
 mod noise;
+mod onward;
 mod options;
 mod plane;
 mod problem;

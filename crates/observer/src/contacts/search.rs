@@ -2,6 +2,7 @@
 
 use super::body::CONSTANTS;
 use super::cold;
+use super::onward::{LONG, SHORT, onward};
 use super::options::ContactOptions;
 use super::plane;
 use super::problem::{Problem, Units, Unknowns};
@@ -35,9 +36,35 @@ const PRIOR_MASS: f64 = 10.0;
 /// Deviation of the first orientation, rad: an unknown body has no axes but those it is given.
 const FIRST_TURN: f64 = 1e-5;
 
+/// The most probable motion and body from nothing, and the linearisations before the last solution: of a long record from its beginning on, of
+/// others at once; where that is not explained in other ways too, and the best is taken.
+pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
+    let ways: [&dyn Fn(&mut Problem) -> Option<(Solved<CONSTANTS>, usize)>; 3] =
+        [&|problem| onward(problem, options, &LONG), &|problem| whole(problem, options), &|problem| {
+            onward(problem, options, &SHORT)
+        }];
+    let mut best: Option<(Solved<CONSTANTS>, Vec<SVector<f64, CONSTANTS>>)> = None;
+    let mut before = 0;
+    for way in ways {
+        let Some((found, more)) = way(problem) else { continue };
+        before += more;
+        if found.explained() {
+            return Some((found, before));
+        }
+        before += found.iterations;
+        if best.as_ref().is_none_or(|(best, _)| found.equations.cost < best.equations.cost) {
+            best = Some((found, problem.frozen.clone()));
+        }
+    }
+    let (best, frozen) = best?;
+    problem.frozen = frozen;
+    before -= best.iterations;
+    Some((best, before))
+}
+
 /// A coarse solution from nothing and the last one from there, with one floor of the coarse conditions after the other until noise explains
 /// what is left, else the one that leaves least; and the linearisations before the last solution.
-pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
+pub(super) fn whole(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
     let coarse_nodes = problem.record.spaced(COARSE * problem.units.length / problem.units.speed);
     let all_nodes = fine_nodes(problem);
     let mut best: Option<Solved<CONSTANTS>> = None;

@@ -175,6 +175,19 @@ impl Record {
         }
     }
 
+    /// Some neighbouring samples.
+    pub(super) fn part(&self, samples: Range<usize>) -> Self {
+        Self {
+            times: self.times[samples.clone()].to_vec(),
+            samples: self.samples[samples.clone()].to_vec(),
+            origin: self.origin,
+            contacts: self.contacts[samples.clone()].to_vec(),
+            wrenches: self.wrenches[samples.clone()].to_vec(),
+            intervals: self.intervals[samples.start..samples.end - 1].to_vec(),
+            all_impulses: self.all_impulses,
+        }
+    }
+
     /// Numbers of samples at least `apart` from each other, s, the first and the last among them, and those after blows.
     pub(super) fn spaced(&self, apart: f64) -> Vec<usize> {
         let times = &self.times;

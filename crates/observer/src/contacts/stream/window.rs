@@ -8,6 +8,7 @@ use crate::contacts::cold;
 use crate::contacts::estimate::{AVERAGED, THIN};
 use crate::contacts::flow::Carried;
 use crate::contacts::modes::by_ratio;
+use crate::contacts::onward::{FOLLOWED, WINDOW};
 use crate::contacts::options::ContactOptions;
 use crate::contacts::problem::{Problem, Units, Unknowns};
 use crate::contacts::record::Record;
@@ -20,11 +21,9 @@ use object_dynamics::{ContactLog, ContactPoints, ForceChannel, MeasuredMotion, P
 use std::collections::VecDeque;
 
 /// Longest window in natural times: a body that is held turns by some radians in it, and so shows its inertia.
-pub(super) const LONGEST: f64 = 20.0;
+pub(super) const LONGEST: f64 = WINDOW;
 /// Shortest one: a motion of fewer natural times is hardly more than its start.
 const SHORTEST: f64 = 5.0;
-/// Linearisations within which a motion that goes on settles, beyond the first ones: most take four in all.
-const FOLLOWED: usize = 30;
 /// Natural times over which it is looked what the trapezoidal rule misses, for gaps after a window.
 const GAP: f64 = 0.2;
 /// Samples that are left out at most because a window cannot be read with them.

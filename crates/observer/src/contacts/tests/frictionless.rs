@@ -49,3 +49,24 @@ fn an_exact_log_gives_the_motion_to_what_integration_leaves() {
     assert!(worst < 3.0 * fourth * SIZE, "{worst} m");
     assert!((found.mass / 0.2 - 1.0).abs() < fourth, "{}", found.mass);
 }
+
+/// Over forty natural times no search of the whole log ends at its motion: it is found over the beginning and carried on.
+#[test]
+fn a_log_of_many_natural_times_is_found() {
+    let exact = normal_only(&rubbed(2.6, 500.0, 0.0));
+    let lasts = exact.duration() / (SIZE / G).sqrt();
+    assert!(lasts > 35.0, "{lasts} natural times: contact was lost");
+    let noise = noise(4e-5, 0.004);
+    for seed in 0..3 {
+        let log = noisy(&exact, &noise, seed);
+        let found = estimate_contacts(&log, None, &options(noise)).unwrap();
+        assert!(found.reliability.is_reliable(), "{seed}: {:?}", found.reliability);
+        let mean = errors(&found, &log).0 / 12.0;
+        assert!(mean < 4.0, "{seed}: squared errors are {mean} of what is said");
+        for ((state, at), deviations) in found.states.iter().zip(log.truth().unwrap()).zip(&found.deviations)
+        {
+            let off = ((state.p_WCm - at.p_WCm) / deviations[0]).abs().max_element();
+            assert!(off < 5.0, "{seed}: {off} deviations");
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Long logs: a motion is found over their beginning and carried on, a few natural times at a time.
+//!
+//! What a start is wrong by the motion amplifies, so that over many natural times no search from nothing ends at the right one: of
+//! clean logs at hand scale all are found over 15 natural times, and hardly any over 40.
+
+use super::body::CONSTANTS;
+use super::options::ContactOptions;
+use super::problem::{Problem, Unknowns};
+use super::search::{fine, fine_nodes, fine_within, refined, whole};
+use super::solve::Solved;
+
+/// Natural times of the window that a motion is solved over as it is carried on.
+pub(in crate::contacts) const WINDOW: f64 = 20.0;
+/// Linearisations within which a motion that goes on settles, beyond the first ones: most take four in all.
+pub(in crate::contacts) const FOLLOWED: usize = 30;
+
+/// How a record is gone through, in natural times.
+pub(super) struct Way {
+    /// How much is searched from nothing: as much as the first of these whose solution is explained.
+    beginnings: &'static [f64],
+    /// By how much a motion is carried on.
+    onward: f64,
+    /// What a record lasts longer than.
+    beyond: f64,
+}
+
+/// Of a long record, and of a short one that is not explained when it is searched at once.
+pub(super) const LONG: Way = Way { beginnings: &[8.0, 12.0, 20.0], onward: 4.0, beyond: 12.0 };
+pub(super) const SHORT: Way = Way { beginnings: &[2.0, 3.0, 4.0, 6.0, 1.0], onward: 0.5, beyond: 1.0 };
+
+/// A solution of all of a record, and the linearisations before it. None of a shorter one, or where no beginning is explained or a motion
+/// cannot be carried on.
+pub(super) fn onward(
+    problem: &mut Problem,
+    options: &ContactOptions,
+    way: &Way,
+) -> Option<(Solved<CONSTANTS>, usize)> {
+    let natural = problem.units.length / problem.units.speed;
+    let record = problem.record;
+    let times = &record.times;
+    if times[times.len() - 1] - times[0] <= way.beyond * natural {
+        return None;
+    }
+    let nodes = fine_nodes(problem);
+    let (mut unknowns, mut iterations) = beginning(problem, options, &nodes, way)?;
+    let last = nodes.len() - 1;
+    while unknowns.motions.len() <= last {
+        let at = unknowns.motions.len() - 1;
+        let end = until(problem, &nodes, at, way.onward).max(at + 1);
+        let motion = unknowns.motions[at];
+        unknowns.motions.extend(problem.carried(nodes[at], motion, &unknowns.body, &nodes[at + 1..=end]));
+        let from = nodes.partition_point(|&k| times[k] < times[nodes[end]] - WINDOW * natural).min(at);
+        let part = record.part(nodes[from]..nodes[end] + 1);
+        let mut window = problem.on(&part);
+        window.nodes = nodes[from..=end].iter().map(|k| k - nodes[from]).collect();
+        window.first.0.q = unknowns.motions[from].q;
+        window.frozen.clear();
+        let start = Unknowns { motions: unknowns.motions[from..].to_vec(), body: unknowns.body };
+        let solved = fine_within(&mut window, start, FOLLOWED)?;
+        iterations += solved.iterations;
+        unknowns.motions.truncate(from);
+        unknowns.motions.extend(solved.unknowns.motions);
+        unknowns.body = solved.unknowns.body;
+    }
+    problem.nodes = nodes;
+    problem.frozen.clear();
+    Some((fine(problem, unknowns)?, iterations))
+}
+
+/// Motions at the first of `nodes`, by a search of a beginning that is explained.
+fn beginning(
+    problem: &mut Problem,
+    options: &ContactOptions,
+    nodes: &[usize],
+    way: &Way,
+) -> Option<(Unknowns, usize)> {
+    let mut iterations = 0;
+    for &lasts in way.beginnings {
+        let end = until(problem, nodes, 0, lasts);
+        let part = problem.record.part(0..nodes[end] + 1);
+        let mut window = problem.on(&part);
+        let Some((solved, before)) = whole(&mut window, options) else { continue };
+        iterations += before + solved.iterations;
+        if solved.explained() {
+            problem.nodes = nodes[..=end].to_vec();
+            return Some((refined(problem, &window.nodes, &solved.unknowns), iterations));
+        }
+    }
+    None
+}
+
+/// The last of `nodes` within so many natural times of node `from`.
+fn until(problem: &Problem, nodes: &[usize], from: usize, lasts: f64) -> usize {
+    let times = &problem.record.times;
+    let end = times[nodes[from]] + lasts * problem.units.length / problem.units.speed;
+    nodes.partition_point(|&k| times[k] <= end) - 1
+}
