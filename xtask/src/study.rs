@@ -23,6 +23,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
     ),
     ("bounds_tosses", "bounds-tosses.md", "bounds from poses of bodies that MuJoCo tosses onto a table"),
     ("cold_start", "cold-start.md", "three palms: random scenes from no guess"),
+    (
+        "whole_logs",
+        "whole-logs.md",
+        "noisy whole logs of random bodies on three palms: white noise, and what is not as stated",
+    ),
     ("mode_bank", "mode-bank.md", "banks of modes: error and cost against what is kept"),
     ("no_force", "no-force.md", "three palms without force sensors: random scenes from no guess"),
     ("three_palms_monte_carlo", "three-palms-monte-carlo.md", "three palms against the Cramer-Rao bound"),

@@ -29,6 +29,7 @@ mod streaming;
 mod three_palms_monte_carlo;
 mod three_palms_timing;
 mod tilting_palms;
+mod whole_logs;
 
 use std::fmt::Display;
 use std::process::ExitCode;
@@ -62,6 +63,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),
     ("tilting_palms", || in_words(tilting_palms::main())),
+    ("whole_logs", || in_words(whole_logs::main())),
     ("three_palms_monte_carlo", || in_words(three_palms_monte_carlo::main())),
     ("three_palms_timing", || in_words(three_palms_timing::main())),
 ];

@@ -157,7 +157,12 @@ impl Source<'_> {
         let thinned = averaged.thinned(THIN * units.length / units.speed);
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
         let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
-        let (mut doubt, mut against) = (None, None);
+        let (mut doubt, mut against, mut open, mut covariances) = (None, None, None, None);
+        if !options.planar && solved.explained() && longest > 0.0 {
+            before += solved.iterations;
+            (solved, covariances, open) =
+                decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
+        }
         if let Some(mass) = options.body.as_ref().filter(|_| options.planar) {
             let known = plane::known_motion(&mut problem, &solved, mass);
             let (known, reason) = known.ok_or(ContactEstimateError::Singular)?;
@@ -168,20 +173,23 @@ impl Source<'_> {
             let known = known.ok_or(ContactEstimateError::Singular)?;
             before += solved.iterations + known.iterations - known.solved.iterations;
             (solved, doubt, against) = (known.solved, Some(known.doubt), known.against);
+            (covariances, open) = (None, None);
         }
         if thinned.is_some() {
             before += solved.iterations;
+            covariances = None;
             (problem, solved) =
                 polished(&averaged, &problem, &solved).ok_or(ContactEstimateError::Singular)?;
         }
-        let mut open = if options.planar { still(log, &options.noise, &units) } else { None };
-        let covariances;
-        if options.planar && open.is_none() {
-            let decided = decided(&mut problem, solved);
-            (solved, covariances, open) = decided.ok_or(ContactEstimateError::Singular)?;
-        } else {
-            covariances = solved.covariances(&problem).ok_or(ContactEstimateError::Singular)?;
+        if options.planar {
+            open = still(log, &options.noise, &units);
+            if open.is_none() {
+                (solved, covariances, open) =
+                    decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
+            }
         }
+        let covariances =
+            covariances.or_else(|| solved.covariances(&problem)).ok_or(ContactEstimateError::Singular)?;
         let iterations = [before, before + solved.iterations];
         let motions = at_all(log, &problem, &solved.unknowns, &covariances);
         let slips = slips(&problem, &motions, &solved.unknowns.body);

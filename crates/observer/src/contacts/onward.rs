@@ -8,6 +8,7 @@ use super::options::ContactOptions;
 use super::problem::{Problem, Unknowns};
 use super::search::{fine, fine_nodes, fine_within, refined, whole};
 use super::solve::Solved;
+use std::ops::Range;
 
 /// Natural times of the window that a motion is solved over as it is carried on.
 pub(in crate::contacts) const WINDOW: f64 = 20.0;
@@ -20,15 +21,15 @@ pub(super) struct Way {
     beginnings: &'static [f64],
     /// By how much a motion is carried on.
     onward: f64,
-    /// What a record lasts longer than.
-    beyond: f64,
+    /// How long a record lasts.
+    lasts: Range<f64>,
 }
 
 /// Of a long record, and of a short one that is not explained when it is searched at once.
-pub(super) const LONG: Way = Way { beginnings: &[8.0, 12.0, 20.0], onward: 4.0, beyond: 12.0 };
-pub(super) const SHORT: Way = Way { beginnings: &[2.0, 3.0, 4.0, 6.0, 1.0], onward: 0.5, beyond: 1.0 };
+pub(super) const LONG: Way = Way { beginnings: &[8.0, 12.0, 20.0], onward: 4.0, lasts: 12.0..f64::INFINITY };
+pub(super) const SHORT: Way = Way { beginnings: &[2.0, 3.0, 4.0, 6.0, 1.0], onward: 0.5, lasts: 1.0..12.0 };
 
-/// A solution of all of a record, and the linearisations before it. None of a shorter one, or where no beginning is explained or a motion
+/// A solution of all of a record, and the linearisations before it. None of one that lasts otherwise, or where no beginning is explained or a motion
 /// cannot be carried on.
 pub(super) fn onward(
     problem: &mut Problem,
@@ -38,7 +39,7 @@ pub(super) fn onward(
     let natural = problem.units.length / problem.units.speed;
     let record = problem.record;
     let times = &record.times;
-    if times[times.len() - 1] - times[0] <= way.beyond * natural {
+    if !way.lasts.contains(&((times[times.len() - 1] - times[0]) / natural)) {
         return None;
     }
     let nodes = fine_nodes(problem);

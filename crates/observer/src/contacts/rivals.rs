@@ -4,21 +4,30 @@
 //! from starts of their own, bodies that turn at a constant rate or not at all; one that is about as probable and farther away than
 //! deviations reach says that the log does not tell.
 
-use super::body::CONSTANTS;
+use super::body::{Body, CONSTANTS};
 use super::cold;
 use super::noise::ContactNoiseLevel;
-use super::problem::{Problem, Units};
+use super::problem::{Problem, Units, Unknowns};
 use super::record::{Contact, Record};
-use super::search::fine_within;
-use super::solve::{Covariances, Solved};
+use super::samples::deviations;
+use super::search::{ENOUGH, fine_within};
+use super::second_order::SMALL;
+use super::solve::{Covariances, Solved, solve};
+use super::state::Motion;
 use crate::three_palms::Reason;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use object_dynamics::MOST_PALMS;
 
-/// Rates of the starts, in natural ones.
+/// Rates of the starts in the plane, and what the spins of those in space are off by, in natural ones.
 const RATES: [f64; 3] = [0.0, 1.0, -1.0];
-/// Linearisations that each may take.
+const SHIFTED: f64 = 1.0;
+/// Linearisations that each may take, and after how many it is asked whether to go on; how many times as much as the best motion one may
+/// leave by then.
 const MOST: usize = 40;
+const TRIED: usize = 12;
+const HOPELESS: f64 = 3.0;
+/// How often the better ones are looked for again from where a better one was found.
+const ROUNDS: usize = 3;
 /// Fall of chi-squared that makes one motion the more probable one: odds of a thousand to one.
 const MORE_PROBABLE: f64 = 13.8;
 /// Deviations from which on another motion is one that they do not reach.
@@ -85,48 +94,105 @@ impl Spread {
     }
 }
 
-/// The most probable of the motions that are found in the plane with its covariances, and whether another one cannot be ruled out. None where
-/// the equations are singular.
-pub(super) fn decided(
-    problem: &mut Problem,
-    found: Solved<CONSTANTS>,
-) -> Option<(Solved<CONSTANTS>, Covariances<CONSTANTS>, Option<Reason>)> {
-    let rate = problem.units.speed / problem.units.length;
-    let (frozen, body) = (problem.frozen.clone(), found.unknowns.body);
-    let mut all = vec![(found, frozen)];
-    for turns in RATES {
-        let start = cold::turning(problem, body, -DVec3::Y * (turns * rate));
-        if let Some(other) = fine_within(problem, start, MOST) {
-            all.push((other, problem.frozen.clone()));
+/// A motion that was decided on, with its covariances where there were others to compare it with, and whether another one cannot be ruled out.
+pub(super) type Decided = (Solved<CONSTANTS>, Option<Covariances<CONSTANTS>>, Option<Reason>);
+
+/// The most probable of the motions that are found, begun from the one that was found first. None where the equations are singular.
+///
+/// In space a body whose moments are known well has no others.
+pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option<Decided> {
+    let mut all = vec![(found, std::mem::take(&mut problem.frozen))];
+    let mut best = 0;
+    for _ in 0..ROUNDS {
+        let (solved, frozen) = &all[best];
+        problem.frozen.clone_from(frozen);
+        if !problem.planar && well_known(problem, solved) {
+            break;
+        }
+        let before = best;
+        for start in starts(problem, solved) {
+            problem.frozen.clear();
+            if let Some(other) = tried(problem, start, all[best].0.equations.cost) {
+                all.push((other, problem.frozen.clone()));
+                let last = all.len() - 1;
+                // What was found first stays unless another one is clearly better: the best of several is no better for a share of a deviation.
+                if all[last].0.equations.cost < all[best].0.equations.cost - 1.0 {
+                    best = last;
+                }
+            }
+        }
+        if best == before || problem.planar {
+            break;
         }
     }
-    let cost = |(solved, _): &(Solved<CONSTANTS>, _)| solved.equations.cost;
-    let best = (0..all.len()).min_by(|&a, &b| cost(&all[a]).total_cmp(&cost(&all[b])))?;
-    // What was found first stays unless another one is clearly better: the best of several is no better for a share of a deviation.
-    let best = if cost(&all[0]) < cost(&all[best]) + 1.0 { 0 } else { best };
     let (solved, frozen) = all.swap_remove(best);
     problem.frozen = frozen;
+    if all.is_empty() {
+        return Some((solved, None, None));
+    }
     let covariances = solved.covariances(problem)?;
     let likely =
         |(other, _): &&(Solved<CONSTANTS>, _)| other.equations.cost < solved.equations.cost + MORE_PROBABLE;
     let farthest = all.iter().filter(likely).map(|(other, _)| apart(&solved, other, &covariances));
     let apart = farthest.fold(0.0, f64::max);
-    Some((solved, covariances, (apart > BEYOND).then_some(Reason::Ambiguous { apart })))
+    Some((solved, Some(covariances), (apart > BEYOND).then_some(Reason::Ambiguous { apart })))
 }
 
-/// Largest difference of velocities and positions of two motions, in deviations of the first.
+/// Whether mass and inertia are known so well that there is nothing beyond first order.
+fn well_known(problem: &Problem, solved: &Solved<CONSTANTS>) -> bool {
+    let claimed = solved.equations.covariances(&problem.natural_information());
+    claimed.is_some_and(|claimed| claimed.body.diagonal().max() < SMALL * SMALL)
+}
+
+/// In the plane bodies that turn at a constant rate; in space the motion as it is, of a round body that spins otherwise.
+fn starts(problem: &Problem, found: &Solved<CONSTANTS>) -> Vec<Unknowns> {
+    let rate = problem.units.speed / problem.units.length;
+    let Unknowns { body, .. } = found.unknowns;
+    if problem.planar {
+        return RATES.map(|turns| cold::turning(problem, body, -DVec3::Y * (turns * rate))).into();
+    }
+    let DMat3 { x_axis, y_axis, z_axis } = body.inertia();
+    let moment = (x_axis.x + y_axis.y + z_axis.z) / 3.0;
+    let round = found.unknowns.with(Body::free(body.log_mass, DMat3::from_diagonal(DVec3::splat(moment))));
+    let shifted = |spin: DVec3| Unknowns {
+        motions: round
+            .motions
+            .iter()
+            .map(|motion| Motion { L: motion.L + spin * moment, ..*motion })
+            .collect(),
+        body: round.body,
+    };
+    DVec3::AXES
+        .into_iter()
+        .flat_map(|axis| [axis, -axis])
+        .map(|axis| shifted(axis * (SHIFTED * rate)))
+        .collect()
+}
+
+/// Where a start leads; none where that leaves far more than `best`.
+fn tried(problem: &mut Problem, start: Unknowns, best: f64) -> Option<Solved<CONSTANTS>> {
+    if problem.planar {
+        return fine_within(problem, start, MOST);
+    }
+    let first = solve::<CONSTANTS>(problem, start, TRIED, ENOUGH[1])?;
+    if first.equations.cost > HOPELESS * best {
+        return None;
+    }
+    fine_within(problem, first.unknowns, MOST)
+}
+
+/// Largest difference of positions and velocities of two motions, in deviations of the first.
 fn apart(of: &Solved<CONSTANTS>, other: &Solved<CONSTANTS>, covariances: &Covariances<CONSTANTS>) -> f64 {
-    let inertia = of.unknowns.body.inertia().y_axis.y;
     let spin = |solved: &Solved<CONSTANTS>, j: usize| {
         let motion = &solved.unknowns.motions[j];
-        solved.unknowns.body.turn(motion.q, motion.L).w.y
+        solved.unknowns.body.spin(motion.q, motion.L)
     };
     let one = |j: usize| {
-        let deviations = covariances.deviations(&covariances.motions[j]);
-        // In the plane: positions and velocities along x and z, the spin about y by the momentum.
-        let by = other.unknowns.motions[j].from(&of.unknowns.motions[j]);
-        let spun = (spin(other, j) - spin(of, j)) * inertia / deviations[7];
-        [0, 2, 3, 5].into_iter().map(|i| (by[i] / deviations[i]).abs()).fold(spun.abs(), f64::max)
+        let (here, there) = (&of.unknowns.motions[j], &other.unknowns.motions[j]);
+        let [p, v, w, _] = deviations(here, &of.unknowns.body, j, covariances);
+        let off = [(there.p - here.p, p), (there.v - here.v, v), (spin(other, j) - spin(of, j), w)];
+        let share = |(off, of): (DVec3, DVec3)| off.abs() / of.max(DVec3::splat(f64::MIN_POSITIVE));
+        off.into_iter().map(|off| share(off).max_element()).fold(0.0, f64::max)
     };
     (0..of.unknowns.motions.len()).map(one).fold(0.0, f64::max)
 }

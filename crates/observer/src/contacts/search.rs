@@ -28,7 +28,7 @@ const MOST_OF_LAST: usize = 400;
 /// Linearisations after which it is asked what of the inertia is learned.
 const FIRST: usize = 12;
 /// A step that promises less in units of chi-squared than these is not worth taking: coarse solution, last one.
-const ENOUGH: [f64; 2] = [1.0, 1e-2];
+pub(super) const ENOUGH: [f64; 2] = [1.0, 1e-2];
 /// Deviation of the logarithms of the roots of the second moments before the log is read, about those of a ball of the body's
 /// size, and of that of the mass.
 const PRIOR: f64 = 0.7;
@@ -39,14 +39,14 @@ const FIRST_TURN: f64 = 1e-5;
 /// The most probable motion and body from nothing, and the linearisations before the last solution: of a long record from its beginning on, of
 /// others at once; where that is not explained in other ways too, and the best is taken.
 pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
-    let ways: [&dyn Fn(&mut Problem) -> Option<(Solved<CONSTANTS>, usize)>; 3] =
-        [&|problem| onward(problem, options, &LONG), &|problem| whole(problem, options), &|problem| {
-            onward(problem, options, &SHORT)
-        }];
     let mut best: Option<(Solved<CONSTANTS>, Vec<SVector<f64, CONSTANTS>>)> = None;
     let mut before = 0;
-    for way in ways {
-        let Some((found, more)) = way(problem) else { continue };
+    for way in [Some(&LONG), None, Some(&SHORT)] {
+        let found = match way {
+            Some(way) => onward(problem, options, way),
+            None => whole(problem, options),
+        };
+        let Some((found, more)) = found else { continue };
         before += more;
         if found.explained() {
             return Some((found, before));

@@ -14,7 +14,7 @@ use nalgebra::{SMatrix, SVector};
 const STEP: f64 = 0.3;
 /// Deviations of logarithms of constants, and of turns in rad, up to which nothing is looked at: the shift adds a hundredth to a variance there,
 /// and takes twice the time of the solution.
-const SMALL: f64 = 0.02;
+pub(super) const SMALL: f64 = 0.02;
 /// Deviation of the error, as a share of the shift.
 const SHARE: f64 = 0.3;
 
