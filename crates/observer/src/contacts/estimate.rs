@@ -7,7 +7,7 @@ use super::options::{ContactEstimateError, ContactOptions, check};
 use super::plane;
 use super::problem::{Problem, Units};
 use super::record::{Contact, Record};
-use super::rivals::{decided, still};
+use super::rivals::{decided, rivalled, still};
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{fine, fine_nodes, problem, refined, search};
@@ -158,7 +158,7 @@ impl Source<'_> {
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
         let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
         let (mut doubt, mut against, mut open, mut covariances) = (None, None, None, None);
-        if !options.planar && solved.explained() && longest > 0.0 {
+        if !options.planar && solved.explained() && rivalled(log, &options.noise, &units) {
             before += solved.iterations;
             (solved, covariances, open) =
                 decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;

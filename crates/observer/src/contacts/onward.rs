@@ -15,6 +15,9 @@ pub(in crate::contacts) const WINDOW: f64 = 20.0;
 /// Linearisations within which a motion that goes on settles, beyond the first ones: most take four in all.
 pub(in crate::contacts) const FOLLOWED: usize = 30;
 
+/// Chi-squared a condition of a window from which on a motion is lost.
+const LOST: f64 = 10.0;
+
 /// How a record is gone through, in natural times.
 pub(super) struct Way {
     /// How much is searched from nothing: as much as the first of these whose solution is explained.
@@ -59,6 +62,9 @@ pub(super) fn onward(
         let start = Unknowns { motions: unknowns.motions[from..].to_vec(), body: unknowns.body };
         let solved = fine_within(&mut window, start, FOLLOWED)?;
         iterations += solved.iterations;
+        if solved.misfit() > LOST {
+            return None;
+        }
         unknowns.motions.truncate(from);
         unknowns.motions.extend(solved.unknowns.motions);
         unknowns.body = solved.unknowns.body;

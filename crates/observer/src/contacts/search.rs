@@ -57,7 +57,7 @@ pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<
         }
     }
     let (best, frozen) = best?;
-    problem.frozen = frozen;
+    (problem.nodes, problem.frozen) = (fine_nodes(problem), frozen);
     before -= best.iterations;
     Some((best, before))
 }

@@ -12,7 +12,7 @@ use crate::contacts::onward::{FOLLOWED, WINDOW};
 use crate::contacts::options::ContactOptions;
 use crate::contacts::problem::{Problem, Units, Unknowns};
 use crate::contacts::record::Record;
-use crate::contacts::search::{fine_nodes, fine_within, problem, search};
+use crate::contacts::search::{fine_nodes, fine_within, problem, whole};
 use crate::contacts::solve::Solved;
 use crate::contacts::state::Motion;
 use crate::contacts::windows::longest;
@@ -194,7 +194,7 @@ impl Window {
     /// From nothing; whether the body is another one than was stated.
     fn found(&mut self, problem: &mut Problem) -> Option<(Solved<CONSTANTS>, bool)> {
         self.before = None;
-        let (solved, _) = search(problem, &self.options)?;
+        let (solved, _) = whole(problem, &self.options)?;
         let Some(mass) = &self.options.body else { return Some((solved, false)) };
         let known = known_motion(problem, &solved, mass)?;
         Some((known.solved, known.against.is_some()))
