@@ -25,7 +25,7 @@ pub(super) struct Way {
     /// By how much a motion is carried on.
     onward: f64,
     /// How long a record lasts.
-    lasts: Range<f64>,
+    pub(super) lasts: Range<f64>,
 }
 
 /// Of a long record, and of a short one that is not explained when it is searched at once.

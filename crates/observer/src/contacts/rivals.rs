@@ -100,8 +100,7 @@ pub(super) type Decided = (Solved<CONSTANTS>, Option<Covariances<CONSTANTS>>, Op
 /// Whether a motion in space may have rivals: of a body that is nearly round noise leaves its spin between palms without friction open, which
 /// is felt through its inertia alone.
 pub(super) fn rivalled(record: &Record, noise: &ContactNoiseLevel, units: &Units) -> bool {
-    noise.contact > noise.floor * units.length / units.speed
-        && record.contacts.iter().flatten().all(|contact| contact.frictionless)
+    noise.contact > noise.floor * units.length / units.speed && record.frictionless()
 }
 
 /// The most probable of the motions that are found, begun from the one that was found first. None where the equations are singular.

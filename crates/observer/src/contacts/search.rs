@@ -37,12 +37,13 @@ const PRIOR_MASS: f64 = 10.0;
 const FIRST_TURN: f64 = 1e-5;
 
 /// The most probable motion and body from nothing, and the linearisations before the last solution: of a long record from its beginning on, of
-/// others at once; where that is not explained in other ways too, and the best is taken.
+/// others at once; where that is not explained a short one without friction from its beginning on too, and the best is taken.
 pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
     let mut best: Option<(Solved<CONSTANTS>, Vec<SVector<f64, CONSTANTS>>)> = None;
     let mut before = 0;
     for way in [Some(&LONG), None, Some(&SHORT)] {
         let found = match way {
+            Some(way) if way.lasts.end.is_finite() && !problem.record.frictionless() => None,
             Some(way) => onward(problem, options, way),
             None => whole(problem, options),
         };

@@ -38,7 +38,7 @@ pub(super) fn longest(record: &Record, noise: &ContactNoiseLevel, units: &Units)
         return 0.0;
     }
     let smooth = (noise.contact / length).sqrt().sqrt();
-    if record.contacts.iter().flatten().any(|contact| !contact.frictionless) {
+    if !record.frictionless() {
         return natural * KINKED.min(smooth);
     }
     let shorter = |longest: &f64| Some(longest * SHORTER);
@@ -173,6 +173,11 @@ impl Record {
             intervals: picked.windows(2).map(|k| sum(&self.intervals[k[0]..k[1]])).collect(),
             all_impulses: self.all_impulses,
         }
+    }
+
+    /// Whether all palms that are touched are known to be without friction.
+    pub(super) fn frictionless(&self) -> bool {
+        self.contacts.iter().flatten().all(|contact| contact.frictionless)
     }
 
     /// Some neighbouring samples.
