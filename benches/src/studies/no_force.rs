@@ -10,8 +10,11 @@ use recon::observer::{KnownTouch, NoForceError, estimate_without_forces};
 use recon_tests::Random;
 use std::time::Instant;
 
-/// Scenes tried; those that lose contact too early are passed over.
-const SCENES: usize = 24;
+/// Scenes of a row, if not stated; those that lose contact too early are passed over.
+const SCENES: usize = 50;
+const SEED: u64 = 4;
+/// Smallest and largest ratio of the longest semi-axis to the shortest one.
+const FORMS: (f64, f64) = (1.05, 6.0);
 /// Longest and shortest log, s.
 const DURATION: (f64, f64) = (3.0, 2.0);
 /// Error of the semi-axes that counts as right without noise, as a share of the largest.
@@ -33,30 +36,40 @@ struct Count {
     moments: Vec<f64>,
 }
 
+/// Arguments: scenes of a row, seed.
 pub(crate) fn main() -> Result<(), Failure> {
-    println!("# Three palms without force sensors\n\nMade by `cargo xtask study no_force`.\n");
+    let mut words = crate::words();
+    let scenes: usize = words.next().map_or(Ok(SCENES), |word| word.parse())?;
+    let seed: u64 = words.next().map_or(Ok(SEED), |word| word.parse())?;
     println!(
-        "Ellipsoids of semi-axes 1 to 2.5 m with their centre up to 0.2 m off the centre of mass, uniform, on palms that"
+        "# Three palms without force sensors\n\nMade by `cargo xtask study no_force {scenes} {seed}`.\n"
     );
     println!(
-        "swing by 0.05 rad, spin up to 1 rad/s, logs of 2 to 3 s at 500 Hz of contacts and palm poses alone. Right: semi-axes"
+        "Ellipsoids of 1.8 m in the mean, axes of 1 : {} to 1 : {}, with their centre up to 0.2 m off the centre of mass, uniform, on palms that swing by",
+        FORMS.0, FORMS.1
+    );
+    println!(
+        "0.05 rad or stand still, spin up to 1 rad/s, logs of 2 to 3 s at 500 Hz of contacts and palm poses alone. Right: semi-axes"
     );
     println!(
         "within {RIGHT:e} of the largest without noise, within {DEVIATIONS} deviations with it. Open: refused as not determined;"
     );
     println!("missed: refused because nothing fits, though the scene is of the kind assumed.\n");
     println!(
-        "| noise of s | scenes | right | open | missed | wrong in silence | median ms | slowest ms | moments, median error |"
+        "| palms | noise of s | scenes | right | open | missed | wrong in silence | median ms | slowest ms | moments, median error |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
-    for noise in [0.0, 2.5e-4, 2.5e-3] {
-        let count = run(noise)?;
+    println!("|---|---|---|---|---|---|---|---|---|---|");
+    for (swing, noise) in
+        [0.05, 0.0].into_iter().flat_map(|of| [0.0, 2.5e-4, 2.5e-3].map(|noise| (of, noise)))
+    {
+        let count = run(scenes, seed, noise, swing)?;
+        let palms = if swing > 0.0 { "swing" } else { "stand" };
         let Count { tried, right, open, missed, silent, mut milliseconds, mut moments } = count;
         milliseconds.sort_by(f64::total_cmp);
         moments.sort_by(f64::total_cmp);
         let middle = |v: &[f64]| v.get(v.len() / 2).copied().unwrap_or(f64::NAN);
         println!(
-            "| {noise:e} m | {tried} | {right} | {open} | {missed} | {silent} | {:.0} | {:.0} | {:.1e} |",
+            "| {palms} | {noise:e} m | {tried} | {right} | {open} | {missed} | {silent} | {:.0} | {:.0} | {:.1e} |",
             middle(&milliseconds),
             milliseconds.last().copied().unwrap_or(f64::NAN),
             middle(&moments)
@@ -65,11 +78,12 @@ pub(crate) fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-fn run(noise: f64) -> Result<Count, Failure> {
-    let mut random = Random::new(4);
+fn run(scenes: usize, first: u64, noise: f64, swing: f64) -> Result<Count, Failure> {
+    let mut random = Random::new(first);
     let mut count = Count::default();
-    for seed in 0..SCENES as u64 {
-        let Some((axes, log)) = scene(&mut random, noise, seed)? else { continue };
+    while count.tried < scenes {
+        let seed = first + count.tried as u64;
+        let Some((axes, log)) = scene(&mut random, noise, swing, seed)? else { continue };
         count.tried += 1;
         let known = KnownTouch {
             gravity: DVec3::new(0.0, 0.0, -9.81),
@@ -90,6 +104,9 @@ fn run(noise: f64) -> Result<Count, Failure> {
                     if noise > 0.0 { error < DEVIATIONS * deviation } else { error < RIGHT * sorted[2] };
                 count.right += usize::from(right);
                 count.silent += usize::from(!right);
+                if !right {
+                    eprintln!(estimate.shape.semi_axes);
+                }
                 if right {
                     let found = MassProperties::new(1.0, estimate.inertia_per_mass)?.principal().moments;
                     let truth = MassProperties::uniform_ellipsoid(1.0, axes)?.principal().moments;
@@ -104,8 +121,15 @@ fn run(noise: f64) -> Result<Count, Failure> {
 }
 
 /// Semi-axes and log of a random scene; none if it loses contact too soon.
-fn scene(random: &mut Random, noise: f64, seed: u64) -> Result<Option<(DVec3, SensorLog)>, Failure> {
-    let axes = random.vector(1.0, 2.5);
+fn scene(
+    random: &mut Random,
+    noise: f64,
+    swing: f64,
+    seed: u64,
+) -> Result<Option<(DVec3, SensorLog)>, Failure> {
+    let longest = random.within(FORMS.0.ln(), FORMS.1.ln()).exp();
+    let axes = DVec3::new(1.0, random.within(1.0, longest), longest);
+    let axes = axes * (3.0 * 1.8 / axes.element_sum());
     let mass = MassProperties::uniform_ellipsoid(random.within(0.5, 2.5), axes)?;
     let mut palms = Vec::with_capacity(3);
     for k in 0..3 {
@@ -114,7 +138,7 @@ fn scene(random: &mut Random, noise: f64, seed: u64) -> Result<Option<(DVec3, Se
             (random.within(0.8, 1.1), random.within(1.5, 3.0), random.within(0.0, 6.0));
         palms.push(Palm::new(
             azimuth,
-            MotionLaw::Sinusoid { mean: slope, amplitude: 0.05, frequency, phase },
+            MotionLaw::Sinusoid { mean: slope, amplitude: swing, frequency, phase },
         )?);
     }
     let body = Translated { body: Ellipsoid::new(axes)?, offset: random.vector(-0.2, 0.2) };
