@@ -67,6 +67,16 @@ impl Log {
         Ok(Self { columns, about })
     }
 
+    /// The same log from sample `k` on, its time counted from there.
+    pub(super) fn from(&self, k: usize) -> Self {
+        let mut columns = self.columns.clone();
+        for (name, column) in &mut columns {
+            let start = if name == "t" { column[k] } else { 0.0 };
+            *column = column[k..].iter().map(|x| x - start).collect();
+        }
+        Self { columns, about: self.about.clone() }
+    }
+
     pub(crate) fn column(&self, name: &str) -> Anything<&[f64]> {
         self.columns.get(name).map(Vec::as_slice).ok_or_else(|| format!("no column {name}").into())
     }
