@@ -42,7 +42,6 @@ pub(super) fn palms(
     }
     let number = |(index, record)| Builder { palm: index + 1, times }.palm(record);
     let palms: Vec<LoggedPalm> = records.into_iter().enumerate().map(number).collect::<Result<_, _>>()?;
-    check_pulls(times, &palms)?;
     for (i, palm) in palms.iter().enumerate() {
         if let Some([impulse, integral]) = contradiction(&twice::impulses(times, palm)) {
             return Err(Error::ImpulseAgainstForce { palm: i + 1, impulse, integral });
@@ -51,6 +50,7 @@ pub(super) fn palms(
             return Err(Error::TorqueAgainstForce { palm: i + 1, torque: torque.x, moment: moment.x });
         }
     }
+    check_pulls(times, &palms)?;
     Ok(palms)
 }
 

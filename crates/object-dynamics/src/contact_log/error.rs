@@ -189,7 +189,8 @@ pub enum ContactLogError {
     },
     /// A contact force pulls.
     #[error(
-        "force of palm {palm} at sample {sample} (t = {time} s) pulls with {value} N along the normal; a palm cannot pull"
+        "force of palm {palm} at sample {sample} (t = {time} s) pulls with {value} N along the normal; a palm cannot pull: \
+         check the sign of its force, its axes (the world's), and that the columns are those of this palm"
     )]
     Pull {
         /// Palm number from 1.
