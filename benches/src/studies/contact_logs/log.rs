@@ -212,12 +212,8 @@ impl Log {
     /// The scene whose palms move as the log's did, every pose being a node of their paths.
     pub(crate) fn scene(&self) -> Anything<ContactScene<Ellipsoid>> {
         let body = Ellipsoid::new(vector(&self.about["axes"]))?;
-        let inertia = DMat3::from_cols(
-            vector(&self.about["inertia"][0]),
-            vector(&self.about["inertia"][1]),
-            vector(&self.about["inertia"][2]),
-        );
-        let mass = MassProperties::new(number(&self.about["mass"]), inertia)?;
+        let (mass, inertia) = self.mass();
+        let mass = MassProperties::new(mass, inertia)?;
         let palms = (1..=self.palm_count()).map(|i| self.palm(i)).collect::<Anything<Vec<_>>>()?;
         Ok(ContactScene::new(body, mass, palms, number(&self.about["gravity"]))?)
     }
