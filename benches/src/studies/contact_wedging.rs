@@ -17,6 +17,8 @@ use std::error::Error;
 
 const FRICTIONS: [f64; 7] = [0.05, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2];
 const GRAVITY: f64 = 9.81;
+/// How long each state is simulated, s.
+const RUN: f64 = 1e-6;
 
 /// How the palms stand.
 #[derive(Clone, Copy)]
@@ -30,6 +32,8 @@ enum Palms {
 struct Tally {
     wedged: usize,
     integrated_through: usize,
+    /// By the end of the run, and named.
+    wedged_later: usize,
     stopped_otherwise: usize,
 }
 
@@ -59,16 +63,20 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
             row.push(format!("{share:.4} ({deviation:.4})"));
             all.wedged += tally.wedged;
             all.integrated_through += tally.integrated_through;
+            all.wedged_later += tally.wedged_later;
             all.stopped_otherwise += tally.stopped_otherwise;
         }
         println!("| {name} | {} |", row.join(" | "));
     }
     println!();
     println!(
-        "Of {} states {} were wedged; {} of these were integrated through. Of the others {} were stopped by another error.",
+        "Of {} states {} were wedged; {} of these were integrated through. Of the others {} were near to it and wedged within the \
+         run of {:.0e} s, which was named; {} were stopped by another error.",
         states * FRICTIONS.len() * 5,
         all.wedged,
         all.integrated_through,
+        all.wedged_later,
+        RUN,
         all.stopped_otherwise
     );
     Ok(())
@@ -81,12 +89,13 @@ fn field(palms: Palms, friction: f64, states: usize, source: &mut Source) -> Res
         let state = SceneState { t: 0.0, body, palms: scene.palms_at_start() };
         let modes = vec![ContactMode::Slide; scene.palms().len()];
         let wedged = scene.wedging(&state, &modes)? <= 0.0;
-        let times = SampleTimes { duration: 1e-6, rate: 1e6 };
+        let times = SampleTimes { duration: RUN, rate: RUN.recip() };
         let run = scene.simulate(&ContactStart::touching(body), times, 1e-8);
         tally.wedged += usize::from(wedged);
         match run {
             Ok(_) => tally.integrated_through += usize::from(wedged),
             Err(ContactSimulationError::Modes { .. }) if wedged => {}
+            Err(ContactSimulationError::Modes { .. }) => tally.wedged_later += 1,
             Err(_) => tally.stopped_otherwise += 1,
         }
     }

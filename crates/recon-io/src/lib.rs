@@ -37,10 +37,11 @@ pub use export::{
     ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel, SceneModel,
 };
 pub use log::{
-    AnyLog, ContactRows, LogFileError, LogFileErrorKind, LogReader, PalmSetup, PlaneRows, RowReader,
-    RowSample, log_of_columns, parse_any_log, parse_contact_log, parse_log, parse_planar_contact_log,
-    parse_planar_log, read_any_log, read_contact_log, read_log, read_planar_contact_log, read_planar_log,
-    write_contact_log, write_log, write_planar_contact_log, write_planar_log,
+    AnyLog, ContactRows, LogFileError, LogFileErrorKind, LogReader, PalmSetup, PlaneRows, PoseAgainstScene,
+    RowReader, RowSample, log_of_columns, parse_any_log, parse_contact_log, parse_log,
+    parse_planar_contact_log, parse_planar_log, read_any_log, read_contact_log, read_log,
+    read_planar_contact_log, read_planar_log, write_contact_log, write_log, write_planar_contact_log,
+    write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use mesh_formats::{write_glb, write_stl};

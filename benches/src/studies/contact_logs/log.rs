@@ -67,6 +67,16 @@ impl Log {
         Ok(Self { columns, about })
     }
 
+    /// The same log from sample `k` on, its time counted from there.
+    pub(super) fn from(&self, k: usize) -> Self {
+        let mut columns = self.columns.clone();
+        for (name, column) in &mut columns {
+            let start = if name == "t" { column[k] } else { 0.0 };
+            *column = column[k..].iter().map(|x| x - start).collect();
+        }
+        Self { columns, about: self.about.clone() }
+    }
+
     pub(crate) fn column(&self, name: &str) -> Anything<&[f64]> {
         self.columns.get(name).map(Vec::as_slice).ok_or_else(|| format!("no column {name}").into())
     }
@@ -202,12 +212,8 @@ impl Log {
     /// The scene whose palms move as the log's did, every pose being a node of their paths.
     pub(crate) fn scene(&self) -> Anything<ContactScene<Ellipsoid>> {
         let body = Ellipsoid::new(vector(&self.about["axes"]))?;
-        let inertia = DMat3::from_cols(
-            vector(&self.about["inertia"][0]),
-            vector(&self.about["inertia"][1]),
-            vector(&self.about["inertia"][2]),
-        );
-        let mass = MassProperties::new(number(&self.about["mass"]), inertia)?;
+        let (mass, inertia) = self.mass();
+        let mass = MassProperties::new(mass, inertia)?;
         let palms = (1..=self.palm_count()).map(|i| self.palm(i)).collect::<Anything<Vec<_>>>()?;
         Ok(ContactScene::new(body, mass, palms, number(&self.about["gravity"]))?)
     }

@@ -5,19 +5,21 @@
 //!
 //! Modes are told as the logs tell them: a contact sticks where its slip is below the log's tolerance.
 
+mod changes;
 mod growth;
 pub(crate) mod log;
 mod own;
+mod rebounds;
 
+use changes::{changes, matching, nearest, same_changes};
 use growth::{Natural, growths};
 use log::{Anything, Log};
 use own::{Own, own_departures};
+use rebounds::{Restart, restarts, told_after_rebound};
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::{BodyState, ContactScene, ContactSimulation, ContactStart, SampleTimes};
 use std::path::{Path, PathBuf};
 
-/// Changes of modes are the same when they are at most this far apart, s.
-const APART: f64 = 2e-3;
 pub(crate) fn main() -> Anything<()> {
     let mut words = crate::words();
     let folder = PathBuf::from(words.next().ok_or("the folder of the logs is missing")?);
@@ -70,13 +72,33 @@ pub(crate) fn main() -> Anything<()> {
         }
     }
     println!();
+    println!("## Landings that a log rebounds from");
+    println!();
     println!(
-        "Changes of modes that are not the same: the log's, ours of the same palm and mode nearest to it, and by how much a change of the slip by \
-         softness times growth of velocity shifts it."
+        "Contacts of a log that close and are open again within three samples: the speeds at which the gap closes before and opens \
+         after. Runs are from the log's own state as soon after it as every contact is closed or clearly open, until the next such \
+         landing or the end."
     );
     println!();
-    println!("| log | log's (s) | palm | mode | ours (s) | apart (ms) | explained (ms) |");
-    println!("|---|---|---|---|---|---|---|");
+    println!(
+        "| log | palm | lands (s) | comes at (m/s) | leaves at (m/s) | share | run (s) | changes | same, within 2 ms | departure (m) |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|");
+    for (name, compared) in &compared {
+        for restart in compared.iter().flat_map(|compared| &compared.restarts) {
+            println!("| {name} | {} |", restart.row());
+        }
+    }
+    println!();
+    println!(
+        "Changes of modes that are not the same: the log's, ours of the same palm and mode nearest to it, by how much a change of \
+         the slip by softness times growth of velocity shifts it, and what the run from the log's state after its last rebound has of it."
+    );
+    println!();
+    println!(
+        "| log | log's (s) | palm | mode | ours (s) | apart (ms) | by softness (ms) | after the rebound |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
     for (name, compared) in &compared {
         for row in compared.iter().flat_map(|compared| &compared.others) {
             println!("| {name} | {row} |");
@@ -94,6 +116,8 @@ struct Compared {
     departures: Vec<f64>,
     own: Vec<Own>,
     growths: Vec<[f64; 2]>,
+    /// Runs from the log's states after landings that it rebounds from.
+    restarts: Vec<Restart>,
     /// Rows of changes that are not the same.
     others: Vec<String>,
     /// Our own error: the tolerance, m.
@@ -120,6 +144,7 @@ impl Compared {
             departures: pairs.map(|(now, body)| natural.apart(&now.state.body, body)).collect(),
             own: own_departures(&log, count)?,
             growths: growths(&log, &scene, &simulation, (seconds, tolerance))?,
+            restarts: restarts(&log, count, tolerance)?,
             others: Vec::new(),
             error: tolerance * natural.length,
             steps: simulation.statistics.accepted,
@@ -197,73 +222,23 @@ impl Compared {
         let rate = Natural::of(log).rate;
         let mut rows = Vec::new();
         for change in self.theirs.iter().enumerate().filter(|(i, _)| !same.contains(i)).map(|(_, c)| c) {
-            let alike = self.ours.iter().filter(|o| o.palm == change.palm && o.mode == change.mode);
-            let nearest = alike.min_by(|a, b| (a.t - change.t).abs().total_cmp(&(b.t - change.t).abs()));
             let k = self.until(change.t + 0.5 * (self.t[1] - self.t[0])) - 1;
             let slip = log.contact(change.palm + 1)?.slip;
             let slope = (slip[k] - slip[k - 1]) / (self.t[k] - self.t[k - 1]);
             let shift = self.own[k].softness * rate * self.growths[k][1] / slope.abs();
             let told = |o: &log::Change| format!("{:.3} | {:.0}", o.t, (o.t - change.t) * 1e3);
-            let ours = nearest.map_or_else(|| "none | -".to_owned(), told);
+            let ours = nearest(change, &self.ours).map_or_else(|| "none | -".to_owned(), told);
             rows.push(format!(
-                "{:.3} | {} | {} | {ours} | {:.1}",
+                "{:.3} | {} | {} | {ours} | {:.1} | {}",
                 change.t,
                 change.palm + 1,
                 ["off", "slides", "sticks"][usize::from(change.mode.min(2))],
                 shift * 1e3,
+                told_after_rebound(change, &self.restarts),
             ));
         }
         Ok(rows)
     }
-}
-
-/// How many changes of modes are the same from the start: palm, new mode, and time.
-fn same_changes(theirs: &[log::Change], ours: &[log::Change]) -> usize {
-    let same = |(a, b): &(&log::Change, &log::Change)| {
-        a.palm == b.palm && a.mode == b.mode && (a.t - b.t).abs() <= APART
-    };
-    // Two palms that change within the tolerance may do so in either order.
-    let mut left: Vec<&log::Change> = ours.iter().collect();
-    let mut count = 0;
-    for change in theirs {
-        let Some(at) = left.iter().take(3).position(|other| same(&(change, other))) else { break };
-        left.remove(at);
-        count += 1;
-    }
-    count
-}
-
-/// Which changes of the log have one of ours of the same palm and mode within the tolerance, each of ours once.
-fn matching(theirs: &[log::Change], ours: &[log::Change]) -> Vec<usize> {
-    let mut left: Vec<&log::Change> = ours.iter().collect();
-    let taken = theirs.iter().enumerate().filter(|(_, change)| {
-        let same = |o: &&log::Change| {
-            o.palm == change.palm && o.mode == change.mode && (o.t - change.t).abs() <= APART
-        };
-        left.iter().position(same).map(|at| left.remove(at)).is_some()
-    });
-    taken.map(|(index, _)| index).collect()
-}
-
-/// Changes of modes at the samples, told as the logs tell them.
-fn changes(log: &Log, simulation: &ContactSimulation) -> Vec<log::Change> {
-    let mut found = Vec::new();
-    let mode = |k: usize, i: usize| {
-        let now = &simulation.instants[k];
-        match now.modes[i].number() {
-            0 => 0,
-            _ if now.rates[i].slip.length() < log.slip_tolerance() => 2,
-            _ => 1,
-        }
-    };
-    for k in 1..simulation.instants.len() {
-        for i in 0..log.palm_count() {
-            if mode(k, i) != mode(k - 1, i) {
-                found.push(log::Change { t: simulation.instants[k].state.t, palm: i, mode: mode(k, i) });
-            }
-        }
-    }
-    found
 }
 
 fn simulate<S: SupportFunction>(
@@ -273,6 +248,6 @@ fn simulate<S: SupportFunction>(
     seconds: f64,
     tolerance: f64,
 ) -> Anything<ContactSimulation> {
-    let start = ContactStart { body, palms: Some(log.palm_coordinates(0)?), in_flight: false };
+    let start = ContactStart { body, palms: Some(log.palm_coordinates(0)?), in_flight: true };
     Ok(scene.simulate(&start, SampleTimes { duration: seconds, rate: 1000.0 }, tolerance)?)
 }

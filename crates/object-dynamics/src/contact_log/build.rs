@@ -2,11 +2,11 @@
 
 use super::PalmHinge;
 use super::error::ContactLogError as Error;
-use super::impulses;
 use super::palm::{LoggedMotion, LoggedPalm, Touch};
 use super::record::{
     ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, TwistSource, not_finite,
 };
+use super::twice::{self, contradiction};
 use super::twists::{Apart, against_poses};
 use crate::MOST_PALMS;
 use crate::modes::check_friction;
@@ -42,12 +42,15 @@ pub(super) fn palms(
     }
     let number = |(index, record)| Builder { palm: index + 1, times }.palm(record);
     let palms: Vec<LoggedPalm> = records.into_iter().enumerate().map(number).collect::<Result<_, _>>()?;
-    check_pulls(times, &palms)?;
     for (i, palm) in palms.iter().enumerate() {
-        if let Some(factor) = impulses::factor(times, palm) {
-            return Err(Error::ImpulseAgainstForce { palm: i + 1, factor });
+        if let Some([impulse, integral]) = contradiction(&twice::impulses(times, palm)) {
+            return Err(Error::ImpulseAgainstForce { palm: i + 1, impulse, integral });
+        }
+        if let Some([torque, moment]) = contradiction(&twice::torques(times, palm)) {
+            return Err(Error::TorqueAgainstForce { palm: i + 1, torque: torque.x, moment: moment.x });
         }
     }
+    check_pulls(times, &palms)?;
     Ok(palms)
 }
 

@@ -1,6 +1,7 @@
 use crate::modes::FrictionError;
 use crate::series::SeriesError;
 use contact_kinematics::{PalmError, SurfaceError};
+use glam::DVec3;
 use thiserror::Error;
 
 /// Why what palms recorded is not a log. Palms count from 1, samples from 0.
@@ -129,14 +130,32 @@ pub enum ContactLogError {
     },
     /// A palm's impulses are not those of its forces.
     #[error(
-        "the impulses (J) of palm {palm} contradict its forces (f): from sample to sample they are {factor:.3e} times the integral of the \
-         forces, in the median; check the units of both (N s and N) and their signs, or leave out the columns that are wrong"
+        "the impulses (J) of palm {palm} contradict its forces (f): from sample to sample they are {} N s in the median, and the \
+         integral of the forces is {} N s (in the palm's axes, or along z the part along its normal); check that both are \
+         columns of this palm, their units (N s and N) and their signs, or leave out the columns that are wrong",
+        in_words(*impulse), in_words(*integral)
     )]
     ImpulseAgainstForce {
         /// Palm number from 1.
         palm: usize,
-        /// Median of their ratio.
-        factor: f64,
+        /// Median from sample to sample, N s, palm axes.
+        impulse: DVec3,
+        /// Median of the integral of the forces, N s, palm axes.
+        integral: DVec3,
+    },
+    /// The torque of a palm's motor is not that of its forces.
+    #[error(
+        "the torque (tau) of palm {palm} contradicts its forces (f): less what turns the palm itself it is {torque:.3e} N m in \
+         the median, and the forces have a moment of {moment:.3e} N m about the hinge; check that both are columns of this \
+         palm, their units and signs, and pivot, axis and inertia of its motor, or leave out the columns that are wrong"
+    )]
+    TorqueAgainstForce {
+        /// Palm number from 1.
+        palm: usize,
+        /// Median of what the torque leaves beside turning the palm, N m.
+        torque: f64,
+        /// Median of the moment of the palm's force on the object about the hinge, N m.
+        moment: f64,
     },
     /// A contact point is not on its palm.
     #[error(
@@ -170,7 +189,8 @@ pub enum ContactLogError {
     },
     /// A contact force pulls.
     #[error(
-        "force of palm {palm} at sample {sample} (t = {time} s) pulls with {value} N along the normal; a palm cannot pull"
+        "force of palm {palm} at sample {sample} (t = {time} s) pulls with {value} N along the normal; a palm cannot pull: \
+         check the sign of its force, its axes (the world's), and that the columns are those of this palm"
     )]
     Pull {
         /// Palm number from 1.
@@ -257,8 +277,13 @@ impl ContactLogError {
             | Self::ChannelLength { .. }
             | Self::TwistFromPoses { .. }
             | Self::ImpulseAgainstForce { .. }
+            | Self::TorqueAgainstForce { .. }
             | Self::Hinge { .. }
             | Self::NoMotor { .. } => None,
         }
     }
+}
+
+fn in_words(v: DVec3) -> String {
+    format!("({:.3e}, {:.3e}, {:.3e})", v.x, v.y, v.z)
 }

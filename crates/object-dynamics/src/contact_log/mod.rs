@@ -2,7 +2,6 @@
 
 mod build;
 mod error;
-mod impulses;
 mod motor;
 #[cfg(feature = "noise")]
 mod noise;
@@ -10,6 +9,7 @@ mod palm;
 mod record;
 mod simulated;
 mod three_planes;
+mod twice;
 mod twists;
 
 #[cfg(test)]

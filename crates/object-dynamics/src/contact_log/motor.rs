@@ -71,7 +71,7 @@ impl ContactLog {
 }
 
 /// Slope at sample `k` of the parabola through it and its neighbours, at an end through the three samples there.
-fn slope(times: &[f64], k: usize, value: impl Fn(usize) -> f64) -> f64 {
+pub(super) fn slope(times: &[f64], k: usize, value: impl Fn(usize) -> f64) -> f64 {
     let chord = |a: usize, b: usize| (value(b) - value(a)) / (times[b] - times[a]);
     let last = times.len() - 1;
     if last == 1 {

@@ -275,10 +275,14 @@ impl ContactProblem {
     }
 
     /// The palm (from 1) at which two sets differ most, with the slip's rate there in each; none where they mean one motion.
+    ///
+    /// Of palms that bear in either alone: forces that change no slip where they act are of no power, and change no motion.
     fn differ(&self, one: &Choice, other: &Choice, force: f64) -> Option<(usize, [f64; 2])> {
         let rate = |i: usize, choice: &Choice| self.slip_rate(i, &choice.reaction);
         let share = |i: usize| (rate(i, one) - rate(i, other)).length() / (force * self.own_response(i));
-        let worst = (0..self.contacts().len()).max_by(|&i, &j| share(i).total_cmp(&share(j)))?;
+        let bears = |i: &usize| [one, other].iter().any(|choice| choice.modes[*i] != ContactMode::Off);
+        let bearing = (0..self.contacts().len()).filter(bears);
+        let worst = bearing.max_by(|&i, &j| share(i).total_cmp(&share(j)))?;
         let rates = [one, other].map(|choice| rate(worst, choice).length());
         (share(worst) > SAME).then_some((worst + 1, rates))
     }

@@ -1,3 +1,4 @@
+use super::contacts::PoseAgainstScene;
 use crate::separator::advice;
 use recon::contact_kinematics::{DirectionError, PalmError, SurfaceError};
 use recon::object_dynamics::planar::{self, PlanarLogError};
@@ -230,6 +231,9 @@ pub enum LogFileErrorKind {
         /// As given, in N.
         force: f64,
     },
+    /// A palm stands elsewhere than the scene says.
+    #[error(transparent)]
+    PoseAgainstScene(PoseAgainstScene),
     /// A table of poses over time that cannot be used; `line` is that of the pose at fault, where one is.
     #[error("{}{source}", line.map_or(String::new(), |line| format!("line {line}: ")))]
     PoseTable {

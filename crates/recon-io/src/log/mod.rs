@@ -16,8 +16,8 @@ mod write;
 mod tests;
 
 pub use contacts::{
-    AnyLog, ContactRows, PalmSetup, parse_any_log, parse_contact_log, read_any_log, read_contact_log,
-    write_contact_log,
+    AnyLog, ContactRows, PalmSetup, PoseAgainstScene, parse_any_log, parse_contact_log, read_any_log,
+    read_contact_log, write_contact_log,
 };
 pub use error::{LogFileError, LogFileErrorKind};
 pub use memory::{RowReader, RowSample, log_of_columns};

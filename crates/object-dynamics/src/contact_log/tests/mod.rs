@@ -4,6 +4,7 @@ mod motor;
 mod noise;
 mod simulated;
 mod three_planes;
+mod twice;
 
 use super::*;
 use contact_kinematics::{PalmSurface, SurfacePose};

@@ -135,3 +135,36 @@ fn a_motor_is_noisy_whether_or_not_its_palm_is_touched() {
     let changed = |k| noisy.palms()[0].torque(k) != exact.palms()[0].torque(k);
     assert!((0..21).all(changed));
 }
+
+#[test]
+fn torques_that_contradict_the_forces_are_named() {
+    let log = log(DVec3::Z * -0.02, 0.05, 1000.0);
+    let made = |change: &dyn Fn(&mut PalmRecord)| {
+        let mut records = log.records();
+        change(&mut records[0]);
+        ContactLog::new(log.times().to_vec(), records, None)
+    };
+    let times_torque = |factor: f64| {
+        made(&|record| record.torque.iter_mut().flatten().flatten().for_each(|torque| *torque *= factor))
+    };
+    assert!(times_torque(1.0).is_ok() && times_torque(1.2).is_ok());
+    for factor in [1e3, -1.0] {
+        let error = times_torque(factor).unwrap_err();
+        let ContactLogError::TorqueAgainstForce { palm: 1, torque, moment } = error else {
+            panic!("{error}")
+        };
+        assert!((torque - moment).abs() > 0.5 * moment.abs(), "{error}");
+        assert!(error.to_string().contains("pivot, axis and inertia"), "{error}");
+    }
+    let far = made(&|record| record.hinge.iter_mut().for_each(|hinge| hinge.pivot.x -= 1.0));
+    assert!(matches!(far, Err(ContactLogError::TorqueAgainstForce { palm: 1, .. })), "{far:?}");
+    let forces = |record: &mut PalmRecord| {
+        let ForceChannel::Three(forces) = &mut record.force else { panic!("three axes") };
+        forces.iter_mut().for_each(|force| *force *= 3.0);
+    };
+    let other = made(&|record| {
+        forces(record);
+        record.impulse = ForceChannel::Missing;
+    });
+    assert!(matches!(other, Err(ContactLogError::TorqueAgainstForce { palm: 1, .. })));
+}

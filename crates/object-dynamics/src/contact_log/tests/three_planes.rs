@@ -111,15 +111,16 @@ fn torques_are_about_the_line_through_the_meeting_point() {
         for (record, azimuth) in records.iter_mut().zip([0.0, 2.1, 4.2]) {
             let t1 = PalmFrame::from_azimuth_slope(azimuth, 1.0).t1;
             let axis = Direction::new(turn * t1).unwrap();
-            record.hinge = Some(PalmHinge { pivot: p_WM + 0.7 * t1 + aside, axis, inertia: 1e-3 });
-            record.torque = Some(vec![Some(0.25); SAMPLES]);
+            record.hinge = Some(PalmHinge { pivot: p_WM + 0.7 * t1 + aside, axis, inertia: 1e-4 });
+            // Of some 1 N at 50 mm.
+            record.torque = Some(vec![Some(0.05 * turn); SAMPLES]);
         }
         let sample = log(records).three_planes().unwrap().log.samples()[5];
         sample.palms.map(|palm| palm.torque)
     };
-    // About the horizontal axis of each palm, and against it.
-    assert_eq!(hinged(DVec3::ZERO, 1.0), [Some(0.25); 3]);
-    assert_eq!(hinged(DVec3::ZERO, -1.0), [Some(-0.25); 3]);
+    // About the horizontal axis of each palm, whichever way the hinge counts.
+    assert_eq!(hinged(DVec3::ZERO, 1.0), [Some(0.05); 3]);
+    assert_eq!(hinged(DVec3::ZERO, -1.0), [Some(0.05); 3]);
     // The lever of the force is another one there.
     assert_eq!(hinged(DVec3::Z * 1e-3, 1.0), [None; 3]);
 }

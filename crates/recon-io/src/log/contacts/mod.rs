@@ -5,6 +5,7 @@ mod columns;
 mod poses;
 mod read;
 mod reader;
+mod two_poses;
 mod write;
 
 #[cfg(test)]
@@ -18,6 +19,7 @@ pub(super) use read::contacts;
 pub use read::{parse_contact_log, read_contact_log};
 pub use reader::ContactRows;
 pub(super) use reader::{check_setups, sample as contact_sample};
+pub use two_poses::PoseAgainstScene;
 pub use write::write_contact_log;
 
 use recon::contact_kinematics::{PalmSurface, SurfacePose};

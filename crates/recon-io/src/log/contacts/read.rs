@@ -3,6 +3,7 @@ use super::super::error::{LogFileError, LogFileErrorKind as Kind};
 use super::super::read::{EachRow, Row, Table};
 use super::PalmSetup;
 use super::columns::{Columns, ForceColumns, PalmColumns};
+use super::two_poses::check_pose;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::SurfacePose;
 use recon::object_dynamics::{
@@ -63,6 +64,8 @@ pub(super) struct Palm<'a> {
     columns: &'a PalmColumns,
     /// Where it stands if there are no columns for that.
     fixed: SurfacePose,
+    /// Where it stands by what is known beside the log, if there are columns for that as well.
+    also: Option<SurfacePose>,
     record: PalmRecord,
 }
 
@@ -99,12 +102,20 @@ impl<'a> Palm<'a> {
             truth: columns.truth.is_some().then(Vec::new),
             largest_offset: setup.largest_offset,
         };
-        Ok(Self { number, columns, fixed, record })
+        let also = columns.pose.is_some().then_some(setup.pose).flatten();
+        Ok(Self { number, columns, fixed, also, record })
     }
 
     pub(super) fn push(&mut self, row: &Row) -> Result<(), Kind> {
         let contact = self.contact(row)?;
-        self.push_motion(row)?;
+        let pose = self.push_motion(row)?;
+        if let (Some(also), Some(contact)) = (&self.also, contact) {
+            let in_palm = matches!(self.record.contacts, ContactPoints::Palm(_));
+            let point = if in_palm { contact } else { pose.at_rest().to_palm(contact) };
+            let limit = self.record.largest_offset;
+            check_pose((row.line, self.number), [&pose, also], point, limit)
+                .map_err(Kind::PoseAgainstScene)?;
+        }
         match (&mut self.record.force, &self.columns.force) {
             (ForceChannel::Normal(values), ForceColumns::Normal(field)) => {
                 values.push(force(row, self.number, field, contact.is_some())?);
@@ -167,7 +178,7 @@ impl<'a> Palm<'a> {
         }
     }
 
-    fn push_motion(&mut self, row: &Row) -> Result<(), Kind> {
+    fn push_motion(&mut self, row: &Row) -> Result<SurfacePose, Kind> {
         let pose = match &self.columns.pose {
             None => self.fixed,
             Some(fields) => {
@@ -188,7 +199,7 @@ impl<'a> Palm<'a> {
             }
             _ => {}
         }
-        Ok(())
+        Ok(pose)
     }
 }
 

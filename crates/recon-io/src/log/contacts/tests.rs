@@ -114,6 +114,29 @@ fn bad_cells_are_named_by_line_and_column() {
 }
 
 #[test]
+fn a_palm_that_stands_elsewhere_than_the_scene_says_is_named() {
+    let text = [HEADER, ROWS[0], ROWS[1]].join("\n");
+    let read = |p_WP: DVec3, R_WP: DQuat, largest_offset: f64| {
+        let tip = PalmSetup { pose: Some(SurfacePose { p_WP, R_WP }), largest_offset, ..FINGERTIP };
+        parse_contact_log(text.as_bytes(), &[tip, PLANE])
+    };
+    let first = DVec3::new(0.1, 0.0, 0.0);
+    // The log's palm is 0.2 mm on at its second sample.
+    assert!(read(first, DQuat::IDENTITY, 1e-3).is_ok());
+    assert!(read(DVec3::ZERO, DQuat::IDENTITY, f64::INFINITY).is_ok());
+    let Err(Kind::PoseAgainstScene(apart)) = read(first, DQuat::IDENTITY, 1.5e-4) else { panic!() };
+    assert_eq!((apart.line, apart.palm), (3, 1));
+    assert!((apart.distance - 2e-4).abs() < 1e-15 && (apart.log - apart.scene).length() == apart.distance);
+    // A fingertip that is turned about its centre touches with another of its points: 12.1 mm times 0.1 rad.
+    let Err(Kind::PoseAgainstScene(turned)) = read(first, DQuat::from_rotation_x(0.1), 1e-3) else {
+        panic!()
+    };
+    assert_eq!((turned.line, turned.log), (2, DVec3::new(0.1, 0.0, 0.0121)));
+    assert!((turned.distance - 0.0121 * 2.0 * 0.05_f64.sin()).abs() < 1e-15, "{turned}");
+    assert!(turned.to_string().contains("line 2: palm 1 stands elsewhere"), "{turned}");
+}
+
+#[test]
 fn columns_that_are_missing_or_say_the_same_are_named() {
     let missing = |from: &[&str], to: &[&str]| match renamed(from, to) {
         Err(Kind::MissingColumn { column, similar, .. }) => (column, similar),
