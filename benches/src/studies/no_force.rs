@@ -104,9 +104,6 @@ fn run(scenes: usize, first: u64, noise: f64, swing: f64) -> Result<Count, Failu
                     if noise > 0.0 { error < DEVIATIONS * deviation } else { error < RIGHT * sorted[2] };
                 count.right += usize::from(right);
                 count.silent += usize::from(!right);
-                if !right {
-                    eprintln!(estimate.shape.semi_axes);
-                }
                 if right {
                     let found = MassProperties::new(1.0, estimate.inertia_per_mass)?.principal().moments;
                     let truth = MassProperties::uniform_ellipsoid(1.0, axes)?.principal().moments;

@@ -22,9 +22,10 @@ const NEGLIGIBLE: f64 = 0.1;
 const BALL: f64 = 30.0;
 /// Linearisations that each of the solutions may take.
 const MOST: usize = 60;
-/// The same of the last solution: where contacts are felt far better than forces, or blows are known by their impulses, the chain is stiff and steps
-/// along a curved valley are short. Of twelve falls seven settle within 60, all within 240.
-const MOST_OF_LAST: usize = 400;
+/// The same of the last solution, and of one with blows: where these are known by their impulses the chain is stiff and steps along a curved
+/// valley are short. Of twelve falls seven settle within 60, all within 240.
+const MOST_OF_LAST: usize = 150;
+const MOST_OF_BLOWS: usize = 400;
 /// Linearisations after which it is asked what of the inertia is learned.
 const FIRST: usize = 12;
 /// A step that promises less in units of chi-squared than these is not worth taking: coarse solution, last one.
@@ -114,7 +115,8 @@ fn coarse(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
 
 /// The last solution, in which the inertia keeps its expected value along directions of which noise alone would tell.
 pub(super) fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
-    fine_within(problem, start, MOST_OF_LAST)
+    let blows = problem.record.intervals.iter().any(|interval| interval.blow);
+    fine_within(problem, start, if blows { MOST_OF_BLOWS } else { MOST_OF_LAST })
 }
 
 /// The same in so many linearisations beyond those after which it is asked what of the inertia is learned.
