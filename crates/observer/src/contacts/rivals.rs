@@ -177,9 +177,6 @@ fn starts(problem: &Problem, found: &Solved<CONSTANTS>) -> Vec<Unknowns> {
 
 /// Where a start leads; none where that leaves far more than `best`.
 fn tried(problem: &mut Problem, start: Unknowns, best: f64) -> Option<Solved<CONSTANTS>> {
-    if problem.planar {
-        return fine_within(problem, start, MOST);
-    }
     let first = solve::<CONSTANTS>(problem, start, TRIED, ENOUGH[1])?;
     if first.equations.cost > HOPELESS * best {
         return None;
