@@ -21,6 +21,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "bounds-noise-wrong.md",
         "bounds of contacts whose noise is not as stated: how often they hold, what is said about it",
     ),
+    (
+        "bounds_planar_noise",
+        "bounds-planar-noise.md",
+        "right contacts in the plane under noise, in any order: bounds, and what is called impossible",
+    ),
     ("bounds_tosses", "bounds-tosses.md", "bounds from poses of bodies that MuJoCo tosses onto a table"),
     ("cold_start", "cold-start.md", "three palms: random scenes from no guess"),
     ("mode_bank", "mode-bank.md", "banks of modes: error and cost against what is kept"),

@@ -9,6 +9,7 @@ mod bounds_incremental;
 mod bounds_noise;
 mod bounds_noise_wrong;
 mod bounds_planar;
+mod bounds_planar_noise;
 mod bounds_timing;
 mod bounds_tosses;
 mod chart;
@@ -43,6 +44,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("bounds_noise", || in_words(bounds_noise::main())),
     ("bounds_noise_wrong", || in_words(bounds_noise_wrong::main())),
     ("bounds_planar", || in_words(bounds_planar::main())),
+    ("bounds_planar_noise", || in_words(bounds_planar_noise::main())),
     ("bounds_timing", || in_words(bounds_timing::main())),
     ("bounds_tosses", || in_words(bounds_tosses::main())),
     ("cold_start", || in_words(cold_start::main())),
