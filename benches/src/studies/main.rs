@@ -24,6 +24,7 @@ mod mode_bank;
 mod no_force;
 mod planar_contacts;
 mod planar_estimates;
+mod planar_observability;
 mod reaching;
 mod shape_fits;
 mod streaming;
@@ -60,6 +61,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("no_force", || in_words(no_force::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_estimates", || in_words(planar_estimates::main())),
+    ("planar_observability", || in_words(planar_observability::main())),
     ("reaching", || in_words(reaching::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),

@@ -161,11 +161,22 @@ fn fit(args: &PlanarArgs, log: &PlanarLog) -> Result<Fitted, CliError> {
     }
     let mut warnings = Vec::new();
     if made.status != recon::observer::Status::Converged {
-        warnings.push(format!("not to be relied on: {:?}, least known: {}", made.status, made.direction));
+        let why = match made.status {
+            recon::observer::Status::Inconsistent => {
+                "noise does not explain what is left: it is stated too small, or something else is wrong"
+            }
+            _ => "the readings do not tell all of it",
+        };
+        let (status, order) = (made.status, made.cosines.len() - 1);
+        let direction = &made.direction;
+        warnings.push(format!(
+            "not to be relied on with {order} harmonics ({status:?}): {why}; least known: {direction}"
+        ));
     }
     let figures = json!({
         "method": "shape fitted to contacts and palm angles, no forces",
         "status": format!("{:?}", made.status),
+        "harmonics": made.cosines.len() - 1,
         "residual": made.residual,
         "gyration_squared_m2": made.gyration_squared.0,
         "gyration_squared_deviation_m2": made.gyration_squared.1,
