@@ -19,6 +19,8 @@ mod modes;
 mod noisy_planes;
 mod planar_contacts;
 mod planar_motion;
+mod planar_motion_bounds;
+mod planar_motion_words;
 mod plane;
 mod read;
 mod reconstruct;

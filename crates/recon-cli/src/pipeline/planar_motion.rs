@@ -1,16 +1,24 @@
 //! Motion, mass and shape of a body in the plane from contacts of any palms.
 
 use super::any_palms::{FLOOR, as_stated};
+use super::planar_motion_bounds::motion_bounds;
+use super::planar_motion_words::{NOTE, evidence, verdict};
+use super::plane::PlanarBounds;
+use super::reconstruct::CONFIDENCE;
 use crate::error::CliError;
 use recon::object_dynamics::planar::{BodyState, ContactLog, PlanarMass, PlanarTruth};
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
 use recon::observer::{ContactNoiseLevel, Reliability};
-use recon_io::{FigureCurve, FigurePanel, PlanarKnown, Sensors, brief, brief_to};
+use recon_io::{
+    FigureCurve, FigurePanel, PlanarKnown, PlaneEstimateData, Sensors, brief, brief_to,
+    write_plane_estimate_report,
+};
 use serde_json::{Value, json};
+use std::error::Error;
 use std::io::{self, Write};
 
 /// Share of the samples whose motion must be relied on for a result without reservations.
-const ENOUGH: f64 = 0.5;
+pub(super) const ENOUGH: f64 = 0.5;
 
 /// A log in the plane and what was estimated from it.
 pub(crate) struct PlanarMotion {
@@ -18,6 +26,10 @@ pub(crate) struct PlanarMotion {
     noise: ContactNoiseLevel,
     estimate: PlaneEstimate,
     known_body: bool,
+    /// Bounds on the outline, where there are any.
+    bounds: Option<PlanarBounds>,
+    /// What is to be said of them.
+    of_bounds: Vec<String>,
 }
 
 /// Estimates the motion; truth in the log is only compared with.
@@ -32,7 +44,33 @@ pub(crate) fn planar_motion(log: ContactLog, known: &PlanarKnown) -> Result<Plan
         suspects: true,
     };
     let estimate = estimate_plane(&log, &options)?;
-    Ok(PlanarMotion { log, noise, estimate, known_body: known.mass.is_some() })
+    let (bounds, of_bounds) = bounded(&log, &estimate, noise.contact);
+    Ok(PlanarMotion { log, noise, estimate, known_body: known.mass.is_some(), bounds, of_bounds })
+}
+
+/// Bounds on the outline, and what is to be said of them.
+fn bounded(
+    log: &ContactLog,
+    estimate: &PlaneEstimate,
+    contact_noise: f64,
+) -> (Option<PlanarBounds>, Vec<String>) {
+    if !estimate.reliability.is_reliable() {
+        let why = "There are no bounds on the outline: the motion is not to be relied on.".to_owned();
+        return (None, vec![why]);
+    }
+    match motion_bounds(log, estimate, contact_noise, CONFIDENCE) {
+        Ok(Some(bounds)) => {
+            let warnings = bounds.warnings.clone();
+            (Some(bounds), warnings)
+        }
+        Ok(None) => {
+            (None, vec!["There are no bounds on the outline: no sample's motion is relied on.".to_owned()])
+        }
+        Err(error) => {
+            let why = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+            (None, vec![format!("The contacts give no bounds on the outline ({why}).")])
+        }
+    }
 }
 
 /// As it is stated, and what is not from the roughness of the readings.
@@ -82,7 +120,30 @@ impl PlanarMotion {
                 self.estimate.relied_on.len()
             ));
         }
+        all.extend(self.of_bounds.iter().cloned());
         all
+    }
+
+    /// The page of the motion, under a title.
+    pub(crate) fn write_report(&self, title: &str, to: &mut dyn Write) -> io::Result<()> {
+        let estimate = &self.estimate;
+        let page = PlaneEstimateData {
+            title: title.to_owned(),
+            verdict: verdict(estimate, self.share(), self.known_body),
+            note: NOTE.to_owned(),
+            log: &self.log,
+            estimate,
+            areas: self.bounds.as_ref().map(|bounds| bounds.areas),
+            panels: self.panels(),
+            evidence: evidence(estimate, &self.noise, self.share(), self.known_body),
+            warnings: self.warnings(),
+        };
+        write_plane_estimate_report(&page, to)
+    }
+
+    /// Bounds on the outline, where there are any.
+    pub(crate) fn bounds(&self) -> Option<&PlanarBounds> {
+        self.bounds.as_ref()
     }
 
     /// Numbers for summary.json.
@@ -132,6 +193,11 @@ impl PlanarMotion {
             "suspects": suspects.collect::<Vec<_>>(),
             "warnings": self.warnings(),
         });
+        if let Some(bounds) = &self.bounds {
+            figures["bounds"] = bounds.figures();
+            figures["bounds_about"] = bounds.about.clone();
+            figures["bounds_frame"] = "axes of the world at the first sample, from the centre of mass".into();
+        }
         if !self.known_body {
             figures["mass_deviation_kg"] = (estimate.mass.0 * estimate.mass.1).into();
             figures["inertia_deviation_kg_m2"] = estimate.inertia.1.into();
@@ -169,6 +235,11 @@ impl PlanarMotion {
         if let Some(last) = estimate.deviations.last() {
             let place = last.p_WCm.max_element();
             line("known at the end to", format!("{} m, {} rad", brief(place), brief(last.phi0)));
+        }
+        if let Some(bounds) = &self.bounds {
+            let [lower, upper] = bounds.areas.map(brief);
+            let percent = brief(100.0 * CONFIDENCE);
+            line("outline", format!("between {lower} and {upper} m^2 at {percent} %"));
         }
         text
     }
@@ -303,6 +374,7 @@ impl PlanarMotion {
             });
             panels.push(panel("Errors", "m, rad", curves.collect()));
         }
+        panels.extend(self.bounds.as_ref().map(PlanarBounds::panel));
         panels
     }
 }
