@@ -75,6 +75,16 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "motion in the plane from no guess: random bodies, noise, wrong constants",
     ),
     (
+        "planar_estimates_friction",
+        "planar-estimates-friction.md",
+        "motion in the plane from palms that rub: random bodies, coefficients, noise",
+    ),
+    (
+        "planar_observability",
+        "planar-observability.md",
+        "the paper's planar system by Lie derivatives: rank and condition along S1 to S4",
+    ),
+    (
         "planar_contacts",
         "planar-contacts.md",
         "planar bodies on any palms: what a run keeps to, what it refuses",

@@ -24,7 +24,9 @@ mod mode_bank;
 mod no_force;
 mod planar_contacts;
 mod planar_estimates;
+mod planar_estimates_friction;
 mod planar_observability;
+mod planar_tally;
 mod reaching;
 mod shape_fits;
 mod streaming;
@@ -61,6 +63,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("no_force", || in_words(no_force::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_estimates", || in_words(planar_estimates::main())),
+    ("planar_estimates_friction", || in_words(planar_estimates_friction::main())),
     ("planar_observability", || in_words(planar_observability::main())),
     ("reaching", || in_words(reaching::main())),
     ("shape_fits", || in_words(shape_fits::main())),
