@@ -53,7 +53,7 @@ pub use plausibility::{Implausibility, implausibilities};
 pub use report::{
     Bound, Bounds, EstimateData, Evidence, EvidenceValue, ExplorationPage, Level, ModeSpan, MotionState,
     PalmContact, PalmTrack, PlaneEstimateData, ReportData, ReportError, TouchRow, TrueShape, Verdict,
-    estimated_mode_spans, mode_spans, mode_times, planar_mode_spans, write_contact_report,
+    doubtful_spans, estimated_mode_spans, mode_spans, mode_times, planar_mode_spans, write_contact_report,
     write_estimate_report, write_exploration_report, write_planar_contact_report,
     write_plane_estimate_report, write_report,
 };

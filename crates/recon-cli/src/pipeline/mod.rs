@@ -20,6 +20,8 @@ mod noisy_planes;
 mod planar_contacts;
 mod planar_motion;
 mod planar_motion_bounds;
+mod planar_motion_panels;
+mod planar_motion_tables;
 mod planar_motion_words;
 mod plane;
 mod read;

@@ -10,7 +10,7 @@ mod page;
 mod tests;
 
 pub use contacts::{
-    EstimateData, ModeSpan, PlaneEstimateData, estimated_mode_spans, mode_spans, mode_times,
+    EstimateData, ModeSpan, PlaneEstimateData, doubtful_spans, estimated_mode_spans, mode_spans, mode_times,
     planar_mode_spans, write_contact_report, write_estimate_report, write_planar_contact_report,
     write_plane_estimate_report,
 };

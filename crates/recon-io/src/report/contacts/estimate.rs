@@ -2,7 +2,7 @@
 
 use super::super::encode::thin;
 use super::super::{Bounds, Evidence, MotionState, PalmContact, Verdict};
-use super::estimate_page::doubtful;
+use super::estimate_page::doubtful_spans;
 use super::moment::Shown;
 use super::picture::{Line, Picture};
 use super::space::{ShownPalm, palm};
@@ -148,7 +148,7 @@ impl EstimateData {
             title: title.to_owned(),
             axes: ["t in s".to_owned(), unit.to_owned()],
             curves,
-            shaded: doubtful(self.log.times(), &self.estimate.relied_on),
+            shaded: doubtful_spans(self.log.times(), &self.estimate.relied_on),
             ..FigurePanel::default()
         };
         vec![

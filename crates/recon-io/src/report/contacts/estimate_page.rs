@@ -99,7 +99,7 @@ impl EstimatePage<'_> {
 
     pub(super) fn write(&self, to: impl Write) -> io::Result<()> {
         let marks: Vec<f64> = self.pictures.iter().map(|picture| picture.t).collect();
-        let doubtful = doubtful(self.times, self.relied_on);
+        let doubtful = doubtful_spans(self.times, self.relied_on);
         let mut curves = Vec::new();
         write_figures(self.panels, &mut curves)?;
         let dashed = if self.has_truth { " Dashed: the true motion, from the log." } else { "" };
@@ -137,7 +137,8 @@ impl EstimatePage<'_> {
 }
 
 /// Stretches of time whose motion is not relied on, s: each sample stands for half the time to its neighbours.
-pub(super) fn doubtful(times: &[f64], relied_on: &[bool]) -> Vec<[f64; 2]> {
+#[must_use]
+pub fn doubtful_spans(times: &[f64], relied_on: &[bool]) -> Vec<[f64; 2]> {
     let middle = |a: usize, b: usize| 0.5 * (times[a] + times[b]);
     let mut found: Vec<[f64; 2]> = Vec::new();
     for k in (0..times.len()).filter(|k| !relied_on[*k]) {
