@@ -152,4 +152,23 @@ mod tests {
             assert!((0.0..step * step).contains(&(bound.area() - area)), "{area} {}", bound.area());
         }
     }
+
+    #[test]
+    fn a_disc_whose_radius_is_both_limits_is_its_own_bounds() {
+        for (radius, count, offset) in [(1.0, 7, 0.0), (0.037, 1000, 1e3), (123.4, 5000, 1e3)] {
+            let contact = |k: i32| {
+                let normal = Direction::from_angle(f64::from(k) * 2.4);
+                ContactSample { point: normal.get() * radius + DVec2::X * offset, normal }
+            };
+            let contacts: Vec<ContactSample> = (0..count).map(contact).collect();
+            let bounds =
+                CurvatureBounds::from_contacts(&contacts, RadiusBounds { min: radius, max: radius }).unwrap();
+            let area = std::f64::consts::PI * radius * radius;
+            // Points are rounded to a unit of their largest coordinate.
+            let rounding = 8.0 * f64::EPSILON * (offset + radius) * radius;
+            for found in [bounds.lower().area(), bounds.upper().area()] {
+                assert!((found - area).abs() <= rounding, "{radius}: {found} {area}");
+            }
+        }
+    }
 }
