@@ -9,6 +9,7 @@ use crate::error::CliError;
 use recon::object_dynamics::planar::{ContactLog, PlanarMass, PlanarTruth};
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
 use recon::observer::{ContactNoiseLevel, Reliability};
+use recon::shape_bounds::planar::NoiseError;
 use recon_io::{PlanarKnown, PlaneEstimateData, Sensors, brief, brief_to, write_plane_estimate_report};
 use serde_json::{Value, json};
 use std::error::Error;
@@ -62,6 +63,10 @@ fn bounded(
         }
         Ok(None) => {
             (None, vec!["There are no bounds on the outline: no sample's motion is relied on.".to_owned()])
+        }
+        Err(CliError::PlanarNoisyBounds(NoiseError::NoUpperBound { .. })) => {
+            let why = "There are no bounds on the outline: the contacts leave it open on some side, or the motion is known too badly.";
+            (None, vec![why.to_owned()])
         }
         Err(error) => {
             let why = error.source().map_or_else(|| error.to_string(), ToString::to_string);
