@@ -4,6 +4,7 @@
 
 pub mod belt;
 pub mod contact_modes;
+pub mod planar_scenes;
 
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{

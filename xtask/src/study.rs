@@ -21,6 +21,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "bounds-noise-wrong.md",
         "bounds of contacts whose noise is not as stated: how often they hold, what is said about it",
     ),
+    (
+        "bounds_planar_noise",
+        "bounds-planar-noise.md",
+        "right contacts in the plane under noise, in any order: bounds, and what is called impossible",
+    ),
     ("bounds_tosses", "bounds-tosses.md", "bounds from poses of bodies that MuJoCo tosses onto a table"),
     ("cold_start", "cold-start.md", "three palms: random scenes from no guess"),
     (
@@ -73,6 +78,16 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "planar_estimates",
         "planar-estimates.md",
         "motion in the plane from no guess: random bodies, noise, wrong constants",
+    ),
+    (
+        "planar_estimates_friction",
+        "planar-estimates-friction.md",
+        "motion in the plane from palms that rub: random bodies, coefficients, noise",
+    ),
+    (
+        "planar_observability",
+        "planar-observability.md",
+        "the paper's planar system by Lie derivatives: rank and condition along S1 to S4",
     ),
     (
         "planar_contacts",

@@ -79,7 +79,7 @@ fn timing(csv: &mut String) -> Result<(), Failure> {
                 start.elapsed().as_secs_f64() * 1e6 / n as f64
             )?;
         }
-        if n <= 1_000 {
+        if n <= 100_000 {
             let radii = RadiusBounds { min: 0.5, max: 4.0 };
             let discs = fastest(|| Ok(CurvatureBounds::from_contacts(&samples, radii)?))?;
             writeln!(csv, "discs ms,{n},{discs:.3}")?;

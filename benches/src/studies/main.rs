@@ -9,6 +9,7 @@ mod bounds_incremental;
 mod bounds_noise;
 mod bounds_noise_wrong;
 mod bounds_planar;
+mod bounds_planar_noise;
 mod bounds_timing;
 mod bounds_tosses;
 mod chart;
@@ -23,6 +24,9 @@ mod mode_bank;
 mod no_force;
 mod planar_contacts;
 mod planar_estimates;
+mod planar_estimates_friction;
+mod planar_observability;
+mod planar_tally;
 mod reaching;
 mod shape_fits;
 mod streaming;
@@ -44,6 +48,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("bounds_noise", || in_words(bounds_noise::main())),
     ("bounds_noise_wrong", || in_words(bounds_noise_wrong::main())),
     ("bounds_planar", || in_words(bounds_planar::main())),
+    ("bounds_planar_noise", || in_words(bounds_planar_noise::main())),
     ("bounds_timing", || in_words(bounds_timing::main())),
     ("bounds_tosses", || in_words(bounds_tosses::main())),
     ("cold_start", || in_words(cold_start::main())),
@@ -59,6 +64,8 @@ const STUDIES: &[(&str, Run)] = &[
     ("no_force", || in_words(no_force::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_estimates", || in_words(planar_estimates::main())),
+    ("planar_estimates_friction", || in_words(planar_estimates_friction::main())),
+    ("planar_observability", || in_words(planar_observability::main())),
     ("reaching", || in_words(reaching::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),

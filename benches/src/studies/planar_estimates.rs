@@ -3,7 +3,7 @@
 //!
 //! `cargo xtask study planar_estimates [BODIES]` writes docs/planar-estimates.md.
 
-use cpu_time::ThreadTime;
+use crate::planar_tally::{SILENT, Tally};
 use recon::contact_kinematics::planar::{FourierBody, RadiusFunction};
 use recon::object_dynamics::planar::*;
 use recon::observer::ContactNoiseLevel;
@@ -19,8 +19,6 @@ const SEED: u64 = 91_000;
 const GRAVITY: f64 = 9.81;
 /// Length of a log, natural times.
 const LASTS: f64 = 20.0;
-/// Deviations beyond which an error that nothing warned of is silent.
-const SILENT: f64 = 5.0;
 /// Floor of contact conditions, natural speeds.
 const FLOOR: f64 = 1e-6;
 
@@ -63,20 +61,6 @@ const FAULTS: [(Wrong, &str); 11] = [
     (Wrong::Outliers, "1 % outliers of contacts"),
 ];
 
-/// What came of some runs.
-#[derive(Default)]
-struct Tally {
-    runs: usize,
-    relied: usize,
-    silent: usize,
-    refused: usize,
-    squares: f64,
-    numbers: f64,
-    places: Vec<f64>,
-    microseconds: f64,
-    samples: f64,
-}
-
 pub(crate) fn main() -> Result<(), Failure> {
     let bodies: usize = crate::words().next().map_or(Ok(40), |a| a.parse())?;
     println!(
@@ -104,7 +88,7 @@ pub(crate) fn main() -> Result<(), Failure> {
             for known in [true, false] {
                 let mut tally = Tally::default();
                 for (i, scene) in scenes.iter().enumerate() {
-                    tally.run(scene, rate, noise, known, Wrong::Nothing, i as u64)?;
+                    scene.run(&mut tally, rate, noise, known, Wrong::Nothing, i as u64)?;
                 }
                 println!(
                     "| {rate} | {noise} | {} | {} |",
@@ -122,7 +106,7 @@ pub(crate) fn main() -> Result<(), Failure> {
         for rate in [100.0, 1000.0] {
             let mut tally = Tally::default();
             for (i, scene) in scenes.iter().enumerate() {
-                tally.run(scene, rate, 2e-3, true, wrong, 1000 + i as u64)?;
+                scene.run(&mut tally, rate, 2e-3, true, wrong, 1000 + i as u64)?;
             }
             println!("| {name} | {rate} | {} |", tally.told());
         }
@@ -252,29 +236,29 @@ impl Scene {
     }
 }
 
-impl Tally {
+impl Scene {
     fn run(
-        &mut self,
-        scene: &Scene,
+        &self,
+        tally: &mut Tally,
         rate: f64,
         noise: f64,
         known: bool,
         wrong: Wrong,
         seed: u64,
     ) -> Result<(), Failure> {
-        let level = PlanarNoise { contact: noise * scene.length, force: 0.01 * scene.weight(), torque: 0.0 };
-        let mut log = level.add_to(&scene.broken(rate, wrong)?, seed);
+        let level = PlanarNoise { contact: noise * self.length, force: 0.01 * self.weight(), torque: 0.0 };
+        let mut log = level.add_to(&self.broken(rate, wrong)?, seed);
         if matches!(wrong, Wrong::Outliers) {
             let mut random = Random::new(seed);
             let mut samples = log.samples().to_vec();
             for contact in samples.iter_mut().flat_map(|sample| &mut sample.contacts) {
                 if random.within(0.0, 1.0) < 0.01 {
-                    *contact = contact.map(|s| s + scene.length * random.within(-0.2, 0.2));
+                    *contact = contact.map(|s| s + self.length * random.within(-0.2, 0.2));
                 }
             }
             log = PlanarLog::new(samples, log.truth().map(<[_]>::to_vec))?;
         }
-        let floor = FLOOR * scene.length / scene.time;
+        let floor = FLOOR * self.length / self.time;
         let options = PlaneOptions {
             noise: ContactNoiseLevel {
                 contact: level.contact,
@@ -285,56 +269,11 @@ impl Tally {
             },
             gravity: GRAVITY,
             friction: vec![Some(0.0); 2],
-            body: known.then(|| scene.known(wrong)).transpose()?,
+            body: known.then(|| self.known(wrong)).transpose()?,
             size: None,
             suspects: true,
         };
-        let contacts = log.contact_log([0.0; 2]).ok_or("no forces")?;
-        let clock = ThreadTime::now();
-        let made = estimate_plane(&contacts, &options);
-        self.microseconds += 1e6 * clock.elapsed().as_secs_f64();
-        self.samples += log.samples().len() as f64;
-        self.runs += 1;
-        match made {
-            Ok(made) if made.reliability.is_reliable() => self.add(&made, &log, scene.length),
-            Ok(_) => {}
-            Err(_) => self.refused += 1,
-        }
+        tally.run(&log.contact_log([0.0; 2]).ok_or("no forces")?, &options, self.length);
         Ok(())
-    }
-
-    fn add(&mut self, made: &PlaneEstimate, log: &PlanarLog, length: f64) {
-        let (mut worst, mut place) = (0.0_f64, 0.0_f64);
-        let truth = log.truth().unwrap_or_default().iter().enumerate();
-        for (k, truth) in truth.filter(|(k, _)| made.relied_on[*k]) {
-            let (state, of) = (&made.states[k], &made.deviations[k]);
-            let p = state.p_WCm - truth.p_WCm;
-            let (p_in, v_in) = (p / of.p_WCm, (state.v_WCm - truth.v_WCm) / of.v_WCm);
-            let spin = (state.omega0 - truth.omega0) / of.omega0;
-            for number in [p_in.x, p_in.y, v_in.x, v_in.y, spin] {
-                worst = worst.max(number.abs());
-                self.squares += number * number;
-                self.numbers += 1.0;
-            }
-            place = place.max(p.length() / length);
-        }
-        self.relied += 1;
-        self.silent += usize::from(worst > SILENT);
-        self.places.push(place);
-    }
-
-    fn told(&mut self) -> String {
-        self.places.sort_by(f64::total_cmp);
-        let place = self.places.get(self.places.len() / 2).map_or("-".to_owned(), |p| format!("{p:.1e}"));
-        let mean =
-            if self.numbers > 0.0 { format!("{:.2}", self.squares / self.numbers) } else { "-".to_owned() };
-        let refused = if self.refused > 0 { format!(" ({} errors)", self.refused) } else { String::new() };
-        format!(
-            "{} | {}{refused} | {} | {mean} | {place} | {:.0}",
-            self.runs,
-            self.relied,
-            self.silent,
-            self.microseconds / self.samples.max(1.0)
-        )
     }
 }

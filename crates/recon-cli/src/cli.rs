@@ -465,7 +465,9 @@ angles alone. Without a log the scene of the paper's Fig. 3 is simulated first. 
 go through `recon reconstruct --scene` with a scene that says `plane = true`.
 
 The output folder appears as a whole or not at all: motion.csv, contact_points.csv, summary.json and figures.svg (shape,
-orientation, centre of mass, radius functions and, where the log has the truth, errors: the paper's Figs. 2b, 2c, 3a, 3b).
+orientation, centre of mass, radius functions and, where the log has the truth, errors: the paper's Figs. 2b, 2c, 3a, 3b);
+with forces the page report.html and, where the motion is relied on and closes the outline, lower_bound.csv and
+upper_bound.csv, which hold at 95 %.
 
 Examples:
   recon planar

@@ -19,7 +19,7 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
     let duration = data.log.duration();
     let palm = |i: usize| {
         let [off, slides, sticks] =
-            mode_times(&estimated_mode_spans(times, found, i)).map(|seconds| seconds / duration);
+            mode_times(&estimated_mode_spans(times, &found.modes, i)).map(|seconds| seconds / duration);
         json!({ "palm": i + 1, "off": off, "slides": slides, "sticks": sticks })
     };
     let departures: Option<Vec<Departure>> = data.truth.as_ref().filter(|_| relied > 0).map(|truth| {

@@ -76,6 +76,46 @@ fn error_falls_with_the_noise() {
     assert!(fine.radius_rms < 0.03 * coarse.radius_rms, "{} {}", fine.radius_rms, coarse.radius_rms);
 }
 
+/// An ellipse has harmonics without end: as many are taken as noise does not hide.
+#[test]
+fn an_ellipse_finds_its_order() {
+    use glam::DVec2;
+    use recon::contact_kinematics::planar::Ellipse;
+    let shape = Ellipse::new(0.055, 0.035, DVec2::new(0.003, 0.002)).unwrap();
+    let mass = PlanarMass::from_gyration(0.2, 0.0009).unwrap();
+    let object = PlanarObject { shape, mass, gravity: 9.81 };
+    let motion = ConstantRates { angles: [0.75, 1.6], rates: [0.2, 0.0] };
+    let start = PlanarStart { phi0: 0.3, omega0: 7.0 };
+    for (seed, order) in [(1, 5), (2, 5), (3, 2)] {
+        let run = simulate_prescribed(&object, &motion, start, &times(250.0, 1.5), 1e-13).unwrap();
+        let noise = PlanarNoise { contact: 1e-4, ..PlanarNoise::default() };
+        let log = noise.add_to(&run.log().unwrap(), seed);
+        let options = ShapeFitOptions { order, contact_deviation: 1e-4, gravity: 9.81 };
+        let fit = fit_shape(&log, &options).unwrap();
+        let (value, deviation) = fit.gyration_squared;
+        let (off, found) = ((value - 0.0009) / deviation, fit.cosines.len() - 1);
+        println!(
+            "ellipse, {} samples, seed {seed}, from order {order}: {found}, residual {:.3}, excess {:.1}, gyration {off:.1} deviations, {:?}",
+            run.samples.len(),
+            fit.residual,
+            fit.excess,
+            fit.status
+        );
+        assert!(fit.status == Status::Converged && fit.excess <= ShapeFit::UNEXPLAINED, "{}", fit.excess);
+        assert!(found > order && off.abs() < 4.0, "{found} {off}");
+    }
+}
+
+/// Noise that is stated too small is not explained by any shape.
+#[test]
+fn what_noise_does_not_explain_is_not_relied_on() {
+    let (object, motion, start) = scene("S2_rotating_pair");
+    let run = simulate_prescribed(&object, &motion, start, &times(100.0, 1.0), 1e-13).unwrap();
+    let log = PlanarNoise { contact: 1.5e-4, ..PlanarNoise::default() }.add_to(&run.log().unwrap(), 1);
+    let options = ShapeFitOptions { order: 4, contact_deviation: 1e-4, gravity: object.gravity };
+    assert_eq!(fit_shape(&log, &options).unwrap().status, Status::Inconsistent);
+}
+
 /// A centred disc shows neither its turn nor its radius of gyration: the prior stays, and the report says so.
 #[test]
 fn a_disc_is_reported() {

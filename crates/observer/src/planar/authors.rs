@@ -5,6 +5,7 @@ use contact_kinematics::planar::{PairContact, PalmPair, PalmPairState};
 use glam::DVec2;
 use nalgebra::SVector;
 use object_dynamics::planar::PlanarMass;
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The paper's state `q = (r_1, r_2, omega0, s_1, s_2, phi_1, phi_2)`, section 3.
 pub type AuthorsState = SVector<f64, 7>;
@@ -25,15 +26,22 @@ pub struct AuthorsFields {
     pub palm_rates: [f64; 2],
 }
 
-/// What all fields need at one state.
-struct Terms {
-    pair: PalmPair,
-    d: [f64; 2],
-    z: [f64; 2],
-    s: [f64; 2],
-    p_rates: [f64; 2],
-    r_rates: [f64; 2],
-    r: [f64; 2],
+/// What the fields are computed in: numbers, and numbers with derivatives.
+pub(super) trait Scalar:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    fn constant(value: f64) -> Self;
+    fn sin_cos(self) -> (Self, Self);
+}
+
+impl Scalar for f64 {
+    fn constant(value: f64) -> Self {
+        value
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        Self::sin_cos(self)
+    }
 }
 
 impl AuthorsFields {
@@ -42,21 +50,9 @@ impl AuthorsFields {
     /// # Errors
     /// [`PlanarEstimateError::Singular`] names the divisor that is zero, [`PlanarEstimateError::Palms`] a closed wedge.
     pub fn drift(&self, q: &AuthorsState) -> Result<AuthorsState, PlanarEstimateError> {
-        let Terms { pair, z, p_rates, r_rates, r, .. } = self.terms(q)?;
-        let [w1, w2] = self.palm_rates;
-        let [u1, u2] = pair.along();
-        // Second derivatives of r_i without contact forces.
-        let free1 = -self.gravity * u1.x - 2.0 * w1 * p_rates[0] + w1 * w1 * r[0];
-        let free2 = self.gravity * u2.x + 2.0 * w2 * p_rates[1] + w2 * w2 * r[1];
-        Ok(AuthorsState::from([
-            r_rates[0],
-            r_rates[1],
-            0.0,
-            p_rates[0] - free1 / z[0],
-            p_rates[1] + free2 / z[1],
-            w1,
-            w2 - w1,
-        ]))
+        self.check(q)?;
+        let [drift, ..] = self.at(&(*q).into());
+        Ok(drift.into())
     }
 
     /// Input fields `g_1`, `g_2`.
@@ -64,19 +60,35 @@ impl AuthorsFields {
     /// # Errors
     /// As [`Self::drift`].
     pub fn inputs(&self, q: &AuthorsState) -> Result<[AuthorsState; 2], PlanarEstimateError> {
-        let Terms { pair, d, z, s, .. } = self.terms(q)?;
-        let (mass, inertia) = (self.mass.mass(), self.mass.inertia());
-        let c = pair.cos();
-        let (b1, b2) = (-d[0] / (inertia * s[0]), d[1] / (inertia * s[1]));
-        let mut g1 = AuthorsState::zeros();
-        g1[2] = b1;
-        g1[3] = -(1.0 / (mass * s[0]) - d[0] * b1) / z[0];
-        g1[4] = (-c / (mass * s[0]) - d[1] * b1) / z[1];
-        let mut g2 = AuthorsState::zeros();
-        g2[2] = b2;
-        g2[3] = -(c / (mass * s[1]) - d[0] * b2) / z[0];
-        g2[4] = (-1.0 / (mass * s[1]) - d[1] * b2) / z[1];
-        Ok([g1, g2])
+        self.check(q)?;
+        let [_, first, second] = self.at(&(*q).into());
+        Ok([first.into(), second.into()])
+    }
+
+    /// `f`, `g_1` and `g_2` at a state that is not singular.
+    pub(super) fn at<S: Scalar>(&self, q: &[S; 7]) -> [[S; 7]; 3] {
+        let [r1, r2, omega0, s1, s2, phi1, phi2] = *q;
+        let c = S::constant;
+        let [w1, w2] = self.palm_rates.map(c);
+        let (z1, z2) = (omega0 - w1, omega0 - w2);
+        let ((sin, cos), (cos1, cos2)) = (phi2.sin_cos(), (phi1.sin_cos().1, (phi1 + phi2).sin_cos().1));
+        let (p1, p2) = ((r1 * cos + r2) / sin, (r1 + r2 * cos) / sin);
+        let (d1, d2) = (p1 - s1, s2 - p2);
+        let (r1_rate, r2_rate, opening) = (d1 * z1, d2 * z2, w2 - w1);
+        let p1_rate = (r1_rate * cos + r2_rate - opening * p2) / sin;
+        let p2_rate = (r1_rate + r2_rate * cos - opening * p1) / sin;
+        // Second derivatives of r_i without contact forces.
+        let (gravity, two) = (c(self.gravity), c(2.0));
+        let free1 = -gravity * cos1 - two * w1 * p1_rate + w1 * w1 * r1;
+        let free2 = gravity * cos2 + two * w2 * p2_rate + w2 * w2 * r2;
+        let (mass, inertia) = (c(self.mass.mass()), c(self.mass.inertia()));
+        let (b1, b2) = (-d1 / (inertia * s1), d2 / (inertia * s2));
+        let (a1, a2, none) = (c(1.0) / (mass * s1), c(1.0) / (mass * s2), c(0.0));
+        [
+            [r1_rate, r2_rate, none, p1_rate - free1 / z1, p2_rate + free2 / z2, w1, opening],
+            [none, none, b1, -(a1 - d1 * b1) / z1, (-(cos * a1) - d2 * b1) / z2, none, none],
+            [none, none, b2, -(cos * a2 - d1 * b2) / z1, (-a2 - d2 * b2) / z2, none, none],
+        ]
     }
 
     /// `q'` under motor torques (N m, counter-clockwise, of palms without inertia).
@@ -135,25 +147,15 @@ impl AuthorsFields {
         Ok(AuthorsState::from([n1.dot(cm), n2.dot(cm), x[4], p1 - d1, p2 + d2, a1, a2 - a1]))
     }
 
-    fn terms(&self, q: &AuthorsState) -> Result<Terms, PlanarEstimateError> {
-        let pair = pair(q)?;
-        let (r, s) = ([q[0], q[1]], [q[3], q[4]]);
-        for (what, value) in [("s1", s[0]), ("s2", s[1])] {
+    /// Names what the fields would divide by zero.
+    fn check(&self, q: &AuthorsState) -> Result<(), PlanarEstimateError> {
+        pair(q)?;
+        for (what, value) in [("s1", q[3]), ("s2", q[4])] {
             if value == 0.0 || !value.is_finite() {
                 return Err(PlanarEstimateError::Singular { what, value });
             }
         }
-        let z = relative_rates(q[2], self.palm_rates)?;
-        let (sin, c) = (pair.sin(), pair.cos());
-        let p = [(r[0] * c + r[1]) / sin, (r[0] + r[1] * c) / sin];
-        let d = [p[0] - s[0], s[1] - p[1]];
-        let r_rates = [d[0] * z[0], d[1] * z[1]];
-        let opening = self.palm_rates[1] - self.palm_rates[0];
-        let p_rates = [
-            (r_rates[0] * c + r_rates[1] - opening * p[1]) / sin,
-            (r_rates[0] + r_rates[1] * c - opening * p[0]) / sin,
-        ];
-        Ok(Terms { pair, d, z, s, p_rates, r_rates, r })
+        relative_rates(q[2], self.palm_rates).map(|_| ())
     }
 }
 

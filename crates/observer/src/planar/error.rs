@@ -23,6 +23,14 @@ pub enum PlanarEstimateError {
         /// Why.
         source: PalmPairError,
     },
+    /// A chain of vector fields with more members than are kept track of.
+    #[error("a chain of {found} fields: at most {most} are differentiated along")]
+    ChainTooLong {
+        /// Fields given.
+        found: usize,
+        /// Fields allowed.
+        most: usize,
+    },
     /// A formula of the authors' coordinates divides by something that is zero.
     #[error("{what} is {value}; the coordinates are singular there")]
     Singular {

@@ -41,8 +41,9 @@ pub(super) fn describe(data: &EstimateData, figures: &Value) -> String {
         learned: found.inertia_deviations.iter().all(|deviation| *deviation < INERTIA_LEARNED),
     };
     line("next", advice.next().to_owned());
-    let spans: Vec<_> =
-        (0..data.log.palms().len()).map(|palm| estimated_mode_spans(data.log.times(), found, palm)).collect();
+    let spans: Vec<_> = (0..data.log.palms().len())
+        .map(|palm| estimated_mode_spans(data.log.times(), &found.modes, palm))
+        .collect();
     let times = describe_times(&spans);
     let _ = writeln!(text, "{}", times.trim_start_matches('\n'));
     text

@@ -2,7 +2,7 @@ use crate::cli::{PlanarArgs, ReconstructArgs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::interrupt::while_writing;
-use crate::pipeline::{PlanarMotion, hinged_pair, planar_motion};
+use crate::pipeline::{PlanarBounds, PlanarMotion, hinged_pair, planar_motion};
 use crate::progress::Progress;
 use glam::DVec2;
 use recon::contact_kinematics::planar::FourierBody;
@@ -61,7 +61,8 @@ pub(crate) fn run(args: &PlanarArgs, console: &Console) -> Result<Outcome, CliEr
         None => Made::Fit(fit(args, &log)?),
     };
     let simulated = args.log.is_none().then_some(&log);
-    finish(made, target, simulated, (progress, &args.output), console)
+    let title = args.log.as_deref().map_or_else(|| "Fig. 3 of the paper".to_owned(), name);
+    finish(made, target, simulated, (progress, &args.output, &title), console)
 }
 
 /// A log of a scene in the plane: of any palms, or of two hinged ones where the scene has none.
@@ -87,7 +88,13 @@ pub(crate) fn reconstruct(
     };
     progress.step("estimating the motion");
     let made = planar_motion(log, &known)?;
-    finish(Made::Motion(Box::new(made)), target, None, (progress, &args.output), console)
+    let title = name(&args.log);
+    finish(Made::Motion(Box::new(made)), target, None, (progress, &args.output, &title), console)
+}
+
+/// The title of a page.
+fn name(log: &Path) -> String {
+    log.file_name().unwrap_or(log.as_os_str()).to_string_lossy().into_owned()
 }
 
 /// Writes the folder and tells of it.
@@ -95,14 +102,14 @@ fn finish(
     made: Made,
     target: FolderTarget,
     log: Option<&PlanarLog>,
-    (progress, folder): (Progress, &Path),
+    (progress, folder, title): (Progress, &Path, &str),
     console: &Console,
 ) -> Result<Outcome, CliError> {
     let figures = match &made {
         Made::Motion(made) => made.figures(),
         Made::Fit(made) => made.figures.clone(),
     };
-    write(target, log, &made, &figures)?;
+    write(target, log, &made, (title, &figures))?;
     drop(progress);
     let (text, sound) = match &made {
         Made::Motion(made) => (made.describe(), made.is_reliable()),
@@ -161,11 +168,22 @@ fn fit(args: &PlanarArgs, log: &PlanarLog) -> Result<Fitted, CliError> {
     }
     let mut warnings = Vec::new();
     if made.status != recon::observer::Status::Converged {
-        warnings.push(format!("not to be relied on: {:?}, least known: {}", made.status, made.direction));
+        let why = match made.status {
+            recon::observer::Status::Inconsistent => {
+                "noise does not explain what is left: it is stated too small, or something else is wrong"
+            }
+            _ => "the readings do not tell all of it",
+        };
+        let (status, order) = (made.status, made.cosines.len() - 1);
+        let direction = &made.direction;
+        warnings.push(format!(
+            "not to be relied on with {order} harmonics ({status:?}): {why}; least known: {direction}"
+        ));
     }
     let figures = json!({
         "method": "shape fitted to contacts and palm angles, no forces",
         "status": format!("{:?}", made.status),
+        "harmonics": made.cosines.len() - 1,
         "residual": made.residual,
         "gyration_squared_m2": made.gyration_squared.0,
         "gyration_squared_deviation_m2": made.gyration_squared.1,
@@ -182,7 +200,7 @@ fn write(
     target: FolderTarget,
     log: Option<&PlanarLog>,
     made: &Made,
-    figures: &Value,
+    (title, figures): (&str, &Value),
 ) -> Result<(), CliError> {
     while_writing(|| {
         let mut folder = target.begin()?;
@@ -192,6 +210,10 @@ fn write(
                 folder.write("contact_points.csv", |to| made.write_points(to))?;
                 folder.write("radius_functions.csv", |to| made.write_radii(to))?;
                 folder.write("figures.svg", |to| write_figures(&made.panels(), to))?;
+                folder.write("report.html", |to| made.write_report(title, to))?;
+                for (name, outline) in made.bounds().into_iter().flat_map(PlanarBounds::drawn_outlines) {
+                    folder.write(name, |to| PlanarBounds::write_outline(outline, to))?;
+                }
             }
             Made::Fit(made) => {
                 folder.write("motion.csv", |to| motion(made, to))?;

@@ -3,25 +3,17 @@
 use crate::error::CliError;
 use crate::interrupt::while_writing;
 use crate::pipeline::{PlanarBounds, fit_words};
-use glam::DVec2;
 use recon_io::{FigureCurve, FigurePanel, FolderTarget, brief, brief_to, write_figures};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::io::{self, Write};
+use std::io::Write;
 
 pub(super) fn figures(made: &PlanarBounds, count: usize) -> Value {
-    let [lower, upper] = made.areas;
     json!({
         "recon": env!("CARGO_PKG_VERSION"),
         "input": format!("{count} contacts in the plane"),
         "about": made.about,
-        "bounds": {
-            "lower_area_m2": lower,
-            "upper_area_m2": upper,
-            "lower_over_upper": lower / upper,
-            "largest_gap_m": made.largest_gap(),
-            "contradiction_m": made.contradiction,
-        },
+        "bounds": made.figures(),
         "warnings": made.warnings,
     })
 }
@@ -56,10 +48,10 @@ pub(super) fn write_folder(
         let mut folder = target.begin()?;
         folder.write("bounds.svg", |to| write_figures(&panels(made), to))?;
         for (name, outline) in made.drawn_outlines() {
-            folder.write(name, |to| corners(outline, to))?;
+            folder.write(name, |to| PlanarBounds::write_outline(outline, to))?;
         }
         if !made.fitted.is_empty() {
-            folder.write("fitted_shape.csv", |to| corners(&made.fitted, to))?;
+            folder.write("fitted_shape.csv", |to| PlanarBounds::write_outline(&made.fitted, to))?;
         }
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()?;
@@ -67,44 +59,15 @@ pub(super) fn write_folder(
     })
 }
 
-fn corners(outline: &[DVec2], to: &mut dyn Write) -> io::Result<()> {
-    writeln!(to, "x,y")?;
-    outline.iter().try_for_each(|p| writeln!(to, "{:?},{:?}", p.x, p.y))
-}
-
 /// The bounds with the contacts between them, and how far they are apart in each direction.
 fn panels(made: &PlanarBounds) -> Vec<FigurePanel> {
-    let closed = |name: &str, outline: &[DVec2]| FigureCurve {
-        name: name.to_owned(),
-        points: outline.iter().chain(outline.first()).map(|p| p.to_array()).collect(),
-        ..FigureCurve::default()
-    };
-    let [lower, upper] = &made.outlines;
-    let mut curves = vec![closed("lower bound", lower), closed("upper bound", upper)];
-    curves.push(FigureCurve {
-        name: "contacts".to_owned(),
-        points: made.points.iter().map(DVec2::to_array).collect(),
-        dots: true,
-        ..FigureCurve::default()
-    });
-    if !made.fitted.is_empty() {
-        curves.push(closed("fit", &made.fitted));
-    }
     let gap =
         FigureCurve { name: "upper - lower".to_owned(), points: made.gaps.clone(), ..FigureCurve::default() };
-    vec![
-        FigurePanel {
-            title: "Bounds".to_owned(),
-            axes: ["x in m".to_owned(), "y in m".to_owned()],
-            equal: true,
-            curves: curves.into_iter().filter(|c| !c.points.is_empty()).collect(),
-            ..FigurePanel::default()
-        },
-        FigurePanel {
-            title: "Gap between the bounds".to_owned(),
-            axes: ["direction of the normal in rad".to_owned(), "gap in m".to_owned()],
-            curves: vec![gap],
-            ..FigurePanel::default()
-        },
-    ]
+    let apart = FigurePanel {
+        title: "Gap between the bounds".to_owned(),
+        axes: ["direction of the normal in rad".to_owned(), "gap in m".to_owned()],
+        curves: vec![gap],
+        ..FigurePanel::default()
+    };
+    vec![made.panel(), apart]
 }

@@ -3,7 +3,9 @@
 use super::evidence::{of_bounds, samples_together};
 use glam::DVec3;
 use recon::object_dynamics::MassProperties;
-use recon::observer::{ContactEstimate, ContactOptions, Reason, Reliability, Suspect};
+use recon::observer::{
+    ContactEstimate, ContactEvidence, ContactNoiseLevel, ContactOptions, Reason, Reliability, Suspect,
+};
 use recon_io::EvidenceValue::{Number, Text};
 use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Verdict, brief_to};
 
@@ -60,7 +62,7 @@ pub(super) fn relied_on(estimate: &ContactEstimate) -> f64 {
 }
 
 /// A share without the rounding that would make all of nearly all.
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     format!("{} %", brief_to(3, (1000.0 * share).floor() / 10.0))
 }
 
@@ -88,8 +90,8 @@ pub(super) fn evidence(
     checks: &Checks,
 ) -> Vec<Evidence> {
     let mut rows = body(estimate);
-    rows.extend(fit(estimate));
-    rows.extend(told(options));
+    rows.extend(fit(&estimate.evidence, &estimate.reliability, relied_on(estimate)));
+    rows.extend(told(&options.noise));
     rows.extend(suspects(&estimate.suspects));
     if checks.together > 1 {
         rows.push(samples_together(checks.together));
@@ -161,14 +163,12 @@ fn body(estimate: &ContactEstimate) -> Vec<Evidence> {
 }
 
 /// How the fit went.
-fn fit(estimate: &ContactEstimate) -> Vec<Evidence> {
-    let e = &estimate.evidence;
+pub(super) fn fit(e: &ContactEvidence, reliability: &Reliability, share: f64) -> Vec<Evidence> {
     let good_if = |good| if good { Level::Good } else { Level::Bad };
-    let explained = match &estimate.reliability {
+    let explained = match reliability {
         Reliability::Reliable => true,
         Reliability::Unreliable(reasons) => !reasons.iter().any(|r| matches!(r, Reason::Inconsistent { .. })),
     };
-    let share = relied_on(estimate);
     let nodes = "Motions that were solved for: contacts are averaged over the samples between them.";
     let misfit = "About 1 where the stated noise explains what is left; all deviations are widened by its root above that.";
     let count = |n: usize| EvidenceValue::Count(n as u64);
@@ -218,8 +218,7 @@ fn fit(estimate: &ContactEstimate) -> Vec<Evidence> {
 }
 
 /// What the estimator was told of the sensors.
-fn told(options: &ContactOptions) -> Vec<Evidence> {
-    let noise = &options.noise;
+pub(super) fn told(noise: &ContactNoiseLevel) -> Vec<Evidence> {
     let of_impulse = noise.impulse.map(|noise| {
         let [fixed, share] = [noise.fixed, noise.share].map(Number);
         [
@@ -267,7 +266,7 @@ fn told(options: &ContactOptions) -> Vec<Evidence> {
 
 /// What the data say of constants of the sensors, and how well these must be known: those that are farthest off, and those that matter
 /// most.
-fn suspects(all: &[Suspect]) -> Vec<Evidence> {
+pub(super) fn suspects(all: &[Suspect]) -> Vec<Evidence> {
     let sorted = |key: fn(&Suspect) -> f64| {
         let mut sorted: Vec<&Suspect> = all.iter().filter(|suspect| key(suspect).is_finite()).collect();
         sorted.sort_by(|a, b| key(a).total_cmp(&key(b)));
@@ -301,7 +300,7 @@ fn suspects(all: &[Suspect]) -> Vec<Evidence> {
 }
 
 /// A row that speaks neither for nor against the result.
-fn neutral(key: &str, name: &str, value: EvidenceValue, unit: &str, meaning: &str) -> Evidence {
+pub(super) fn neutral(key: &str, name: &str, value: EvidenceValue, unit: &str, meaning: &str) -> Evidence {
     let [key, name, unit, meaning] = [key, name, unit, meaning].map(str::to_owned);
     Evidence { key, name, value, unit, meaning, level: Level::Neutral }
 }

@@ -1,23 +1,33 @@
 //! Motion, mass and shape of a body in the plane from contacts of any palms.
 
 use super::any_palms::{FLOOR, as_stated};
+use super::planar_motion_bounds::motion_bounds;
+use super::planar_motion_words::{NOTE, evidence, verdict};
+use super::plane::PlanarBounds;
+use super::reconstruct::CONFIDENCE;
 use crate::error::CliError;
-use recon::object_dynamics::planar::{BodyState, ContactLog, PlanarMass, PlanarTruth};
+use recon::object_dynamics::planar::{ContactLog, PlanarMass, PlanarTruth};
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
 use recon::observer::{ContactNoiseLevel, Reliability};
-use recon_io::{FigureCurve, FigurePanel, PlanarKnown, Sensors, brief, brief_to};
+use recon::shape_bounds::planar::NoiseError;
+use recon_io::{PlanarKnown, PlaneEstimateData, Sensors, brief, brief_to, write_plane_estimate_report};
 use serde_json::{Value, json};
+use std::error::Error;
 use std::io::{self, Write};
 
 /// Share of the samples whose motion must be relied on for a result without reservations.
-const ENOUGH: f64 = 0.5;
+pub(super) const ENOUGH: f64 = 0.5;
 
 /// A log in the plane and what was estimated from it.
 pub(crate) struct PlanarMotion {
-    log: ContactLog,
+    pub(super) log: ContactLog,
     noise: ContactNoiseLevel,
-    estimate: PlaneEstimate,
+    pub(super) estimate: PlaneEstimate,
     known_body: bool,
+    /// Bounds on the outline, where there are any.
+    pub(super) bounds: Option<PlanarBounds>,
+    /// What is to be said of them.
+    of_bounds: Vec<String>,
 }
 
 /// Estimates the motion; truth in the log is only compared with.
@@ -32,7 +42,37 @@ pub(crate) fn planar_motion(log: ContactLog, known: &PlanarKnown) -> Result<Plan
         suspects: true,
     };
     let estimate = estimate_plane(&log, &options)?;
-    Ok(PlanarMotion { log, noise, estimate, known_body: known.mass.is_some() })
+    let (bounds, of_bounds) = bounded(&log, &estimate, noise.contact);
+    Ok(PlanarMotion { log, noise, estimate, known_body: known.mass.is_some(), bounds, of_bounds })
+}
+
+/// Bounds on the outline, and what is to be said of them.
+fn bounded(
+    log: &ContactLog,
+    estimate: &PlaneEstimate,
+    contact_noise: f64,
+) -> (Option<PlanarBounds>, Vec<String>) {
+    if !estimate.reliability.is_reliable() {
+        let why = "There are no bounds on the outline: the motion is not to be relied on.".to_owned();
+        return (None, vec![why]);
+    }
+    match motion_bounds(log, estimate, contact_noise, CONFIDENCE) {
+        Ok(Some(bounds)) => {
+            let warnings = bounds.warnings.clone();
+            (Some(bounds), warnings)
+        }
+        Ok(None) => {
+            (None, vec!["There are no bounds on the outline: no sample's motion is relied on.".to_owned()])
+        }
+        Err(CliError::PlanarNoisyBounds(NoiseError::NoUpperBound { .. })) => {
+            let why = "There are no bounds on the outline: the contacts leave it open on some side, or the motion is known too badly.";
+            (None, vec![why.to_owned()])
+        }
+        Err(error) => {
+            let why = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+            (None, vec![format!("The contacts give no bounds on the outline ({why}).")])
+        }
+    }
 }
 
 /// As it is stated, and what is not from the roughness of the readings.
@@ -82,7 +122,30 @@ impl PlanarMotion {
                 self.estimate.relied_on.len()
             ));
         }
+        all.extend(self.of_bounds.iter().cloned());
         all
+    }
+
+    /// The page of the motion, under a title.
+    pub(crate) fn write_report(&self, title: &str, to: &mut dyn Write) -> io::Result<()> {
+        let estimate = &self.estimate;
+        let page = PlaneEstimateData {
+            title: title.to_owned(),
+            verdict: verdict(estimate, self.share(), self.known_body),
+            note: NOTE.to_owned(),
+            log: &self.log,
+            estimate,
+            areas: self.bounds.as_ref().map(|bounds| bounds.areas),
+            panels: self.panels(),
+            evidence: evidence(estimate, &self.noise, self.share(), self.known_body),
+            warnings: self.warnings(),
+        };
+        write_plane_estimate_report(&page, to)
+    }
+
+    /// Bounds on the outline, where there are any.
+    pub(crate) fn bounds(&self) -> Option<&PlanarBounds> {
+        self.bounds.as_ref()
     }
 
     /// Numbers for summary.json.
@@ -132,6 +195,11 @@ impl PlanarMotion {
             "suspects": suspects.collect::<Vec<_>>(),
             "warnings": self.warnings(),
         });
+        if let Some(bounds) = &self.bounds {
+            figures["bounds"] = bounds.figures();
+            figures["bounds_about"] = bounds.about.clone();
+            figures["bounds_frame"] = "axes of the world at the first sample, from the centre of mass".into();
+        }
         if !self.known_body {
             figures["mass_deviation_kg"] = (estimate.mass.0 * estimate.mass.1).into();
             figures["inertia_deviation_kg_m2"] = estimate.inertia.1.into();
@@ -170,61 +238,16 @@ impl PlanarMotion {
             let place = last.p_WCm.max_element();
             line("known at the end to", format!("{} m, {} rad", brief(place), brief(last.phi0)));
         }
+        if let Some(bounds) = &self.bounds {
+            let [lower, upper] = bounds.areas.map(brief);
+            let percent = brief(100.0 * CONFIDENCE);
+            line("outline", format!("between {lower} and {upper} m^2 at {percent} %"));
+        }
         text
     }
 
-    /// The motion, a row a sample.
-    pub(crate) fn write_motion(&self, to: &mut dyn Write) -> io::Result<()> {
-        let palms = self.estimate.contacts.len();
-        write!(to, "t,x,y,phi0,vx,vy,omega0,std_x,std_y,std_phi0,std_vx,std_vy,std_omega0")?;
-        (1..=palms).try_for_each(|i| write!(to, ",mode_{i}"))?;
-        writeln!(to, ",relied_on")?;
-        for (k, sample) in self.log.samples().iter().enumerate() {
-            let BodyState { p_WCm: p, phi0, v_WCm: v, omega0 } = self.estimate.states[k];
-            let of = self.estimate.deviations[k];
-            write!(to, "{:?},{:?},{:?},{phi0:?},{:?},{:?},{omega0:?}", sample.t, p.x, p.y, v.x, v.y)?;
-            write!(to, ",{:?},{:?},{:?}", of.p_WCm.x, of.p_WCm.y, of.phi0)?;
-            write!(to, ",{:?},{:?},{:?}", of.v_WCm.x, of.v_WCm.y, of.omega0)?;
-            for mode in &self.estimate.modes[k][..palms] {
-                write!(to, ",{}", mode.number())?;
-            }
-            writeln!(to, ",{}", u8::from(self.estimate.relied_on[k]))?;
-        }
-        Ok(())
-    }
-
-    /// The radius function at the contact of each palm, m: `nan` where it is not touched.
-    pub(crate) fn write_radii(&self, to: &mut dyn Write) -> io::Result<()> {
-        write!(to, "t")?;
-        (1..=self.estimate.contacts.len()).try_for_each(|i| write!(to, ",r_{i}"))?;
-        writeln!(to)?;
-        for (k, sample) in self.log.samples().iter().enumerate() {
-            write!(to, "{:?}", sample.t)?;
-            for contacts in &self.estimate.contacts {
-                write!(to, ",{}", contacts[k].map_or("nan".to_owned(), |c| format!("{:?}", c.radius)))?;
-            }
-            writeln!(to)?;
-        }
-        Ok(())
-    }
-
-    /// The shape, point by point, at samples that are relied on.
-    pub(crate) fn write_points(&self, to: &mut dyn Write) -> io::Result<()> {
-        writeln!(to, "palm,t,x,y,nx,ny")?;
-        for (i, contacts) in self.estimate.contacts.iter().enumerate() {
-            let rows = self.log.samples().iter().zip(contacts).zip(&self.estimate.relied_on);
-            for ((sample, contact), relied_on) in rows {
-                if let Some(c) = contact.filter(|_| *relied_on) {
-                    let (p, n) = (c.p_OC, c.normal);
-                    writeln!(to, "{},{:?},{:?},{:?},{:?},{:?}", i + 1, sample.t, p.x, p.y, n.x, n.y)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
     /// Time and errors of place (m) and turn (rad) at samples that are relied on, where the truth is known.
-    fn errors(&self) -> Option<Vec<[f64; 4]>> {
+    pub(super) fn errors(&self) -> Option<Vec<[f64; 4]>> {
         let truth = self.log.truth()?;
         let one = |(k, truth_now): (usize, &PlanarTruth)| {
             let state = &self.estimate.states[k];
@@ -234,90 +257,6 @@ impl PlanarMotion {
         };
         Some(truth.iter().enumerate().filter_map(one).collect())
     }
-
-    /// The paper's Figs. 2b and 3a (contact points), 2c (orientation) and 3b (errors, where the truth is known); bands of two deviations,
-    /// shaded where the motion is not relied on.
-    pub(crate) fn panels(&self) -> Vec<FigurePanel> {
-        let times: Vec<f64> = self.log.samples().iter().map(|sample| sample.t).collect();
-        let shaded = shaded(&times, &self.estimate.relied_on);
-        let panel = |title: &str, unit: &str, curves| FigurePanel {
-            title: title.to_owned(),
-            axes: ["t in s".to_owned(), unit.to_owned()],
-            curves,
-            shaded: shaded.clone(),
-            ..FigurePanel::default()
-        };
-        let line = |name: String, points: Vec<[f64; 2]>, half_heights: Vec<f64>| FigureCurve {
-            name,
-            points,
-            half_heights,
-            ..FigureCurve::default()
-        };
-        let relied = |k: &usize| self.estimate.relied_on[*k];
-        let shape = self.estimate.contacts.iter().enumerate().map(|(i, contacts)| FigureCurve {
-            name: format!("palm {}", i + 1),
-            points: (0..times.len())
-                .filter(relied)
-                .filter_map(|k| contacts[k].map(|c| c.p_OC.to_array()))
-                .collect(),
-            dots: true,
-            ..FigureCurve::default()
-        });
-        let shape: Vec<FigureCurve> = shape.filter(|curve| !curve.points.is_empty()).collect();
-        let over =
-            |pick: &dyn Fn(usize) -> f64| (0..times.len()).map(|k| [times[k], pick(k)]).collect::<Vec<_>>();
-        let turn = FigureCurve {
-            reference: self.log.truth().map_or_else(Vec::new, |truth| {
-                truth.iter().zip(&times).map(|(at, t)| [*t, at.phi0 - truth[0].phi0]).collect()
-            }),
-            ..line(
-                "phi0".to_owned(),
-                over(&|k| self.estimate.states[k].phi0),
-                self.estimate.deviations.iter().map(|of| 2.0 * of.phi0).collect(),
-            )
-        };
-        let place = ["x", "y"].into_iter().enumerate().map(|(i, name)| {
-            let bands = self.estimate.deviations.iter().map(|of| 2.0 * of.p_WCm[i]).collect();
-            line(name.to_owned(), over(&|k| self.estimate.states[k].p_WCm[i]), bands)
-        });
-        let radii = self.estimate.contacts.iter().enumerate().map(|(i, contacts)| {
-            let radius = |k: usize| contacts[k].map_or(f64::NAN, |contact| contact.radius);
-            line(format!("r{}", i + 1), over(&radius), Vec::new())
-        });
-        let mut panels = vec![
-            FigurePanel {
-                title: "Shape: contact points on the object".to_owned(),
-                axes: ["x in m".to_owned(), "y in m".to_owned()],
-                equal: true,
-                curves: shape,
-                ..FigurePanel::default()
-            },
-            panel("Orientation, with two deviations", "phi0 in rad", vec![turn]),
-            panel("Centre of mass, with two deviations", "m", place.collect()),
-            panel("Radius functions at the contacts", "r in m", radii.collect()),
-        ];
-        if let Some(errors) = self.errors().filter(|errors| !errors.is_empty()) {
-            let names = ["error in x (m)", "error in y (m)", "error in phi0 (rad)"];
-            let curves = names.into_iter().enumerate().map(|(i, name)| {
-                line(name.to_owned(), errors.iter().map(|e| [e[0], e[i + 1]]).collect(), Vec::new())
-            });
-            panels.push(panel("Errors", "m, rad", curves.collect()));
-        }
-        panels
-    }
-}
-
-/// Stretches of time over which nothing is relied on.
-fn shaded(times: &[f64], relied_on: &[bool]) -> Vec<[f64; 2]> {
-    let mut all: Vec<[f64; 2]> = Vec::new();
-    for (k, t) in times.iter().enumerate().filter(|(k, _)| !relied_on[*k]) {
-        let from = times[k.saturating_sub(1)];
-        match all.last_mut() {
-            Some(last) if last[1] >= from => last[1] = *t,
-            _ => all.push([from, *t]),
-        }
-    }
-    all
 }
 
 /// What is known beside a log of two palms hinged at the origin, without friction.

@@ -11,9 +11,10 @@ use recon::shape_bounds::planar::{
     ContactNoise, ContactSample, CurvatureBounds, Direction, Intersection, NoisyContact, ShapeBounds,
     correlated_noise, estimate_noise, independence_is_tested, with_noise_as_found, without_outliers,
 };
-use recon_io::outline_stands_out;
+use recon_io::{FigureCurve, FigurePanel, outline_stands_out};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
+use std::io::{self, Write};
 
 /// Directions in which the gap is drawn.
 const DIRECTIONS: u32 = 720;
@@ -57,6 +58,50 @@ impl PlanarBounds {
         let named =
             ["lower_bound.csv", "upper_bound.csv"].into_iter().zip(self.outlines.iter().map(Vec::as_slice));
         named.filter(|(_, outline)| !outline.is_empty()).collect()
+    }
+
+    /// Numbers for summary.json.
+    pub(crate) fn figures(&self) -> Value {
+        let [lower, upper] = self.areas;
+        json!({
+            "lower_area_m2": lower,
+            "upper_area_m2": upper,
+            "lower_over_upper": lower / upper,
+            "largest_gap_m": self.largest_gap(),
+            "contradiction_m": self.contradiction,
+        })
+    }
+
+    /// Writes an outline, a corner a row.
+    pub(crate) fn write_outline(outline: &[DVec2], to: &mut dyn Write) -> io::Result<()> {
+        writeln!(to, "x,y")?;
+        outline.iter().try_for_each(|p| writeln!(to, "{:?},{:?}", p.x, p.y))
+    }
+
+    /// The bounds with the contacts between them.
+    pub(crate) fn panel(&self) -> FigurePanel {
+        let closed = |name: &str, outline: &[DVec2]| FigureCurve {
+            name: name.to_owned(),
+            points: outline.iter().chain(outline.first()).map(|p| p.to_array()).collect(),
+            ..FigureCurve::default()
+        };
+        let [lower, upper] = &self.outlines;
+        let contacts = FigureCurve {
+            name: "contacts".to_owned(),
+            points: self.points.iter().map(DVec2::to_array).collect(),
+            dots: true,
+            ..FigureCurve::default()
+        };
+        let mut curves = vec![closed("lower bound", lower), closed("upper bound", upper), contacts];
+        curves.push(closed("fit", &self.fitted));
+        curves.retain(|curve| !curve.points.is_empty());
+        FigurePanel {
+            title: "Bounds".to_owned(),
+            axes: ["x in m".to_owned(), "y in m".to_owned()],
+            equal: true,
+            curves,
+            ..FigurePanel::default()
+        }
     }
 
     /// The Hausdorff distance of the bounds to the resolution of the directions, m; `None` where a side is open.
@@ -147,7 +192,8 @@ fn gaps(support: impl Fn(Direction) -> (f64, f64)) -> Vec<[f64; 2]> {
     if all.iter().all(|g| g[1].is_finite()) { all } else { Vec::new() }
 }
 
-fn drawn(bounds: &ShapeBounds, about: Value) -> PlanarBounds {
+/// Bounds as they are drawn.
+pub(super) fn drawn(bounds: &ShapeBounds, about: Value) -> PlanarBounds {
     let lower = bounds.lower().polygon().map(|p| p.shape().vertices().to_vec());
     let upper = bounds.upper().bounded().map(|r| r.shape().vertices().to_vec());
     let mut warnings = Vec::new();

@@ -22,6 +22,21 @@ fn the_demo_and_its_log_without_forces_agree_with_the_truth() {
     assert!((observed[3] - phi).abs() < 1e-8 && observed.last() == Some(&1.0), "{observed:?} {phi}");
     let figures = scratch.read("recon-planar/figures.svg");
     assert!(figures.contains("error in phi0") && !figures.contains("NaN"));
+    let page = scratch.read("recon-planar/report.html");
+    assert!(page.contains("Reliable") && page.contains("Lower bound") && !page.contains("NaN"));
+    // The body of the demo: 2, 0.15, 0.225, 0.03 and 0, -0.1, 0.05, -0.04 are its coefficients; its area by `(r^2 - r'^2) / 2`.
+    let squares = [(1.0, 0.15, -0.1), (2.0, 0.225, 0.05), (3.0, 0.03, -0.04)];
+    let waves = squares.iter().map(|(k, a, b): &(f64, f64, f64)| (1.0 - k * k) * (a * a + b * b) / 2.0);
+    let area = std::f64::consts::PI * (4.0 + waves.sum::<f64>());
+    let summary: serde_json::Value =
+        serde_json::from_str(&scratch.read("recon-planar/summary.json")).unwrap();
+    let bounds = &summary["bounds"];
+    let [lower, upper] = ["lower_area_m2", "upper_area_m2"].map(|key| bounds[key].as_f64().unwrap());
+    assert!(lower < area && area < upper && lower > 0.5 * area, "{lower} {area} {upper}");
+    for file in ["lower_bound.csv", "upper_bound.csv"] {
+        assert!(scratch.read(&format!("recon-planar/{file}")).starts_with("x,y\n"));
+    }
+    assert_eq!(scratch.run(&["check", "recon-planar"]).code, Some(0));
     // The same with mass and inertia unknown, and by the way that logs of space go.
     let unknown = scratch.run(&["planar", "recon-planar/log.csv", "-o", "unknown"]);
     assert_eq!(unknown.code, Some(0), "{}{}", unknown.stdout, unknown.stderr);

@@ -10,8 +10,9 @@ mod page;
 mod tests;
 
 pub use contacts::{
-    EstimateData, ModeSpan, estimated_mode_spans, mode_spans, mode_times, planar_mode_spans,
-    write_contact_report, write_estimate_report, write_planar_contact_report,
+    EstimateData, ModeSpan, PlaneEstimateData, doubtful_spans, estimated_mode_spans, mode_spans, mode_times,
+    planar_mode_spans, write_contact_report, write_estimate_report, write_planar_contact_report,
+    write_plane_estimate_report,
 };
 pub use data::{
     Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,

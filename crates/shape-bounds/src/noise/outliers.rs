@@ -3,14 +3,16 @@
 use super::model::{NoiseError, NoisyContact};
 use super::quantile;
 use super::roughness::standing_out;
-use crate::hull::{Hull, SupportWalk};
-use glam::DVec3;
+use super::traced::Traced;
+use crate::hull::{Farthest, Hull};
 
 /// Contacts against which the suspects are tried to tell which of a contradictory pair is wrong.
 const WITNESSES: usize = 1000;
 /// Share of what is found that may be good contacts, and rounds in which the limit follows it.
 const FALSE_OF_FOUND: f64 = 0.25;
 const ROUNDS: usize = 3;
+/// Odds that a contact is called impossible where all are right.
+const IMPOSSIBLE: f64 = 1e-3;
 /// What exact contacts may contradict each other by, relative to their coordinates: rounding.
 const ROUNDING: f64 = 1e-14;
 
@@ -31,9 +33,10 @@ pub struct Outlier {
 ///
 /// First those that stand out of their own curve by more than noise and bending of the curve explain. Then those that
 /// contradict others: two contacts of a convex body do when one lies beyond the other's half-space. Beyond what noise
-/// does, at the stated `confidence` for all pairs together, one of the two is wrong: the one that contradicts more
+/// does, at odds of a thousand for all pairs together, one of the two is wrong: the one that contradicts more
 /// contacts; both, where the rest does not tell. Leaving a good contact out only widens the bounds, so that they stay
-/// sound either way. Where some are found, the limit is lowered until one in four of what is found may be a good one. Errors of less than
+/// sound either way. Where some are found, the limit is lowered until one in four of what is found may be a good one: on the ground of
+/// what contradicts, not of what stands out, as edges do. Errors of less than
 /// about five to ten standard deviations may stay unnoticed, and larger ones at edges (docs/bounds.md).
 ///
 /// # Errors
@@ -62,12 +65,9 @@ pub(crate) fn judged(
     dimension: usize,
 ) -> Result<(Vec<Vec<NoisyContact>>, Vec<Outlier>), Undecided> {
     let mut suspects = Suspects::new(curves, confidence, dimension);
-    while suspects.drop_worst() {
-        let (outliers, contacts) = (suspects.found.len(), suspects.all.len());
-        if 2 * outliers >= contacts {
-            return Err(Undecided { outliers, contacts });
-        }
-    }
+    suspects.drop_contradicting()?;
+    suspects.lower_limit();
+    suspects.drop_contradicting()?;
     let mut alive = suspects.alive.iter();
     let kept = curves
         .iter()
@@ -86,31 +86,12 @@ struct Suspects<'a> {
     all: Vec<&'a NoisyContact>,
     /// Curve and place of each.
     places: Vec<(usize, usize)>,
+    /// Number of the first contact of each curve.
+    firsts: Vec<usize>,
     alive: Vec<bool>,
     found: Vec<Outlier>,
     /// Standard deviations beyond which a pair contradicts.
     limit: f64,
-}
-
-/// The farthest of points along a direction, over their hull.
-struct Farthest<'a> {
-    walk: Option<SupportWalk<'a>>,
-    hull: &'a Hull,
-    points: &'a [DVec3],
-}
-
-impl<'a> Farthest<'a> {
-    fn of(hull: &'a Hull, points: &'a [DVec3]) -> Self {
-        Self { walk: hull.solid().map(SupportWalk::new), hull, points }
-    }
-
-    fn along(&mut self, n: DVec3) -> usize {
-        if let (Some(walk), Some(solid)) = (&mut self.walk, self.hull.solid()) {
-            return solid.sources()[walk.farthest_corner(n)] as usize;
-        }
-        let height = |k: &usize| self.points[*k].dot(n);
-        (0..self.points.len()).max_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(0)
-    }
 }
 
 /// Two contacts of which the one is beyond the half-space of the other.
@@ -119,40 +100,87 @@ struct Contradiction {
     deviations: f64,
 }
 
+/// Deviations beyond which a pair of so many contacts contradicts, for so many false alarms that are allowed among all pairs.
+fn limit(contacts: usize, allowed: f64) -> f64 {
+    let pairs = (contacts as f64).powi(2).max(1.0);
+    quantile::normal((allowed / pairs).min(0.1))
+}
+
+fn firsts(curves: &[Vec<NoisyContact>]) -> Vec<usize> {
+    let first = |next: &mut usize, curve: &Vec<NoisyContact>| {
+        let first = *next;
+        *next += curve.len();
+        Some(first)
+    };
+    curves.iter().scan(0, first).collect()
+}
+
+/// Contacts that stand out of their curves, where these are traced: neighbours in no order say nothing of each other.
+fn standing_out_of_curves(curves: &[Vec<NoisyContact>], mut allowed: f64, dimension: usize) -> Vec<Outlier> {
+    let mut found = Vec::new();
+    for _ in 0..ROUNDS {
+        let alpha = allowed / curves.len() as f64;
+        let traced =
+            curves.iter().enumerate().filter(|(_, contacts)| Traced { contacts, dimension }.is_in_order());
+        let of_curve = |(curve, contacts): (usize, &Vec<NoisyContact>)| {
+            let all = standing_out(contacts, alpha, dimension).into_iter();
+            all.map(move |(index, deviations)| Outlier { curve, index, deviations, share: 0.0 })
+                .collect::<Vec<_>>()
+        };
+        found = traced.flat_map(of_curve).collect();
+        // False alarms that are allowed among all contacts: one in so many of what is found.
+        let enough = FALSE_OF_FOUND * found.len() as f64;
+        if enough <= allowed {
+            break;
+        }
+        allowed = enough;
+    }
+    found
+}
+
 impl<'a> Suspects<'a> {
     fn new(curves: &'a [Vec<NoisyContact>], confidence: f64, dimension: usize) -> Self {
         let all: Vec<_> = curves.iter().flatten().collect();
         let places =
             curves.iter().enumerate().flat_map(|(c, curve)| (0..curve.len()).map(move |k| (c, k))).collect();
-        // False alarms that are allowed among all contacts. Where wrong ones are found there are others, and a good one more or less does
-        // no harm: one in so many of what is found.
-        let mut allowed = 1.0 - confidence;
-        let mut found = Vec::new();
-        for _ in 0..ROUNDS {
-            let alpha = allowed / curves.len() as f64;
-            let of_curve = |(curve, contacts): (usize, &Vec<NoisyContact>)| {
-                let all = standing_out(contacts, alpha, dimension).into_iter();
-                all.map(move |(index, deviations)| Outlier { curve, index, deviations, share: 0.0 })
-                    .collect::<Vec<_>>()
-            };
-            found = curves.iter().enumerate().flat_map(of_curve).collect();
-            let enough = FALSE_OF_FOUND * found.len() as f64;
-            if enough <= allowed {
-                break;
-            }
-            allowed = enough;
-        }
-        let pairs = (all.len() as f64).powi(2).max(1.0);
-        let limit = quantile::normal((allowed / pairs).min(0.1));
+        let found = standing_out_of_curves(curves, 1.0 - confidence, dimension);
         let mut alive = vec![true; all.len()];
-        let firsts = curves.iter().scan(0, |next, curve| {
-            let first = *next;
-            *next += curve.len();
-            Some(first)
-        });
-        let firsts: Vec<usize> = firsts.collect();
+        let firsts: Vec<usize> = firsts(curves);
         found.iter().for_each(|o| alive[firsts[o.curve] + o.index] = false);
-        Self { places, alive, all, found, limit }
+        Self { limit: limit(all.len(), IMPOSSIBLE.min(1.0 - confidence)), places, firsts, alive, all, found }
+    }
+
+    /// Says which of those that stand out contradict others beyond the present limit, and lowers it where wrong contacts are found: there
+    /// are others, and a good one more or less does no harm, one in so many of what is found. What only stands out may be an edge, and is
+    /// no sign of wrong ones.
+    fn lower_limit(&mut self) {
+        let witnesses = self.witnesses();
+        for k in 0..self.found.len() {
+            let Outlier { curve, index, share, .. } = self.found[k];
+            let contact = self.firsts[curve] + index;
+            if share == 0.0 {
+                let with = witnesses.iter().filter(|w| self.contradict(contact, **w)).count();
+                self.found[k].share = with as f64 / witnesses.len().max(1) as f64;
+            }
+        }
+        let wrong = self.found.iter().filter(|o| o.share > 0.0).count() as f64;
+        self.limit = self.limit.min(limit(self.all.len(), FALSE_OF_FOUND * wrong));
+    }
+
+    /// Whether two contacts are further from each other's half-spaces than the limit.
+    fn contradict(&self, a: usize, b: usize) -> bool {
+        self.deviations(a, b).max(self.deviations(b, a)) > self.limit
+    }
+
+    /// Drops contacts until none contradicts another.
+    fn drop_contradicting(&mut self) -> Result<(), Undecided> {
+        while self.drop_worst() {
+            let (outliers, contacts) = (self.found.len(), self.all.len());
+            if 2 * outliers >= contacts {
+                return Err(Undecided { outliers, contacts });
+            }
+        }
+        Ok(())
     }
 
     /// Drops contacts until the contradictions that are found now are gone; `false` when there are none.
@@ -164,9 +192,7 @@ impl<'a> Suspects<'a> {
         }
         let witnesses = self.witnesses();
         let count = |c: usize| {
-            let with = witnesses
-                .iter()
-                .filter(|w| self.deviations(c, **w).max(self.deviations(**w, c)) > self.limit);
+            let with = witnesses.iter().filter(|w| self.contradict(c, **w));
             with.count().max(of[c].len())
         };
         let counts: Vec<usize> = (0..of.len()).map(|c| if of[c].is_empty() { 0 } else { count(c) }).collect();
@@ -197,11 +223,11 @@ impl<'a> Suspects<'a> {
         let left: Vec<usize> = (0..self.all.len()).filter(|c| self.alive[*c]).collect();
         let points: Vec<_> = left.iter().map(|c| self.all[*c].contact.point).collect();
         let Ok(hull) = Hull::of(&points) else { return Vec::new() };
-        let mut farthest = Farthest::of(&hull, &points);
+        let mut farthest = Farthest::new(&hull, &points);
         let mut found = Vec::new();
-        for half_space in &left {
+        for (own, half_space) in left.iter().enumerate() {
             let n = self.all[*half_space].contact.normal.get();
-            let point = left[farthest.along(n)];
+            let point = left[farthest.along(n, own)];
             let deviations = self.deviations(*half_space, point);
             if deviations > self.limit {
                 found.push(Contradiction { pair: [*half_space, point], deviations });

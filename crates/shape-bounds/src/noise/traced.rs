@@ -99,14 +99,19 @@ impl Traced<'_> {
         (median(&mut sizes) / (OF_NORMAL * gain), (1.36 * overlap / count).sqrt())
     }
 
-    /// Whether there are enough contacts, each near the one before: of contacts in no order, neighbours are as far apart as any two,
-    /// and their differences say nothing of noise.
+    /// Whether there are enough contacts, in order, for the noise to be judged.
     pub(crate) fn is_traced(&self) -> bool {
+        self.contacts.len() >= FEWEST && self.is_in_order()
+    }
+
+    /// Whether each contact is near the one before: of contacts in no order, neighbours are as far apart as any two, and their
+    /// differences say nothing of noise.
+    pub(crate) fn is_in_order(&self) -> bool {
         let points = || self.contacts.iter().map(|c| c.contact.point);
         let mean = points().sum::<DVec3>() / self.contacts.len().max(1) as f64;
         let mut steps: Vec<f64> = points().zip(points().skip(1)).map(|(a, b)| a.distance(b)).collect();
         let mut reach: Vec<f64> = points().map(|p| p.distance(mean)).collect();
-        self.contacts.len() >= FEWEST && median(&mut steps) < 0.5 * median(&mut reach)
+        median(&mut steps) < 0.5 * median(&mut reach)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::distance::nearest_around;
 use super::halfplanes::{OUTWARD_ULPS, interior_point};
+use super::ring::Ring;
 use super::{
     ContactSample, Direction, HalfPlane, Hull, IncrementalHull, Intersection, IntersectionError, PointsError,
 };
@@ -167,29 +168,12 @@ impl ShapeBounds {
     }
 }
 
-/// For each contact the index of the point that is the farthest along its normal, by climbing around the hull from the
-/// contact's own point.
+/// For each contact the index of the point that is the farthest along its normal.
 fn farthest_along_normals(hull: &Hull, contacts: &[ContactSample]) -> Vec<usize> {
-    let ring: Vec<usize> = match hull {
-        Hull::Point(k) => vec![*k],
-        Hull::Segment(ends) => ends.to_vec(),
-        Hull::Polygon(polygon) => polygon.sources().iter().map(|k| *k as usize).collect(),
-    };
-    let mut place = vec![None; contacts.len()];
-    ring.iter().enumerate().for_each(|(at, k)| place[*k] = Some(at));
-    let mut at = 0;
-    let count = ring.len();
-    let one = |(k, c): (usize, &ContactSample)| {
-        let height = |at: usize| c.normal.get().dot(contacts[ring[at]].point);
-        at = place[k].unwrap_or(at);
-        while let Some(side) =
-            [(at + 1) % count, (at + count - 1) % count].into_iter().find(|s| height(*s) > height(at))
-        {
-            at = side;
-        }
-        ring[at]
-    };
-    contacts.iter().enumerate().map(one).collect()
+    let sources = hull.corners();
+    let corners: Vec<DVec2> = sources.iter().map(|k| contacts[*k].point).collect();
+    let ring = Ring::new(&corners);
+    contacts.iter().map(|c| sources[ring.farthest(c.normal.get())]).collect()
 }
 
 /// Bounds that take one contact at a time: a new point into the hull, a new half-plane into the hull of the polar duals.

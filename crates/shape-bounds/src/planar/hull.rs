@@ -113,13 +113,18 @@ impl Hull {
         }
     }
 
+    /// Which points are the corners, counter-clockwise.
+    pub(super) fn corners(&self) -> Vec<usize> {
+        match self {
+            Self::Point(i) => vec![*i],
+            Self::Segment(ends) => ends.to_vec(),
+            Self::Polygon(polygon) => polygon.sources().iter().map(|i| *i as usize).collect(),
+        }
+    }
+
     /// The corners of the hull of `points`, counter-clockwise.
     pub(super) fn corner_points(&self, points: &[DVec2]) -> Vec<DVec2> {
-        match self {
-            Self::Point(i) => vec![points[*i]],
-            Self::Segment(ends) => ends.iter().map(|i| points[*i]).collect(),
-            Self::Polygon(polygon) => polygon.shape.vertices().to_vec(),
-        }
+        self.corners().into_iter().map(|i| points[i]).collect()
     }
 }
 

@@ -27,6 +27,7 @@ mod halfplanes;
 mod hull;
 mod noise;
 mod polygon;
+mod ring;
 mod sample;
 #[cfg(test)]
 mod tests;

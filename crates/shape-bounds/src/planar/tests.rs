@@ -322,6 +322,14 @@ fn contacts_that_no_convex_outline_has_are_named() {
         .filter(|c| c.point.x > -0.3)
         .collect();
     assert!(matches!(ShapeBounds::from_contacts(&dented), Err(BoundsError::Contradiction(_))));
+    // A kidney, touched all around.
+    let kidney = |angle: f64| {
+        let (out, r) = (DVec2::from_angle(angle), 1.0 + 0.5 * (2.0 * angle).cos());
+        let tangent = out.perp() * r - out * (2.0 * angle).sin();
+        ContactSample { point: out * r, normal: Direction::new(-tangent.perp()).unwrap() }
+    };
+    let kidney: Vec<ContactSample> = (0..200).map(|k| kidney(f64::from(k) * TAU / 200.0)).collect();
+    assert!(matches!(ShapeBounds::from_contacts(&kidney), Err(BoundsError::Contradiction(_))));
 }
 
 #[test]

@@ -5,9 +5,6 @@ use crate::Status;
 use crate::core::direction_words;
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// Residual beyond which the noise does not explain the data.
-const CONSISTENT_RESIDUAL: f64 = 3.0;
-
 impl Problem<'_> {
     /// Evidence about the best of `finals`. Others that explain the data as well widen the covariance: the linear one knows
     /// only its own valley.
@@ -38,12 +35,13 @@ impl Problem<'_> {
             covariance += &away * away.transpose();
         }
         let residual = (squares / (2 * all) as f64).sqrt();
+        let excess = excess(squares, (2 * all).saturating_sub(count) as f64);
         let smallest_information = eigen.eigenvalues[lowest].max(0.0);
         let status = if !residual.is_finite() {
             Status::Diverged
         } else if smallest_information < 1.0 {
             Status::NotObservable
-        } else if residual > CONSISTENT_RESIDUAL {
+        } else if excess > ShapeFit::UNEXPLAINED {
             Status::Inconsistent
         } else {
             Status::Converged
@@ -63,6 +61,7 @@ impl Problem<'_> {
             motion,
             radii,
             residual,
+            excess,
             status,
             smallest_information,
             direction: direction_words(eigen.eigenvectors.column(lowest).as_slice(), name),
@@ -70,6 +69,12 @@ impl Problem<'_> {
             covariance,
         }
     }
+}
+
+/// Chi-squared of so many degrees of freedom as a standard normal: the cube root's approximation (Wilson and Hilferty 1931).
+fn excess(chi_squared: f64, degrees: f64) -> f64 {
+    let variance = 2.0 / (9.0 * degrees.max(1.0));
+    ((chi_squared / degrees.max(1.0)).cbrt() - (1.0 - variance)) / variance.sqrt()
 }
 
 fn name(j: usize) -> String {

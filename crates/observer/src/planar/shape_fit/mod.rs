@@ -38,13 +38,15 @@ const ITERATIONS: usize = 30;
 /// Chi-squared above the best at which a start is given up: wide while the window is short, 3 standard deviations at the end.
 const EARLY_MARGIN: f64 = 25.0;
 const FINAL_MARGIN: f64 = 9.0;
+/// The highest harmonic that is tried. The prior lets the radius have a hundredth of its mean there, and noise of a thousandth has it below.
+const MOST_HARMONICS: usize = 16;
 /// A step below this share of the prior deviations ends a window.
 const STEP_TOLERANCE: f64 = 1e-9;
 
 /// What the shape estimator takes as known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeFitOptions {
-    /// Highest harmonic of the radius function.
+    /// Highest harmonic of the radius function to begin with; more are added while noise does not explain what is left.
     pub order: usize,
     /// Standard deviation of a contact reading, m.
     pub contact_deviation: f64,
@@ -71,6 +73,9 @@ pub struct ShapeFit {
     pub covariance: DMatrix<f64>,
     /// Root mean square residual in units of the noise.
     pub residual: f64,
+    /// What is left against what noise leaves, as a standard normal: beyond [`ShapeFit::UNEXPLAINED`] the order was too low even at the
+    /// end, or something else than noise is wrong.
+    pub excess: f64,
     /// How the estimate stands.
     pub status: Status,
     /// Smallest eigenvalue of the data's information in units of the prior's: below one the prior says more than the data.
@@ -82,6 +87,9 @@ pub struct ShapeFit {
 }
 
 impl ShapeFit {
+    /// What noise alone exceeds once in a thousand logs.
+    pub const UNEXPLAINED: f64 = 3.09;
+
     /// The shape as a body, which proves it convex.
     ///
     /// # Errors
@@ -110,6 +118,9 @@ struct Problem<'a> {
 /// grows from two natural times to the whole log and the assumed noise falls along (annealing), from a disc of the natural
 /// size that turns at each of nine rates. Mass does not enter: only the radius of gyration can be seen without forces.
 ///
+/// Where what is left over the whole log is more than noise leaves once in a thousand logs (chi-squared test), one more harmonic is
+/// added to what was found, up to sixteen. What is left then is reported as inconsistent.
+///
 /// # Errors
 /// [`PlanarEstimateError`]: lost contact, too few samples, unusable numbers.
 pub fn fit_shape(log: &PlanarLog, options: &ShapeFitOptions) -> Result<ShapeFit, PlanarEstimateError> {
@@ -136,8 +147,30 @@ pub fn fit_shape(log: &PlanarLog, options: &ShapeFitOptions) -> Result<ShapeFit,
         }
         (cost, x)
     });
-    let finals = rivals(finals.collect(), FINAL_MARGIN, 1);
-    Ok(problem.finish(&finals, iterations))
+    let mut finals = rivals(finals.collect(), FINAL_MARGIN, 1);
+    let mut fit = problem.finish(&finals, iterations);
+    let mut order = options.order;
+    while fit.excess > ShapeFit::UNEXPLAINED
+        && order < MOST_HARMONICS
+        && log.samples().len() > least(order + 1)
+    {
+        order += 1;
+        let wider = Problem::new(log, &ShapeFitOptions { order, ..*options })?;
+        let more = finals.iter().map(|(_, x)| {
+            let start = DVector::from_fn(MOTION + 1 + 2 * order, |j, _| x.get(j).copied().unwrap_or(0.0));
+            let (x, cost) =
+                wider.minimise(start, log.samples().len(), options.contact_deviation, &mut iterations);
+            (cost, x)
+        });
+        finals = rivals(more.collect(), FINAL_MARGIN, 1);
+        fit = wider.finish(&finals, iterations);
+    }
+    Ok(fit)
+}
+
+/// The fewest samples for so many harmonics.
+fn least(order: usize) -> usize {
+    (MOTION + 1 + 2 * order).max(8)
 }
 
 /// Sorts by cost and keeps those within `margin` of the best, at least `fewest`.
@@ -161,7 +194,7 @@ impl<'a> Problem<'a> {
                 needed,
             });
         }
-        let needed = (MOTION + 1 + 2 * order).max(8);
+        let needed = least(order);
         if samples.len() < needed {
             return Err(ObserverError::TooFewSamples { found: samples.len(), needed }.into());
         }

@@ -2,6 +2,7 @@
 
 use super::super::encode::thin;
 use super::super::{Bounds, Evidence, MotionState, PalmContact, Verdict};
+use super::estimate_page::doubtful_spans;
 use super::moment::Shown;
 use super::picture::{Line, Picture};
 use super::space::{ShownPalm, palm};
@@ -53,21 +54,6 @@ impl EstimateData {
         count > 1
             && self.curves.len() == self.log.palms().len()
             && lengths.into_iter().chain(curves).all(|length| length == count)
-    }
-
-    /// Stretches of time whose motion is not relied on, s: each sample stands for half the time to its neighbours.
-    pub(super) fn doubtful(&self) -> Vec<[f64; 2]> {
-        let times = self.log.times();
-        let middle = |a: usize, b: usize| 0.5 * (times[a] + times[b]);
-        let mut found: Vec<[f64; 2]> = Vec::new();
-        for k in (0..times.len()).filter(|k| !self.estimate.relied_on[*k]) {
-            let span = [middle(k.saturating_sub(1), k), middle(k, (k + 1).min(times.len() - 1))];
-            match found.last_mut() {
-                Some(last) if last[1] >= span[0] => last[1] = span[1],
-                _ => found.push(span),
-            }
-        }
-        found
     }
 
     /// Largest distance of a contact from the centre of mass, m: of those relied on, if there are any.
@@ -162,7 +148,7 @@ impl EstimateData {
             title: title.to_owned(),
             axes: ["t in s".to_owned(), unit.to_owned()],
             curves,
-            shaded: self.doubtful(),
+            shaded: doubtful_spans(self.log.times(), &self.estimate.relied_on),
             ..FigurePanel::default()
         };
         vec![

@@ -63,7 +63,12 @@ fn picture<S: RadiusFunction>(scene: &ContactScene<S>, now: &ContactInstant) -> 
     let outline: Vec<DVec2> = around(0.0, TAU).map(at).collect();
     let reach = outline.iter().map(|p| p.distance(body.p_WCm)).fold(0.0, f64::max);
     let surfaces = scene.palms().iter().map(|palm| palm.surface).enumerate();
-    let mut lines: Vec<Line> = surfaces.map(|(i, surface)| palm(surface, now, i, reach)).collect();
+    let drawn = |(i, surface): (usize, PalmSurface)| {
+        let (state, contact) = (&now.palms[i], &now.contacts[i]);
+        let at = PalmAt { p_WP: state.p_WP, angle: state.angle, p_WC: contact.p_WC };
+        palm(surface, i, &at, body.p_WCm, reach)
+    };
+    let mut lines: Vec<Line> = surfaces.map(drawn).collect();
     lines.push(Line::new("object", outline));
     let across = |theta| Line::new("meridian", vec![at(theta), at(theta + PI)]);
     lines.extend([0.0, FRAC_PI_2].map(across));
@@ -72,19 +77,28 @@ fn picture<S: RadiusFunction>(scene: &ContactScene<S>, now: &ContactInstant) -> 
     Picture { t: now.t, lines }
 }
 
-fn palm(surface: PalmSurface, now: &ContactInstant, i: usize, reach: f64) -> Line {
-    let (state, contact) = (&now.palms[i], &now.contacts[i]);
+/// A palm at an instant: where its frame stands, and where it is touched or next to the object.
+pub(super) struct PalmAt {
+    pub(super) p_WP: DVec2,
+    /// rad.
+    pub(super) angle: f64,
+    pub(super) p_WC: DVec2,
+}
+
+/// The palm `i` (from 0) under an object of the size `reach`, m.
+pub(super) fn palm(surface: PalmSurface, i: usize, at: &PalmAt, p_WCm: DVec2, reach: f64) -> Line {
+    let PalmAt { p_WP, angle, p_WC } = *at;
     // Of a large circle the part next to the contact, else all of it.
     let arc = |radius: f64| {
-        let (half, middle) = (PI.min(WIDE * reach / radius), (contact.p_WC - state.p_WP).to_angle());
-        let at = |angle| state.p_WP + radius * DVec2::from_angle(angle);
+        let (half, middle) = (PI.min(WIDE * reach / radius), (p_WC - p_WP).to_angle());
+        let at = |angle| p_WP + radius * DVec2::from_angle(angle);
         around(middle - half, middle + half).map(at).collect()
     };
     match surface {
         PalmSurface::Line => {
             // Under the object, wherever the origin of the line's frame is.
-            let along = DVec2::from_angle(state.angle);
-            let foot = state.p_WP + along * along.dot(now.body.p_WCm - state.p_WP);
+            let along = DVec2::from_angle(angle);
+            let foot = p_WP + along * along.dot(p_WCm - p_WP);
             let half = LONG * reach * along;
             Line::palm(i, true, vec![foot - half, foot + half])
         }

@@ -1,7 +1,6 @@
 //! What each contact does over time.
 
-use recon::object_dynamics::{ContactMode, ContactSimulation, planar};
-use recon::observer::ContactEstimate;
+use recon::object_dynamics::{ContactMode, ContactSimulation, MOST_PALMS, planar};
 
 /// A stretch of time over which a contact does the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,15 +32,18 @@ pub fn planar_mode_spans(simulation: &planar::ContactSimulation, palm: usize) ->
     spans(first.modes[palm], [first.t, last.t], changes)
 }
 
-/// The same of an estimate at the `times` of its log.
+/// The same of the modes of an estimate at the `times` of its log.
 #[must_use]
-pub fn estimated_mode_spans(times: &[f64], estimate: &ContactEstimate, palm: usize) -> Vec<ModeSpan> {
-    let (Some(&first), Some(&last), Some(modes)) = (times.first(), times.last(), estimate.modes.first())
-    else {
+pub fn estimated_mode_spans(
+    times: &[f64],
+    modes: &[[ContactMode; MOST_PALMS]],
+    palm: usize,
+) -> Vec<ModeSpan> {
+    let (Some(&start), Some(&end), Some(first)) = (times.first(), times.last(), modes.first()) else {
         return Vec::new();
     };
-    let changes = times.iter().zip(&estimate.modes).map(|(t, modes)| (*t, modes[palm]));
-    spans(modes[palm], [first, last], changes)
+    let changes = times.iter().zip(modes).map(|(t, modes)| (*t, modes[palm]));
+    spans(first[palm], [start, end], changes)
 }
 
 /// Time over which spans are off, slide and stick, s.

@@ -1,4 +1,6 @@
-use super::{EstimateData, write_contact_report, write_estimate_report, write_planar_contact_report};
+use super::{
+    EstimateData, doubtful_spans, write_contact_report, write_estimate_report, write_planar_contact_report,
+};
 use crate::{
     Evidence, EvidenceValue, Level, PalmContact, PlanarScene, Scene, Verdict, estimate_summary,
     write_estimated_motion,
@@ -235,10 +237,13 @@ fn the_page_of_an_estimate_shows_palms_object_modes_and_doubts() {
     }
     // The object is drawn each time, the doubts over bands of modes and over each of four panels.
     assert_eq!(page.matches("class=\"object\"").count(), 6);
-    assert_eq!(data.doubtful().len(), 2);
+    assert_eq!(doubtful_spans(data.log.times(), &data.estimate.relied_on).len(), 2);
     assert_eq!(page.matches("class=\"shade\"").count(), 8);
     assert_eq!(page.matches("<rect class=\"doubtful\" x=").count(), 2);
-    let [first, last] = [data.doubtful()[0], data.doubtful()[1]];
+    let [first, last] = [
+        doubtful_spans(data.log.times(), &data.estimate.relied_on)[0],
+        doubtful_spans(data.log.times(), &data.estimate.relied_on)[1],
+    ];
     for (found, expected) in first.iter().chain(&last).zip([0.03, 0.09, 0.99, 1.0]) {
         assert!((found - expected).abs() < 1e-12, "{found} {expected}");
     }

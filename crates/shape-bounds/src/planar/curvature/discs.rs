@@ -1,9 +1,12 @@
-use super::conflict::smallest_conflict;
+use super::envelope::{Around, Piece};
+use super::interior::common_point;
 use super::{CurvatureError, arc};
-use crate::planar::{Direction, HalfPlane, Intersection};
+use crate::planar::{Direction, HalfPlane};
 use glam::DVec2;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
+/// The most that a part of an arc takes of the directions about a point inside, rad: below a quarter of a turn.
+const PART: f64 = 1.2;
 /// Angles of an arc, relative to a full turn, below which `x - sin x` is taken from its series.
 const SERIES: f64 = 1e-2;
 
@@ -32,18 +35,18 @@ pub struct Side {
 }
 
 /// The intersection of discs of any radii and half-planes.
-///
-/// Each circle and line is cut by all others in time O(n^2 log n), simple and enough for the contacts of a palm: a
-/// thousand discs take some hundredths of a second.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiscIntersection {
     discs: Vec<Disc>,
     half_planes: Vec<HalfPlane>,
+    /// A point in the interior, and what bounds the outline around it.
+    centre: DVec2,
+    pieces: Vec<Piece>,
     sides: Vec<Side>,
 }
 
 impl DiscIntersection {
-    /// Intersects discs and half-planes; at least one disc.
+    /// Intersects discs and half-planes, at least one disc, in time O(n log n).
     ///
     /// # Errors
     /// [`CurvatureError`] for values that are not finite, radii that are not positive, no disc at all, and an empty
@@ -58,98 +61,38 @@ impl DiscIntersection {
             return Err(CurvatureError::Disc { index: discs.len() + index, radius: f64::INFINITY });
         }
         let count = discs.len() + half_planes.len();
-        if discs.is_empty() && count > 0 {
+        if count == 0 {
+            return Err(CurvatureError::Empty { count, conflict: Vec::new() });
+        }
+        if discs.is_empty() {
             return Err(CurvatureError::Unbounded { count });
         }
-        let mut own = Self::cut(discs.to_vec(), half_planes.to_vec());
-        if own.sides.is_empty() {
-            let conflict = smallest_conflict(count, |some| is_empty(discs, half_planes, some));
-            return Err(CurvatureError::Empty { count, conflict });
-        }
-        own.sides.sort_by(|a, b| a.start.total_cmp(&b.start));
-        Ok(own)
+        let centre =
+            common_point(discs, half_planes).map_err(|conflict| CurvatureError::Empty { count, conflict })?;
+        let around = Around { discs, half_planes, centre };
+        let pieces = around.envelope();
+        let sides = sides(&around, &pieces);
+        Ok(Self { discs: discs.to_vec(), half_planes: half_planes.to_vec(), centre, pieces, sides })
     }
 
-    /// The sides in no order; none where nothing is left.
-    fn cut(discs: Vec<Disc>, half_planes: Vec<HalfPlane>) -> Self {
-        let mut own = Self { discs, half_planes, sides: Vec::new() };
-        (0..own.discs.len()).for_each(|i| own.cut_circle(i));
-        (0..own.half_planes.len()).for_each(|i| own.cut_line(i));
-        own
+    /// A point in the interior.
+    #[cfg(test)]
+    pub(super) fn centre(&self) -> DVec2 {
+        self.centre
     }
 
-    /// The arcs of circle `i` that are in everything else.
-    fn cut_circle(&mut self, i: usize) {
-        let Disc { centre, radius } = self.discs[i];
-        let mut forbidden: Vec<(f64, f64)> = Vec::new();
-        for (j, other) in self.discs.iter().enumerate().filter(|(j, _)| *j != i) {
-            let offset = centre - other.centre;
-            if offset == DVec2::ZERO && other.radius == radius {
-                // Of equal discs the first counts.
-                if j < i {
-                    return;
-                }
-                continue;
-            }
-            // |offset + r u| <= R  <=>  u . offset <= limit.
-            let limit = ((other.radius - radius) * (other.radius + radius) - offset.length_squared())
-                / (2.0 * radius);
-            if !forbid(offset, limit, &mut forbidden) {
-                return;
-            }
-        }
-        for plane in &self.half_planes {
-            if !forbid(plane.normal.get(), -plane.excess(centre) / radius, &mut forbidden) {
-                return;
-            }
-        }
-        for (start, end) in gaps(&mut forbidden) {
-            self.sides.push(Side {
-                source: i,
-                from: centre + DVec2::from_angle(start) * radius,
-                to: centre + DVec2::from_angle(end) * radius,
-                angle: end - start,
-                start: start.rem_euclid(TAU),
-            });
-        }
-    }
-
-    /// The segment of line `i` that is in everything else.
-    fn cut_line(&mut self, i: usize) {
-        let plane = self.half_planes[i];
-        let n = plane.normal.get();
-        let (origin, along) = (plane.point + n * plane.margin, n.perp());
-        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-        for disc in &self.discs {
-            let offset = disc.centre - origin;
-            let (middle, height) = (offset.dot(along), offset.dot(n));
-            let half = (disc.radius - height.abs()) * (disc.radius + height.abs());
-            if half <= 0.0 {
-                return;
-            }
-            low = low.max(middle - half.sqrt());
-            high = high.min(middle + half.sqrt());
-        }
-        for (j, other) in self.half_planes.iter().enumerate().filter(|(j, _)| *j != i) {
-            let slope = other.normal.get().dot(along);
-            let room = -other.excess(origin);
-            if slope > 0.0 {
-                high = high.min(room / slope);
-            } else if slope < 0.0 {
-                low = low.max(room / slope);
-            } else if room < 0.0 || (room == 0.0 && j < i) {
-                return;
-            }
-        }
-        if low < high {
-            self.sides.push(Side {
-                source: self.discs.len() + i,
-                from: origin + along * low,
-                to: origin + along * high,
-                angle: 0.0,
-                start: plane.normal.angle().rem_euclid(TAU),
-            });
-        }
+    /// How far `point` is outside, by the disc or half-plane that bounds the outline towards it, which is the second value; negative
+    /// inside.
+    pub(super) fn excess(&self, point: DVec2) -> (f64, usize) {
+        let angle = (point - self.centre).to_angle().rem_euclid(TAU);
+        // Before the first piece's start it is the last one, across the angle zero.
+        let after = self.pieces.partition_point(|piece| piece.start <= angle);
+        let source = self.pieces[(after + self.pieces.len() - 1) % self.pieces.len()].source;
+        let excess = match self.discs.get(source) {
+            Some(disc) => point.distance(disc.centre) - disc.radius,
+            None => self.half_planes[source - self.discs.len()].excess(point),
+        };
+        (excess, source)
     }
 
     /// The sides, in order counter-clockwise.
@@ -206,55 +149,34 @@ impl DiscIntersection {
     }
 }
 
-/// Whether some of the discs and half-planes have no interior in common.
-fn is_empty(discs: &[Disc], half_planes: &[HalfPlane], some: &[usize]) -> bool {
-    let round: Vec<Disc> = some.iter().filter_map(|k| discs.get(*k)).copied().collect();
-    let flat = some.iter().filter_map(|k| half_planes.get(k.checked_sub(discs.len())?));
-    let flat: Vec<HalfPlane> = flat.copied().collect();
-    if round.is_empty() {
-        return Intersection::of(&flat).is_err_and(|_| !flat.is_empty());
-    }
-    DiscIntersection::cut(round, flat).sides.is_empty()
+/// The sides that pieces of the outline are.
+fn sides(around: &Around, pieces: &[Piece]) -> Vec<Side> {
+    let [single] = pieces else {
+        let next = pieces.iter().cycle().skip(1);
+        return pieces.iter().zip(next).map(|(piece, next)| side(around, *piece, next.start)).collect();
+    };
+    // One disc in all others.
+    vec![side(around, *single, single.start)]
 }
 
-/// Adds the arc of directions `u` with `u . axis > limit`; false if that is all of them.
-fn forbid(axis: DVec2, limit: f64, forbidden: &mut Vec<(f64, f64)>) -> bool {
-    let length = axis.length();
-    if limit >= length {
-        return true;
-    }
-    if limit <= -length {
-        return false;
-    }
-    let (middle, half) = (axis.to_angle(), (limit / length).acos());
-    forbidden.push((middle - half, middle + half));
-    true
-}
-
-/// What arcs leave of a full turn, each as (start, end) with start below end.
-fn gaps(arcs: &mut [(f64, f64)]) -> Vec<(f64, f64)> {
-    if arcs.is_empty() {
-        return vec![(-PI, PI)];
-    }
-    for arc in arcs.iter_mut() {
-        let turns = (arc.0 / TAU).floor() * TAU;
-        *arc = (arc.0 - turns, arc.1 - turns);
-    }
-    arcs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Once round from the first arc's start; whatever passes the full turn also covers the beginning.
-    let covered = arcs.iter().map(|a| a.1 - TAU).fold(f64::NEG_INFINITY, f64::max);
-    let mut end = arcs[0].1.max(covered);
-    let mut free = Vec::new();
-    for arc in &arcs[1..] {
-        if arc.0 > end {
-            free.push((end, arc.0));
-        }
-        end = end.max(arc.1);
-    }
-    if arcs[0].0 + TAU > end {
-        free.push((end, arcs[0].0 + TAU));
-    }
-    free
+/// The side of a piece that ends at an angle; all round if it ends where it starts.
+fn side(around: &Around, Piece { start, source }: Piece, end: f64) -> Side {
+    let extent = if end > start { end - start } else { end + TAU - start };
+    let point = |angle: f64| {
+        let along = DVec2::from_angle(angle);
+        around.centre + along * around.distance(source, along)
+    };
+    let (from, to) = (point(start), point(end));
+    let Some(disc) = around.discs.get(source) else {
+        let normal = around.half_planes[source - around.discs.len()].normal;
+        return Side { source, from, to, angle: 0.0, start: normal.angle().rem_euclid(TAU) };
+    };
+    // About its own centre an arc turns by less than twice what is seen from inside: parts turn by less than half a turn.
+    let parts = (extent / PART).ceil();
+    let radius = |k: f64| point(start + extent * k / parts) - disc.centre;
+    let angle =
+        (0..parts as u32).map(|k| radius(f64::from(k)).angle_to(radius(f64::from(k) + 1.0)).max(0.0)).sum();
+    Side { source, from, to, angle, start: (from - disc.centre).to_angle().rem_euclid(TAU) }
 }
 
 /// `x - sin x`, which cancels where x is small.

@@ -4,9 +4,10 @@
 //! above `rho_max`, the body rolls freely inside of a disc of that radius (Blaschke). A concave circular palm that touches
 //! the body is such a disc without any limit on curvature.
 
-mod conflict;
 mod discs;
+mod envelope;
 mod error;
+mod interior;
 mod rounded;
 
 pub use discs::{Disc, DiscIntersection, Side};
@@ -15,6 +16,7 @@ pub use rounded::RoundedHull;
 
 #[cfg(test)]
 use super::HalfPlane;
+use super::ring::Ring;
 use super::{ContactSample, Direction};
 use contact_kinematics::planar::RadiusBounds;
 use glam::DVec2;
@@ -45,10 +47,19 @@ impl CurvatureBounds {
         let centre = |c: &ContactSample, r: f64| c.point - c.normal.get() * r;
         let inner: Vec<DVec2> = contacts.iter().map(|c| centre(c, radii.min)).collect();
         let lower = RoundedHull::of(&inner, radii.min)?;
-        check(contacts, radii, &inner)?;
+        let size = contacts.iter().map(|c| c.point.abs().max_element()).fold(radii.max, f64::max);
+        let rounding = ROUNDING * size;
+        check_round(contacts, radii.min, &lower, rounding)?;
         let outer: Vec<Disc> =
             contacts.iter().map(|c| Disc { centre: centre(c, radii.max), radius: radii.max }).collect();
-        Ok(Self { lower, upper: DiscIntersection::of(&outer, &[])? })
+        let upper = DiscIntersection::of(&outer, &[]).map_err(|error| too_flat(contacts, &outer, error))?;
+        let excess = contacts.iter().enumerate().map(|(sample, c)| (sample, upper.excess(c.point)));
+        match excess.max_by(|a, b| a.1.0.total_cmp(&b.1.0)) {
+            Some((sample, (excess, other))) if excess > rounding => {
+                Err(CurvatureError::TooFlat { sample, other, excess, radius: radii.max })
+            }
+            _ => Ok(Self { lower, upper }),
+        }
     }
 
     /// The hull of the inner discs: in the body.
@@ -70,23 +81,41 @@ impl CurvatureBounds {
     }
 }
 
-/// Whether every inner disc is within every half-plane, and every contact within every outer disc.
-fn check(contacts: &[ContactSample], radii: RadiusBounds, inner: &[DVec2]) -> Result<(), CurvatureError> {
-    let size = contacts.iter().map(|c| c.point.abs().max_element()).fold(radii.max, f64::max);
-    for (sample, c) in contacts.iter().enumerate() {
-        let n = c.normal.get();
-        for (other, d) in contacts.iter().enumerate() {
-            let excess = n.dot(inner[other] - c.point) + radii.min;
-            if excess > ROUNDING * size {
-                return Err(CurvatureError::TooRound { sample, other, excess, radius: radii.min });
-            }
-            let excess = c.point.distance(d.point - d.normal.get() * radii.max) - radii.max;
-            if excess > ROUNDING * size {
-                return Err(CurvatureError::TooFlat { sample, other, excess, radius: radii.max });
-            }
+/// Whether every inner disc is within every half-plane; the pair that is the furthest from it.
+fn check_round(
+    contacts: &[ContactSample],
+    radius: f64,
+    lower: &RoundedHull,
+    rounding: f64,
+) -> Result<(), CurvatureError> {
+    let (ring, sources) = (Ring::new(lower.corners()), lower.core().corners());
+    let farthest = contacts.iter().enumerate().map(|(sample, c)| {
+        let corner = ring.farthest(c.normal.get());
+        (sample, sources[corner], c.normal.get().dot(lower.corners()[corner] - c.point) + radius)
+    });
+    match farthest.max_by(|a, b| a.2.total_cmp(&b.2)) {
+        Some((sample, other, excess)) if excess > rounding => {
+            Err(CurvatureError::TooRound { sample, other, excess, radius })
         }
+        _ => Ok(()),
     }
-    Ok(())
+}
+
+/// Of outer discs that have nothing in common, one with the contact that is the furthest outside of it: contacts inside of all
+/// would be in common.
+fn too_flat(contacts: &[ContactSample], outer: &[Disc], error: CurvatureError) -> CurvatureError {
+    let CurvatureError::Empty { conflict, .. } = &error else { return error };
+    let beyond = |sample: usize, other: usize| {
+        contacts[sample].point.distance(outer[other].centre) - outer[other].radius
+    };
+    let pairs = conflict.iter().flat_map(|other| (0..contacts.len()).map(|sample| (sample, *other)));
+    match pairs.max_by(|a, b| beyond(a.0, a.1).total_cmp(&beyond(b.0, b.1))) {
+        Some((sample, other)) => {
+            let (excess, radius) = (beyond(sample, other), outer[other].radius);
+            CurvatureError::TooFlat { sample, other, excess, radius }
+        }
+        None => error,
+    }
 }
 
 /// Unit vectors from the angle `from` over `angle` (rad), both ends included, evenly and at most `step` apart.
@@ -121,6 +150,25 @@ mod tests {
             let bound = DiscIntersection::of(&discs, planes).unwrap();
             let area = drawn(bound.outline(step));
             assert!((0.0..step * step).contains(&(bound.area() - area)), "{area} {}", bound.area());
+        }
+    }
+
+    #[test]
+    fn a_disc_whose_radius_is_both_limits_is_its_own_bounds() {
+        for (radius, count, offset) in [(1.0, 7, 0.0), (0.037, 1000, 1e3), (123.4, 5000, 1e3)] {
+            let contact = |k: i32| {
+                let normal = Direction::from_angle(f64::from(k) * 2.4);
+                ContactSample { point: normal.get() * radius + DVec2::X * offset, normal }
+            };
+            let contacts: Vec<ContactSample> = (0..count).map(contact).collect();
+            let bounds =
+                CurvatureBounds::from_contacts(&contacts, RadiusBounds { min: radius, max: radius }).unwrap();
+            let area = std::f64::consts::PI * radius * radius;
+            // Points are rounded to a unit of their largest coordinate.
+            let rounding = 8.0 * f64::EPSILON * (offset + radius) * radius;
+            for found in [bounds.lower().area(), bounds.upper().area()] {
+                assert!((found - area).abs() <= rounding, "{radius}: {found} {area}");
+            }
         }
     }
 }

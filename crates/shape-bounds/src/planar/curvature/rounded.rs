@@ -29,6 +29,11 @@ impl RoundedHull {
         &self.core
     }
 
+    /// Its corners, counter-clockwise.
+    pub(super) fn corners(&self) -> &[DVec2] {
+        &self.corners
+    }
+
     /// Radius of the discs in m.
     #[must_use]
     pub fn radius(&self) -> f64 {

@@ -3,7 +3,8 @@
 use super::NoiseError;
 use super::windows::Window;
 use crate::noise::quantile;
-use crate::planar::{ConvexPolygon, HalfPlane, Intersection, Region};
+use crate::planar::ring::Ring;
+use crate::planar::{HalfPlane, Intersection, Region};
 use glam::DVec2;
 
 /// Regions that are assumed to hold the body, each so many times as large as the one before, until one proves itself.
@@ -27,11 +28,12 @@ pub(super) fn certain_half_planes(lists: &[Vec<Window>], alpha: f64) -> Result<V
     let quantiles = Quantiles { normal: quantile::normal(each), length: quantile::length2(each) };
     let (mut half_planes, mut region) = prove_region(&windows, &quantiles)?;
     for _ in 0..ROUNDS {
+        let ring = Ring::new(region.shape().vertices());
         half_planes = windows
             .iter()
             .map(|w| {
                 let plane = HalfPlane { point: w.point, normal: w.normal, margin: w.offset / w.shrink };
-                w.inflated(&quantiles, reach_beyond(region.shape(), &plane, w.point))
+                w.inflated(&quantiles, ring.reach_beyond(w.normal.get(), |p| plane.excess(p), w.point))
             })
             .collect();
         match Intersection::of(&half_planes) {
@@ -40,21 +42,6 @@ pub(super) fn certain_half_planes(lists: &[Vec<Window>], alpha: f64) -> Result<V
         }
     }
     Ok(half_planes)
-}
-
-/// Largest distance from `point` of the part of the polygon that is beyond the half-plane.
-fn reach_beyond(shape: &ConvexPolygon, plane: &HalfPlane, point: DVec2) -> f64 {
-    let mut reach = 0.0_f64;
-    for (a, b) in shape.edges() {
-        let (from, to) = (plane.excess(a), plane.excess(b));
-        if from > 0.0 {
-            reach = reach.max(a.distance(point));
-        }
-        if from * to < 0.0 {
-            reach = reach.max((a + (b - a) * (from / (from - to))).distance(point));
-        }
-    }
-    reach
 }
 
 /// A region that certainly holds the body, with the half-planes that make it.

@@ -67,7 +67,8 @@ impl Window {
             normal: direction,
             offset: mean(&|c| c.contact.normal.get().dot(c.contact.point - point)),
             covariance,
-            offset_sd: ((point_variance + turning) * weight).sqrt(),
+            // Noise along the line alone may come out below zero across it.
+            offset_sd: ((point_variance + turning) * weight).max(0.0).sqrt(),
             normal_sd: (mean(&|c| c.noise.normal.powi(2)) * weight).sqrt(),
             single_normal_sd: run.iter().map(|c| c.noise.normal).fold(0.0, f64::max),
             pose_translation: mean(&|c| c.noise.pose_translation),

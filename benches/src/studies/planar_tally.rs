@@ -1,0 +1,75 @@
+//! What came of estimates in the plane over many runs.
+
+use cpu_time::ThreadTime;
+use recon::object_dynamics::planar::{ContactLog, PlanarTruth};
+use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
+
+/// Deviations beyond which an error that nothing warned of is silent.
+pub(crate) const SILENT: f64 = 5.0;
+
+/// Runs, those that are relied on, and how far these are off.
+#[derive(Default)]
+pub(crate) struct Tally {
+    runs: usize,
+    relied: usize,
+    silent: usize,
+    refused: usize,
+    squares: f64,
+    numbers: f64,
+    places: Vec<f64>,
+    microseconds: f64,
+    samples: f64,
+}
+
+impl Tally {
+    /// Estimates the motion of a body of the size `length` (m), and counts what comes of it.
+    pub(crate) fn run(&mut self, log: &ContactLog, options: &PlaneOptions, length: f64) {
+        let clock = ThreadTime::now();
+        let made = estimate_plane(log, options);
+        self.microseconds += 1e6 * clock.elapsed().as_secs_f64();
+        self.samples += log.samples().len() as f64;
+        self.runs += 1;
+        match made {
+            Ok(made) if made.reliability.is_reliable() => {
+                self.add(&made, log.truth().unwrap_or_default(), length);
+            }
+            Ok(_) => {}
+            Err(_) => self.refused += 1,
+        }
+    }
+
+    fn add(&mut self, made: &PlaneEstimate, truth: &[PlanarTruth], length: f64) {
+        let (mut worst, mut place) = (0.0_f64, 0.0_f64);
+        for (k, truth) in truth.iter().enumerate().filter(|(k, _)| made.relied_on[*k]) {
+            let (state, of) = (&made.states[k], &made.deviations[k]);
+            let p = state.p_WCm - truth.p_WCm;
+            let (p_in, v_in) = (p / of.p_WCm, (state.v_WCm - truth.v_WCm) / of.v_WCm);
+            let spin = (state.omega0 - truth.omega0) / of.omega0;
+            for number in [p_in.x, p_in.y, v_in.x, v_in.y, spin] {
+                worst = worst.max(number.abs());
+                self.squares += number * number;
+                self.numbers += 1.0;
+            }
+            place = place.max(p.length() / length);
+        }
+        self.relied += 1;
+        self.silent += usize::from(worst > SILENT);
+        self.places.push(place);
+    }
+
+    /// Cells of a row.
+    pub(crate) fn told(&mut self) -> String {
+        self.places.sort_by(f64::total_cmp);
+        let place = self.places.get(self.places.len() / 2).map_or("-".to_owned(), |p| format!("{p:.1e}"));
+        let mean =
+            if self.numbers > 0.0 { format!("{:.2}", self.squares / self.numbers) } else { "-".to_owned() };
+        let refused = if self.refused > 0 { format!(" ({} errors)", self.refused) } else { String::new() };
+        format!(
+            "{} | {}{refused} | {} | {mean} | {place} | {:.0}",
+            self.runs,
+            self.relied,
+            self.silent,
+            self.microseconds / self.samples.max(1.0)
+        )
+    }
+}

@@ -1,0 +1,157 @@
+//! A motion that was estimated in the plane, as its page shows it.
+
+use super::super::{Evidence, Verdict};
+use super::estimate_page::{EstimatePage, Facts};
+use super::moment::Shown;
+use super::picture::{Line, Picture};
+use super::plane::{PalmAt, palm};
+use super::spans::estimated_mode_spans;
+use crate::number::brief_to;
+use crate::planar_figures::FigurePanel;
+use glam::DVec2;
+use recon::object_dynamics::ContactMode;
+use recon::object_dynamics::planar::ContactLog;
+use recon::observer::planar::{PlaneContact, PlaneEstimate};
+use recon::shape_bounds::planar::Hull;
+use std::io::{self, Write};
+
+/// Points of a contact curve that are drawn at most.
+const TRACED: usize = 400;
+const CAPTION: &str = "To one scale. The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, in the colours of the palms. Dots are contacts, in the colours of the modes below. Palms go on beyond what is drawn, but for circles.";
+const NO_OBJECT: &str = "To one scale. The object is not drawn: where it was touched is not known under a motion that is not to be relied on. Dots are contacts, in the colours of the modes below. Palms go on beyond what is drawn, but for circles.";
+
+/// Everything that is told about a motion that was estimated in the plane.
+#[derive(Clone, Debug)]
+pub struct PlaneEstimateData<'a> {
+    /// What was reconstructed, such as the name of the log.
+    pub title: String,
+    /// How far the result can be relied on.
+    pub verdict: Verdict,
+    /// How the estimate was made, in one sentence.
+    pub note: String,
+    /// What was sensed.
+    pub log: &'a ContactLog,
+    /// Motion, mass, inertia and contact modes.
+    pub estimate: &'a PlaneEstimate,
+    /// Areas of the lower and the upper bound on the outline, m^2.
+    pub areas: Option<[f64; 2]>,
+    /// Curves of motion and shape.
+    pub panels: Vec<FigurePanel>,
+    /// What the numbers rest on.
+    pub evidence: Vec<Evidence>,
+    /// What the reader must know, in plain words.
+    pub warnings: Vec<String>,
+}
+
+/// Writes a motion that was estimated in the plane as one HTML page that needs nothing else: as
+/// [`write_estimate_report`](super::write_estimate_report) does of one in space.
+///
+/// # Errors
+/// Those of `to`, and [`io::ErrorKind::InvalidInput`] where not everything has an entry at each sample.
+pub fn write_plane_estimate_report(data: &PlaneEstimateData, to: impl Write) -> io::Result<()> {
+    let (found, samples) = (data.estimate, data.log.samples());
+    let lengths = [found.states.len(), found.deviations.len(), found.modes.len(), found.relied_on.len()];
+    let curves = found.contacts.iter().map(Vec::len);
+    if !lengths.into_iter().chain(curves).all(|length| length == samples.len()) {
+        let what = "a report needs a state, modes and contacts at each sample";
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+    }
+    let times: Vec<f64> = samples.iter().map(|sample| sample.t).collect();
+    let relied = found.relied_on.iter().any(|relied| *relied);
+    let page = EstimatePage {
+        title: &data.title,
+        verdict: &data.verdict,
+        note: &data.note,
+        warnings: &data.warnings,
+        facts: facts(data, &times),
+        pictures: data.pictures(),
+        caption: if relied { CAPTION } else { NO_OBJECT }.to_owned(),
+        spans: (0..found.contacts.len())
+            .map(|palm| estimated_mode_spans(&times, &found.modes, palm))
+            .collect(),
+        times: &times,
+        relied_on: &found.relied_on,
+        panels: &data.panels,
+        has_truth: data.log.truth().is_some(),
+        evidence: &data.evidence,
+    };
+    page.write(to)
+}
+
+fn facts(data: &PlaneEstimateData, times: &[f64]) -> Facts {
+    let found = data.estimate;
+    let duration = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+    let mut facts = EstimatePage::common_facts(duration, &found.relied_on);
+    facts.push(("Mass", brief_to(4, found.mass.0), "kg"));
+    facts.push(("Moment of inertia", brief_to(4, found.inertia.0), "kg m²"));
+    if let Some([lower, upper]) = data.areas {
+        facts.push(("Lower bound", brief_to(4, lower), "m²"));
+        facts.push(("Upper bound", brief_to(4, upper), "m²"));
+    }
+    facts
+}
+
+impl PlaneEstimateData<'_> {
+    /// Contacts on the body that are relied on, of each palm; every so many of them.
+    fn traces(&self) -> Vec<Vec<Option<&PlaneContact>>> {
+        let found = self.estimate;
+        let stride = found.states.len().div_ceil(TRACED).max(1);
+        let trace = |contacts: &'_ Vec<Option<PlaneContact>>| -> Vec<usize> {
+            (0..contacts.len()).step_by(stride).collect()
+        };
+        found
+            .contacts
+            .iter()
+            .map(|contacts| {
+                let relied = |k: usize| contacts[k].as_ref().filter(|_| found.relied_on[k]);
+                trace(contacts).into_iter().map(relied).collect()
+            })
+            .collect()
+    }
+
+    /// Object and palms at a few instants.
+    fn pictures(&self) -> Vec<Picture> {
+        let samples: Vec<usize> = (0..self.log.samples().len()).collect();
+        let traces = self.traces();
+        let reach = self.reach();
+        Shown::instants(&samples).map(|k| self.picture(*k, reach, &traces)).collect()
+    }
+
+    /// Largest distance of a contact from the centre of mass, m.
+    fn reach(&self) -> f64 {
+        let contacts = self.estimate.contacts.iter().flatten().flatten();
+        contacts.map(|contact| contact.p_OC.length()).fold(0.0, f64::max)
+    }
+
+    fn picture(&self, k: usize, reach: f64, traces: &[Vec<Option<&PlaneContact>>]) -> Picture {
+        let (sample, state) = (&self.log.samples()[k], &self.estimate.states[k]);
+        let surfaces = self.log.surfaces().iter().zip(&sample.palms).enumerate();
+        let mut lines: Vec<Line> = surfaces
+            .map(|(i, (surface, now))| {
+                let (p_WP, angle) = (now.pose.p_WP, now.pose.angle);
+                let at = PalmAt { p_WP, angle, p_WC: now.p_WC.unwrap_or(state.p_WCm) };
+                palm(*surface, i, &at, state.p_WCm, reach)
+            })
+            .collect();
+        let turn = DVec2::from_angle(state.phi0);
+        let placed = |contact: &PlaneContact| state.p_WCm + turn.rotate(contact.p_OC);
+        let all: Vec<DVec2> = traces.iter().flatten().flatten().map(|contact| placed(contact)).collect();
+        let hull = Hull::of(&all).ok();
+        lines.extend(hull.as_ref().and_then(Hull::polygon).map(|polygon| {
+            let corners = polygon.shape().vertices();
+            Line::new("object", corners.iter().chain(corners.first()).copied().collect())
+        }));
+        for (i, trace) in traces.iter().enumerate() {
+            for piece in trace.split(Option::is_none).filter(|piece| piece.len() > 1) {
+                let points = piece.iter().flatten().map(|contact| placed(contact)).collect();
+                lines.push(Line::new(&format!("trace p{}", i + 1), points));
+            }
+        }
+        for (now, mode) in sample.palms.iter().zip(&self.estimate.modes[k]) {
+            if let Some(p_WC) = now.p_WC.filter(|_| *mode != ContactMode::Off) {
+                lines.push(Line::touch(*mode, p_WC));
+            }
+        }
+        Picture { t: sample.t, lines }
+    }
+}
