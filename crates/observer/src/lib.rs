@@ -9,6 +9,8 @@
 //! The feature `palms` (on by default) adds the estimators of shape and motion from touch.
 
 #[cfg(feature = "palms")]
+mod chance;
+#[cfg(feature = "palms")]
 mod contact_modes;
 #[cfg(feature = "palms")]
 mod contacts;

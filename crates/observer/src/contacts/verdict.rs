@@ -3,6 +3,7 @@
 use super::equations::Equations;
 use super::problem::{Problem, Units};
 use super::samples::Deviations;
+use crate::chance::excess;
 use crate::faults::Suspect;
 use crate::three_palms::{LARGEST_DEVIATION, LARGEST_MISFIT, Reason, Reliability};
 use glam::DVec3;
@@ -87,12 +88,6 @@ pub(super) fn stretches<const P: usize>(problem: &Problem, equations: &Equations
         excess(cost / scale, conditions)
     };
     times.iter().map(one).collect()
-}
-
-/// Chi-squared of so many degrees of freedom as a normal variable: the cube root's approximation (Wilson and Hilferty 1931).
-fn excess(chi_squared: f64, degrees: f64) -> f64 {
-    let variance = 2.0 / (9.0 * degrees.max(1.0));
-    ((chi_squared / degrees.max(1.0)).cbrt() - (1.0 - variance)) / variance.sqrt()
 }
 
 /// Whether a row is to be relied on, if the estimate is: noise explains the stretch around it, and the deviations are

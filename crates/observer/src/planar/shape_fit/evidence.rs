@@ -2,6 +2,7 @@
 
 use super::{Candidate, Problem, ShapeFit};
 use crate::Status;
+use crate::chance::excess;
 use crate::core::direction_words;
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -69,12 +70,6 @@ impl Problem<'_> {
             covariance,
         }
     }
-}
-
-/// Chi-squared of so many degrees of freedom as a standard normal: the cube root's approximation (Wilson and Hilferty 1931).
-fn excess(chi_squared: f64, degrees: f64) -> f64 {
-    let variance = 2.0 / (9.0 * degrees.max(1.0));
-    ((chi_squared / degrees.max(1.0)).cbrt() - (1.0 - variance)) / variance.sqrt()
 }
 
 fn name(j: usize) -> String {
