@@ -63,6 +63,8 @@ pub struct ContactEstimate {
     pub inertia_deviations: [f64; 3],
     /// How far the poses that are relied on may be off, all of them together, for bounds on the shape; none unless asked for.
     pub pose_errors: Option<PoseErrors>,
+    /// Samples and palms, from 0, of contacts that were misread: off by far more than those around them allow. They count as where these say.
+    pub misread: Vec<(usize, usize)>,
     /// What the data say of constants of the sensors that were taken as known; none unless asked for, nor of a log that is as good as exact.
     pub suspects: Vec<Suspect>,
     /// Whether to believe it.
@@ -327,6 +329,7 @@ impl Found<'_> {
         let deviation = |i: usize| covariances.body[(i, i)].max(0.0).sqrt() * wider;
         ContactEstimate {
             states: motions.iter().map(|(motion, _)| state(motion)).collect(),
+            misread: log.misread.clone(),
             suspects: suspects.to_vec(),
             pose_errors: if options.pose_errors { joint() } else { None },
             relied_on,

@@ -13,6 +13,7 @@ mod modes;
 mod noise;
 mod onward;
 mod options;
+mod outliers;
 mod plane;
 mod problem;
 mod reach;

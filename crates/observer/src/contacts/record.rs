@@ -3,6 +3,7 @@
 use super::impulses;
 use super::noise::{ContactNoiseLevel, WrenchNoise, force_trace};
 use super::options::ContactOptions;
+use super::outliers::mended;
 use super::problem::Units;
 use crate::three_palms::running_integral;
 use contact_kinematics::PalmSurface;
@@ -78,6 +79,8 @@ pub(super) struct Record {
     pub(super) intervals: Vec<Interval>,
     /// Whether the impulses of all palms are read.
     pub(super) all_impulses: bool,
+    /// Samples and palms, from 0, of contacts that were misread, and stand where those around them say.
+    pub(super) misread: Vec<(usize, usize)>,
 }
 
 impl Contact {
@@ -199,6 +202,7 @@ impl Record {
         let square = points().map(|touch| touch.p_WC.distance_squared(origin)).sum::<f64>();
         let mut contacts: Vec<Vec<Contact>> =
             (0..times.len()).map(|k| contacts_at(log, k, origin, options)).collect();
+        let misread = mended(&mut contacts, &times, noise.contact);
         for (k, contacts) in contacts.iter_mut().enumerate() {
             contacts.iter_mut().for_each(|contact| change(k, contact, origin));
         }
@@ -209,7 +213,7 @@ impl Record {
         let wrenches = contacts.iter().map(wrench).collect();
         let all_impulses = sampled.iter().all(|sampled| !sampled);
         let samples = (0..times.len()).collect();
-        Some(Self { times, samples, origin, contacts, wrenches, intervals, all_impulses })
+        Some(Self { times, samples, origin, contacts, wrenches, intervals, all_impulses, misread })
     }
 
     /// Marks the intervals over which there may be a blow: a contact closes, or opens while it is pressed by more than a share of the weight under

@@ -75,7 +75,7 @@ pub struct PlaneEstimate {
     pub deviations: Vec<PlaneDeviations>,
     /// Whether a sample's motion is to be relied on: to within its deviations.
     pub relied_on: Vec<bool>,
-    /// Contacts of each palm on the body, at all samples where there is one: the shape, point by point.
+    /// Contacts of each palm on the body, at all samples where there is one that was not misread: the shape, point by point.
     pub contacts: Vec<Vec<Option<PlaneContact>>>,
     /// Contact modes at all samples.
     pub modes: Vec<[ContactMode; MOST_PALMS]>,
@@ -143,16 +143,16 @@ impl PlaneEstimate {
             v_WCm: in_plane(*v),
             omega0: w.y,
         });
-        let contact = |palm: &LoggedPalm, k: usize| {
-            let touch = palm.touch(k)?;
+        let contact = |i: usize, palm: &LoggedPalm, k: usize| {
+            let touch = palm.touch(k).filter(|_| of.misread.binary_search(&(k, i)).is_err())?;
             let (normal, back) = (in_plane(-touch.n.get()), DVec2::from_angle(-states[k].phi0));
             let p_OC = back.rotate(in_plane(touch.p_WC) - states[k].p_WCm);
             let normal = back.rotate(normal);
             Some(PlaneContact { p_OC, normal, radius: p_OC.dot(normal) })
         };
-        let of_palm = |palm| (0..states.len()).map(|k| contact(palm, k)).collect();
+        let of_palm = |(i, palm)| (0..states.len()).map(|k| contact(i, palm, k)).collect();
         Self {
-            contacts: log.palms().iter().map(of_palm).collect(),
+            contacts: log.palms().iter().enumerate().map(of_palm).collect(),
             deviations: deviations.collect(),
             states,
             mass: (of.mass, of.mass_deviation),

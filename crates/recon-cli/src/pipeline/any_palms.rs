@@ -114,7 +114,7 @@ pub(crate) fn estimate_any_palms(
         ContactEstimateError::NoSize => CliError::SizeNotStated,
         other => CliError::ContactEstimate(other),
     })?;
-    let curves: Vec<_> = log.palms().iter().map(|palm| curve(palm, &estimate)).collect();
+    let curves: Vec<_> = log.palms().iter().enumerate().map(|of| curve(of, &estimate)).collect();
     let truth = truth.filter(|truth| !truth.is_empty()).map(|truth| {
         let (at, found) = (truth[0].R_WO, estimate.states[0].R_WO);
         // Axes of an unknown body are those of the world at the first sample, those of a known one its own but for half turns.
@@ -124,6 +124,7 @@ pub(crate) fn estimate_any_palms(
     let mut warnings = request.warnings;
     warnings.extend(not_relied_on(&estimate));
     warnings.extend(impulses_not_read(&log, &options));
+    warnings.extend(misread(&log, &estimate));
     progress.begin("bounding the shape")?;
     let bounds = match estimate_bounds(&log, &estimate, &curves, options.noise.contact, CONFIDENCE) {
         Ok(bounds) => bounds,
@@ -240,10 +241,11 @@ fn size(log: &ContactLog) -> Option<f64> {
     (squares > 0.0).then(|| f64::sqrt(squares / count))
 }
 
-/// Where a palm touches the object, at the samples that are relied on.
-fn curve(palm: &LoggedPalm, estimate: &ContactEstimate) -> Vec<Option<PalmContact>> {
+/// Where a palm touches the object, at the samples that are relied on and where it was not misread.
+fn curve((i, palm): (usize, &LoggedPalm), estimate: &ContactEstimate) -> Vec<Option<PalmContact>> {
     let contact = |(k, state): (usize, &recon::object_dynamics::BodyState)| {
-        let touch = palm.touch(k).filter(|_| estimate.relied_on[k])?;
+        let read = estimate.relied_on[k] && estimate.misread.binary_search(&(k, i)).is_err();
+        let touch = palm.touch(k).filter(|_| read)?;
         let turn = state.R_WO.inverse();
         let (p_OC, normal) = (turn * (touch.p_WC - state.p_WCm), turn * -touch.n.get());
         Some(PalmContact { p_WC: touch.p_WC, p_OC, normal, radius: p_OC.dot(normal) })
@@ -260,6 +262,18 @@ fn not_relied_on(estimate: &ContactEstimate) -> Option<String> {
              left there, or the deviations are too large for what they are made from."
         )
     })
+}
+
+/// What to say of contacts that were misread.
+fn misread(log: &ContactLog, estimate: &ContactEstimate) -> Option<String> {
+    let &(sample, palm) = estimate.misread.first()?;
+    Some(format!(
+        "{} contacts are off by far more than noise and than those around them allow (the first at t = {} s on palm {}): they count as where \
+         those around them say, and bound nothing.",
+        estimate.misread.len(),
+        log.times()[sample],
+        palm + 1
+    ))
 }
 
 /// What to say of impulses in the log that count for nothing.

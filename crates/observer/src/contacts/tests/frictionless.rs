@@ -70,3 +70,31 @@ fn a_log_of_many_natural_times_is_found() {
         }
     }
 }
+
+/// One contact of a hundred a fifth of the size off: they are found, all but those that noise hides, and no other; the motion is that without them.
+#[test]
+fn misread_contacts_are_told_and_survived() {
+    let exact = normal_only(&rubbed(0.8, 500.0, 0.0));
+    let noise = noise(4e-5, 0.004);
+    let told = noisy(&exact, &noise, 3);
+    let mut records = told.records();
+    let mut off = Vec::new();
+    for (i, record) in records.iter_mut().enumerate() {
+        let ContactPoints::World(points) = &mut record.contacts else { panic!("points in the world") };
+        // Two side by side, the others alone.
+        for k in [37, 110, 111, 250 + 7 * i] {
+            let x = told.palms()[i].motion(k).pose.R_WP * DVec3::X;
+            *points[k].as_mut().unwrap() += x * (0.2 * SIZE);
+            off.push((k, i));
+        }
+    }
+    off.sort_unstable();
+    let wrong = ContactLog::new(told.times().to_vec(), records, told.truth().map(<[_]>::to_vec)).unwrap();
+    let [right, found] = [&told, &wrong].map(|log| estimate_contacts(log, None, &options(noise)).unwrap());
+    assert!(right.misread.is_empty(), "{:?}", right.misread);
+    assert_eq!(found.misread, off);
+    assert!(found.reliability.is_reliable(), "{:?}", found.reliability);
+    for ((a, b), deviations) in found.states.iter().zip(&right.states).zip(&right.deviations) {
+        assert!(((a.p_WCm - b.p_WCm) / deviations[0]).abs().max_element() < 1.0);
+    }
+}

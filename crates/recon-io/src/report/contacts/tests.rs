@@ -172,6 +172,7 @@ fn estimate() -> EstimateData {
     };
     let estimate = ContactEstimate {
         pose_errors: None,
+        misread: Vec::new(),
         suspects: Vec::new(),
         inertia_covariance: Default::default(),
         deviations: vec![[DVec3::splat(1e-3); 4]; count],

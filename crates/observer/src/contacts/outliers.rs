@@ -1,0 +1,154 @@
+//! Contacts that are off by far more than noise at one sample, or a few: a sensor's misreadings, put where the contacts around say.
+
+use super::record::Contact;
+use glam::DVec3;
+
+/// Deviations from which on a contact is off: of what noise or, where that is more, the motion itself leaves of a cubic at most samples.
+const OFF: f64 = 8.0;
+/// Contacts on either side that tell where one should be, and among how many samples they are looked for.
+const BESIDE: usize = 2;
+const AMONG: usize = 6;
+/// Samples on either side over which the same palms must be touched: a landing bends the way of all contacts.
+const STEADY: usize = 3;
+/// Share of the spread of all contacts of a palm that it is off by at least: less harms nothing.
+const NOTABLE: f64 = 3e-3;
+/// Neighbours that may be off together: more are a motion that turns sharply.
+const TOGETHER: usize = 2;
+/// Share of a palm's contacts beyond which they are not outliers but what the sensor is like.
+const MOST: f64 = 0.05;
+/// Fewest contacts of a palm whose scatter can be told.
+const FEWEST: usize = 20;
+/// Median of the length of a vector of two standard normal numbers.
+const MEDIAN_LENGTH: f64 = 1.177_410_022_515_474_7;
+
+/// Moves contacts on planes that are off to where those around them say, and tells their samples and palms. `deviation` is that of a contact, m.
+pub(super) fn mended(contacts: &mut [Vec<Contact>], times: &[f64], deviation: f64) -> Vec<(usize, usize)> {
+    let palms = contacts.iter().flatten().map(|contact| contact.palm + 1).max().unwrap_or(0);
+    let mut all = Vec::new();
+    for palm in 0..palms {
+        let way = Way::new(contacts, times, palm);
+        let off = way.off(deviation);
+        for &(j, c) in &off {
+            let k = way.samples[j];
+            let touched = contacts[k].iter_mut().filter(|contact| contact.palm == palm);
+            touched.for_each(|contact| {
+                contact.u += contact.W.cross(c - contact.c);
+                contact.c = c;
+            });
+            all.push((k, palm));
+        }
+    }
+    all.sort_unstable();
+    all
+}
+
+/// The contacts of a palm.
+struct Way {
+    samples: Vec<usize>,
+    times: Vec<f64>,
+    points: Vec<DVec3>,
+    /// Whether the same palms are touched around, and this one is flat.
+    steady: Vec<bool>,
+}
+
+impl Way {
+    fn new(contacts: &[Vec<Contact>], times: &[f64], palm: usize) -> Self {
+        let touched = |k: usize| contacts[k].iter().map(|contact| contact.palm);
+        let steady = |k: usize| {
+            let around = k.saturating_sub(STEADY)..(k + STEADY + 1).min(contacts.len());
+            around.into_iter().all(|other| touched(other).eq(touched(k)))
+        };
+        let one = |k: usize| {
+            let contact = contacts[k].iter().find(|contact| contact.palm == palm)?;
+            Some((k, contact.c, steady(k) && contact.shape == glam::DMat3::ZERO))
+        };
+        let found: Vec<_> = (0..contacts.len()).filter_map(one).collect();
+        Self {
+            samples: found.iter().map(|of| of.0).collect(),
+            times: found.iter().map(|of| times[of.0]).collect(),
+            points: found.iter().map(|of| of.1).collect(),
+            steady: found.iter().map(|of| of.2).collect(),
+        }
+    }
+
+    /// Numbers of the contacts that are off, and where they should be.
+    fn off(&self, deviation: f64) -> Vec<(usize, DVec3)> {
+        let count = self.points.len();
+        if count < FEWEST {
+            return Vec::new();
+        }
+        let mean = self.points.iter().sum::<DVec3>() / count as f64;
+        let square = self.points.iter().map(|point| point.distance_squared(mean)).sum::<f64>();
+        let least = deviation.max(NOTABLE / OFF * (square / count as f64).sqrt());
+        let limit = |left: &[f64]| {
+            let mut scatter: Vec<f64> = left.iter().copied().filter(|left| *left > 0.0).collect();
+            scatter.sort_by(f64::total_cmp);
+            let usual = scatter.get(scatter.len() / 2).map_or(f64::INFINITY, |median| median / MEDIAN_LENGTH);
+            OFF * usual.max(least)
+        };
+        // Medians are not misled by a few that are off, but by the bend of the way; cubics the other way round.
+        let left: Vec<f64> = (0..count).map(|j| self.points[j].distance(self.usual(j))).collect();
+        let most = limit(&left);
+        let suspected: Vec<bool> = (0..count).map(|j| self.steady[j] && left[j] > most).collect();
+        let left: Vec<f64> =
+            (0..count).map(|j| self.told(j, &suspected).map_or(0.0, |told| told.1)).collect();
+        let most = limit(&left);
+        let off: Vec<usize> = (0..count).filter(|&j| suspected[j] && left[j] > most).collect();
+        let together = off.chunk_by(|a, b| *b == a + 1).filter(|run| run.len() <= TOGETHER);
+        let off: Vec<_> =
+            together.flatten().filter_map(|&j| Some((j, self.told(j, &suspected)?.0))).collect();
+        if off.len() as f64 > MOST * count as f64 { Vec::new() } else { off }
+    }
+
+    /// The median of the contacts around one, at an end carried on to it by the slope of medians.
+    fn usual(&self, j: usize) -> DVec3 {
+        let inner = |j: usize| j.clamp(STEADY, self.points.len() - 1 - STEADY);
+        let centre = inner(j);
+        let median = self.median(centre);
+        if centre == j {
+            return median;
+        }
+        let further = inner(2 * centre - j);
+        let share = (j as f64 - centre as f64) / (further as f64 - centre as f64);
+        median + (self.median(further) - median) * share
+    }
+
+    /// The median of each coordinate.
+    fn median(&self, centre: usize) -> DVec3 {
+        let around = &self.points[centre - STEADY..=centre + STEADY];
+        let of = |axis: usize| {
+            let mut values: Vec<f64> = around.iter().map(|point| point[axis]).collect();
+            values.sort_by(f64::total_cmp);
+            values[values.len() / 2]
+        };
+        DVec3::new(of(0), of(1), of(2))
+    }
+
+    /// Where the contacts beside one say that it is, and by how many metres of unit noise it is elsewhere; those that are `out` say nothing. None
+    /// with too few of them.
+    fn told(&self, j: usize, out: &[bool]) -> Option<(DVec3, f64)> {
+        let near = |other: &usize| !out[*other] && self.samples[*other].abs_diff(self.samples[j]) <= AMONG;
+        let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).take(2 * BESIDE).collect();
+        let after: Vec<usize> =
+            (j + 1..self.points.len()).take(AMONG).filter(near).take(2 * BESIDE).collect();
+        // At an end more of them on one side.
+        let from_before = before.len().min((2 * BESIDE).saturating_sub(after.len()).max(BESIDE));
+        let from_after = after.len().min(2 * BESIDE - from_before);
+        if from_before + from_after < 2 * BESIDE {
+            return None;
+        }
+        let beside: Vec<usize> =
+            before.into_iter().take(from_before).chain(after.into_iter().take(from_after)).collect();
+        // The cubic through all of them.
+        let weight = |i: &usize| -> f64 {
+            let others = beside.iter().filter(|other| *other != i);
+            others
+                .map(|&other| (self.times[j] - self.times[other]) / (self.times[*i] - self.times[other]))
+                .product()
+        };
+        let weights: Vec<f64> = beside.iter().map(weight).collect();
+        let point: DVec3 = beside.iter().zip(&weights).map(|(&i, weight)| self.points[i] * *weight).sum();
+        let noise = (1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>()).sqrt();
+        Some((point, point.distance(self.points[j]) / noise))
+    }
+}
