@@ -307,7 +307,7 @@ fn impulses_alone_give_the_motion_too() {
 fn three_frictionless_planes_with_impulses_alone_go_to_the_other_estimator() {
     let scene = include_str!("../../scenes/three-tilting-palms.toml")
         .replace("friction = 0.3", "friction = 0.0")
-        .replace("duration = 3.4", "duration = 0.1");
+        .replace("duration = 4.4", "duration = 0.1");
     let scratch = simulated("three-impulses", &scene);
     scratch.write("log.csv", &without_columns(&scratch.read("log.csv"), &['f']));
     let run = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]);

@@ -136,6 +136,18 @@ fn a_jam_is_told_and_leaves_no_log() {
     assert_eq!(scratch.names(), ["scene.toml"]);
 }
 
+/// Angle at the end from the vertical, rad, of the body's own axis that pointed up at the start.
+fn downwards(log: &Table) -> f64 {
+    let places = ["qw", "qx", "qy", "qz"].map(|name| log.column(name));
+    // The world's vertical in body axes: the last row of the matrix from body to world.
+    let up = |row: &Vec<String>| {
+        let [w, x, y, z] = places.map(|place| row[place].parse::<f64>().unwrap());
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)]
+    };
+    let [first, last] = [&log.rows[0], &log.rows[log.rows.len() - 1]].map(up);
+    (0..3).map(|k| first[k] * last[k]).sum::<f64>().acos()
+}
+
 #[test]
 fn tilting_palms_turn_the_object_over_and_a_page_shows_it() {
     let scratch = Scratch::new("demo-tilting");
@@ -143,7 +155,9 @@ fn tilting_palms_turn_the_object_over_and_a_page_shows_it() {
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let said: Value = serde_json::from_str(&run.stdout).unwrap();
     let turn = said["turn_rad"].as_f64().unwrap().to_degrees();
-    assert!((turn - 58.6355).abs() < 1e-3, "{turn}");
+    assert!((turn - 177.9373).abs() < 1e-3, "{turn}");
+    let over = downwards(&Table::parse(&scratch.read("out/log.csv"))).to_degrees();
+    assert!(over > 90.0 && (over - 140.4991).abs() < 1e-3, "{over}");
     let names = ["log.csv", "manifest.json", "report.html", "scene.toml", "scene.xml", "summary.json"];
     for name in names {
         assert!(scratch.path().join("out").join(name).exists(), "{name}");
