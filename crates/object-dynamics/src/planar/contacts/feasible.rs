@@ -3,6 +3,7 @@
 //! C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), chapter 23: algorithms NNLS (23.10) and LDP
 //! (23.27).
 
+use super::respond::STEPS;
 use nalgebra::{DMatrix, DVector};
 
 /// Forces this many times the least ones are not looked for: a squeeze that large is no answer of a rigid body.
@@ -52,12 +53,14 @@ fn non_negative(a: &DMatrix<f64>, b: &DVector<f64>) -> Option<DVector<f64>> {
         loop {
             let trial = least_squares(a, b, &passive)?;
             let blocked = (0..count).filter(|&j| passive[j] && trial[j] <= 0.0);
-            let share = blocked.map(|j| u[j] / (u[j] - trial[j])).fold(f64::INFINITY, f64::min);
-            if share == f64::INFINITY {
+            let shares = blocked.map(|j| (u[j] / (u[j] - trial[j]), j)).filter(|(share, _)| !share.is_nan());
+            let Some((share, nearest)) = shares.min_by(|a, b| a.0.total_cmp(&b.0)) else {
                 u = trial;
                 break;
-            }
+            };
             u += (&trial - &u) * share;
+            // Whatever rounding leaves of it: one less each time, so that this ends.
+            (passive[nearest], u[nearest]) = (false, 0.0);
             for j in 0..count {
                 if passive[j] && u[j] <= f64::EPSILON * trial.amax() {
                     (passive[j], u[j]) = (false, 0.0);
@@ -76,7 +79,7 @@ fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, passive: &[bool]) -> Option
     let chosen: Vec<usize> = (0..a.ncols()).filter(|&j| passive[j]).collect();
     let part = a.select_columns(&chosen);
     let limit = f64::EPSILON * part.norm();
-    let solved = part.svd(true, true).solve(b, limit).ok()?;
+    let solved = part.try_svd(true, true, f64::EPSILON, STEPS)?.solve(b, limit).ok()?;
     let mut full = DVector::zeros(a.ncols());
     for (k, &j) in chosen.iter().enumerate() {
         full[j] = solved[k];

@@ -220,17 +220,21 @@ fn independent(rows: &[Vector3<f64>]) -> bool {
     volume > DEPENDENT
 }
 
+/// Steps within which singular values are found, if at all: without a limit there are matrices in which they are looked for without end.
+pub(super) const STEPS: usize = 1000;
+
 /// Solution of least size of `rows . x = right`, in the sense of least squares.
 pub(super) fn least_norm(rows: &[Vector3<f64>], right: &[f64]) -> LeastNorm {
     if rows.is_empty() {
         return LeastNorm { solution: Vector3::zeros(), shares: Vec::new(), rank: 0, residual: 0.0 };
     }
     let matrix = DMatrix::from_fn(rows.len().max(3), 3, |i, j| rows.get(i).map_or(0.0, |row| row[j]));
-    let svd = matrix.svd(true, true);
-    let (Some(u), Some(v_t)) = (svd.u.as_ref(), svd.v_t.as_ref()) else {
+    let none = || {
         let shares = vec![0.0; rows.len()];
-        return LeastNorm { solution: Vector3::zeros(), shares, rank: 0, residual: f64::INFINITY };
+        LeastNorm { solution: Vector3::zeros(), shares, rank: 0, residual: f64::INFINITY }
     };
+    let Some(svd) = matrix.try_svd(true, true, f64::EPSILON, STEPS) else { return none() };
+    let (Some(u), Some(v_t)) = (svd.u.as_ref(), svd.v_t.as_ref()) else { return none() };
     let limit = DEPENDENT * svd.singular_values.max();
     let (mut solution, mut shares, mut rank) = (Vector3::zeros(), vec![0.0; rows.len()], 0);
     for k in 0..3 {
@@ -250,7 +254,7 @@ pub(super) fn least_norm(rows: &[Vector3<f64>], right: &[f64]) -> LeastNorm {
 
 /// Least-norm solution of a square system, and an orthonormal basis of its null space.
 fn split(matrix: &DMatrix<f64>, wanted: &DVector<f64>) -> Option<(DVector<f64>, DMatrix<f64>)> {
-    let svd = matrix.clone().svd(true, true);
+    let svd = matrix.clone().try_svd(true, true, f64::EPSILON, STEPS)?;
     let limit = DEPENDENT * svd.singular_values.max();
     let v_t = svd.v_t.as_ref()?;
     let null: Vec<_> = (0..svd.singular_values.len())
