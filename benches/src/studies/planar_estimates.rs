@@ -114,21 +114,27 @@ pub(crate) fn main() -> Result<(), Failure> {
     Ok(())
 }
 
+/// Mean radius of a random outline, m, and the harmonics of its radius function.
+pub(crate) fn outline(between: &mut impl FnMut(f64, f64) -> f64) -> (f64, Vec<f64>, Vec<f64>) {
+    let length = 0.03 * 100_f64.powf(between(0.0, 1.0));
+    let harmonics = 2 + between(0.0, 4.0) as usize;
+    let mut cosines = vec![length, length * between(-0.2, 0.2)];
+    let mut sines = vec![0.0, length * between(-0.2, 0.2)];
+    for k in 2..=harmonics {
+        let most = 0.35 / (k * k - 1) as f64;
+        cosines.push(length * between(-most, most));
+        sines.push(length * between(-most, most));
+    }
+    (length, cosines, sines)
+}
+
 /// Scenes whose contacts last for at least half of the time.
 fn drawn(count: usize) -> Result<Vec<Scene>, Failure> {
     let mut random = Random::new(SEED);
     let mut all = Vec::new();
     while all.len() < count {
         let mut between = |a: f64, b: f64| random.within(a, b);
-        let length = 0.03 * 100_f64.powf(between(0.0, 1.0));
-        let harmonics = 2 + between(0.0, 4.0) as usize;
-        let mut cosines = vec![length, length * between(-0.2, 0.2)];
-        let mut sines = vec![0.0, length * between(-0.2, 0.2)];
-        for k in 2..=harmonics {
-            let most = 0.35 / (k * k - 1) as f64;
-            cosines.push(length * between(-most, most));
-            sines.push(length * between(-most, most));
-        }
+        let (length, cosines, sines) = outline(&mut between);
         let Ok(shape) = FourierBody::new(&cosines, &sines) else { continue };
         if shape.radius_bounds().min < 0.1 * length {
             continue;

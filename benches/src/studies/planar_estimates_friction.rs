@@ -3,6 +3,7 @@
 //!
 //! `cargo xtask study planar_estimates_friction [BODIES [SEED]]` writes docs/planar-estimates-friction.md.
 
+use super::planar_estimates::outline;
 use crate::planar_tally::Tally;
 use glam::DVec2;
 use recon::contact_kinematics::MotionLaw;
@@ -95,15 +96,7 @@ fn drawn(count: usize, seed: u64, tried: &mut usize) -> Result<Vec<Drawn>, Failu
 /// A scene; none where the body is not convex or has no room.
 fn one(random: &mut Random) -> Result<Option<Drawn>, Failure> {
     let mut between = |a: f64, b: f64| random.within(a, b);
-    let length = 0.03 * 100_f64.powf(between(0.0, 1.0));
-    let harmonics = 2 + between(0.0, 4.0) as usize;
-    let mut cosines = vec![length, length * between(-0.2, 0.2)];
-    let mut sines = vec![0.0, length * between(-0.2, 0.2)];
-    for k in 2..=harmonics {
-        let most = 0.35 / (k * k - 1) as f64;
-        cosines.push(length * between(-most, most));
-        sines.push(length * between(-most, most));
-    }
+    let (length, cosines, sines) = outline(&mut between);
     let gyration = length * length * between(0.3, 0.6);
     let mass = PlanarMass::from_gyration(200.0 * length * length * between(0.5, 2.0), gyration)?;
     let time = (length / GRAVITY).sqrt();

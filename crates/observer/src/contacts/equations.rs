@@ -2,7 +2,7 @@
 
 use super::flow::Transition;
 use super::solve::Step;
-use super::state::{MOTION, Tangent};
+use super::state::{MOTION, Tangent, tangent};
 use glam::DVec3;
 use nalgebra::{SMatrix, SVector};
 
@@ -54,7 +54,7 @@ pub(super) struct Row<const P: usize> {
 
 impl<const P: usize> Row<P> {
     pub(super) fn tangent(&self) -> Tangent {
-        Tangent::from_fn(|i, _| self.by_motion[i / 3][i % 3])
+        tangent(&self.by_motion)
     }
 
     pub(super) fn zero() -> Self {
@@ -124,7 +124,7 @@ impl<const P: usize> Equations<P> {
     pub(super) fn add_split(&mut self, j: usize, row: &Row<P>, next: &[DVec3; 4]) {
         self.add(j, row);
         let own = row.tangent();
-        let after = Tangent::from_fn(|i, _| next[i / 3][i % 3]);
+        let after = tangent(next);
         self.nodes[j].next.ger(1.0, &own, &after, 1.0);
         let node = &mut self.nodes[j + 1];
         node.own.ger(1.0, &after, &after, 1.0);

@@ -7,7 +7,7 @@ use super::options::{ContactEstimateError, ContactOptions, check};
 use super::plane;
 use super::problem::{Problem, Units};
 use super::record::{Contact, Record};
-use super::rivals::{decided, rivalled, still};
+use super::rivals::{decided, still};
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{fine, fine_nodes, problem, refined, search};
@@ -160,7 +160,7 @@ impl Source<'_> {
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
         let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
         let (mut doubt, mut against, mut open, mut covariances) = (None, None, None, None);
-        if !options.planar && solved.explained() && rivalled(log, &options.noise, &units) {
+        if !options.planar && solved.explained() && longest > 0.0 && log.frictionless() {
             before += solved.iterations;
             (solved, covariances, open) =
                 decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
@@ -199,7 +199,7 @@ impl Source<'_> {
             (log.times[log.times.len() - 1] - log.times[0], SHORTEST * units.length / units.speed);
         let short = (thinned.is_none() && duration < needed).then_some(Reason::TooShort { duration, needed });
         let suspects = match options.suspects && thinned.is_none() && slips.is_empty() {
-            true => self.suspects(&problem, &solved, &covariances, &motions, (&modes, longest)),
+            true => self.suspects(&problem, &solved, &covariances, &motions, (log, &modes, longest)),
             false => Vec::new(),
         };
         let found = Found {
@@ -222,11 +222,11 @@ impl Source<'_> {
         solved: &Solved<CONSTANTS>,
         covariances: &Covariances<CONSTANTS>,
         motions: &[(Motion, Deviations)],
-        (modes, longest): (&[[ContactMode; MOST_PALMS]], f64),
+        (record, modes, longest): (&Record, &[[ContactMode; MOST_PALMS]], f64),
     ) -> Vec<Suspect> {
         let remade = |change: &Change| {
             let apply = |k: usize, contact: &mut Contact, origin| change.apply(k, contact, origin);
-            let mut record = self.with_blows(Record::changed(self.log, self.options, apply)?);
+            let mut record = self.with_blows(record.changed(self.log, self.options, apply)?);
             record.set_modes(modes);
             let open = record.with_gaps_open(self.units.length / self.units.speed);
             Some(open.as_ref().unwrap_or(&record).averaged(longest))
@@ -329,7 +329,7 @@ impl Found<'_> {
         let deviation = |i: usize| covariances.body[(i, i)].max(0.0).sqrt() * wider;
         ContactEstimate {
             states: motions.iter().map(|(motion, _)| state(motion)).collect(),
-            misread: log.misread.clone(),
+            misread: log.misread.iter().map(|of| (of.sample, of.palm)).collect(),
             suspects: suspects.to_vec(),
             pose_errors: if options.pose_errors { joint() } else { None },
             relied_on,

@@ -21,25 +21,37 @@ const FEWEST: usize = 20;
 /// Median of the length of a vector of two standard normal numbers.
 const MEDIAN_LENGTH: f64 = 1.177_410_022_515_474_7;
 
-/// Moves contacts on planes that are off to where those around them say, and tells their samples and palms. `deviation` is that of a contact, m.
-pub(super) fn mended(contacts: &mut [Vec<Contact>], times: &[f64], deviation: f64) -> Vec<(usize, usize)> {
+/// A contact that is off.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Misread {
+    pub(super) sample: usize,
+    /// From 0.
+    pub(super) palm: usize,
+    /// Where those around it say that it is, from the record's origin, m.
+    c: DVec3,
+}
+
+/// Contacts on planes that are off, by their samples. `deviation` is that of a contact, m.
+pub(super) fn misread(contacts: &[Vec<Contact>], times: &[f64], deviation: f64) -> Vec<Misread> {
     let palms = contacts.iter().flatten().map(|contact| contact.palm + 1).max().unwrap_or(0);
     let mut all = Vec::new();
     for palm in 0..palms {
         let way = Way::new(contacts, times, palm);
         let off = way.off(deviation);
-        for &(j, c) in &off {
-            let k = way.samples[j];
-            let touched = contacts[k].iter_mut().filter(|contact| contact.palm == palm);
-            touched.for_each(|contact| {
-                contact.u += contact.W.cross(c - contact.c);
-                contact.c = c;
-            });
-            all.push((k, palm));
+        all.extend(off.into_iter().map(|(j, c)| Misread { sample: way.samples[j], palm, c }));
+    }
+    all.sort_unstable_by_key(|of| (of.sample, of.palm));
+    all
+}
+
+/// Moves them to where those around them say.
+pub(super) fn mend(contacts: &mut [Vec<Contact>], misread: &[Misread]) {
+    for &Misread { sample, palm, c } in misread {
+        for contact in contacts[sample].iter_mut().filter(|contact| contact.palm == palm) {
+            contact.u += contact.W.cross(c - contact.c);
+            contact.c = c;
         }
     }
-    all.sort_unstable();
-    all
 }
 
 /// The contacts of a palm.

@@ -5,7 +5,7 @@ use super::equations::{Equations, Gradient, Row};
 use super::flow::Carried;
 use super::problem::{Problem, Unknowns};
 use super::rows::Rows;
-use super::state::{Motion, Tangent};
+use super::state::{Motion, Tangent, tangent};
 use glam::DVec3;
 use nalgebra::{Matrix3, Vector3};
 
@@ -95,7 +95,7 @@ impl Residuals {
             for ((own, next), weight) in condition.rows.iter().zip(weighted.iter()) {
                 mixed.motions[condition.node] += own.tangent() * *weight;
                 if let Some(after) = mixed.motions.get_mut(condition.node + 1) {
-                    *after += Tangent::from_fn(|i, _| next[i / 3][i % 3]) * *weight;
+                    *after += tangent(next) * *weight;
                 }
                 mixed.body += own.by_body * *weight;
             }

@@ -3,7 +3,7 @@
 use super::impulses;
 use super::noise::{ContactNoiseLevel, WrenchNoise, force_trace};
 use super::options::ContactOptions;
-use super::outliers::mended;
+use super::outliers::{Misread, mend, misread};
 use super::problem::Units;
 use crate::three_palms::running_integral;
 use contact_kinematics::PalmSurface;
@@ -79,8 +79,8 @@ pub(super) struct Record {
     pub(super) intervals: Vec<Interval>,
     /// Whether the impulses of all palms are read.
     pub(super) all_impulses: bool,
-    /// Samples and palms, from 0, of contacts that were misread, and stand where those around them say.
-    pub(super) misread: Vec<(usize, usize)>,
+    /// Contacts that were misread, and stand where those around them say.
+    pub(super) misread: Vec<Misread>,
 }
 
 impl Contact {
@@ -181,13 +181,23 @@ impl Record {
     /// direction of friction, the ratio by which modes are told, and how a force changes over an interval. The noises of both
     /// are taken to be independent; where no force is measured, it is that of the impulses around.
     pub(super) fn new(log: &ContactLog, options: &ContactOptions) -> Option<Self> {
-        Self::changed(log, options, |_, _, _| {})
+        Self::built(log, options, None, |_, _, _| {})
     }
 
-    /// The same where each contact is changed first, with its sample and the record's origin.
+    /// The same of its log where each contact is changed first, with its sample and the record's origin.
     pub(super) fn changed(
+        &self,
         log: &ContactLog,
         options: &ContactOptions,
+        change: impl Fn(usize, &mut Contact, DVec3),
+    ) -> Option<Self> {
+        Self::built(log, options, Some(&self.misread), change)
+    }
+
+    fn built(
+        log: &ContactLog,
+        options: &ContactOptions,
+        known: Option<&[Misread]>,
         change: impl Fn(usize, &mut Contact, DVec3),
     ) -> Option<Self> {
         let noise = &options.noise;
@@ -202,7 +212,8 @@ impl Record {
         let square = points().map(|touch| touch.p_WC.distance_squared(origin)).sum::<f64>();
         let mut contacts: Vec<Vec<Contact>> =
             (0..times.len()).map(|k| contacts_at(log, k, origin, options)).collect();
-        let misread = mended(&mut contacts, &times, noise.contact);
+        let misread = known.map_or_else(|| misread(&contacts, &times, noise.contact), <[_]>::to_vec);
+        mend(&mut contacts, &misread);
         for (k, contacts) in contacts.iter_mut().enumerate() {
             contacts.iter_mut().for_each(|contact| change(k, contact, origin));
         }

@@ -97,15 +97,10 @@ impl Spread {
 /// A motion that was decided on, with its covariances where there were others to compare it with, and whether another one cannot be ruled out.
 pub(super) type Decided = (Solved<CONSTANTS>, Option<Covariances<CONSTANTS>>, Option<Reason>);
 
-/// Whether a motion in space may have rivals: of a body that is nearly round noise leaves its spin between palms without friction open, which
-/// is felt through its inertia alone.
-pub(super) fn rivalled(record: &Record, noise: &ContactNoiseLevel, units: &Units) -> bool {
-    noise.contact > noise.floor * units.length / units.speed && record.frictionless()
-}
-
 /// The most probable of the motions that are found, begun from the one that was found first. None where the equations are singular.
 ///
-/// In space a body whose moments are known well has no others.
+/// In space a body whose moments are known well has no others. Of one that is nearly round noise leaves the spin between palms without friction
+/// open, which is felt through its inertia alone.
 pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option<Decided> {
     let mut all = vec![(found, std::mem::take(&mut problem.frozen))];
     let mut best = 0;

@@ -9,6 +9,11 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 pub(super) const MOTION: usize = 12;
 pub(super) type Tangent = SVector<f64, MOTION>;
 
+/// Of its four vectors.
+pub(super) fn tangent(parts: &[DVec3; 4]) -> Tangent {
+    Tangent::from_fn(|i, _| parts[i / 3][i % 3])
+}
+
 /// Motion at a node; positions from the record's origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
@@ -79,6 +84,6 @@ impl Motion {
     pub(super) fn from(&self, other: &Self) -> Tangent {
         let turn = logarithm((self.q * other.q.conjugate()).normalize());
         let parts = [self.p - other.p, self.v - other.v, self.L - other.L, turn];
-        Tangent::from_fn(|i, _| parts[i / 3][i % 3])
+        tangent(&parts)
     }
 }
