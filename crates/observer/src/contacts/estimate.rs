@@ -11,13 +11,14 @@ use super::rivals::{decided, still};
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{fine, fine_nodes, problem, refined, search};
+use super::sharp::sharpened;
 use super::solve::{Covariances, Solved};
 use super::state::Motion;
 use super::suspects::{Change, suspects};
 use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
 use crate::faults::Suspect;
-use crate::three_palms::{PoseErrors, Reason, Reliability};
+use crate::three_palms::{LARGEST_MISFIT, PoseErrors, Reason, Reliability};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix6, Vector6};
 use object_dynamics::{BodyState, ContactLog, ContactMode, MOST_PALMS, MassProperties};
@@ -189,6 +190,11 @@ impl Source<'_> {
                 (solved, covariances, open) =
                     decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
             }
+        }
+        if options.guessed_floor && longest == 0.0 && solved.misfit() < LARGEST_MISFIT {
+            before += solved.iterations;
+            let (sharp, of) = sharpened(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
+            (solved, covariances) = (sharp, Some(of));
         }
         let covariances =
             covariances.or_else(|| solved.covariances(&problem)).ok_or(ContactEstimateError::Singular)?;

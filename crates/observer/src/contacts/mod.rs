@@ -1,6 +1,7 @@
 //! Motion, mass and inertia from contacts of any palms: nodes linked by measured impulses.
 
 mod axes;
+mod backwards;
 mod body;
 mod cold;
 mod equations;
@@ -24,6 +25,7 @@ mod rows;
 mod samples;
 mod search;
 mod second_order;
+mod sharp;
 mod solve;
 mod spurious;
 mod state;

@@ -1,3 +1,4 @@
+use super::problem::Units;
 use glam::DVec3;
 use nalgebra::Matrix6;
 use std::ops::{Add, AddAssign};
@@ -27,6 +28,11 @@ pub struct ImpulseNoise {
 }
 
 impl ContactNoiseLevel {
+    /// Whether the noise of contacts is what conditions are off by.
+    pub(super) fn limits(&self, units: &Units) -> bool {
+        self.contact > self.floor * units.length / units.speed
+    }
+
     /// Standard deviation of each axis of the force `f`, N.
     pub(super) fn force(&self, f: DVec3) -> f64 {
         self.force_fixed.hypot(self.force_share * f.length())

@@ -81,19 +81,22 @@ fn beginning(
     nodes: &[usize],
     way: &Way,
 ) -> Option<(Unknowns, usize)> {
-    let mut iterations = 0;
+    let (mut best, mut iterations) = (None, 0);
     for &lasts in way.beginnings {
         let end = until(problem, nodes, 0, lasts);
         let part = problem.record.part(0..nodes[end] + 1);
         let mut window = problem.on(&part);
         let Some((solved, before)) = whole(&mut window, options) else { continue };
         iterations += before + solved.iterations;
-        if solved.explained() {
+        if best.is_none() && solved.explained() || problem.is_found(&solved) {
             problem.nodes = nodes[..=end].to_vec();
-            return Some((refined(problem, &window.nodes, &solved.unknowns), iterations));
+            best = Some(refined(problem, &window.nodes, &solved.unknowns));
+        }
+        if problem.is_found(&solved) {
+            break;
         }
     }
-    None
+    Some((best?, iterations))
 }
 
 /// The last of `nodes` within so many natural times of node `from`.

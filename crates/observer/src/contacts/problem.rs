@@ -14,7 +14,8 @@ use glam::{DQuat, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector6};
 
 /// Links are never taken for better than this share of a condition's deviation, all together: without noise of the forces the
-/// chain would be rigid, and the equations singular in double precision. It adds a thousandth to the variance of a velocity.
+/// chain would be rigid, and the equations singular in double precision. It adds a thousandth to the variance of a velocity where noise is what
+/// conditions are off by; elsewhere links are no better than conditions.
 const LINK_FLOOR: f64 = 0.03;
 
 /// Information that keeps a combination of the body's constants, where the conditions claim to have one.
@@ -214,7 +215,7 @@ impl Problem<'_> {
     }
 
     /// The motion at each sample of the record.
-    fn at_all_samples(&self, at: &Unknowns) -> Vec<Motion> {
+    pub(super) fn at_all_samples(&self, at: &Unknowns) -> Vec<Motion> {
         let own = self.at_samples(at);
         let mut all = Vec::with_capacity(self.record.times.len());
         for (j, &from) in self.nodes.iter().enumerate() {
@@ -453,13 +454,18 @@ impl Problem<'_> {
         cost + (self.body_information() * d).dot(&d)
     }
 
+    /// What links are never taken for better than, as a share of a condition's deviation, all together.
+    fn link_floor(&self) -> f64 {
+        if self.noise.limits(&self.units) { LINK_FLOOR } else { 1.0 }
+    }
+
     /// Noise with the moment about `p` in place of the origin, and a floor.
     pub(super) fn about(&self, noise: &WrenchNoise, p: DVec3) -> WrenchNoise {
         let mut shift = Matrix6::identity();
         shift.fixed_view_mut::<3, 3>(3, 0).copy_from(&Matrix3::from(-cross_matrix(p)));
         let moved = |of: &Matrix6<f64>| shift * of * shift.transpose();
         let mut white = moved(&noise.white);
-        let deviation = LINK_FLOOR * self.condition_deviation() / (self.nodes.len() as f64).sqrt();
+        let deviation = self.link_floor() * self.condition_deviation() / (self.nodes.len() as f64).sqrt();
         let floor = self.units.mass * deviation;
         for i in 0..6 {
             let unit = if i < 3 { 1.0 } else { self.units.length };

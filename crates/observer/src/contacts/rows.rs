@@ -125,6 +125,11 @@ impl Rows {
         2.0 * (0..self.count).map(|i| self.whitening[(i, i)].ln()).sum::<f64>()
     }
 
+    /// Residual of the normal condition in its deviation.
+    pub(super) fn normal(&self) -> f64 {
+        self.whitening[(0, 0)] * self.residual[0]
+    }
+
     /// Squared residuals in their deviations.
     pub(super) fn cost(&self) -> f64 {
         (self.whitening * self.residual).norm_squared()

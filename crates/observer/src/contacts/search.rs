@@ -1,5 +1,6 @@
 //! From nothing to the most probable motion and body: coarse solutions first, then all nodes.
 
+use super::backwards::backwards;
 use super::body::CONSTANTS;
 use super::cold;
 use super::onward::{LONG, SHORT, onward};
@@ -18,6 +19,8 @@ const COARSE: f64 = 0.08;
 const COARSE_FLOORS: [f64; 2] = [1e-2, 1e-3];
 /// Share of a condition's deviation, of all in a link together, that noise of the forces may make in it to be left out between nodes.
 const NEGLIGIBLE: f64 = 0.1;
+/// What conditions without noise are off by at most where nothing better is looked for, as a share of the natural speed.
+const NOTHING: f64 = 1e-6;
 /// How much better the inertia is taken for known at first, in information.
 const BALL: f64 = 30.0;
 /// Linearisations that each of the solutions may take.
@@ -37,9 +40,35 @@ const PRIOR_MASS: f64 = 10.0;
 /// Deviation of the first orientation, rad: an unknown body has no axes but those it is given.
 const FIRST_TURN: f64 = 1e-5;
 
-/// The most probable motion and body from nothing, and the linearisations before the last solution: of a long record from its beginning on, of
-/// others at once; where that is not explained a short one without friction from its beginning on too, and the best is taken.
+/// The most probable motion and body from nothing, and the linearisations before the last solution; of a body in space without friction that is not
+/// explained from the end of the record as well.
 pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
+    let found = forwards(problem, options);
+    let explained = found.as_ref().is_some_and(|(found, _)| problem.is_found(found));
+    if explained || problem.planar || !problem.record.frictionless() {
+        return found;
+    }
+    let (nodes, frozen) = (problem.nodes.clone(), problem.frozen.clone());
+    let before = found.as_ref().map_or(0, |(found, before)| before + found.iterations);
+    match backwards(problem, options) {
+        Some((other, more))
+            if found.as_ref().is_none_or(|(found, _)| other.equations.cost < found.equations.cost) =>
+        {
+            Some((other, before + more))
+        }
+        _ => {
+            (problem.nodes, problem.frozen) = (nodes, frozen);
+            found
+        }
+    }
+}
+
+/// From the beginning on: of a long record over more and more of it, of others at once; where that is not explained a short one without friction
+/// over more and more of it too, and the best is taken.
+pub(super) fn forwards(
+    problem: &mut Problem,
+    options: &ContactOptions,
+) -> Option<(Solved<CONSTANTS>, usize)> {
     let mut best: Option<(Solved<CONSTANTS>, Vec<SVector<f64, CONSTANTS>>)> = None;
     let mut before = 0;
     for way in [Some(&LONG), None, Some(&SHORT)] {
@@ -50,7 +79,7 @@ pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<
         };
         let Some((found, more)) = found else { continue };
         before += more;
-        if found.explained() {
+        if problem.is_found(&found) {
             return Some((found, before));
         }
         before += found.iterations;
@@ -62,6 +91,14 @@ pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<
     (problem.nodes, problem.frozen) = (fine_nodes(problem), frozen);
     before -= best.iterations;
     Some((best, before))
+}
+
+impl Problem<'_> {
+    /// Whether there is nothing to look for beyond a solution: noise explains what is left of it, or next to nothing is left.
+    pub(super) fn is_found(&self, solved: &Solved<CONSTANTS>) -> bool {
+        let nothing = NOTHING * self.units.speed / self.noise.floor;
+        solved.explained() && (self.noise.limits(&self.units) || solved.misfit() < nothing * nothing)
+    }
 }
 
 /// A coarse solution from nothing and the last one from there, with one floor of the coarse conditions after the other until noise explains
@@ -86,7 +123,7 @@ pub(super) fn whole(problem: &mut Problem, options: &ContactOptions) -> Option<(
         let start = refined(problem, &coarse_nodes, &coarse.unknowns);
         before += coarse.iterations;
         let Some(found) = fine(problem, start) else { continue };
-        if found.explained() {
+        if problem.is_found(&found) {
             return Some((found, before));
         }
         let better = best.as_ref().is_none_or(|best| found.equations.cost < best.equations.cost);

@@ -34,7 +34,7 @@ const FEWEST: usize = 5;
 pub(super) fn longest(record: &Record, noise: &ContactNoiseLevel, units: &Units) -> f64 {
     let Units { length, speed, .. } = *units;
     let natural = length / speed;
-    if noise.contact <= noise.floor * natural {
+    if !noise.limits(units) {
         return 0.0;
     }
     let smooth = (noise.contact / length).sqrt().sqrt();

@@ -1,0 +1,59 @@
+//! A record read the other way: what bodies do without friction they do backwards as well, and its end is another beginning to search from.
+
+use super::body::{Body, CONSTANTS};
+use super::options::ContactOptions;
+use super::problem::{Problem, Unknowns};
+use super::record::{Contact, Interval, Record};
+use super::search::{fine, fine_nodes, forwards, refined};
+use super::solve::Solved;
+use super::state::Motion;
+use glam::DMat3;
+
+/// A solution by a search from the end of the record, and the linearisations before it. None unless one is explained.
+pub(super) fn backwards(
+    problem: &mut Problem,
+    options: &ContactOptions,
+) -> Option<(Solved<CONSTANTS>, usize)> {
+    let reversed = problem.record.reversed();
+    let mut turned = problem.on(&reversed);
+    let (found, before) = forwards(&mut turned, options).filter(|(found, _)| found.explained())?;
+    let last = reversed.times.len() - 1;
+    let nodes: Vec<usize> = turned.nodes.iter().rev().map(|k| last - k).collect();
+    let start = found.unknowns.reversed();
+    problem.nodes = fine_nodes(problem);
+    problem.frozen.clear();
+    let start = refined(problem, &nodes, &start);
+    Some((fine(problem, start)?, before + found.iterations))
+}
+
+impl Record {
+    fn reversed(&self) -> Self {
+        let contact = |contact: &Contact| Contact { u: -contact.u, W: -contact.W, ..*contact };
+        let interval = |of: &Interval| Interval { first: of.h * of.impulse.force - of.first, ..*of };
+        Self {
+            times: self.times.iter().rev().map(|t| -t).collect(),
+            samples: self.samples.iter().rev().copied().collect(),
+            contacts: self.contacts.iter().rev().map(|all| all.iter().map(contact).collect()).collect(),
+            wrenches: self.wrenches.iter().rev().copied().collect(),
+            intervals: self.intervals.iter().rev().map(interval).collect(),
+            misread: Vec::new(),
+            ..*self
+        }
+    }
+}
+
+impl Unknowns {
+    /// Of the record read the other way; axes of the body are again those of the world at the first sample.
+    fn reversed(&self) -> Self {
+        let first = self.motions.last().map(|motion| motion.q).unwrap_or_default();
+        let one = |motion: &Motion| Motion {
+            v: -motion.v,
+            L: -motion.L,
+            q: (motion.q * first.conjugate()).normalize(),
+            ..*motion
+        };
+        let inertia = self.body.inertia_along(DMat3::from_quat(first));
+        let body = Body::free(self.body.log_mass, inertia);
+        Self { motions: self.motions.iter().rev().map(one).collect(), body }
+    }
+}
