@@ -1,9 +1,10 @@
+use recon::contact_kinematics::PalmError;
 use recon::object_dynamics::planar as object_planar;
 use recon::object_dynamics::{
     ContactLogError, ContactSimulationError, LogError, MassError, NotThreePlanes,
     SceneError as DynamicsError, SimulationError,
 };
-use recon::observer::{ContactEstimateError, EstimateError};
+use recon::observer::ContactEstimateError;
 use recon::shape_bounds::{
     AlphaError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
     SurfaceError, planar,
@@ -147,13 +148,26 @@ pub(crate) enum CliError {
     ContactNoise(#[source] ContactLogError),
     #[error("the sensor noise of the scene makes the log unusable")]
     Noise(#[source] LogError),
-    #[error("the log gives no motion")]
-    Estimate(#[from] EstimateError),
+    #[error(
+        "palm {palm} has no contact force: the log needs f_{palm}, or tau_{palm} with the palm's moment of inertia in the scene (a log of contacts: fn_{palm}, or the impulse of every palm in three axes, Jx_{palm}, Jy_{palm}, Jz_{palm}); an ellipsoid is found from contacts alone (`recon reconstruct --without-forces`)"
+    )]
+    NoPalmForce {
+        /// Number from 1.
+        palm: usize,
+    },
+    #[error("palm {palm} at t = {t} s")]
+    PalmFrame {
+        /// Number from 1.
+        palm: usize,
+        /// s.
+        t: f64,
+        source: PalmError,
+    },
     #[error("the log gives no motion, and is unlike its scene: {odd}")]
     OddLog {
         /// What is odd about it.
         odd: String,
-        source: EstimateError,
+        source: ContactEstimateError,
     },
     #[error("the log cannot be followed")]
     Stream(#[from] recon::observer::StreamError),
@@ -277,7 +291,8 @@ impl CliError {
             | Self::PlanarContactLog(_)
             | Self::ContactNoise(_)
             | Self::Noise(_)
-            | Self::Estimate(_)
+            | Self::NoPalmForce { .. }
+            | Self::PalmFrame { .. }
             | Self::OddLog { .. }
             | Self::Stream(_)
             | Self::NoPage

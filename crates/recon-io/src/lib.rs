@@ -63,7 +63,7 @@ pub use scene::{
     SceneErrorKind, Sensors, Shape, Simulation,
 };
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
-pub use summary::{INERTIA_LEARNED, estimate_summary, summary};
+pub use summary::{INERTIA_LEARNED, estimate_summary};
 pub use table::{write_contact_curves, write_estimated_motion, write_motion, write_radius_functions};
 pub use touches::{
     Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,

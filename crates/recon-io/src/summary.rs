@@ -1,8 +1,7 @@
 //! `summary.json`: the figures of a reconstruction for programs.
 
 use crate::report::{
-    Bounds, Departure, EstimateData, Evidence, EvidenceValue, ReportData, estimated_mode_spans, level,
-    mode_times,
+    Bounds, Departure, EstimateData, Evidence, EvidenceValue, estimated_mode_spans, level, mode_times,
 };
 use glam::DMat3;
 use recon::observer::{SensorFault, Suspect};
@@ -11,7 +10,7 @@ use serde_json::{Map, Value, json};
 /// Deviation of the logarithm of the root of a second moment below which it was learned from the log.
 pub const INERTIA_LEARNED: f64 = 0.5;
 
-/// The figures of a motion that was estimated from contacts of any palms. Errors are over the samples that are relied on.
+/// The figures of a motion that was estimated from contacts of any palms: numbers at full precision, in SI units; one that is not finite is null. Errors are over the samples that are relied on.
 #[must_use]
 pub fn estimate_summary(data: &EstimateData) -> Value {
     let (times, found) = (data.log.times(), &data.estimate);
@@ -108,24 +107,6 @@ fn errors(departures: &[Departure], of: fn(&mut dyn Iterator<Item = f64>) -> f64
     })
 }
 
-/// The figures of a reconstruction. Numbers are at full precision, in SI units; a number that is not finite is null.
-#[must_use]
-pub fn summary(data: &ReportData) -> Value {
-    json!({
-        "recon": env!("CARGO_PKG_VERSION"),
-        "title": data.title,
-        "verdict": { "level": level(data.verdict.level), "text": data.verdict.text },
-        "samples": data.times.len(),
-        "t_first_s": data.times.first(),
-        "t_last_s": data.times.last(),
-        "evidence": data.evidence.iter().map(evidence).collect::<Map<_, _>>(),
-        "bounds": data.bounds.as_ref().map(bounds),
-        "true_volume_m3": data.true_shape.as_ref().and_then(|s| s.volume),
-        "largest_error": data.departures().map(|d| largest(&d)),
-        "warnings": data.warnings,
-    })
-}
-
 fn evidence(row: &Evidence) -> (String, Value) {
     let value = match &row.value {
         EvidenceValue::Number(v) => json!(v),
@@ -143,10 +124,4 @@ fn bounds(bounds: &Bounds) -> Value {
         "lower_over_upper": upper.map(|u| lower / u),
         "largest_gap_m": bounds.largest_gap,
     })
-}
-
-fn largest(departures: &[Departure]) -> Value {
-    let mut figures = errors(departures, largest_of);
-    figures["radius_function_m"] = json!(largest_of(&mut departures.iter().map(|d| d.radius)));
-    figures
 }

@@ -84,9 +84,11 @@ impl<const P: usize> Carried<P> {
         let (force, first) = (interval.impulse.force, interval.first);
         let second = h * force - first;
         let Motion { p, v, L, q } = self.motion;
-        let mean = force / h;
-        // The integral of a force that is constant over the interval, crossed with it, vanishes.
-        let drift = gravity.cross(mean) * (h * h * h / 6.0);
+        // The line with the impulse and the first moment of the force: of how the body moves under gravity and force while the force acts.
+        let slope = (first - force * (0.5 * h)) * (12.0 / (h * h * h));
+        let start = force / h - slope * (0.5 * h);
+        let fall = 0.5 * gravity.cross(start * (h * h * h / 3.0) + slope * (h.powi(4) / 4.0));
+        let drift = fall + start.cross(slope) * (m * h.powi(4) / 12.0);
         let after = Motion {
             p: p + v * h + gravity * (0.5 * h * h) + second * m,
             v: v + gravity * h + force * m,

@@ -38,7 +38,7 @@ pub(super) const ENOUGH: [f64; 2] = [1.0, 1e-2];
 const PRIOR: f64 = 0.7;
 const PRIOR_MASS: f64 = 10.0;
 /// Deviation of the first orientation, rad: an unknown body has no axes but those it is given.
-const FIRST_TURN: f64 = 1e-5;
+const FIRST_TURN: f64 = 1e-7;
 
 /// The most probable motion and body from nothing, and the linearisations before the last solution; of a body in space without friction that is not
 /// explained from the end of the record as well.

@@ -2,9 +2,7 @@ use super::reconstruct::tell;
 use crate::cli::{DemoArgs, DemoScene};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{
-    Estimated, normal_forces, reconstruct, simulate, simulate_contacts, write_contact_folder,
-};
+use crate::pipeline::{Asked, estimated_planes, simulate, simulate_contacts, write_contact_folder};
 use crate::progress::Progress;
 use recon_io::{FolderTarget, Scene, SceneError, SceneModel, write_log};
 use std::path::Path;
@@ -39,11 +37,10 @@ fn fig5(args: &DemoArgs, text: &str, console: &Console) -> Result<Outcome, CliEr
     let title = "An ellipsoid on three palms (Fig. 5 of Moll and Erdmann, 2002)";
     let mut log = Vec::new();
     write_log(&simulated.log, &mut log).map_err(CliError::StandardOutput)?;
-    let forces = normal_forces(&simulated.log);
-    let made = reconstruct(simulated.log, &scene, title, (false, 1), &progress)?;
+    let asked = Asked { path: Path::new("log.csv"), scene: &scene, title, identify: false };
+    let made = estimated_planes(simulated.log, &asked, Vec::new(), &progress)?;
     progress.step("writing the results");
     let extras = [(SCENE.to_owned(), text.into()), ("log.csv".to_owned(), log)];
-    let made = Estimated::Planes(Box::new(made), forces);
     let figures = made.write(target, &extras)?;
     drop(progress);
     tell(console, &made, figures, &args.output)

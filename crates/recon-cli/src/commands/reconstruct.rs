@@ -1,12 +1,10 @@
-use super::answers::{Advice, bounds_and_errors, evidence, of_body};
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{Asked, Estimated, LogSource, Reconstruction, estimated, meshes_as, read_log};
+use crate::pipeline::{Asked, Estimated, LogSource, estimated, meshes_as, read_log};
 use crate::progress::Progress;
-use recon_io::{FolderTarget, Scene, SceneErrorKind, brief, brief_to};
+use recon_io::{FolderTarget, Scene, SceneErrorKind};
 use serde_json::Value;
-use std::fmt::Write;
 use std::path::Path;
 
 pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, CliError> {
@@ -63,44 +61,5 @@ pub(super) fn tell(
 
 /// What came out, in words; `figures` are those of its summary.
 pub(crate) fn describe(made: &Estimated, figures: &Value) -> String {
-    match made {
-        Estimated::Planes(made, _) => of_planes(made, figures),
-        Estimated::AnyPalms(made, _) => super::any_palms::describe(&made.data, figures),
-    }
-}
-
-fn of_planes(made: &Reconstruction, figures: &Value) -> String {
-    let data = &made.data;
-    let mut text = format!("{}\n", data.verdict.text);
-    for warning in &data.warnings {
-        let _ = writeln!(text, "Warning: {warning}");
-    }
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "  {name:<22} {value}");
-    };
-    if let (Some(first), Some(last)) = (data.times.first(), data.times.last()) {
-        line("samples", format!("{} over {} s", data.times.len(), brief(last - first)));
-    }
-    for (name, value) in of_body(&made.mass, figures) {
-        line(name, value);
-    }
-    let known = ["std_position", "std_velocity", "std_orientation"].map(|key| evidence(figures, key));
-    if let [Some(position), Some(velocity), Some(turn)] = known {
-        let [position, velocity, turn] = [position, velocity, turn].map(|std| brief_to(2, std));
-        line("motion known to", format!("{position} m, {velocity} m/s, {turn} rad (std)"));
-    }
-    if let Some(weakest) = figures["evidence"]["weakest"]["value"].as_str() {
-        line("least certain", weakest.to_owned());
-    }
-    for (name, value) in bounds_and_errors(data.bounds.as_ref(), figures) {
-        line(name, value);
-    }
-    let advice = Advice {
-        reliable: made.is_reliable(),
-        bounds: data.bounds.as_ref(),
-        identified: made.identified.is_some(),
-        learned: true,
-    };
-    line("next", advice.next().to_owned());
-    text
+    super::any_palms::describe(&made.made.data, figures)
 }

@@ -5,15 +5,12 @@ use crate::cli::{Command, ReconstructArgs};
 use crate::commands::reconstruct::describe;
 use crate::error::CliError;
 use crate::pipeline::{
-    Asked, Estimated, LogOf, LogStand, WithoutForces, estimate_figures, estimated, meshes_as,
-    reconstruction_figures, sorted_with_forces, sorted_without_forces, without_forces,
+    Asked, Estimated, LogOf, LogStand, WithoutForces, estimated, meshes_as, sorted_with_forces,
+    sorted_without_forces, without_forces,
 };
 use crate::progress::{Progress, Watch};
 use glam::{DMat3, DVec3};
-use recon_io::{
-    Bounds, Evidence, FolderTarget, Level, MotionState, PalmContact, Scene, TriangleMesh,
-    write_estimate_report, write_report,
-};
+use recon_io::{Bounds, Evidence, FolderTarget, Level, MotionState, PalmContact, Scene, TriangleMesh};
 use serde_json::Value;
 use std::path::Path;
 
@@ -71,8 +68,7 @@ impl Reconstructed {
             (Made::Estimated(estimated(read, &asked, &progress)?), stand)
         };
         let figures = match &made {
-            Made::Estimated(Estimated::Planes(made, _)) => reconstruction_figures(made),
-            Made::Estimated(Estimated::AnyPalms(made, _)) => estimate_figures(made),
+            Made::Estimated(made) => made.figures(),
             Made::WithoutForces(made) => made.figures(),
         };
         let text = match &made {
@@ -96,12 +92,7 @@ impl Reconstructed {
     /// Whether the result may be relied on, and why or why not.
     pub fn verdict(&self) -> (bool, String) {
         match &self.made {
-            Made::Estimated(made @ Estimated::Planes(of, _)) => {
-                (made.is_reliable(), of.data.verdict.text.clone())
-            }
-            Made::Estimated(made @ Estimated::AnyPalms(of, _)) => {
-                (made.is_reliable(), of.data.verdict.text.clone())
-            }
+            Made::Estimated(of) => (of.is_reliable(), of.made.data.verdict.text.clone()),
             Made::WithoutForces(made) => {
                 (true, made.describe().lines().next().unwrap_or_default().to_owned())
             }
@@ -119,8 +110,7 @@ impl Reconstructed {
     /// What the reader must know.
     pub fn warnings(&self) -> &[String] {
         match &self.made {
-            Made::Estimated(Estimated::Planes(made, _)) => &made.data.warnings,
-            Made::Estimated(Estimated::AnyPalms(made, _)) => &made.data.warnings,
+            Made::Estimated(made) => &made.made.data.warnings,
             Made::WithoutForces(made) => &made.warnings,
         }
     }
@@ -128,8 +118,7 @@ impl Reconstructed {
     /// What the estimate rests on, row by row; none without forces, where the summary has all of it.
     pub fn evidence(&self) -> &[Evidence] {
         match &self.made {
-            Made::Estimated(Estimated::Planes(made, _)) => &made.data.evidence,
-            Made::Estimated(Estimated::AnyPalms(made, _)) => &made.data.evidence,
+            Made::Estimated(made) => &made.made.data.evidence,
             Made::WithoutForces(_) => &[],
         }
     }
@@ -147,8 +136,7 @@ impl Reconstructed {
     /// Times of the motion, s.
     pub fn times(&self) -> Vec<f64> {
         match &self.made {
-            Made::Estimated(Estimated::Planes(made, _)) => made.data.times.clone(),
-            Made::Estimated(Estimated::AnyPalms(made, _)) => made.data.log.times().to_vec(),
+            Made::Estimated(made) => made.made.data.log.times().to_vec(),
             Made::WithoutForces(made) => made.times(),
         }
     }
@@ -156,9 +144,8 @@ impl Reconstructed {
     /// The motion at these times.
     pub fn motion(&self) -> Vec<MotionState> {
         match &self.made {
-            Made::Estimated(Estimated::Planes(made, _)) => made.data.motion.clone(),
-            Made::Estimated(Estimated::AnyPalms(made, _)) => {
-                made.data.estimate.states.iter().map(|state| (*state).into()).collect()
+            Made::Estimated(made) => {
+                made.made.data.estimate.states.iter().map(|state| (*state).into()).collect()
             }
             Made::WithoutForces(made) => made.motion(),
         }
@@ -190,7 +177,7 @@ impl Reconstructed {
 
     fn any_palms(&self) -> Option<&recon_io::EstimateData> {
         match &self.made {
-            Made::Estimated(Estimated::AnyPalms(made, _)) => Some(&made.data),
+            Made::Estimated(made) => Some(&made.made.data),
             _ => None,
         }
     }
@@ -198,12 +185,7 @@ impl Reconstructed {
     /// Where each palm touched the object at these times.
     pub fn contacts(&self) -> Vec<&[Option<PalmContact>]> {
         match &self.made {
-            Made::Estimated(Estimated::Planes(made, _)) => {
-                made.data.palms.iter().map(|palm| &palm.contacts[..]).collect()
-            }
-            Made::Estimated(Estimated::AnyPalms(made, _)) => {
-                made.data.curves.iter().map(Vec::as_slice).collect()
-            }
+            Made::Estimated(made) => made.made.data.curves.iter().map(Vec::as_slice).collect(),
             Made::WithoutForces(_) => Vec::new(),
         }
     }
@@ -211,8 +193,7 @@ impl Reconstructed {
     /// Bounds on the shape with their volumes; the meshes in them are for drawing.
     pub fn bounds(&self) -> Option<&Bounds> {
         match &self.made {
-            Made::Estimated(Estimated::Planes(made, _)) => made.data.bounds.as_ref(),
-            Made::Estimated(Estimated::AnyPalms(made, _)) => made.data.bounds.as_ref(),
+            Made::Estimated(made) => made.made.data.bounds.as_ref(),
             Made::WithoutForces(made) => made.bounded.as_ref().map(|bounded| &bounded.drawn),
         }
     }
@@ -220,8 +201,7 @@ impl Reconstructed {
     /// Surfaces of the lower and the upper bound, from all contacts.
     pub fn surfaces(&self) -> [Option<&TriangleMesh>; 2] {
         let bounded = match &self.made {
-            Made::Estimated(Estimated::Planes(made, _)) => return [made.lower.as_ref(), made.upper.as_ref()],
-            Made::Estimated(Estimated::AnyPalms(made, _)) => made.bounds.as_ref(),
+            Made::Estimated(made) => made.made.bounds.as_ref(),
             Made::WithoutForces(made) => made.bounded.as_ref(),
         };
         bounded.map_or([None, None], |bounds| [bounds.lower.as_ref(), bounds.upper.as_ref()])
@@ -230,10 +210,7 @@ impl Reconstructed {
     /// Mass and inertia; none without forces.
     pub fn body(&self) -> Option<Body> {
         let Made::Estimated(made) = &self.made else { return None };
-        let object = match made {
-            Estimated::Planes(made, _) => made.object(),
-            Estimated::AnyPalms(made, _) => made.object().ok()?,
-        };
+        let object = made.made.object().ok()?;
         let deviations = object.deviations.map(|of| (of.mass, of.inertia));
         Some(Body { mass: object.mass.mass(), inertia: object.mass.inertia(), deviations })
     }
@@ -245,9 +222,7 @@ impl Reconstructed {
     pub fn report(&self) -> Result<Option<Vec<u8>>, Failure> {
         let mut page = Vec::new();
         let written = match &self.made {
-            Made::Estimated(Estimated::Planes(made, _)) => write_report(&made.data, &mut page),
-            Made::Estimated(Estimated::AnyPalms(_, Some(planes))) => write_report(planes, &mut page),
-            Made::Estimated(Estimated::AnyPalms(made, None)) => write_estimate_report(&made.data, &mut page),
+            Made::Estimated(made) => made.write_page(&mut page),
             Made::WithoutForces(_) => return Ok(None),
         };
         written.map_err(CliError::Page)?;

@@ -2,10 +2,10 @@
 
 use super::any_palms_bounds::estimate_bounds;
 use super::any_palms_words::{Checks, evidence, verdict};
-use super::bounds::BoundsResult;
+use super::bounds::{BoundsResult, CONFIDENCE, NOTABLE_NOISE};
 use super::export::Object;
-use super::reconstruct::{CONFIDENCE, NOTABLE_NOISE, margins};
 use super::truth::true_motion;
+use super::words::margins;
 use crate::error::CliError;
 use crate::progress::Progress;
 use glam::{DMat3, DVec3};
@@ -20,8 +20,8 @@ use recon_io::{EstimateData, MassDeviations, PalmContact, Scene, Sensors};
 use std::error::Error;
 use std::path::Path;
 
-/// What contact conditions are off by where the scene does not say it, as a share of the natural speed `sqrt(g l)`: that by which
-/// contacts creep that stick in simulators.
+/// What contact conditions are taken to be off by at first where the scene does not say it, as a share of the natural speed `sqrt(g l)`: that by
+/// which contacts creep that stick in simulators.
 pub(super) const FLOOR: f64 = 3e-5;
 
 /// What was asked for.
@@ -138,7 +138,7 @@ pub(crate) fn estimate_any_palms(
     if let Some(bounds) = &bounds
         && options.noise.contact > NOTABLE_NOISE * bounds.drawn.lower.volume.cbrt()
     {
-        warnings.push(margins(options.noise.contact));
+        warnings.push(margins(options.noise.contact, CONFIDENCE));
     }
     if bounds.is_none() {
         warnings
@@ -177,10 +177,12 @@ fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOp
     // Of means the noise is that of their samples over the root of how many there are.
     let noise = as_stated(sensors, rough, 1.0 / (together as f64).sqrt());
     let (pose_errors, suspects) = (true, true);
+    let guessed_floor = sensors.contact_speed_std.is_none();
     Ok(ContactOptions {
         size: scene.size,
         pose_errors,
         suspects,
+        guessed_floor,
         ..ContactOptions::new(noise, scene.gravity)
     })
 }

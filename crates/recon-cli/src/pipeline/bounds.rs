@@ -1,4 +1,3 @@
-use super::reconstruct::NOTABLE_NOISE;
 use crate::error::CliError;
 use recon::shape_bounds::{ContactSample, Hull, Intersection, Polyhedron, ShapeBounds, SolidHull};
 use recon_io::{Bound, Bounds, MeshError, TriangleMesh, stands_out};
@@ -7,11 +6,13 @@ use recon_io::{Bound, Bounds, MeshError, TriangleMesh, stands_out};
 pub(super) const LOWER: &str = "lower_bound.ply";
 pub(super) const UPPER: &str = "upper_bound.ply";
 
+/// Contact noise above this share of the object's size is worth a warning beside the bounds.
+pub(super) const NOTABLE_NOISE: f64 = 1e-6;
+/// Confidence of bounds from noisy contacts.
+pub(super) const CONFIDENCE: f64 = 0.95;
+
 /// Most contacts that the bounds of a picture are made from: about 6000 triangles a body.
 const DRAWN: usize = 1500;
-
-/// Most contacts of a motion that are compared with each other.
-const COMPARED: usize = 200_000;
 
 /// Bounds from all contacts for measuring, and from some of them for drawing.
 pub(crate) struct BoundsResult {
@@ -97,13 +98,6 @@ pub(super) fn unbounded(bounds: &ShapeBounds) -> Option<String> {
     let d = open.directions().first().map(|d| d.get());
     let side = d.map_or(String::new(), |d| format!(", for one towards ({:.2}, {:.2}, {:.2})", d.x, d.y, d.z));
     Some(format!("The contacts leave the object unbounded on some side{side}: there is no upper bound."))
-}
-
-/// How far the worst contact lies beyond the half-space of another, m: of at most [`COMPARED`], since neighbours on a curve
-/// say the same.
-pub(super) fn contradiction(contacts: &[ContactSample]) -> Result<f64, CliError> {
-    let some = some_of(contacts, COMPARED);
-    Ok(ShapeBounds::contradiction(&some)?.map_or(0.0, |worst| worst.excess))
 }
 
 /// At most so many of them, spread evenly.

@@ -1,18 +1,24 @@
-//! From a log that was read to everything it tells, by whichever estimator it is for.
+//! From a log that was read to everything it tells.
 
 use super::any_palms::{AnyPalms, AnyPalmsRequest, estimate_any_palms, refuse_unfelt};
-use super::bounds::{BoundsResult, LOWER, UPPER};
+use super::bounds::BoundsResult;
+use super::condensed::condensed;
 use super::export::exported;
-use super::folder::{Extra, write_estimate_folder, write_reconstruction_folder};
-use super::noisy_planes::{as_planes, noisy_planes};
+use super::folder::{Extra, estimate_figures, write_estimate_folder};
+use super::planes::{as_planes, with_forces};
 use super::read::{LogOf, LogStand, ReadLog};
-use super::reconstruct::{Reconstruction, condensed, reconstruct, sentence};
-use super::result_bag::{bag_of_any_palms, bag_of_planes, normal_forces};
+use super::result_bag::bag_of_estimate;
+use super::words::sentence;
 use crate::cli::{ExportAs, ShapeAs};
 use crate::error::CliError;
 use crate::progress::Progress;
-use recon_io::{FolderTarget, Level, ReportData, Scene, TriangleMesh};
+use recon::object_dynamics::SensorLog;
+use recon_io::{
+    FolderTarget, Level, ReportData, Scene, TriangleMesh, implausibilities, write_estimate_report,
+    write_report,
+};
 use serde_json::Value;
+use std::io::{self, Write};
 use std::path::Path;
 
 /// What is asked of a log.
@@ -26,11 +32,10 @@ pub(crate) struct Asked<'a> {
 }
 
 /// What a log tells, with what its files need beside it.
-pub(crate) enum Estimated {
-    /// Three flat palms without friction and noise; sizes of the normal forces.
-    Planes(Box<Reconstruction>, Vec<[Option<f64>; 3]>),
-    /// Any palms; what the page of three palms shows where they are that.
-    AnyPalms(Box<AnyPalms>, Option<Box<ReportData>>),
+pub(crate) struct Estimated {
+    pub(crate) made: AnyPalms,
+    /// What the page of three palms shows, where they are that.
+    page: Option<ReportData>,
 }
 
 /// Everything that the log tells. Truth in it is only compared with, never used.
@@ -41,27 +46,43 @@ pub(crate) fn estimated(
 ) -> Result<Estimated, CliError> {
     let Asked { path, scene, title, identify } = *asked;
     let mut request = AnyPalmsRequest::new(scene, title, identify);
-    let log = match log {
-        LogOf::ThreePalms(log) => log,
+    match log {
+        LogOf::ThreePalms(log) => estimated_planes(log, asked, warnings, progress),
         LogOf::AnyPalms(log, why) => {
             refuse_unfelt(&log, path, &why)?;
             request.warnings = warnings;
-            request.note = sentence(&format!("{why}; the estimate is that from contacts of any palms"));
-            let made = estimate_any_palms(*log, request, progress)?;
-            return Ok(Estimated::AnyPalms(Box::new(made), None));
+            request.note = sentence(&format!("{why}; palms may be of any shape and have friction"));
+            Ok(Estimated { made: estimate_any_palms(*log, request, progress)?, page: None })
         }
-    };
-    let (log, together) = condensed(log);
-    if let Some(contacts) = noisy_planes(&log, scene)? {
-        request.of_noisy_planes(&log, together, warnings);
-        let made = estimate_any_palms(contacts, request, progress)?;
-        let page = as_planes(&made, &log, scene)?;
-        return Ok(Estimated::AnyPalms(Box::new(made), Some(Box::new(page))));
     }
-    let forces = normal_forces(&log);
-    let mut made = reconstruct(log, scene, title, (identify, together), progress)?;
-    made.data.warnings.extend(warnings);
-    Ok(Estimated::Planes(Box::new(made), forces))
+}
+
+/// Of three flat palms without friction.
+pub(crate) fn estimated_planes(
+    log: SensorLog,
+    asked: &Asked<'_>,
+    warnings: Vec<String>,
+    progress: &Progress,
+) -> Result<Estimated, CliError> {
+    let Asked { scene, title, identify, .. } = *asked;
+    let mut request = AnyPalmsRequest::new(scene, title, identify);
+    let odd = implausibilities(&log, scene);
+    let (log, together) = condensed(log);
+    let contacts = with_forces(&log, scene)?;
+    request.friction = Some(0.0);
+    request.together = together;
+    request.note = "Three flat palms without friction.".to_owned();
+    request.implausible = !odd.is_empty();
+    request.warnings = odd.iter().map(|odd| sentence(&odd.to_string())).chain(warnings).collect();
+    let made =
+        estimate_any_palms(contacts, request, progress).map_err(|error| match (error, odd.first()) {
+            (CliError::ContactEstimate(source), Some(odd)) => {
+                CliError::OddLog { odd: odd.to_string(), source }
+            }
+            (error, _) => error,
+        })?;
+    let page = as_planes(&made, &log, scene)?;
+    Ok(Estimated { made, page: Some(page) })
 }
 
 impl Estimated {
@@ -72,45 +93,50 @@ impl Estimated {
         shape: ShapeAs,
         bag: Option<LogStand>,
     ) -> Result<Vec<Extra>, CliError> {
-        let files = match self {
-            _ if formats.is_empty() => Vec::new(),
-            Self::Planes(made, _) => exported(&made.object(), formats, shape)?,
-            Self::AnyPalms(made, _) => exported(&made.object()?, formats, shape)?,
-        };
-        let mut extras: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
+        let mut extras = Vec::new();
+        if !formats.is_empty() {
+            let files = exported(&self.made.object()?, formats, shape)?;
+            extras.extend(files.into_iter().map(|file| (file.name, file.contents)));
+        }
         if let Some(stand) = bag {
-            extras.push(match self {
-                Self::Planes(made, forces) => bag_of_planes(made, forces, stand)?,
-                Self::AnyPalms(made, _) => bag_of_any_palms(made, stand)?,
-            });
+            extras.push(bag_of_estimate(&self.made, stand)?);
         }
         Ok(extras)
     }
 
     /// The surfaces of the bounds by the names of their files.
     pub(crate) fn surfaces(&self) -> Vec<(&'static str, &TriangleMesh)> {
-        match self {
-            Self::Planes(made, _) => {
-                let both = [(LOWER, made.lower.as_ref()), (UPPER, made.upper.as_ref())];
-                both.into_iter().filter_map(|(name, mesh)| Some((name, mesh?))).collect()
-            }
-            Self::AnyPalms(made, _) => made.bounds.as_ref().map(BoundsResult::surfaces).unwrap_or_default(),
+        self.made.bounds.as_ref().map(BoundsResult::surfaces).unwrap_or_default()
+    }
+
+    /// The summary.
+    pub(crate) fn figures(&self) -> Value {
+        let mut figures = estimate_figures(&self.made);
+        let Some(page) = &self.page else { return figures };
+        if let Some(shape) = &page.true_shape {
+            figures["true_volume_m3"] = shape.volume.into();
+        }
+        if let Some(largest) = page.largest_radius_error() {
+            figures["largest_error"]["radius_function_m"] = largest.into();
+        }
+        figures
+    }
+
+    /// Writes its page.
+    pub(crate) fn write_page(&self, to: &mut dyn Write) -> io::Result<()> {
+        match &self.page {
+            Some(page) => write_report(page, to),
+            None => write_estimate_report(&self.made.data, to),
         }
     }
 
     /// Writes its folder; returns the summary.
     pub(crate) fn write(&self, target: FolderTarget, extras: &[Extra]) -> Result<Value, CliError> {
-        match self {
-            Self::Planes(made, _) => write_reconstruction_folder(target, made, extras),
-            Self::AnyPalms(made, page) => write_estimate_folder(target, made, page.as_deref(), extras),
-        }
+        write_estimate_folder(target, self, self.page.as_ref(), extras)
     }
 
     /// Whether the result may be relied on.
     pub(crate) fn is_reliable(&self) -> bool {
-        match self {
-            Self::Planes(made, _) => made.is_reliable(),
-            Self::AnyPalms(made, _) => made.data.verdict.level == Level::Good,
-        }
+        self.made.data.verdict.level == Level::Good
     }
 }

@@ -2,10 +2,8 @@
 
 use crate::cli::{ExportAs, ShapeAs};
 use crate::error::CliError;
-use glam::DMat3;
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::MassProperties;
-use recon::observer::IdentifiedBody;
 use recon::shape_bounds::{
     ContactNoise, ContactSample, FitOptions, FittedBody, NoiseLevel, NoisyContact, ShapeFamily, ShapeFit,
     SkewEllipsoid,
@@ -65,19 +63,6 @@ pub(crate) fn exported(
         start: made.start,
     };
     Ok(model.files(&formats.iter().map(format).collect::<Vec<_>>())?)
-}
-
-/// Deviations of the tensor's entries in principal axes. Off the diagonal they are those of the axes' directions; where
-/// two moments are equal these are open, and what is off the diagonal is as uncertain as the moments are.
-pub(super) fn deviations(body: &IdentifiedBody) -> MassDeviations {
-    let (moments, of) = (body.mass.principal().moments, body.moment_deviations);
-    let off = |a: usize, b: usize, axis: usize| {
-        let turned = (moments[a] - moments[b]).abs() * body.axis_deviations[axis];
-        if turned.is_finite() { turned } else { of[a].max(of[b]) }
-    };
-    let (xy, xz, yz) = (off(0, 1, 2), off(0, 2, 1), off(1, 2, 0));
-    let inertia = DMat3::from_cols_array(&[of.x, xy, xz, xy, of.y, yz, xz, yz, of.z]);
-    MassDeviations { mass: body.mass_deviation, inertia }
 }
 
 /// The shape, and what it is in words.

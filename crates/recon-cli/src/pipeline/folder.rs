@@ -1,25 +1,17 @@
-use super::Reconstruction;
 use super::bounds::{BoundsResult, LOWER, UPPER};
-use super::{AnyPalms, ContactRun};
+use super::{AnyPalms, ContactRun, Estimated};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
 use recon_io::{
-    FolderTarget, MotionState, OutputFolder, ReportData, TriangleMesh, estimate_summary, summary,
-    write_contact_curves, write_contact_log, write_contact_report, write_estimate_report,
-    write_estimated_motion, write_motion, write_ply, write_radius_functions, write_report,
+    FolderTarget, MotionState, OutputFolder, ReportData, TriangleMesh, estimate_summary,
+    write_contact_curves, write_contact_log, write_contact_report, write_estimated_motion, write_motion,
+    write_ply, write_radius_functions,
 };
 use serde_json::Value;
 use std::io::{self, Write};
 
 /// A further file of a folder: its name and its contents.
 pub(crate) type Extra = (String, Vec<u8>);
-
-/// The summary of a reconstruction.
-pub(crate) fn reconstruction_figures(made: &Reconstruction) -> Value {
-    let mut figures = summary(&made.data);
-    state_contradiction(&mut figures, made.stands_out);
-    figures
-}
 
 /// The summary of a motion that was estimated from contacts of any palms.
 pub(crate) fn estimate_figures(made: &AnyPalms) -> Value {
@@ -28,43 +20,18 @@ pub(crate) fn estimate_figures(made: &AnyPalms) -> Value {
     figures
 }
 
-/// Writes everything about a reconstruction; returns the summary.
-pub(crate) fn write_reconstruction_folder(
-    target: FolderTarget,
-    made: &Reconstruction,
-    extras: &[Extra],
-) -> Result<Value, CliError> {
-    let data = &made.data;
-    let figures = reconstruction_figures(made);
-    while_writing(|| {
-        let mut folder = Folder(target.begin()?);
-        folder.write("motion.csv", |to| write_motion(&data.times, &data.motion, to))?;
-        let palms = data.palms.each_ref().map(|palm| &palm.contacts[..]);
-        folder.write("contact_curves.csv", |to| write_contact_curves(&data.times, &palms, to))?;
-        folder.write("radius_functions.csv", |to| write_radius_functions(data, to))?;
-        folder.write_mesh(LOWER, "inside the object; metres, body axes", made.lower.as_ref())?;
-        folder.write_mesh(UPPER, "around the object; metres, body axes", made.upper.as_ref())?;
-        for (name, contents) in extras {
-            folder.write(name, |to| to.write_all(contents))?;
-        }
-        folder.write("report.html", |to| write_report(data, to))?;
-        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
-        folder.commit()
-    })?;
-    Ok(figures)
-}
-
 /// Writes everything about a motion that was estimated from contacts of any palms; returns the summary.
 ///
 /// `page` is what the page of three palms shows, where they are that.
 pub(crate) fn write_estimate_folder(
     target: FolderTarget,
-    made: &AnyPalms,
+    estimated: &Estimated,
     page: Option<&ReportData>,
     extras: &[Extra],
 ) -> Result<Value, CliError> {
+    let made = &estimated.made;
     let data = &made.data;
-    let figures = estimate_figures(made);
+    let figures = estimated.figures();
     let (times, palms) = (data.log.times(), data.log.palms().len());
     while_writing(|| {
         let mut folder = Folder(target.begin()?);
@@ -77,10 +44,8 @@ pub(crate) fn write_estimate_folder(
         }
         if let Some(page) = page {
             folder.write("radius_functions.csv", |to| write_radius_functions(page, to))?;
-            folder.write("report.html", |to| write_report(page, to))?;
-        } else {
-            folder.write("report.html", |to| write_estimate_report(data, to))?;
         }
+        folder.write("report.html", |to| estimated.write_page(to))?;
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()
     })?;

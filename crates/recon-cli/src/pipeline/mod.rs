@@ -6,6 +6,7 @@ mod any_palms_words;
 mod body;
 mod bounds;
 mod concave;
+mod condensed;
 mod contacts;
 mod doubts;
 mod estimate;
@@ -16,7 +17,6 @@ mod fitted;
 mod folder;
 mod meshes;
 mod modes;
-mod noisy_planes;
 mod planar_contacts;
 mod planar_motion;
 mod planar_motion_bounds;
@@ -24,25 +24,24 @@ mod planar_motion_panels;
 mod planar_motion_tables;
 mod planar_motion_words;
 mod plane;
+mod planes;
 mod read;
-mod reconstruct;
 mod result_bag;
 mod simulate;
 mod sound;
 mod truth;
 mod without_forces;
+mod words;
 
 pub(crate) use any_palms::{AnyPalms, condition_floor, noise_by_roughness, spread};
 pub(crate) use bounds::{BoundsResult, exact_bounds};
 pub(crate) use concave::concave_bounds;
 pub(crate) use contacts::{ContactRun, simulate_contacts};
 pub(crate) use doubts::doubtful_fit;
-pub(crate) use estimate::{Asked, Estimated, estimated};
+pub(crate) use estimate::{Asked, Estimated, estimated, estimated_planes};
 pub(crate) use exploration::{Explored, InPlane, InSpace, Settings, explored, goal_of, next_touch, until_of};
 pub(crate) use fitted::{fit_words, fitted_shape};
-pub(crate) use folder::{
-    estimate_figures, reconstruction_figures, write_bounds_folder, write_contact_folder, write_files_folder,
-};
+pub(crate) use folder::{write_bounds_folder, write_contact_folder, write_files_folder};
 pub(crate) use meshes::meshes_as;
 pub(crate) use modes::describe_times;
 pub(crate) use planar_contacts::simulate_planar_contacts;
@@ -52,8 +51,6 @@ pub(crate) use read::{
     LoadedLog, LogOf, LogSource, LogStand, load, read_log, sorted_with_forces, sorted_without_forces,
     three_palms,
 };
-pub(crate) use reconstruct::{Reconstruction, reconstruct};
-pub(crate) use result_bag::normal_forces;
 pub(crate) use simulate::{Simulated, known_body, simulate};
 pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};
 pub(crate) use without_forces::{WithoutForces, without_forces};

@@ -1,10 +1,10 @@
 //! Motion, mass and shape of a body in the plane from contacts of any palms.
 
 use super::any_palms::{FLOOR, as_stated};
+use super::bounds::CONFIDENCE;
 use super::planar_motion_bounds::motion_bounds;
 use super::planar_motion_words::{NOTE, evidence, verdict};
 use super::plane::PlanarBounds;
-use super::reconstruct::CONFIDENCE;
 use crate::error::CliError;
 use recon::object_dynamics::planar::{ContactLog, PlanarMass, PlanarTruth};
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};

@@ -4,8 +4,8 @@ use super::bounds::{BoundsResult, drawn_surfaces, meshes, own};
 use super::doubts::Doubts;
 use crate::error::CliError;
 use glam::{DMat3, DVec3};
-use recon::contact_kinematics::{CurvatureRadii, CurvePoint};
-use recon::observer::{MotionEstimate, PoseCovariance, PoseErrors};
+use recon::contact_kinematics::CurvatureRadii;
+use recon::observer::{PoseCovariance, PoseErrors};
 use recon::shape_bounds::{
     BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, NoisyContact,
     Outlier, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, correlated_noise, estimate_noise,
@@ -84,27 +84,6 @@ pub(crate) fn sharp_bounds(
     ))
 }
 
-/// Bounds of the body of a motion estimate that hold at `confidence` for all that the estimate knows to be uncertain: the noise
-/// of the contacts and the motion. They are in the axes in which the estimated poses are right on the average.
-///
-/// None where it is not known how uncertain the motion is.
-pub(crate) fn motion_bounds(
-    estimate: &MotionEstimate,
-    confidence: f64,
-) -> Result<Option<BoundsResult>, CliError> {
-    let Some(errors) = &estimate.pose_errors else { return Ok(None) };
-    let variance = estimate.evidence.noise.contact.powi(2);
-    let stride = estimate.motion.len().div_ceil(SAMPLES);
-    let curves = estimate.curves.each_ref().map(|curve| {
-        let posed = |(sample, point): (usize, &CurvePoint)| {
-            let contact = ContactSample { point: point.beta_O, normal: point.n_O };
-            PosedContact { sample, contact, point: in_tangent(&contact, variance), normal: 0.0 }
-        };
-        curve.points().iter().enumerate().step_by(stride).map(posed).collect::<Vec<_>>()
-    });
-    bounds_of_poses(errors, &curves, confidence)
-}
-
 /// A contact that an estimated pose of the body, that of a `sample`, brought into its axes.
 pub(super) struct PosedContact {
     pub(super) sample: usize,
@@ -145,8 +124,6 @@ pub(super) fn in_tangent(contact: &ContactSample, variance: f64) -> DMat3 {
     (square(a) + square(b)) * variance
 }
 
-/// Samples whose contacts bound the body, at most: more of them gain next to nothing.
-const SAMPLES: usize = 6000;
 /// Share of the odds of a failure that errors of the poses may have; the contacts' own margins hardly grow when they get less.
 const SHARE_OF_POSES: f64 = 0.9;
 

@@ -1,8 +1,8 @@
 //! From contacts and palm poses alone.
 
+use super::bounds::NOTABLE_NOISE;
 use super::bounds::{BoundsResult, bounds};
 use super::folder::write_touch_folder;
-use super::reconstruct::NOTABLE_NOISE;
 use crate::error::CliError;
 use crate::progress::Progress;
 use glam::{DMat3, DVec3};

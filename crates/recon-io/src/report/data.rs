@@ -215,6 +215,12 @@ impl ReportData {
         Ok(())
     }
 
+    /// Largest error of a radius function, m; none without truth.
+    #[must_use]
+    pub fn largest_radius_error(&self) -> Option<f64> {
+        Some(self.departures()?.iter().map(|of| of.radius).fold(0.0, f64::max))
+    }
+
     /// How far the estimate is from the truth at each time; none without truth.
     pub(crate) fn departures(&self) -> Option<Vec<Departure>> {
         let truth = self.truth.as_ref()?;

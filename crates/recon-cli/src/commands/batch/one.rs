@@ -3,10 +3,7 @@
 use crate::cli::{BatchArgs, ShapeAs};
 use crate::console::causes;
 use crate::error::CliError;
-use crate::pipeline::{
-    Asked, Estimated, LogSource, estimate_figures, estimated, load, reconstruction_figures,
-    sorted_with_forces,
-};
+use crate::pipeline::{Asked, LogSource, estimated, load, sorted_with_forces};
 use crate::progress::Progress;
 use recon_io::{FolderTarget, MotionState, Scene, brief_to, fingerprint, is_bag, with_brief_numbers};
 use serde_json::{Value, json};
@@ -164,19 +161,10 @@ fn made(args: &BatchArgs, log: &Path, folder: &Path, begun: Instant) -> Result<R
     let asked = Asked { path: log, scene: &scene, title: &title, identify: args.identify };
     let estimate = estimated(sorted_with_forces(loaded, &scene), &asked, &Progress::watched(None))?;
     let relied_on = estimate.is_reliable();
-    let (path, why) = match &estimate {
-        Estimated::Planes(made, _) => {
-            (path(&made.data.times, made.data.motion.iter().copied()), made.data.verdict.text.clone())
-        }
-        Estimated::AnyPalms(made, _) => {
-            let states = made.data.estimate.states.iter().map(|state| MotionState::from(*state));
-            (path(made.data.log.times(), states), made.data.verdict.text.clone())
-        }
-    };
-    let summary = match &estimate {
-        Estimated::Planes(made, _) => reconstruction_figures(made),
-        Estimated::AnyPalms(made, _) => estimate_figures(made),
-    };
+    let data = &estimate.made.data;
+    let states = data.estimate.states.iter().map(|state| MotionState::from(*state));
+    let (path, why) = (path(data.log.times(), states), data.verdict.text.clone());
+    let summary = estimate.figures();
     let seconds = begun.elapsed().as_secs_f64();
     let of = json!({ "made_from": made_from(args, log), "relied_on": relied_on, "seconds": seconds, "path": path });
     let mut extras = estimate.extras(&args.export, ShapeAs::Auto, None)?;

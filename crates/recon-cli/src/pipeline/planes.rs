@@ -1,36 +1,23 @@
-//! Noisy logs of three flat palms without friction: the estimate is that from contacts of any palms, the page that of three palms.
+//! Logs of three flat palms without friction: the estimate is that from contacts of any palms, the page that of three palms.
 
-use super::any_palms::{AnyPalms, AnyPalmsRequest, spread};
-use super::reconstruct::sentence;
+use super::any_palms::AnyPalms;
 use super::truth::true_shape;
 use crate::error::CliError;
 use glam::DVec3;
 use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::{ContactLog, ForceChannel, PalmHinge, SensorLog};
-use recon::observer::{ContactNoiseLevel, EstimateError, TrackError};
-use recon_io::{PalmTrack, ReportData, Scene, implausibilities};
+use recon_io::{PalmTrack, ReportData, Scene};
 
-/// Noise of contacts, as a share of the size, up to which a log is taken as exact.
-const EXACT: f64 = 1e-7;
-
-/// The log as one of any palms, with forces where torques of the motors tell them; none where it is as good as exact, or forces are not
-/// known.
-pub(crate) fn noisy_planes(log: &SensorLog, scene: &Scene) -> Result<Option<ContactLog>, CliError> {
-    let contacts = with_forces(ContactLog::try_from(log)?, scene)?;
-    if contacts.palms().iter().any(|palm| palm.force_axes().is_none()) {
-        return Ok(None);
-    }
-    let points = contacts.palms().iter().flat_map(|palm| (0..log.samples().len()).map(|k| palm.touch(k)));
-    let size = spread(points.flatten().map(|touch| touch.p_WC));
-    let rough = || ContactNoiseLevel::by_roughness(&contacts, 0.0, false).contact;
-    let noise = scene.sensors.contact_std.unwrap_or_else(rough);
-    Ok((noise > EXACT * size).then_some(contacts))
-}
-
-/// With the normal forces that torques tell of palms without a force.
-fn with_forces(log: ContactLog, scene: &Scene) -> Result<ContactLog, CliError> {
+/// The log as one of any palms, with the normal forces that torques of the motors tell of palms without a force.
+pub(super) fn with_forces(log: &SensorLog, scene: &Scene) -> Result<ContactLog, CliError> {
+    let log = ContactLog::try_from(log)?;
     let lacks = |i: usize| log.palms()[i].force_axes().is_none() && log.palms()[i].has_torque();
     let lacking: Vec<usize> = (0..log.palms().len()).filter(|i| lacks(*i)).collect();
+    let unfelt =
+        |i: usize| log.palms()[i].force_axes().is_none() && !(lacks(i) && scene.palm_inertia.is_some());
+    if let Some(i) = (0..log.palms().len()).find(|i| unfelt(*i)) {
+        return Err(CliError::NoPalmForce { palm: i + 1 });
+    }
     let (false, Some(inertias)) = (lacking.is_empty(), scene.palm_inertia) else { return Ok(log) };
     let (times, truth) = (log.times().to_vec(), log.truth().map(<[_]>::to_vec));
     let mut records = log.records();
@@ -46,20 +33,6 @@ fn with_forces(log: ContactLog, scene: &Scene) -> Result<ContactLog, CliError> {
     Ok(ContactLog::new(times, records, truth)?)
 }
 
-impl AnyPalmsRequest<'_> {
-    /// Of a noisy log of three planes, each sample the mean of so many.
-    pub(crate) fn of_noisy_planes(&mut self, log: &SensorLog, together: usize, said: Vec<String>) {
-        let odd = implausibilities(log, self.scene);
-        self.friction = Some(0.0);
-        self.together = together;
-        self.note =
-            "Three flat palms without friction, and noise: the estimate is that from contacts of any palms."
-                .to_owned();
-        self.implausible = !odd.is_empty();
-        self.warnings = odd.iter().map(|odd| sentence(&odd.to_string())).chain(said).collect();
-    }
-}
-
 /// What the page of three palms shows.
 pub(crate) fn as_planes(made: &AnyPalms, log: &SensorLog, scene: &Scene) -> Result<ReportData, CliError> {
     let data = &made.data;
@@ -67,13 +40,8 @@ pub(crate) fn as_planes(made: &AnyPalms, log: &SensorLog, scene: &Scene) -> Resu
     for (i, (palm, curve)) in palms.iter_mut().zip(&data.curves).enumerate() {
         palm.contacts = curve.clone();
         for sample in log.samples() {
-            let frame = PalmFrame::from_normal(sample.palms[i].normal).map_err(|source| {
-                CliError::Estimate(EstimateError::Track(TrackError::Palm {
-                    palm: i + 1,
-                    t: sample.t,
-                    source,
-                }))
-            })?;
+            let frame = PalmFrame::from_normal(sample.palms[i].normal)
+                .map_err(|source| CliError::PalmFrame { palm: i + 1, t: sample.t, source })?;
             palm.frames.push(frame);
         }
     }
