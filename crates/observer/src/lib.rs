@@ -21,6 +21,14 @@ mod least_squares;
 #[cfg(feature = "palms")]
 pub mod planar;
 #[cfg(feature = "palms")]
+mod quadrature;
+#[cfg(feature = "palms")]
+mod random;
+#[cfg(feature = "palms")]
+mod reliability;
+#[cfg(feature = "palms")]
+mod rigid;
+#[cfg(feature = "palms")]
 mod roughness;
 #[cfg(feature = "palms")]
 mod three_palms;
@@ -48,14 +56,12 @@ pub use core::{
 pub use faults::{SensorFault, Suspect};
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
-pub use three_palms::{
-    BodyEstimate, EstimateError, Evidence, IdentifiedBody, KnownBody, MotionEstimate, MotionState,
-    NoiseLevel, PaperError, PaperMethod, PaperReconstruction, PaperStart, PoseAxes, PoseCovariance,
-    PoseErrors, PredictorCorrector, Quantity, Reason, Reliability, Scales, StartState, Track, TrackError,
-    UnknownBody, WeakDirection, equivalent_orientations, estimate_body, estimate_body_from, estimate_motion,
-    estimate_motion_from, integrate_paper_system, nearest_turn,
-};
+pub use reliability::{Reason, Reliability};
+#[cfg(feature = "palms")]
+pub use rigid::{PoseAxes, PoseCovariance, PoseErrors, equivalent_orientations, nearest_turn};
 #[cfg(feature = "palms")]
 pub use three_palms::{
-    Closure, KnownTouch, NoForceError, NoForceEstimate, NoForceEvidence, TouchShape, estimate_without_forces,
+    Closure, KnownTouch, MotionState, NoForceError, NoForceEstimate, NoForceEvidence, PaperError,
+    PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, TouchShape, Track, TrackError,
+    estimate_without_forces, integrate_paper_system,
 };

@@ -132,7 +132,7 @@ fn of(rough: &[(f64, f64)]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::three_palms::Normal;
+    use crate::random::Normal;
 
     /// A smooth vector with noise of its own kind.
     fn rough(noise: impl Fn(&mut Normal, DVec3) -> DVec3) -> Rough {

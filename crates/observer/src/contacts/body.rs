@@ -1,7 +1,7 @@
 //! Mass and inertia: of an unknown body, or of one whose axes alone are unknown.
 
 use super::state::Turn;
-use crate::three_palms::{exponential, inertia_of_numbers, inertia_slope, logarithm, numbers_of_inertia};
+use crate::rigid::{exponential, inertia_of_numbers, inertia_slope, logarithm, numbers_of_inertia};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix6, SMatrix, SVector, Vector6};
 use object_dynamics::MassProperties;

@@ -4,7 +4,7 @@ use super::body::Body;
 use super::problem::{Problem, Units, Unknowns};
 use super::record::{Contact, Record, six};
 use super::state::Motion;
-use crate::three_palms::exponential;
+use crate::rigid::exponential;
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use object_dynamics::ContactMode;

@@ -5,7 +5,7 @@ use super::equations::Row;
 use super::noise::WrenchNoise;
 use super::record::{Interval, Wrench};
 use super::state::{MOTION, Motion, Tangent, Turn};
-use crate::three_palms::{cross_matrix, exponential};
+use crate::rigid::{cross_matrix, exponential};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
 

@@ -1,7 +1,7 @@
 //! Intervals without samples: what forces did in them is not known, but how they change over such a time elsewhere in the log is.
 
 use super::record::{Interval, Record, Wrench, six};
-use crate::three_palms::cross_matrix;
+use crate::rigid::cross_matrix;
 use nalgebra::{Matrix3, Matrix6};
 
 /// Times the usual interval, and natural times, from which on an interval is a gap.

@@ -3,7 +3,8 @@
 use super::body::CONSTANTS;
 use super::problem::Problem;
 use super::solve::{Covariances, Solved};
-use crate::three_palms::{DRAWS, Normal, PoseErrors, kept, normals, root, turned};
+use crate::random::Normal;
+use crate::rigid::{DRAWS, PoseErrors, kept, normals, root, turned};
 use glam::{DQuat, DVec3};
 
 /// Seed of what motions are drawn from.

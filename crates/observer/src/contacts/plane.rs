@@ -6,7 +6,7 @@ use super::samples::Deviations;
 use super::search::fine;
 use super::solve::Solved;
 use super::state::Tangent;
-use crate::three_palms::Reason;
+use crate::reliability::Reason;
 use glam::{DQuat, DVec3};
 use nalgebra::{Matrix6, SMatrix, SVector, Vector2, Vector6};
 use object_dynamics::MassProperties;

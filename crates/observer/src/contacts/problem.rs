@@ -9,7 +9,7 @@ use super::record::{Contact, Record, Wrench};
 use super::rows::Rows;
 use super::solve::Step;
 use super::state::{MOTION, Motion, Tangent, Turn};
-use crate::three_palms::{cross_matrix, exponential};
+use crate::rigid::{cross_matrix, exponential};
 use glam::{DQuat, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector6};
 

@@ -5,7 +5,7 @@ use super::noise::{ContactNoiseLevel, WrenchNoise, force_trace};
 use super::options::ContactOptions;
 use super::outliers::{Misread, mend, misread};
 use super::problem::Units;
-use crate::three_palms::running_integral;
+use crate::quadrature::running_integral;
 use contact_kinematics::PalmSurface;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix6, Vector6};

@@ -14,7 +14,7 @@ use super::search::{ENOUGH, fine_within};
 use super::second_order::SMALL;
 use super::solve::{Covariances, Solved, solve};
 use super::state::Motion;
-use crate::three_palms::Reason;
+use crate::reliability::Reason;
 use glam::{DMat3, DVec3};
 use object_dynamics::MOST_PALMS;
 

@@ -8,7 +8,7 @@ use super::problem::{Problem, Unknowns};
 use super::record::Record;
 use super::solve::Covariances;
 use super::state::{MOTION, Motion, Tangent};
-use crate::three_palms::exponential;
+use crate::rigid::exponential;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix};
 

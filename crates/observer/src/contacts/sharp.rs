@@ -10,11 +10,11 @@ use super::rows::Rows;
 use super::search::fine;
 use super::solve::{Covariances, Solved, solve};
 use crate::chance::lasting;
-use crate::three_palms::LARGEST_MISFIT;
+use crate::reliability::LARGEST_MISFIT;
 use object_dynamics::MOST_PALMS;
 
 /// Best conditions, as a share of the natural speed: beyond, equations of some scenes are singular in double precision.
-const BEST: f64 = 1e-7;
+const BEST: f64 = 1e-8;
 /// By how much conditions are taken to be better at least, as a trial.
 const SHARPER: f64 = 0.1;
 /// Linearisations of the very last solution, and what a step of it promises in units of chi-squared.

@@ -5,7 +5,7 @@ use super::flow::Transition;
 use super::problem::{Problem, Trial, Unknowns};
 use super::state::{MOTION, Tangent};
 use crate::least_squares::{LARGEST_DAMPING, RAISE, lowered};
-use crate::three_palms::LARGEST_MISFIT;
+use crate::reliability::LARGEST_MISFIT;
 use nalgebra::{Cholesky, Const, DMatrix, SMatrix, SVector};
 
 /// First damping, as a share of the conditions' mean information.

@@ -11,7 +11,7 @@ use super::flow::Transition;
 use super::problem::{FROZEN, Problem, Unknowns};
 use super::solve::Covariances;
 use super::state::{MOTION, Motion};
-use crate::three_palms::cross_matrix;
+use crate::rigid::cross_matrix;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen};
 

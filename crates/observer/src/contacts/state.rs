@@ -1,7 +1,7 @@
 //! The motion at a node and the constants of the body.
 
 use super::body::Body;
-use crate::three_palms::{cross_matrix, logarithm};
+use crate::rigid::{cross_matrix, logarithm};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 

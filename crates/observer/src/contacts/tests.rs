@@ -255,7 +255,7 @@ fn what_noise_hides_of_an_inertia_keeps_its_expected_value() {
     let noise = noise(1e-4, 0.01);
     let body = MassProperties::uniform_ellipsoid(0.2, DVec3::new(0.05, 0.04, 0.03)).unwrap();
     let R = DMat3::from_quat(exact.truth().unwrap()[0].R_WO);
-    let truth = crate::three_palms::numbers_of_inertia(R * body.inertia() * R.transpose());
+    let truth = crate::rigid::numbers_of_inertia(R * body.inertia() * R.transpose());
     let (mut squares, mut runs) = (0.0, 0.0);
     for seed in 0..4 {
         let log = noisy(&exact, &noise, seed);
@@ -263,7 +263,7 @@ fn what_noise_hides_of_an_inertia_keeps_its_expected_value() {
         if !found.reliability.is_reliable() {
             continue;
         }
-        let numbers = crate::three_palms::numbers_of_inertia(found.inertia);
+        let numbers = crate::rigid::numbers_of_inertia(found.inertia);
         runs += 1.0;
         for i in 0..3 {
             let error = numbers[i] - truth[i];

@@ -5,7 +5,7 @@ use super::problem::{Problem, Units};
 use super::samples::Deviations;
 use crate::chance::excess;
 use crate::faults::Suspect;
-use crate::three_palms::{LARGEST_DEVIATION, LARGEST_MISFIT, Reason, Reliability};
+use crate::reliability::{LARGEST_DEVIATION, LARGEST_MISFIT, Reason, Reliability};
 use glam::DVec3;
 
 /// Standard deviations of a normal variable beyond which a stretch of the log is not explained by noise, or a constant of the sensors

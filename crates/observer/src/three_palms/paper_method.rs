@@ -3,9 +3,9 @@
 //!
 //! It is exponentially unstable (errors of the start grow about 1e5-fold over the paper's Fig. 5), takes no force as
 //! redundant and never uses Newton's law (30) but in the constraint. It stays as an oracle for data without noise, and
-//! on the charts; to estimate, use [`crate::estimate_motion`].
+//! on the charts; to estimate, use [`crate::estimate_contacts`].
 
-use super::momentum::MotionState;
+use super::motion_state::MotionState;
 use super::paper_system::{State, System};
 use super::track::Track;
 use contact_kinematics::PalmError;

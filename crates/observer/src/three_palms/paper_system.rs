@@ -1,10 +1,10 @@
 //! The paper's system (35) to (37) with its constraint (24), step by step.
 
-use super::momentum::MotionState;
+use super::motion_state::MotionState;
 use super::paper_method::{PaperError, PaperMethod, PredictorCorrector, STATES};
-use super::quadrature::{derivative, running_integral};
-use super::sensitivity::exponential;
 use super::track::{Node, Track};
+use crate::quadrature::{derivative, running_integral};
+use crate::rigid::exponential;
 use contact_kinematics::{PalmTriple, acceleration_defect, contact_curve_rates};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix3, Matrix3x6, SMatrix, Vector3, Vector6};

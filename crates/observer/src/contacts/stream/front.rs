@@ -9,7 +9,7 @@ use crate::contacts::noise::{WrenchNoise, force_trace};
 use crate::contacts::record::{Interval, six};
 use crate::contacts::state::{MOTION, Motion};
 use crate::contacts::verdict::UNEXPLAINED;
-use crate::three_palms::cross_matrix;
+use crate::rigid::cross_matrix;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix};
 use object_dynamics::BodyState;

@@ -1,7 +1,8 @@
 //! Of a body whose mass and inertia are known.
 
 use super::*;
-use crate::three_palms::{Reason, Reliability, nearest_turn};
+use crate::reliability::{Reason, Reliability};
+use crate::rigid::nearest_turn;
 
 /// Squared error of the axes at the first sample over its variance.
 fn axes_error(found: &ContactEstimate, log: &ContactLog, mass: &MassProperties) -> f64 {

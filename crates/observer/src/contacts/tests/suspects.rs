@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::faults::{SensorFault, Suspect};
-use crate::three_palms::{Reason, Reliability};
+use crate::reliability::{Reason, Reliability};
 
 /// With the sensors' constants tested, the modes being told.
 fn tested(log: &ContactLog, noise: ContactNoiseLevel) -> ContactEstimate {

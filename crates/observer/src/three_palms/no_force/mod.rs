@@ -3,6 +3,7 @@
 mod closure;
 mod error;
 mod estimate;
+mod orientations;
 mod problem;
 mod search;
 mod series;

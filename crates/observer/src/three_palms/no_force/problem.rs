@@ -3,7 +3,7 @@
 use super::series::{Contacts, Nodes};
 use super::shape::{FreeEllipsoid, SHAPE_NUMBERS};
 use crate::least_squares::{LeastSquares, NormalEquations};
-use crate::three_palms::inertia::{INERTIA_NUMBERS, inertia_of_numbers};
+use crate::rigid::{INERTIA_NUMBERS, inertia_of_numbers};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::SVector;
 use object_dynamics::{Instant, MassProperties};

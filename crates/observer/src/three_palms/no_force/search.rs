@@ -1,11 +1,11 @@
 //! A start without a guess: ellipsoids in many orientations, at rest, on a window that grows.
 
+use super::orientations::orientations;
 use super::problem::{Guess, TouchProblem, UNKNOWNS, uniform};
 use super::series::{Nodes, TouchSeries};
 use super::shape::FreeEllipsoid;
 use crate::least_squares::{Fit, FitStatus, LevenbergMarquardt};
-use crate::three_palms::cold_start::orientations;
-use crate::three_palms::inertia::numbers_of_inertia;
+use crate::rigid::numbers_of_inertia;
 use glam::DVec3;
 
 /// Semi-axes of the ellipsoids tried, as shares of the ball's radius.

@@ -1,7 +1,7 @@
 //! A log without forces: palms at nodes and half-way between, and means of the contacts over blocks about nodes.
 
 use super::NoForceError;
-use crate::three_palms::noise::roughness;
+use crate::roughness::Rough;
 use crate::three_palms::track::{FEWEST_SAMPLES, TrackError, palm_states};
 use contact_kinematics::{PalmState, PalmTriple};
 use glam::{DMat3, DVec3};
@@ -111,4 +111,14 @@ impl TouchSeries {
             variance: (0..=stride).map(|j| weight(j).powi(2)).sum(),
         }
     }
+}
+
+/// Standard deviation of the white noise that is common to the contact coordinates of three palms, by palm and sample.
+fn roughness(times: &[f64], contact: impl Fn(usize, usize) -> [f64; 2]) -> f64 {
+    let mut rough = Rough::default();
+    for i in 0..3 {
+        let point = |k: usize| Some(DVec3::new(contact(i, k)[0], contact(i, k)[1], 0.0));
+        rough.add(times, point, |_| vec![DVec3::X, DVec3::Y]);
+    }
+    rough.deviation()
 }

@@ -4,7 +4,7 @@ use super::series::TouchSeries;
 use super::shape::FreeEllipsoid;
 use super::*;
 use crate::least_squares::FitStatus;
-use crate::three_palms::inertia::{inertia_of_numbers, numbers_of_inertia};
+use crate::rigid::{inertia_of_numbers, numbers_of_inertia};
 use contact_kinematics::{Ellipsoid, MotionLaw, Palm, Sphere, SupportFunction, Translated};
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::integrate::Tolerance;

@@ -12,19 +12,9 @@ pub(crate) fn running_integral<V>(t: &[f64], f: &[V], zero: V) -> Vec<V>
 where
     V: Copy + Add<Output = V> + Mul<f64, Output = V>,
 {
-    let mut integral = Vec::with_capacity(t.len().min(f.len()));
-    running_integral_into(t, f, zero, &mut integral);
-    integral
-}
-
-/// The same in place of what `integral` holds.
-pub(super) fn running_integral_into<V>(t: &[f64], f: &[V], zero: V, integral: &mut Vec<V>)
-where
-    V: Copy + Add<Output = V> + Mul<f64, Output = V>,
-{
     let count = t.len().min(f.len());
     let mut sum = zero;
-    integral.clear();
+    let mut integral = Vec::with_capacity(count);
     integral.extend(f.first().filter(|_| count > 0).map(|_| zero));
     let mut known: Option<Weights> = None;
     for k in 1..count {
@@ -37,6 +27,7 @@ where
         integral.push(sum);
         known = Some(weights);
     }
+    integral
 }
 
 /// First sample and stencil of the interval that ends at sample `k`, which is not the first.
@@ -46,46 +37,8 @@ fn stencil_before(t: &[f64], k: usize) -> (usize, Stencil) {
     (start, Stencil::new(&t[start..start + width], k - 1 - start))
 }
 
-/// Weights of the running integrals of any data at some times.
-pub(super) struct RunningIntegral {
-    /// For each interval: its first sample, its weights, and its length.
-    intervals: Vec<(usize, usize, f64)>,
-    weights: Vec<Weights>,
-}
-
-impl RunningIntegral {
-    /// At strictly increasing times.
-    pub(super) fn new(t: &[f64]) -> Self {
-        let mut weights: Vec<Weights> = Vec::new();
-        let mut intervals = Vec::with_capacity(t.len());
-        for k in 1..t.len() {
-            let (start, nodes) = stencil_before(t, k);
-            if !weights.last().is_some_and(|w| w.stencil.is_like(&nodes)) {
-                weights.push(Weights::new(nodes));
-            }
-            intervals.push((start, weights.len() - 1, t[k] - t[k - 1]));
-        }
-        Self { intervals, weights }
-    }
-
-    /// Of as many values as times.
-    pub(super) fn of<V>(&self, f: &[V], zero: V) -> Vec<V>
-    where
-        V: Copy + Add<Output = V> + Mul<f64, Output = V>,
-    {
-        let mut sum = zero;
-        let mut integral = Vec::with_capacity(f.len());
-        integral.extend(f.first().map(|_| zero));
-        for &(start, weights, step) in &self.intervals {
-            sum = sum + self.weights[weights].of(&f[start..], zero) * step;
-            integral.push(sum);
-        }
-        integral
-    }
-}
-
 /// Derivative of the local polynomial at every sample.
-pub(super) fn derivative<V>(t: &[f64], f: &[V], zero: V) -> Vec<V>
+pub(crate) fn derivative<V>(t: &[f64], f: &[V], zero: V) -> Vec<V>
 where
     V: Copy + Add<Output = V> + Mul<f64, Output = V>,
 {

@@ -3,11 +3,6 @@
 use glam::{DQuat, DVec3};
 use object_dynamics::MassProperties;
 
-/// Of the orientations `R_WO D` with `D` a half turn about a principal axis, the one with the smallest angle.
-pub(super) fn nearest_to_identity(mass: &MassProperties, R_WO: DQuat) -> DQuat {
-    R_WO * nearest_turn(mass, R_WO, DQuat::IDENTITY)
-}
-
 /// Of the [`equivalent_orientations`] the turn `D` that brings `R_WO D` nearest to the orientation `to`.
 #[must_use]
 pub fn nearest_turn(mass: &MassProperties, R_WO: DQuat, to: DQuat) -> DQuat {

@@ -4,8 +4,8 @@
 //! one instant to the next, and what all poses share of them is a rigid displacement of the body's axes, which have to stand
 //! somewhere: relative to it the poses are known better than each alone. The joint distribution is drawn from.
 
-use super::random::Normal;
-use super::sensitivity::{exponential, logarithm};
+use super::turns::{exponential, logarithm};
+use crate::random::Normal;
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Cholesky, SMatrix, SVector};
 
@@ -238,25 +238,6 @@ pub(crate) fn normals<const N: usize>(random: &mut Normal) -> SVector<f64, N> {
 pub(crate) fn turned(q: DQuat, theta: DVec3) -> DQuat {
     (exponential(theta) * q).normalize()
 }
-
-/// Joint errors of the poses of a motion that follows from its start alone: `covariance` is that of the unknowns, `poses` gives
-/// the motion at `nodes` for a change of them.
-pub(super) fn of_start<const P: usize>(
-    nodes: Vec<usize>,
-    covariance: &SMatrix<f64, P, P>,
-    poses: impl Fn(&SVector<f64, P>) -> Option<Vec<Pose>>,
-    lasting: f64,
-    principal: bool,
-) -> Option<PoseErrors> {
-    let mut random = Normal::seeded(MOTION_SEED);
-    let root = root(covariance);
-    let estimated = poses(&SVector::zeros())?;
-    let draws = (0..DRAWS).filter_map(|_| poses(&(root * normals(&mut random))));
-    PoseErrors::from_draws(nodes, &estimated, draws, lasting, principal)
-}
-
-/// Seed of what motions are drawn from.
-const MOTION_SEED: u64 = 0x6d07;
 
 #[cfg(test)]
 mod tests {
