@@ -1,12 +1,11 @@
 //! Failure sweep: logs that go on after a palm has lost contact.
 
 use super::parallel_palms::judged;
-use super::shared::warning;
+use super::shared::{exact_estimate, warning};
 use super::{Chart, Drawn};
 use crate::{Axis, Budget, Subject, Sweep};
 use glam::DVec3;
-use recon::object_dynamics::{MassProperties, Sample, SensorLog};
-use recon::observer::{KnownBody, estimate_motion};
+use recon::object_dynamics::{ContactLog, MassProperties, Sample, SensorLog};
 
 pub(super) const CHART: Chart = Chart {
     name: "sweep-contact-loss",
@@ -24,7 +23,6 @@ fn draw(_: Budget) -> Drawn {
     let log = recon_io::parse_log(LOG.as_bytes())?;
     let truth = log.truth().ok_or("the log has no truth columns")?;
     let mass = MassProperties::uniform_ellipsoid(1.0, DVec3::new(2.5, 2.0, 1.0))?;
-    let known = KnownBody { mass, gravity: DVec3::new(0.0, 0.0, -1.0), palm_inertias: None, noise: None };
     let mut marked = Subject::new("loss marked in the log");
     let mut held = Subject::new("loss not marked: last contact held, force zero");
     for after in AFTER {
@@ -33,18 +31,19 @@ fn draw(_: Budget) -> Drawn {
         for (subject, samples) in [(&mut marked, samples), (&mut held, unmarked)] {
             let cut = SensorLog::new(samples, None)?;
             let taken = std::mem::replace(subject, Subject::new(""));
-            *subject = match estimate_motion(&cut, &known) {
+            *subject = match exact_estimate(&ContactLog::try_from(&cut)?, mass, 1.0) {
                 Ok(found) => {
-                    let pairs = found.motion.iter().zip(truth);
-                    let error = pairs.map(|(m, t)| m.p_WCm.distance(t.p_WCm)).fold(0.0, f64::max);
+                    let pairs = found.states.iter().zip(truth).zip(&found.relied_on);
+                    let relied = pairs.filter(|(_, relied)| **relied);
+                    let error = relied.map(|((m, t), _)| m.p_WCm.distance(t.p_WCm)).fold(0.0, f64::max);
                     judged(taken, after, error, warning(&found.reliability))
                 }
-                Err(error) => taken.refused(after, error.to_string()),
+                Err(error) => taken.refused(after, error),
             };
         }
     }
     let sweep = Sweep::new("sweep-contact-loss", "Logs that go on after contact is lost", 2e-5)
-        .subtitle("MuJoCo's log of the gentle scene at 250 Hz; right: centre of mass within 2e-5 m over all that is used")
+        .subtitle("MuJoCo's log of the gentle scene at 250 Hz; right: centre of mass within 2e-5 m at all samples that are relied on")
         .axes(Axis::log("length of the log after the loss", "s"), Axis::log("largest error of the centre of mass", "m"))
         .subject(marked)
         .subject(held);

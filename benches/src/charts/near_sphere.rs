@@ -1,9 +1,7 @@
 //! Failure sweep: a body that becomes a ball, whose orientation leaves no trace in the log.
 
 use super::parallel_palms::judged;
-use super::shared::{
-    doubt, error_in_deviations, estimate, exact_log, noisy_estimate, start_in_deviations, warning,
-};
+use super::shared::{doubt, estimate, exact_log, noisy_estimate, start_in_deviations, warning};
 use super::{Chart, Drawn};
 use crate::{Axis, Budget, Subject, Sweep};
 use glam::{DQuat, DVec3};
@@ -17,7 +15,7 @@ pub(super) const CHART: Chart =
 const DEPARTURES: [f64; 8] = [0.5, 0.2, 0.1, 0.05, 0.02, 1e-2, 1e-3, 1e-4];
 
 fn draw(_: Budget) -> Drawn {
-    let mut clean = Subject::new("momentum form, no noise");
+    let mut clean = Subject::new("from contacts, no noise");
     let mut noisy = Subject::new("from contacts, 0.1 % and 1 % noise");
     for d in DEPARTURES {
         let axes = DVec3::new(1.0, 1.0 + d, 1.0 + 2.0 * d);
@@ -30,11 +28,8 @@ fn draw(_: Budget) -> Drawn {
         let (simulation, log) = exact_log(&scene, start, 3.0, 500.0)?;
         let now = &simulation.instants[0];
         clean = match estimate(&scene, &log) {
-            Ok(found) => {
-                let error = error_in_deviations(&found, scene.mass(), now);
-                judged(clean, d, error, warning(&found.reliability))
-            }
-            Err(error) => clean.refused(d, error.to_string()),
+            Ok(found) => judged(clean, d, start_in_deviations(&found, now), warning(&found.reliability)),
+            Err(error) => clean.refused(d, error),
         };
         let noise = SensorNoise { contact: 1e-3, force: 0.065, torque: 0.0 };
         for seed in 0..3 {

@@ -18,7 +18,7 @@ const NOISE: SensorNoise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 
 const LARGEST_AMPLIFICATION: f64 = 1e6;
 
 fn draw(_: Budget) -> Drawn {
-    let mut exact = Subject::new("momentum form, no guess");
+    let mut exact = Subject::new("from contacts, no guess");
     let mut paper = Subject::new("(35)-(37), Adams, exact start");
     let mut noisy = Subject::new("from contacts, 0.1 % and 1 % noise");
     for degrees in ANGLES {
@@ -43,9 +43,9 @@ fn draw(_: Budget) -> Drawn {
             Ok(found) => {
                 judged(exact, degrees, centre_error(&found, &simulation), warning(&found.reliability))
             }
-            Err(error) => exact.refused(degrees, error.to_string()),
+            Err(error) => exact.refused(degrees, error),
         };
-        let track = Track::new(&log, scene.mass().mass(), scene.gravity(), None)?;
+        let track = Track::new(&log, scene.gravity(), None)?;
         let now = &simulation.instants[0];
         let given =
             PaperStart { radii: now.touch.contacts.map(|c| c.jet.value), R_WO: now.R_WO, w_WO: now.w_WO };

@@ -50,10 +50,7 @@ fn by_window(budget: Budget) -> Drawn {
     }
     for (name, duration, log, simulation, noise) in &noisy {
         let run = || noisy_estimate(&scene, log, noise);
-        study.fallible_case(*name, format!("{duration} s"), run, |found| {
-            let pairs = found.states.iter().zip(&simulation.instants);
-            pairs.map(|(state, now)| state.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max)
-        });
+        study.fallible_case(*name, format!("{duration} s"), run, |found| centre_error(found, simulation));
     }
     for ((simulation, log), duration) in logs.iter().zip(durations) {
         let run = || integrate(&scene, log, simulation, method);
@@ -63,7 +60,7 @@ fn by_window(budget: Budget) -> Drawn {
         "MuJoCo's log at 100 Hz",
         "4.2 s",
         || estimate(&scene, &foreign),
-        |found| found.motion.iter().zip(&truth).map(|(m, t)| m.p_WCm.distance(t.p_WCm)).fold(0.0, f64::max),
+        |found| found.states.iter().zip(&truth).map(|(m, t)| m.p_WCm.distance(t.p_WCm)).fold(0.0, f64::max),
     );
     let chart =
         WorkPrecision::new("reconstruction-by-window", "Motion from a log, no guess: cost against error")
@@ -89,7 +86,7 @@ fn by_rate(budget: Budget) -> Drawn {
         let setting = format!("{rate} Hz");
         let scene = &scene;
         study.fallible_case(
-            "momentum form, no guess",
+            "from contacts, no guess",
             setting.clone(),
             move || estimate(scene, log),
             move |found| centre_error(found, simulation),
@@ -119,7 +116,7 @@ fn integrate(
     simulation: &Simulation,
     method: PaperMethod,
 ) -> Result<f64, String> {
-    let track = Track::new(log, scene.mass().mass(), scene.gravity(), None).map_err(|e| e.to_string())?;
+    let track = Track::new(log, scene.gravity(), None).map_err(|e| e.to_string())?;
     let now = &simulation.instants[0];
     let start = PaperStart { radii: now.touch.contacts.map(|c| c.jet.value), R_WO: now.R_WO, w_WO: now.w_WO };
     let found = integrate_paper_system(&track, scene.mass(), &start, method).map_err(|e| e.to_string())?;

@@ -1,16 +1,12 @@
 //! What several diagrams measure alike.
 
-use glam::DVec3;
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     ContactLog, InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation,
     SimulationError, ThreePalmScene,
 };
-use recon::observer::{
-    ContactEstimate, ContactNoiseLevel, ContactOptions, EstimateError, KnownBody, MotionEstimate,
-    Reliability, estimate_contacts, estimate_motion, nearest_turn,
-};
+use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, Reliability, estimate_contacts};
 
 /// A simulation close to rounding, and its log without truth.
 pub(super) fn exact_log<S: SupportFunction>(
@@ -24,18 +20,25 @@ pub(super) fn exact_log<S: SupportFunction>(
     Ok((simulation, log))
 }
 
-/// Estimate with the scene's mass and inertia known, from an exact log.
+/// Estimate with the scene's mass and inertia known, from an exact log of which nothing else is said.
 pub(super) fn estimate<S: SupportFunction>(
     scene: &ThreePalmScene<S>,
     log: &SensorLog,
-) -> Result<MotionEstimate, EstimateError> {
-    let known = KnownBody {
-        mass: *scene.mass(),
-        gravity: scene.gravity(),
-        palm_inertias: scene.palm_inertias(),
-        noise: None,
-    };
-    estimate_motion(log, &known)
+) -> Result<ContactEstimate, String> {
+    let log = ContactLog::try_from(log).map_err(|error| error.to_string())?;
+    exact_estimate(&log, *scene.mass(), scene.gravity().length())
+}
+
+/// The same of any log.
+pub(super) fn exact_estimate(
+    log: &ContactLog,
+    mass: MassProperties,
+    gravity: f64,
+) -> Result<ContactEstimate, String> {
+    let noise = ContactNoiseLevel::guessed(log, gravity, None).ok_or("no two palms are touched at once")?;
+    let options =
+        ContactOptions { friction: Some(0.0), body: Some(mass), ..ContactOptions::new(noise, gravity) };
+    estimate_contacts(log, None, &options).map_err(|error| error.to_string())
 }
 
 /// What conditions are off by beside noise, as a share of the natural speed of a body of one metre.
@@ -66,24 +69,9 @@ pub(super) fn start_in_deviations(estimate: &ContactEstimate, truth: &Instant) -
 }
 
 /// Largest error of the centre of mass over the log, m.
-pub(super) fn centre_error(estimate: &MotionEstimate, simulation: &Simulation) -> f64 {
-    let pairs = estimate.motion.iter().zip(&simulation.instants);
-    pairs.map(|(m, now)| m.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max)
-}
-
-/// Largest error of a number of the start state, in its own reported standard deviations; the orientation against the
-/// nearest of the four that no data can tell apart.
-pub(super) fn error_in_deviations(estimate: &MotionEstimate, mass: &MassProperties, truth: &Instant) -> f64 {
-    let L = truth.R_WO * (mass.inertia() * (truth.R_WO.inverse() * truth.w_WO));
-    let found = estimate.start.R_WO;
-    let turn = (found * nearest_turn(mass, found, truth.R_WO)) * truth.R_WO.inverse();
-    let parts = [
-        estimate.start.p_WCm - truth.touch.p_WCm,
-        estimate.start.v_WCm - truth.rates.v_WCm,
-        estimate.start.L_WO - L,
-        DVec3::new(turn.x, turn.y, turn.z) * 2.0 * turn.w.signum(),
-    ];
-    (0..12).map(|i| parts[i / 3][i % 3].abs() / estimate.covariance[(i, i)].sqrt()).fold(0.0, f64::max)
+pub(super) fn centre_error(estimate: &ContactEstimate, simulation: &Simulation) -> f64 {
+    let pairs = estimate.states.iter().zip(&simulation.instants);
+    pairs.map(|(state, now)| state.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max)
 }
 
 /// Why not to believe an estimate from contacts at the first sample, if there is a reason.

@@ -1,5 +1,5 @@
 //! Cold start on random scenes without noise: how many come out right from no guess, and how long they take; with mass and
-//! inertia known, and with nothing known; by the estimators of three frictionless planes and by that from contacts of any palms.
+//! inertia known, and with nothing known.
 //!
 //! Usage: `cold_start [SCENES]` (200 by default). Prints tables in Markdown.
 
@@ -11,14 +11,11 @@ use recon::object_dynamics::{
     ContactLog, InitialMotion, MassProperties, SampleTimes, SensorLog, Simulation, ThreePalmScene,
 };
 use recon::observer::{
-    ContactEstimate, ContactNoiseLevel, ContactOptions, KnownBody, MotionEstimate, Reason, Reliability,
-    UnknownBody, estimate_body, estimate_contacts, estimate_motion,
+    ContactEstimate, ContactNoiseLevel, ContactOptions, Reason, Reliability, estimate_contacts,
 };
 use recon_tests::Random;
 use std::collections::BTreeMap;
 
-/// What conditions are off by, over the natural speed: at a tenth of it some scenes are singular in double precision.
-const FLOOR: f64 = 1e-6;
 /// Error of the centre of mass that counts as right, m, and of the mass, relative.
 const RIGHT: f64 = 1e-6;
 
@@ -75,39 +72,27 @@ impl Tally {
 fn kind(reason: &Reason) -> &'static str {
     match reason {
         Reason::NotConverged { .. } => "the fit did not settle",
-        Reason::Unobservable { .. } => "the log does not determine a direction of the unknowns",
         Reason::Still { .. } => "hardly turns",
         Reason::Ambiguous { .. } => "another motion as good",
         Reason::Unchanging { .. } => "readings hardly change",
         Reason::Unconfirmed => "not confirmed without the stated body",
         Reason::TooShort { .. } => "too short for its noise",
-        Reason::Noisy { .. } => "too noisy for an estimate that is for exact logs",
         Reason::Fault(_) => "a constant of the sensors is not as stated",
         Reason::OtherBody { .. } => "another body than was stated",
         Reason::Inconsistent { .. } => "data and motion disagree",
-        Reason::Misfit { .. } => "more is left than noise explains",
     }
 }
 
 pub(crate) fn main() -> Result<(), Failure> {
     let scenes: usize = crate::words().next().map_or(Ok(200), |a| a.parse())?;
     let mut random = Random::new(1);
-    let (mut known, mut unknown) = (Tally::default(), Tally::default());
-    let mut from_contacts = [Tally::default(), Tally::default()];
-    while known.times.len() < scenes {
+    let mut tallies = [Tally::default(), Tally::default()];
+    while tallies[0].times.len() < scenes {
         let Some((scene, simulation, log)) = scene(&mut random)? else { continue };
-        let (mass, gravity) = (*scene.mass(), scene.gravity());
-        let clock = ThreadTime::now();
-        let estimate = estimate_motion(&log, &KnownBody { mass, gravity, palm_inertias: None, noise: None })?;
-        known.add(error(&estimate, &simulation), &estimate.reliability, 1e3 * clock.elapsed().as_secs_f64());
-        let clock = ThreadTime::now();
-        let body = estimate_body(&log, &UnknownBody { gravity, palm_inertias: None, noise: None })?;
-        let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
-        let of_mass = (body.body.mass.mass() / mass.mass() - 1.0).abs();
-        unknown.add(error(&body.motion, &simulation).max(of_mass), &body.motion.reliability, milliseconds);
-        for (tally, body) in from_contacts.iter_mut().zip([Some(mass), None]) {
+        let (mass, gravity) = (*scene.mass(), scene.gravity().length());
+        for (tally, body) in tallies.iter_mut().zip([Some(mass), None]) {
             let clock = ThreadTime::now();
-            let found = contacts(&log, body, gravity.length(), scene.body());
+            let found = contacts(&log, body, gravity);
             let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
             let Ok(found) = found else {
                 tally.refuse("singular", milliseconds);
@@ -129,21 +114,11 @@ pub(crate) fn main() -> Result<(), Failure> {
         "| mass and inertia | scenes | right | right but doubted | wrong and reported | wrong in silence | median ms | 90 % ms | slowest ms |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
-    println!("{}\n{}", known.row("known"), unknown.row("unknown"));
-    let [known_body, unknown_body] = &mut from_contacts;
-    println!(
-        "{}\n{}",
-        known_body.row("known, from contacts of any palms"),
-        unknown_body.row("unknown, from contacts of any palms")
-    );
-    let [known_body, unknown_body] = &from_contacts;
-    let all = [
-        ("known", &known),
-        ("unknown", &unknown),
-        ("known, from contacts", known_body),
-        ("unknown, from contacts", unknown_body),
-    ];
-    for (name, tally) in all {
+    let names = ["known", "unknown"];
+    for (name, tally) in names.into_iter().zip(&mut tallies) {
+        println!("{}", tally.row(name));
+    }
+    for (name, tally) in names.into_iter().zip(&tallies) {
         if !tally.reasons.is_empty() {
             println!("\nReasons reported with {name} mass and inertia:");
         }
@@ -154,18 +129,12 @@ pub(crate) fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The estimate from contacts of any palms that are known to be without friction.
-fn contacts(
-    log: &SensorLog,
-    body: Option<MassProperties>,
-    gravity: f64,
-    shape: &Ellipsoid,
-) -> Result<ContactEstimate, Failure> {
-    let length = shape.semi_axes().element_sum() / 3.0;
-    let floor = FLOOR * (gravity * length).sqrt();
-    let noise = ContactNoiseLevel { contact: 0.0, force_fixed: 0.0, force_share: 0.0, impulse: None, floor };
+/// The estimate of which nothing is said but that there is no friction.
+fn contacts(log: &SensorLog, body: Option<MassProperties>, gravity: f64) -> Result<ContactEstimate, Failure> {
+    let log = ContactLog::try_from(log)?;
+    let noise = ContactNoiseLevel::guessed(&log, gravity, None).ok_or("no two palms are touched at once")?;
     let options = ContactOptions { friction: Some(0.0), body, ..ContactOptions::new(noise, gravity) };
-    Ok(estimate_contacts(&ContactLog::try_from(log)?, None, &options)?)
+    Ok(estimate_contacts(&log, None, &options)?)
 }
 
 /// A random scene with its motion and log; none if it loses contact within a second.
@@ -189,10 +158,4 @@ fn scene(random: &mut Random) -> Result<Option<(ThreePalmScene<Ellipsoid>, Simul
     }
     let log = simulation.sensor_log(&scene)?.split_truth().0;
     Ok(Some((scene, simulation, log)))
-}
-
-/// Largest error of the centre of mass, m.
-fn error(estimate: &MotionEstimate, simulation: &Simulation) -> f64 {
-    let pairs = estimate.motion.iter().zip(&simulation.instants);
-    pairs.map(|(m, now)| m.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max)
 }

@@ -1,4 +1,4 @@
-//! Three palms from no guess and from a start nearby: time beside error, and beside a least-squares peer in SciPy.
+//! Three palms from no guess: time beside error, and beside a least-squares peer in SciPy that is given a start nearby.
 //!
 //! Usage: `three_palms_timing [REPEATS]` (20 by default). Reads the MuJoCo log `mj_A_fig5.csv` where the shared logs are, and
 //! simulates the same scene without error. Needs Python with SciPy for the peer's columns; they stay empty without. Prints a
@@ -6,11 +6,8 @@
 
 use cpu_time::ThreadTime;
 use glam::{DMat3, DQuat, DVec3};
-use recon::object_dynamics::{MassProperties, SensorLog};
-use recon::observer::{
-    IdentifiedBody, KnownBody, MotionEstimate, StartState, UnknownBody, estimate_body, estimate_body_from,
-    estimate_motion, estimate_motion_from,
-};
+use recon::object_dynamics::{ContactLog, MassProperties, SensorLog};
+use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
 use recon_tests::{Random, exact_log, fig5};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -38,7 +35,9 @@ struct Case {
 
 /// A start nearby: motion, and mass and inertia.
 struct Near {
-    start: StartState,
+    p_WCm: DVec3,
+    v_WCm: DVec3,
+    R_WO: DQuat,
     w_WO: DVec3,
     mass: MassProperties,
 }
@@ -53,14 +52,16 @@ struct Errors {
 }
 
 impl Errors {
-    fn of(estimate: &MotionEstimate, body: Option<&IdentifiedBody>, case: &Case, log: &SensorLog) -> Self {
+    fn of(found: &ContactEstimate, case: &Case, log: &SensorLog) -> Self {
         let mut errors = Self::default();
-        for (m, truth) in estimate.motion.iter().zip(log.truth().unwrap_or_default()) {
-            errors.position = errors.position.max(m.p_WCm.distance(truth.p_WCm));
-            errors.velocity = errors.velocity.max(m.v_WCm.distance(truth.v_WCm));
-            errors.turning = errors.turning.max(m.w_WO.distance(truth.w_WO));
+        for (state, truth) in found.states.iter().zip(log.truth().unwrap_or_default()) {
+            errors.position = errors.position.max(state.p_WCm.distance(truth.p_WCm));
+            errors.velocity = errors.velocity.max(state.v_WCm.distance(truth.v_WCm));
+            errors.turning = errors.turning.max(state.w_WO.distance(truth.w_WO));
         }
-        errors.mass = body.map_or(0.0, |b| (b.mass.mass() / case.mass.mass() - 1.0).abs());
+        // Of a known body it is given.
+        errors.mass =
+            if found.axes_deviations.is_some() { 0.0 } else { (found.mass / case.mass.mass() - 1.0).abs() };
         errors
     }
 
@@ -91,8 +92,7 @@ pub(crate) fn main() -> Result<(), Failure> {
     if cases.len() == 1 {
         println!("The MuJoCo log was not there: only the exact simulation was measured.");
     }
-    from_no_guess(&cases, repeats)?;
-    solves(&cases, repeats)?;
+    times(&cases, repeats)?;
     notes();
     Ok(())
 }
@@ -120,31 +120,11 @@ fn part(log: &SensorLog, stride: usize) -> Result<SensorLog, Failure> {
     Ok(SensorLog::new(samples, truth)?)
 }
 
-fn from_no_guess(cases: &[Case], repeats: usize) -> Result<(), Failure> {
+fn times(cases: &[Case], repeats: usize) -> Result<(), Failure> {
     println!(
-        "\n## From no guess\n\nThe whole estimator: log to motion, contact curves, covariance and evidence.\n"
-    );
-    println!("| log | mass and inertia | ms | position m | velocity m/s | angular velocity rad/s | mass |");
-    println!("|---|---|---|---|---|---|---|");
-    for case in cases {
-        let known = KnownBody { mass: case.mass, gravity: case.gravity, palm_inertias: None, noise: None };
-        let errors = Errors::of(&estimate_motion(&case.log, &known)?, None, case, &case.log);
-        let ms = fastest(repeats, || estimate_motion(&case.log, &known));
-        println!("| {} | known | {ms:.1} | {}", case.name, errors.columns());
-        let unknown = UnknownBody { gravity: case.gravity, palm_inertias: None, noise: None };
-        let found = estimate_body(&case.log, &unknown)?;
-        let errors = Errors::of(&found.motion, Some(&found.body), case, &case.log);
-        let ms = fastest(repeats, || estimate_body(&case.log, &unknown));
-        println!("| {} | unknown | {ms:.1} | {}", case.name, errors.columns());
-    }
-    Ok(())
-}
-
-fn solves(cases: &[Case], repeats: usize) -> Result<(), Failure> {
-    println!(
-        "\n## One solve from a start nearby\n\n{STARTS} starts, each number of motion up to {OFF} (m, m/s, rad/s, rad) off, and \
-         mass and inertia up to {} %: mean time and largest error. Ours is all that stands above but the search; the peer's is \
-         the least-squares solve alone, its integrals made before.\n",
+        "\nOurs is the whole estimator, from a log to motion, covariances and evidence, from no guess. The peer's is the least-squares solve \
+         alone, its integrals made before, the mean over {STARTS} starts of which each number of the motion is up to {OFF} (m, m/s, rad/s, rad) \
+         off, and mass and inertia up to {} %.\n",
         100.0 * OFF
     );
     println!(
@@ -156,7 +136,7 @@ fn solves(cases: &[Case], repeats: usize) -> Result<(), Failure> {
     for case in cases {
         for known in [true, false] {
             for stride in STRIDES {
-                solve(case, known, stride, repeats, &folder)?;
+                beside(case, known, stride, repeats, &folder)?;
             }
         }
     }
@@ -164,41 +144,22 @@ fn solves(cases: &[Case], repeats: usize) -> Result<(), Failure> {
     Ok(())
 }
 
-fn solve(case: &Case, known: bool, stride: usize, repeats: usize, folder: &Path) -> Result<(), Failure> {
+fn beside(case: &Case, known: bool, stride: usize, repeats: usize, folder: &Path) -> Result<(), Failure> {
     let log = part(&case.log, stride)?;
-    let starts = starts(case)?;
-    let (mut total, mut errors) = (0.0, Errors::default());
-    for near in &starts {
-        let (ms, error) =
-            if known { of_known(case, &log, near, repeats)? } else { of_unknown(case, &log, near, repeats)? };
-        total += ms / STARTS as f64;
-        errors = errors.max(error);
-    }
+    let contacts = ContactLog::try_from(&log.clone().split_truth().0)?;
+    let gravity = case.gravity.length();
+    let noise = ContactNoiseLevel::guessed(&contacts, gravity, None).ok_or("nothing is touched")?;
+    let body = known.then_some(case.mass);
+    let options = ContactOptions { friction: Some(0.0), body, ..ContactOptions::new(noise, gravity) };
+    let errors = Errors::of(&estimate_contacts(&contacts, None, &options)?, case, &log);
+    let ours = fastest(repeats, || estimate_contacts(&contacts, None, &options));
     let body = if known { "known" } else { "unknown" };
     let place = format!("| {} | {body} | {} |", case.name, 1000 / stride);
-    println!("{place} ours | {total:.2} | 1 | {}", errors.columns());
-    if let Some((ms, errors)) = peer(&log, &starts, known, folder)? {
-        println!("{place} SciPy | {ms:.0} | {:.0} | {}", ms / total, errors.columns());
+    println!("{place} ours | {ours:.1} | 1 | {}", errors.columns());
+    if let Some((ms, errors)) = peer(&log, &starts(case)?, known, folder)? {
+        println!("{place} SciPy | {ms:.0} | {:.0} | {}", ms / ours, errors.columns());
     }
     Ok(())
-}
-
-fn of_known(case: &Case, log: &SensorLog, near: &Near, repeats: usize) -> Result<(f64, Errors), Failure> {
-    let known = KnownBody { mass: case.mass, gravity: case.gravity, palm_inertias: None, noise: None };
-    let inertia = DMat3::from_quat(near.start.R_WO) * case.mass.inertia();
-    let L_WO = inertia * (near.start.R_WO.inverse() * near.w_WO);
-    let start = StartState { L_WO, ..near.start };
-    let estimate = estimate_motion_from(log, &known, &start)?;
-    let ms = fastest(repeats, || estimate_motion_from(log, &known, &start));
-    Ok((ms, Errors::of(&estimate, None, case, log)))
-}
-
-fn of_unknown(case: &Case, log: &SensorLog, near: &Near, repeats: usize) -> Result<(f64, Errors), Failure> {
-    let known = UnknownBody { gravity: case.gravity, palm_inertias: None, noise: None };
-    let start = StartState { L_WO: near.mass.inertia() * near.w_WO, R_WO: DQuat::IDENTITY, ..near.start };
-    let found = estimate_body_from(log, &known, &near.mass, &start)?;
-    let ms = fastest(repeats, || estimate_body_from(log, &known, &near.mass, &start));
-    Ok((ms, Errors::of(&found.motion, Some(&found.body), case, log)))
 }
 
 /// Starts that are off by random amounts. The body's axes stand along the world's at the start of these logs.
@@ -207,12 +168,8 @@ fn starts(case: &Case) -> Result<Vec<Near>, Failure> {
     let mut random = Random::new(1);
     let one = |_| {
         let mut off = || random.vector(-OFF, OFF);
-        let start = StartState {
-            p_WCm: truth.p_WCm + off(),
-            v_WCm: truth.v_WCm + off(),
-            L_WO: DVec3::ZERO,
-            R_WO: DQuat::from_scaled_axis(off()) * truth.R_WO,
-        };
+        let (p_WCm, v_WCm) = (truth.p_WCm + off(), truth.v_WCm + off());
+        let R_WO = DQuat::from_scaled_axis(off()) * truth.R_WO;
         let w_WO = truth.w_WO + off();
         let (diagonal, cross, mass) = (off(), off(), off().x);
         let change = DMat3::from_cols(
@@ -221,7 +178,7 @@ fn starts(case: &Case) -> Result<Vec<Near>, Failure> {
             DVec3::new(cross.y, cross.z, diagonal.z),
         );
         let mass = MassProperties::new(case.mass.mass() * (1.0 + mass), case.mass.inertia() + change)?;
-        Ok(Near { start, w_WO, mass })
+        Ok(Near { p_WCm, v_WCm, R_WO, w_WO, mass })
     };
     (0..STARTS).map(one).collect()
 }
@@ -236,13 +193,12 @@ fn peer(
     let (data, list) = (folder.join("log.csv"), folder.join("starts.txt"));
     recon_io::write_log(log, std::fs::File::create(&data)?)?;
     let mut lines = String::new();
-    for Near { start, w_WO, mass } in starts {
-        let mut numbers: Vec<f64> =
-            [start.p_WCm, start.v_WCm, *w_WO].iter().flat_map(|v| v.to_array()).collect();
+    for Near { p_WCm, v_WCm, R_WO, w_WO, mass } in starts {
+        let mut numbers: Vec<f64> = [*p_WCm, *v_WCm, *w_WO].iter().flat_map(|v| v.to_array()).collect();
         let inertia = mass.inertia();
         if known {
             // The true body: only the motion is off.
-            numbers.extend(start.R_WO.to_scaled_axis().to_array());
+            numbers.extend(R_WO.to_scaled_axis().to_array());
             numbers.extend([1.0, 1.0, 1.45, 2.05]);
         } else {
             let (x, y, z) = (inertia.x_axis, inertia.y_axis, inertia.z_axis);
@@ -285,7 +241,7 @@ fn notes() {
     println!(
         "\n## Beside it
 
-SciPy: `benches/peers/three_palms_scipy.py`, the same momentum form, `least_squares` with central differences, the perturbed
+SciPy: `benches/peers/three_palms_scipy.py`, contact conditions along the motion that the measured forces and a start make, `least_squares` with central differences, the perturbed
 motions of all columns integrated side by side in NumPy arrays. A peer with derivatives by CasADi, measured elsewhere on the
 MuJoCo log: 130 to 420 ms a solve with known inertia and 800 to 2500 ms with unknown, from no guess several of them (10 of 10 to
 3 of 10 random starts arrive with known inertia, 3 of 6 to 1 of 6 with unknown); 9e-7 m and 3e-6 rad/s.

@@ -62,7 +62,7 @@ pub enum Reason {
         /// How far it is from this one, in deviations of the velocities or positions.
         apart: f64,
     },
-    /// The log is noisy and short beside the time in which the body falls its own length.
+    /// The log is not exact, and short beside the time in which the body falls its own length.
     TooShort {
         /// Length of the log, s.
         duration: f64,
@@ -113,7 +113,7 @@ impl fmt::Display for Reason {
             ),
             Self::TooShort { duration, needed } => write!(
                 f,
-                "{duration:.2} s of noisy data are too short for a body of this size: at least {needed:.2} s are needed"
+                "{duration:.2} s are too short for a body of this size and data that are not exact: at least {needed:.2} s are needed"
             ),
         }
     }

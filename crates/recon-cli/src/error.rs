@@ -149,7 +149,7 @@ pub(crate) enum CliError {
     #[error("the sensor noise of the scene makes the log unusable")]
     Noise(#[source] LogError),
     #[error(
-        "palm {palm} has no contact force: the log needs f_{palm}, or tau_{palm} with the palm's moment of inertia in the scene (a log of contacts: fn_{palm}, or the impulse of every palm in three axes, Jx_{palm}, Jy_{palm}, Jz_{palm}); an ellipsoid is found from contacts alone (`recon reconstruct --without-forces`)"
+        "palm {palm} has no contact force: the log needs f_{palm}, or tau_{palm} with the palm's moment of inertia in the scene and contacts away from its axis (a log of contacts: fn_{palm}, or the impulse of every palm in three axes, Jx_{palm}, Jy_{palm}, Jz_{palm}); an ellipsoid is found from contacts alone (`recon reconstruct --without-forces`)"
     )]
     NoPalmForce {
         /// Number from 1.

@@ -8,28 +8,10 @@ use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation, ThreePalmScene,
 };
-use recon::observer::{
-    BodyEstimate, ContactEstimate, EstimateError, KnownBody, MotionEstimate, TrackError, UnknownBody,
-    estimate_body, estimate_motion,
-};
+use recon::observer::ContactEstimate;
 use recon_tests::{exact_log, g2};
 
 const NOISE: SensorNoise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };
-
-fn of_known<S: SupportFunction>(
-    scene: &ThreePalmScene<S>,
-    log: &SensorLog,
-) -> Result<MotionEstimate, EstimateError> {
-    let known = KnownBody { mass: *scene.mass(), gravity: scene.gravity(), palm_inertias: None, noise: None };
-    estimate_motion(log, &known)
-}
-
-fn of_unknown<S: SupportFunction>(
-    scene: &ThreePalmScene<S>,
-    log: &SensorLog,
-) -> Result<BodyEstimate, EstimateError> {
-    estimate_body(log, &UnknownBody { gravity: scene.gravity(), palm_inertias: None, noise: None })
-}
 
 /// What is said of the log, of a known body and of one of which nothing is known.
 fn both<S: SupportFunction>(scene: &ThreePalmScene<S>, log: &SensorLog) -> [ContactEstimate; 2] {
@@ -67,44 +49,6 @@ fn a_wrong_force_gain_is_reported() {
     }
     // With the right gain both are relied on: it is the gain that is reported.
     assert_eq!(both(&scene, &noisy).map(|found| words(&found.reliability)), [String::new(), String::new()]);
-}
-
-#[test]
-fn a_palm_without_forces_is_named() {
-    let (scene, start) = g2();
-    let (_, log) = exact_log(&scene, start, 0.5, 250.0);
-    for palm in 0..3 {
-        let without = changed(&log, |_, i, reading| {
-            if i == palm {
-                reading.force = None;
-            }
-        });
-        let is_named = |error: &EstimateError| matches!(error, EstimateError::Track(TrackError::NoForce { palm: named, .. }) if *named == palm + 1);
-        assert!(of_known(&scene, &without).err().as_ref().is_some_and(is_named), "palm {palm}");
-        assert!(of_unknown(&scene, &without).err().as_ref().is_some_and(is_named), "palm {palm}");
-    }
-}
-
-#[test]
-fn a_log_is_used_up_to_the_loss_of_contact() {
-    let (scene, start) = g2();
-    let (simulation, log) = exact_log(&scene, start, 3.0, 250.0);
-    let lost = 500;
-    let with_loss = changed(&log, |k, i, palm| {
-        if i == 2 && k >= lost {
-            palm.contact = None;
-            palm.force = Some(0.0);
-        }
-    });
-    assert_eq!(with_loss.first_contact_loss(), Some((lost, 2)));
-    let known = of_known(&scene, &with_loss).unwrap();
-    let unknown = of_unknown(&scene, &with_loss).unwrap().motion;
-    for estimate in [known, unknown] {
-        assert_eq!(estimate.motion.len(), lost);
-        assert!(estimate.reliability.is_reliable(), "{}", words(&estimate.reliability));
-        let last = simulation.instants[lost - 1].touch.p_WCm;
-        assert!(estimate.motion[lost - 1].p_WCm.distance(last) < 1e-5);
-    }
 }
 
 /// A palm is left for a while, as its sensor says while the body is there: what goes on without it is right or refused.

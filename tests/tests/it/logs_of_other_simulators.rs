@@ -3,8 +3,8 @@
 //! Excerpts are in `data/`; the full logs are read where they lie beside the repository, and skipped aloud where not.
 
 use glam::DVec3;
-use recon::object_dynamics::{MassProperties, SensorLog};
-use recon::observer::{KnownBody, MotionEstimate, estimate_motion};
+use recon::object_dynamics::{ContactLog, MassProperties, SensorLog};
+use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
 use std::path::{Path, PathBuf};
 
 const FIG5: DVec3 = DVec3::new(2.5, 2.0, 1.0);
@@ -22,25 +22,26 @@ const fn case(log: &'static str, axes: DVec3, gravity: f64, centre: f64, rate: f
     Case { log, axes, gravity, allowed: (centre, rate) }
 }
 
-fn estimate(path: &Path, case: &Case) -> (SensorLog, MotionEstimate) {
+fn estimate(path: &Path, case: &Case) -> (SensorLog, ContactEstimate) {
     let log = recon_io::read_log(path).unwrap();
-    let mass = MassProperties::uniform_ellipsoid(1.0, case.axes).unwrap();
-    let gravity = DVec3::new(0.0, 0.0, -case.gravity);
-    let known = KnownBody { mass, gravity, palm_inertias: None, noise: None };
-    let estimate = estimate_motion(&log.clone().split_truth().0, &known).unwrap();
+    let body = Some(MassProperties::uniform_ellipsoid(1.0, case.axes).unwrap());
+    let contacts = ContactLog::try_from(&log.clone().split_truth().0).unwrap();
+    let noise = ContactNoiseLevel::guessed(&contacts, case.gravity, None).unwrap();
+    let options = ContactOptions { friction: Some(0.0), body, ..ContactOptions::new(noise, case.gravity) };
+    let estimate = estimate_contacts(&contacts, None, &options).unwrap();
     (log, estimate)
 }
 
 fn check(path: &Path, case: &Case) {
     let (log, estimate) = estimate(path, case);
-    let pairs = || estimate.motion.iter().zip(log.truth().unwrap());
+    let held = log.first_contact_loss().map_or(log.samples().len(), |(sample, _)| sample);
+    let pairs = || estimate.states.iter().zip(log.truth().unwrap()).take(held);
     let centre = pairs().map(|(m, t)| m.p_WCm.distance(t.p_WCm)).fold(0.0, f64::max);
     let rate = pairs().map(|(m, t)| m.w_WO.distance(t.w_WO)).fold(0.0, f64::max);
     println!("{}: centre of mass {centre:.2e} m, angular velocity {rate:.2e} rad/s", case.log);
     assert!(centre < case.allowed.0 && rate < case.allowed.1, "{}: {centre:e} m, {rate:e} rad/s", case.log);
     assert!(estimate.reliability.is_reliable(), "{}: {:?}", case.log, estimate.reliability);
-    let used = log.first_contact_loss().map_or(log.samples().len(), |(sample, _)| sample);
-    assert_eq!(estimate.motion.len(), used, "the whole part in contact is used");
+    assert_eq!(estimate.states.len(), log.samples().len(), "all of the log is used");
 }
 
 #[test]

@@ -1,8 +1,10 @@
-//! Noisy logs of three planes through the estimate from contacts: what the tests of it share.
+//! Logs of three planes through the estimate from contacts: what the tests of it share.
 
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::{ContactLog, Instant, PalmReading, SensorLog, SensorNoise, ThreePalmScene};
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, Reliability, estimate_contacts};
+use recon::observer::{
+    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, Reliability, estimate_contacts,
+};
 
 /// What conditions are off by beside noise, m/s: next to nothing for bodies of some metres.
 const FLOOR: f64 = 1e-5;
@@ -28,6 +30,28 @@ pub(crate) fn estimated<S: SupportFunction>(
         ..ContactOptions::new(noise, scene.gravity().length())
     };
     estimate_contacts(&ContactLog::try_from(log).unwrap(), None, &options).unwrap()
+}
+
+/// The same of a log without noise, with nothing said of sensors.
+pub(crate) fn exactly<S: SupportFunction>(
+    scene: &ThreePalmScene<S>,
+    log: &SensorLog,
+    known: bool,
+) -> Result<ContactEstimate, ContactEstimateError> {
+    let (log, gravity) = (ContactLog::try_from(log).unwrap(), scene.gravity().length());
+    let noise = ContactNoiseLevel::guessed(&log, gravity, None).ok_or(ContactEstimateError::NoContact)?;
+    let body = known.then(|| *scene.mass());
+    let options =
+        ContactOptions { friction: Some(0.0), body, suspects: true, ..ContactOptions::new(noise, gravity) };
+    estimate_contacts(&log, None, &options)
+}
+
+/// Largest errors of centre of mass (m) and angular velocity (rad/s) over a log.
+pub(crate) fn largest_errors(found: &ContactEstimate, instants: &[Instant]) -> (f64, f64) {
+    let pairs = || found.states.iter().zip(instants);
+    let centre = pairs().map(|(state, now)| state.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max);
+    let spin = pairs().map(|(state, now)| state.w_WO.distance(now.w_WO)).fold(0.0, f64::max);
+    (centre, spin)
 }
 
 /// Squares of the errors of centre of mass, velocity and angular velocity at a sample over their variances.

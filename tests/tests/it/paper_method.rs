@@ -1,10 +1,13 @@
 //! The paper's own reconstruction, (35) to (37) from given initial conditions: right on exact data, useless otherwise.
 
+use crate::noisy::estimated;
 use recon::contact_kinematics::SupportFunction;
-use recon::object_dynamics::{SensorLog, SensorNoise, Simulation, ThreePalmScene};
+use recon::object_dynamics::{
+    BodyState, Instant, Sample, SensorLog, SensorNoise, Simulation, ThreePalmScene,
+};
 use recon::observer::{
-    KnownBody, PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, Track,
-    estimate_motion, integrate_paper_system,
+    PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, Track,
+    integrate_paper_system,
 };
 use recon_tests::{exact_log, f5, g2};
 
@@ -22,7 +25,7 @@ fn reconstruct<S: SupportFunction>(
     start: &PaperStart,
     method: PaperMethod,
 ) -> PaperReconstruction {
-    let track = Track::new(log, scene.mass().mass(), scene.gravity(), None).unwrap();
+    let track = Track::new(log, scene.gravity(), None).unwrap();
     integrate_paper_system(&track, scene.mass(), start, method).unwrap()
 }
 
@@ -79,16 +82,17 @@ fn errors_of_the_start_grow_a_hundred_thousandfold() {
 fn noise_that_the_estimator_averages_ruins_the_integration() {
     let (scene, start) = f5();
     let (simulation, log) = exact_log(&scene, start, 4.2, 500.0);
-    let noisy = log.with_noise(&SensorNoise { contact: 2.5e-3, force: 0.0, torque: 0.0 }, 3).unwrap();
+    let noise = SensorNoise { contact: 2.5e-3, force: 0.0, torque: 0.0 };
+    let noisy = log.with_noise(&noise, 3).unwrap();
     let integrated = reconstruct(&scene, &noisy, &true_start(&simulation), ADAMS);
-    let known = KnownBody { mass: *scene.mass(), gravity: scene.gravity(), palm_inertias: None, noise: None };
-    let estimate = estimate_motion(&noisy, &known).unwrap();
-    let fitted = estimate
-        .radii
-        .iter()
-        .zip(&simulation.instants)
-        .flat_map(|(r, now)| (0..3).map(|i| (r[i] - now.touch.contacts[i].jet.value).abs()))
-        .fold(0.0, f64::max);
+    let found = estimated(&scene, &noisy, noise, true);
+    // Palms meet in the world's origin: a radius is how far the centre of mass is from a palm.
+    let off = |(state, (now, sample)): (&BodyState, (&Instant, &Sample))| {
+        let radius = |i: usize| sample.palms[i].normal.get().dot(state.p_WCm);
+        (0..3).map(|i| (radius(i) - now.touch.contacts[i].jet.value).abs()).fold(0.0, f64::max)
+    };
+    let pairs = found.states.iter().zip(simulation.instants.iter().zip(noisy.samples()));
+    let fitted = pairs.map(off).fold(0.0, f64::max);
     assert!(fitted < 0.02, "{fitted}");
     assert!(integrated.diverged_at.is_some() || radius_error(&integrated, &simulation) > 10.0 * fitted);
 }
@@ -97,7 +101,7 @@ fn noise_that_the_estimator_averages_ruins_the_integration() {
 fn bad_input_is_named() {
     let (scene, start) = f5();
     let (simulation, log) = exact_log(&scene, start, 1.0, 100.0);
-    let track = Track::new(&log, 1.0, scene.gravity(), None).unwrap();
+    let track = Track::new(&log, scene.gravity(), None).unwrap();
     let exact = true_start(&simulation);
     let wrong = PaperStart { radii: [1.0, f64::NAN, 1.0], ..exact };
     let result = integrate_paper_system(&track, scene.mass(), &wrong, ADAMS);
@@ -105,7 +109,7 @@ fn bad_input_is_named() {
     let mut samples = log.samples().to_vec();
     samples.remove(20);
     let uneven = SensorLog::new(samples, None).unwrap();
-    let uneven = Track::new(&uneven, 1.0, scene.gravity(), None).unwrap();
+    let uneven = Track::new(&uneven, scene.gravity(), None).unwrap();
     let result = integrate_paper_system(&uneven, scene.mass(), &exact, ADAMS);
     assert!(matches!(result.err(), Some(PaperError::UnevenSamples { index: 19, .. })));
     assert!(integrate_paper_system(&uneven, scene.mass(), &exact, HEUN).is_ok());

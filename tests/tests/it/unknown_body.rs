@@ -1,38 +1,25 @@
 //! Motion, mass and inertia together, of a body of which nothing is known.
 
-use crate::noisy::estimated;
+use crate::noisy::{estimated, exactly, largest_errors, words};
 use glam::DVec3;
 use recon::contact_kinematics::SupportFunction;
-use recon::object_dynamics::{InitialMotion, SensorNoise, Simulation, ThreePalmScene};
-use recon::observer::{BodyEstimate, NoiseLevel, UnknownBody, estimate_body};
+use recon::object_dynamics::{InitialMotion, MassProperties, SensorNoise, ThreePalmScene};
 use recon_tests::{exact_log, f5, g2};
-
-fn unknown<S: SupportFunction>(scene: &ThreePalmScene<S>, noise: Option<NoiseLevel>) -> UnknownBody {
-    UnknownBody { gravity: scene.gravity(), palm_inertias: None, noise }
-}
 
 fn moments<S: SupportFunction>(scene: &ThreePalmScene<S>) -> DVec3 {
     scene.mass().principal().moments
 }
 
-fn centre_error(estimate: &BodyEstimate, simulation: &Simulation) -> f64 {
-    let pairs = estimate.motion.motion.iter().zip(&simulation.instants);
-    pairs.map(|(m, now)| m.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max)
-}
-
 fn check_exact<S: SupportFunction>(scene: &ThreePalmScene<S>, start: InitialMotion, duration: f64) {
     let (simulation, log) = exact_log(scene, start, duration, 1000.0);
-    let estimate = estimate_body(&log, &unknown(scene, None)).unwrap();
-    let mass = estimate.body.mass.mass() / scene.mass().mass() - 1.0;
-    let inertia = (estimate.body.mass.principal().moments - moments(scene)).abs().max_element();
-    let centre = centre_error(&estimate, &simulation);
-    println!(
-        "mass {mass:.1e}, inertia {inertia:.1e}, centre of mass {centre:.1e}, {:?}",
-        estimate.motion.evidence
-    );
-    assert!(estimate.motion.reliability.is_reliable(), "{:?}", estimate.motion.reliability);
+    let found = exactly(scene, &log, false).unwrap();
+    let mass = found.mass / scene.mass().mass() - 1.0;
+    let body = MassProperties::new(found.mass, found.inertia).unwrap();
+    let inertia = (body.principal().moments - moments(scene)).abs().max_element();
+    let (centre, _) = largest_errors(&found, &simulation.instants);
+    assert!(found.reliability.is_reliable(), "{}", words(&found.reliability));
     assert!(mass.abs() < 1e-7 && inertia < 1e-6 && centre < 1e-7, "{mass:e} {inertia:e} {centre:e}");
-    assert_eq!(estimate.motion.evidence.rank, 16);
+    assert!(found.inertia_deviations.iter().all(|of| *of < 1e-4), "{:?}", found.inertia_deviations);
 }
 
 #[test]

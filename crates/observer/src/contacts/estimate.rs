@@ -33,7 +33,7 @@ pub(super) const AVERAGED: f64 = 0.12;
 pub(super) const THIN: f64 = 0.02;
 /// Conditions of a contact that sticks are contradicted beyond this: three numbers in their deviations go there once in a million.
 const CONTRADICTED: f64 = 30.7;
-/// Natural times that a noisy log must last at least: over less, the motion is hardly more than its start.
+/// Natural times that a log must last at least, unless next to nothing is left of it: over less, the motion is hardly more than its start.
 const SHORTEST: f64 = 4.0;
 /// How often modes are taken back.
 const ROUNDS: usize = 6;
@@ -192,6 +192,8 @@ impl Source<'_> {
                     decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
             }
         }
+        let exact = longest == 0.0 && log.frictionless() && !options.planar;
+        let doubtful = if exact { !problem.is_found(&solved) } else { thinned.is_none() };
         if options.guessed_floor && longest == 0.0 && solved.misfit() < LARGEST_MISFIT {
             before += solved.iterations;
             let (sharp, of) = sharpened(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
@@ -204,7 +206,7 @@ impl Source<'_> {
         let slips = slips(&problem, &motions, &solved.unknowns.body);
         let (duration, needed) =
             (log.times[log.times.len() - 1] - log.times[0], SHORTEST * units.length / units.speed);
-        let short = (thinned.is_none() && duration < needed).then_some(Reason::TooShort { duration, needed });
+        let short = (doubtful && duration < needed).then_some(Reason::TooShort { duration, needed });
         let suspects = match options.suspects && thinned.is_none() && slips.is_empty() {
             true => self.suspects(&problem, &solved, &covariances, &motions, (log, &modes, longest)),
             false => Vec::new(),

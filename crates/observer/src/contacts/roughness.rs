@@ -6,6 +6,18 @@ use glam::DVec3;
 use object_dynamics::{ContactLog, LoggedPalm, SensedAxes, SensedForce};
 
 impl ContactNoiseLevel {
+    /// What contact conditions are taken to be off by at first where it is not known, as a share of the natural speed `sqrt(g l)`: that by which
+    /// contacts creep that stick in simulators.
+    pub const GUESSED_FLOOR: f64 = 3e-5;
+
+    /// By the roughness of the readings of a log under `gravity`, m/s^2, with a guess of what conditions are off by, of a body of the size `length`,
+    /// m, or else of that of its contacts. None where no two palms are touched at once and no size is stated.
+    #[must_use]
+    pub fn guessed(log: &ContactLog, gravity: f64, length: Option<f64>) -> Option<Self> {
+        let length = length.or_else(|| spread(log))?;
+        Some(Self::by_roughness(log, Self::GUESSED_FLOOR * (gravity * length).sqrt(), false))
+    }
+
     /// Standard deviations of the white noise of a log's contacts, forces and impulses, by what of some readings in a row no polynomial explains.
     ///
     /// The median of it is blind to outliers and to changes of contact modes. A sensor that counts in steps has the noise of these at
@@ -54,4 +66,19 @@ impl ContactNoiseLevel {
 fn in_palm(palm: &LoggedPalm, k: usize) -> Option<DVec3> {
     let (touch, pose) = (palm.touch(k)?, palm.motion(k).pose);
     Some(pose.R_WP.inverse() * (touch.p_WC - pose.p_WP))
+}
+
+/// Root mean square of the distance of contacts from the mean of those at the same time, m: about the size of the object. None
+/// where no two are touched at once.
+fn spread(log: &ContactLog) -> Option<f64> {
+    let (mut squares, mut count) = (0.0, 0.0);
+    for k in 0..log.times().len() {
+        let contacts: Vec<DVec3> = log.palms().iter().filter_map(|palm| Some(palm.touch(k)?.p_WC)).collect();
+        if contacts.len() > 1 {
+            let mean = contacts.iter().sum::<DVec3>() / contacts.len() as f64;
+            squares += contacts.iter().map(|c| c.distance_squared(mean)).sum::<f64>();
+            count += contacts.len() as f64;
+        }
+    }
+    (squares > 0.0).then(|| f64::sqrt(squares / count))
 }

@@ -20,10 +20,6 @@ use recon_io::{EstimateData, MassDeviations, PalmContact, Scene, Sensors};
 use std::error::Error;
 use std::path::Path;
 
-/// What contact conditions are taken to be off by at first where the scene does not say it, as a share of the natural speed `sqrt(g l)`: that by
-/// which contacts creep that stick in simulators.
-pub(super) const FLOOR: f64 = 3e-5;
-
 /// What was asked for.
 pub(crate) struct AnyPalmsRequest<'a> {
     pub(crate) scene: &'a Scene,
@@ -168,9 +164,7 @@ pub(crate) fn estimate_any_palms(
 /// What the estimator is told: as the scene states it, and the noise that it does not state from the roughness of the readings.
 fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOptions, CliError> {
     let sensors = &scene.sensors;
-    let length = scene.size.or_else(|| size(log)).ok_or(CliError::SizeNotStated)?;
-    let floor = condition_floor(scene, length);
-    let rough = ContactNoiseLevel::by_roughness(log, floor, false);
+    let rough = noise_by_roughness(log, scene).ok_or(CliError::SizeNotStated)?;
     // Impulses beside forces are read where their noise is stated.
     let alone = !log.palms().iter().all(by_force);
     let rough = ContactNoiseLevel { impulse: rough.impulse.filter(|_| alone), ..rough };
@@ -201,15 +195,17 @@ pub(super) fn as_stated(sensors: &Sensors, rough: ContactNoiseLevel, mean: f64) 
     ContactNoiseLevel { contact, force_fixed, force_share, impulse, ..rough }
 }
 
-/// The noise of a log by the roughness of its readings.
-pub(crate) fn noise_by_roughness(log: &ContactLog, scene: &Scene) -> ContactNoiseLevel {
-    let length = scene.size.or_else(|| size(log)).unwrap_or_default();
-    ContactNoiseLevel::by_roughness(log, condition_floor(scene, length), false)
+/// The noise of a log by the roughness of its readings, and what conditions are off by as the scene states it. None where no two palms are touched
+/// at once and the scene states no size.
+fn noise_by_roughness(log: &ContactLog, scene: &Scene) -> Option<ContactNoiseLevel> {
+    let rough = ContactNoiseLevel::guessed(log, scene.gravity, scene.size)?;
+    Some(ContactNoiseLevel { floor: scene.sensors.contact_speed_std.unwrap_or(rough.floor), ..rough })
 }
 
 /// What conditions are off by beside noise, m/s, of a body of the size `length`, m: as the scene states it.
 pub(crate) fn condition_floor(scene: &Scene, length: f64) -> f64 {
-    scene.sensors.contact_speed_std.unwrap_or(FLOOR * (scene.gravity * length).sqrt())
+    let guessed = || ContactNoiseLevel::GUESSED_FLOOR * (scene.gravity * length).sqrt();
+    scene.sensors.contact_speed_std.unwrap_or_else(guessed)
 }
 
 /// Root mean square of the distance of points from their mean, m; 0 of none.
@@ -226,21 +222,6 @@ fn by_force(palm: &LoggedPalm) -> bool {
         Some(SensedAxes::Normal) => palm.friction() == Some(0.0),
         None => false,
     }
-}
-
-/// Root mean square of the distance of contacts from the mean of those at the same time, m: about the size of the object. None
-/// where no two are touched at once.
-fn size(log: &ContactLog) -> Option<f64> {
-    let (mut squares, mut count) = (0.0, 0.0);
-    for k in 0..log.times().len() {
-        let contacts: Vec<DVec3> = log.palms().iter().filter_map(|palm| Some(palm.touch(k)?.p_WC)).collect();
-        if contacts.len() > 1 {
-            let mean = contacts.iter().sum::<DVec3>() / contacts.len() as f64;
-            squares += contacts.iter().map(|c| c.distance_squared(mean)).sum::<f64>();
-            count += contacts.len() as f64;
-        }
-    }
-    (squares > 0.0).then(|| f64::sqrt(squares / count))
 }
 
 /// Where a palm touches the object, at the samples that are relied on and where it was not misread.

@@ -33,7 +33,7 @@ mod truth;
 mod without_forces;
 mod words;
 
-pub(crate) use any_palms::{AnyPalms, condition_floor, noise_by_roughness, spread};
+pub(crate) use any_palms::{AnyPalms, condition_floor, spread};
 pub(crate) use bounds::{BoundsResult, exact_bounds};
 pub(crate) use concave::concave_bounds;
 pub(crate) use contacts::{ContactRun, simulate_contacts};

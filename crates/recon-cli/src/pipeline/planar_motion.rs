@@ -1,6 +1,6 @@
 //! Motion, mass and shape of a body in the plane from contacts of any palms.
 
-use super::any_palms::{FLOOR, as_stated};
+use super::any_palms::as_stated;
 use super::bounds::CONFIDENCE;
 use super::planar_motion_bounds::motion_bounds;
 use super::planar_motion_words::{NOTE, evidence, verdict};
@@ -78,7 +78,9 @@ fn bounded(
 /// As it is stated, and what is not from the roughness of the readings.
 fn noise(log: &ContactLog, known: &PlanarKnown) -> Result<ContactNoiseLevel, CliError> {
     let sensors = &known.sensors;
-    let floor = sensors.contact_speed_std.unwrap_or(FLOOR * (known.gravity * size(log)).sqrt());
+    let floor = sensors
+        .contact_speed_std
+        .unwrap_or(ContactNoiseLevel::GUESSED_FLOOR * (known.gravity * size(log)).sqrt());
     let friction: Vec<_> = known.palms.iter().map(|(_, friction)| *friction).collect();
     let rough =
         plane_noise(log, &friction, floor).map_err(recon::observer::planar::PlaneEstimateError::from)?;

@@ -11,24 +11,33 @@ use recon_io::{PalmTrack, ReportData, Scene};
 /// The log as one of any palms, with the normal forces that torques of the motors tell of palms without a force.
 pub(super) fn with_forces(log: &SensorLog, scene: &Scene) -> Result<ContactLog, CliError> {
     let log = ContactLog::try_from(log)?;
-    let lacks = |i: usize| log.palms()[i].force_axes().is_none() && log.palms()[i].has_torque();
-    let lacking: Vec<usize> = (0..log.palms().len()).filter(|i| lacks(*i)).collect();
-    let unfelt =
-        |i: usize| log.palms()[i].force_axes().is_none() && !(lacks(i) && scene.palm_inertia.is_some());
-    if let Some(i) = (0..log.palms().len()).find(|i| unfelt(*i)) {
-        return Err(CliError::NoPalmForce { palm: i + 1 });
+    let lacking: Vec<usize> =
+        (0..log.palms().len()).filter(|&i| log.palms()[i].force_axes().is_none()).collect();
+    // The torque of a palm that stands still needs no inertia.
+    let still = |i: usize| (0..log.times().len()).all(|k| log.palms()[i].motion(k).w_WP == DVec3::ZERO);
+    let inertia = |i: usize| scene.palm_inertia.map(|of| of[i]).or(still(i).then_some(0.0));
+    let usable = |i: usize| log.palms()[i].has_torque() && inertia(i).is_some();
+    if let Some(palm) = lacking.iter().find(|i| !usable(**i)) {
+        return Err(CliError::NoPalmForce { palm: palm + 1 });
     }
-    let (false, Some(inertias)) = (lacking.is_empty(), scene.palm_inertia) else { return Ok(log) };
+    if lacking.is_empty() {
+        return Ok(log);
+    }
     let (times, truth) = (log.times().to_vec(), log.truth().map(<[_]>::to_vec));
     let mut records = log.records();
-    for (i, (record, inertia)) in records.iter_mut().zip(inertias).enumerate() {
+    for &i in &lacking {
+        let inertia = inertia(i).unwrap_or_default();
         let axis = Direction::new_unchecked(log.palms()[i].motion(0).pose.R_WP * DVec3::X);
-        record.hinge = Some(PalmHinge { pivot: DVec3::ZERO, axis, inertia });
+        records[i].hinge = Some(PalmHinge { pivot: DVec3::ZERO, axis, inertia });
     }
     let hinged = ContactLog::new(times.clone(), records.clone(), truth.clone())?;
     for i in lacking {
-        let forces = hinged.forces_of_torque(i)?.into_iter().map(Option::unwrap_or_default);
-        records[i].force = ForceChannel::Normal(forces.collect());
+        let forces = hinged.forces_of_torque(i)?;
+        let open = |(k, force): (usize, &Option<f64>)| force.is_none() && log.palms()[i].touch(k).is_some();
+        if forces.iter().enumerate().any(open) {
+            return Err(CliError::NoPalmForce { palm: i + 1 });
+        }
+        records[i].force = ForceChannel::Normal(forces.into_iter().map(Option::unwrap_or_default).collect());
     }
     Ok(ContactLog::new(times, records, truth)?)
 }

@@ -2,9 +2,10 @@
 
 use super::Understood;
 use crate::error::CliError;
-use crate::pipeline::{LoadedLog, LogOf, noise_by_roughness, sorted_with_forces};
+use crate::pipeline::{LoadedLog, LogOf, sorted_with_forces};
 use recon::contact_kinematics::PalmSurface;
 use recon::object_dynamics::{ContactLog, LoggedPalm, SensedAxes, TwistSource};
+use recon::observer::ContactNoiseLevel;
 use recon_io::{AnyLog, Scene, brief, brief_to, implausibilities};
 use serde_json::{Value, json};
 
@@ -36,7 +37,7 @@ pub(super) fn told(loaded: LoadedLog, scene: &Scene) -> Result<Understood, CliEr
         lines.push((format!("palm {}", i + 1), line));
         palms.push(figures);
     }
-    let noise = noise_by_roughness(&contacts, scene);
+    let noise = ContactNoiseLevel::by_roughness(&contacts, 0.0, false);
     let rough = json!({
         "contact_m": noise.contact, "force_n": noise.force_fixed, "force_share": noise.force_share,
         "stated_contact_m": scene.sensors.contact_std, "stated_force_n": scene.sensors.force_std,
