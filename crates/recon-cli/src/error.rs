@@ -122,7 +122,7 @@ pub(crate) enum CliError {
         "contacts on one palm at a time tell no size of the object: give its mean radius in m, about, in the scene as object.size"
     )]
     SizeNotStated,
-    #[error("the contacts give no motion")]
+    #[error("the log gives no motion")]
     ContactEstimate(#[from] ContactEstimateError),
     #[error("the object's shape cannot be used")]
     Shape(#[from] recon::contact_kinematics::ShapeError),

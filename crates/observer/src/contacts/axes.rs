@@ -134,11 +134,11 @@ fn apart(a: DQuat, b: DQuat, same: &[DQuat; 4]) -> f64 {
     same.iter().map(|turn| (a * *turn).angle_between(b)).fold(f64::INFINITY, f64::min)
 }
 
-/// Orientations, each as far from the others as so many can be: a spiral on the quaternions (Alexa 2022).
-fn orientation(i: usize) -> DQuat {
+/// Orientation `i` of so many, each as far from the others as they can be: a spiral on the quaternions (Alexa 2022).
+pub(super) fn orientation(i: usize, of: usize) -> DQuat {
     /// Root of `x^4 = x + 4`.
     const PSI: f64 = 1.533_751_168_755_204_3;
-    let (s, n) = (i as f64 + 0.5, LOOKED_AT as f64);
+    let (s, n) = (i as f64 + 0.5, of as f64);
     let (r, R) = ((s / n).sqrt(), (1.0 - s / n).sqrt());
     let (a, b) = (TAU * s / SQRT_2, TAU * s / PSI);
     DQuat::from_xyzw(r * a.sin(), r * a.cos(), R * b.sin(), R * b.cos()).normalize()
@@ -186,7 +186,8 @@ impl Likely<'_> {
             }
             kept
         };
-        let first = different(sorted((0..LOOKED_AT).map(orientation).collect()), ALIKE, FOLLOWED);
+        let first =
+            different(sorted((0..LOOKED_AT).map(|i| orientation(i, LOOKED_AT)).collect()), ALIKE, FOLLOWED);
         let search = LevenbergMarquardt { step_tolerance: 1e-4, ..LevenbergMarquardt::default() };
         let ends = first.into_iter().map(|R| search.fit(self, R).point).collect();
         different(sorted(ends), SAME, SOLVED)

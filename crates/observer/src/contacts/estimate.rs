@@ -1,6 +1,7 @@
 use super::axes::known_motion;
 use super::body::{Body, CONSTANTS};
 use super::cold;
+use super::directly::directly;
 use super::joint::pose_errors;
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
@@ -11,7 +12,7 @@ use super::rivals::{decided, still};
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{fine, fine_nodes, problem, refined, search};
-use super::sharp::sharpened;
+use super::sharp::{is_sharp, sharpened};
 use super::solve::{Covariances, Solved};
 use super::state::Motion;
 use super::suspects::{Change, suspects};
@@ -172,6 +173,9 @@ impl Source<'_> {
             let (known, reason) = known.ok_or(ContactEstimateError::Singular)?;
             before += solved.iterations;
             (solved, doubt, against) = (known, Some(0.0), reason);
+        } else if let Some((known, more)) = self.directly(&mut problem, &solved) {
+            before += solved.iterations + more;
+            (solved, doubt) = (known, Some(0.0));
         } else if let Some(mass) = &options.body {
             let known = known_motion(&mut problem, &solved, mass);
             let known = known.ok_or(ContactEstimateError::Singular)?;
@@ -193,12 +197,16 @@ impl Source<'_> {
             }
         }
         let exact = longest == 0.0 && log.frictionless() && !options.planar;
-        let doubtful = if exact { !problem.is_found(&solved) } else { thinned.is_none() };
         if options.guessed_floor && longest == 0.0 && solved.misfit() < LARGEST_MISFIT {
             before += solved.iterations;
             let (sharp, of) = sharpened(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
             (solved, covariances) = (sharp, Some(of));
         }
+        let doubtful = match options.guessed_floor {
+            true if exact => !is_sharp(&problem),
+            _ if exact => !problem.is_found(&solved),
+            _ => thinned.is_none(),
+        };
         let covariances =
             covariances.or_else(|| solved.covariances(&problem)).ok_or(ContactEstimateError::Singular)?;
         let iterations = [before, before + solved.iterations];
@@ -207,7 +215,8 @@ impl Source<'_> {
         let (duration, needed) =
             (log.times[log.times.len() - 1] - log.times[0], SHORTEST * units.length / units.speed);
         let short = (doubtful && duration < needed).then_some(Reason::TooShort { duration, needed });
-        let suspects = match options.suspects && thinned.is_none() && slips.is_empty() {
+        let told = !exact && thinned.is_none() && slips.is_empty();
+        let suspects = match options.suspects && told {
             true => self.suspects(&problem, &solved, &covariances, &motions, (log, &modes, longest)),
             false => Vec::new(),
         };
@@ -222,6 +231,17 @@ impl Source<'_> {
             suspects: &suspects,
         };
         Ok((found.estimate(&motions, modes, options), slips))
+    }
+
+    /// The motion of a known body where without it none is found in an exact log, and the linearisations before.
+    fn directly(
+        &self,
+        problem: &mut Problem,
+        unknown: &Solved<CONSTANTS>,
+    ) -> Option<(Solved<CONSTANTS>, usize)> {
+        let exact = problem.record.frictionless() && !problem.noise.limits(&problem.units);
+        let mass = self.options.body.as_ref().filter(|_| exact && !problem.is_found(unknown))?;
+        directly(problem, mass)
     }
 
     /// Scores of constants of the sensors at a solution whose contacts were averaged over windows of at most `longest`, s.

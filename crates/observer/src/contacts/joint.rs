@@ -1,7 +1,7 @@
 //! Errors of the poses of all nodes together, for bounds on the shape.
 
 use super::body::CONSTANTS;
-use super::problem::Problem;
+use super::problem::{Problem, Unknowns};
 use super::solve::{Covariances, Solved};
 use crate::random::Normal;
 use crate::rigid::{DRAWS, PoseErrors, kept, normals, root, turned};
@@ -34,5 +34,21 @@ pub(super) fn pose_errors(
         nodes.iter().zip(&poses).map(moved).collect()
     };
     let draws = (0..DRAWS).map(draw);
-    PoseErrors::from_draws(nodes.iter().map(|&j| samples[j]).collect(), &poses, draws, 0.0, false)
+    let lasting = lasting(problem, solved);
+    PoseErrors::from_draws(nodes.iter().map(|&j| samples[j]).collect(), &poses, draws, lasting, false)
 }
+
+/// Deviation of contacts, m, that would explain what is left of conditions that are not off by noise: soft contacts of simulators shift them so.
+fn lasting(problem: &Problem, solved: &Solved<CONSTANTS>) -> f64 {
+    if problem.noise.limits(&problem.units) {
+        return 0.0;
+    }
+    let Unknowns { motions, body } = &solved.unknowns;
+    let squares: f64 = motions.iter().map(|m| body.spin(m.q, m.L).length_squared()).sum();
+    let slowest = SLOWEST * problem.units.speed / problem.units.length;
+    let spin = (squares / motions.len().max(1) as f64).sqrt().max(slowest);
+    problem.noise.floor * solved.misfit().sqrt() / spin
+}
+
+/// Spin of a body, in natural ones, below which contacts are not blamed.
+const SLOWEST: f64 = 0.1;

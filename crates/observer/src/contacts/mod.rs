@@ -4,6 +4,7 @@ mod axes;
 mod backwards;
 mod body;
 mod cold;
+mod directly;
 mod equations;
 mod estimate;
 mod flow;

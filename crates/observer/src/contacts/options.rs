@@ -49,7 +49,7 @@ pub enum ContactEstimateError {
     },
     /// Numbers beyond all bounds.
     #[error(
-        "the least-squares problem cannot be evaluated or its equations are singular: check units and noise"
+        "no start leads to a motion that explains the log: its least squares leave all numbers or are singular; check units, frames and noise"
     )]
     Singular,
 }

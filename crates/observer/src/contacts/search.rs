@@ -15,7 +15,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// Natural times from node to node in the coarse solution, whose contacts are carried there from the node before, and the
 /// floors of its conditions over the natural speed: the first one finds nearly all motions, the other one some of the rest.
-const COARSE: f64 = 0.08;
+pub(super) const COARSE: f64 = 0.08;
 const COARSE_FLOORS: [f64; 2] = [1e-2, 1e-3];
 /// Share of a condition's deviation, of all in a link together, that noise of the forces may make in it to be left out between nodes.
 const NEGLIGIBLE: f64 = 0.1;

@@ -29,8 +29,7 @@ pub(super) fn sharpened(
     mut solved: Solved<CONSTANTS>,
 ) -> Option<(Solved<CONSTANTS>, Covariances<CONSTANTS>)> {
     let guessed = problem.noise.floor;
-    let Units { length, speed, .. } = problem.units;
-    let best = (BEST * speed).max(problem.noise.contact * speed / length);
+    let best = best(problem);
     while problem.noise.floor > best {
         let (before, frozen) = (problem.noise.floor, problem.frozen.clone());
         problem.noise.floor = (before * left(problem, &solved).min(SHARPER)).max(best);
@@ -53,6 +52,16 @@ pub(super) fn sharpened(
             return None;
         }
     }
+}
+
+fn best(problem: &Problem) -> f64 {
+    let Units { length, speed, .. } = problem.units;
+    (BEST * speed).max(problem.noise.contact * speed / length)
+}
+
+/// Whether conditions came out as good as they may: of a wrong motion over a short time more is left.
+pub(super) fn is_sharp(problem: &Problem) -> bool {
+    problem.noise.floor < 2.0 * best(problem)
 }
 
 /// What is left of the conditions in their deviations, if what lasts of it is one error and not many.

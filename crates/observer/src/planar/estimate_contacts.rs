@@ -120,6 +120,7 @@ pub fn estimate_plane(log: &ContactLog, options: &PlaneOptions) -> Result<PlaneE
         size: options.size,
         suspects: options.suspects,
         planar: true,
+        guessed_floor: false,
         ..ContactOptions::new(options.noise, options.gravity)
     };
     Ok(PlaneEstimate::new(estimate_contacts(&in_space, None, &of_space)?, &in_space))

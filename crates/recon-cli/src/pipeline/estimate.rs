@@ -51,7 +51,7 @@ pub(crate) fn estimated(
         LogOf::AnyPalms(log, why) => {
             refuse_unfelt(&log, path, &why)?;
             request.warnings = warnings;
-            request.note = sentence(&format!("{why}; palms may be of any shape and have friction"));
+            request.note = sentence(&format!("{why}; the estimate is that from contacts of any palms"));
             Ok(Estimated { made: estimate_any_palms(*log, request, progress)?, page: None })
         }
     }
