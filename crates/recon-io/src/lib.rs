@@ -39,9 +39,9 @@ pub use export::{
 pub use log::{
     AnyLog, ContactRows, LogFileError, LogFileErrorKind, LogReader, PalmSetup, PlaneRows, PoseAgainstScene,
     RowReader, RowSample, log_of_columns, parse_any_log, parse_contact_log, parse_log,
-    parse_planar_contact_log, parse_planar_log, read_any_log, read_contact_log, read_log,
-    read_planar_contact_log, read_planar_log, write_contact_log, write_log, write_planar_contact_log,
-    write_planar_log,
+    parse_planar_contact_log, parse_planar_log, planar_contact_log_of_columns, planar_log_of_columns,
+    read_any_log, read_contact_log, read_log, read_planar_contact_log, read_planar_log, write_contact_log,
+    write_log, write_planar_contact_log, write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use mesh_formats::{write_glb, write_stl};
@@ -63,7 +63,9 @@ pub use scene::{
     SceneErrorKind, Sensors, Shape, Simulation,
 };
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
-pub use summary::{INERTIA_LEARNED, estimate_summary, summary};
+pub use summary::{
+    INERTIA_LEARNED, SummaryOf, estimate_summary, sensor_fault, status_in_words, summary, verdict_figures,
+};
 pub use table::{write_contact_curves, write_estimated_motion, write_motion, write_radius_functions};
 pub use touches::{
     Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,

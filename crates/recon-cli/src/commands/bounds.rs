@@ -10,7 +10,7 @@ use crate::progress::Progress;
 use recon::contact_kinematics::CurvatureRadii;
 use recon::contact_kinematics::planar::RadiusBounds;
 use recon::shape_bounds::{ContactSample, PlaneHeight};
-use recon_io::{FolderTarget, Touches, brief, brief_to, check_unwritten, read_touches};
+use recon_io::{FolderTarget, SummaryOf, Touches, brief, brief_to, check_unwritten, read_touches};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::slice;
@@ -234,8 +234,7 @@ fn radii(args: &BoundsArgs) -> Option<CurvatureRadii> {
 
 fn figures(made: &BoundsResult, what: &str, about: &Value) -> Value {
     let (lower, upper) = (made.drawn.lower.volume, made.drawn.upper.as_ref().map(|u| u.volume));
-    json!({
-        "recon": env!("CARGO_PKG_VERSION"),
+    SummaryOf::Bounds.named(json!({
         "input": what,
         "about": about,
         "bounds": {
@@ -246,7 +245,7 @@ fn figures(made: &BoundsResult, what: &str, about: &Value) -> Value {
             "contradiction_m": made.contradiction,
         },
         "warnings": made.warnings,
-    })
+    }))
 }
 
 fn describe(made: &BoundsResult, what: &str, about: &Value) -> String {

@@ -15,7 +15,7 @@ mod init;
 mod inspect;
 mod manual;
 mod next;
-mod planar;
+pub(crate) mod planar;
 mod plane;
 pub(crate) mod reconstruct;
 pub(crate) mod simulate;

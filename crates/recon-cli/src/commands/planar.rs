@@ -2,7 +2,9 @@ use crate::cli::{PlanarArgs, ReconstructArgs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::interrupt::while_writing;
-use crate::pipeline::{PlanarBounds, PlanarMotion, hinged_pair, planar_motion};
+use crate::pipeline::{
+    PlanarBounds, PlanarMotion, PlanarSource, hinged_pair, planar_motion, read_planar, with_palms,
+};
 use crate::progress::Progress;
 use glam::DVec2;
 use recon::contact_kinematics::planar::FourierBody;
@@ -11,8 +13,8 @@ use recon::object_dynamics::planar::{
 };
 use recon::observer::planar::{ShapeFitOptions, fit_shape};
 use recon_io::{
-    FigureCurve, FigurePanel, FolderTarget, PlanarScene, brief, read_planar_contact_log, read_planar_log,
-    write_figures, write_planar_log,
+    FigureCurve, FigurePanel, FolderTarget, OutputFolder, PlanarScene, SummaryOf, brief, read_planar_log,
+    status_in_words, write_figures, write_planar_log,
 };
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -78,16 +80,9 @@ pub(crate) fn reconstruct(
     if args.identify {
         known.mass = None;
     }
-    let log = if known.palms.is_empty() {
-        known.palms = hinged_pair(known.gravity, None, None, None).palms;
-        let log = read_planar_log(&args.log)?;
-        log.contact_log([0.0; 2]).ok_or_else(|| CliError::PlanarForces { path: args.log.clone() })?
-    } else {
-        let surfaces: Vec<_> = known.palms.iter().map(|(surface, _)| *surface).collect();
-        read_planar_contact_log(&args.log, &surfaces)?
-    };
+    let log = read_planar(&PlanarSource::File(&args.log), &known)?;
     progress.step("estimating the motion");
-    let made = planar_motion(log, &known)?;
+    let made = planar_motion(log, &with_palms(known))?;
     let title = name(&args.log);
     finish(Made::Motion(Box::new(made)), target, None, (progress, &args.output, &title), console)
 }
@@ -174,25 +169,25 @@ fn fit(args: &PlanarArgs, log: &PlanarLog) -> Result<Fitted, CliError> {
             }
             _ => "the readings do not tell all of it",
         };
-        let (status, order) = (made.status, made.cosines.len() - 1);
+        let (status, order) = (status_in_words(made.status), made.cosines.len() - 1);
         let direction = &made.direction;
         warnings.push(format!(
-            "not to be relied on with {order} harmonics ({status:?}): {why}; least known: {direction}"
+            "not to be relied on with {order} harmonics ({status}): {why}; least known: {direction}"
         ));
     }
-    let figures = json!({
+    let figures = SummaryOf::PlaneWithoutForces.named(json!({
         "method": "shape fitted to contacts and palm angles, no forces",
-        "status": format!("{:?}", made.status),
+        "status": status_in_words(made.status),
         "harmonics": made.cosines.len() - 1,
         "residual": made.residual,
         "gyration_squared_m2": made.gyration_squared.0,
-        "gyration_squared_deviation_m2": made.gyration_squared.1,
+        "std_gyration_squared_m2": made.gyration_squared.1,
         "cosines_m": made.cosines,
         "sines_m": made.sines,
         "smallest_information": made.smallest_information,
         "least_known": made.direction,
         "warnings": warnings,
-    });
+    }));
     Ok(Fitted { rows, figures, warnings })
 }
 
@@ -205,16 +200,7 @@ fn write(
     while_writing(|| {
         let mut folder = target.begin()?;
         match made {
-            Made::Motion(made) => {
-                folder.write("motion.csv", |to| made.write_motion(to))?;
-                folder.write("contact_points.csv", |to| made.write_points(to))?;
-                folder.write("radius_functions.csv", |to| made.write_radii(to))?;
-                folder.write("figures.svg", |to| write_figures(&made.panels(), to))?;
-                folder.write("report.html", |to| made.write_report(title, to))?;
-                for (name, outline) in made.bounds().into_iter().flat_map(PlanarBounds::drawn_outlines) {
-                    folder.write(name, |to| PlanarBounds::write_outline(outline, to))?;
-                }
-            }
+            Made::Motion(made) => write_motion(&mut folder, made, title)?,
             Made::Fit(made) => {
                 folder.write("motion.csv", |to| motion(made, to))?;
                 folder.write("contact_points.csv", |to| points(made, to))?;
@@ -225,6 +211,34 @@ fn write(
         if let Some(log) = log {
             folder.write("log.csv", |to| write_planar_log(log, to))?;
         }
+        folder.commit()?;
+        Ok(())
+    })
+}
+
+/// The files of a motion.
+fn write_motion(folder: &mut OutputFolder, made: &PlanarMotion, title: &str) -> Result<(), CliError> {
+    folder.write("motion.csv", |to| made.write_motion(to))?;
+    folder.write("contact_points.csv", |to| made.write_points(to))?;
+    folder.write("radius_functions.csv", |to| made.write_radii(to))?;
+    folder.write("figures.svg", |to| write_figures(&made.panels(), to))?;
+    folder.write("report.html", |to| made.write_report(title, to))?;
+    for (name, outline) in made.bounds().into_iter().flat_map(PlanarBounds::drawn_outlines) {
+        folder.write(name, |to| PlanarBounds::write_outline(outline, to))?;
+    }
+    Ok(())
+}
+
+/// Writes the folder of a motion that was estimated in memory.
+pub(crate) fn write_estimated(
+    target: FolderTarget,
+    made: &PlanarMotion,
+    title: &str,
+) -> Result<(), CliError> {
+    while_writing(|| {
+        let mut folder = target.begin()?;
+        write_motion(&mut folder, made, title)?;
+        folder.write("summary.json", |to| writeln!(to, "{:#}", made.figures()))?;
         folder.commit()?;
         Ok(())
     })

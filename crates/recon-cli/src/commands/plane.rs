@@ -3,19 +3,18 @@
 use crate::error::CliError;
 use crate::interrupt::while_writing;
 use crate::pipeline::{PlanarBounds, fit_words};
-use recon_io::{FigureCurve, FigurePanel, FolderTarget, brief, brief_to, write_figures};
+use recon_io::{FigureCurve, FigurePanel, FolderTarget, SummaryOf, brief, brief_to, write_figures};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::Write;
 
 pub(super) fn figures(made: &PlanarBounds, count: usize) -> Value {
-    json!({
-        "recon": env!("CARGO_PKG_VERSION"),
+    SummaryOf::Bounds.named(json!({
         "input": format!("{count} contacts in the plane"),
         "about": made.about,
         "bounds": made.figures(),
         "warnings": made.warnings,
-    })
+    }))
 }
 
 pub(super) fn describe(made: &PlanarBounds, count: usize) -> String {

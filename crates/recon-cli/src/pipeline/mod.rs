@@ -23,6 +23,7 @@ mod planar_motion_bounds;
 mod planar_motion_panels;
 mod planar_motion_tables;
 mod planar_motion_words;
+mod planar_read;
 mod plane;
 mod read;
 mod reconstruct;
@@ -47,6 +48,7 @@ pub(crate) use meshes::meshes_as;
 pub(crate) use modes::describe_times;
 pub(crate) use planar_contacts::simulate_planar_contacts;
 pub(crate) use planar_motion::{PlanarMotion, hinged_pair, planar_motion};
+pub(crate) use planar_read::{PlanarSource, read_planar, with_palms};
 pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};
 pub(crate) use read::{
     LoadedLog, LogOf, LogSource, LogStand, load, read_log, sorted_with_forces, sorted_without_forces,

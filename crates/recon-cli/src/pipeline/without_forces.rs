@@ -10,7 +10,7 @@ use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::SensorLog;
 use recon::observer::{KnownTouch, NoForceEstimate, estimate_without_forces};
 use recon::shape_bounds::ContactSample;
-use recon_io::{FolderTarget, MotionState, Scene, brief};
+use recon_io::{FolderTarget, MotionState, Scene, SummaryOf, brief, status_in_words};
 use serde_json::{Value, json};
 use std::error::Error;
 
@@ -126,9 +126,9 @@ fn figures(made: &WithoutForces) -> Value {
         (first..first + 6).map(|i| covariance[(i, i)].max(0.0).sqrt()).collect()
     };
     let q = shape.orientation;
-    json!({
+    SummaryOf::WithoutForces.named(json!({
         "method": "motion of an ellipsoid fitted to contacts and palm poses",
-        "status": format!("{:?}", evidence.status),
+        "status": status_in_words(evidence.status),
         "semi_axes_m": shape.semi_axes.to_array(),
         "centre_m": shape.centre.to_array(),
         "orientation_wxyz": [q.w, q.x, q.y, q.z],
@@ -147,7 +147,7 @@ fn figures(made: &WithoutForces) -> Value {
             "contradiction_m": b.contradiction,
         })),
         "warnings": warnings,
-    })
+    }))
 }
 
 fn describe(made: &WithoutForces) -> String {
