@@ -198,8 +198,8 @@ class Reconstruction:
     def upper_bound(self) -> Mesh | None:
         """Surface of the bound that holds the object; None where there is none."""
     @property
-    def report_html(self) -> str | None:
-        """The page that the command writes (HTML, which loads nothing); None without forces."""
+    def report_html(self) -> str:
+        """The page that the command writes (HTML, which loads nothing)."""
     def write(
         self,
         folder: _Path,

@@ -293,11 +293,11 @@ impl Reconstruction {
         self.made.surfaces()[1].map(|mesh| Mesh::new(mesh, volume))
     }
 
-    /// The page that the command writes (HTML, which loads nothing); None without forces.
+    /// The page that the command writes (HTML, which loads nothing).
     #[getter]
-    fn report_html(&self, py: Python<'_>) -> PyResult<Option<String>> {
+    fn report_html(&self, py: Python<'_>) -> PyResult<String> {
         let page = py.detach(|| self.made.report()).map_err(raised)?;
-        Ok(page.map(|page| String::from_utf8_lossy(&page).into_owned()))
+        Ok(String::from_utf8_lossy(&page).into_owned())
     }
 
     /// Writes the folder that the command writes, whole or not at all: motion.csv, contact_curves.csv, summary.json, meshes, report.html.
@@ -326,9 +326,9 @@ impl Reconstruction {
         py.detach(|| self.made.write(&folder, &words)).map_err(raised)
     }
 
-    /// The report, in a notebook; where there is none, the words.
+    /// The report, in a notebook.
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(in_notebook(self.report_html(py)?.as_deref(), self.made.text()))
+        Ok(in_notebook(Some(&self.report_html(py)?), self.made.text()))
     }
 
     fn __len__(&self) -> usize {

@@ -16,6 +16,7 @@ mod inspect;
 mod manual;
 mod next;
 pub(crate) mod planar;
+mod planar_fit;
 mod plane;
 pub(crate) mod reconstruct;
 pub(crate) mod simulate;

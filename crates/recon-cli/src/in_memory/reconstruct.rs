@@ -6,13 +6,13 @@ use crate::commands::reconstruct::describe;
 use crate::error::CliError;
 use crate::pipeline::{
     Asked, Estimated, LogOf, LogStand, WithoutForces, estimate_figures, estimated, meshes_as,
-    reconstruction_figures, sorted_with_forces, sorted_without_forces, without_forces,
+    reconstruction_figures, sorted_with_forces, sorted_without_forces, without_forces, without_forces_page,
 };
 use crate::progress::{Progress, Watch};
 use glam::{DMat3, DVec3};
 use recon_io::{
     Bounds, Evidence, FolderTarget, Level, MotionState, PalmContact, Scene, TriangleMesh,
-    write_estimate_report, write_report,
+    write_estimate_report, write_figures_page, write_report,
 };
 use serde_json::Value;
 use std::path::Path;
@@ -238,20 +238,22 @@ impl Reconstructed {
         Some(Body { mass: object.mass.mass(), inertia: object.mass.inertia(), deviations })
     }
 
-    /// The page that the command writes; none without forces.
+    /// The page that the command writes.
     ///
     /// # Errors
     /// Where a number of it is not finite, which is a fault of recon.
-    pub fn report(&self) -> Result<Option<Vec<u8>>, Failure> {
+    pub fn report(&self) -> Result<Vec<u8>, Failure> {
         let mut page = Vec::new();
         let written = match &self.made {
             Made::Estimated(Estimated::Planes(made, _)) => write_report(&made.data, &mut page),
             Made::Estimated(Estimated::AnyPalms(_, Some(planes))) => write_report(planes, &mut page),
             Made::Estimated(Estimated::AnyPalms(made, None)) => write_estimate_report(&made.data, &mut page),
-            Made::WithoutForces(_) => return Ok(None),
+            Made::WithoutForces(made) => {
+                write_figures_page(&without_forces_page(&self.log.title(), made), &mut page)
+            }
         };
         written.map_err(CliError::Page)?;
-        Ok(Some(page))
+        Ok(page)
     }
 
     /// Writes the folder that the command writes; `options` are `--force`, `--export`, `--export-shape`, `--mesh` and `--mcap`.
@@ -270,7 +272,7 @@ impl Reconstructed {
                 made.write(target, &extras)?;
             }
             Made::WithoutForces(made) => {
-                made.write(target)?;
+                made.write(target, &self.log.title())?;
             }
         }
         Ok(())

@@ -3,6 +3,7 @@
 use super::bounds::{BoundsResult, bounds};
 use super::folder::write_touch_folder;
 use super::reconstruct::NOTABLE_NOISE;
+use super::without_forces_page::without_forces_page;
 use crate::error::CliError;
 use crate::progress::Progress;
 use glam::{DMat3, DVec3};
@@ -76,10 +77,11 @@ impl WithoutForces {
         self.found.motion.iter().map(state).collect()
     }
 
-    /// Writes its folder; returns the summary.
-    pub(crate) fn write(&self, target: FolderTarget) -> Result<Value, CliError> {
+    /// Writes its folder, whose page is under a title; returns the summary.
+    pub(crate) fn write(&self, target: FolderTarget, title: &str) -> Result<Value, CliError> {
         let figures = self.figures();
-        write_touch_folder(target, &self.times(), &self.motion(), self.bounded.as_ref(), &figures)?;
+        let page = without_forces_page(title, self);
+        write_touch_folder(target, &self.times(), &self.motion(), self.bounded.as_ref(), (&page, &figures))?;
         Ok(figures)
     }
 
@@ -140,7 +142,7 @@ fn figures(made: &WithoutForces) -> Value {
         "rank": evidence.rank,
         "condition": evidence.condition,
         "weakest": evidence.weakest,
-        "weakest_deviation": evidence.weakest_deviation,
+        "std_weakest": evidence.weakest_deviation,
         "bounds": bounded.as_ref().map(|b| json!({
             "lower_volume_m3": b.drawn.lower.volume,
             "upper_volume_m3": b.drawn.upper.as_ref().map(|u| u.volume),

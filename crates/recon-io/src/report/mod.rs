@@ -3,7 +3,10 @@
 mod contacts;
 mod data;
 mod encode;
+mod evidence_table;
 mod exploration;
+mod figures_page;
+mod notices;
 mod page;
 
 #[cfg(test)]
@@ -19,6 +22,7 @@ pub use data::{
     ReportError, TrueShape, Verdict,
 };
 pub use exploration::{ExplorationPage, TouchRow, write_exploration_report};
+pub use figures_page::{FiguresPage, write_figures_page};
 pub use page::write_report;
 
 pub(crate) use data::Departure;

@@ -1,12 +1,13 @@
-use super::super::encode::level;
+use super::super::evidence_table::row;
+use super::super::notices::{notice, notices};
 use super::super::page::{escape_text, fill, head};
-use super::super::{Evidence, EvidenceValue, Level, Verdict};
+use super::super::{Evidence, Level, Verdict};
 use super::bands::bands;
 use super::estimate::EstimateData;
 use super::page::{STYLE, fact};
 use super::picture::{Picture, drawn};
 use super::spans::{ModeSpan, estimated_mode_spans};
-use crate::number::{brief_to, with_brief_numbers};
+use crate::number::brief_to;
 use crate::planar_figures::{FigurePanel, write_figures};
 use std::io::{self, Write};
 
@@ -106,7 +107,11 @@ impl EstimatePage<'_> {
         let parts = [
             ("head", head(self.title, STYLE)?),
             ("title", escape_text(self.title)),
-            ("verdict", self.verdict()),
+            (
+                "verdict",
+                notices(self.verdict, ["Reliable", "With care", "Unreliable"], self.warnings)
+                    + &notice(Level::Neutral, "Note", self.note),
+            ),
             ("facts", self.facts.iter().map(fact).collect()),
             ("pictures", drawn(&self.pictures)),
             ("caption", self.caption.clone()),
@@ -116,23 +121,6 @@ impl EstimatePage<'_> {
             ("evidence", self.evidence.iter().map(row).collect()),
         ];
         fill(PAGE, &parts, to)
-    }
-
-    /// The verdict in a sentence, the note and the warnings.
-    fn verdict(&self) -> String {
-        let word = match self.verdict.level {
-            Level::Good => "Reliable",
-            Level::Caution => "With care",
-            Level::Bad => "Unreliable",
-            Level::Neutral => "Note",
-        };
-        let notice = |level: Level, word: &str, text: &str| {
-            let (level, text) = (self::level(level), escape_text(&with_brief_numbers(text)));
-            format!("<p class=\"notice {level}\"><strong>{word}</strong>{text}</p>\n")
-        };
-        let warnings = self.warnings.iter().map(|warning| notice(Level::Caution, "Warning", warning));
-        let note = notice(Level::Neutral, "Note", self.note);
-        [notice(self.verdict.level, word, &self.verdict.text), note].into_iter().chain(warnings).collect()
     }
 }
 
@@ -149,24 +137,4 @@ pub fn doubtful_spans(times: &[f64], relied_on: &[bool]) -> Vec<[f64; 2]> {
         }
     }
     found
-}
-
-/// A row of the table of what the result rests on.
-fn row(of: &Evidence) -> String {
-    let mark = match of.level {
-        Level::Good => "✓",
-        Level::Caution => "!",
-        Level::Bad => "✕",
-        Level::Neutral => "·",
-    };
-    let (class, value) = match &of.value {
-        EvidenceValue::Number(v) => ("number", brief_to(4, *v)),
-        EvidenceValue::Count(n) => ("number", n.to_string()),
-        EvidenceValue::Text(text) => ("words", escape_text(&with_brief_numbers(text))),
-    };
-    let (name, unit, meaning) = (escape_text(&of.name), escape_text(&of.unit), escape_text(&of.meaning));
-    format!(
-        "<tr><td><span class=\"mark {}\">{mark}</span>{name}</td><td class=\"{class}\">{value} {unit}</td><td class=\"meaning\">{meaning}</td></tr>\n",
-        level(of.level)
-    )
 }
