@@ -52,11 +52,12 @@ pub use output::{
 pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};
 pub use report::{
-    Bound, Bounds, EstimateData, Evidence, EvidenceValue, ExplorationPage, FiguresPage, Level, ModeSpan,
-    MotionState, PalmContact, PalmTrack, PlaneEstimateData, ReportData, ReportError, TouchRow, TrueShape,
-    Verdict, doubtful_spans, estimated_mode_spans, mode_spans, mode_times, planar_mode_spans,
-    write_contact_report, write_estimate_report, write_exploration_report, write_figures_page,
-    write_planar_contact_report, write_plane_estimate_report, write_report,
+    BatchPage, Bound, Bounds, EstimateData, Evidence, EvidenceValue, ExplorationPage, FiguresPage, Level,
+    LogCard, ModeSpan, MotionState, PalmContact, PalmTrack, PlaneEstimateData, ReportData, ReportError,
+    TouchRow, TrueShape, Verdict, doubtful_spans, estimated_mode_spans, mode_spans, mode_times,
+    planar_mode_spans, write_batch_report, write_contact_report, write_estimate_report,
+    write_exploration_report, write_figures_page, write_planar_contact_report, write_plane_estimate_report,
+    write_report,
 };
 pub use scene::{
     BoxedShape, KnownInertia, KnownPalm, PlanarBody, PlanarKnown, PlanarScene, Scene, SceneError,

@@ -25,9 +25,9 @@ pub(crate) fn bounds_page(
         |file: &str| made.others.iter().find(|(name, ..)| *name == file).map(|(.., mesh)| &mesh.vertices[..]);
     let fitted = other("fitted_shape.ply").unwrap_or_default();
     let hollow = other("alpha_shape.ply").unwrap_or_default();
-    let mut bodies = vec![("lower bound", &lower[..]), ("upper bound", &upper[..])];
-    bodies.extend((!fitted.is_empty()).then_some(("fitted shape", fitted)));
-    let dots = [("contacts", points), ("corners of the alpha shape", hollow)];
+    let mut bodies = vec![("lower", &lower[..]), ("upper", &upper[..])];
+    bodies.extend((!fitted.is_empty()).then_some(("fit", fitted)));
+    let dots = [("contacts", points), ("alpha shape", hollow)];
     let sizes = [Some(made.drawn.lower.volume), made.drawn.upper.as_ref().map(|upper| upper.volume)];
     FiguresPage {
         kicker: KICKER,

@@ -2,12 +2,15 @@
 
 use super::views::three_views;
 use super::without_forces::WithoutForces;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use recon_io::EvidenceValue::{Count, Number, Text};
 use recon_io::{
-    Evidence, EvidenceValue, FigureCurve, FigurePanel, FiguresPage, Level, MotionState, Verdict, brief_to,
-    status_in_words,
+    Evidence, EvidenceValue, FigureCurve, FigurePanel, FiguresPage, Level, MotionState, TriangleMesh,
+    Verdict, brief_to, status_in_words,
 };
+
+/// Points on an ellipsoid by which it is drawn: its outline is off by less than a thousandth of its size.
+const POINTS: u32 = 4000;
 
 /// The page of what contacts alone told.
 pub(crate) fn without_forces_page(title: &str, made: &WithoutForces) -> FiguresPage {
@@ -19,7 +22,7 @@ pub(crate) fn without_forces_page(title: &str, made: &WithoutForces) -> FiguresP
         facts: facts(made),
         heading: "Shape and motion",
         panels: panels(made),
-        caption: "The bounds as they are seen along the body axes, and the motion over time.".to_owned(),
+        caption: "The bounds and the fitted ellipsoid as they are seen along the body axes, and the motion over time.".to_owned(),
         evidence: rows(made),
     }
 }
@@ -50,19 +53,32 @@ fn facts(made: &WithoutForces) -> Vec<(&'static str, String, &'static str)> {
 }
 
 fn panels(made: &WithoutForces) -> Vec<FigurePanel> {
-    let mut panels = Vec::new();
-    if let Some(bounded) = &made.bounded {
-        let corners = |mesh: &Option<recon_io::TriangleMesh>| {
-            mesh.as_ref().map_or_else(Vec::new, |mesh| mesh.vertices.clone())
-        };
-        let [lower, upper] = [corners(&bounded.lower), corners(&bounded.upper)];
-        panels = three_views(&[("lower bound", &lower), ("upper bound", &upper)], &[]);
-    }
+    let bounded = made.bounded.as_ref();
+    let [lower, upper] = [bounded.and_then(|b| b.lower.as_ref()), bounded.and_then(|b| b.upper.as_ref())];
+    let ellipsoid = on_ellipsoid(made);
+    let bodies = [("lower", corners(lower)), ("upper", corners(upper)), ("ellipsoid", &ellipsoid[..])];
+    let mut panels = three_views(&bodies, &[]);
     let (times, motion) = (made.times(), made.motion());
     panels.push(over_time("Centre of mass", "m", &times, &motion, |state| state.p_WCm));
     panels.push(over_time("Velocity", "m/s", &times, &motion, |state| state.v_WCm));
     panels.push(over_time("Angular velocity", "rad/s", &times, &motion, |state| state.w_WO));
     panels
+}
+
+fn corners(mesh: Option<&TriangleMesh>) -> &[DVec3] {
+    mesh.map_or(&[], |mesh| &mesh.vertices)
+}
+
+/// Points all over the fitted ellipsoid, body axes, m from the centre of mass.
+fn on_ellipsoid(made: &WithoutForces) -> Vec<DVec3> {
+    let shape = &made.found.shape;
+    let golden = std::f64::consts::PI * (3.0 - f64::sqrt(5.0));
+    let point = |k: u32| {
+        let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(POINTS);
+        let across = DVec2::from_angle(golden * f64::from(k)) * (1.0 - z * z).sqrt();
+        shape.centre + shape.orientation * (shape.semi_axes * across.extend(z))
+    };
+    (0..POINTS).map(point).collect()
 }
 
 /// The three coordinates of what moves.

@@ -5,7 +5,7 @@ use super::contacts::page::{STYLE, fact};
 use super::notices::notices;
 use super::page::{escape_text, fill, head};
 use crate::number::brief_to;
-use crate::planar_figures::{FigurePanel, write_figures};
+use crate::planar_figures::{FigurePanel, figures_in_page};
 use std::io::{self, Write};
 
 const PAGE: &str = include_str!("assets/exploration.html");
@@ -57,14 +57,12 @@ pub struct ExplorationPage {
 /// # Errors
 /// Those of `to`.
 pub fn write_exploration_report(page: &ExplorationPage, to: impl Write) -> io::Result<()> {
-    let mut curves = Vec::new();
-    write_figures(&page.panels, &mut curves)?;
     let parts = [
         ("head", head(&page.title, &(STYLE.to_owned() + TABLE))?),
         ("title", escape_text(&page.title)),
         ("verdict", notices(&page.verdict, ["Proven", "Not proven", "Refused"], &[])),
         ("facts", page.facts.iter().map(fact).collect()),
-        ("curves", String::from_utf8_lossy(&curves).into_owned()),
+        ("curves", figures_in_page(&page.panels)?),
         ("caption", escape_text(&page.caption)),
         ("progress", escape_text(&page.progress)),
         ("touches", page.touches.iter().map(row).collect()),

@@ -5,7 +5,7 @@ use super::evidence_table::row;
 use super::notices::notices;
 use super::page::{escape_text, fill, head};
 use super::{Evidence, Verdict};
-use crate::planar_figures::{FigurePanel, write_figures};
+use crate::planar_figures::{FigurePanel, figures_in_page};
 use std::io::{self, Write};
 
 const PAGE: &str = include_str!("assets/figures.html");
@@ -38,8 +38,6 @@ pub struct FiguresPage {
 /// # Errors
 /// Those of `to`.
 pub fn write_figures_page(page: &FiguresPage, to: impl Write) -> io::Result<()> {
-    let mut curves = Vec::new();
-    write_figures(&page.panels, &mut curves)?;
     let parts = [
         ("head", head(&page.title, STYLE)?),
         ("kicker", escape_text(page.kicker)),
@@ -47,7 +45,7 @@ pub fn write_figures_page(page: &FiguresPage, to: impl Write) -> io::Result<()> 
         ("verdict", notices(&page.verdict, ["Good", "With care", "Unreliable"], &page.warnings)),
         ("facts", page.facts.iter().map(fact).collect()),
         ("heading", escape_text(page.heading)),
-        ("curves", String::from_utf8_lossy(&curves).into_owned()),
+        ("curves", figures_in_page(&page.panels)?),
         ("caption", escape_text(&page.caption)),
         ("evidence", page.evidence.iter().map(row).collect()),
     ];

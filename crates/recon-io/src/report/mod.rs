@@ -1,5 +1,6 @@
 //! `report.html`: one page without any reference to the outside, which shows a reconstruction to a person.
 
+mod batch;
 mod contacts;
 mod data;
 mod encode;
@@ -12,6 +13,7 @@ mod page;
 #[cfg(test)]
 mod tests;
 
+pub use batch::{BatchPage, LogCard, write_batch_report};
 pub use contacts::{
     EstimateData, ModeSpan, PlaneEstimateData, doubtful_spans, estimated_mode_spans, mode_spans, mode_times,
     planar_mode_spans, write_contact_report, write_estimate_report, write_planar_contact_report,

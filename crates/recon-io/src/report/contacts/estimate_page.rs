@@ -8,7 +8,7 @@ use super::page::{STYLE, fact};
 use super::picture::{Picture, drawn};
 use super::spans::{ModeSpan, estimated_mode_spans};
 use crate::number::brief_to;
-use crate::planar_figures::{FigurePanel, write_figures};
+use crate::planar_figures::{FigurePanel, figures_in_page};
 use std::io::{self, Write};
 
 const PAGE: &str = include_str!("../assets/estimate.html");
@@ -101,8 +101,6 @@ impl EstimatePage<'_> {
     pub(super) fn write(&self, to: impl Write) -> io::Result<()> {
         let marks: Vec<f64> = self.pictures.iter().map(|picture| picture.t).collect();
         let doubtful = doubtful_spans(self.times, self.relied_on);
-        let mut curves = Vec::new();
-        write_figures(self.panels, &mut curves)?;
         let dashed = if self.has_truth { " Dashed: the true motion, from the log." } else { "" };
         let parts = [
             ("head", head(self.title, STYLE)?),
@@ -116,7 +114,7 @@ impl EstimatePage<'_> {
             ("pictures", drawn(&self.pictures)),
             ("caption", self.caption.clone()),
             ("bands", bands(&self.spans, &marks, &doubtful)),
-            ("curves", String::from_utf8_lossy(&curves).into_owned()),
+            ("curves", figures_in_page(self.panels)?),
             ("dashed", dashed.to_owned()),
             ("evidence", self.evidence.iter().map(row).collect()),
         ];
