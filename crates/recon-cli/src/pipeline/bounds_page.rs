@@ -24,10 +24,10 @@ pub(crate) fn bounds_page(
     let other =
         |file: &str| made.others.iter().find(|(name, ..)| *name == file).map(|(.., mesh)| &mesh.vertices[..]);
     let fitted = other("fitted_shape.ply").unwrap_or_default();
-    let hollow = other("alpha_shape.ply").unwrap_or_default();
+    let smooth = other("smooth_surface.ply").unwrap_or_default();
     let mut bodies = vec![("lower", &lower[..]), ("upper", &upper[..])];
     bodies.extend((!fitted.is_empty()).then_some(("fit", fitted)));
-    let dots = [("contacts", points), ("alpha shape", hollow)];
+    let dots = [("contacts", points), ("surface", smooth)];
     let sizes = [Some(made.drawn.lower.volume), made.drawn.upper.as_ref().map(|upper| upper.volume)];
     FiguresPage {
         kicker: KICKER,
@@ -143,6 +143,7 @@ fn evidence(about: &Value, contradiction: f64) -> Vec<Evidence> {
         rows.push(row("radii_of_curvature", "Radii of curvature", text, "m", "As they were stated."));
     }
     rows.extend(fit(&about["fit"]));
+    rows.extend(concave(&about["concave"]));
     rows
 }
 
@@ -197,6 +198,21 @@ fn fit(fit: &Value) -> Vec<Evidence> {
         fit["residual_m"].as_f64().map(|left| row("residual", "Residual", Number(left), "m", residual)),
     );
     rows
+}
+
+/// What approximates a body that need not be convex.
+fn concave(of: &Value) -> Vec<Evidence> {
+    let kept = of["contacts_kept_for_the_upper_bound"].as_u64();
+    let kept = kept
+        .map(|n| row("kept", "Contacts of the hull", Count(n), "", "Those that the upper bound rests on."));
+    let radius = of["alpha_radius_m"].as_f64();
+    let meaning = "Of the balls that hollow the alpha shape out; it is no bound.";
+    let radius = radius.map(|r| row("alpha_radius", "Radius of the alpha shape", Number(r), "m", meaning));
+    let closed = of["surface_is_closed"].as_bool().map(|closed| {
+        let text = Text(if closed { "closed" } else { "open" }.to_owned());
+        row("surface", "Smooth surface", text, "", "Through contacts and their normals; it is no bound.")
+    });
+    [kept, radius, closed].into_iter().flatten().collect()
 }
 
 fn row(key: &str, name: &str, value: EvidenceValue, unit: &str, meaning: &str) -> Evidence {

@@ -42,4 +42,9 @@ fn each_kind_of_summary_is_there() {
     let explored = summary(&scratch, &arguments, "e");
     let kinds = [&start, &bounds, &concave, &explored].map(|of| of["schema"].as_str().unwrap());
     assert_eq!(kinds, ["start/1", "bounds/1", "bounds/1", "exploration/1"]);
+    // What tells of a result has a page.
+    for (folder, says) in [("b", "Fitted shape"), ("c", "Smooth surface"), ("e", "Touch by touch")] {
+        let page = scratch.read(&format!("{folder}/report.html"));
+        assert!(page.contains(says) && page.contains("<svg") && !page.contains("src="), "{folder}");
+    }
 }

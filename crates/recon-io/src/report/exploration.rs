@@ -10,7 +10,7 @@ use std::io::{self, Write};
 
 const PAGE: &str = include_str!("assets/exploration.html");
 /// Wide tables scroll, and numbers stand under each other.
-const TABLE: &str = "\n#touches td { font-variant-numeric: tabular-nums; white-space: nowrap; }\n";
+const TABLE: &str = "\n.scroll { overflow-x: auto; }\n#touches td { font-variant-numeric: tabular-nums; white-space: nowrap; }\n";
 
 /// One touch, as the table of the page shows it.
 #[derive(Clone, Debug, PartialEq)]
