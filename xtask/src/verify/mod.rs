@@ -7,6 +7,7 @@ mod arrows;
 mod builds;
 mod extras;
 mod licences;
+mod pages;
 mod paths;
 mod python;
 mod spdx;
@@ -38,6 +39,7 @@ const STEPS: &[Step] = &[
     step("lint", "clippy over everything, warnings are errors", builds::lint),
     step("docs", "rustdoc, warnings are errors", builds::docs),
     step("tests", "all tests and doctests of the workspace", builds::tests),
+    step("pages", "each command's page in a browser, where there is one", pages::check),
     step("alone", "each core crate and its tests compile and lint with its own features only", builds::alone),
     step("features", "each Cargo feature builds without the others", builds::features),
     step(
