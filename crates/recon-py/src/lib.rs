@@ -10,6 +10,7 @@ mod follower;
 mod log;
 mod mesh;
 mod plane;
+mod plane_reconstruction;
 mod reconstruction;
 mod scene;
 mod unlocked;
@@ -48,9 +49,9 @@ fn _recon(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("PlaneScene", module.py().get_type::<plane::PlaneScene>())?;
     module.add("PlaneLog", module.py().get_type::<plane::PlaneLog>())?;
     module.add("PlaneSimulation", module.py().get_type::<plane::PlaneSimulation>())?;
-    module.add("PlaneReconstruction", module.py().get_type::<plane::PlaneReconstruction>())?;
+    module.add("PlaneReconstruction", module.py().get_type::<plane_reconstruction::PlaneReconstruction>())?;
     module.add_function(wrap_pyfunction!(plane::simulate_plane, module)?)?;
-    module.add_function(wrap_pyfunction!(plane::reconstruct_plane, module)?)?;
+    module.add_function(wrap_pyfunction!(plane_reconstruction::reconstruct_plane, module)?)?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
     module.add_function(wrap_pyfunction!(check, module)?)
 }
