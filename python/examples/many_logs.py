@@ -1,6 +1,6 @@
 """One row for each log of a folder: mapped over a cluster with Ray where it is installed, else in this process.
 
-python many_logs.py LOGS SCENE TABLE.csv
+python many_logs.py LOGS SCENE TABLE.csv          (or TABLE.parquet, which needs pyarrow)
 
 On one machine without Ray, `recon batch LOGS --scene SCENE -o OUT` does the same on all cores, with a report for each log.
 """
@@ -37,29 +37,43 @@ def in_one_process(logs: list[str], scene: str) -> list[dict[str, Any]]:
 
 
 def with_ray(logs: list[str], scene: str) -> list[dict[str, Any]]:
-    """The same by Ray, whose workers need `recon` installed and see the same files."""
+    """The same by Ray, whose workers need `recon` installed and see the same files.
+
+    Each log is a task of its own. If a node is lost, what it was at is done again: a log may be estimated twice, but has one row.
+    """
     import ray.data
 
-    rows = ray.data.from_items([{"place": k, "path": log} for k, log in enumerate(logs)])
+    items = [{"place": k, "path": log} for k, log in enumerate(logs)]
+    rows = ray.data.from_items(items, override_num_blocks=max(1, len(items)))
     made = rows.map(lambda row: {"place": row["place"], **estimate(row["path"], scene)}).take_all()
     # Ray keeps no order.
     return [{name: row[name] for name in row if name != "place"} for row in sorted(made, key=lambda row: row["place"])]
 
 
-def main(folder: str, scene: str, table: str) -> None:
+def write(rows: list[dict[str, Any]], table: str) -> None:
+    """The rows as CSV, or as Parquet if the name ends so."""
+    if table.endswith(".parquet"):
+        import pyarrow
+        import pyarrow.parquet
+
+        pyarrow.parquet.write_table(pyarrow.Table.from_pylist(rows), table)
+        return
     import csv
 
-    logs = [str(path) for path in sorted(Path(folder).glob("*.csv"))]
-    try:
-        import ray.data  # noqa: F401
-    except ImportError:
-        rows = in_one_process(logs, scene)
-    else:
-        rows = with_ray(logs, scene)
     with open(table, "w", newline="", encoding="utf-8") as to:
         writer = csv.DictWriter(to, fieldnames=list(rows[0]) if rows else ["log"])
         writer.writeheader()
         writer.writerows(rows)
+
+
+def main(folder: str, scene: str, table: str) -> None:
+    logs = [str(path) for path in sorted(Path(folder).glob("*.csv"))]
+    try:
+        import ray.data  # noqa: F401
+    except ImportError:
+        write(in_one_process(logs, scene), table)
+    else:
+        write(with_ray(logs, scene), table)
 
 
 if __name__ == "__main__":

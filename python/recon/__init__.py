@@ -9,9 +9,10 @@ world axes. Arrays that a result holds cannot be written to; copy them to change
 
 Start with `reconstruct`. `simulate` makes a log of a known scene, `follow` and `Follower` estimate a motion while it goes on, `bounds` and
 `fit` need contact points and normals alone. What goes wrong is a `ReconError`: `InputError` and `OptionError` (both are `ValueError`s),
-`OutputError` (an `OSError`) or `FaultError`.
+`OutputError` (an `OSError`) or `FaultError`. Logs in a vertical plane are those of `recon.plane`.
 """
 
+from recon import plane
 from recon._bounds import Fit, bounds, fit
 from recon._follow import Estimate, Follower, Following, follow
 from recon._frames import columns, save, to_frame
@@ -58,6 +59,7 @@ __all__ = [
     "log_from_arrays",
     "log_from_contacts",
     "log_from_frame",
+    "plane",
     "read_log",
     "reconstruct",
     "save",

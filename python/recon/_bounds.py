@@ -130,7 +130,7 @@ def fit(source: Any, normals: ArrayLike | None = None, family: str = "auto", **o
     return Fit(
         family=of["family"],
         parameters={name: row["value"] for name, row in found.items()},
-        deviations={name: row["deviation"] for name, row in found.items()},
+        deviations={name: row["std"] for name, row in found.items()},
         covariance=np.array(of["covariance"], dtype=np.float64),
         residual=of["residual_m"],
         mesh=bounded.fitted,

@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from typing import Any, Union
+from typing import Any, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from recon._arrays import Array, array, columns_of, same_length
-from recon._recon import InputError, Log, Scene
+from recon._recon import InputError, Log, PlaneScene, Scene
 
 SceneLike = Union[Scene, Mapping[str, Any], str, "os.PathLike[str]", None]
+_S = TypeVar("_S", Scene, PlaneScene)
 LogLike = Union[Log, str, "os.PathLike[str]", Any]
 
 
@@ -26,22 +27,27 @@ def scene(known: SceneLike = None, /, **keys: Any) -> Scene:
 
     Raises InputError, which names the key.
     """
-    if isinstance(known, Scene):
+    return scene_of(Scene, known, keys)
+
+
+def scene_of(kind: type[_S], known: Any, keys: Mapping[str, Any], **defaults: Any) -> _S:
+    """A scene of space or of the plane."""
+    if isinstance(known, kind):
         if keys:
             raise InputError("a scene that is made takes no keys; give a dictionary and keys, or all of it by keys")
         return known
     if isinstance(known, (str, os.PathLike)):
         if keys:
             raise InputError("a scene file takes no keys beside it; write them into the file, or give all of it by keys")
-        return Scene.read(known)
+        return kind.read(known)
     if known is not None and not isinstance(known, Mapping):
-        raise InputError(f"a {type(known).__name__} is no scene; give a path, a dictionary or a recon.Scene")
-    stated = {"gravity": 9.81, **(known or {}), **keys}
+        raise InputError(f"a {type(known).__name__} is no scene; give a path, a dictionary or a {kind.__module__}.Scene")
+    stated = {**defaults, "gravity": 9.81, **(known or {}), **keys}
     try:
         text = json.dumps(stated, default=_plain, allow_nan=False)
     except (TypeError, ValueError) as error:
         raise InputError(f"the scene holds what is no number, text, list or dictionary: {error}") from error
-    return Scene._of_json(text)
+    return kind._of_json(text)
 
 
 def _plain(value: Any) -> Any:

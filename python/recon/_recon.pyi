@@ -198,8 +198,8 @@ class Reconstruction:
     def upper_bound(self) -> Mesh | None:
         """Surface of the bound that holds the object; None where there is none."""
     @property
-    def report_html(self) -> str | None:
-        """The page that the command writes (HTML, which loads nothing); None without forces."""
+    def report_html(self) -> str:
+        """The page that the command writes (HTML, which loads nothing)."""
     def write(
         self,
         folder: _Path,
@@ -215,6 +215,155 @@ class Reconstruction:
         export: "mjcf", "urdf": the object for simulators, with export_shape "auto", "ellipsoid", "inner" or "outer". mesh: "stl", "glb": the
         bounds in these formats beside PLY. mcap: a bag for Foxglove too. force: write beside files that recon did not write, which are never replaced. Raises OutputError.
         """
+    def _repr_html_(self) -> str: ...
+    def __len__(self) -> int: ...
+
+class PlaneScene:
+    """What is known beside a log in the plane: gravity (along -y), the object's mass and inertia, palms, and the noise of the sensors."""
+
+    @staticmethod
+    def read(path: _Path) -> PlaneScene:
+        """Reads a scene file (TOML) with `plane = true`."""
+    @staticmethod
+    def parse(text: str) -> PlaneScene:
+        """A scene from TOML text."""
+    @staticmethod
+    def _of_json(text: str) -> PlaneScene: ...
+    @property
+    def gravity(self) -> float:
+        """Gravity, m/s^2, along -y."""
+    @property
+    def mass(self) -> float | None:
+        """Mass of the object, kg, where it is known."""
+    @property
+    def inertia(self) -> float | None:
+        """Moment of inertia about the centre of mass, kg m^2, where it is known."""
+    @property
+    def palms(self) -> int:
+        """Number of palms; where the scene describes none, they are two hinged ones."""
+
+class PlaneLog:
+    """A sensor log in the plane."""
+
+    @staticmethod
+    def _read(path: _Path, scene: PlaneScene) -> PlaneLog: ...
+    @staticmethod
+    def _of_columns(names: Sequence[str], columns: Sequence[_Array], scene: PlaneScene) -> PlaneLog: ...
+    @property
+    def times(self) -> _Array:
+        """Times of the samples, (n,), s."""
+    @property
+    def palms(self) -> int:
+        """Number of palms."""
+    def to_csv(self) -> str:
+        """The log as CSV text in the columns of version 2, which reads back bit for bit."""
+    def write(self, path: _Path) -> None:
+        """Writes the log as a CSV file, whole or not at all."""
+    def __len__(self) -> int: ...
+
+class PlaneSimulation:
+    """A simulated log in the plane, and what is said of it."""
+
+    @property
+    def log(self) -> PlaneLog:
+        """The log, with the truth beside the readings."""
+    @property
+    def text(self) -> str:
+        """What the command says of it."""
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What the command says of it, in numbers."""
+    @property
+    def report_html(self) -> str | None:
+        """The page that shows it (HTML), where it was asked for; else None."""
+    def _repr_html_(self) -> str: ...
+
+class PlaneReconstruction:
+    """Everything that a log in the plane tells."""
+
+    @property
+    def reliable(self) -> bool:
+        """Whether the result may be relied on; `verdict` says why or why not."""
+    @property
+    def verdict(self) -> str:
+        """Whether the result may be relied on, in a sentence."""
+    @property
+    def warnings(self) -> list[str]:
+        """What the reader must know."""
+    @property
+    def text(self) -> str:
+        """What the command prints."""
+    @property
+    def evidence(self) -> list[dict[str, Any]]:
+        """What the estimate rests on: dictionaries with key, name, value, unit, level and meaning."""
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What summary.json of the command holds."""
+    @property
+    def times(self) -> _Array:
+        """Times of the motion, (n,), s."""
+    @property
+    def motion(self) -> _Array:
+        """The motion, (n, 6), in the columns of motion.csv: place, orientation, velocity, angular velocity."""
+    @property
+    def position(self) -> _Array:
+        """Centre of mass, (n, 2), m."""
+    @property
+    def orientation(self) -> _Array:
+        """Orientation, (n,), rad, counter-clockwise from the first sample."""
+    @property
+    def velocity(self) -> _Array:
+        """Velocity of the centre of mass, (n, 2), m/s."""
+    @property
+    def angular_velocity(self) -> _Array:
+        """Angular velocity, (n,), rad/s."""
+    @property
+    def position_std(self) -> _Array:
+        """Standard deviations of the centre of mass, (n, 2), m."""
+    @property
+    def turn_std(self) -> _Array:
+        """Standard deviations of the turn since the first sample, (n,), rad."""
+    @property
+    def velocity_std(self) -> _Array:
+        """Standard deviations of the velocity, (n, 2), m/s."""
+    @property
+    def angular_velocity_std(self) -> _Array:
+        """Standard deviations of the angular velocity, (n,), rad/s."""
+    @property
+    def relied_on(self) -> NDArray[np.bool_]:
+        """Whether the motion of a sample is relied on to within its deviations, (n,), bool."""
+    @property
+    def modes(self) -> NDArray[np.uint8]:
+        """Contact modes, (n, palms), uint8: 0 off, 1 slides, 2 sticks."""
+    @property
+    def contacts(self) -> _Array:
+        """Where the palms touched the object, (n, palms, 2), m, body axes from the centre of mass; nan where they did not."""
+    @property
+    def normals(self) -> _Array:
+        """Outward normals there, (n, palms, 2), body axes."""
+    @property
+    def mass(self) -> float:
+        """Mass, kg."""
+    @property
+    def mass_std(self) -> float | None:
+        """Its standard deviation, kg, where it was estimated."""
+    @property
+    def inertia(self) -> float:
+        """Moment of inertia about the centre of mass, kg m^2."""
+    @property
+    def inertia_std(self) -> float | None:
+        """Its standard deviation, kg m^2, where it was estimated."""
+    @property
+    def areas(self) -> list[float] | None:
+        """Areas of the lower and the upper bound, m^2, of which the second is inf where a side is open; None where there are no bounds."""
+    @property
+    def outlines(self) -> list[_Array] | None:
+        """Corners of the lower and the upper bound, (n, 2) and (m, 2), m, world axes of the first sample from the centre of mass; None where there are no bounds."""
+    @property
+    def report_html(self) -> str:
+        """The page that the command writes (HTML, which loads nothing)."""
+    def write(self, folder: _Path, *, force: bool = False) -> None:
+        """Writes the folder that the command writes, whole or not at all; force: write beside files that recon did not write. Raises OutputError."""
     def _repr_html_(self) -> str: ...
     def __len__(self) -> int: ...
 
@@ -280,6 +429,8 @@ class Follower:
 
 def simulate(scene: Scene, words: Sequence[str], report: bool, progress: _Progress = None) -> Simulation: ...
 def reconstruct(log: Log, scene: Scene, words: Sequence[str], progress: _Progress = None) -> Reconstruction: ...
+def simulate_plane(scene: PlaneScene, words: Sequence[str], report: bool, progress: _Progress = None) -> PlaneSimulation: ...
+def reconstruct_plane(log: PlaneLog, scene: PlaneScene, identify: bool, progress: _Progress = None) -> PlaneReconstruction: ...
 def bounds_of_columns(
     names: Sequence[str], columns: Sequence[_Array], words: Sequence[str], progress: _Progress = None
 ) -> Bounds: ...

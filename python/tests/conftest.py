@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import importlib.util
+import math
 import os
 import shutil
 import subprocess
 from pathlib import Path
+from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -30,6 +34,21 @@ def run(command: str, *words: str, codes: tuple[int, ...] = (0,)) -> subprocess.
     made = subprocess.run([command, *words], capture_output=True, text=True, check=False)
     assert made.returncode in codes, f"{words}: {made.returncode}\n{made.stderr}"
     return made
+
+
+def many_logs_example() -> ModuleType:
+    """The example that maps over logs."""
+    spec = importlib.util.spec_from_file_location("many_logs", ROOT / "python" / "examples" / "many_logs.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def same_row(a: dict[str, Any], b: dict[str, Any]) -> bool:
+    """Whether two rows of a table are equal to the last bit, in the same columns; nan is equal to nan."""
+    nan = [name for name, value in a.items() if isinstance(value, float) and math.isnan(value)]
+    return list(a) == list(b) and all(math.isnan(b[name]) if name in nan else a[name] == b[name] for name in a)
 
 
 @pytest.fixture(scope="session")

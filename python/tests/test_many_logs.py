@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 import csv
-import importlib.util
 import math
 import os
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import pytest
 
 import recon
-from conftest import ROOT, run
-
-EXAMPLE = ROOT / "python" / "examples" / "many_logs.py"
-
+from conftest import many_logs_example, run, same_row
 
 @pytest.fixture(scope="module")
 def example() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("many_logs", EXAMPLE)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return many_logs_example()
 
 
 @pytest.fixture(scope="module")
@@ -36,11 +27,6 @@ def logs(files: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "b.csv").write_text("".join(text[:1001]), encoding="utf-8")
     (folder / "c.csv").write_text("".join(text[:50]) + "what,is,this\n", encoding="utf-8")
     return folder
-
-
-def same(a: dict[str, Any], b: dict[str, Any]) -> bool:
-    nan = [name for name, value in a.items() if isinstance(value, float) and math.isnan(value)]
-    return list(a) == list(b) and all(math.isnan(b[name]) if name in nan else a[name] == b[name] for name in a)
 
 
 def test_one_process_has_the_numbers_of_the_command(example: ModuleType, files: Path, logs: Path, tmp_path: Path, command: str) -> None:
@@ -56,6 +42,14 @@ def test_one_process_has_the_numbers_of_the_command(example: ModuleType, files: 
     assert "line 51" in ours[2]["why"] and "c.csv" in ours[2]["why"]
 
 
+def test_the_table_is_written_as_parquet_too(example: ModuleType, files: Path, logs: Path, tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    rows = example.in_one_process([str(path) for path in sorted(logs.iterdir())], str(files / "scene.toml"))
+    example.write(rows, str(tmp_path / "table.parquet"))
+    read = parquet.read_table(tmp_path / "table.parquet").to_pylist()
+    assert len(read) == 3 and all(same_row(a, b) for a, b in zip(rows, read))
+
+
 def test_ray_makes_the_same_table(example: ModuleType, files: Path, logs: Path) -> None:
     ray = pytest.importorskip("ray")
     pytest.importorskip("ray.data")
@@ -67,5 +61,5 @@ def test_ray_makes_the_same_table(example: ModuleType, files: Path, logs: Path) 
         ray.shutdown()
     assert len(ours) == len(theirs) == 3
     for a, b in zip(ours, theirs):
-        assert same(a, b), (a, b)
+        assert same_row(a, b), (a, b)
     assert recon.reconstruct(paths[0], scene, identify=True).mass == theirs[0]["mass_kg"]

@@ -137,7 +137,7 @@ summary.json names. A motion that is not to be relied on gives none.
 
 With --without-forces the contacts and palm poses alone are fitted with the motion of an ellipsoid, its centre anywhere; mass
 and inertia of the scene are not looked at, and only inertia over mass is found. Then the folder holds motion.csv,
-summary.json and, where contacts are exact, the bounds.
+summary.json, report.html and, where contacts are exact, the bounds.
 
 Examples:
   recon reconstruct log.csv --scene scene.toml -o out
@@ -356,8 +356,9 @@ was tried. Runs that contradict the others are left out and named. What the plan
 --height-deviation where one error is common to all runs, and by --run-height-deviation where each run has its own; the
 bounds are the wider for it.
 
-The output folder appears as a whole or not at all: lower_bound.ply, upper_bound.ply (m) and summary.json, with --fit
-fitted_shape.ply, with --concave alpha_shape.ply and smooth_surface.ply.
+The output folder appears as a whole or not at all: lower_bound.ply, upper_bound.ply (m; in the plane
+.csv and bounds.svg), summary.json and the page report.html, with --fit fitted_shape.ply, with --concave alpha_shape.ply and
+smooth_surface.ply.
 
 Examples:
   recon bounds contacts.csv
@@ -464,9 +465,9 @@ from no guess, and mass and inertia with it where they are not stated; without f
 angles alone. Without a log the scene of the paper's Fig. 3 is simulated first. Logs of any palms in the plane, with friction,
 go through `recon reconstruct --scene` with a scene that says `plane = true`.
 
-The output folder appears as a whole or not at all: motion.csv, contact_points.csv, summary.json and figures.svg (shape,
-orientation, centre of mass, radius functions and, where the log has the truth, errors: the paper's Figs. 2b, 2c, 3a, 3b);
-with forces the page report.html and, where the motion is relied on and closes the outline, lower_bound.csv and
+The output folder appears as a whole or not at all: motion.csv, contact_points.csv, summary.json, the page report.html and
+figures.svg (shape, orientation, centre of mass, radius functions and, where the log has the truth, errors: the paper's Figs. 2b,
+2c, 3a, 3b); with forces, where the motion is relied on and closes the outline, lower_bound.csv and
 upper_bound.csv, which hold at 95 %.
 
 Examples:

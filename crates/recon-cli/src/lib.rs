@@ -14,7 +14,8 @@ mod pipeline;
 mod progress;
 
 pub use in_memory::{
-    Body, Bounded, Failure, FailureKind, Follower, Log, Outlines, Reconstructed, Simulated, check,
+    Body, Bounded, Failure, FailureKind, Follower, Log, Outlines, PlaneLog, PlaneReconstructed, PlaneScene,
+    PlaneSimulated, Reconstructed, Simulated, check,
 };
 pub use progress::Watch;
 

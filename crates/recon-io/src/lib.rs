@@ -39,9 +39,9 @@ pub use export::{
 pub use log::{
     AnyLog, ContactRows, LogFileError, LogFileErrorKind, LogReader, PalmSetup, PlaneRows, PoseAgainstScene,
     RowReader, RowSample, log_of_columns, parse_any_log, parse_contact_log, parse_log,
-    parse_planar_contact_log, parse_planar_log, read_any_log, read_contact_log, read_log,
-    read_planar_contact_log, read_planar_log, write_contact_log, write_log, write_planar_contact_log,
-    write_planar_log,
+    parse_planar_contact_log, parse_planar_log, planar_contact_log_of_columns, planar_log_of_columns,
+    read_any_log, read_contact_log, read_log, read_planar_contact_log, read_planar_log, write_contact_log,
+    write_log, write_planar_contact_log, write_planar_log,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use mesh_formats::{write_glb, write_stl};
@@ -52,18 +52,21 @@ pub use output::{
 pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};
 pub use report::{
-    Bound, Bounds, EstimateData, Evidence, EvidenceValue, ExplorationPage, Level, ModeSpan, MotionState,
-    PalmContact, PalmTrack, PlaneEstimateData, ReportData, ReportError, TouchRow, TrueShape, Verdict,
-    doubtful_spans, estimated_mode_spans, mode_spans, mode_times, planar_mode_spans, write_contact_report,
-    write_estimate_report, write_exploration_report, write_planar_contact_report,
-    write_plane_estimate_report, write_report,
+    BatchPage, Bound, Bounds, EstimateData, Evidence, EvidenceValue, ExplorationPage, FiguresPage, Level,
+    LogCard, ModeSpan, MotionState, PalmContact, PalmTrack, PlaneEstimateData, ReportData, ReportError,
+    TouchRow, TrueShape, Verdict, doubtful_spans, estimated_mode_spans, mode_spans, mode_times,
+    planar_mode_spans, write_batch_report, write_contact_report, write_estimate_report,
+    write_exploration_report, write_figures_page, write_planar_contact_report, write_plane_estimate_report,
+    write_report,
 };
 pub use scene::{
     BoxedShape, KnownInertia, KnownPalm, PlanarBody, PlanarKnown, PlanarScene, Scene, SceneError,
     SceneErrorKind, Sensors, Shape, Simulation,
 };
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
-pub use summary::{INERTIA_LEARNED, estimate_summary};
+pub use summary::{
+    INERTIA_LEARNED, SummaryOf, estimate_summary, sensor_fault, status_in_words, verdict_figures,
+};
 pub use table::{write_contact_curves, write_estimated_motion, write_motion, write_radius_functions};
 pub use touches::{
     Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,

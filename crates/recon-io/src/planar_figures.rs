@@ -47,13 +47,20 @@ const COLOURS: usize = 5;
 /// Width of a character in the legend, px: generous for a proportional font of 12 px.
 const CHARACTER: f64 = 7.0;
 
+/// Panels as pictures of their own, for a page that sets them beside each other where it is wide enough.
+pub(crate) fn figures_in_page(panels: &[FigurePanel]) -> io::Result<String> {
+    let mut pictures = Vec::new();
+    panels.iter().try_for_each(|panel| write_figures(std::slice::from_ref(panel), &mut pictures))?;
+    Ok(String::from_utf8_lossy(&pictures).into_owned())
+}
+
 /// Writes panels two in a row.
 ///
 /// # Errors
 /// Those of `to`.
 pub fn write_figures(panels: &[FigurePanel], mut to: impl Write) -> io::Result<()> {
     let rows = panels.len().div_ceil(2).max(1) as f64;
-    let (width, height) = (2.0 * SIZE[0], rows * SIZE[1]);
+    let (width, height) = (panels.len().clamp(1, 2) as f64 * SIZE[0], rows * SIZE[1]);
     writeln!(
         to,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"12\">"

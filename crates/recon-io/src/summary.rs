@@ -1,11 +1,74 @@
 //! `summary.json`: the figures of a reconstruction for programs.
 
 use crate::report::{
-    Bounds, Departure, EstimateData, Evidence, EvidenceValue, estimated_mode_spans, level, mode_times,
+    Bounds, Departure, EstimateData, Evidence, EvidenceValue, Verdict, estimated_mode_spans, level,
+    mode_times,
 };
 use glam::DMat3;
 use recon::observer::{SensorFault, Suspect};
 use serde_json::{Map, Value, json};
+
+/// What a `summary.json` is of. Its keys are those of `docs/schema/summary.schema.json`.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum SummaryOf {
+    /// Motion and shape from contacts and forces, in space.
+    Reconstruction,
+    /// The same without forces.
+    WithoutForces,
+    /// Motion and outline in the plane.
+    PlaneReconstruction,
+    /// Outline and motion in the plane without forces.
+    PlaneWithoutForces,
+    /// Bounds on a shape.
+    Bounds,
+    /// Touches, one after the other, to a goal.
+    Exploration,
+    /// A simulated scene.
+    Simulation,
+    /// An object or a scene for simulators.
+    Export,
+    /// Files to begin with.
+    Start,
+}
+
+impl SummaryOf {
+    /// The value of the key `schema`: what it is of, and the version of its keys.
+    #[must_use]
+    pub fn schema(self) -> &'static str {
+        match self {
+            Self::Reconstruction => "reconstruction/1",
+            Self::WithoutForces => "without-forces/1",
+            Self::PlaneReconstruction => "plane-reconstruction/1",
+            Self::PlaneWithoutForces => "plane-without-forces/1",
+            Self::Bounds => "bounds/1",
+            Self::Exploration => "exploration/1",
+            Self::Simulation => "simulation/1",
+            Self::Export => "export/1",
+            Self::Start => "start/1",
+        }
+    }
+
+    /// The figures, with their schema and the version of recon.
+    #[must_use]
+    pub fn named(self, mut figures: Value) -> Value {
+        figures["schema"] = self.schema().into();
+        figures["recon"] = env!("CARGO_PKG_VERSION").into();
+        figures
+    }
+}
+
+/// How a fit ended, in words: `OutOfIterations` as `out of iterations`.
+#[must_use]
+pub fn status_in_words(status: impl std::fmt::Debug) -> String {
+    let mut words = String::new();
+    for letter in format!("{status:?}").chars() {
+        if letter.is_uppercase() && !words.is_empty() {
+            words.push(' ');
+        }
+        words.extend(letter.to_lowercase());
+    }
+    words
+}
 
 /// Deviation of the logarithm of the root of a second moment below which it was learned from the log.
 pub const INERTIA_LEARNED: f64 = 0.5;
@@ -26,11 +89,10 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         pairs.map(|((state, truth), _)| Departure::between(&(*state).into(), truth)).collect()
     });
     let mut figures = json!({
-        "recon": env!("CARGO_PKG_VERSION"),
         "title": data.title,
         "method": "motion, mass and inertia from contacts of any palms",
-        "status": if found.evidence.settled { "Converged" } else { "NotSettled" },
-        "verdict": { "level": level(data.verdict.level), "text": data.verdict.text },
+        "status": if found.evidence.settled { "converged" } else { "not settled" },
+        "verdict": verdict_figures(&data.verdict),
         "note": data.note,
         "samples": times.len(),
         "t_first_s": times.first(),
@@ -47,7 +109,7 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
     });
     if !found.suspects.is_empty() {
         figures["sensor_faults"] =
-            found.suspects.iter().filter(|of| of.deviation.is_finite()).map(fault).collect();
+            found.suspects.iter().filter(|of| of.deviation.is_finite()).map(sensor_fault).collect();
     }
     match found.axes_deviations {
         Some(of) => figures["std_axes_rad"] = json!(of.to_array()),
@@ -57,11 +119,18 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
             figures["inertia_learned"] = json!(found.inertia_deviations.map(|of| of < INERTIA_LEARNED));
         }
     }
-    figures
+    SummaryOf::Reconstruction.named(figures)
+}
+
+/// A verdict as level and text.
+#[must_use]
+pub fn verdict_figures(verdict: &Verdict) -> Value {
+    json!({ "level": level(verdict.level), "text": verdict.text })
 }
 
 /// What the data say of a constant of the sensors.
-fn fault(of: &Suspect) -> Value {
+#[must_use]
+pub fn sensor_fault(of: &Suspect) -> Value {
     let (kind, palm, axis) = match of.fault {
         SensorFault::ForceGain { palm } => ("force_gain", Some(palm), None),
         SensorFault::ForceBias { palm } => ("force_bias_n", Some(palm), None),

@@ -48,6 +48,11 @@ pub(crate) fn columns<'py>(of: &Bound<'py, PyAny>, from: isize, to: isize) -> Py
     of.get_item((PySlice::full(py), PySlice::new(py, from, to, 1)))
 }
 
+/// One column of an array with two axes, sharing its memory.
+pub(crate) fn column<'py>(of: &Bound<'py, PyAny>, which: usize) -> PyResult<Bound<'py, PyAny>> {
+    of.get_item((PySlice::full(of.py()), which))
+}
+
 /// The last axis of vectors in a row.
 pub(crate) fn flat3(vectors: impl Iterator<Item = DVec3>) -> Vec<f64> {
     vectors.flat_map(|v| v.to_array()).collect()

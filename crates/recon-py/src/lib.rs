@@ -9,6 +9,8 @@ mod errors;
 mod follower;
 mod log;
 mod mesh;
+mod plane;
+mod plane_reconstruction;
 mod reconstruction;
 mod scene;
 mod unlocked;
@@ -43,6 +45,13 @@ fn _recon(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(reconstruction::reconstruct, module)?)?;
     module.add_function(wrap_pyfunction!(bounds::bounds_of_columns, module)?)?;
     module.add_function(wrap_pyfunction!(bounds::bounds_of_file, module)?)?;
+    // Classes of the same names as those of space.
+    module.add("PlaneScene", module.py().get_type::<plane::PlaneScene>())?;
+    module.add("PlaneLog", module.py().get_type::<plane::PlaneLog>())?;
+    module.add("PlaneSimulation", module.py().get_type::<plane::PlaneSimulation>())?;
+    module.add("PlaneReconstruction", module.py().get_type::<plane_reconstruction::PlaneReconstruction>())?;
+    module.add_function(wrap_pyfunction!(plane::simulate_plane, module)?)?;
+    module.add_function(wrap_pyfunction!(plane_reconstruction::reconstruct_plane, module)?)?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
     module.add_function(wrap_pyfunction!(check, module)?)
 }

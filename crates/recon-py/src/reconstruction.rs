@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 use recon_cli::{Body, Reconstructed};
-use recon_io::{EvidenceValue, PalmContact};
+use recon_io::{Evidence, EvidenceValue, PalmContact};
 use std::path::PathBuf;
 
 /// Everything that a log tells.
@@ -50,6 +50,25 @@ pub(crate) fn in_notebook(page: Option<&str>, text: &str) -> String {
         }
         None => format!("<pre>{}</pre>", escaped(text)),
     }
+}
+
+/// Evidence as dictionaries.
+pub(crate) fn evidence_rows<'py>(py: Python<'py>, of: &[Evidence]) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let row = |of: &Evidence| {
+        let row = PyDict::new(py);
+        row.set_item("key", &of.key)?;
+        row.set_item("name", &of.name)?;
+        match &of.value {
+            EvidenceValue::Number(value) => row.set_item("value", value)?,
+            EvidenceValue::Count(value) => row.set_item("value", value)?,
+            EvidenceValue::Text(value) => row.set_item("value", value)?,
+        }
+        row.set_item("unit", &of.unit)?;
+        row.set_item("level", Reconstructed::level(of))?;
+        row.set_item("meaning", &of.meaning)?;
+        Ok(row)
+    };
+    of.iter().map(row).collect()
 }
 
 impl Reconstruction {
@@ -120,21 +139,7 @@ impl Reconstruction {
     /// What the estimate rests on: dictionaries with key, name, value, unit, level and meaning.
     #[getter]
     fn evidence<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let row = |of: &recon_io::Evidence| {
-            let row = PyDict::new(py);
-            row.set_item("key", &of.key)?;
-            row.set_item("name", &of.name)?;
-            match &of.value {
-                EvidenceValue::Number(value) => row.set_item("value", value)?,
-                EvidenceValue::Count(value) => row.set_item("value", value)?,
-                EvidenceValue::Text(value) => row.set_item("value", value)?,
-            }
-            row.set_item("unit", &of.unit)?;
-            row.set_item("level", Reconstructed::level(of))?;
-            row.set_item("meaning", &of.meaning)?;
-            Ok(row)
-        };
-        self.made.evidence().iter().map(row).collect()
+        evidence_rows(py, self.made.evidence())
     }
 
     /// What summary.json of the command holds.
@@ -288,11 +293,11 @@ impl Reconstruction {
         self.made.surfaces()[1].map(|mesh| Mesh::new(mesh, volume))
     }
 
-    /// The page that the command writes (HTML, which loads nothing); None without forces.
+    /// The page that the command writes (HTML, which loads nothing).
     #[getter]
-    fn report_html(&self, py: Python<'_>) -> PyResult<Option<String>> {
+    fn report_html(&self, py: Python<'_>) -> PyResult<String> {
         let page = py.detach(|| self.made.report()).map_err(raised)?;
-        Ok(page.map(|page| String::from_utf8_lossy(&page).into_owned()))
+        Ok(String::from_utf8_lossy(&page).into_owned())
     }
 
     /// Writes the folder that the command writes, whole or not at all: motion.csv, contact_curves.csv, summary.json, meshes, report.html.
@@ -321,9 +326,9 @@ impl Reconstruction {
         py.detach(|| self.made.write(&folder, &words)).map_err(raised)
     }
 
-    /// The report, in a notebook; where there is none, the words.
+    /// The report, in a notebook.
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(in_notebook(self.report_html(py)?.as_deref(), self.made.text()))
+        Ok(in_notebook(Some(&self.report_html(py)?), self.made.text()))
     }
 
     fn __len__(&self) -> usize {

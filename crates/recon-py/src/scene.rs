@@ -4,7 +4,7 @@ use crate::arrays::matrix;
 use crate::errors::input;
 use numpy::PyArray2;
 use pyo3::prelude::*;
-use recon_io::{Scene as Known, SceneError};
+use recon_io::{Scene as Known, SceneError, SceneErrorKind};
 use std::path::PathBuf;
 
 /// What is known beside a log: gravity, the object's mass and inertia, palms, and the noise of the sensors.
@@ -13,28 +13,43 @@ pub(crate) struct Scene {
     pub(crate) scene: Known,
 }
 
+/// The TOML of a scene whose dictionary came as JSON.
+pub(crate) fn toml_of_json(text: &str) -> PyResult<String> {
+    let wrong = |why: String| input(format!("the scene: {why}; give the keys of a scene file, without None"));
+    let value: toml::Value = serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
+    toml::to_string(&value).map_err(|error| wrong(error.to_string()))
+}
+
+/// Why a scene is none; where it is one of the plane, who takes it.
+fn refused(error: &SceneError) -> PyErr {
+    match error.kind {
+        SceneErrorKind::InPlane => input(format!(
+            "{}: is a scene in the plane; give it to the functions of recon.plane",
+            error.path.display()
+        )),
+        _ => input(error.to_string()),
+    }
+}
+
 #[pymethods]
 impl Scene {
     /// Reads a scene file (TOML).
     #[staticmethod]
     fn read(path: PathBuf) -> PyResult<Self> {
-        Known::read(path).map(|scene| Self { scene }).map_err(|error| input(error.to_string()))
+        Known::read(path).map(|scene| Self { scene }).map_err(|error| refused(&error))
     }
 
     /// A scene from TOML text.
     #[staticmethod]
     fn parse(text: &str) -> PyResult<Self> {
         let in_text = |kind| SceneError { path: "the scene".into(), kind };
-        Known::parse(text).map(|scene| Self { scene }).map_err(|kind| input(in_text(kind).to_string()))
+        Known::parse(text).map(|scene| Self { scene }).map_err(|kind| refused(&in_text(kind)))
     }
 
     /// A scene from the JSON of a dictionary with the keys of a scene file.
     #[staticmethod]
     fn _of_json(text: &str) -> PyResult<Self> {
-        let wrong =
-            |why: String| input(format!("the scene: {why}; give the keys of a scene file, without None"));
-        let value: toml::Value = serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
-        Self::parse(&toml::to_string(&value).map_err(|error| wrong(error.to_string()))?)
+        Self::parse(&toml_of_json(text)?)
     }
 
     /// Gravity, m/s^2; the world's z axis points up.

@@ -7,11 +7,13 @@ mod arrows;
 mod builds;
 mod extras;
 mod licences;
+mod pages;
 mod paths;
 mod python;
 mod spdx;
 mod versions;
 
+use std::collections::BTreeSet;
 use std::process::ExitCode;
 
 use crate::metadata::Metadata;
@@ -26,15 +28,18 @@ const STEPS: &[Step] = &[
         check(arrows::complaints)
     }),
     step("versions", "one glam, one nalgebra, one parry in the tree", versions::check),
-    step("licences", "every package has a licence we allow", || check(licences::complaints)),
+    step("licences", "every package has a licence we allow, those of the wheel as well", || {
+        check_both(licences::complaints)
+    }),
     step("sources", "every package is ours or from the default registry", || {
-        check(licences::foreign_sources)
+        check_both(licences::foreign_sources)
     }),
     step("paths", "no tracked file names a folder of somebody's machine", paths::check),
     step("deny", "cargo-deny: bans, licences, sources", extras::deny),
     step("lint", "clippy over everything, warnings are errors", builds::lint),
     step("docs", "rustdoc, warnings are errors", builds::docs),
     step("tests", "all tests and doctests of the workspace", builds::tests),
+    step("pages", "each command's page in a browser, where there is one", pages::check),
     step("alone", "each core crate and its tests compile and lint with its own features only", builds::alone),
     step("features", "each Cargo feature builds without the others", builds::features),
     step(
@@ -65,7 +70,16 @@ const fn optional(name: &'static str, about: &'static str, run: fn() -> Result<O
 
 /// A step whose check finds complaints in the metadata.
 fn check(complaints: fn(&Metadata) -> Vec<String>) -> Result<Outcome, String> {
-    let complaints = complaints(&Metadata::load()?);
+    told(complaints(&Metadata::load()?))
+}
+
+/// The same in the metadata of both workspaces.
+fn check_both(complaints: fn(&Metadata) -> Vec<String>) -> Result<Outcome, String> {
+    let found: BTreeSet<String> = Metadata::load_both()?.iter().flat_map(complaints).collect();
+    told(found.into_iter().collect())
+}
+
+fn told(complaints: Vec<String>) -> Result<Outcome, String> {
     if complaints.is_empty() { Ok(Outcome::Passed) } else { Err(complaints.join("\n")) }
 }
 

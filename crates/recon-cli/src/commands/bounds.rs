@@ -3,14 +3,18 @@ use crate::cli::{BoundsArgs, FitAs, MeshAs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
-    BoundsResult, Noise, PlanarBounds, PlanarRequest, concave_bounds, doubtful_fit, exact_bounds, fit_words,
-    fitted_shape, meshes_as, noisy_bounds, planar_bounds, pose_bounds, sharp_bounds, write_bounds_folder,
+    BoundsResult, Noise, PlanarBounds, PlanarRequest, bounds_page, concave_bounds, doubtful_fit,
+    exact_bounds, fit_words, fitted_shape, meshes_as, noisy_bounds, planar_bounds, pose_bounds, sharp_bounds,
+    write_bounds_folder,
 };
 use crate::progress::Progress;
+use glam::DVec3;
 use recon::contact_kinematics::CurvatureRadii;
 use recon::contact_kinematics::planar::RadiusBounds;
 use recon::shape_bounds::{ContactSample, PlaneHeight};
-use recon_io::{FolderTarget, Touches, brief, brief_to, check_unwritten, read_touches};
+use recon_io::{
+    FiguresPage, FolderTarget, SummaryOf, Touches, brief, brief_to, check_unwritten, read_touches,
+};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::slice;
@@ -32,7 +36,10 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
     let made = bounded(args, &touches)?;
     let figures = made.figures();
     match target {
-        Some(folder) => made.write(folder, &args.mesh, &figures)?,
+        Some(folder) => {
+            let title = args.input.file_name().unwrap_or(args.input.as_os_str()).to_string_lossy();
+            made.write(folder, (&title, &args.mesh), &figures)?;
+        }
         None => made.check(&figures)?,
     }
     drop(progress);
@@ -42,8 +49,8 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
 
 /// Bounds, and what is to be said about them.
 pub(crate) enum Bounded {
-    /// In space, of so many contacts or poses.
-    Space { made: Box<BoundsResult>, about: Value, what: String },
+    /// In space, of so many contacts or poses; contacts are at `points`.
+    Space { made: Box<BoundsResult>, about: Value, what: String, points: Vec<DVec3> },
     /// Of so many contacts in the plane.
     Plane { made: Box<PlanarBounds>, count: usize },
 }
@@ -65,12 +72,13 @@ pub(crate) fn bounded(args: &BoundsArgs, touches: &Touches) -> Result<Bounded, C
             };
             let (made, about) = pose_bounds(runs, plane, confidence(args), args.tight)?;
             let what = format!("{count} poses in {} runs", runs.len());
-            Bounded::Space { made: Box::new(made), about, what }
+            Bounded::Space { made: Box::new(made), about, what, points: Vec::new() }
         }
         Touches::Contacts { curves, .. } => {
             let (made, about) = of_contacts(args, curves)?;
             let what = format!("{} contacts", curves.iter().map(Vec::len).sum::<usize>());
-            Bounded::Space { made: Box::new(made), about, what }
+            let points = curves.iter().flatten().map(|contact| contact.point).collect();
+            Bounded::Space { made: Box::new(made), about, what, points }
         }
     })
 }
@@ -79,7 +87,7 @@ impl Bounded {
     /// The summary.
     pub(crate) fn figures(&self) -> Value {
         match self {
-            Self::Space { made, about, what } => figures(made, what, about),
+            Self::Space { made, about, what, .. } => figures(made, what, about),
             Self::Plane { made, count } => plane::figures(made, *count),
         }
     }
@@ -87,25 +95,33 @@ impl Bounded {
     /// The summary in words.
     pub(crate) fn describe(&self) -> String {
         match self {
-            Self::Space { made, about, what } => describe(made, what, about),
+            Self::Space { made, about, what, .. } => describe(made, what, about),
             Self::Plane { made, count } => plane::describe(made, *count),
         }
     }
 
-    /// Writes the folder.
+    /// The page, under a title.
+    pub(crate) fn page(&self, title: &str) -> FiguresPage {
+        match self {
+            Self::Space { made, about, what, points } => bounds_page(title, (made, about, what), points),
+            Self::Plane { made, count } => plane::page(title, made, *count),
+        }
+    }
+
+    /// Writes the folder, whose page is under a title.
     pub(crate) fn write(
         &self,
         folder: FolderTarget,
-        formats: &[MeshAs],
+        (title, formats): (&str, &[MeshAs]),
         figures: &Value,
     ) -> Result<(), CliError> {
         match self {
             Self::Space { made, .. } => {
                 let others = made.others.iter().map(|(name, _, mesh)| (*name, mesh));
                 let extras = meshes_as(made.surfaces().into_iter().chain(others), formats)?;
-                write_bounds_folder(folder, made, &extras, figures)
+                write_bounds_folder(folder, made, (&self.page(title), &extras), figures)
             }
-            Self::Plane { made, .. } => plane::write_folder(folder, made, figures),
+            Self::Plane { made, .. } => plane::write_folder(folder, made, &self.page(title), figures),
         }
     }
 
@@ -234,8 +250,7 @@ fn radii(args: &BoundsArgs) -> Option<CurvatureRadii> {
 
 fn figures(made: &BoundsResult, what: &str, about: &Value) -> Value {
     let (lower, upper) = (made.drawn.lower.volume, made.drawn.upper.as_ref().map(|u| u.volume));
-    json!({
-        "recon": env!("CARGO_PKG_VERSION"),
+    SummaryOf::Bounds.named(json!({
         "input": what,
         "about": about,
         "bounds": {
@@ -246,7 +261,7 @@ fn figures(made: &BoundsResult, what: &str, about: &Value) -> Value {
             "contradiction_m": made.contradiction,
         },
         "warnings": made.warnings,
-    })
+    }))
 }
 
 fn describe(made: &BoundsResult, what: &str, about: &Value) -> String {

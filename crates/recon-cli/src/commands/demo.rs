@@ -4,7 +4,7 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{Asked, estimated_planes, simulate, simulate_contacts, write_contact_folder};
 use crate::progress::Progress;
-use recon_io::{FolderTarget, Scene, SceneError, SceneModel, write_log};
+use recon_io::{FolderTarget, Scene, SceneError, SceneModel, SummaryOf, write_log};
 use std::path::Path;
 
 const SCENE: &str = "scene.toml";
@@ -58,8 +58,7 @@ fn any_palms(args: &DemoArgs, title: &str, text: &str, console: &Console) -> Res
     let model = SceneModel::new("scene", &scene).map_err(in_scene)?.files()?;
     extras.extend(model.into_iter().map(|file| (file.name, file.contents)));
     let told = run.told();
-    let mut figures = told.figures();
-    figures["recon"] = env!("CARGO_PKG_VERSION").into();
+    let mut figures = SummaryOf::Simulation.named(told.figures());
     figures["title"] = title.into();
     write_contact_folder(target, title, &run, &extras, &figures)?;
     drop(progress);

@@ -2,7 +2,7 @@ use crate::cli::ExportArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::write_files_folder;
-use recon_io::{FolderTarget, Scene, SceneError, SceneModel};
+use recon_io::{FolderTarget, Scene, SceneError, SceneModel, SummaryOf};
 use serde_json::json;
 use std::slice;
 
@@ -13,7 +13,7 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<Outcome, CliEr
     let files = SceneModel::new("scene", &scene).map_err(in_file)?.files()?;
     let names: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
     let files: Vec<_> = files.into_iter().map(|file| (file.name, file.contents)).collect();
-    let mut figures = json!({ "recon": env!("CARGO_PKG_VERSION"), "files": names });
+    let mut figures = SummaryOf::Export.named(json!({ "files": names }));
     write_files_folder(target, &files, &figures)?;
     figures["folder"] = args.output.to_string_lossy().into();
     let text = format!("{}: {}", args.output.display(), names.join(", "));

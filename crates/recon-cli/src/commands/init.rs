@@ -6,7 +6,7 @@ use crate::error::{CliError, Outcome};
 use crate::pipeline::{simulate, write_files_folder};
 use recon::contact_kinematics::{Direction, SupportFunction};
 use recon::shape_bounds::ContactSample;
-use recon_io::{FolderTarget, Scene, SceneError, write_contacts, write_log};
+use recon_io::{FolderTarget, Scene, SceneError, SummaryOf, write_contacts, write_log};
 use serde_json::json;
 use std::path::Path;
 
@@ -31,7 +31,7 @@ pub(crate) fn run(args: &InitArgs, console: &Console) -> Result<Outcome, CliErro
         format!("recon bounds {folder}/contacts.csv --fit auto -o bounds"),
         format!("recon simulate {folder}/scene.toml -o log.csv"),
     ];
-    let figures = json!({ "recon": env!("CARGO_PKG_VERSION"), "next": commands });
+    let figures = SummaryOf::Start.named(json!({ "next": commands }));
     let files = [
         (SCENE.to_owned(), TEXT.as_bytes().to_vec()),
         ("log.csv".to_owned(), log),

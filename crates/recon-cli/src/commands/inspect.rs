@@ -48,9 +48,12 @@ pub(crate) fn run(args: &InspectArgs, console: &Console) -> Result<Outcome, CliE
             console.result(&text, &figures)?;
         }
         None => {
+            // With the draft behind it all of it is a mapping, wherever it is sent.
+            let drafts = stated.is_none() && !console.is_json();
+            let text = if drafts { text.lines().map(|line| format!("# {line}\n")).collect() } else { text };
             console.result(&text, &figures)?;
             // As it is, so that it can be used with all its digits.
-            if stated.is_none() && !console.is_json() {
+            if drafts {
                 listened(write!(io::stdout().lock(), "\n{}", found.draft.text))?;
             }
         }

@@ -2,20 +2,22 @@
 
 use crate::error::CliError;
 use crate::interrupt::while_writing;
-use crate::pipeline::{PlanarBounds, fit_words};
-use recon_io::{FigureCurve, FigurePanel, FolderTarget, brief, brief_to, write_figures};
+use crate::pipeline::{PlanarBounds, fit_words, plane_bounds_page};
+use recon_io::{
+    FigureCurve, FigurePanel, FiguresPage, FolderTarget, SummaryOf, brief, brief_to, write_figures,
+    write_figures_page,
+};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::Write;
 
 pub(super) fn figures(made: &PlanarBounds, count: usize) -> Value {
-    json!({
-        "recon": env!("CARGO_PKG_VERSION"),
+    SummaryOf::Bounds.named(json!({
         "input": format!("{count} contacts in the plane"),
         "about": made.about,
         "bounds": made.figures(),
         "warnings": made.warnings,
-    })
+    }))
 }
 
 pub(super) fn describe(made: &PlanarBounds, count: usize) -> String {
@@ -39,9 +41,14 @@ pub(super) fn describe(made: &PlanarBounds, count: usize) -> String {
     text
 }
 
+pub(super) fn page(title: &str, made: &PlanarBounds, count: usize) -> FiguresPage {
+    plane_bounds_page(title, made, &format!("{count} contacts in the plane"), panels(made))
+}
+
 pub(super) fn write_folder(
     target: FolderTarget,
     made: &PlanarBounds,
+    page: &FiguresPage,
     figures: &Value,
 ) -> Result<(), CliError> {
     while_writing(|| {
@@ -53,6 +60,7 @@ pub(super) fn write_folder(
         if !made.fitted.is_empty() {
             folder.write("fitted_shape.csv", |to| PlanarBounds::write_outline(&made.fitted, to))?;
         }
+        folder.write("report.html", |to| write_figures_page(page, to))?;
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()?;
         Ok(())

@@ -102,7 +102,8 @@ fn any_palms(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
     Ok(Made { log, report, text: told.describe(), figures: told.figures(), outcome: Outcome::Done })
 }
 
-fn in_the_plane(scene: &PlanarScene, args: &SimulateArgs) -> Result<Made, CliError> {
+/// Simulates a scene of the plane.
+pub(crate) fn in_the_plane(scene: &PlanarScene, args: &SimulateArgs) -> Result<Made, CliError> {
     let run = simulate_planar_contacts(scene, args.tolerance)?;
     let told = run.told();
     let (mut text, mut figures) = (told.describe(), told.figures());

@@ -15,9 +15,10 @@ pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let (log, warnings) = three_palms(super::reconstruct::source(args, &scene), console)?;
     let made = without_forces(log, warnings, &scene, &progress)?;
     progress.step("writing the results");
-    let figures = made.write(target)?;
+    let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
+    let figures = made.write(target, &title)?;
     drop(progress);
-    let text = format!("{}\n{}", made.describe(), args.output.display());
+    let text = format!("{}\n{}", made.describe(), args.output.join("report.html").display());
     console.result(&text, &figures)?;
     Ok(if made.bounded.is_some() { Outcome::Done } else { Outcome::WithReservations })
 }

@@ -135,7 +135,8 @@ impl Bounded {
         let args = arguments(&self.path, &words)?;
         let inputs = std::slice::from_ref(&self.path);
         let target = FolderTarget::new(folder, inputs, args.force).map_err(CliError::from)?;
-        Ok(self.made.write(target, &args.mesh, &self.figures)?)
+        let title = self.path.file_name().unwrap_or(self.path.as_os_str()).to_string_lossy();
+        Ok(self.made.write(target, (&title, &args.mesh), &self.figures)?)
     }
 }
 

@@ -7,6 +7,7 @@ mod failure;
 mod follower;
 mod log;
 mod options;
+mod plane;
 mod reconstruct;
 mod simulate;
 
@@ -14,6 +15,7 @@ pub use bounds::{Bounded, Outlines};
 pub use failure::{Failure, FailureKind};
 pub use follower::Follower;
 pub use log::Log;
+pub use plane::{PlaneLog, PlaneReconstructed, PlaneScene, PlaneSimulated};
 pub use reconstruct::{Body, Reconstructed};
 pub use simulate::Simulated;
 

@@ -6,11 +6,13 @@ use crate::commands::reconstruct::describe;
 use crate::error::CliError;
 use crate::pipeline::{
     Asked, Estimated, LogOf, LogStand, WithoutForces, estimated, meshes_as, sorted_with_forces,
-    sorted_without_forces, without_forces,
+    sorted_without_forces, without_forces, without_forces_page,
 };
 use crate::progress::{Progress, Watch};
 use glam::{DMat3, DVec3};
-use recon_io::{Bounds, Evidence, FolderTarget, Level, MotionState, PalmContact, Scene, TriangleMesh};
+use recon_io::{
+    Bounds, Evidence, FolderTarget, Level, MotionState, PalmContact, Scene, TriangleMesh, write_figures_page,
+};
 use serde_json::Value;
 use std::path::Path;
 
@@ -215,18 +217,20 @@ impl Reconstructed {
         Some(Body { mass: object.mass.mass(), inertia: object.mass.inertia(), deviations })
     }
 
-    /// The page that the command writes; none without forces.
+    /// The page that the command writes.
     ///
     /// # Errors
     /// Where a number of it is not finite, which is a fault of recon.
-    pub fn report(&self) -> Result<Option<Vec<u8>>, Failure> {
+    pub fn report(&self) -> Result<Vec<u8>, Failure> {
         let mut page = Vec::new();
         let written = match &self.made {
             Made::Estimated(made) => made.write_page(&mut page),
-            Made::WithoutForces(_) => return Ok(None),
+            Made::WithoutForces(made) => {
+                write_figures_page(&without_forces_page(&self.log.title(), made), &mut page)
+            }
         };
         written.map_err(CliError::Page)?;
-        Ok(Some(page))
+        Ok(page)
     }
 
     /// Writes the folder that the command writes; `options` are `--force`, `--export`, `--export-shape`, `--mesh` and `--mcap`.
@@ -245,7 +249,7 @@ impl Reconstructed {
                 made.write(target, &extras)?;
             }
             Made::WithoutForces(made) => {
-                made.write(target)?;
+                made.write(target, &self.log.title())?;
             }
         }
         Ok(())

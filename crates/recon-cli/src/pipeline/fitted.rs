@@ -166,9 +166,8 @@ where
 {
     let count = names.len();
     let row = |i: usize| (0..count).map(|j| covariance[(i, j)]).collect::<Vec<f64>>();
-    let parameters = (0..count).map(
-        |i| json!({ "name": names[i], "value": values[i], "deviation": covariance[(i, i)].max(0.0).sqrt() }),
-    );
+    let parameters = (0..count)
+        .map(|i| json!({ "name": names[i], "value": values[i], "std": covariance[(i, i)].max(0.0).sqrt() }));
     json!({
         // One that does not come to rest is an error, one that the contacts refute is refused.
         "status": "fitted",
@@ -181,7 +180,7 @@ where
 fn add_statistics(report: &mut Value, of: &FitStatistics, equations: f64, stated: bool) {
     report["residual_m"] = json!(of.residual);
     report["condition"] = json!(of.condition);
-    report["weakest_deviation_over_size"] = json!(of.weakest_deviation);
+    report["std_weakest_over_size"] = json!(of.weakest_deviation);
     report["active_curvature_constraints"] = json!(of.active_constraints);
     report["worst_contact"] = json!(of.worst.0 + 1);
     if stated {
@@ -205,7 +204,7 @@ pub(crate) fn fit_words(report: &Value) -> String {
     for parameter in report["parameters"].as_array().into_iter().flatten().take(NAMED) {
         let of = |name: &str| parameter[name].as_f64().unwrap_or(f64::NAN);
         let name = parameter["name"].as_str().unwrap_or_default();
-        text += &format!("    {name:<20} {} +- {:.1e}\n", brief(of("value")), of("deviation"));
+        text += &format!("    {name:<20} {} +- {:.1e}\n", brief(of("value")), of("std"));
     }
     let count = report["parameters"].as_array().map_or(0, Vec::len);
     if count > NAMED {

@@ -3,9 +3,9 @@ use super::{AnyPalms, ContactRun, Estimated};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
 use recon_io::{
-    FolderTarget, MotionState, OutputFolder, ReportData, TriangleMesh, estimate_summary,
-    write_contact_curves, write_contact_log, write_contact_report, write_estimated_motion, write_motion,
-    write_ply, write_radius_functions,
+    FiguresPage, FolderTarget, MotionState, OutputFolder, ReportData, TriangleMesh, estimate_summary,
+    write_contact_curves, write_contact_log, write_contact_report, write_estimated_motion,
+    write_figures_page, write_motion, write_ply, write_radius_functions,
 };
 use serde_json::Value;
 use std::io::{self, Write};
@@ -58,12 +58,13 @@ pub(crate) fn write_touch_folder(
     times: &[f64],
     motion: &[MotionState],
     bounds: Option<&BoundsResult>,
-    figures: &Value,
+    (page, figures): (&FiguresPage, &Value),
 ) -> Result<(), CliError> {
     while_writing(|| {
         let mut folder = Folder(target.begin()?);
         folder.write("motion.csv", |to| write_motion(times, motion, to))?;
         folder.write_bounds(bounds)?;
+        folder.write("report.html", |to| write_figures_page(page, to))?;
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()
     })
@@ -109,7 +110,7 @@ pub(crate) fn write_files_folder(
 pub(crate) fn write_bounds_folder(
     target: FolderTarget,
     made: &BoundsResult,
-    extras: &[Extra],
+    (page, extras): (&FiguresPage, &[Extra]),
     figures: &Value,
 ) -> Result<(), CliError> {
     while_writing(|| {
@@ -122,6 +123,7 @@ pub(crate) fn write_bounds_folder(
         for (name, contents) in extras {
             folder.write(name, |to| to.write_all(contents))?;
         }
+        folder.write("report.html", |to| write_figures_page(page, to))?;
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
         folder.commit()
     })

@@ -5,6 +5,7 @@ mod any_palms_bounds;
 mod any_palms_words;
 mod body;
 mod bounds;
+mod bounds_page;
 mod concave;
 mod condensed;
 mod contacts;
@@ -23,6 +24,7 @@ mod planar_motion_bounds;
 mod planar_motion_panels;
 mod planar_motion_tables;
 mod planar_motion_words;
+mod planar_read;
 mod plane;
 mod planes;
 mod read;
@@ -30,11 +32,14 @@ mod result_bag;
 mod simulate;
 mod sound;
 mod truth;
+mod views;
 mod without_forces;
+mod without_forces_page;
 mod words;
 
 pub(crate) use any_palms::{AnyPalms, condition_floor, spread};
 pub(crate) use bounds::{BoundsResult, exact_bounds};
+pub(crate) use bounds_page::{bounds_page, plane_bounds_page};
 pub(crate) use concave::concave_bounds;
 pub(crate) use contacts::{ContactRun, simulate_contacts};
 pub(crate) use doubts::doubtful_fit;
@@ -46,6 +51,7 @@ pub(crate) use meshes::meshes_as;
 pub(crate) use modes::describe_times;
 pub(crate) use planar_contacts::simulate_planar_contacts;
 pub(crate) use planar_motion::{PlanarMotion, hinged_pair, planar_motion};
+pub(crate) use planar_read::{PlanarSource, read_planar, with_palms};
 pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};
 pub(crate) use read::{
     LoadedLog, LogOf, LogSource, LogStand, load, read_log, sorted_with_forces, sorted_without_forces,
@@ -54,3 +60,4 @@ pub(crate) use read::{
 pub(crate) use simulate::{Simulated, known_body, simulate};
 pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};
 pub(crate) use without_forces::{WithoutForces, without_forces};
+pub(crate) use without_forces_page::without_forces_page;

@@ -10,7 +10,10 @@ use recon::object_dynamics::planar::{ContactLog, PlanarMass, PlanarTruth};
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
 use recon::observer::{ContactNoiseLevel, Reliability};
 use recon::shape_bounds::planar::NoiseError;
-use recon_io::{PlanarKnown, PlaneEstimateData, Sensors, brief, brief_to, write_plane_estimate_report};
+use recon_io::{
+    Evidence, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, brief, brief_to, sensor_fault,
+    verdict_figures, write_plane_estimate_report,
+};
 use serde_json::{Value, json};
 use std::error::Error;
 use std::io::{self, Write};
@@ -101,6 +104,26 @@ fn size(log: &ContactLog) -> f64 {
 }
 
 impl PlanarMotion {
+    /// What was estimated from it.
+    pub(crate) fn estimate(&self) -> &PlaneEstimate {
+        &self.estimate
+    }
+
+    /// Whether mass and moment of inertia are as stated.
+    pub(crate) fn is_of_known_body(&self) -> bool {
+        self.known_body
+    }
+
+    /// Whether it is to be relied on, in a sentence.
+    pub(crate) fn verdict(&self) -> String {
+        verdict(&self.estimate, self.share(), self.known_body).text
+    }
+
+    /// What it rests on.
+    pub(crate) fn evidence(&self) -> Vec<Evidence> {
+        evidence(&self.estimate, &self.noise, self.share(), self.known_body)
+    }
+
     /// Whether it is to be relied on, at most samples.
     pub(crate) fn is_reliable(&self) -> bool {
         self.estimate.reliability.is_reliable() && self.share() >= ENOUGH
@@ -139,7 +162,7 @@ impl PlanarMotion {
             estimate,
             areas: self.bounds.as_ref().map(|bounds| bounds.areas),
             panels: self.panels(),
-            evidence: evidence(estimate, &self.noise, self.share(), self.known_body),
+            evidence: self.evidence(),
             warnings: self.warnings(),
         };
         write_plane_estimate_report(&page, to)
@@ -155,24 +178,15 @@ impl PlanarMotion {
         let Self { estimate, noise, .. } = self;
         let evidence = &estimate.evidence;
         let last = estimate.deviations.last().copied().unwrap_or_default();
-        let suspects = estimate.suspects.iter().map(|suspect| {
-            let mut told = json!({ "constant": suspect.fault.to_string(), "can_be_told": suspect.deviation.is_finite() });
-            for (key, value) in [
-                ("value", suspect.value),
-                ("deviation", suspect.deviation),
-                ("score", suspect.score()),
-                ("tolerated", suspect.tolerated),
-            ] {
-                if suspect.deviation.is_finite() && value.is_finite() {
-                    told[key] = value.into();
-                }
-            }
-            told
-        });
-        let mut figures = json!({
+        let faults = estimate.suspects.iter().filter(|of| of.deviation.is_finite()).map(sensor_fault);
+        let verdict = verdict(estimate, self.share(), self.known_body);
+        let times = self.log.samples();
+        let mut figures = SummaryOf::PlaneReconstruction.named(json!({
             "method": "contacts and forces, nodes linked by measured impulses",
-            "status": if evidence.settled { "Converged" } else { "OutOfIterations" },
-            "reliable": estimate.reliability.is_reliable(),
+            "status": if evidence.settled { "converged" } else { "not settled" },
+            "verdict": verdict_figures(&verdict),
+            "t_first_s": times.first().map(|sample| sample.t),
+            "t_last_s": times.last().map(|sample| sample.t),
             "relied_on_share": self.share(),
             "mass_kg": estimate.mass.0,
             "inertia_kg_m2": estimate.inertia.0,
@@ -188,28 +202,30 @@ impl PlanarMotion {
                 "force_share": noise.force_share,
                 "contact_speed_m_per_s": noise.floor,
             },
-            "deviation_at_the_end": {
+            "std_at_the_end": {
                 "position_m": last.p_WCm.to_array(),
-                "turn_rad": last.phi0,
+                "orientation_rad": last.phi0,
                 "velocity_m_per_s": last.v_WCm.to_array(),
                 "angular_velocity_rad_per_s": last.omega0,
             },
-            "suspects": suspects.collect::<Vec<_>>(),
             "warnings": self.warnings(),
-        });
+        }));
+        if !estimate.suspects.is_empty() {
+            figures["sensor_faults"] = faults.collect();
+        }
         if let Some(bounds) = &self.bounds {
             figures["bounds"] = bounds.figures();
             figures["bounds_about"] = bounds.about.clone();
             figures["bounds_frame"] = "axes of the world at the first sample, from the centre of mass".into();
         }
         if !self.known_body {
-            figures["mass_deviation_kg"] = (estimate.mass.0 * estimate.mass.1).into();
-            figures["inertia_deviation_kg_m2"] = estimate.inertia.1.into();
+            figures["std_mass_kg"] = (estimate.mass.0 * estimate.mass.1).into();
+            figures["std_inertia_kg_m2"] = estimate.inertia.1.into();
         }
         if let Some(errors) = self.errors() {
             let most = |of: fn(&[f64; 4]) -> f64| errors.iter().map(of).fold(0.0, f64::max);
             figures["largest_error"] =
-                json!({ "position_m": most(|e| e[1].hypot(e[2])), "turn_rad": most(|e| e[3].abs()) });
+                json!({ "position_m": most(|e| e[1].hypot(e[2])), "orientation_rad": most(|e| e[3].abs()) });
         }
         figures
     }

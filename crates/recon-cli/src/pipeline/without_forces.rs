@@ -3,6 +3,7 @@
 use super::bounds::NOTABLE_NOISE;
 use super::bounds::{BoundsResult, bounds};
 use super::folder::write_touch_folder;
+use super::without_forces_page::without_forces_page;
 use crate::error::CliError;
 use crate::progress::Progress;
 use glam::{DMat3, DVec3};
@@ -10,7 +11,7 @@ use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::SensorLog;
 use recon::observer::{KnownTouch, NoForceEstimate, estimate_without_forces};
 use recon::shape_bounds::ContactSample;
-use recon_io::{FolderTarget, MotionState, Scene, brief};
+use recon_io::{FolderTarget, MotionState, Scene, SummaryOf, brief, status_in_words};
 use serde_json::{Value, json};
 use std::error::Error;
 
@@ -76,10 +77,11 @@ impl WithoutForces {
         self.found.motion.iter().map(state).collect()
     }
 
-    /// Writes its folder; returns the summary.
-    pub(crate) fn write(&self, target: FolderTarget) -> Result<Value, CliError> {
+    /// Writes its folder, whose page is under a title; returns the summary.
+    pub(crate) fn write(&self, target: FolderTarget, title: &str) -> Result<Value, CliError> {
         let figures = self.figures();
-        write_touch_folder(target, &self.times(), &self.motion(), self.bounded.as_ref(), &figures)?;
+        let page = without_forces_page(title, self);
+        write_touch_folder(target, &self.times(), &self.motion(), self.bounded.as_ref(), (&page, &figures))?;
         Ok(figures)
     }
 
@@ -126,9 +128,9 @@ fn figures(made: &WithoutForces) -> Value {
         (first..first + 6).map(|i| covariance[(i, i)].max(0.0).sqrt()).collect()
     };
     let q = shape.orientation;
-    json!({
+    SummaryOf::WithoutForces.named(json!({
         "method": "motion of an ellipsoid fitted to contacts and palm poses",
-        "status": format!("{:?}", evidence.status),
+        "status": status_in_words(evidence.status),
         "semi_axes_m": shape.semi_axes.to_array(),
         "centre_m": shape.centre.to_array(),
         "orientation_wxyz": [q.w, q.x, q.y, q.z],
@@ -140,14 +142,14 @@ fn figures(made: &WithoutForces) -> Value {
         "rank": evidence.rank,
         "condition": evidence.condition,
         "weakest": evidence.weakest,
-        "weakest_deviation": evidence.weakest_deviation,
+        "std_weakest": evidence.weakest_deviation,
         "bounds": bounded.as_ref().map(|b| json!({
             "lower_volume_m3": b.drawn.lower.volume,
             "upper_volume_m3": b.drawn.upper.as_ref().map(|u| u.volume),
             "contradiction_m": b.contradiction,
         })),
         "warnings": warnings,
-    })
+    }))
 }
 
 fn describe(made: &WithoutForces) -> String {

@@ -91,7 +91,7 @@ fn areas(summary: &Value) -> [f64; 2] {
 fn parameters(fit: &Value) -> Vec<(String, f64, f64)> {
     let one = |p: &Value| {
         let of = |name: &str| p[name].as_f64().unwrap();
-        (p["name"].as_str().unwrap().to_owned(), of("value"), of("deviation"))
+        (p["name"].as_str().unwrap().to_owned(), of("value"), of("std"))
     };
     fit["parameters"].as_array().unwrap().iter().map(one).collect()
 }

@@ -109,7 +109,10 @@ fn palms_that_rub_are_estimated() {
         assert!((number("inertia_kg_m2") - 1.8e-4).abs() < 1e-5, "{summary}");
         // Noise of the contacts is 0.1 mm.
         let errors = &summary["largest_error"];
-        assert!(errors["position_m"].as_f64().unwrap() < 1e-4 && errors["turn_rad"].as_f64().unwrap() < 0.01);
+        assert!(
+            errors["position_m"].as_f64().unwrap() < 1e-4
+                && errors["orientation_rad"].as_f64().unwrap() < 0.01
+        );
     }
     let run = scratch.run(&["check", "out"]);
     assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);

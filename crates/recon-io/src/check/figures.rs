@@ -37,7 +37,7 @@ pub(super) fn faults(summary: &Value) -> Vec<Fault> {
         };
         match summary.pointer(&format!("/{status}")).and_then(Value::as_str) {
             None | Some("") => faults.push(Fault::NoStatus { fit: words(found), status: status.to_owned() }),
-            Some("Converged" | "Stalled" | "fitted" | "good") => {}
+            Some("converged" | "stalled" | "fitted" | "good") => {}
             Some(_) if warns(summary) => {}
             Some(found) => {
                 faults.push(Fault::NotSettled { status: status.to_owned(), found: found.to_owned() })

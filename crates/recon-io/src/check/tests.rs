@@ -31,7 +31,7 @@ fn ply(mesh: &TriangleMesh) -> Vec<u8> {
 fn summary() -> Value {
     json!({
         "method": "made up",
-        "status": "Converged",
+        "status": "converged",
         "bounds": { "lower_volume_m3": 4.0 / 3.0, "upper_volume_m3": 32.0 / 3.0, "contradiction_m": 0.0 },
         "warnings": [],
     })
@@ -186,7 +186,7 @@ fn fits_without_an_end_are_named() {
     let results = Results::new("fits");
     let spoilt = |key: &str, value: Value| results.spoilt_summary(|summary| summary[key] = value);
     assert_named(&spoilt("status", Value::Null), &["`status` is no number", "made up has no status"]);
-    assert_named(&spoilt("status", json!("Moving")), &["`status` is Moving, and no warning"]);
+    assert_named(&spoilt("status", json!("moving")), &["`status` is moving, and no warning"]);
     assert_named(
         &spoilt("verdict", json!({ "text": "fine" })),
         &["the motion has no status (`verdict/level`)"],

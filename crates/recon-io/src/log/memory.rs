@@ -6,8 +6,12 @@ use super::contacts::{
 };
 use super::error::LogFileErrorKind as Kind;
 use super::ordered::Times;
+use super::planar::planar_log;
+use super::planar_contacts::planar_contact_log;
 use super::read::{Cells, EachRow, Row, Table, three_palms};
+use recon::contact_kinematics::planar::PalmSurface;
 use recon::object_dynamics::Sample;
+use recon::object_dynamics::planar::{ContactLog as PlanarContactLog, PlanarLog};
 use recon::observer::PalmSensed;
 
 /// A sensor log of version 1 or 2 from its columns, with the names and units of the format; `names` and `columns` are in the same order, and
@@ -20,17 +24,40 @@ pub fn log_of_columns(
     columns: &[&[f64]],
     palms: Option<&[PalmSetup]>,
 ) -> Result<AnyLog, Kind> {
-    let header: csv::StringRecord = names.iter().collect();
+    let table = table(names, columns)?;
+    if palms_in_space(&table.header)? == 0 {
+        return table.three_palms().map(AnyLog::ThreePalms);
+    }
+    contacts(table, palms.ok_or(Kind::NoPalms)?).map(AnyLog::Contacts)
+}
+
+/// A planar sensor log of version 1 from its columns, as [`log_of_columns`].
+///
+/// # Errors
+/// As for [`parse_planar_log`](super::parse_planar_log); where an error names a line, it is the row, counted from 0.
+pub fn planar_log_of_columns(names: &[String], columns: &[&[f64]]) -> Result<PlanarLog, Kind> {
+    planar_log(table(names, columns)?)
+}
+
+/// A planar sensor log of version 2 from its columns, as [`log_of_columns`].
+///
+/// # Errors
+/// As for [`parse_planar_contact_log`](super::parse_planar_contact_log); where an error names a line, it is the row, counted from 0.
+pub fn planar_contact_log_of_columns(
+    names: &[String],
+    columns: &[&[f64]],
+    surfaces: &[PalmSurface],
+) -> Result<PlanarContactLog, Kind> {
+    planar_contact_log(table(names, columns)?, surfaces)
+}
+
+fn table<'a>(names: &[String], columns: &'a [&'a [f64]]) -> Result<Table<InMemory<'a>>, Kind> {
     let rows = InMemory { columns, count: columns.first().map_or(0, |first| first.len()) };
     if let Some((i, column)) = columns.iter().enumerate().find(|(_, column)| column.len() != rows.count) {
         let name = names.get(i).cloned().unwrap_or_default();
         return Err(Kind::ColumnLength { column: name, found: column.len(), expected: rows.count });
     }
-    let table = Table { header, rows };
-    if palms_in_space(&table.header)? == 0 {
-        return table.three_palms().map(AnyLog::ThreePalms);
-    }
-    contacts(table, palms.ok_or(Kind::NoPalms)?).map(AnyLog::Contacts)
+    Ok(Table { header: names.iter().collect(), rows })
 }
 
 /// Columns of the same length.
@@ -139,6 +166,30 @@ mod tests {
 
     fn log(names: &[String], columns: &[Vec<f64>]) -> Result<AnyLog, Kind> {
         log_of_columns(names, &columns.iter().map(Vec::as_slice).collect::<Vec<_>>(), None)
+    }
+
+    #[test]
+    fn columns_give_the_planar_log_that_a_file_of_them_gives() {
+        let hinged = "s2,s1,t,phi2,phi1,f1,f2\n0.05,0.04,0,1.5,0.7,1,2\nnan,0.041,0.001,1.5,0.7,1,nan\n";
+        let (names, columns) = columns(hinged);
+        let columns: Vec<_> = columns.iter().map(Vec::as_slice).collect();
+        assert_eq!(
+            planar_log_of_columns(&names, &columns).unwrap(),
+            crate::parse_planar_log(hinged.as_bytes()).unwrap()
+        );
+        let wrong = planar_log_of_columns(&names, &columns[..6]).unwrap_err();
+        assert!(matches!(wrong, Kind::FieldCount { line: 0, expected: 7, found: 6 }), "{wrong}");
+    }
+
+    #[test]
+    fn columns_give_the_planar_contacts_that_a_file_of_them_gives() {
+        let text =
+            "t,px_1,py_1,Px_1,Py_1,angle_1,fx_1,fy_1\n0,0.1,0,0,0,0.01,0.5,2\n0.1,nan,nan,0,0,0.02,0,0\n";
+        let (names, columns) = columns(text);
+        let columns: Vec<_> = columns.iter().map(Vec::as_slice).collect();
+        let made = planar_contact_log_of_columns(&names, &columns, &[PalmSurface::Line]).unwrap();
+        assert_eq!(made, crate::parse_planar_contact_log(text.as_bytes(), &[PalmSurface::Line]).unwrap());
+        assert!(made.samples()[1].palms[0].p_WC.is_none());
     }
 
     fn written(log: &SensorLog) -> Vec<u8> {

@@ -20,7 +20,9 @@ pub use contacts::{
     read_contact_log, write_contact_log,
 };
 pub use error::{LogFileError, LogFileErrorKind};
-pub use memory::{RowReader, RowSample, log_of_columns};
+pub use memory::{
+    RowReader, RowSample, log_of_columns, planar_contact_log_of_columns, planar_log_of_columns,
+};
 pub use planar::{parse_planar_log, read_planar_log, write_planar_log};
 pub use planar_contacts::{parse_planar_contact_log, read_planar_contact_log, write_planar_contact_log};
 pub use read::{parse_log, read_log};

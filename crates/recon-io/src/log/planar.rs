@@ -3,9 +3,8 @@
 use super::columns::{Field, Header};
 use super::contacts::palms_in_space;
 use super::error::{LogFileError, LogFileErrorKind as Kind};
-use super::read::{Row, csv_error};
+use super::read::{EachRow, Row, Table};
 use crate::number::exact;
-use crate::rows::rows;
 use glam::DVec2;
 use recon::object_dynamics::planar::{PlanarLog, PlanarLogError, PlanarSample, PlanarTruth};
 use std::io::{self, BufReader, Read, Write};
@@ -63,21 +62,23 @@ pub fn read_planar_log(path: impl AsRef<Path>) -> Result<PlanarLog, LogFileError
 /// # Errors
 /// [`LogFileErrorKind`](super::LogFileErrorKind) names the line and the column.
 pub fn parse_planar_log(text: impl Read) -> Result<PlanarLog, Kind> {
-    let mut rows = rows(text);
-    let header = rows.next().ok_or(Kind::Empty)?.map_err(csv_error)?;
-    let columns = Columns::find(&header)?;
+    planar_log(Table::open(text)?)
+}
+
+/// The samples of a table of version 1.
+pub(super) fn planar_log(table: Table<impl EachRow>) -> Result<PlanarLog, Kind> {
+    let columns = Columns::find(&table.header)?;
     let (mut samples, mut truth, mut lines) = (Vec::new(), Vec::new(), Vec::new());
-    for row in rows {
-        let record = row.map_err(csv_error)?;
-        let row = Row::of(&record);
+    table.each_row(|row| {
         row.check_count(columns.count)?;
-        samples.push(sample(&row, &columns)?);
+        samples.push(sample(row, &columns)?);
         if let Some(fields) = &columns.truth {
             let [cmx, cmy, phi0, vx, vy, omega0] = row.vector(fields)?;
             truth.push(PlanarTruth { p_WCm: DVec2::new(cmx, cmy), phi0, v_WCm: DVec2::new(vx, vy), omega0 });
         }
         lines.push(row.line);
-    }
+        Ok(())
+    })?;
     let truth = (!truth.is_empty()).then_some(truth);
     PlanarLog::new(samples, truth).map_err(|source| Kind::PlanarSamples {
         line: sample_of(&source).and_then(|k| lines.get(k).copied()),

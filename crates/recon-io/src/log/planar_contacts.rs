@@ -4,7 +4,7 @@ use super::columns::{Field, Header};
 use super::contacts::check_palms;
 use super::error::{LogFileError, LogFileErrorKind as Kind};
 use super::planar::{TRUTH, end_row};
-use super::read::{Row, Table};
+use super::read::{EachRow, Row, Table};
 use glam::DVec2;
 use recon::contact_kinematics::planar::{PalmSurface, SurfacePose};
 use recon::object_dynamics::planar::{
@@ -32,7 +32,14 @@ pub fn read_planar_contact_log(
 /// # Errors
 /// [`LogFileErrorKind`](super::LogFileErrorKind) names the line and the column.
 pub fn parse_planar_contact_log(text: impl Read, surfaces: &[PalmSurface]) -> Result<ContactLog, Kind> {
-    let table = Table::open(text)?;
+    planar_contact_log(Table::open(text)?, surfaces)
+}
+
+/// The samples of a table of version 2.
+pub(super) fn planar_contact_log(
+    table: Table<impl EachRow>,
+    surfaces: &[PalmSurface],
+) -> Result<ContactLog, Kind> {
     let columns = Columns::find(&table.header, surfaces.len())?;
     let (mut samples, mut truth, mut lines) = (Vec::new(), Vec::new(), Vec::new());
     table.each_row(|row| {

@@ -1,10 +1,8 @@
 //! The report's data as compact JSON: thinned in time, rounded to what a screen can show.
 
-use super::data::{
-    Bound, Departure, Evidence, EvidenceValue, Level, MotionState, PalmTrack, ReportData, TrueShape,
-};
+use super::data::{Bound, Departure, Level, MotionState, PalmTrack, ReportData, TrueShape};
 use crate::TriangleMesh;
-use crate::number::{on_scale, significant, with_brief_numbers};
+use crate::number::{on_scale, significant};
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
@@ -20,10 +18,8 @@ pub(super) fn encode(data: &ReportData) -> Value {
     let size = size(data);
     json!({
         "title": data.title,
-        "verdict": { "level": level(data.verdict.level), "text": with_brief_numbers(&data.verdict.text) },
         "version": env!("CARGO_PKG_VERSION"),
         "size": significant(size, 4),
-        "samples": data.times.len(),
         "t": keep.iter().map(|&k| on_scale(data.times[k], duration(data), 5)).collect::<Vec<_>>(),
         "palms": ([0, 1, 2].map(|i| palm(data, i, &keep, size))),
         "motion": motion(&data.motion, &keep, size),
@@ -34,8 +30,6 @@ pub(super) fn encode(data: &ReportData) -> Value {
             "upper": b.upper.as_ref().map(|u| bound(u, size)),
         })),
         "shape": data.true_shape.as_ref().map(|s| shape(s, size)),
-        "evidence": data.evidence.iter().map(evidence).collect::<Vec<_>>(),
-        "warnings": data.warnings.iter().map(|w| with_brief_numbers(w)).collect::<Vec<_>>(),
     })
 }
 
@@ -117,10 +111,7 @@ fn departure(departures: &[Departure], keep: &[usize]) -> Value {
     let track = |of: fn(&Departure) -> f64| -> Vec<Option<f64>> {
         keep.iter().map(|&k| number(significant(of(&departures[k]), 3))).collect()
     };
-    let largest =
-        |of: fn(&Departure) -> f64| number(significant(departures.iter().map(of).fold(0.0, f64::max), 3));
     json!({
-        "largest": { "p": largest(|d| d.position), "w": largest(|d| d.angular_velocity) },
         "p": track(|d| d.position),
         "angle": track(|d| d.angle),
         "w": track(|d| d.angular_velocity),
@@ -146,20 +137,6 @@ fn mesh(mesh: &TriangleMesh, size: f64) -> Value {
     json!({
         "v": mesh.vertices.iter().flat_map(|&v| vector(v, size)).collect::<Vec<_>>(),
         "f": mesh.triangles.concat(),
-    })
-}
-
-fn evidence(row: &Evidence) -> Value {
-    json!({
-        "name": row.name,
-        "value": match &row.value {
-            EvidenceValue::Number(v) => json!(number(significant(*v, 6))),
-            EvidenceValue::Count(n) => json!(n),
-            EvidenceValue::Text(text) => json!(with_brief_numbers(text)),
-        },
-        "unit": row.unit,
-        "meaning": row.meaning,
-        "level": level(row.level),
     })
 }
 

@@ -1,16 +1,16 @@
 //! The page of an exploration: what is proven, what each touch brought, where the next one would be.
 
+use super::Verdict;
 use super::contacts::page::{STYLE, fact};
-use super::encode::level;
+use super::notices::notices;
 use super::page::{escape_text, fill, head};
-use super::{Level, Verdict};
 use crate::number::brief_to;
-use crate::planar_figures::{FigurePanel, write_figures};
+use crate::planar_figures::{FigurePanel, figures_in_page};
 use std::io::{self, Write};
 
 const PAGE: &str = include_str!("assets/exploration.html");
 /// Wide tables scroll, and numbers stand under each other.
-const TABLE: &str = "\n#touches td { font-variant-numeric: tabular-nums; white-space: nowrap; }\n";
+const TABLE: &str = "\n.scroll { overflow-x: auto; }\n#touches td { font-variant-numeric: tabular-nums; white-space: nowrap; }\n";
 
 /// One touch, as the table of the page shows it.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,25 +57,12 @@ pub struct ExplorationPage {
 /// # Errors
 /// Those of `to`.
 pub fn write_exploration_report(page: &ExplorationPage, to: impl Write) -> io::Result<()> {
-    let mut curves = Vec::new();
-    write_figures(&page.panels, &mut curves)?;
-    let word = match page.verdict.level {
-        Level::Good => "Proven",
-        Level::Caution => "Not proven",
-        Level::Bad => "Refused",
-        Level::Neutral => "Note",
-    };
-    let verdict = format!(
-        "<p class=\"notice {}\"><strong>{word}</strong>{}</p>\n",
-        level(page.verdict.level),
-        escape_text(&page.verdict.text)
-    );
     let parts = [
         ("head", head(&page.title, &(STYLE.to_owned() + TABLE))?),
         ("title", escape_text(&page.title)),
-        ("verdict", verdict),
+        ("verdict", notices(&page.verdict, ["Proven", "Not proven", "Refused"], &[])),
         ("facts", page.facts.iter().map(fact).collect()),
-        ("curves", String::from_utf8_lossy(&curves).into_owned()),
+        ("curves", figures_in_page(&page.panels)?),
         ("caption", escape_text(&page.caption)),
         ("progress", escape_text(&page.progress)),
         ("touches", page.touches.iter().map(row).collect()),
@@ -102,6 +89,7 @@ fn row(touch: &TouchRow) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Level;
     use super::*;
 
     #[test]

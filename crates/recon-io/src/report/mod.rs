@@ -1,14 +1,19 @@
 //! `report.html`: one page without any reference to the outside, which shows a reconstruction to a person.
 
+mod batch;
 mod contacts;
 mod data;
 mod encode;
+mod evidence_table;
 mod exploration;
+mod figures_page;
+mod notices;
 mod page;
 
 #[cfg(test)]
 mod tests;
 
+pub use batch::{BatchPage, LogCard, write_batch_report};
 pub use contacts::{
     EstimateData, ModeSpan, PlaneEstimateData, doubtful_spans, estimated_mode_spans, mode_spans, mode_times,
     planar_mode_spans, write_contact_report, write_estimate_report, write_planar_contact_report,
@@ -19,6 +24,7 @@ pub use data::{
     ReportError, TrueShape, Verdict,
 };
 pub use exploration::{ExplorationPage, TouchRow, write_exploration_report};
+pub use figures_page::{FiguresPage, write_figures_page};
 pub use page::write_report;
 
 pub(crate) use data::Departure;

@@ -1,5 +1,10 @@
-use super::data::{ReportData, ReportError};
+use super::EvidenceValue;
+use super::contacts::page::fact;
+use super::data::{Departure, ReportData, ReportError};
 use super::encode::encode;
+use super::evidence_table::row;
+use super::notices::notices;
+use crate::number::brief_to;
 use std::io::{self, Write};
 
 const HEAD: &str = include_str!("assets/head.html");
@@ -28,10 +33,40 @@ pub fn write_report(data: &ReportData, to: impl Write) -> io::Result<()> {
     let parts = [
         ("head", head(&data.title, "")?),
         ("title", escape_text(&data.title)),
+        ("verdict", notices(&data.verdict, ["Reliable", "With care", "Unreliable"], &data.warnings)),
+        ("facts", facts(data).iter().map(fact).collect()),
+        ("evidence", data.evidence.iter().map(row).collect()),
         ("data", escape_script(&json)),
         ("script", SCRIPT.concat()),
     ];
     fill(PAGE, &parts, to)
+}
+
+/// Key figures: name, value and unit.
+fn facts(data: &ReportData) -> Vec<(&'static str, String, &'static str)> {
+    let over = data.times.last().zip(data.times.first()).map_or(0.0, |(last, first)| last - first);
+    let mut facts = vec![("Time", brief_to(4, over), "s"), ("Samples", data.times.len().to_string(), "")];
+    let of = |key: &str| data.evidence.iter().find(|row| row.key == key).map(|row| &row.value);
+    if let Some(EvidenceValue::Number(mass)) = of("mass") {
+        facts.push(("Mass", brief_to(4, *mass), "kg"));
+    }
+    if let Some(bounds) = &data.bounds {
+        let lower = bounds.lower.volume;
+        facts.push(("Lower bound", brief_to(4, lower), "m³"));
+        match bounds.upper.as_ref().map(|upper| upper.volume) {
+            Some(upper) => {
+                facts.push(("Upper bound", brief_to(4, upper), "m³"));
+                facts.push(("Lower / upper", brief_to(3, lower / upper), ""));
+            }
+            None => facts.push(("Upper bound", "unbounded".to_owned(), "")),
+        }
+    }
+    if let Some(all) = data.departures() {
+        let most = |of: fn(&Departure) -> f64| brief_to(2, all.iter().map(of).fold(0.0, f64::max));
+        facts.push(("Largest position error", most(|d| d.position), "m"));
+        facts.push(("Largest rate error", most(|d| d.angular_velocity), "rad/s"));
+    }
+    facts
 }
 
 /// The head that all pages share, with what a page adds to their style.

@@ -81,9 +81,17 @@ fn text_cannot_break_out_of_the_page() {
     let page = page(&data(50));
     assert_eq!(page.matches("</script>").count(), 2);
     assert!(page.contains("<title>a &lt;log&gt; &amp; \"more\" – recon</title>"));
-    let carried = embedded(&page);
-    assert_eq!(carried["verdict"]["text"], "All </script> is well.");
-    assert_eq!(carried["warnings"][0], "<b>mind</b>");
+    assert_eq!(embedded(&page)["title"], "a <log> & \"more\"");
+    // Verdict, warnings, key figures and evidence need no script.
+    let (written, _) = page.split_once("<script type=").unwrap();
+    for part in [
+        "Reliable</strong>All &lt;/script&gt; is well.",
+        "Warning</strong>&lt;b&gt;mind",
+        "<dt>Upper bound</dt><dd>8<",
+        "Infinite here.",
+    ] {
+        assert!(written.contains(part), "{part}");
+    }
 }
 
 #[test]
@@ -93,7 +101,6 @@ fn long_logs_are_thinned_and_gaps_are_kept() {
     assert!(times.len() <= 700 && times[times.len() - 1] == 49.99);
     assert!(carried["palms"][0]["radius"][times.len() - 1].is_null(), "palm 1 has lost contact at the end");
     assert_eq!(carried["palms"][0]["normals"].as_array().unwrap().len(), 3, "a still palm has one normal");
-    assert!(carried["evidence"][0]["value"].is_null(), "JSON has no infinity");
     let error = carried["departure"]["angle"][3].as_f64().unwrap();
     assert!((error - 1e-7).abs() < 1e-9, "{error}");
 }

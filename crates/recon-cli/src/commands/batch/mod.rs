@@ -9,7 +9,7 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::interrupt::{asked, check, while_writing};
 use one::{Row, State, done_before, estimate_one};
-use recon_io::{FileTarget, OutputError};
+use recon_io::{FileTarget, OutputError, write_batch_report};
 use serde_json::json;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -51,8 +51,10 @@ pub(crate) fn run(args: &BatchArgs, console: &Console) -> Result<Outcome, CliErr
     });
     check()?;
     let rows: Vec<Row> = rows.into_iter().filter_map(|row| row.into_inner().ok().flatten()).collect();
-    write(&args.output.join(TABLE), &table::table(&rows))?;
-    write(&args.output.join(PAGE), &page::page(&args.folder, &rows))?;
+    let mut page = Vec::new();
+    write_batch_report(&page::page(&args.folder, &rows), &mut page).map_err(CliError::Page)?;
+    write(&args.output.join(TABLE), table::table(&rows).as_bytes())?;
+    write(&args.output.join(PAGE), &page)?;
     tell(args, console, &rows)
 }
 
@@ -78,10 +80,10 @@ fn logs_in(folder: &Path) -> Result<Vec<PathBuf>, CliError> {
     }
 }
 
-fn write(path: &Path, text: &str) -> Result<(), CliError> {
+fn write(path: &Path, contents: &[u8]) -> Result<(), CliError> {
     while_writing(|| {
         let mut file = FileTarget::new(path, &[])?.begin()?;
-        std::io::Write::write_all(&mut file, text.as_bytes()).map_err(|source| OutputError::Io {
+        std::io::Write::write_all(&mut file, contents).map_err(|source| OutputError::Io {
             action: "write",
             path: path.to_owned(),
             source,

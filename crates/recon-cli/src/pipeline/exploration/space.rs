@@ -7,14 +7,15 @@ use crate::cli::PlannerAs;
 use crate::error::CliError;
 use crate::pipeline::bounds::{LOWER, UPPER};
 use crate::pipeline::folder::Extra;
-use glam::{DVec2, DVec3};
+use crate::pipeline::views::{VIEWS, seen, silhouette};
+use glam::DVec3;
 use recon::contact_kinematics::Direction;
 use recon::exploration::space::{
     FixedSweep, GaussianVariance, HausdorffGreedy, Noise, PathAware, RandomTouches, SpaceKnowledge,
     VolumeGreedy, turned_tetrahedron,
 };
 use recon::exploration::{Knowledge, Planner};
-use recon::shape_bounds::{ContactSample, planar};
+use recon::shape_bounds::ContactSample;
 use recon_io::{FigurePanel, TriangleMesh, write_contacts};
 use serde_json::{Value, json};
 
@@ -100,25 +101,14 @@ impl Side for InSpace {
         let bounds = known.bounds();
         let lower = bounds.and_then(|b| b.lower().solid()).map_or(&[][..], |s| s.vertices());
         let upper = bounds.and_then(|b| b.upper().bounded()).map_or(&[][..], |p| p.vertices());
-        let views =
-            [("Seen from the front", [0, 2]), ("Seen from the side", [1, 2]), ("Seen from above", [0, 1])];
         let one = |(title, axes): (&str, [usize; 2])| {
-            let flat = |v: DVec3| axes.map(|axis| v[axis]);
+            let flat = |v: DVec3| seen(v, axes);
             let contacts = known.contacts().iter().map(|c| (flat(c.point), flat(c.normal.get()))).collect();
             let next = next.map(|n| axes.map(|axis| n[axis]));
             let names = axes.map(|axis| ["x", "y", "z"][axis]);
             let outlines = [lower, upper].map(|corners| silhouette(corners.iter().map(|v| flat(*v))));
             outline_panel(title, names, outlines, contacts, next)
         };
-        views.into_iter().map(one).collect()
-    }
-}
-
-/// The outline of points as they are seen.
-fn silhouette(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
-    let points: Vec<DVec2> = points.map(DVec2::from_array).collect();
-    match planar::Hull::of(&points) {
-        Ok(planar::Hull::Polygon(hull)) => hull.shape().vertices().iter().map(DVec2::to_array).collect(),
-        _ => Vec::new(),
+        VIEWS.into_iter().map(one).collect()
     }
 }

@@ -10,7 +10,7 @@ use recon::exploration::{
     Certificate, Goal, Heading, Knowledge, Limits, Outcome, PlanError, Proposal, Shortfall, Situation, Step,
     Task, explore, least_touches, touches_predicted,
 };
-use recon_io::{TouchRow, brief_to, write_exploration_report};
+use recon_io::{SummaryOf, TouchRow, brief_to, write_exploration_report};
 use serde_json::{Value, json};
 
 /// An exploration that has ended.
@@ -48,8 +48,7 @@ pub(crate) fn explored<S: Side>(
     let next = next_proposal::<S>(&known, &goal, settings).ok();
     let certificate = ended.certificate();
     let (statement, exit) = statement::<S>(&ended);
-    let mut figures = json!({
-        "recon": env!("CARGO_PKG_VERSION"),
+    let mut figures = SummaryOf::Exploration.named(json!({
         "input": title,
         "dimension": S::DIMENSION,
         "goal": { "kind": goal.kind(), "value": goal.value(), "until": words_of(&goal) },
@@ -59,7 +58,7 @@ pub(crate) fn explored<S: Side>(
         "way_rad": course.way,
         "touches": course.rows.iter().map(touch_figures).collect::<Vec<_>>(),
         "warnings": [],
-    });
+    }));
     if exit == Exit::WithReservations {
         figures["warnings"] = json!([statement]);
     }

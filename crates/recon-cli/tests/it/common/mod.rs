@@ -2,6 +2,9 @@
 
 #![allow(dead_code, reason = "each test file uses its own part of this")]
 
+pub(crate) mod schema;
+
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -54,6 +57,22 @@ impl Scratch {
         names
     }
 
+    /// The summaries in the folder and below it.
+    fn summaries(&self) -> BTreeMap<PathBuf, String> {
+        let (mut found, mut folders) = (BTreeMap::new(), vec![self.0.clone()]);
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+                let kind = entry.file_type().unwrap();
+                if kind.is_dir() {
+                    folders.push(entry.path());
+                } else if kind.is_file() && entry.file_name() == "summary.json" {
+                    found.insert(entry.path(), fs::read_to_string(entry.path()).unwrap_or_default());
+                }
+            }
+        }
+        found
+    }
+
     /// The command with arguments, in this folder.
     pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_recon"));
@@ -61,8 +80,16 @@ impl Scratch {
         command
     }
 
+    /// Runs the command; a summary that it writes has the keys of the schema.
     pub(crate) fn run(&self, arguments: &[&str]) -> Run {
+        let before = self.summaries();
         let Output { status, stdout, stderr } = self.command(arguments).output().unwrap();
+        for (path, text) in self.summaries() {
+            if before.get(&path) != Some(&text) {
+                let wrong = schema::complaints(&serde_json::from_str(&text).unwrap());
+                assert!(wrong.is_empty(), "{arguments:?}: {}: {wrong:#?}", path.display());
+            }
+        }
         let text = |bytes| String::from_utf8(bytes).unwrap();
         Run { code: status.code(), stdout: text(stdout), stderr: text(stderr) }
     }

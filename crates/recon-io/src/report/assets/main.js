@@ -29,42 +29,6 @@ function stage(canvas, camera, draw) {
   return made;
 }
 
-function facts() {
-  const list = byId("facts"), { bounds, departure } = data;
-  const fact = (name, value, unit) => {
-    const box = element("div", {}, list);
-    element("dt", { text: name }, box);
-    const entry = element("dd", { text: value }, box);
-    if (unit) element("small", { text: unit }, entry);
-  };
-  fact("Time", format(data.t[data.t.length - 1] - data.t[0], 3), "s");
-  fact("Samples", String(data.samples));
-  if (bounds) {
-    fact("Lower bound", format(bounds.lower.volume), "m³");
-    if (bounds.upper) {
-      fact("Upper bound", format(bounds.upper.volume), "m³");
-      fact("Lower / upper", format(bounds.lower.volume / bounds.upper.volume, 3));
-    } else fact("Upper bound", "unbounded");
-  }
-  if (departure) {
-    fact("Largest position error", format(departure.largest.p, 2), "m");
-    fact("Largest rate error", format(departure.largest.w, 2), "rad/s");
-  }
-}
-
-function verdict() {
-  const parent = byId("verdict"), words = { good: "Reliable", caution: "With care", bad: "Unreliable", neutral: "Note" };
-  const box = element("p", { class: "notice " + data.verdict.level }, parent);
-  element("strong", { text: words[data.verdict.level] }, box);
-  box.append(data.verdict.text);
-  if (!data.warnings.length) return;
-  const warn = element("div", { class: "notice caution", role: "note" }, parent);
-  element("strong", { text: data.warnings.length === 1 ? "Warning" : data.warnings.length + " warnings" }, warn);
-  if (data.warnings.length === 1) { warn.append(data.warnings[0]); return; }
-  const list = element("ul", {}, warn);
-  data.warnings.forEach((text) => element("li", { text }, list));
-}
-
 function motionFigure() {
   const { extents, camera } = motionCamera(data, scene);
   const show = { palms: true, trails: true, shape: true, upper: true };
@@ -227,28 +191,10 @@ function volumes(rows, lower, upper) {
   }
 }
 
-function evidence() {
-  if (!data.evidence.length) { byId("evidence-section").remove(); return; }
-  const table = byId("evidence"), head = element("tr", {}, element("thead", {}, table));
-  ["Quantity", "Value", "What it tells"].forEach((text, i) => element("th", { text, style: i === 1 ? "text-align:right" : "" }, head));
-  const marks = { good: ["✓", "speaks for the result"], caution: ["!", "to be known"], bad: ["✕", "speaks against the result"], neutral: ["·", ""] };
-  const body = element("tbody", {}, table);
-  for (const { name, value, unit, meaning, level } of data.evidence) {
-    const row = element("tr", {}, body), first = element("td", {}, row);
-    element("span", { class: "mark " + level, title: marks[level][1], text: marks[level][0] }, first);
-    first.append(name);
-    element("td", { class: typeof value === "string" ? "words" : "number", text: (typeof value === "string" ? value : format(value)) + (unit ? " " + unit : "") }, row);
-    element("td", { class: "meaning", text: meaning }, row);
-  }
-}
-
-facts();
-verdict();
 const motionStage = motionFigure();
 timeBar();
 charts();
 const boundsStage = boundsFigure();
-evidence();
 byId("footer").textContent = `Written by recon ${data.version}. SI units; world Z is up; quaternions w first. The numbers are in the files beside this page.`;
 
 if (wish.has("t")) clock.set(clock.nearest(Number(wish.get("t"))));

@@ -1,13 +1,14 @@
-use super::super::encode::level;
+use super::super::evidence_table::row;
+use super::super::notices::{notice, notices};
 use super::super::page::{escape_text, fill, head};
-use super::super::{Evidence, EvidenceValue, Level, Verdict};
+use super::super::{Evidence, Level, Verdict};
 use super::bands::bands;
 use super::estimate::EstimateData;
 use super::page::{STYLE, fact};
 use super::picture::{Picture, drawn};
 use super::spans::{ModeSpan, estimated_mode_spans};
-use crate::number::{brief_to, with_brief_numbers};
-use crate::planar_figures::{FigurePanel, write_figures};
+use crate::number::brief_to;
+use crate::planar_figures::{FigurePanel, figures_in_page};
 use std::io::{self, Write};
 
 const PAGE: &str = include_str!("../assets/estimate.html");
@@ -100,39 +101,24 @@ impl EstimatePage<'_> {
     pub(super) fn write(&self, to: impl Write) -> io::Result<()> {
         let marks: Vec<f64> = self.pictures.iter().map(|picture| picture.t).collect();
         let doubtful = doubtful_spans(self.times, self.relied_on);
-        let mut curves = Vec::new();
-        write_figures(self.panels, &mut curves)?;
         let dashed = if self.has_truth { " Dashed: the true motion, from the log." } else { "" };
         let parts = [
             ("head", head(self.title, STYLE)?),
             ("title", escape_text(self.title)),
-            ("verdict", self.verdict()),
+            (
+                "verdict",
+                notices(self.verdict, ["Reliable", "With care", "Unreliable"], self.warnings)
+                    + &notice(Level::Neutral, "Note", self.note),
+            ),
             ("facts", self.facts.iter().map(fact).collect()),
             ("pictures", drawn(&self.pictures)),
             ("caption", self.caption.clone()),
             ("bands", bands(&self.spans, &marks, &doubtful)),
-            ("curves", String::from_utf8_lossy(&curves).into_owned()),
+            ("curves", figures_in_page(self.panels)?),
             ("dashed", dashed.to_owned()),
             ("evidence", self.evidence.iter().map(row).collect()),
         ];
         fill(PAGE, &parts, to)
-    }
-
-    /// The verdict in a sentence, the note and the warnings.
-    fn verdict(&self) -> String {
-        let word = match self.verdict.level {
-            Level::Good => "Reliable",
-            Level::Caution => "With care",
-            Level::Bad => "Unreliable",
-            Level::Neutral => "Note",
-        };
-        let notice = |level: Level, word: &str, text: &str| {
-            let (level, text) = (self::level(level), escape_text(&with_brief_numbers(text)));
-            format!("<p class=\"notice {level}\"><strong>{word}</strong>{text}</p>\n")
-        };
-        let warnings = self.warnings.iter().map(|warning| notice(Level::Caution, "Warning", warning));
-        let note = notice(Level::Neutral, "Note", self.note);
-        [notice(self.verdict.level, word, &self.verdict.text), note].into_iter().chain(warnings).collect()
     }
 }
 
@@ -149,24 +135,4 @@ pub fn doubtful_spans(times: &[f64], relied_on: &[bool]) -> Vec<[f64; 2]> {
         }
     }
     found
-}
-
-/// A row of the table of what the result rests on.
-fn row(of: &Evidence) -> String {
-    let mark = match of.level {
-        Level::Good => "✓",
-        Level::Caution => "!",
-        Level::Bad => "✕",
-        Level::Neutral => "·",
-    };
-    let (class, value) = match &of.value {
-        EvidenceValue::Number(v) => ("number", brief_to(4, *v)),
-        EvidenceValue::Count(n) => ("number", n.to_string()),
-        EvidenceValue::Text(text) => ("words", escape_text(&with_brief_numbers(text))),
-    };
-    let (name, unit, meaning) = (escape_text(&of.name), escape_text(&of.unit), escape_text(&of.meaning));
-    format!(
-        "<tr><td><span class=\"mark {}\">{mark}</span>{name}</td><td class=\"{class}\">{value} {unit}</td><td class=\"meaning\">{meaning}</td></tr>\n",
-        level(of.level)
-    )
 }

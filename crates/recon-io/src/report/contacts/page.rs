@@ -4,7 +4,7 @@ use super::moment::Shown;
 use super::picture::drawn;
 use super::{plane, space};
 use crate::number::brief_to;
-use crate::planar_figures::write_figures;
+use crate::planar_figures::figures_in_page;
 use recon::contact_kinematics::SupportFunction;
 use recon::contact_kinematics::planar::RadiusFunction;
 use recon::object_dynamics::{ContactScene, ContactSimulation, planar};
@@ -52,8 +52,6 @@ fn write(title: &str, shown: &Shown, to: impl Write) -> io::Result<()> {
         ("Energy not accounted for", brief_to(2, shown.energy_defect()), "J"),
     ];
     let marks: Vec<f64> = shown.pictures.iter().map(|picture| picture.t).collect();
-    let mut curves = Vec::new();
-    write_figures(&shown.panels(), &mut curves)?;
     let parts = [
         ("head", head(title, STYLE)?),
         ("title", escape_text(title)),
@@ -61,7 +59,7 @@ fn write(title: &str, shown: &Shown, to: impl Write) -> io::Result<()> {
         ("pictures", drawn(&shown.pictures)),
         ("caption", shown.caption.to_owned()),
         ("bands", bands(&shown.spans, &marks, &[])),
-        ("curves", String::from_utf8_lossy(&curves).into_owned()),
+        ("curves", figures_in_page(&shown.panels())?),
     ];
     fill(PAGE, &parts, to)
 }

@@ -145,7 +145,15 @@ impl PlanarScene {
         let path = path.as_ref();
         let in_file = |kind| SceneError { path: path.to_owned(), kind };
         let text = std::fs::read_to_string(path).map_err(|e| in_file(e.into()))?;
-        build::known(&toml::from_str(&text).map_err(|e: toml::de::Error| in_file(e.into()))?).map_err(in_file)
+        Self::parse_known(&text).map_err(in_file)
+    }
+
+    /// The same from TOML text.
+    ///
+    /// # Errors
+    /// [`SceneErrorKind`] names the key.
+    pub fn parse_known(text: &str) -> Result<PlanarKnown, SceneErrorKind> {
+        build::known(&toml::from_str(text)?)
     }
 
     /// Noise on every channel of its log; zero where the scene says nothing.

@@ -1,0 +1,132 @@
+//! The page of motion and shape without forces.
+
+use super::views::three_views;
+use super::without_forces::WithoutForces;
+use glam::{DVec2, DVec3};
+use recon_io::EvidenceValue::{Count, Number, Text};
+use recon_io::{
+    Evidence, EvidenceValue, FigureCurve, FigurePanel, FiguresPage, Level, MotionState, TriangleMesh,
+    Verdict, brief_to, status_in_words,
+};
+
+/// Points on an ellipsoid by which it is drawn: its outline is off by less than a thousandth of its size.
+const POINTS: u32 = 4000;
+
+/// The page of what contacts alone told.
+pub(crate) fn without_forces_page(title: &str, made: &WithoutForces) -> FiguresPage {
+    FiguresPage {
+        kicker: "Shape and motion from contacts alone",
+        title: title.to_owned(),
+        verdict: verdict(made),
+        warnings: made.warnings.clone(),
+        facts: facts(made),
+        heading: "Shape and motion",
+        panels: panels(made),
+        caption: "The bounds and the fitted ellipsoid as they are seen along the body axes, and the motion over time.".to_owned(),
+        evidence: rows(made),
+    }
+}
+
+fn verdict(made: &WithoutForces) -> Verdict {
+    let of = &made.found.evidence;
+    let text = format!(
+        "An ellipsoid in its motion fits the contacts to {:.1e} m, of which noise explains {:.1e} m; the least certain is {} (standard deviation {:.1e}).",
+        of.residual_rms, of.noise_explains, of.weakest, of.weakest_deviation
+    );
+    let level = if made.bounded.is_some() { Level::Good } else { Level::Caution };
+    Verdict { level, text }
+}
+
+fn facts(made: &WithoutForces) -> Vec<(&'static str, String, &'static str)> {
+    let times = made.times();
+    let over = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+    let axes = made.found.shape.semi_axes.to_array().map(|axis| brief_to(4, axis)).join(", ");
+    let mut facts = vec![("Time", brief_to(4, over), "s"), ("Semi-axes", axes, "m")];
+    if let Some(bounded) = &made.bounded {
+        facts.push(("Lower bound", brief_to(4, bounded.drawn.lower.volume), "m³"));
+        facts.push(match &bounded.drawn.upper {
+            Some(upper) => ("Upper bound", brief_to(4, upper.volume), "m³"),
+            None => ("Upper bound", "unbounded".to_owned(), ""),
+        });
+    }
+    facts
+}
+
+fn panels(made: &WithoutForces) -> Vec<FigurePanel> {
+    let bounded = made.bounded.as_ref();
+    let [lower, upper] = [bounded.and_then(|b| b.lower.as_ref()), bounded.and_then(|b| b.upper.as_ref())];
+    let ellipsoid = on_ellipsoid(made);
+    let bodies = [("lower", corners(lower)), ("upper", corners(upper)), ("ellipsoid", &ellipsoid[..])];
+    let mut panels = three_views(&bodies, &[]);
+    let (times, motion) = (made.times(), made.motion());
+    panels.push(over_time("Centre of mass", "m", &times, &motion, |state| state.p_WCm));
+    panels.push(over_time("Velocity", "m/s", &times, &motion, |state| state.v_WCm));
+    panels.push(over_time("Angular velocity", "rad/s", &times, &motion, |state| state.w_WO));
+    panels
+}
+
+fn corners(mesh: Option<&TriangleMesh>) -> &[DVec3] {
+    mesh.map_or(&[], |mesh| &mesh.vertices)
+}
+
+/// Points all over the fitted ellipsoid, body axes, m from the centre of mass.
+fn on_ellipsoid(made: &WithoutForces) -> Vec<DVec3> {
+    let shape = &made.found.shape;
+    let golden = std::f64::consts::PI * (3.0 - f64::sqrt(5.0));
+    let point = |k: u32| {
+        let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(POINTS);
+        let across = DVec2::from_angle(golden * f64::from(k)) * (1.0 - z * z).sqrt();
+        shape.centre + shape.orientation * (shape.semi_axes * across.extend(z))
+    };
+    (0..POINTS).map(point).collect()
+}
+
+/// The three coordinates of what moves.
+fn over_time(
+    title: &str,
+    unit: &str,
+    times: &[f64],
+    motion: &[MotionState],
+    what: fn(&MotionState) -> DVec3,
+) -> FigurePanel {
+    let curve = |axis: usize| FigureCurve {
+        name: ["x", "y", "z"][axis].to_owned(),
+        points: times.iter().zip(motion).map(|(t, state)| [*t, what(state)[axis]]).collect(),
+        ..FigureCurve::default()
+    };
+    FigurePanel {
+        title: title.to_owned(),
+        axes: ["t in s".to_owned(), format!("{} in {unit}", title.to_lowercase())],
+        curves: (0..3).map(curve).collect(),
+        ..FigurePanel::default()
+    }
+}
+
+fn rows(made: &WithoutForces) -> Vec<Evidence> {
+    let of = &made.found.evidence;
+    let row = |key: &str, name: &str, value: EvidenceValue, unit: &str, meaning: &str| {
+        let [key, name, unit, meaning] = [key, name, unit, meaning].map(str::to_owned);
+        Evidence { key, name, value, unit, meaning, level: Level::Neutral }
+    };
+    vec![
+        row("status", "Fit", Text(status_in_words(of.status)), "", "How the fit ended."),
+        row("samples", "Samples", Count(of.samples as u64), "", "Those that were used."),
+        row("residual_rms", "Residual", Number(of.residual_rms), "m", "Root mean square of what is left."),
+        row("noise_explains", "Noise explains", Number(of.noise_explains), "m", "Of the residual."),
+        row("rank", "Rank", Count(of.rank as u64), "", "Unknowns that the log determines."),
+        row(
+            "condition",
+            "Condition",
+            Number(of.condition),
+            "",
+            "Of the fit; large where something is hardly seen.",
+        ),
+        row(
+            "weakest",
+            "Least certain",
+            Text(of.weakest.to_string()),
+            "",
+            "The direction that the log tells worst.",
+        ),
+    ]
+}

@@ -1,0 +1,127 @@
+//! The page of many logs: a small picture of each, and a link to its own page.
+
+use super::Level;
+use super::contacts::page::{STYLE, fact};
+use super::encode::level;
+use super::page::{escape_text, fill, head};
+use crate::number::with_brief_numbers;
+use crate::planar_figures::{FigurePanel, figures_in_page};
+use std::io::{self, Write};
+
+const PAGE: &str = include_str!("assets/batch.html");
+/// As many beside each other as there is room for.
+const CARDS: &str = "
+.cards { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 330px), 1fr)); gap: 16px; }
+.card h2 { font-size: 16px; margin: 12px 14px 2px; overflow-wrap: anywhere; } .card p { margin: 2px 14px; font-size: 13.5px; overflow-wrap: anywhere; }
+.card .word { color: var(--tone); } .card .curves { grid-template-columns: 1fr; } .card { padding-bottom: 10px; } a { color: var(--accent); }
+";
+
+/// One log of many.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LogCard {
+    /// Name of the log.
+    pub name: String,
+    /// Where its own page is, from this one; none of a log without results.
+    pub link: Option<String>,
+    /// How it went.
+    pub level: Level,
+    /// In a word.
+    pub word: &'static str,
+    /// What else is to be said of it.
+    pub lines: Vec<String>,
+    /// Its picture.
+    pub panel: Option<FigurePanel>,
+}
+
+/// What the page shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BatchPage {
+    /// Title.
+    pub title: String,
+    /// Key figures: name, value, unit.
+    pub facts: Vec<(&'static str, String, &'static str)>,
+    /// What the pictures show.
+    pub caption: String,
+    /// Name of the table beside the page.
+    pub table: &'static str,
+    /// The logs.
+    pub cards: Vec<LogCard>,
+}
+
+/// Writes many logs as one HTML page, which loads nothing.
+///
+/// # Errors
+/// Those of `to`.
+pub fn write_batch_report(page: &BatchPage, to: impl Write) -> io::Result<()> {
+    let parts = [
+        ("head", head(&page.title, &(STYLE.to_owned() + CARDS))?),
+        ("title", escape_text(&page.title)),
+        ("facts", page.facts.iter().map(fact).collect()),
+        ("caption", escape_text(&page.caption)),
+        ("table", escape_text(page.table)),
+        ("cards", page.cards.iter().map(card).collect::<io::Result<String>>()?),
+    ];
+    fill(PAGE, &parts, to)
+}
+
+fn card(of: &LogCard) -> io::Result<String> {
+    let name = escape_text(&of.name);
+    let name = match &of.link {
+        Some(link) => format!("<a href=\"{}\">{name}</a>", encoded(link)),
+        None => name,
+    };
+    let line = |line: &String| format!("<p>{}</p>\n", escape_text(&with_brief_numbers(line)));
+    let picture = match &of.panel {
+        Some(panel) => {
+            format!("<div class=\"curves\">{}</div>\n", figures_in_page(std::slice::from_ref(panel))?)
+        }
+        None => String::new(),
+    };
+    Ok(format!(
+        "<article class=\"panel card\">\n<h2>{name}</h2>\n<p class=\"word {}\">{}</p>\n{picture}{}</article>\n",
+        level(of.level),
+        escape_text(of.word),
+        of.lines.iter().map(line).collect::<String>()
+    ))
+}
+
+/// A path as an address.
+fn encoded(path: &str) -> String {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.~/".contains(&byte);
+    let one = |byte: u8| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") };
+    path.bytes().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_safe_in_text_and_address() {
+        let card = LogCard {
+            name: "a <b>.csv".to_owned(),
+            link: Some("a <b>/report.html".to_owned()),
+            level: Level::Good,
+            word: "relied on",
+            lines: vec!["mass 1.5 & more".to_owned()],
+            panel: Some(FigurePanel::default()),
+        };
+        let broken = LogCard { link: None, panel: None, ..card.clone() };
+        let page = BatchPage {
+            title: "two".to_owned(),
+            facts: Vec::new(),
+            caption: String::new(),
+            table: "results.csv",
+            cards: vec![card, broken],
+        };
+        let mut out = Vec::new();
+        write_batch_report(&page, &mut out).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert!(
+            text.contains("<a href=\"a%20%3Cb%3E/report.html\">a &lt;b&gt;.csv</a>")
+                && text.contains("1.5 &amp; more")
+        );
+        assert_eq!(text.matches("<svg").count(), 1);
+        assert!(!text.contains("{{") && !text.contains("src="));
+    }
+}

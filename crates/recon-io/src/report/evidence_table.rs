@@ -1,0 +1,26 @@
+//! Rows of the table of what a result rests on.
+
+use super::encode::level;
+use super::page::escape_text;
+use super::{Evidence, EvidenceValue, Level};
+use crate::number::{brief_to, with_brief_numbers};
+
+/// A row.
+pub(super) fn row(of: &Evidence) -> String {
+    let mark = match of.level {
+        Level::Good => "✓",
+        Level::Caution => "!",
+        Level::Bad => "✕",
+        Level::Neutral => "·",
+    };
+    let (class, value) = match &of.value {
+        EvidenceValue::Number(v) => ("number", brief_to(4, *v)),
+        EvidenceValue::Count(n) => ("number", n.to_string()),
+        EvidenceValue::Text(text) => ("words", escape_text(&with_brief_numbers(text))),
+    };
+    let (name, unit, meaning) = (escape_text(&of.name), escape_text(&of.unit), escape_text(&of.meaning));
+    format!(
+        "<tr><td><span class=\"mark {}\">{mark}</span>{name}</td><td class=\"{class}\">{value} {unit}</td><td class=\"meaning\">{meaning}</td></tr>\n",
+        level(of.level)
+    )
+}

@@ -1,0 +1,90 @@
+//! The page of a result that figures and a table tell: bounds, fits, motion without forces.
+
+use super::contacts::page::{STYLE, fact};
+use super::evidence_table::row;
+use super::notices::notices;
+use super::page::{escape_text, fill, head};
+use super::{Evidence, Verdict};
+use crate::planar_figures::{FigurePanel, figures_in_page};
+use std::io::{self, Write};
+
+const PAGE: &str = include_str!("assets/figures.html");
+
+/// What the page shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FiguresPage {
+    /// What kind of result it is.
+    pub kicker: &'static str,
+    /// Of what, such as the name of a file.
+    pub title: String,
+    /// What it is worth, in a sentence.
+    pub verdict: Verdict,
+    /// What the reader must know.
+    pub warnings: Vec<String>,
+    /// Key figures: name, value, unit.
+    pub facts: Vec<(&'static str, String, &'static str)>,
+    /// What the figures are of.
+    pub heading: &'static str,
+    /// Pictures, two in a row.
+    pub panels: Vec<FigurePanel>,
+    /// What they show.
+    pub caption: String,
+    /// What the result rests on.
+    pub evidence: Vec<Evidence>,
+}
+
+/// Writes such a result as one HTML page that needs nothing else.
+///
+/// # Errors
+/// Those of `to`.
+pub fn write_figures_page(page: &FiguresPage, to: impl Write) -> io::Result<()> {
+    let parts = [
+        ("head", head(&page.title, STYLE)?),
+        ("kicker", escape_text(page.kicker)),
+        ("title", escape_text(&page.title)),
+        ("verdict", notices(&page.verdict, ["Good", "With care", "Unreliable"], &page.warnings)),
+        ("facts", page.facts.iter().map(fact).collect()),
+        ("heading", escape_text(page.heading)),
+        ("curves", figures_in_page(&page.panels)?),
+        ("caption", escape_text(&page.caption)),
+        ("evidence", page.evidence.iter().map(row).collect()),
+    ];
+    fill(PAGE, &parts, to)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{EvidenceValue, Level};
+    use super::*;
+
+    #[test]
+    fn the_page_tells_all_of_it_and_loads_nothing() {
+        let page = FiguresPage {
+            kicker: "Bounds",
+            title: "a <b>".to_owned(),
+            verdict: Verdict { level: Level::Caution, text: "one & two".to_owned() },
+            warnings: vec!["mind < this".to_owned()],
+            facts: vec![("Lower bound", "1".to_owned(), "m³")],
+            heading: "Views",
+            panels: vec![FigurePanel::default()],
+            caption: "c".to_owned(),
+            evidence: vec![Evidence {
+                key: "k".to_owned(),
+                name: "Name".to_owned(),
+                value: EvidenceValue::Number(0.123456),
+                unit: "m".to_owned(),
+                meaning: "what".to_owned(),
+                level: Level::Good,
+            }],
+        };
+        let mut out = Vec::new();
+        write_figures_page(&page, &mut out).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        for part in
+            ["a &lt;b&gt;", "With care</strong>one &amp; two", "Warning</strong>mind &lt; this", "0.1235 m"]
+        {
+            assert!(text.contains(part), "{part}");
+        }
+        assert!(!text.contains("{{") && !text.contains("src="));
+    }
+}
