@@ -97,8 +97,8 @@ pub enum PushLogError {
         /// As given.
         value: f64,
     },
-    /// Time that does not increase.
-    #[error("push {push}, sample {sample}: time is {t} s after {before} s; it must increase")]
+    /// Time that runs backward.
+    #[error("push {push}, sample {sample}: time is {t} s after {before} s; it must not run backward")]
     Time {
         /// Its number.
         push: u32,
@@ -161,7 +161,8 @@ fn check(push: &Push) -> Result<(), PushLogError> {
         for (what, value) in ["t", "fx", "fy", "finger_x", "finger_y"].into_iter().zip(values) {
             finite(k, what, value)?;
         }
-        if k > 0 && s.t <= push.samples[k - 1].t {
+        // Times that are rounded may repeat.
+        if k > 0 && s.t < push.samples[k - 1].t {
             let before = push.samples[k - 1].t;
             return Err(PushLogError::Time { push: number, sample: k, t: s.t, before });
         }
