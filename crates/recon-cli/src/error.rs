@@ -3,6 +3,7 @@ use recon::object_dynamics::{
     ContactLogError, ContactSimulationError, LogError, MassError, NotThreePlanes,
     SceneError as DynamicsError, SimulationError,
 };
+use recon::observer::pushes::PushesError;
 use recon::observer::{ContactEstimateError, EstimateError};
 use recon::shape_bounds::{
     AlphaError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
@@ -89,6 +90,10 @@ pub(crate) enum CliError {
     PlanarNoisyBounds(#[from] planar::NoiseError),
     #[error("the contacts in the plane and the limits on the curvature give no bounds")]
     PlanarCurvature(#[from] planar::CurvatureError),
+    #[error("{} has no log {number}; it has {there}", path.display())]
+    NoPushLog { path: PathBuf, number: u32, there: String },
+    #[error("the pushes of log {log} tell no outline")]
+    Pushes { log: u32, source: PushesError },
     #[error("no outline can be fitted to the contacts")]
     PlanarFit(#[from] planar::FitError),
     #[error("the contacts have no alpha shape")]
@@ -260,6 +265,8 @@ impl CliError {
             | Self::PlanarNoisyBounds(_)
             | Self::PlanarCurvature(_)
             | Self::PlanarFit(_)
+            | Self::NoPushLog { .. }
+            | Self::Pushes { .. }
             | Self::Alpha(_)
             | Self::Surface(_)
             | Self::UnknownBody

@@ -1,6 +1,6 @@
 //! Which outline: polygons of three corners and more, and smooth ones, weighed by Schwarz's criterion (1978).
 
-use super::fit::{Fitted, fit};
+use super::fit::{Fitted, compared, fit, settled};
 use super::shape::{HIGHEST, MOST_CORNERS, Shape, one_less, thinned};
 use super::touches::Touch;
 use glam::DVec2;
@@ -99,20 +99,18 @@ fn smooth(touches: &[[Touch; 2]], radius: f64, size: f64, centre: DVec2) -> Vec<
 /// From closed lines of many corners on, each with one corner less.
 fn polygons(touches: &[[Touch; 2]], radius: f64, size: f64, lines: &[Vec<DVec2>]) -> Vec<Fitted> {
     let most = (3..=MOST_CORNERS).rev().find(|n| allowed(2 * n, touches)).unwrap_or(3);
+    let first =
+        lines.iter().filter_map(|line| fit(touches, radius, size, Shape::Polygon(thinned(line, most))));
+    let least = |a: &Fitted, b: &Fitted| a.misfit.total_cmp(&b.misfit);
+    let mut next = first.min_by(least);
     let mut all: Vec<Fitted> = Vec::new();
-    let mut starts: Vec<_> = lines.iter().map(|line| thinned(line, most)).collect();
-    loop {
-        let fits = starts.iter().filter_map(|s| fit(touches, radius, size, Shape::Polygon(s.clone())));
-        let Some(best) = fits.min_by(|a, b| a.misfit.total_cmp(&b.misfit)) else { break };
-        if let Shape::Polygon(corners) = &best.point.shape
-            && corners.len() > 3
-        {
-            starts = one_less(corners, FARTHEST * size);
-            all.push(best);
-        } else {
-            all.push(best);
-            break;
-        }
+    while let Some(now) = next {
+        let Shape::Polygon(corners) = &now.point.shape else { break };
+        let starts = if corners.len() > 3 { one_less(corners, FARTHEST * size) } else { Vec::new() };
+        let fits =
+            starts.into_iter().filter_map(|s| compared(&now, touches, radius, size, Shape::Polygon(s)));
+        next = fits.min_by(least).and_then(|best| settled(best, touches, radius, size));
+        all.push(now);
     }
     all
 }

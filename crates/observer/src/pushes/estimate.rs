@@ -42,7 +42,7 @@ pub fn estimate_pushes(log: &PushLog, finger_radius: f64) -> Result<PushesEstima
     }
     let nothing = PushesError::NoOutline { touches: 2 * touches.len() };
     let (fitted, candidates) = choose(&touches, finger_radius).ok_or(nothing)?;
-    let open = covariance(&fitted, touches.len());
+    let open = covariance(&fitted, &touches, finger_radius, size);
     let times = fitted.point.times;
     let outline = PushedOutline::new(&fitted, candidates, (&touches, times), &open, size);
     let table = Table { line: &outline.line, radius: finger_radius, compliance, times };

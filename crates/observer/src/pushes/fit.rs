@@ -3,7 +3,7 @@
 use super::shape::{MOST, Shape};
 use super::touches::Touch;
 use crate::least_squares::{Fit, LeastSquares, LevenbergMarquardt, NormalEquations};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 use object_dynamics::pushing::ClosedLine;
 
 /// Unknowns of the shape and two times.
@@ -23,8 +23,9 @@ const LOOSE: f64 = 3.0;
 const HARMONIC: f64 = 0.5;
 /// Step of the differences by which rows are taken, in sizes of the object.
 const STEP: f64 = 1e-6;
-/// Rounds in which deviations and shape are found in turn.
-const ROUNDS: usize = 6;
+/// Rounds in which deviations and shape are found in turn: of a fit that is kept, and of one that is only compared.
+const ROUNDS: usize = 8;
+const QUICK: usize = 1;
 /// Steps of a round.
 const ITERATIONS: usize = 15;
 /// First deviation of touches, as a share of the size, and the least, m: as finely as arms tell where they are.
@@ -48,6 +49,8 @@ pub(super) struct Problem<'a> {
     /// Deviations of the mean of the two touches of a push, and of half their difference, m.
     pub(super) deviations: [f64; 2],
     start: Shape,
+    /// Weights of plain residuals in place of robust ones: what they tell, rather than where the least cost is.
+    plain: Option<[f64; 2]>,
 }
 
 /// A fit with its deviations.
@@ -69,7 +72,7 @@ impl<'a> Problem<'a> {
         deviations: [f64; 2],
         start: Shape,
     ) -> Self {
-        Self { touches, radius, size, deviations, start }
+        Self { touches, radius, size, deviations, start, plain: None }
     }
 
     /// Distances of the finger from the outline at the two touches of a push, m.
@@ -95,8 +98,10 @@ impl<'a> Problem<'a> {
         let mut all = Vec::with_capacity(4 * self.touches.len() + UNKNOWNS);
         for pair in self.touches {
             let [a, b] = self.gaps(&line, point.times, pair);
-            all.push(robust(0.5 * (a + b) / self.deviations[0]));
-            all.push(robust(0.5 * (a - b) / self.deviations[1]));
+            for (i, part) in [0.5 * (a + b), 0.5 * (a - b)].into_iter().enumerate() {
+                let z = part / self.deviations[i];
+                all.push(self.plain.map_or_else(|| robust(z), |weights| z * weights[i]));
+            }
             for (touch, time) in pair.iter().zip(point.times) {
                 let inward = -line.nearest(touch.centre - touch.velocity * time).normal;
                 all.push(robust(inward.perp_dot(touch.force).atan2(inward.dot(touch.force)) / ANGLE));
@@ -164,12 +169,35 @@ impl LeastSquares<UNKNOWNS> for Problem<'_> {
     }
 }
 
-/// Fits a shape and the deviations of the touches in turn.
+/// Fits a shape and the deviations of the touches in turn, from no guess of these.
 pub(super) fn fit(touches: &[[Touch; 2]], radius: f64, size: f64, start: Shape) -> Option<Fitted> {
+    let problem = Problem::new(touches, radius, size, [FIRST * size; 2], start.clone());
+    in_turn(problem, Point { shape: start, times: [0.0; 2] }, ROUNDS)
+}
+
+/// Fits a shape from deviations and times that are about right: in one round, enough to compare it with others.
+pub(super) fn compared(
+    near: &Fitted,
+    touches: &[[Touch; 2]],
+    radius: f64,
+    size: f64,
+    start: Shape,
+) -> Option<Fitted> {
+    let deviations = near.deviations.map(|d| 2.0 * d);
+    let problem = Problem::new(touches, radius, size, deviations, start.clone());
+    in_turn(problem, Point { shape: start, times: near.point.times }, QUICK)
+}
+
+/// Goes on with a fit until its deviations are settled.
+pub(super) fn settled(from: Fitted, touches: &[[Touch; 2]], radius: f64, size: f64) -> Option<Fitted> {
+    let problem = Problem::new(touches, radius, size, from.deviations, from.point.shape.clone());
+    in_turn(problem, from.point, ROUNDS)
+}
+
+fn in_turn(mut problem: Problem, mut point: Point, rounds: usize) -> Option<Fitted> {
+    let (touches, size) = (problem.touches, problem.size);
     let solver = LevenbergMarquardt { iterations: ITERATIONS, step_tolerance: 1e-9, ..Default::default() };
-    let mut point = Point { shape: start.clone(), times: [0.0; 2] };
-    let mut problem = Problem::new(touches, radius, size, [FIRST * size; 2], start);
-    for round in 0..ROUNDS {
+    for round in 0..rounds {
         let made: Fit<Point, UNKNOWNS> = solver.fit(&problem, point);
         let line = made.point.shape.line()?;
         point = made.point;
@@ -184,7 +212,7 @@ pub(super) fn fit(touches: &[[Touch; 2]], radius: f64, size: f64, start: Shape) 
         });
         let settled = (0..2).all(|i| (fresh[i] / problem.deviations[i]).ln().abs() < 0.01);
         problem.deviations = fresh;
-        if settled || round + 1 == ROUNDS {
+        if settled || round + 1 == rounds {
             let normal = problem.linearise(&point)?;
             let logs: f64 = fresh.iter().map(|d| 2.0 * (d / size).ln()).sum();
             let misfit = normal.cost + touches.len() as f64 * logs;
@@ -192,6 +220,29 @@ pub(super) fn fit(touches: &[[Touch; 2]], radius: f64, size: f64, start: Shape) 
         }
     }
     None
+}
+
+/// What the touches tell of the unknowns, by how they scatter: `(mean psi')^2 / mean psi^2` for each residual, `psi` being half the slope of
+/// the robust cost (Huber, Robust Statistics, 1981, section 6.3).
+pub(super) fn information(
+    fitted: &Fitted,
+    touches: &[[Touch; 2]],
+    radius: f64,
+    size: f64,
+) -> Option<SMatrix<f64, UNKNOWNS, UNKNOWNS>> {
+    let mut problem = Problem::new(touches, radius, size, fitted.deviations, fitted.point.shape.clone());
+    let parts = problem.parts(&fitted.line, fitted.point.times);
+    let weight = |i: usize| {
+        let (mut slope, mut square) = (0.0, 0.0);
+        for z in parts.iter().map(|part| part[i] / fitted.deviations[i]) {
+            let sum = STUDENT + z * z;
+            slope += (STUDENT + 1.0) * (STUDENT - z * z) / (sum * sum);
+            square += ((STUDENT + 1.0) * z / sum).powi(2);
+        }
+        slope.max(0.0) / (square * parts.len() as f64).sqrt()
+    };
+    problem.plain = Some([weight(0), weight(1)]);
+    problem.linearise(&fitted.point).map(|normal| normal.information)
 }
 
 /// Scale of Student's distribution by expectation and maximisation.

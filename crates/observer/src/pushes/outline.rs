@@ -2,7 +2,7 @@
 
 use super::arcs::Arcs;
 use super::choose::OutlineCandidate;
-use super::fit::{Fitted, UNKNOWNS};
+use super::fit::{Fitted, UNKNOWNS, information};
 use super::shape::Shape;
 use super::slopes::Slopes;
 use super::touches::Touch;
@@ -61,10 +61,15 @@ pub struct PushedOutline {
 }
 
 /// Covariance of the scaled unknowns, widened for those that took part in the residuals' deviation.
-pub(super) fn covariance(fitted: &Fitted, touches: usize) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
-    let inverse = Cholesky::new(fitted.normal.information).map(|c| c.inverse());
-    let (readings, unknowns) = (2.0 * touches as f64, fitted.point.shape.unknowns() as f64);
-    // Where nothing is left over, all is open: the prior alone holds it.
+pub(super) fn covariance(
+    fitted: &Fitted,
+    touches: &[[Touch; 2]],
+    radius: f64,
+    size: f64,
+) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
+    let inverse = information(fitted, touches, radius, size).and_then(Cholesky::new).map(|c| c.inverse());
+    let (readings, unknowns) = (2.0 * touches.len() as f64, fitted.point.shape.unknowns() as f64);
+    // Where nothing is left over, all is open: by the size of the object.
     inverse.unwrap_or_else(SMatrix::identity) * (readings / (readings - unknowns).max(1.0))
 }
 

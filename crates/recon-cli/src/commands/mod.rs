@@ -17,6 +17,7 @@ mod manual;
 mod next;
 mod planar;
 mod plane;
+mod pushes;
 pub(crate) mod reconstruct;
 pub(crate) mod simulate;
 mod without_forces;
@@ -35,6 +36,7 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
         Command::Follow(args) => follow::run(args, console),
         Command::Bounds(args) => bounds::run(args, console),
         Command::Planar(args) => planar::run(args, console),
+        Command::Pushes(args) => pushes::run(args, console),
         Command::Demo(args) => demo::run(args, console),
         Command::Export(args) => export::run(args, console),
         Command::Check(args) => check::run(args, console),

@@ -41,7 +41,8 @@ pub(crate) use estimate::{Asked, Estimated, estimated};
 pub(crate) use exploration::{Explored, InPlane, InSpace, Settings, explored, goal_of, next_touch, until_of};
 pub(crate) use fitted::{fit_words, fitted_shape};
 pub(crate) use folder::{
-    estimate_figures, reconstruction_figures, write_bounds_folder, write_contact_folder, write_files_folder,
+    Extra, estimate_figures, reconstruction_figures, write_bounds_folder, write_contact_folder,
+    write_files_folder,
 };
 pub(crate) use meshes::meshes_as;
 pub(crate) use modes::describe_times;

@@ -5,6 +5,7 @@ mod data;
 mod encode;
 mod exploration;
 mod page;
+mod pushes;
 
 #[cfg(test)]
 mod tests;
@@ -20,6 +21,7 @@ pub use data::{
 };
 pub use exploration::{ExplorationPage, TouchRow, write_exploration_report};
 pub use page::write_report;
+pub use pushes::{PushedLog, write_pushes_report};
 
 pub(crate) use data::Departure;
 pub(crate) use encode::level;
