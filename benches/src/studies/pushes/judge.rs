@@ -1,8 +1,10 @@
 //! Estimates beside the truth of simulated pushes.
 
+use super::outline_panel;
 use super::shapes::Named;
-use recon::object_dynamics::pushing::{PushMode, PushScene, SimulatedPushes};
+use recon::object_dynamics::pushing::{ClosedLine, PushMode, PushScene, SimulatedPushes};
 use recon::observer::pushes::{PushesError, PushesEstimate};
+use recon_io::{FigureCurve, FigurePanel};
 use std::fmt::Write as _;
 
 pub(super) const HEAD: &str = "| shape | logs, refused | kind right | friction: error median, rms of error over deviation, within 2 | outline on touched stretches, mm: median, 99 % | within 2 deviations | all around: median, 99 % | corners: error median, 90 %, mm; rms over deviation | mode right | confident and wrong | s |\n\
@@ -19,6 +21,10 @@ pub(super) struct Tally {
     refused: u32,
     kind: u32,
     friction: Vec<[f64; 2]>,
+    /// True and told coefficients.
+    coefficients: Vec<[f64; 2]>,
+    /// The last outline of the last shape: told and true.
+    last: Option<[ClosedLine; 2]>,
     touched: Vec<[f64; 2]>,
     around: Vec<f64>,
     corners: Vec<[f64; 2]>,
@@ -49,6 +55,7 @@ impl Tally {
         let corners = told.outline.corners.len();
         self.kind += u32::from(corners == shape.corners.unwrap_or(0));
         if let Some(friction) = told.friction {
+            self.coefficients.push([scene.friction, friction.value]);
             self.friction.push([friction.value - scene.friction, friction.deviation]);
         }
         for p in &told.outline.points {
@@ -65,6 +72,26 @@ impl Tally {
             }
         }
         self.count_modes(made, &told);
+        self.last = Some([told.outline.line, scene.outline.clone()]);
+    }
+
+    /// Friction told against the true one, and an outline.
+    pub(super) fn panels(&self) -> Vec<FigurePanel> {
+        let told = FigureCurve {
+            name: "a log each".to_owned(),
+            points: self.coefficients.clone(),
+            dots: true,
+            reference: vec![[0.2, 0.2], [0.7, 0.7]],
+            ..FigureCurve::default()
+        };
+        let friction = FigurePanel {
+            title: "Friction (proof)".to_owned(),
+            axes: ["true".to_owned(), "told".to_owned()],
+            curves: vec![told],
+            ..FigurePanel::default()
+        };
+        let outline = self.last.iter().map(|[told, truth]| outline_panel("Butterfly", told, truth));
+        std::iter::once(friction).chain(outline).collect()
     }
 
     fn count_modes(&mut self, made: &SimulatedPushes, told: &PushesEstimate) {
@@ -94,6 +121,8 @@ impl Tally {
         self.refused += other.refused;
         self.kind += other.kind;
         self.friction.extend(other.friction);
+        self.coefficients.extend(other.coefficients);
+        self.last = other.last.or(self.last.take());
         self.touched.extend(other.touched);
         self.around.extend(other.around);
         self.corners.extend(other.corners);

@@ -1,10 +1,11 @@
 //! Real pushes of a right triangle (Zhou, Paolini, Bagnell, Mason 2016, arXiv 1602.06056), which lie beside the repository.
 
 use super::judge::quantile;
+use super::outline_panel;
 use glam::DVec2;
 use recon::object_dynamics::pushing::{ClosedLine, PushLog};
 use recon::observer::pushes::{PushesEstimate, estimate_pushes};
-use recon_io::read_push_logs;
+use recon_io::{FigurePanel, read_push_logs};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -16,7 +17,7 @@ const RADIUS: f64 = 1e-3;
 /// The true triangle, m: for this comparison alone.
 const TRIANGLE: [[f64; 2]; 3] = [[-0.05, -0.05], [0.1, -0.05], [-0.05, 0.1]];
 
-pub(super) fn text() -> Result<String, Box<dyn Error>> {
+pub(super) fn text(panels: &mut Vec<FigurePanel>) -> Result<String, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(FOLDER);
     let files = ["triangle_pushes.csv", "triangle_poses.csv"].map(|name| folder.join(name));
     let mut text = String::from("\n## Real logs\n\n");
@@ -44,6 +45,9 @@ pub(super) fn text() -> Result<String, Box<dyn Error>> {
         for (name, pushes) in parts {
             let told = estimate_pushes(&PushLog::new(pushes)?, RADIUS)?;
             writeln!(text, "| {number}, {name} {}", row(&told, &triangle)?)?;
+            if name == "all" {
+                panels.push(outline_panel(&format!("Real log {number}"), &told.outline.line, &triangle));
+            }
         }
     }
     Ok(text)

@@ -2,17 +2,25 @@
 
 use super::choose::{choose, extent};
 use super::error::PushesError;
+use super::face::Face;
 use super::fit::{Fitted, Problem, UNKNOWNS};
 use super::friction::{Learned, learn};
-use super::modes::{Window, windows};
+use super::modes::{REFERENCE, Window, windows};
 use super::outline::{PushedOutline, covariance};
 use super::path::{PathStep, Table};
 use super::result::{PushFriction, PushInstant, PushResult, PushesEstimate};
 use super::shape::{MOST, Shape};
 use super::slopes::Slopes;
 use super::touches::{FEWEST_TOUCHED, NoTouch, Touch, Touched, quantile};
+use glam::DVec2;
 use nalgebra::SMatrix;
-use object_dynamics::pushing::PushLog;
+use object_dynamics::pushing::{Nearest, PushLog};
+
+/// Share of the deviation from push to push by which the mean of the pushes that slide may be off: those slide that rub less. By the
+/// simulated pushes of `docs/pushes.md`.
+const CHOSEN: f64 = 0.6;
+/// Directions of normals that count as one place: of a polygon most often a face each.
+const PLACES: usize = 12;
 
 /// Estimates outline, friction and modes from pushes by a finger of a radius in m.
 ///
@@ -45,14 +53,19 @@ pub fn estimate_pushes(log: &PushLog, finger_radius: f64) -> Result<PushesEstima
     let open = covariance(&fitted, &touches, finger_radius, size);
     let times = fitted.point.times;
     let outline = PushedOutline::new(&fitted, candidates, (&touches, times), &open, size);
-    let table = Table { line: &outline.line, radius: finger_radius, compliance, times };
+    let face = Face { line: &outline.line, has_corners: !outline.corners.is_empty() };
+    let table = Table { face, radius: finger_radius, compliance, times };
     let length = table.length(&found, size);
     let paths: Vec<_> = found.iter().map(|push| table.path(push, length)).collect();
     let cut: Vec<Vec<Window>> =
         paths.iter().zip(&found).map(|(path, push)| windows(&path.steps, push.velocity.length())).collect();
-    let learned = learn(&cut);
-    let middles: Vec<_> = paths.iter().map(|p| p.steps[p.steps.len() / 2]).collect();
-    let friction = friction(&learned, &middles, &Slopes::new(&fitted.point.shape, size), &open);
+    let middles = paths.iter().map(|p| outline.line.nearest(p.steps[p.steps.len() / 2].point));
+    let touched: Vec<Nearest> = middles.collect();
+    let places: Vec<usize> = touched.iter().map(|at| place(at.normal)).collect();
+    let learned = learn(&cut, &places);
+    let speed = quantile(found.iter().map(|t| t.velocity.length()).collect(), 0.5);
+    let slopes = Slopes::new(&fitted.point.shape, size);
+    let friction = friction(&learned, &touched, (&slopes, &open), speed);
     let noise: Vec<f64> = found.iter().filter_map(|t| t.noise).collect();
     let missed =
         |pick: fn(&(f64, f64)) -> f64| quantile(paths.iter().map(|p| pick(&p.missed).abs()).collect(), 0.5);
@@ -90,20 +103,32 @@ fn gaps(fitted: &Fitted, touches: &[[Touch; 2]], radius: f64, size: f64) -> Vec<
         .collect()
 }
 
+/// Places around the outline, by the direction of its normal: pushes at one place share its error.
+fn place(normal: DVec2) -> usize {
+    (PLACES as f64 * (normal.to_angle() / std::f64::consts::TAU + 0.5)) as usize
+}
+
 /// Friction with what the outline's directions leave open: a face that is turned shifts sliding to both sides against each other.
 fn friction(
     learned: &Learned,
-    middles: &[PathStep],
-    slopes: &Slopes,
-    open: &SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+    touched: &[Nearest],
+    (slopes, open): (&Slopes, &SMatrix<f64, UNKNOWNS, UNKNOWNS>),
+    speed: f64,
 ) -> Option<PushFriction> {
-    let value = learned.common.friction;
-    let rows = learned.shares.iter().zip(middles).filter(|([weight, _], _)| *weight > 0.0);
-    let row = rows.map(|([_, side], at)| slopes.turn(at.point) * (side * (1.0 + value * value)));
+    let common = &learned.common;
+    let value = common.friction;
+    let rows = learned.shares.iter().zip(touched).filter(|(share, _)| **share != 0.0);
+    let row = rows.map(|(share, at)| slopes.turn(at) * (share * (1.0 + value * value)));
     let row = row.fold(nalgebra::SVector::zeros(), |sum, row| sum + row);
     let of_outline: f64 = row.dot(&(open * row));
     let pushes = learned.own.iter().flatten().count();
-    learned.variance.map(|own| PushFriction { value, deviation: (own + of_outline).sqrt(), pushes })
+    learned.variance.map(|own| PushFriction {
+        value,
+        deviation: (own + of_outline + (CHOSEN * common.of_push).powi(2)).sqrt(),
+        by_slip: (common.by_slip / speed, learned.slope_variance.sqrt() / speed),
+        at_slip: REFERENCE * speed,
+        pushes,
+    })
 }
 
 /// Instants of each push with their modes: those of the window that holds them.

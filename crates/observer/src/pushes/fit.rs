@@ -58,7 +58,6 @@ pub(super) struct Problem<'a> {
 pub(super) struct Fitted {
     pub(super) point: Point,
     pub(super) line: ClosedLine,
-    pub(super) normal: NormalEquations<UNKNOWNS>,
     pub(super) deviations: [f64; 2],
     /// Twice the negative logarithm of the likelihood, to a constant.
     pub(super) misfit: f64,
@@ -213,10 +212,10 @@ fn in_turn(mut problem: Problem, mut point: Point, rounds: usize) -> Option<Fitt
         let settled = (0..2).all(|i| (fresh[i] / problem.deviations[i]).ln().abs() < 0.01);
         problem.deviations = fresh;
         if settled || round + 1 == rounds {
-            let normal = problem.linearise(&point)?;
+            let cost = problem.cost(&point)?;
             let logs: f64 = fresh.iter().map(|d| 2.0 * (d / size).ln()).sum();
-            let misfit = normal.cost + touches.len() as f64 * logs;
-            return Some(Fitted { point, line, normal, deviations: fresh, misfit });
+            let misfit = cost + touches.len() as f64 * logs;
+            return Some(Fitted { point, line, deviations: fresh, misfit });
         }
     }
     None

@@ -10,8 +10,10 @@ mod arcs;
 mod choose;
 mod error;
 mod estimate;
+mod face;
 mod fit;
 mod friction;
+mod line;
 mod modes;
 mod outline;
 mod path;
@@ -26,3 +28,6 @@ pub use estimate::estimate_pushes;
 pub use outline::{OutlineCorner, OutlinePoint, PushedOutline};
 pub use result::{PushFriction, PushInstant, PushResult, PushesEstimate};
 pub use touches::NoTouch;
+
+#[cfg(test)]
+mod tests;

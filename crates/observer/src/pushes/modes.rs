@@ -13,11 +13,15 @@ const WINDOW: f64 = 0.1;
 pub(super) const WEIGHT: f64 = 0.25;
 /// Probability that a mode lasts from one window to the next: 3 s in the mean.
 const STAYS: f64 = 0.97;
+/// Slip at which friction is told, in speeds of the finger: where it changes with slip, in the middle of what pushes do.
+pub(super) const REFERENCE: f64 = 0.25;
 /// Share of windows that no mode explains, and the width over which they are spread, in ratios and in speeds of the finger.
 const STRAY: f64 = 1e-3;
 const WIDTH: f64 = 4.0;
 /// Largest slip, in speeds of the finger: an object that turns can add to it.
 const FASTEST: f64 = 1.5;
+/// Least coefficient of friction that is looked at.
+const LEAST_FRICTION: f64 = 0.01;
 /// Share of the median normal force below which a contact is not loaded yet.
 const LOADED: f64 = 0.5;
 
@@ -37,14 +41,23 @@ pub(super) struct Window {
 /// What is common to all pushes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Common {
-    /// Coefficient of friction.
+    /// Coefficient of friction at the reference slip.
     pub(super) friction: f64,
+    /// What it gains with slip, a speed of the finger.
+    pub(super) by_slip: f64,
     /// Its deviation from push to push.
     pub(super) of_push: f64,
     /// Deviation of a ratio about that of its push.
     pub(super) ratio: f64,
     /// Deviation of a slip, in speeds of the finger.
     pub(super) slip: f64,
+}
+
+impl Common {
+    /// Friction at a slip in speeds of the finger.
+    pub(super) fn at(&self, slip: f64) -> f64 {
+        (self.friction + self.by_slip * (slip.min(FASTEST) - REFERENCE)).max(LEAST_FRICTION)
+    }
 }
 
 /// Odds of a window: stick, left, right.
@@ -75,24 +88,27 @@ pub(super) fn windows(steps: &[PathStep], speed: f64) -> Vec<Window> {
     all
 }
 
-/// Logarithms of the densities of a window, by mode.
-fn densities(window: &Window, friction: f64, common: &Common) -> [f64; 3] {
+/// Logarithms of the densities of a window, by mode, where friction of the push exceeds that of all by `own`,
+/// to a variance.
+fn densities(window: &Window, (own, open): (f64, f64), common: &Common) -> [f64; 3] {
     let (ratio, slip) = (window.ratio, window.slip);
     let normal = |x: f64, deviation: f64| log_density(x, deviation * deviation).exp();
     let between = |x: f64, from: f64, to: f64, deviation: f64| {
         (below((x - from) / deviation) - below((x - to) / deviation)).max(0.0) / (to - from)
     };
+    let [still, friction] = [0.0, slip.abs()].map(|slip| (own + common.at(slip)).max(LEAST_FRICTION));
     let slides = |side: f64| {
-        normal(side * ratio - friction, common.ratio) * between(side * slip, 0.0, FASTEST, common.slip)
+        normal(side * ratio - friction, common.ratio.hypot(open.sqrt()))
+            * between(side * slip, 0.0, FASTEST, common.slip)
     };
-    let sticks = between(ratio, -friction, friction, common.ratio) * normal(slip, common.slip);
+    let sticks = between(ratio, -still, still, common.ratio) * normal(slip, common.slip);
     [sticks, slides(1.0), slides(-1.0)].map(|d| (d + STRAY / (WIDTH * WIDTH)).ln())
 }
 
 /// Odds of each window of a push, by what comes before and after it.
-pub(super) fn smoothed(windows: &[Window], friction: f64, common: &Common) -> Vec<Odds> {
+pub(super) fn smoothed(windows: &[Window], own: (f64, f64), common: &Common) -> Vec<Odds> {
     let said: Vec<[f64; 3]> =
-        windows.iter().map(|w| densities(w, friction, common).map(|d| (WEIGHT * d).exp())).collect();
+        windows.iter().map(|w| densities(w, own, common).map(|d| (WEIGHT * d).exp())).collect();
     let step = |odds: Odds| {
         let sum: f64 = odds.iter().sum();
         odds.map(|p| STAYS * p + (1.0 - STAYS) * 0.5 * (sum - p))
@@ -122,7 +138,7 @@ fn scaled(odds: Odds) -> Odds {
 mod tests {
     use super::*;
 
-    const COMMON: Common = Common { friction: 0.5, of_push: 0.03, ratio: 0.03, slip: 0.05 };
+    const COMMON: Common = Common { friction: 0.5, by_slip: 0.0, of_push: 0.03, ratio: 0.03, slip: 0.05 };
 
     fn window(ratio: f64, slip: f64) -> Window {
         Window { start: 0.0, end: 0.1, ratio, slip, steps: [0, 1] }
@@ -136,7 +152,7 @@ mod tests {
             for i in -200..200 {
                 for j in -200..200 {
                     let w = window(f64::from(i) * step, f64::from(j) * step);
-                    sum += densities(&w, 0.5, &COMMON)[mode].exp() * step * step;
+                    sum += densities(&w, (0.0, 0.0), &COMMON)[mode].exp() * step * step;
                 }
             }
             assert!((sum - 1.0 - STRAY).abs() < 1e-3, "{mode}: {sum}");
@@ -146,7 +162,7 @@ mod tests {
     #[test]
     fn sliding_needs_the_cone_and_slip_to_the_same_side() {
         let told = |ratio: f64, slip: f64| {
-            let odds = smoothed(&[window(ratio, slip); 30], 0.5, &COMMON)[15];
+            let odds = smoothed(&[window(ratio, slip); 30], (0.0, 0.0), &COMMON)[15];
             assert!((odds.iter().sum::<f64>() - 1.0).abs() < 1e-12);
             odds
         };

@@ -13,6 +13,10 @@ use object_dynamics::pushing::ClosedLine;
 /// Points of the outline at which its deviation is told.
 const POINTS: usize = 360;
 
+/// What covariances are widened by, of deviations 1.3: how far the outlines of simulated pushes were off beyond what touches by themselves
+/// state (`docs/pushes.md`).
+const WIDER: f64 = 1.69;
+
 /// A corner of a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutlineCorner {
@@ -70,7 +74,7 @@ pub(super) fn covariance(
     let inverse = information(fitted, touches, radius, size).and_then(Cholesky::new).map(|c| c.inverse());
     let (readings, unknowns) = (2.0 * touches.len() as f64, fitted.point.shape.unknowns() as f64);
     // Where nothing is left over, all is open: by the size of the object.
-    inverse.unwrap_or_else(SMatrix::identity) * (readings / (readings - unknowns).max(1.0))
+    inverse.unwrap_or_else(SMatrix::identity) * (WIDER * readings / (readings - unknowns).max(1.0))
 }
 
 impl PushedOutline {

@@ -1,9 +1,10 @@
 //! Where the object is between its two poses: it goes as the force drives it on the table, whose friction is an ellipsoidal limit
 //! surface, just as fast as the finger allows; what is then left to the pose after the push is spread over the way.
 
+use super::face::Face;
 use super::touches::{Touched, quantile};
 use glam::DVec2;
-use object_dynamics::pushing::{ClosedLine, PushPose, limit_twist};
+use object_dynamics::pushing::{PushPose, limit_twist};
 
 /// Smallest and largest friction length of the table that are looked at, in sizes of the object.
 const LENGTHS: [f64; 2] = [0.1, 3.0];
@@ -15,7 +16,7 @@ const LEAST_MOVED: f64 = 0.05;
 /// What is known when paths are looked for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Table<'a> {
-    pub(super) line: &'a ClosedLine,
+    pub(super) face: Face<'a>,
     /// Finger's radius, m.
     pub(super) radius: f64,
     /// Of the finger, m/N.
@@ -65,7 +66,7 @@ impl Table<'_> {
         for (j, pair) in tips.windows(2).enumerate() {
             let force = push.force(push.from + j) + push.force(push.from + j + 1);
             let direction = force.normalize_or_zero();
-            let near = self.line.nearest(pose.to_object(pair[0]));
+            let near = self.face.nearest(pose.to_object(pair[0]));
             let (r, inward) = (pose.turn(near.point), pose.turn(-near.normal));
             let (velocity, spin) = limit_twist(direction, r, length);
             let moved = inward.dot(velocity + r.perp() * spin);
@@ -104,7 +105,7 @@ impl Table<'_> {
         let mut last: Option<(DVec2, f64)> = None;
         let one = |(j, (tip, pose)): (usize, (&DVec2, &PushPose))| {
             let centre = pose.to_object(*tip);
-            let near = self.line.nearest(centre);
+            let near = self.face.nearest(centre);
             let left = -near.normal.perp();
             if let Some((before, theta)) = last {
                 // Without slip a finger that does not turn rolls over the object by its radius times the object's turn.

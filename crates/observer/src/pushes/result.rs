@@ -8,12 +8,24 @@ use object_dynamics::pushing::{PushMode, PushPose};
 /// The coefficient of friction between finger and object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PushFriction {
-    /// Its mean over pushes.
+    /// Its mean over pushes, at a slip of a quarter of the finger's speed.
     pub value: f64,
     /// Standard deviation of that mean.
     pub deviation: f64,
+    /// What it gains with the speed of slip, and its deviation, s/m.
+    pub by_slip: (f64, f64),
+    /// The slip at which it is told, m/s.
+    pub at_slip: f64,
     /// Pushes that slide.
     pub pushes: usize,
+}
+
+impl PushFriction {
+    /// The coefficient at a slip in m/s.
+    #[must_use]
+    pub fn at(&self, slip: f64) -> f64 {
+        self.value + self.by_slip.0 * (slip - self.at_slip)
+    }
 }
 
 /// One instant of a push in contact.

@@ -25,5 +25,6 @@ mod interrupted;
 mod margins;
 mod nothing_lost;
 mod planar;
+mod pushes;
 mod simulate_any;
 mod simulate_planar;

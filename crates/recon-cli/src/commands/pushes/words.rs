@@ -46,11 +46,14 @@ pub(super) fn verdict(told: &Told) -> Verdict {
     Verdict {
         level: Level::Good,
         text: format!(
-            "Outline of {outline} from {} pushes, friction {:.3} ± {:.3} from the {} that slide.",
+            "Outline: {outline}, from {} pushes. Friction {:.3} ± {:.3}, from the {} that slide, at a slip of {:.1} mm/s; it changes by {:+.3} ± {:.3} a mm/s.",
             estimate.pushes.len(),
             friction.value,
             friction.deviation,
-            friction.pushes
+            friction.pushes,
+            1e3 * friction.at_slip,
+            1e-3 * friction.by_slip.0,
+            1e-3 * friction.by_slip.1,
         ),
     }
 }
@@ -108,7 +111,16 @@ pub(super) fn summary(told: &[Told], radius: f64) -> Value {
 /// The summary of a log; what is not known is left out.
 fn figures(told: &Told) -> Value {
     let e = &told.estimate;
-    let friction = |f: &PushFriction| json!({"value": f.value, "deviation": f.deviation, "pushes": f.pushes});
+    let pair = |(value, deviation): (f64, f64)| json!({"value": value, "deviation": deviation});
+    let friction = |f: &PushFriction| {
+        json!({
+            "value": f.value,
+            "deviation": f.deviation,
+            "at_slip_m_per_s": f.at_slip,
+            "by_slip_s_per_m": pair(f.by_slip),
+            "pushes": f.pushes,
+        })
+    };
     let corners = e.outline.corners.iter().map(
         |c| json!({"point_m": c.point.to_array(), "deviation_m": c.deviation(), "to_touch_m": c.to_touch}),
     );
@@ -118,7 +130,6 @@ fn figures(told: &Told) -> Value {
         .iter()
         .map(|c| json!({"outline": c.name, "unknowns": c.unknowns, "log_odds_against": c.against}));
     let left_out = e.untouched.iter().map(|(n, why)| json!({"push": n, "why": why.to_string()}));
-    let clock = |(value, deviation): (f64, f64)| json!({"value": value, "deviation": deviation});
     let mut all = json!({
         "log": told.number,
         "verdict": verdict(told).text,
@@ -133,8 +144,8 @@ fn figures(told: &Told) -> Value {
         "pushes": e.pushes.len(),
         "left_out": left_out.collect::<Vec<_>>(),
         "touch_deviations_m": e.touch_deviations,
-        "finger_ahead_at_first_touch_s": clock(e.clocks[0]),
-        "finger_ahead_at_last_touch_s": clock(e.clocks[1]),
+        "finger_ahead_at_first_touch_s": pair(e.clocks[0]),
+        "finger_ahead_at_last_touch_s": pair(e.clocks[1]),
         "compliance_m_per_N": e.compliance,
         "table_friction_length_m": e.table_length,
     });

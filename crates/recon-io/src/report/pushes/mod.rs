@@ -18,8 +18,8 @@ const PAGE: &str = include_str!("../assets/pushes.html");
 const LOG: &str = include_str!("../assets/pushed_log.html");
 const OWN_STYLE: &str = include_str!("../assets/pushes.css");
 const CURVES: &str = "Angles are those of the force against the inward normal, in windows of a tenth of a second; shaded is the edge of the friction cone, \
-    the coefficient and twice the deviation from push to push. Each dot of the next two is the own coefficient of a push that slides; the line with its band is the \
-    mean with twice its deviation. Last, what is left between finger and outline at the first and the last touch of each push.";
+    the coefficient and twice the deviation from push to push. Each dot of the next two is the own coefficient of a push that slides; the line with its band is that of all \
+    with twice its deviation. Last, what is left between finger and outline at the first and the last touch of each push.";
 
 /// What the page shows of a log.
 #[derive(Clone, Debug)]
@@ -100,6 +100,13 @@ fn facts(log: &PushedLog) -> Vec<(&'static str, String, &'static str)> {
     match told.friction {
         Some(f) => {
             facts.push(("Friction coefficient", format!("{:.3} ± {:.3}", f.value, f.deviation), ""));
+            let (slope, deviation) = f.by_slip;
+            facts.push(("It is told at a slip of", brief_to(2, 1e3 * f.at_slip), "mm/s"));
+            facts.push((
+                "It changes with slip by",
+                format!("{:+.3} ± {:.3}", 1e-3 * slope, 1e-3 * deviation),
+                "a mm/s",
+            ));
             facts.push(("Half angle of the cone", brief_to(3, f.value.atan().to_degrees()), "degrees"));
         }
         None => facts.push(("Friction coefficient", format!("above {:.2}", told.ratio_seen), "")),

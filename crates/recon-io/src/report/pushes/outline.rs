@@ -14,6 +14,8 @@ const ROOM: f64 = 64.0;
 const FORCE: f64 = 24.0;
 /// Bands below this half width, px, are drawn wider by a factor that the caption tells.
 const LEAST_BAND: f64 = 4.0;
+/// From a corner's ellipse to its name, px.
+const LABEL: f64 = 12.0;
 /// Ways to a touch, as a share of the way around, beyond which the outline is inferred.
 const FELT: f64 = 0.01;
 
@@ -145,7 +147,9 @@ fn draw_corner(corner: &OutlineCorner, factor: f64, frame: &Frame, out: &mut Str
         place.x, place.y
     );
     let away = (place - DVec2::new(0.5 * WIDTH, 0.5 * HEIGHT)).normalize_or_zero();
-    let (x, y) = ((place.x + away.x * 22.0).clamp(62.0, WIDTH - 62.0), place.y + away.y * 34.0 + 4.0);
+    let (x, y) =
+        ((place.x - away.x * 30.0).clamp(84.0, WIDTH - 84.0), place.y + away.y.signum() * (LABEL + a.max(b)));
+    let y = y.clamp(14.0, HEIGHT - 6.0);
     let [px, py] = corner.point.to_array().map(|v| v * 1e3);
     let _ = writeln!(
         out,
@@ -157,7 +161,7 @@ fn draw_corner(corner: &OutlineCorner, factor: f64, frame: &Frame, out: &mut Str
 /// A bar of a round length, and the origin.
 fn draw_scale(length: f64, frame: &Frame, out: &mut String) {
     let bar = crate::planar_figures::round_step(0.04 * length);
-    let (x, y) = (20.0, HEIGHT - 18.0);
+    let (x, y) = (20.0, 24.0);
     let end = x + bar * frame.scale;
     let _ = writeln!(out, "<path class=\"scale\" d=\"M{x} {} v8 M{x} {y} H{end:.1} m0 -4 v8\"/>", y - 4.0);
     let _ = writeln!(

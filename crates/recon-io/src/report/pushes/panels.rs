@@ -51,13 +51,10 @@ fn angles(told: &PushesEstimate) -> FigurePanel {
     }
 }
 
-/// The mean with twice its deviation between two places.
-fn mean(told: &PushesEstimate, from: f64, to: f64) -> FigureCurve {
-    let Some(friction) = told.friction else { return curve("", Vec::new(), false) };
-    FigureCurve {
-        half_heights: vec![2.0 * friction.deviation; 2],
-        ..curve("mean", vec![[from, friction.value], [to, friction.value]], false)
-    }
+/// A line with twice the deviation of the friction about it.
+fn line(told: &PushesEstimate, name: &str, points: [[f64; 2]; 2]) -> FigureCurve {
+    let deviation = told.friction.map_or(f64::NAN, |f| f.deviation);
+    FigureCurve { half_heights: vec![2.0 * deviation; 2], ..curve(name, points.to_vec(), false) }
 }
 
 fn friction(told: &PushesEstimate) -> FigurePanel {
@@ -67,7 +64,12 @@ fn friction(told: &PushesEstimate) -> FigurePanel {
     FigurePanel {
         title: "Friction by push".to_owned(),
         axes: ["push".to_owned(), "coefficient".to_owned()],
-        curves: vec![mean(told, from, to), curve("one push", own.collect(), true)],
+        curves: told
+            .friction
+            .map(|f| line(told, "mean", [[from, f.value], [to, f.value]]))
+            .into_iter()
+            .chain([curve("one push", own.collect(), true)])
+            .collect(),
         ..FigurePanel::default()
     }
 }
@@ -87,7 +89,12 @@ fn friction_by_slip(told: &PushesEstimate) -> FigurePanel {
     FigurePanel {
         title: "Friction by speed of the slip".to_owned(),
         axes: ["slip in mm/s".to_owned(), "coefficient".to_owned()],
-        curves: vec![mean(told, 0.0, most), curve("one push", own, true)],
+        curves: told
+            .friction
+            .map(|f| line(told, "all", [[0.0, f.at(0.0)], [most, f.at(1e-3 * most)]]))
+            .into_iter()
+            .chain([curve("one push", own, true)])
+            .collect(),
         ..FigurePanel::default()
     }
 }
