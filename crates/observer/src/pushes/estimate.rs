@@ -16,9 +16,6 @@ use glam::DVec2;
 use nalgebra::SMatrix;
 use object_dynamics::pushing::{Nearest, PushLog};
 
-/// Share of the deviation from push to push by which the mean of the pushes that slide may be off: those slide that rub less. By the
-/// simulated pushes of `docs/pushes.md`.
-const CHOSEN: f64 = 0.6;
 /// Directions of normals that count as one place: of a polygon most often a face each.
 const PLACES: usize = 12;
 
@@ -109,6 +106,9 @@ fn place(normal: DVec2) -> usize {
 }
 
 /// Friction with what the outline's directions leave open: a face that is turned shifts sliding to both sides against each other.
+///
+/// What differs from push to push is not taken as averaged out: it may be wear or another place, which all pushes of a stretch of time or of
+/// a face share, and those slide that rub less.
 fn friction(
     learned: &Learned,
     touched: &[Nearest],
@@ -124,7 +124,7 @@ fn friction(
     let pushes = learned.own.iter().flatten().count();
     learned.variance.map(|own| PushFriction {
         value,
-        deviation: (own + of_outline + (CHOSEN * common.of_push).powi(2)).sqrt(),
+        deviation: (own + of_outline + common.of_push.powi(2)).sqrt(),
         by_slip: (common.by_slip / speed, learned.slope_variance.sqrt() / speed),
         at_slip: REFERENCE * speed,
         pushes,

@@ -10,7 +10,7 @@ use object_dynamics::pushing::{PushMode, PushPose};
 pub struct PushFriction {
     /// Its mean over pushes, at a slip of a quarter of the finger's speed.
     pub value: f64,
-    /// Standard deviation of that mean.
+    /// Its standard deviation, with the one from push to push: that need not average out.
     pub deviation: f64,
     /// What it gains with the speed of slip, and its deviation, s/m.
     pub by_slip: (f64, f64),

@@ -26,6 +26,15 @@ pub(super) fn rows(log: &PushedLog) -> String {
             "each by its own pushes and its own outline",
         ));
     }
+    if let Some(f) = told.friction {
+        let [slope, deviation] = [f.by_slip.0, f.by_slip.1].map(|v| 1e-3 * v);
+        let value = format!("{slope:+.3} ± {deviation:.3} a mm/s");
+        rows.push((
+            "Friction: change with slip".to_owned(),
+            value,
+            "by the pushes that slide; before anything is seen, none",
+        ));
+    }
     let of_push = format!("{:.3}, {:.3}", told.spread[0], told.spread[1]);
     rows.push((
         "Friction: push to push, within a push".to_owned(),

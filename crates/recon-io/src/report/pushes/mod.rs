@@ -100,13 +100,8 @@ fn facts(log: &PushedLog) -> Vec<(&'static str, String, &'static str)> {
     match told.friction {
         Some(f) => {
             facts.push(("Friction coefficient", format!("{:.3} ± {:.3}", f.value, f.deviation), ""));
-            let (slope, deviation) = f.by_slip;
             facts.push(("It is told at a slip of", brief_to(2, 1e3 * f.at_slip), "mm/s"));
-            facts.push((
-                "It changes with slip by",
-                format!("{:+.3} ± {:.3}", 1e-3 * slope, 1e-3 * deviation),
-                "a mm/s",
-            ));
+            facts.push(("It changes with slip by", format!("{:+.3}", 1e-3 * f.by_slip.0), "a mm/s"));
             facts.push(("Half angle of the cone", brief_to(3, f.value.atan().to_degrees()), "degrees"));
         }
         None => facts.push(("Friction coefficient", format!("above {:.2}", told.ratio_seen), "")),

@@ -161,9 +161,10 @@ fn draw_corner(corner: &OutlineCorner, factor: f64, frame: &Frame, out: &mut Str
 /// A bar of a round length, and the origin.
 fn draw_scale(length: f64, frame: &Frame, out: &mut String) {
     let bar = crate::planar_figures::round_step(0.04 * length);
-    let (x, y) = (20.0, 24.0);
-    let end = x + bar * frame.scale;
-    let _ = writeln!(out, "<path class=\"scale\" d=\"M{x} {} v8 M{x} {y} H{end:.1} m0 -4 v8\"/>", y - 4.0);
+    let (end, y) = (WIDTH - 80.0, 24.0);
+    let x = end - bar * frame.scale;
+    let _ =
+        writeln!(out, "<path class=\"scale\" d=\"M{x:.1} {} v8 M{x:.1} {y} H{end:.1} m0 -4 v8\"/>", y - 4.0);
     let _ = writeln!(
         out,
         "<text x=\"{:.1}\" y=\"{}\">{} mm</text>",
