@@ -74,6 +74,11 @@ impl<'a> Touched<'a> {
     pub(super) fn find(push: &'a Push) -> Result<Self, NoTouch> {
         let samples = &push.samples;
         let high = quantile(samples.iter().map(|s| s.force.length()).collect(), 0.75);
+        // White noise alone has no level above what neighbours differ by.
+        let steps = samples.windows(2).map(|pair| pair[1].force.distance(pair[0].force)).collect();
+        if high < NOISE * quantile(steps, 0.5) / (MEDIAN_LENGTH * std::f64::consts::SQRT_2) {
+            return Err(NoTouch::NoForce);
+        }
         let rise = samples.iter().position(|s| s.force.length() > LOADED * high).ok_or(NoTouch::NoForce)?;
         // Half of what is before the rise is surely free of contact.
         let quiet = &samples[..rise / 2];
