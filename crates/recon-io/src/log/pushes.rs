@@ -230,7 +230,11 @@ mod tests {
             ),
             (told(&all.replace("3,1,4.5", "3,1,2.5"), POSES), vec!["line 6", "log 3", "push 1", "2.5 s"]),
             (told(&all.replace("3,1,4.5", "3,1,four"), POSES), vec!["line 6", "`t`", "four"]),
-            (told(&all.replace("3,1,4.5", "3,2,4.5"), POSES), vec!["line 2", "push 1", "7 sample(s)"]),
+            (told(&all.replace("3,1,4.5", "3,2,4.5"), POSES), vec!["line 6", "push 2 of log 3", "no row"]),
+            (
+                told(&all.replace("3,1,7.5,0.25,-1,0.125,2\n", ""), POSES),
+                vec!["line 2", "push 1", "7 sample(s)"],
+            ),
             (told(&all, &POSES.replace("3,1,", "3,9,")), vec!["line 2", "push 1 of log 3", "poses"]),
             (told(&all, &format!("{POSES}3,1,0,0,0,0,0,0\n")), vec!["line 3", "push 1 of log 3", "line 2"]),
         ] {
