@@ -146,13 +146,20 @@ impl Tally {
         };
         let share = |count: u64| count as f64 / self.samples.max(1) as f64;
         format!(
-            "| {name} | {}, {} | {} | {:.4}, {:.2}, {:.2} | {:.2}, {:.2} | {:.2} | {:.2}, {:.2} | {} | {:.3} | {:.4} | {:.1} |",
+            "| {name} | {}, {} | {} | {} | {:.2}, {:.2} | {:.2} | {:.2}, {:.2} | {} | {:.3} | {:.4} | {:.1} |",
             self.logs,
             self.refused,
             self.kind,
-            quantile(sizes(&self.friction), 0.5),
-            scaled(&self.friction),
-            within(&self.friction),
+            if self.friction.is_empty() {
+                "not told".to_owned()
+            } else {
+                format!(
+                    "{:.4}, {:.2}, {:.2}",
+                    quantile(sizes(&self.friction), 0.5),
+                    scaled(&self.friction),
+                    within(&self.friction)
+                )
+            },
             quantile(sizes(&self.touched), 0.5),
             quantile(sizes(&self.touched), 0.99),
             within(&self.touched),
