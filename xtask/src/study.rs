@@ -95,6 +95,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "planar bodies on any palms: what a run keeps to, what it refuses",
     ),
     (
+        "pushes",
+        "pushes-study.md",
+        "outline, friction and modes from pushes: simulated shapes, and real logs where they are there",
+    ),
+    (
         "reaching",
         "exploration.md",
         "touches and way that planners take to a gap, false certificates under noise",

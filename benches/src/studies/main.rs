@@ -27,6 +27,7 @@ mod planar_estimates;
 mod planar_estimates_friction;
 mod planar_observability;
 mod planar_tally;
+mod pushes;
 mod reaching;
 mod shape_fits;
 mod streaming;
@@ -66,6 +67,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("planar_estimates", || in_words(planar_estimates::main())),
     ("planar_estimates_friction", || in_words(planar_estimates_friction::main())),
     ("planar_observability", || in_words(planar_observability::main())),
+    ("pushes", || in_words(pushes::main())),
     ("reaching", || in_words(reaching::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),

@@ -13,6 +13,7 @@ mod modes;
 #[cfg(feature = "noise")]
 mod noise;
 pub mod planar;
+pub mod pushing;
 mod series;
 mod state;
 mod streams;

@@ -21,6 +21,8 @@ mod least_squares;
 #[cfg(feature = "palms")]
 pub mod planar;
 #[cfg(feature = "palms")]
+pub mod pushes;
+#[cfg(feature = "palms")]
 mod quadrature;
 #[cfg(feature = "palms")]
 mod random;

@@ -66,6 +66,8 @@ pub(crate) enum Command {
     Bounds(BoundsArgs),
     /// Reconstruct a planar object between two hinged palms from a planar log, or the scene of the paper's Fig. 3
     Planar(PlanarArgs),
+    /// Tell the outline of an object, friction and contact modes from pushes by a round finger on a table
+    Pushes(PushesArgs),
     /// Simulate and reconstruct the scene of the paper's Fig. 5, or show another scene, with no input at all
     Demo(DemoArgs),
     /// Write a scene of palms of any shape for MuJoCo
@@ -500,6 +502,38 @@ pub(crate) struct PlanarArgs {
     pub(crate) order: u8,
     /// Folder to write; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long, default_value = "recon-planar")]
+    pub(crate) output: PathBuf,
+    /// Write beside files in the folder that recon did not write; these are never replaced or removed
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
+Both files are CSV (push-samples, push-poses in `recon formats`): force on the object and centre of the finger in the world
+throughout each push; poses of the object only before and after it. A push begins off the object and is slow enough that
+friction with the table alone resists. Files with a column `log` hold several logs, each of one object, finger and table.
+
+The output folder appears as a whole or not at all: the page report.html, outline.csv, corners.csv, touches.csv, modes.csv
+(sticking or sliding at each instant, with probabilities) and summary.json. The outline is in the frame of the poses.
+
+Examples:
+  recon pushes pushes.csv --poses poses.csv --radius 0.001 -o out
+  recon pushes pushes.csv --poses poses.csv --radius 0.001 --log 2 -o out")]
+pub(crate) struct PushesArgs {
+    /// Samples of force and finger (CSV)
+    pub(crate) pushes: PathBuf,
+    /// Poses before and after each push (CSV)
+    #[arg(long)]
+    pub(crate) poses: PathBuf,
+    /// Radius of the finger in m
+    #[arg(long, value_parser = positive)]
+    pub(crate) radius: f64,
+    /// Number of the one log that is looked at [default: all]
+    #[arg(long)]
+    pub(crate) log: Option<u32>,
+    /// Folder to write; what an earlier run wrote there and nobody changed is replaced
+    #[arg(short, long, default_value = "recon-pushes")]
     pub(crate) output: PathBuf,
     /// Write beside files in the folder that recon did not write; these are never replaced or removed
     #[arg(long)]

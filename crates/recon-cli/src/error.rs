@@ -5,6 +5,7 @@ use recon::object_dynamics::{
     SceneError as DynamicsError, SimulationError,
 };
 use recon::observer::ContactEstimateError;
+use recon::observer::pushes::PushesError;
 use recon::shape_bounds::{
     AlphaError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
     SurfaceError, planar,
@@ -90,6 +91,10 @@ pub(crate) enum CliError {
     PlanarNoisyBounds(#[from] planar::NoiseError),
     #[error("the contacts in the plane and the limits on the curvature give no bounds")]
     PlanarCurvature(#[from] planar::CurvatureError),
+    #[error("{} has no log {number}; it has {there}", path.display())]
+    NoPushLog { path: PathBuf, number: u32, there: String },
+    #[error("the pushes of log {log} tell no outline")]
+    Pushes { log: u32, source: PushesError },
     #[error("no outline can be fitted to the contacts")]
     PlanarFit(#[from] planar::FitError),
     #[error("the contacts have no alpha shape")]
@@ -274,6 +279,8 @@ impl CliError {
             | Self::PlanarNoisyBounds(_)
             | Self::PlanarCurvature(_)
             | Self::PlanarFit(_)
+            | Self::NoPushLog { .. }
+            | Self::Pushes { .. }
             | Self::Alpha(_)
             | Self::Surface(_)
             | Self::UnknownBody

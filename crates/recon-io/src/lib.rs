@@ -40,8 +40,9 @@ pub use log::{
     AnyLog, ContactRows, LogFileError, LogFileErrorKind, LogReader, PalmSetup, PlaneRows, PoseAgainstScene,
     RowReader, RowSample, log_of_columns, parse_any_log, parse_contact_log, parse_log,
     parse_planar_contact_log, parse_planar_log, planar_contact_log_of_columns, planar_log_of_columns,
-    read_any_log, read_contact_log, read_log, read_planar_contact_log, read_planar_log, write_contact_log,
-    write_log, write_planar_contact_log, write_planar_log,
+    read_any_log, read_contact_log, read_log, read_planar_contact_log, read_planar_log, read_push_logs,
+    write_contact_log, write_log, write_planar_contact_log, write_planar_log, write_push_poses,
+    write_push_samples,
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use mesh_formats::{write_glb, write_stl};
@@ -53,11 +54,11 @@ pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities};
 pub use report::{
     BatchPage, Bound, Bounds, EstimateData, Evidence, EvidenceValue, ExplorationPage, FiguresPage, Level,
-    LogCard, ModeSpan, MotionState, PalmContact, PalmTrack, PlaneEstimateData, ReportData, ReportError,
-    TouchRow, TrueShape, Verdict, doubtful_spans, estimated_mode_spans, mode_spans, mode_times,
+    LogCard, ModeSpan, MotionState, PalmContact, PalmTrack, PlaneEstimateData, PushedLog, ReportData,
+    ReportError, TouchRow, TrueShape, Verdict, doubtful_spans, estimated_mode_spans, mode_spans, mode_times,
     planar_mode_spans, write_batch_report, write_contact_report, write_estimate_report,
     write_exploration_report, write_figures_page, write_planar_contact_report, write_plane_estimate_report,
-    write_report,
+    write_pushes_report, write_report,
 };
 pub use scene::{
     BoxedShape, KnownInertia, KnownPalm, PlanarBody, PlanarKnown, PlanarScene, Scene, SceneError,

@@ -13,7 +13,7 @@ mod contact;
 mod density;
 mod error;
 mod friction;
-mod normal;
+pub(crate) mod normal;
 mod options;
 mod reading;
 mod steps;

@@ -8,7 +8,7 @@ const TAIL: f64 = 3.0;
 const TERMS: u32 = 80;
 
 /// Logarithm of the normal density with this variance, at `x` from the mean.
-pub(super) fn log_density(x: f64, variance: f64) -> f64 {
+pub(crate) fn log_density(x: f64, variance: f64) -> f64 {
     -0.5 * ((TAU * variance).ln() + x * x / variance)
 }
 
@@ -30,7 +30,7 @@ fn erf(x: f64) -> f64 {
 }
 
 /// Probability that a standard normal number is below `x`.
-pub(super) fn below(x: f64) -> f64 {
+pub(crate) fn below(x: f64) -> f64 {
     let z = x / SQRT_2;
     if z <= -TAIL {
         0.5 * (-z * z).exp() * scaled_tail(-z)
@@ -42,13 +42,13 @@ pub(super) fn below(x: f64) -> f64 {
 }
 
 /// Logarithm of [`below`], which does not underflow.
-pub(super) fn log_below(x: f64) -> f64 {
+pub(crate) fn log_below(x: f64) -> f64 {
     let z = x / SQRT_2;
     if z <= -TAIL { (0.5 * scaled_tail(-z)).ln() - z * z } else { below(x).ln() }
 }
 
 /// Integral of [`below`] from minus infinity: `x below(x) + density(x)`.
-pub(super) fn integral_below(x: f64) -> f64 {
+pub(crate) fn integral_below(x: f64) -> f64 {
     // The two terms cancel in the lower tail, where nothing is left to speak of.
     (x * below(x) + log_density(x, 1.0).exp()).max(0.0)
 }

@@ -18,6 +18,7 @@ mod next;
 pub(crate) mod planar;
 mod planar_fit;
 mod plane;
+mod pushes;
 pub(crate) mod reconstruct;
 pub(crate) mod simulate;
 mod without_forces;
@@ -36,6 +37,7 @@ pub(crate) fn run(command: &Command, console: &Console) -> Result<Outcome, CliEr
         Command::Follow(args) => follow::run(args, console),
         Command::Bounds(args) => bounds::run(args, console),
         Command::Planar(args) => planar::run(args, console),
+        Command::Pushes(args) => pushes::run(args, console),
         Command::Demo(args) => demo::run(args, console),
         Command::Export(args) => export::run(args, console),
         Command::Check(args) => check::run(args, console),

@@ -25,6 +25,7 @@ mod interrupted;
 mod margins;
 mod nothing_lost;
 mod planar;
+mod pushes;
 mod schema;
 mod simulate_any;
 mod simulate_planar;

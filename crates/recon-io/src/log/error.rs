@@ -2,6 +2,7 @@ use super::contacts::PoseAgainstScene;
 use crate::separator::advice;
 use recon::contact_kinematics::{DirectionError, PalmError, SurfaceError};
 use recon::object_dynamics::planar::{self, PlanarLogError};
+use recon::object_dynamics::pushing::PushLogError;
 use recon::object_dynamics::{ContactLogError, LogError};
 use std::path::PathBuf;
 use thiserror::Error;
@@ -283,6 +284,64 @@ pub enum LogFileErrorKind {
         line: Option<u64>,
         /// Why.
         source: planar::ContactLogError,
+    },
+    /// A number of a log or of a push that is none.
+    #[error(
+        "line {line}, column `{column}` is {value}; logs and pushes are numbered by whole numbers from 0"
+    )]
+    PushNumber {
+        /// Line number.
+        line: u64,
+        /// Column name.
+        column: String,
+        /// As given.
+        value: f64,
+    },
+    /// Samples of a push whose poses are not known.
+    #[error(
+        "line {line}: push {push} of log {log} has no row in the file of poses; add its poses, or leave its samples out"
+    )]
+    NoPoseOfPush {
+        /// Line of its first sample.
+        line: u64,
+        /// Its log.
+        log: u32,
+        /// Its number.
+        push: u32,
+    },
+    /// Poses of a push without samples.
+    #[error(
+        "line {line}: push {push} of log {log} has no sample in the file of pushes; add its samples, or leave its poses out"
+    )]
+    PoseWithoutPush {
+        /// Line number.
+        line: u64,
+        /// Its log.
+        log: u32,
+        /// Its number.
+        push: u32,
+    },
+    /// Two rows of poses for one push.
+    #[error("line {line}: push {push} of log {log} has poses already in line {first}; keep one row")]
+    PoseTwice {
+        /// Line number.
+        line: u64,
+        /// Its log.
+        log: u32,
+        /// Its number.
+        push: u32,
+        /// Line of the other row.
+        first: u64,
+    },
+    /// The samples do not make a log of pushes; `line` as above.
+    #[error("{}log {log}: {source}", line.map_or(String::new(), |line| format!("line {line}: ")))]
+    Pushes {
+        /// Number of the log.
+        log: u32,
+        /// Line number.
+        line: Option<u64>,
+        /// Why.
+        source: PushLogError,
     },
     /// The samples do not make a planar log; `line` as above.
     #[error("{}{source}", line.map_or(String::new(), |line| format!("line {line}: ")))]

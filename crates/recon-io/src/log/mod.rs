@@ -1,4 +1,4 @@
-//! Sensor logs as CSV files: of any palms (version 2), of three flat palms (version 1), and planar ones of two. What they
+//! Sensor logs as CSV files: of any palms (version 2), of three flat palms (version 1), planar ones of two, and of pushes. What they
 //! hold is in `docs/formats.md`.
 
 mod columns;
@@ -8,6 +8,7 @@ mod memory;
 mod ordered;
 mod planar;
 mod planar_contacts;
+mod pushes;
 mod read;
 mod reader;
 mod write;
@@ -25,6 +26,7 @@ pub use memory::{
 };
 pub use planar::{parse_planar_log, read_planar_log, write_planar_log};
 pub use planar_contacts::{parse_planar_contact_log, read_planar_contact_log, write_planar_contact_log};
+pub use pushes::{read_push_logs, write_push_poses, write_push_samples};
 pub use read::{parse_log, read_log};
 pub use reader::{LogReader, PlaneRows};
 pub use write::write_log;

@@ -9,6 +9,7 @@ mod exploration;
 mod figures_page;
 mod notices;
 mod page;
+mod pushes;
 
 #[cfg(test)]
 mod tests;
@@ -26,6 +27,7 @@ pub use data::{
 pub use exploration::{ExplorationPage, TouchRow, write_exploration_report};
 pub use figures_page::{FiguresPage, write_figures_page};
 pub use page::write_report;
+pub use pushes::{PushedLog, write_pushes_report};
 
 pub(crate) use data::Departure;
 pub(crate) use encode::level;

@@ -29,7 +29,7 @@ const TRUTH: Column = may(
     "truth, to compare with alone: centre of mass, body to world, velocities in world axes",
 );
 
-pub(super) const FORMATS: [Format; 11] = [
+pub(super) const FORMATS: [Format; 17] = [
     Format {
         name: "log",
         about: "sensor log, version 1: three flat palms through the origin. t1 of a palm is horizontal, t2 points up it, n towards the object, t1 = t2 x n",
@@ -124,6 +124,79 @@ pub(super) const FORMATS: [Format; 11] = [
             may("toss", "-", "a new run begins where the number changes (or run)"),
             may("run", "-", "in place of toss"),
             may("frame", "-", "counts by ones within a run"),
+        ],
+    },
+    Format {
+        name: "push-samples",
+        about: "samples of pushes by a round finger on a table (recon pushes); world frame, in the plane of the table",
+        columns: &[
+            may("log", "-", "number of the log: one object, finger and table; else all is log 0"),
+            needed("push", "-", "number of the push within its log"),
+            needed("t", "s", "time since the push began; does not run backward"),
+            needed("fx, fy", "N", "force of the finger on the object"),
+            needed("finger_x, finger_y", "m", "centre of the finger"),
+        ],
+    },
+    Format {
+        name: "push-poses",
+        about: "poses of the pushed object before and after each push (recon pushes); origin in the centre of mass",
+        columns: &[
+            may("log", "-", "as in push-samples"),
+            needed("push", "-", "number of the push; a row for each"),
+            needed("pre_x, pre_y, pre_theta", "m, rad", "pose before it: origin, angle counter-clockwise"),
+            needed("post_x, post_y, post_theta", "m, rad", "pose after it"),
+        ],
+    },
+    Format {
+        name: "push-outline",
+        about: "outline.csv of recon pushes: points all around the object, counter-clockwise, in the frame of the poses",
+        columns: &[
+            needed("log", "-", "number of the log"),
+            needed("x, y", "m", "point"),
+            needed("nx, ny", "1", "unit normal out of the object"),
+            needed("std", "m", "standard deviation of the outline along it"),
+            needed("to_touch", "m", "way along the outline to the nearest touched stretch; 0 on one"),
+        ],
+    },
+    Format {
+        name: "push-corners",
+        about: "corners.csv of recon pushes: corners of a polygon, counter-clockwise; none of a smooth outline",
+        columns: &[
+            needed("log, corner", "-", "number of the log, of the corner from 1"),
+            needed("x, y", "m", "point, in the frame of the poses"),
+            needed("std_x, std_y, cov_xy", "m, m, m^2", "standard deviations and covariance"),
+            needed(
+                "touch_before, touch_after",
+                "m",
+                "ways along the outline to the nearest touch, clockwise and on",
+            ),
+        ],
+    },
+    Format {
+        name: "push-touches",
+        about: "touches.csv of recon pushes: where each push first and last touched the outline",
+        columns: &[
+            needed("log, push, end", "-", "number of log and push; 0 at the first, 1 at the last touch"),
+            needed("x, y", "m", "point of the outline"),
+            needed("gap", "m", "what the fit leaves between finger and outline"),
+        ],
+    },
+    Format {
+        name: "push-modes",
+        about: "modes.csv of recon pushes: sticking or sliding at each instant under load; left and right as the finger looks at the object",
+        columns: &[
+            needed("log, push", "-", "number of log and push"),
+            needed("t", "s", "time since the push began"),
+            needed("x, y", "m", "touched point of the outline"),
+            needed("ratio", "1", "friction over normal force, positive to the left"),
+            needed("slip", "m/s", "of the finger over the outline, positive to the left"),
+            needed("stick, left, right", "1", "probabilities; they sum to one"),
+            needed("mode", "-", "the most probable: 1 slides to the left, 2 sticks, 3 slides to the right"),
+            needed(
+                "px, py, theta",
+                "m, rad",
+                "pose by which it was judged: inferred between those that were measured",
+            ),
         ],
     },
     Format {

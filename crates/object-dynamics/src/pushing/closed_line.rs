@@ -1,0 +1,166 @@
+//! An outline as a closed line through corners, and how far a point is from it.
+
+use glam::DVec2;
+use thiserror::Error;
+
+/// Distance from a corner below which its direction says nothing, m.
+const AT_CORNER: f64 = 1e-12;
+
+/// A closed line through corners, counter-clockwise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosedLine {
+    corners: Vec<DVec2>,
+}
+
+/// Corners that close no line.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ClosedLineError {
+    /// Fewer than three.
+    #[error("an outline needs at least three corners; there are {found}")]
+    TooFew {
+        /// How many there are.
+        found: usize,
+    },
+    /// One that is not finite.
+    #[error("corner {corner} is ({x}, {y}); it must be finite")]
+    NotFinite {
+        /// Which, from 0.
+        corner: usize,
+        /// m.
+        x: f64,
+        /// m.
+        y: f64,
+    },
+    /// Nothing inside.
+    #[error("the outline has an area of {area} m^2; it must go around something")]
+    Flat {
+        /// m^2.
+        area: f64,
+    },
+}
+
+/// The point of a closed line that is nearest to some point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// Distance of that other point, m: positive outside.
+    pub distance: f64,
+    /// The nearest point of the line.
+    pub point: DVec2,
+    /// Unit vector out of the object there, towards the other point where that lies outside.
+    pub normal: DVec2,
+    /// The edge, which begins at the corner of that number.
+    pub edge: usize,
+    /// Share of the edge that lies before the nearest point.
+    pub along: f64,
+}
+
+impl ClosedLine {
+    /// Through corners in either sense of turning.
+    ///
+    /// # Errors
+    /// [`ClosedLineError`].
+    pub fn new(mut corners: Vec<DVec2>) -> Result<Self, ClosedLineError> {
+        if corners.len() < 3 {
+            return Err(ClosedLineError::TooFew { found: corners.len() });
+        }
+        if let Some((corner, p)) = corners.iter().enumerate().find(|(_, p)| !p.is_finite()) {
+            return Err(ClosedLineError::NotFinite { corner, x: p.x, y: p.y });
+        }
+        let area = signed_area(&corners);
+        if area == 0.0 || !area.is_finite() {
+            return Err(ClosedLineError::Flat { area });
+        }
+        if area < 0.0 {
+            corners.reverse();
+        }
+        Ok(Self { corners })
+    }
+
+    /// Corners, counter-clockwise.
+    #[must_use]
+    pub fn corners(&self) -> &[DVec2] {
+        &self.corners
+    }
+
+    /// Area inside, m^2.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        signed_area(&self.corners)
+    }
+
+    /// The edges, from corner to corner.
+    pub fn edges(&self) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
+        let next = self.corners.iter().cycle().skip(1);
+        self.corners.iter().copied().zip(next.copied())
+    }
+
+    /// The nearest point of the line.
+    #[must_use]
+    pub fn nearest(&self, to: DVec2) -> Nearest {
+        let mut best = (f64::INFINITY, 0, 0.0, DVec2::ZERO);
+        let mut inside = false;
+        for (k, (a, b)) in self.edges().enumerate() {
+            let along_edge = b - a;
+            let along = ((to - a).dot(along_edge) / along_edge.length_squared()).clamp(0.0, 1.0);
+            let along = if along.is_nan() { 0.0 } else { along };
+            let point = a + along_edge * along;
+            let squared = point.distance_squared(to);
+            if squared < best.0 {
+                best = (squared, k, along, point);
+            }
+            // A ray to the right crosses the line an odd number of times from inside.
+            if (a.y > to.y) != (b.y > to.y) && to.x < (b.x - a.x) * (to.y - a.y) / (b.y - a.y) + a.x {
+                inside = !inside;
+            }
+        }
+        let (squared, edge, along, point) = best;
+        let distance = squared.sqrt();
+        let (a, b) = (self.corners[edge], self.corners[(edge + 1) % self.corners.len()]);
+        let of_edge = -(b - a).perp().normalize_or_zero();
+        let between = along > 0.0 && along < 1.0;
+        let normal = if between || distance < AT_CORNER {
+            of_edge
+        } else {
+            (to - point) * if inside { -1.0 } else { 1.0 } / distance
+        };
+        Nearest { distance: if inside { -distance } else { distance }, point, normal, edge, along }
+    }
+}
+
+/// Half the sum of the cross products: positive counter-clockwise.
+fn signed_area(corners: &[DVec2]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    0.5 * corners.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> ClosedLine {
+        ClosedLine::new(vec![DVec2::ZERO, DVec2::Y, DVec2::ONE, DVec2::X]).unwrap()
+    }
+
+    #[test]
+    fn distances_have_the_sign_of_the_side() {
+        let square = square();
+        assert!((square.area() - 1.0).abs() < 1e-15);
+        let out = square.nearest(DVec2::new(0.25, -0.5));
+        assert!((out.distance - 0.5).abs() < 1e-15 && out.normal.distance(-DVec2::Y) < 1e-15);
+        let within = square.nearest(DVec2::new(0.9, 0.5));
+        assert!((within.distance + 0.1).abs() < 1e-15 && within.normal.distance(DVec2::X) < 1e-15);
+        // About a corner the normal is that of the way to it.
+        let corner = square.nearest(DVec2::new(-0.3, -0.4));
+        assert!((corner.distance - 0.5).abs() < 1e-15);
+        assert!(corner.normal.distance(DVec2::new(-0.6, -0.8)) < 1e-15);
+    }
+
+    #[test]
+    fn what_closes_no_line_is_refused() {
+        assert_eq!(ClosedLine::new(vec![DVec2::X]), Err(ClosedLineError::TooFew { found: 1 }));
+        let flat = ClosedLine::new(vec![DVec2::ZERO, DVec2::X, DVec2::X * 2.0]);
+        assert_eq!(flat, Err(ClosedLineError::Flat { area: 0.0 }));
+        let nan = ClosedLine::new(vec![DVec2::ZERO, DVec2::X, DVec2::NAN]);
+        assert!(matches!(nan, Err(ClosedLineError::NotFinite { corner: 2, .. })));
+    }
+}

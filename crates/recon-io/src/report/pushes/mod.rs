@@ -1,0 +1,119 @@
+//! The page of pushes: outline with what is left open of it, modes of each push over time, friction, residuals.
+
+mod bands;
+mod evidence;
+mod outline;
+mod panels;
+
+use super::contacts::page::{STYLE, fact};
+use super::encode::level;
+use super::page::{escape_text, fill, head};
+use super::{Level, Verdict};
+use crate::number::brief_to;
+use crate::planar_figures::write_figures;
+use recon::observer::pushes::{PushFriction, PushesEstimate};
+use std::io::{self, Write};
+
+const PAGE: &str = include_str!("../assets/pushes.html");
+const LOG: &str = include_str!("../assets/pushed_log.html");
+const OWN_STYLE: &str = include_str!("../assets/pushes.css");
+const CURVES: &str = "Angles are those of the force against the inward normal, in windows of a tenth of a second; shaded is the edge of the friction cone, \
+    the coefficient and twice the deviation from push to push. Each dot of the next two is the own coefficient of a push that slides; the line with its band is that of all \
+    with twice its deviation. Last, what is left between finger and outline at the first and the last touch of each push.";
+
+/// What the page shows of a log.
+#[derive(Clone, Debug)]
+pub struct PushedLog<'a> {
+    /// Its number; none where it is the only one.
+    pub number: Option<u32>,
+    /// What was told of it.
+    pub told: &'a PushesEstimate,
+    /// Friction by the first and the second half of the pushes, where each of them tells it.
+    pub halves: Option<[PushFriction; 2]>,
+    /// Radius of the finger, m.
+    pub finger_radius: f64,
+    /// How far the result can be relied on.
+    pub verdict: Verdict,
+    /// What the reader must know.
+    pub warnings: Vec<String>,
+}
+
+/// Writes what pushes tell as one HTML page that needs nothing else.
+///
+/// # Errors
+/// Those of `to`.
+pub fn write_pushes_report(title: &str, logs: &[PushedLog], to: impl Write) -> io::Result<()> {
+    let mut sections = Vec::new();
+    for log in logs {
+        section(log, &mut sections)?;
+    }
+    let parts = [
+        ("head", head(title, &(STYLE.to_owned() + OWN_STYLE))?),
+        ("title", escape_text(title)),
+        ("logs", String::from_utf8_lossy(&sections).into_owned()),
+    ];
+    fill(PAGE, &parts, to)
+}
+
+fn section(log: &PushedLog, to: &mut Vec<u8>) -> io::Result<()> {
+    let mut curves = Vec::new();
+    write_figures(&panels::panels(log.told), &mut curves)?;
+    let name = log.number.map_or_else(|| "Pushes".to_owned(), |number| format!("Log {number}"));
+    let heading = log.number.map_or_else(String::new, |_| format!("  <h2>{name}</h2>\n"));
+    let (outline, caption) = outline::drawn(log.told);
+    let parts = [
+        ("heading", heading),
+        ("name", name),
+        ("verdict", verdict(log)),
+        ("facts", facts(log).iter().map(fact).collect()),
+        ("outline", outline),
+        ("caption", escape_text(&caption)),
+        ("bands", bands::bands(log.told)),
+        ("curves", String::from_utf8_lossy(&curves).into_owned()),
+        ("curves_caption", CURVES.to_owned()),
+        ("evidence", evidence::rows(log)),
+    ];
+    fill(LOG, &parts, to)
+}
+
+fn verdict(log: &PushedLog) -> String {
+    let word = match log.verdict.level {
+        Level::Good => "Told",
+        Level::Caution => "With reservations",
+        Level::Bad => "Not to be relied on",
+        Level::Neutral => "Note",
+    };
+    let notice = |tone: Level, word: &str, text: &str| {
+        format!("  <p class=\"notice {}\"><strong>{word}</strong>{}</p>\n", level(tone), escape_text(text))
+    };
+    let mut text = notice(log.verdict.level, word, &log.verdict.text);
+    text.extend(log.warnings.iter().map(|warning| notice(Level::Caution, "Mind", warning)));
+    text
+}
+
+/// The tiles.
+fn facts(log: &PushedLog) -> Vec<(&'static str, String, &'static str)> {
+    let told = log.told;
+    let instants = || told.pushes.iter().flat_map(|p| &p.instants);
+    let sticks = instants().map(|i| i.stick).sum::<f64>() / instants().count().max(1) as f64;
+    let mut facts = Vec::new();
+    match told.friction {
+        Some(f) => {
+            facts.push(("Friction coefficient", format!("{:.3} ± {:.3}", f.value, f.deviation), ""));
+            facts.push(("It is told at a slip of", brief_to(2, 1e3 * f.at_slip), "mm/s"));
+            facts.push(("It changes with slip by", format!("{:+.3}", 1e-3 * f.by_slip.0), "a mm/s"));
+            facts.push(("Half angle of the cone", brief_to(3, f.value.atan().to_degrees()), "degrees"));
+        }
+        None => facts.push(("Friction coefficient", format!("above {:.2}", told.ratio_seen), "")),
+    }
+    facts.push(("Outline", told.outline.name.clone(), ""));
+    let mut deviations: Vec<f64> = told.outline.points.iter().map(|p| p.deviation).collect();
+    deviations.sort_by(f64::total_cmp);
+    let at = |share: usize| deviations.get(deviations.len() * share / 100).copied().unwrap_or(f64::NAN);
+    facts.push(("Its deviation, median", format!("{:.2}", 1e3 * at(50)), "mm"));
+    facts.push(("Its deviation, largest", format!("{:.2}", 1e3 * at(100).max(at(99))), "mm"));
+    facts.push(("Area", brief_to(4, told.outline.line.area() * 1e4), "cm²"));
+    facts.push(("Pushes that touched", told.pushes.len().to_string(), ""));
+    facts.push(("Sticking", format!("{:.0}", 100.0 * sticks), "% of the time"));
+    facts
+}
