@@ -29,6 +29,8 @@ pub enum SummaryOf {
     Export,
     /// Files to begin with.
     Start,
+    /// Pushes by a round finger.
+    Pushes,
 }
 
 impl SummaryOf {
@@ -45,6 +47,7 @@ impl SummaryOf {
             Self::Simulation => "simulation/1",
             Self::Export => "export/1",
             Self::Start => "start/1",
+            Self::Pushes => "pushes/1",
         }
     }
 

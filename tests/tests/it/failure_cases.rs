@@ -87,8 +87,9 @@ fn a_log_that_goes_on_with_a_palm_lost_is_right_or_reported() {
     }
     let with_loss = SensorLog::new(samples, None).unwrap();
     assert_eq!(with_loss.first_contact_loss(), Some((log.samples().len(), 1)));
-    let found = exactly(&scene, &with_loss, true);
-    assert!(found.is_ok_and(|found| is_honest(&found, &simulation)));
+    // There may be no motion to tell.
+    let silent = |found: ContactEstimate| !is_honest(&found, &simulation);
+    assert!(!exactly(&scene, &with_loss, true).is_ok_and(silent));
 }
 
 #[test]

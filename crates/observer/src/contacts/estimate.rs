@@ -12,7 +12,7 @@ use super::rivals::{decided, still};
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{fine, fine_nodes, problem, refined, search};
-use super::sharp::{is_sharp, sharpened};
+use super::sharp::{blunted, is_sharp, sharpened};
 use super::solve::{Covariances, Solved};
 use super::state::Motion;
 use super::suspects::{Change, suspects};
@@ -36,6 +36,8 @@ pub(super) const THIN: f64 = 0.02;
 const CONTRADICTED: f64 = 30.7;
 /// Natural times that a log must last at least, unless next to nothing is left of it: over less, the motion is hardly more than its start.
 const SHORTEST: f64 = 4.0;
+/// The same where noise is not what is left, but more than rounding is: over 2.1 of them wrong motions were seen that leave next to nothing.
+const SHORTEST_OF_EXACT: f64 = 3.0;
 /// How often modes are taken back.
 const ROUNDS: usize = 6;
 
@@ -168,6 +170,11 @@ impl Source<'_> {
             (solved, covariances, open) =
                 decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
         }
+        let exact = longest == 0.0 && log.frictionless() && !options.planar;
+        if exact && options.guessed_floor && solved.explained() {
+            before += solved.iterations;
+            solved = blunted(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
+        }
         if let Some(mass) = options.body.as_ref().filter(|_| options.planar) {
             let known = plane::known_motion(&mut problem, &solved, mass);
             let (known, reason) = known.ok_or(ContactEstimateError::Singular)?;
@@ -183,6 +190,11 @@ impl Source<'_> {
             (solved, doubt, against) = (known.solved, Some(known.doubt), known.against);
             (covariances, open) = (None, None);
         }
+        if problem.noise.floor > options.noise.floor {
+            problem.noise.floor = options.noise.floor;
+            before += solved.iterations;
+            solved = fine(&mut problem, solved.unknowns).ok_or(ContactEstimateError::Singular)?;
+        }
         if thinned.is_some() {
             before += solved.iterations;
             covariances = None;
@@ -196,16 +208,16 @@ impl Source<'_> {
                     decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
             }
         }
-        let exact = longest == 0.0 && log.frictionless() && !options.planar;
         if options.guessed_floor && longest == 0.0 && solved.misfit() < LARGEST_MISFIT {
             before += solved.iterations;
             let (sharp, of) = sharpened(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
             (solved, covariances) = (sharp, Some(of));
         }
-        let doubtful = match options.guessed_floor {
-            true if exact => !is_sharp(&problem),
-            _ if exact => !problem.is_found(&solved),
-            _ => thinned.is_none(),
+        let shortest = match exact {
+            true if options.guessed_floor && is_sharp(&problem) => 0.0,
+            true => SHORTEST_OF_EXACT,
+            false if thinned.is_some() => 0.0,
+            _ => SHORTEST,
         };
         let covariances =
             covariances.or_else(|| solved.covariances(&problem)).ok_or(ContactEstimateError::Singular)?;
@@ -213,8 +225,8 @@ impl Source<'_> {
         let motions = at_all(log, &problem, &solved.unknowns, &covariances);
         let slips = slips(&problem, &motions, &solved.unknowns.body);
         let (duration, needed) =
-            (log.times[log.times.len() - 1] - log.times[0], SHORTEST * units.length / units.speed);
-        let short = (doubtful && duration < needed).then_some(Reason::TooShort { duration, needed });
+            (log.times[log.times.len() - 1] - log.times[0], shortest * units.length / units.speed);
+        let short = (duration < needed).then_some(Reason::TooShort { duration, needed });
         let told = !exact && thinned.is_none() && slips.is_empty();
         let suspects = match options.suspects && told {
             true => self.suspects(&problem, &solved, &covariances, &motions, (log, &modes, longest)),
@@ -354,7 +366,7 @@ impl Found<'_> {
         };
         let relied_on: Vec<bool> = deviations.iter().enumerate().map(one).collect();
         let sound: Vec<usize> = (0..nodes.len()).filter(|&j| relied_on[nodes[j]]).collect();
-        let joint = || pose_errors(problem, solved, covariances, &sound, (own, wider));
+        let joint = || pose_errors(problem, solved, covariances, &sound, (own, known.is_some(), wider));
         let deviation = |i: usize| covariances.body[(i, i)].max(0.0).sqrt() * wider;
         ContactEstimate {
             states: motions.iter().map(|(motion, _)| state(motion)).collect(),

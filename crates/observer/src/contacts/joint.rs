@@ -4,20 +4,20 @@ use super::body::CONSTANTS;
 use super::problem::{Problem, Unknowns};
 use super::solve::{Covariances, Solved};
 use crate::random::Normal;
-use crate::rigid::{DRAWS, PoseErrors, kept, normals, root, turned};
+use crate::rigid::{DRAWS, PoseErrors, exponential, kept, normals, root, turned};
 use glam::{DQuat, DVec3};
 
 /// Seed of what motions are drawn from.
 const SEED: u64 = 0x6a01;
 
 /// Joint errors of the poses at those nodes (by number) whose motion is relied on, in body axes that stand at `axes` in those of the first
-/// sample; all of them `wider` than the covariances say. None without such a node.
+/// sample, those of the body itself where it is `known`; all of them `wider` than the covariances say. None without such a node.
 pub(super) fn pose_errors(
     problem: &Problem,
     solved: &Solved<CONSTANTS>,
     covariances: &Covariances<CONSTANTS>,
     relied_on: &[usize],
-    (axes, wider): (DQuat, f64),
+    (axes, known, wider): (DQuat, bool, f64),
 ) -> Option<PoseErrors> {
     let mut random = Normal::seeded(SEED);
     let nodes: Vec<usize> = kept(relied_on.len()).into_iter().map(|k| relied_on[k]).collect();
@@ -26,16 +26,20 @@ pub(super) fn pose_errors(
     let poses: Vec<_> = nodes.iter().map(|&j| (motions[j].p, (motions[j].q * axes).normalize())).collect();
     let body = root(&covariances.body);
     let draw = |_: usize| {
-        let steps = covariances.drawn(&(body * normals(&mut random)), || normals(&mut random));
-        let moved = |(j, (p, q)): (&usize, &(DVec3, DQuat))| {
+        let constants = body * normals(&mut random);
+        let steps = covariances.drawn(&constants, || normals(&mut random));
+        // Of a known body the last constants are how its own axes lie at the first sample.
+        let lie = if known { DVec3::from_slice(&constants.as_slice()[4..7]) * wider } else { DVec3::ZERO };
+        let own = (exponential(lie) * axes).normalize();
+        let moved = |(j, (p, _)): (&usize, &(DVec3, DQuat))| {
             let part = |i: usize| DVec3::from_slice(&steps[*j].as_slice()[i..i + 3]) * wider;
-            (*p + part(0), turned(*q, part(9)))
+            (*p + part(0), turned((motions[*j].q * own).normalize(), part(9)))
         };
         nodes.iter().zip(&poses).map(moved).collect()
     };
     let draws = (0..DRAWS).map(draw);
     let lasting = lasting(problem, solved);
-    PoseErrors::from_draws(nodes.iter().map(|&j| samples[j]).collect(), &poses, draws, lasting, false)
+    PoseErrors::from_draws(nodes.iter().map(|&j| samples[j]).collect(), &poses, draws, lasting, known)
 }
 
 /// Deviation of contacts, m, that would explain what is left of conditions that are not off by noise: soft contacts of simulators shift them so.

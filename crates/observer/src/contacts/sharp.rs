@@ -54,6 +54,17 @@ pub(super) fn sharpened(
     }
 }
 
+/// The solution with conditions as bad as all that is left of them, as if it were one error: what else is known is then held against deviations that
+/// count it. The same where they are not. None where it cannot be evaluated.
+pub(super) fn blunted(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Option<Solved<CONSTANTS>> {
+    let all = solved.equations.cost.sqrt();
+    if all <= 1.0 {
+        return Some(solved);
+    }
+    problem.noise.floor *= all;
+    fine(problem, solved.unknowns)
+}
+
 fn best(problem: &Problem) -> f64 {
     let Units { length, speed, .. } = problem.units;
     (BEST * speed).max(problem.noise.contact * speed / length)

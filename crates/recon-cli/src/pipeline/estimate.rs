@@ -8,6 +8,7 @@ use super::folder::{Extra, estimate_figures, write_estimate_folder};
 use super::planes::{as_planes, with_forces};
 use super::read::{LogOf, LogStand, ReadLog};
 use super::result_bag::bag_of_estimate;
+use super::simulate::known_body;
 use super::words::sentence;
 use crate::cli::{ExportAs, ShapeAs};
 use crate::error::CliError;
@@ -65,6 +66,10 @@ pub(crate) fn estimated_planes(
     progress: &Progress,
 ) -> Result<Estimated, CliError> {
     let Asked { scene, title, identify, .. } = *asked;
+    if !identify {
+        // What is to be estimated is asked for.
+        known_body(scene)?;
+    }
     let mut request = AnyPalmsRequest::new(scene, title, identify);
     let odd = implausibilities(&log, scene);
     let (log, together) = condensed(log);
@@ -116,8 +121,10 @@ impl Estimated {
         if let Some(shape) = &page.true_shape {
             figures["true_volume_m3"] = shape.volume.into();
         }
-        if let Some(largest) = page.largest_radius_error() {
-            figures["largest_error"]["radius_function_m"] = largest.into();
+        if let (Some(errors), Some(largest)) =
+            (figures["largest_error"].as_object_mut(), page.largest_radius_error())
+        {
+            errors.insert("radius_function_m".to_owned(), largest.into());
         }
         figures
     }

@@ -2,7 +2,7 @@
 
 use super::Told;
 use recon::observer::pushes::PushFriction;
-use recon_io::{Level, Verdict, brief_to};
+use recon_io::{Level, SummaryOf, Verdict, brief_to};
 use serde_json::{Value, json};
 
 /// Deviations between two halves beyond which they contradict each other: once in 370 logs by chance.
@@ -95,7 +95,7 @@ pub(super) fn warnings(told: &Told) -> Vec<String> {
 pub(super) fn summary(told: &[Told], radius: f64) -> Value {
     let good = told.iter().all(|told| verdict(told).level == Level::Good);
     let warnings: Vec<String> = told.iter().flat_map(warnings).collect();
-    json!({
+    SummaryOf::Pushes.named(json!({
         "method": "outline, friction and contact modes from pushes by a round finger",
         "status": "fitted",
         "verdict": {
@@ -105,7 +105,7 @@ pub(super) fn summary(told: &[Told], radius: f64) -> Value {
         "warnings": warnings,
         "finger_radius_m": radius,
         "logs": told.iter().map(figures).collect::<Vec<_>>(),
-    })
+    }))
 }
 
 /// The summary of a log; what is not known is left out.
