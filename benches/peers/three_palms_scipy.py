@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Peer for `three_palms_timing`: the momentum form solved by scipy.optimize.least_squares, vectorised with NumPy.
+"""Peer for `three_palms_timing`: contact conditions along the motion of the measured forces, solved by scipy.optimize.least_squares, vectorised with NumPy.
 
 Usage: three_palms_scipy.py LOG STARTS REPEATS
 
