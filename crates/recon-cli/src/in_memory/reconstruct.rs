@@ -26,7 +26,7 @@ pub struct Reconstructed {
 }
 
 enum Made {
-    Estimated(Estimated),
+    Estimated(Box<Estimated>),
     WithoutForces(Box<WithoutForces>),
 }
 
@@ -67,7 +67,7 @@ impl Reconstructed {
             let read = sorted_with_forces(loaded, scene);
             let stand = read.stand;
             let asked = Asked { path: &log.path, scene, title: &title, identify: args.identify };
-            (Made::Estimated(estimated(read, &asked, &progress)?), stand)
+            (Made::Estimated(Box::new(estimated(read, &asked, &progress)?)), stand)
         };
         let figures = match &made {
             Made::Estimated(made) => made.figures(),

@@ -129,7 +129,7 @@ fn loss_of_contact_ends_a_simulation_and_is_said_in_a_reconstruction() {
         }
     }
     scratch.write("log.csv", &table.text());
-    let run = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]);
+    assert_eq!(scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]).code, Some(0));
     let motion = Table::parse(&scratch.read("out/motion.csv"));
     assert_eq!(motion.rows.len(), 1261);
     let mode = motion.column("mode_2");
