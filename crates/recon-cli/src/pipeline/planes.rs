@@ -73,6 +73,6 @@ pub(crate) fn as_planes(made: &AnyPalms, log: &SensorLog, scene: &Scene) -> Resu
         bounds: data.bounds.clone(),
         true_shape: shape,
         evidence: data.evidence.clone(),
-        warnings: std::iter::once(data.note.clone()).chain(data.warnings.clone()).collect(),
+        warnings: data.warnings.clone(),
     })
 }

@@ -129,7 +129,9 @@ fn loss_of_contact_ends_a_simulation_and_is_said_in_a_reconstruction() {
         }
     }
     scratch.write("log.csv", &table.text());
-    assert_eq!(scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]).code, Some(0));
+    let run = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]);
+    // The last rows say that the body stood still, which is not true; over so short a time that is enough to refuse.
+    assert_eq!(run.code, Some(4), "{}", run.stdout);
     let motion = Table::parse(&scratch.read("out/motion.csv"));
     assert_eq!(motion.rows.len(), 1261);
     let mode = motion.column("mode_2");
