@@ -180,7 +180,12 @@ impl Source<'_> {
             let (known, reason) = known.ok_or(ContactEstimateError::Singular)?;
             before += solved.iterations;
             (solved, doubt, against) = (known, Some(0.0), reason);
-        } else if let Some((known, more)) = self.directly(&mut problem, &solved) {
+        } else if let Some((known, more)) = options
+            .body
+            .as_ref()
+            .filter(|_| exact && !problem.is_found(&solved))
+            .and_then(|mass| directly(&mut problem, mass))
+        {
             before += solved.iterations + more;
             (solved, doubt) = (known, Some(0.0));
         } else if let Some(mass) = &options.body {
@@ -243,17 +248,6 @@ impl Source<'_> {
             suspects: &suspects,
         };
         Ok((found.estimate(&motions, modes, options), slips))
-    }
-
-    /// The motion of a known body where without it none is found in an exact log, and the linearisations before.
-    fn directly(
-        &self,
-        problem: &mut Problem,
-        unknown: &Solved<CONSTANTS>,
-    ) -> Option<(Solved<CONSTANTS>, usize)> {
-        let exact = problem.record.frictionless() && !problem.noise.limits(&problem.units);
-        let mass = self.options.body.as_ref().filter(|_| exact && !problem.is_found(unknown))?;
-        directly(problem, mass)
     }
 
     /// Scores of constants of the sensors at a solution whose contacts were averaged over windows of at most `longest`, s.

@@ -5,17 +5,23 @@ use crate::roughness::Rough;
 use glam::DVec3;
 use object_dynamics::{ContactLog, LoggedPalm, SensedAxes, SensedForce};
 
+/// Creep as a share of the natural speed `sqrt(g l)`.
+const CREEP: f64 = 3e-5;
+
 impl ContactNoiseLevel {
-    /// What contact conditions are taken to be off by at first where it is not known, as a share of the natural speed `sqrt(g l)`: that by which
-    /// contacts creep that stick in simulators.
-    pub const GUESSED_FLOOR: f64 = 3e-5;
+    /// What contact conditions are taken to be off by at first where it is not known, m/s, under `gravity`, m/s^2, of a body of the size `length`,
+    /// m: that by which contacts creep that stick in simulators.
+    #[must_use]
+    pub fn guessed_floor(gravity: f64, length: f64) -> f64 {
+        CREEP * (gravity * length).sqrt()
+    }
 
     /// By the roughness of the readings of a log under `gravity`, m/s^2, with a guess of what conditions are off by, of a body of the size `length`,
     /// m, or else of that of its contacts. None where no two palms are touched at once and no size is stated.
     #[must_use]
     pub fn guessed(log: &ContactLog, gravity: f64, length: Option<f64>) -> Option<Self> {
         let length = length.or_else(|| spread(log))?;
-        Some(Self::by_roughness(log, Self::GUESSED_FLOOR * (gravity * length).sqrt(), false))
+        Some(Self::by_roughness(log, Self::guessed_floor(gravity, length), false))
     }
 
     /// Standard deviations of the white noise of a log's contacts, forces and impulses, by what of some readings in a row no polynomial explains.

@@ -204,7 +204,7 @@ fn noise_by_roughness(log: &ContactLog, scene: &Scene) -> Option<ContactNoiseLev
 
 /// What conditions are off by beside noise, m/s, of a body of the size `length`, m: as the scene states it.
 pub(crate) fn condition_floor(scene: &Scene, length: f64) -> f64 {
-    let guessed = || ContactNoiseLevel::GUESSED_FLOOR * (scene.gravity * length).sqrt();
+    let guessed = || ContactNoiseLevel::guessed_floor(scene.gravity, length);
     scene.sensors.contact_speed_std.unwrap_or_else(guessed)
 }
 

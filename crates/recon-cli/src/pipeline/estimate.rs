@@ -36,7 +36,7 @@ pub(crate) struct Asked<'a> {
 pub(crate) struct Estimated {
     pub(crate) made: AnyPalms,
     /// What the page of three palms shows, where they are that.
-    page: Option<ReportData>,
+    pub(super) page: Option<ReportData>,
 }
 
 /// Everything that the log tells. Truth in it is only compared with, never used.
@@ -139,7 +139,7 @@ impl Estimated {
 
     /// Writes its folder; returns the summary.
     pub(crate) fn write(&self, target: FolderTarget, extras: &[Extra]) -> Result<Value, CliError> {
-        write_estimate_folder(target, self, self.page.as_ref(), extras)
+        write_estimate_folder(target, self, extras)
     }
 
     /// Whether the result may be relied on.

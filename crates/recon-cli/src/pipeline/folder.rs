@@ -3,7 +3,7 @@ use super::{AnyPalms, ContactRun, Estimated};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
 use recon_io::{
-    FiguresPage, FolderTarget, MotionState, OutputFolder, ReportData, TriangleMesh, estimate_summary,
+    FiguresPage, FolderTarget, MotionState, OutputFolder, TriangleMesh, estimate_summary,
     write_contact_curves, write_contact_log, write_contact_report, write_estimated_motion,
     write_figures_page, write_motion, write_ply, write_radius_functions,
 };
@@ -21,12 +21,9 @@ pub(crate) fn estimate_figures(made: &AnyPalms) -> Value {
 }
 
 /// Writes everything about a motion that was estimated from contacts of any palms; returns the summary.
-///
-/// `page` is what the page of three palms shows, where they are that.
 pub(crate) fn write_estimate_folder(
     target: FolderTarget,
     estimated: &Estimated,
-    page: Option<&ReportData>,
     extras: &[Extra],
 ) -> Result<Value, CliError> {
     let made = &estimated.made;
@@ -42,7 +39,7 @@ pub(crate) fn write_estimate_folder(
         for (name, contents) in extras {
             folder.write(name, |to| to.write_all(contents))?;
         }
-        if let Some(page) = page {
+        if let Some(page) = &estimated.page {
             folder.write("radius_functions.csv", |to| write_radius_functions(page, to))?;
         }
         folder.write("report.html", |to| estimated.write_page(to))?;

@@ -81,9 +81,8 @@ fn bounded(
 /// As it is stated, and what is not from the roughness of the readings.
 fn noise(log: &ContactLog, known: &PlanarKnown) -> Result<ContactNoiseLevel, CliError> {
     let sensors = &known.sensors;
-    let floor = sensors
-        .contact_speed_std
-        .unwrap_or(ContactNoiseLevel::GUESSED_FLOOR * (known.gravity * size(log)).sqrt());
+    let floor =
+        sensors.contact_speed_std.unwrap_or(ContactNoiseLevel::guessed_floor(known.gravity, size(log)));
     let friction: Vec<_> = known.palms.iter().map(|(_, friction)| *friction).collect();
     let rough =
         plane_noise(log, &friction, floor).map_err(recon::observer::planar::PlaneEstimateError::from)?;

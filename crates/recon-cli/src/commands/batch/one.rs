@@ -164,13 +164,12 @@ fn made(args: &BatchArgs, log: &Path, folder: &Path, begun: Instant) -> Result<R
     let data = &estimate.made.data;
     let states = data.estimate.states.iter().map(|state| MotionState::from(*state));
     let (path, why) = (path(data.log.times(), states), data.verdict.text.clone());
-    let summary = estimate.figures();
     let seconds = begun.elapsed().as_secs_f64();
     let of = json!({ "made_from": made_from(args, log), "relied_on": relied_on, "seconds": seconds, "path": path });
     let mut extras = estimate.extras(&args.export, ShapeAs::Auto, None)?;
     extras.push((MADE_FROM.to_owned(), format!("{of:#}\n").into_bytes()));
     let inputs: Vec<PathBuf> = [log.to_owned(), scene_path].into_iter().chain(args.mapping.clone()).collect();
-    estimate.write(FolderTarget::new(folder, &inputs, false)?, &extras)?;
+    let summary = estimate.write(FolderTarget::new(folder, &inputs, false)?, &extras)?;
     let state = if relied_on { State::ReliedOn } else { State::Doubtful };
     let (log, folder) = Default::default();
     Ok(Row { log, folder, state, why, before: false, seconds, summary, path })
