@@ -1,29 +1,25 @@
 //! A record read the other way: what bodies do without friction they do backwards as well, and its end is another beginning to search from.
 
-use super::body::{Body, CONSTANTS};
-use super::options::ContactOptions;
+use super::body::Body;
 use super::problem::{Problem, Unknowns};
 use super::record::{Contact, Interval, Record};
-use super::search::{fine, fine_nodes, forwards, refined};
-use super::solve::Solved;
+use super::search::{Ended, fine, fine_nodes, forwards, refined};
 use super::state::Motion;
 use glam::DMat3;
 
-/// A solution by a search from the end of the record, and the linearisations before it. None unless one is explained.
-pub(super) fn backwards(
-    problem: &mut Problem,
-    options: &ContactOptions,
-) -> Option<(Solved<CONSTANTS>, usize)> {
+/// Where a search from the end of the record ends. None unless what it finds is explained.
+pub(super) fn backwards(problem: &mut Problem) -> Option<Ended> {
     let reversed = problem.record.reversed();
     let mut turned = problem.on(&reversed);
-    let (found, before) = forwards(&mut turned, options).filter(|(found, _)| found.explained())?;
+    let ended = forwards(&mut turned).filter(|ended| ended.solved.explained())?;
     let last = reversed.times.len() - 1;
     let nodes: Vec<usize> = turned.nodes.iter().rev().map(|k| last - k).collect();
-    let start = found.unknowns.reversed();
+    let start = ended.solved.unknowns.reversed();
     problem.nodes = fine_nodes(problem);
     problem.frozen.clear();
     let start = refined(problem, &nodes, &start);
-    Some((fine(problem, start)?, before + found.iterations))
+    let solved = fine(problem, start)?;
+    Some(Ended::at(problem, solved, ended.all()))
 }
 
 impl Record {

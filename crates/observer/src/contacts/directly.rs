@@ -7,8 +7,8 @@ use super::axes::orientation;
 use super::body::CONSTANTS;
 use super::cold;
 use super::problem::Problem;
-use super::search::{COARSE, ENOUGH, fine, fine_nodes, refined};
-use super::solve::{Solved, solve};
+use super::search::{ENOUGH, Ended, fine, fine_nodes, refined};
+use super::solve::solve;
 use glam::DQuat;
 use object_dynamics::MassProperties;
 
@@ -21,9 +21,9 @@ const FOLLOWED: usize = 6;
 const MOST: usize = 20;
 const FLOOR: f64 = 1e-2;
 
-/// The motion of a body of the mass properties `mass` of which next to nothing is left, and the linearisations before the last solution; then the
-/// problem is that of the known body. None else, with the problem as it was.
-pub(super) fn directly(problem: &mut Problem, mass: &MassProperties) -> Option<(Solved<CONSTANTS>, usize)> {
+/// The motion of a body of the mass properties `mass` of which next to nothing is left; then the problem is that of the known body. None else, with
+/// the problem as it was.
+pub(super) fn directly(problem: &mut Problem, mass: &MassProperties) -> Option<Ended> {
     let natural = problem.units.length / problem.units.speed;
     let times = &problem.record.times;
     if times[times.len() - 1] - times[0] > SHORT * natural {
@@ -32,7 +32,7 @@ pub(super) fn directly(problem: &mut Problem, mass: &MassProperties) -> Option<(
     let before = (problem.body, problem.nodes.clone(), problem.frozen.clone());
     let (noise, mut iterations) = (problem.noise, 0);
     let mut begun = Vec::new();
-    problem.nodes = problem.record.spaced(COARSE * natural);
+    problem.nodes = problem.record.spaced(problem.link());
     problem.noise.floor = noise.floor.max(FLOOR * problem.units.speed);
     for i in 0..BEGUN {
         let body = problem.take_known(mass, orientation(i, BEGUN));
@@ -49,11 +49,12 @@ pub(super) fn directly(problem: &mut Problem, mass: &MassProperties) -> Option<(
         problem.body.0 = body;
         problem.frozen.clear();
         let start = refined(problem, &coarse, &solved.unknowns);
-        let Some(found) = fine(problem, start) else { continue };
-        if problem.is_found(&found) {
-            return Some((found, iterations));
+        let Some(solved) = fine(problem, start) else { continue };
+        let ended = Ended::at(problem, solved, iterations);
+        if ended.found {
+            return Some(ended);
         }
-        iterations += found.iterations;
+        iterations = ended.all();
     }
     (problem.body, problem.nodes, problem.frozen) = before;
     None

@@ -1,25 +1,23 @@
-use super::axes::known_motion;
 use super::body::{Body, CONSTANTS};
 use super::cold;
-use super::directly::directly;
 use super::joint::pose_errors;
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
-use super::plane;
 use super::problem::{Problem, Units};
 use super::record::{Contact, Record};
-use super::rivals::{decided, still};
+use super::rivals::still;
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
-use super::search::{fine, fine_nodes, problem, refined, search};
-use super::sharp::{blunted, is_sharp, sharpened};
+use super::search::{problem, thinned};
+use super::sharp::{is_rounded, is_sharp};
 use super::solve::{Covariances, Solved};
+use super::stage::Stage;
 use super::state::Motion;
 use super::suspects::{Change, suspects};
 use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
 use crate::faults::Suspect;
-use crate::reliability::{LARGEST_MISFIT, Reason, Reliability};
+use crate::reliability::{Reason, Reliability};
 use crate::rigid::PoseErrors;
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix6, Vector6};
@@ -30,8 +28,6 @@ use std::ops::Range;
 const MENDED: f64 = 1e-3;
 /// Natural times on either side over which the ratio of friction to normal force is averaged, to tell modes.
 pub(super) const AVERAGED: f64 = 0.12;
-/// Natural times from sample to sample in a record that is searched, if there are many more.
-pub(super) const THIN: f64 = 0.02;
 /// Conditions of a contact that sticks are contradicted beyond this: three numbers in their deviations go there once in a million.
 const CONTRADICTED: f64 = 30.7;
 /// Natural times that a log must last at least, unless next to nothing is left of it: over less, the motion is hardly more than its start.
@@ -158,96 +154,71 @@ impl Source<'_> {
         record.set_modes(&modes);
         let log = &*record;
         let longest = longest(log, &options.noise, &units);
-        let open = log.with_gaps_open(units.length / units.speed);
+        let open = log.with_gaps_open(units.time());
         let log = open.as_ref().unwrap_or(log);
         let averaged = log.averaged(longest);
-        let thinned = averaged.thinned(THIN * units.length / units.speed);
-        let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
-        let (mut solved, mut before) = search(&mut problem, options).ok_or(ContactEstimateError::Singular)?;
-        let (mut doubt, mut against, mut open, mut covariances) = (None, None, None, None);
-        if !options.planar && solved.explained() && longest > 0.0 && log.frictionless() {
-            before += solved.iterations;
-            (solved, covariances, open) =
-                decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
-        }
-        let exact = longest == 0.0 && log.frictionless() && !options.planar;
-        if exact && options.guessed_floor && solved.explained() {
-            before += solved.iterations;
-            solved = blunted(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
-        }
-        if let Some(mass) = options.body.as_ref().filter(|_| options.planar) {
-            let known = plane::known_motion(&mut problem, &solved, mass);
-            let (known, reason) = known.ok_or(ContactEstimateError::Singular)?;
-            before += solved.iterations;
-            (solved, doubt, against) = (known, Some(0.0), reason);
-        } else if let Some((known, more)) = options
-            .body
-            .as_ref()
-            .filter(|_| exact && !problem.is_found(&solved))
-            .and_then(|mass| directly(&mut problem, mass))
-        {
-            before += solved.iterations + more;
-            (solved, doubt) = (known, Some(0.0));
-        } else if let Some(mass) = &options.body {
-            let known = known_motion(&mut problem, &solved, mass);
-            let known = known.ok_or(ContactEstimateError::Singular)?;
-            before += solved.iterations + known.iterations - known.solved.iterations;
-            (solved, doubt, against) = (known.solved, Some(known.doubt), known.against);
-            (covariances, open) = (None, None);
-        }
-        if problem.noise.floor > options.noise.floor {
-            problem.noise.floor = options.noise.floor;
-            before += solved.iterations;
-            solved = fine(&mut problem, solved.unknowns).ok_or(ContactEstimateError::Singular)?;
-        }
-        if thinned.is_some() {
-            before += solved.iterations;
-            covariances = None;
-            (problem, solved) =
-                polished(&averaged, &problem, &solved).ok_or(ContactEstimateError::Singular)?;
-        }
-        if options.planar {
-            open = still(log, &options.noise, &units);
-            if open.is_none() {
-                (solved, covariances, open) =
-                    decided(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
-            }
-        }
-        if options.guessed_floor && longest == 0.0 && solved.misfit() < LARGEST_MISFIT {
-            before += solved.iterations;
-            let (sharp, of) = sharpened(&mut problem, solved).ok_or(ContactEstimateError::Singular)?;
-            (solved, covariances) = (sharp, Some(of));
-        }
+        let thinned = thinned(&averaged, options, &units);
+        let problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
+        let exact = problem.exact && log.frictionless() && !options.planar;
+        let stage = self.solved(problem, log, (&averaged, thinned.is_some()));
+        let mut stage = stage.ok_or(ContactEstimateError::Singular)?;
+        let covariances = stage.covariances().ok_or(ContactEstimateError::Singular)?;
+        let (problem, solved) = (&stage.problem, &stage.solved);
         let shortest = match exact {
-            true if options.guessed_floor && is_sharp(&problem) => 0.0,
+            true if options.guessed_floor && is_sharp(problem) => 0.0,
             true => SHORTEST_OF_EXACT,
             false if thinned.is_some() => 0.0,
             _ => SHORTEST,
         };
-        let covariances =
-            covariances.or_else(|| solved.covariances(&problem)).ok_or(ContactEstimateError::Singular)?;
-        let iterations = [before, before + solved.iterations];
-        let motions = at_all(log, &problem, &solved.unknowns, &covariances);
-        let slips = slips(&problem, &motions, &solved.unknowns.body);
-        let (duration, needed) =
-            (log.times[log.times.len() - 1] - log.times[0], shortest * units.length / units.speed);
+        let motions = at_all(log, problem, &solved.unknowns, &covariances);
+        let slips = slips(problem, &motions, &solved.unknowns.body);
+        let (duration, needed) = (log.times[log.times.len() - 1] - log.times[0], shortest * units.time());
         let short = (duration < needed).then_some(Reason::TooShort { duration, needed });
         let told = !exact && thinned.is_none() && slips.is_empty();
         let suspects = match options.suspects && told {
-            true => self.suspects(&problem, &solved, &covariances, &motions, (log, &modes, longest)),
+            true => self.suspects(problem, solved, &covariances, &motions, (log, &modes, longest)),
             false => Vec::new(),
         };
-        let found = Found {
-            log,
-            problem: &problem,
-            solved: &solved,
-            covariances: &covariances,
-            iterations,
-            doubt,
-            against: [short, against, open],
-            suspects: &suspects,
-        };
+        let found = Found { log, stage: &stage, covariances: &covariances, short, suspects: &suspects };
         Ok((found.estimate(&motions, modes, options), slips))
+    }
+
+    /// From a search on a record, or on a thinned one, to the solution on the record. None where the equations are singular.
+    fn solved<'r>(
+        &self,
+        problem: Problem<'r>,
+        log: &Record,
+        (averaged, thinned): (&'r Record, bool),
+    ) -> Option<Stage<'r>> {
+        let Self { options: ContactOptions { planar, guessed_floor, noise, body, .. }, units, .. } = self;
+        // Conditions of exact logs are as good as what is left of them, unless it was said what they are off by.
+        let (exact, sharp) = (problem.exact, problem.exact && *guessed_floor);
+        let mut stage = Stage::searched(problem)?;
+        if !planar && log.frictionless() && stage.solved.explained() {
+            stage = match exact {
+                false => stage.decided()?,
+                true if sharp => stage.blunted()?,
+                true => stage,
+            };
+        }
+        if let Some(mass) = body {
+            stage = stage.of_known(mass)?;
+        }
+        if !sharp || stage.problem.noise.floor > noise.floor {
+            stage = stage.as_stated()?;
+        }
+        if thinned {
+            stage = match sharp && !is_rounded(&stage.problem) {
+                true => stage.over(averaged)?,
+                false => stage.on_all(averaged, sharp)?,
+            };
+        }
+        if *planar {
+            let still = still(log, noise, units);
+            stage = if still.is_none() { stage.decided()? } else { stage };
+            stage.open = stage.open.or(still);
+        }
+        if sharp { stage.sharpened() } else { Some(stage) }
     }
 
     /// Scores of constants of the sensors at a solution whose contacts were averaged over windows of at most `longest`, s.
@@ -268,22 +239,6 @@ impl Source<'_> {
         };
         suspects(problem, solved, covariances, (self.log, motions), remade).unwrap_or_default()
     }
-}
-
-/// The solution on a record of which another one was solved that has fewer of its samples.
-fn polished<'a>(
-    record: &'a Record,
-    thinned: &Problem,
-    solved: &Solved<CONSTANTS>,
-) -> Option<(Problem<'a>, Solved<CONSTANTS>)> {
-    let place = |sample: &usize| record.samples.partition_point(|own| own < sample);
-    let nodes: Vec<usize> = thinned.node_samples().iter().map(place).collect();
-    let mut problem = thinned.on(record);
-    problem.frozen.clear();
-    problem.nodes = fine_nodes(&problem);
-    let start = refined(&problem, &nodes, &solved.unknowns);
-    let solved = fine(&mut problem, start)?;
-    Some((problem, solved))
 }
 
 fn slips(problem: &Problem, motions: &[(Motion, Deviations)], body: &Body) -> Slips {
@@ -307,14 +262,10 @@ fn slips(problem: &Problem, motions: &[(Motion, Deviations)], body: &Body) -> Sl
 /// What was solved.
 struct Found<'a> {
     log: &'a Record,
-    problem: &'a Problem<'a>,
-    solved: &'a Solved<CONSTANTS>,
+    stage: &'a Stage<'a>,
     covariances: &'a Covariances<CONSTANTS>,
-    iterations: [usize; 2],
-    /// How far its axes may be from where they were found, rad, if it is known.
-    doubt: Option<f64>,
-    /// Why a known body is not the one, a log is too short, or another motion as good.
-    against: [Option<Reason>; 3],
+    /// Why the log is too short.
+    short: Option<Reason>,
     suspects: &'a [Suspect],
 }
 
@@ -325,7 +276,8 @@ impl Found<'_> {
         modes: Vec<[ContactMode; MOST_PALMS]>,
         options: &ContactOptions,
     ) -> ContactEstimate {
-        let Self { log, problem, solved, covariances, iterations, doubt, against, suspects } = *self;
+        let Self { log, stage, covariances, ref short, suspects } = *self;
+        let Stage { problem, solved, before, doubt, against, open, .. } = stage;
         let Solved { unknowns, equations, settled, .. } = solved;
         let (body, known) = (&unknowns.body, options.body.as_ref());
         // The body's own axes in those of the first sample.
@@ -335,7 +287,7 @@ impl Found<'_> {
             nodes: problem.nodes.len(),
             conditions: equations.conditions,
             misfit: solved.misfit(),
-            iterations,
+            iterations: [*before, before + solved.iterations],
             settled: *settled && covariances.mended <= MENDED,
         };
         let state = |motion: &Motion| BodyState {
@@ -347,8 +299,8 @@ impl Found<'_> {
         let (mut reliability, wider) = (evidence.reliability(), evidence.widening());
         let spin = |(motion, of): &(Motion, Deviations)| (body.turn(motion.q, motion.L).w, of[2] * wider);
         let spins: Vec<_> = problem.node_samples().iter().map(|&k| spin(&motions[k])).collect();
-        let against = against.into_iter().chain([ContactEvidence::still(&spins)]);
-        for reason in against.flatten().chain(ContactEvidence::against(suspects)) {
+        let against = [*short, *against, *open, ContactEvidence::still(&spins)];
+        for reason in against.into_iter().flatten().chain(ContactEvidence::against(suspects)) {
             reliability.add(reason);
         }
         let deviations: Vec<_> = motions.iter().map(|(_, of)| of.map(|of| of * wider)).collect();

@@ -107,6 +107,15 @@ impl<const P: usize> Carried<P> {
         self.turn = body.turn(q, after.L);
     }
 
+    /// Moves the motion by a step.
+    pub(super) fn shift(&mut self, by: &Tangent, body: &Body) {
+        let part = |i: usize| DVec3::new(by[i], by[i + 1], by[i + 2]);
+        let Motion { p, v, L, q } = self.motion;
+        let q = (exponential(part(9)) * q).normalize();
+        self.motion = Motion { p: p + part(0), v: v + part(3), L: L + part(6), q };
+        self.turn = body.turn(q, self.motion.L);
+    }
+
     /// `phi' = K ([L]x phi + dL) + K (-dI w)`.
     fn turn_rates(&self, body: &Body) -> (SMatrix<f64, 3, MOTION>, SMatrix<f64, 3, P>) {
         let K = Matrix3::from(self.turn.K);

@@ -44,7 +44,7 @@ pub(super) fn pose_errors(
 
 /// Deviation of contacts, m, that would explain what is left of conditions that are not off by noise: soft contacts of simulators shift them so.
 fn lasting(problem: &Problem, solved: &Solved<CONSTANTS>) -> f64 {
-    if problem.noise.limits(&problem.units) {
+    if !problem.exact {
         return 0.0;
     }
     let Unknowns { motions, body } = &solved.unknowns;

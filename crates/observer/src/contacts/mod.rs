@@ -29,6 +29,7 @@ mod second_order;
 mod sharp;
 mod solve;
 mod spurious;
+mod stage;
 mod state;
 mod stream;
 mod suspects;

@@ -30,7 +30,7 @@ pub struct ImpulseNoise {
 impl ContactNoiseLevel {
     /// Whether the noise of contacts is what conditions are off by.
     pub(super) fn limits(&self, units: &Units) -> bool {
-        self.contact > self.floor * units.length / units.speed
+        self.contact > self.floor * units.time()
     }
 
     /// Standard deviation of each axis of the force `f`, N.

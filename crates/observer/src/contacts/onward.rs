@@ -3,11 +3,8 @@
 //! What a start is wrong by the motion amplifies, so that over many natural times no search from nothing ends at the right one: of
 //! clean logs at hand scale all are found over 15 natural times, and hardly any over 40.
 
-use super::body::CONSTANTS;
-use super::options::ContactOptions;
 use super::problem::{Problem, Unknowns};
-use super::search::{fine, fine_nodes, fine_within, refined, whole};
-use super::solve::Solved;
+use super::search::{Ended, fine, fine_nodes, fine_within, refined, whole};
 use std::ops::Range;
 
 /// Natural times of the window that a motion is solved over as it is carried on.
@@ -32,13 +29,8 @@ pub(super) struct Way {
 pub(super) const LONG: Way = Way { beginnings: &[8.0, 12.0, 20.0], onward: 4.0, lasts: 12.0..f64::INFINITY };
 pub(super) const SHORT: Way = Way { beginnings: &[2.0, 3.0, 4.0, 6.0, 1.0], onward: 0.5, lasts: 1.0..12.0 };
 
-/// A solution of all of a record, and the linearisations before it. None of one that lasts otherwise, or where no beginning is explained or a motion
-/// cannot be carried on.
-pub(super) fn onward(
-    problem: &mut Problem,
-    options: &ContactOptions,
-    way: &Way,
-) -> Option<(Solved<CONSTANTS>, usize)> {
+/// A solution of all of a record. None of one that lasts otherwise, or where no beginning is explained or a motion cannot be carried on.
+pub(super) fn onward(problem: &mut Problem, way: &Way) -> Option<Ended> {
     let natural = problem.units.length / problem.units.speed;
     let record = problem.record;
     let times = &record.times;
@@ -46,7 +38,7 @@ pub(super) fn onward(
         return None;
     }
     let nodes = fine_nodes(problem);
-    let (mut unknowns, mut iterations) = beginning(problem, options, &nodes, way)?;
+    let (mut unknowns, mut iterations) = beginning(problem, &nodes, way)?;
     let last = nodes.len() - 1;
     while unknowns.motions.len() <= last {
         let at = unknowns.motions.len() - 1;
@@ -71,28 +63,24 @@ pub(super) fn onward(
     }
     problem.nodes = nodes;
     problem.frozen.clear();
-    Some((fine(problem, unknowns)?, iterations))
+    let solved = fine(problem, unknowns)?;
+    Some(Ended::at(problem, solved, iterations))
 }
 
 /// Motions at the first of `nodes`, by a search of a beginning that is explained.
-fn beginning(
-    problem: &mut Problem,
-    options: &ContactOptions,
-    nodes: &[usize],
-    way: &Way,
-) -> Option<(Unknowns, usize)> {
+fn beginning(problem: &mut Problem, nodes: &[usize], way: &Way) -> Option<(Unknowns, usize)> {
     let (mut best, mut iterations) = (None, 0);
     for &lasts in way.beginnings {
         let end = until(problem, nodes, 0, lasts);
         let part = problem.record.part(0..nodes[end] + 1);
         let mut window = problem.on(&part);
-        let Some((solved, before)) = whole(&mut window, options) else { continue };
-        iterations += before + solved.iterations;
-        if best.is_none() && solved.explained() || problem.is_found(&solved) {
+        let Some(ended) = whole(&mut window) else { continue };
+        iterations += ended.all();
+        if best.is_none() && ended.solved.explained() || ended.found {
             problem.nodes = nodes[..=end].to_vec();
-            best = Some(refined(problem, &window.nodes, &solved.unknowns));
+            best = Some(refined(problem, &window.nodes, &ended.solved.unknowns));
         }
-        if problem.is_found(&solved) {
+        if ended.found {
             break;
         }
     }

@@ -29,11 +29,23 @@ pub(super) struct Units {
     pub(super) mass: f64,
 }
 
+impl Units {
+    /// The natural time, s.
+    pub(super) fn time(&self) -> f64 {
+        self.length / self.speed
+    }
+}
+
 /// What is to be solved: a record cut into links at `nodes`.
 #[derive(Debug)]
 pub(super) struct Problem<'a> {
     pub(super) record: &'a Record,
+    /// Noise; its floor is that of the moment.
     pub(super) noise: ContactNoiseLevel,
+    /// The floor of the noise as it was stated or guessed, m/s.
+    pub(super) floor: f64,
+    /// Whether noise of the contacts is not what conditions are off by.
+    pub(super) exact: bool,
     /// Whether the direction of friction tells that of a slip.
     pub(super) friction: bool,
     pub(super) gravity: DVec3,
@@ -48,6 +60,8 @@ pub(super) struct Problem<'a> {
     pub(super) frozen: Vec<SVector<f64, CONSTANTS>>,
     /// Whether all motion is in the plane of x and z.
     pub(super) planar: bool,
+    /// What a step over each interval misses of the motion, where that is known: else none of it.
+    pub(super) missed: Vec<Tangent>,
 }
 
 /// Unknowns: the motions at the nodes and the body's constants.
@@ -79,9 +93,23 @@ pub(super) struct Trial {
 impl Problem<'_> {
     /// The same on another record.
     pub(super) fn on<'b>(&self, record: &'b Record) -> Problem<'b> {
-        let Self { noise, friction, gravity, units, first, body, planar, .. } = *self;
+        let Self { noise, floor, exact, friction, gravity, units, first, body, planar, .. } = *self;
         let (nodes, frozen) = (self.nodes.clone(), self.frozen.clone());
-        Problem { record, noise, friction, gravity, nodes, units, first, body, frozen, planar }
+        Problem {
+            record,
+            noise,
+            floor,
+            exact,
+            friction,
+            gravity,
+            nodes,
+            units,
+            first,
+            body,
+            frozen,
+            planar,
+            missed: Vec::new(),
+        }
     }
 
     fn wrenches(&self, k: usize) -> [&Wrench; 2] {
@@ -171,9 +199,8 @@ impl Problem<'_> {
                     cost += self.rows_cost(k, &carried.motion, &carried.turn);
                 }
                 if j + 1 < at.motions.len() {
-                    let interval = &self.record.intervals[k];
-                    carried.step(interval, self.wrenches(k), &after, self.gravity);
-                    noise += interval.noise;
+                    self.step(&mut carried, k, &after);
+                    noise += self.record.intervals[k].noise;
                 }
             }
             let Some(link) = equations.links.get(j) else { break };
@@ -249,7 +276,7 @@ impl Problem<'_> {
         let mut at = from;
         let mut to = |k: usize| {
             while at < k {
-                carried.step(&self.record.intervals[at], self.wrenches(at), body, self.gravity);
+                self.step(&mut carried, at, body);
                 at += 1;
             }
             carried.motion
@@ -347,9 +374,35 @@ impl Problem<'_> {
         (own, after)
     }
 
-    /// Carries a motion over the interval after sample `k`.
+    /// Carries a motion with its derivatives over the interval after sample `k`.
     pub(super) fn advance<const P: usize>(&self, carried: &mut Carried<P>, k: usize, body: &Body) {
         carried.advance(&self.record.intervals[k], self.wrenches(k), body, self.gravity);
+        self.missed.get(k).into_iter().for_each(|missed| carried.shift(missed, body));
+    }
+
+    /// The motion alone.
+    fn step<const P: usize>(&self, carried: &mut Carried<P>, k: usize, body: &Body) {
+        carried.step(&self.record.intervals[k], self.wrenches(k), body, self.gravity);
+        self.missed.get(k).into_iter().for_each(|missed| carried.shift(missed, body));
+    }
+
+    /// What steps over the intervals miss of the motion as it is carried over each of the samples of `all`, that of the record among them.
+    pub(super) fn missed_of(&self, all: &Record, at: &Unknowns) -> Vec<Tangent> {
+        let place = |k: usize| all.samples.partition_point(|&own| own < self.record.samples[k]);
+        let mut missed = Vec::with_capacity(self.record.intervals.len());
+        for (j, pair) in self.nodes.windows(2).enumerate() {
+            let mut carried = Carried::<0>::new(at.motions[j], &at.body);
+            for k in pair[0]..pair[1] {
+                let mut whole = carried;
+                whole.step(&self.record.intervals[k], self.wrenches(k), &at.body, self.gravity);
+                for i in place(k)..place(k + 1) {
+                    let ends = [&all.wrenches[i], &all.wrenches[i + 1]];
+                    carried.step(&all.intervals[i], ends, &at.body, self.gravity);
+                }
+                missed.push(carried.motion.from(&whole.motion));
+            }
+        }
+        missed
     }
 
     /// Conditions of a node with a link of one interval after it.
@@ -443,7 +496,7 @@ impl Problem<'_> {
         self.frozen.iter().fold(self.body.1, |all, g| all + g * g.transpose() * FROZEN)
     }
 
-    fn prior_cost<const P: usize>(&self, at: &Unknowns) -> f64 {
+    pub(super) fn prior_cost<const P: usize>(&self, at: &Unknowns) -> f64 {
         let (value, information) = &self.first;
         let d = at.motions[0].from(value);
         let cost = d.component_mul(&d).dot(information);
@@ -456,7 +509,7 @@ impl Problem<'_> {
 
     /// What links are never taken for better than, as a share of a condition's deviation, all together.
     fn link_floor(&self) -> f64 {
-        if self.noise.limits(&self.units) { LINK_FLOOR } else { 1.0 }
+        if self.exact { 1.0 } else { LINK_FLOOR }
     }
 
     /// Noise with the moment about `p` in place of the origin, and a floor.

@@ -8,19 +8,23 @@ use super::options::ContactOptions;
 use super::plane;
 use super::problem::{Problem, Units, Unknowns};
 use super::record::Record;
+use super::sharp::found;
 use super::solve::{Solved, solve};
 use super::state::{Motion, Tangent};
 use glam::{DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 
-/// Natural times from node to node in the coarse solution, whose contacts are carried there from the node before, and the
-/// floors of its conditions over the natural speed: the first one finds nearly all motions, the other one some of the rest.
-pub(super) const COARSE: f64 = 0.08;
+/// Natural times from node to node in the coarse solution at least, and in the last one at most: contacts between are carried there from the node
+/// before. Forces without noise carry a motion farther.
+const LINK: f64 = 0.08;
+const LINK_OF_EXACT: f64 = 0.2;
+/// Natural times from sample to sample in a record that is searched, if there are many more.
+const THIN: f64 = 0.02;
+const THIN_OF_EXACT: f64 = 0.04;
+/// Floors of the coarse conditions over the natural speed: the first one finds nearly all motions, the other one some of the rest.
 const COARSE_FLOORS: [f64; 2] = [1e-2, 1e-3];
 /// Share of a condition's deviation, of all in a link together, that noise of the forces may make in it to be left out between nodes.
 const NEGLIGIBLE: f64 = 0.1;
-/// What conditions without noise are off by at most where nothing better is looked for, as a share of the natural speed.
-const NOTHING: f64 = 1e-6;
 /// How much better the inertia is taken for known at first, in information.
 const BALL: f64 = 30.0;
 /// Linearisations that each of the solutions may take.
@@ -40,101 +44,124 @@ const PRIOR_MASS: f64 = 10.0;
 /// Deviation of the first orientation, rad: an unknown body has no axes but those it is given.
 const FIRST_TURN: f64 = 1e-7;
 
-/// The most probable motion and body from nothing, and the linearisations before the last solution; of a body in space without friction that is not
-/// explained from the end of the record as well.
-pub(super) fn search(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
-    let found = forwards(problem, options);
-    let explained = found.as_ref().is_some_and(|(found, _)| problem.is_found(found));
-    if explained || problem.planar || !problem.record.frictionless() {
-        return found;
+/// Where a search ended.
+pub(super) struct Ended {
+    pub(super) solved: Solved<CONSTANTS>,
+    /// Whether there is nothing to look for beyond it; then the problem has conditions as good as what is left of it.
+    pub(super) found: bool,
+    /// Linearisations before the last solution.
+    pub(super) before: usize,
+}
+
+impl Problem<'_> {
+    /// Time from node to node, s.
+    pub(super) fn link(&self) -> f64 {
+        let smooth = self.exact && !self.planar && self.record.frictionless();
+        (if smooth { LINK_OF_EXACT } else { LINK }) * self.units.time()
+    }
+}
+
+/// The record with fewer samples, if there are many more than a search needs.
+pub(super) fn thinned(record: &Record, options: &ContactOptions, units: &Units) -> Option<Record> {
+    let smooth = !options.noise.limits(units) && !options.planar && record.frictionless();
+    record.thinned(if smooth { THIN_OF_EXACT } else { THIN } * units.time())
+}
+
+impl Ended {
+    /// At a solution, after so many linearisations.
+    pub(super) fn at(problem: &mut Problem, solved: Solved<CONSTANTS>, before: usize) -> Self {
+        let first = solved.iterations;
+        let (solved, found) = found(problem, solved);
+        Self { solved, found, before: if found { before + first } else { before } }
+    }
+
+    /// Linearisations.
+    pub(super) fn all(&self) -> usize {
+        self.before + self.solved.iterations
+    }
+
+    fn cost(&self) -> f64 {
+        self.solved.equations.cost
+    }
+}
+
+/// The most probable motion and body from nothing; of a body in space without friction that is not explained from the end of the record as well.
+pub(super) fn search(problem: &mut Problem) -> Option<Ended> {
+    let ended = forwards(problem);
+    if ended.as_ref().is_some_and(|ended| ended.found) || problem.planar || !problem.record.frictionless() {
+        return ended;
     }
     let (nodes, frozen) = (problem.nodes.clone(), problem.frozen.clone());
-    let before = found.as_ref().map_or(0, |(found, before)| before + found.iterations);
-    match backwards(problem, options) {
-        Some((other, more))
-            if found.as_ref().is_none_or(|(found, _)| other.equations.cost < found.equations.cost) =>
-        {
-            Some((other, before + more))
+    let before = ended.as_ref().map_or(0, Ended::all);
+    match backwards(problem) {
+        Some(other) if other.found || ended.as_ref().is_none_or(|ended| other.cost() < ended.cost()) => {
+            Some(Ended { before: other.before + before, ..other })
         }
         _ => {
             (problem.nodes, problem.frozen) = (nodes, frozen);
-            found
+            ended
         }
     }
 }
 
 /// From the beginning on: of a long record over more and more of it, of others at once; where that is not explained a short one without friction
 /// over more and more of it too, and the best is taken.
-pub(super) fn forwards(
-    problem: &mut Problem,
-    options: &ContactOptions,
-) -> Option<(Solved<CONSTANTS>, usize)> {
-    let mut best: Option<(Solved<CONSTANTS>, Vec<SVector<f64, CONSTANTS>>)> = None;
+pub(super) fn forwards(problem: &mut Problem) -> Option<Ended> {
+    let mut best: Option<(Ended, Vec<SVector<f64, CONSTANTS>>)> = None;
     let mut before = 0;
     for way in [Some(&LONG), None, Some(&SHORT)] {
-        let found = match way {
+        let ended = match way {
             Some(way) if way.lasts.end.is_finite() && !problem.record.frictionless() => None,
-            Some(way) => onward(problem, options, way),
-            None => whole(problem, options),
+            Some(way) => onward(problem, way),
+            None => whole(problem),
         };
-        let Some((found, more)) = found else { continue };
-        before += more;
-        if problem.is_found(&found) {
-            return Some((found, before));
+        let Some(ended) = ended else { continue };
+        if ended.found {
+            return Some(Ended { before: before + ended.before, ..ended });
         }
-        before += found.iterations;
-        if best.as_ref().is_none_or(|(best, _)| found.equations.cost < best.equations.cost) {
-            best = Some((found, problem.frozen.clone()));
+        before += ended.all();
+        if best.as_ref().is_none_or(|(best, _)| ended.cost() < best.cost()) {
+            best = Some((ended, problem.frozen.clone()));
         }
     }
     let (best, frozen) = best?;
     (problem.nodes, problem.frozen) = (fine_nodes(problem), frozen);
-    before -= best.iterations;
-    Some((best, before))
+    Some(Ended { before: before - best.solved.iterations, ..best })
 }
 
-impl Problem<'_> {
-    /// Whether there is nothing to look for beyond a solution: noise explains what is left of it, or next to nothing is left.
-    pub(super) fn is_found(&self, solved: &Solved<CONSTANTS>) -> bool {
-        let nothing = NOTHING * self.units.speed / self.noise.floor;
-        solved.explained() && (self.noise.limits(&self.units) || solved.misfit() < nothing * nothing)
-    }
-}
-
-/// A coarse solution from nothing and the last one from there, with one floor of the coarse conditions after the other until noise explains
-/// what is left, else the one that leaves least; and the linearisations before the last solution.
-pub(super) fn whole(problem: &mut Problem, options: &ContactOptions) -> Option<(Solved<CONSTANTS>, usize)> {
-    let coarse_nodes = problem.record.spaced(COARSE * problem.units.length / problem.units.speed);
+/// A coarse solution from nothing and the last one from there, with one floor of the coarse conditions after the other until nothing better is to
+/// be looked for, else the one that leaves least.
+pub(super) fn whole(problem: &mut Problem) -> Option<Ended> {
+    let coarse_nodes = problem.record.spaced(problem.link());
     let all_nodes = fine_nodes(problem);
-    let mut best: Option<Solved<CONSTANTS>> = None;
-    let mut frozen = Vec::new();
+    let mut best: Option<(Ended, Vec<SVector<f64, CONSTANTS>>)> = None;
     let mut before = 0;
     for floor in COARSE_FLOORS {
         problem.nodes.clone_from(&coarse_nodes);
-        problem.noise.floor = options.noise.floor.max(floor * problem.units.speed);
+        problem.noise.floor = problem.floor.max(floor * problem.units.speed);
         problem.friction = true;
         problem.frozen.clear();
         let start = cold::start(problem, problem.body.0, DQuat::IDENTITY);
         let coarse = coarse(problem, start);
         problem.nodes.clone_from(&all_nodes);
-        problem.noise = options.noise;
+        problem.noise.floor = problem.floor;
         problem.friction = false;
         let Some(coarse) = coarse else { continue };
-        let start = refined(problem, &coarse_nodes, &coarse.unknowns);
         before += coarse.iterations;
-        let Some(found) = fine(problem, start) else { continue };
-        if problem.is_found(&found) {
-            return Some((found, before));
+        let start = refined(problem, &coarse_nodes, &coarse.unknowns);
+        let Some(solved) = fine(problem, start) else { continue };
+        let ended = Ended::at(problem, solved, before);
+        if ended.found {
+            return Some(ended);
         }
-        let better = best.as_ref().is_none_or(|best| found.equations.cost < best.equations.cost);
-        before += best.as_ref().map_or(0, |best| best.iterations);
-        if better {
-            best = Some(found);
-            frozen.clone_from(&problem.frozen);
+        before = ended.all();
+        if best.as_ref().is_none_or(|(best, _)| ended.cost() < best.cost()) {
+            best = Some((ended, problem.frozen.clone()));
         }
     }
+    let (best, frozen) = best?;
     problem.frozen = frozen;
-    best.map(|best| (best, before))
+    Some(Ended { before: before - best.solved.iterations, ..best })
 }
 
 /// First of a body that is nearly a ball: its angular velocity follows from the angular momentum whatever its orientation, and what has to be
@@ -173,7 +200,7 @@ pub(super) fn fine_within(problem: &mut Problem, start: Unknowns, most: usize) -
 /// Nodes of the last solution: each sample, or as far apart as noise of the forces does nothing to the conditions between.
 pub(super) fn fine_nodes(problem: &Problem) -> Vec<usize> {
     let Problem { record, units, .. } = problem;
-    let farthest = COARSE * units.length / units.speed;
+    let farthest = problem.link();
     let limit = (NEGLIGIBLE * problem.condition_deviation() * units.mass).powi(2);
     let last = record.times.len() - 1;
     let (mut nodes, mut noise, mut conditions) = (vec![0], 0.0, 0.0);
@@ -212,6 +239,8 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: U
     Problem {
         record,
         noise: options.noise,
+        floor: options.noise.floor,
+        exact: !options.noise.limits(&units),
         friction: false,
         gravity: DVec3::new(0.0, 0.0, -options.gravity),
         nodes: Vec::new(),
@@ -220,6 +249,7 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: U
         first: (none, first),
         body,
         planar: options.planar,
+        missed: Vec::new(),
     }
 }
 

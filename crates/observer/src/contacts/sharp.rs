@@ -2,12 +2,12 @@
 //!
 //! A search needs conditions that give way. Where noise is not what they are off by, the motion that it finds leaves far less than that, and the
 //! body may be held by what was known beforehand where the log knows better. Conditions are then as good as what is left of them, all that lasts
-//! counted once.
+//! counted once. A wrong motion does not bear it.
 
 use super::body::CONSTANTS;
-use super::problem::{Problem, Units};
+use super::problem::{Problem, Units, Unknowns};
 use super::rows::Rows;
-use super::search::fine;
+use super::search::{fine, fine_within};
 use super::solve::{Covariances, Solved, solve};
 use crate::chance::lasting;
 use crate::reliability::LARGEST_MISFIT;
@@ -15,43 +15,85 @@ use object_dynamics::MOST_PALMS;
 
 /// Best conditions, as a share of the natural speed: beyond, equations of some scenes are singular in double precision.
 const BEST: f64 = 1e-8;
+/// What conditions without noise are off by at most where nothing better is looked for, as a share of the natural speed.
+const NOTHING: f64 = 1e-6;
 /// By how much conditions are taken to be better at least, as a trial.
 const SHARPER: f64 = 0.1;
+/// Linearisations of a trial beyond the first ones.
+const TRIED: usize = 20;
 /// Linearisations of the very last solution, and what a step of it promises in units of chi-squared.
 const LAST: usize = 8;
-const ENOUGH: f64 = 1e-12;
+const ENOUGH: f64 = 1e-8;
 /// How much worse conditions are taken to be where the equations are singular.
 const BLUNTER: f64 = 10.0;
 
-/// The solution with conditions as good, or as bad, as what is left of them, and its covariances. None where the equations are singular.
-pub(super) fn sharpened(
-    problem: &mut Problem,
-    mut solved: Solved<CONSTANTS>,
-) -> Option<(Solved<CONSTANTS>, Covariances<CONSTANTS>)> {
-    let guessed = problem.noise.floor;
+/// A solution, and whether there is nothing to look for beyond it: noise explains what is left of it; or, where noise is not what conditions are
+/// off by, next to nothing is, with conditions that are then as good as that.
+pub(super) fn found(problem: &mut Problem, solved: Solved<CONSTANTS>) -> (Solved<CONSTANTS>, bool) {
+    if !problem.exact || !solved.explained() {
+        let found = solved.explained();
+        return (solved, found);
+    }
+    let before = (problem.noise.floor, problem.frozen.clone());
+    let sharp = sharper(problem, solved.clone());
+    if problem.noise.floor <= NOTHING * problem.units.speed {
+        return (sharp, true);
+    }
+    (problem.noise.floor, problem.frozen) = before;
+    (solved, false)
+}
+
+/// The solution with conditions as good as what is left of them.
+fn sharper(problem: &mut Problem, mut solved: Solved<CONSTANTS>) -> Solved<CONSTANTS> {
     let best = best(problem);
     while problem.noise.floor > best {
         let (before, frozen) = (problem.noise.floor, problem.frozen.clone());
         problem.noise.floor = (before * left(problem, &solved).min(SHARPER)).max(best);
-        let better = fine(problem, solved.unknowns.clone());
-        let Some(better) = better.filter(|better| better.misfit() < LARGEST_MISFIT) else {
-            (problem.noise.floor, problem.frozen) = (before, frozen);
-            break;
-        };
-        solved = better;
+        match fine_within(problem, solved.unknowns.clone(), TRIED) {
+            Some(better) if better.misfit() < LARGEST_MISFIT => solved = better,
+            _ => {
+                (problem.noise.floor, problem.frozen) = (before, frozen);
+                break;
+            }
+        }
     }
-    problem.noise.floor *= left(problem, &solved).max(1.0);
+    solved
+}
+
+/// The solution with conditions as good, or as bad, as what is left of them, and its covariances. None where the equations are singular.
+pub(super) fn sharpened(
+    problem: &mut Problem,
+    solved: Solved<CONSTANTS>,
+) -> Option<(Solved<CONSTANTS>, Covariances<CONSTANTS>)> {
+    let mut solved = sharper(problem, solved);
+    // Rounding: with conditions that give way more the equations are farther from singular.
+    let mut blunter = left(problem, &solved);
     loop {
-        solved = solve::<CONSTANTS>(problem, solved.unknowns, LAST, ENOUGH)?;
+        if blunter > 1.0 {
+            problem.noise.floor *= blunter;
+            solved = solve::<CONSTANTS>(problem, solved.unknowns, LAST, ENOUGH)?;
+        }
         if let Some(covariances) = solved.covariances(problem) {
             return Some((solved, covariances));
         }
-        // Rounding: with conditions that give way more the equations are farther from singular.
-        problem.noise.floor *= BLUNTER;
-        if problem.noise.floor > guessed {
+        blunter = BLUNTER;
+        if problem.noise.floor * blunter > problem.floor {
             return None;
         }
     }
+}
+
+/// The solution from a start near it, with conditions as good as they may be; where it does not bear that, as they were. None where it cannot be
+/// evaluated.
+pub(super) fn sharpest(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
+    let floor = problem.noise.floor;
+    problem.noise.floor = floor.min(best(problem));
+    let sharp = solve::<CONSTANTS>(problem, start.clone(), LAST, ENOUGH).filter(Solved::explained);
+    sharp.or_else(|| {
+        problem.noise.floor = floor;
+        problem.frozen.clear();
+        fine(problem, start)
+    })
 }
 
 /// The solution with conditions as bad as all that is left of them, as if it were one error: what else is known is then held against deviations that
@@ -65,6 +107,13 @@ pub(super) fn blunted(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Optio
     fine(problem, solved.unknowns)
 }
 
+/// The solution with conditions off by what was stated or guessed. None where it cannot be evaluated.
+pub(super) fn as_stated(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Option<Solved<CONSTANTS>> {
+    problem.noise.floor = problem.floor;
+    fine(problem, solved.unknowns)
+}
+
+/// Conditions cannot be taken to be better than that, m/s.
 fn best(problem: &Problem) -> f64 {
     let Units { length, speed, .. } = problem.units;
     (BEST * speed).max(problem.noise.contact * speed / length)
@@ -75,7 +124,12 @@ pub(super) fn is_sharp(problem: &Problem) -> bool {
     problem.noise.floor < 2.0 * best(problem)
 }
 
-/// What is left of the conditions in their deviations, if what lasts of it is one error and not many.
+/// Whether noise of the contacts, little as it is, is what is left: more of them then tell more.
+pub(super) fn is_rounded(problem: &Problem) -> bool {
+    is_sharp(problem) && best(problem) > BEST * problem.units.speed
+}
+
+/// What is left of the conditions in their deviations, if what lasts of it is one error and not many. What was known beforehand has no part in it.
 fn left(problem: &Problem, solved: &Solved<CONSTANTS>) -> f64 {
     let mut series: [Vec<f64>; MOST_PALMS] = Default::default();
     let motions = problem.at_all_samples(&solved.unknowns);
@@ -86,5 +140,7 @@ fn left(problem: &Problem, solved: &Solved<CONSTANTS>) -> f64 {
             series[contact.palm].extend(rows.map(|rows| rows.normal()));
         }
     }
-    (solved.misfit() * lasting(&series)).sqrt()
+    let of_log = solved.equations.cost - problem.prior_cost::<CONSTANTS>(&solved.unknowns);
+    let misfit = of_log.max(0.0) / solved.equations.conditions.max(1) as f64;
+    (misfit * lasting(&series)).sqrt()
 }

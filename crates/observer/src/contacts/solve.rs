@@ -8,8 +8,10 @@ use crate::least_squares::{LARGEST_DAMPING, RAISE, lowered};
 use crate::reliability::LARGEST_MISFIT;
 use nalgebra::{Cholesky, Const, DMatrix, SMatrix, SVector};
 
-/// First damping, as a share of the conditions' mean information.
+/// First damping, as a share of the conditions' mean information; and where noise is not what they are off by, and their information far more than
+/// what the motion needs.
 const FIRST_DAMPING: f64 = 1e-3;
+const FIRST_DAMPING_OF_EXACT: f64 = 1e-7;
 /// A step that gains less than this share of what it promises is bent: links are not linear along it.
 const BENT: f64 = 0.5;
 /// Fall of chi-squared that an undamped step from the end may still promise: half a standard deviation is left then at most, which
@@ -219,7 +221,8 @@ pub(super) fn solve<const P: usize>(
     let unit = problem.natural_information();
     let mean =
         problem.condition_information() * equations.conditions as f64 / (problem.nodes.len() * MOTION) as f64;
-    let (mut damping, mut raise, mut iterations) = (FIRST_DAMPING, RAISE, 1);
+    let first = if problem.exact { FIRST_DAMPING_OF_EXACT } else { FIRST_DAMPING };
+    let (mut damping, mut raise, mut iterations) = (first, RAISE, 1);
     let (mut done, mut tries) = (false, 0);
     while iterations < most && tries < TRIES * most && !done && damping < LARGEST_DAMPING {
         tries += 1;

@@ -119,6 +119,9 @@ fn off_solution(record: &Record, noise: ContactNoiseLevel, stride: usize) -> (Pr
     let problem = Problem {
         record,
         noise,
+        floor: noise.floor,
+        exact: !noise.limits(&units),
+        missed: Vec::new(),
         friction: false,
         gravity: DVec3::new(0.0, 0.0, -G),
         nodes: (0..last).step_by(stride).chain([last]).collect(),

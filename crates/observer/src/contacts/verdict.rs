@@ -74,7 +74,7 @@ impl ContactEvidence {
 ///
 /// Where noise is not what conditions are off by, what is left lasts, and tells no stretch from another.
 pub(super) fn stretches<const P: usize>(problem: &Problem, equations: &Equations<P>) -> Vec<f64> {
-    if !problem.noise.limits(&problem.units) && problem.record.frictionless() {
+    if problem.exact && problem.record.frictionless() {
         return vec![0.0; problem.nodes.len()];
     }
     let Units { length, speed, .. } = problem.units;

@@ -5,14 +5,15 @@ use super::solution::{Of, Solution};
 use crate::contacts::axes::known_motion;
 use crate::contacts::body::{Body, CONSTANTS};
 use crate::contacts::cold;
-use crate::contacts::estimate::{AVERAGED, THIN};
+use crate::contacts::estimate::AVERAGED;
 use crate::contacts::flow::Carried;
 use crate::contacts::modes::by_ratio;
 use crate::contacts::onward::{FOLLOWED, WINDOW};
 use crate::contacts::options::ContactOptions;
 use crate::contacts::problem::{Problem, Units, Unknowns};
 use crate::contacts::record::Record;
-use crate::contacts::search::{fine_nodes, fine_within, problem, whole};
+use crate::contacts::search::{fine_nodes, fine_within, problem, thinned, whole};
+use crate::contacts::sharp::as_stated;
 use crate::contacts::solve::Solved;
 use crate::contacts::state::Motion;
 use crate::contacts::windows::longest;
@@ -172,7 +173,7 @@ impl Window {
     }
 
     fn solution(&mut self, mut record: Record, units: Units, asked: Asked) -> Option<Solution> {
-        let natural = units.length / units.speed;
+        let natural = units.time();
         record.mark_blows(&units, self.options.gravity);
         let modes = by_ratio(&record, AVERAGED * natural);
         record.set_modes(&modes);
@@ -180,7 +181,7 @@ impl Window {
         let open = record.with_gaps_open(natural);
         let record = open.as_ref().unwrap_or(&record);
         let averaged = record.averaged(longest);
-        let thinned = averaged.thinned(THIN * natural);
+        let thinned = thinned(&averaged, &self.options, &units);
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), &self.options, units);
         let (solved, against) = match asked {
             Asked::Search => self.found(&mut problem)?,
@@ -194,7 +195,8 @@ impl Window {
     /// From nothing; whether the body is another one than was stated.
     fn found(&mut self, problem: &mut Problem) -> Option<(Solved<CONSTANTS>, bool)> {
         self.before = None;
-        let (solved, _) = whole(problem, &self.options)?;
+        let solved = whole(problem)?.solved;
+        let solved = if problem.exact { as_stated(problem, solved)? } else { solved };
         let Some(mass) = &self.options.body else { return Some((solved, false)) };
         let known = known_motion(problem, &solved, mass)?;
         Some((known.solved, known.against.is_some()))

@@ -1,0 +1,151 @@
+//! A motion on its way from a search to what is reported: one stage after the other replaces it by a better one.
+
+use super::axes::known_motion;
+use super::body::CONSTANTS;
+use super::directly::directly;
+use super::plane;
+use super::problem::Problem;
+use super::record::Record;
+use super::rivals::decided;
+use super::search::{Ended, fine, fine_nodes, refined, search};
+use super::sharp::{as_stated, blunted, sharpened, sharpest};
+use super::solve::{Covariances, Solved};
+use super::state::Tangent;
+use crate::reliability::{LARGEST_MISFIT, Reason};
+use object_dynamics::MassProperties;
+
+/// How often a motion is carried over all samples for what is missed, at most, and what is a change of that, as a share of what conditions are off by.
+const ROUNDS: usize = 4;
+const NO_MORE: f64 = 1e-5;
+
+/// A solution, and what is known of it so far.
+pub(super) struct Stage<'a> {
+    pub(super) problem: Problem<'a>,
+    pub(super) solved: Solved<CONSTANTS>,
+    /// Of this solution, where a stage has made them.
+    covariances: Option<Covariances<CONSTANTS>>,
+    /// Whether the search was for nothing better.
+    found: bool,
+    /// Linearisations before the last solution.
+    pub(super) before: usize,
+    /// How far the axes of a known body may be from where they were found, rad, if it is known.
+    pub(super) doubt: Option<f64>,
+    /// Why a known body is not the one.
+    pub(super) against: Option<Reason>,
+    /// What else the readings leave open.
+    pub(super) open: Option<Reason>,
+}
+
+/// Each of the stages gives none where the equations are singular.
+impl<'a> Stage<'a> {
+    /// What a search comes to.
+    pub(super) fn searched(mut problem: Problem<'a>) -> Option<Self> {
+        let Ended { solved, found, before } = search(&mut problem)?;
+        let (doubt, against, open) = (None, None, None);
+        Some(Self { problem, solved, covariances: None, found, before, doubt, against, open })
+    }
+
+    fn replaced(
+        mut self,
+        solved: impl FnOnce(&mut Problem, Solved<CONSTANTS>) -> Option<Solved<CONSTANTS>>,
+    ) -> Option<Self> {
+        let before = self.solved.iterations;
+        self.solved = solved(&mut self.problem, self.solved)?;
+        self.before += before;
+        self.covariances = None;
+        Some(self)
+    }
+
+    /// The most probable of the motions that are found.
+    pub(super) fn decided(mut self) -> Option<Self> {
+        self.before += self.solved.iterations;
+        (self.solved, self.covariances, self.open) = decided(&mut self.problem, self.solved)?;
+        Some(self)
+    }
+
+    /// With conditions as bad as all that is left of them.
+    pub(super) fn blunted(self) -> Option<Self> {
+        self.replaced(blunted)
+    }
+
+    /// With conditions off by what was stated or guessed.
+    pub(super) fn as_stated(self) -> Option<Self> {
+        if self.problem.noise.floor == self.problem.floor { Some(self) } else { self.replaced(as_stated) }
+    }
+
+    /// That of a body whose mass properties are known.
+    pub(super) fn of_known(mut self, mass: &MassProperties) -> Option<Self> {
+        let problem = &mut self.problem;
+        self.before += self.solved.iterations;
+        (self.covariances, self.open) = (None, None);
+        if problem.planar {
+            (self.solved, self.against) = plane::known_motion(problem, &self.solved, mass)?;
+            self.doubt = Some(0.0);
+            return Some(self);
+        }
+        let short =
+            (problem.exact && problem.record.frictionless() && !self.found).then(|| directly(problem, mass));
+        if let Some(ended) = short.flatten() {
+            (self.solved, self.doubt) = (ended.solved, Some(0.0));
+            self.before += ended.before;
+            return Some(self);
+        }
+        let known = known_motion(problem, &self.solved, mass)?;
+        self.before += known.iterations - known.solved.iterations;
+        (self.solved, self.doubt, self.against) = (known.solved, Some(known.doubt), known.against);
+        Some(self)
+    }
+
+    /// With what steps from sample to sample miss of the motion over those of `all` in between.
+    pub(super) fn over(mut self, all: &Record) -> Option<Self> {
+        let natural = self.problem.natural_information();
+        for _ in 0..ROUNDS {
+            let missed = self.problem.missed_of(all, &self.solved.unknowns);
+            let change = |(k, now): (usize, &Tangent)| {
+                let change = now - self.problem.missed.get(k).copied().unwrap_or_default();
+                change.component_mul(&change).dot(&natural)
+            };
+            let most = missed.iter().enumerate().map(change).fold(0.0, f64::max).sqrt();
+            if most < NO_MORE * self.problem.noise.floor / self.problem.units.speed {
+                break;
+            }
+            self.problem.missed = missed;
+            self = self.replaced(|problem, solved| sharpest(problem, solved.unknowns))?;
+        }
+        Some(self)
+    }
+
+    /// On a record of which another one was solved that has fewer of its samples.
+    pub(super) fn on_all<'b>(self, record: &'b Record, sharp: bool) -> Option<Stage<'b>> {
+        let place = |sample: &usize| record.samples.partition_point(|own| own < sample);
+        let nodes: Vec<usize> = self.problem.node_samples().iter().map(place).collect();
+        let mut problem = self.problem.on(record);
+        if !sharp {
+            problem.frozen.clear();
+        }
+        let floor = std::mem::replace(&mut problem.noise.floor, problem.floor);
+        problem.nodes = fine_nodes(&problem);
+        problem.noise.floor = floor;
+        let start = refined(&problem, &nodes, &self.solved.unknowns);
+        let before = self.before + self.solved.iterations;
+        let solved = if sharp { sharpest(&mut problem, start) } else { fine(&mut problem, start) }?;
+        let Self { found, doubt, against, open, .. } = self;
+        Some(Stage { problem, solved, covariances: None, found, before, doubt, against, open })
+    }
+
+    /// With conditions as good, or as bad, as what is left of them.
+    pub(super) fn sharpened(mut self) -> Option<Self> {
+        if self.solved.misfit() >= LARGEST_MISFIT {
+            return Some(self);
+        }
+        let before = self.solved.iterations;
+        let (solved, covariances) = sharpened(&mut self.problem, self.solved)?;
+        self.before += before;
+        (self.solved, self.covariances) = (solved, Some(covariances));
+        Some(self)
+    }
+
+    pub(super) fn covariances(&mut self) -> Option<Covariances<CONSTANTS>> {
+        self.covariances.take().or_else(|| self.solved.covariances(&self.problem))
+    }
+}
