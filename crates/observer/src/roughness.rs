@@ -14,6 +14,8 @@ const GROUPS: usize = 12;
 const LEAST_IN_GROUP: usize = 40;
 /// Share of readings equal to the one before from which on they are counted in steps.
 const REPEATED: f64 = 0.1;
+/// Times from sample to sample that are alike but for rounding, as a share of a row's.
+const ALIKE: f64 = 1e-12;
 /// Steps of readings that are rounding, as a share of the largest.
 const ROUNDING: f64 = 1e-9;
 
@@ -41,10 +43,11 @@ impl Rough {
             }
         }
         for (all, count) in self.all.iter_mut().zip(IN_A_ROW) {
+            let mut weights = Weights::default();
             for (k, row) in readings.windows(count).enumerate() {
                 let middle = k + count / 2;
-                let weights = beyond_polynomials(&times[k..k + count]);
-                let weighed = row.iter().zip(weights).map(|(reading, weight)| Some((*reading)? * weight));
+                let weights = weights.at(&times[k..k + count]);
+                let weighed = row.iter().zip(weights).map(|(reading, weight)| Some((*reading)? * *weight));
                 let Some(rough) = weighed.sum::<Option<DVec3>>() else { continue };
                 let size = readings[middle].map_or(0.0, DVec3::length);
                 all.extend(axes(middle).into_iter().map(|axis| (size, rough.dot(axis).abs())));
@@ -105,6 +108,25 @@ impl Rough {
         let step = self.steps.iter().copied().filter(|step| *step > rounding).reduce(f64::min);
         let counts = repeated >= REPEATED * self.steps.len() as f64;
         step.filter(|_| counts).map_or(0.0, |step| step / 12.0_f64.sqrt())
+    }
+}
+
+/// Weights of one row of readings after the other, made anew where the times between them change.
+#[derive(Default)]
+struct Weights {
+    times: Vec<f64>,
+    of: Vec<f64>,
+}
+
+impl Weights {
+    fn at(&mut self, times: &[f64]) -> &[f64] {
+        let after = |of: &[f64], i: usize| of[i] - of[0];
+        let last = times.len() - 1;
+        let alike = |i: usize| (after(times, i) - after(&self.times, i)).abs() < ALIKE * after(times, last);
+        if self.times.len() != times.len() || !(0..times.len()).all(alike) {
+            (self.times, self.of) = (times.to_vec(), beyond_polynomials(times));
+        }
+        &self.of
     }
 }
 

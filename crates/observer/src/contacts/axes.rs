@@ -17,6 +17,8 @@ const LOOKED_AT: usize = 400;
 /// How many of them are followed to where the inertia fits best, and from how many of those a motion is solved for.
 const FOLLOWED: usize = 12;
 const SOLVED: usize = 3;
+/// Squared departure of an inertia beyond that of the best axes from which on others are not solved for: far beyond what rules them out.
+const FAR: f64 = 1e3;
 /// Orientations nearer to each other than these are one, rad: to follow, at the end.
 const ALIKE: f64 = 0.35;
 const SAME: f64 = 0.1;
@@ -57,10 +59,11 @@ pub(super) fn known_motion(
     mass: &MassProperties,
 ) -> Option<Oriented> {
     let (free, frozen) = (problem.body, problem.frozen.clone());
+    let left = problem.cost_of_log(unknown);
     let first = oriented(problem, unknown, mass)?;
     let unconfirmed = (!unknown.explained()).then_some(Reason::Unconfirmed);
     let first = Oriented { against: first.against.or(unconfirmed), ..first };
-    if first.solved.equations.cost > unknown.equations.cost - MISSED {
+    if problem.cost_of_log(&first.solved) > left - MISSED {
         return Some(first);
     }
     let (body, known) = (problem.body, std::mem::replace(&mut problem.frozen, frozen));
@@ -189,8 +192,10 @@ impl Likely<'_> {
         let first =
             different(sorted((0..LOOKED_AT).map(|i| orientation(i, LOOKED_AT)).collect()), ALIKE, FOLLOWED);
         let search = LevenbergMarquardt { step_tolerance: 1e-4, ..LevenbergMarquardt::default() };
-        let ends = first.into_iter().map(|R| search.fit(self, R).point).collect();
-        different(sorted(ends), SAME, SOLVED)
+        let mut ends = sorted(first.into_iter().map(|R| search.fit(self, R).point).collect());
+        let best = ends.first().map_or(0.0, |(cost, _)| *cost);
+        ends.retain(|(cost, _)| *cost < best + FAR);
+        different(ends, SAME, SOLVED)
     }
 }
 

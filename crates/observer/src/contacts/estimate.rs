@@ -194,6 +194,9 @@ impl Source<'_> {
         // Conditions of exact logs are as good as what is left of them, unless it was said what they are off by.
         let (exact, sharp) = (problem.exact, problem.exact && *guessed_floor);
         let mut stage = Stage::searched(problem)?;
+        if !sharp {
+            stage = stage.as_stated()?;
+        }
         if !planar && log.frictionless() && stage.solved.explained() {
             stage = match exact {
                 false => stage.decided()?,
@@ -204,14 +207,13 @@ impl Source<'_> {
         if let Some(mass) = body {
             stage = stage.of_known(mass)?;
         }
-        if !sharp || stage.problem.noise.floor > noise.floor {
+        if stage.problem.noise.floor > noise.floor {
             stage = stage.as_stated()?;
         }
-        if thinned {
-            stage = match sharp && !is_rounded(&stage.problem) {
-                true => stage.over(averaged)?,
-                false => stage.on_all(averaged, sharp)?,
-            };
+        if thinned && sharp && !is_rounded(&stage.problem) {
+            stage = stage.over(averaged)?;
+        } else if thinned || sharp {
+            stage = stage.on_all(averaged, sharp)?;
         }
         if *planar {
             let still = still(log, noise, units);

@@ -7,7 +7,7 @@ use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::plane;
 use super::record::{Contact, Record, Wrench};
 use super::rows::Rows;
-use super::solve::Step;
+use super::solve::{Solved, Step};
 use super::state::{MOTION, Motion, Tangent, Turn};
 use crate::rigid::{cross_matrix, exponential};
 use glam::{DQuat, DVec3};
@@ -496,7 +496,12 @@ impl Problem<'_> {
         self.frozen.iter().fold(self.body.1, |all, g| all + g * g.transpose() * FROZEN)
     }
 
-    pub(super) fn prior_cost<const P: usize>(&self, at: &Unknowns) -> f64 {
+    /// Chi-squared of conditions and links of a solution, without that of what was known beforehand.
+    pub(super) fn cost_of_log(&self, solved: &Solved<CONSTANTS>) -> f64 {
+        (solved.equations.cost - self.prior_cost::<CONSTANTS>(&solved.unknowns)).max(0.0)
+    }
+
+    fn prior_cost<const P: usize>(&self, at: &Unknowns) -> f64 {
         let (value, information) = &self.first;
         let d = at.motions[0].from(value);
         let cost = d.component_mul(&d).dot(information);

@@ -199,8 +199,16 @@ pub(super) fn fine_within(problem: &mut Problem, start: Unknowns, most: usize) -
 
 /// Nodes of the last solution: each sample, or as far apart as noise of the forces does nothing to the conditions between.
 pub(super) fn fine_nodes(problem: &Problem) -> Vec<usize> {
+    nodes_within(problem, problem.link())
+}
+
+/// The same where forces are not known between samples: no farther apart than noisy ones.
+pub(super) fn finest_nodes(problem: &Problem) -> Vec<usize> {
+    nodes_within(problem, LINK * problem.units.time())
+}
+
+fn nodes_within(problem: &Problem, farthest: f64) -> Vec<usize> {
     let Problem { record, units, .. } = problem;
-    let farthest = problem.link();
     let limit = (NEGLIGIBLE * problem.condition_deviation() * units.mass).powi(2);
     let last = record.times.len() - 1;
     let (mut nodes, mut noise, mut conditions) = (vec![0], 0.0, 0.0);

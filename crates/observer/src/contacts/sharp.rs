@@ -10,13 +10,14 @@ use super::rows::Rows;
 use super::search::{fine, fine_within};
 use super::solve::{Covariances, Solved, solve};
 use crate::chance::lasting;
-use crate::reliability::LARGEST_MISFIT;
 use object_dynamics::MOST_PALMS;
 
 /// Best conditions, as a share of the natural speed: beyond, equations of some scenes are singular in double precision.
 const BEST: f64 = 1e-8;
 /// What conditions without noise are off by at most where nothing better is looked for, as a share of the natural speed.
 const NOTHING: f64 = 1e-6;
+/// How much worse than the best it is not worth a trial of its own.
+const NEARLY: f64 = 10.0;
 /// By how much conditions are taken to be better at least, as a trial.
 const SHARPER: f64 = 0.1;
 /// Linearisations of a trial beyond the first ones.
@@ -48,9 +49,10 @@ fn sharper(problem: &mut Problem, mut solved: Solved<CONSTANTS>) -> Solved<CONST
     let best = best(problem);
     while problem.noise.floor > best {
         let (before, frozen) = (problem.noise.floor, problem.frozen.clone());
-        problem.noise.floor = (before * left(problem, &solved).min(SHARPER)).max(best);
+        let next = before * left(problem, &solved).min(SHARPER);
+        problem.noise.floor = if next < NEARLY * best { best } else { next };
         match fine_within(problem, solved.unknowns.clone(), TRIED) {
-            Some(better) if better.misfit() < LARGEST_MISFIT => solved = better,
+            Some(better) if better.explained() => solved = better,
             _ => {
                 (problem.noise.floor, problem.frozen) = (before, frozen);
                 break;
@@ -99,7 +101,7 @@ pub(super) fn sharpest(problem: &mut Problem, start: Unknowns) -> Option<Solved<
 /// The solution with conditions as bad as all that is left of them, as if it were one error: what else is known is then held against deviations that
 /// count it. The same where they are not. None where it cannot be evaluated.
 pub(super) fn blunted(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Option<Solved<CONSTANTS>> {
-    let all = solved.equations.cost.sqrt();
+    let all = problem.cost_of_log(&solved).sqrt();
     if all <= 1.0 {
         return Some(solved);
     }
@@ -129,7 +131,7 @@ pub(super) fn is_rounded(problem: &Problem) -> bool {
     is_sharp(problem) && best(problem) > BEST * problem.units.speed
 }
 
-/// What is left of the conditions in their deviations, if what lasts of it is one error and not many. What was known beforehand has no part in it.
+/// What is left of the conditions in their deviations, if what lasts of it is one error and not many.
 fn left(problem: &Problem, solved: &Solved<CONSTANTS>) -> f64 {
     let mut series: [Vec<f64>; MOST_PALMS] = Default::default();
     let motions = problem.at_all_samples(&solved.unknowns);
@@ -140,7 +142,6 @@ fn left(problem: &Problem, solved: &Solved<CONSTANTS>) -> f64 {
             series[contact.palm].extend(rows.map(|rows| rows.normal()));
         }
     }
-    let of_log = solved.equations.cost - problem.prior_cost::<CONSTANTS>(&solved.unknowns);
-    let misfit = of_log.max(0.0) / solved.equations.conditions.max(1) as f64;
+    let misfit = problem.cost_of_log(solved) / solved.equations.conditions.max(1) as f64;
     (misfit * lasting(&series)).sqrt()
 }

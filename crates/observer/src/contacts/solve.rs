@@ -216,6 +216,7 @@ pub(super) fn solve<const P: usize>(
     most: usize,
     enough: f64,
 ) -> Option<Solved<P>> {
+    let dbg = std::time::Instant::now();
     let mut unknowns = start;
     let mut equations = problem.linearise::<P>(&unknowns)?;
     let unit = problem.natural_information();
@@ -253,6 +254,16 @@ pub(super) fn solve<const P: usize>(
         }
     }
     let settled = equations.left() < SETTLED.max(enough);
+    if std::env::var("DBG").is_ok() {
+        eprintln!(
+            "solve P{P} samples {} nodes {} it {iterations} tries {tries} misfit {:.3e} floor {:.2e} settled {settled} {:.2} ms",
+            problem.record.times.len(),
+            problem.nodes.len(),
+            equations.cost / equations.conditions as f64,
+            problem.noise.floor,
+            dbg.elapsed().as_secs_f64() * 1e3
+        );
+    }
     Some(Solved { unknowns, equations, iterations, settled })
 }
 

@@ -7,7 +7,7 @@ use super::plane;
 use super::problem::Problem;
 use super::record::Record;
 use super::rivals::decided;
-use super::search::{Ended, fine, fine_nodes, refined, search};
+use super::search::{Ended, fine, finest_nodes, refined, search};
 use super::sharp::{as_stated, blunted, sharpened, sharpest};
 use super::solve::{Covariances, Solved};
 use super::state::Tangent;
@@ -115,7 +115,7 @@ impl<'a> Stage<'a> {
         Some(self)
     }
 
-    /// On a record of which another one was solved that has fewer of its samples.
+    /// On a record of which another one was solved that has fewer of its samples, or fewer nodes.
     pub(super) fn on_all<'b>(self, record: &'b Record, sharp: bool) -> Option<Stage<'b>> {
         let place = |sample: &usize| record.samples.partition_point(|own| own < sample);
         let nodes: Vec<usize> = self.problem.node_samples().iter().map(place).collect();
@@ -124,7 +124,7 @@ impl<'a> Stage<'a> {
             problem.frozen.clear();
         }
         let floor = std::mem::replace(&mut problem.noise.floor, problem.floor);
-        problem.nodes = fine_nodes(&problem);
+        problem.nodes = finest_nodes(&problem);
         problem.noise.floor = floor;
         let start = refined(&problem, &nodes, &self.solved.unknowns);
         let before = self.before + self.solved.iterations;
