@@ -2,6 +2,7 @@
 
 use super::body::{Body, CONSTANTS};
 use super::problem::Problem;
+use super::redrawn::FEW_DRAWS;
 use super::search::fine;
 use super::solve::Solved;
 use crate::least_squares::{LeastSquares, LevenbergMarquardt, NormalEquations};
@@ -88,7 +89,7 @@ pub(super) fn known_motion(
 
 /// From that of an unknown body.
 fn oriented(problem: &mut Problem, unknown: &Solved<CONSTANTS>, mass: &MassProperties) -> Option<Oriented> {
-    let covariance = unknown.covariances(problem)?.body;
+    let covariance = unknown.covariances(problem)?.redrawn(problem, unknown, FEW_DRAWS).body;
     let same = equivalent_orientations(mass);
     let likely = Likely {
         unknown: unknown.unknowns.body,

@@ -33,7 +33,8 @@ pub(super) fn pose_errors(
         let own = (exponential(lie) * axes).normalize();
         let moved = |(j, (p, _)): (&usize, &(DVec3, DQuat))| {
             let part = |i: usize| DVec3::from_slice(&steps[*j].as_slice()[i..i + 3]) * wider;
-            (*p + part(0), turned((motions[*j].q * own).normalize(), part(9)))
+            let [place, _, _, turn] = covariances.beyond(*j);
+            (*p + part(0) * place, turned((motions[*j].q * own).normalize(), part(9) * turn))
         };
         nodes.iter().zip(&poses).map(moved).collect()
     };

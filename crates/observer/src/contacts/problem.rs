@@ -5,7 +5,7 @@ use super::equations::{Equations, LinkEquation, NodeEquations, Row};
 use super::flow::{Carried, Transition, link_information};
 use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::plane;
-use super::record::{Contact, Record, Wrench};
+use super::record::{Record, Wrench};
 use super::rows::Rows;
 use super::solve::{Solved, Step};
 use super::state::{MOTION, Motion, Tangent, Turn};
@@ -252,17 +252,6 @@ impl Problem<'_> {
             all.extend(self.carried(from, at.motions[j], &at.body, &between));
         }
         all
-    }
-
-    /// Sum of the logarithms of the determinants of the information of all conditions.
-    pub(super) fn conditions_log_information(&self, at: &Unknowns) -> f64 {
-        let one = |(contacts, motion): (&Vec<Contact>, &Motion)| -> f64 {
-            let turn = at.body.turn(motion.q, motion.L);
-            let rows =
-                contacts.iter().filter_map(|c| Rows::new(c, motion, &turn, &self.noise, self.friction));
-            rows.map(|rows| rows.log_information()).sum()
-        };
-        self.record.contacts.iter().zip(&self.at_all_samples(at)).map(one).sum()
     }
 
     /// The samples at which there are nodes, by their numbers in the log.

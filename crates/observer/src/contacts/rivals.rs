@@ -9,13 +9,14 @@ use super::cold;
 use super::noise::ContactNoiseLevel;
 use super::problem::{Problem, Units, Unknowns};
 use super::record::{Contact, Record};
+use super::redrawn::SMALL;
 use super::samples::deviations;
 use super::search::{ENOUGH, fine_within};
-use super::second_order::SMALL;
 use super::solve::{Covariances, Solved, solve};
 use super::state::Motion;
 use crate::reliability::Reason;
 use glam::{DMat3, DVec3};
+use nalgebra::SVector;
 use object_dynamics::MOST_PALMS;
 
 /// Rates of the starts in the plane, and what the spins of those in space are off by, in natural ones.
@@ -94,8 +95,17 @@ impl Spread {
     }
 }
 
-/// A motion that was decided on, with its covariances where there were others to compare it with, and whether another one cannot be ruled out.
-pub(super) type Decided = (Solved<CONSTANTS>, Option<Covariances<CONSTANTS>>, Option<Reason>);
+/// A motion that was decided on.
+pub(super) struct Decided {
+    pub(super) solved: Solved<CONSTANTS>,
+    /// Where there were others to compare it with.
+    pub(super) covariances: Option<Covariances<CONSTANTS>>,
+    /// Those that cannot be ruled out, nearly as probable and farther than deviations reach, the most probable first; with the combinations of the
+    /// body's constants that are held in each.
+    pub(super) others: Vec<(Solved<CONSTANTS>, Vec<SVector<f64, CONSTANTS>>)>,
+    /// By how many deviations the farthest of them is another one.
+    pub(super) open: Option<Reason>,
+}
 
 /// The most probable of the motions that are found, begun from the one that was found first. None where the equations are singular.
 ///
@@ -129,14 +139,31 @@ pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option
     let (solved, frozen) = all.swap_remove(best);
     problem.frozen = frozen;
     if all.is_empty() {
-        return Some((solved, None, None));
+        return Some(Decided { solved, covariances: None, others: all, open: None });
     }
     let covariances = solved.covariances(problem)?;
-    let likely =
-        |(other, _): &&(Solved<CONSTANTS>, _)| other.equations.cost < solved.equations.cost + MORE_PROBABLE;
-    let farthest = all.iter().filter(likely).map(|(other, _)| apart(&solved, other, &covariances));
-    let apart = farthest.fold(0.0, f64::max);
-    Some((solved, Some(covariances), (apart > BEYOND).then_some(Reason::Ambiguous { apart })))
+    let mut farthest = 0.0;
+    all.retain(|(other, _)| {
+        let apart = apart(&solved, other, &covariances);
+        let open = other.equations.cost < solved.equations.cost + MORE_PROBABLE && apart > BEYOND;
+        farthest = if open { apart.max(farthest) } else { farthest };
+        open
+    });
+    all.sort_by(|a, b| a.0.equations.cost.total_cmp(&b.0.equations.cost));
+    let open = (!all.is_empty()).then_some(Reason::Ambiguous { apart: farthest });
+    Some(Decided { solved, covariances: Some(covariances), others: all, open })
+}
+
+/// Whether the less probable one of two motions cannot be ruled out, at odds of a thousand to one: by how many deviations it is another one.
+/// None where it can, or where the equations are singular.
+pub(super) fn as_probable(
+    problem: &Problem,
+    best: &Solved<CONSTANTS>,
+    other: &Solved<CONSTANTS>,
+) -> Option<Reason> {
+    let likely = other.equations.cost < best.equations.cost + MORE_PROBABLE;
+    let apart = likely.then(|| Some(apart(best, other, &best.covariances(problem)?))).flatten()?;
+    (apart > BEYOND).then_some(Reason::Ambiguous { apart })
 }
 
 /// Whether mass and inertia are known so well that there is nothing beyond first order.

@@ -120,11 +120,6 @@ impl Rows {
         self.whitening.tr_mul(&self.whitening)
     }
 
-    /// Logarithm of the determinant of the information.
-    pub(super) fn log_information(&self) -> f64 {
-        2.0 * (0..self.count).map(|i| self.whitening[(i, i)].ln()).sum::<f64>()
-    }
-
     /// Residual of the normal condition in its deviation.
     pub(super) fn normal(&self) -> f64 {
         self.whitening[(0, 0)] * self.residual[0]

@@ -145,5 +145,7 @@ pub(super) fn deviations<const P: usize>(
     let by_constants = to * follows + through;
     let covariance = to * own * to.transpose() + by_constants * covariances.body * by_constants.transpose();
     let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
-    std::array::from_fn(|k| DVec3::new(deviation(3 * k), deviation(3 * k + 1), deviation(3 * k + 2)))
+    let beyond = covariances.beyond(j);
+    let three = |k: usize| DVec3::new(deviation(3 * k), deviation(3 * k + 1), deviation(3 * k + 2));
+    std::array::from_fn(|k| three(k) * beyond[k])
 }

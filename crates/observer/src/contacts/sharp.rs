@@ -49,15 +49,18 @@ fn sharper(problem: &mut Problem, mut solved: Solved<CONSTANTS>) -> Solved<CONST
     let best = best(problem);
     while problem.noise.floor > best {
         let (before, frozen) = (problem.noise.floor, problem.frozen.clone());
-        let next = before * left(problem, &solved).min(SHARPER);
-        problem.noise.floor = if next < NEARLY * best { best } else { next };
-        match fine_within(problem, solved.unknowns.clone(), TRIED) {
-            Some(better) if better.explained() => solved = better,
-            _ => {
-                (problem.noise.floor, problem.frozen) = (before, frozen);
-                break;
-            }
-        }
+        let next = (before * left(problem, &solved).min(SHARPER)).max(best);
+        let tries = if next < NEARLY * best { [best, next] } else { [next; 2] };
+        let sharper = tries.into_iter().take(1 + usize::from(tries[0] < next)).find_map(|floor| {
+            problem.noise.floor = floor;
+            problem.frozen.clone_from(&frozen);
+            fine_within(problem, solved.unknowns.clone(), TRIED).filter(Solved::explained)
+        });
+        let Some(sharper) = sharper else {
+            (problem.noise.floor, problem.frozen) = (before, frozen);
+            break;
+        };
+        solved = sharper;
     }
     solved
 }

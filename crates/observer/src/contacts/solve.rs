@@ -74,6 +74,8 @@ pub(super) struct Covariances<const P: usize> {
     pub(super) chain: Vec<Eliminated<P>>,
     /// Information that was added against rounding, as a share of that of natural units at each node.
     pub(super) mended: f64,
+    /// By how much solutions spread farther than a linear model says at each node, where it was looked at.
+    pub(super) beyond: Vec<[f64; 4]>,
 }
 
 impl<const P: usize> Reduced<P> {
@@ -134,13 +136,6 @@ impl<const P: usize> Equations<P> {
         -(nodes + step.body.dot(&self.body_gradient))
     }
 
-    /// Logarithm of the determinant of the information on all motions for a given body. None where they are not positive definite.
-    pub(super) fn motions_log_information(&self) -> Option<f64> {
-        let reduced = self.reduced(&Tangent::zeros(), 0.0)?;
-        let one = |node: &Eliminated<P>| 2.0 * node.own.l_dirty().diagonal().map(f64::ln).sum();
-        Some(reduced.nodes.iter().map(one).sum())
-    }
-
     /// Fall of the cost that an undamped step promises.
     fn left(&self) -> f64 {
         let whole = self.reduced(&Tangent::zeros(), 0.0).map(|reduced| reduced.step(&self.gradient()));
@@ -171,11 +166,23 @@ impl<const P: usize> Equations<P> {
         motions.reverse();
         next.reverse();
         next.pop();
-        Some(Covariances { motions, next, body: reduced.body, chain: reduced.nodes, mended })
+        Some(Covariances {
+            motions,
+            next,
+            body: reduced.body,
+            chain: reduced.nodes,
+            mended,
+            beyond: Vec::new(),
+        })
     }
 }
 
 impl<const P: usize> Covariances<P> {
+    /// By how much solutions spread farther than a linear model says at node `j`: centre of mass, velocity, angular velocity, turn.
+    pub(super) fn beyond(&self, j: usize) -> [f64; 4] {
+        self.beyond.get(j).copied().unwrap_or([1.0; 4])
+    }
+
     /// Of the numbers of one of the motions.
     pub(super) fn deviations(&self, (own, follows): &(Transition, SMatrix<f64, MOTION, P>)) -> Tangent {
         (own + follows * self.body * follows.transpose())
@@ -216,7 +223,6 @@ pub(super) fn solve<const P: usize>(
     most: usize,
     enough: f64,
 ) -> Option<Solved<P>> {
-    let dbg = std::time::Instant::now();
     let mut unknowns = start;
     let mut equations = problem.linearise::<P>(&unknowns)?;
     let unit = problem.natural_information();
@@ -254,16 +260,6 @@ pub(super) fn solve<const P: usize>(
         }
     }
     let settled = equations.left() < SETTLED.max(enough);
-    if std::env::var("DBG").is_ok() {
-        eprintln!(
-            "solve P{P} samples {} nodes {} it {iterations} tries {tries} misfit {:.3e} floor {:.2e} settled {settled} {:.2} ms",
-            problem.record.times.len(),
-            problem.nodes.len(),
-            equations.cost / equations.conditions as f64,
-            problem.noise.floor,
-            dbg.elapsed().as_secs_f64() * 1e3
-        );
-    }
     Some(Solved { unknowns, equations, iterations, settled })
 }
 

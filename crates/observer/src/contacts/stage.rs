@@ -1,22 +1,26 @@
 //! A motion on its way from a search to what is reported: one stage after the other replaces it by a better one.
 
-use super::axes::known_motion;
+use super::axes::{Oriented, known_motion};
 use super::body::CONSTANTS;
 use super::directly::directly;
 use super::plane;
 use super::problem::Problem;
 use super::record::Record;
-use super::rivals::decided;
+use super::redrawn::DRAWS;
+use super::rivals::{Decided, as_probable, decided};
 use super::search::{Ended, fine, finest_nodes, refined, search};
 use super::sharp::{as_stated, blunted, sharpened, sharpest};
 use super::solve::{Covariances, Solved};
 use super::state::Tangent;
 use crate::reliability::{LARGEST_MISFIT, Reason};
+use nalgebra::SVector;
 use object_dynamics::MassProperties;
 
 /// How often a motion is carried over all samples for what is missed, at most, and what is a change of that, as a share of what conditions are off by.
 const ROUNDS: usize = 4;
 const NO_MORE: f64 = 1e-5;
+/// How many of the motions that are as good for an unknown body are looked at for a known one.
+const FOLLOWED: usize = 3;
 
 /// A solution, and what is known of it so far.
 pub(super) struct Stage<'a> {
@@ -32,6 +36,8 @@ pub(super) struct Stage<'a> {
     pub(super) doubt: Option<f64>,
     /// Why a known body is not the one.
     pub(super) against: Option<Reason>,
+    /// Motions of an unknown body that are as good, with what of it is held in each.
+    others: Vec<(Solved<CONSTANTS>, Vec<SVector<f64, CONSTANTS>>)>,
     /// What else the readings leave open.
     pub(super) open: Option<Reason>,
 }
@@ -42,7 +48,17 @@ impl<'a> Stage<'a> {
     pub(super) fn searched(mut problem: Problem<'a>) -> Option<Self> {
         let Ended { solved, found, before } = search(&mut problem)?;
         let (doubt, against, open) = (None, None, None);
-        Some(Self { problem, solved, covariances: None, found, before, doubt, against, open })
+        Some(Self {
+            problem,
+            solved,
+            covariances: None,
+            found,
+            before,
+            doubt,
+            against,
+            others: Vec::new(),
+            open,
+        })
     }
 
     fn replaced(
@@ -59,7 +75,8 @@ impl<'a> Stage<'a> {
     /// The most probable of the motions that are found.
     pub(super) fn decided(mut self) -> Option<Self> {
         self.before += self.solved.iterations;
-        (self.solved, self.covariances, self.open) = decided(&mut self.problem, self.solved)?;
+        let Decided { solved, covariances, others, open } = decided(&mut self.problem, self.solved)?;
+        (self.solved, self.covariances, self.others, self.open) = (solved, covariances, others, open);
         Some(self)
     }
 
@@ -90,8 +107,26 @@ impl<'a> Stage<'a> {
             self.before += ended.before;
             return Some(self);
         }
-        let known = known_motion(problem, &self.solved, mass)?;
+        let free = (problem.body, problem.frozen.clone());
+        let mut known = known_motion(problem, &self.solved, mass)?;
         self.before += known.iterations - known.solved.iterations;
+        // What was as good for an unknown body need not be for this one.
+        for (other, frozen) in self.others.drain(..).take(FOLLOWED) {
+            let of_known = (problem.body, std::mem::replace(&mut problem.frozen, frozen));
+            problem.body = free.0;
+            let other = known_motion(problem, &other, mass);
+            self.before += other.as_ref().map_or(0, |other| other.iterations);
+            let better = |other: &Oriented| other.solved.equations.cost < known.solved.equations.cost;
+            let other = match other {
+                Some(other) if better(&other) => Some(std::mem::replace(&mut known, other)),
+                other => {
+                    (problem.body, problem.frozen) = of_known;
+                    other
+                }
+            };
+            let open = other.and_then(|other| as_probable(problem, &known.solved, &other.solved));
+            self.open = self.open.or(open);
+        }
         (self.solved, self.doubt, self.against) = (known.solved, Some(known.doubt), known.against);
         Some(self)
     }
@@ -130,7 +165,17 @@ impl<'a> Stage<'a> {
         let before = self.before + self.solved.iterations;
         let solved = if sharp { sharpest(&mut problem, start) } else { fine(&mut problem, start) }?;
         let Self { found, doubt, against, open, .. } = self;
-        Some(Stage { problem, solved, covariances: None, found, before, doubt, against, open })
+        Some(Stage {
+            problem,
+            solved,
+            covariances: None,
+            found,
+            before,
+            doubt,
+            against,
+            others: Vec::new(),
+            open,
+        })
     }
 
     /// With conditions as good, or as bad, as what is left of them.
@@ -146,6 +191,7 @@ impl<'a> Stage<'a> {
     }
 
     pub(super) fn covariances(&mut self) -> Option<Covariances<CONSTANTS>> {
-        self.covariances.take().or_else(|| self.solved.covariances(&self.problem))
+        let claimed = self.covariances.take().or_else(|| self.solved.covariances(&self.problem))?;
+        Some(claimed.redrawn(&self.problem, &self.solved, DRAWS))
     }
 }

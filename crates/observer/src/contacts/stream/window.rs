@@ -12,6 +12,7 @@ use crate::contacts::onward::{FOLLOWED, WINDOW};
 use crate::contacts::options::ContactOptions;
 use crate::contacts::problem::{Problem, Units, Unknowns};
 use crate::contacts::record::Record;
+use crate::contacts::redrawn::FEW_DRAWS;
 use crate::contacts::search::{fine_nodes, fine_within, problem, thinned, whole};
 use crate::contacts::sharp::as_stated;
 use crate::contacts::solve::Solved;
@@ -187,7 +188,7 @@ impl Window {
             Asked::Search => self.found(&mut problem)?,
             Asked::Follow => (self.followed(record, &mut problem)?, false),
         };
-        let covariances = solved.covariances(&problem)?;
+        let covariances = solved.covariances(&problem)?.redrawn(&problem, &solved, FEW_DRAWS);
         let of = Of { problem: &problem, solved: &solved, covariances: &covariances, against };
         Some(self.taken(&of, (GAP * natural, record.missed_in_world(GAP * natural))))
     }

@@ -1,0 +1,121 @@
+//! How far an estimate is from what a linear model makes of it: solutions of the same log with its noise drawn once more.
+//!
+//! Where little is known of a body the most probable motion lies on a curved valley, and noise carries it along that farther than the slopes at
+//! the end of it say, by several of the deviations that they make. How far fresh noise of the same size carries the solution from where it is
+//! tells: where the model is linear as far as its deviations claim, elsewhere farther. Deviations are widened by that (the randomised optimisation
+//! of Bardsley and others, 2014, without its weights).
+
+use super::body::CONSTANTS;
+use super::problem::{Problem, Unknowns};
+use super::record::{Contact, Interval, Record};
+use super::samples::deviations;
+use super::solve::{Covariances, Solved, solve};
+use crate::random::Normal;
+use glam::DVec3;
+use nalgebra::{SMatrix, SVector, Vector6};
+
+/// Deviations of logarithms of constants, and of turns in rad, up to which nothing is looked at: what is beyond first order adds a hundredth to a
+/// variance there.
+pub(super) const SMALL: f64 = 0.02;
+/// How often noise is drawn for what is reported of a whole log, and for what is asked on the way or of a stream's window.
+pub(super) const DRAWS: usize = 12;
+pub(super) const FEW_DRAWS: usize = 4;
+const SEED: u64 = 0x2d0;
+/// How much noise is drawn, of what there is: with all of it contacts whose forces have noise of their own across the normal let a body go much
+/// farther than the noise that was there already has carried it.
+const AMOUNT: f64 = 0.7;
+const AMOUNT_WITH_FRICTION: f64 = 0.5;
+/// Linearisations of each solution, and what a step of it promises in units of chi-squared.
+const MOST: usize = 30;
+const ENOUGH: f64 = 1e-2;
+/// Share of the trace of a covariance that is added to each of its variances, so that it has a factor.
+const RIDGE: f64 = 1e-9;
+
+impl Solved<CONSTANTS> {
+    /// Without what noise alone makes the equations claim. None where the equations are singular.
+    pub(super) fn covariances(&self, problem: &Problem) -> Option<Covariances<CONSTANTS>> {
+        let claimed = self.equations.covariances(&problem.natural_information())?;
+        let widened = claimed.widened(problem, &self.equations, &self.unknowns)?;
+        widened.centre_widened(&self.equations, &self.unknowns)
+    }
+}
+
+impl Covariances<CONSTANTS> {
+    /// Widened to what solutions with noise drawn so often spread by, where that is farther than deviations say.
+    pub(super) fn redrawn(mut self, problem: &Problem, solved: &Solved<CONSTANTS>, draws: usize) -> Self {
+        if self.body.diagonal().max() < SMALL * SMALL {
+            return self;
+        }
+        let amount = if problem.record.frictionless() { AMOUNT } else { AMOUNT_WITH_FRICTION };
+        let mut random = Normal::seeded(SEED);
+        let one = |_: usize| {
+            let record = problem.record.redrawn(problem, amount, &mut random);
+            let drawn = problem.on(&record);
+            Some(solve::<CONSTANTS>(&drawn, solved.unknowns.clone(), MOST, ENOUGH)?.unknowns)
+        };
+        let all: Vec<Unknowns> = (0..draws).filter_map(one).collect();
+        let own = &solved.unknowns;
+        let mean = |of: &dyn Fn(&Unknowns) -> f64| all.iter().map(of).sum::<f64>() / all.len().max(1) as f64;
+        let wider = SVector::<f64, CONSTANTS>::from_fn(|i, _| {
+            let spread = mean(&|at| at.body.from(&own.body)[i].powi(2));
+            (spread / (amount * amount) / self.body[(i, i)].max(f64::MIN_POSITIVE)).max(1.0).sqrt()
+        });
+        let wider = SMatrix::from_diagonal(&wider);
+        self.body = wider * self.body * wider;
+        let known: Vec<_> =
+            (0..own.motions.len()).map(|j| deviations(&own.motions[j], &own.body, j, &self)).collect();
+        let beyond = |(j, known): (usize, &[DVec3; 4])| {
+            let spread = |i: usize| mean(&|at| (departure(own, at, j)[i] / known[i]).length_squared());
+            std::array::from_fn(|i| (spread(i) / (3.0 * amount * amount)).max(1.0).sqrt())
+        };
+        self.beyond = known.iter().enumerate().map(beyond).collect();
+        self
+    }
+}
+
+/// Centre of mass, velocity, angular velocity and turn of node `j` at some unknowns, from those at others.
+fn departure(from: &Unknowns, to: &Unknowns, j: usize) -> [DVec3; 4] {
+    let (a, b) = (&from.motions[j], &to.motions[j]);
+    let step = b.from(a);
+    let spin = to.body.spin(b.q, b.L) - from.body.spin(a.q, a.L);
+    [b.p - a.p, b.v - a.v, spin, DVec3::new(step[9], step[10], step[11])]
+}
+
+impl Record {
+    /// With as much of its noise drawn once more.
+    fn redrawn(&self, problem: &Problem, amount: f64, random: &mut Normal) -> Self {
+        let mut record = self.clone();
+        for contact in record.contacts.iter_mut().flatten() {
+            contact.redraw(problem, amount, random);
+        }
+        let all_impulses = self.all_impulses;
+        // What a blow does is open, unless it was measured.
+        for interval in record.intervals.iter_mut().filter(|interval| all_impulses || !interval.blow) {
+            interval.redraw(amount, random);
+        }
+        record
+    }
+}
+
+impl Contact {
+    fn redraw(&mut self, problem: &Problem, amount: f64, random: &mut Normal) {
+        let deviation = amount * problem.noise.contact / (self.samples as f64).sqrt();
+        let along = self.tangents().into_iter().take(self.freedoms());
+        self.c += along.map(|tangent| tangent * (deviation * random.draw())).sum::<DVec3>();
+        self.u += self.n * (amount * problem.noise.floor * random.draw());
+    }
+}
+
+impl Interval {
+    fn redraw(&mut self, amount: f64, random: &mut Normal) {
+        let mut white = self.noise.white * (amount * amount);
+        let ridge = RIDGE * white.trace();
+        (0..6).for_each(|i| white[(i, i)] += ridge);
+        let Some(factor) = white.cholesky() else { return };
+        let drawn = factor.l() * Vector6::from_fn(|_, _| random.draw());
+        let force = DVec3::new(drawn[0], drawn[1], drawn[2]);
+        self.impulse.force += force;
+        self.impulse.moment += DVec3::new(drawn[3], drawn[4], drawn[5]);
+        self.first += force * (0.5 * self.h);
+    }
+}
