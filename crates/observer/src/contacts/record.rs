@@ -339,8 +339,9 @@ fn intervals(
 ) -> Vec<Interval> {
     let felt = |k: usize| contacts[k].iter().filter(|contact| sampled[contact.palm]);
     let wrenches: Vec<Wrench> = (0..times.len()).map(|k| wrench(felt(k))).collect();
+    let since: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
     let rough = |k: usize| {
-        let h = times[k] - times[k - 1];
+        let h = since[k] - since[k - 1];
         // The noise of a sample is felt on both its sides; put into the interval after it alone it is white.
         let mut white = Matrix6::zeros();
         felt(k - 1).for_each(|contact| add_noise(&mut white, contact, noise.contact, h));
@@ -348,7 +349,7 @@ fn intervals(
         Interval::trapezoid(h, [&wrenches[k - 1], &wrenches[k]], noise)
     };
     let mut all: Vec<Interval> = (1..times.len()).map(rough).collect();
-    smooth(times, &wrenches, &mut all);
+    smooth(&since, &wrenches, &mut all);
     for (k, interval) in all.iter_mut().enumerate() {
         doubt(k, interval, &wrenches);
     }
@@ -356,9 +357,8 @@ fn intervals(
 }
 
 /// Takes the rule of order 6 in place of the trapezoidal one, unless noise is what makes them differ.
-fn smooth(times: &[f64], wrenches: &[Wrench], all: &mut [Interval]) {
-    let since: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
-    let sums = running_integral(&since, wrenches, Wrench::default());
+fn smooth(since: &[f64], wrenches: &[Wrench], all: &mut [Interval]) {
+    let sums = running_integral(since, wrenches, Wrench::default());
     let impulse = |k: usize| sums[k + 1] + sums[k] * -1.0;
     let differ = |(k, of): (usize, &Interval)| (impulse(k).force - of.impulse.force).length_squared();
     let differences: f64 = all.iter().enumerate().map(differ).sum();
@@ -366,8 +366,8 @@ fn smooth(times: &[f64], wrenches: &[Wrench], all: &mut [Interval]) {
     if differences < 2.0 * expected {
         return;
     }
-    let timed: Vec<DVec3> = wrenches.iter().zip(&since).map(|(w, t)| w.force * *t).collect();
-    let firsts = running_integral(&since, &timed, DVec3::ZERO);
+    let timed: Vec<DVec3> = wrenches.iter().zip(since).map(|(w, t)| w.force * *t).collect();
+    let firsts = running_integral(since, &timed, DVec3::ZERO);
     for (k, interval) in all.iter_mut().enumerate() {
         interval.impulse = impulse(k);
         interval.first = firsts[k + 1] - firsts[k] - interval.impulse.force * since[k];

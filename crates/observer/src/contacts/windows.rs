@@ -149,16 +149,20 @@ impl Parabola {
     }
 }
 
-/// Weights of the samples around a window in the value at its middle: the mean over the window, less what slope and bend of the parabola through
-/// all of them add to it. None with too few of them.
-fn weights(window: &Window, times: &[f64]) -> Option<Vec<f64>> {
-    let row = Parabola::row(window, times)?;
-    let normal: Matrix3<f64> = window.around.clone().map(|k| row(k) * row(k).transpose()).sum();
-    let count = window.own.len() as f64;
-    let mean: Vector3<f64> = window.own.clone().map(|k| row(k) / count).sum();
-    let bend = normal.cholesky()?.solve(&Vector3::new(0.0, mean[1], mean[2]));
-    let one = |k: usize| if window.own.contains(&k) { count.recip() } else { 0.0 } - bend.dot(&row(k));
-    Some(window.around.clone().map(one).collect())
+/// Samples, and their weights in the value at the middle of a window: the mean over the window, less what slope and bend of the parabola through
+/// the samples around add to it. With too few of these the middle one stands for all.
+fn weights(window: &Window, times: &[f64]) -> (Range<usize>, Vec<f64>) {
+    let one = || {
+        let row = Parabola::row(window, times)?;
+        let normal: Matrix3<f64> = window.around.clone().map(|k| row(k) * row(k).transpose()).sum();
+        let count = window.own.len() as f64;
+        let mean: Vector3<f64> = window.own.clone().map(|k| row(k) / count).sum();
+        let bend = normal.cholesky()?.solve(&Vector3::new(0.0, mean[1], mean[2]));
+        let share = |k: usize| if window.own.contains(&k) { count.recip() } else { 0.0 };
+        Some(window.around.clone().map(|k| share(k) - bend.dot(&row(k))).collect())
+    };
+    let middle = window.middle();
+    one().map_or((middle..middle + 1, vec![1.0]), |weights| (window.around.clone(), weights))
 }
 
 impl Record {
@@ -233,12 +237,9 @@ impl Record {
 
     /// Contacts of the sample in the middle of a window.
     fn smoothed(&self, window: &Window) -> Vec<Contact> {
-        let middle = &self.contacts[window.middle()];
-        let Some(weights) = weights(window, &self.times) else {
-            return middle.iter().map(|contact| Contact { samples: window.averaged(), ..*contact }).collect();
-        };
+        let (samples, weights) = weights(window, &self.times);
         let one = |(i, contact): (usize, &Contact)| {
-            let all = || window.around.clone().map(|k| &self.contacts[k][i]).zip(&weights);
+            let all = || samples.clone().map(|k| &self.contacts[k][i]).zip(&weights);
             let of = |of: fn(&Contact) -> DVec3| all().map(|(c, weight)| of(c) * *weight).sum::<DVec3>();
             let c = of(|c| c.c);
             Contact {
@@ -250,7 +251,7 @@ impl Record {
                 ..*contact
             }
         };
-        middle.iter().enumerate().map(one).collect()
+        self.contacts[window.middle()].iter().enumerate().map(one).collect()
     }
 }
 
