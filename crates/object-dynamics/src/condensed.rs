@@ -12,8 +12,6 @@ const MEAN_OFF_MIDDLE: f64 = 24.0;
 const FOURTH_DIFFERENCE: f64 = 70.0;
 /// What means may be off the middle, in deviations of their noise. White noise alone seems to be off by `sqrt(6) / 24`, 0.10.
 const LARGEST_BIAS: f64 = 0.15;
-/// The same of readings without noise to speak of, relative to their largest value.
-const LARGEST_RELATIVE_BIAS: f64 = 1e-9;
 /// Channels of a palm: normal, contact, force, torque, rate.
 const CHANNELS: usize = 8;
 
@@ -23,16 +21,16 @@ impl SensorLog {
     /// averaging; its deviations become smaller by `sqrt(block)`. What follows the last whole block before a loss stays as it is.
     ///
     /// `None` where that would change the readings: where a block has a gap or lasts long enough for the mean to be off the
-    /// middle by 0.15 deviations of its own noise (root mean square, noise from fourth differences), and 1e-9 of the largest reading; and
-    /// where a channel is not measured throughout.
+    /// middle by 0.15 deviations of its own noise (root mean square, noise from fourth differences), and by a share `blurred` of the largest
+    /// reading, so that readings without noise have means as well; and where a channel is not measured throughout.
     #[must_use]
-    pub fn condensed(&self, block: usize) -> Option<Self> {
+    pub fn condensed(&self, block: usize, blurred: f64) -> Option<Self> {
         let end = self.first_contact_loss().map_or(self.samples().len(), |(sample, _)| sample);
         let whole = end / block.max(1) * block;
         let blocks: Vec<&[Sample]> = self.samples()[..whole].chunks_exact(block.max(1)).collect();
         let means: Option<Vec<Sample>> = blocks.iter().map(|samples| mean(samples)).collect();
         let means = means.filter(|means| means.len() >= 5)?;
-        if has_gap(&blocks) || has_bias(&means) {
+        if has_gap(&blocks) || has_bias(&means, blurred) {
             return None;
         }
         let after = if end < self.samples().len() { &self.samples()[whole..] } else { &[] };
@@ -87,8 +85,8 @@ fn channels(palm: &PalmReading) -> Option<[f64; CHANNELS]> {
     Some([n.x, n.y, n.z, s[0], s[1], force, torque, rate])
 }
 
-/// Whether the means are off the middles of their blocks by more than their noise hides, in any channel.
-fn has_bias(means: &[Sample]) -> bool {
+/// Whether the means are off the middles of their blocks by more than their noise hides and than this share of the largest one, in any channel.
+fn has_bias(means: &[Sample], blurred: f64) -> bool {
     let is_biased = |palm: usize, channel: usize| {
         let series: Vec<f64> =
             means.iter().filter_map(|m| channels(&m.palms[palm]).map(|all| all[channel])).collect();
@@ -98,7 +96,7 @@ fn has_bias(means: &[Sample]) -> bool {
         let rms = |squares: f64, count: usize| (squares / count as f64).sqrt();
         let bias = rms(second.sum(), series.len() - 2) / MEAN_OFF_MIDDLE;
         let noise = rms(fourth.sum(), series.len() - 4) / FOURTH_DIFFERENCE.sqrt();
-        bias > LARGEST_BIAS * noise && bias > LARGEST_RELATIVE_BIAS * largest
+        bias > LARGEST_BIAS * noise && bias > blurred * largest
     };
     (0..3).any(|palm| (0..CHANNELS).any(|channel| is_biased(palm, channel)))
 }
@@ -140,7 +138,7 @@ mod tests {
     #[test]
     fn means_keep_what_is_smooth_and_average_what_is_noise() {
         let (exact, noisy) = (log(FAST, 0.0), log(FAST, 1e-3));
-        let (means, averaged) = (exact.condensed(5).unwrap(), noisy.condensed(5).unwrap());
+        let (means, averaged) = (exact.condensed(5, 1e-9).unwrap(), noisy.condensed(5, 1e-9).unwrap());
         assert_eq!(means.samples().len(), ROWS as usize / 5);
         let s = |log: &SensorLog, k: usize| log.samples()[k].palms[0].contact.unwrap()[0];
         let mut squares = 0.0;
@@ -160,14 +158,17 @@ mod tests {
     #[test]
     fn what_means_would_blur_is_left_as_it_is() {
         // Blocks of 5 ms: off by 5e-5, which noise of 1e-2 hides and noise of 1e-6 does not.
-        assert!(log(1000.0, 1e-2).condensed(5).is_some());
-        assert!(log(1000.0, 1e-6).condensed(5).is_none());
-        assert!(log(1000.0, 0.0).condensed(5).is_none());
+        assert!(log(1000.0, 1e-2).condensed(5, 1e-9).is_some());
+        assert!(log(1000.0, 1e-6).condensed(5, 1e-9).is_none());
+        assert!(log(1000.0, 0.0).condensed(5, 1e-9).is_none());
+        // Of 17 microseconds: off by 6e-10, which 1e-12 of the readings does not hide, and noise does.
+        assert!(log(FAST, 0.0).condensed(5, 1e-12).is_none());
+        assert!(log(FAST, 1e-3).condensed(5, 1e-12).is_some());
         let gap = |mut samples: Vec<Sample>| {
             samples.iter_mut().skip(777).for_each(|sample| sample.t += 1e-3);
             SensorLog::new(samples, None).unwrap()
         };
-        assert!(gap(log(FAST, 0.0).samples().to_vec()).condensed(5).is_none());
+        assert!(gap(log(FAST, 0.0).samples().to_vec()).condensed(5, 1e-9).is_none());
     }
 
     #[test]
@@ -176,7 +177,7 @@ mod tests {
         samples[10_003].palms[1].contact = None;
         samples[10_003].palms[1].force = Some(0.0);
         let lost = samples[10_003].t;
-        let log = SensorLog::new(samples, None).unwrap().condensed(5).unwrap();
+        let log = SensorLog::new(samples, None).unwrap().condensed(5, 1e-9).unwrap();
         assert_eq!(log.first_contact_loss(), Some((2003, 1)));
         assert_eq!(log.samples()[2003].t, lost);
         assert_eq!(log.samples().len(), 2000 + ROWS as usize - 10_000);

@@ -1,7 +1,9 @@
 //! Contact modes from the ratio of friction to normal force.
 
+use super::ranges::Ranges;
 use super::record::{Contact, Record};
 use object_dynamics::{ContactMode, MOST_PALMS};
+use std::ops::Add;
 
 /// Quantile of a palm's ratios that is taken for that of sliding.
 const SLIDING: f64 = 0.9;
@@ -11,8 +13,8 @@ const BELOW: f64 = 4.0;
 /// Least relative deviation of a ratio.
 const LEAST: f64 = 0.01;
 
-/// Ratio of friction to normal force at a sample.
-#[derive(Clone, Copy)]
+/// Ratio of friction to normal force at a sample, or a sum of such.
+#[derive(Clone, Copy, Default)]
 struct Ratio {
     value: f64,
     /// Square of the standard deviation of each axis of the force as a share of it.
@@ -92,7 +94,45 @@ fn ratios(record: &Record, palm: usize) -> Vec<Option<Ratio>> {
 
 /// Means over as many samples on either side as lie within `time` and touch without a break.
 fn averaged(ratios: &[Option<Ratio>], times: &[f64], time: f64) -> Vec<Option<Mean>> {
-    let one = |k: usize| {
+    let sums = Ranges::new(&ratios.iter().map(|ratio| ratio.unwrap_or_default()).collect::<Vec<_>>());
+    let mut all = Vec::with_capacity(ratios.len());
+    let mut to = 0;
+    for run in ratios.chunk_by(|a, b| a.is_some() == b.is_some()) {
+        let (start, end) = (all.len(), all.len() + run.len());
+        for k in start..end {
+            // Of the last sample within `time`.
+            while to < times.len() && times[to] - times[k] <= time {
+                to += 1;
+            }
+            let beside = (k - start).min(end - 1 - k).min(to.saturating_sub(k + 1));
+            let samples = 2 * beside + 1;
+            let mean = || {
+                let Ratio { value, share } = sums.sum(k - beside..k + beside + 1);
+                Mean {
+                    ratio: Ratio { value: value / samples as f64, share: share / samples as f64 },
+                    samples,
+                }
+            };
+            all.push(ratios[k].map(|_| mean()));
+        }
+    }
+    all
+}
+
+impl Add for Ratio {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { value: self.value + other.value, share: self.share + other.share }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Normal;
+
+    /// As it is defined, sample by sample.
+    fn mean(ratios: &[Option<Ratio>], times: &[f64], time: f64, k: usize) -> Option<Mean> {
         let Ratio { mut value, mut share } = ratios[k]?;
         let mut samples = 1;
         for i in 1..=k.min(ratios.len() - 1 - k) {
@@ -106,6 +146,36 @@ fn averaged(ratios: &[Option<Ratio>], times: &[f64], time: f64) -> Vec<Option<Me
         }
         let count = samples as f64;
         Some(Mean { ratio: Ratio { value: value / count, share: share / count }, samples })
-    };
-    (0..ratios.len()).map(one).collect()
+    }
+
+    #[test]
+    fn means_are_those_of_the_samples_as_they_are_defined() {
+        let mut random = Normal::seeded(3);
+        let mut t = 0.0;
+        let times: Vec<f64> = (0..600)
+            .map(|_| {
+                t += 1e-3 * (0.2 + random.draw().abs());
+                t
+            })
+            .collect();
+        // Gaps, and forces that do not press.
+        let ratios: Vec<Option<Ratio>> = (0..600)
+            .map(|k| {
+                let value = if k % 151 == 70 { f64::INFINITY } else { random.draw().abs() };
+                (k % 89 > 2).then_some(Ratio { value, share: 1e-4 * random.draw().abs() })
+            })
+            .collect();
+        for time in [0.0, 0.004, 0.03, 10.0] {
+            for (k, fast) in averaged(&ratios, &times, time).into_iter().enumerate() {
+                let simple = mean(&ratios, &times, time, k);
+                assert_eq!(fast.map(|mean| mean.samples), simple.map(|mean| mean.samples), "{time} {k}");
+                let (Some(Mean { ratio: a, .. }), Some(Mean { ratio: b, .. })) = (fast, simple) else {
+                    continue;
+                };
+                // Sums of positive numbers: the rounding of at most so many steps.
+                let alike = |a: f64, b: f64| a == b || (a - b).abs() <= 600.0 * f64::EPSILON * b;
+                assert!(alike(a.value, b.value) && alike(a.share, b.share), "{time} {k}");
+            }
+        }
+    }
 }

@@ -340,38 +340,44 @@ fn intervals(
     let felt = |k: usize| contacts[k].iter().filter(|contact| sampled[contact.palm]);
     let wrenches: Vec<Wrench> = (0..times.len()).map(|k| wrench(felt(k))).collect();
     let since: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
-    let sums = running_integral(&since, &wrenches, Wrench::default());
-    let timed: Vec<Wrench> = wrenches.iter().zip(&since).map(|(w, t)| *w * *t).collect();
-    let firsts = running_integral(&since, &timed, Wrench::default());
-    let fine: Vec<Interval> = (1..times.len())
-        .map(|k| {
-            let h = since[k] - since[k - 1];
-            let impulse = sums[k] + sums[k - 1] * -1.0;
-            let first = firsts[k].force - firsts[k - 1].force - impulse.force * since[k - 1];
-            // The noise of a sample is felt on both its sides; put into the interval after it alone it is white.
-            let mut white = Matrix6::zeros();
-            felt(k - 1).for_each(|contact| add_noise(&mut white, contact, noise.contact, h));
-            let noise = WrenchNoise { white, ..WrenchNoise::default() };
-            Interval { h, impulse, first, noise, blow: false, parts: 1 }
-        })
-        .collect();
     let rough = |k: usize| {
-        let Interval { h, noise, .. } = fine[k - 1];
+        let h = since[k] - since[k - 1];
+        // The noise of a sample is felt on both its sides; put into the interval after it alone it is white.
+        let mut white = Matrix6::zeros();
+        felt(k - 1).for_each(|contact| add_noise(&mut white, contact, noise.contact, h));
+        let noise = WrenchNoise { white, ..WrenchNoise::default() };
         Interval::trapezoid(h, [&wrenches[k - 1], &wrenches[k]], noise)
     };
-    let rough: Vec<Interval> = (1..times.len()).map(rough).collect();
-    let differ = |(fine, rough): (&Interval, &Interval)| fine.impulse + rough.impulse * -1.0;
-    let square = |pair| differ(pair).force.length_squared();
-    let differences: f64 = fine.iter().zip(&rough).map(square).sum();
-    let expected: f64 = fine.iter().map(|i| RULES_DIFFER * force_trace(&i.noise.white)).sum();
-    let all = if differences < 2.0 * expected { rough } else { fine };
-    all.into_iter().enumerate().map(|(k, interval)| doubted(k, interval, &wrenches)).collect()
+    let mut all: Vec<Interval> = (1..times.len()).map(rough).collect();
+    smooth(&since, &wrenches, &mut all);
+    for (k, interval) in all.iter_mut().enumerate() {
+        doubt(k, interval, &wrenches);
+    }
+    all
 }
 
-/// With what the interval after sample `k` may be off by, if a force jumps within it: nobody knows when.
+/// Takes the rule of order 6 in place of the trapezoidal one, unless noise is what makes them differ.
+fn smooth(since: &[f64], wrenches: &[Wrench], all: &mut [Interval]) {
+    let sums = running_integral(since, wrenches, Wrench::default());
+    let impulse = |k: usize| sums[k + 1] + sums[k] * -1.0;
+    let differ = |(k, of): (usize, &Interval)| (impulse(k).force - of.impulse.force).length_squared();
+    let differences: f64 = all.iter().enumerate().map(differ).sum();
+    let expected: f64 = all.iter().map(|i| RULES_DIFFER * force_trace(&i.noise.white)).sum();
+    if differences < 2.0 * expected {
+        return;
+    }
+    let timed: Vec<DVec3> = wrenches.iter().zip(since).map(|(w, t)| w.force * *t).collect();
+    let firsts = running_integral(since, &timed, DVec3::ZERO);
+    for (k, interval) in all.iter_mut().enumerate() {
+        interval.impulse = impulse(k);
+        interval.first = firsts[k + 1] - firsts[k] - interval.impulse.force * since[k];
+    }
+}
+
+/// Adds what the interval after sample `k` may be off by, if a force jumps within it: nobody knows when.
 ///
 /// A jump is what a step between two samples is more than the mean of the steps beside it, and more than noise makes of it.
-fn doubted(k: usize, mut interval: Interval, wrenches: &[Wrench]) -> Interval {
+fn doubt(k: usize, interval: &mut Interval, wrenches: &[Wrench]) {
     interval.noise.sampled = force_trace(&interval.noise.white);
     let white = &mut interval.noise.white;
     if let (Some(before), Some(after)) = (k.checked_sub(1).map(|k| wrenches[k]), wrenches.get(k + 2)) {
@@ -382,10 +388,11 @@ fn doubted(k: usize, mut interval: Interval, wrenches: &[Wrench]) -> Interval {
         let noise = 5.0 * force_trace(white) / (h * h);
         let seen = (1.0 - SEEN * noise / square.max(f64::MIN_POSITIVE)).max(0.0);
         // Of a time that is uniform over the interval.
-        let column = six(jump.force, jump.moment) * (h * (seen / 12.0).sqrt());
-        white.ger(1.0, &column, &column, 1.0);
+        if seen > 0.0 {
+            let column = six(jump.force, jump.moment) * (h * (seen / 12.0).sqrt());
+            white.ger(1.0, &column, &column, 1.0);
+        }
     }
-    interval
 }
 
 /// Times the variance that noise makes of a jump from which on it is one.

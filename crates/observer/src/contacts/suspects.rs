@@ -10,6 +10,7 @@ use super::problem::{Problem, Units};
 use super::reach::Residuals;
 use super::record::{Contact, Record};
 use super::samples::Deviations;
+use super::slopes::slopes;
 use super::solve::{Covariances, Solved};
 use super::state::{Motion, Tangent};
 use crate::faults::{SensorFault, Suspect};
@@ -28,8 +29,8 @@ const LEAST_SOUND: f64 = 0.3;
 const SEED: u64 = 0xd31a;
 /// Natural times on either side over which slopes of forces are taken.
 const SMOOTH: f64 = 0.12;
-/// Step of differences, in natural units.
-const STEP: f64 = 1e-3;
+/// Step of differences to one side, in natural units: a millionth is what it leaves out, and rounding a tenth of that.
+const STEP: f64 = 1e-6;
 
 /// A change of what a log says, by a constant of the sensors that is not what it was taken for.
 pub(super) struct Change<'a> {
@@ -39,10 +40,8 @@ pub(super) struct Change<'a> {
     /// Motion at all samples, positions from the record's origin.
     motions: &'a [(Motion, Deviations)],
     body: &'a Body,
-    /// Time on either side over which slopes of forces are taken, s.
-    smooth: f64,
-    /// Noise to take in place of the forces, by palm and sample.
-    noise: Option<&'a [Vec<DVec3>]>,
+    /// What the forces change by in a unit of time, N/s, by palm and sample; none where that is not asked for.
+    slopes: &'a [Vec<DVec3>],
 }
 
 /// Scores of all constants at a solution with its `motions` at all samples of `log`. `remade` makes the record that the problem is on from
@@ -66,23 +65,22 @@ pub(super) fn suspects(
     let deviations: Vec<Tangent> = covariances.motions.iter().map(|of| covariances.deviations(of)).collect();
     let one = |fault: SensorFault| {
         let step = STEP * fault.natural(&problem.units);
-        let at = |by: f64, noise| {
-            let record = remade(&Change { fault, by, log, motions, body: &unknowns.body, smooth, noise })?;
-            Residuals::new(&problem.on(&record), unknowns)
-        };
-        let told = |noise| {
-            let by = Residuals::slope(&at(step, noise)?, &at(-step, noise)?, 2.0 * step)?;
+        let told = |slopes: &[Vec<DVec3>]| {
+            let record = remade(&Change { fault, by: step, log, motions, body: &unknowns.body, slopes })?;
+            let changed = Residuals::new(&problem.on(&record), unknowns)?;
+            let by = Residuals::slope(&changed, &residuals, step)?;
             let (slope, own, mixed) = residuals.normal(equations, &by)?;
             // What motion and body take up when they follow: the step of a gradient is minus the inverse times it.
             let follows = solver.step(&mixed);
             Some((slope + mixed.dot(&followed), own, own + mixed.dot(&follows), follows))
         };
-        let (slope, own, left, follows) = told(None)?;
-        // Noise in the slopes of forces poses as information on their delay.
-        let spurious = match fault {
-            SensorFault::ForceDelay => told(Some(&drawn(log, &problem.noise)))?.2,
-            _ => 0.0,
+        let delay = fault == SensorFault::ForceDelay;
+        let (slope, own, left, follows) = match delay {
+            true => told(&slopes_of_forces(log, smooth, force))?,
+            false => told(&[])?,
         };
+        // Noise in the slopes of forces poses as information on their delay.
+        let spurious = if delay { told(&slopes_of_noise(log, smooth, &problem.noise))?.2 } else { 0.0 };
         let sound = left - spurious;
         let tells = sound > (LEAST_LEFT * own).max(LEAST_SOUND * left) && left.is_finite();
         // Noise that forces and their slope share poses as a wrong gain.
@@ -101,14 +99,32 @@ pub(super) fn suspects(
     Some(constants(log, problem).into_iter().filter_map(one).collect())
 }
 
-/// Noise of all forces, by palm and sample.
-fn drawn(log: &ContactLog, noise: &ContactNoiseLevel) -> Vec<Vec<DVec3>> {
-    let mut random = Normal::seeded(SEED);
-    let mut one = |palm: &LoggedPalm, k: usize| {
-        let deviation = palm.force(k).map_or(0.0, |force| noise.force(force.vector));
-        DVec3::new(random.draw(), random.draw(), random.draw()) * deviation
+/// Of a palm that is touched, N.
+fn force(palm: &LoggedPalm, k: usize) -> Option<DVec3> {
+    palm.touch(k).and_then(|_| palm.force(k)).map(|force| force.vector)
+}
+
+/// By palm and sample, N/s, of `value` at each: of the line through those around, `smooth` on either side in time and as far as the palm is touched.
+/// The noise of two neighbours would be taken for slope.
+fn slopes_of_forces(
+    log: &ContactLog,
+    smooth: f64,
+    mut value: impl FnMut(&LoggedPalm, usize) -> Option<DVec3>,
+) -> Vec<Vec<DVec3>> {
+    let of = |palm| {
+        let values: Vec<Option<DVec3>> = (0..log.times().len()).map(|k| value(palm, k)).collect();
+        slopes(log.times(), &values, smooth)
     };
-    log.palms().iter().map(|palm| (0..log.times().len()).map(|k| one(palm, k)).collect()).collect()
+    log.palms().iter().map(of).collect()
+}
+
+/// The same of noise that is drawn in place of the forces.
+fn slopes_of_noise(log: &ContactLog, smooth: f64, noise: &ContactNoiseLevel) -> Vec<Vec<DVec3>> {
+    let mut random = Normal::seeded(SEED);
+    slopes_of_forces(log, smooth, |palm, k| {
+        let drawn = DVec3::new(random.draw(), random.draw(), random.draw());
+        force(palm, k).map(|force| drawn * noise.force(force))
+    })
 }
 
 /// Share of noise in the squares of the impulses.
@@ -196,23 +212,8 @@ impl Change<'_> {
         }
     }
 
-    /// Of the line through the readings around, as far as the palm is touched: the noise of two neighbours would be taken for slope.
     fn slope_of_force(&self, k: usize, contact: &Contact) -> DVec3 {
-        let (palm, times) = (&self.log.palms()[contact.palm], self.log.times());
-        let told = |k: usize| palm.touch(k).and_then(|_| palm.force(k)).map(|force| force.vector);
-        let at = |k: &usize| told(*k).map(|force| self.noise.map_or(force, |noise| noise[contact.palm][*k]));
-        let near = |other: &usize| (times[*other] - times[k]).abs() <= self.smooth && at(other).is_some();
-        let from = (0..k).rev().take_while(near).last().unwrap_or(k);
-        let to = (k + 1..times.len()).take_while(near).last().unwrap_or(k);
-        let count = (to + 1 - from) as f64;
-        let mean = times[from..=to].iter().sum::<f64>() / count;
-        let (mut sum, mut squares) = (DVec3::ZERO, 0.0);
-        for other in from..=to {
-            let since = times[other] - mean;
-            sum += at(&other).unwrap_or_default() * since;
-            squares += since * since;
-        }
-        let slope = if squares > 0.0 { sum / squares } else { DVec3::ZERO };
+        let slope = self.slopes[contact.palm][k];
         if contact.frictionless { slope.project_onto_normalized(contact.n) } else { slope }
     }
 }

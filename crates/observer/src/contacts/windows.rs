@@ -119,18 +119,26 @@ struct Parabola {
 
 impl Parabola {
     fn new(window: &Window, times: &[f64], value: impl Fn(usize) -> DVec3) -> Option<Self> {
-        if window.averaged() == 1 {
-            return None;
-        }
-        let scale = times[window.around.end - 1] - times[window.around.start];
+        let row = Self::row(window, times)?;
         let (mut normal, mut right) = (Matrix3::zeros(), Matrix3::zeros());
         for k in window.around.clone() {
-            let s = (times[k] - times[window.middle()]) / scale;
-            let row = Vector3::new(1.0, s, s * s);
-            normal.ger(1.0, &row, &row, 1.0);
-            right.ger(1.0, &row, &Vector3::from(value(k)), 1.0);
+            normal.ger(1.0, &row(k), &row(k), 1.0);
+            right.ger(1.0, &row(k), &Vector3::from(value(k)), 1.0);
         }
-        Some(Self { scale, coefficients: normal.cholesky()?.solve(&right) })
+        Some(Self { scale: Self::scale(window, times), coefficients: normal.cholesky()?.solve(&right) })
+    }
+
+    fn scale(window: &Window, times: &[f64]) -> f64 {
+        times[window.around.end - 1] - times[window.around.start]
+    }
+
+    /// What the coefficients count by at each sample. None with too few of them.
+    fn row(window: &Window, times: &[f64]) -> Option<impl Fn(usize) -> Vector3<f64>> {
+        let (scale, middle) = (Self::scale(window, times), times[window.middle()]);
+        (window.averaged() > 1).then_some(move |k: usize| {
+            let s = (times[k] - middle) / scale;
+            Vector3::new(1.0, s, s * s)
+        })
     }
 
     /// Its value at a time after the middle.
@@ -141,12 +149,20 @@ impl Parabola {
     }
 }
 
-/// Value at the middle of a window: the mean, less what slope and bend of a parabola through the samples around add to it.
-fn at_middle(window: &Window, times: &[f64], value: impl Fn(usize) -> DVec3) -> DVec3 {
-    let Some(parabola) = Parabola::new(window, times, &value) else { return value(window.middle()) };
-    let bend = |k: usize| parabola.at(times[k] - times[window.middle()]) - parabola.at(0.0);
-    let sum: DVec3 = window.own.clone().map(|k| value(k) - bend(k)).sum();
-    sum / window.own.len() as f64
+/// Samples, and their weights in the value at the middle of a window: the mean over the window, less what slope and bend of the parabola through
+/// the samples around add to it. With too few of these the middle one stands for all.
+fn weights(window: &Window, times: &[f64]) -> (Range<usize>, Vec<f64>) {
+    let one = || {
+        let row = Parabola::row(window, times)?;
+        let normal: Matrix3<f64> = window.around.clone().map(|k| row(k) * row(k).transpose()).sum();
+        let count = window.own.len() as f64;
+        let mean: Vector3<f64> = window.own.clone().map(|k| row(k) / count).sum();
+        let bend = normal.cholesky()?.solve(&Vector3::new(0.0, mean[1], mean[2]));
+        let share = |k: usize| if window.own.contains(&k) { count.recip() } else { 0.0 };
+        Some(window.around.clone().map(|k| share(k) - bend.dot(&row(k))).collect())
+    };
+    let middle = window.middle();
+    one().map_or((middle..middle + 1, vec![1.0]), |weights| (window.around.clone(), weights))
 }
 
 impl Record {
@@ -221,8 +237,10 @@ impl Record {
 
     /// Contacts of the sample in the middle of a window.
     fn smoothed(&self, window: &Window) -> Vec<Contact> {
+        let (samples, weights) = weights(window, &self.times);
         let one = |(i, contact): (usize, &Contact)| {
-            let of = |of: fn(&Contact) -> DVec3| at_middle(window, &self.times, |k| of(&self.contacts[k][i]));
+            let all = || samples.clone().map(|k| &self.contacts[k][i]).zip(&weights);
+            let of = |of: fn(&Contact) -> DVec3| all().map(|(c, weight)| of(c) * *weight).sum::<DVec3>();
             let c = of(|c| c.c);
             Contact {
                 c,

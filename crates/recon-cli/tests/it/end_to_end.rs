@@ -71,9 +71,9 @@ fn motion_has_the_columns_of_the_truth_and_its_values() {
     assert!(header.starts_with("t,cmx,cmy,cmz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,std_cmx,"), "{header}");
     assert!(header.ends_with("mode_1,mode_2,mode_3,relied_on"), "{header}");
     assert_eq!(motion.rows.len(), log.rows.len());
-    // At 50 Hz the quadrature of the readings is good to some 1e-5 of a 2 m, 1 rad/s scene.
+    // At 100 Hz the quadrature of the readings is good to some 1e-6 of a 2 m, 1 rad/s scene.
     for column in ["t", "cmx", "cmy", "cmz", "vx", "vy", "vz", "wx", "wy", "wz"] {
-        assert!(difference(&log, &motion, column) < 1e-4, "{column}");
+        assert!(difference(&log, &motion, column) < 1e-5, "{column}");
     }
     // A second run replaces the first.
     assert_eq!(scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]).code, Some(0));
@@ -81,7 +81,7 @@ fn motion_has_the_columns_of_the_truth_and_its_values() {
     let curves = scratch.run(&["bounds", "out/contact_curves.csv", "--json"]);
     let again: Value = serde_json::from_str(&curves.stdout).unwrap();
     let first: Value = serde_json::from_str(&scratch.read("out/summary.json")).unwrap();
-    // Taken as exact the same contacts give slightly narrower bounds than with the margins of a motion at 50 Hz.
+    // Taken as exact the same contacts give slightly narrower bounds than with the margins of a motion at 100 Hz.
     for (key, widened) in [("lower_volume_m3", -1.0), ("upper_volume_m3", 1.0), ("largest_gap_m", 1.0)] {
         let [read, made] = [&again, &first].map(|v| v["bounds"][key].as_f64().unwrap());
         assert!((0.0..1e-2 * made).contains(&(widened * (made - read))), "{key}: {read} {made}");
@@ -107,7 +107,7 @@ fn truth_in_the_log_has_no_influence() {
 #[test]
 fn loss_of_contact_ends_a_simulation_and_is_said_in_a_reconstruction() {
     let scratch = Scratch::new("loss");
-    let gentle = scene().replace("gravity = 9.81", "gravity = 1.0").replace("rate = 50.0", "rate = 1000.0");
+    let gentle = scene().replace("gravity = 9.81", "gravity = 1.0").replace("rate = 100.0", "rate = 1000.0");
     scratch.write("scene.toml", &gentle);
     let run = scratch.run(&["simulate", "scene.toml", "-o", "log.csv"]);
     assert_eq!(run.code, Some(4), "{}", run.stderr);
@@ -142,7 +142,7 @@ fn loss_of_contact_ends_a_simulation_and_is_said_in_a_reconstruction() {
 #[test]
 fn bounds_from_a_noisy_log_have_margins() {
     let scratch = Scratch::new("noisy");
-    let text = scene().replace("sample_rate = 50.0", "sample_rate = 200.0");
+    let text = scene().replace("sample_rate = 100.0", "sample_rate = 200.0");
     scratch.write("scene.toml", &text);
     scratch.write("noisy.toml", &(text + "\n[sensors]\ncontact_std = 1e-3\nforce_std = 0.05\n"));
     let volumes = |name: &str| {

@@ -66,7 +66,7 @@ fn an_identified_body_is_exported_with_its_deviations() {
     assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
     let summary: Value = serde_json::from_str(&scratch.read("out/summary.json")).unwrap();
     let value = |key: &str| summary["evidence"][key]["value"].as_f64().unwrap();
-    // At 50 Hz the quadrature of the readings is good to some 1e-5.
+    // At 100 Hz the quadrature of the readings is good to some 1e-6.
     assert!((value("mass") - 1.0).abs() < 1e-4, "{summary:#}");
     for (key, moment) in [("moment_x", 1.0), ("moment_y", 1.45), ("moment_z", 2.05)] {
         assert!((value(key) - moment).abs() < 1e-3, "{key} {summary:#}");
@@ -105,7 +105,7 @@ fn mujoco_repeats_the_log_on_moving_palms() {
     let scratch = Scratch::new("replay-moving");
     let mut scene = crate::common::scene()
         .replace("duration = 4.2", "duration = 2.0")
-        .replace("rate = 50.0", "rate = 200.0");
+        .replace("rate = 100.0", "rate = 200.0");
     for (azimuth, frequency, phase) in [("270.0", 3.0, 0.0), ("30.0", 2.0, 1.0), ("150.0", 2.5, 2.0)] {
         let still = format!("azimuth_deg = {azimuth}, slope_deg = 60.0");
         let swing =
@@ -132,7 +132,7 @@ fn mujoco_holds_the_inner_bound_and_the_urdf_on_the_palms() {
     let scratch = Scratch::new("replay-hull");
     let scene = crate::common::scene()
         .replace("duration = 4.2", "duration = 1.0")
-        .replace("rate = 50.0", "rate = 1000.0");
+        .replace("rate = 100.0", "rate = 1000.0");
     scratch.write("scene.toml", &scene);
     assert_eq!(scratch.run(&["simulate", "scene.toml", "-o", "log.csv"]).code, Some(0));
     let scratch = reconstructed(scratch, "inner");

@@ -95,7 +95,7 @@ fn what_is_understood_of_a_log_is_told() {
     assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
     let said = json(&run.stdout);
     assert_eq!((&said["version"], &said["samples"]), (&1.into(), &(table.rows.len()).into()));
-    assert!((said["rate_hz"].as_f64().unwrap() - 50.0).abs() < 1e-6);
+    assert!((said["rate_hz"].as_f64().unwrap() - 100.0).abs() < 1e-6);
     let time = |row: usize| table.rows[row][0].parse::<f64>().unwrap();
     assert_eq!(said["gaps"], serde_json::json!([[time(19), time(20)]]));
     let spans = said["palms"][1]["touched_s"].as_array().unwrap();
@@ -103,7 +103,7 @@ fn what_is_understood_of_a_log_is_told() {
     assert_eq!(said["palms"][0]["force_axes"], "normal alone");
     // For a person, without a scene, and with units that do not go together.
     let told = scratch.run(&["check-input", "log.csv", "--scene", "scene.toml"]);
-    for word in ["version 1", "50 samples a second", "palm 3", "estimated as", "roughness"] {
+    for word in ["version 1", "100 samples a second", "palm 3", "estimated as", "roughness"] {
         assert!(told.stdout.contains(word), "`{word}` is not in\n{}", told.stdout);
     }
     let lost = scratch.run(&["check-input", "log.csv"]);

@@ -47,7 +47,7 @@ fn spinning_ball(duration: f64, rate: f64, spin: f64) -> String {
         .replace("kind = \"ellipsoid\", semi_axes = [2.5, 2.0, 1.0]", "kind = \"sphere\", radius = 1.0")
         .replace("[0.0, 0.3, 0.3]", &format!("[0.0, 0.0, {spin:?}]"))
         .replace("duration = 4.2", &format!("duration = {duration:?}"))
-        .replace("sample_rate = 50.0", &format!("sample_rate = {rate:?}"))
+        .replace("sample_rate = 100.0", &format!("sample_rate = {rate:?}"))
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn interrupted_while_writing_leaves_nothing() {
 #[test]
 fn a_reader_that_goes_away_is_no_error() {
     let scratch = Scratch::new("pipe");
-    scratch.write("scene.toml", &scene().replace("sample_rate = 50.0", "sample_rate = 5000.0"));
+    scratch.write("scene.toml", &scene().replace("sample_rate = 100.0", "sample_rate = 5000.0"));
     let mut child = scratch
         .command(&["simulate", "scene.toml", "-o", "-"])
         .stdout(Stdio::piped())

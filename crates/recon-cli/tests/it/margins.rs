@@ -127,7 +127,7 @@ fn bounds_hold_on_logs_of_other_simulators() {
 fn bounds_hold_under_noise_and_keep_most_of_the_volume() {
     let axes = DVec3::new(2.5, 2.0, 1.0);
     let scratch = Scratch::new("margins");
-    let text = scene().replace("sample_rate = 50.0", "sample_rate = 200.0");
+    let text = scene().replace("sample_rate = 100.0", "sample_rate = 200.0");
     let mut free = 0.0;
     for (level, seed) in [(0.0, 0), (1e-3, 1), (1e-2, 3)] {
         let sensors = format!("\n[sensors]\ncontact_std = {}\nforce_std = {}\n", 2.5 * level, 9.81 * level);

@@ -76,7 +76,8 @@ impl<'a> Solid<'a> {
             if node.second == 0 {
                 self.order[node.triangles.clone()].iter().for_each(|triangle| each(*triangle as usize));
             } else {
-                stack.extend([node.second, k + 1]);
+                stack.push(node.second);
+                stack.push(k + 1);
             }
         }
     }
@@ -84,20 +85,25 @@ impl<'a> Solid<'a> {
     /// How often the surface goes round a point: once for points inside. Counted by the faces that the ray along +x
     /// leaves through; every decision is an exact sign. On the surface itself either answer comes out.
     pub(super) fn winding(&self, p: DVec3) -> i32 {
-        let on_ray = |node: &Node| {
-            node.high.x >= p.x
-                && (node.low.y..=node.high.y).contains(&p.y)
-                && (node.low.z..=node.high.z).contains(&p.z)
+        let may_meet = |low: DVec3, high: DVec3| {
+            high.x >= p.x && low.y <= p.y && p.y <= high.y && low.z <= p.z && p.z <= high.z
         };
         let mut count = 0;
-        self.leaves(on_ray, |triangle| {
-            let corners = self.surface.at(triangle);
-            let around = winding_in_plane(&corners, p);
-            // In front of the point the face has it on its inner side where it faces along the ray.
-            if around != 0 && side(corners, p) * f64::from(around) < 0.0 {
-                count += around;
-            }
-        });
+        self.leaves(
+            |node| may_meet(node.low, node.high),
+            |triangle| {
+                let corners = self.surface.at(triangle);
+                let [a, b, c] = corners;
+                if !may_meet(a.min(b).min(c), a.max(b).max(c)) {
+                    return;
+                }
+                let around = winding_in_plane(&corners, p);
+                // In front of the point the face has it on its inner side where it faces along the ray.
+                if around != 0 && side(corners, p) * f64::from(around) < 0.0 {
+                    count += around;
+                }
+            },
+        );
         count
     }
 
@@ -126,8 +132,16 @@ fn winding_in_plane(corners: &[DVec3; 3], p: DVec3) -> i32 {
         if (a.z <= p.z) == (b.z <= p.z) {
             return 0;
         }
-        let turn = orient2d(at(a), at(b), at(p));
-        i32::from(a.z <= p.z && turn > 0.0) - i32::from(a.z > p.z && turn < 0.0)
+        // Beyond both ends the side is plain; else by exact arithmetic.
+        let left = match () {
+            () if p.y < a.y.min(b.y) => true,
+            () if p.y > a.y.max(b.y) => false,
+            () => {
+                let turn = orient2d(at(a), at(b), at(p));
+                if a.z <= p.z { turn > 0.0 } else { turn < 0.0 }
+            }
+        };
+        i32::from(left && a.z <= p.z) - i32::from(left && a.z > p.z)
     };
     of_edge(0) + of_edge(1) + of_edge(2)
 }
@@ -145,4 +159,46 @@ fn distance_to_triangle(corners: [DVec3; 3], p: DVec3) -> f64 {
     let above = |from: DVec3, to: DVec3| n.dot((to - from).cross(p - from)) >= 0.0;
     let height = (p - a).dot(n).abs() / n.length();
     if above(a, b) && above(b, c) && above(c, a) && height < nearest { height } else { nearest }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without boxes and without the sides that are plain: every triangle by exact arithmetic.
+    fn winding(surface: &Surface, p: DVec3) -> i32 {
+        let at = |q: DVec3| Coord { x: q.y, y: q.z };
+        let around = |corners: &[DVec3; 3]| -> i32 {
+            let edges = [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]));
+            let of = |(a, b): (DVec3, DVec3)| match (a.z <= p.z, b.z <= p.z, orient2d(at(a), at(b), at(p))) {
+                (true, false, turn) => i32::from(turn > 0.0),
+                (false, true, turn) => -i32::from(turn < 0.0),
+                _ => 0,
+            };
+            edges.into_iter().map(of).sum()
+        };
+        let faces = (0..surface.triangles.len()).map(|k| surface.at(k));
+        let passed = |corners: [DVec3; 3]| match around(&corners) {
+            around if side(corners, p) * f64::from(around) < 0.0 => around,
+            _ => 0,
+        };
+        faces.map(passed).sum()
+    }
+
+    #[test]
+    fn a_point_has_the_winding_of_all_triangles_by_exact_signs() {
+        // Long slivers, and points whose coordinates are those of corners.
+        let net = crate::TriangleMesh::net(5, 40, |n| n * DVec3::new(3.0, 0.02, 1.0));
+        let surface = Surface { corners: net.vertices, triangles: net.triangles };
+        let solid = Solid::new(&surface);
+        let corners = surface.corners.clone();
+        for (k, a) in corners.iter().enumerate() {
+            let (b, c) = (corners[(7 * k + 3) % corners.len()], corners[(13 * k + 5) % corners.len()]);
+            for p in
+                [DVec3::new(b.x, a.y, c.z), DVec3::new(0.0, a.y, a.z), (*a + b + c) / 3.0, *a * 0.5, *a * 1.5]
+            {
+                assert_eq!(solid.winding(p), winding(&surface, p), "{p}");
+            }
+        }
+    }
 }

@@ -101,15 +101,20 @@ impl Drop for Scratch {
     }
 }
 
-/// The scene of the paper's Fig. 5, sampled at 50 Hz.
+/// The scene of the paper's Fig. 5, sampled at 100 Hz.
 pub(crate) fn scene() -> String {
-    include_str!("../../../scenes/fig5.toml").replace("sample_rate = 1000.0", "sample_rate = 50.0")
+    include_str!("../../../scenes/fig5.toml").replace("sample_rate = 1000.0", "sample_rate = 100.0")
 }
 
 /// A folder with that scene and its log.
 pub(crate) fn scratch_with_log(test: &str) -> Scratch {
+    scratch_with_log_of(test, &scene())
+}
+
+/// A folder with a scene and its log, of three palms that are touched throughout.
+pub(crate) fn scratch_with_log_of(test: &str, scene: &str) -> Scratch {
     let scratch = Scratch::new(test);
-    scratch.write("scene.toml", &scene());
+    scratch.write("scene.toml", scene);
     let run = scratch.run(&["simulate", "scene.toml", "-o", "log.csv"]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     scratch
