@@ -1,11 +1,11 @@
 //! How modes, speeds of sliding and ratios of sticking change from one sample to the next.
 
-use super::bins::{Bins, Walk};
+use super::bins::{Bins, Ends, Walk};
 use super::normal::below;
 
 /// Bins of the speed of sliding, in shares of the natural speed, and of the ratio of sticking over the friction.
 pub(super) const SPEEDS: usize = 36;
-pub(super) const RATIOS: usize = 40;
+const RATIOS: usize = 40;
 
 /// Time steps within this share of each other are taken as one.
 const SAME: f64 = 0.02;
@@ -14,6 +14,14 @@ const UNIT: f64 = 1e-3;
 /// Deviation of a millisecond's change of the speed, in shares of the natural speed, and of the ratio over the friction.
 const SPEED_STEP: f64 = 0.004;
 const RATIO_STEP: f64 = 0.004 / 0.3;
+/// Where frictions are told from each other: a millisecond's change of the ratio; bins of it, alike up to `LOW`, each wider than the one before
+/// beyond.
+const STEP: f64 = 0.004;
+const LOW: f64 = 0.1;
+const FINE: usize = 12;
+const WIDER: f64 = 1.032;
+/// Bins next to the cone that are those of a known friction.
+const RIM: usize = 8;
 /// Probability a millisecond that the ratio jumps anywhere in the disc, that sticking ends although the ratio is within the
 /// cone (blows, errors of the friction), and that a contact comes or goes.
 const RATIO_JUMP: f64 = 0.01;
@@ -32,41 +40,57 @@ const LEAST: f64 = 1e-12;
 /// What happens in one time step, the same for every friction.
 #[derive(Clone, Debug)]
 pub(super) struct Steps {
-    pub(super) speeds: Bins<SPEEDS>,
-    pub(super) ratios: Bins<RATIOS>,
+    pub(super) speeds: Bins,
+    pub(super) ratios: Bins,
     /// What steps under zero sticks from now on.
-    pub(super) speed: Walk<SPEEDS>,
+    pub(super) speed: Walk,
     /// What steps over one, the friction, slides from now on.
-    pub(super) ratio: Walk<RATIOS>,
+    pub(super) ratio: Walk,
     /// Probabilities of a jump of the ratio, of the end of sticking, of touch and its loss.
     pub(super) jump: f64,
     pub(super) breaks: f64,
     pub(super) touch: f64,
     /// Speeds at the start of sliding, after sticking and after touch-down; ratios at the start of sticking, after sliding
     /// and anywhere.
-    pub(super) starts: [f64; SPEEDS],
-    pub(super) landing: [f64; SPEEDS],
-    pub(super) stops: [f64; RATIOS],
-    pub(super) disc: [f64; RATIOS],
+    pub(super) starts: Vec<f64>,
+    pub(super) landing: Vec<f64>,
+    pub(super) stops: Vec<f64>,
+    pub(super) disc: Vec<f64>,
     dt: f64,
 }
 
 impl Steps {
-    /// For steps of this time, s, which is above zero.
+    /// For steps of this time, s, which is above zero; the same for every friction.
     pub(super) fn new(dt: f64) -> Self {
-        let speeds = Bins::new(|x| 1.2 * (0.006 * x + 0.994 * x.powi(3)));
-        let ratios = Bins::new(|x| 1.0 - (1.0 - x).powf(1.7));
+        Self::with(dt, Bins::new(RATIOS, relative), RATIO_STEP)
+    }
+
+    /// For steps of this time, s, of a contact with this friction, where frictions are to be told from each other.
+    ///
+    /// Bins and walk of the ratio are those of any other friction, cut off at this one: how a contact sticks well within its cone then says
+    /// nothing of where that ends.
+    pub(super) fn of_friction(dt: f64, friction: f64) -> Self {
+        let edge = |k: usize| {
+            if k < FINE { LOW * k as f64 / FINE as f64 } else { LOW * WIDER.powi((k - FINE) as i32) }
+        };
+        // Close to the cone bins are those of a known friction, which get narrow there.
+        let rim: Vec<f64> = (0..=RIM).rev().map(|k| relative((RATIOS - k) as f64 / RATIOS as f64)).collect();
+        let within = |edge: &f64| *edge < rim[0] - (rim[1] - rim[0]);
+        let mut edges: Vec<f64> = (0..).map(|k| edge(k) / friction).take_while(within).collect();
+        edges.extend(rim);
+        Self::with(dt, Bins::between(&edges), STEP / friction)
+    }
+
+    fn with(dt: f64, ratios: Bins, ratio_step: f64) -> Self {
+        let speeds = speeds();
         let share = (dt / UNIT).sqrt();
-        let (speed_step, ratio_step) = (SPEED_STEP * share, RATIO_STEP * share);
-        let mut speed = Walk::new(&speeds, speed_step);
-        speed.reflect(&speeds, speed_step, 1.0 - CAPTURED);
-        speed.stop();
-        let mut ratio = Walk::new(&ratios, ratio_step);
-        ratio.reflect(&ratios, ratio_step, 1.0);
+        let (speed_step, ratio_step) = (SPEED_STEP * share, ratio_step * share);
+        let speed = Walk::new(&speeds, speed_step, Ends { reflected: 1.0 - CAPTURED, stops: true });
+        let ratio = Walk::new(&ratios, ratio_step, Ends { reflected: 1.0, stops: false });
         let within = |a_unit: f64| (1.0 - (-rate_of(a_unit) * dt / UNIT).exp()).clamp(LEAST, 1.0 - LEAST);
         let disc = ratios.shares(|q| q * q);
         let near = ratios.shares(|q| ((q - 1.0) / (NEAR_STEPS * ratio_step)).exp());
-        let stops = std::array::from_fn(|k| NEAR * near[k] + (1.0 - NEAR) * disc[k]);
+        let stops = near.iter().zip(&disc).map(|(near, disc)| NEAR * near + (1.0 - NEAR) * disc).collect();
         Self {
             starts: speeds.shares(|s| below(s / speed_step)),
             landing: speeds.shares(|s| below(s / LANDING)),
@@ -85,10 +109,25 @@ impl Steps {
 
     /// Made anew where the time step is another. Clocks jitter, and the walks are no better known than this.
     pub(super) fn follow(&mut self, dt: f64) {
-        if (dt - self.dt).abs() > SAME * self.dt {
+        if !alike(self.dt, dt) {
             *self = Self::new(dt);
         }
     }
+}
+
+/// Edges of ratios over a known friction: close together near one.
+fn relative(x: f64) -> f64 {
+    1.0 - (1.0 - x).powf(1.7)
+}
+
+/// Whether a time step serves for another.
+pub(super) fn alike(known: f64, dt: f64) -> bool {
+    (dt - known).abs() <= SAME * known
+}
+
+/// Bins of the speed of sliding.
+pub(super) fn speeds() -> Bins {
+    Bins::new(SPEEDS, |x| 1.2 * (0.006 * x + 0.994 * x.powi(3)))
 }
 
 /// Of events that happen with this probability in a unit of time.

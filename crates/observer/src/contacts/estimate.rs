@@ -3,6 +3,7 @@ use super::body::{Body, CONSTANTS};
 use super::cold;
 use super::directly::directly;
 use super::joint::pose_errors;
+use super::mode_odds::{EstimatedModes, mode_odds};
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
 use super::plane;
@@ -13,6 +14,7 @@ use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{fine, fine_nodes, problem, refined, search};
 use super::sharp::{blunted, is_sharp, sharpened};
+use super::slips::Known;
 use super::solve::{Covariances, Solved};
 use super::state::Motion;
 use super::suspects::{Change, suspects};
@@ -53,6 +55,8 @@ pub struct ContactEstimate {
     pub relied_on: Vec<bool>,
     /// Contact modes at all samples: those that were given, or the estimated ones.
     pub modes: Vec<[ContactMode; MOST_PALMS]>,
+    /// How probable the modes are, of palms with friction; none unless asked for.
+    pub mode_odds: Option<EstimatedModes>,
     /// Mass, kg.
     pub mass: f64,
     /// Of a known body, standard deviations of how its own axes lie at the first sample, rad about the axes of the world: beyond 1 nothing is
@@ -136,6 +140,31 @@ impl Source<'_> {
         let mut modes = by_ratio(record, AVERAGED * self.units.length / self.units.speed);
         for _ in 0..ROUNDS {
             let (found, slips) = self.with_modes(record, modes)?;
+            if slips.is_empty() && std::env::var("FEED").is_ok() {
+                let level: f64 = std::env::var("FEED").ok().and_then(|s| s.parse().ok()).unwrap_or(0.95);
+                let Some(odds) = &found.mode_odds else { return Ok(found) };
+                let mut again = found.modes.clone();
+                let mut changed = 0;
+                for (modes, odds) in again.iter_mut().zip(&odds.odds) {
+                    for (mode, odds) in modes.iter_mut().zip(odds) {
+                        let new = match *mode {
+                            ContactMode::Off => ContactMode::Off,
+                            _ if odds.stick > level => ContactMode::Stick,
+                            _ => ContactMode::Slide,
+                        };
+                        changed += usize::from(new != *mode);
+                        *mode = new;
+                    }
+                }
+                let (second, slips) = self.with_modes(record, again)?;
+                eprintln!(
+                    "FEED changed {changed} misfit {} -> {} slips {}",
+                    found.evidence.misfit,
+                    second.evidence.misfit,
+                    slips.len()
+                );
+                return Ok(if slips.is_empty() { second } else { found });
+            }
             if slips.is_empty() {
                 return Ok(found);
             }
@@ -237,6 +266,13 @@ impl Source<'_> {
             true => self.suspects(&problem, &solved, &covariances, &motions, (log, &modes, longest)),
             false => Vec::new(),
         };
+        let told = || {
+            let (solved, covariances, motions) = (&solved, &covariances, &motions);
+            let known =
+                Known { log, modes: &modes, problem: &problem, solved, covariances, motions, longest };
+            mode_odds(&known, &options.noise, &units)
+        };
+        let mode_odds = if options.mode_odds && slips.is_empty() { told() } else { None };
         let found = Found {
             log,
             problem: &problem,
@@ -247,7 +283,7 @@ impl Source<'_> {
             against: [short, against, open],
             suspects: &suspects,
         };
-        Ok((found.estimate(&motions, modes, options), slips))
+        Ok((ContactEstimate { mode_odds, ..found.estimate(&motions, modes, options) }, slips))
     }
 
     /// Scores of constants of the sensors at a solution whose contacts were averaged over windows of at most `longest`, s.
@@ -370,6 +406,7 @@ impl Found<'_> {
             relied_on,
             deviations,
             modes,
+            mode_odds: None,
             axes_deviations: doubt
                 .map(|doubt| DVec3::from_array([4, 5, 6].map(|i| deviation(i).hypot(doubt)))),
             mass: known.map_or_else(|| body.log_mass.exp(), MassProperties::mass),

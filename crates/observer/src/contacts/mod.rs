@@ -11,6 +11,7 @@ mod flow;
 mod gaps;
 mod impulses;
 mod joint;
+mod mode_odds;
 mod modes;
 mod noise;
 mod onward;
@@ -27,6 +28,7 @@ mod samples;
 mod search;
 mod second_order;
 mod sharp;
+mod slips;
 mod solve;
 mod spurious;
 mod state;
@@ -38,6 +40,7 @@ mod verdict;
 mod windows;
 
 pub use estimate::{ContactEstimate, estimate_contacts};
+pub use mode_odds::EstimatedModes;
 pub use noise::{ContactNoiseLevel, ImpulseNoise};
 pub use options::{ContactEstimateError, ContactOptions};
 pub use stream::{
