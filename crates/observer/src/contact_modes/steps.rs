@@ -11,26 +11,36 @@ const RATIOS: usize = 40;
 const SAME: f64 = 0.02;
 /// The time that the numbers below are of, s.
 const UNIT: f64 = 1e-3;
-/// Deviation of a millisecond's change of the speed, in shares of the natural speed, and of the ratio over the friction.
-const SPEED_STEP: f64 = 0.004;
-const RATIO_STEP: f64 = 0.004 / 0.3;
-/// Where frictions are told from each other: a millisecond's change of the ratio; bins of it, alike up to `LOW`, each wider than the one before
-/// beyond.
-const STEP: f64 = 0.004;
+/// How ratio and speed are taken to change, from one millisecond to the next.
+#[derive(Clone, Copy, Debug)]
+struct Habits {
+    /// Deviation of the change of the speed, in shares of the natural speed.
+    speed_step: f64,
+    /// Deviation of the change of the ratio, over the friction.
+    ratio_step: f64,
+    /// Probability that the ratio jumps anywhere in the disc.
+    jump: f64,
+    /// Share of sticking that begins near its cone.
+    near: f64,
+}
+
+/// Sample by sample, with a known friction.
+const FOLLOWED: Habits = Habits { speed_step: 0.004, ratio_step: 0.004 / 0.3, jump: 0.01, near: 0.8 };
+/// Of a whole log; the step of the ratio is one of the ratio itself. Set on noise of the seeds 1 to 3 of the reference logs.
+const WHOLE: Habits = Habits { speed_step: 0.006, ratio_step: 0.002, jump: 0.002, near: 0.95 };
+/// Bins of the ratio where frictions are to be told from each other: alike up to `LOW`, each wider than the one before beyond.
 const LOW: f64 = 0.1;
 const FINE: usize = 12;
 const WIDER: f64 = 1.032;
 /// Bins next to the cone that are those of a known friction.
 const RIM: usize = 8;
-/// Probability a millisecond that the ratio jumps anywhere in the disc, that sticking ends although the ratio is within the
-/// cone (blows, errors of the friction), and that a contact comes or goes.
-const RATIO_JUMP: f64 = 0.01;
+/// Probability a millisecond that sticking ends although the ratio is within the cone (blows, errors of the friction), and that a
+/// contact comes or goes.
 const BREAK: f64 = 0.002;
 const TOUCH: f64 = 0.002;
 /// Share of the walks that come to rest which stick; the others slide on, back.
 const CAPTURED: f64 = 0.5;
-/// Share of sticking that begins near its cone, within some steps of the ratio.
-const NEAR: f64 = 0.8;
+/// Steps of the ratio within which sticking begins near its cone.
 const NEAR_STEPS: f64 = 3.0;
 /// Deviation of the slip at touch-down, in shares of the natural speed.
 const LANDING: f64 = 0.15;
@@ -62,46 +72,48 @@ pub(super) struct Steps {
 impl Steps {
     /// For steps of this time, s, which is above zero; the same for every friction.
     pub(super) fn new(dt: f64) -> Self {
-        Self::with(dt, Bins::new(RATIOS, relative), RATIO_STEP)
+        Self::with(dt, Bins::new(RATIOS, relative), &FOLLOWED)
     }
 
     /// For steps of this time, s, of a contact with this friction, where frictions are to be told from each other.
     ///
-    /// Bins and walk of the ratio are those of any other friction, cut off at this one: how a contact sticks well within its cone then says
-    /// nothing of where that ends.
+    /// Bins and walk of the ratio are those of any other friction, cut off at this one: how a contact sticks well within its cone then
+    /// says nothing of where that ends. Were they shares of the friction, a ratio that changes slowly would speak for a low one.
     pub(super) fn of_friction(dt: f64, friction: f64) -> Self {
-        let edge = |k: usize| {
-            if k < FINE { LOW * k as f64 / FINE as f64 } else { LOW * WIDER.powi((k - FINE) as i32) }
+        let edge = |k: usize| match k.checked_sub(FINE) {
+            None => LOW * k as f64 / FINE as f64,
+            Some(beyond) => LOW * WIDER.powi(beyond as i32),
         };
         // Close to the cone bins are those of a known friction, which get narrow there.
         let rim: Vec<f64> = (0..=RIM).rev().map(|k| relative((RATIOS - k) as f64 / RATIOS as f64)).collect();
         let within = |edge: &f64| *edge < rim[0] - (rim[1] - rim[0]);
         let mut edges: Vec<f64> = (0..).map(|k| edge(k) / friction).take_while(within).collect();
         edges.extend(rim);
-        Self::with(dt, Bins::between(&edges), STEP / friction)
+        let habits = Habits { ratio_step: WHOLE.ratio_step / friction, ..WHOLE };
+        Self::with(dt, Bins::between(&edges), &habits)
     }
 
-    fn with(dt: f64, ratios: Bins, ratio_step: f64) -> Self {
+    fn with(dt: f64, ratios: Bins, habits: &Habits) -> Self {
         let speeds = speeds();
         let share = (dt / UNIT).sqrt();
-        let (speed_step, ratio_step) = (SPEED_STEP * share, ratio_step * share);
+        let (speed_step, ratio_step) = (habits.speed_step * share, habits.ratio_step * share);
         let speed = Walk::new(&speeds, speed_step, Ends { reflected: 1.0 - CAPTURED, stops: true });
         let ratio = Walk::new(&ratios, ratio_step, Ends { reflected: 1.0, stops: false });
         let within = |a_unit: f64| (1.0 - (-rate_of(a_unit) * dt / UNIT).exp()).clamp(LEAST, 1.0 - LEAST);
         let disc = ratios.shares(|q| q * q);
         let near = ratios.shares(|q| ((q - 1.0) / (NEAR_STEPS * ratio_step)).exp());
-        let stops = near.iter().zip(&disc).map(|(near, disc)| NEAR * near + (1.0 - NEAR) * disc).collect();
+        let stop = |(near, disc): (&f64, &f64)| habits.near * near + (1.0 - habits.near) * disc;
         Self {
             starts: speeds.shares(|s| below(s / speed_step)),
             landing: speeds.shares(|s| below(s / LANDING)),
-            jump: within(RATIO_JUMP),
+            jump: within(habits.jump),
             breaks: within(BREAK),
             touch: within(TOUCH),
+            stops: near.iter().zip(&disc).map(stop).collect(),
             speeds,
             ratios,
             speed,
             ratio,
-            stops,
             disc,
             dt,
         }

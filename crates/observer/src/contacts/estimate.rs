@@ -9,6 +9,7 @@ use super::options::{ContactEstimateError, ContactOptions, check};
 use super::plane;
 use super::problem::{Problem, Units};
 use super::record::{Contact, Record};
+use super::relabel::surer;
 use super::rivals::{decided, still};
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
@@ -53,7 +54,7 @@ pub struct ContactEstimate {
     pub deviations: Vec<[DVec3; 4]>,
     /// Whether a sample's motion is to be relied on: to within its deviations.
     pub relied_on: Vec<bool>,
-    /// Contact modes at all samples: those that were given, or the estimated ones.
+    /// Contact modes at all samples: those that were given, or the estimated ones, the most probable where probabilities are asked for.
     pub modes: Vec<[ContactMode; MOST_PALMS]>,
     /// How probable the modes are, of palms with friction; none unless asked for.
     pub mode_odds: Option<EstimatedModes>,
@@ -135,36 +136,31 @@ impl Source<'_> {
         record
     }
 
-    /// With modes from the ratios of forces, those of the conditions that the motion contradicts taken back.
+    /// With modes from the ratios of forces, those of the conditions that the motion contradicts taken back; where probabilities of modes are
+    /// asked for, once more with those that they are sure of.
     fn with_estimated_modes(&self, record: &mut Record) -> Result<ContactEstimate, ContactEstimateError> {
+        let found = self.uncontradicted(record)?;
+        let Some(odds) = &found.mode_odds else { return Ok(found) };
+        let time = AVERAGED * self.units.length / self.units.speed;
+        let again = surer(&record.times, &found.modes, odds, time);
+        let better = |second: &ContactEstimate| second.evidence.settled && second.reliability.is_reliable();
+        let second = match again == found.modes {
+            true => None,
+            false => {
+                Some(self.with_modes(record, again)?).filter(|(of, slips)| slips.is_empty() && better(of))
+            }
+        };
+        let mut told = second.map_or(found, |(second, _)| second);
+        if let Some(odds) = &told.mode_odds {
+            told.modes = odds.most_probable();
+        }
+        Ok(told)
+    }
+
+    fn uncontradicted(&self, record: &mut Record) -> Result<ContactEstimate, ContactEstimateError> {
         let mut modes = by_ratio(record, AVERAGED * self.units.length / self.units.speed);
         for _ in 0..ROUNDS {
             let (found, slips) = self.with_modes(record, modes)?;
-            if slips.is_empty() && std::env::var("FEED").is_ok() {
-                let level: f64 = std::env::var("FEED").ok().and_then(|s| s.parse().ok()).unwrap_or(0.95);
-                let Some(odds) = &found.mode_odds else { return Ok(found) };
-                let mut again = found.modes.clone();
-                let mut changed = 0;
-                for (modes, odds) in again.iter_mut().zip(&odds.odds) {
-                    for (mode, odds) in modes.iter_mut().zip(odds) {
-                        let new = match *mode {
-                            ContactMode::Off => ContactMode::Off,
-                            _ if odds.stick > level => ContactMode::Stick,
-                            _ => ContactMode::Slide,
-                        };
-                        changed += usize::from(new != *mode);
-                        *mode = new;
-                    }
-                }
-                let (second, slips) = self.with_modes(record, again)?;
-                eprintln!(
-                    "FEED changed {changed} misfit {} -> {} slips {}",
-                    found.evidence.misfit,
-                    second.evidence.misfit,
-                    slips.len()
-                );
-                return Ok(if slips.is_empty() { second } else { found });
-            }
             if slips.is_empty() {
                 return Ok(found);
             }

@@ -21,6 +21,7 @@ mod plane;
 mod problem;
 mod reach;
 mod record;
+mod relabel;
 mod rivals;
 mod roughness;
 mod rows;

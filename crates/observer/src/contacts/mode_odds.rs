@@ -8,7 +8,7 @@ use crate::contact_modes::{
     ContactModesOptions, ContactOdds, ContactReading, ContactSeen, ContactSlip, LearnedFriction, whole_modes,
 };
 use nalgebra::Vector2;
-use object_dynamics::MOST_PALMS;
+use object_dynamics::{ContactMode, MOST_PALMS};
 
 /// Natural times for which errors of slips last.
 const LASTING: f64 = 0.5;
@@ -38,6 +38,17 @@ impl EstimatedModes {
         let open = |odds: &ContactOdds| odds.off.max(odds.slide).max(odds.stick) < SURE;
         self.odds.iter().filter(|all| all.iter().any(open)).count()
     }
+
+    /// The most probable mode of each palm at each sample.
+    #[must_use]
+    pub fn most_probable(&self) -> Vec<[ContactMode; MOST_PALMS]> {
+        let most = |of: &ContactOdds| match of {
+            of if of.off >= of.slide.max(of.stick) => ContactMode::Off,
+            of if of.stick > of.slide => ContactMode::Stick,
+            _ => ContactMode::Slide,
+        };
+        self.odds.iter().map(|all| std::array::from_fn(|i| most(&all[i]))).collect()
+    }
 }
 
 /// None where no palm has friction, or what is read is beyond reason.
@@ -60,27 +71,6 @@ pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units)
         let slips = known.slips(palm);
         let mut own = vec![ContactSeen::Off; record.times.len()];
         contacts().for_each(|(k, contact)| own[k] = ContactSeen::Read(reading(contact, slips[k])));
-        if std::env::var("DUMP").is_ok() {
-            for (k, c) in contacts() {
-                let [a, b] = c.tangents();
-                let (fa, fb, n) = (c.f.dot(a), c.f.dot(b), c.f.dot(c.n));
-                if let Some(s) = slips[k] {
-                    eprintln!(
-                        "DUMP {palm} {k} {} {} {} {} {} {} {} {} {} {}",
-                        a.x,
-                        a.y,
-                        a.z,
-                        fa / n,
-                        fb / n,
-                        s.velocity.x / units.speed,
-                        s.velocity.y / units.speed,
-                        s.covariance[(0, 0)].sqrt() / units.speed,
-                        s.covariance[(1, 1)].sqrt() / units.speed,
-                        s.covariance[(0, 1)] / units.speed.powi(2)
-                    );
-                }
-            }
-        }
         palms.push(palm);
         seen.push(own);
     }
