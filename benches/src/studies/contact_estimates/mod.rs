@@ -162,7 +162,7 @@ fn case(file: &Log, (contact, share): (f64, f64), seconds: f64, seed: u64) -> An
 }
 
 /// Root mean squares of centre, velocity and rate in natural units, relative errors of mass and inertia, turn.
-pub(crate) fn errors(file: &Log, found: &ContactEstimate, length: f64) -> Anything<[f64; 6]> {
+fn errors(file: &Log, found: &ContactEstimate, length: f64) -> Anything<[f64; 6]> {
     let truth = file.bodies(found.states.len())?;
     let first = truth[0].R_WO;
     let mut sums = [0.0; 4];

@@ -139,22 +139,23 @@ impl Source<'_> {
     /// With modes from the ratios of forces, those of the conditions that the motion contradicts taken back; where probabilities of modes are
     /// asked for, once more with those that they are sure of.
     fn with_estimated_modes(&self, record: &mut Record) -> Result<ContactEstimate, ContactEstimateError> {
-        let found = self.uncontradicted(record)?;
+        let mut found = self.uncontradicted(record)?;
         let Some(odds) = &found.mode_odds else { return Ok(found) };
         let time = AVERAGED * self.units.length / self.units.speed;
         let again = surer(&record.times, &found.modes, odds, time);
-        let better = |second: &ContactEstimate| second.evidence.settled && second.reliability.is_reliable();
-        let second = match again == found.modes {
-            true => None,
-            false => {
-                Some(self.with_modes(record, again)?).filter(|(of, slips)| slips.is_empty() && better(of))
+        if again != found.modes {
+            let (second, slips) = self.with_modes(record, again)?;
+            let stands = slips.is_empty() && second.evidence.settled && second.reliability.is_reliable();
+            let first = odds.by_ratio.clone();
+            if let Some(odds) = second.mode_odds.clone().filter(|_| stands) {
+                found =
+                    ContactEstimate { mode_odds: Some(EstimatedModes { by_ratio: first, ..odds }), ..second };
             }
-        };
-        let mut told = second.map_or(found, |(second, _)| second);
-        if let Some(odds) = &told.mode_odds {
-            told.modes = odds.most_probable();
         }
-        Ok(told)
+        if let Some(odds) = &found.mode_odds {
+            found.modes = odds.most_probable();
+        }
+        Ok(found)
     }
 
     fn uncontradicted(&self, record: &mut Record) -> Result<ContactEstimate, ContactEstimateError> {

@@ -22,6 +22,8 @@ const SURE: f64 = 0.99;
 pub struct EstimatedModes {
     /// At each sample, of each palm, given all samples; off where it touches nothing.
     pub odds: Vec<[ContactOdds; MOST_PALMS]>,
+    /// Modes that the first solution took: those that were given, or those by the ratio of friction to normal force alone.
+    pub by_ratio: Vec<[ContactMode; MOST_PALMS]>,
     /// Coefficients of friction, where a palm has slid, or one of the same friction.
     pub frictions: [Option<LearnedFriction>; MOST_PALMS],
     /// Probability that all palms with friction have one coefficient.
@@ -86,7 +88,7 @@ pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units)
         frictions[palm] = *friction;
         odds.iter_mut().zip(own).for_each(|(all, own)| all[palm] = *own);
     }
-    Some(EstimatedModes { odds, frictions, one_friction: found.one_friction })
+    Some(EstimatedModes { odds, by_ratio: known.modes.to_vec(), frictions, one_friction: found.one_friction })
 }
 
 fn reading(contact: &Contact, slip: Option<ContactSlip>) -> ContactReading {
