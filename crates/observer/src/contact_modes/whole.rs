@@ -278,13 +278,15 @@ mod tests {
         };
         assert!(refused(&times(10), &[], 0.0).contains("no contact"));
         assert!(
-            refused(&times(9), &[seen.clone()], 0.0)
+            refused(&times(9), std::slice::from_ref(&seen), 0.0)
                 .contains("contact 0 has 10 sample(s), and there are 9 times")
         );
-        assert!(refused(&times(10), &[seen.clone()], -1.0).contains("errors of slips last is -1"));
+        assert!(
+            refused(&times(10), std::slice::from_ref(&seen), -1.0).contains("errors of slips last is -1")
+        );
         let mut back = times(10);
         back[4] = back[3];
-        assert!(refused(&back, &[seen.clone()], 0.0).contains("before sample 4 is 0"));
+        assert!(refused(&back, std::slice::from_ref(&seen), 0.0).contains("before sample 4 is 0"));
         let mut wrong = seen;
         if let ContactSeen::Read(reading) = &mut wrong[7] {
             reading.normal_force = f64::NAN;
