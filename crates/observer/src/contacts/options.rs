@@ -72,7 +72,8 @@ pub struct ContactOptions {
     pub pose_errors: bool,
     /// Whether to test what is taken as known of the sensors.
     pub suspects: bool,
-    /// Whether to tell how probable each contact mode is: for each palm that sticks somewhere a motion is solved for in which it need not.
+    /// Whether to tell how probable each contact mode is. For each palm that sticks somewhere a motion is solved for in which it need not, and modes
+    /// that were not given are made anew from what is sure, for a second solution.
     pub mode_odds: bool,
     /// Whether the floor of the noise is a guess: where noise is not what conditions are off by, they count as good as what is left of them.
     pub guessed_floor: bool,
