@@ -6,12 +6,15 @@ use super::contact::Force;
 use super::friction::SURE;
 use super::options::ContactModesOptions;
 use super::reading::{ContactReading, ContactSeen, turned};
-use super::steps::{SPEEDS, Steps, alike, speeds};
+use super::steps::{SPEEDS, Steps, speeds};
 
 /// Logarithm of the odds against a friction at which it is given up: given the model it would come back once in 10^26.
 const GIVEN_UP: f64 = 60.0;
 /// Samples from one look for such frictions to the next.
 const LOOKS: usize = 8;
+
+/// Time steps within this share of one are of its kind: walks grow by its root, and are no better known. Each kind of each friction takes memory.
+const KIND: f64 = 0.1;
 
 /// Steps in time, each kind once.
 pub(super) struct Pace {
@@ -33,7 +36,7 @@ impl Pace {
         let steps: Vec<f64> = (0..times.len()).map(step).collect();
         let mut kind = Vec::with_capacity(times.len());
         for dt in &steps {
-            let known = kinds.iter().position(|kind| alike(*kind, *dt));
+            let known = kinds.iter().position(|kind| (dt - kind).abs() <= KIND * kind);
             kind.push(known.unwrap_or(kinds.len()));
             if known.is_none() {
                 kinds.push(*dt);

@@ -121,7 +121,7 @@ impl Steps {
 
     /// Made anew where the time step is another. Clocks jitter, and the walks are no better known than this.
     pub(super) fn follow(&mut self, dt: f64) {
-        if !alike(self.dt, dt) {
+        if (dt - self.dt).abs() > SAME * self.dt {
             *self = Self::new(dt);
         }
     }
@@ -130,11 +130,6 @@ impl Steps {
 /// Edges of ratios over a known friction: close together near one.
 fn relative(x: f64) -> f64 {
     1.0 - (1.0 - x).powf(1.7)
-}
-
-/// Whether a time step serves for another.
-pub(super) fn alike(known: f64, dt: f64) -> bool {
-    (dt - known).abs() <= SAME * known
 }
 
 /// Bins of the speed of sliding.

@@ -115,7 +115,7 @@ pub fn estimate_contacts(
     let source = Source { log, options, units };
     let mut record = source.with_blows(record);
     match modes {
-        Some(modes) => Ok(source.with_modes(&mut record, modes.to_vec())?.0),
+        Some(modes) => Ok(source.with_modes(&mut record, modes.to_vec(), true)?.0),
         None => source.with_estimated_modes(&mut record),
     }
 }
@@ -143,13 +143,14 @@ impl Source<'_> {
         let Some(odds) = &found.mode_odds else { return Ok(found) };
         let time = AVERAGED * self.units.length / self.units.speed;
         let again = surer(&record.times, &found.modes, odds, time);
-        if again != found.modes {
-            let (second, slips) = self.with_modes(record, again)?;
+        // Without noise a search is long, and what limits is when within a sample modes change.
+        let worth = self.options.noise.limits(&self.units) && again != found.modes;
+        let second = if worth { self.with_modes(record, again, false).ok() } else { None };
+        if let Some((second, slips)) = second {
             let stands = slips.is_empty() && second.evidence.settled && second.reliability.is_reliable();
-            let first = odds.by_ratio.clone();
+            let by_ratio = odds.by_ratio.clone();
             if let Some(odds) = second.mode_odds.clone().filter(|_| stands) {
-                found =
-                    ContactEstimate { mode_odds: Some(EstimatedModes { by_ratio: first, ..odds }), ..second };
+                found = ContactEstimate { mode_odds: Some(EstimatedModes { by_ratio, ..odds }), ..second };
             }
         }
         if let Some(odds) = &found.mode_odds {
@@ -161,7 +162,7 @@ impl Source<'_> {
     fn uncontradicted(&self, record: &mut Record) -> Result<ContactEstimate, ContactEstimateError> {
         let mut modes = by_ratio(record, AVERAGED * self.units.length / self.units.speed);
         for _ in 0..ROUNDS {
-            let (found, slips) = self.with_modes(record, modes)?;
+            let (found, slips) = self.with_modes(record, modes, false)?;
             if slips.is_empty() {
                 return Ok(found);
             }
@@ -172,13 +173,15 @@ impl Source<'_> {
                 }
             }
         }
-        Ok(self.with_modes(record, modes)?.0)
+        Ok(self.with_modes(record, modes, true)?.0)
     }
 
+    /// With modes, of which there are no probabilities where the motion contradicts them, unless it is the `last` word.
     fn with_modes(
         &self,
         record: &mut Record,
         modes: Vec<[ContactMode; MOST_PALMS]>,
+        last: bool,
     ) -> Result<(ContactEstimate, Slips), ContactEstimateError> {
         let Self { options, units, .. } = *self;
         record.set_modes(&modes);
@@ -269,7 +272,7 @@ impl Source<'_> {
                 Known { log, modes: &modes, problem: &problem, solved, covariances, motions, longest };
             mode_odds(&known, &options.noise, &units)
         };
-        let mode_odds = if options.mode_odds && slips.is_empty() { told() } else { None };
+        let mode_odds = if options.mode_odds && (last || slips.is_empty()) { told() } else { None };
         let found = Found {
             log,
             problem: &problem,
