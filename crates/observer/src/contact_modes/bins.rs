@@ -45,9 +45,17 @@ impl Bins {
 
     /// Shares of a distribution, from how much of it lies below an edge.
     pub(super) fn shares(&self, below: impl Fn(f64) -> f64) -> Vec<f64> {
+        let mut shares = vec![0.0; self.count()];
+        self.put_shares(below, &mut shares);
+        shares
+    }
+
+    /// The same into what is there.
+    pub(super) fn put_shares(&self, below: impl Fn(f64) -> f64, shares: &mut [f64]) {
         let all = below(self.end()) - below(self.lower[0]);
-        let share = |k: usize| (below(self.upper[k]) - below(self.lower[k])) / all;
-        (0..self.count()).map(share).collect()
+        for (k, share) in shares.iter_mut().enumerate() {
+            *share = (below(self.upper[k]) - below(self.lower[k])) / all;
+        }
     }
 }
 
@@ -69,30 +77,43 @@ pub(super) struct Walk {
     /// Share of a bin that steps below zero and above the last edge.
     pub(super) under: Vec<f64>,
     pub(super) over: Vec<f64>,
+    /// To work in.
+    row: Vec<f64>,
 }
 
 impl Walk {
     /// Normal steps of the deviation `step` from anywhere in a bin.
     pub(super) fn new(bins: &Bins, step: f64, ends: Ends) -> Self {
         let count = bins.count();
-        let mut walk = Self {
-            rows: Vec::with_capacity(count),
-            shares: Vec::new(),
-            under: Vec::with_capacity(count),
-            over: Vec::with_capacity(count),
-        };
-        let mut row = vec![0.0; count];
-        for from in 0..count {
-            row.fill(0.0);
-            let [under, over] = fill(bins, step, from, ends, &mut row);
-            let first = row.iter().position(|share| *share > LEAST).unwrap_or(0);
-            let beyond = row.iter().rposition(|share| *share > LEAST).map_or(first, |last| last + 1);
-            walk.rows.push((first, beyond, walk.shares.len()));
-            walk.shares.extend(&row[first..beyond]);
-            walk.under.push(under);
-            walk.over.push(over);
-        }
+        let [under, over] = [Vec::with_capacity(count), Vec::with_capacity(count)];
+        let (rows, row) = (Vec::with_capacity(count), vec![0.0; count]);
+        let mut walk = Self { rows, shares: Vec::new(), under, over, row };
+        walk.set(bins, step, ends);
         walk
+    }
+
+    /// Makes room for steps of any size.
+    pub(super) fn make_room(&mut self) {
+        let count = self.row.len();
+        self.shares.reserve(count * count - self.shares.len());
+    }
+
+    /// Of other steps on as many bins; allocates nothing where there is room.
+    pub(super) fn set(&mut self, bins: &Bins, step: f64, ends: Ends) {
+        self.rows.clear();
+        self.shares.clear();
+        self.under.clear();
+        self.over.clear();
+        for from in 0..bins.count() {
+            self.row.fill(0.0);
+            let [under, over] = fill(bins, step, from, ends, &mut self.row);
+            let first = self.row.iter().position(|share| *share > LEAST).unwrap_or(0);
+            let beyond = self.row.iter().rposition(|share| *share > LEAST).map_or(first, |last| last + 1);
+            self.rows.push((first, beyond, self.shares.len()));
+            self.shares.extend(&self.row[first..beyond]);
+            self.under.push(under);
+            self.over.push(over);
+        }
     }
 
     /// The bins that a bin steps to, and their shares.

@@ -44,6 +44,9 @@ const CAPTURED: f64 = 0.5;
 const NEAR_STEPS: f64 = 3.0;
 /// Deviation of the slip at touch-down, in shares of the natural speed.
 const LANDING: f64 = 0.15;
+/// What steps under a speed of zero sticks from now on, or slides on, back; what steps over the friction slides from now on.
+const SPEED_ENDS: Ends = Ends { reflected: 1.0 - CAPTURED, stops: true };
+const RATIO_ENDS: Ends = Ends { reflected: 1.0, stops: false };
 /// Least probability of a switch: nothing is ever impossible for good.
 const LEAST: f64 = 1e-12;
 
@@ -72,7 +75,10 @@ pub(super) struct Steps {
 impl Steps {
     /// For steps of this time, s, which is above zero; the same for every friction.
     pub(super) fn new(dt: f64) -> Self {
-        Self::with(dt, Bins::new(RATIOS, relative), &FOLLOWED)
+        let mut steps = Self::with(dt, Bins::new(RATIOS, relative), &FOLLOWED);
+        steps.speed.make_room();
+        steps.ratio.make_room();
+        steps
     }
 
     /// For steps of this time, s, of a contact with this friction, where frictions are to be told from each other.
@@ -95,34 +101,46 @@ impl Steps {
 
     fn with(dt: f64, ratios: Bins, habits: &Habits) -> Self {
         let speeds = speeds();
-        let share = (dt / UNIT).sqrt();
-        let (speed_step, ratio_step) = (habits.speed_step * share, habits.ratio_step * share);
-        let speed = Walk::new(&speeds, speed_step, Ends { reflected: 1.0 - CAPTURED, stops: true });
-        let ratio = Walk::new(&ratios, ratio_step, Ends { reflected: 1.0, stops: false });
-        let within = |a_unit: f64| (1.0 - (-rate_of(a_unit) * dt / UNIT).exp()).clamp(LEAST, 1.0 - LEAST);
-        let disc = ratios.shares(|q| q * q);
-        let near = ratios.shares(|q| ((q - 1.0) / (NEAR_STEPS * ratio_step)).exp());
-        let stop = |(near, disc): (&f64, &f64)| habits.near * near + (1.0 - habits.near) * disc;
-        Self {
-            starts: speeds.shares(|s| below(s / speed_step)),
+        let [speed, ratio] =
+            [(&speeds, SPEED_ENDS), (&ratios, RATIO_ENDS)].map(|(bins, ends)| Walk::new(bins, 1.0, ends));
+        let mut steps = Self {
+            starts: vec![0.0; speeds.count()],
             landing: speeds.shares(|s| below(s / LANDING)),
-            jump: within(habits.jump),
-            breaks: within(BREAK),
-            touch: within(TOUCH),
-            stops: near.iter().zip(&disc).map(stop).collect(),
+            jump: 0.0,
+            breaks: 0.0,
+            touch: 0.0,
+            stops: vec![0.0; ratios.count()],
+            disc: ratios.shares(|q| q * q),
             speeds,
             ratios,
             speed,
             ratio,
-            disc,
             dt,
+        };
+        steps.set(dt, habits);
+        steps
+    }
+
+    /// For steps of another time.
+    fn set(&mut self, dt: f64, habits: &Habits) {
+        let share = (dt / UNIT).sqrt();
+        let (speed_step, ratio_step) = (habits.speed_step * share, habits.ratio_step * share);
+        self.speed.set(&self.speeds, speed_step, SPEED_ENDS);
+        self.ratio.set(&self.ratios, ratio_step, RATIO_ENDS);
+        let within = |a_unit: f64| (1.0 - (-rate_of(a_unit) * dt / UNIT).exp()).clamp(LEAST, 1.0 - LEAST);
+        (self.jump, self.breaks, self.touch) = (within(habits.jump), within(BREAK), within(TOUCH));
+        self.speeds.put_shares(|s| below(s / speed_step), &mut self.starts);
+        self.ratios.put_shares(|q| ((q - 1.0) / (NEAR_STEPS * ratio_step)).exp(), &mut self.stops);
+        for (stop, disc) in self.stops.iter_mut().zip(&self.disc) {
+            *stop = habits.near * *stop + (1.0 - habits.near) * disc;
         }
+        self.dt = dt;
     }
 
     /// Made anew where the time step is another. Clocks jitter, and the walks are no better known than this.
     pub(super) fn follow(&mut self, dt: f64) {
         if (dt - self.dt).abs() > SAME * self.dt {
-            *self = Self::new(dt);
+            self.set(dt, &FOLLOWED);
         }
     }
 }
