@@ -68,6 +68,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "contact-exports.md",
         "exported scenes of any palms in MuJoCo, beside our own motion",
     ),
+    (
+        "contact_modes_estimated",
+        "contact-modes-estimated.md",
+        "contact modes with probabilities after an estimate from reference logs, friction unknown",
+    ),
     ("contact_logs", "contact-logs.md", "reference logs of any palms simulated from their start"),
     (
         "tilting_palms",

@@ -19,6 +19,7 @@ mod contact_cost;
 mod contact_estimates;
 mod contact_exports;
 mod contact_logs;
+mod contact_modes_estimated;
 mod contact_wedging;
 mod mode_bank;
 mod no_force;
@@ -61,6 +62,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("contact_exports", || in_words(contact_exports::main())),
     ("contact_logs", || in_words(contact_logs::main())),
     ("contact_wedging", || in_words(contact_wedging::main())),
+    ("contact_modes_estimated", || in_words(contact_modes_estimated::main())),
     ("mode_bank", || in_words(mode_bank::main())),
     ("no_force", || in_words(no_force::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),

@@ -38,13 +38,13 @@ mod three_palms;
 #[cfg(feature = "palms")]
 pub use contact_modes::{
     ContactFriction, ContactModes, ContactModesError, ContactModesOptions, ContactOdds, ContactReading,
-    ContactSeen, ContactSlip, LearnedFriction, TwistError,
+    ContactSeen, ContactSlip, LearnedFriction, TwistError, WholeModes, whole_modes,
 };
 #[cfg(feature = "palms")]
 pub use contacts::{
-    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions, ForceReading,
-    ImpulseNoise, MotionStream, PalmSensed, PlaneReadings, StreamBody, StreamError, StreamEstimate,
-    StreamMotion, StreamOptions, StreamPalm, StreamStage, estimate_contacts,
+    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions,
+    EstimatedModes, ForceReading, ImpulseNoise, MotionStream, PalmSensed, PlaneReadings, StreamBody,
+    StreamError, StreamEstimate, StreamMotion, StreamOptions, StreamPalm, StreamStage, estimate_contacts,
 };
 pub use core::{
     Arrival, Bank, BankError, BankOptions, BatchOptions, BatchSolution, Branch, EkfEstimate,

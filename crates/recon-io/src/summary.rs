@@ -5,7 +5,7 @@ use crate::report::{
     mode_times,
 };
 use glam::DMat3;
-use recon::observer::{SensorFault, Suspect};
+use recon::observer::{LearnedFriction, SensorFault, Suspect};
 use serde_json::{Map, Value, json};
 
 /// What a `summary.json` is of. Its keys are those of `docs/schema/summary.schema.json`.
@@ -84,7 +84,7 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
     let duration = data.log.duration();
     let palm = |i: usize| {
         let [off, slides, sticks] =
-            mode_times(&estimated_mode_spans(times, &found.modes, i)).map(|seconds| seconds / duration);
+            mode_times(&estimated_mode_spans(times, &found.modes, None, i)).map(|seconds| seconds / duration);
         json!({ "palm": i + 1, "off": off, "slides": slides, "sticks": sticks })
     };
     let departures: Option<Vec<Departure>> = data.truth.as_ref().filter(|_| relied > 0).map(|truth| {
@@ -113,6 +113,14 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
     if !found.suspects.is_empty() {
         figures["sensor_faults"] =
             found.suspects.iter().filter(|of| of.deviation.is_finite()).map(sensor_fault).collect();
+    }
+    if let Some(modes) = &found.mode_odds {
+        let friction = |(i, of): (usize, &Option<LearnedFriction>)| {
+            let of = (*of)?;
+            Some(json!({ "palm": i + 1, "coefficient": of.coefficient, "std": of.deviation }))
+        };
+        figures["friction"] = modes.frictions.iter().enumerate().filter_map(friction).collect();
+        figures["unsure_mode_samples"] = modes.unsure().into();
     }
     match found.axes_deviations {
         Some(of) => figures["std_axes_rad"] = json!(of.to_array()),

@@ -36,7 +36,8 @@ const DEVIATIONS: [&str; 12] = [
 ];
 
 /// Writes a motion estimated from contacts of `palms` palms: the columns of [`write_motion`], the deviations, the contact mode of each
-/// palm (`mode_i`: 0 off, 1 slides, 2 sticks) and `relied_on` (1 or 0).
+/// palm (`mode_i`: 0 off, 1 slides, 2 sticks), where they are estimated its probabilities to slide and to stick (`p_slide_i`, `p_stick_i`)
+/// and `relied_on` (1 or 0).
 ///
 /// # Errors
 /// Those of `to`.
@@ -47,16 +48,28 @@ pub fn write_estimated_motion(
     mut to: impl Write,
 ) -> io::Result<()> {
     let modes: String = (1..=palms).map(|i| format!("mode_{i},")).collect();
-    writeln!(to, "t,{},{},{modes}relied_on", TRUTH.join(","), DEVIATIONS.join(","))?;
+    let odds = estimate.mode_odds.as_ref().map(|found| &found.odds);
+    let named =
+        odds.map_or_else(String::new, |_| (1..=palms).map(|i| format!("p_slide_{i},p_stick_{i},")).collect());
+    writeln!(to, "t,{},{},{modes}{named}relied_on", TRUTH.join(","), DEVIATIONS.join(","))?;
     for (k, t) in times.iter().enumerate() {
         let mut row = cells(*t, &estimate.states[k].into()).to_vec();
         row.extend(estimate.deviations[k].iter().flat_map(|of| of.to_array()));
         let numbers: Vec<String> = row.into_iter().map(exact).collect();
         let modes: String =
             estimate.modes[k].iter().take(palms).map(|mode| format!("{},", mode.number())).collect();
-        writeln!(to, "{},{modes}{}", numbers.join(","), u8::from(estimate.relied_on[k]))?;
+        let odds = odds.map_or_else(String::new, |odds| {
+            let both = odds[k].iter().take(palms).flat_map(|of| [of.slide, of.stick]);
+            both.map(|p| format!("{},", share(p))).collect()
+        });
+        writeln!(to, "{},{modes}{odds}{}", numbers.join(","), u8::from(estimate.relied_on[k]))?;
     }
     to.flush()
+}
+
+/// A probability, to a millionth: more of its digits are chance.
+fn share(probability: f64) -> f64 {
+    (1e6 * probability).round() / 1e6
 }
 
 /// A time and a state in the order of the truth columns.

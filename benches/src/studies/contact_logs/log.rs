@@ -171,6 +171,11 @@ impl Log {
         Ok(found)
     }
 
+    /// Coefficient of friction of palm `i`, from 1.
+    pub(crate) fn friction(&self, i: usize) -> f64 {
+        number(&self.about["palms"][i - 1]["mu"])
+    }
+
     pub(crate) fn palm_count(&self) -> usize {
         self.about["palms"].as_array().map_or(0, Vec::len)
     }
@@ -201,7 +206,7 @@ impl Log {
             v,
             p,
             n: self.vectors("n", &tail)?,
-            friction: number(&self.about["palms"][i - 1]["mu"]),
+            friction: self.friction(i),
             f: self.vectors("f", &tail)?,
             mode: self.column(&format!("mode{tail}"))?,
             slip: self.column(&format!("slip{tail}"))?,

@@ -12,9 +12,9 @@ use nalgebra::{Matrix2, Matrix6, Vector2};
 use object_dynamics::ContactMode;
 
 /// Longest time step, s.
-const LONGEST: f64 = 1000.0;
+pub(super) const LONGEST: f64 = 1000.0;
 /// Time before the first sample for which modes are drawn, s: the start is no switch, and any will do.
-const FIRST: f64 = 1e-3;
+pub(super) const FIRST: f64 = 1e-3;
 /// Times that each contact's odds are set from what the others then say of the twist.
 const SWEEPS: usize = 3;
 /// Largest slope of a slip by the twist times the twist's deviation, in natural speeds.

@@ -3,7 +3,7 @@
 use super::chain::{Chain, Likelihood};
 use super::density::{Ratio, Slip};
 use super::friction::FrictionGrid;
-use super::steps::{RATIOS, SPEEDS, Steps};
+use super::steps::Steps;
 
 /// Probabilities of one contact's modes, in the order off, slide, stick.
 pub(super) type Modes = [f64; 3];
@@ -16,6 +16,7 @@ pub(super) struct Contact {
     likelihood: Likelihood,
     /// Sum over the frictions, by their weights: what the slip is weighed against.
     mean: Chain,
+    spare: Chain,
 }
 
 /// What a contact's forces tell.
@@ -43,27 +44,23 @@ impl Contact {
         Self {
             chains: vec![chain.clone(); grid.values.len()],
             log_evidence: vec![0.0; grid.values.len()],
-            likelihood: Likelihood::NONE,
-            mean: chain,
+            likelihood: Likelihood::none(steps),
+            mean: chain.clone(),
+            spare: chain,
         }
     }
 
     /// One time step on.
     pub(super) fn predict(&mut self, steps: &Steps) {
-        self.chains.iter_mut().for_each(|chain| chain.predict(steps));
+        self.chains.iter_mut().for_each(|chain| chain.predict(steps, &mut self.spare));
     }
 
     /// Weighs all by the forces.
     pub(super) fn weigh_force(&mut self, force: &Force, grid: &FrictionGrid, steps: &Steps) {
         match force {
             Force::Silent => return,
-            Force::Off => {
-                let (speeds, ratios) = ([f64::NEG_INFINITY; SPEEDS], [f64::NEG_INFINITY; RATIOS]);
-                self.likelihood = Likelihood { off: 0.0, speeds, ratios };
-            }
-            Force::Touches => {
-                self.likelihood = Likelihood { off: f64::NEG_INFINITY, ..Likelihood::NONE };
-            }
+            Force::Off => self.likelihood.set(0.0, f64::NEG_INFINITY),
+            Force::Touches => self.likelihood.set(f64::NEG_INFINITY, 0.0),
             Force::Presses { off, .. } => self.likelihood.off = *off,
         }
         for (i, friction) in grid.values.iter().enumerate() {
@@ -89,14 +86,14 @@ impl Contact {
     /// What the modes would be with this slip, without taking it; needs [`Self::average`] before.
     pub(super) fn try_slip(&mut self, slip: &Slip, turn: f64, weight: f64, steps: &Steps) -> Modes {
         self.set_slip(slip, turn, weight, steps);
-        let mut chain = self.mean.clone();
-        chain.weigh(&self.likelihood);
-        of(&chain)
+        self.spare.clone_from(&self.mean);
+        self.spare.weigh(&self.likelihood);
+        of(&self.spare)
     }
 
     fn set_slip(&mut self, slip: &Slip, turn: f64, weight: f64, steps: &Steps) {
         self.likelihood.off = weight * slip.log_off();
-        self.likelihood.ratios = [weight * slip.log_sticking(); RATIOS];
+        self.likelihood.ratios.fill(weight * slip.log_sticking());
         for (k, log) in self.likelihood.speeds.iter_mut().enumerate() {
             let (speed, spread) = (steps.speeds.middle(k), steps.speeds.variance(k));
             *log = weight * slip.log_sliding(speed, spread, turn);
@@ -106,7 +103,9 @@ impl Contact {
     /// The mean of all chains by these weights of the frictions.
     pub(super) fn average(&mut self, weights: &[f64]) -> Modes {
         let mean = &mut self.mean;
-        *mean = Chain { off: 0.0, speeds: [0.0; SPEEDS], ratios: [0.0; RATIOS] };
+        mean.off = 0.0;
+        mean.speeds.fill(0.0);
+        mean.ratios.fill(0.0);
         for (weight, chain) in weights.iter().zip(&self.chains) {
             mean.off += weight * chain.off;
             mean.speeds.iter_mut().zip(&chain.speeds).for_each(|(sum, mass)| *sum += weight * mass);

@@ -25,6 +25,18 @@ pub enum ContactModesError {
         /// As stated.
         needed: usize,
     },
+    /// A contact has another number of samples than there are times.
+    #[error(
+        "contact {contact} has {found} sample(s), and there are {samples} times; give one for each, `ContactSeen::Missing` where nothing was read"
+    )]
+    Samples {
+        /// The contact.
+        contact: usize,
+        /// As given.
+        found: usize,
+        /// Times that were given.
+        samples: usize,
+    },
     /// A coefficient of friction is not usable.
     #[error("friction of contact {contact} is {value}; it must be from 1e-3 to 10, or unknown")]
     Friction {

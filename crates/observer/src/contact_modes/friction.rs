@@ -4,9 +4,11 @@
 const VALUES: usize = 160;
 const LOWEST: f64 = 0.1;
 const HIGHEST: f64 = 1.2;
+/// The grid over a whole log, of steps of the same ratio: frictions that contradict it cost nothing for long there.
+const WHOLE: (f64, f64) = (0.02, 2.0);
 /// Time that something must have slid before its friction is told, s, and how probable sliding must be for its time to count.
 const SLID: f64 = 0.01;
-const SURE: f64 = 0.99;
+pub(super) const SURE: f64 = 0.99;
 
 /// What is known of the friction of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,16 +102,32 @@ impl FrictionGrid {
     /// None where it was known from the start, and while nothing slid for long enough: what sticks has only a lower bound.
     pub(super) fn learned(&self) -> Option<LearnedFriction> {
         self.material?;
-        // A sum of steps is not exact.
-        if self.slid < SLID * (1.0 - 1e-9) {
-            return None;
-        }
-        let mean = |of: &dyn Fn(f64) -> f64| -> f64 {
-            self.weights.iter().zip(&self.values).map(|(weight, value)| weight * of(*value)).sum()
-        };
-        let coefficient = mean(&|value| value);
-        let step = coefficient * (HIGHEST / LOWEST).ln() / (VALUES - 1) as f64;
-        let variance = mean(&|value| (value - coefficient).powi(2)) + step.powi(2) / 12.0;
-        Some(LearnedFriction { coefficient, deviation: variance.sqrt() })
+        learned(&self.values, &self.weights, self.slid)
     }
+}
+
+/// Logarithm of the ratio of one value of a grid to the one before.
+fn log_step() -> f64 {
+    (HIGHEST / LOWEST).ln() / (VALUES - 1) as f64
+}
+
+/// The frictions that are looked at over a whole log.
+pub(super) fn values() -> Vec<f64> {
+    let count = ((WHOLE.1 / WHOLE.0).ln() / log_step()).ceil() as u32;
+    (0..=count).map(|k| WHOLE.0 * (f64::from(k) * log_step()).exp()).collect()
+}
+
+/// From values and their weights, which sum to one; none where nothing slid for long enough, `slid` being the time that something did, s.
+pub(super) fn learned(values: &[f64], weights: &[f64], slid: f64) -> Option<LearnedFriction> {
+    // A sum of steps is not exact.
+    if slid < SLID * (1.0 - 1e-9) {
+        return None;
+    }
+    let mean = |of: &dyn Fn(f64) -> f64| -> f64 {
+        weights.iter().zip(values).map(|(weight, value)| weight * of(*value)).sum()
+    };
+    let coefficient = mean(&|value| value);
+    let step = coefficient * log_step();
+    let variance = mean(&|value| (value - coefficient).powi(2)) + step.powi(2) / 12.0;
+    Some(LearnedFriction { coefficient, deviation: variance.sqrt() })
 }

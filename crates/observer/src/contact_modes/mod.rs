@@ -15,11 +15,13 @@ mod error;
 mod friction;
 pub(crate) mod normal;
 mod options;
+mod passage;
 mod reading;
 mod steps;
 #[cfg(test)]
 mod tests;
 mod twist;
+mod whole;
 
 pub use classifier::{ContactModes, ContactOdds};
 pub use error::ContactModesError;
@@ -27,3 +29,4 @@ pub use friction::{ContactFriction, LearnedFriction};
 pub use options::ContactModesOptions;
 pub use reading::{ContactReading, ContactSeen, ContactSlip};
 pub use twist::TwistError;
+pub use whole::{WholeModes, whole_modes};

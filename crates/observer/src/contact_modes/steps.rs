@@ -1,94 +1,158 @@
 //! How modes, speeds of sliding and ratios of sticking change from one sample to the next.
 
-use super::bins::{Bins, Walk};
+use super::bins::{Bins, Ends, Walk};
 use super::normal::below;
 
 /// Bins of the speed of sliding, in shares of the natural speed, and of the ratio of sticking over the friction.
 pub(super) const SPEEDS: usize = 36;
-pub(super) const RATIOS: usize = 40;
+const RATIOS: usize = 40;
 
 /// Time steps within this share of each other are taken as one.
 const SAME: f64 = 0.02;
 /// The time that the numbers below are of, s.
 const UNIT: f64 = 1e-3;
-/// Deviation of a millisecond's change of the speed, in shares of the natural speed, and of the ratio over the friction.
-const SPEED_STEP: f64 = 0.004;
-const RATIO_STEP: f64 = 0.004 / 0.3;
-/// Probability a millisecond that the ratio jumps anywhere in the disc, that sticking ends although the ratio is within the
-/// cone (blows, errors of the friction), and that a contact comes or goes.
-const RATIO_JUMP: f64 = 0.01;
+/// How ratio and speed are taken to change, from one millisecond to the next.
+#[derive(Clone, Copy, Debug)]
+struct Habits {
+    /// Deviation of the change of the speed, in shares of the natural speed.
+    speed_step: f64,
+    /// Deviation of the change of the ratio, over the friction.
+    ratio_step: f64,
+    /// Probability that the ratio jumps anywhere in the disc.
+    jump: f64,
+    /// Share of sticking that begins near its cone.
+    near: f64,
+}
+
+/// Sample by sample, with a known friction.
+const FOLLOWED: Habits = Habits { speed_step: 0.004, ratio_step: 0.004 / 0.3, jump: 0.01, near: 0.8 };
+/// Of a whole log; the step of the ratio is one of the ratio itself. Set on noise of the seeds 1 to 3 of the reference logs.
+const WHOLE: Habits = Habits { speed_step: 0.006, ratio_step: 0.002, jump: 0.002, near: 0.95 };
+/// Bins of the ratio where frictions are to be told from each other: alike up to `LOW`, each wider than the one before beyond.
+const LOW: f64 = 0.1;
+const FINE: usize = 12;
+const WIDER: f64 = 1.032;
+/// Bins next to the cone that are those of a known friction.
+const RIM: usize = 8;
+/// Probability a millisecond that sticking ends although the ratio is within the cone (blows, errors of the friction), and that a
+/// contact comes or goes.
 const BREAK: f64 = 0.002;
 const TOUCH: f64 = 0.002;
 /// Share of the walks that come to rest which stick; the others slide on, back.
 const CAPTURED: f64 = 0.5;
-/// Share of sticking that begins near its cone, within some steps of the ratio.
-const NEAR: f64 = 0.8;
+/// Steps of the ratio within which sticking begins near its cone.
 const NEAR_STEPS: f64 = 3.0;
 /// Deviation of the slip at touch-down, in shares of the natural speed.
 const LANDING: f64 = 0.15;
+/// What steps under a speed of zero sticks from now on, or slides on, back; what steps over the friction slides from now on.
+const SPEED_ENDS: Ends = Ends { reflected: 1.0 - CAPTURED, stops: true };
+const RATIO_ENDS: Ends = Ends { reflected: 1.0, stops: false };
 /// Least probability of a switch: nothing is ever impossible for good.
 const LEAST: f64 = 1e-12;
 
 /// What happens in one time step, the same for every friction.
 #[derive(Clone, Debug)]
 pub(super) struct Steps {
-    pub(super) speeds: Bins<SPEEDS>,
-    pub(super) ratios: Bins<RATIOS>,
+    pub(super) speeds: Bins,
+    pub(super) ratios: Bins,
     /// What steps under zero sticks from now on.
-    pub(super) speed: Walk<SPEEDS>,
+    pub(super) speed: Walk,
     /// What steps over one, the friction, slides from now on.
-    pub(super) ratio: Walk<RATIOS>,
+    pub(super) ratio: Walk,
     /// Probabilities of a jump of the ratio, of the end of sticking, of touch and its loss.
     pub(super) jump: f64,
     pub(super) breaks: f64,
     pub(super) touch: f64,
     /// Speeds at the start of sliding, after sticking and after touch-down; ratios at the start of sticking, after sliding
     /// and anywhere.
-    pub(super) starts: [f64; SPEEDS],
-    pub(super) landing: [f64; SPEEDS],
-    pub(super) stops: [f64; RATIOS],
-    pub(super) disc: [f64; RATIOS],
+    pub(super) starts: Vec<f64>,
+    pub(super) landing: Vec<f64>,
+    pub(super) stops: Vec<f64>,
+    pub(super) disc: Vec<f64>,
     dt: f64,
 }
 
 impl Steps {
-    /// For steps of this time, s, which is above zero.
+    /// For steps of this time, s, which is above zero; the same for every friction.
     pub(super) fn new(dt: f64) -> Self {
-        let speeds = Bins::new(|x| 1.2 * (0.006 * x + 0.994 * x.powi(3)));
-        let ratios = Bins::new(|x| 1.0 - (1.0 - x).powf(1.7));
-        let share = (dt / UNIT).sqrt();
-        let (speed_step, ratio_step) = (SPEED_STEP * share, RATIO_STEP * share);
-        let mut speed = Walk::new(&speeds, speed_step);
-        speed.reflect(&speeds, speed_step, 1.0 - CAPTURED);
-        speed.stop();
-        let mut ratio = Walk::new(&ratios, ratio_step);
-        ratio.reflect(&ratios, ratio_step, 1.0);
-        let within = |a_unit: f64| (1.0 - (-rate_of(a_unit) * dt / UNIT).exp()).clamp(LEAST, 1.0 - LEAST);
-        let disc = ratios.shares(|q| q * q);
-        let near = ratios.shares(|q| ((q - 1.0) / (NEAR_STEPS * ratio_step)).exp());
-        let stops = std::array::from_fn(|k| NEAR * near[k] + (1.0 - NEAR) * disc[k]);
-        Self {
-            starts: speeds.shares(|s| below(s / speed_step)),
+        let mut steps = Self::with(dt, Bins::new(RATIOS, relative), &FOLLOWED);
+        steps.speed.make_room();
+        steps.ratio.make_room();
+        steps
+    }
+
+    /// For steps of this time, s, of a contact with this friction, where frictions are to be told from each other.
+    ///
+    /// Bins and walk of the ratio are those of any other friction, cut off at this one: how a contact sticks well within its cone then
+    /// says nothing of where that ends. Were they shares of the friction, a ratio that changes slowly would speak for a low one.
+    pub(super) fn of_friction(dt: f64, friction: f64) -> Self {
+        let edge = |k: usize| match k.checked_sub(FINE) {
+            None => LOW * k as f64 / FINE as f64,
+            Some(beyond) => LOW * WIDER.powi(beyond as i32),
+        };
+        // Close to the cone bins are those of a known friction, which get narrow there.
+        let rim: Vec<f64> = (0..=RIM).rev().map(|k| relative((RATIOS - k) as f64 / RATIOS as f64)).collect();
+        let within = |edge: &f64| *edge < rim[0] - (rim[1] - rim[0]);
+        let mut edges: Vec<f64> = (0..).map(|k| edge(k) / friction).take_while(within).collect();
+        edges.extend(rim);
+        let habits = Habits { ratio_step: WHOLE.ratio_step / friction, ..WHOLE };
+        Self::with(dt, Bins::between(&edges), &habits)
+    }
+
+    fn with(dt: f64, ratios: Bins, habits: &Habits) -> Self {
+        let speeds = speeds();
+        let [speed, ratio] =
+            [(&speeds, SPEED_ENDS), (&ratios, RATIO_ENDS)].map(|(bins, ends)| Walk::new(bins, 1.0, ends));
+        let mut steps = Self {
+            starts: vec![0.0; speeds.count()],
             landing: speeds.shares(|s| below(s / LANDING)),
-            jump: within(RATIO_JUMP),
-            breaks: within(BREAK),
-            touch: within(TOUCH),
+            jump: 0.0,
+            breaks: 0.0,
+            touch: 0.0,
+            stops: vec![0.0; ratios.count()],
+            disc: ratios.shares(|q| q * q),
             speeds,
             ratios,
             speed,
             ratio,
-            stops,
-            disc,
             dt,
+        };
+        steps.set(dt, habits);
+        steps
+    }
+
+    /// For steps of another time.
+    fn set(&mut self, dt: f64, habits: &Habits) {
+        let share = (dt / UNIT).sqrt();
+        let (speed_step, ratio_step) = (habits.speed_step * share, habits.ratio_step * share);
+        self.speed.set(&self.speeds, speed_step, SPEED_ENDS);
+        self.ratio.set(&self.ratios, ratio_step, RATIO_ENDS);
+        let within = |a_unit: f64| (1.0 - (-rate_of(a_unit) * dt / UNIT).exp()).clamp(LEAST, 1.0 - LEAST);
+        (self.jump, self.breaks, self.touch) = (within(habits.jump), within(BREAK), within(TOUCH));
+        self.speeds.put_shares(|s| below(s / speed_step), &mut self.starts);
+        self.ratios.put_shares(|q| ((q - 1.0) / (NEAR_STEPS * ratio_step)).exp(), &mut self.stops);
+        for (stop, disc) in self.stops.iter_mut().zip(&self.disc) {
+            *stop = habits.near * *stop + (1.0 - habits.near) * disc;
         }
+        self.dt = dt;
     }
 
     /// Made anew where the time step is another. Clocks jitter, and the walks are no better known than this.
     pub(super) fn follow(&mut self, dt: f64) {
         if (dt - self.dt).abs() > SAME * self.dt {
-            *self = Self::new(dt);
+            self.set(dt, &FOLLOWED);
         }
     }
+}
+
+/// Edges of ratios over a known friction: close together near one.
+fn relative(x: f64) -> f64 {
+    1.0 - (1.0 - x).powf(1.7)
+}
+
+/// Bins of the speed of sliding.
+pub(super) fn speeds() -> Bins {
+    Bins::new(SPEEDS, |x| 1.2 * (0.006 * x + 0.994 * x.powi(3)))
 }
 
 /// Of events that happen with this probability in a unit of time.

@@ -1,15 +1,18 @@
 use super::body::{Body, CONSTANTS};
 use super::cold;
 use super::joint::pose_errors;
+use super::mode_odds::{EstimatedModes, mode_odds};
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
 use super::problem::{Problem, Units};
 use super::record::{Contact, Record};
+use super::relabel::surer;
 use super::rivals::still;
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{problem, thinned};
 use super::sharp::{is_rounded, is_sharp};
+use super::slips::Known;
 use super::solve::{Covariances, Solved};
 use super::stage::Stage;
 use super::state::Motion;
@@ -47,8 +50,10 @@ pub struct ContactEstimate {
     pub deviations: Vec<[DVec3; 4]>,
     /// Whether a sample's motion is to be relied on: to within its deviations.
     pub relied_on: Vec<bool>,
-    /// Contact modes at all samples: those that were given, or the estimated ones.
+    /// Contact modes at all samples: those that were given, or the estimated ones, the most probable where probabilities are asked for.
     pub modes: Vec<[ContactMode; MOST_PALMS]>,
+    /// How probable the modes are, of palms with friction; none unless asked for.
+    pub mode_odds: Option<EstimatedModes>,
     /// Mass, kg.
     pub mass: f64,
     /// Of a known body, standard deviations of how its own axes lie at the first sample, rad about the axes of the world: beyond 1 nothing is
@@ -106,7 +111,7 @@ pub fn estimate_contacts(
     let source = Source { log, options, units };
     let mut record = source.with_blows(record);
     match modes {
-        Some(modes) => Ok(source.with_modes(&mut record, modes.to_vec())?.0),
+        Some(modes) => Ok(source.with_modes(&mut record, modes.to_vec(), true)?.0),
         None => source.with_estimated_modes(&mut record),
     }
 }
@@ -127,11 +132,33 @@ impl Source<'_> {
         record
     }
 
-    /// With modes from the ratios of forces, those of the conditions that the motion contradicts taken back.
+    /// With modes from the ratios of forces, those of the conditions that the motion contradicts taken back; where probabilities of modes are
+    /// asked for, once more with those that they are sure of.
     fn with_estimated_modes(&self, record: &mut Record) -> Result<ContactEstimate, ContactEstimateError> {
+        let mut found = self.uncontradicted(record)?;
+        let Some(odds) = &found.mode_odds else { return Ok(found) };
+        let time = AVERAGED * self.units.length / self.units.speed;
+        let again = surer(&record.times, &found.modes, odds, time);
+        // Without noise a search is long, and what limits is when within a sample modes change.
+        let worth = self.options.noise.limits(&self.units) && again != found.modes;
+        let second = if worth { self.with_modes(record, again, false).ok() } else { None };
+        if let Some((second, slips)) = second {
+            let stands = slips.is_empty() && second.evidence.settled && second.reliability.is_reliable();
+            let by_ratio = odds.by_ratio.clone();
+            if let Some(odds) = second.mode_odds.clone().filter(|_| stands) {
+                found = ContactEstimate { mode_odds: Some(EstimatedModes { by_ratio, ..odds }), ..second };
+            }
+        }
+        if let Some(odds) = &found.mode_odds {
+            found.modes = odds.most_probable();
+        }
+        Ok(found)
+    }
+
+    fn uncontradicted(&self, record: &mut Record) -> Result<ContactEstimate, ContactEstimateError> {
         let mut modes = by_ratio(record, AVERAGED * self.units.length / self.units.speed);
         for _ in 0..ROUNDS {
-            let (found, slips) = self.with_modes(record, modes)?;
+            let (found, slips) = self.with_modes(record, modes, false)?;
             if slips.is_empty() {
                 return Ok(found);
             }
@@ -142,13 +169,15 @@ impl Source<'_> {
                 }
             }
         }
-        Ok(self.with_modes(record, modes)?.0)
+        Ok(self.with_modes(record, modes, true)?.0)
     }
 
+    /// With modes, of which there are no probabilities where the motion contradicts them, unless it is the `last` word.
     fn with_modes(
         &self,
         record: &mut Record,
         modes: Vec<[ContactMode; MOST_PALMS]>,
+        last: bool,
     ) -> Result<(ContactEstimate, Slips), ContactEstimateError> {
         let Self { options, units, .. } = *self;
         record.set_modes(&modes);
@@ -179,8 +208,14 @@ impl Source<'_> {
             true => self.suspects(problem, solved, &covariances, &motions, (log, &modes, longest)),
             false => Vec::new(),
         };
+        let odds = || {
+            let (covariances, motions) = (&covariances, &motions);
+            let known = Known { log, modes: &modes, problem, solved, covariances, motions, longest };
+            mode_odds(&known, &options.noise, &units)
+        };
+        let mode_odds = if options.mode_odds && (last || slips.is_empty()) { odds() } else { None };
         let found = Found { log, stage: &stage, covariances: &covariances, short, suspects: &suspects };
-        Ok((found.estimate(&motions, modes, options), slips))
+        Ok((ContactEstimate { mode_odds, ..found.estimate(&motions, modes, options) }, slips))
     }
 
     /// From a search on a record, or on a thinned one, to the solution on the record. None where the equations are singular.
@@ -324,6 +359,7 @@ impl Found<'_> {
             relied_on,
             deviations,
             modes,
+            mode_odds: None,
             axes_deviations: doubt
                 .map(|doubt| DVec3::from_array([4, 5, 6].map(|i| deviation(i).hypot(doubt)))),
             mass: known.map_or_else(|| body.log_mass.exp(), MassProperties::mass),

@@ -72,6 +72,9 @@ pub struct ContactOptions {
     pub pose_errors: bool,
     /// Whether to test what is taken as known of the sensors.
     pub suspects: bool,
+    /// Whether to tell how probable each contact mode is. For each palm that sticks somewhere a motion is solved for in which it need not, and modes
+    /// that were not given are made anew from what is sure, for a second solution.
+    pub mode_odds: bool,
     /// Whether the floor of the noise is a guess: where noise is not what conditions are off by, they count as good as what is left of them.
     pub guessed_floor: bool,
     /// Whether all motion is in the plane of the world's x and z: the object moves in it and turns about its normal.
@@ -90,6 +93,7 @@ impl ContactOptions {
             size: None,
             pose_errors: false,
             suspects: false,
+            mode_odds: false,
             guessed_floor: true,
             planar: false,
         }

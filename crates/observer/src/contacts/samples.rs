@@ -127,13 +127,25 @@ impl<'a> Link<'a> {
     }
 }
 
-/// At node `j`, with the angular velocity in place of the angular momentum.
+/// At node `j`.
 pub(super) fn deviations<const P: usize>(
     motion: &Motion,
     body: &Body,
     j: usize,
     covariances: &Covariances<P>,
 ) -> Deviations {
+    let covariance = covariance(motion, body, j, covariances);
+    let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
+    std::array::from_fn(|k| DVec3::new(deviation(3 * k), deviation(3 * k + 1), deviation(3 * k + 2)))
+}
+
+/// Of the motion at node `j`, with the angular velocity in place of the angular momentum.
+pub(super) fn covariance<const P: usize>(
+    motion: &Motion,
+    body: &Body,
+    j: usize,
+    covariances: &Covariances<P>,
+) -> SMatrix<f64, MOTION, MOTION> {
     let (own, follows) = &covariances.motions[j];
     let (by_motion, by_body) = motion.spin_derivatives(body);
     let mut to = SMatrix::<f64, MOTION, MOTION>::identity();
@@ -143,9 +155,8 @@ pub(super) fn deviations<const P: usize>(
         through.fixed_view_mut::<3, 6>(6, 1).copy_from(&by_body);
     }
     let by_constants = to * follows + through;
-    let covariance = to * own * to.transpose() + by_constants * covariances.body * by_constants.transpose();
-    let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
+    let linear = to * own * to.transpose() + by_constants * covariances.body * by_constants.transpose();
     let beyond = covariances.beyond(j);
-    let three = |k: usize| DVec3::new(deviation(3 * k), deviation(3 * k + 1), deviation(3 * k + 2));
-    std::array::from_fn(|k| three(k) * beyond[k])
+    let wider = SMatrix::from_diagonal(&Tangent::from_fn(|i, _| beyond[i / 3]));
+    wider * linear * wider
 }

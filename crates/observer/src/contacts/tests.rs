@@ -13,6 +13,7 @@ use object_dynamics::*;
 mod frictionless;
 mod impulses;
 mod known;
+mod mode_odds;
 mod suspects;
 
 const G: f64 = 9.81;

@@ -42,7 +42,7 @@ pub(super) fn describe(data: &EstimateData, figures: &Value) -> String {
     };
     line("next", advice.next().to_owned());
     let spans: Vec<_> = (0..data.log.palms().len())
-        .map(|palm| estimated_mode_spans(data.log.times(), &found.modes, palm))
+        .map(|palm| estimated_mode_spans(data.log.times(), &found.modes, found.mode_odds.as_ref(), palm))
         .collect();
     let times = describe_times(&spans);
     let _ = writeln!(text, "{}", times.trim_start_matches('\n'));

@@ -170,12 +170,13 @@ fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOp
     let rough = ContactNoiseLevel { impulse: rough.impulse.filter(|_| alone), ..rough };
     // Of means the noise is that of their samples over the root of how many there are.
     let noise = as_stated(sensors, rough, 1.0 / (together as f64).sqrt());
-    let (pose_errors, suspects) = (true, true);
+    let (pose_errors, suspects, mode_odds) = (true, true, true);
     let guessed_floor = sensors.contact_speed_std.is_none();
     Ok(ContactOptions {
         size: scene.size,
         pose_errors,
         suspects,
+        mode_odds,
         guessed_floor,
         ..ContactOptions::new(noise, scene.gravity)
     })

@@ -4,7 +4,8 @@ use super::evidence::{of_bounds, samples_together};
 use glam::DVec3;
 use recon::object_dynamics::MassProperties;
 use recon::observer::{
-    ContactEstimate, ContactEvidence, ContactNoiseLevel, ContactOptions, Reason, Reliability, Suspect,
+    ContactEstimate, ContactEvidence, ContactNoiseLevel, ContactOptions, EstimatedModes, LearnedFriction,
+    Reason, Reliability, Suspect,
 };
 use recon_io::EvidenceValue::{Number, Text};
 use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Verdict, brief_to};
@@ -93,6 +94,7 @@ pub(super) fn evidence(
     rows.extend(fit(&estimate.evidence, &estimate.reliability, relied_on(estimate)));
     rows.extend(told(&options.noise));
     rows.extend(suspects(&estimate.suspects));
+    rows.extend(estimate.mode_odds.as_ref().map(modes).into_iter().flatten());
     if checks.together > 1 {
         rows.push(samples_together(checks.together));
     }
@@ -214,6 +216,25 @@ pub(super) fn fit(e: &ContactEvidence, reliability: &Reliability, share: f64) ->
                 "Share of the samples whose motion is known to within its deviations.",
             )
         },
+    ]
+}
+
+/// What is known of the friction, and how sure contact modes are.
+fn modes(found: &EstimatedModes) -> Vec<Evidence> {
+    let learned = |(i, of): (usize, &Option<LearnedFriction>)| {
+        let of = (*of)?;
+        let [mean, deviation] = [brief_to(3, of.coefficient), brief_to(2, of.deviation)];
+        Some(format!("palm {} {mean} +- {deviation}", i + 1))
+    };
+    let learned: Vec<String> = found.frictions.iter().enumerate().filter_map(learned).collect();
+    let learned = if learned.is_empty() { "not learned".to_owned() } else { learned.join(", ") };
+    let friction =
+        "Of the palms that slid, or have one friction with a palm that did, as the whole log has it.";
+    let unsure = "At which some palm's mode is less probable than 0.99: close to the cone it takes tens of milliseconds to tell.";
+    let count = EvidenceValue::Count(found.unsure() as u64);
+    vec![
+        neutral("friction", "Coefficients of friction", Text(learned), "", friction),
+        neutral("unsure_modes", "Samples of unsure modes", count, "", unsure),
     ]
 }
 

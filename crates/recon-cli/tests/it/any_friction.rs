@@ -126,7 +126,8 @@ fn a_motion_with_friction_is_estimated_to_within_what_is_said() {
     let (log, motion) =
         (Table::parse(&scratch.read("log.csv")), Table::parse(&scratch.read("out/motion.csv")));
     assert_eq!(motion.rows.len(), log.rows.len());
-    assert!(motion.header.ends_with(&["mode_1", "mode_2", "mode_3", "relied_on"].map(str::to_owned)));
+    let last = "mode_1,mode_2,mode_3,p_slide_1,p_stick_1,p_slide_2,p_stick_2,p_slide_3,p_stick_3,relied_on";
+    assert!(motion.header.join(",").ends_with(last), "{:?}", motion.header);
     let relied = motion.column("relied_on");
     assert!(motion.rows.iter().all(|row| row[relied] == "1"));
     let mean = |errors: Vec<DVec3>, deviations: &str| {
@@ -161,6 +162,11 @@ fn a_motion_with_friction_is_estimated_to_within_what_is_said() {
     let shares = said["mode_shares"][0].as_object().unwrap();
     let sum: f64 = ["off", "slides", "sticks"].iter().map(|mode| shares[*mode].as_f64().unwrap()).sum();
     assert!((sum - 1.0).abs() < 1e-12);
+    // All three slide, and tell what they rub with: the grid's step is 1.6 %.
+    let friction = said["friction"].as_array().unwrap();
+    let near = |of: &Value| (of["coefficient"].as_f64().unwrap() - 0.1).abs() < 1.6e-3;
+    assert!(friction.len() == 3 && friction.iter().all(near), "{friction:?}");
+    assert!(said["unsure_mode_samples"].as_u64().unwrap() < 20, "{}", said["unsure_mode_samples"]);
     // For a person.
     let told = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]);
     for word in

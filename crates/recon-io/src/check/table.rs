@@ -26,13 +26,16 @@ impl LastColumn {
 /// What the numbers of a column must be, and whether one is so.
 type Must = (&'static str, fn(f64) -> bool);
 
-/// By the names that columns of motions have: deviations, contact modes, and what is relied on.
+/// By the names that columns of motions have: deviations, contact modes, their probabilities, and what is relied on.
 fn must(column: &str) -> Option<Must> {
     if column.starts_with("std_") {
         return Some(("zero or above", |number| number >= 0.0));
     }
     if column.starts_with("mode_") {
         return Some(("0, 1 or 2", |number| [0.0, 1.0, 2.0].contains(&number)));
+    }
+    if column.starts_with("p_slide_") || column.starts_with("p_stick_") {
+        return Some(("from 0 to 1", |number| (0.0..=1.0).contains(&number)));
     }
     (column == "relied_on").then_some(("0 or 1", |number| [0.0, 1.0].contains(&number)))
 }

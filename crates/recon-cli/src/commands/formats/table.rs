@@ -201,7 +201,7 @@ pub(super) const FORMATS: [Format; 17] = [
     },
     Format {
         name: "motion",
-        about: "motion.csv: the estimated motion, in body axes of the estimate; from contacts of any palms with deviations, modes and marks",
+        about: "motion.csv: the estimated motion, in body axes of the estimate; from contacts of any palms with deviations, modes, their probabilities and marks",
         columns: &[
             needed("t", "s", "time"),
             needed(
@@ -220,6 +220,11 @@ pub(super) const FORMATS: [Format; 17] = [
                 "standard deviations of the turn since the first sample, world axes",
             ),
             may("mode_i", "-", "contact mode of the palm: 0 off, 1 slides, 2 sticks"),
+            may(
+                "p_slide_i, p_stick_i",
+                "-",
+                "how probable it is that palm i slides and that it sticks; off is what is left to 1",
+            ),
             may("relied_on", "-", "1 where the motion is relied on to within its deviations"),
         ],
     },

@@ -11,7 +11,7 @@ const LEFT: f64 = 64.0;
 const ROW: f64 = 26.0;
 const BAND: f64 = 18.0;
 
-/// Bands of the spans of each palm over the time, as one SVG element; marks at the times of the pictures, and a shade over stretches
+/// Bands of the spans of each palm over the time, as opaque as they are probable, as one SVG element; marks at the times of the pictures, and a shade over stretches
 /// of time that are not relied on.
 pub(super) fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]]) -> String {
     let (start, end) = (all.first().and_then(|s| s.first()), all.first().and_then(|s| s.last()));
@@ -32,9 +32,14 @@ pub(super) fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]])
         for span in spans.iter().filter(|span| span.mode != ContactMode::Off) {
             let (x, width) = (place(span.start), place(span.end) - place(span.start));
             let mode = span.mode.number();
+            // What is known for sure needs no word: it is opaque.
+            let pale = match span.sure {
+                10.. => String::new(),
+                tenths => format!(" fill-opacity=\".{tenths}\""),
+            };
             let _ = writeln!(
                 out,
-                "<rect class=\"m{mode}\" x=\"{x}\" y=\"{y}\" width=\"{width:.2}\" height=\"{BAND}\"/>"
+                "<rect class=\"m{mode}\"{pale} x=\"{x}\" y=\"{y}\" width=\"{width:.2}\" height=\"{BAND}\"/>"
             );
         }
         let (x, width) = (place(start), place(end) - place(start));
@@ -100,7 +105,7 @@ mod tests {
 
     #[test]
     fn flights_are_what_no_palm_touches() {
-        let span = |start, end, mode| ModeSpan { start, end, mode };
+        let span = |start, end, mode| ModeSpan { start, end, mode, sure: 10 };
         let (off, stick) = (ContactMode::Off, ContactMode::Stick);
         let one = vec![span(0.0, 1.0, off), span(1.0, 2.0, stick), span(2.0, 4.0, off)];
         let two = vec![span(0.0, 0.5, stick), span(0.5, 3.0, off), span(3.0, 4.0, stick)];

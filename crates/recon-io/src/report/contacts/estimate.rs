@@ -51,6 +51,7 @@ impl EstimateData {
         let (count, found) = (self.log.times().len(), &self.estimate);
         let lengths = [found.states.len(), found.deviations.len(), found.modes.len(), found.relied_on.len()];
         let curves = self.curves.iter().map(Vec::len).chain(self.truth.iter().map(Vec::len));
+        let curves = curves.chain(found.mode_odds.iter().map(|modes| modes.odds.len()));
         count > 1
             && self.curves.len() == self.log.palms().len()
             && lengths.into_iter().chain(curves).all(|length| length == count)

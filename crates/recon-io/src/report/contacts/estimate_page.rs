@@ -74,7 +74,7 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
         pictures: data.pictures(),
         caption: format!("Seen obliquely from above, to one scale. {object} {CAPTION}"),
         spans: (0..data.log.palms().len())
-            .map(|palm| estimated_mode_spans(times, &found.modes, palm))
+            .map(|palm| estimated_mode_spans(times, &found.modes, found.mode_odds.as_ref(), palm))
             .collect(),
         times,
         relied_on: &found.relied_on,

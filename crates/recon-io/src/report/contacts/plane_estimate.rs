@@ -67,7 +67,7 @@ pub fn write_plane_estimate_report(data: &PlaneEstimateData, to: impl Write) -> 
         pictures: data.pictures(),
         caption: if relied { CAPTION } else { NO_OBJECT }.to_owned(),
         spans: (0..found.contacts.len())
-            .map(|palm| estimated_mode_spans(&times, &found.modes, palm))
+            .map(|palm| estimated_mode_spans(&times, &found.modes, None, palm))
             .collect(),
         times: &times,
         relied_on: &found.relied_on,

@@ -1,6 +1,7 @@
 //! What each contact does over time.
 
 use recon::object_dynamics::{ContactMode, ContactSimulation, MOST_PALMS, planar};
+use recon::observer::{ContactOdds, EstimatedModes};
 
 /// A stretch of time over which a contact does the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +12,8 @@ pub struct ModeSpan {
     pub end: f64,
     /// What the contact does.
     pub mode: ContactMode,
+    /// How probable that is, in tenths: 10 where it is known.
+    pub sure: u8,
 }
 
 /// What the contact with palm `palm` (from 0) does from the first sample to the last: one span after the other, neighbours in
@@ -32,18 +35,24 @@ pub fn planar_mode_spans(simulation: &planar::ContactSimulation, palm: usize) ->
     spans(first.modes[palm], [first.t, last.t], changes)
 }
 
-/// The same of the modes of an estimate at the `times` of its log.
+/// The same of the modes of an estimate at the `times` of its log, and how sure they are.
 #[must_use]
 pub fn estimated_mode_spans(
     times: &[f64],
     modes: &[[ContactMode; MOST_PALMS]],
+    odds: Option<&EstimatedModes>,
     palm: usize,
 ) -> Vec<ModeSpan> {
-    let (Some(&start), Some(&end), Some(first)) = (times.first(), times.last(), modes.first()) else {
-        return Vec::new();
-    };
-    let changes = times.iter().zip(modes).map(|(t, modes)| (*t, modes[palm]));
-    spans(first[palm], [start, end], changes)
+    let (Some(&start), Some(&end)) = (times.first(), times.last()) else { return Vec::new() };
+    let sure = |k: usize| odds.map_or(10, |found| tenths(&found.odds[k][palm]));
+    let mut all = modes.iter().enumerate().map(|(k, modes)| (modes[palm], sure(k))).peekable();
+    let Some(first) = all.peek().copied() else { return Vec::new() };
+    sure_spans(first, [start, end], times.iter().copied().zip(all))
+}
+
+/// The probability of the most probable mode, in tenths; what is not nearly certain is less than ten.
+fn tenths(odds: &ContactOdds) -> u8 {
+    (10.0 * odds.off.max(odds.slide).max(odds.stick) + 0.1).floor().clamp(0.0, 10.0) as u8
 }
 
 /// Time over which spans are off, slide and stick, s.
@@ -58,15 +67,24 @@ pub fn mode_times(spans: &[ModeSpan]) -> [f64; 3] {
 /// From the mode at the start and the times at which modes follow.
 fn spans(
     mode: ContactMode,
-    [start, end]: [f64; 2],
+    ends: [f64; 2],
     changes: impl Iterator<Item = (f64, ContactMode)>,
 ) -> Vec<ModeSpan> {
+    sure_spans((mode, 10), ends, changes.map(|(t, mode)| (t, (mode, 10))))
+}
+
+/// The same of modes and how sure they are, in tenths.
+fn sure_spans(
+    (mode, sure): (ContactMode, u8),
+    [start, end]: [f64; 2],
+    changes: impl Iterator<Item = (f64, (ContactMode, u8))>,
+) -> Vec<ModeSpan> {
     let mut spans: Vec<ModeSpan> = Vec::new();
-    let mut open = ModeSpan { start, end, mode };
-    for (t, mode) in changes.filter(|change| change.0 <= end) {
-        if mode != open.mode {
+    let mut open = ModeSpan { start, end, mode, sure };
+    for (t, (mode, sure)) in changes.filter(|change| change.0 <= end) {
+        if (mode, sure) != (open.mode, open.sure) {
             spans.push(ModeSpan { end: t, ..open });
-            open = ModeSpan { start: t, end, mode };
+            open = ModeSpan { start: t, end, mode, sure };
         }
     }
     spans.push(open);
@@ -75,7 +93,7 @@ fn spans(
     let mut joined: Vec<ModeSpan> = Vec::new();
     for span in spans {
         match joined.last_mut() {
-            Some(last) if last.mode == span.mode => last.end = span.end,
+            Some(last) if (last.mode, last.sure) == (span.mode, span.sure) => last.end = span.end,
             _ => joined.push(span),
         }
     }
@@ -92,8 +110,8 @@ mod tests {
         let changes = [(0.0, Slide), (0.3, Slide), (0.5, Off), (0.5, Slide), (0.7, Stick)];
         let found = spans(Stick, [0.0, 1.0], changes.into_iter());
         let expected = [(0.0, 0.7, Slide), (0.7, 1.0, Stick)];
-        assert_eq!(found, expected.map(|(start, end, mode)| ModeSpan { start, end, mode }));
+        assert_eq!(found, expected.map(|(start, end, mode)| ModeSpan { start, end, mode, sure: 10 }));
         let short = spans(Off, [0.0, 0.2], changes[1..].iter().copied());
-        assert_eq!(short, [ModeSpan { start: 0.0, end: 0.2, mode: Off }]);
+        assert_eq!(short, [ModeSpan { start: 0.0, end: 0.2, mode: Off, sure: 10 }]);
     }
 }

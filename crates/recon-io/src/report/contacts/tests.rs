@@ -7,7 +7,9 @@ use crate::{
 };
 use glam::{DMat3, DVec3};
 use recon::object_dynamics::{ContactLog, ContactMode, ContactSimulation, MOST_PALMS, SampleTimes, planar};
-use recon::observer::{ContactEstimate, ContactEvidence, Reliability};
+use recon::observer::{
+    ContactEstimate, ContactEvidence, ContactOdds, EstimatedModes, LearnedFriction, Reliability,
+};
 
 const PICK_UP: &str = include_str!("../../../../recon-cli/scenes/pick-up.toml");
 const OTHERS: &str = r#"
@@ -179,6 +181,7 @@ fn estimate() -> EstimateData {
         // The third sample to the fifth, and the last one.
         relied_on: (0..count).map(|k| !(2..5).contains(&k) && k + 1 < count).collect(),
         modes: (0..count).map(modes).collect(),
+        mode_odds: None,
         mass: 0.1,
         axes_deviations: None,
         mass_deviation: 0.02,
@@ -254,6 +257,40 @@ fn the_page_of_an_estimate_shows_palms_object_modes_and_doubts() {
         (10, 10)
     );
     data.estimate.modes.pop();
+    assert!(write_estimate_report(&data, Vec::new()).is_err());
+}
+
+#[test]
+fn probabilities_of_modes_are_in_the_table_the_summary_and_the_bands() {
+    let mut data = estimate();
+    let count = data.log.times().len();
+    let odds = |slide: f64| ContactOdds { off: 0.0, slide, stick: 1.0 - slide };
+    let mut all = vec![[odds(1.0); MOST_PALMS]; count];
+    all[3][0] = odds(0.7);
+    all[4][0] = odds(0.7);
+    let mut frictions = [None; MOST_PALMS];
+    frictions[1] = Some(LearnedFriction { coefficient: 0.8, deviation: 4e-3 });
+    let modes = EstimatedModes { odds: all, by_ratio: Vec::new(), frictions, one_friction: 0.9 };
+    data.estimate.modes.fill([ContactMode::Slide; MOST_PALMS]);
+    data.estimate.mode_odds = Some(modes);
+    let figures = estimate_summary(&data);
+    assert_eq!(figures["unsure_mode_samples"], 2);
+    assert_eq!(figures["friction"], serde_json::json!([{ "palm": 2, "coefficient": 0.8, "std": 4e-3 }]));
+    let mut bytes = Vec::new();
+    write_estimated_motion(data.log.times(), &data.estimate, 4, &mut bytes).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows[0][30..32], ["p_slide_1", "p_stick_1"]);
+    assert_eq!((rows[4][30], rows[4][31], rows[6][30], rows[0].len()), ("0.7", "0.3", "1", 31 + 8));
+    let mut bytes = Vec::new();
+    write_estimate_report(&data, &mut bytes).unwrap();
+    let page = String::from_utf8(bytes).unwrap();
+    // One pale stretch, with what is certain before and after it.
+    assert_eq!(page.matches("<rect class=\"m1\" fill-opacity=\".7\"").count(), 1);
+    assert_eq!(page.matches("<rect class=\"m1\" x=").count(), 2 + 3);
+    if let Some(modes) = &mut data.estimate.mode_odds {
+        modes.odds.pop();
+    }
     assert!(write_estimate_report(&data, Vec::new()).is_err());
 }
 

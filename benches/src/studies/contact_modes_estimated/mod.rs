@@ -1,0 +1,130 @@
+//! Probabilities of contact modes after an estimate from the reference logs: friction unknown, slips the estimate's own.
+//!
+//! Arguments: the folder of the logs, the first seed, seeds, scenes. Writes a Markdown table.
+
+mod tally;
+
+use super::contact_logs::log::{Anything, Log};
+use recon::object_dynamics::{ChannelNoise, ContactMode, ContactNoise, MOST_PALMS};
+use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use std::path::{Path, PathBuf};
+use tally::{Run, reliability, row};
+
+const G: f64 = 9.81;
+const SCENES: [&str; 6] = ["S2", "S3", "S4", "S6", "S7", "S8"];
+/// Contacts as a share of the mean semi-axis, forces as a share of themselves.
+const NOISE: (f64, f64) = (0.005, 0.02);
+/// Seeds from here on; constants were set on those below 20.
+const FIRST_SEED: u64 = 101;
+/// Floor of contact conditions over the natural speed: creep of the logs.
+const FLOOR: f64 = 3e-5;
+/// Size that is stated where one palm alone is touched, over the mean semi-axis.
+const STATED_SIZE: f64 = 0.8;
+/// Time about a switch of a contact in which its samples do not count, s.
+const SWITCH: f64 = 5e-3;
+
+pub(crate) fn main() -> Anything<()> {
+    let mut words = crate::words();
+    let folder = PathBuf::from(words.next().ok_or("the folder of the logs is missing")?);
+    let first: u64 = words.next().map_or(Ok(FIRST_SEED), |s| s.parse())?;
+    let seeds: u64 = words.next().map_or(Ok(20), |s| s.parse())?;
+    let names: Vec<String> = words.collect();
+    let asked: Vec<&str> =
+        SCENES.into_iter().filter(|name| names.is_empty() || names.iter().any(|n| n == name)).collect();
+    let jobs: Vec<(&str, u64)> =
+        asked.iter().flat_map(|name| (first..first + seeds).map(move |seed| (*name, seed))).collect();
+    let runs = on_two_cores(&jobs, &folder)?;
+    print!("{}", include_str!("about.md"));
+    println!("Seeds {first} to {}.\n", first + seeds - 1);
+    println!("{}", tally::HEAD);
+    for name in asked {
+        let own: Vec<&Run> = runs.iter().filter(|run| run.name == name).collect();
+        println!("{}", row(name, &own));
+    }
+    println!("\n{}", include_str!("reliability.md").trim_end());
+    println!();
+    print!("{}", reliability(&runs.iter().collect::<Vec<_>>()));
+    Ok(())
+}
+
+fn on_two_cores(jobs: &[(&str, u64)], folder: &Path) -> Anything<Vec<Run>> {
+    let every = |offset: usize| -> Result<Vec<Run>, String> {
+        jobs.iter()
+            .skip(offset)
+            .step_by(2)
+            .map(|(name, seed)| {
+                run(folder, name, *seed).map_err(|error| format!("{name}, seed {seed}: {error}"))
+            })
+            .collect()
+    };
+    let (one, two) = std::thread::scope(|scope| {
+        let other = scope.spawn(|| every(1));
+        let own = every(0);
+        (own, other.join())
+    });
+    let mut all = one?;
+    all.extend(two.map_err(|_| "a thread was lost")??);
+    Ok(all)
+}
+
+/// What the log says is true at its samples.
+struct Truth {
+    times: Vec<f64>,
+    /// Of each palm at each sample.
+    modes: Vec<Vec<ContactMode>>,
+    /// Whether a switch of that contact is near.
+    near: Vec<Vec<bool>>,
+}
+
+fn run(folder: &Path, name: &str, seed: u64) -> Anything<Run> {
+    let file = Log::read(folder, name)?;
+    let (log, _) = file.contact_log(f64::INFINITY)?;
+    let truth = Truth::new(&file, log.times())?;
+    let length = file.semi_axes().element_sum() / 3.0;
+    let (contact, share) = (length * NOISE.0, NOISE.1);
+    let force = ChannelNoise { fixed: 0.0, share };
+    let noise = ContactNoise { contact, force, impulse: force, ..ContactNoise::default() };
+    let log = log.with_noise(&noise, seed)?;
+    let floor = FLOOR * (G * length).sqrt();
+    let noise = ContactNoiseLevel { contact, force_fixed: 0.0, force_share: share, impulse: None, floor };
+    let size = (file.palm_count() == 1).then_some(STATED_SIZE * length);
+    let options = ContactOptions { size, mode_odds: true, ..ContactOptions::new(noise, G) };
+    let found = estimate_contacts(&log, None, &options)?;
+    truth.judge(name, &file, &found)
+}
+
+impl Truth {
+    fn new(file: &Log, times: &[f64]) -> Anything<Self> {
+        let (mut modes, mut near) = (Vec::new(), Vec::new());
+        for i in 1..=file.palm_count() {
+            let column = file.column(&format!("mode_{i}"))?;
+            let own: Vec<ContactMode> = column.iter().map(|mode| ContactMode::ALL[*mode as usize]).collect();
+            let switches: Vec<f64> = (1..own.len())
+                .filter(|&k| own[k] != own[k - 1])
+                .map(|k| 0.5 * (times[k] + times[k - 1]))
+                .collect();
+            let close = |t: &f64| switches.iter().any(|switch| (t - switch).abs() < SWITCH);
+            near.push(times.iter().map(close).collect());
+            modes.push(own);
+        }
+        Ok(Self { times: times.to_vec(), modes, near })
+    }
+
+    fn judge(&self, name: &str, file: &Log, found: &ContactEstimate) -> Anything<Run> {
+        let odds = found.mode_odds.as_ref().ok_or("no probabilities of modes")?;
+        let mut run = Run::new(name, found.evidence.settled && found.reliability.is_reliable());
+        for i in 0..file.palm_count().min(MOST_PALMS) {
+            for k in 0..self.times.len() {
+                let truth = self.modes[i][k];
+                if truth != ContactMode::Off {
+                    let of = &odds.odds[k][i];
+                    run.add(truth, odds.by_ratio[k][i], [of.off, of.slide, of.stick], self.near[i][k]);
+                }
+            }
+            if let Some(learned) = odds.frictions[i] {
+                run.friction(learned.coefficient, learned.deviation, file.friction(i + 1));
+            }
+        }
+        Ok(run)
+    }
+}

@@ -1,0 +1,195 @@
+//! One contact through a whole log: its evidence for each friction, and its modes given one.
+
+use super::chain::{Chain, Likelihood};
+use super::classifier::{ContactOdds, FIRST};
+use super::contact::Force;
+use super::friction::SURE;
+use super::options::ContactModesOptions;
+use super::reading::{ContactReading, ContactSeen, turned};
+use super::steps::{SPEEDS, Steps, speeds};
+
+/// Logarithm of the odds against a friction at which it is given up: given the model it would come back once in 10^26.
+const GIVEN_UP: f64 = 60.0;
+/// Samples from one look for such frictions to the next.
+const LOOKS: usize = 8;
+
+/// Time steps within this share of one are of its kind: walks grow by its root, and are no better known. Each kind of each friction takes memory.
+const KIND: f64 = 0.1;
+
+/// Steps in time, each kind once.
+pub(super) struct Pace {
+    /// A time step of each kind, s.
+    kinds: Vec<f64>,
+    /// The kind of the step before each sample.
+    kind: Vec<usize>,
+    /// Duration of the step before each sample, s.
+    steps: Vec<f64>,
+    /// Power of the density of a slip at each sample: errors that last tell less often.
+    weights: Vec<f64>,
+}
+
+impl Pace {
+    /// Of slips whose errors last for `lasting`, s.
+    pub(super) fn new(times: &[f64], lasting: f64) -> Self {
+        let mut kinds: Vec<f64> = Vec::new();
+        let step = |k: usize| if k == 0 { FIRST } else { times[k] - times[k - 1] };
+        let steps: Vec<f64> = (0..times.len()).map(step).collect();
+        let mut kind = Vec::with_capacity(times.len());
+        for dt in &steps {
+            let known = kinds.iter().position(|kind| (dt - kind).abs() <= KIND * kind);
+            kind.push(known.unwrap_or(kinds.len()));
+            if known.is_none() {
+                kinds.push(*dt);
+            }
+        }
+        let weight = |dt: &f64| if *dt < 2.0 * lasting { dt / (2.0 * lasting) } else { 1.0 };
+        let mut weights: Vec<f64> = steps.iter().map(weight).collect();
+        if let [first, second, ..] = &mut weights[..] {
+            *first = *second;
+        }
+        Self { kinds, kind, steps, weights }
+    }
+
+    /// What happens in a step of each kind, of a contact with this friction.
+    fn of_friction(&self, friction: f64) -> Vec<Steps> {
+        self.kinds.iter().map(|dt| Steps::of_friction(*dt, friction)).collect()
+    }
+
+    /// Time for which a contact slid for sure, with its slip read, s.
+    pub(super) fn slid(&self, odds: &[ContactOdds], seen: &[ContactSeen]) -> f64 {
+        let read =
+            |seen: &ContactSeen| matches!(seen, ContactSeen::Read(ContactReading { slip: Some(_), .. }));
+        let sure = odds.iter().zip(seen).zip(&self.steps);
+        sure.filter(|((odds, seen), _)| odds.slide >= SURE && read(seen)).map(|(_, dt)| dt).sum()
+    }
+}
+
+/// What a sample says beside the ratio: the force, and log-densities of the slip in each cell.
+struct Said {
+    force: Force,
+    off: f64,
+    speeds: Vec<f64>,
+    sticks: f64,
+}
+
+/// One contact through a whole log.
+pub(super) struct Passage {
+    said: Vec<Said>,
+}
+
+impl Passage {
+    pub(super) fn new(seen: &[ContactSeen], pace: &Pace, options: &ContactModesOptions) -> Self {
+        let said = seen.iter().enumerate().map(|(k, seen)| Said::new(seen, pace, k, options)).collect();
+        Self { said }
+    }
+
+    /// Logarithm of the density of all that was read, for each friction; of those that are given up, of what was read until then.
+    pub(super) fn evidence(&self, pace: &Pace, frictions: &[f64]) -> Vec<f64> {
+        let mut left: Vec<Tried> = frictions.iter().map(|friction| Tried::new(pace, *friction)).collect();
+        for (k, said) in self.said.iter().enumerate() {
+            left.iter_mut().for_each(|tried| tried.take(pace, k, said));
+            if k % LOOKS == 0 {
+                let largest = left.iter().map(|tried| tried.log).fold(f64::NEG_INFINITY, f64::max);
+                left.retain(|tried| tried.log > largest - GIVEN_UP);
+            }
+        }
+        let least = left.iter().map(|tried| tried.log).fold(f64::NEG_INFINITY, f64::max) - GIVEN_UP;
+        let of = |friction: &f64| left.iter().find(|tried| tried.friction == *friction);
+        frictions.iter().map(|friction| of(friction).map_or(least, |tried| tried.log.max(least))).collect()
+    }
+
+    /// Adds the modes at all samples given one friction, with a weight.
+    pub(super) fn add(&self, pace: &Pace, friction: f64, weight: f64, sums: &mut [[f64; 3]]) {
+        let mut tried = Tried::new(pace, friction);
+        let mut chains = Vec::with_capacity(self.said.len());
+        for (k, said) in self.said.iter().enumerate() {
+            tried.take(pace, k, said);
+            chains.push(tried.chain.clone());
+        }
+        let Tried { steps, mut spare, mut likelihood, .. } = tried;
+        let mut worth = Chain::even(&steps[0], 1.0);
+        for (k, chain) in chains.iter().enumerate().rev() {
+            let modes = chain.times(&worth);
+            let all: f64 = modes.iter().sum();
+            // Where past and future exclude each other in double precision, the past counts.
+            let (modes, all) = match all > 0.0 && all.is_finite() {
+                true => (modes, all),
+                false => ([chain.off, chain.slides(), chain.sticks()], 1.0),
+            };
+            sums[k].iter_mut().zip(modes).for_each(|(sum, mode)| *sum += weight * mode / all);
+            let steps = &steps[pace.kind[k]];
+            self.said[k].of(steps, friction, &mut likelihood);
+            worth.unread(&likelihood);
+            worth.before(steps, &mut spare);
+        }
+    }
+}
+
+/// A friction that is tried.
+struct Tried {
+    friction: f64,
+    /// Of each kind.
+    steps: Vec<Steps>,
+    chain: Chain,
+    spare: Chain,
+    likelihood: Likelihood,
+    /// Logarithm of the density of what was read until now.
+    log: f64,
+}
+
+impl Tried {
+    fn new(pace: &Pace, friction: f64) -> Self {
+        let steps = pace.of_friction(friction);
+        let (chain, likelihood) = (Chain::new(&steps[0]), Likelihood::none(&steps[0]));
+        Self { friction, spare: chain.clone(), chain, likelihood, steps, log: 0.0 }
+    }
+
+    fn take(&mut self, pace: &Pace, k: usize, said: &Said) {
+        let steps = &self.steps[pace.kind[k]];
+        if k > 0 {
+            self.chain.predict(steps, &mut self.spare);
+        }
+        said.of(steps, self.friction, &mut self.likelihood);
+        self.log += self.chain.weigh(&self.likelihood);
+    }
+}
+
+impl Said {
+    fn new(seen: &ContactSeen, pace: &Pace, k: usize, options: &ContactModesOptions) -> Self {
+        let force = match seen {
+            ContactSeen::Missing => Force::Silent,
+            ContactSeen::Off => Force::Off,
+            ContactSeen::Read(reading) => reading.force(options),
+        };
+        let nothing = Self { force, off: 0.0, speeds: vec![0.0; SPEEDS], sticks: 0.0 };
+        let ContactSeen::Read(reading) = seen else { return nothing };
+        let Some(slip) = reading.slip else { return nothing };
+        let (u, turn) = reading.direction();
+        let slip = turned(&slip.velocity, &slip.covariance, &u, options.natural_speed);
+        let (speeds, weight) = (speeds(), pace.weights[k]);
+        let sliding = |k: usize| weight * slip.log_sliding(speeds.middle(k), speeds.variance(k), turn);
+        let speeds = (0..SPEEDS).map(sliding).collect();
+        Self { off: weight * slip.log_off(), speeds, sticks: weight * slip.log_sticking(), ..nothing }
+    }
+
+    /// Log-densities of all that is read, in each cell.
+    fn of(&self, steps: &Steps, friction: f64, likelihood: &mut Likelihood) {
+        let touches = match &self.force {
+            Force::Off => {
+                likelihood.set(0.0, f64::NEG_INFINITY);
+                return;
+            }
+            Force::Silent => 0.0,
+            Force::Touches => f64::NEG_INFINITY,
+            // The common factor of the modes that touch is left out: it is the same for all frictions.
+            Force::Presses { touching, off, .. } => off - touching,
+        };
+        match &self.force {
+            Force::Presses { ratio, .. } => likelihood.of_ratio(steps, ratio, friction),
+            _ => likelihood.set(0.0, 0.0),
+        }
+        likelihood.off = touches + self.off;
+        likelihood.speeds.iter_mut().zip(&self.speeds).for_each(|(log, slip)| *log += slip);
+        likelihood.ratios.iter_mut().for_each(|log| *log += self.sticks);
+    }
+}

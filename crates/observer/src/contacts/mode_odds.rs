@@ -1,0 +1,112 @@
+//! Probabilities of contact modes after an estimate: from forces, and slips of the estimated motion.
+
+use super::noise::ContactNoiseLevel;
+use super::problem::Units;
+use super::record::{Contact, Record};
+use super::slips::Known;
+use crate::contact_modes::{
+    ContactModesOptions, ContactOdds, ContactReading, ContactSeen, ContactSlip, LearnedFriction, whole_modes,
+};
+use nalgebra::Vector2;
+use object_dynamics::{ContactMode, MOST_PALMS};
+
+/// Natural times for which errors of slips last.
+const LASTING: f64 = 0.5;
+/// Least deviation of a force as a share of it.
+const LEAST_FORCE: f64 = 3e-3;
+/// Probability from which on a mode is sure.
+const SURE: f64 = 0.99;
+
+/// Probabilities of contact modes of an estimate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EstimatedModes {
+    /// At each sample, of each palm, given all samples; off where it touches nothing.
+    pub odds: Vec<[ContactOdds; MOST_PALMS]>,
+    /// Modes that the first solution took: those that were given, or those by the ratio of friction to normal force alone.
+    pub by_ratio: Vec<[ContactMode; MOST_PALMS]>,
+    /// Coefficients of friction, where a palm has slid, or one of the same friction.
+    pub frictions: [Option<LearnedFriction>; MOST_PALMS],
+    /// Probability that all palms with friction have one coefficient.
+    pub one_friction: f64,
+}
+
+const OFF: ContactOdds = ContactOdds { off: 1.0, slide: 0.0, stick: 0.0 };
+const SLIDES: ContactOdds = ContactOdds { off: 0.0, slide: 1.0, stick: 0.0 };
+
+impl EstimatedModes {
+    /// Samples at which some palm touches in a mode that is less sure than 0.99.
+    #[must_use]
+    pub fn unsure(&self) -> usize {
+        let open = |odds: &ContactOdds| odds.off.max(odds.slide).max(odds.stick) < SURE;
+        self.odds.iter().filter(|all| all.iter().any(open)).count()
+    }
+
+    /// The most probable mode of each palm at each sample.
+    #[must_use]
+    pub fn most_probable(&self) -> Vec<[ContactMode; MOST_PALMS]> {
+        let most = |of: &ContactOdds| match of {
+            of if of.off >= of.slide.max(of.stick) => ContactMode::Off,
+            of if of.stick > of.slide => ContactMode::Stick,
+            _ => ContactMode::Slide,
+        };
+        self.odds.iter().map(|all| std::array::from_fn(|i| most(&all[i]))).collect()
+    }
+}
+
+/// None where no palm has friction, or what is read is beyond reason.
+pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units) -> Option<EstimatedModes> {
+    let record = known.log;
+    let mut odds = vec![[OFF; MOST_PALMS]; record.times.len()];
+    let (mut palms, mut seen) = (Vec::new(), Vec::new());
+    for palm in 0..MOST_PALMS {
+        let contacts = || {
+            record
+                .contacts
+                .iter()
+                .enumerate()
+                .filter_map(move |(k, all)| Some((k, all.iter().find(|c| c.palm == palm)?)))
+        };
+        if contacts().all(|(_, contact)| contact.frictionless) {
+            contacts().for_each(|(k, _)| odds[k][palm] = SLIDES);
+            continue;
+        }
+        let slips = known.slips(palm);
+        let mut own = vec![ContactSeen::Off; record.times.len()];
+        contacts().for_each(|(k, contact)| own[k] = ContactSeen::Read(reading(contact, slips[k])));
+        palms.push(palm);
+        seen.push(own);
+    }
+    if palms.is_empty() {
+        return None;
+    }
+    let mut options = ContactModesOptions::new(units.speed, noise.force_fixed.max(1e-9), typical(record));
+    options.unloaded_deviation = options.unloaded_deviation.max(1e-6 * options.typical_force);
+    let lasting = LASTING * units.length / units.speed;
+    let found = whole_modes(&record.times, &seen, lasting, &options).ok()?;
+    let mut frictions = [None; MOST_PALMS];
+    for ((palm, own), friction) in palms.into_iter().zip(&found.odds).zip(&found.frictions) {
+        frictions[palm] = *friction;
+        odds.iter_mut().zip(own).for_each(|(all, own)| all[palm] = *own);
+    }
+    Some(EstimatedModes { odds, by_ratio: known.modes.to_vec(), frictions, one_friction: found.one_friction })
+}
+
+fn reading(contact: &Contact, slip: Option<ContactSlip>) -> ContactReading {
+    let [a, b] = contact.tangents();
+    ContactReading {
+        normal_force: contact.f.dot(contact.n),
+        friction: Vector2::new(contact.f.dot(a), contact.f.dot(b)),
+        force_deviation: contact
+            .f_deviation
+            .max(LEAST_FORCE * contact.f.length())
+            .max(f64::MIN_POSITIVE.sqrt()),
+        slip,
+        touches: true,
+    }
+}
+
+/// Mean force of all contacts, N.
+fn typical(record: &Record) -> f64 {
+    let forces = || record.contacts.iter().flatten().map(|contact| contact.f.length());
+    (forces().sum::<f64>() / forces().count().max(1) as f64).max(1e-9)
+}

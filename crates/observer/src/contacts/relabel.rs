@@ -1,0 +1,75 @@
+//! Contact modes for the conditions of a second solution, from the probabilities that the first one left.
+
+use super::mode_odds::EstimatedModes;
+use object_dynamics::{ContactMode, MOST_PALMS};
+
+/// Probability with which a contact must stick to be taken to do so.
+const SURE: f64 = 0.99;
+/// The same to slide, where it was taken to stick.
+const SLIDES: f64 = 0.5;
+
+/// Modes in which a contact sticks where it does so with more than 0.99 for `time` on either side, s, and where it was taken to before and does not
+/// more probably slide; elsewhere it slides.
+///
+/// A contact that slides and is said to stick is an error of its slip; one that sticks and is said to slide loses two conditions.
+pub(super) fn surer(
+    times: &[f64],
+    modes: &[[ContactMode; MOST_PALMS]],
+    found: &EstimatedModes,
+    time: f64,
+) -> Vec<[ContactMode; MOST_PALMS]> {
+    let mut again = modes.to_vec();
+    for palm in 0..MOST_PALMS {
+        let open = |k: usize| modes[k][palm] != ContactMode::Off && found.odds[k][palm].stick <= SURE;
+        let near = near(times, open, time);
+        for (k, mode) in again.iter_mut().map(|modes| &mut modes[palm]).enumerate() {
+            let kept = *mode == ContactMode::Stick && found.odds[k][palm].slide < SLIDES;
+            *mode = match *mode {
+                ContactMode::Off => ContactMode::Off,
+                _ if kept || !near[k] => ContactMode::Stick,
+                _ => ContactMode::Slide,
+            };
+        }
+    }
+    again
+}
+
+/// Whether a sample is within `time` of one that is `open`.
+fn near(times: &[f64], open: impl Fn(usize) -> bool, time: f64) -> Vec<bool> {
+    let (mut before, mut after) = (f64::NEG_INFINITY, f64::INFINITY);
+    let mut near = vec![false; times.len()];
+    for (k, near) in near.iter_mut().enumerate() {
+        if open(k) {
+            before = times[k];
+        }
+        *near = times[k] - before <= time;
+    }
+    for (k, near) in near.iter_mut().enumerate().rev() {
+        if open(k) {
+            after = times[k];
+        }
+        *near |= after - times[k] <= time;
+    }
+    near
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact_modes::ContactOdds;
+    use ContactMode::{Off, Slide, Stick};
+
+    #[test]
+    fn what_is_sure_for_long_enough_sticks_and_what_stuck_is_kept_unless_it_slides() {
+        let odds = |stick: f64| ContactOdds { off: 0.0, slide: 1.0 - stick, stick };
+        let sticks = [1.0, 1.0, 1.0, 0.9, 1.0, 0.7, 0.3, 1.0];
+        let before = [Slide, Slide, Slide, Slide, Slide, Stick, Stick, Off];
+        let times: Vec<f64> = (0..8).map(|k| 1e-3 * f64::from(k)).collect();
+        let all = |own| [own, Off, Off, Off, Off];
+        let odds = sticks.map(|of| [odds(of); MOST_PALMS]).to_vec();
+        let found =
+            EstimatedModes { odds, by_ratio: Vec::new(), frictions: [None; MOST_PALMS], one_friction: 1.0 };
+        let again = surer(&times, &before.map(all), &found, 1.5e-3);
+        assert_eq!(again, [Stick, Stick, Slide, Slide, Slide, Stick, Slide, Off].map(all));
+    }
+}

@@ -1,0 +1,155 @@
+//! Slips of contacts by the estimated motion, with their covariances.
+//!
+//! A contact that was taken to stick has no slip in a motion that rests on that: its slip is asked of the motion that is found where it, and it
+//! alone, is taken to slide. What it then is says something of its mode that was not put in.
+
+use super::body::{Body, CONSTANTS};
+use super::noise::WrenchNoise;
+use super::problem::{Problem, Unknowns};
+use super::record::{Contact, Record};
+use super::samples::{Deviations, at_all, covariance};
+use super::search::{ENOUGH, fine_nodes};
+use super::solve::{Covariances, Solved, solve};
+use super::state::{MOTION, Motion};
+use crate::contact_modes::ContactSlip;
+use crate::rigid::cross_matrix;
+use glam::DVec3;
+use nalgebra::{Matrix2, Matrix3, Matrix6, SMatrix, Vector2, Vector3};
+use object_dynamics::{ContactMode, MOST_PALMS};
+
+/// Linearisations at most of a motion without the sticking of one palm: it begins where all is known but that.
+const MOST: usize = 8;
+
+/// Share of the noise between two nodes that a sample halfway has beside theirs. All samples get it: contacts are averaged over as long, and a node's own
+/// covariance was seen to be short of its slip's errors by factors of 3 to 9 in deviations for stretches in which all others were within 2.
+const HALFWAY: f64 = 0.25;
+
+/// An estimate, and the record with its modes that it is of.
+pub(super) struct Known<'a> {
+    pub(super) log: &'a Record,
+    pub(super) modes: &'a [[ContactMode; MOST_PALMS]],
+    pub(super) problem: &'a Problem<'a>,
+    pub(super) solved: &'a Solved<CONSTANTS>,
+    pub(super) covariances: &'a Covariances<CONSTANTS>,
+    pub(super) motions: &'a [(Motion, Deviations)],
+    /// Longest window over which contacts are averaged, s.
+    pub(super) longest: f64,
+}
+
+impl Known<'_> {
+    /// The slip of one palm's contact at each sample along its tangents; none where nothing is touched, or nothing is known of it.
+    pub(super) fn slips(&self, palm: usize) -> Vec<Option<ContactSlip>> {
+        if self.modes.iter().all(|modes| modes[palm] != ContactMode::Stick) {
+            let Self { log, problem, solved, covariances, motions, .. } = *self;
+            let motions: Vec<Motion> = motions.iter().map(|(motion, _)| *motion).collect();
+            let found = &solved.unknowns;
+            return Seen { log, problem, found, covariances, motions: &motions }.slips(palm, solved.misfit());
+        }
+        self.slips_without_sticking(palm).unwrap_or_else(|| vec![None; self.log.times.len()])
+    }
+
+    /// None where no such motion is found.
+    fn slips_without_sticking(&self, palm: usize) -> Option<Vec<Option<ContactSlip>>> {
+        let Self { log, modes, problem, solved, motions, longest, .. } = *self;
+        let mut free = modes.to_vec();
+        for mode in free.iter_mut().map(|modes| &mut modes[palm]).filter(|m| **m == ContactMode::Stick) {
+            *mode = ContactMode::Slide;
+        }
+        let mut record = log.clone();
+        record.set_modes(&free);
+        let averaged = record.averaged(longest);
+        let mut own = problem.on(&averaged);
+        own.nodes = fine_nodes(&own);
+        let at = own.node_samples().iter().map(|&k| motions[k].0).collect();
+        let start = Unknowns { motions: at, body: solved.unknowns.body };
+        let solved = solve::<CONSTANTS>(&own, start, MOST, ENOUGH[1])?;
+        let covariances = solved.equations.covariances(&own.natural_information())?;
+        let motions = at_all(log, &own, &solved.unknowns, &covariances);
+        let motions: Vec<Motion> = motions.into_iter().map(|(motion, _)| motion).collect();
+        let (found, covariances) = (&solved.unknowns, &covariances);
+        let seen = Seen { log, problem: &own, found, covariances, motions: &motions };
+        Some(seen.slips(palm, solved.misfit()))
+    }
+}
+
+/// A motion at all samples of a record.
+struct Seen<'a> {
+    log: &'a Record,
+    problem: &'a Problem<'a>,
+    found: &'a Unknowns,
+    covariances: &'a Covariances<CONSTANTS>,
+    motions: &'a [Motion],
+}
+
+impl Seen<'_> {
+    fn slips(&self, palm: usize, misfit: f64) -> Vec<Option<ContactSlip>> {
+        let Self { log, problem, found, covariances, motions } = *self;
+        let nodes = problem.node_samples();
+        let at = |(j, &k): (usize, &usize)| covariance(&motions[k], &found.body, j, covariances);
+        let known: Vec<_> = nodes.iter().enumerate().map(at).collect();
+        let mut slips = vec![None; log.times.len()];
+        for (j, &start) in nodes.iter().enumerate() {
+            let next = (j + 1).min(nodes.len() - 1);
+            // The last node stands for itself alone.
+            let (end, last) = (nodes[next].max(start + 1), nodes[next]);
+            let between = &log.intervals[start..last];
+            let noise = between.iter().fold(WrenchNoise::default(), |sum, interval| sum + interval.noise);
+            let white = problem.about(&noise, motions[start].p).white * HALFWAY;
+            let duration = (log.times[last] - log.times[start]).max(f64::MIN_POSITIVE);
+            for k in start..end {
+                let Some(contact) = log.contacts[k].iter().find(|c| c.palm == palm) else { continue };
+                let share = (log.times[k] - log.times[start]) / duration;
+                let covariance = known[j] * (1.0 - share) + known[next] * share;
+                let noise = MotionNoise { covariance, white, wider: misfit.max(1.0) };
+                slips[k] = slip(contact, &motions[k], &found.body, problem, &noise);
+            }
+        }
+        slips
+    }
+}
+
+/// How far a motion may be off.
+struct MotionNoise {
+    /// Of centre of mass, velocity, angular velocity and turn.
+    covariance: SMatrix<f64, MOTION, MOTION>,
+    /// Of impulse and moment about the centre of mass beside it.
+    white: Matrix6<f64>,
+    /// What both are multiplied by.
+    wider: f64,
+}
+
+/// `slip = v + w x (c - p) - u` along the contact's tangents. None where it is beyond all numbers.
+fn slip(
+    contact: &Contact,
+    motion: &Motion,
+    body: &Body,
+    problem: &Problem,
+    noise: &MotionNoise,
+) -> Option<ContactSlip> {
+    let turn = body.turn(motion.q, motion.L);
+    let arm = contact.c - motion.p;
+    let by_spin = -Matrix3::from(cross_matrix(arm));
+    let mut by_motion = SMatrix::<f64, 3, MOTION>::zeros();
+    by_motion.fixed_view_mut::<3, 3>(0, 0).copy_from(&-Matrix3::from(cross_matrix(turn.w)));
+    by_motion.fixed_view_mut::<3, 3>(0, 3).copy_from(&Matrix3::identity());
+    by_motion.fixed_view_mut::<3, 3>(0, 6).copy_from(&by_spin);
+    let mut by_wrench = SMatrix::<f64, 3, 6>::zeros();
+    by_wrench.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Matrix3::identity() * body.inverse_mass()));
+    by_wrench.fixed_view_mut::<3, 3>(0, 3).copy_from(&(by_spin * Matrix3::from(turn.K)));
+    let of_motion = by_motion * noise.covariance * by_motion.transpose();
+    let moved = (of_motion + by_wrench * noise.white * by_wrench.transpose()) * noise.wider;
+    let tangents = contact.tangents();
+    // A contact that is read beside where it is has another velocity of body and palm.
+    let shifts = tangents.map(|tangent| (turn.w - contact.W).cross(tangent) * problem.noise.contact);
+    let read = |a: DVec3, b: DVec3| shifts.iter().map(|shift| shift.dot(a) * shift.dot(b)).sum::<f64>();
+    let entry = |a: DVec3, b: DVec3| Vector3::from(a).dot(&(moved * Vector3::from(b))) + read(a, b);
+    let [a, b] = tangents;
+    let both = 0.5 * (entry(a, b) + entry(b, a));
+    let floor = problem.noise.floor.powi(2);
+    let covariance = Matrix2::new(entry(a, a) + floor, both, both, entry(b, b) + floor);
+    let velocity = motion.v + turn.w.cross(arm) - contact.u;
+    let velocity = Vector2::new(velocity.dot(a), velocity.dot(b));
+    let finite = covariance.iter().chain(&velocity).all(|x| x.is_finite());
+    let sound = finite && covariance[(0, 0)] > 0.0 && covariance.determinant() > 0.0;
+    sound.then_some(ContactSlip { velocity, covariance })
+}
