@@ -79,6 +79,17 @@ impl Body {
         R * self.slopes[constant] * R.transpose()
     }
 
+    /// Changes of the constants of the inertia that are about as large as it is.
+    pub(super) fn inertia_units(&self) -> [f64; INERTIA] {
+        match self.constants {
+            Constants::Free([a, b, c, ..]) => {
+                let root = ((a + b + c) / 3.0).exp();
+                [1.0, 1.0, 1.0, root, root, root]
+            }
+            Constants::Turned(..) => [1.0; INERTIA],
+        }
+    }
+
     /// Covariance of the entries xx, yy, zz, xy, xz, yz of the inertia, by that of the constants.
     pub(super) fn inertia_covariance(&self, of: &SMatrix<f64, CONSTANTS, CONSTANTS>) -> Matrix6<f64> {
         let entry =

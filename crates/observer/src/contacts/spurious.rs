@@ -17,6 +17,10 @@ use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen};
 
 /// What of the information is left at least, in any direction: a deviation is then twenty times what the equations claim.
 const LEAST: f64 = 0.05;
+/// Error of the derivative of a condition by a constant in natural units: where conditions are far better than that, it poses as information; and
+/// the share of such information from which on it is worth nothing.
+const INEXACT: f64 = 1e-6;
+const CLAIMED: f64 = 0.5;
 /// Share of the information that was there beforehand from which on a combination keeps its value by itself.
 const KEPT: f64 = 0.99;
 
@@ -65,7 +69,7 @@ impl Covariances<CONSTANTS> {
             let follows = self.body * combination * FROZEN;
             body += follows * follows.transpose() * combination.dot(&(beforehand * combination));
         }
-        Some(Self { body, ..self })
+        Self { body, ..self }.without_inexact(problem, equations, at)
     }
 
     /// With the covariance of the centre of mass widened in the same way.
@@ -117,6 +121,33 @@ impl Covariances<CONSTANTS> {
         let mixed = link.adjusted * cross;
         let residual = after + link.adjusted * before * link.adjusted.transpose() - mixed - mixed.transpose();
         link.information - link.information * residual * link.information
+    }
+
+    /// With what was known beforehand alone along directions of the body's constants of which errors of derivatives may claim as much as the
+    /// equations do.
+    fn without_inexact(
+        mut self,
+        problem: &Problem,
+        equations: &Equations<CONSTANTS>,
+        at: &Unknowns,
+    ) -> Option<Self> {
+        if !problem.exact {
+            return Some(self);
+        }
+        let of_condition = INEXACT * problem.units.speed / problem.condition_deviation();
+        let all = of_condition * of_condition * equations.conditions as f64;
+        let units = at.body.inertia_units();
+        let inexact =
+            SVector::<f64, CONSTANTS>::from_fn(|i, _| if i > 0 { all / units[i - 1].powi(2) } else { 0.0 });
+        let factor = self.body.cholesky()?.l();
+        let eigen = SymmetricEigen::new(factor.transpose() * OfBody::from_diagonal(&inexact) * factor);
+        let axes = factor * eigen.eigenvectors;
+        for i in (0..CONSTANTS).filter(|&i| eigen.eigenvalues[i] > CLAIMED) {
+            let axis = axes.column(i).into_owned();
+            let beforehand = (problem.body.1 * axis).dot(&axis);
+            self.body += axis * axis.transpose() / beforehand.max(f64::MIN_POSITIVE);
+        }
+        Some(self)
     }
 
     fn shares(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Option<Shares> {
