@@ -230,7 +230,7 @@ impl Source<'_> {
         let (exact, sharp) = (problem.exact, problem.exact && *guessed_floor);
         let mut stage = Stage::searched(problem)?;
         if !sharp {
-            stage = stage.as_stated()?;
+            stage = stage.stated()?;
         }
         if !planar && log.frictionless() && stage.solved.explained() {
             stage = match exact {
@@ -243,7 +243,7 @@ impl Source<'_> {
             stage = stage.of_known(mass)?;
         }
         if stage.problem.noise.floor > noise.floor {
-            stage = stage.as_stated()?;
+            stage = stage.stated()?;
         }
         if thinned && sharp && !is_rounded(&stage.problem) {
             stage = stage.over(averaged)?;

@@ -21,10 +21,8 @@ pub(super) const SMALL: f64 = 0.02;
 pub(super) const DRAWS: usize = 12;
 pub(super) const FEW_DRAWS: usize = 4;
 const SEED: u64 = 0x2d0;
-/// How much noise is drawn, of what there is: with all of it contacts whose forces have noise of their own across the normal let a body go much
-/// farther than the noise that was there already has carried it.
+/// How much noise is drawn, of what there is: a part of it, as that which was there already has carried a body along a valley.
 const AMOUNT: f64 = 0.7;
-const AMOUNT_WITH_FRICTION: f64 = 0.5;
 /// Linearisations of each solution, and what a step of it promises in units of chi-squared.
 const MOST: usize = 30;
 const ENOUGH: f64 = 1e-2;
@@ -41,15 +39,15 @@ impl Solved<CONSTANTS> {
 }
 
 impl Covariances<CONSTANTS> {
-    /// Widened to what solutions with noise drawn so often spread by, where that is farther than deviations say.
+    /// Widened to what solutions with noise drawn so often spread by, where that is farther than deviations say. Where there is friction nothing is: forces
+    /// have noise across normals there, of which most samples' nodes are made, and such spreads were three times the errors.
     pub(super) fn redrawn(mut self, problem: &Problem, solved: &Solved<CONSTANTS>, draws: usize) -> Self {
-        if self.body.diagonal().max() < SMALL * SMALL {
+        if self.body.diagonal().max() < SMALL * SMALL || !problem.record.frictionless() {
             return self;
         }
-        let amount = if problem.record.frictionless() { AMOUNT } else { AMOUNT_WITH_FRICTION };
         let mut random = Normal::seeded(SEED);
         let one = |_: usize| {
-            let record = problem.record.redrawn(problem, amount, &mut random);
+            let record = problem.record.redrawn(problem, &mut random);
             let drawn = problem.on(&record);
             Some(solve::<CONSTANTS>(&drawn, solved.unknowns.clone(), MOST, ENOUGH)?.unknowns)
         };
@@ -58,7 +56,7 @@ impl Covariances<CONSTANTS> {
         let mean = |of: &dyn Fn(&Unknowns) -> f64| all.iter().map(of).sum::<f64>() / all.len().max(1) as f64;
         let wider = SVector::<f64, CONSTANTS>::from_fn(|i, _| {
             let spread = mean(&|at| at.body.from(&own.body)[i].powi(2));
-            (spread / (amount * amount) / self.body[(i, i)].max(f64::MIN_POSITIVE)).max(1.0).sqrt()
+            (spread / (AMOUNT * AMOUNT) / self.body[(i, i)].max(f64::MIN_POSITIVE)).max(1.0).sqrt()
         });
         let wider = SMatrix::from_diagonal(&wider);
         self.body = wider * self.body * wider;
@@ -66,7 +64,7 @@ impl Covariances<CONSTANTS> {
             (0..own.motions.len()).map(|j| deviations(&own.motions[j], &own.body, j, &self)).collect();
         let beyond = |(j, known): (usize, &[DVec3; 4])| {
             let spread = |i: usize| mean(&|at| (departure(own, at, j)[i] / known[i]).length_squared());
-            std::array::from_fn(|i| (spread(i) / (3.0 * amount * amount)).max(1.0).sqrt())
+            std::array::from_fn(|i| (spread(i) / (3.0 * AMOUNT * AMOUNT)).max(1.0).sqrt())
         };
         self.beyond = known.iter().enumerate().map(beyond).collect();
         self
@@ -83,32 +81,32 @@ fn departure(from: &Unknowns, to: &Unknowns, j: usize) -> [DVec3; 4] {
 
 impl Record {
     /// With as much of its noise drawn once more.
-    fn redrawn(&self, problem: &Problem, amount: f64, random: &mut Normal) -> Self {
+    fn redrawn(&self, problem: &Problem, random: &mut Normal) -> Self {
         let mut record = self.clone();
         for contact in record.contacts.iter_mut().flatten() {
-            contact.redraw(problem, amount, random);
+            contact.redraw(problem, random);
         }
         let all_impulses = self.all_impulses;
         // What a blow does is open, unless it was measured.
         for interval in record.intervals.iter_mut().filter(|interval| all_impulses || !interval.blow) {
-            interval.redraw(amount, random);
+            interval.redraw(random);
         }
         record
     }
 }
 
 impl Contact {
-    fn redraw(&mut self, problem: &Problem, amount: f64, random: &mut Normal) {
-        let deviation = amount * problem.noise.contact / (self.samples as f64).sqrt();
+    fn redraw(&mut self, problem: &Problem, random: &mut Normal) {
+        let deviation = AMOUNT * problem.noise.contact / (self.samples as f64).sqrt();
         let along = self.tangents().into_iter().take(self.freedoms());
         self.c += along.map(|tangent| tangent * (deviation * random.draw())).sum::<DVec3>();
-        self.u += self.n * (amount * problem.noise.floor * random.draw());
+        self.u += self.n * (AMOUNT * problem.noise.floor * random.draw());
     }
 }
 
 impl Interval {
-    fn redraw(&mut self, amount: f64, random: &mut Normal) {
-        let mut white = self.noise.white * (amount * amount);
+    fn redraw(&mut self, random: &mut Normal) {
+        let mut white = self.noise.white * (AMOUNT * AMOUNT);
         let ridge = RIDGE * white.trace();
         (0..6).for_each(|i| white[(i, i)] += ridge);
         let Some(factor) = white.cholesky() else { return };

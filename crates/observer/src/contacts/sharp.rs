@@ -113,7 +113,7 @@ pub(super) fn blunted(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Optio
 }
 
 /// The solution with conditions off by what was stated or guessed. None where it cannot be evaluated.
-pub(super) fn as_stated(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Option<Solved<CONSTANTS>> {
+pub(super) fn stated(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Option<Solved<CONSTANTS>> {
     problem.noise.floor = problem.floor;
     fine(problem, solved.unknowns)
 }

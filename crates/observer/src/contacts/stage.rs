@@ -9,7 +9,7 @@ use super::record::Record;
 use super::redrawn::DRAWS;
 use super::rivals::{Decided, as_probable, decided};
 use super::search::{Ended, fine, finest_nodes, refined, search};
-use super::sharp::{as_stated, blunted, sharpened, sharpest};
+use super::sharp::{blunted, sharpened, sharpest, stated};
 use super::solve::{Covariances, Solved};
 use super::state::Tangent;
 use crate::reliability::{LARGEST_MISFIT, Reason};
@@ -86,8 +86,8 @@ impl<'a> Stage<'a> {
     }
 
     /// With conditions off by what was stated or guessed.
-    pub(super) fn as_stated(self) -> Option<Self> {
-        if self.problem.noise.floor == self.problem.floor { Some(self) } else { self.replaced(as_stated) }
+    pub(super) fn stated(self) -> Option<Self> {
+        if self.problem.noise.floor == self.problem.floor { Some(self) } else { self.replaced(stated) }
     }
 
     /// That of a body whose mass properties are known.

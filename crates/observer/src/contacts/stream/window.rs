@@ -14,7 +14,7 @@ use crate::contacts::problem::{Problem, Units, Unknowns};
 use crate::contacts::record::Record;
 use crate::contacts::redrawn::FEW_DRAWS;
 use crate::contacts::search::{fine_nodes, fine_within, problem, thinned, whole};
-use crate::contacts::sharp::as_stated;
+use crate::contacts::sharp::stated;
 use crate::contacts::solve::Solved;
 use crate::contacts::state::Motion;
 use crate::contacts::windows::longest;
@@ -197,7 +197,7 @@ impl Window {
     fn found(&mut self, problem: &mut Problem) -> Option<(Solved<CONSTANTS>, bool)> {
         self.before = None;
         let solved = whole(problem)?.solved;
-        let solved = if problem.exact { as_stated(problem, solved)? } else { solved };
+        let solved = if problem.exact { stated(problem, solved)? } else { solved };
         let Some(mass) = &self.options.body else { return Some((solved, false)) };
         let known = known_motion(problem, &solved, mass)?;
         Some((known.solved, known.against.is_some()))
