@@ -40,10 +40,10 @@ const BOUNDS: [Bound; 7] = [
 ];
 
 /// A log that a robot would have, and what else is known.
-struct Case {
-    log: ContactLog,
+pub(super) struct Case {
+    pub(super) log: ContactLog,
     modes: Vec<[ContactMode; MOST_PALMS]>,
-    options: ContactOptions,
+    pub(super) options: ContactOptions,
     /// Mean semi-axis, m.
     length: f64,
 }
@@ -148,7 +148,7 @@ impl Sums {
     }
 }
 
-fn case(file: &Log, (contact, share): (f64, f64), seconds: f64, seed: u64) -> Anything<Case> {
+pub(super) fn case(file: &Log, (contact, share): (f64, f64), seconds: f64, seed: u64) -> Anything<Case> {
     let (log, modes) = file.contact_log(seconds)?;
     let length = file.semi_axes().element_sum() / 3.0;
     let contact = length * contact;

@@ -4,22 +4,18 @@
 
 mod tally;
 
+use super::contact_estimates::{Case, case};
 use super::contact_logs::log::{Anything, Log};
-use recon::object_dynamics::{ChannelNoise, ContactMode, ContactNoise, MOST_PALMS};
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::object_dynamics::{ContactMode, MOST_PALMS};
+use recon::observer::{ContactEstimate, ContactOptions, estimate_contacts};
 use std::path::{Path, PathBuf};
 use tally::{Run, reliability, row};
 
-const G: f64 = 9.81;
 const SCENES: [&str; 6] = ["S2", "S3", "S4", "S6", "S7", "S8"];
 /// Contacts as a share of the mean semi-axis, forces as a share of themselves.
 const NOISE: (f64, f64) = (0.005, 0.02);
 /// Seeds from here on; constants were set on those below 20.
 const FIRST_SEED: u64 = 101;
-/// Floor of contact conditions over the natural speed: creep of the logs.
-const FLOOR: f64 = 3e-5;
-/// Size that is stated where one palm alone is touched, over the mean semi-axis.
-const STATED_SIZE: f64 = 0.8;
 /// Time about a switch of a contact in which its samples do not count, s.
 const SWITCH: f64 = 5e-3;
 
@@ -78,18 +74,9 @@ struct Truth {
 
 fn run(folder: &Path, name: &str, seed: u64) -> Anything<Run> {
     let file = Log::read(folder, name)?;
-    let (log, _) = file.contact_log(f64::INFINITY)?;
+    let Case { log, options, .. } = case(&file, NOISE, f64::INFINITY, seed)?;
     let truth = Truth::new(&file, log.times())?;
-    let length = file.semi_axes().element_sum() / 3.0;
-    let (contact, share) = (length * NOISE.0, NOISE.1);
-    let force = ChannelNoise { fixed: 0.0, share };
-    let noise = ContactNoise { contact, force, impulse: force, ..ContactNoise::default() };
-    let log = log.with_noise(&noise, seed)?;
-    let floor = FLOOR * (G * length).sqrt();
-    let noise = ContactNoiseLevel { contact, force_fixed: 0.0, force_share: share, impulse: None, floor };
-    let size = (file.palm_count() == 1).then_some(STATED_SIZE * length);
-    let options = ContactOptions { size, mode_odds: true, ..ContactOptions::new(noise, G) };
-    let found = estimate_contacts(&log, None, &options)?;
+    let found = estimate_contacts(&log, None, &ContactOptions { mode_odds: true, ..options })?;
     truth.judge(name, &file, &found)
 }
 

@@ -137,7 +137,7 @@ impl Source<'_> {
     fn with_estimated_modes(&self, record: &mut Record) -> Result<ContactEstimate, ContactEstimateError> {
         let mut found = self.uncontradicted(record)?;
         let Some(odds) = &found.mode_odds else { return Ok(found) };
-        let time = AVERAGED * self.units.length / self.units.speed;
+        let time = AVERAGED * self.units.time();
         let again = surer(&record.times, &found.modes, odds, time);
         // Without noise a search is long, and what limits is when within a sample modes change.
         let worth = self.options.noise.limits(&self.units) && again != found.modes;
@@ -156,7 +156,7 @@ impl Source<'_> {
     }
 
     fn uncontradicted(&self, record: &mut Record) -> Result<ContactEstimate, ContactEstimateError> {
-        let mut modes = by_ratio(record, AVERAGED * self.units.length / self.units.speed);
+        let mut modes = by_ratio(record, AVERAGED * self.units.time());
         for _ in 0..ROUNDS {
             let (found, slips) = self.with_modes(record, modes, false)?;
             if slips.is_empty() {
@@ -271,7 +271,7 @@ impl Source<'_> {
             let apply = |k: usize, contact: &mut Contact, origin| change.apply(k, contact, origin);
             let mut record = self.with_blows(record.changed(self.log, self.options, apply)?);
             record.set_modes(modes);
-            let open = record.with_gaps_open(self.units.length / self.units.speed);
+            let open = record.with_gaps_open(self.units.time());
             Some(open.as_ref().unwrap_or(&record).averaged(longest))
         };
         suspects(problem, solved, covariances, (self.log, motions), remade).unwrap_or_default()

@@ -29,15 +29,6 @@ const ENOUGH: f64 = 1e-2;
 /// Share of the trace of a covariance that is added to each of its variances, so that it has a factor.
 const RIDGE: f64 = 1e-9;
 
-impl Solved<CONSTANTS> {
-    /// Without what noise alone makes the equations claim. None where the equations are singular.
-    pub(super) fn covariances(&self, problem: &Problem) -> Option<Covariances<CONSTANTS>> {
-        let claimed = self.equations.covariances(&problem.natural_information())?;
-        let widened = claimed.widened(problem, &self.equations, &self.unknowns)?;
-        widened.centre_widened(&self.equations, &self.unknowns)
-    }
-}
-
 impl Covariances<CONSTANTS> {
     /// Widened to what solutions with noise drawn so often spread by, where that is farther than deviations say. Where there is friction nothing is: forces
     /// have noise across normals there, of which most samples' nodes are made, and such spreads were three times the errors.

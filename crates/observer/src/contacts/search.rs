@@ -56,14 +56,23 @@ pub(super) struct Ended {
 impl Problem<'_> {
     /// Time from node to node, s.
     pub(super) fn link(&self) -> f64 {
-        let smooth = self.exact && !self.planar && self.record.frictionless();
-        (if smooth { LINK_OF_EXACT } else { LINK }) * self.units.time()
+        (if self.is_smooth() { LINK_OF_EXACT } else { LINK }) * self.units.time()
     }
+
+    /// Whether forces carry the motion from sample to sample as well as noise nowhere does.
+    pub(super) fn is_smooth(&self) -> bool {
+        is_smooth(self.record, self.exact, self.planar)
+    }
+}
+
+/// In space, without friction, where noise of the contacts is not what conditions are off by.
+fn is_smooth(record: &Record, exact: bool, planar: bool) -> bool {
+    exact && !planar && record.frictionless()
 }
 
 /// The record with fewer samples, if there are many more than a search needs.
 pub(super) fn thinned(record: &Record, options: &ContactOptions, units: &Units) -> Option<Record> {
-    let smooth = !options.noise.limits(units) && !options.planar && record.frictionless();
+    let smooth = is_smooth(record, !options.noise.limits(units), options.planar);
     record.thinned(if smooth { THIN_OF_EXACT } else { THIN } * units.time())
 }
 
@@ -107,7 +116,7 @@ pub(super) fn search(problem: &mut Problem) -> Option<Ended> {
 /// From the beginning on: of a long record over more and more of it, of others at once; where that is not explained a short one without friction
 /// over more and more of it too, and the best is taken.
 pub(super) fn forwards(problem: &mut Problem) -> Option<Ended> {
-    let mut best: Option<(Ended, Vec<SVector<f64, CONSTANTS>>)> = None;
+    let mut best = None;
     let mut before = 0;
     for way in [Some(&LONG), None, Some(&SHORT)] {
         let ended = match way {
@@ -120,9 +129,7 @@ pub(super) fn forwards(problem: &mut Problem) -> Option<Ended> {
             return Some(Ended { before: before + ended.before, ..ended });
         }
         before += ended.all();
-        if best.as_ref().is_none_or(|(best, _)| ended.cost() < best.cost()) {
-            best = Some((ended, problem.frozen.clone()));
-        }
+        keep(&mut best, ended, problem);
     }
     let (best, frozen) = best?;
     (problem.nodes, problem.frozen) = (fine_nodes(problem), frozen);
@@ -134,7 +141,7 @@ pub(super) fn forwards(problem: &mut Problem) -> Option<Ended> {
 pub(super) fn whole(problem: &mut Problem) -> Option<Ended> {
     let coarse_nodes = problem.record.spaced(problem.link());
     let all_nodes = fine_nodes(problem);
-    let mut best: Option<(Ended, Vec<SVector<f64, CONSTANTS>>)> = None;
+    let mut best = None;
     let mut before = 0;
     for floor in COARSE_FLOORS {
         problem.nodes.clone_from(&coarse_nodes);
@@ -155,13 +162,20 @@ pub(super) fn whole(problem: &mut Problem) -> Option<Ended> {
             return Some(ended);
         }
         before = ended.all();
-        if best.as_ref().is_none_or(|(best, _)| ended.cost() < best.cost()) {
-            best = Some((ended, problem.frozen.clone()));
-        }
+        keep(&mut best, ended, problem);
     }
     let (best, frozen) = best?;
     problem.frozen = frozen;
     Some(Ended { before: before - best.solved.iterations, ..best })
+}
+
+/// What leaves least so far, with the combinations of the body's constants that are held in it.
+type Best = Option<(Ended, Vec<SVector<f64, CONSTANTS>>)>;
+
+fn keep(best: &mut Best, ended: Ended, problem: &Problem) {
+    if best.as_ref().is_none_or(|(best, _)| ended.cost() < best.cost()) {
+        *best = Some((ended, problem.frozen.clone()));
+    }
 }
 
 /// First of a body that is nearly a ball: its angular velocity follows from the angular momentum whatever its orientation, and what has to be

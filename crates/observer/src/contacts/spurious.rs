@@ -9,7 +9,7 @@ use super::body::{Body, CONSTANTS, INERTIA};
 use super::equations::{Equations, LinkEquation};
 use super::flow::Transition;
 use super::problem::{FROZEN, Problem, Unknowns};
-use super::solve::Covariances;
+use super::solve::{Covariances, Solved};
 use super::state::{MOTION, Motion};
 use crate::rigid::cross_matrix;
 use glam::{DMat3, DVec3};
@@ -31,6 +31,15 @@ struct Shares {
     values: SVector<f64, CONSTANTS>,
     /// Factor of the claimed covariance, its columns turned to the directions of the shares.
     axes: OfBody,
+}
+
+impl Solved<CONSTANTS> {
+    /// Without what noise alone makes the equations claim. None where the equations are singular.
+    pub(super) fn covariances(&self, problem: &Problem) -> Option<Covariances<CONSTANTS>> {
+        let claimed = self.equations.covariances(&problem.natural_information())?;
+        let widened = claimed.widened(problem, &self.equations, &self.unknowns)?;
+        widened.centre_widened(&self.equations, &self.unknowns)
+    }
 }
 
 impl Covariances<CONSTANTS> {

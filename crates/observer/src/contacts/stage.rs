@@ -46,19 +46,14 @@ pub(super) struct Stage<'a> {
 impl<'a> Stage<'a> {
     /// What a search comes to.
     pub(super) fn searched(mut problem: Problem<'a>) -> Option<Self> {
-        let Ended { solved, found, before } = search(&mut problem)?;
-        let (doubt, against, open) = (None, None, None);
-        Some(Self {
-            problem,
-            solved,
-            covariances: None,
-            found,
-            before,
-            doubt,
-            against,
-            others: Vec::new(),
-            open,
-        })
+        let ended = search(&mut problem)?;
+        Some(Self::at(problem, ended))
+    }
+
+    /// Of which nothing else is known.
+    fn at(problem: Problem<'a>, Ended { solved, found, before }: Ended) -> Self {
+        let (covariances, others, doubt, against, open) = (None, Vec::new(), None, None, None);
+        Self { problem, solved, covariances, found, before, doubt, against, others, open }
     }
 
     fn replaced(
@@ -100,8 +95,7 @@ impl<'a> Stage<'a> {
             self.doubt = Some(0.0);
             return Some(self);
         }
-        let short =
-            (problem.exact && problem.record.frictionless() && !self.found).then(|| directly(problem, mass));
+        let short = (problem.is_smooth() && !self.found).then(|| directly(problem, mass));
         if let Some(ended) = short.flatten() {
             (self.solved, self.doubt) = (ended.solved, Some(0.0));
             self.before += ended.before;
@@ -165,17 +159,7 @@ impl<'a> Stage<'a> {
         let before = self.before + self.solved.iterations;
         let solved = if sharp { sharpest(&mut problem, start) } else { fine(&mut problem, start) }?;
         let Self { found, doubt, against, open, .. } = self;
-        Some(Stage {
-            problem,
-            solved,
-            covariances: None,
-            found,
-            before,
-            doubt,
-            against,
-            others: Vec::new(),
-            open,
-        })
+        Some(Stage { doubt, against, open, ..Stage::at(problem, Ended { solved, found, before }) })
     }
 
     /// With conditions as good, or as bad, as what is left of them.
