@@ -13,11 +13,11 @@ use std::process::ExitCode;
 const USAGE: &str = "usage:
   cargo xtask verify [--list] [--only STEP].. [--skip STEP].. [--with STEP]..
   cargo xtask chart  [--list] [--quick] [--out FOLDER] [NAME..]
-  cargo xtask study  NAME [ARGUMENT..]
+  cargo xtask study  NAME [ARGUMENT..] [--shard K/N [--rows FOLDER] | --merge [FOLDER]]
 
 verify  runs the checks of the house; optional steps run only with --with or --only
 chart   draws charts of cost against error and failure sweeps into docs/charts
-study   runs a long study and writes its table under docs";
+study   runs a long study and writes its table under docs; in N parts, on as many machines, merged to the same table";
 
 fn main() -> ExitCode {
     let mut words = std::env::args().skip(1);

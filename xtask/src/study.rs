@@ -117,7 +117,8 @@ const STUDIES: &[(&str, &str, &str)] = &[
     ("streaming", "streaming.md", "three palms sample by sample over a minute: time and accuracy"),
 ];
 
-/// Runs the study that is named first; what follows is handed to it.
+/// Runs the study that is named first; what follows is handed to it. Of a part (`--shard k/n`) what came of its runs is kept in a folder
+/// (`--rows`, if not stated one under target), and `--merge` writes the table from it.
 pub(crate) fn main(mut words: impl Iterator<Item = String>) -> ExitCode {
     let asked = words.next();
     let Some((name, file, _)) = STUDIES.iter().find(|(name, ..)| asked.as_deref() == Some(name)) else {
@@ -125,14 +126,25 @@ pub(crate) fn main(mut words: impl Iterator<Item = String>) -> ExitCode {
         STUDIES.iter().for_each(|(name, file, about)| eprintln!("  {name}  {about} (docs/{file})"));
         return ExitCode::from(2);
     };
+    let mut words: Vec<String> = words.collect();
+    let is_part = words.iter().any(|word| word == "--shard");
+    if is_part && !words.iter().any(|word| word == "--rows") {
+        words.push("--rows".to_owned());
+    }
+    if words.last().is_some_and(|word| word == "--rows" || word == "--merge") {
+        words.push(format!("target/study-rows/{name}"));
+    }
     let mut command = cargo(&format!("run --release --quiet --package recon-benches --bin study -- {name}"));
     let path = root().join("docs").join(file);
-    let written = output(command.args(words)).and_then(|table| {
-        std::fs::write(&path, table).map_err(|error| format!("{}: {error}", path.display()))
+    let written = output(command.args(&words)).and_then(|table| match is_part {
+        true => Ok(words.last().cloned().unwrap_or_default()),
+        false => std::fs::write(&path, table)
+            .map(|()| path.display().to_string())
+            .map_err(|error| format!("{}: {error}", path.display())),
     });
     match written {
-        Ok(()) => {
-            println!("wrote {}", path.display());
+        Ok(written) => {
+            println!("wrote {written}");
             ExitCode::SUCCESS
         }
         Err(complaint) => {

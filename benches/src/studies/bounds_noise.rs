@@ -40,6 +40,9 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// Whether the body lies between the bounds, and between those of contacts taken as exact; volumes of the bounds, and between those of exact contacts.
+type Run = (bool, bool, [f64; 2], f64);
+
 /// What became of the runs of one row.
 #[derive(Default)]
 struct Tally {
@@ -51,7 +54,8 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, between: bool, plain: bool, [lower, upper]: [f64; 2], clean_gap: f64) {
+    fn add(&mut self, run: Option<Run>) {
+        let Some((between, plain, [lower, upper], clean_gap)) = run else { return };
         let truth = 4.0 / 3.0 * std::f64::consts::PI * AXES.element_product();
         self.between += usize::from(between);
         self.plain += usize::from(plain);
@@ -94,13 +98,15 @@ fn plain_study(
 ) -> Result<String, Box<dyn std::error::Error>> {
     let mut tally = Tally::default();
     for seed in 0..runs {
-        let curves = measured(level, seed);
-        let noisy = if estimated { estimate_noise(&curves, confidence)? } else { stated(&curves, level) };
-        let bounds = ShapeBounds::from_noisy_curves(&noisy, confidence)?;
-        let plain = ShapeBounds::from_contacts(&curves.concat()).is_ok_and(|b| holds(&b));
-        let clean = ShapeBounds::from_contacts(&measured(0.0, seed).concat())?;
-        let clean_gap = clean.upper_volume() - clean.lower_volume();
-        tally.add(holds(&bounds), plain, [bounds.lower_volume(), bounds.upper_volume()], clean_gap);
+        tally.add(crate::rows::row(|| -> Result<Run, Box<dyn std::error::Error>> {
+            let curves = measured(level, seed);
+            let noisy = if estimated { estimate_noise(&curves, confidence)? } else { stated(&curves, level) };
+            let bounds = ShapeBounds::from_noisy_curves(&noisy, confidence)?;
+            let plain = ShapeBounds::from_contacts(&curves.concat()).is_ok_and(|b| holds(&b));
+            let clean = ShapeBounds::from_contacts(&measured(0.0, seed).concat())?;
+            let clean_gap = clean.upper_volume() - clean.lower_volume();
+            Ok((holds(&bounds), plain, [bounds.lower_volume(), bounds.upper_volume()], clean_gap))
+        })?);
     }
     Ok(tally.row("(a), (b)", confidence, level, if estimated { "estimated" } else { "stated" }))
 }
@@ -109,13 +115,15 @@ fn plain_study(
 fn sharp_study(confidence: f64, level: f64, runs: u64) -> Result<String, Box<dyn std::error::Error>> {
     let mut tally = Tally::default();
     for seed in 0..runs {
-        let curves = measured(level, seed);
-        let bounds = SharpBounds::from_noisy_curves(&stated(&curves, level), RADII, confidence)?;
-        let plain = SharpBounds::from_contacts(&curves.concat(), RADII).is_ok();
-        let clean = SharpBounds::from_contacts(&measured(0.0, seed).concat(), RADII)?;
-        let clean_gap = clean.upper().volume() - clean.lower().volume();
-        let volumes = [bounds.lower().volume(), bounds.upper().volume()];
-        tally.add(sharp_holds(&bounds, seed), plain, volumes, clean_gap);
+        tally.add(crate::rows::row(|| -> Result<Run, Box<dyn std::error::Error>> {
+            let curves = measured(level, seed);
+            let bounds = SharpBounds::from_noisy_curves(&stated(&curves, level), RADII, confidence)?;
+            let plain = SharpBounds::from_contacts(&curves.concat(), RADII).is_ok();
+            let clean = SharpBounds::from_contacts(&measured(0.0, seed).concat(), RADII)?;
+            let clean_gap = clean.upper().volume() - clean.lower().volume();
+            let volumes = [bounds.lower().volume(), bounds.upper().volume()];
+            Ok((sharp_holds(&bounds, seed), plain, volumes, clean_gap))
+        })?);
     }
     Ok(tally.row("with limits on the curvature", confidence, level, "stated"))
 }

@@ -112,7 +112,6 @@ pub(crate) fn main() -> Result<(), Failure> {
         }
     }
     print!("{text}");
-    std::fs::write("docs/bounds-planar-noise.md", text)?;
     Ok(())
 }
 
@@ -124,20 +123,25 @@ fn counted(
 ) -> Result<Counts, Failure> {
     let mut counts = Counts::default();
     for seed in seeds {
-        let curve = measured(body, count, shuffled, &mut Source::new(seed))?;
-        let start = ThreadTime::now();
-        let (noisy, _) = with_noise_as_found(&[curve]);
-        let (kept, outliers) = without_outliers(&noisy, CONFIDENCE)?;
-        let bounds = ShapeBounds::from_noisy_curves(&kept, CONFIDENCE);
-        counts.seconds += start.elapsed().as_secs_f64();
-        match bounds {
-            Ok(bounds) => counts.hold += u64::from(holds(body, &bounds)),
-            Err(_) => counts.without += 1,
+        let run = crate::rows::row(|| -> Result<(f64, Option<bool>, [usize; 2]), Failure> {
+            let curve = measured(body, count, shuffled, &mut Source::new(seed))?;
+            let start = ThreadTime::now();
+            let (noisy, _) = with_noise_as_found(&[curve]);
+            let (kept, outliers) = without_outliers(&noisy, CONFIDENCE)?;
+            let bounds = ShapeBounds::from_noisy_curves(&kept, CONFIDENCE);
+            let seconds = start.elapsed().as_secs_f64();
+            let impossible = outliers.iter().filter(|o| o.share > 0.0).count();
+            Ok((seconds, bounds.ok().map(|b| holds(body, &b)), [impossible, outliers.len() - impossible]))
+        })?;
+        let Some((seconds, holds, [impossible, rough])) = run else { continue };
+        counts.seconds += seconds;
+        match holds {
+            Some(holds) => counts.hold += u64::from(holds),
+            None => counts.without += 1,
         }
-        let impossible = outliers.iter().filter(|o| o.share > 0.0).count();
         counts.runs_impossible += u64::from(impossible > 0);
         counts.impossible += impossible;
-        counts.rough += outliers.len() - impossible;
+        counts.rough += rough;
     }
     Ok(counts)
 }

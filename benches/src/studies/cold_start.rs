@@ -21,36 +21,32 @@ const RIGHT: f64 = 1e-6;
 
 type Failure = Box<dyn std::error::Error>;
 
+/// Milliseconds, the error of an estimate, and why it is not relied on.
+type Run = (f64, Option<f64>, Option<String>);
+
 /// What became of the scenes.
 #[derive(Default)]
 struct Tally {
     right: usize,
     silent: usize,
     /// Why estimates that are wrong say that they are not to be relied on.
-    reasons: BTreeMap<&'static str, usize>,
+    reasons: BTreeMap<String, usize>,
     /// Right, and yet not relied on.
     doubted: usize,
     times: Vec<f64>,
 }
 
 impl Tally {
-    fn add(&mut self, error: f64, reliability: &Reliability, milliseconds: f64) {
+    fn add(&mut self, run: Option<Run>) {
+        let Some((milliseconds, error, doubt)) = run else { return };
         self.times.push(milliseconds);
-        let right = error < RIGHT;
+        let right = error.is_some_and(|error| error < RIGHT);
         self.right += usize::from(right);
-        match reliability {
-            Reliability::Unreliable(_) if right => self.doubted += 1,
-            Reliability::Unreliable(reasons) => {
-                let why = reasons.first().map_or("no reason", kind);
-                *self.reasons.entry(why).or_default() += 1;
-            }
-            _ => self.silent += usize::from(!right),
+        match doubt {
+            Some(_) if right => self.doubted += 1,
+            Some(why) => *self.reasons.entry(why).or_default() += 1,
+            None => self.silent += usize::from(!right),
         }
-    }
-
-    fn refuse(&mut self, why: &'static str, milliseconds: f64) {
-        self.times.push(milliseconds);
-        *self.reasons.entry(why).or_default() += 1;
     }
 
     fn row(&mut self, name: &str) -> String {
@@ -87,21 +83,26 @@ pub(crate) fn main() -> Result<(), Failure> {
     let scenes: usize = crate::words().next().map_or(Ok(200), |a| a.parse())?;
     let mut random = Random::new(1);
     let mut tallies = [Tally::default(), Tally::default()];
-    while tallies[0].times.len() < scenes {
+    let mut count = 0;
+    while count < scenes {
         let Some((scene, simulation, log)) = scene(&mut random)? else { continue };
+        count += 1;
         let (mass, gravity) = (*scene.mass(), scene.gravity().length());
         for (tally, body) in tallies.iter_mut().zip([Some(mass), None]) {
-            let clock = ThreadTime::now();
-            let found = contacts(&log, body, gravity);
-            let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
-            let Ok(found) = found else {
-                tally.refuse("singular", milliseconds);
-                continue;
-            };
-            let of_mass = (found.mass / mass.mass() - 1.0).abs();
-            let pairs = found.states.iter().zip(&simulation.instants);
-            let error = pairs.map(|(s, now)| s.p_WCm.distance(now.touch.p_WCm)).fold(of_mass, f64::max);
-            tally.add(error, &found.reliability, milliseconds);
+            tally.add(crate::rows::row(|| -> Result<Run, Failure> {
+                let clock = ThreadTime::now();
+                let found = contacts(&log, body, gravity);
+                let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
+                let Ok(found) = found else { return Ok((milliseconds, None, Some("singular".to_owned()))) };
+                let of_mass = (found.mass / mass.mass() - 1.0).abs();
+                let pairs = found.states.iter().zip(&simulation.instants);
+                let error = pairs.map(|(s, now)| s.p_WCm.distance(now.touch.p_WCm)).fold(of_mass, f64::max);
+                let doubt = match &found.reliability {
+                    Reliability::Unreliable(reasons) => Some(reasons.first().map_or("no reason", kind)),
+                    _ => None,
+                };
+                Ok((milliseconds, Some(error), doubt.map(str::to_owned)))
+            })?);
         }
     }
     println!("# Cold start on random scenes\n\nMade by `cargo xtask study cold_start {scenes}`.\n");

@@ -1,5 +1,7 @@
 //! Studies and charts in one binary, since each one more costs a link of everything: `study NAME ARGUMENTS..`.
 //!
+//! Studies of many runs are also made in parts, by as many machines as there are ([`rows`]).
+//!
 //! `cargo xtask study` and `cargo xtask chart` call it and know what each one writes.
 
 mod bounds_corners;
@@ -30,6 +32,7 @@ mod planar_observability;
 mod planar_tally;
 mod pushes;
 mod reaching;
+mod rows;
 mod shape_fits;
 mod streaming;
 mod three_palms_monte_carlo;
@@ -37,6 +40,7 @@ mod three_palms_timing;
 mod tilting_palms;
 mod whole_logs;
 
+pub(crate) use rows::words;
 use std::fmt::Display;
 use std::process::ExitCode;
 
@@ -79,10 +83,20 @@ const STUDIES: &[(&str, Run)] = &[
     ("three_palms_timing", || in_words(three_palms_timing::main())),
 ];
 
-/// What follows the name of the study.
-pub(crate) fn words() -> impl Iterator<Item = String> {
-    std::env::args().skip(2)
-}
+/// Those whose runs may be made in parts ([`rows`]).
+const OF_RUNS: &[&str] = &[
+    "bounds_noise",
+    "bounds_noise_wrong",
+    "bounds_planar_noise",
+    "cold_start",
+    "contact_estimates_random",
+    "no_force",
+    "planar_estimates",
+    "planar_estimates_friction",
+    "three_palms_monte_carlo",
+    "tilting_palms",
+    "whole_logs",
+];
 
 fn main() -> ExitCode {
     let name = std::env::args().nth(1).unwrap_or_default();
@@ -94,7 +108,7 @@ fn main() -> ExitCode {
         STUDIES.iter().for_each(|(known, _)| eprintln!("  {known}"));
         return ExitCode::from(2);
     };
-    match run() {
+    match in_words(rows::begin(OF_RUNS)).and_then(|()| run()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(complaint) => {
             eprintln!("{name}: {complaint}");

@@ -24,6 +24,9 @@ const DEVIATIONS: f64 = 5.0;
 
 type Failure = Box<dyn std::error::Error>;
 
+/// Milliseconds; none where nothing fits, then whether it is right, none where it is not determined, and the error of the largest moment.
+type Run = (f64, Option<(Option<bool>, Option<f64>)>);
+
 #[derive(Default)]
 struct Count {
     tried: usize,
@@ -85,36 +88,45 @@ fn run(scenes: usize, first: u64, noise: f64, swing: f64) -> Result<Count, Failu
         let seed = first + count.tried as u64;
         let Some((axes, log)) = scene(&mut random, noise, swing, seed)? else { continue };
         count.tried += 1;
-        let known = KnownTouch {
-            gravity: DVec3::new(0.0, 0.0, -9.81),
-            contact_noise: (noise > 0.0).then_some(noise),
-        };
-        let clock = Instant::now();
-        let estimate = estimate_without_forces(&log, &known);
-        count.milliseconds.push(1e3 * clock.elapsed().as_secs_f64());
-        match estimate {
-            Ok(estimate) => {
-                let mut sorted = axes.to_array();
-                sorted.sort_by(f64::total_cmp);
-                let error = (estimate.shape.semi_axes - DVec3::from_array(sorted)).length();
-                // The matrix's diagonal is of squared semi-axes: dD = 2 a da.
-                let deviation =
-                    (3..6).map(|i| estimate.covariance[(i, i)]).sum::<f64>().sqrt() / (2.0 * sorted[0]);
-                let right =
-                    if noise > 0.0 { error < DEVIATIONS * deviation } else { error < RIGHT * sorted[2] };
+        let Some((milliseconds, found)) = crate::rows::row(|| judged(axes, &log, noise))? else { continue };
+        count.milliseconds.push(milliseconds);
+        match found {
+            Some((Some(right), moment)) => {
                 count.right += usize::from(right);
                 count.silent += usize::from(!right);
-                if right {
-                    let found = MassProperties::new(1.0, estimate.inertia_per_mass)?.principal().moments;
-                    let truth = MassProperties::uniform_ellipsoid(1.0, axes)?.principal().moments;
-                    count.moments.push(((found - truth) / truth).abs().z);
-                }
+                count.moments.extend(moment);
             }
-            Err(NoForceError::NotDetermined { .. }) => count.open += 1,
-            Err(_) => count.missed += 1,
+            Some((None, _)) => count.open += 1,
+            None => count.missed += 1,
         }
     }
     Ok(count)
+}
+
+fn judged(axes: DVec3, log: &SensorLog, noise: f64) -> Result<Run, Failure> {
+    let known =
+        KnownTouch { gravity: DVec3::new(0.0, 0.0, -9.81), contact_noise: (noise > 0.0).then_some(noise) };
+    let clock = Instant::now();
+    let estimate = estimate_without_forces(log, &known);
+    let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
+    let estimate = match estimate {
+        Ok(estimate) => estimate,
+        Err(NoForceError::NotDetermined { .. }) => return Ok((milliseconds, Some((None, None)))),
+        Err(_) => return Ok((milliseconds, None)),
+    };
+    let mut sorted = axes.to_array();
+    sorted.sort_by(f64::total_cmp);
+    let error = (estimate.shape.semi_axes - DVec3::from_array(sorted)).length();
+    // The matrix's diagonal is of squared semi-axes: dD = 2 a da.
+    let deviation = (3..6).map(|i| estimate.covariance[(i, i)]).sum::<f64>().sqrt() / (2.0 * sorted[0]);
+    let right = if noise > 0.0 { error < DEVIATIONS * deviation } else { error < RIGHT * sorted[2] };
+    let mut moment = None;
+    if right {
+        let found = MassProperties::new(1.0, estimate.inertia_per_mass)?.principal().moments;
+        let truth = MassProperties::uniform_ellipsoid(1.0, axes)?.principal().moments;
+        moment = Some(((found - truth) / truth).abs().z);
+    }
+    Ok((milliseconds, Some((Some(right), moment))))
 }
 
 /// Semi-axes and log of a random scene; none if it loses contact too soon.

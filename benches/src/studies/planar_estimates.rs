@@ -279,7 +279,7 @@ impl Scene {
             size: None,
             suspects: true,
         };
-        tally.run(&log.contact_log([0.0; 2]).ok_or("no forces")?, &options, self.length);
+        tally.run(&log.contact_log([0.0; 2]).ok_or("no forces")?, &options, self.length)?;
         Ok(())
     }
 }

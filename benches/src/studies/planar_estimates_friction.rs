@@ -186,6 +186,6 @@ fn run(
         size: None,
         suspects: true,
     };
-    tally.run(&log, &options, of.length);
+    tally.run(&log, &options, of.length)?;
     Ok(())
 }

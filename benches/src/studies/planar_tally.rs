@@ -1,11 +1,15 @@
 //! What came of estimates in the plane over many runs.
 
+use crate::rows::RowsError;
 use cpu_time::ThreadTime;
 use recon::object_dynamics::planar::{ContactLog, PlanarTruth};
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
 
 /// Deviations beyond which an error that nothing warned of is silent.
 pub(crate) const SILENT: f64 = 5.0;
+
+/// Microseconds; none where there is an error, then the errors where it is relied on.
+type Run = (f64, Option<Option<[f64; 4]>>);
 
 /// Runs, those that are relied on, and how far these are off.
 #[derive(Default)]
@@ -23,38 +27,35 @@ pub(crate) struct Tally {
 
 impl Tally {
     /// Estimates the motion of a body of the size `length` (m), and counts what comes of it.
-    pub(crate) fn run(&mut self, log: &ContactLog, options: &PlaneOptions, length: f64) {
-        let clock = ThreadTime::now();
-        let made = estimate_plane(log, options);
-        self.microseconds += 1e6 * clock.elapsed().as_secs_f64();
+    pub(crate) fn run(
+        &mut self,
+        log: &ContactLog,
+        options: &PlaneOptions,
+        length: f64,
+    ) -> Result<(), RowsError> {
+        let run = crate::rows::row(|| -> Result<Run, RowsError> {
+            let clock = ThreadTime::now();
+            let made = estimate_plane(log, options);
+            let microseconds = 1e6 * clock.elapsed().as_secs_f64();
+            let reliable = |made: PlaneEstimate| {
+                let truth = log.truth().unwrap_or_default();
+                made.reliability.is_reliable().then(|| errors(&made, truth, length))
+            };
+            Ok((microseconds, made.ok().map(reliable)))
+        })?;
+        let Some((microseconds, made)) = run else { return Ok(()) };
+        self.microseconds += microseconds;
         self.samples += log.samples().len() as f64;
         self.runs += 1;
-        match made {
-            Ok(made) if made.reliability.is_reliable() => {
-                self.add(&made, log.truth().unwrap_or_default(), length);
-            }
-            Ok(_) => {}
-            Err(_) => self.refused += 1,
+        self.refused += usize::from(made.is_none());
+        if let Some([worst, squares, numbers, place]) = made.flatten() {
+            self.squares += squares;
+            self.numbers += numbers;
+            self.relied += 1;
+            self.silent += usize::from(worst > SILENT);
+            self.places.push(place);
         }
-    }
-
-    fn add(&mut self, made: &PlaneEstimate, truth: &[PlanarTruth], length: f64) {
-        let (mut worst, mut place) = (0.0_f64, 0.0_f64);
-        for (k, truth) in truth.iter().enumerate().filter(|(k, _)| made.relied_on[*k]) {
-            let (state, of) = (&made.states[k], &made.deviations[k]);
-            let p = state.p_WCm - truth.p_WCm;
-            let (p_in, v_in) = (p / of.p_WCm, (state.v_WCm - truth.v_WCm) / of.v_WCm);
-            let spin = (state.omega0 - truth.omega0) / of.omega0;
-            for number in [p_in.x, p_in.y, v_in.x, v_in.y, spin] {
-                worst = worst.max(number.abs());
-                self.squares += number * number;
-                self.numbers += 1.0;
-            }
-            place = place.max(p.length() / length);
-        }
-        self.relied += 1;
-        self.silent += usize::from(worst > SILENT);
-        self.places.push(place);
+        Ok(())
     }
 
     /// Cells of a row.
@@ -72,4 +73,22 @@ impl Tally {
             self.microseconds / self.samples.max(1.0)
         )
     }
+}
+
+/// The largest of the errors in their deviations, the sum of their squares, how many there are; and the largest of the place over the size.
+fn errors(made: &PlaneEstimate, truth: &[PlanarTruth], length: f64) -> [f64; 4] {
+    let [mut worst, mut squares, mut numbers, mut place] = [0.0_f64; 4];
+    for (k, truth) in truth.iter().enumerate().filter(|(k, _)| made.relied_on[*k]) {
+        let (state, of) = (&made.states[k], &made.deviations[k]);
+        let p = state.p_WCm - truth.p_WCm;
+        let (p_in, v_in) = (p / of.p_WCm, (state.v_WCm - truth.v_WCm) / of.v_WCm);
+        let spin = (state.omega0 - truth.omega0) / of.omega0;
+        for number in [p_in.x, p_in.y, v_in.x, v_in.y, spin] {
+            worst = worst.max(number.abs());
+            squares += number * number;
+            numbers += 1.0;
+        }
+        place = place.max(p.length() / length);
+    }
+    [worst, squares, numbers, place]
 }

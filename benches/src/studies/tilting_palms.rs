@@ -45,6 +45,9 @@ impl Seen {
     }
 }
 
+/// Seconds; why it is refused, or how many changes of modes there are, the angle that it is turned by, and departures.
+type Run = (f64, Option<String>, Option<(usize, f64, [f64; 4])>);
+
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let mut words = crate::words();
     let wanted: usize = words.next().map_or(Ok(140), |s| s.parse())?;
@@ -54,18 +57,27 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let (mut times, mut turns, mut changes) = (Vec::new(), Vec::new(), 0);
     for k in 0..wanted {
         let (scene, body, duration) = variant(&mut source)?;
-        let started = Instant::now();
-        let times_of_samples = SampleTimes { duration, rate: 500.0 };
-        let run = scene.simulate(&ContactStart::touching(body), times_of_samples, tolerance);
-        times.push(started.elapsed().as_secs_f64());
-        match run {
-            Err(error) => refused.push(format!("variant {k}: {error}")),
-            Ok(run) => {
-                through += 1;
-                changes += run.events.len();
-                turns.push(turn(&run));
-                worst = worst.or(departures(&scene, &run));
-            }
+        let run = crate::rows::row(|| -> Result<Run, Box<dyn Error>> {
+            let started = Instant::now();
+            let times_of_samples = SampleTimes { duration, rate: 500.0 };
+            let run = scene.simulate(&ContactStart::touching(body), times_of_samples, tolerance);
+            let seconds = started.elapsed().as_secs_f64();
+            Ok(match run {
+                Err(error) => (seconds, Some(error.to_string()), None),
+                Ok(run) => {
+                    let Seen { gap, cone, creep, energy } = departures(&scene, &run);
+                    (seconds, None, Some((run.events.len(), turn(&run), [gap, cone, creep, energy])))
+                }
+            })
+        })?;
+        let Some((seconds, error, run)) = run else { continue };
+        times.push(seconds);
+        refused.extend(error.map(|error| format!("variant {k}: {error}")));
+        if let Some((events, turn, [gap, cone, creep, energy])) = run {
+            through += 1;
+            changes += events;
+            turns.push(turn);
+            worst = worst.or(Seen { gap, cone, creep, energy });
         }
     }
     for sorted in [&mut times, &mut turns] {
@@ -78,8 +90,8 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
          friction {FRICTION}) at tolerance {tolerance:e}: {through} are through, with {changes} changes of modes. Half of them turn the \
          object by more than {:.0} degrees. A run takes {:.2} s in the median, {:.2} s at most.",
         turns.get(turns.len() / 2).copied().unwrap_or(f64::NAN).to_degrees(),
-        times[times.len() / 2],
-        times[times.len() - 1],
+        times.get(times.len() / 2).copied().unwrap_or(f64::NAN),
+        times.last().copied().unwrap_or(f64::NAN),
     );
     println!();
     println!(

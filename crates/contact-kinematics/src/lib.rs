@@ -11,6 +11,7 @@ mod direction;
 mod motion_law;
 mod palm;
 pub mod planar;
+mod stop;
 mod support;
 mod surface;
 
@@ -22,6 +23,7 @@ pub use contact::{
 pub use direction::{Direction, DirectionError};
 pub use motion_law::MotionLaw;
 pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple};
+pub use stop::{Stopped, is_stopped, unless_stopped};
 pub use support::{
     CurvatureRadii, Ellipsoid, MinkowskiSum, Monomial, PolynomialSupport, ShapeError, Sphere,
     SupportFunction, SupportJet, Translated, check_convex, principal_radii,

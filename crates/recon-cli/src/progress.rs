@@ -1,6 +1,5 @@
 //! What is told while work goes on: a bar on a terminal for what takes over a second, or a caller in the same program.
 
-use crate::error::CliError;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -9,8 +8,8 @@ use std::time::Duration;
 /// How long work may take before a bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Is told each step as it begins, and says whether to go on.
-pub type Watch = Box<dyn Fn(&'static str) -> bool + Send + Sync>;
+/// Is told each step as it begins.
+pub type Watch = Box<dyn Fn(&'static str) + Send + Sync>;
 
 /// The steps of a command, shown as `[####    ] 2/4 estimating the motion`.
 pub(crate) struct Progress {
@@ -44,19 +43,13 @@ impl Progress {
         Self { bar: ProgressBar::hidden(), step: Arc::default(), watch }
     }
 
-    /// Begins the next step, unless whoever watches wants no more of it.
-    pub(crate) fn begin(&self, what: &'static str) -> Result<(), CliError> {
-        self.step(what);
-        match &self.watch {
-            Some(watch) if !watch(what) => Err(CliError::Interrupted),
-            _ => Ok(()),
-        }
-    }
-
     /// Begins the next step.
     pub(crate) fn step(&self, what: &'static str) {
         self.say(what);
         self.bar.inc(1);
+        if let Some(watch) = &self.watch {
+            watch(what);
+        }
     }
 
     /// Says how far the present step is.

@@ -3,10 +3,10 @@
 use crate::errors::raised;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use recon_cli::{Failure, Watch};
+use recon_cli::{Failure, Watch, unless_stopped};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ enum News<T> {
 
 /// Runs `work` on a thread of its own while others may hold the interpreter; `progress` is called with the name of each step.
 ///
-/// Ctrl-C, or an exception of `progress`, ends the call at once; the thread ends at its next step, and nobody hears of it.
+/// Ctrl-C, or an exception of `progress`, ends the call at once and the work soon after.
 pub(crate) fn unlocked<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,
@@ -28,10 +28,15 @@ pub(crate) fn unlocked<T: Send + 'static>(
 ) -> PyResult<T> {
     let (to, from) = channel();
     let stop = Arc::new(AtomicBool::new(false));
-    let watch = watch(to.clone(), Arc::clone(&stop), progress.is_some());
+    let (tell, stopped) = (to.clone(), Arc::clone(&stop));
+    let watch = progress.is_some().then(|| -> Watch {
+        Box::new(move |step| {
+            // Whoever asked may have gone.
+            let _ = tell.send(News::Step(step));
+        })
+    });
     let begun = thread::Builder::new().name("recon".to_owned()).spawn(move || {
-        // Whoever asked may have gone.
-        let _ = to.send(News::Done(work(Some(watch))));
+        let _ = to.send(News::Done(unless_stopped(&stopped, || work(watch))));
     });
     begun.map_err(|error| PyRuntimeError::new_err(format!("no thread can be begun: {error}")))?;
     let from = std::sync::Mutex::new(from);
@@ -57,13 +62,4 @@ pub(crate) fn unlocked<T: Send + 'static>(
             return Err(error);
         }
     }
-}
-
-fn watch<T: Send + 'static>(to: Sender<News<T>>, stop: Arc<AtomicBool>, tell: bool) -> Watch {
-    Box::new(move |step| {
-        if tell {
-            let _ = to.send(News::Step(step));
-        }
-        !stop.load(Relaxed)
-    })
 }

@@ -42,18 +42,26 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    pub(super) fn add(&mut self, case: &Case, levels: Levels) {
+    /// Of one run.
+    pub(super) fn of(case: &Case, levels: Levels) -> Self {
         // Refused: the contacts contradict what is stated or assumed by more than can be mended.
-        let Ok(Some(run)) = bounded(case, levels) else { return };
+        let Ok(Some(run)) = bounded(case, levels) else { return Self::default() };
         let holds = case.body.is_between(&run.bounds);
         let found = run.outliers.iter().filter(|o| case.wrong[o.curve][o.index].is_some()).count();
-        self.bounded += 1;
-        self.hold += usize::from(holds);
-        self.warned += usize::from(run.warned);
-        self.silent += usize::from(!holds && !run.warned);
-        self.wrong += case.wrong.iter().flatten().flatten().count();
-        self.found += found;
-        self.taken += run.outliers.len() - found;
+        Self {
+            bounded: 1,
+            hold: usize::from(holds),
+            warned: usize::from(run.warned),
+            silent: usize::from(!holds && !run.warned),
+            wrong: case.wrong.iter().flatten().flatten().count(),
+            found,
+            taken: run.outliers.len() - found,
+        }
+    }
+
+    pub(super) fn counts(&mut self) -> [&mut usize; 7] {
+        let Self { bounded, hold, warned, silent, wrong, found, taken } = self;
+        [bounded, hold, warned, silent, wrong, found, taken]
     }
 }
 

@@ -9,7 +9,6 @@ mod noise;
 
 use judge::{Levels, Tally};
 use noise::{Case, Course, TrueNoise, WrongContacts};
-use recon::contact_kinematics::DirectionError;
 use std::ops::Range;
 
 const COUNTS: [usize; 3] = [300, 600, 1000];
@@ -26,7 +25,7 @@ pub(crate) fn main() -> Result<(), Failure> {
     let first: u64 = words.next().map_or(Ok(80_000), |a| a.parse())?;
     let seeds = first..first + runs;
     let tallies = rows().into_iter().map(|row| Ok((row, tally(row.1, seeds.clone())?)));
-    let tallies = tallies.collect::<Result<Vec<Tallies>, DirectionError>>()?;
+    let tallies = tallies.collect::<Result<Vec<Tallies>, Failure>>()?;
     println!("# Bounds of contacts whose noise is not as stated or assumed\n");
     println!(
         "Made by `cargo xtask study bounds_noise_wrong {runs} {first}`: {runs} runs a row, seeds {first} to {}. A third each \
@@ -75,13 +74,19 @@ fn rows() -> Vec<Row> {
     ]
 }
 
-fn tally(noise: TrueNoise, seeds: Range<u64>) -> Result<[Tally; COLUMNS], DirectionError> {
+fn tally(noise: TrueNoise, seeds: Range<u64>) -> Result<[Tally; COLUMNS], Failure> {
     let mut tallies = [Tally::default(); COLUMNS];
     for (column, count) in COUNTS.into_iter().enumerate() {
         for seed in seeds.clone() {
-            let case = Case::of_seed(noise, count, seed)?;
-            tallies[column].add(&case, Levels::Stated);
-            tallies[COUNTS.len() + column].add(&case, Levels::Estimated);
+            let run = crate::rows::row(|| -> Result<[[usize; 7]; 2], Failure> {
+                let case = Case::of_seed(noise, count, seed)?;
+                let of = |levels| Tally::of(&case, levels).counts().map(|count| *count);
+                Ok([of(Levels::Stated), of(Levels::Estimated)])
+            })?;
+            for (k, run) in run.into_iter().flatten().enumerate() {
+                let sums = tallies[column + k * COUNTS.len()].counts();
+                sums.into_iter().zip(run).for_each(|(sum, count)| *sum += count);
+            }
         }
     }
     Ok(tallies)

@@ -40,14 +40,16 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     println!("|---|---|---|---|---|");
     for k in 0..wanted {
         let (scene, body, duration) = variant(&mut source)?;
-        let run = scene.simulate(&ContactStart::touching(body), SampleTimes { duration, rate }, 1e-8)?;
-        let exact = ContactLog::from_simulation(&scene, &run)?;
-        let length = scene.body().semi_axes().element_sum() / 3.0;
-        let row = match estimated(&exact, length, first + k) {
-            Ok(found) => row(&errors(&found, &exact, &scene, length)),
-            Err(error) => format!("{error} | | |"),
-        };
-        println!("| {k} | {row} |");
+        let row = crate::rows::row(|| -> Result<String, Box<dyn Error>> {
+            let run = scene.simulate(&ContactStart::touching(body), SampleTimes { duration, rate }, 1e-8)?;
+            let exact = ContactLog::from_simulation(&scene, &run)?;
+            let length = scene.body().semi_axes().element_sum() / 3.0;
+            Ok(match estimated(&exact, length, first + k) {
+                Ok(found) => row(&errors(&found, &exact, &scene, length)),
+                Err(error) => format!("{error} | | |"),
+            })
+        })?;
+        row.iter().for_each(|row| println!("| {k} | {row} |"));
     }
     Ok(())
 }

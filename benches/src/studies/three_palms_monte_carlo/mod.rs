@@ -119,9 +119,8 @@ pub(crate) fn main() -> Result<(), Failure> {
     let words: Vec<String> = words.collect();
     let rows = Choice::new(&words)?.rows();
     introduce(runs, first, &words);
-    for line in in_parallel(&rows, |row| line(row, first..first + runs))? {
-        println!("{line}");
-    }
+    let lines = in_parallel(&rows, |k, row| crate::rows::row_of(k, || line(row, first..first + runs)))?;
+    lines.iter().flatten().for_each(|line| println!("{line}"));
     Ok(())
 }
 
@@ -153,17 +152,17 @@ fn introduce(runs: u64, first: u64, words: &[String]) {
 }
 
 /// The lines of the rows in their order, made by as many threads as there are processors.
-fn in_parallel(
+fn in_parallel<T: Send>(
     rows: &[Row],
-    line: impl Fn(&Row) -> Result<String, Failure> + Sync,
-) -> Result<Vec<String>, Failure> {
+    line: impl Fn(usize, &Row) -> Result<T, Failure> + Sync,
+) -> Result<Vec<T>, Failure> {
     let next = AtomicUsize::new(0);
     let work = || {
         let mut done = Vec::new();
         while let Some((k, row)) =
             Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|k| Some((k, rows.get(k)?)))
         {
-            done.push((k, line(row)));
+            done.push((k, line(k, row)));
         }
         done
     };
@@ -173,7 +172,7 @@ fn in_parallel(
         workers.into_iter().map(|worker| worker.join()).collect::<Result<Vec<_>, _>>()
     })
     .map_err(|_| "a worker ended early")?;
-    let mut lines: Vec<(usize, Result<String, Failure>)> = done.into_iter().flatten().collect();
+    let mut lines: Vec<(usize, Result<T, Failure>)> = done.into_iter().flatten().collect();
     lines.sort_by_key(|(k, _)| *k);
     lines.into_iter().map(|(_, line)| line).collect()
 }

@@ -9,7 +9,7 @@ use body::Body;
 use fault::{FAULTS, Fault};
 use recon::object_dynamics::{ContactLog, SensorLog};
 use recon::observer::{ContactNoiseLevel, ContactOptions, estimate_contacts};
-use tally::Tally;
+use tally::{Run, Tally, judged};
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -88,16 +88,19 @@ fn run(
     fault: Option<&Fault>,
     tally: &mut Tally,
 ) -> Result<(), Failure> {
-    let Some((log, truth)) = body.log(noise, rate, seconds)? else { return Ok(()) };
-    let log = match fault {
-        Some(fault) => fault.of_log(&log, body)?,
-        None => log,
-    };
-    let stated = fault.map_or(body.mass, |fault| fault.of_mass(body.mass));
-    let options = options(body, noise, known.then_some(stated));
-    let times: Vec<f64> = log.samples().iter().map(|sample| sample.t).collect();
-    let log = ContactLog::try_from(&log)?;
-    tally.take(|| estimate_contacts(&log, None, &options), &times, (&truth, rate));
+    let run = crate::rows::row(|| -> Result<Option<Run>, Failure> {
+        let Some((log, truth)) = body.log(noise, rate, seconds)? else { return Ok(None) };
+        let log = match fault {
+            Some(fault) => fault.of_log(&log, body)?,
+            None => log,
+        };
+        let stated = fault.map_or(body.mass, |fault| fault.of_mass(body.mass));
+        let options = options(body, noise, known.then_some(stated));
+        let times: Vec<f64> = log.samples().iter().map(|sample| sample.t).collect();
+        let log = ContactLog::try_from(&log)?;
+        Ok(Some(judged(|| estimate_contacts(&log, None, &options), &times, (&truth, rate))))
+    })?;
+    run.flatten().into_iter().for_each(|run| tally.take(run));
     Ok(())
 }
 

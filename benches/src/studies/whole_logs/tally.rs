@@ -8,6 +8,41 @@ use recon::observer::{ContactEstimate, ContactEstimateError, Reason, Reliability
 /// Deviations from which on an error is one that was not told.
 const BEYOND: f64 = 5.0;
 
+/// Milliseconds; of an estimate, whether a constant is named where it is refused, and of its errors in their deviations the largest, the sum of
+/// the squares and how many there are.
+pub(super) type Run = (f64, Option<(Option<bool>, [f64; 3])>);
+
+/// A run, whose log may lack some of the samples of the truth, of which there are so many a second.
+pub(super) fn judged(
+    run: impl Fn() -> Result<ContactEstimate, ContactEstimateError>,
+    times: &[f64],
+    (truth, rate): (&[BodyState], f64),
+) -> Run {
+    let clock = ThreadTime::now();
+    let found = run();
+    let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
+    let Ok(found) = found else { return (milliseconds, None) };
+    let (mut worst, mut squares, mut numbers) = (0.0_f64, 0.0, 0.0);
+    let reliable = found.reliability.is_reliable();
+    for (k, state) in found.states.iter().enumerate().filter(|(k, _)| found.relied_on[*k] || !reliable) {
+        let place = ((times[k] - times[0]) * rate).round() as usize;
+        let Some(at) = truth.get(place) else { continue };
+        let [p, v, w, _] = found.deviations[k];
+        let off = [(state.p_WCm - at.p_WCm) / p, (state.v_WCm - at.v_WCm) / v, (state.w_WO - at.w_WO) / w];
+        worst = off.iter().map(|off: &DVec3| off.abs().max_element()).fold(worst, f64::max);
+        squares += off.iter().map(|off| off.length_squared()).sum::<f64>();
+        numbers += 9.0;
+    }
+    let named = match &found.reliability {
+        Reliability::Unreliable(reasons) => {
+            let constant = |reason: &Reason| matches!(reason, Reason::Fault(_) | Reason::OtherBody { .. });
+            Some(reasons.iter().any(constant))
+        }
+        _ => None,
+    };
+    (milliseconds, Some((named, [worst, squares, numbers])))
+}
+
 #[derive(Default)]
 pub(super) struct Tally {
     relied_on: usize,
@@ -25,41 +60,15 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// A run, whose log may lack some of the samples of the truth, of which there are so many a second.
-    pub(super) fn take(
-        &mut self,
-        run: impl Fn() -> Result<ContactEstimate, ContactEstimateError>,
-        times: &[f64],
-        (truth, rate): (&[BodyState], f64),
-    ) {
-        let clock = ThreadTime::now();
-        let found = run();
-        self.milliseconds.push(1e3 * clock.elapsed().as_secs_f64());
-        let Ok(found) = found else {
-            self.refused += 1;
-            return;
-        };
-        let (mut worst, mut squares, mut numbers) = (0.0_f64, 0.0, 0.0);
-        let reliable = found.reliability.is_reliable();
-        for (k, state) in found.states.iter().enumerate().filter(|(k, _)| found.relied_on[*k] || !reliable) {
-            let place = ((times[k] - times[0]) * rate).round() as usize;
-            let Some(at) = truth.get(place) else { continue };
-            let [p, v, w, _] = found.deviations[k];
-            let off =
-                [(state.p_WCm - at.p_WCm) / p, (state.v_WCm - at.v_WCm) / v, (state.w_WO - at.w_WO) / w];
-            worst = off.iter().map(|off: &DVec3| off.abs().max_element()).fold(worst, f64::max);
-            squares += off.iter().map(|off| off.length_squared()).sum::<f64>();
-            numbers += 9.0;
-        }
-        match &found.reliability {
-            Reliability::Unreliable(reasons) => {
+    pub(super) fn take(&mut self, (milliseconds, judged): Run) {
+        self.milliseconds.push(milliseconds);
+        match judged {
+            None => self.refused += 1,
+            Some((Some(named), [worst, ..])) => {
                 self.rightly += usize::from(worst > BEYOND);
-                let constant =
-                    |reason: &Reason| matches!(reason, Reason::Fault(_) | Reason::OtherBody { .. });
-                let named = reasons.iter().any(constant);
                 *(if named { &mut self.named } else { &mut self.refused }) += 1;
             }
-            _ => {
+            Some((None, [worst, squares, numbers])) => {
                 self.relied_on += 1;
                 self.silent += usize::from(worst > BEYOND);
                 self.largest = self.largest.max(worst);
@@ -76,7 +85,8 @@ impl Tally {
     /// Of logs that are as stated.
     pub(super) fn row(&mut self) -> String {
         self.milliseconds.sort_by(f64::total_cmp);
-        let at = |share: f64| self.milliseconds[((self.runs() - 1) as f64 * share) as usize];
+        let place = |share: f64| ((self.runs() as f64 - 1.0) * share) as usize;
+        let at = |share: f64| self.milliseconds.get(place(share)).copied().unwrap_or(f64::NAN);
         format!(
             "{} | {} | {:.2} | {} | {:.1} | {} of {} | {:.0} | {:.0}",
             self.runs(),

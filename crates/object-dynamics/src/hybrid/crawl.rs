@@ -11,7 +11,8 @@ use super::run::{MOST_STEPS, Run};
 use super::step::{Stepped, Stepper};
 use crate::ContactMode;
 use crate::contacts::{MOST_PALMS, Modes, NO_DIRECTIONS};
-use contact_kinematics::SupportFunction;
+use crate::integrate::IntegrationError;
+use contact_kinematics::{SupportFunction, is_stopped};
 use glam::{DQuat, DVec3};
 
 /// Sticking contacts creep by this share of the tolerance: what makes their forces one.
@@ -38,6 +39,9 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
         // Of order 1 it takes many steps: four times those that are as long as the tolerance allows.
         let share = (0.25 * MOST_STEPS as f64 * self.crawl_step() * self.units.rate).min(1.0);
         while self.t < last {
+            if is_stopped() {
+                return Err(Error::Integration(IntegrationError::Stopped { t: self.t }));
+            }
             self.pace(self.t, &self.y.clone(), share)?;
             let until = self.next_stop(last, shortest);
             let left = until - self.t;

@@ -1,4 +1,5 @@
 use super::tableau::{A, C, D, E3, E5};
+use contact_kinematics::is_stopped;
 use thiserror::Error;
 
 /// Safety factor and step-ratio limits of the step controller (Hairer, Norsett, Wanner, section II.4).
@@ -61,6 +62,12 @@ pub enum IntegrationError<E> {
     /// The state or its rate became NaN or infinite, and smaller steps did not help.
     #[error("state is no longer finite after t = {t} s")]
     NotFinite {
+        /// Last good time in s.
+        t: f64,
+    },
+    /// The caller wanted no more of it.
+    #[error("stopped at t = {t} s")]
+    Stopped {
         /// Last good time in s.
         t: f64,
     },
@@ -171,6 +178,9 @@ where
     ) -> Result<(), IntegrationError<E>> {
         let mut limit_ratio = LARGEST_RATIO;
         loop {
+            if is_stopped() {
+                return Err(IntegrationError::Stopped { t: self.t });
+            }
             let remaining = t_limit - self.t;
             // A last step that is a hair too short or too long is stretched to end on the limit exactly.
             let ends = self.next_step * 1.01 >= remaining;

@@ -10,6 +10,7 @@ use super::rows::Rows;
 use super::solve::{Solved, Step};
 use super::state::{MOTION, Motion, Tangent, Turn};
 use crate::rigid::{cross_matrix, exponential};
+use contact_kinematics::is_stopped;
 use glam::{DQuat, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector6};
 
@@ -118,6 +119,9 @@ impl Problem<'_> {
 
     /// None where the unknowns are beyond all numbers.
     pub(super) fn linearise<const P: usize>(&self, at: &Unknowns) -> Option<Equations<P>> {
+        if is_stopped() {
+            return None;
+        }
         let zero = NodeEquations {
             own: Transition::zeros(),
             next: Transition::zeros(),
@@ -174,6 +178,9 @@ impl Problem<'_> {
         step: &Step<P>,
         equations: &Equations<P>,
     ) -> Option<Trial> {
+        if is_stopped() {
+            return None;
+        }
         let Step { motions: steps, body } = step;
         let numbers = Vector6::from_fn(|i, _| if P > i + 1 { body[i + 1] } else { 0.0 });
         let after = if P > 0 { at.body.moved(body[0], &numbers) } else { at.body };

@@ -21,6 +21,21 @@ pub use simulate::Simulated;
 
 use crate::error::CliError;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Runs `work` on this thread until it is done, or another thread sets `stop`: within a few hundredths of a second.
+///
+/// # Errors
+/// That of `work`; or [`FailureKind::Interrupted`].
+pub fn unless_stopped<T>(
+    stop: &Arc<AtomicBool>,
+    work: impl FnOnce() -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    recon::contact_kinematics::unless_stopped(stop, work).unwrap_or_else(|stopped| {
+        Err(Failure { kind: FailureKind::Interrupted, message: stopped.to_string() })
+    })
+}
 
 /// Checks a folder of results by its files alone, as `recon check` does; returns what held.
 ///

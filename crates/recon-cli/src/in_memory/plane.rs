@@ -163,7 +163,7 @@ impl PlaneReconstructed {
     /// compared with.
     ///
     /// # Errors
-    /// Why the log gives no estimate; or `watch` wanted no more.
+    /// Why the log gives no estimate.
     pub fn of(
         log: &PlaneLog,
         scene: &PlaneScene,
@@ -174,7 +174,7 @@ impl PlaneReconstructed {
         if identify {
             known.mass = None;
         }
-        Progress::watched(watch).begin("estimating the motion")?;
+        Progress::watched(watch).step("estimating the motion");
         let made = Box::new(planar_motion(log.log.as_ref().clone(), &known)?);
         let figures = made.figures();
         let text = recon_io::with_brief_numbers(made.describe().trim_end());

@@ -46,7 +46,7 @@ impl Reconstructed {
     /// the log is only compared with.
     ///
     /// # Errors
-    /// Why the log gives no estimate; or `watch` wanted no more.
+    /// Why the log gives no estimate.
     pub fn of(log: &Log, scene: &Scene, options: &[String], watch: Option<Watch>) -> Result<Self, Failure> {
         let args = arguments(options, None)?;
         let progress = Progress::watched(watch);

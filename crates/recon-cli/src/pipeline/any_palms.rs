@@ -104,7 +104,7 @@ pub(crate) fn estimate_any_palms(
     if !request.identify {
         options.body = request.scene.mass_properties().ok().flatten();
     }
-    progress.begin("estimating the motion")?;
+    progress.step("estimating the motion");
     let (log, truth) = log.split_truth();
     let estimate = estimate_contacts(&log, None, &options).map_err(|error| match error {
         ContactEstimateError::NoSize => CliError::SizeNotStated,
@@ -121,7 +121,7 @@ pub(crate) fn estimate_any_palms(
     warnings.extend(not_relied_on(&estimate));
     warnings.extend(impulses_not_read(&log, &options));
     warnings.extend(misread(&log, &estimate));
-    progress.begin("bounding the shape")?;
+    progress.step("bounding the shape");
     let bounds = match estimate_bounds(&log, &estimate, &curves, options.noise.contact, CONFIDENCE) {
         Ok(bounds) => bounds,
         Err(error) => {

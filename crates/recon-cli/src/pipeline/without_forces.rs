@@ -31,13 +31,13 @@ pub(crate) fn without_forces(
     progress: &Progress,
 ) -> Result<WithoutForces, CliError> {
     let (log, _) = log.split_truth();
-    progress.begin("estimating motion and shape")?;
+    progress.step("estimating motion and shape");
     let known = KnownTouch {
         gravity: DVec3::new(0.0, 0.0, -scene.gravity),
         contact_noise: scene.sensors.contact_std.filter(|noise| *noise > 0.0),
     };
     let found = estimate_without_forces(&log, &known)?;
-    progress.begin("bounding the shape")?;
+    progress.step("bounding the shape");
     let noise = found.evidence.noise_explains;
     let bounded = if noise > NOTABLE_NOISE * found.shape.semi_axes.max_element() {
         warnings.push(format!(

@@ -114,10 +114,45 @@ fn failures_speak_of_rows_and_keywords() {
     values[place][7] = f64::NAN;
     let failure = Log::of_columns(&names, &slices(&values), &scene).err().unwrap();
     assert!(failure.message.contains("row 7, column `f_2`"), "{failure}");
-    // Whoever watches is told each step, and may want no more.
-    let told = Arc::new(AtomicUsize::new(0));
+}
+
+#[test]
+fn an_estimate_is_stopped_within_its_first_step() {
+    let scratch = scratch_with_log("in_memory_stopped");
+    let scene = Scene::read(scratch.path().join("scene.toml")).unwrap();
+    let log = Log::read(&scratch.path().join("log.csv"), &scene, None).unwrap();
+    let stop = Arc::new(AtomicBool::new(false));
+    let (told, wanted) = (Arc::new(AtomicUsize::new(0)), Arc::clone(&stop));
     let counted = Arc::clone(&told);
-    let watch = Box::new(move |_| counted.fetch_add(1, SeqCst) == 0);
-    let failure = Reconstructed::of(&log, &scene, &[], Some(watch)).err().unwrap();
-    assert_eq!((failure.kind, told.load(SeqCst)), (FailureKind::Interrupted, 2));
+    let watch: Watch = Box::new(move |_| {
+        counted.fetch_add(1, SeqCst);
+        wanted.store(true, SeqCst);
+    });
+    let failure = unless_stopped(&stop, || Reconstructed::of(&log, &scene, &[], Some(watch))).err().unwrap();
+    assert_eq!((failure.kind, told.load(SeqCst)), (FailureKind::Interrupted, 1));
+    assert!(failure.message.starts_with("stopped"), "{failure}");
+}
+
+#[test]
+fn a_simulation_of_minutes_ends_as_soon_as_another_thread_wants_it() {
+    // Some ten million turns of a ball.
+    let text = scene()
+        .replace("[1.0, 1.45, 2.05]", "[0.4, 0.4, 0.4]")
+        .replace("kind = \"ellipsoid\", semi_axes = [2.5, 2.0, 1.0]", "kind = \"sphere\", radius = 1.0")
+        .replace("[0.0, 0.3, 0.3]", "[0.0, 0.0, 1e3]")
+        .replace("duration = 4.2", "duration = 1e5")
+        .replace("sample_rate = 100.0", "sample_rate = 1.0");
+    let scene = Scene::parse(&text).unwrap();
+    let stop = Arc::new(AtomicBool::new(false));
+    let setter = Arc::clone(&stop);
+    let asked = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(100));
+        setter.store(true, SeqCst);
+        Instant::now()
+    });
+    let failure = unless_stopped(&stop, || Simulated::of(&scene, &[], false)).err().unwrap();
+    let late = asked.join().unwrap().elapsed();
+    assert_eq!(failure.kind, FailureKind::Interrupted);
+    // A few milliseconds; on a busy machine more.
+    assert!(late < Duration::from_secs(1), "{late:?}");
 }

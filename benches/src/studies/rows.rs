@@ -1,0 +1,283 @@
+//! Studies of many runs in parts: each process does its share of the runs and keeps what came of each of them in a file; what was kept makes
+//! the table that one process would have made.
+//!
+//! `study NAME WORD.. --shard K/N --rows FOLDER` does the runs whose number leaves the rest `K` by `N`, except those that the file of this
+//! part has from before. `study NAME WORD.. --merge FOLDER` does none: it prints the table from the files of all parts.
+
+mod cells;
+
+pub(crate) use cells::Cells;
+
+use std::collections::BTreeMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use thiserror::Error;
+
+/// Why the runs of a part, or the table of all, cannot be had.
+#[derive(Debug, Error)]
+pub(crate) enum RowsError {
+    #[error("--shard needs K/N with K below N, as 0/4, and not {given:?}")]
+    Shard { given: String },
+    #[error("{study} is not made in parts; these are: {}", of_runs.join(", "))]
+    Whole { study: String, of_runs: Vec<String> },
+    #[error(
+        "after the words of the study come --shard K/N --rows FOLDER, or --merge FOLDER, and not {given:?}"
+    )]
+    Usage { given: String },
+    #[error("{}", path.display())]
+    Io { path: PathBuf, source: io::Error },
+    #[error("{} is of another study: {found:?} and not {asked:?}; give another folder", path.display())]
+    OtherStudy { path: PathBuf, found: Vec<String>, asked: Vec<String> },
+    #[error("{}, line {line} is no run of this study; delete the file to make it anew", path.display())]
+    Line { path: PathBuf, line: usize },
+    #[error("what is kept of run {run} is not what this study keeps; make it anew")]
+    Cells { run: usize },
+    #[error("run {run} is in {} and in another file; merge parts of one division", path.display())]
+    Twice { run: usize, path: PathBuf },
+    #[error("run {run} is in no file; do its part first")]
+    Missing { run: usize },
+}
+
+/// What one process does.
+#[derive(Default)]
+enum Part {
+    /// All, and nothing is kept.
+    #[default]
+    All,
+    /// Those whose number leaves the rest `k` by `n`.
+    One { k: usize, n: usize, path: PathBuf, file: File },
+    /// None.
+    Merged,
+}
+
+struct Rows {
+    part: Part,
+    known: BTreeMap<usize, Vec<String>>,
+    next: usize,
+}
+
+/// The runs of one study, which several threads may make.
+struct Runs(Mutex<Rows>);
+
+static RUNS: Runs = Runs::new();
+
+/// The words of the study itself.
+pub(crate) fn words() -> impl Iterator<Item = String> {
+    std::env::args().skip(2).take_while(|word| !word.starts_with("--"))
+}
+
+/// Reads what part is asked for, and what is known of it, of one of the studies that are made of runs.
+pub(crate) fn begin(of_runs: &[&str]) -> Result<(), RowsError> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let (study, options) =
+        args.split_at(args.iter().position(|word| word.starts_with("--")).unwrap_or(args.len()));
+    if let Some(name) = study.first().filter(|of| !options.is_empty() && !of_runs.contains(&of.as_str())) {
+        let of_runs = of_runs.iter().map(ToString::to_string).collect();
+        return Err(RowsError::Whole { study: name.clone(), of_runs });
+    }
+    RUNS.begin(study, &options.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+/// What came of the next run; none where it is of another part.
+pub(crate) fn row<T: Cells, E: From<RowsError>>(
+    compute: impl FnOnce() -> Result<T, E>,
+) -> Result<Option<T>, E> {
+    RUNS.next(compute)
+}
+
+/// What came of the run of this number; none where it is of another part.
+pub(crate) fn row_of<T: Cells, E: From<RowsError>>(
+    run: usize,
+    compute: impl FnOnce() -> Result<T, E>,
+) -> Result<Option<T>, E> {
+    RUNS.of(run, compute)
+}
+
+impl Runs {
+    const fn new() -> Self {
+        Self(Mutex::new(Rows { part: Part::All, known: BTreeMap::new(), next: 0 }))
+    }
+
+    fn rows(&self) -> MutexGuard<'_, Rows> {
+        // A run is known or not, also after a panic.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn begin(&self, study: &[String], options: &[&str]) -> Result<(), RowsError> {
+        let mut rows = self.rows();
+        match *options {
+            [] => {}
+            ["--shard", of, "--rows", folder] => {
+                let parts = of.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+                let (k, n): (usize, usize) =
+                    parts.filter(|(k, n)| k < n).ok_or_else(|| RowsError::Shard { given: of.to_owned() })?;
+                let path = Path::new(folder).join(format!("{k}-of-{n}.rows"));
+                let io = |source| RowsError::Io { path: path.clone(), source };
+                fs::create_dir_all(folder).map_err(io)?;
+                let mut file = OpenOptions::new().create(true).append(true).open(&path).map_err(io)?;
+                let whole = rows.read(&path, study)?;
+                // Of a line that was begun and not ended nothing is kept.
+                file.set_len(whole).map_err(io)?;
+                if whole == 0 {
+                    file.write_all(line(study).as_bytes()).map_err(io)?;
+                }
+                rows.part = Part::One { k, n, path, file };
+            }
+            ["--merge", folder] => {
+                let io = |source| RowsError::Io { path: folder.into(), source };
+                for entry in fs::read_dir(folder).map_err(io)? {
+                    let path = entry.map_err(io)?.path();
+                    if path.extension().is_some_and(|of| of == "rows") {
+                        rows.read(&path, study)?;
+                    }
+                }
+                rows.part = Part::Merged;
+            }
+            _ => return Err(RowsError::Usage { given: options.join(" ") }),
+        }
+        Ok(())
+    }
+
+    fn next<T: Cells, E: From<RowsError>>(
+        &self,
+        compute: impl FnOnce() -> Result<T, E>,
+    ) -> Result<Option<T>, E> {
+        let run = {
+            let mut rows = self.rows();
+            rows.next += 1;
+            rows.next - 1
+        };
+        self.of(run, compute)
+    }
+
+    fn of<T: Cells, E: From<RowsError>>(
+        &self,
+        run: usize,
+        compute: impl FnOnce() -> Result<T, E>,
+    ) -> Result<Option<T>, E> {
+        {
+            let rows = self.rows();
+            if let Some(cells) = rows.known.get(&run) {
+                return Ok(Some(T::of_row(cells).ok_or(RowsError::Cells { run })?));
+            }
+            match rows.part {
+                Part::Merged => return Err(RowsError::Missing { run }.into()),
+                Part::One { k, n, .. } if run % n != k => return Ok(None),
+                _ => {}
+            }
+        }
+        let made = compute()?;
+        if let Part::One { path, file, .. } = &mut self.rows().part {
+            let mut cells = vec![run.to_string()];
+            made.write(&mut cells);
+            let written = file.write_all(line(&cells).as_bytes());
+            written.map_err(|source| RowsError::Io { path: path.clone(), source })?;
+        }
+        Ok(Some(made))
+    }
+}
+
+/// Cells as one line.
+fn line(cells: &[String]) -> String {
+    format!("{}\n", serde_json::Value::from(cells))
+}
+
+impl Rows {
+    /// Reads the whole lines of a file of one part; returns how many bytes they have.
+    fn read(&mut self, path: &Path, study: &[String]) -> Result<u64, RowsError> {
+        let text =
+            fs::read_to_string(path).map_err(|source| RowsError::Io { path: path.to_owned(), source })?;
+        let whole = text.rfind('\n').map_or(0, |end| end + 1);
+        for (i, text) in text[..whole].lines().enumerate() {
+            let wrong = || RowsError::Line { path: path.to_owned(), line: i + 1 };
+            let mut cells: Vec<String> = serde_json::from_str(text).map_err(|_| wrong())?;
+            if i == 0 {
+                if cells != study {
+                    let (path, asked) = (path.to_owned(), study.to_vec());
+                    return Err(RowsError::OtherStudy { path, found: cells, asked });
+                }
+                continue;
+            }
+            let run = cells.first().and_then(|cell| cell.parse().ok()).ok_or_else(wrong)?;
+            cells.remove(0);
+            if self.known.insert(run, cells).is_some() {
+                return Err(RowsError::Twice { run, path: path.to_owned() });
+            }
+        }
+        Ok(whole as u64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Failure = Box<dyn std::error::Error>;
+
+    /// A table of some runs, and which of them were computed.
+    fn study(runs: &Runs, failing_at: usize) -> Result<(String, Vec<usize>), Failure> {
+        let (mut sum, mut computed, mut words) = (0.0, Vec::new(), Vec::new());
+        for k in 0..10 {
+            let made = runs.next(|| -> Result<_, Failure> {
+                if k == failing_at {
+                    return Err("killed".into());
+                }
+                computed.push(k);
+                Ok((1.0 / (k as f64 - 3.0), (k % 2 == 0).then(|| format!("{k}\n\"")), [k, k * k]))
+            })?;
+            let Some((number, word, [_, square])) = made else { continue };
+            sum += if number.is_finite() { number } else { square as f64 };
+            words.extend(word);
+        }
+        Ok((format!("{sum:?} {words:?}"), computed))
+    }
+
+    fn runs(options: &[&str]) -> Result<Runs, RowsError> {
+        let runs = Runs::new();
+        runs.begin(&["small".to_owned(), "7".to_owned()], options)?;
+        Ok(runs)
+    }
+
+    fn folder(name: &str) -> String {
+        let path = std::env::temp_dir().join(format!("recon-rows-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        path.to_string_lossy().into_owned()
+    }
+
+    #[test]
+    fn parts_that_were_broken_off_and_gone_on_with_merge_to_the_table_of_one_process() -> Result<(), Failure>
+    {
+        let folder = folder("merged");
+        for part in ["0/3", "1/3"] {
+            study(&runs(&["--shard", part, "--rows", &folder])?, 99)?;
+        }
+        let last = ["--shard", "2/3", "--rows", &folder];
+        assert!(study(&runs(&last)?, 8).is_err());
+        let path = Path::new(&folder).join("2-of-3.rows");
+        // As if the process had ended in the middle of a line.
+        OpenOptions::new().append(true).open(path)?.write_all(b"[\"8\",\"0.")?;
+        assert_eq!(study(&runs(&last)?, 99)?.1, [8]);
+        let (merged, computed) = study(&runs(&["--merge", &folder])?, 99)?;
+        assert_eq!((merged, computed.len()), (study(&runs(&[])?, 99)?.0, 0));
+        Ok(fs::remove_dir_all(folder)?)
+    }
+
+    #[test]
+    fn what_is_missing_twice_or_of_another_study_is_named() -> Result<(), Failure> {
+        let folder = folder("wrong");
+        study(&runs(&["--shard", "0/2", "--rows", &folder])?, 99)?;
+        let said = |error: Failure| error.to_string();
+        let missing = study(&runs(&["--merge", &folder])?, 99).map_err(said);
+        assert_eq!(missing, Err("run 1 is in no file; do its part first".to_owned()));
+        study(&runs(&["--shard", "0/1", "--rows", &folder])?, 99)?;
+        assert!(matches!(runs(&["--merge", &folder]), Err(RowsError::Twice { run: 0, .. })));
+        let other = Runs::new().begin(&["small".to_owned()], &["--merge", &folder]);
+        assert!(matches!(other, Err(RowsError::OtherStudy { .. })));
+        for wrong in [&["--shard", "2/2", "--rows", &folder][..], &["--merge"]] {
+            assert!(runs(wrong).is_err());
+        }
+        Ok(fs::remove_dir_all(folder)?)
+    }
+}
