@@ -1,11 +1,13 @@
 //! The pipeline without files gives what the command writes, to the last bit.
 
 use crate::common::{Run, Scratch, Table, scratch_with_log};
-use recon_cli::{Bounded, FailureKind, Follower, Log, Reconstructed, Simulated};
+use crate::interrupted::spinning_ball;
+use recon_cli::{Bounded, FailureKind, Follower, Log, Reconstructed, Simulated, Watch, unless_stopped};
 use recon_io::Scene;
 use std::fs;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
+use std::time::{Duration, Instant};
 
 /// A table as names and columns.
 fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
@@ -136,13 +138,7 @@ fn an_estimate_is_stopped_within_its_first_step() {
 #[test]
 fn a_simulation_of_minutes_ends_as_soon_as_another_thread_wants_it() {
     // Some ten million turns of a ball.
-    let text = scene()
-        .replace("[1.0, 1.45, 2.05]", "[0.4, 0.4, 0.4]")
-        .replace("kind = \"ellipsoid\", semi_axes = [2.5, 2.0, 1.0]", "kind = \"sphere\", radius = 1.0")
-        .replace("[0.0, 0.3, 0.3]", "[0.0, 0.0, 1e3]")
-        .replace("duration = 4.2", "duration = 1e5")
-        .replace("sample_rate = 100.0", "sample_rate = 1.0");
-    let scene = Scene::parse(&text).unwrap();
+    let scene = Scene::parse(&spinning_ball(1e5, 1.0, 1e3)).unwrap();
     let stop = Arc::new(AtomicBool::new(false));
     let setter = Arc::clone(&stop);
     let asked = std::thread::spawn(move || {

@@ -41,7 +41,7 @@ fn catches_interruptions(id: u32) -> bool {
 }
 
 /// A ball that spins on its palms, for as long and as fast as is asked for.
-fn spinning_ball(duration: f64, rate: f64, spin: f64) -> String {
+pub(crate) fn spinning_ball(duration: f64, rate: f64, spin: f64) -> String {
     scene()
         .replace("[1.0, 1.45, 2.05]", "[0.4, 0.4, 0.4]")
         .replace("kind = \"ellipsoid\", semi_axes = [2.5, 2.0, 1.0]", "kind = \"sphere\", radius = 1.0")
