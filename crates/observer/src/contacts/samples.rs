@@ -47,8 +47,10 @@ struct Link<'a> {
     duration: f64,
     /// By what was measured, after each interval.
     carried: Vec<Motion>,
-    /// What the next node's motion differs by.
+    /// What the next node's motion differs by, and by how much of that noise bent the motion: the other part is what steps from node to node
+    /// miss of a moment that has a kink between them, as where a slip ends, and which those from sample to sample have.
     left: Tangent,
+    bent: Tangent,
     /// Covariance of impulse and moment about the centre of mass that noise adds over the link.
     noise: Matrix6<f64>,
 }
@@ -62,6 +64,8 @@ impl<'a> Link<'a> {
         samples: std::ops::Range<usize>,
     ) -> Self {
         let mut carried = Carried::<0>::new(found.motions[j], &found.body);
+        let stepped =
+            problem.carried(problem.nodes[j], found.motions[j], &found.body, &[problem.nodes[j + 1]]);
         let (mut motions, mut noise) = (Vec::with_capacity(samples.len()), WrenchNoise::default());
         for k in samples.clone() {
             carried.step(
@@ -77,6 +81,7 @@ impl<'a> Link<'a> {
             body: &found.body,
             duration: log.times[samples.end] - log.times[samples.start],
             left: found.motions[j + 1].from(&carried.motion),
+            bent: found.motions[j + 1].from(&stepped[0]),
             noise: problem.about(&noise, carried.motion.p).white,
             carried: motions,
             samples,
@@ -88,18 +93,19 @@ impl<'a> Link<'a> {
     fn at(&self, log: &Record, k: usize, ends: [&Deviations; 2]) -> (Motion, Deviations) {
         let h = self.duration;
         let s = (log.times[k] - log.times[self.samples.start]) / h;
-        let part = |i: usize| DVec3::new(self.left[i], self.left[i + 1], self.left[i + 2]);
-        // Of a cubic that ends with a value and a slope; and its slope over the duration.
-        let cubic = |value: DVec3, slope: DVec3| {
+        let part = |of: &Tangent, i: usize| DVec3::new(of[i], of[i + 1], of[i + 2]);
+        let (left, bent) = (&self.left, &self.bent);
+        // Of a cubic that ends with a value and a slope; and the slope of that which noise bent, over the duration.
+        let cubic = |value: DVec3, bent: DVec3, slope: DVec3| {
             let at = value * (s * s * (3.0 - 2.0 * s)) + slope * (h * s * s * (s - 1.0));
-            let rate = value * (6.0 * s * (1.0 - s) / h) + slope * (s * (3.0 * s - 2.0));
+            let rate = bent * (6.0 * s * (1.0 - s) / h) + slope * (s * (3.0 * s - 2.0));
             (at, rate)
         };
         let before = &self.carried[k - self.samples.start - 1];
         let turn = self.body.turn(before.q, before.L);
         let inertia = self.body.inertia_along(turn.R);
-        let (p, v) = cubic(part(0), part(3));
-        let (turned, spin) = cubic(part(9), turn.K * part(6));
+        let (p, v) = cubic(part(left, 0), part(bent, 0), part(left, 3));
+        let (turned, spin) = cubic(part(left, 9), part(bent, 9), turn.K * part(left, 6));
         let motion = Motion {
             p: before.p + p,
             v: before.v + v,
