@@ -24,10 +24,10 @@ impl Drop for Before {
     }
 }
 
-/// Runs `work` on this thread until it is done, or `stop` is set. Simulations, estimates and bounds then end within a few hundredths of a
-/// second; what they gave up with is dropped.
+/// Runs `work` on this thread until it is done, or `stop` is set. Simulations and estimates of motion, whose loops ask, then end after a
+/// step or two; what they gave up with is dropped.
 ///
-/// What they begin on threads of their own is not ended. `stop` may be set at any time and by any thread, also before.
+/// Bounds, contact modes and planners do not ask yet: they run to their end. What work begins on threads of its own is not ended. `stop` may be set at any time and by any thread, also before.
 ///
 /// # Errors
 /// [`Stopped`] once `stop` is set, whatever became of `work`.

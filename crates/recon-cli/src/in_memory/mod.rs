@@ -24,7 +24,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Runs `work` on this thread until it is done, or another thread sets `stop`: within a few hundredths of a second.
+/// Runs `work` on this thread until it is done, or another thread sets `stop`, where loops ask
+/// (simulations and estimates of motion; bounds run to their end).
 ///
 /// # Errors
 /// That of `work`; or [`FailureKind::Interrupted`].
