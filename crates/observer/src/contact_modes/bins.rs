@@ -82,14 +82,10 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    /// Normal steps of the deviation `step` from anywhere in a bin.
-    pub(super) fn new(bins: &Bins, step: f64, ends: Ends) -> Self {
-        let count = bins.count();
+    /// Of no steps yet, on so many bins.
+    pub(super) fn on(count: usize) -> Self {
         let [under, over] = [Vec::with_capacity(count), Vec::with_capacity(count)];
-        let (rows, row) = (Vec::with_capacity(count), vec![0.0; count]);
-        let mut walk = Self { rows, shares: Vec::new(), under, over, row };
-        walk.set(bins, step, ends);
-        walk
+        Self { rows: Vec::with_capacity(count), shares: Vec::new(), under, over, row: vec![0.0; count] }
     }
 
     /// Makes room for steps of any size.
@@ -98,7 +94,7 @@ impl Walk {
         self.shares.reserve(count * count - self.shares.len());
     }
 
-    /// Of other steps on as many bins; allocates nothing where there is room.
+    /// Normal steps of the deviation `step` from anywhere in a bin; allocates nothing where there is room.
     pub(super) fn set(&mut self, bins: &Bins, step: f64, ends: Ends) {
         self.rows.clear();
         self.shares.clear();
@@ -154,10 +150,9 @@ fn fill(bins: &Bins, step: f64, from: usize, ends: Ends, row: &mut [f64]) -> [f6
     let mut over = 1.0 - below(bins.end());
     let far = FAR * step;
     let mut to_lower = under;
-    for to in 0..row.len() {
-        if bins.upper[to] < a - far || bins.lower[to] > b + far {
-            continue;
-        }
+    let near = bins.upper.partition_point(|upper| *upper < a - far)
+        ..bins.lower.partition_point(|lower| *lower <= b + far);
+    for to in near {
         let to_upper = below(bins.upper[to]);
         row[to] = (to_upper - to_lower).max(0.0);
         to_lower = to_upper;
@@ -187,19 +182,25 @@ fn fill(bins: &Bins, step: f64, from: usize, ends: Ends, row: &mut [f64]) -> [f6
 mod tests {
     use super::*;
 
+    fn stepped(bins: &Bins, step: f64, ends: Ends) -> Walk {
+        let mut walk = Walk::on(bins.count());
+        walk.set(bins, step, ends);
+        walk
+    }
+
     #[test]
     fn nothing_is_lost_and_a_step_has_its_variance() {
         let bins = Bins::new(40, |x| x);
         let open = Ends { reflected: 0.0, stops: false };
         for step in [0.003, 0.02, 0.3, 30.0] {
             for ends in [open, Ends { reflected: 0.5, stops: true }, Ends { reflected: 1.0, stops: false }] {
-                let walk = Walk::new(&bins, step, ends);
+                let walk = stepped(&bins, step, ends);
                 let sum = |i: usize| walk.row(i).2.iter().sum::<f64>() + walk.under[i] + walk.over[i];
                 assert!((0..40).all(|i| (sum(i) - 1.0).abs() < 1e-12), "{step} {ends:?}");
                 assert!(!ends.stops || walk.over.iter().all(|over| *over == 0.0));
             }
         }
-        let walk = Walk::new(&bins, 0.1, open);
+        let walk = stepped(&bins, 0.1, open);
         let mut next = [0.0; 40];
         let mut start = [0.0; 40];
         start[20] = 1.0;

@@ -141,23 +141,28 @@ impl Chain {
         [self.off * worth.off, dot(&self.speeds, &worth.speeds), dot(&self.ratios, &worth.ratios)]
     }
 
-    /// Weighs every cell by its likelihood; returns the logarithm of the density of what was read.
-    pub(super) fn weigh(&mut self, of: &Likelihood) -> f64 {
+    /// Weighs every cell by its likelihood; returns the logarithm of the density of what was read. `spare` is any chain of these bins.
+    pub(super) fn weigh(&mut self, of: &Likelihood, spare: &mut Self) -> f64 {
         let mut largest = f64::NEG_INFINITY;
         self.each(of, |mass, log| {
             if *mass > FAINT {
                 largest = largest.max(log);
             }
         });
+        spare.clone_from(self);
         let mut sum = 0.0;
         if largest > f64::NEG_INFINITY {
-            self.each(of, |mass, log| sum += *mass * (log - largest).exp());
+            spare.each(of, |mass, log| {
+                *mass *= (log - largest).exp();
+                sum += *mass;
+            });
         }
         // A faint cell may be all that explains the sample.
         if !(1e-12..1e12).contains(&sum) {
             return self.in_logs(of);
         }
-        self.each(of, |mass, log| *mass *= (log - largest).exp() / sum);
+        spare.each(of, |mass, _| *mass /= sum);
+        std::mem::swap(self, spare);
         largest + sum.ln()
     }
 

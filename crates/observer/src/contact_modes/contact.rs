@@ -17,6 +17,7 @@ pub(super) struct Contact {
     /// Sum over the frictions, by their weights: what the slip is weighed against.
     mean: Chain,
     spare: Chain,
+    tried: Chain,
 }
 
 /// What a contact's forces tell.
@@ -46,7 +47,8 @@ impl Contact {
             log_evidence: vec![0.0; grid.values.len()],
             likelihood: Likelihood::none(steps),
             mean: chain.clone(),
-            spare: chain,
+            spare: chain.clone(),
+            tried: chain,
         }
     }
 
@@ -71,7 +73,7 @@ impl Contact {
                 self.likelihood.off = off - touching;
                 shift = *touching;
             }
-            self.log_evidence[i] += self.chains[i].weigh(&self.likelihood) + shift;
+            self.log_evidence[i] += self.chains[i].weigh(&self.likelihood, &mut self.spare) + shift;
         }
     }
 
@@ -79,16 +81,16 @@ impl Contact {
     pub(super) fn weigh_slip(&mut self, slip: &Slip, turn: f64, weight: f64, steps: &Steps) {
         self.set_slip(slip, turn, weight, steps);
         for (chain, log_evidence) in self.chains.iter_mut().zip(&mut self.log_evidence) {
-            *log_evidence += chain.weigh(&self.likelihood);
+            *log_evidence += chain.weigh(&self.likelihood, &mut self.spare);
         }
     }
 
     /// What the modes would be with this slip, without taking it; needs [`Self::average`] before.
     pub(super) fn try_slip(&mut self, slip: &Slip, turn: f64, weight: f64, steps: &Steps) -> Modes {
         self.set_slip(slip, turn, weight, steps);
-        self.spare.clone_from(&self.mean);
-        self.spare.weigh(&self.likelihood);
-        of(&self.spare)
+        self.tried.clone_from(&self.mean);
+        self.tried.weigh(&self.likelihood, &mut self.spare);
+        of(&self.tried)
     }
 
     fn set_slip(&mut self, slip: &Slip, turn: f64, weight: f64, steps: &Steps) {

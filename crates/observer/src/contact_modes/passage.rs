@@ -50,9 +50,12 @@ impl Pace {
         Self { kinds, kind, steps, weights }
     }
 
-    /// What happens in a step of each kind, of a contact with this friction.
-    fn of_friction(&self, friction: f64) -> Vec<Steps> {
-        self.kinds.iter().map(|dt| Steps::of_friction(*dt, friction)).collect()
+    /// What happens to a contact with this friction.
+    pub(super) fn at(&self, friction: f64) -> AtFriction {
+        AtFriction {
+            friction,
+            steps: self.kinds.iter().map(|dt| Steps::of_friction(*dt, friction)).collect(),
+        }
     }
 
     /// Time for which a contact slid for sure, with its slip read, s.
@@ -62,6 +65,13 @@ impl Pace {
         let sure = odds.iter().zip(seen).zip(&self.steps);
         sure.filter(|((odds, seen), _)| odds.slide >= SURE && read(seen)).map(|(_, dt)| dt).sum()
     }
+}
+
+/// What happens to a contact with some friction: the same for all contacts.
+pub(super) struct AtFriction {
+    friction: f64,
+    /// In a step of each kind.
+    steps: Vec<Steps>,
 }
 
 /// What a sample says beside the ratio: the force, and log-densities of the slip in each cell.
@@ -84,8 +94,8 @@ impl Passage {
     }
 
     /// Logarithm of the density of all that was read, for each friction; of those that are given up, of what was read until then.
-    pub(super) fn evidence(&self, pace: &Pace, frictions: &[f64]) -> Vec<f64> {
-        let mut left: Vec<Tried> = frictions.iter().map(|friction| Tried::new(pace, *friction)).collect();
+    pub(super) fn evidence(&self, pace: &Pace, frictions: &[AtFriction]) -> Vec<f64> {
+        let mut left: Vec<Tried> = frictions.iter().map(Tried::new).collect();
         for (k, said) in self.said.iter().enumerate() {
             left.iter_mut().for_each(|tried| tried.take(pace, k, said));
             if k % LOOKS == 0 {
@@ -94,19 +104,21 @@ impl Passage {
             }
         }
         let least = left.iter().map(|tried| tried.log).fold(f64::NEG_INFINITY, f64::max) - GIVEN_UP;
-        let of = |friction: &f64| left.iter().find(|tried| tried.friction == *friction);
-        frictions.iter().map(|friction| of(friction).map_or(least, |tried| tried.log.max(least))).collect()
+        let of = |at: &AtFriction| left.iter().find(|tried| tried.at.friction == at.friction);
+        frictions.iter().map(|at| of(at).map_or(least, |tried| tried.log.max(least))).collect()
     }
 
     /// Adds the modes at all samples given one friction, with a weight.
     pub(super) fn add(&self, pace: &Pace, friction: f64, weight: f64, sums: &mut [[f64; 3]]) {
-        let mut tried = Tried::new(pace, friction);
+        let at = pace.at(friction);
+        let mut tried = Tried::new(&at);
         let mut chains = Vec::with_capacity(self.said.len());
         for (k, said) in self.said.iter().enumerate() {
             tried.take(pace, k, said);
             chains.push(tried.chain.clone());
         }
-        let Tried { steps, mut spare, mut likelihood, .. } = tried;
+        let Tried { mut spare, mut likelihood, .. } = tried;
+        let steps = &at.steps;
         let mut worth = Chain::even(&steps[0], 1.0);
         for (k, chain) in chains.iter().enumerate().rev() {
             let modes = chain.times(&worth);
@@ -126,10 +138,8 @@ impl Passage {
 }
 
 /// A friction that is tried.
-struct Tried {
-    friction: f64,
-    /// Of each kind.
-    steps: Vec<Steps>,
+struct Tried<'a> {
+    at: &'a AtFriction,
     chain: Chain,
     spare: Chain,
     likelihood: Likelihood,
@@ -137,20 +147,20 @@ struct Tried {
     log: f64,
 }
 
-impl Tried {
-    fn new(pace: &Pace, friction: f64) -> Self {
-        let steps = pace.of_friction(friction);
-        let (chain, likelihood) = (Chain::new(&steps[0]), Likelihood::none(&steps[0]));
-        Self { friction, spare: chain.clone(), chain, likelihood, steps, log: 0.0 }
+impl<'a> Tried<'a> {
+    fn new(at: &'a AtFriction) -> Self {
+        let first = &at.steps[0];
+        let (chain, likelihood) = (Chain::new(first), Likelihood::none(first));
+        Self { at, spare: chain.clone(), chain, likelihood, log: 0.0 }
     }
 
     fn take(&mut self, pace: &Pace, k: usize, said: &Said) {
-        let steps = &self.steps[pace.kind[k]];
+        let steps = &self.at.steps[pace.kind[k]];
         if k > 0 {
             self.chain.predict(steps, &mut self.spare);
         }
-        said.of(steps, self.friction, &mut self.likelihood);
-        self.log += self.chain.weigh(&self.likelihood);
+        said.of(steps, self.at.friction, &mut self.likelihood);
+        self.log += self.chain.weigh(&self.likelihood, &mut self.spare);
     }
 }
 

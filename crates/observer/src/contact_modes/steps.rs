@@ -101,8 +101,7 @@ impl Steps {
 
     fn with(dt: f64, ratios: Bins, habits: &Habits) -> Self {
         let speeds = speeds();
-        let [speed, ratio] =
-            [(&speeds, SPEED_ENDS), (&ratios, RATIO_ENDS)].map(|(bins, ends)| Walk::new(bins, 1.0, ends));
+        let [speed, ratio] = [&speeds, &ratios].map(|bins| Walk::on(bins.count()));
         let mut steps = Self {
             starts: vec![0.0; speeds.count()],
             landing: speeds.shares(|s| below(s / LANDING)),

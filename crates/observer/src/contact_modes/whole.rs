@@ -8,7 +8,7 @@ use super::classifier::ContactOdds;
 use super::error::ContactModesError;
 use super::friction::{LearnedFriction, learned, values};
 use super::options::ContactModesOptions;
-use super::passage::{Pace, Passage};
+use super::passage::{AtFriction, Pace, Passage};
 use super::reading::{ContactSeen, Place};
 
 /// Prior probability that all contacts have one friction.
@@ -47,8 +47,9 @@ pub fn whole_modes(
     let pace = Pace::new(times, lasting);
     let frictions = values();
     let passages: Vec<Passage> = seen.iter().map(|seen| Passage::new(seen, &pace, options)).collect();
-    let evidence: Vec<Vec<f64>> =
-        passages.iter().map(|passage| passage.evidence(&pace, &frictions)).collect();
+    let at: Vec<AtFriction> = frictions.iter().map(|friction| pace.at(*friction)).collect();
+    let evidence: Vec<Vec<f64>> = passages.iter().map(|passage| passage.evidence(&pace, &at)).collect();
+    drop(at);
     let (one_friction, weights) = weigh(&evidence);
     let odds: Vec<Vec<ContactOdds>> = passages
         .iter()
@@ -227,7 +228,8 @@ mod tests {
         let at = |k: usize| 0.2 + 0.02 * (0.01 * k as f64).sin();
         let seen: Vec<ContactSeen> = (0..600).map(|k| read(at(k), 0.0, &mut normal)).collect();
         let pace = Pace::new(&times(600), 0.05);
-        let logs = Passage::new(&seen, &pace, &options()).evidence(&pace, &[0.35, 0.5, 0.8, 1.2]);
+        let logs = Passage::new(&seen, &pace, &options())
+            .evidence(&pace, &[0.35, 0.5, 0.8, 1.2].map(|friction| pace.at(friction)));
         // The disc that ratios are drawn from at first, and at jumps, grows by the square of the friction.
         let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         assert!(logs.iter().all(|log| most - log < 12.0), "{logs:?}");

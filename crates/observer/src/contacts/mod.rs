@@ -5,6 +5,7 @@ mod backwards;
 mod body;
 mod cold;
 mod directly;
+mod elimination;
 mod equations;
 mod estimate;
 mod flow;

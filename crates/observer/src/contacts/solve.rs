@@ -1,12 +1,13 @@
 //! Levenberg-Marquardt steps on a chain of nodes and the constants that all of them share.
 
+use super::elimination::Eliminated;
 use super::equations::{Equations, Gradient};
 use super::flow::Transition;
 use super::problem::{Problem, Trial, Unknowns};
 use super::state::{MOTION, Tangent};
 use crate::least_squares::{LARGEST_DAMPING, RAISE, lowered};
 use crate::reliability::LARGEST_MISFIT;
-use nalgebra::{Cholesky, Const, DMatrix, SMatrix, SVector};
+use nalgebra::{DMatrix, SMatrix, SVector};
 
 /// First damping, as a share of the conditions' mean information; and where noise is not what they are off by, and their information far more than
 /// what the motion needs.
@@ -50,14 +51,6 @@ pub(super) struct Step<const P: usize> {
     pub(super) body: SVector<f64, P>,
 }
 
-/// A node of which the equations are solved for its own motion.
-pub(super) struct Eliminated<const P: usize> {
-    own: Cholesky<f64, Const<MOTION>>,
-    /// By what its motion falls with that of the next node, and with the constants.
-    next: Transition,
-    body: SMatrix<f64, MOTION, P>,
-}
-
 /// The chain with the nodes eliminated, first to last, and what is left for the constants.
 pub(super) struct Reduced<const P: usize> {
     nodes: Vec<Eliminated<P>>,
@@ -84,17 +77,15 @@ impl<const P: usize> Reduced<P> {
         let mut left = Vec::with_capacity(self.nodes.len());
         let (mut of_body, mut carried) = (gradient.body, Tangent::zeros());
         for (node, own) in self.nodes.iter().zip(&gradient.motions) {
-            let own = own - carried;
-            carried = node.next.transpose() * own;
-            if P > 0 {
-                of_body -= node.body.transpose() * own;
-            }
-            left.push(own);
+            let (mut own, mut next) = (own + carried, Tangent::zeros());
+            node.down(&mut own, &mut next, &mut of_body);
+            carried = next;
+            left.push(-own);
         }
         let body = -(self.body * of_body);
         let mut after = Tangent::zeros();
         for (node, left) in self.nodes.iter().zip(&mut left).rev() {
-            after = -node.own.solve(left) - node.body * body - node.next * after;
+            after = node.up(left, &after, &body);
             *left = after;
         }
         Step { motions: left, body }
@@ -106,25 +97,18 @@ impl<const P: usize> Equations<P> {
     fn reduced(&self, damping: &Tangent, body_damping: f64) -> Option<Reduced<P>> {
         let mut nodes: Vec<Eliminated<P>> = Vec::with_capacity(self.nodes.len());
         let mut body = self.body + SMatrix::identity() * body_damping;
-        let mut carried: Option<(Transition, SMatrix<f64, MOTION, P>)> = None;
         for node in &self.nodes {
             let (mut own, mut to_body) = (node.own, node.body);
             for i in 0..MOTION {
                 own[(i, i)] += damping[i];
             }
-            if let Some((less, less_body)) = carried {
-                own -= less;
-                to_body -= less_body;
+            if let Some(before) = nodes.last() {
+                before.lessen(&mut own, &mut to_body, &mut body);
             }
-            let own = own.cholesky()?;
-            let next = own.solve(&node.next);
-            let to_constants = own.solve(&to_body);
-            let back = node.next.transpose();
-            carried = Some((back * next, back * to_constants));
-            if P > 0 {
-                body -= to_body.transpose() * to_constants;
-            }
-            nodes.push(Eliminated { own, next, body: to_constants });
+            nodes.push(Eliminated::new(&own, &node.next, &to_body)?);
+        }
+        if let Some(last) = nodes.last() {
+            last.lessen(&mut Transition::zeros(), &mut SMatrix::zeros(), &mut body);
         }
         Some(Reduced { nodes, body: inverse(&body)? })
     }
@@ -158,9 +142,10 @@ impl<const P: usize> Equations<P> {
         let mut next = Vec::with_capacity(self.nodes.len());
         let (mut after, mut follows) = (Transition::zeros(), SMatrix::<f64, MOTION, P>::zeros());
         for node in reduced.nodes.iter().rev() {
-            next.push(-node.next * after);
-            after = node.own.inverse() + node.next * after * node.next.transpose();
-            follows = -node.body - node.next * follows;
+            let (own, by_next, by_body) = node.inverse();
+            next.push(-by_next * after);
+            after = own + by_next * after * by_next.transpose();
+            follows = -by_body - by_next * follows;
             motions.push((after, follows));
         }
         motions.reverse();
@@ -194,10 +179,8 @@ impl<const P: usize> Covariances<P> {
     pub(super) fn drawn(&self, body: &SVector<f64, P>, mut normals: impl FnMut() -> Tangent) -> Vec<Tangent> {
         let mut after = Tangent::zeros();
         let mut one = |node: &Eliminated<P>| {
-            // Of covariance (L L')^-1.
-            let mut own = normals();
-            node.own.l_dirty().tr_solve_lower_triangular_mut(&mut own);
-            after = own - node.body * body - node.next * after;
+            // A standard normal vector for the rows of a node has the covariance of its equations after it.
+            after = node.up(&normals(), &after, body);
             after
         };
         let mut errors: Vec<Tangent> = self.chain.iter().rev().map(&mut one).collect();
