@@ -10,9 +10,9 @@ fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
-/// Whether MuJoCo is installed; says so where it is not.
+/// Whether MuJoCo is installed; says so where it is not. A folder of that name is a module of Python too, but without models.
 fn mujoco_is_there() -> bool {
-    let found = Command::new("python3").args(["-c", "import mujoco, numpy"]).output();
+    let found = Command::new("python3").args(["-c", "import mujoco, numpy; mujoco.MjModel"]).output();
     let there = found.is_ok_and(|run| run.status.success());
     if !there {
         println!("skipped: python3 with the modules mujoco and numpy is not installed");

@@ -1,6 +1,7 @@
 //! Whether points lie in a closed surface: by exact signs, in a tree of boxes.
 
 use super::mesh_file::Surface;
+use super::star::Star;
 use super::surface::side;
 use glam::DVec3;
 use robust::{Coord, orient2d};
@@ -119,7 +120,15 @@ impl<'a> Solid<'a> {
 
     /// The point of `points` that is farthest outside, and how far, m; `None` where all are inside.
     pub(super) fn farthest_outside(&self, points: &[DVec3]) -> Option<(usize, f64)> {
-        let outside = points.iter().enumerate().filter(|(_, p)| self.winding(**p) != 1);
+        let corners = &self.surface.corners;
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        let star = Star::new(self.surface, middle, |p| self.winding(p));
+        let mut at = 0;
+        let mut holds = |p: DVec3| {
+            let seen = star.as_ref().and_then(|star| star.holds(p, &mut at));
+            seen.unwrap_or_else(|| self.winding(p) == 1)
+        };
+        let outside = points.iter().enumerate().filter(|(_, p)| !holds(**p));
         outside.map(|(k, p)| (k, self.distance(*p))).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }

@@ -10,6 +10,7 @@ mod figures;
 mod inside;
 mod mesh_file;
 mod outline;
+mod star;
 mod surface;
 mod table;
 #[cfg(test)]
