@@ -11,7 +11,7 @@ use super::rivals::still;
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{problem, thinned};
-use super::sharp::{is_rounded, is_sharp};
+use super::sharp::{is_rounded, is_sharp, leaves_something};
 use super::slips::Known;
 use super::solve::{Covariances, Solved};
 use super::stage::Stage;
@@ -37,6 +37,8 @@ const CONTRADICTED: f64 = 30.7;
 const SHORTEST: f64 = 4.0;
 /// The same where noise is not what is left, but more than rounding is: over 2.1 of them wrong motions were seen that leave next to nothing.
 const SHORTEST_OF_EXACT: f64 = 3.0;
+/// The same of an unknown body where what is left is more than the search is content with: over 5.0 of them a wrong motion left 5e-5 of the natural speed.
+const SHORTEST_OF_ROUGH: f64 = 6.0;
 /// How often modes are taken back.
 const ROUNDS: usize = 6;
 
@@ -193,8 +195,16 @@ impl Source<'_> {
         let mut stage = stage.ok_or(ContactEstimateError::Singular)?;
         let covariances = stage.covariances().ok_or(ContactEstimateError::Singular)?;
         let (problem, solved) = (&stage.problem, &stage.solved);
+        let covariances = if exact && options.guessed_floor {
+            covariances.with_steps(log, problem, solved)
+        } else {
+            covariances
+        };
         let shortest = match exact {
             true if options.guessed_floor && is_sharp(problem) => 0.0,
+            true if options.guessed_floor && options.body.is_none() && leaves_something(problem) => {
+                SHORTEST_OF_ROUGH
+            }
             true => SHORTEST_OF_EXACT,
             false if thinned.is_some() => 0.0,
             _ => SHORTEST,

@@ -250,9 +250,14 @@ pub(super) fn link_information(noise: &WrenchNoise, h: f64, body: &Body, turn: &
     let mass = DMat3::IDENTITY * (1.0 / body.inverse_mass());
     // The noise's first integral is that of the momenta, its second one mass times place and inertia times turn; of this half the
     // duration times the first is the same, and the rest independent of it.
-    let rest = inverse(noise.white * (h * h / 12.0) + noise.late)?;
+    let white = inverse(noise.white)?;
+    let rest = if noise.late == Matrix6::zeros() {
+        white * (12.0 / (h * h))
+    } else {
+        inverse(noise.white * (h * h / 12.0) + noise.late)?
+    };
     let mixed = rest * (-0.5 * h);
-    let once = inverse(noise.white)? + rest * (0.25 * h * h);
+    let once = white + rest * (0.25 * h * h);
     // Of force and moment: the numbers of a motion that their second integrals are, times what, and their first ones.
     let places = [(0, mass), (3, body.inertia_along(turn.R))];
     let momenta = [(1, mass), (2, DMat3::IDENTITY)];

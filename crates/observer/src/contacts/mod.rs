@@ -37,6 +37,7 @@ mod solve;
 mod spurious;
 mod stage;
 mod state;
+mod stepping;
 mod stream;
 mod suspects;
 #[cfg(test)]

@@ -79,6 +79,8 @@ pub(super) struct Record {
     pub(super) intervals: Vec<Interval>,
     /// Whether the impulses of all palms are read.
     pub(super) all_impulses: bool,
+    /// Whether none is.
+    pub(super) by_samples: bool,
     /// Contacts that were misread, and stand where those around them say.
     pub(super) misread: Vec<Misread>,
 }
@@ -223,8 +225,30 @@ impl Record {
         impulses::add(log, &contacts, noise, (square / count as f64).sqrt(), &mut intervals);
         let wrenches = contacts.iter().map(wrench).collect();
         let all_impulses = sampled.iter().all(|sampled| !sampled);
+        let by_samples = sampled.iter().all(|sampled| *sampled);
         let samples = (0..times.len()).collect();
-        Some(Self { times, samples, origin, contacts, wrenches, intervals, all_impulses, misread })
+        Some(Self {
+            times,
+            samples,
+            origin,
+            contacts,
+            wrenches,
+            intervals,
+            all_impulses,
+            by_samples,
+            misread,
+        })
+    }
+
+    /// The intervals from every other sample to the next of these, by what was read at them alone. None where impulses are read or there are
+    /// less than three samples.
+    pub(super) fn every_other(&self, noise: &ContactNoiseLevel) -> Option<Vec<Interval>> {
+        if !self.by_samples || self.times.len() < 3 {
+            return None;
+        }
+        let times: Vec<f64> = self.times.iter().copied().step_by(2).collect();
+        let contacts: Vec<Vec<Contact>> = self.contacts.iter().step_by(2).cloned().collect();
+        Some(intervals(&times, &contacts, noise, &[true; MOST_PALMS]))
     }
 
     /// Marks the intervals over which there may be a blow: a contact closes, or opens while it is pressed by more than a share of the weight under

@@ -37,7 +37,7 @@ pub(super) fn found(problem: &mut Problem, solved: Solved<CONSTANTS>) -> (Solved
     }
     let before = (problem.noise.floor, problem.frozen.clone());
     let sharp = sharper(problem, solved.clone());
-    if problem.noise.floor <= NOTHING * problem.units.speed {
+    if !leaves_something(problem) {
         return (sharp, true);
     }
     (problem.noise.floor, problem.frozen) = before;
@@ -122,6 +122,11 @@ pub(super) fn stated(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Option
 fn best(problem: &Problem) -> f64 {
     let Units { length, speed, .. } = problem.units;
     (BEST * speed).max(problem.noise.contact * speed / length)
+}
+
+/// Whether conditions came out worse than a search is content with.
+pub(super) fn leaves_something(problem: &Problem) -> bool {
+    problem.noise.floor > NOTHING * problem.units.speed
 }
 
 /// Whether conditions came out as good as they may: of a wrong motion over a short time more is left.

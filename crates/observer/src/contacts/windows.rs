@@ -188,6 +188,7 @@ impl Record {
             wrenches,
             intervals: picked.windows(2).map(|k| sum(&self.intervals[k[0]..k[1]])).collect(),
             all_impulses: self.all_impulses,
+            by_samples: self.by_samples,
             misread: Vec::new(),
         }
     }
@@ -207,6 +208,7 @@ impl Record {
             wrenches: self.wrenches[samples.clone()].to_vec(),
             intervals: self.intervals[samples.start..samples.end - 1].to_vec(),
             all_impulses: self.all_impulses,
+            by_samples: self.by_samples,
             misread: Vec::new(),
         }
     }
