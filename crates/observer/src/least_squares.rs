@@ -5,7 +5,6 @@
 //! without a trial. What the two loops have in common, "less damping after a gain, more after none", is shorter than an
 //! interface that would serve both.
 
-use contact_kinematics::is_stopped;
 use nalgebra::{Cholesky, SMatrix, SVector, SymmetricEigen};
 
 /// Sums that a Gauss-Newton step needs: `J' J`, `J' r` and `r' r`, in scaled unknowns.
@@ -140,15 +139,10 @@ pub(crate) fn nothing_to_gain<const P: usize>(normal: &NormalEquations<P>) -> bo
     decrement(normal) * normal.count as f64 <= NOTHING_TO_GAIN * normal.cost.abs()
 }
 
-/// None where the model cannot be evaluated, or the caller wants no more of it.
-fn linearised<const P: usize, L: LeastSquares<P>>(problem: &L, at: &L::Point) -> Option<NormalEquations<P>> {
-    if is_stopped() { None } else { problem.linearise(at) }
-}
-
 impl LevenbergMarquardt {
     /// Minimises the cost from `start`.
     pub fn fit<const P: usize, L: LeastSquares<P>>(&self, problem: &L, start: L::Point) -> Fit<L::Point, P> {
-        match linearised(problem, &start) {
+        match problem.linearise(&start) {
             Some(normal) => {
                 let (status, damping) = (FitStatus::OutOfIterations, self.damping);
                 self.resume(problem, Fit { point: start, normal, status, iterations: 1, damping })
@@ -212,7 +206,7 @@ impl LevenbergMarquardt {
             if !accepted {
                 return self.finish(problem, point, normal, iterations, damping);
             }
-            let Some(next) = linearised(problem, &point) else { break };
+            let Some(next) = problem.linearise(&point) else { break };
             normal = next;
             iterations += 1;
         }
@@ -227,7 +221,7 @@ impl LevenbergMarquardt {
         iterations: usize,
         damping: f64,
     ) -> Fit<L::Point, P> {
-        let normal = linearised(problem, &point).unwrap_or(last);
+        let normal = problem.linearise(&point).unwrap_or(last);
         let arrived = undamped(&normal).is_some_and(|step| {
             step.norm() < self.step_tolerance
                 || -step.dot(&normal.gradient) <= STILL_A_MINIMUM * normal.cost.abs()

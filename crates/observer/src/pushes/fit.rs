@@ -3,6 +3,7 @@
 use super::shape::{MOST, Shape};
 use super::touches::Touch;
 use crate::least_squares::{Fit, LeastSquares, LevenbergMarquardt, NormalEquations};
+use contact_kinematics::is_stopped;
 use nalgebra::{SMatrix, SVector};
 use object_dynamics::pushing::ClosedLine;
 
@@ -140,6 +141,9 @@ impl LeastSquares<UNKNOWNS> for Problem<'_> {
     type Point = Point;
 
     fn linearise(&self, point: &Point) -> Option<NormalEquations<UNKNOWNS>> {
+        if is_stopped() {
+            return None;
+        }
         let residuals = self.residuals(point)?;
         let used = point.shape.unknowns();
         let mut rows = vec![Vector::zeros(); residuals.len()];

@@ -4,6 +4,7 @@ use super::series::{Contacts, Nodes};
 use super::shape::{FreeEllipsoid, SHAPE_NUMBERS};
 use crate::least_squares::{LeastSquares, NormalEquations};
 use crate::rigid::{INERTIA_NUMBERS, inertia_of_numbers};
+use contact_kinematics::is_stopped;
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::SVector;
 use object_dynamics::{Instant, MassProperties};
@@ -119,6 +120,9 @@ impl LeastSquares<UNKNOWNS> for TouchProblem<'_> {
     type Point = Guess;
 
     fn linearise(&self, point: &Guess) -> Option<NormalEquations<UNKNOWNS>> {
+        if is_stopped() {
+            return None;
+        }
         let residuals = self.residuals(point)?;
         let mut slopes = Vec::with_capacity(UNKNOWNS);
         for i in 0..UNKNOWNS {
