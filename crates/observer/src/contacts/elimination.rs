@@ -27,9 +27,7 @@ impl<const P: usize> Eliminated<P> {
             body: std::array::from_fn(|i| std::array::from_fn(|j| body[(i, j)])),
         };
         forward(&all.factor, &mut all.next);
-        if P > 0 {
-            forward(&all.factor, &mut all.body);
-        }
+        forward(&all.factor, &mut all.body);
         Some(all)
     }
 

@@ -221,7 +221,8 @@ impl Record {
         }
         let sampled: Vec<bool> =
             log.palms().iter().map(|palm| impulses::read(palm, noise).is_none()).collect();
-        let mut intervals = intervals(&times, &contacts, noise, &sampled);
+        let felt = |k: usize| contacts[k].iter().filter(|contact| sampled[contact.palm]);
+        let mut intervals = intervals(&times, felt, noise);
         impulses::add(log, &contacts, noise, (square / count as f64).sqrt(), &mut intervals);
         let wrenches = contacts.iter().map(wrench).collect();
         let all_impulses = sampled.iter().all(|sampled| !sampled);
@@ -247,8 +248,8 @@ impl Record {
             return None;
         }
         let times: Vec<f64> = self.times.iter().copied().step_by(2).collect();
-        let contacts: Vec<Vec<Contact>> = self.contacts.iter().step_by(2).cloned().collect();
-        Some(intervals(&times, &contacts, noise, &[true; MOST_PALMS]))
+        let felt = |k: usize| self.contacts[2 * k].iter();
+        Some(intervals(&times, felt, noise))
     }
 
     /// Marks the intervals over which there may be a blow: a contact closes, or opens while it is pressed by more than a share of the weight under
@@ -354,14 +355,12 @@ fn shape_operator(surface: PalmSurface, n: DVec3, axis: DVec3) -> DMat3 {
     (DMat3::IDENTITY - outer(n)) * along + outer(axis.cross(n)) * (across - along)
 }
 
-/// By the forces at samples of those palms that are `sampled`.
-fn intervals(
+/// By the forces at samples of the contacts that are `felt` there.
+fn intervals<'a, I: Iterator<Item = &'a Contact>>(
     times: &[f64],
-    contacts: &[Vec<Contact>],
+    felt: impl Fn(usize) -> I,
     noise: &ContactNoiseLevel,
-    sampled: &[bool],
 ) -> Vec<Interval> {
-    let felt = |k: usize| contacts[k].iter().filter(|contact| sampled[contact.palm]);
     let wrenches: Vec<Wrench> = (0..times.len()).map(|k| wrench(felt(k))).collect();
     let since: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
     let rough = |k: usize| {

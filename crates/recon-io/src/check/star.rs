@@ -26,18 +26,14 @@ impl<'a> Star<'a> {
         if !(0..surface.triangles.len()).all(sees) || times(from) != 1 {
             return None;
         }
-        let edge = |k: usize, triangle: &[u32; 3], i: usize| {
-            let (a, b) = (triangle[i], triangle[(i + 1) % 3]);
-            (a.min(b), a.max(b), a < b, k, i)
-        };
-        let each = surface.triangles.iter().enumerate();
-        let mut edges: Vec<_> = each.flat_map(|(k, t)| [0, 1, 2].map(|i| edge(k, t, i))).collect();
-        edges.sort_unstable();
         let mut beside = vec![[0; 3]; surface.triangles.len()];
-        for pair in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            let [(.., false, back, i), (.., true, forth, j)] = *pair else { return None };
-            beside[back][i] = u32::try_from(forth).ok()?;
-            beside[forth][j] = u32::try_from(back).ok()?;
+        for edge in surface.edges().ok()? {
+            let [a, b] = edge.ends;
+            let [forwards, backwards] = edge.beside;
+            for (own, other, start) in [(forwards, backwards, a), (backwards, forwards, b)] {
+                let place = surface.triangles[own as usize].iter().position(|corner| *corner == start)?;
+                beside[own as usize][place] = other;
+            }
         }
         Some(Self { surface, from, beside })
     }

@@ -15,10 +15,10 @@ pub(super) struct Size {
 }
 
 /// A pair of triangles at an edge.
-struct Edge {
-    ends: [u32; 2],
-    /// The third corners of the triangle that passes the edge forwards and of the one that passes it backwards.
-    beside: [u32; 2],
+pub(super) struct Edge {
+    pub(super) ends: [u32; 2],
+    /// The triangle that passes the edge forwards and the one that passes it backwards.
+    pub(super) beside: [u32; 2],
 }
 
 /// Positive where `p` is on the outer side of the triangle; the sign is exact.
@@ -37,24 +37,25 @@ impl Surface {
         })
     }
 
-    /// Each edge by the numbers of its ends, with the direction in which a triangle passes it and the third corner.
+    /// Each edge by the numbers of its ends, with the direction in which a triangle passes it and the triangle.
     fn passes(&self) -> Vec<([u32; 2], bool, u32)> {
-        let of = |t: &[u32; 3]| {
+        let of = |(k, t): (u32, &[u32; 3])| {
             let [a, b, c] = *t;
-            [(a, b, c), (b, c, a), (c, a, b)].map(|(from, to, third)| {
+            [(a, b), (b, c), (c, a)].map(|(from, to)| {
                 let ends = if from < to { [from, to] } else { [to, from] };
-                (ends, from < to, third)
+                (ends, from < to, k)
             })
         };
+        let all = || (0..).zip(&self.triangles).flat_map(of);
         // Those of a corner side by side, by counting, then by the other end: six on the average.
         let mut starts = vec![0; self.corners.len() + 1];
-        self.triangles.iter().flat_map(of).for_each(|pass| starts[pass.0[0] as usize + 1] += 1);
+        all().for_each(|pass| starts[pass.0[0] as usize + 1] += 1);
         for k in 1..starts.len() {
             starts[k] += starts[k - 1];
         }
         let mut next = starts.clone();
         let mut passes = vec![([0; 2], false, 0); 3 * self.triangles.len()];
-        for pass in self.triangles.iter().flat_map(of) {
+        for pass in all() {
             let place = &mut next[pass.0[0] as usize];
             passes[*place] = pass;
             *place += 1;
@@ -64,7 +65,7 @@ impl Surface {
     }
 
     /// Edges of a surface on which each edge belongs to two triangles; the first that does not.
-    fn edges(&self) -> Result<Vec<Edge>, [u32; 2]> {
+    pub(super) fn edges(&self) -> Result<Vec<Edge>, [u32; 2]> {
         let passes = self.passes();
         let pair = |edge: &[([u32; 2], bool, u32)]| match edge {
             [back, forth] if forth.1 && !back.1 => Ok(Edge { ends: back.0, beside: [forth.2, back.2] }),
@@ -110,7 +111,11 @@ impl Surface {
     /// How deep the dent at an edge is; 0 where there is none.
     fn dent(&self, edge: &Edge) -> f64 {
         let [a, b] = edge.ends.map(|corner| self.corners[corner as usize]);
-        let [c, d] = edge.beside.map(|corner| self.corners[corner as usize]);
+        let third =
+            |t: u32| self.triangles[t as usize].into_iter().find(|corner| !edge.ends.contains(corner));
+        // A triangle that has no third corner is a line, and dents nothing.
+        let [Some(c), Some(d)] = edge.beside.map(third) else { return 0.0 };
+        let [c, d] = [c, d].map(|corner| self.corners[corner as usize]);
         // Exact to its last digits, too: the product of differences is nothing but rounding where the four are nearly on a line.
         let volume = side([a, b, c], d);
         if volume <= 0.0 {
