@@ -15,6 +15,13 @@ use recon::object_dynamics::{
     InitialMotion, MassProperties, SampleTimes, SensorLog, Simulation, ThreePalmScene,
 };
 
+/// How much of a test is run: a decisive part of it, all of it where the environment says `RECON_TESTS=all`, as
+/// `cargo xtask verify --only all-tests` does.
+#[must_use]
+pub fn few_or_all<T>(few: T, all: T) -> T {
+    if std::env::var_os("RECON_TESTS").is_some_and(|asked| asked == "all") { all } else { few }
+}
+
 /// A general body: an ellipsoid plus a polynomial.
 pub type GeneralBody = MinkowskiSum<Ellipsoid, PolynomialSupport>;
 

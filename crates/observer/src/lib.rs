@@ -67,3 +67,10 @@ pub use three_palms::{
     PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, TouchShape, Track, TrackError,
     estimate_without_forces, integrate_paper_system,
 };
+
+/// How much of a test is run: a decisive part of it, all of it where the environment says `RECON_TESTS=all`, as
+/// `cargo xtask verify --only all-tests` does.
+#[cfg(test)]
+pub(crate) fn few_or_all<T>(few: T, all: T) -> T {
+    if std::env::var_os("RECON_TESTS").is_some_and(|asked| asked == "all") { all } else { few }
+}

@@ -5,6 +5,7 @@
 
 use recon::observer::{Bank, BankOptions, Memory, ModeLabel, smooth_backward};
 use recon_tests::belt::{Entry, belt_velocity, modes, run, start};
+use std::sync::LazyLock;
 
 const RUNS: u64 = 40;
 const SAMPLES: usize = 200;
@@ -36,6 +37,9 @@ fn with(memory: Memory, lag: usize) -> BankOptions {
     BankOptions { memory, lag, ..BankOptions::default() }
 }
 
+/// With every switch kept, made once for all tests.
+static EXACT: LazyLock<Vec<Odds>> = LazyLock::new(|| all(Entry::TRUE, with(EVERY_SWITCH, SAMPLES)));
+
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0), |(s, n), v| (s + v, n + 1));
     assert!(count > 0);
@@ -58,8 +62,8 @@ fn brier(odds: &[Odds], of: impl Fn(&Odds) -> &Vec<f64>) -> f64 {
 /// other runs.
 #[test]
 fn odds_approach_the_exact_ones_with_more_hypotheses() {
-    let exact = all(Entry::TRUE, with(EVERY_SWITCH, SAMPLES));
-    let exactly = brier(&exact, |o| &o.smoothed);
+    let exact = &*EXACT;
+    let exactly = brier(exact, |o| &o.smoothed);
     let prototype = [
         (Memory::MergedBeforeUpdate, 0.0213),
         (Memory::Hypotheses(4), 0.0132),
@@ -70,7 +74,7 @@ fn odds_approach_the_exact_ones_with_more_hypotheses() {
     let mut last = f64::INFINITY;
     for (memory, expected) in prototype {
         let odds = all(Entry::TRUE, with(memory, SAMPLES));
-        let off = distance(&odds, &exact);
+        let off = distance(&odds, exact);
         assert!(off < last && off > 0.5 * expected && off < 1.5 * expected, "{memory:?}: {off} {expected}");
         last = off;
         // Smoothed modes: what merging costs is small from eight on.
@@ -83,7 +87,7 @@ fn odds_approach_the_exact_ones_with_more_hypotheses() {
         assert!(worse > at_least && worse < at_most, "{memory:?}: {worse}");
     }
     // What comes after tells modes apart.
-    assert!(exactly < 0.5 * brier(&exact, |o| &o.filtered));
+    assert!(exactly < 0.5 * brier(exact, |o| &o.filtered));
 }
 
 /// With eight hypotheses: of the samples at which a mode is held for more than 99 % likely, less than 1 % are wrong, and the
@@ -135,10 +139,10 @@ fn a_label_that_waits_does_not_flutter() {
 /// Zeros in place of the velocity that sticking does not have pull the velocity to zero at every sample.
 #[test]
 fn padding_with_zeros_is_far_worse_than_a_stated_prior() {
-    let exact = all(Entry::TRUE, with(EVERY_SWITCH, 0));
+    let exact = &*EXACT;
     let [prior, zeros] =
         [Entry::TRUE, Entry::ZEROS].map(|entry| all(entry, with(Memory::MergedBeforeUpdate, 0)));
-    assert!(distance(&zeros, &exact) > 5.0 * distance(&prior, &exact));
+    assert!(distance(&zeros, exact) > 5.0 * distance(&prior, exact));
     assert!(brier(&zeros, |o| &o.filtered) > 1.5 * brier(&prior, |o| &o.filtered));
 }
 
@@ -146,17 +150,17 @@ fn padding_with_zeros_is_far_worse_than_a_stated_prior() {
 /// that the truth is lost.
 #[test]
 fn what_is_given_up_is_bounded_and_told() {
-    let exact = all(Entry::TRUE, with(EVERY_SWITCH, 0));
+    let exact = &*EXACT;
     for drop in [1e-2, 1e-3, 1e-4] {
         let odds = all(Entry::TRUE, BankOptions { memory: EVERY_SWITCH, drop, ..BankOptions::default() });
-        let off = distance(&odds, &exact);
+        let off = distance(&odds, exact);
         assert!(off > 0.5 * drop && off < 4.0 * drop, "{drop}: {off}");
         assert!(odds.iter().all(|o| o.lost > 0.0 && o.lost <= drop * SAMPLES as f64), "{drop}");
     }
     // What is not run is counted too: of each hypothesis less than the share, of 400 at most.
     for skip in [1e-4, 1e-6] {
         let odds = all(Entry::TRUE, BankOptions { memory: EVERY_SWITCH, skip, ..BankOptions::default() });
-        let (off, lost) = (distance(&odds, &exact), mean(odds.iter().map(|o| o.lost)) / SAMPLES as f64);
+        let (off, lost) = (distance(&odds, exact), mean(odds.iter().map(|o| o.lost)) / SAMPLES as f64);
         assert!(
             lost > 0.0 && lost < 400.0 * skip && off > 0.5 * lost && off < 5.0 * lost,
             "{skip}: {off} {lost}"
@@ -169,7 +173,7 @@ fn what_is_given_up_is_bounded_and_told() {
 /// that keeps enough.
 #[test]
 fn the_pass_backward_lies_between_filter_and_paths() {
-    let exact = all(Entry::TRUE, with(EVERY_SWITCH, SAMPLES));
+    let exact = &*EXACT;
     let paths = all(Entry::TRUE, with(Memory::Hypotheses(16), SAMPLES));
     let inputs: Vec<f64> = (0..SAMPLES).map(belt_velocity).collect();
     let backward = |seed| {

@@ -15,7 +15,7 @@ const ALLOWED: [(&str, &[&str]); 11] = [
     ("exploration", &["contact-kinematics", "shape-bounds"]),
     ("recon", &CORE),
     ("recon-io", &["recon"]),
-    ("recon-cli", &["recon", "recon-io"]),
+    ("recon-cli", &["recon", "recon-io", "recon-tests"]),
     // The two name `shape-bounds` only to switch on its feature `generators`, which the facade has no reason to carry.
     ("recon-tests", &["recon", "recon-io", "shape-bounds"]),
     // The scenes of the tests are the scenes of the charts.

@@ -23,6 +23,12 @@ pub(crate) fn tests() -> Result<Outcome, String> {
     all(["test --workspace".to_owned()])
 }
 
+/// With every seed and every case: of tests that are one thing many times over `tests` runs a decisive part.
+pub(crate) fn all_tests() -> Result<Outcome, String> {
+    run(cargo("test --workspace").env("RECON_TESTS", "all"))?;
+    Ok(Outcome::Passed)
+}
+
 /// In a build of the whole workspace a core crate sees the features that others switch on in its dependencies. Here
 /// it has its own only, and the least of them. Its tests are compiled and not run: they ran with the workspace, and
 /// what a feature of a dependency changes is whether something is there.

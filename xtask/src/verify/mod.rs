@@ -47,6 +47,11 @@ const STEPS: &[Step] = &[
         "the package for Python and its tests, where there is a Python with maturin",
         python::check,
     ),
+    optional(
+        "all-tests",
+        "the tests with all their seeds and cases, RECON_TESTS=all (long)",
+        builds::all_tests,
+    ),
     optional("hack", "cargo-hack: all combinations of features build", extras::hack),
     optional(
         "semver",

@@ -4,6 +4,7 @@ use crate::common::{Scratch, Table, scene, scratch_with_log};
 use glam::DVec3;
 use recon::object_dynamics::{ContactLog, ForceChannel, RecordedMotion};
 use recon_io::{read_log, write_contact_log};
+use recon_tests::few_or_all;
 use serde_json::Value;
 
 const PALM: &str = "\n[[palm]]\nkind = \"flat\"\n";
@@ -133,6 +134,9 @@ fn a_motion_is_estimated_from_torques_alone() {
     // what is rough about forces that follow counts as noise.
     let [position, spin] = ["position_m", "angular_velocity_rad_per_s"].map(largest);
     assert!(position < 2e-3 && spin < 1e-2, "{position} {spin}");
+    if few_or_all(true, false) {
+        return;
+    }
     scratch.write("light.toml", &scratch.read("any.toml").replace("inertia = 10.0", "inertia = 9.0"));
     let (code, errors, _) = reconstruct(&scratch, "torques.csv", "light.toml", "light-out");
     assert_eq!(code, Some(4), "the palms' inertia counts: {errors}");
@@ -196,7 +200,10 @@ fn what_is_neither_three_planes_nor_has_all_forces_is_refused_by_name() {
     let rubbed = ["reconstruct", "any.csv", "--scene", "any.toml", "-o", "out"];
     let without = [&rubbed[..], &["--without-forces"]].concat();
     refused(&without, &["any.csv", "friction is felt on palm", "1.0e-1 of the normal force"]);
-    // Friction that no motion explains.
+    // Friction that no motion explains, which takes a search in vain.
+    if few_or_all(true, false) {
+        return;
+    }
     let run = scratch.run(&rubbed);
     assert!(run.code == Some(4) && run.stdout.contains("Do not rely on this result"), "{}", run.stdout);
 }

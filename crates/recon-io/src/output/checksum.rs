@@ -4,38 +4,11 @@ use std::path::Path;
 
 /// CRC-32 as in gzip and zip (IEEE 802.3, reflected): whatever is changed within four bytes that follow each other is
 /// seen for certain, everything else but once in 2^32.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Checksum {
-    state: u32,
+    sum: crc32fast::Hasher,
     bytes: u64,
 }
-
-/// Eight bytes at once: table `k` holds the remainder of a byte that `k` others follow.
-const TABLES: [[u32; 256]; 8] = {
-    let mut tables = [[0; 256]; 8];
-    let mut byte = 0;
-    while byte < 256 {
-        let mut remainder = byte as u32;
-        let mut bit = 0;
-        while bit < 8 {
-            remainder = (remainder >> 1) ^ (0xEDB8_8320 * (remainder & 1));
-            bit += 1;
-        }
-        tables[0][byte] = remainder;
-        byte += 1;
-    }
-    let mut table = 1;
-    while table < 8 {
-        let mut byte = 0;
-        while byte < 256 {
-            let before = tables[table - 1][byte];
-            tables[table][byte] = (before >> 8) ^ tables[0][(before & 0xFF) as usize];
-            byte += 1;
-        }
-        table += 1;
-    }
-    tables
-};
 
 /// Length of a file and CRC-32 of what it holds, as eight hexadecimal digits: a file whose fingerprint has not changed has not either, but once in
 /// 2^32.
@@ -45,12 +18,6 @@ const TABLES: [[u32; 256]; 8] = {
 pub fn fingerprint(path: impl AsRef<Path>) -> io::Result<(u64, String)> {
     let sum = Checksum::of(File::open(path)?)?;
     Ok((sum.bytes(), sum.hex()))
-}
-
-impl Default for Checksum {
-    fn default() -> Self {
-        Self { state: u32::MAX, bytes: 0 }
-    }
 }
 
 impl Checksum {
@@ -68,18 +35,7 @@ impl Checksum {
     }
 
     pub(crate) fn add(&mut self, bytes: &[u8]) {
-        let of = |table: usize, word: u32, byte: u32| TABLES[table][(word >> (8 * byte) & 0xFF) as usize];
-        let mut crc = self.state;
-        let (words, rest) = bytes.as_chunks::<8>();
-        for [a, b, c, d, e, f, g, h] in words {
-            let (low, high) =
-                (u32::from_le_bytes([*a, *b, *c, *d]) ^ crc, u32::from_le_bytes([*e, *f, *g, *h]));
-            crc = (0..4).fold(0, |x, k| x ^ of(7 - k as usize, low, k) ^ of(3 - k as usize, high, k));
-        }
-        for byte in rest {
-            crc = (crc >> 8) ^ of(0, crc ^ u32::from(*byte), 0);
-        }
-        self.state = crc;
+        self.sum.update(bytes);
         self.bytes += bytes.len() as u64;
     }
 
@@ -89,7 +45,7 @@ impl Checksum {
 
     /// Eight hexadecimal digits, as `crc32` and `zlib.crc32` give them.
     pub(crate) fn hex(&self) -> String {
-        format!("{:08x}", !self.state)
+        format!("{:08x}", self.sum.clone().finalize())
     }
 }
 

@@ -94,7 +94,8 @@ impl Case {
 #[test]
 fn motions_are_found_and_followed_whatever_the_sensors() {
     let case = calm(7.0);
-    for (share, seed, known) in [(1e-6, 1, true), (0.1, 2, false), (1.0, 3, true), (1.0, 3, false)] {
+    let cases = [(1e-6, 1, true), (1.0, 3, false), (0.1, 2, false), (1.0, 3, true)];
+    for &(share, seed, known) in crate::few_or_all(&cases[..2], &cases) {
         let noise = SensorNoise { contact: NOISE.contact * share, force: NOISE.force * share, torque: 0.0 };
         let estimates = case.followed(&case.samples(&noise, seed), &noise, known);
         assert_eq!(estimates[0].1.stage, StreamStage::Gathering);
@@ -144,7 +145,9 @@ fn mass_and_inertia_are_found_along_with_the_motion() {
 /// A gain that goes wrong speaks against the motion, and the motion comes back when the gain does.
 #[test]
 fn a_wrong_force_gain_is_flagged_and_passes() {
-    let case = calm(20.0);
+    // Whether it comes back is told when the window holds none of it any more.
+    let to_the_end = crate::few_or_all(false, true);
+    let case = calm(if to_the_end { 20.0 } else { 8.0 });
     let mut samples = case.samples(&NOISE, 3);
     for sample in samples.iter_mut().filter(|sample| (6.0..7.0).contains(&sample.t)) {
         sample.palms[1].force = sample.palms[1].force.map(|f| 1.15 * f);
@@ -153,14 +156,14 @@ fn a_wrong_force_gain_is_flagged_and_passes() {
     let at = |t: f64| estimates.iter().find(|(_, e)| e.t >= t).unwrap().1.stage;
     assert_eq!(at(5.9), StreamStage::Tracking);
     assert_ne!(at(7.5), StreamStage::Tracking);
-    assert_eq!(estimates.last().unwrap().1.stage, StreamStage::Tracking);
+    assert_eq!(estimates.last().unwrap().1.stage == StreamStage::Tracking, to_the_end);
 }
 
 /// Without the samples of some time the motion goes on from before.
 #[test]
 fn a_gap_is_bridged() {
     let case = calm(8.0);
-    for gap in [0.02, 0.06, 0.2] {
+    for &gap in crate::few_or_all(&[0.06][..], &[0.02, 0.06, 0.2]) {
         let mut samples = case.samples(&NOISE, 6);
         samples.retain(|sample| !(5.0..5.0 + gap).contains(&sample.t));
         let estimates = case.followed(&samples, &NOISE, true);

@@ -55,7 +55,8 @@ fn harmonics_are_held_convex_and_nearer_to_the_truth() {
     let body = Ellipsoid::new(DVec3::new(1.0, 0.9, 0.6)).unwrap();
     let family = ShapeFamily::Harmonics { degree: 4 };
     let mut held = 0;
-    for seed in 0..12 {
+    let runs = crate::few_or_all(6, 12);
+    for seed in 0..runs {
         let mut s = Source::new(seed + 500);
         let normals: Vec<DVec3> = scattered(120, &mut s).into_iter().filter(|n| n.z > -0.1).collect();
         let contacts = measured(&body, normals, 3e-2, 1e-2, &mut s);
@@ -84,7 +85,7 @@ fn harmonics_are_held_convex_and_nearer_to_the_truth() {
         let far = |theta: &DVector<f64>| (free.system.root.triangle() * (theta - truth.parameters())).norm();
         assert!(far(&convex.theta) < far(&free.theta), "{} {}", far(&convex.theta), far(&free.theta));
     }
-    assert!(held >= 3, "{held}");
+    assert!(held * 4 >= runs, "{held}");
 }
 
 #[test]

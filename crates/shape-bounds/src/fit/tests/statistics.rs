@@ -77,7 +77,7 @@ fn consistency(
 }
 
 fn assert_consistent(family: ShapeFamily, truth: &DVector<f64>, count: usize, noise: (f64, f64)) {
-    let found = consistency(family, truth, 200, count, noise);
+    let found = consistency(family, truth, crate::few_or_all(50, 200), count, noise);
     // Four standard deviations: a true covariance fails once in 16,000 seeds.
     assert!(
         (found.nees - 1.0).abs() < 4.0 * found.spread,
