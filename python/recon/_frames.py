@@ -36,6 +36,9 @@ def columns(of: Log | Reconstruction | Following) -> dict[str, Array]:
             table |= {f"std_{name}{axis}": std[:, k] for k, axis in enumerate("xyz")}
     if of.modes is not None:
         table |= {f"mode_{i + 1}": of.modes[:, i] for i in range(of.modes.shape[1])}
+    if of.mode_probabilities is not None:
+        for i in range(of.mode_probabilities.shape[1]):
+            table |= {f"p_{mode}_{i + 1}": of.mode_probabilities[:, i, k] for k, mode in enumerate(["slide", "stick"])}
     return table | {"relied_on": of.relied_on}
 
 

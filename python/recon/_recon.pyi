@@ -171,6 +171,10 @@ class Reconstruction:
     def modes(self) -> NDArray[np.uint8] | None:
         """Contact modes, (n, palms): 0 off, 1 slides, 2 sticks; None of three planes without friction."""
     @property
+    def mode_probabilities(self) -> NDArray[np.float64] | None:
+        """How probable it is that each palm slides and that it sticks, (n, palms, 2), to a millionth; the rest is that it is off. None where it is
+        not estimated."""
+    @property
     def contacts(self) -> _Array:
         """Where the palms touched the object, (n, palms, 3), m, body axes from the centre of mass; nan where they did not."""
     @property

@@ -70,7 +70,7 @@ pub use three_palms::{
 
 /// How much of a test is run: a decisive part of it, all of it where the environment says `RECON_TESTS=all`, as
 /// `cargo xtask verify --only all-tests` does.
-#[cfg(test)]
+#[cfg(all(test, feature = "palms"))]
 pub(crate) fn few_or_all<T>(few: T, all: T) -> T {
     if std::env::var_os("RECON_TESTS").is_some_and(|asked| asked == "all") { all } else { few }
 }

@@ -229,7 +229,7 @@ the same way, earlier or later.
 The mapping that is drafted names a frame, topics and, where contacts tell it, the shape of each palm, and clocks that are
 ahead. Look it over: nothing in a bag says on which body a force acts. With --mapping that mapping is used, and its log is told.
 
-Exit code 4 says that the bag was cut off.
+Exit code 4 says that the bag was cut off, or that a topic of a kind that is read cannot be: an unknown encoding, no message, no frame, NaN.
 
 Examples:
   recon inspect bag.mcap

@@ -68,7 +68,9 @@ pub use stream::{StreamRow, write_stream_header, write_stream_row};
 pub use summary::{
     INERTIA_LEARNED, SummaryOf, estimate_summary, sensor_fault, status_in_words, verdict_figures,
 };
-pub use table::{write_contact_curves, write_estimated_motion, write_motion, write_radius_functions};
+pub use table::{
+    mode_probabilities, write_contact_curves, write_estimated_motion, write_motion, write_radius_functions,
+};
 pub use touches::{
     Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,
     read_contacts, read_touches, touches_of_columns, write_contacts,

@@ -236,6 +236,16 @@ impl Reconstruction {
         table(py, modes.concat(), palms).map(Some)
     }
 
+    /// How probable it is that each palm slides and that it sticks, (n, palms, 2), to a millionth; the rest is that it is off. None where it is
+    /// not estimated.
+    #[getter]
+    fn mode_probabilities<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
+        let Some(all) = self.made.mode_probabilities() else { return Ok(None) };
+        let palms = all.first().map_or(0, Vec::len);
+        let values = all.iter().flatten().flatten().copied().collect();
+        block(py, values, [palms, 2]).map(Some)
+    }
+
     /// Where the palms touched the object, (n, palms, 3), m, body axes from the centre of mass; nan where they did not.
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {

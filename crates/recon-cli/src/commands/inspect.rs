@@ -58,7 +58,7 @@ pub(crate) fn run(args: &InspectArgs, console: &Console) -> Result<Outcome, CliE
             }
         }
     }
-    Ok(if bag.cut.is_some() { Outcome::WithReservations } else { Outcome::Done })
+    Ok(if found.is_whole() { Outcome::Done } else { Outcome::WithReservations })
 }
 
 /// A log that was made of the bag, in words.

@@ -11,7 +11,8 @@ use crate::pipeline::{
 use crate::progress::{Progress, Watch};
 use glam::{DMat3, DVec3};
 use recon_io::{
-    Bounds, Evidence, FolderTarget, Level, MotionState, PalmContact, Scene, TriangleMesh, write_figures_page,
+    Bounds, Evidence, FolderTarget, Level, MotionState, PalmContact, Scene, TriangleMesh, mode_probabilities,
+    write_figures_page,
 };
 use serde_json::Value;
 use std::path::Path;
@@ -175,6 +176,13 @@ impl Reconstructed {
                 .map(|modes| modes[..palms].iter().map(|m| m.number()).collect())
                 .collect(),
         )
+    }
+
+    /// How probable it is at these times that each palm slides and that it sticks, as the file of the motion has it. Estimated of contacts
+    /// of any palms.
+    pub fn mode_probabilities(&self) -> Option<Vec<Vec<[f64; 2]>>> {
+        let data = self.any_palms()?;
+        mode_probabilities(&data.estimate, data.log.palms().len())
     }
 
     fn any_palms(&self) -> Option<&recon_io::EstimateData> {

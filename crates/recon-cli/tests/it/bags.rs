@@ -169,6 +169,16 @@ fn bags_that_cannot_be_used_say_why_and_leave_nothing() {
     refused(&["inspect", "scene.toml"], 3, &["is not an MCAP bag"]);
     refused(&["inspect", &whole, "-m", "scene.toml"], 3, &["mapping of topics", "gravity"]);
     refused(&["inspect", &whole, "-m", "map.toml", "-o", "map.toml"], 2, &["--mapping"]);
-    // One that was cut off is looked over all the same.
-    assert_eq!(dir.run(&["inspect", &bag("broken_truncated.mcap")]).code, Some(4));
+    // What is broken is looked over all the same, and said to be.
+    for (name, said) in [
+        ("truncated", "was cut off"),
+        ("schema_encoding", "ros9msg"),
+        ("message_encoding", "xyzcdr"),
+        ("empty_topic", "has no message"),
+        ("frames", "without a frame"),
+        ("nan", "NaN"),
+    ] {
+        let run = dir.run(&["inspect", &bag(&format!("broken_{name}.mcap"))]);
+        assert!(run.code == Some(4) && run.stdout.contains(said), "{name}: {:?} {}", run.code, run.stdout);
+    }
 }

@@ -100,6 +100,12 @@ fn latency(topic: &Topic) -> Option<[f64; 3]> {
 }
 
 impl BagOverview {
+    /// Whether the bag is as long as it should be, and every topic of a kind that is read has messages that can be: with a frame, and without NaN.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.cut.is_none() && self.topics.iter().all(TopicOverview::is_whole)
+    }
+
     /// For people.
     #[must_use]
     pub fn text(&self) -> String {
@@ -182,6 +188,14 @@ impl BagOverview {
 }
 
 impl TopicOverview {
+    fn is_whole(&self) -> bool {
+        match &self.unread {
+            Some(Unread::Schema { .. }) => true,
+            Some(_) => false,
+            None => self.count > 0 && self.not_finite.is_none() && !self.frames.iter().any(String::is_empty),
+        }
+    }
+
     /// What is odd about it, a line each.
     fn remarks(&self, text: &mut String) {
         let mut line = |remark: String| {
