@@ -51,7 +51,7 @@ pub use output::{
     AtomicFile, FileTarget, FolderTarget, OutputError, OutputFolder, Summed, fingerprint, is_standard_output,
 };
 pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
-pub use plausibility::{Implausibility, implausibilities};
+pub use plausibility::{Implausibility, implausibilities, implausible_contacts};
 pub use report::{
     BatchPage, Bound, Bounds, EstimateData, Evidence, EvidenceValue, ExplorationPage, FiguresPage, Level,
     LogCard, ModeSpan, MotionState, PalmContact, PalmTrack, PlaneEstimateData, PushedLog, ReportData,

@@ -1,9 +1,10 @@
 //! Whether a log and a scene speak of the same units. Nothing here changes a number: it only warns.
 
 use crate::Scene;
+use crate::number::{brief, brief_to};
 use glam::DVec3;
 use recon::contact_kinematics::PalmFrame;
-use recon::object_dynamics::{Sample, SensorLog};
+use recon::object_dynamics::{ContactLog, Sample, SensorLog};
 use std::fmt;
 
 /// Contacts further apart than this many radii of gyration, or nearer than its inverse, are no object's. A uniform rod
@@ -19,6 +20,9 @@ const LARGEST_FORCE_RATIO: f64 = 5.0;
 
 /// Measured torque over force times lever outside of one over this and this.
 const LARGEST_TORQUE_RATIO: f64 = 10.0;
+
+/// Natural times between two samples at most: an object tips over within one.
+const RAREST_SAMPLES: f64 = 2.0;
 
 /// Something in a log that does not go with the scene, most likely a unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +55,13 @@ pub enum Implausibility {
         /// Median of torque over force times lever.
         ratio: f64,
     },
+    /// Time between samples against the time in which an object of that size falls over.
+    Interval {
+        /// Median time between two samples, in the log's unit.
+        interval: f64,
+        /// Natural time `sqrt(r / g)` of an object whose contacts are `2 r` apart, s.
+        natural: f64,
+    },
 }
 
 impl fmt::Display for Implausibility {
@@ -81,6 +92,14 @@ impl fmt::Display for Implausibility {
                 f,
                 "tau_{palm} is {ratio:.3} times f_{palm} s2_{palm}; check the units of torque and contact position"
             ),
+            Self::Interval { interval, natural } => write!(
+                f,
+                "the samples of the log are {} s apart, and between two of them an object of its size falls over {:.0} times (natural time {} s){}",
+                brief(interval),
+                interval / natural,
+                brief_to(2, natural),
+                unit_of_time(interval, natural)
+            ),
         }
     }
 }
@@ -101,11 +120,23 @@ fn unit(ratio: f64) -> &'static str {
     }
 }
 
+/// The unit of time that makes a usual rate of it, no more than two natural times between samples.
+fn unit_of_time(interval: f64, natural: f64) -> String {
+    let units = [(1e-3, "milliseconds"), (1e-6, "microseconds"), (1e-9, "nanoseconds")];
+    let usual = |scale: f64| interval * scale < RAREST_SAMPLES * natural && interval * scale > 9e-5;
+    units.into_iter().find(|(scale, _)| usual(*scale)).map_or_else(String::new, |(scale, name)| {
+        let rate = brief_to(3, 1.0 / (interval * scale));
+        format!("; is its time in {name}? Then it has {rate} samples a second (the format wants seconds)")
+    })
+}
+
 /// What in `log` does not go with `scene`. Empty where they agree, or where the scene does not know enough to tell.
 #[must_use]
 pub fn implausibilities(log: &SensorLog, scene: &Scene) -> Vec<Implausibility> {
     let spread = median(log.samples().iter().filter_map(spread).collect());
+    let times: Vec<f64> = log.samples().iter().map(|sample| sample.t).collect();
     let mut found: Vec<_> = [
+        spread.and_then(|s| rare_samples(&times, s, scene)),
         spread.and_then(|s| against_gyration(s, scene)),
         spread.and_then(|s| against_curvature(s, scene)),
         against_weight(log, scene),
@@ -115,6 +146,27 @@ pub fn implausibilities(log: &SensorLog, scene: &Scene) -> Vec<Implausibility> {
     .collect();
     found.extend((0..3).filter_map(|i| torque_against_force(log, i)));
     found
+}
+
+/// The same of contacts of any palms, as far as they tell it alike.
+#[must_use]
+pub fn implausible_contacts(log: &ContactLog, scene: &Scene) -> Vec<Implausibility> {
+    let at = |k: usize| -> Vec<DVec3> {
+        log.palms().iter().filter_map(|palm| Some(palm.touch(k)?.p_WC)).collect()
+    };
+    let apart = |points: Vec<DVec3>| -> Option<f64> {
+        let pairs = points.iter().enumerate().flat_map(|(i, a)| points[..i].iter().map(|b| a.distance(*b)));
+        pairs.reduce(f64::max)
+    };
+    let spread = median((0..log.times().len()).filter_map(|k| apart(at(k))).collect());
+    spread.and_then(|s| rare_samples(log.times(), s, scene)).into_iter().collect()
+}
+
+fn rare_samples(times: &[f64], spread: f64, scene: &Scene) -> Option<Implausibility> {
+    let natural = (spread / 2.0 / scene.gravity).sqrt();
+    let interval = median(times.windows(2).map(|pair| pair[1] - pair[0]).collect())?;
+    let rare = natural > 0.0 && interval > RAREST_SAMPLES * natural;
+    rare.then_some(Implausibility::Interval { interval, natural })
 }
 
 /// Largest distance between two of the three contacts of a sample.
@@ -237,5 +289,28 @@ mod tests {
     fn forces_in_another_unit_are_named() {
         let found = implausibilities(&at_rest(1.0, 0.001), &scene("mass = 1.0"));
         assert!(matches!(found[..], [Implausibility::Weight { .. }]), "{found:?}");
+    }
+
+    /// The samples of a log of a body of 5 cm in another unit of time; usual rates are as they should be.
+    #[test]
+    fn a_time_in_milliseconds_is_told() {
+        let known = scene("mass = 1.0");
+        let log = |interval: f64| {
+            let mut at_rest = at_rest(0.02, 1.0).samples()[0];
+            at_rest.palms.iter_mut().for_each(|palm| palm.torque = None);
+            let sample = |k: u32| Sample { t: f64::from(k) * interval, ..at_rest };
+            SensorLog::new((0..50).map(sample).collect(), None).unwrap()
+        };
+        for rate in [60.0, 100.0, 1000.0] {
+            assert_eq!(implausibilities(&log(1.0 / rate), &known), []);
+            for (scale, name) in [(1e3, "milliseconds"), (1e6, "microseconds")] {
+                let odd = implausibilities(&log(scale / rate), &known);
+                let said = odd[0].to_string();
+                assert!(odd.len() == 1 && said.contains(name), "{rate} {said}");
+                assert!(said.contains(&format!("{rate} samples a second")), "{rate} {said}");
+            }
+        }
+        let odd = implausibilities(&log(0.5), &known);
+        assert!(odd.len() == 1 && odd[0].to_string().contains("0.5 s apart"), "{odd:?}");
     }
 }

@@ -5,7 +5,7 @@ use super::any_palms_words::{Checks, evidence, verdict};
 use super::bounds::{BoundsResult, CONFIDENCE, NOTABLE_NOISE};
 use super::export::Object;
 use super::truth::true_motion;
-use super::words::margins;
+use super::words::{margins, sentence};
 use crate::error::CliError;
 use crate::progress::Progress;
 use glam::{DMat3, DVec3};
@@ -16,7 +16,7 @@ use recon::observer::{
     estimate_contacts, nearest_turn,
 };
 use recon::shape_bounds::ContactSample;
-use recon_io::{EstimateData, MassDeviations, PalmContact, Scene, Sensors};
+use recon_io::{EstimateData, Implausibility, MassDeviations, PalmContact, Scene, Sensors};
 use std::error::Error;
 use std::path::Path;
 
@@ -42,6 +42,12 @@ impl<'a> AnyPalmsRequest<'a> {
     pub(crate) fn new(scene: &'a Scene, title: &'a str, identify: bool) -> Self {
         let (note, warnings) = Default::default();
         Self { scene, title, identify, friction: None, together: 1, note, warnings, implausible: false }
+    }
+
+    /// What does not go with the scene, before all other warnings.
+    pub(super) fn doubt(&mut self, odd: &[Implausibility], warnings: Vec<String>) {
+        self.implausible = !odd.is_empty();
+        self.warnings = odd.iter().map(|odd| sentence(&odd.to_string())).chain(warnings).collect();
     }
 }
 

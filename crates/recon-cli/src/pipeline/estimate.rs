@@ -15,8 +15,8 @@ use crate::error::CliError;
 use crate::progress::Progress;
 use recon::object_dynamics::SensorLog;
 use recon_io::{
-    FolderTarget, Level, ReportData, Scene, TriangleMesh, implausibilities, write_estimate_report,
-    write_report,
+    FolderTarget, Implausibility, Level, ReportData, Scene, TriangleMesh, implausibilities,
+    implausible_contacts, write_estimate_report, write_report,
 };
 use serde_json::Value;
 use std::io::{self, Write};
@@ -51,9 +51,11 @@ pub(crate) fn estimated(
         LogOf::ThreePalms(log) => estimated_planes(log, asked, warnings, progress),
         LogOf::AnyPalms(log, why) => {
             refuse_unfelt(&log, path, &why)?;
-            request.warnings = warnings;
+            let odd = implausible_contacts(&log, scene);
+            request.doubt(&odd, warnings);
             request.note = sentence(&format!("{why}; the estimate is that from contacts of any palms"));
-            Ok(Estimated { made: estimate_any_palms(*log, request, progress)?, page: None })
+            let made = estimate_any_palms(*log, request, progress);
+            Ok(Estimated { made: made.map_err(|error| odd_first(error, &odd))?, page: None })
         }
     }
 }
@@ -77,17 +79,18 @@ pub(crate) fn estimated_planes(
     request.friction = Some(0.0);
     request.together = together;
     request.note = "Three flat palms without friction.".to_owned();
-    request.implausible = !odd.is_empty();
-    request.warnings = odd.iter().map(|odd| sentence(&odd.to_string())).chain(warnings).collect();
-    let made =
-        estimate_any_palms(contacts, request, progress).map_err(|error| match (error, odd.first()) {
-            (CliError::ContactEstimate(source), Some(odd)) => {
-                CliError::OddLog { odd: odd.to_string(), source }
-            }
-            (error, _) => error,
-        })?;
+    request.doubt(&odd, warnings);
+    let made = estimate_any_palms(contacts, request, progress).map_err(|error| odd_first(error, &odd))?;
     let page = as_planes(&made, &log, scene)?;
     Ok(Estimated { made, page: Some(page) })
+}
+
+/// Of an estimate that fails on a log that does not go with its scene, that it does not.
+fn odd_first(error: CliError, odd: &[Implausibility]) -> CliError {
+    match (error, odd.first()) {
+        (CliError::ContactEstimate(source), Some(odd)) => CliError::OddLog { odd: odd.to_string(), source },
+        (error, _) => error,
+    }
 }
 
 impl Estimated {

@@ -6,7 +6,7 @@ use crate::pipeline::{LoadedLog, LogOf, sorted_with_forces};
 use recon::contact_kinematics::PalmSurface;
 use recon::object_dynamics::{ContactLog, LoggedPalm, SensedAxes, TwistSource};
 use recon::observer::ContactNoiseLevel;
-use recon_io::{AnyLog, Scene, brief, brief_to, implausibilities};
+use recon_io::{AnyLog, Scene, brief, brief_to, implausibilities, implausible_contacts};
 use serde_json::{Value, json};
 
 /// Intervals longer than this many of the median are gaps: the samples between were left out.
@@ -20,7 +20,10 @@ pub(super) fn told(loaded: LoadedLog, scene: &Scene) -> Result<Understood, CliEr
             let odd = implausibilities(log, scene).iter().map(ToString::to_string).collect::<Vec<_>>();
             (ContactLog::try_from(log)?, 1, log.truth().is_some(), odd)
         }
-        AnyLog::Contacts(log) => (log.clone(), 2, log.truth().is_some(), Vec::new()),
+        AnyLog::Contacts(log) => {
+            let odd = implausible_contacts(log, scene).iter().map(ToString::to_string).collect();
+            (log.clone(), 2, log.truth().is_some(), odd)
+        }
     };
     warnings.extend(loaded.warnings.clone());
     let Rate { rate, gaps } = Rate::of(contacts.times());
