@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
-/// Widths of the window, px: what a browser takes at the least without a screen, and a wide one.
-const WIDTHS: [u32; 2] = [500, 1400];
+/// Widths of the page, px: a telephone's, and a wide one.
+const WIDTHS: [u32; 2] = [400, 1400];
 
 /// Commands in their order, each with the page that it makes.
 const PAGES: [(&str, Option<&str>); 10] = [
@@ -29,15 +29,25 @@ const PAGES: [(&str, Option<&str>); 10] = [
     ),
 ];
 
-/// Stands in front of everything else, and tells what went wrong as attributes of the page.
+/// Stands in front of everything else in a page, and tells what became of it to the one that frames it.
 const PROBE: &str = "<script>
-addEventListener('error', (e) => { document.documentElement.dataset.failed = e.message; });
+addEventListener('error', (e) => parent.postMessage({ failed: e.message }, '*'));
 addEventListener('load', () => {
   const root = document.documentElement;
-  root.dataset.overflow = root.scrollWidth - root.clientWidth;
-  root.dataset.drawn = document.querySelectorAll('svg, canvas').length;
+  parent.postMessage({
+    overflow: root.scrollWidth - root.clientWidth,
+    drawn: document.querySelectorAll('svg, canvas').length,
+  }, '*');
 });
 </script>";
+
+/// A page that frames another, since no window without a screen is narrower than 500 px, and keeps what that tells as attributes.
+fn frame(page: &str, width: u32) -> String {
+    format!(
+        "<html><script>addEventListener('message', (e) => Object.assign(document.documentElement.dataset, e.data));</script>\
+         <iframe src=\"{page}\" style=\"width: {width}px; height: 900px; border: 0\"></iframe></html>"
+    )
+}
 
 pub(crate) fn check() -> Result<Outcome, String> {
     let Some(browser) = BROWSERS.into_iter().find(|name| output(program(name).arg("--version")).is_ok())
@@ -72,12 +82,15 @@ pub(crate) fn check() -> Result<Outcome, String> {
 /// What is wrong with a page at some width.
 fn complaints(browser: &str, page: &Path) -> Result<Vec<String>, String> {
     let text = std::fs::read_to_string(page).map_err(|error| format!("{}: {error}", page.display()))?;
-    let probed = page.with_extension("probed.html");
-    std::fs::write(&probed, text.replacen("<head>", &format!("<head>{PROBE}"), 1))
-        .map_err(|error| format!("{}: {error}", probed.display()))?;
+    let put = |path: &Path, text: String| {
+        std::fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))
+    };
+    let (probed, framed) = (page.with_extension("probed.html"), page.with_extension("framed.html"));
+    put(&probed, text.replacen("<head>", &format!("<head>{PROBE}"), 1))?;
+    let name = probed.file_name().unwrap_or_default().to_string_lossy();
     let mut wrong = Vec::new();
     for width in WIDTHS {
-        let size = format!("--window-size={width},900");
+        put(&framed, frame(&name, width))?;
         let dom = output(
             program(browser)
                 .args([
@@ -85,10 +98,10 @@ fn complaints(browser: &str, page: &Path) -> Result<Vec<String>, String> {
                     "--no-sandbox",
                     "--disable-gpu",
                     "--virtual-time-budget=4000",
-                    &size,
+                    "--window-size=1500,1000",
                     "--dump-dom",
                 ])
-                .arg(&probed),
+                .arg(&framed),
         )?;
         wrong.extend(told(&dom).into_iter().map(|what| format!("{} at {width} px: {what}", page.display())));
     }
