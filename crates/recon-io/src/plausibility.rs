@@ -154,11 +154,7 @@ pub fn implausible_contacts(log: &ContactLog, scene: &Scene) -> Vec<Implausibili
     let at = |k: usize| -> Vec<DVec3> {
         log.palms().iter().filter_map(|palm| Some(palm.touch(k)?.p_WC)).collect()
     };
-    let apart = |points: Vec<DVec3>| -> Option<f64> {
-        let pairs = points.iter().enumerate().flat_map(|(i, a)| points[..i].iter().map(|b| a.distance(*b)));
-        pairs.reduce(f64::max)
-    };
-    let spread = median((0..log.times().len()).filter_map(|k| apart(at(k))).collect());
+    let spread = median((0..log.times().len()).filter_map(|k| apart(&at(k))).collect());
     spread.and_then(|s| rare_samples(log.times(), s, scene)).into_iter().collect()
 }
 
@@ -175,8 +171,13 @@ fn spread(sample: &Sample) -> Option<f64> {
     for (contact, palm) in contacts.iter_mut().zip(&sample.palms) {
         *contact = PalmFrame::from_normal(palm.normal).ok()?.contact_from_sensor(palm.contact?);
     }
-    let [a, b, c] = contacts;
-    Some(a.distance(b).max(b.distance(c)).max(c.distance(a)))
+    apart(&contacts)
+}
+
+/// Largest distance between two of some points; None where there are no two.
+fn apart(points: &[DVec3]) -> Option<f64> {
+    let pairs = points.iter().enumerate().flat_map(|(i, a)| points[..i].iter().map(|b| a.distance(*b)));
+    pairs.reduce(f64::max)
 }
 
 fn against_gyration(spread: f64, scene: &Scene) -> Option<Implausibility> {

@@ -48,9 +48,9 @@ pub fn write_estimated_motion(
     mut to: impl Write,
 ) -> io::Result<()> {
     let modes: String = (1..=palms).map(|i| format!("mode_{i},")).collect();
-    let odds = mode_probabilities(estimate, palms);
+    let odds = estimate.mode_odds.as_ref().map(|found| &found.odds);
     let name = |i: usize| format!("p_slide_{i},p_stick_{i},");
-    let named: String = odds.as_ref().map_or_else(String::new, |_| (1..=palms).map(name).collect());
+    let named: String = odds.map_or_else(String::new, |_| (1..=palms).map(name).collect());
     writeln!(to, "t,{},{},{modes}{named}relied_on", TRUTH.join(","), DEVIATIONS.join(","))?;
     for (k, t) in times.iter().enumerate() {
         let mut row = cells(*t, &estimate.states[k].into()).to_vec();
@@ -58,8 +58,8 @@ pub fn write_estimated_motion(
         let numbers: Vec<String> = row.into_iter().map(exact).collect();
         let modes: String =
             estimate.modes[k].iter().take(palms).map(|mode| format!("{},", mode.number())).collect();
-        let odds = odds.as_ref().map_or_else(String::new, |odds| {
-            odds[k].iter().flatten().map(|probability| format!("{probability},")).collect()
+        let odds = odds.map_or_else(String::new, |odds| {
+            odds[k].iter().take(palms).flat_map(probabilities).map(|p| format!("{p},")).collect()
         });
         writeln!(to, "{},{modes}{odds}{}", numbers.join(","), u8::from(estimate.relied_on[k]))?;
     }
@@ -70,10 +70,13 @@ pub fn write_estimated_motion(
 /// None where it is not estimated.
 #[must_use]
 pub fn mode_probabilities(estimate: &ContactEstimate, palms: usize) -> Option<Vec<Vec<[f64; 2]>>> {
-    let rounded = |probability: f64| (1e6 * probability).round() / 1e6;
-    let of = |one: &ContactOdds| [one.slide, one.stick].map(rounded);
     let odds = estimate.mode_odds.as_ref()?.odds.iter();
-    Some(odds.map(|all| all.iter().take(palms).map(of).collect()).collect())
+    Some(odds.map(|all| all.iter().take(palms).map(probabilities).collect()).collect())
+}
+
+/// To slide and to stick, to a millionth.
+fn probabilities(of: &ContactOdds) -> [f64; 2] {
+    [of.slide, of.stick].map(|probability| (1e6 * probability).round() / 1e6)
 }
 
 /// A time and a state in the order of the truth columns.

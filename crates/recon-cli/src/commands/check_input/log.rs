@@ -15,16 +15,13 @@ const GAP: f64 = 1.5;
 const NAMED: usize = 5;
 
 pub(super) fn told(loaded: LoadedLog, scene: &Scene) -> Result<Understood, CliError> {
-    let (contacts, version, truth, mut warnings) = match &loaded.log {
+    let (contacts, version, truth, odd) = match &loaded.log {
         AnyLog::ThreePalms(log) => {
-            let odd = implausibilities(log, scene).iter().map(ToString::to_string).collect::<Vec<_>>();
-            (ContactLog::try_from(log)?, 1, log.truth().is_some(), odd)
+            (ContactLog::try_from(log)?, 1, log.truth().is_some(), implausibilities(log, scene))
         }
-        AnyLog::Contacts(log) => {
-            let odd = implausible_contacts(log, scene).iter().map(ToString::to_string).collect();
-            (log.clone(), 2, log.truth().is_some(), odd)
-        }
+        AnyLog::Contacts(log) => (log.clone(), 2, log.truth().is_some(), implausible_contacts(log, scene)),
     };
+    let mut warnings: Vec<String> = odd.iter().map(ToString::to_string).collect();
     warnings.extend(loaded.warnings.clone());
     let Rate { rate, gaps } = Rate::of(contacts.times());
     let mut lines = vec![
