@@ -197,6 +197,10 @@ impl<const P: usize> Carried<P> {
         let inertia = body.inertia_along(self.turn.R);
         let by_turn = K * Matrix3::from(cross_matrix(inertia * turn)) - Matrix3::from(cross_matrix(turn));
         at.turn_by_motion += by_turn * self.turn_by_motion;
+        // Where the centre of mass is matters to the turn by what the forces' second integral is as well. Without it a grasp, whose centre of
+        // mass is known badly, does not settle.
+        let mut by_place = at.turn_by_motion.fixed_view_mut::<3, 3>(0, 0);
+        by_place += K * Matrix3::from(cross_matrix(missing[0]));
         if P > 0 {
             at.turn_by_body += by_turn * self.turn_by_body;
             let owed = body.by_inertia(&Turn { w: turn, ..self.turn });
