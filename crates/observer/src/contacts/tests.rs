@@ -1,13 +1,13 @@
-use super::body::Body;
+use super::body::{Body, CONSTANTS};
 use super::cold;
 use super::problem::{Problem, Unknowns};
 use super::record::Record;
 use super::solve::Step;
-use super::state::{Motion, Tangent};
+use super::state::{MOTION, Motion, Tangent};
 use super::*;
 use contact_kinematics::{Direction, Ellipsoid, PalmSurface, SupportFunction, SurfaceMotion, SurfacePose};
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 use object_dynamics::*;
 
 mod frictionless;
@@ -111,81 +111,81 @@ fn errors(found: &ContactEstimate, log: &ContactLog) -> (f64, f64) {
     (squares / truth.len() as f64, (found.mass / 0.2 - 1.0).abs())
 }
 
-/// A problem on a short noisy log, with unknowns that are not its solution.
-fn off_solution(record: &Record, noise: ContactNoiseLevel, stride: usize) -> (Problem<'_>, Unknowns) {
-    let last = record.times.len() - 1;
-    let units = cold::units(record, G, SIZE);
-    let body = cold::ball(&units);
-    let none = Motion { p: DVec3::ZERO, v: DVec3::ZERO, L: DVec3::ZERO, q: DQuat::IDENTITY };
-    let problem = Problem {
-        record,
-        noise,
-        floor: noise.floor,
-        exact: !noise.limits(&units),
-        missed: Vec::new(),
-        friction: false,
-        gravity: DVec3::new(0.0, 0.0, -G),
-        nodes: (0..last).step_by(stride).chain([last]).collect(),
-        units,
-        first: (none, Tangent::from_element(1.0)),
-        body: (body, SMatrix::identity()),
-        planar: false,
-        frozen: Vec::new(),
+/// An ellipsoid that rocks on a plane without slipping.
+fn rocking(seconds: f64, rate: f64) -> ContactLog {
+    let axes = DVec3::new(0.05, 0.04, 0.03);
+    let (body, mass) = (Ellipsoid::new(axes).unwrap(), MassProperties::uniform_ellipsoid(0.2, axes).unwrap());
+    let R_WO = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.3);
+    let at = R_WO * body.point(Direction::new(R_WO.inverse() * DVec3::NEG_Z).unwrap());
+    let pose = SurfacePose::new(at, DQuat::IDENTITY).unwrap();
+    let drive = PalmDrive::Prescribed(SurfaceMotion::immobile(pose));
+    let palm = ScenePalm { surface: PalmSurface::Plane, drive, friction: 1.0 };
+    let scene = ContactScene::new(body, mass, vec![palm], G).unwrap();
+    let w_WO = DVec3::new(0.5, -1.0, 0.3);
+    let start = BodyState { p_WCm: DVec3::ZERO, R_WO, v_WCm: at.cross(w_WO), w_WO };
+    simulated(&scene, &ContactStart::touching(start), seconds, rate)
+}
+
+/// Unknowns that are the truth of `log`.
+fn truth(log: &ContactLog, problem: &Problem) -> Unknowns {
+    let truth = log.truth().unwrap();
+    let R_WO = DMat3::from_quat(truth[0].R_WO);
+    let mass = MassProperties::uniform_ellipsoid(0.2, DVec3::new(0.05, 0.04, 0.03)).unwrap();
+    let body = Body::free(0.2f64.ln(), R_WO * mass.inertia() * R_WO.transpose());
+    let one = |&k: &usize| {
+        let state = &truth[k];
+        let q = state.R_WO * truth[0].R_WO.conjugate();
+        let L = body.inertia_along(DMat3::from_quat(q)) * state.w_WO;
+        Motion { p: state.p_WCm - problem.record.origin, v: state.v_WCm, L, q }
     };
-    let mut at = cold::start(&problem, body, DQuat::from_rotation_y(0.3));
-    let inertia = DMat3::from_diagonal(DVec3::new(1.0, 1.4, 1.6)) * 1e-4;
-    at.body = Body::free(0.19f64.ln(), inertia);
-    (problem, at)
+    Unknowns { motions: problem.nodes.iter().map(one).collect(), body }
 }
 
 #[test]
 fn the_gradient_is_that_of_the_cost() {
     let noise = noise(4e-4, 0.02);
-    let log = noisy(&log(0.03, 1000.0), &noise, 3);
-    let mut record = Record::new(&log, &options(noise)).unwrap();
-    record.set_modes(&modes(&log));
-    for stride in [1, 3] {
-        let (problem, mut at) = off_solution(&record, noise, stride);
-        // Near a solution for this body, so that no contact is as far from its reading as noise never moves one.
-        at = super::solve::solve::<0>(&problem, at, 40, 1e-6).unwrap().unknowns;
-        let equations = problem.linearise::<7>(&at).unwrap();
-        let cost = |step: &Step<7>| problem.trial(&at, step, &equations).unwrap().cost;
-        let nothing =
-            || Step { motions: vec![Tangent::zeros(); problem.nodes.len()], body: SVector::zeros() };
+    // Of one contact that sticks a centre of mass is known worst.
+    for (stride, rate, friction) in [(1, 1000.0, 0.1), (3, 1000.0, 0.1), (2, 100.0, 0.0), (1, 100.0, 1.0)] {
+        let exact =
+            if friction > 0.5 { rocking(30.0 / rate, rate) } else { rubbed(30.0 / rate, rate, friction) };
+        let log = noisy(&exact, &noise, 3);
+        let options = options(noise);
+        let mut record = Record::new(&log, &options).unwrap();
+        record.set_modes(&modes(&log));
+        let mut problem = search::problem(&record, &options, cold::units(&record, G, SIZE));
+        let last = record.times.len() - 1;
+        problem.nodes = (0..last).step_by(stride).chain([last]).collect();
+        let start = truth(&log, &problem);
+        let solved = solve::solve::<CONSTANTS>(&problem, start, 60, 1e-6).unwrap();
+        let (at, equations) = (solved.unknowns, solved.equations);
         // What the slopes are off by, all together: along what conditions hardly tell a small one leads far.
         let mut off = equations.gradient();
-        let slope = |make: &dyn Fn(f64) -> Step<7>, curvature: f64| {
+        let slope = |curvature: f64, set: &dyn Fn(&mut Step<CONSTANTS>, f64)| {
             // A step over which the cost changes by about one.
             let h = 1e-2 / curvature.sqrt();
-            (cost(&make(h)) - cost(&make(-h))) / (4.0 * h)
+            let cost = |h: f64| {
+                let motions = vec![Tangent::zeros(); problem.nodes.len()];
+                let mut step = Step { motions, body: SVector::zeros() };
+                set(&mut step, h);
+                problem.trial(&at, &step, &equations).unwrap().cost
+            };
+            (cost(h) - cost(-h)) / (4.0 * h)
         };
         for (j, node) in equations.nodes.iter().enumerate() {
-            for i in 0..12 {
-                let make = |h: f64| {
-                    let mut step = nothing();
-                    step.motions[j][i] = h;
-                    step
-                };
-                off.motions[j][i] -= slope(&make, node.own[(i, i)]);
+            for i in 0..MOTION {
+                off.motions[j][i] -= slope(node.own[(i, i)], &|step, h| step.motions[j][i] = h);
             }
         }
-        for i in 0..7 {
-            let make = |h: f64| {
-                let mut step = nothing();
-                step.body[i] = h;
-                step
-            };
-            off.body[i] -= slope(&make, equations.body[(i, i)]);
+        for i in 0..CONSTANTS {
+            off.body[i] -= slope(equations.body[(i, i)], &|step, h| step.body[i] = h);
         }
         let (reduced, mended) = equations.solver(&problem.natural_information()).unwrap();
-        assert_eq!(mended, 0.0);
         let step = reduced.step(&off);
         let nodes: f64 = step.motions.iter().zip(&off.motions).map(|(s, g)| s.dot(g)).sum();
         let deviations = (-(nodes + step.body.dot(&off.body))).sqrt();
-        assert!(
-            deviations < 0.01,
-            "{stride}: slopes lead {deviations} standard deviations beside the least cost"
-        );
+        let what = format!("every {stride} of {rate} Hz, friction {friction}");
+        assert_eq!(mended, 0.0, "{what}");
+        assert!(deviations < 0.4, "{what}: slopes lead {deviations} deviations beside the least cost");
     }
 }
 
