@@ -10,6 +10,11 @@ use super::steps::{SPEEDS, Steps, speeds};
 
 /// Logarithm of the odds against a friction at which it is given up: given the model it would come back once in 10^26.
 const GIVEN_UP: f64 = 60.0;
+/// From one friction to the next of those that are tried first, in steps of all; a power of two.
+const COARSE: usize = 8;
+/// Neighbours nearer to each other foretell what is between them; what is so far below the most probable one is of no account.
+const SAME: f64 = 0.1;
+const NO_ACCOUNT: f64 = 25.0;
 /// Samples from one look for such frictions to the next.
 const LOOKS: usize = 8;
 
@@ -93,19 +98,54 @@ impl Passage {
         Self { said }
     }
 
-    /// Logarithm of the density of all that was read, for each friction; of those that are given up, of what was read until then.
+    /// Logarithm of the density of all that was read, for each friction, which grow evenly; of those that are given up, as little as is of
+    /// no account. Few are gone through the log with at first, and more between where their neighbours do not foretell what comes of it.
     pub(super) fn evidence(&self, pace: &Pace, frictions: &[AtFriction]) -> Vec<f64> {
-        let mut left: Vec<Tried> = frictions.iter().map(Tried::new).collect();
-        for (k, said) in self.said.iter().enumerate() {
-            left.iter_mut().for_each(|tried| tried.take(pace, k, said));
-            if k % LOOKS == 0 {
-                let largest = left.iter().map(|tried| tried.log).fold(f64::NEG_INFINITY, f64::max);
-                left.retain(|tried| tried.log > largest - GIVEN_UP);
+        let last = frictions.len() - 1;
+        let mut largest = vec![f64::NEG_INFINITY; self.said.len() / LOOKS + 1];
+        let mut logs = vec![None; frictions.len()];
+        let coarse: Vec<usize> = (0..last).step_by(COARSE).chain([last]).collect();
+        self.try_all(pace, frictions, &coarse, &mut largest, &mut logs);
+        let mut stride = COARSE;
+        while stride > 1 {
+            stride /= 2;
+            let between: Vec<usize> = (1..)
+                .map(|i| (2 * i - 1) * stride)
+                .take_while(|k| *k < last)
+                .filter(|k| logs[*k].is_none())
+                .collect();
+            let foretold: Vec<Option<f64>> = between.iter().map(|k| foretold(&logs, *k, stride)).collect();
+            let open: Vec<usize> =
+                between.iter().zip(&foretold).filter(|(_, log)| log.is_none()).map(|(k, _)| *k).collect();
+            self.try_all(pace, frictions, &open, &mut largest, &mut logs);
+            for (k, log) in between.into_iter().zip(foretold) {
+                logs[k] = logs[k].or(log);
             }
         }
-        let least = left.iter().map(|tried| tried.log).fold(f64::NEG_INFINITY, f64::max) - GIVEN_UP;
-        let of = |at: &AtFriction| left.iter().find(|tried| tried.at.friction == at.friction);
-        frictions.iter().map(|at| of(at).map_or(least, |tried| tried.log.max(least))).collect()
+        let most = logs.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
+        logs.into_iter().map(|log| log.unwrap_or(most).max(most - GIVEN_UP)).collect()
+    }
+
+    /// The same for some of them, into `logs`; `largest` are the largest until now at each look.
+    fn try_all(
+        &self,
+        pace: &Pace,
+        frictions: &[AtFriction],
+        some: &[usize],
+        largest: &mut [f64],
+        logs: &mut [Option<f64>],
+    ) {
+        let mut left: Vec<(usize, Tried)> = some.iter().map(|&k| (k, Tried::new(&frictions[k]))).collect();
+        for (k, said) in self.said.iter().enumerate() {
+            left.iter_mut().for_each(|(_, tried)| tried.take(pace, k, said));
+            if k % LOOKS == 0 {
+                let largest = &mut largest[k / LOOKS];
+                *largest = left.iter().map(|(_, tried)| tried.log).fold(*largest, f64::max);
+                left.retain(|(_, tried)| tried.log > *largest - GIVEN_UP);
+            }
+        }
+        some.iter().for_each(|&k| logs[k] = Some(f64::NEG_INFINITY));
+        left.into_iter().for_each(|(k, tried)| logs[k] = Some(tried.log));
     }
 
     /// Adds the modes at all samples given one friction, with a weight.
@@ -134,6 +174,27 @@ impl Passage {
             worth.unread(&likelihood);
             worth.before(steps, &mut spare);
         }
+    }
+}
+
+/// What is between the frictions `k - stride` and `k + stride`, where both sides come to the same or it is of no account.
+fn foretold(logs: &[Option<f64>], k: usize, stride: usize) -> Option<f64> {
+    let end = |k: Option<usize>| k.and_then(|k| logs.get(k).copied().flatten());
+    let [below, above] = [end(k.checked_sub(stride)), end(Some(k + stride)).or(*logs.last()?)];
+    let (below, above) = (below?, above?);
+    let between = 0.5 * (below + above);
+    let on = |near: f64, far: Option<f64>| far.map_or(near, |far| near + 0.5 * (near - far));
+    let from = [on(below, end(k.checked_sub(3 * stride))), on(above, end(Some(k + 3 * stride)))];
+    let most = logs.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
+    let all = [below, above, from[0], from[1]];
+    let nothing = all.iter().all(|log| !(*log > most - NO_ACCOUNT));
+    let same = from.iter().chain(&[below, above]).all(|log| (log - between).abs() < SAME);
+    if nothing {
+        Some(below.min(above))
+    } else if same {
+        Some(between)
+    } else {
+        None
     }
 }
 
@@ -201,5 +262,59 @@ impl Said {
         likelihood.off = touches + self.off;
         likelihood.speeds.iter_mut().zip(&self.speeds).for_each(|(log, slip)| *log += slip);
         likelihood.ratios.iter_mut().for_each(|log| *log += self.sticks);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ContactSlip;
+    use super::super::friction::values;
+    use super::*;
+    use crate::random::Normal;
+    use nalgebra::{Matrix2, Vector2};
+
+    /// What few frictions foretell is what all of them come to, of contacts that slide, that stick and that do both.
+    #[test]
+    fn few_frictions_tell_what_all_do() {
+        let options = ContactModesOptions::new(0.6, 0.01, 1.0);
+        let times: Vec<f64> = (0..200).map(|k| 1e-3 * f64::from(k)).collect();
+        let pace = Pace::new(&times, 0.0);
+        let at: Vec<AtFriction> = values().iter().map(|friction| pace.at(*friction)).collect();
+        for (case, [begin, end, slips, noise]) in
+            [[0.3, 0.3, 1.0, 0.02], [0.1, 0.25, 0.0, 0.02], [0.2, 0.5, 0.5, 0.01], [0.47, 0.47, 1.0, 2e-3]]
+                .iter()
+                .enumerate()
+        {
+            let mut normal = Normal::seeded(case as u64);
+            let seen: Vec<ContactSeen> = (0..times.len())
+                .map(|k| {
+                    let s = k as f64 / times.len() as f64;
+                    let slip = if s > 1.0 - slips { 0.1 } else { 0.0 };
+                    let ratio = if slip > 0.0 { *end } else { begin + (end - begin) * s };
+                    let mut draw = || Vector2::new(normal.draw(), normal.draw());
+                    let friction = Vector2::new(ratio, 0.0) + draw() * *noise;
+                    let velocity = Vector2::new(-slip, 0.0) + draw() * 2e-3;
+                    let slip = Some(ContactSlip { velocity, covariance: Matrix2::identity() * 4e-6 });
+                    let (normal_force, force_deviation) = (1.0 + noise * draw().x, *noise);
+                    ContactSeen::Read(ContactReading {
+                        normal_force,
+                        friction,
+                        force_deviation,
+                        slip,
+                        touches: true,
+                    })
+                })
+                .collect();
+            let passage = Passage::new(&seen, &pace, &options);
+            let few = passage.evidence(&pace, &at);
+            let mut all = vec![None; at.len()];
+            let every: Vec<usize> = (0..at.len()).collect();
+            passage.try_all(&pace, &at, &every, &mut [f64::NEG_INFINITY; 30], &mut all);
+            let most = all.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
+            let counts = all.iter().flatten().zip(&few).filter(|(log, _)| **log > most - 0.5 * NO_ACCOUNT);
+            let off = counts.map(|(log, few)| (log - few).abs()).fold(0.0, f64::max);
+            assert!(off < 0.5 * SAME, "{case}: {off}");
+            assert!(few.iter().all(|few| *few < most + 0.5 * SAME), "{case}");
+        }
     }
 }
