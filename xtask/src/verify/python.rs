@@ -17,7 +17,9 @@ pub(crate) fn check() -> Result<Outcome, String> {
             "no Python with {needed}: only the format of crates/recon-py was checked"
         )));
     };
-    run(&mut cargo("clippy --manifest-path crates/recon-py/Cargo.toml --locked -- -D warnings"))?;
+    // What both workspaces build alike is built once.
+    let mut clippy = cargo("clippy --manifest-path crates/recon-py/Cargo.toml --locked -- -D warnings");
+    run(clippy.env("CARGO_TARGET_DIR", target()))?;
     run(&mut cargo("build -p recon-cli"))?;
     let (wheels, unpacked) = (target().join("wheels"), target().join("python"));
     // A wheel of an earlier commit is not what is tested.
@@ -26,7 +28,9 @@ pub(crate) fn check() -> Result<Outcome, String> {
             std::fs::remove_dir_all(old).map_err(|error| format!("{}: {error}", old.display()))?;
         }
     }
-    run(program(python).args(["-m", "maturin", "build", "--release", "--locked", "--out"]).arg(&wheels))?;
+    let mut build = program(python);
+    build.args(["-m", "maturin", "build", "--locked", "--out"]).arg(&wheels);
+    run(build.env("CARGO_TARGET_DIR", target()))?;
     let wheel = std::fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
     let wheel = wheel.filter_map(Result::ok).next().ok_or("maturin wrote no wheel")?.path();
     run(program(python).args(["-m", "zipfile", "-e"]).arg(&wheel).arg(&unpacked))?;
