@@ -3,6 +3,7 @@
 use super::body::{Body, CONSTANTS};
 use super::problem::Problem;
 use super::redrawn::FEW_DRAWS;
+use super::rivals::as_probable;
 use super::search::fine;
 use super::solve::Solved;
 use crate::least_squares::{LeastSquares, LevenbergMarquardt, NormalEquations};
@@ -45,6 +46,8 @@ pub(super) struct Oriented {
     pub(super) solved: Solved<CONSTANTS>,
     /// How far the axes are from those of the farthest other motion that is not much less probable, rad.
     pub(super) doubt: f64,
+    /// By how many deviations another motion that is about as probable, with other axes, is another one.
+    pub(super) open: Option<Reason>,
     /// Linearisations of all motions that were looked at.
     pub(super) iterations: usize,
 }
@@ -114,11 +117,15 @@ fn oriented(problem: &mut Problem, unknown: &Solved<CONSTANTS>, mass: &MassPrope
     let dearer = solved.equations.cost - unknown.equations.cost > CONTRADICTED;
     let against = against.filter(|_| unknown.explained() && dearer);
     let odds = |other: &Solved<CONSTANTS>| 0.5 * (other.equations.cost - solved.equations.cost);
-    let open = found.filter(|(other, ..)| odds(other) < LEAST_LOG_ODDS);
-    let doubt = open.map(|(other, ..)| apart(axes(&solved), axes(&other), &same)).fold(0.0, f64::max);
     problem.body.0 = body;
     problem.frozen = frozen;
-    Some(Oriented { against, solved, doubt, iterations })
+    let (mut doubt, mut open) = (0.0_f64, None);
+    for (other, ..) in found.filter(|(other, ..)| odds(other) < LEAST_LOG_ODDS) {
+        doubt = doubt.max(apart(axes(&solved), axes(&other), &same));
+        // With other axes it may move in another way.
+        open = open.or_else(|| as_probable(problem, &solved, &other));
+    }
+    Some(Oriented { against, solved, doubt, open, iterations })
 }
 
 impl Problem<'_> {

@@ -121,6 +121,7 @@ impl<'a> Stage<'a> {
             let open = other.and_then(|other| as_probable(problem, &known.solved, &other.solved));
             self.open = self.open.or(open);
         }
+        self.open = self.open.or(known.open);
         (self.solved, self.doubt, self.against) = (known.solved, Some(known.doubt), known.against);
         Some(self)
     }
