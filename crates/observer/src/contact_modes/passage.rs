@@ -187,7 +187,8 @@ fn foretold(logs: &[Option<f64>], k: usize, stride: usize) -> Option<f64> {
     let from = [on(below, end(k.checked_sub(3 * stride))), on(above, end(Some(k + 3 * stride)))];
     let most = logs.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
     let all = [below, above, from[0], from[1]];
-    let nothing = all.iter().all(|log| !(*log > most - NO_ACCOUNT));
+    // From two that are given up nothing follows.
+    let nothing = all.iter().all(|log| log.is_nan() || *log <= most - NO_ACCOUNT);
     let same = from.iter().chain(&[below, above]).all(|log| (log - between).abs() < SAME);
     if nothing {
         Some(below.min(above))
