@@ -123,7 +123,7 @@ impl Passage {
             }
         }
         let most = logs.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
-        logs.into_iter().map(|log| log.unwrap_or(most).max(most - GIVEN_UP)).collect()
+        logs.into_iter().map(|log| log.unwrap_or(f64::NEG_INFINITY).max(most - GIVEN_UP)).collect()
     }
 
     /// The same for some of them, into `logs`; `largest` are the largest until now at each look.

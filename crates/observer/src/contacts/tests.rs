@@ -144,10 +144,13 @@ fn truth(log: &ContactLog, problem: &Problem) -> Unknowns {
 #[test]
 fn the_gradient_is_that_of_the_cost() {
     let noise = noise(4e-4, 0.02);
-    // Of one contact that sticks a centre of mass is known worst.
-    for (stride, rate, friction) in [(1, 1000.0, 0.1), (3, 1000.0, 0.1), (2, 100.0, 0.0), (1, 100.0, 1.0)] {
-        let exact =
-            if friction > 0.5 { rocking(30.0 / rate, rate) } else { rubbed(30.0 / rate, rate, friction) };
+    // Of one contact that sticks a centre of mass is known worst, and links that turn far are carried by derivatives of order 2.
+    for (what, exact, stride, most) in [
+        ("rubbed", rubbed(0.03, 1000.0, 0.1), 1, 0.05),
+        ("rubbed, long links", rubbed(0.03, 1000.0, 0.1), 3, 0.05),
+        ("smooth, long links", rubbed(0.3, 100.0, 0.0), 2, 0.05),
+        ("rocking", rocking(0.3, 100.0), 1, 0.4),
+    ] {
         let log = noisy(&exact, &noise, 3);
         let options = options(noise);
         let mut record = Record::new(&log, &options).unwrap();
@@ -183,9 +186,8 @@ fn the_gradient_is_that_of_the_cost() {
         let step = reduced.step(&off);
         let nodes: f64 = step.motions.iter().zip(&off.motions).map(|(s, g)| s.dot(g)).sum();
         let deviations = (-(nodes + step.body.dot(&off.body))).sqrt();
-        let what = format!("every {stride} of {rate} Hz, friction {friction}");
         assert_eq!(mended, 0.0, "{what}");
-        assert!(deviations < 0.4, "{what}: slopes lead {deviations} deviations beside the least cost");
+        assert!(deviations < most, "{what}: slopes lead {deviations} deviations beside the least cost");
     }
 }
 
