@@ -1,6 +1,6 @@
 //! Triangle meshes as PLY files.
 
-use crate::check::Surface;
+use certificate::Surface;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::io::{self, BufWriter, Write};
@@ -60,7 +60,8 @@ impl TriangleMesh {
     /// way.
     #[must_use]
     pub fn is_closed(&self) -> bool {
-        Surface::from(self).open_edge().is_none()
+        Surface::new(self.vertices.clone(), self.triangles.clone())
+            .is_ok_and(|surface| surface.open_edge().is_none())
     }
 
     /// The closed surface of the points that `at` gives for unit vectors, on a net of `rows` by `columns` between the

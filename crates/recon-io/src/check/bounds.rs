@@ -1,11 +1,9 @@
 //! Lower and upper bound against each other and against what is stated of them.
 
 use super::figures::warns;
-use super::inside::Solid;
-use super::mesh_file::Surface;
-use super::outline::Outline;
 use super::{Fault, Found, rounding};
 use crate::TriangleMesh;
+use certificate::{Flaw, Outline, Solid, Surface};
 use glam::DVec2;
 use serde_json::Value;
 use std::f64::consts::PI;
@@ -18,17 +16,19 @@ const NOTABLE: f64 = 1e-6;
 const DENTS: f64 = 1e-7;
 
 /// How far the first of two closed surfaces stands out of the second, m: the largest distance of a corner outside, 0 where
-/// all are inside.
+/// all are inside, infinite out of what is no surface.
 #[must_use]
 pub fn stands_out(lower: &TriangleMesh, upper: &TriangleMesh) -> f64 {
-    let upper = Surface::from(upper);
+    let Ok(upper) = Surface::new(upper.vertices.clone(), upper.triangles.clone()) else {
+        return f64::INFINITY;
+    };
     Solid::new(&upper).farthest_outside(&lower.vertices).map_or(0.0, |(_, distance)| distance)
 }
 
 /// The same of two convex outlines, corners counter-clockwise.
 #[must_use]
 pub fn outline_stands_out(lower: &[DVec2], upper: &[DVec2]) -> f64 {
-    let upper = Outline(upper.to_vec());
+    let upper = Outline::new(upper.to_vec());
     upper.farthest_outside(lower, rounding(upper.reach())).map_or(0.0, |(_, distance)| distance)
 }
 
@@ -53,16 +53,16 @@ impl Bound {
             size: size.volume,
             boundary: size.area,
             reach,
-            terms: surface.triangles.len(),
-            not_convex: surface.not_convex(file, drawn + DENTS * reach),
+            terms: surface.triangles().len(),
+            not_convex: surface.not_convex(drawn + DENTS * reach).map(|flaw| fault(file, flaw)),
         }
     }
 
     fn of_outline(file: &str, outline: &Outline, drawn: f64) -> Self {
         let ((size, boundary), reach) = (outline.size(), outline.reach());
-        let dented = |why| Fault::NotConvex { file: file.to_owned(), why };
-        let not_convex = outline.not_convex(drawn + DENTS * reach).map(dented);
-        Self { file: file.to_owned(), size, boundary, reach, terms: outline.0.len(), not_convex }
+        let not_convex = outline.not_convex(drawn + DENTS * reach);
+        let not_convex = not_convex.map(|why| fault(file, Flaw::NotConvex(why)));
+        Self { file: file.to_owned(), size, boundary, reach, terms: outline.corners().len(), not_convex }
     }
 
     /// How far the size of the boundary as written may be from that of the bound, whose boundary is nowhere farther than
@@ -73,6 +73,14 @@ impl Bound {
         let curved =
             if in_space { 4.0 * PI * self.reach * t * t + 4.0 / 3.0 * PI * t.powi(3) } else { PI * t * t };
         t * self.boundary + curved + summed
+    }
+}
+
+fn fault(file: &str, flaw: Flaw) -> Fault {
+    let file = file.to_owned();
+    match flaw {
+        Flaw::Open(edge) => Fault::Open { file, edge },
+        Flaw::NotConvex(why) => Fault::NotConvex { file, why },
     }
 }
 
@@ -139,9 +147,9 @@ impl Found {
     fn check_inside(&mut self, summary: &Value, lower: &str, upper: &str, drawn: f64) {
         let (farthest, reach) =
             if let Some((lower, upper)) = self.surfaces.get(lower).zip(self.surfaces.get(upper)) {
-                (Solid::new(upper).farthest_outside(&lower.corners), upper.reach())
+                (Solid::new(upper).farthest_outside(lower.corners()), upper.reach())
             } else if let Some((lower, upper)) = self.outlines.get(lower).zip(self.outlines.get(upper)) {
-                (upper.farthest_outside(&lower.0, rounding(upper.reach())), upper.reach())
+                (upper.farthest_outside(lower.corners(), rounding(upper.reach())), upper.reach())
             } else {
                 return;
             };

@@ -1,119 +1,84 @@
 //! Triangles as they stand in a file: a reader of its own, for the layouts that recon writes.
 
-use crate::TriangleMesh;
+use certificate::Surface;
 use glam::DVec3;
 use std::io::{self, BufRead, Read};
-
-/// Triangles of a file, corners by number.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Surface {
-    pub(super) corners: Vec<DVec3>,
-    pub(super) triangles: Vec<[u32; 3]>,
-}
 
 /// What a header may hold at most, and how many corners or triangles are made room for before they are read.
 const LONGEST_HEADER: usize = 4096;
 const ROOM: usize = 1 << 20;
 
-impl From<&TriangleMesh> for Surface {
-    fn from(mesh: &TriangleMesh) -> Self {
-        Self { corners: mesh.vertices.clone(), triangles: mesh.triangles.clone() }
+/// Reads binary little-endian PLY of double coordinates and triangles.
+pub(super) fn from_ply(mut from: impl BufRead) -> io::Result<Surface> {
+    let (mut lines, mut length) = (Vec::new(), 0);
+    while lines.last().is_none_or(|line| line != "end_header") {
+        let mut line = Vec::new();
+        length += from.by_ref().take((LONGEST_HEADER - length) as u64).read_until(b'\n', &mut line)?;
+        if line.last() != Some(&b'\n') || length >= LONGEST_HEADER {
+            return Err(wrong("its header does not end"));
+        }
+        lines.push(String::from_utf8_lossy(&line).trim_end().to_owned());
     }
+    let expected = ["ply", "format binary_little_endian 1.0", "property list uchar int vertex_indices"];
+    if let Some(missing) = expected.iter().find(|line| !lines.iter().any(|l| l == *line)) {
+        return Err(wrong(&format!("its header lacks `{missing}`")));
+    }
+    let count = |of: &str| -> io::Result<usize> {
+        let found = lines.iter().find_map(|line| line.strip_prefix(of)?.trim().parse().ok());
+        found.ok_or_else(|| wrong(&format!("its header lacks `{of} NUMBER`")))
+    };
+    let (corners, triangles) = (count("element vertex")?, count("element face")?);
+    let mut read = (Vec::with_capacity(corners.min(ROOM)), Vec::with_capacity(triangles.min(ROOM)));
+    for _ in 0..corners {
+        let mut number = || -> io::Result<f64> {
+            let mut bytes = [0; 8];
+            from.read_exact(&mut bytes).map_err(short)?;
+            Ok(f64::from_le_bytes(bytes))
+        };
+        read.0.push(DVec3::new(number()?, number()?, number()?));
+    }
+    for _ in 0..triangles {
+        let mut bytes = [0; 13];
+        from.read_exact(&mut bytes).map_err(short)?;
+        if bytes[0] != 3 {
+            return Err(wrong(&format!("a face has {} corners", bytes[0])));
+        }
+        let corner = |k: usize| u32::from_le_bytes([bytes[k], bytes[k + 1], bytes[k + 2], bytes[k + 3]]);
+        read.1.push([corner(1), corner(5), corner(9)]);
+    }
+    if from.read(&mut [0])? != 0 {
+        return Err(wrong("it goes on after its last face"));
+    }
+    checked(read)
 }
 
-impl Surface {
-    /// Reads binary little-endian PLY of double coordinates and triangles.
-    pub(super) fn from_ply(mut from: impl BufRead) -> io::Result<Self> {
-        let (mut lines, mut length) = (Vec::new(), 0);
-        while lines.last().is_none_or(|line| line != "end_header") {
-            let mut line = Vec::new();
-            length += from.by_ref().take((LONGEST_HEADER - length) as u64).read_until(b'\n', &mut line)?;
-            if line.last() != Some(&b'\n') || length >= LONGEST_HEADER {
-                return Err(wrong("its header does not end"));
+/// Reads Wavefront OBJ of lines `v x y z` and `f a b c`.
+pub(super) fn from_obj(from: impl BufRead) -> io::Result<Surface> {
+    let mut read = (Vec::new(), Vec::new());
+    for line in from.lines() {
+        let line = line?;
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let bad = || wrong(&format!("`{line}` is not three numbers"));
+        match words.as_slice() {
+            ["v", rest @ ..] => {
+                let numbers: Result<Vec<f64>, _> = rest.iter().map(|word| word.parse()).collect();
+                let numbers = numbers.ok().and_then(|n| <[f64; 3]>::try_from(n).ok()).ok_or_else(bad)?;
+                read.0.push(numbers.into());
             }
-            lines.push(String::from_utf8_lossy(&line).trim_end().to_owned());
-        }
-        let expected = ["ply", "format binary_little_endian 1.0", "property list uchar int vertex_indices"];
-        if let Some(missing) = expected.iter().find(|line| !lines.iter().any(|l| l == *line)) {
-            return Err(wrong(&format!("its header lacks `{missing}`")));
-        }
-        let count = |of: &str| -> io::Result<usize> {
-            let found = lines.iter().find_map(|line| line.strip_prefix(of)?.trim().parse().ok());
-            found.ok_or_else(|| wrong(&format!("its header lacks `{of} NUMBER`")))
-        };
-        let (corners, triangles) = (count("element vertex")?, count("element face")?);
-        let mut surface = Self {
-            corners: Vec::with_capacity(corners.min(ROOM)),
-            triangles: Vec::with_capacity(triangles.min(ROOM)),
-        };
-        for _ in 0..corners {
-            let mut number = || -> io::Result<f64> {
-                let mut bytes = [0; 8];
-                from.read_exact(&mut bytes).map_err(short)?;
-                Ok(f64::from_le_bytes(bytes))
-            };
-            surface.corners.push(DVec3::new(number()?, number()?, number()?));
-        }
-        for _ in 0..triangles {
-            let mut bytes = [0; 13];
-            from.read_exact(&mut bytes).map_err(short)?;
-            if bytes[0] != 3 {
-                return Err(wrong(&format!("a face has {} corners", bytes[0])));
+            ["f", rest @ ..] => {
+                let first = |word: &&str| word.split('/').next()?.parse::<u32>().ok()?.checked_sub(1);
+                let numbers: Option<Vec<u32>> = rest.iter().map(first).collect();
+                let numbers = numbers.and_then(|n| <[u32; 3]>::try_from(n).ok()).ok_or_else(bad)?;
+                read.1.push(numbers);
             }
-            let corner = |k: usize| u32::from_le_bytes([bytes[k], bytes[k + 1], bytes[k + 2], bytes[k + 3]]);
-            surface.triangles.push([corner(1), corner(5), corner(9)]);
+            _ => {}
         }
-        if from.read(&mut [0])? != 0 {
-            return Err(wrong("it goes on after its last face"));
-        }
-        surface.checked()
     }
+    checked(read)
+}
 
-    /// Reads Wavefront OBJ of lines `v x y z` and `f a b c`.
-    pub(super) fn from_obj(from: impl BufRead) -> io::Result<Self> {
-        let mut surface = Self::default();
-        for line in from.lines() {
-            let line = line?;
-            let words: Vec<&str> = line.split_whitespace().collect();
-            let bad = || wrong(&format!("`{line}` is not three numbers"));
-            match words.as_slice() {
-                ["v", rest @ ..] => {
-                    let numbers: Result<Vec<f64>, _> = rest.iter().map(|word| word.parse()).collect();
-                    let numbers = numbers.ok().and_then(|n| <[f64; 3]>::try_from(n).ok()).ok_or_else(bad)?;
-                    surface.corners.push(numbers.into());
-                }
-                ["f", rest @ ..] => {
-                    let first = |word: &&str| word.split('/').next()?.parse::<u32>().ok()?.checked_sub(1);
-                    let numbers: Option<Vec<u32>> = rest.iter().map(first).collect();
-                    let numbers = numbers.and_then(|n| <[u32; 3]>::try_from(n).ok()).ok_or_else(bad)?;
-                    surface.triangles.push(numbers);
-                }
-                _ => {}
-            }
-        }
-        surface.checked()
-    }
-
-    fn checked(self) -> io::Result<Self> {
-        if let Some(k) = self.corners.iter().position(|corner| !corner.is_finite()) {
-            return Err(wrong(&format!("corner {} is {}; it must be finite", k + 1, self.corners[k])));
-        }
-        let count = self.corners.len();
-        if let Some(k) = self.triangles.iter().position(|t| t.iter().any(|&c| c as usize >= count)) {
-            return Err(wrong(&format!("face {} names a corner that is not among its {count}", k + 1)));
-        }
-        Ok(self)
-    }
-
-    /// The corners of a triangle.
-    pub(super) fn at(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].map(|corner| self.corners[corner as usize])
-    }
-
-    /// Distance of the farthest corner from the origin, m: what rounding of coordinates is measured by.
-    pub(super) fn reach(&self) -> f64 {
-        self.corners.iter().map(|corner| corner.length()).fold(0.0, f64::max)
-    }
+fn checked((corners, triangles): (Vec<DVec3>, Vec<[u32; 3]>)) -> io::Result<Surface> {
+    Surface::new(corners, triangles).map_err(|error| wrong(&error.to_string()))
 }
 
 fn wrong(what: &str) -> io::Error {

@@ -7,11 +7,7 @@
 mod bounds;
 mod fault;
 mod figures;
-mod inside;
 mod mesh_file;
-mod outline;
-mod star;
-mod surface;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -21,8 +17,8 @@ pub use fault::{CheckError, Fault};
 
 use crate::TriangleMesh;
 use crate::output::manifest::{MANIFEST, Manifest, State};
+use certificate::{Outline, Surface};
 use glam::DVec2;
-pub(crate) use mesh_file::Surface;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -72,8 +68,15 @@ pub fn check_unwritten(
     outlines: &[(&str, &[DVec2])],
 ) -> Result<(), CheckError> {
     let mut found = Found { summary: Some(summary.clone()), ..Found::default() };
-    surfaces.iter().for_each(|(file, mesh)| found.take(file, Surface::from(*mesh)));
-    let outline = |(file, corners): &(&str, &[DVec2])| (file.to_string(), outline::Outline(corners.to_vec()));
+    for (file, mesh) in surfaces {
+        match Surface::new(mesh.vertices.clone(), mesh.triangles.clone()) {
+            Ok(surface) => found.take(file, surface),
+            Err(error) => {
+                found.faults.push(Fault::Unreadable { file: (*file).to_owned(), what: error.to_string() });
+            }
+        }
+    }
+    let outline = |(file, corners): &(&str, &[DVec2])| (file.to_string(), Outline::new(corners.to_vec()));
     found.outlines.extend(outlines.iter().map(outline));
     found.certificate().map(drop).map_err(|faults| CheckError::Faults { faults })
 }
@@ -98,7 +101,7 @@ const MAY_BE_OPEN: &str = "smooth_surface.ply";
 struct Found {
     summary: Option<Value>,
     surfaces: BTreeMap<String, Surface>,
-    outlines: BTreeMap<String, outline::Outline>,
+    outlines: BTreeMap<String, Outline>,
     /// An edge at which the surface that may be open is.
     open: Option<[u32; 2]>,
     /// Of the table of a motion.
@@ -116,7 +119,7 @@ impl Found {
             (SUMMARY, _) => self.summary = Some(serde_json::from_reader(open()?)?),
             ("lower_bound.csv" | "upper_bound.csv", _) => match table::corners(file, open()?)? {
                 Ok(corners) => {
-                    self.outlines.insert(file.to_owned(), outline::Outline(corners));
+                    self.outlines.insert(file.to_owned(), Outline::new(corners));
                 }
                 Err(fault) => self.faults.push(fault),
             },
@@ -128,8 +131,8 @@ impl Found {
                 None => self.held.push(format!("{file}: all numbers are finite")),
                 Some(fault) => self.faults.push(fault),
             },
-            (_, "ply") => self.take(file, Surface::from_ply(open()?)?),
-            (_, "obj") => self.take(file, Surface::from_obj(open()?)?),
+            (_, "ply") => self.take(file, mesh_file::from_ply(open()?)?),
+            (_, "obj") => self.take(file, mesh_file::from_obj(open()?)?),
             _ => {}
         }
         Ok(())
@@ -178,7 +181,7 @@ impl Found {
             Some(Some(edge)) => self.faults.push(Fault::Open { file: file.to_owned(), edge }),
             None => {}
             Some(None) => {
-                self.held.push(format!("{file}: closed, {} faces turned one way", surface.triangles.len()))
+                self.held.push(format!("{file}: closed, {} faces turned one way", surface.triangles().len()))
             }
         }
         self.surfaces.insert(file.to_owned(), surface);

@@ -291,38 +291,3 @@ fn outlines_are_checked_as_surfaces_are() {
     assert_named(&spoilt(&lower, "x,y\n1,1\n-1,inf\n"), &["column `y` is `inf`", "do not go together"]);
     assert_named(&spoilt(&lower, &square(0.5)), &["lower_bound.csv has 1 m^2, stated are 4"]);
 }
-
-#[test]
-fn points_are_inside_or_outside_by_exact_signs_and_distances_are_those_to_faces() {
-    let surface = Surface { corners: octahedron(1.0).vertices, triangles: octahedron(1.0).triangles };
-    let solid = inside::Solid::new(&surface);
-    // On rays through corners and edges, too.
-    for (point, expected) in [
-        (DVec3::ZERO, 1),
-        (DVec3::new(-0.5, 0.0, 0.0), 1),
-        (DVec3::new(-1.5, 0.0, 0.0), 0),
-        (DVec3::new(-0.2, 0.3, 0.0), 1),
-        (DVec3::splat(1.0 / 3.0 - 1e-16), 1),
-        (DVec3::splat(1.0 / 3.0 + 1e-16), 0),
-        (DVec3::new(-3.0, 0.0, 1.0), 0),
-    ] {
-        assert_eq!(solid.winding(point), expected, "{point}");
-    }
-    assert!((solid.distance(DVec3::splat(1.0)) - 2.0 / 3.0_f64.sqrt()).abs() < 1e-15);
-    assert!((solid.distance(DVec3::X * 3.0) - 2.0).abs() < 1e-15);
-    // Against counting all faces: a finer surface and many points.
-    let net = TriangleMesh::net(12, 24, |n| n * DVec3::new(3.0, 2.0, 1.0));
-    let surface = Surface { corners: net.vertices, triangles: net.triangles };
-    let solid = inside::Solid::new(&surface);
-    for k in 0..500 {
-        let p = DVec3::new(
-            (f64::from(k) * 0.7).sin() * 3.0,
-            (f64::from(k) * 1.3).sin() * 2.0,
-            (f64::from(k) * 2.1).sin(),
-        );
-        let gauge = (p / DVec3::new(3.0, 2.0, 1.0)).length();
-        if !(0.96..=1.0).contains(&gauge) {
-            assert_eq!(solid.winding(p), i32::from(gauge < 1.0), "{p}");
-        }
-    }
-}

@@ -5,7 +5,7 @@ use robust::{Coord, orient2d};
 
 /// A closed polygon, corners counter-clockwise.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Outline(pub(super) Vec<DVec2>);
+pub struct Outline(Vec<DVec2>);
 
 /// Positive where the corners turn left; the sign is exact.
 fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
@@ -14,18 +14,33 @@ fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 }
 
 impl Outline {
+    /// Takes corners, m, counter-clockwise.
+    #[must_use]
+    pub fn new(corners: Vec<DVec2>) -> Self {
+        Self(corners)
+    }
+
+    /// The corners, m.
+    #[must_use]
+    pub fn corners(&self) -> &[DVec2] {
+        &self.0
+    }
+
     fn sides(&self) -> impl Iterator<Item = (DVec2, DVec2)> {
         self.0.iter().copied().zip(self.0.iter().copied().cycle().skip(1))
     }
 
     /// Area in m^2, positive for corners counter-clockwise, and length in m.
-    pub(super) fn size(&self) -> (f64, f64) {
+    #[must_use]
+    pub fn size(&self) -> (f64, f64) {
         let about = self.0.first().copied().unwrap_or_default();
         let area = self.sides().map(|(a, b)| (a - about).perp_dot(b - about) / 2.0).sum();
         (area, self.sides().map(|(a, b)| a.distance(b)).sum())
     }
 
-    pub(super) fn reach(&self) -> f64 {
+    /// Distance of the farthest corner from the origin, m.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
         self.0.iter().map(|p| p.length()).fold(0.0, f64::max)
     }
 
@@ -44,7 +59,8 @@ impl Outline {
     }
 
     /// Why this does not go once round one convex body, but for dents of depth `tolerance` (m).
-    pub(super) fn not_convex(&self, tolerance: f64) -> Option<String> {
+    #[must_use]
+    pub fn not_convex(&self, tolerance: f64) -> Option<String> {
         let distinct = self.distinct(tolerance);
         let (corners, count) = (&distinct.0, distinct.0.len());
         if count < 3 {
@@ -74,7 +90,8 @@ impl Outline {
 
     /// The point of `points` that is farthest outside of this convex outline by more than `tolerance`, and how far, m;
     /// `None` where all are inside.
-    pub(super) fn farthest_outside(&self, points: &[DVec2], tolerance: f64) -> Option<(usize, f64)> {
+    #[must_use]
+    pub fn farthest_outside(&self, points: &[DVec2], tolerance: f64) -> Option<(usize, f64)> {
         let Self(corners) = self.distinct(tolerance);
         let (middle, count) = (self.middle(), corners.len());
         let first = *corners.first()?;

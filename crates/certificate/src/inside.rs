@@ -1,8 +1,7 @@
 //! Whether points lie in a closed surface: by exact signs, in a tree of boxes.
 
-use super::mesh_file::Surface;
 use super::star::Star;
-use super::surface::side;
+use super::surface::{Surface, side};
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
@@ -13,7 +12,7 @@ const LEAF: usize = 8;
 const NOTHING: (DVec3, DVec3) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
 
 /// A closed surface that is asked for many points.
-pub(super) struct Solid<'a> {
+pub struct Solid<'a> {
     surface: &'a Surface,
     /// Triangles, those of a node side by side.
     order: Vec<u32>,
@@ -30,9 +29,11 @@ struct Node {
 }
 
 impl<'a> Solid<'a> {
-    pub(super) fn new(surface: &'a Surface) -> Self {
+    /// Sorts the triangles of a surface into boxes.
+    #[must_use]
+    pub fn new(surface: &'a Surface) -> Self {
         // Middles beside the numbers: sorted where they lie, without a look at the corners.
-        let mut placed: Vec<(DVec3, u32)> = (0..u32::try_from(surface.triangles.len()).unwrap_or(u32::MAX))
+        let mut placed: Vec<(DVec3, u32)> = (0..u32::try_from(surface.triangles().len()).unwrap_or(u32::MAX))
             .map(|k| (surface.at(k as usize).iter().sum::<DVec3>(), k))
             .collect();
         let mut solid = Self { surface, order: Vec::new(), nodes: Vec::new() };
@@ -85,7 +86,8 @@ impl<'a> Solid<'a> {
 
     /// How often the surface goes round a point: once for points inside. Counted by the faces that the ray along +x
     /// leaves through; every decision is an exact sign. On the surface itself either answer comes out.
-    pub(super) fn winding(&self, p: DVec3) -> i32 {
+    #[must_use]
+    pub fn winding(&self, p: DVec3) -> i32 {
         let may_meet = |low: DVec3, high: DVec3| {
             high.x >= p.x && low.y <= p.y && p.y <= high.y && low.z <= p.z && p.z <= high.z
         };
@@ -109,7 +111,8 @@ impl<'a> Solid<'a> {
     }
 
     /// How far a point is from the surface, m.
-    pub(super) fn distance(&self, p: DVec3) -> f64 {
+    #[must_use]
+    pub fn distance(&self, p: DVec3) -> f64 {
         let nearest = std::cell::Cell::new(f64::INFINITY);
         let near = |node: &Node| p.clamp(node.low, node.high).distance(p) < nearest.get();
         self.leaves(near, |triangle| {
@@ -119,8 +122,9 @@ impl<'a> Solid<'a> {
     }
 
     /// The point of `points` that is farthest outside, and how far, m; `None` where all are inside.
-    pub(super) fn farthest_outside(&self, points: &[DVec3]) -> Option<(usize, f64)> {
-        let corners = &self.surface.corners;
+    #[must_use]
+    pub fn farthest_outside(&self, points: &[DVec3]) -> Option<(usize, f64)> {
+        let corners = self.surface.corners();
         let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
         let star = Star::new(self.surface, middle, |p| self.winding(p));
         let mut at = 0;
@@ -186,7 +190,7 @@ mod tests {
             };
             edges.into_iter().map(of).sum()
         };
-        let faces = (0..surface.triangles.len()).map(|k| surface.at(k));
+        let faces = (0..surface.triangles().len()).map(|k| surface.at(k));
         let passed = |corners: [DVec3; 3]| match around(&corners) {
             around if side(corners, p) * f64::from(around) < 0.0 => around,
             _ => 0,
@@ -197,10 +201,9 @@ mod tests {
     #[test]
     fn a_point_has_the_winding_of_all_triangles_by_exact_signs() {
         // Long slivers, and points whose coordinates are those of corners.
-        let net = crate::TriangleMesh::net(5, 40, |n| n * DVec3::new(3.0, 0.02, 1.0));
-        let surface = Surface { corners: net.vertices, triangles: net.triangles };
+        let surface = crate::tests::net(5, 40, |n| n * DVec3::new(3.0, 0.02, 1.0));
         let solid = Solid::new(&surface);
-        let corners = surface.corners.clone();
+        let corners = surface.corners();
         for (k, a) in corners.iter().enumerate() {
             let (b, c) = (corners[(7 * k + 3) % corners.len()], corners[(13 * k + 5) % corners.len()]);
             for p in

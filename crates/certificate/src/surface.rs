@@ -1,35 +1,110 @@
 //! What can be said of one surface: closed, turned outwards, convex, how large.
 
-use super::Fault;
-use super::mesh_file::Surface;
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
+use thiserror::Error;
 
-/// Volume, area and reach of a closed surface.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Size {
-    /// m^3.
-    pub(super) volume: f64,
+/// Triangles, corners by number, counter-clockwise from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surface {
+    corners: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// Corners and triangles that are no surface.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum SurfaceError {
+    /// A coordinate is infinite or no number.
+    #[error("corner {} is {position}; it must be finite", corner + 1)]
+    NotFinite {
+        /// The corner, from 0.
+        corner: usize,
+        /// Where it is said to be, m.
+        position: DVec3,
+    },
+    /// A triangle has a corner that is not there.
+    #[error("face {} names a corner that is not among its {corners}", triangle + 1)]
+    NoSuchCorner {
+        /// The triangle, from 0.
+        triangle: usize,
+        /// How many corners there are.
+        corners: usize,
+    },
+}
+
+/// Why a surface or an outline is not that of one convex body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Flaw {
+    /// An edge, by its corners from 0, is not passed once forwards and once backwards.
+    Open([u32; 2]),
+    /// Another reason, in words that go after "it is not convex:".
+    NotConvex(String),
+}
+
+/// Volume and area of a closed surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// m^3, negative where the triangles are turned inwards.
+    pub volume: f64,
     /// m^2.
-    pub(super) area: f64,
+    pub area: f64,
 }
 
 /// A pair of triangles at an edge.
-pub(super) struct Edge {
-    pub(super) ends: [u32; 2],
+pub(crate) struct Edge {
+    pub(crate) ends: [u32; 2],
     /// The triangle that passes the edge forwards and the one that passes it backwards.
-    pub(super) beside: [u32; 2],
+    pub(crate) beside: [u32; 2],
 }
 
 /// Positive where `p` is on the outer side of the triangle; the sign is exact.
-pub(super) fn side([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
+pub(crate) fn side([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
     let of = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     -orient3d(of(a), of(b), of(c), of(p))
 }
 
 impl Surface {
-    /// Every edge is passed as often forwards as backwards; else an edge that is not.
-    pub(crate) fn open_edge(&self) -> Option<[u32; 2]> {
+    /// Takes corners (m) and triangles (numbers of corners from 0).
+    ///
+    /// # Errors
+    /// A coordinate that is not finite, or a triangle whose corner is not there.
+    pub fn new(corners: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, SurfaceError> {
+        if let Some(corner) = corners.iter().position(|corner| !corner.is_finite()) {
+            return Err(SurfaceError::NotFinite { corner, position: corners[corner] });
+        }
+        let there = |corner: &u32| (*corner as usize) < corners.len();
+        match triangles.iter().position(|t| !t.iter().all(there)) {
+            Some(triangle) => Err(SurfaceError::NoSuchCorner { triangle, corners: corners.len() }),
+            None => Ok(Self { corners, triangles }),
+        }
+    }
+
+    /// The corners, m.
+    #[must_use]
+    pub fn corners(&self) -> &[DVec3] {
+        &self.corners
+    }
+
+    /// The triangles, by the numbers of their corners.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The corners of a triangle.
+    pub(crate) fn at(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|corner| self.corners[corner as usize])
+    }
+
+    /// Distance of the farthest corner from the origin, m: what rounding of coordinates is measured by.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.corners.iter().map(|corner| corner.length()).fold(0.0, f64::max)
+    }
+
+    /// An edge, by its corners, that is not passed as often forwards as backwards; none on a closed surface.
+    #[must_use]
+    pub fn open_edge(&self) -> Option<[u32; 2]> {
         let passes = self.passes();
         passes.chunk_by(|a, b| a.0 == b.0).find_map(|edge| {
             let forwards = edge.iter().filter(|pass| pass.1).count();
@@ -65,7 +140,7 @@ impl Surface {
     }
 
     /// Edges of a surface on which each edge belongs to two triangles; the first that does not.
-    pub(super) fn edges(&self) -> Result<Vec<Edge>, [u32; 2]> {
+    pub(crate) fn edges(&self) -> Result<Vec<Edge>, [u32; 2]> {
         let passes = self.passes();
         let pair = |edge: &[([u32; 2], bool, u32)]| match edge {
             [back, forth] if forth.1 && !back.1 => Ok(Edge { ends: back.0, beside: [forth.2, back.2] }),
@@ -75,7 +150,8 @@ impl Surface {
     }
 
     /// Signed volume and area, the volume about a corner of the surface.
-    pub(super) fn size(&self) -> Size {
+    #[must_use]
+    pub fn size(&self) -> Size {
         let about = self.corners.first().copied().unwrap_or_default();
         let mut size = Size { volume: 0.0, area: 0.0 };
         for triangle in 0..self.triangles.len() {
@@ -90,21 +166,25 @@ impl Surface {
     ///
     /// Each edge is in two triangles, corners, edges and faces are numbered as on a sphere (Euler), and no edge is
     /// dented: by the exact sign, or by less than `tolerance` as the smallest height of the four corners beside it.
-    pub(super) fn not_convex(&self, file: &str, tolerance: f64) -> Option<Fault> {
-        let dented = |why: String| Fault::NotConvex { file: file.to_owned(), why };
+    #[must_use]
+    pub fn not_convex(&self, tolerance: f64) -> Option<Flaw> {
         let edges = match self.edges() {
-            Err(edge) => return Some(Fault::Open { file: file.to_owned(), edge }),
+            Err(edge) => return Some(Flaw::Open(edge)),
             Ok(edges) => edges,
         };
         let mut used = vec![false; self.corners.len()];
         self.triangles.iter().flatten().for_each(|&corner| used[corner as usize] = true);
         let corners = used.iter().filter(|used| **used).count();
         if corners + self.triangles.len() != edges.len() + 2 {
-            return Some(dented("its faces are not joined as those of one body".to_owned()));
+            return Some(Flaw::NotConvex("its faces are not joined as those of one body".to_owned()));
         }
         let worst = edges.iter().map(|edge| (self.dent(edge), edge.ends)).max_by(|a, b| a.0.total_cmp(&b.0));
         worst.filter(|(depth, _)| *depth > tolerance).map(|(depth, [a, b])| {
-            dented(format!("it is dented by {depth:.1e} m at the edge of corners {} and {}", a + 1, b + 1))
+            Flaw::NotConvex(format!(
+                "it is dented by {depth:.1e} m at the edge of corners {} and {}",
+                a + 1,
+                b + 1
+            ))
         })
     }
 
