@@ -1,5 +1,6 @@
 //! Outlines in the plane: convex, how large, and whether points lie in them.
 
+use super::surface::Flaw;
 use glam::DVec2;
 use robust::{Coord, orient2d};
 
@@ -60,11 +61,11 @@ impl Outline {
 
     /// Why this does not go once round one convex body, but for dents of depth `tolerance` (m).
     #[must_use]
-    pub fn not_convex(&self, tolerance: f64) -> Option<String> {
+    pub fn not_convex(&self, tolerance: f64) -> Option<Flaw> {
         let distinct = self.distinct(tolerance);
         let (corners, count) = (&distinct.0, distinct.0.len());
         if count < 3 {
-            return Some(format!("it has {count} corner(s) that differ"));
+            return Some(Flaw::NotConvex(format!("it has {count} corner(s) that differ")));
         }
         let depth = |k: usize| {
             let [a, b, c] = [corners[k], corners[(k + 1) % count], corners[(k + 2) % count]];
@@ -72,10 +73,11 @@ impl Outline {
         };
         let worst = (0..count).map(|k| (depth(k), k)).max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((depth, k)) = worst.filter(|(depth, _)| *depth > tolerance) {
-            return Some(format!("it is dented by {depth:.1e} m next to its corner {} of {count}", k + 1));
+            let why = format!("it is dented by {depth:.1e} m next to its corner {} of {count}", k + 1);
+            return Some(Flaw::NotConvex(why));
         }
         let times = distinct.winding(distinct.middle());
-        (times != 1).then(|| format!("it goes {times} times round its middle"))
+        (times != 1).then(|| Flaw::NotConvex(format!("it goes {times} times round its middle")))
     }
 
     /// How often the outline goes round a point; decided by exact signs.

@@ -30,15 +30,15 @@ pub(crate) fn net(rows: u32, columns: u32, at: impl Fn(DVec3) -> DVec3) -> Surfa
 }
 
 fn octahedron() -> Surface {
-    net(2, 4, |n| n)
+    let corners = [DVec3::X, DVec3::Y, -DVec3::X, -DVec3::Y, DVec3::Z, -DVec3::Z].to_vec();
+    let triangles =
+        vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]];
+    Surface::new(corners, triangles).unwrap()
 }
 
 #[test]
 fn points_are_inside_or_outside_by_exact_signs_and_distances_are_those_to_faces() {
-    let corners = [DVec3::X, DVec3::Y, -DVec3::X, -DVec3::Y, DVec3::Z, -DVec3::Z].to_vec();
-    let triangles =
-        vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]];
-    let surface = Surface::new(corners, triangles).unwrap();
+    let surface = octahedron();
     let solid = Solid::new(&surface);
     // On rays through corners and edges, too.
     for (point, expected) in [

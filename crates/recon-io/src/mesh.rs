@@ -1,6 +1,6 @@
 //! Triangle meshes as PLY files.
 
-use certificate::Surface;
+use certificate::{Surface, SurfaceError};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::io::{self, BufWriter, Write};
@@ -60,8 +60,12 @@ impl TriangleMesh {
     /// way.
     #[must_use]
     pub fn is_closed(&self) -> bool {
+        self.surface().is_ok_and(|surface| surface.open_edge().is_none())
+    }
+
+    /// For what is certified of it: its fields can be changed, so that it is checked again.
+    pub(crate) fn surface(&self) -> Result<Surface, SurfaceError> {
         Surface::new(self.vertices.clone(), self.triangles.clone())
-            .is_ok_and(|surface| surface.open_edge().is_none())
     }
 
     /// The closed surface of the points that `at` gives for unit vectors, on a net of `rows` by `columns` between the

@@ -1,6 +1,6 @@
 //! Steps that build: format, lints, docs, tests, and the crates and features one by one.
 
-use super::arrows::CORE;
+use super::arrows::ALONE;
 use crate::cargo::{cargo, run};
 use crate::metadata::Metadata;
 use crate::steps::Outcome;
@@ -29,14 +29,14 @@ pub(crate) fn all_tests() -> Result<Outcome, String> {
     Ok(Outcome::Passed)
 }
 
-/// In a build of the whole workspace a core crate sees the features that others switch on in its dependencies. Here
+/// In a build of the whole workspace a crate that may be picked alone sees the features that others switch on in its dependencies. Here
 /// it has its own only, and the least of them. Its tests are compiled and not run: they ran with the workspace, and
 /// what a feature of a dependency changes is whether something is there.
 pub(crate) fn alone() -> Result<Outcome, String> {
     let with = |name: &str, features: &str| {
         format!("clippy --package {name} {features} --all-targets -- -D warnings")
     };
-    all(CORE.iter().flat_map(|name| [with(name, ""), with(name, "--no-default-features")]))
+    all(ALONE.iter().flat_map(|name| [with(name, ""), with(name, "--no-default-features")]))
 }
 
 /// All features of all members, each without the others and without the default ones.

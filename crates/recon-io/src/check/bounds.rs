@@ -19,9 +19,7 @@ const DENTS: f64 = 1e-7;
 /// all are inside, infinite out of what is no surface.
 #[must_use]
 pub fn stands_out(lower: &TriangleMesh, upper: &TriangleMesh) -> f64 {
-    let Ok(upper) = Surface::new(upper.vertices.clone(), upper.triangles.clone()) else {
-        return f64::INFINITY;
-    };
+    let Ok(upper) = upper.surface() else { return f64::INFINITY };
     Solid::new(&upper).farthest_outside(&lower.vertices).map_or(0.0, |(_, distance)| distance)
 }
 
@@ -60,8 +58,7 @@ impl Bound {
 
     fn of_outline(file: &str, outline: &Outline, drawn: f64) -> Self {
         let ((size, boundary), reach) = (outline.size(), outline.reach());
-        let not_convex = outline.not_convex(drawn + DENTS * reach);
-        let not_convex = not_convex.map(|why| fault(file, Flaw::NotConvex(why)));
+        let not_convex = outline.not_convex(drawn + DENTS * reach).map(|flaw| fault(file, flaw));
         Self { file: file.to_owned(), size, boundary, reach, terms: outline.corners().len(), not_convex }
     }
 

@@ -69,7 +69,7 @@ pub fn check_unwritten(
 ) -> Result<(), CheckError> {
     let mut found = Found { summary: Some(summary.clone()), ..Found::default() };
     for (file, mesh) in surfaces {
-        match Surface::new(mesh.vertices.clone(), mesh.triangles.clone()) {
+        match mesh.surface() {
             Ok(surface) => found.take(file, surface),
             Err(error) => {
                 found.faults.push(Fault::Unreadable { file: (*file).to_owned(), what: error.to_string() });
