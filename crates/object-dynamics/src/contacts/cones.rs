@@ -84,7 +84,7 @@ fn with_forces(
 /// The point of the cone `|tangent| <= mu normal` that is nearest to a force `[normal, tangent, tangent]`.
 fn onto_cone(force: [f64; 3], mu: f64) -> [f64; 3] {
     let [normal, a, b] = force;
-    let tangent = a.hypot(b);
+    let tangent = DVec2::new(a, b).length();
     if tangent <= mu * normal {
         return force;
     }

@@ -138,8 +138,8 @@ impl Dense {
                     }
                     turned = true;
                     let zeta = (b - a) / (2.0 * c);
-                    let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-                    let cosine = 1.0 / tangent.hypot(1.0);
+                    let tangent = zeta.signum() / (zeta.abs() + (zeta * zeta + 1.0).sqrt());
+                    let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
                     rotate(&mut images, (p, q), cosine, tangent * cosine, n);
                     rotate(&mut directions, (p, q), cosine, tangent * cosine, n);
                 }

@@ -10,6 +10,16 @@ const AT_CORNER: f64 = 1e-12;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedLine {
     corners: Vec<DVec2>,
+    edges: Vec<Edge>,
+}
+
+/// From a corner to the next one: the way there, and its inverse squared length, zero for an edge of none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Edge {
+    from: DVec2,
+    to: DVec2,
+    along: DVec2,
+    inverse_square: f64,
 }
 
 /// Corners that close no line.
@@ -73,7 +83,14 @@ impl ClosedLine {
         if area < 0.0 {
             corners.reverse();
         }
-        Ok(Self { corners })
+        let edge = |k: usize| {
+            let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
+            let along = to - from;
+            let square = along.length_squared();
+            Edge { from, to, along, inverse_square: if square > 0.0 { square.recip() } else { 0.0 } }
+        };
+        let edges = (0..corners.len()).map(edge).collect();
+        Ok(Self { corners, edges })
     }
 
     /// Corners, counter-clockwise.
@@ -90,8 +107,7 @@ impl ClosedLine {
 
     /// The edges, from corner to corner.
     pub fn edges(&self) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
-        let next = self.corners.iter().cycle().skip(1);
-        self.corners.iter().copied().zip(next.copied())
+        self.edges.iter().map(|edge| (edge.from, edge.to))
     }
 
     /// The nearest point of the line.
@@ -99,24 +115,23 @@ impl ClosedLine {
     pub fn nearest(&self, to: DVec2) -> Nearest {
         let mut best = (f64::INFINITY, 0, 0.0, DVec2::ZERO);
         let mut inside = false;
-        for (k, (a, b)) in self.edges().enumerate() {
-            let along_edge = b - a;
-            let along = ((to - a).dot(along_edge) / along_edge.length_squared()).clamp(0.0, 1.0);
-            let along = if along.is_nan() { 0.0 } else { along };
-            let point = a + along_edge * along;
+        for (k, edge) in self.edges.iter().enumerate() {
+            let way = to - edge.from;
+            let along = (way.dot(edge.along) * edge.inverse_square).clamp(0.0, 1.0);
+            let point = edge.from + edge.along * along;
             let squared = point.distance_squared(to);
             if squared < best.0 {
                 best = (squared, k, along, point);
             }
             // A ray to the right crosses the line an odd number of times from inside.
-            if (a.y > to.y) != (b.y > to.y) && to.x < (b.x - a.x) * (to.y - a.y) / (b.y - a.y) + a.x {
+            let crosses = (edge.from.y > to.y) != (edge.to.y > to.y);
+            if crosses && (edge.along.perp_dot(way) > 0.0) == (edge.along.y > 0.0) {
                 inside = !inside;
             }
         }
         let (squared, edge, along, point) = best;
         let distance = squared.sqrt();
-        let (a, b) = (self.corners[edge], self.corners[(edge + 1) % self.corners.len()]);
-        let of_edge = -(b - a).perp().normalize_or_zero();
+        let of_edge = -self.edges[edge].along.perp().normalize_or_zero();
         let between = along > 0.0 && along < 1.0;
         let normal = if between || distance < AT_CORNER {
             of_edge

@@ -1,21 +1,20 @@
 //! One node of a chain eliminated: the innermost loop of every estimate.
 //!
 //! With `L L'` the node's own equations, all that later nodes need of them are the rows `L^-1 [next body]`: what they lose by the elimination
-//! are products of these, and half of a solve is spared. Rows are kept as arrays, so that each loop runs over neighbours in memory.
+//! are products of these, and half of a solve is spared.
 
 use super::flow::Transition;
 use super::state::{MOTION, Tangent};
+use super::triangular::{Rows, factor, forward, inverse_factor, product};
 use nalgebra::{SMatrix, SVector};
-
-type Rows<const N: usize> = [[f64; N]; MOTION];
 
 /// A node of which the equations are solved for its own motion.
 pub(super) struct Eliminated<const P: usize> {
     /// Lower Cholesky factor of its own equations, with the reciprocals of the diagonal.
-    factor: Rows<MOTION>,
+    factor: Rows<MOTION, MOTION>,
     /// The factor's inverse times the blocks with the next node and with the constants.
-    next: Rows<MOTION>,
-    body: Rows<P>,
+    next: Rows<MOTION, MOTION>,
+    body: Rows<MOTION, P>,
 }
 
 impl<const P: usize> Eliminated<P> {
@@ -80,57 +79,12 @@ impl<const P: usize> Eliminated<P> {
 
     /// The inverse of the node's own equations, and by what its motion falls with that of the next node and with the constants.
     pub(super) fn inverse(&self) -> (Transition, Transition, SMatrix<f64, MOTION, P>) {
-        let mut inverse: Rows<MOTION> =
-            std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
-        forward(&self.factor, &mut inverse);
+        let inverse = inverse_factor(&self.factor);
         let own = product(&inverse, &inverse);
         let (next, body) = (product(&inverse, &self.next), product(&inverse, &self.body));
-        let square = |rows: &Rows<MOTION>| Transition::from_fn(|i, j| rows[i][j]);
+        let square = |rows: &Rows<MOTION, MOTION>| Transition::from_fn(|i, j| rows[i][j]);
         (square(&own), square(&next), SMatrix::from_fn(|i, j| body[i][j]))
     }
-}
-
-/// Lower Cholesky factor with the reciprocals of its diagonal; None where there is none.
-fn factor(of: &Transition) -> Option<Rows<MOTION>> {
-    let mut rows = [[0.0; MOTION]; MOTION];
-    for i in 0..MOTION {
-        for j in 0..=i {
-            let sum: f64 = (0..j).map(|k| rows[i][k] * rows[j][k]).sum();
-            let left = of[(i, j)] - sum;
-            rows[i][j] = if i == j { left.sqrt().recip() } else { left * rows[j][j] };
-        }
-        // Of what is not above zero the root is no number, or has no reciprocal; that of infinity is zero.
-        if !(rows[i][i] > 0.0 && rows[i][i].is_finite()) {
-            return None;
-        }
-    }
-    Some(rows)
-}
-
-/// The factor's inverse times rows, in place.
-fn forward<const N: usize>(factor: &Rows<MOTION>, rows: &mut Rows<N>) {
-    for i in 0..MOTION {
-        let (before, from) = rows.split_at_mut(i);
-        let own = &mut from[0];
-        for (k, row) in before.iter().enumerate() {
-            add(own, -factor[i][k], row);
-        }
-        own.iter_mut().for_each(|x| *x *= factor[i][i]);
-    }
-}
-
-/// The transpose of the one times the other.
-fn product<const A: usize, const B: usize>(a: &Rows<A>, b: &Rows<B>) -> [[f64; B]; A] {
-    let mut sums = [[0.0; B]; A];
-    for (a, b) in a.iter().zip(b) {
-        sums.iter_mut().zip(a).for_each(|(sum, a)| add(sum, *a, b));
-    }
-    sums
-}
-
-/// Adds a multiple of a row.
-fn add<const N: usize>(to: &mut [f64; N], factor: f64, row: &[f64; N]) {
-    to.iter_mut().zip(row).for_each(|(to, x)| *to += factor * x);
 }
 
 #[cfg(test)]

@@ -2,12 +2,11 @@
 
 use super::body::Body;
 use super::equations::Row;
-use super::noise::WrenchNoise;
 use super::record::{Interval, Wrench};
 use super::state::{MOTION, Motion, Tangent, Turn};
 use crate::rigid::{cross_matrix, exponential};
-use glam::{DMat3, DQuat, DVec3};
-use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
+use glam::{DQuat, DVec3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// Derivatives of a motion by the motion at its node.
 pub(super) type Transition = SMatrix<f64, MOTION, MOTION>;
@@ -230,62 +229,4 @@ fn turned(q: DQuat, L: [DVec3; 2], rates: [DVec3; 2], body: &Body, h: f64) -> DQ
     let first = exponential((3.0 * k1 + 2.0 * k2 + 2.0 * k3 - k4) * (h / 12.0));
     let second = exponential((-k1 + 2.0 * k2 + 2.0 * k3 + 3.0 * k4) * (h / 12.0));
     (second * (first * q)).normalize()
-}
-
-/// What `noise` of the forces over a time `h`, with moments about the centre of mass, does to the motion at its end.
-pub(super) fn link_covariance(noise: &WrenchNoise, h: f64, body: &Body, turn: &Turn) -> Transition {
-    let (m, K) = (body.inverse_mass(), Matrix3::from(turn.K));
-    let one = Matrix3::identity();
-    // Of the wrench's impulse: white noise moves the path by half of it, and what is left of the path is independent of it.
-    let mut impulse = SMatrix::<f64, MOTION, 6>::zeros();
-    let mut rest = impulse;
-    let set = |of: &mut SMatrix<f64, MOTION, 6>, row: usize, column: usize, block: Matrix3<f64>| {
-        of.fixed_view_mut::<3, 3>(row, column).copy_from(&block);
-    };
-    set(&mut impulse, 0, 0, one * (0.5 * h * m));
-    set(&mut impulse, 3, 0, one * m);
-    set(&mut impulse, 6, 3, one);
-    set(&mut impulse, 9, 3, K * (0.5 * h));
-    set(&mut rest, 0, 0, one * m);
-    set(&mut rest, 9, 3, K);
-    let of_rest = noise.white * (h * h / 12.0) + noise.late;
-    impulse * noise.white * impulse.transpose() + rest * of_rest * rest.transpose()
-}
-
-/// Information of a link of duration `h`: the inverse covariance of what `noise` of the forces over the link, with moments about
-/// the centre of mass, does to the motion. None where it has no inverse.
-pub(super) fn link_information(noise: &WrenchNoise, h: f64, body: &Body, turn: &Turn) -> Option<Transition> {
-    let mass = DMat3::IDENTITY * (1.0 / body.inverse_mass());
-    // The noise's first integral is that of the momenta, its second one mass times place and inertia times turn; of this half the
-    // duration times the first is the same, and the rest independent of it.
-    let white = inverse(noise.white)?;
-    let rest = if noise.late == Matrix6::zeros() {
-        white * (12.0 / (h * h))
-    } else {
-        inverse(noise.white * (h * h / 12.0) + noise.late)?
-    };
-    let mixed = rest * (-0.5 * h);
-    let once = white + rest * (0.25 * h * h);
-    // Of force and moment: the numbers of a motion that their second integrals are, times what, and their first ones.
-    let places = [(0, mass), (3, body.inertia_along(turn.R))];
-    let momenta = [(1, mass), (2, DMat3::IDENTITY)];
-    let mut all = Transition::zeros();
-    let mut set = |i: usize, j: usize, block: DMat3| {
-        all.fixed_view_mut::<3, 3>(3 * i, 3 * j).copy_from(&Matrix3::from(block));
-    };
-    for (i, (place, A)) in places.into_iter().enumerate() {
-        for (j, (momentum, C)) in momenta.into_iter().enumerate() {
-            let block = |of: &Matrix6<f64>| DMat3::from(of.fixed_view::<3, 3>(3 * i, 3 * j).into_owned());
-            let crossed = A * block(&mixed) * C;
-            set(place, momentum, crossed);
-            set(momentum, place, crossed.transpose());
-            set(place, places[j].0, A * block(&rest) * places[j].1);
-            set(momenta[i].0, momentum, momenta[i].1 * block(&once) * C);
-        }
-    }
-    Some(all)
-}
-
-fn inverse(of: Matrix6<f64>) -> Option<Matrix6<f64>> {
-    Some(of.cholesky()?.inverse())
 }

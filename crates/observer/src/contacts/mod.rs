@@ -12,6 +12,7 @@ mod flow;
 mod gaps;
 mod impulses;
 mod joint;
+mod link;
 mod mode_odds;
 mod modes;
 mod noise;
@@ -40,6 +41,7 @@ mod state;
 mod stepping;
 mod stream;
 mod suspects;
+mod triangular;
 #[cfg(test)]
 mod tests;
 mod verdict;

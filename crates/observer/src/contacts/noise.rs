@@ -1,6 +1,7 @@
 use super::problem::Units;
-use glam::DVec3;
-use nalgebra::Matrix6;
+use crate::rigid::cross_matrix;
+use glam::{DMat3, DVec3};
+use nalgebra::{Matrix3, Matrix6};
 use std::ops::{Add, AddAssign};
 
 /// Standard deviations of the white noise of sensors, as an estimator takes them.
@@ -63,6 +64,27 @@ impl WrenchNoise {
         let all = force_trace(&self.white);
         if all > 0.0 { self.sampled / all } else { 1.0 }
     }
+
+    /// With moments about `p` in place of the origin.
+    pub(super) fn about(&self, p: DVec3) -> Self {
+        let late = if self.late == Matrix6::zeros() { self.late } else { about(&self.late, p) };
+        Self { white: about(&self.white, p), late, ..*self }
+    }
+}
+
+/// A covariance of a force and its moment about the origin, with the moment about `p`.
+fn about(of: &Matrix6<f64>, p: DVec3) -> Matrix6<f64> {
+    let block = |i: usize, j: usize| DMat3::from(of.fixed_view::<3, 3>(i, j).into_owned());
+    let (force, mixed, moment) = (block(0, 0), block(3, 0), block(3, 3));
+    let across = cross_matrix(p);
+    // The moment loses p x f; the transpose of a cross product's matrix is the negative one.
+    let with_force = mixed - across * force;
+    let moment = moment - across * mixed.transpose() + with_force * across;
+    let mut all = *of;
+    all.fixed_view_mut::<3, 3>(3, 0).copy_from(&Matrix3::from(with_force));
+    all.fixed_view_mut::<3, 3>(0, 3).copy_from(&Matrix3::from(with_force.transpose()));
+    all.fixed_view_mut::<3, 3>(3, 3).copy_from(&Matrix3::from(moment));
+    all
 }
 
 impl Add for WrenchNoise {

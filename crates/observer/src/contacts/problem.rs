@@ -2,17 +2,18 @@
 
 use super::body::{Body, CONSTANTS};
 use super::equations::{Equations, LinkEquation, NodeEquations, Row};
-use super::flow::{Carried, Transition, link_information};
+use super::flow::{Carried, Transition};
+use super::link::LinkNoise;
 use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::plane;
 use super::record::{Record, Wrench};
 use super::rows::Rows;
 use super::solve::{Solved, Step};
 use super::state::{MOTION, Motion, Tangent, Turn};
-use crate::rigid::{cross_matrix, exponential};
+use crate::rigid::exponential;
 use contact_kinematics::is_stopped;
 use glam::{DQuat, DVec3};
-use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector6};
+use nalgebra::{SMatrix, SVector, Vector6};
 
 /// Links are never taken for better than this share of a condition's deviation, all together: without noise of the forces the
 /// chain would be rigid, and the equations singular in double precision. It adds a thousandth to the variance of a velocity where noise is what
@@ -160,7 +161,7 @@ impl Problem<'_> {
                 self.add_split(j, &carried, at, &mut all);
             }
             if end > from {
-                let information = self.link_information(&noise, &carried, &at.body)?;
+                let information = self.link_noise(&noise, &carried)?.information(&at.body, &carried.turn);
                 self.add_link(j, &carried, &information, at, &mut all);
             }
         }
@@ -224,8 +225,7 @@ impl Problem<'_> {
                 let motion = moved.kicked(&r, self.share(j));
                 cost += self.rows_cost(self.nodes[j], &motion, &after.turn(motion.q, motion.L));
             }
-            let information = self.link_information(&noise, &carried, &after)?;
-            cost += (information * r).dot(&r);
+            cost += self.link_noise(&noise, &carried)?.cost(&r, &after, &carried.turn);
             moved = next;
         }
         let unknowns = Unknowns { motions, body: after };
@@ -298,14 +298,8 @@ impl Problem<'_> {
         self.noise.floor.max(self.noise.contact * speed / length)
     }
 
-    fn link_information<const P: usize>(
-        &self,
-        noise: &WrenchNoise,
-        carried: &Carried<P>,
-        body: &Body,
-    ) -> Option<Transition> {
-        let noise = self.about(noise, carried.motion.p);
-        link_information(&noise, carried.after, body, &carried.turn)
+    fn link_noise<const P: usize>(&self, noise: &WrenchNoise, carried: &Carried<P>) -> Option<LinkNoise> {
+        LinkNoise::new(&self.about(noise, carried.motion.p), carried.after)
     }
 
     /// The conditions of a sample at a motion there, each in its deviation.
@@ -515,19 +509,16 @@ impl Problem<'_> {
 
     /// Noise with the moment about `p` in place of the origin, and a floor.
     pub(super) fn about(&self, noise: &WrenchNoise, p: DVec3) -> WrenchNoise {
-        let mut shift = Matrix6::identity();
-        shift.fixed_view_mut::<3, 3>(3, 0).copy_from(&Matrix3::from(-cross_matrix(p)));
-        let moved = |of: &Matrix6<f64>| shift * of * shift.transpose();
-        let mut white = moved(&noise.white);
+        let mut moved = noise.about(p);
         let deviation = self.link_floor() * self.condition_deviation() / (self.nodes.len() as f64).sqrt();
         let floor = self.units.mass * deviation;
         for i in 0..6 {
             let unit = if i < 3 { 1.0 } else { self.units.length };
-            white[(i, i)] += (floor * unit).powi(2);
+            moved.white[(i, i)] += (floor * unit).powi(2);
         }
         if self.planar {
-            white += plane::unfelt(&self.units);
+            moved.white += plane::unfelt(&self.units);
         }
-        WrenchNoise { white, late: moved(&noise.late), ..*noise }
+        moved
     }
 }

@@ -5,7 +5,7 @@ use super::equations::Row;
 use super::noise::ContactNoiseLevel;
 use super::record::Contact;
 use super::state::{Motion, Turn};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use nalgebra::{Matrix3, SVector, Vector3};
 use object_dynamics::ContactMode;
 
@@ -105,7 +105,7 @@ impl Rows {
         let pull = whitening.tr_mul(&(whitening * residual));
         let foot = shifts.map(|column| -(deviation * column.dot(&pull)));
         let farthest = FARTHEST_FOOT * deviation;
-        let length = foot[0].hypot(foot[1]);
+        let length = DVec2::from(foot).length();
         let share = if length > farthest { farthest / length } else { 1.0 };
         let foot = (foot[0] * t1 + foot[1] * t2) * share;
         rows.arm += foot;

@@ -44,8 +44,8 @@ fn rotate<const N: usize>(
         return false;
     }
     let tau = (a[(q, q)] - a[(p, p)]) / (2.0 * off);
-    let t = tau.signum() / (tau.abs() + tau.hypot(1.0));
-    let c = 1.0 / t.hypot(1.0);
+    let t = tau.signum() / (tau.abs() + (tau * tau + 1.0).sqrt());
+    let c = 1.0 / (t * t + 1.0).sqrt();
     let s = t * c;
     for k in 0..N {
         let (x, y) = (a[(k, p)], a[(k, q)]);

@@ -5,7 +5,7 @@ use super::touches::Touch;
 use crate::least_squares::{Fit, LeastSquares, LevenbergMarquardt, NormalEquations};
 use contact_kinematics::is_stopped;
 use nalgebra::{SMatrix, SVector};
-use object_dynamics::pushing::ClosedLine;
+use object_dynamics::pushing::{ClosedLine, Nearest};
 
 /// Unknowns of the shape and two times.
 pub(super) const UNKNOWNS: usize = MOST + 2;
@@ -75,21 +75,20 @@ impl<'a> Problem<'a> {
         Self { touches, radius, size, deviations, start, plain: None }
     }
 
-    /// Distances of the finger from the outline at the two touches of a push, m.
-    fn gaps(&self, line: &ClosedLine, times: [f64; 2], pair: &[Touch; 2]) -> [f64; 2] {
-        [0, 1].map(|i| {
-            let centre = pair[i].centre - pair[i].velocity * times[i];
-            line.nearest(centre).distance - self.radius
-        })
+    /// Where the outline is nearest to the finger at the two touches of a push.
+    fn nearest(&self, line: &ClosedLine, times: [f64; 2], pair: &[Touch; 2]) -> [Nearest; 2] {
+        [0, 1].map(|i| line.nearest(pair[i].centre - pair[i].velocity * times[i]))
+    }
+
+    /// Mean and half difference of the gaps of a push, m.
+    fn parts_of(&self, nearest: &[Nearest; 2]) -> [f64; 2] {
+        let [a, b] = nearest.map(|near| near.distance - self.radius);
+        [0.5 * (a + b), 0.5 * (a - b)]
     }
 
     /// Mean and half difference of the gaps of each push, m.
     pub(super) fn parts(&self, line: &ClosedLine, times: [f64; 2]) -> Vec<[f64; 2]> {
-        let one = |pair| {
-            let [a, b] = self.gaps(line, times, pair);
-            [0.5 * (a + b), 0.5 * (a - b)]
-        };
-        self.touches.iter().map(one).collect()
+        self.touches.iter().map(|pair| self.parts_of(&self.nearest(line, times, pair))).collect()
     }
 
     /// All residuals at a point; none where the shape is none.
@@ -97,13 +96,13 @@ impl<'a> Problem<'a> {
         let line = point.shape.line()?;
         let mut all = Vec::with_capacity(4 * self.touches.len() + UNKNOWNS);
         for pair in self.touches {
-            let [a, b] = self.gaps(&line, point.times, pair);
-            for (i, part) in [0.5 * (a + b), 0.5 * (a - b)].into_iter().enumerate() {
+            let nearest = self.nearest(&line, point.times, pair);
+            for (i, part) in self.parts_of(&nearest).into_iter().enumerate() {
                 let z = part / self.deviations[i];
                 all.push(self.plain.map_or_else(|| robust(z), |weights| z * weights[i]));
             }
-            for (touch, time) in pair.iter().zip(point.times) {
-                let inward = -line.nearest(touch.centre - touch.velocity * time).normal;
+            for (touch, near) in pair.iter().zip(nearest) {
+                let inward = -near.normal;
                 all.push(robust(inward.perp_dot(touch.force).atan2(inward.dot(touch.force)) / ANGLE));
             }
         }

@@ -4,12 +4,12 @@ use super::estimate::StreamMotion;
 use super::sample::Felt;
 use super::solution::Solution;
 use crate::contacts::body::CONSTANTS;
-use crate::contacts::flow::{Carried, Transition, link_covariance};
+use crate::contacts::flow::{Carried, Transition};
+use crate::contacts::link::link_covariance;
 use crate::contacts::noise::{WrenchNoise, force_trace};
 use crate::contacts::record::{Interval, six};
 use crate::contacts::state::{MOTION, Motion};
 use crate::contacts::verdict::UNEXPLAINED;
-use crate::rigid::cross_matrix;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix};
 use object_dynamics::BodyState;
@@ -133,9 +133,7 @@ impl Front {
 
     /// What noise of the forces did since the window's end.
     fn wandered(&self, body: &crate::contacts::body::Body) -> Transition {
-        let mut about = Matrix6::identity();
-        about.fixed_view_mut::<3, 3>(3, 0).copy_from(&Matrix3::from(-cross_matrix(self.carried.motion.p)));
-        let noise = WrenchNoise { white: about * self.noise * about.transpose(), ..WrenchNoise::default() };
+        let noise = WrenchNoise { white: self.noise, ..WrenchNoise::default() }.about(self.carried.motion.p);
         link_covariance(&noise, self.carried.after, body, &self.carried.turn)
     }
 }
