@@ -1,6 +1,6 @@
 //! Normal equations of a chain of nodes: what [`Problem`](super::problem::Problem) is linearised to.
 
-use super::flow::Transition;
+use super::flow::{Carried, Transition};
 use super::solve::Step;
 use super::state::{MOTION, Tangent, tangent};
 use glam::DVec3;
@@ -34,13 +34,11 @@ pub(super) struct Equations<const P: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LinkEquation<const P: usize> {
     pub(super) residual: Tangent,
-    pub(super) by_motion: Transition,
-    pub(super) by_body: SMatrix<f64, MOTION, P>,
-    /// Inverse covariance of the residual, and by what of the motion before it falls, at adjusted impulses.
+    /// What the motion at its node comes to, with derivatives.
+    pub(super) carried: Carried<P>,
+    /// Inverse covariance of the residual, and by what of motion and body it falls, at adjusted impulses.
     pub(super) information: Transition,
-    pub(super) adjusted: Transition,
-    /// By what of the body it falls, at adjusted impulses.
-    pub(super) adjusted_body: SMatrix<f64, MOTION, P>,
+    pub(super) adjusted: Carried<P>,
 }
 
 /// A condition, linearised: its value and its derivatives by a motion (centre of mass, velocity, angular momentum, turn) and by the
@@ -94,11 +92,10 @@ impl<const P: usize> Equations<P> {
         let mut all = Gradient { motions: vec![Tangent::zeros(); self.nodes.len()], body: SVector::zeros() };
         for (j, (link, residual)) in self.links.iter().zip(residuals).enumerate() {
             let weighted = link.information * residual;
-            all.motions[j] -= link.adjusted.transpose() * weighted;
+            let (motion, body) = link.adjusted.pulled(&weighted);
+            all.motions[j] -= motion;
             all.motions[j + 1] += weighted;
-            if P > 0 {
-                all.body -= link.adjusted_body.transpose() * weighted;
-            }
+            all.body -= body;
         }
         all
     }

@@ -3,10 +3,10 @@
 use super::body::Body;
 use super::equations::Row;
 use super::record::{Interval, Wrench};
-use super::state::{MOTION, Motion, Tangent, Turn};
+use super::state::{MOTION, Motion, Tangent, Turn, tangent};
 use crate::rigid::{cross_matrix, exponential};
 use glam::{DQuat, DVec3};
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// Derivatives of a motion by the motion at its node.
 pub(super) type Transition = SMatrix<f64, MOTION, MOTION>;
@@ -18,6 +18,7 @@ pub(super) struct Carried<const P: usize> {
     pub(super) turn: Turn,
     /// Time since the node, s.
     pub(super) after: f64,
+    inverse_mass: f64,
     /// Integrals since the node: force, force times time, integral of the force, and that crossed with the force.
     impulse: DVec3,
     first: DVec3,
@@ -36,6 +37,7 @@ impl<const P: usize> Carried<P> {
             motion,
             turn: body.turn(motion.q, motion.L),
             after: 0.0,
+            inverse_mass: body.inverse_mass(),
             impulse: DVec3::ZERO,
             first: DVec3::ZERO,
             second: DVec3::ZERO,
@@ -80,7 +82,7 @@ impl<const P: usize> Carried<P> {
             }
             return;
         }
-        let (h, m) = (interval.h, body.inverse_mass());
+        let (h, m) = (interval.h, self.inverse_mass);
         let (force, first) = (interval.impulse.force, interval.first);
         let second = h * force - first;
         let Motion { p, v, L, q } = self.motion;
@@ -134,7 +136,7 @@ impl<const P: usize> Carried<P> {
                 let mut column = by_body.column_mut(at);
                 column += Vector3::from(self.turn.K * change);
             };
-            add(0, self.crossed * body.inverse_mass());
+            add(0, self.crossed * self.inverse_mass);
             for (i, change) in body.by_inertia(&self.turn).into_iter().enumerate() {
                 add(i + 1, change);
             }
@@ -143,49 +145,72 @@ impl<const P: usize> Carried<P> {
     }
 
     /// A condition on the motion here as one on the motion at the node.
-    pub(super) fn at_node(&self, row: &Row<P>, body: &Body) -> Row<P> {
-        let [a, b, c, d] = row.by_motion;
-        let turn = self.turn_by_motion.tr_mul(&Vector3::from(d));
-        let by_turn = |i: usize| DVec3::new(turn[i], turn[i + 1], turn[i + 2]);
-        let by_motion = [
-            a + c.cross(self.impulse) + by_turn(0),
-            b + a * self.after + c.cross(self.first) + by_turn(3),
-            c + by_turn(6),
-            by_turn(9),
-        ];
-        let mut by_body = row.by_body;
-        if P > 0 {
-            let by_mass = c.dot(self.crossed) - a.dot(self.second) - b.dot(self.impulse);
-            by_body[0] += by_mass * body.inverse_mass();
-            by_body += self.turn_by_body.tr_mul(&Vector3::from(d));
+    pub(super) fn at_node(&self, row: &Row<P>) -> Row<P> {
+        let (motion, body) = self.pulled(&tangent(&row.by_motion));
+        let part = |i: usize| DVec3::new(motion[i], motion[i + 1], motion[i + 2]);
+        Row { by_motion: [part(0), part(3), part(6), part(9)], by_body: row.by_body + body, value: row.value }
+    }
+
+    /// The transposed derivatives by motion and constants at the node, times columns.
+    pub(super) fn pulled<const N: usize>(
+        &self,
+        columns: &SMatrix<f64, MOTION, N>,
+    ) -> (SMatrix<f64, MOTION, N>, SMatrix<f64, P, N>) {
+        let (mut motion, mut body) = (*columns, SMatrix::<f64, P, N>::zeros());
+        let (turn, turn_by_body) = (self.turn_by_motion.transpose(), self.turn_by_body.transpose());
+        let (own, _) = columns.as_slice().as_chunks::<MOTION>();
+        let (to, _) = motion.as_mut_slice().as_chunks_mut::<MOTION>();
+        for (j, (x, to)) in own.iter().zip(to).enumerate() {
+            let part = |i: usize| DVec3::new(x[i], x[i + 1], x[i + 2]);
+            let (a, b, c) = (part(0), part(3), part(6));
+            for i in 0..9 {
+                to[i] += turn[(i, 0)] * x[9] + turn[(i, 1)] * x[10] + turn[(i, 2)] * x[11];
+            }
+            for i in 9..MOTION {
+                to[i] = turn[(i, 0)] * x[9] + turn[(i, 1)] * x[10] + turn[(i, 2)] * x[11];
+            }
+            let (by_place, by_velocity) = (c.cross(self.impulse), a * self.after + c.cross(self.first));
+            for i in 0..3 {
+                to[i] += by_place[i];
+                to[i + 3] += by_velocity[i];
+            }
+            if P > 0 {
+                for i in 0..P {
+                    body[(i, j)] = turn_by_body[(i, 0)] * x[9]
+                        + turn_by_body[(i, 1)] * x[10]
+                        + turn_by_body[(i, 2)] * x[11];
+                }
+                let by_mass = c.dot(self.crossed) - a.dot(self.second) - b.dot(self.impulse);
+                body[(0, j)] += by_mass * self.inverse_mass;
+            }
         }
-        Row { by_motion, by_body, value: row.value }
+        (motion, body)
+    }
+
+    /// The derivatives by motion and constants at the node, times a step of these.
+    pub(super) fn along(&self, step: &Tangent, body: &SVector<f64, P>) -> Tangent {
+        let part = |i: usize| DVec3::new(step[i], step[i + 1], step[i + 2]);
+        let (a, b) = (part(0), part(3));
+        let by_mass = if P > 0 { self.inverse_mass * body[0] } else { 0.0 };
+        let turn = DVec3::from(self.turn_by_motion * step + self.turn_by_body * body);
+        tangent(&[
+            a + b * self.after - self.second * by_mass,
+            b - self.impulse * by_mass,
+            part(6) + self.impulse.cross(a) + self.first.cross(b) + self.crossed * by_mass,
+            turn,
+        ])
     }
 
     /// Derivatives by the motion at the node and by the constants: logarithm of the mass, those of the inertia.
-    pub(super) fn derivatives(&self, body: &Body) -> (Transition, SMatrix<f64, MOTION, P>) {
-        let mut by_motion = Transition::identity();
-        by_motion.fixed_view_mut::<3, 3>(0, 3).copy_from(&(Matrix3::identity() * self.after));
-        by_motion.fixed_view_mut::<3, 3>(6, 0).copy_from(&Matrix3::from(cross_matrix(self.impulse)));
-        by_motion.fixed_view_mut::<3, 3>(6, 3).copy_from(&Matrix3::from(cross_matrix(self.first)));
-        by_motion.fixed_view_mut::<3, MOTION>(9, 0).copy_from(&self.turn_by_motion);
-        let mut by_body = SMatrix::<f64, MOTION, P>::zeros();
-        if P > 0 {
-            let m = body.inverse_mass();
-            for (at, change) in [(0, -self.second), (3, -self.impulse), (6, self.crossed)] {
-                by_body.fixed_view_mut::<3, 1>(at, 0).copy_from(&Vector3::from(change * m));
-            }
-            by_body.fixed_view_mut::<3, P>(9, 0).copy_from(&self.turn_by_body);
-        }
-        (by_motion, by_body)
+    pub(super) fn derivatives(&self) -> (Transition, SMatrix<f64, MOTION, P>) {
+        let (by_motion, by_body) = self.pulled(&Transition::identity());
+        (by_motion.transpose(), by_body.transpose())
     }
-}
 
-impl<const P: usize> Carried<P> {
-    /// Derivatives at the impulses that a link's residual `r` says there were: with noisy ones the noise of a derivative
+    /// The same with derivatives at the impulses that a link's residual `r` says there were: with noisy ones the noise of a derivative
     /// would meet its own residual.
-    pub(super) fn adjusted(&self, body: &Body, r: &Tangent) -> (Transition, SMatrix<f64, MOTION, P>) {
-        let m = body.inverse_mass();
+    pub(super) fn adjusted(&self, body: &Body, r: &Tangent) -> Self {
+        let m = self.inverse_mass;
         let missing = [DVec3::new(r[0], r[1], r[2]) / m, DVec3::new(r[3], r[4], r[5]) / m];
         let mut at = *self;
         at.impulse += missing[1];
@@ -212,7 +237,7 @@ impl<const P: usize> Carried<P> {
                 column += Vector3::from(self.turn.K * change);
             }
         }
-        at.derivatives(body)
+        at
     }
 }
 

@@ -61,8 +61,7 @@ impl LinkNoise {
         };
         for (i, (place, A)) in places.into_iter().enumerate() {
             for (j, (momentum, C)) in momenta.into_iter().enumerate() {
-                let block =
-                    |of: &Matrix6<f64>| DMat3::from(of.fixed_view::<3, 3>(3 * i, 3 * j).into_owned());
+                let block = |of: &Matrix6<f64>| DMat3::from(of.fixed_view::<3, 3>(3 * i, 3 * j).into_owned());
                 let crossed = A * block(&mixed) * C;
                 set(place, momentum, crossed);
                 set(momentum, place, crossed.transpose());

@@ -41,9 +41,9 @@ mod state;
 mod stepping;
 mod stream;
 mod suspects;
-mod triangular;
 #[cfg(test)]
 mod tests;
+mod triangular;
 mod verdict;
 mod windows;
 

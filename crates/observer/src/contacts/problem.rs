@@ -153,7 +153,7 @@ impl Problem<'_> {
                 noise += self.record.intervals[k].noise;
                 if k + 1 < end {
                     self.rows(k + 1, &carried.motion, &carried.turn, &at.body, |row| {
-                        all.add(j, &carried.at_node(&row, &at.body));
+                        all.add(j, &carried.at_node(&row));
                     });
                 }
             }
@@ -212,7 +212,7 @@ impl Problem<'_> {
                 }
             }
             let Some(link) = equations.links.get(j) else { break };
-            let left = link.residual + steps[j + 1] - link.by_motion * steps[j] - link.by_body * body;
+            let left = link.residual + steps[j + 1] - link.carried.along(&steps[j], body);
             let mut next = place(j + 1, carried.motion.p, carried.motion.q, &left);
             if self.record.contacts[end].is_empty() {
                 // Of a flight the momenta are known best, and no condition is there to keep.
@@ -353,14 +353,13 @@ impl Problem<'_> {
         &self,
         j: usize,
         carried: &Carried<P>,
-        body: &Body,
         row: &Row<P>,
     ) -> (Row<P>, [DVec3; 4]) {
         let share = self.share(j);
         let [_, v, L, _] = row.by_motion;
         let after = [DVec3::ZERO, v * share, L * share, DVec3::ZERO];
         let mut own = *row;
-        own.add(-1.0, &carried.at_node(&Row { by_motion: after, ..Row::zero() }, body));
+        own.add(-1.0, &carried.at_node(&Row { by_motion: after, ..Row::zero() }));
         (own, after)
     }
 
@@ -406,7 +405,7 @@ impl Problem<'_> {
         let motion = self.split(j, carried, at);
         let turn = at.body.turn(motion.q, motion.L);
         self.rows(self.nodes[j], &motion, &turn, &at.body, |row| {
-            let (own, after) = self.split_row(j, carried, &at.body, &row);
+            let (own, after) = self.split_row(j, carried, &row);
             all.add_split(j, &own, &after);
         });
     }
@@ -419,35 +418,28 @@ impl Problem<'_> {
         at: &Unknowns,
         all: &mut Equations<P>,
     ) {
-        let r = at.motions[j + 1].from(&carried.motion);
-        let weighted = information * r;
-        let (F, E) = carried.adjusted(&at.body, &r);
-        let through = information * F;
-        all.cost += weighted.dot(&r);
-        let (by_motion, by_body) = carried.derivatives(&at.body);
-        all.links.push(LinkEquation {
-            residual: r,
-            by_motion,
-            by_body,
-            information: *information,
-            adjusted: F,
-            adjusted_body: E,
-        });
+        let residual = at.motions[j + 1].from(&carried.motion);
+        let weighted = information * residual;
+        let adjusted = carried.adjusted(&at.body, &residual);
+        let (by_motion, by_body) = adjusted.pulled(information);
+        let by_body = by_body.transpose();
+        let (of_motion, of_body) = adjusted.pulled(&by_motion.transpose());
+        let (gradient, body_gradient) = adjusted.pulled(&weighted);
+        let cost = weighted.dot(&residual);
+        all.cost += cost;
         let node = &mut all.nodes[j];
-        node.cost += weighted.dot(&r);
-        node.own += F.transpose() * through;
-        node.next -= through.transpose();
-        node.gradient -= F.transpose() * weighted;
-        if P > 0 {
-            let w_body = information * E;
-            node.body += F.transpose() * w_body;
-            all.nodes[j + 1].body -= w_body;
-            all.body += E.transpose() * w_body;
-            all.body_gradient -= E.transpose() * weighted;
-        }
+        node.cost += cost;
+        node.own += of_motion;
+        node.next -= by_motion;
+        node.gradient -= gradient;
+        node.body += of_body.transpose();
+        all.body += adjusted.pulled(&by_body).1;
+        all.body_gradient -= body_gradient;
         let next = &mut all.nodes[j + 1];
         next.own += information;
         next.gradient += weighted;
+        next.body -= by_body;
+        all.links.push(LinkEquation { residual, carried: *carried, information: *information, adjusted });
     }
 
     fn add_prior<const P: usize>(&self, at: &Unknowns, all: &mut Equations<P>) {

@@ -49,12 +49,12 @@ impl Residuals {
             for k in from..end {
                 problem.advance(&mut carried, k, &at.body);
                 if k + 1 < end {
-                    add(k + 1, &carried.motion, &|row| (carried.at_node(&row, &at.body), none));
+                    add(k + 1, &carried.motion, &|row| (carried.at_node(&row), none));
                 }
             }
             if end == from + 1 {
                 let motion = problem.split(j, &carried, at);
-                add(from, &motion, &|row| problem.split_row(j, &carried, &at.body, &row));
+                add(from, &motion, &|row| problem.split_row(j, &carried, &row));
             }
         }
         Some(Self { conditions, links })

@@ -127,8 +127,9 @@ impl Covariances<CONSTANTS> {
     /// What the residual of a link says of constants, the motions free to follow.
     fn left(&self, j: usize, link: &LinkEquation<CONSTANTS>) -> Transition {
         let (before, after, cross) = (&self.motions[j].0, &self.motions[j + 1].0, &self.next[j]);
-        let mixed = link.adjusted * cross;
-        let residual = after + link.adjusted * before * link.adjusted.transpose() - mixed - mixed.transpose();
+        let (by_motion, _) = link.adjusted.derivatives();
+        let mixed = by_motion * cross;
+        let residual = after + by_motion * before * by_motion.transpose() - mixed - mixed.transpose();
         link.information - link.information * residual * link.information
     }
 

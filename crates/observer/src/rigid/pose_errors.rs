@@ -9,8 +9,8 @@ use crate::random::Normal;
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Cholesky, SMatrix, SVector};
 
-/// Draws of the joint error: one in twenty is then known to some 0.7 %.
-pub(crate) const DRAWS: usize = 1000;
+/// Draws of the joint error: one in twenty is then known to some 1 %, and the rank that is taken holds for any number of them.
+pub(crate) const DRAWS: usize = 500;
 /// Nodes at which the errors are kept, at most: between them they go straight.
 const KEPT: usize = 400;
 /// What covariances are raised by, relative to the largest: next to nothing, but they can be inverted.

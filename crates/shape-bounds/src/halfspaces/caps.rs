@@ -26,8 +26,8 @@ impl Caps<'_> {
     /// The largest distance from `from` of a point of the polyhedron on or beyond the plane; zero if there is none.
     pub(crate) fn reach(&mut self, plane: &HalfSpace, from: DVec3) -> f64 {
         let mut reach = 0.0_f64;
-        self.each_corner(plane, |p| reach = reach.max(p.distance(from)));
-        reach
+        self.each_corner(plane, |p| reach = reach.max(p.distance_squared(from)));
+        reach.sqrt()
     }
 
     /// A ball about the part of the polyhedron on or beyond the plane; `None` if there is none.
@@ -54,17 +54,18 @@ impl Caps<'_> {
         self.stack.push(top);
         while let Some(corner) = self.stack.pop() {
             let here = vertices[corner as usize];
+            let inside = plane.excess(here);
             visit(here);
             for next in neighbours[corner as usize] {
                 let there = vertices[next as usize];
-                if plane.excess(there) >= 0.0 {
+                let outside = plane.excess(there);
+                if outside >= 0.0 {
                     if self.met[next as usize] != self.search {
                         self.met[next as usize] = self.search;
                         self.stack.push(next);
                     }
                 } else {
                     // The edge leaves the cap where it crosses the plane.
-                    let (inside, outside) = (plane.excess(here), plane.excess(there));
                     visit(here + (there - here) * (inside / (inside - outside)));
                 }
             }

@@ -107,7 +107,7 @@ impl Front {
 
     fn covariance(&self, body: &crate::contacts::body::Body) -> SMatrix<f64, MOTION, MOTION> {
         let Solution { covariance, follows, of_body, turned, known, .. } = &self.solution;
-        let (F, E) = self.carried.derivatives(body);
+        let (F, E) = self.carried.derivatives();
         let mut own = F * covariance * F.transpose();
         if self.carried.after > 0.0 {
             own += self.wandered(body);
