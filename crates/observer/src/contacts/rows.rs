@@ -137,15 +137,7 @@ impl Rows {
         turn: &Turn,
         changes: &[DVec3; INERTIA],
     ) -> impl ExactSizeIterator<Item = Row<P>> {
-        (0..self.count).map(|i| {
-            let e = self.axes[i];
-            let b = self.arm.cross(e);
-            let by_L = turn.K * b;
-            let by_motion = [-e.cross(turn.w), e, by_L, turn.w.cross(b) + by_L.cross(motion.L)];
-            // Constants: logarithm of the mass, of which a condition knows nothing, those of the inertia.
-            let by_body = SVector::from_fn(|j, _| if j > 0 { by_L.dot(changes[j - 1]) } else { 0.0 });
-            Row { by_motion, by_body, value: self.residual[i] }
-        })
+        (0..self.count).map(|i| self.along(self.axes[i], self.residual[i], motion, turn, changes))
     }
 
     /// The same in their deviations, and independent.
@@ -155,12 +147,27 @@ impl Rows {
         turn: &Turn,
         changes: &[DVec3; INERTIA],
     ) -> impl Iterator<Item = Row<P>> {
-        let mut linear = [Row::zero(); 3];
-        linear.iter_mut().zip(self.linear(motion, turn, changes)).for_each(|(to, row)| *to = row);
-        (0..self.count).map(move |i| {
-            let mut row = Row::zero();
-            (0..=i).for_each(|k| row.add(self.whitening[(i, k)], &linear[k]));
-            row
+        (0..self.count).map(|i| {
+            let weights = self.whitening.row(i);
+            let axis = (0..=i).map(|k| self.axes[k] * weights[k]).sum();
+            self.along(axis, weights.transpose().dot(&self.residual), motion, turn, changes)
         })
+    }
+
+    /// A condition on the velocity along an axis, or along several with weights.
+    fn along<const P: usize>(
+        &self,
+        e: DVec3,
+        value: f64,
+        motion: &Motion,
+        turn: &Turn,
+        changes: &[DVec3; INERTIA],
+    ) -> Row<P> {
+        let b = self.arm.cross(e);
+        let by_L = turn.K * b;
+        let by_motion = [-e.cross(turn.w), e, by_L, turn.w.cross(b) + by_L.cross(motion.L)];
+        // Constants: logarithm of the mass, of which a condition knows nothing, those of the inertia.
+        let by_body = SVector::from_fn(|j, _| if j > 0 { by_L.dot(changes[j - 1]) } else { 0.0 });
+        Row { by_motion, by_body, value }
     }
 }
