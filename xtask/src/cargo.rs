@@ -37,6 +37,17 @@ pub(crate) fn run(command: &mut Command) -> Result<(), String> {
     }
 }
 
+/// Where cargo builds.
+pub(crate) fn target() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
+}
+
+/// The command `recon`, built as the tests of the workspace have it: alone it would have other features, and all beneath it be built again.
+pub(crate) fn recon() -> Result<PathBuf, String> {
+    run(&mut cargo("build --workspace --tests --bin recon"))?;
+    Ok(target().join("debug").join(format!("recon{}", std::env::consts::EXE_SUFFIX)))
+}
+
 /// Runs a command and takes its standard output.
 pub(crate) fn output(command: &mut Command) -> Result<String, String> {
     let shown = show(command);

@@ -1,8 +1,8 @@
 //! Each command's page in a browser, where there is one: drawn without an error of its script, and not wider than the window.
 
-use crate::cargo::{cargo, output, program, root, run};
+use crate::cargo::{output, program, recon, target};
 use crate::steps::Outcome;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
@@ -54,10 +54,7 @@ pub(crate) fn check() -> Result<Outcome, String> {
     else {
         return Ok(Outcome::Skipped(format!("no browser: none of {}", BROWSERS.join(", "))));
     };
-    run(&mut cargo("build -p recon-cli"))?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
-    let (command, folder) =
-        (target.join(format!("debug/recon{}", std::env::consts::EXE_SUFFIX)), target.join("pages"));
+    let (command, folder) = (recon()?, target().join("pages"));
     if folder.exists() {
         std::fs::remove_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     }

@@ -1,8 +1,7 @@
 //! The package for Python: built and tested where there is a Python with what that takes; nothing else needs one.
 
-use crate::cargo::{cargo, output, program, root, run};
+use crate::cargo::{cargo, output, program, recon, run, target};
 use crate::steps::Outcome;
-use std::path::PathBuf;
 use std::process::Stdio;
 
 /// What the tests cannot do without.
@@ -20,7 +19,7 @@ pub(crate) fn check() -> Result<Outcome, String> {
     // What both workspaces build alike is built once.
     let mut clippy = cargo("clippy --manifest-path crates/recon-py/Cargo.toml --locked -- -D warnings");
     run(clippy.env("CARGO_TARGET_DIR", target()))?;
-    run(&mut cargo("build -p recon-cli"))?;
+    let command = recon()?;
     let (wheels, unpacked) = (target().join("wheels"), target().join("python"));
     // A wheel of an earlier commit is not what is tested.
     for old in [&wheels, &unpacked] {
@@ -34,18 +33,12 @@ pub(crate) fn check() -> Result<Outcome, String> {
     let wheel = std::fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
     let wheel = wheel.filter_map(Result::ok).next().ok_or("maturin wrote no wheel")?.path();
     run(program(python).args(["-m", "zipfile", "-e"]).arg(&wheel).arg(&unpacked))?;
-    let command = target().join("debug").join(format!("recon{}", std::env::consts::EXE_SUFFIX));
     run(program(python)
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
         .env("PYTHONPATH", &unpacked)
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .env("RECON_COMMAND", command))?;
     Ok(Outcome::Passed)
-}
-
-/// Where cargo builds.
-fn target() -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
 /// Whether there is such a Python, and it has these modules.
