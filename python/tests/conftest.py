@@ -91,6 +91,16 @@ def palms_scene() -> str:
 
 
 @pytest.fixture(scope="session")
+def palms_simulation(palms_scene: str) -> recon.Simulation:
+    return recon.simulate(palms_scene, tolerance=1e-8, report=True)
+
+
+@pytest.fixture(scope="session")
+def palms_result(palms_simulation: recon.Simulation, palms_scene: str) -> recon.Reconstruction:
+    return recon.reconstruct(palms_simulation.log, palms_scene)
+
+
+@pytest.fixture(scope="session")
 def files(tmp_path_factory: pytest.TempPathFactory, command: str) -> Path:
     """A folder with the scene of Fig. 5 over 1.5 s and its log, as the command makes them."""
     folder = tmp_path_factory.mktemp("fig5")

@@ -71,10 +71,11 @@ def test_what_a_person_sees(result: recon.Reconstruction, log: recon.Log, simula
     assert simulation.is_whole and "samples" in repr(simulation)
 
 
-def test_any_palms_have_deviations_modes_and_marks(palms_scene: str) -> None:
-    made = recon.simulate(palms_scene, tolerance=1e-8, report=True)
-    assert made.report_html and "<iframe" in made._repr_html_()
-    result = recon.reconstruct(made.log, palms_scene)
+def test_any_palms_have_deviations_modes_and_marks(
+    palms_simulation: recon.Simulation, palms_result: recon.Reconstruction
+) -> None:
+    assert palms_simulation.report_html and "<iframe" in palms_simulation._repr_html_()
+    result = palms_result
     n = len(result)
     assert result.modes.shape == (n, 4) and set(np.unique(result.modes)) <= {0, 1, 2}
     for std in (result.position_std, result.velocity_std, result.angular_velocity_std, result.turn_std):
