@@ -14,12 +14,28 @@ use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, MassProperties, SampleTimes, SensorLog, Simulation, ThreePalmScene,
 };
+use std::process::Command;
+use std::sync::LazyLock;
 
 /// How much of a test is run: a decisive part of it, all of it where the environment says `RECON_TESTS=all`, as
 /// `cargo xtask verify --only all-tests` does.
 #[must_use]
 pub fn few_or_all<T>(few: T, all: T) -> T {
     if std::env::var_os("RECON_TESTS").is_some_and(|asked| asked == "all") { all } else { few }
+}
+
+/// Whether a Python with MuJoCo is installed, asked once; says so where it is not. A folder of that name is a module of Python too, but
+/// without models.
+#[must_use]
+pub fn mujoco_is_there() -> bool {
+    static THERE: LazyLock<bool> = LazyLock::new(|| {
+        let found = Command::new("python3").args(["-c", "import mujoco, numpy; mujoco.MjModel"]).output();
+        found.is_ok_and(|run| run.status.success())
+    });
+    if !*THERE {
+        println!("skipped: python3 with the modules mujoco and numpy is not installed");
+    }
+    *THERE
 }
 
 /// A general body: an ellipsoid plus a polynomial.

@@ -2,25 +2,13 @@
 
 use glam::DVec3;
 use recon_io::{Scene, SceneModel};
+use recon_tests::mujoco_is_there;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::LazyLock;
 
 fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
-}
-
-/// Whether MuJoCo is installed; says so where it is not. A folder of that name is a module of Python too, but without models.
-fn mujoco_is_there() -> bool {
-    static THERE: LazyLock<bool> = LazyLock::new(|| {
-        let found = Command::new("python3").args(["-c", "import mujoco, numpy; mujoco.MjModel"]).output();
-        found.is_ok_and(|run| run.status.success())
-    });
-    if !*THERE {
-        println!("skipped: python3 with the modules mujoco and numpy is not installed");
-    }
-    *THERE
 }
 
 /// Where the scene ends in MuJoCo.

@@ -1,6 +1,6 @@
 //! Steps that build: format, lints, docs, tests, and the crates and features one by one.
 
-use super::arrows::ALONE;
+use super::arrows;
 use crate::cargo::{cargo, run};
 use crate::metadata::Metadata;
 use crate::steps::Outcome;
@@ -36,7 +36,7 @@ pub(crate) fn alone() -> Result<Outcome, String> {
     let with = |name: &str, features: &str| {
         format!("clippy --package {name} {features} --all-targets -- -D warnings")
     };
-    all(ALONE.iter().flat_map(|name| [with(name, ""), with(name, "--no-default-features")]))
+    all(arrows::alone().flat_map(|name| [with(name, ""), with(name, "--no-default-features")]))
 }
 
 /// All features of all members, each without the others and without the default ones.

@@ -13,7 +13,7 @@ pub struct ClosedLine {
     edges: Vec<Edge>,
 }
 
-/// From a corner to the next one: the way there, and its inverse squared length, zero for an edge of none.
+/// From a corner to the next one: the way there, and its inverse squared length, zero for an edge too short to have one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Edge {
     from: DVec2,
@@ -86,8 +86,8 @@ impl ClosedLine {
         let edge = |k: usize| {
             let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
             let along = to - from;
-            let square = along.length_squared();
-            Edge { from, to, along, inverse_square: if square > 0.0 { square.recip() } else { 0.0 } }
+            let inverse = along.length_squared().recip();
+            Edge { from, to, along, inverse_square: if inverse.is_finite() { inverse } else { 0.0 } }
         };
         let edges = (0..corners.len()).map(edge).collect();
         Ok(Self { corners, edges })

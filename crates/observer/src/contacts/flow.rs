@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::equations::Row;
 use super::record::{Interval, Wrench};
-use super::state::{MOTION, Motion, Tangent, Turn, tangent};
+use super::state::{MOTION, Motion, Tangent, Turn, parts, tangent};
 use crate::rigid::{cross_matrix, exponential};
 use glam::{DQuat, DVec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -111,10 +111,10 @@ impl<const P: usize> Carried<P> {
 
     /// Moves the motion by a step.
     pub(super) fn shift(&mut self, by: &Tangent, body: &Body) {
-        let part = |i: usize| DVec3::new(by[i], by[i + 1], by[i + 2]);
+        let [place, velocity, momentum, turn] = parts(by);
         let Motion { p, v, L, q } = self.motion;
-        let q = (exponential(part(9)) * q).normalize();
-        self.motion = Motion { p: p + part(0), v: v + part(3), L: L + part(6), q };
+        let q = (exponential(turn) * q).normalize();
+        self.motion = Motion { p: p + place, v: v + velocity, L: L + momentum, q };
         self.turn = body.turn(q, self.motion.L);
     }
 
@@ -147,8 +147,7 @@ impl<const P: usize> Carried<P> {
     /// A condition on the motion here as one on the motion at the node.
     pub(super) fn at_node(&self, row: &Row<P>) -> Row<P> {
         let (motion, body) = self.pulled(&tangent(&row.by_motion));
-        let part = |i: usize| DVec3::new(motion[i], motion[i + 1], motion[i + 2]);
-        Row { by_motion: [part(0), part(3), part(6), part(9)], by_body: row.by_body + body, value: row.value }
+        Row { by_motion: parts(&motion), by_body: row.by_body + body, value: row.value }
     }
 
     /// The transposed derivatives by motion and constants at the node, times columns.
@@ -163,23 +162,20 @@ impl<const P: usize> Carried<P> {
         for (j, (x, to)) in own.iter().zip(to).enumerate() {
             let part = |i: usize| DVec3::new(x[i], x[i + 1], x[i + 2]);
             let (a, b, c) = (part(0), part(3), part(6));
-            for i in 0..9 {
+            to[9..].fill(0.0);
+            for i in 0..MOTION {
                 to[i] += turn[(i, 0)] * x[9] + turn[(i, 1)] * x[10] + turn[(i, 2)] * x[11];
-            }
-            for i in 9..MOTION {
-                to[i] = turn[(i, 0)] * x[9] + turn[(i, 1)] * x[10] + turn[(i, 2)] * x[11];
             }
             let (by_place, by_velocity) = (c.cross(self.impulse), a * self.after + c.cross(self.first));
             for i in 0..3 {
                 to[i] += by_place[i];
                 to[i + 3] += by_velocity[i];
             }
+            for i in 0..P {
+                body[(i, j)] =
+                    turn_by_body[(i, 0)] * x[9] + turn_by_body[(i, 1)] * x[10] + turn_by_body[(i, 2)] * x[11];
+            }
             if P > 0 {
-                for i in 0..P {
-                    body[(i, j)] = turn_by_body[(i, 0)] * x[9]
-                        + turn_by_body[(i, 1)] * x[10]
-                        + turn_by_body[(i, 2)] * x[11];
-                }
                 let by_mass = c.dot(self.crossed) - a.dot(self.second) - b.dot(self.impulse);
                 body[(0, j)] += by_mass * self.inverse_mass;
             }
@@ -189,14 +185,13 @@ impl<const P: usize> Carried<P> {
 
     /// The derivatives by motion and constants at the node, times a step of these.
     pub(super) fn along(&self, step: &Tangent, body: &SVector<f64, P>) -> Tangent {
-        let part = |i: usize| DVec3::new(step[i], step[i + 1], step[i + 2]);
-        let (a, b) = (part(0), part(3));
+        let [a, b, c, _] = parts(step);
         let by_mass = if P > 0 { self.inverse_mass * body[0] } else { 0.0 };
         let turn = DVec3::from(self.turn_by_motion * step + self.turn_by_body * body);
         tangent(&[
             a + b * self.after - self.second * by_mass,
             b - self.impulse * by_mass,
-            part(6) + self.impulse.cross(a) + self.first.cross(b) + self.crossed * by_mass,
+            c + self.impulse.cross(a) + self.first.cross(b) + self.crossed * by_mass,
             turn,
         ])
     }

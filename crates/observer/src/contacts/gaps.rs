@@ -1,8 +1,8 @@
 //! Intervals without samples: what forces did in them is not known, but how they change over such a time elsewhere in the log is.
 
+use super::noise::about;
 use super::record::{Interval, Record, Wrench, six};
-use crate::rigid::cross_matrix;
-use nalgebra::{Matrix3, Matrix6};
+use nalgebra::Matrix6;
 
 /// Times the usual interval, and natural times, from which on an interval is a gap.
 const LONG: f64 = 2.5;
@@ -140,8 +140,6 @@ impl Record {
 
     /// What the trapezoidal rule misses over a time, with moments about the world's origin.
     pub(super) fn missed_in_world(&self, h: f64) -> Matrix6<f64> {
-        let mut shift = Matrix6::identity();
-        shift.fixed_view_mut::<3, 3>(3, 0).copy_from(&Matrix3::from(cross_matrix(self.origin)));
-        shift * self.missed(&self.running(), h, Rule::Line) * shift.transpose()
+        about(&self.missed(&self.running(), h, Rule::Line), -self.origin)
     }
 }

@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::flow::Transition;
 use super::noise::WrenchNoise;
-use super::state::{MOTION, Tangent, Turn};
+use super::state::{MOTION, Tangent, Turn, parts};
 use super::triangular::{Rows, factor, inverse, length_squared};
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix};
@@ -30,11 +30,11 @@ impl LinkNoise {
 
     /// The square of a residual in its deviations, of a motion that ends with `turn`.
     pub(super) fn cost(&self, residual: &Tangent, body: &Body, turn: &Turn) -> f64 {
-        let part = |i: usize| DVec3::new(residual[i], residual[i + 1], residual[i + 2]);
+        let [place, velocity, momentum, by] = parts(residual);
         let mass = 1.0 / body.inverse_mass();
-        let first = [part(3) * mass, part(6)];
-        let place = [part(0) * mass, body.inertia_along(turn.R) * part(9)];
-        let rest = [0, 1].map(|i| place[i] - 0.5 * self.h * first[i]);
+        let first = [velocity * mass, momentum];
+        let second = [place * mass, body.inertia_along(turn.R) * by];
+        let rest = [0, 1].map(|i| second[i] - 0.5 * self.h * first[i]);
         let six = |[a, b]: [DVec3; 2]| [a.x, a.y, a.z, b.x, b.y, b.z];
         let of_rest = match &self.rest {
             Some(factor) => length_squared(factor, six(rest)),
@@ -46,12 +46,10 @@ impl LinkNoise {
     /// The inverse covariance of the motion at its end.
     pub(super) fn information(&self, body: &Body, turn: &Turn) -> Transition {
         let mass = DMat3::IDENTITY * (1.0 / body.inverse_mass());
-        let rest = match &self.rest {
-            Some(rest) => inverse(rest),
-            None => inverse(&self.white) * self.share_of_white(),
-        };
+        let white = inverse(&self.white);
+        let rest = self.rest.as_ref().map_or_else(|| white * self.share_of_white(), inverse);
         let mixed = rest * (-0.5 * self.h);
-        let once = inverse(&self.white) + rest * (0.25 * self.h * self.h);
+        let once = white + rest * (0.25 * self.h * self.h);
         // Of force and moment: the numbers of a motion that their second integrals are, times what, and their first ones.
         let places = [(0, mass), (3, body.inertia_along(turn.R))];
         let momenta = [(1, mass), (2, DMat3::IDENTITY)];

@@ -73,7 +73,7 @@ impl WrenchNoise {
 }
 
 /// A covariance of a force and its moment about the origin, with the moment about `p`.
-fn about(of: &Matrix6<f64>, p: DVec3) -> Matrix6<f64> {
+pub(super) fn about(of: &Matrix6<f64>, p: DVec3) -> Matrix6<f64> {
     let block = |i: usize, j: usize| DMat3::from(of.fixed_view::<3, 3>(i, j).into_owned());
     let (force, mixed, moment) = (block(0, 0), block(3, 0), block(3, 3));
     let across = cross_matrix(p);

@@ -9,7 +9,7 @@ use super::plane;
 use super::record::{Record, Wrench};
 use super::rows::Rows;
 use super::solve::{Solved, Step};
-use super::state::{MOTION, Motion, Tangent, Turn};
+use super::state::{MOTION, Motion, Tangent, Turn, parts};
 use crate::rigid::exponential;
 use contact_kinematics::is_stopped;
 use glam::{DQuat, DVec3};
@@ -189,10 +189,10 @@ impl Problem<'_> {
         let mut motions: Vec<Motion> = Vec::with_capacity(at.motions.len());
         let mut departures = Vec::with_capacity(equations.links.len());
         let mut cost = 0.0;
-        let vector = |t: &Tangent, i: usize| DVec3::new(t[i], t[i + 1], t[i + 2]);
         // Node `j` after its step, which leads to `p` and `q` and beyond them `by`.
         let place = |j: usize, p: DVec3, q: DQuat, by: &Tangent| {
-            let to = (p + vector(by, 0), (exponential(vector(by, 9)) * q).normalize());
+            let [shift, _, _, turn] = parts(by);
+            let to = (p + shift, (exponential(turn) * q).normalize());
             at.motions[j].moved(&steps[j], to, &at.body, change, &after)
         };
         let mut moved = place(0, at.motions[0].p, at.motions[0].q, &steps[0]);
@@ -216,8 +216,9 @@ impl Problem<'_> {
             let mut next = place(j + 1, carried.motion.p, carried.motion.q, &left);
             if self.record.contacts[end].is_empty() {
                 // Of a flight the momenta are known best, and no condition is there to keep.
-                next.v = carried.motion.v + vector(&left, 3);
-                next.L = carried.motion.L + vector(&left, 6);
+                let [_, velocity, momentum, _] = parts(&left);
+                next.v = carried.motion.v + velocity;
+                next.L = carried.motion.L + momentum;
             }
             let r = next.from(&carried.motion);
             departures.push(r - left);

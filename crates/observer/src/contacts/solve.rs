@@ -5,9 +5,10 @@ use super::equations::{Equations, Gradient};
 use super::flow::Transition;
 use super::problem::{Problem, Trial, Unknowns};
 use super::state::{MOTION, Tangent};
+use super::triangular::{factor, inverse};
 use crate::least_squares::{LARGEST_DAMPING, RAISE, lowered};
 use crate::reliability::LARGEST_MISFIT;
-use nalgebra::{DMatrix, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 
 /// First damping, as a share of the conditions' mean information; and where noise is not what they are off by, and their information far more than
 /// what the motion needs.
@@ -110,7 +111,7 @@ impl<const P: usize> Equations<P> {
         if let Some(last) = nodes.last() {
             last.lessen(&mut Transition::zeros(), &mut SMatrix::zeros(), &mut body);
         }
-        Some(Reduced { nodes, body: inverse(&body)? })
+        Some(Reduced { nodes, body: inverse(&factor(&body)?) })
     }
 
     /// Fall of the cost that the linear model promises of a step which solves the damped equations, the damping counted as
@@ -187,15 +188,6 @@ impl<const P: usize> Covariances<P> {
         errors.reverse();
         errors
     }
-}
-
-/// None unless it is positive definite.
-fn inverse<const P: usize>(matrix: &SMatrix<f64, P, P>) -> Option<SMatrix<f64, P, P>> {
-    if P == 0 {
-        return Some(*matrix);
-    }
-    let inverse = DMatrix::from_column_slice(P, P, matrix.as_slice()).cholesky()?.inverse();
-    Some(SMatrix::from_column_slice(inverse.as_slice()))
 }
 
 /// Minimises the cost from `start` by at most so many linearisations, until a step promises to lower it by less than

@@ -14,6 +14,11 @@ pub(super) fn tangent(parts: &[DVec3; 4]) -> Tangent {
     Tangent::from_fn(|i, _| parts[i / 3][i % 3])
 }
 
+/// Its four vectors: centre of mass, velocity, angular momentum, turn.
+pub(super) fn parts(of: &Tangent) -> [DVec3; 4] {
+    std::array::from_fn(|i| DVec3::new(of[3 * i], of[3 * i + 1], of[3 * i + 2]))
+}
+
 /// Motion at a node; positions from the record's origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
@@ -46,10 +51,9 @@ impl Motion {
         numbers: Option<&Vector6<f64>>,
         after: &Body,
     ) -> Self {
-        let part = |i: usize| DVec3::new(step[i], step[i + 1], step[i + 2]);
+        let [place, velocity, momentum, by] = parts(step);
         let turn = body.turn(self.q, self.L);
-        let by = part(9);
-        let mut change = self.L.cross(by) + part(6);
+        let mut change = self.L.cross(by) + momentum;
         if let Some(numbers) = numbers {
             for (slope, by) in body.by_inertia(&turn).into_iter().zip(numbers.iter()) {
                 change += slope * *by;
@@ -57,14 +61,14 @@ impl Motion {
         }
         let spin = turn.K * change + by.cross(turn.w);
         let w = turn.w + spin;
-        let v = self.v + part(3) - turn.w.cross(part(0)) + w.cross(p - self.p);
+        let v = self.v + velocity - turn.w.cross(place) + w.cross(p - self.p);
         Self { p, v, L: after.inertia_along(DMat3::from_quat(q)) * w, q }
     }
 
     /// With a share of what a link's residual says that velocity and angular momentum were changed by.
     pub(super) fn kicked(&self, residual: &Tangent, share: f64) -> Self {
-        let part = |i: usize| DVec3::new(residual[i], residual[i + 1], residual[i + 2]) * share;
-        Self { v: self.v + part(3), L: self.L + part(6), ..*self }
+        let [_, velocity, momentum, _] = parts(residual);
+        Self { v: self.v + velocity * share, L: self.L + momentum * share, ..*self }
     }
 
     /// Derivatives of the angular velocity by the motion and by the numbers of the inertia.

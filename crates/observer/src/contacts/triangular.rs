@@ -52,12 +52,10 @@ pub(super) fn inverse_factor<const M: usize>(factor: &Rows<M, M>) -> Rows<M, M> 
 }
 
 /// The square of a vector by the inverse of what the factor is of.
-pub(super) fn length_squared<const M: usize>(factor: &Rows<M, M>, mut of: [f64; M]) -> f64 {
-    for i in 0..M {
-        let sum: f64 = (0..i).map(|k| factor[i][k] * of[k]).sum();
-        of[i] = (of[i] - sum) * factor[i][i];
-    }
-    of.iter().map(|x| x * x).sum()
+pub(super) fn length_squared<const M: usize>(factor: &Rows<M, M>, of: [f64; M]) -> f64 {
+    let mut column = of.map(|x| [x]);
+    forward(factor, &mut column);
+    column.iter().map(|[x]| x * x).sum()
 }
 
 /// The transpose of the one times the other.

@@ -1,23 +1,11 @@
 //! The exported object: its files, and MuJoCo's motion of it on palms as in the log.
 
 use crate::common::{Scratch, scratch_with_log};
+use recon_tests::mujoco_is_there;
 use serde_json::Value;
 use std::process::Command;
-use std::sync::LazyLock;
 
 const REPLAY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/mujoco/replay.py");
-
-/// Whether MuJoCo is installed; says so where it is not. A folder of that name is a module of Python too, but without models.
-fn mujoco_is_there() -> bool {
-    static THERE: LazyLock<bool> = LazyLock::new(|| {
-        let found = Command::new("python3").args(["-c", "import mujoco, numpy; mujoco.MjModel"]).output();
-        found.is_ok_and(|run| run.status.success())
-    });
-    if !*THERE {
-        println!("skipped: python3 with the modules mujoco and numpy is not installed");
-    }
-    *THERE
-}
 
 /// What MuJoCo's motion of an exported model is away from the log.
 fn replay(scratch: &Scratch, model: &str, options: &[&str]) -> Value {
