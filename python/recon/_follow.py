@@ -129,7 +129,7 @@ class Follower:
         rows = np.asarray(rows, dtype=np.float64)
         if rows.ndim != 2:
             raise InputError(f"the rows have the shape {rows.shape}; give (n, {len(self._columns)})")
-        made = [_estimate(row) for row in self._follower.push_all(rows)]
+        made = [_estimate(row) for row in self._follower.push_all(rows, rows.shape[1])]
         self._latest = made[-1] if made else self._latest
         return made
 

@@ -1,10 +1,9 @@
 //! Bounds on a shape.
 
-use crate::arrays::{flat2, from_json, table};
+use crate::arrays::{Numbers, flat2, from_json, slices, table};
 use crate::errors::raised;
 use crate::mesh::Mesh;
 use crate::unlocked::unlocked;
-use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
 use recon_cli::Bounded;
 use std::path::PathBuf;
@@ -21,16 +20,11 @@ pub(crate) struct Bounds {
 pub(crate) fn bounds_of_columns(
     py: Python<'_>,
     names: Vec<String>,
-    columns: Vec<PyReadonlyArray1<'_, f64>>,
+    columns: Vec<Numbers>,
     words: Vec<String>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bounds> {
-    // The work goes on without the interpreter, under which arrays may change.
-    let own = columns.iter().map(|column| column.as_slice().map(<[f64]>::to_vec));
-    let columns = own.collect::<Result<Vec<_>, _>>()?;
-    let made = unlocked(py, progress, move |_| {
-        Bounded::of_columns(&names, &columns.iter().map(Vec::as_slice).collect::<Vec<_>>(), &words)
-    })?;
+    let made = unlocked(py, progress, move |_| Bounded::of_columns(&names, &slices(&columns), &words))?;
     Ok(Bounds { made })
 }
 
@@ -114,14 +108,14 @@ impl Bounds {
 
     /// Corners of the lower and the upper bound in the plane, (n, 2) and (m, 2), m; None in space.
     #[getter]
-    fn outlines<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyArray2<f64>>; 2]>> {
+    fn outlines<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyAny>; 2]>> {
         let Some(of) = self.made.outlines() else { return Ok(None) };
         Ok(Some([table(py, flat2(of.lower), 2)?, table(py, flat2(of.upper), 2)?]))
     }
 
     /// Corners of the fitted outline in the plane, (n, 2), m; None where there is none.
     #[getter]
-    fn fitted_outline<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+    fn fitted_outline<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some(of) = self.made.outlines().filter(|of| !of.fitted.is_empty()) else { return Ok(None) };
         table(py, flat2(of.fitted), 2).map(Some)
     }

@@ -1,9 +1,8 @@
 //! The motion sample by sample.
 
-use crate::arrays::wxyz;
+use crate::arrays::{Numbers, wxyz};
 use crate::errors::{input, raised};
 use crate::scene::Scene;
-use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use recon_cli::Follower as Made;
 use recon_io::StreamRow;
@@ -48,14 +47,14 @@ impl Follower {
     }
 
     /// The same of a row that is an array.
-    fn push_array(&self, py: Python<'_>, row: PyReadonlyArray1<'_, f64>) -> PyResult<Vec<Row>> {
-        self.push(py, row.as_array().to_vec())
+    fn push_array(&self, py: Python<'_>, row: Numbers) -> PyResult<Vec<Row>> {
+        self.push(py, row.0)
     }
 
     /// The same of many rows, (n, columns).
-    fn push_all(&self, py: Python<'_>, rows: PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Row>> {
-        self.check(rows.shape()[1])?;
-        let rows: Vec<Vec<f64>> = rows.as_array().rows().into_iter().map(|row| row.to_vec()).collect();
+    fn push_all(&self, py: Python<'_>, rows: Numbers, width: usize) -> PyResult<Vec<Row>> {
+        self.check(width)?;
+        let rows: Vec<&[f64]> = rows.0.chunks_exact(width.max(1)).collect();
         let mut all = Vec::with_capacity(rows.len());
         // Ctrl-C is looked at every so often: a push takes microseconds.
         for some in rows.chunks(500) {

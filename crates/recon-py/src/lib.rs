@@ -3,6 +3,8 @@
 //! Everything that computes is in `recon-cli`, which the command runs too. Here are the border alone: arrays, exceptions, and who may run
 //! while it computes.
 
+#![cfg(feature = "extension")]
+
 mod arrays;
 mod bounds;
 mod errors;

@@ -1,11 +1,10 @@
 //! Sensor logs, and simulations that make them.
 
-use crate::arrays::{from_json, vector};
+use crate::arrays::{Numbers, from_json, slices, vector};
 use crate::errors::raised;
 use crate::reconstruction::in_notebook;
 use crate::scene::Scene;
 use crate::unlocked::unlocked;
-use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use recon_cli::{Log as Made, Simulated};
 use std::path::PathBuf;
@@ -29,18 +28,13 @@ impl Log {
 
     /// A log from its columns.
     #[staticmethod]
-    fn _of_columns(
-        names: Vec<String>,
-        columns: Vec<PyReadonlyArray1<'_, f64>>,
-        scene: &Scene,
-    ) -> PyResult<Self> {
-        let columns = columns.iter().map(|column| column.as_slice()).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { log: Made::of_columns(&names, &columns, &scene.scene).map_err(raised)? })
+    fn _of_columns(names: Vec<String>, columns: Vec<Numbers>, scene: &Scene) -> PyResult<Self> {
+        Ok(Self { log: Made::of_columns(&names, &slices(&columns), &scene.scene).map_err(raised)? })
     }
 
     /// Times of the samples, (n,), s.
     #[getter]
-    fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         vector(py, self.log.times())
     }
 

@@ -2,7 +2,6 @@
 
 use crate::arrays::{flat3, table};
 use crate::errors::{input, output};
-use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use recon_io::{FileTarget, TriangleMesh, write_glb, write_ply, write_stl};
@@ -14,8 +13,8 @@ use std::path::PathBuf;
 pub(crate) struct Mesh {
     mesh: TriangleMesh,
     volume: Option<f64>,
-    vertices: PyOnceLock<Py<PyArray2<f64>>>,
-    triangles: PyOnceLock<Py<PyArray2<u32>>>,
+    vertices: PyOnceLock<Py<PyAny>>,
+    triangles: PyOnceLock<Py<PyAny>>,
 }
 
 impl Mesh {
@@ -29,14 +28,14 @@ impl Mesh {
 impl Mesh {
     /// Corners, (v, 3), m, body axes.
     #[getter]
-    fn vertices(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
+    fn vertices(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let made = || table(py, flat3(self.mesh.vertices.iter().copied()), 3).map(Bound::unbind);
         Ok(self.vertices.get_or_try_init(py, made)?.clone_ref(py))
     }
 
     /// Numbers of the corners of each triangle, (t, 3), counter-clockwise from outside.
     #[getter]
-    fn triangles(&self, py: Python<'_>) -> PyResult<Py<PyArray2<u32>>> {
+    fn triangles(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let made =
             || table(py, self.mesh.triangles.iter().flatten().copied().collect(), 3).map(Bound::unbind);
         Ok(self.triangles.get_or_try_init(py, made)?.clone_ref(py))

@@ -1,10 +1,9 @@
 //! Scenes and logs in the plane.
 
-use crate::arrays::{from_json, vector};
+use crate::arrays::{Numbers, from_json, slices, vector};
 use crate::errors::raised;
 use crate::reconstruction::in_notebook;
 use crate::unlocked::unlocked;
-use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use recon_cli::{PlaneLog as Log, PlaneScene as Known, PlaneSimulated};
 use std::path::PathBuf;
@@ -85,18 +84,13 @@ impl PlaneLog {
 
     /// A log from its columns.
     #[staticmethod]
-    fn _of_columns(
-        names: Vec<String>,
-        columns: Vec<PyReadonlyArray1<'_, f64>>,
-        scene: &PlaneScene,
-    ) -> PyResult<Self> {
-        let columns = columns.iter().map(|column| column.as_slice()).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { log: Log::of_columns(&names, &columns, &scene.scene).map_err(raised)? })
+    fn _of_columns(names: Vec<String>, columns: Vec<Numbers>, scene: &PlaneScene) -> PyResult<Self> {
+        Ok(Self { log: Log::of_columns(&names, &slices(&columns), &scene.scene).map_err(raised)? })
     }
 
     /// Times of the samples, (n,), s.
     #[getter]
-    fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         vector(py, self.log.times())
     }
 

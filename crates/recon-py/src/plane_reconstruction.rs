@@ -6,7 +6,6 @@ use crate::plane::{PlaneLog, PlaneScene};
 use crate::reconstruction::{evidence_rows, in_notebook};
 use crate::unlocked::unlocked;
 use glam::DVec2;
-use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
@@ -32,17 +31,17 @@ pub(crate) fn reconstruct_plane(
 #[pyclass(frozen, module = "recon.plane", name = "Reconstruction")]
 pub(crate) struct PlaneReconstruction {
     made: PlaneReconstructed,
-    motion: PyOnceLock<Py<PyArray2<f64>>>,
-    deviations: PyOnceLock<Py<PyArray2<f64>>>,
+    motion: PyOnceLock<Py<PyAny>>,
+    deviations: PyOnceLock<Py<PyAny>>,
 }
 
 impl PlaneReconstruction {
-    fn all_deviations<'py>(&self, py: Python<'py>) -> PyResult<&Bound<'py, PyArray2<f64>>> {
+    fn all_deviations<'py>(&self, py: Python<'py>) -> PyResult<&Bound<'py, PyAny>> {
         let made = || table(py, self.made.deviations().concat(), 6).map(Bound::unbind);
         Ok(self.deviations.get_or_try_init(py, made)?.bind(py))
     }
 
-    fn of_contacts<'py>(&self, py: Python<'py>, which: usize) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    fn of_contacts<'py>(&self, py: Python<'py>, which: usize) -> PyResult<Bound<'py, PyAny>> {
         let palms = self.made.contacts();
         let mut points = Vec::new();
         for k in 0..palms.first().map_or(0, Vec::len) {
@@ -92,13 +91,13 @@ impl PlaneReconstruction {
 
     /// Times of the motion, (n,), s.
     #[getter]
-    fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         vector(py, self.made.times())
     }
 
     /// The motion, (n, 6), in the columns of motion.csv: place, orientation, velocity, angular velocity.
     #[getter]
-    fn motion<'py>(&self, py: Python<'py>) -> PyResult<&Bound<'py, PyArray2<f64>>> {
+    fn motion<'py>(&self, py: Python<'py>) -> PyResult<&Bound<'py, PyAny>> {
         let made = || table(py, self.made.motion().concat(), 6).map(Bound::unbind);
         Ok(self.motion.get_or_try_init(py, made)?.bind(py))
     }
@@ -153,13 +152,13 @@ impl PlaneReconstruction {
 
     /// Whether the motion of a sample is relied on to within its deviations, (n,), bool.
     #[getter]
-    fn relied_on<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    fn relied_on<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         vector(py, self.made.relied_on().to_vec())
     }
 
     /// Contact modes, (n, palms), uint8: 0 off, 1 slides, 2 sticks.
     #[getter]
-    fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u8>>> {
+    fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let modes = self.made.modes();
         let palms = modes.first().map_or(0, Vec::len);
         table(py, modes.concat(), palms)
@@ -167,13 +166,13 @@ impl PlaneReconstruction {
 
     /// Where the palms touched the object, (n, palms, 2), m, body axes from the centre of mass; nan where they did not.
     #[getter]
-    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of_contacts(py, 0)
     }
 
     /// Outward normals there, (n, palms, 2), body axes.
     #[getter]
-    fn normals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    fn normals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of_contacts(py, 1)
     }
 
@@ -210,7 +209,7 @@ impl PlaneReconstruction {
     /// Corners of the lower and the upper bound, (n, 2) and (m, 2), m, world axes of the first sample from the centre of mass; None
     /// where there are no bounds.
     #[getter]
-    fn outlines<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyArray2<f64>>; 2]>> {
+    fn outlines<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyAny>; 2]>> {
         let Some(([lower, upper], _)) = self.made.bounds() else { return Ok(None) };
         Ok(Some([table(py, flat2(lower), 2)?, table(py, flat2(upper), 2)?]))
     }

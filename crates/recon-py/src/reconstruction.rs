@@ -7,7 +7,6 @@ use crate::mesh::Mesh;
 use crate::scene::Scene;
 use crate::unlocked::unlocked;
 use glam::DVec3;
-use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
@@ -19,9 +18,9 @@ use std::path::PathBuf;
 #[pyclass(frozen, module = "recon")]
 pub(crate) struct Reconstruction {
     made: Reconstructed,
-    times: PyOnceLock<Py<PyArray1<f64>>>,
-    motion: PyOnceLock<Py<PyArray2<f64>>>,
-    deviations: PyOnceLock<Py<PyArray2<f64>>>,
+    times: PyOnceLock<Py<PyAny>>,
+    motion: PyOnceLock<Py<PyAny>>,
+    deviations: PyOnceLock<Py<PyAny>>,
 }
 
 /// Estimates motion, contacts, bounds and, where asked, mass and inertia.
@@ -87,7 +86,7 @@ impl Reconstruction {
         &self,
         py: Python<'py>,
         what: fn(&PalmContact) -> DVec3,
-    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let palms = self.made.contacts();
         let samples = palms.first().map_or(0, |palm| palm.len());
         let at = |k: usize| {
@@ -150,14 +149,14 @@ impl Reconstruction {
 
     /// Times of the motion, (n,), s.
     #[getter]
-    fn times(&self, py: Python<'_>) -> PyResult<Py<PyArray1<f64>>> {
+    fn times(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let made = || vector(py, self.made.times()).map(Bound::unbind);
         Ok(self.times.get_or_try_init(py, made)?.clone_ref(py))
     }
 
     /// The motion, (n, 13), in the columns of motion.csv: position, orientation (w first), velocity, angular velocity.
     #[getter]
-    fn motion(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
+    fn motion(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let made = || {
             let motion = self.made.motion();
             let mut values = Vec::with_capacity(13 * motion.len());
@@ -223,14 +222,14 @@ impl Reconstruction {
     /// Whether the motion of a sample is relied on to within its deviations, (n,), bool; of an estimate with one verdict for all samples,
     /// that.
     #[getter]
-    fn relied_on<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    fn relied_on<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let all = || vec![self.made.verdict().0; self.made.times().len()];
         vector(py, self.made.relied_on().map_or_else(all, <[bool]>::to_vec))
     }
 
     /// Contact modes, (n, palms), uint8: 0 off, 1 slides, 2 sticks; None of three planes without friction.
     #[getter]
-    fn modes<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<u8>>>> {
+    fn modes<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some(modes) = self.made.modes() else { return Ok(None) };
         let palms = modes.first().map_or(0, Vec::len);
         table(py, modes.concat(), palms).map(Some)
@@ -239,7 +238,7 @@ impl Reconstruction {
     /// How probable it is that each palm slides and that it sticks, (n, palms, 2), to a millionth; the rest is that it is off. None where it is
     /// not estimated.
     #[getter]
-    fn mode_probabilities<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
+    fn mode_probabilities<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some(all) = self.made.mode_probabilities() else { return Ok(None) };
         let palms = all.first().map_or(0, Vec::len);
         let values = all.iter().flatten().flatten().copied().collect();
@@ -248,19 +247,19 @@ impl Reconstruction {
 
     /// Where the palms touched the object, (n, palms, 3), m, body axes from the centre of mass; nan where they did not.
     #[getter]
-    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of_contacts(py, |contact| contact.p_OC)
     }
 
     /// The same points in the world, (n, palms, 3), m.
     #[getter]
-    fn contacts_world<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    fn contacts_world<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of_contacts(py, |contact| contact.p_WC)
     }
 
     /// Outward normals there, (n, palms, 3), body axes.
     #[getter]
-    fn normals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    fn normals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of_contacts(py, |contact| contact.normal)
     }
 
@@ -278,13 +277,13 @@ impl Reconstruction {
 
     /// Inertia about the centre of mass, (3, 3), kg m^2, body axes; None without forces.
     #[getter]
-    fn inertia<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+    fn inertia<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.body().map(|body| matrix(py, &body.inertia)).transpose()
     }
 
     /// Standard deviations of its entries, (3, 3), kg m^2, where it was estimated.
     #[getter]
-    fn inertia_std<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+    fn inertia_std<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let deviations = self.body().and_then(|body| body.deviations);
         deviations.map(|of| matrix(py, &of.1)).transpose()
     }

@@ -2,7 +2,6 @@
 
 use crate::arrays::matrix;
 use crate::errors::input;
-use numpy::PyArray2;
 use pyo3::prelude::*;
 use recon_io::{Scene as Known, SceneError, SceneErrorKind};
 use std::path::PathBuf;
@@ -66,7 +65,7 @@ impl Scene {
 
     /// Inertia of the object about its centre of mass, (3, 3), kg m^2, body axes, where it is known.
     #[getter]
-    fn inertia<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+    fn inertia<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let mass = self.scene.mass_properties().ok().flatten();
         mass.map(|mass| matrix(py, &mass.inertia())).transpose()
     }
