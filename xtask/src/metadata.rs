@@ -35,9 +35,6 @@ pub(crate) struct Package {
     pub(crate) edges: Vec<Edge>,
 }
 
-/// The workspace of the package for Python, which the other one excludes.
-pub(crate) const PYTHON: &str = "crates/recon-py/Cargo.toml";
-
 /// All packages of the workspace and below it, for all features and platforms.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Metadata {
@@ -48,19 +45,8 @@ pub(crate) struct Metadata {
 impl Metadata {
     /// Asks cargo; the lock file must be up to date.
     pub(crate) fn load() -> Result<Self, String> {
-        Self::of("Cargo.toml")
-    }
-
-    /// The workspace and the one of the package for Python; both are ours.
-    pub(crate) fn load_both() -> Result<[Self; 2], String> {
-        let ours = Self::load()?;
-        let python = Self { root: ours.root.clone(), ..Self::of(PYTHON)? };
-        Ok([ours, python])
-    }
-
-    fn of(manifest: &str) -> Result<Self, String> {
-        let line = format!("metadata --format-version 1 --all-features --locked --manifest-path {manifest}");
-        let text = output(&mut cargo(&line))?;
+        let line = "metadata --format-version 1 --all-features --locked";
+        let text = output(&mut cargo(line))?;
         let value = serde_json::from_str(&text).map_err(|error| format!("cargo metadata: {error}"))?;
         Self::parse(&value).ok_or_else(|| "cargo metadata is not of format version 1".to_owned())
     }

@@ -11,7 +11,7 @@ pub(crate) fn alone() -> impl Iterator<Item = &'static str> {
 }
 
 /// Each member and the members that it may depend on, in any way (normal, build, dev).
-const ALLOWED: [(&str, &[&str]); 12] = [
+const ALLOWED: [(&str, &[&str]); 13] = [
     ("contact-kinematics", &[]),
     ("object-dynamics", &["contact-kinematics"]),
     ("observer", &["contact-kinematics", "object-dynamics"]),
@@ -27,6 +27,8 @@ const ALLOWED: [(&str, &[&str]); 12] = [
     // The scenes of the tests are the scenes of the charts.
     // Likewise `exploration`.
     ("recon-benches", &["recon", "recon-io", "recon-tests", "shape-bounds", "exploration"]),
+    // It names the last two to be built with the features that they have beside it in tests.
+    ("recon-py", &["recon-cli", "recon-io", "shape-bounds", "exploration"]),
     ("xtask", &[]),
 ];
 
@@ -100,6 +102,7 @@ mod tests {
             "recon-cli: recon recon-io clap",
             "recon-tests: recon/dev recon-io/dev",
             "recon-benches: recon recon-io kuva",
+            "recon-py: recon-cli recon-io",
             "xtask: serde_json",
             "|glam:",
             "|parry: glam",

@@ -9,8 +9,9 @@ pub(crate) fn format() -> Result<Outcome, String> {
     all(["fmt --all --check".to_owned()])
 }
 
+/// The module for Python as well: it is checked without a Python.
 pub(crate) fn lint() -> Result<Outcome, String> {
-    all(["clippy --workspace --all-targets -- -D warnings".to_owned()])
+    all(["clippy --workspace --all-targets --features recon-py/extension -- -D warnings".to_owned()])
 }
 
 /// Libraries only: the command of `recon-cli` has the name of the facade, and their pages would overwrite each other.

@@ -13,7 +13,6 @@ mod python;
 mod spdx;
 mod versions;
 
-use std::collections::BTreeSet;
 use std::process::ExitCode;
 
 use crate::metadata::Metadata;
@@ -28,11 +27,9 @@ const STEPS: &[Step] = &[
         check(arrows::complaints)
     }),
     step("versions", "one glam, one nalgebra, one parry in the tree", versions::check),
-    step("licences", "every package has a licence we allow, those of the wheel as well", || {
-        check_both(licences::complaints)
-    }),
+    step("licences", "every package has a licence we allow", || check(licences::complaints)),
     step("sources", "every package is ours or from the default registry", || {
-        check_both(licences::foreign_sources)
+        check(licences::foreign_sources)
     }),
     step("paths", "no tracked file names a folder of somebody's machine", paths::check),
     step("deny", "cargo-deny: bans, licences, sources", extras::deny),
@@ -75,17 +72,8 @@ const fn optional(name: &'static str, about: &'static str, run: fn() -> Result<O
 
 /// A step whose check finds complaints in the metadata.
 fn check(complaints: fn(&Metadata) -> Vec<String>) -> Result<Outcome, String> {
-    told(complaints(&Metadata::load()?))
-}
-
-/// The same in the metadata of both workspaces.
-fn check_both(complaints: fn(&Metadata) -> Vec<String>) -> Result<Outcome, String> {
-    let found: BTreeSet<String> = Metadata::load_both()?.iter().flat_map(complaints).collect();
-    told(found.into_iter().collect())
-}
-
-fn told(complaints: Vec<String>) -> Result<Outcome, String> {
-    if complaints.is_empty() { Ok(Outcome::Passed) } else { Err(complaints.join("\n")) }
+    let found = complaints(&Metadata::load()?);
+    if found.is_empty() { Ok(Outcome::Passed) } else { Err(found.join("\n")) }
 }
 
 pub(crate) fn main(words: impl Iterator<Item = String>) -> ExitCode {
