@@ -1,5 +1,6 @@
 //! Calls of cargo and of other programs, each shown before it runs.
 
+use std::cell::RefCell;
 use std::io;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -26,11 +27,41 @@ pub(crate) fn cargo(line: &str) -> Command {
     command
 }
 
-/// Runs a command with its output shown; an error says which command failed.
+thread_local! {
+    /// What a thread that runs beside the others has to show.
+    static HELD: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Holds what this thread would show while it does this.
+pub(crate) fn holding<T>(work: impl FnOnce() -> T) -> (T, String) {
+    HELD.set(Some(String::new()));
+    let done = work();
+    (done, HELD.take().unwrap_or_default())
+}
+
+/// Shows a line, or holds it.
+pub(crate) fn say(line: &str) {
+    HELD.with_borrow_mut(|held| match held {
+        Some(held) => *held += &format!("{line}\n"),
+        None => println!("{line}"),
+    });
+}
+
+/// Runs a command with its output shown, or held; an error says which command failed.
 pub(crate) fn run(command: &mut Command) -> Result<(), String> {
     let shown = show(command);
-    println!("$ {shown}");
-    match command.status() {
+    say(&format!("$ {shown}"));
+    let ended = if HELD.with_borrow(Option::is_some) {
+        command.output().map(|answer| {
+            [answer.stdout, answer.stderr]
+                .iter()
+                .for_each(|text| say(String::from_utf8_lossy(text).trim_end()));
+            answer.status
+        })
+    } else {
+        command.status()
+    };
+    match ended {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(format!("`{shown}` ended with {status}")),
         Err(error) => Err(format!("`{shown}` cannot be run: {error}")),

@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use crate::cargo::holding;
+
 /// What a step that did not fail has to say.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
@@ -10,13 +12,22 @@ pub(crate) enum Outcome {
     Skipped(String),
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum When {
+    /// In its turn.
+    InTurn,
+    /// From its turn on, beside the steps after it: for what keeps one core busy at most. Its output is shown at the end.
+    Beside,
+    /// In its turn, and only when it is asked for.
+    AskedFor,
+}
+
 /// A named step.
 #[derive(Clone, Copy)]
 pub(crate) struct Step {
     pub(crate) name: &'static str,
     pub(crate) about: &'static str,
-    /// Runs only when it is asked for.
-    pub(crate) optional: bool,
+    pub(crate) when: When,
     /// The error holds one complaint a line.
     pub(crate) run: fn() -> Result<Outcome, String>,
 }
@@ -56,7 +67,7 @@ impl Choice {
 
     fn takes(&self, step: &Step) -> bool {
         let named = |names: &[String]| names.iter().any(|name| name == step.name);
-        let asked = if self.only.is_empty() { !step.optional } else { named(&self.only) };
+        let asked = if self.only.is_empty() { step.when != When::AskedFor } else { named(&self.only) };
         (asked || named(&self.with)) && !named(&self.skip)
     }
 }
@@ -68,20 +79,40 @@ pub(crate) struct Report {
     result: Result<Outcome, String>,
 }
 
-/// Runs the chosen steps one after the other; one that fails does not keep the others from running.
+/// Runs the chosen steps; one that fails does not keep the others from running.
 pub(crate) fn run(steps: &[Step], choice: &Choice) -> Vec<Report> {
     let mut reports = Vec::new();
-    for step in steps.iter().filter(|step| choice.takes(step)) {
-        println!("\n=== {}: {}", step.name, step.about);
-        let start = Instant::now();
-        let report = Report { name: step.name, result: (step.run)(), took: start.elapsed() };
-        println!("{}", report.line());
-        reports.push(report);
-    }
+    std::thread::scope(|scope| {
+        let mut beside = Vec::new();
+        for step in steps.iter().filter(|step| choice.takes(step)) {
+            if step.when == When::Beside {
+                println!("\n=== {}: begins, beside the steps after it", step.name);
+                beside.push((step, scope.spawn(|| holding(|| Report::of(step)))));
+            } else {
+                println!("\n=== {}: {}", step.name, step.about);
+                reports.push(Report::of(step));
+                println!("{}", reports[reports.len() - 1].line());
+            }
+        }
+        for (step, running) in beside {
+            let (report, held) = running.join().unwrap_or_else(|_| (Report::broken_off(step), String::new()));
+            println!("\n=== {}: {}\n{held}{}", step.name, step.about, report.line());
+            reports.push(report);
+        }
+    });
     reports
 }
 
 impl Report {
+    fn of(step: &Step) -> Self {
+        let start = Instant::now();
+        Self { name: step.name, result: (step.run)(), took: start.elapsed() }
+    }
+
+    fn broken_off(step: &Step) -> Self {
+        Self { name: step.name, result: Err("it panicked".to_owned()), took: Duration::ZERO }
+    }
+
     pub(crate) fn failed(&self) -> bool {
         self.result.is_err()
     }
@@ -106,10 +137,9 @@ impl Report {
     }
 }
 
-/// The table at the end.
-pub(crate) fn table(reports: &[Report]) -> String {
+/// The table at the end, with the time that all took.
+pub(crate) fn table(reports: &[Report], took: Duration) -> String {
     let mut lines: Vec<_> = reports.iter().map(Report::line).collect();
-    let total: f64 = reports.iter().map(|report| report.took.as_secs_f64()).sum();
     let count = |what: fn(&Report) -> bool| reports.iter().filter(|report| what(report)).count();
     let (failed, skipped) = (count(Report::failed), count(Report::skipped));
     let words = match (failed, skipped) {
@@ -117,7 +147,7 @@ pub(crate) fn table(reports: &[Report]) -> String {
         (0, _) => format!("pass, {skipped} skipped"),
         _ => format!("{failed} FAILED, {skipped} skipped"),
     };
-    lines.push(format!("{:<12} {total:>7.1} s  {words}", "all"));
+    lines.push(format!("{:<12} {:>7.1} s  {words}", "all", took.as_secs_f64()));
     lines.join("\n")
 }
 
@@ -126,12 +156,12 @@ mod tests {
     use super::*;
 
     const STEPS: [Step; 3] = [
-        Step { name: "bad", about: "", optional: false, run: || Err("one\ntwo".to_owned()) },
-        Step { name: "good", about: "", optional: false, run: || Ok(Outcome::Passed) },
+        Step { name: "bad", about: "", when: When::Beside, run: || Err("one\ntwo".to_owned()) },
+        Step { name: "good", about: "", when: When::InTurn, run: || Ok(Outcome::Passed) },
         Step {
             name: "extra",
             about: "",
-            optional: true,
+            when: When::AskedFor,
             run: || Ok(Outcome::Skipped("not here".to_owned())),
         },
     ];
@@ -145,15 +175,15 @@ mod tests {
     #[test]
     fn a_failure_does_not_hide_the_steps_after_it() {
         let reports = run(&STEPS, &Choice::default());
-        assert_eq!(reports.iter().map(Report::failed).collect::<Vec<_>>(), [true, false]);
-        let table = table(&reports);
+        assert_eq!(reports.iter().map(Report::failed).collect::<Vec<_>>(), [false, true]);
+        let table = table(&reports, Duration::ZERO);
         assert!(table.contains("    one\n    two") && table.ends_with("1 FAILED, 0 skipped"), "{table}");
     }
 
     #[test]
     fn optional_steps_run_only_when_asked_for() {
-        assert_eq!(names(""), ["bad", "good"]);
-        assert_eq!(names("--with extra"), ["bad", "good", "extra"]);
+        assert_eq!(names(""), ["good", "bad"]);
+        assert_eq!(names("--with extra"), ["good", "extra", "bad"]);
         assert_eq!(names("--only extra"), ["extra"]);
         assert_eq!(names("--skip bad"), ["good"]);
     }

@@ -14,9 +14,10 @@ mod spdx;
 mod versions;
 
 use std::process::ExitCode;
+use std::time::Instant;
 
 use crate::metadata::Metadata;
-use crate::steps::{Choice, Outcome, Step, run, table};
+use crate::steps::{Choice, Outcome, Step, When, run, table};
 
 /// How cargo names the default registry in its metadata, whatever mirror it downloads from.
 pub(crate) const DEFAULT_REGISTRY: &str = "registry+https://github.com/rust-lang/crates.io-index";
@@ -33,17 +34,17 @@ const STEPS: &[Step] = &[
     }),
     step("paths", "no tracked file names a folder of somebody's machine", paths::check),
     step("deny", "cargo-deny: bans, licences, sources", extras::deny),
-    step("lint", "clippy over everything, warnings are errors", builds::lint),
-    step("docs", "rustdoc, warnings are errors", builds::docs),
-    step("tests", "all tests and doctests of the workspace", builds::tests),
-    step("pages", "each command's page in a browser, where there is one", pages::check),
-    step("alone", "each core crate and its tests compile and lint with its own features only", builds::alone),
-    step("features", "each Cargo feature builds without the others", builds::features),
-    step(
+    beside(
         "python",
         "the package for Python and its tests, where there is a Python with maturin",
         python::check,
     ),
+    beside("pages", "each command's page in a browser, where there is one", pages::check),
+    step("lint", "clippy over everything, warnings are errors", builds::lint),
+    step("docs", "rustdoc, warnings are errors", builds::docs),
+    step("tests", "all tests and doctests of the workspace", builds::tests),
+    step("alone", "each core crate and its tests compile and lint with its own features only", builds::alone),
+    step("features", "each Cargo feature builds without the others", builds::features),
     optional(
         "all-tests",
         "the tests with all their seeds and cases, RECON_TESTS=all (long)",
@@ -63,11 +64,15 @@ const STEPS: &[Step] = &[
 ];
 
 const fn step(name: &'static str, about: &'static str, run: fn() -> Result<Outcome, String>) -> Step {
-    Step { name, about, optional: false, run }
+    Step { name, about, when: When::InTurn, run }
+}
+
+const fn beside(name: &'static str, about: &'static str, run: fn() -> Result<Outcome, String>) -> Step {
+    Step { name, about, when: When::Beside, run }
 }
 
 const fn optional(name: &'static str, about: &'static str, run: fn() -> Result<Outcome, String>) -> Step {
-    Step { name, about, optional: true, run }
+    Step { name, about, when: When::AskedFor, run }
 }
 
 /// A step whose check finds complaints in the metadata.
@@ -86,11 +91,17 @@ pub(crate) fn main(words: impl Iterator<Item = String>) -> ExitCode {
     };
     if choice.list {
         for step in STEPS {
-            println!("{:<12} {}{}", step.name, if step.optional { "(optional) " } else { "" }, step.about);
+            println!(
+                "{:<12} {}{}",
+                step.name,
+                if step.when == When::AskedFor { "(optional) " } else { "" },
+                step.about
+            );
         }
         return ExitCode::SUCCESS;
     }
+    let start = Instant::now();
     let reports = run(STEPS, &choice);
-    println!("\n{}", table(&reports));
+    println!("\n{}", table(&reports, start.elapsed()));
     if reports.iter().any(|report| report.failed()) { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }

@@ -1,6 +1,6 @@
 //! Each command's page in a browser, where there is one: drawn without an error of its script, and not wider than the window.
 
-use crate::cargo::{output, program, recon, target};
+use crate::cargo::{output, program, recon, say, target};
 use crate::steps::Outcome;
 use std::path::Path;
 
@@ -61,7 +61,7 @@ pub(crate) fn check() -> Result<Outcome, String> {
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let mut wrong = Vec::new();
     for (line, page) in PAGES {
-        println!("$ recon {line}");
+        say(&format!("$ recon {line}"));
         let made =
             program(&command.to_string_lossy()).args(line.split(' ')).arg("-q").current_dir(&folder).output();
         let made = made.map_err(|error| format!("recon {line}: {error}"))?;
