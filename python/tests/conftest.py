@@ -96,8 +96,15 @@ def palms_simulation(palms_scene: str) -> recon.Simulation:
 
 
 @pytest.fixture(scope="session")
-def palms_result(palms_simulation: recon.Simulation, palms_scene: str) -> recon.Reconstruction:
-    return recon.reconstruct(palms_simulation.log, palms_scene)
+def palms_log(palms_simulation: recon.Simulation, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("palms") / "log.csv"
+    path.write_text(palms_simulation.log.to_csv(), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="session")
+def palms_result(palms_log: Path, palms_scene: str) -> recon.Reconstruction:
+    return recon.reconstruct(palms_log, palms_scene)
 
 
 @pytest.fixture(scope="session")

@@ -52,11 +52,9 @@ def test_reconstruction_from_a_file_from_columns_and_from_arrays(files: Path, tm
             assert np.array_equal(made.motion[:, k], motion[name]), name
 
 
-def test_contacts_of_any_palms(palms_scene: str, tmp_path: Path, command: str) -> None:
-    path, theirs = tmp_path / "log.csv", tmp_path / "theirs"
-    run(command, "simulate", palms_scene, "-o", str(path))
+def test_contacts_of_any_palms(palms_scene: str, palms_log: Path, palms_result: recon.Reconstruction, tmp_path: Path, command: str) -> None:
+    path, theirs, result = palms_log, tmp_path / "theirs", palms_result
     run(command, "reconstruct", str(path), "--scene", palms_scene, "-o", str(theirs), codes=(0, 4))
-    result = recon.reconstruct(path, palms_scene)
     result.write(tmp_path / "ours")
     same_files(tmp_path / "ours", theirs)
     motion = table(theirs / "motion.csv")
