@@ -2,6 +2,7 @@
 
 mod axes;
 mod backwards;
+mod between;
 mod body;
 mod cold;
 mod directly;

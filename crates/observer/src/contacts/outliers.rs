@@ -16,6 +16,10 @@ const NOTABLE: f64 = 3e-3;
 const TOGETHER: usize = 2;
 /// Share of a palm's contacts beyond which they are not outliers but what the sensor is like.
 const MOST: f64 = 0.05;
+/// Times what a peak of the force between samples moves the centre of mass by, that it may move a contact: that rolls, and the body turns too.
+const ROLLS: f64 = 2.0;
+/// Samples on either side of such a peak whose contacts it bends the way of.
+const BENT: usize = 2;
 /// Fewest contacts of a palm whose scatter can be told.
 const FEWEST: usize = 20;
 /// Median of the length of a vector of two standard normal numbers.
@@ -31,17 +35,41 @@ pub(super) struct Misread {
     c: DVec3,
 }
 
-/// Contacts on planes that are off, by their samples. `deviation` is that of a contact, m.
-pub(super) fn misread(contacts: &[Vec<Contact>], times: &[f64], deviation: f64) -> Vec<Misread> {
+/// Contacts on planes that are off, by their samples. `deviation` is that of a contact, m, `gravity` in m/s^2.
+pub(super) fn misread(
+    contacts: &[Vec<Contact>],
+    times: &[f64],
+    deviation: f64,
+    gravity: f64,
+) -> Vec<Misread> {
     let palms = contacts.iter().flatten().map(|contact| contact.palm + 1).max().unwrap_or(0);
+    let bends = bends(contacts, times, gravity);
     let mut all = Vec::new();
     for palm in 0..palms {
-        let way = Way::new(contacts, times, palm);
+        let way = Way::new(contacts, times, palm, &bends);
         let off = way.off(deviation);
         all.extend(off.into_iter().map(|(j, c)| Misread { sample: way.samples[j], palm, c }));
     }
     all.sort_unstable_by_key(|of| (of.sample, of.palm));
     all
+}
+
+/// By how much the way of a contact may bend at each sample, since the force there is not that of the samples around, m. What the palms
+/// carry in the mean is the weight.
+fn bends(contacts: &[Vec<Contact>], times: &[f64], gravity: f64) -> Vec<f64> {
+    let forces: Vec<DVec3> = contacts.iter().map(|of| of.iter().map(|contact| contact.f).sum()).collect();
+    let mean = forces.iter().sum::<DVec3>().length() / forces.len() as f64;
+    let peak = |k: usize| {
+        let after = k + 1;
+        let before = k.checked_sub(1)?;
+        let bend = forces.get(after)? + forces[before] - 2.0 * forces[k];
+        Some(bend.length() * (times[after] - times[k]) * (times[k] - times[before]))
+    };
+    let peaks: Vec<f64> = (0..forces.len()).map(|k| peak(k).unwrap_or(0.0)).collect();
+    let around = |k: usize| &peaks[k.saturating_sub(BENT)..(k + BENT + 1).min(peaks.len())];
+    let largest = |k: usize| around(k).iter().copied().fold(0.0, f64::max);
+    let share = if mean > 0.0 { ROLLS * gravity / mean } else { 0.0 };
+    (0..forces.len()).map(|k| share * largest(k)).collect()
 }
 
 /// Moves them to where those around them say.
@@ -59,12 +87,14 @@ struct Way {
     samples: Vec<usize>,
     times: Vec<f64>,
     points: Vec<DVec3>,
+    /// What the motion may leave of them, m.
+    bends: Vec<f64>,
     /// Whether the same palms are touched around, and this one is flat.
     steady: Vec<bool>,
 }
 
 impl Way {
-    fn new(contacts: &[Vec<Contact>], times: &[f64], palm: usize) -> Self {
+    fn new(contacts: &[Vec<Contact>], times: &[f64], palm: usize, bends: &[f64]) -> Self {
         let touched = |k: usize| contacts[k].iter().map(|contact| contact.palm);
         let steady = |k: usize| {
             let around = k.saturating_sub(STEADY)..(k + STEADY + 1).min(contacts.len());
@@ -79,6 +109,7 @@ impl Way {
             samples: found.iter().map(|of| of.0).collect(),
             times: found.iter().map(|of| times[of.0]).collect(),
             points: found.iter().map(|of| of.1).collect(),
+            bends: found.iter().map(|of| bends[of.0]).collect(),
             steady: found.iter().map(|of| of.2).collect(),
         }
     }
@@ -105,7 +136,8 @@ impl Way {
         let left: Vec<f64> =
             (0..count).map(|j| self.told(j, &suspected).map_or(0.0, |told| told.1)).collect();
         let most = limit(&left);
-        let off: Vec<usize> = (0..count).filter(|&j| suspected[j] && left[j] > most).collect();
+        let off: Vec<usize> =
+            (0..count).filter(|&j| suspected[j] && left[j] > most + self.bends[j]).collect();
         let together = off.chunk_by(|a, b| *b == a + 1).filter(|run| run.len() <= TOGETHER);
         let off: Vec<_> =
             together.flatten().filter_map(|&j| Some((j, self.told(j, &suspected)?.0))).collect();

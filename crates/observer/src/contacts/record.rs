@@ -1,11 +1,11 @@
 //! What the estimator reads of a log: contacts at samples, and what the forces do between them.
 
+use super::between::intervals;
 use super::impulses;
-use super::noise::{ContactNoiseLevel, WrenchNoise, force_trace};
+use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::options::ContactOptions;
 use super::outliers::{Misread, mend, misread};
 use super::problem::Units;
-use crate::quadrature::running_integral;
 use contact_kinematics::PalmSurface;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix6, Vector6};
@@ -214,7 +214,8 @@ impl Record {
         let square = points().map(|touch| touch.p_WC.distance_squared(origin)).sum::<f64>();
         let mut contacts: Vec<Vec<Contact>> =
             (0..times.len()).map(|k| contacts_at(log, k, origin, options)).collect();
-        let misread = known.map_or_else(|| misread(&contacts, &times, noise.contact), <[_]>::to_vec);
+        let misread =
+            known.map_or_else(|| misread(&contacts, &times, noise.contact, options.gravity), <[_]>::to_vec);
         mend(&mut contacts, &misread);
         for (k, contacts) in contacts.iter_mut().enumerate() {
             contacts.iter_mut().for_each(|contact| change(k, contact, origin));
@@ -354,77 +355,6 @@ fn shape_operator(surface: PalmSurface, n: DVec3, axis: DVec3) -> DMat3 {
     let [along, across] = surface.curvatures(0.0);
     (DMat3::IDENTITY - outer(n)) * along + outer(axis.cross(n)) * (across - along)
 }
-
-/// By the forces at samples of the contacts that are `felt` there.
-fn intervals<'a, I: Iterator<Item = &'a Contact>>(
-    times: &[f64],
-    felt: impl Fn(usize) -> I,
-    noise: &ContactNoiseLevel,
-) -> Vec<Interval> {
-    let wrenches: Vec<Wrench> = (0..times.len()).map(|k| wrench(felt(k))).collect();
-    let since: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
-    let rough = |k: usize| {
-        let h = since[k] - since[k - 1];
-        // The noise of a sample is felt on both its sides; put into the interval after it alone it is white.
-        let mut white = Matrix6::zeros();
-        felt(k - 1).for_each(|contact| add_noise(&mut white, contact, noise.contact, h));
-        let noise = WrenchNoise { white, ..WrenchNoise::default() };
-        Interval::trapezoid(h, [&wrenches[k - 1], &wrenches[k]], noise)
-    };
-    let mut all: Vec<Interval> = (1..times.len()).map(rough).collect();
-    smooth(&since, &wrenches, &mut all);
-    for (k, interval) in all.iter_mut().enumerate() {
-        doubt(k, interval, &wrenches);
-    }
-    all
-}
-
-/// Takes the rule of order 6 in place of the trapezoidal one, unless noise is what makes them differ.
-fn smooth(since: &[f64], wrenches: &[Wrench], all: &mut [Interval]) {
-    let sums = running_integral(since, wrenches, Wrench::default());
-    let impulse = |k: usize| sums[k + 1] + sums[k] * -1.0;
-    let differ = |(k, of): (usize, &Interval)| (impulse(k).force - of.impulse.force).length_squared();
-    let differences: f64 = all.iter().enumerate().map(differ).sum();
-    let expected: f64 = all.iter().map(|i| RULES_DIFFER * force_trace(&i.noise.white)).sum();
-    if differences < 2.0 * expected {
-        return;
-    }
-    let timed: Vec<DVec3> = wrenches.iter().zip(since).map(|(w, t)| w.force * *t).collect();
-    let firsts = running_integral(since, &timed, DVec3::ZERO);
-    for (k, interval) in all.iter_mut().enumerate() {
-        interval.impulse = impulse(k);
-        interval.first = firsts[k + 1] - firsts[k] - interval.impulse.force * since[k];
-    }
-}
-
-/// Adds what the interval after sample `k` may be off by, if a force jumps within it: nobody knows when.
-///
-/// A jump is what a step between two samples is more than the mean of the steps beside it, and more than noise makes of it.
-fn doubt(k: usize, interval: &mut Interval, wrenches: &[Wrench]) {
-    interval.noise.sampled = force_trace(&interval.noise.white);
-    let white = &mut interval.noise.white;
-    if let (Some(before), Some(after)) = (k.checked_sub(1).map(|k| wrenches[k]), wrenches.get(k + 2)) {
-        let h = interval.h;
-        let jump = (wrenches[k + 1] + wrenches[k] * -1.0) * 1.5 + (before + *after * -1.0) * 0.5;
-        let square = jump.force.length_squared();
-        // Noise of one sample makes five times its variance of a jump.
-        let noise = 5.0 * force_trace(white) / (h * h);
-        let seen = (1.0 - SEEN * noise / square.max(f64::MIN_POSITIVE)).max(0.0);
-        // Of a time that is uniform over the interval.
-        if seen > 0.0 {
-            let column = six(jump.force, jump.moment) * (h * (seen / 12.0).sqrt());
-            white.ger(1.0, &column, &column, 1.0);
-        }
-    }
-}
-
-/// Times the variance that noise makes of a jump from which on it is one.
-const SEEN: f64 = 9.0;
-
-/// Variance of the difference between the rule of order 6 and the trapezoidal one, of samples of unit variance and spacing.
-///
-/// Where noise makes all of it, the trapezoidal rule is as good, and what its noise does is known exactly.
-const RULES_DIFFER: f64 = 2.0 * (11.0 * 11.0 + 93.0 * 93.0 + 82.0 * 82.0) / (1440.0 * 1440.0);
 
 /// What the noise of one contact does to the impulse and moment of an interval: samples are independent.
 pub(super) fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, deviation: f64, h: f64) {
