@@ -1,3 +1,4 @@
+use super::axes::ANY_TURN;
 use super::body::{Body, CONSTANTS};
 use super::cold;
 use super::joint::pose_errors;
@@ -324,11 +325,12 @@ impl Found<'_> {
         options: &ContactOptions,
     ) -> ContactEstimate {
         let Self { log, stage, covariances, ref short, suspects } = *self;
-        let Stage { problem, solved, before, doubt, against, open, .. } = stage;
+        let Stage { problem, solved, before, doubt, untold, against, open, .. } = stage;
         let Solved { unknowns, equations, settled, .. } = solved;
         let (body, known) = (&unknowns.body, options.body.as_ref());
         // The body's own axes in those of the first sample.
-        let own = known.map_or(DQuat::IDENTITY, |mass| body.orientation(mass));
+        let told = || known.map_or(DQuat::IDENTITY, |mass| body.orientation(mass));
+        let own = untold.unwrap_or_else(told);
         let evidence = ContactEvidence {
             samples: log.times.len(),
             nodes: problem.nodes.len(),
@@ -370,8 +372,10 @@ impl Found<'_> {
             deviations,
             modes,
             mode_odds: None,
-            axes_deviations: doubt
-                .map(|doubt| DVec3::from_array([4, 5, 6].map(|i| deviation(i).hypot(doubt)))),
+            axes_deviations: doubt.map(|doubt| match untold {
+                Some(_) => DVec3::splat(ANY_TURN),
+                None => DVec3::from_array([4, 5, 6].map(|i| deviation(i).hypot(doubt))),
+            }),
             mass: known.map_or_else(|| body.log_mass.exp(), MassProperties::mass),
             mass_deviation: deviation(0),
             inertia: known.map_or(body.inertia(), MassProperties::inertia),

@@ -196,3 +196,61 @@ impl Way {
         Some((point, point.distance(self.points[j]) / noise))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DMat3;
+    use object_dynamics::ContactMode;
+
+    const STEP: f64 = 0.005;
+    const G: f64 = 9.81;
+
+    /// A palm whose contact runs at a steady rate, is thrown by a blow of `peak` weights at sample 30, and is elsewhere at sample 45 by `off`.
+    fn run(peak: f64, throw: f64, off: f64) -> Vec<Vec<Contact>> {
+        let one = |k: u32| {
+            let t = f64::from(k) * STEP;
+            let after = (t - 30.0 * STEP).max(0.0);
+            let off = if k == 45 { off } else { 0.0 };
+            // With noise, as all that is judged is judged by its scatter.
+            let noise = |by: f64| 2e-5 * (by * f64::from(k)).sin();
+            let c = DVec3::new(0.1 * t + throw * after + noise(7.3), off + noise(2.9), 0.0);
+            let weights = if k == 30 { peak } else { 1.0 };
+            vec![Contact {
+                palm: 0,
+                c,
+                n: DVec3::Z,
+                u: DVec3::ZERO,
+                W: DVec3::ZERO,
+                shape: DMat3::ZERO,
+                f: DVec3::Z * weights,
+                f_deviation: 0.01,
+                frictionless: true,
+                planar: false,
+                mode: ContactMode::Slide,
+                samples: 1,
+            }]
+        };
+        (0..60).map(one).collect()
+    }
+
+    fn found(log: &[Vec<Contact>]) -> Vec<usize> {
+        let times: Vec<f64> = (0..log.len()).map(|k| k as f64 * STEP).collect();
+        misread(log, &times, 2e-5, G).iter().map(|of| of.sample).collect()
+    }
+
+    #[test]
+    fn a_contact_that_a_peak_of_the_force_throws_is_not_misread() {
+        // As far as the momentum of the peak throws the centre of mass.
+        let (peak, off) = (7.0, 2e-3);
+        let throw = (peak - 1.0) * G * STEP;
+        assert_eq!(found(&run(peak, throw, off)), [45], "the contact that is elsewhere alone");
+        assert_eq!(found(&run(1.0, 0.0, off)), [45]);
+        // Without the force a contact that jumps back is no motion.
+        let mut still = run(1.0, 0.0, 0.0);
+        still[30][0].c.x += throw * STEP;
+        assert_eq!(found(&still), [30]);
+        still[30][0].f *= peak;
+        assert_eq!(found(&still), []);
+    }
+}

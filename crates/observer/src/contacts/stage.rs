@@ -1,6 +1,6 @@
 //! A motion on its way from a search to what is reported: one stage after the other replaces it by a better one.
 
-use super::axes::{Oriented, known_motion};
+use super::axes::{Oriented, known_motion, with_any_axes};
 use super::body::CONSTANTS;
 use super::directly::directly;
 use super::plane;
@@ -13,6 +13,7 @@ use super::sharp::{blunted, sharpened, sharpest, stated};
 use super::solve::{Covariances, Solved};
 use super::state::Tangent;
 use crate::reliability::{LARGEST_MISFIT, Reason};
+use glam::DQuat;
 use nalgebra::SVector;
 use object_dynamics::MassProperties;
 
@@ -34,6 +35,8 @@ pub(super) struct Stage<'a> {
     pub(super) before: usize,
     /// How far the axes of a known body may be from where they were found, rad, if it is known.
     pub(super) doubt: Option<f64>,
+    /// Of a known body whose axes the log does not tell, how they would lie: the motion is then one of a body whose axes lie in any way.
+    pub(super) untold: Option<DQuat>,
     /// Why a known body is not the one.
     pub(super) against: Option<Reason>,
     /// Motions of an unknown body that are as good, with what of it is held in each.
@@ -52,8 +55,8 @@ impl<'a> Stage<'a> {
 
     /// Of which nothing else is known.
     fn at(problem: Problem<'a>, Ended { solved, found, before }: Ended) -> Self {
-        let (covariances, others, doubt, against, open) = (None, Vec::new(), None, None, None);
-        Self { problem, solved, covariances, found, before, doubt, against, others, open }
+        let (covariances, others, doubt, untold, against, open) = (None, Vec::new(), None, None, None, None);
+        Self { problem, solved, covariances, found, before, doubt, untold, against, others, open }
     }
 
     fn replaced(
@@ -122,7 +125,15 @@ impl<'a> Stage<'a> {
             self.open = self.open.or(open);
         }
         self.open = self.open.or(known.open);
-        (self.solved, self.doubt, self.against) = (known.solved, Some(known.doubt), known.against);
+        (self.doubt, self.against) = (Some(known.doubt), known.against);
+        self.solved = match with_any_axes(problem, &known.solved, mass) {
+            Some((solved, own)) => {
+                self.before += known.solved.iterations;
+                self.untold = Some(own);
+                solved
+            }
+            None => known.solved,
+        };
         Some(self)
     }
 
@@ -159,8 +170,8 @@ impl<'a> Stage<'a> {
         let start = refined(&problem, &nodes, &self.solved.unknowns);
         let before = self.before + self.solved.iterations;
         let solved = if sharp { sharpest(&mut problem, start) } else { fine(&mut problem, start) }?;
-        let Self { found, doubt, against, open, .. } = self;
-        Some(Stage { doubt, against, open, ..Stage::at(problem, Ended { solved, found, before }) })
+        let Self { found, doubt, untold, against, open, .. } = self;
+        Some(Stage { doubt, untold, against, open, ..Stage::at(problem, Ended { solved, found, before }) })
     }
 
     /// With conditions as good, or as bad, as what is left of them.

@@ -57,3 +57,34 @@ fn another_body_than_was_stated_is_named() {
     let Reliability::Unreliable(why) = reasons(0.204) else { panic!("a mass off by a fiftieth is believed") };
     assert!(why.iter().any(|reason| matches!(reason, Reason::OtherBody { .. })), "{why:?}");
 }
+
+#[test]
+fn axes_of_what_is_almost_a_ball_are_not_told_and_its_motion_is_as_well_known_as_is_said() {
+    let axes = DVec3::new(0.05, 0.04, 0.03);
+    let moments = DVec3::new(0.369, 0.370, 0.415) * (0.2 * SIZE * SIZE);
+    let mass = MassProperties::from_principal(0.2, moments).unwrap();
+    let (scene, start) = scene(0.0, 0.0);
+    let scene = ContactScene::new(Ellipsoid::new(axes).unwrap(), mass, scene.palms().to_vec(), G).unwrap();
+    let exact = simulated(&scene, &ContactStart::touching(start), 0.5, 200.0);
+    let noise = noise(4e-4, 0.01);
+    let (mut worst, mut squares, mut count) = (0.0_f64, 0.0, 0.0);
+    for seed in 0..8 {
+        let log = noisy(&exact, &noise, seed);
+        let options = ContactOptions { body: Some(mass), friction: Some(0.0), ..options(noise) };
+        let found = estimate_contacts(&log, None, &options).unwrap();
+        assert!(found.reliability.is_reliable(), "{seed}: {:?}", found.reliability);
+        assert_eq!(found.inertia, mass.inertia());
+        // Nothing is known of them, which a covariance about one place cannot say.
+        assert!(found.axes_deviations.unwrap().min_element() > 1.5, "{seed}: {:?}", found.axes_deviations);
+        for (k, (state, at)) in found.states.iter().zip(log.truth().unwrap()).enumerate() {
+            let [p, v, w, _] = found.deviations[k];
+            let off =
+                [(state.p_WCm - at.p_WCm) / p, (state.v_WCm - at.v_WCm) / v, (state.w_WO - at.w_WO) / w];
+            worst = off.iter().map(|off| off.abs().max_element()).fold(worst, f64::max);
+            squares += off.iter().map(|off| off.length_squared()).sum::<f64>();
+            count += 9.0;
+        }
+    }
+    let mean = squares / count;
+    assert!(worst < 5.0 && (0.4..1.6).contains(&mean), "{worst} deviations, squares {mean} of what is said");
+}
