@@ -113,7 +113,8 @@ fn mujoco_repeats_the_log_on_moving_palms() {
 }
 
 /// A hull touches at its vertices. Where contacts sink in by 1e-5 m, all of it within sqrt(2 rho 1e-5) of the contact
-/// may carry: 1.1e-2 m at the largest radius of curvature, 2.5^2 m. So do the facets of an ellipsoid's mesh in a URDF, by
+/// may carry: 1.1e-2 m at the largest radius of curvature, 2.5^2 m. That is under the 6 N of a palm at rest; where a corner strikes, the
+/// spring is pressed in by as much more as the force is more. So do the facets of an ellipsoid's mesh in a URDF, by
 /// their size, 2.5 m times 3.75 degrees.
 #[test]
 fn mujoco_holds_the_inner_bound_and_the_urdf_on_the_palms() {
@@ -130,7 +131,8 @@ fn mujoco_holds_the_inner_bound_and_the_urdf_on_the_palms() {
     let hull = replay(&scratch, "out/object.xml", &[]);
     // From corner to corner a contact parts for a sample: 0 to 4 of a thousand on logs of 0.9 to 1.05 s.
     let parted = hull["parted"].as_u64().unwrap();
-    assert!(parted < 10 && hull["contact_m"].as_f64().unwrap() < 1.1e-2, "{hull}");
+    let pressed = 1.0 + hull["force_n"].as_f64().unwrap() / 6.0;
+    assert!(parted < 10 && hull["contact_m"].as_f64().unwrap() < 1.1e-2 * pressed.sqrt(), "{hull}");
     let scratch = reconstructed(scratch, "ellipsoid");
     let folder = scratch.path().join("out");
     let urdf =
