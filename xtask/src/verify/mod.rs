@@ -40,11 +40,12 @@ const STEPS: &[Step] = &[
         python::check,
     ),
     beside("pages", "each command's page in a browser, where there is one", pages::check),
-    step("lint", "clippy over everything, warnings are errors", builds::lint),
-    step("docs", "rustdoc, warnings are errors", builds::docs),
     step("tests", "all tests and doctests of the workspace", builds::tests),
     step("alone", "each core crate and its tests compile and lint with its own features only", builds::alone),
     step("features", "each Cargo feature builds without the others", builds::features),
+    step("docs", "rustdoc, warnings are errors", builds::docs),
+    // At the end, as it keeps all cores busy.
+    step("lint", "clippy over everything, warnings are errors", builds::lint),
     optional(
         "all-tests",
         "the tests with all their seeds and cases, RECON_TESTS=all (long)",
