@@ -8,6 +8,7 @@ use rand_pcg::rand_core::SeedableRng;
 use recon::object_dynamics::planar::*;
 use recon::observer::planar::*;
 use recon::observer::{Arrival, Model, NewtonObserver, NewtonOptions, Sample, Start, Status};
+use recon_tests::few_or_all;
 
 type V5 = SVector<f64, 5>;
 
@@ -89,8 +90,8 @@ fn torques_alone_are_worse() {
     let radii = motion.at(0.0).unwrap().pair.normals().map(|n| n.dot(run.samples[0].truth.p_WCm));
     let s = run.samples[0].sample.contacts.map(Option::unwrap);
     let truth = V5::new(radii[0], radii[1], run.samples[0].truth.omega0, s[0], s[1]);
-    let mut converged = 0;
-    for [a, b, c] in draws(40, 17) {
+    let (mut converged, starts) = (0, few_or_all(16, 40));
+    for [a, b, c] in draws(starts, 17) {
         let start = truth.component_mul(&V5::new(a, b, c, 1.0, 1.0));
         // The contacts at the start are measured; only three states are unknown, as in the paper's observer.
         let mut guess = Start::guess(start);
@@ -98,8 +99,10 @@ fn torques_alone_are_worse() {
         let observer = undamped(&model, &samples, &guess);
         converged += usize::from((observer - truth).component_div(&truth).amax() < 1e-6);
     }
-    println!("torques alone, undamped Newton, window 0.1 s, start 50 % off: {converged} of 40 converge");
-    assert!(converged < 30, "{converged}");
+    println!(
+        "torques alone, undamped Newton, window 0.1 s, start 50 % off: {converged} of {starts} converge"
+    );
+    assert!(4 * converged < 3 * starts, "{converged}");
 }
 
 /// Thirty undamped Newton steps; zeros where they leave the numbers.
