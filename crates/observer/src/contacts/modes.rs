@@ -42,7 +42,10 @@ pub(super) fn by_ratio(record: &Record, time: f64) -> Vec<[ContactMode; MOST_PAL
         let before = nearest(&slides, times, (0..times.len()).collect());
         let after = nearest(&slides, times, (0..times.len()).rev().collect());
         for k in (0..times.len()).filter(|&k| ratios[k].is_some()) {
-            let doubtful = before[k].min(after[k]) <= time;
+            // Where samples are farther apart than that, one alone below it is noise at times.
+            let beside = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
+            let alone = beside.filter_map(|j| slides.get(j)).any(|slides| *slides);
+            let doubtful = alone || before[k].min(after[k]) <= time;
             let frictionless = record.contacts[k].iter().any(|c| c.palm == i && c.frictionless);
             modes[k][i] = if doubtful || frictionless { ContactMode::Slide } else { ContactMode::Stick };
         }

@@ -228,7 +228,7 @@ mod tests {
                 frictionless: true,
                 planar: false,
                 mode: ContactMode::Slide,
-                samples: 1,
+                samples: 1.0,
             }]
         };
         (0..60).map(one).collect()

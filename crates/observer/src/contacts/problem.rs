@@ -340,8 +340,8 @@ impl Problem<'_> {
         if interval.blow {
             return 0.0;
         }
-        let samples = self.record.contacts[self.nodes[j]].first().map_or(1, |c| c.samples);
-        0.5 * interval.noise.sampled_share() / samples as f64
+        let samples = self.record.contacts[self.nodes[j]].first().map_or(1.0, |c| c.samples);
+        0.5 * interval.noise.sampled_share() / samples
     }
 
     /// The motion at the sample of a node with a link of one interval after it.

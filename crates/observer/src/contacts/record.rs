@@ -41,8 +41,8 @@ pub(super) struct Contact {
     /// Whether it moves in the plane of x and z alone.
     pub(super) planar: bool,
     pub(super) mode: ContactMode,
-    /// Samples that it is the mean of.
-    pub(super) samples: usize,
+    /// Of how many samples it is as good as the mean.
+    pub(super) samples: f64,
 }
 
 /// Forces of all palms and their moments about the origin, or an integral of them.
@@ -109,7 +109,7 @@ impl Contact {
             frictionless,
             planar,
             mode: ContactMode::Slide,
-            samples: 1,
+            samples: 1.0,
         }
     }
 

@@ -87,7 +87,7 @@ impl Rows {
         // What a shift of the contact along a tangent does to each condition.
         let turning = turn.w - contact.W;
         let mut covariance = Matrix3::identity() * (noise.floor * noise.floor);
-        let deviation = noise.contact / (contact.samples as f64).sqrt();
+        let deviation = noise.contact / contact.samples.sqrt();
         let mut shifts = [Vector3::zeros(); 2];
         for (tangent, stored) in [t1, t2].into_iter().zip(&mut shifts) {
             let shift = turning.cross(tangent);

@@ -239,9 +239,11 @@ impl Record {
 
     /// Contacts of the sample in the middle of a window.
     fn smoothed(&self, window: &Window) -> Vec<Contact> {
-        let (samples, weights) = weights(window, &self.times);
+        let (around, weights) = weights(window, &self.times);
+        // What slope and bend add is noisy too, most where there are samples on one side alone.
+        let samples = weights.iter().map(|weight| weight * weight).sum::<f64>().recip();
         let one = |(i, contact): (usize, &Contact)| {
-            let all = || samples.clone().map(|k| &self.contacts[k][i]).zip(&weights);
+            let all = || around.clone().map(|k| &self.contacts[k][i]).zip(&weights);
             let of = |of: fn(&Contact) -> DVec3| all().map(|(c, weight)| of(c) * *weight).sum::<DVec3>();
             let c = of(|c| c.c);
             Contact {
@@ -249,7 +251,7 @@ impl Record {
                 n: of(|c| c.n).normalize_or(contact.n),
                 u: contact.u + contact.W.cross(c - contact.c),
                 f: of(|c| c.f),
-                samples: window.averaged(),
+                samples,
                 ..*contact
             }
         };
