@@ -17,7 +17,7 @@ use nalgebra::{SMatrix, SVector, Vector6};
 /// Deviations of logarithms of constants, and of turns in rad, up to which nothing is looked at: what is beyond first order adds a hundredth to a
 /// variance there.
 pub(super) const SMALL: f64 = 0.02;
-/// How often noise is drawn for what is reported of a whole log, and for what is asked on the way or of a stream's window.
+/// How often noise is drawn for what is reported of a whole log, and for what is asked on the way.
 pub(super) const DRAWS: usize = 12;
 pub(super) const FEW_DRAWS: usize = 4;
 const SEED: u64 = 0x2d0;
@@ -88,7 +88,7 @@ impl Record {
 
 impl Contact {
     fn redraw(&mut self, problem: &Problem, random: &mut Normal) {
-        let deviation = AMOUNT * problem.noise.contact / (self.samples as f64).sqrt();
+        let deviation = AMOUNT * problem.noise.contact / self.samples.sqrt();
         let along = self.tangents().into_iter().take(self.freedoms());
         self.c += along.map(|tangent| tangent * (deviation * random.draw())).sum::<DVec3>();
         self.u += self.n * (AMOUNT * problem.noise.floor * random.draw());

@@ -12,7 +12,6 @@ use crate::contacts::onward::{FOLLOWED, WINDOW};
 use crate::contacts::options::ContactOptions;
 use crate::contacts::problem::{Problem, Units, Unknowns};
 use crate::contacts::record::Record;
-use crate::contacts::redrawn::FEW_DRAWS;
 use crate::contacts::search::{fine_nodes, fine_within, problem, thinned, whole};
 use crate::contacts::sharp::stated;
 use crate::contacts::solve::Solved;
@@ -188,7 +187,9 @@ impl Window {
             Asked::Search => self.found(&mut problem)?,
             Asked::Follow => (self.followed(record, &mut problem)?, false),
         };
-        let covariances = solved.covariances(&problem)?.redrawn(&problem, &solved, FEW_DRAWS);
+        // Not those of noise drawn once more, as for whole logs: few draws a window differ from one to the next by as much as they tell, and
+        // motions were lost by that three times as often, while errors over their deviations stayed what they are.
+        let covariances = solved.covariances(&problem)?;
         let of = Of { problem: &problem, solved: &solved, covariances: &covariances, against };
         Some(self.taken(&of, (GAP * natural, record.missed_in_world(GAP * natural))))
     }
