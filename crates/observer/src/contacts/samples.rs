@@ -30,7 +30,7 @@ pub(super) fn at_all<const P: usize>(
     for j in 0..own.len() {
         all.push((own[j], known[j]));
         if let Some(&end) = nodes.get(j + 1) {
-            let link = Link::new(log, problem, found, j, nodes[j]..end);
+            let link = Link::new(log, problem, &found.body, (j, [own[j], own[j + 1]]), nodes[j]..end);
             all.extend((nodes[j] + 1..end).map(|k| link.at(log, k, [&known[j], &known[j + 1]])));
         }
     }
@@ -56,32 +56,32 @@ struct Link<'a> {
 }
 
 impl<'a> Link<'a> {
+    /// From node `j` on, between the motions that the samples at its ends have.
     fn new(
         log: &Record,
         problem: &Problem,
-        found: &'a Unknowns,
-        j: usize,
+        body: &'a Body,
+        (j, [start, end]): (usize, [Motion; 2]),
         samples: std::ops::Range<usize>,
     ) -> Self {
-        let mut carried = Carried::<0>::new(found.motions[j], &found.body);
-        let stepped =
-            problem.carried(problem.nodes[j], found.motions[j], &found.body, &[problem.nodes[j + 1]]);
+        let mut carried = Carried::<0>::new(start, body);
+        let stepped = problem.carried(problem.nodes[j], start, body, &[problem.nodes[j + 1]]);
         let (mut motions, mut noise) = (Vec::with_capacity(samples.len()), WrenchNoise::default());
         for k in samples.clone() {
             carried.step(
                 &log.intervals[k],
                 [&log.wrenches[k], &log.wrenches[k + 1]],
-                &found.body,
+                body,
                 problem.gravity,
             );
             noise += log.intervals[k].noise;
             motions.push(carried.motion);
         }
         Self {
-            body: &found.body,
+            body,
             duration: log.times[samples.end] - log.times[samples.start],
-            left: found.motions[j + 1].from(&carried.motion),
-            bent: found.motions[j + 1].from(&stepped[0]),
+            left: end.from(&carried.motion),
+            bent: end.from(&stepped[0]),
             noise: problem.about(&noise, carried.motion.p).white,
             carried: motions,
             samples,
