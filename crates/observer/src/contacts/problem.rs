@@ -331,8 +331,8 @@ impl Problem<'_> {
     /// Share of a link's residual that the node's own sample has, if the link is one interval.
     ///
     /// The noise of a force at a sample is felt in the intervals before and after it, half in each. A link takes all of it, which leaves
-    /// links independent; the node is then the motion before it, and its contact is touched after half of it. The noise of a measured
-    /// impulse is that of its interval, and all after the sample.
+    /// links independent; the node is then the motion before it, and its contact is touched after half of it. Of a link over several of the
+    /// log's intervals it is that of the first. The noise of a measured impulse is that of its interval, and all after the sample.
     ///
     /// A blow is after the sample before it.
     fn share(&self, j: usize) -> f64 {
@@ -340,8 +340,9 @@ impl Problem<'_> {
         if interval.blow {
             return 0.0;
         }
-        let samples = self.record.contacts[self.nodes[j]].first().map_or(1.0, |c| c.samples);
-        0.5 * interval.noise.sampled_share() / samples
+        let at = |k: usize| self.record.samples[k];
+        let intervals = at(self.nodes[j] + 1).abs_diff(at(self.nodes[j])).max(1);
+        0.5 * interval.noise.sampled_share() / intervals as f64
     }
 
     /// The motion at the sample of a node with a link of one interval after it.
