@@ -68,12 +68,7 @@ impl<'a> Link<'a> {
         let stepped = problem.carried(problem.nodes[j], start, body, &[problem.nodes[j + 1]]);
         let (mut motions, mut noise) = (Vec::with_capacity(samples.len()), WrenchNoise::default());
         for k in samples.clone() {
-            carried.step(
-                &log.intervals[k],
-                [&log.wrenches[k], &log.wrenches[k + 1]],
-                body,
-                problem.gravity,
-            );
+            carried.step(&log.intervals[k], [&log.wrenches[k], &log.wrenches[k + 1]], body, problem.gravity);
             noise += log.intervals[k].noise;
             motions.push(carried.motion);
         }

@@ -14,6 +14,7 @@ mod frictionless;
 mod impulses;
 mod known;
 mod mode_odds;
+mod steady;
 mod suspects;
 
 const G: f64 = 9.81;
