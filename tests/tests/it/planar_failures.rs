@@ -104,7 +104,7 @@ fn discs_and_near_discs() {
 /// A disc stays where it is however it turns: only forces tell of a centre of mass that is off its middle.
 #[test]
 fn discs_with_an_offset_centre_of_mass() {
-    for offset in [0.05, 0.1, 0.2] {
+    for &offset in few_or_all(&[0.1][..], &[0.05, 0.1, 0.2]) {
         for phi0 in [0.3, 2.0, 4.0] {
             let object = body(Circle::new(0.04, DVec2::new(0.04 * offset, 0.0)).unwrap());
             let case = case_of(object, wedge(), spin(phi0, 6.0), 0.6);

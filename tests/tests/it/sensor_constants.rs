@@ -3,7 +3,7 @@
 use crate::noisy::{changed, estimated, words};
 use recon::object_dynamics::{SensorLog, SensorNoise};
 use recon::observer::{ContactEstimate, SensorFault, Suspect};
-use recon_tests::{exact_log, f5, g2};
+use recon_tests::{exact_log, f5, few_or_all, g2};
 
 const NOISE: SensorNoise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };
 
@@ -49,6 +49,9 @@ fn a_gain_and_a_bias_are_found_within_their_deviations() {
     };
     let gain = estimated(&scene, &with(&|f| f / 1.03), NOISE, true);
     assert_found(&gain, SensorFault::ForceGain { palm: 3 }, 0.03, 0.2);
+    if few_or_all(true, false) {
+        return;
+    }
     let bias = estimated(&scene, &with(&|f| f - 0.2), NOISE, true);
     assert_found(&bias, SensorFault::ForceBias { palm: 3 }, 0.2, 0.2);
 }

@@ -239,8 +239,8 @@ fn a_fall_and_its_blows_leave_the_motion_known() {
     let first = exact.palms().iter().filter(|palm| palm.touch(0).is_some()).count();
     assert_eq!(first, 0, "it starts in flight");
     let noise = noise(4e-5, 0.004);
-    let mut relied_on = 0;
-    for seed in 0..4 {
+    let (mut relied_on, runs) = (0, crate::few_or_all(2, 4));
+    for seed in 0..runs {
         let log = noisy(&exact, &noise, seed);
         let found = estimate_contacts(&log, Some(&modes(&log)), &options(noise)).unwrap();
         let (squares, mass) = errors(&found, &log);
@@ -251,7 +251,7 @@ fn a_fall_and_its_blows_leave_the_motion_known() {
         }
     }
     // Without impulses the search does not settle on each: then it says so.
-    assert!(relied_on > 1, "{relied_on} of 4 are relied on");
+    assert!(2 * relied_on >= runs, "{relied_on} of {runs} are relied on");
 }
 
 #[test]

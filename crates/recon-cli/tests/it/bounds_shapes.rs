@@ -61,10 +61,12 @@ fn ellipsoid(noise: f64) -> String {
     text
 }
 
+const WAIST: usize = 300;
+
 /// Contacts on a body of revolution with a waist: `r = 1 + 0.35 cos 2 polar`.
 fn waist() -> String {
     let mut text = String::from("x,y,z,nx,ny,nz\n");
-    for u in directions(600) {
+    for u in directions(WAIST) {
         let (sine, cosine) = (u[0].hypot(u[1]), u[2]);
         let polar = sine.atan2(cosine);
         let (r, slope) = (1.0 + 0.35 * (2.0 * polar).cos(), -0.7 * (2.0 * polar).sin());
@@ -221,7 +223,7 @@ fn a_waist_is_approximated_inside_of_the_bounds_of_its_hull() {
     let wide = wide["about"]["concave"]["alpha_volume_m3"].as_f64().unwrap();
     assert!(alpha < wide && (3.0..3.45).contains(&wide), "{alpha} {wide}");
     let kept = concave["contacts_kept_for_the_upper_bound"].as_u64().unwrap();
-    assert!((50..600).contains(&kept), "{kept}");
+    assert!((50..WAIST as u64).contains(&kept), "{kept}");
     let warnings = summary["warnings"].to_string();
     assert!(warnings.contains("approximations") && warnings.contains("cannot prove"), "{warnings}");
     for name in ["lower_bound.ply", "upper_bound.ply", "alpha_shape.ply", "smooth_surface.ply"] {

@@ -95,7 +95,7 @@ fn where_thousands_of_planes_nearly_meet_each_corner_is_common_to_its_planes() {
 
 #[test]
 fn no_contact_is_cut_off_by_exact_arithmetic() {
-    for (seed, count) in [(1, 30), (2, 300), (3, 3000), (4, 20_000)] {
+    for &(seed, count) in &[(1, 30), (2, 300), (3, 3000), (4, 20_000)][..crate::few_or_all(3, 4)] {
         for contacts in [curve_contacts(count, seed), ellipsoid_contacts(count, seed)] {
             let spaces: Vec<HalfSpace> = contacts.iter().map(ContactSample::half_space).collect();
             let body = polyhedron(&spaces);

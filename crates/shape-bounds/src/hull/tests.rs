@@ -48,7 +48,7 @@ fn judged(points: &[DVec3], what: impl Fn() -> String) -> usize {
 fn no_kind_of_input_leaves_a_point_outside() {
     let mut s = Source::new(1);
     for kind in InputKind::ALL {
-        for seed in 0..crate::few_or_all(40, 120) {
+        for seed in 0..crate::few_or_all(20, 120) {
             let count = (4.0 * 100_f64.powf(s.unit() * if seed % 20 == 0 { 1.35 } else { 1.0 })) as usize;
             let points = kind.points(count, seed);
             let dimension = judged(&points, || format!("{kind:?}, {count} points, seed {seed}"));
