@@ -56,6 +56,45 @@ impl Suspect {
     }
 }
 
+/// What was taken as known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Assumption {
+    /// Nothing is wrong.
+    None,
+    /// One constant of the sensors.
+    Sensor(SensorFault),
+    /// Mass and inertia of the body.
+    Body,
+    /// How noisy the readings are.
+    Noise,
+}
+
+/// That one of them is wrong, and how probable that is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Explanation {
+    /// What would be wrong.
+    pub assumption: Assumption,
+    /// By how much: a constant in its unit, factors of the mass or of the noise less 1.
+    pub value: f64,
+    /// Standard deviation of that.
+    pub deviation: f64,
+    /// Chi-squared over the number of conditions that it leaves.
+    pub misfit: f64,
+    /// Natural logarithm of the odds against that nothing is wrong, all being as probable beforehand.
+    pub log_odds: f64,
+}
+
+impl fmt::Display for Assumption {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => write!(f, "nothing is wrong"),
+            Self::Sensor(fault) => write!(f, "{fault}"),
+            Self::Body => write!(f, "mass and inertia; factor of the mass less 1"),
+            Self::Noise => write!(f, "noise of all readings (or a wrong motion), its factor less 1"),
+        }
+    }
+}
+
 impl fmt::Display for SensorFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = |axis: usize| ["x", "y"][axis.min(1)];

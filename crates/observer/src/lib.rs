@@ -55,7 +55,7 @@ pub use core::{
     solve_batch_from,
 };
 #[cfg(feature = "palms")]
-pub use faults::{SensorFault, Suspect};
+pub use faults::{Assumption, Explanation, SensorFault, Suspect};
 pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
 #[cfg(feature = "palms")]
 pub use reliability::{Reason, Reliability};

@@ -5,7 +5,7 @@ use crate::report::{
     mode_times,
 };
 use glam::DMat3;
-use recon::observer::{LearnedFriction, SensorFault, Suspect};
+use recon::observer::{Assumption, Explanation, LearnedFriction, SensorFault, Suspect};
 use serde_json::{Map, Value, json};
 
 /// What a `summary.json` is of. Its keys are those of `docs/schema/summary.schema.json`.
@@ -114,6 +114,9 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         figures["sensor_faults"] =
             found.suspects.iter().filter(|of| of.deviation.is_finite()).map(sensor_fault).collect();
     }
+    if !found.explanations.is_empty() {
+        figures["explanations"] = found.explanations.iter().map(explanation).collect();
+    }
     if let Some(modes) = &found.mode_odds {
         let friction = |(i, of): (usize, &Option<LearnedFriction>)| {
             let of = (*of)?;
@@ -142,7 +145,35 @@ pub fn verdict_figures(verdict: &Verdict) -> Value {
 /// What the data say of a constant of the sensors.
 #[must_use]
 pub fn sensor_fault(of: &Suspect) -> Value {
-    let (kind, palm, axis) = match of.fault {
+    let mut said = constant(of.fault);
+    said["value"] = json!(of.value);
+    said["std"] = json!(of.deviation);
+    said["score"] = json!(of.score());
+    if of.tolerated.is_finite() {
+        said["moves_motion_by_one_deviation"] = json!(of.tolerated);
+    }
+    said
+}
+
+/// One thing that may be wrong of what was taken as known, as `summary.json` has it.
+#[must_use]
+pub fn explanation(of: &Explanation) -> Value {
+    let mut said = match of.assumption {
+        Assumption::None => json!({ "constant": "none" }),
+        Assumption::Sensor(fault) => constant(fault),
+        Assumption::Body => json!({ "constant": "mass_and_inertia" }),
+        Assumption::Noise => json!({ "constant": "noise" }),
+    };
+    said["value"] = json!(of.value);
+    said["std"] = json!(of.deviation);
+    said["chi_squared"] = json!(of.misfit);
+    said["log_odds"] = json!(of.log_odds);
+    said
+}
+
+/// A constant of the sensors by its name, palm and axis.
+fn constant(fault: SensorFault) -> Value {
+    let (kind, palm, axis) = match fault {
         SensorFault::ForceGain { palm } => ("force_gain", Some(palm), None),
         SensorFault::ForceBias { palm } => ("force_bias_n", Some(palm), None),
         SensorFault::ForceDelay => ("force_delay_s", None, None),
@@ -150,15 +181,12 @@ pub fn sensor_fault(of: &Suspect) -> Value {
         SensorFault::PalmTilt { palm, axis } => ("palm_tilt_rad", Some(palm), Some(axis)),
         SensorFault::Friction => ("friction", None, None),
     };
-    let mut said = json!({ "constant": kind, "value": of.value, "std": of.deviation, "score": of.score() });
+    let mut said = json!({ "constant": kind });
     if let Some(palm) = palm {
         said["palm"] = json!(palm);
     }
     if let Some(axis) = axis {
         said["axis"] = json!(["x", "y"][axis.min(1)]);
-    }
-    if of.tolerated.is_finite() {
-        said["moves_motion_by_one_deviation"] = json!(of.tolerated);
     }
     said
 }

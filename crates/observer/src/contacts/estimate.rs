@@ -1,6 +1,7 @@
 use super::axes::ANY_TURN;
 use super::body::{Body, CONSTANTS};
 use super::cold;
+use super::explanations::explanations;
 use super::joint::pose_errors;
 use super::mode_odds::{EstimatedModes, mode_odds};
 use super::modes::by_ratio;
@@ -17,10 +18,10 @@ use super::slips::Known;
 use super::solve::{Covariances, Solved};
 use super::stage::Stage;
 use super::state::Motion;
-use super::suspects::{Change, suspects};
+use super::suspects::{Change, Scores, Sensors, suspects};
 use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
-use crate::faults::Suspect;
+use crate::faults::{Explanation, Suspect};
 use crate::reliability::{Reason, Reliability};
 use crate::rigid::PoseErrors;
 use glam::{DMat3, DQuat, DVec3};
@@ -76,6 +77,8 @@ pub struct ContactEstimate {
     pub misread: Vec<(usize, usize)>,
     /// What the data say of constants of the sensors that were taken as known; none unless asked for, nor of a log that is as good as exact.
     pub suspects: Vec<Suspect>,
+    /// Where something contradicts what was taken as known: what that may be, the most probable first. None where nothing does, or nothing was asked.
+    pub explanations: Vec<Explanation>,
     /// Whether to believe it.
     pub reliability: Reliability,
     /// What it rests on.
@@ -214,10 +217,10 @@ impl Source<'_> {
         let slips = slips(problem, &motions, &solved.unknowns.body);
         let (duration, needed) = (log.times[log.times.len() - 1] - log.times[0], shortest * units.time());
         let short = (duration < needed).then_some(Reason::TooShort { duration, needed });
-        let told = !exact && thinned.is_none() && slips.is_empty();
-        let suspects = match options.suspects && told {
-            true => self.suspects(problem, solved, &covariances, &motions, (log, &modes, longest)),
-            false => Vec::new(),
+        let told = !exact && thinned.is_none() && (last || slips.is_empty());
+        let wrong = match options.suspects && told {
+            true => self.suspects(&stage, &covariances, &motions, (log, &modes, longest)),
+            false => Wrong::default(),
         };
         let odds = || {
             let (covariances, motions) = (&covariances, &motions);
@@ -225,7 +228,7 @@ impl Source<'_> {
             mode_odds(&known, &options.noise, &units)
         };
         let mode_odds = if options.mode_odds && (last || slips.is_empty()) { odds() } else { None };
-        let found = Found { log, stage: &stage, covariances: &covariances, short, suspects: &suspects };
+        let found = Found { log, stage: &stage, covariances: &covariances, short, wrong: &wrong };
         Ok((ContactEstimate { mode_odds, ..found.estimate(&motions, modes, options) }, slips))
     }
 
@@ -269,15 +272,15 @@ impl Source<'_> {
         if sharp { stage.sharpened() } else { Some(stage) }
     }
 
-    /// Scores of constants of the sensors at a solution whose contacts were averaged over windows of at most `longest`, s.
+    /// Scores of constants of the sensors at a solution whose contacts were averaged over windows of at most `longest`, s; where something contradicts
+    /// it, what explains that.
     fn suspects(
         &self,
-        problem: &Problem,
-        solved: &Solved<CONSTANTS>,
+        stage: &Stage,
         covariances: &Covariances<CONSTANTS>,
         motions: &[(Motion, Deviations)],
         (record, modes, longest): (&Record, &[[ContactMode; MOST_PALMS]], f64),
-    ) -> Vec<Suspect> {
+    ) -> Wrong {
         let remade = |change: &Change| {
             let apply = |k: usize, contact: &mut Contact, origin| change.apply(k, contact, origin);
             let mut record = self.with_blows(record.changed(self.log, self.options, apply)?);
@@ -285,7 +288,40 @@ impl Source<'_> {
             let open = record.with_gaps_open(self.units.time());
             Some(open.as_ref().unwrap_or(&record).averaged(longest))
         };
-        suspects(problem, solved, covariances, (self.log, motions), remade).unwrap_or_default()
+        let Stage { problem, solved, free, .. } = stage;
+        let sensors = Sensors { log: self.log, motions, body: solved.unknowns.body, remade: &remade };
+        let scores = Scores::new(&sensors, problem, solved);
+        let suspects = scores.map_or_else(Vec::new, |scores| suspects(&scores, covariances));
+        let evidence = stage.evidence(record, covariances);
+        let contradicted = free.is_some()
+            || !evidence.reliability().is_reliable()
+            || ContactEvidence::against(&suspects, &[]).is_some();
+        let explanations = match contradicted {
+            true => explanations(&sensors, problem, solved, free.as_ref()),
+            false => Vec::new(),
+        };
+        Wrong { suspects, explanations }
+    }
+}
+
+/// What may be wrong of what was taken as known.
+#[derive(Default)]
+struct Wrong {
+    suspects: Vec<Suspect>,
+    explanations: Vec<Explanation>,
+}
+
+impl Stage<'_> {
+    fn evidence(&self, log: &Record, covariances: &Covariances<CONSTANTS>) -> ContactEvidence {
+        let Self { problem, solved, before, .. } = self;
+        ContactEvidence {
+            samples: log.times.len(),
+            nodes: problem.nodes.len(),
+            conditions: solved.equations.conditions,
+            misfit: solved.misfit(),
+            iterations: [*before, before + solved.iterations],
+            settled: solved.settled && covariances.mended <= MENDED,
+        }
     }
 }
 
@@ -314,7 +350,7 @@ struct Found<'a> {
     covariances: &'a Covariances<CONSTANTS>,
     /// Why the log is too short.
     short: Option<Reason>,
-    suspects: &'a [Suspect],
+    wrong: &'a Wrong,
 }
 
 impl Found<'_> {
@@ -324,21 +360,15 @@ impl Found<'_> {
         modes: Vec<[ContactMode; MOST_PALMS]>,
         options: &ContactOptions,
     ) -> ContactEstimate {
-        let Self { log, stage, covariances, ref short, suspects } = *self;
-        let Stage { problem, solved, before, doubt, untold, against, open, .. } = stage;
-        let Solved { unknowns, equations, settled, .. } = solved;
+        let Self { log, stage, covariances, ref short, wrong } = *self;
+        let Wrong { suspects, explanations } = wrong;
+        let Stage { problem, solved, doubt, untold, against, open, .. } = stage;
+        let Solved { unknowns, equations, .. } = solved;
         let (body, known) = (&unknowns.body, options.body.as_ref());
         // The body's own axes in those of the first sample.
         let told = || known.map_or(DQuat::IDENTITY, |mass| body.orientation(mass));
         let own = untold.unwrap_or_else(told);
-        let evidence = ContactEvidence {
-            samples: log.times.len(),
-            nodes: problem.nodes.len(),
-            conditions: equations.conditions,
-            misfit: solved.misfit(),
-            iterations: [*before, before + solved.iterations],
-            settled: *settled && covariances.mended <= MENDED,
-        };
+        let evidence = stage.evidence(log, covariances);
         let state = |motion: &Motion| BodyState {
             p_WCm: motion.p + log.origin,
             v_WCm: motion.v,
@@ -349,7 +379,7 @@ impl Found<'_> {
         let spin = |(motion, of): &(Motion, Deviations)| (body.turn(motion.q, motion.L).w, of[2] * wider);
         let spins: Vec<_> = problem.node_samples().iter().map(|&k| spin(&motions[k])).collect();
         let against = [*short, *against, *open, ContactEvidence::still(&spins)];
-        for reason in against.into_iter().flatten().chain(ContactEvidence::against(suspects)) {
+        for reason in against.into_iter().flatten().chain(ContactEvidence::against(suspects, explanations)) {
             reliability.add(reason);
         }
         let deviations: Vec<_> = motions.iter().map(|(_, of)| of.map(|of| of * wider)).collect();
@@ -366,7 +396,8 @@ impl Found<'_> {
         ContactEstimate {
             states: motions.iter().map(|(motion, _)| state(motion)).collect(),
             misread: log.misread.iter().map(|of| (of.sample, of.palm)).collect(),
-            suspects: suspects.to_vec(),
+            suspects: suspects.clone(),
+            explanations: explanations.clone(),
             pose_errors: if options.pose_errors { joint() } else { None },
             relied_on,
             deviations,

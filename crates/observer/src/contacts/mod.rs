@@ -9,6 +9,7 @@ mod directly;
 mod elimination;
 mod equations;
 mod estimate;
+mod explanations;
 mod flow;
 mod gaps;
 mod impulses;

@@ -3,6 +3,7 @@
 use super::axes::{Oriented, known_motion, with_any_axes};
 use super::body::CONSTANTS;
 use super::directly::directly;
+use super::explanations::FreeBody;
 use super::plane;
 use super::problem::Problem;
 use super::record::Record;
@@ -39,10 +40,24 @@ pub(super) struct Stage<'a> {
     pub(super) untold: Option<DQuat>,
     /// Why a known body is not the one.
     pub(super) against: Option<Reason>,
+    /// The solution without it, where it is not.
+    pub(super) free: Option<FreeBody>,
     /// Motions of an unknown body that are as good, with what of it is held in each.
     others: Vec<(Solved<CONSTANTS>, Vec<SVector<f64, CONSTANTS>>)>,
     /// What else the readings leave open.
     pub(super) open: Option<Reason>,
+}
+
+/// What was found without knowing a body that is not the one; `problem` may know it.
+fn free_body(problem: &Problem, unknown: &Solved<CONSTANTS>, against: Option<Reason>) -> Option<FreeBody> {
+    let Some(Reason::OtherBody { mass, squares, .. }) = against else { return None };
+    let covariances = unknown.equations.covariances(&problem.natural_information())?;
+    // Of a body in the plane mass and moment of inertia.
+    let departures = if problem.planar { 2 } else { 4 };
+    let each = (squares / f64::from(departures)).sqrt();
+    let deviation = |i: u8| covariances.body[(usize::from(i), usize::from(i))].max(0.0).sqrt();
+    let departures = (0..departures).map(|i| (each * deviation(i), deviation(i))).collect();
+    Some(FreeBody { cost: unknown.equations.cost, mass: mass - 1.0, departures })
 }
 
 /// Each of the stages gives none where the equations are singular.
@@ -55,8 +70,9 @@ impl<'a> Stage<'a> {
 
     /// Of which nothing else is known.
     fn at(problem: Problem<'a>, Ended { solved, found, before }: Ended) -> Self {
-        let (covariances, others, doubt, untold, against, open) = (None, Vec::new(), None, None, None, None);
-        Self { problem, solved, covariances, found, before, doubt, untold, against, others, open }
+        let (covariances, others, doubt, untold, against, free, open) =
+            (None, Vec::new(), None, None, None, None, None);
+        Self { problem, solved, covariances, found, before, doubt, untold, against, free, others, open }
     }
 
     fn replaced(
@@ -94,8 +110,9 @@ impl<'a> Stage<'a> {
         self.before += self.solved.iterations;
         (self.covariances, self.open) = (None, None);
         if problem.planar {
-            (self.solved, self.against) = plane::known_motion(problem, &self.solved, mass)?;
-            self.doubt = Some(0.0);
+            let (solved, against) = plane::known_motion(problem, &self.solved, mass)?;
+            self.free = free_body(problem, &self.solved, against);
+            (self.solved, self.against, self.doubt) = (solved, against, Some(0.0));
             return Some(self);
         }
         let short = (problem.is_smooth() && !self.found).then(|| directly(problem, mass));
@@ -126,6 +143,7 @@ impl<'a> Stage<'a> {
         }
         self.open = self.open.or(known.open);
         (self.doubt, self.against) = (Some(known.doubt), known.against);
+        self.free = free_body(problem, &self.solved, known.against);
         self.solved = match with_any_axes(problem, &known.solved, mass) {
             Some((solved, own)) => {
                 self.before += known.solved.iterations;
@@ -170,8 +188,15 @@ impl<'a> Stage<'a> {
         let start = refined(&problem, &nodes, &self.solved.unknowns);
         let before = self.before + self.solved.iterations;
         let solved = if sharp { sharpest(&mut problem, start) } else { fine(&mut problem, start) }?;
-        let Self { found, doubt, untold, against, open, .. } = self;
-        Some(Stage { doubt, untold, against, open, ..Stage::at(problem, Ended { solved, found, before }) })
+        let Self { found, doubt, untold, against, free, open, .. } = self;
+        Some(Stage {
+            doubt,
+            untold,
+            against,
+            free,
+            open,
+            ..Stage::at(problem, Ended { solved, found, before })
+        })
     }
 
     /// With conditions as good, or as bad, as what is left of them.

@@ -5,13 +5,14 @@
 //! `1 / sqrt(I)`, and `g / sqrt(I)` is a standard normal number if nothing is wrong (Rao's score test).
 
 use super::body::{Body, CONSTANTS};
+use super::equations::Equations;
 use super::noise::{ContactNoiseLevel, force_trace};
 use super::problem::{Problem, Units};
 use super::reach::Residuals;
 use super::record::{Contact, Record};
 use super::samples::Deviations;
 use super::slopes::slopes;
-use super::solve::{Covariances, Solved};
+use super::solve::{Covariances, Reduced, Solved, Step};
 use super::state::{Motion, Tangent};
 use crate::faults::{SensorFault, Suspect};
 use crate::random::Normal;
@@ -44,59 +45,125 @@ pub(super) struct Change<'a> {
     slopes: &'a [Vec<DVec3>],
 }
 
-/// Scores of all constants at a solution with its `motions` at all samples of `log`. `remade` makes the record that the problem is on from
-/// changed contacts.
-pub(super) fn suspects(
-    problem: &Problem,
-    solved: &Solved<CONSTANTS>,
-    covariances: &Covariances<CONSTANTS>,
-    (log, motions): (&ContactLog, &[(Motion, Deviations)]),
-    remade: impl Fn(&Change) -> Option<Record>,
-) -> Option<Vec<Suspect>> {
-    let unknowns = &solved.unknowns;
-    let equations = &problem.unfrozen(&solved.equations, unknowns);
-    let solver = equations.solver(&problem.natural_information())?.0;
-    let left_over = equations.gradient();
-    let followed = solver.step(&left_over);
-    let scale = solved.misfit().max(1.0);
-    let smooth = SMOOTH * problem.units.length / problem.units.speed;
-    let noisy = share_of_noise(problem.record);
-    let residuals = Residuals::new(problem, unknowns)?;
-    let deviations: Vec<Tangent> = covariances.motions.iter().map(|of| covariances.deviations(of)).collect();
-    let one = |fault: SensorFault| {
+/// What a log says of the constants of its sensors.
+pub(super) struct Sensors<'a> {
+    pub(super) log: &'a ContactLog,
+    /// Motion at all samples, positions from the record's origin.
+    pub(super) motions: &'a [(Motion, Deviations)],
+    pub(super) body: Body,
+    /// Makes the record that a problem is on from changed contacts.
+    pub(super) remade: &'a dyn Fn(&Change) -> Option<Record>,
+}
+
+impl Sensors<'_> {
+    /// The record of a log whose `fault` is known.
+    pub(super) fn without(&self, fault: SensorFault, value: f64, problem: &Problem) -> Option<Record> {
+        let slopes = if fault == SensorFault::ForceDelay { self.slopes(problem) } else { Vec::new() };
+        self.changed(fault, value, &slopes)
+    }
+
+    fn changed(&self, fault: SensorFault, by: f64, slopes: &[Vec<DVec3>]) -> Option<Record> {
+        let Self { log, motions, body, remade } = self;
+        remade(&Change { fault, by, log, motions, body, slopes })
+    }
+
+    fn slopes(&self, problem: &Problem) -> Vec<Vec<DVec3>> {
+        slopes_of_forces(self.log, SMOOTH * problem.units.time(), force)
+    }
+
+    /// Constants that the log may have.
+    pub(super) fn constants(&self, problem: &Problem) -> Vec<SensorFault> {
+        constants(self.log, problem)
+    }
+}
+
+/// A solution of a log, and how its cost changes with constants of the sensors.
+pub(super) struct Scores<'a> {
+    sensors: &'a Sensors<'a>,
+    problem: &'a Problem<'a>,
+    solved: &'a Solved<CONSTANTS>,
+    equations: Equations<CONSTANTS>,
+    solver: Reduced<CONSTANTS>,
+    followed: Step<CONSTANTS>,
+    residuals: Residuals,
+    /// Share of noise in the squares of the impulses.
+    noisy: f64,
+}
+
+/// What the data say of one constant, to first order.
+pub(super) struct Score {
+    /// By how much it is more than it was taken for.
+    pub(super) value: f64,
+    /// Standard deviation of that by the noise that was stated; infinite where the data cannot tell.
+    pub(super) deviation: f64,
+    /// What noise that poses as this constant makes of it.
+    posing: f64,
+    follows: Step<CONSTANTS>,
+}
+
+impl<'a> Scores<'a> {
+    pub(super) fn new(
+        sensors: &'a Sensors,
+        problem: &'a Problem,
+        solved: &'a Solved<CONSTANTS>,
+    ) -> Option<Self> {
+        let equations = problem.unfrozen(&solved.equations, &solved.unknowns);
+        let solver = equations.solver(&problem.natural_information())?.0;
+        let followed = solver.step(&equations.gradient());
+        let residuals = Residuals::new(problem, &solved.unknowns)?;
+        let noisy = share_of_noise(problem.record);
+        Some(Self { sensors, problem, solved, equations, solver, followed, residuals, noisy })
+    }
+
+    /// Of a constant that the problem's record has as `value`. None where conditions come or go with it.
+    pub(super) fn of(&self, fault: SensorFault, value: f64) -> Option<Score> {
+        let Self { sensors, problem, solved, equations, solver, followed, residuals, .. } = self;
         let step = STEP * fault.natural(&problem.units);
         let told = |slopes: &[Vec<DVec3>]| {
-            let record = remade(&Change { fault, by: step, log, motions, body: &unknowns.body, slopes })?;
-            let changed = Residuals::new(&problem.on(&record), unknowns)?;
-            let by = Residuals::slope(&changed, &residuals, step)?;
+            let record = sensors.changed(fault, value + step, slopes)?;
+            let changed = Residuals::new(&problem.on(&record), &solved.unknowns)?;
+            let by = Residuals::slope(&changed, residuals, step)?;
             let (slope, own, mixed) = residuals.normal(equations, &by)?;
             // What motion and body take up when they follow: the step of a gradient is minus the inverse times it.
             let follows = solver.step(&mixed);
-            Some((slope + mixed.dot(&followed), own, own + mixed.dot(&follows), follows))
+            Some((slope + mixed.dot(followed), own, own + mixed.dot(&follows), follows))
         };
         let delay = fault == SensorFault::ForceDelay;
-        let (slope, own, left, follows) = match delay {
-            true => told(&slopes_of_forces(log, smooth, force))?,
-            false => told(&[])?,
-        };
+        let (slope, own, left, follows) = told(&if delay { sensors.slopes(problem) } else { Vec::new() })?;
         // Noise in the slopes of forces poses as information on their delay.
-        let spurious = if delay { told(&slopes_of_noise(log, smooth, &problem.noise))?.2 } else { 0.0 };
+        let smooth = SMOOTH * problem.units.time();
+        let spurious = match delay {
+            true => told(&slopes_of_noise(sensors.log, smooth, &problem.noise))?.2,
+            false => 0.0,
+        };
         let sound = left - spurious;
         let tells = sound > (LEAST_LEFT * own).max(LEAST_SOUND * left) && left.is_finite();
         // Noise that forces and their slope share poses as a wrong gain.
-        let posing = if matches!(fault, SensorFault::ForceGain { .. }) { noisy * own / left } else { 0.0 };
-        let (value, deviation) = match tells {
-            true => (-slope / sound, (scale * left / (sound * sound) + posing * posing).sqrt()),
-            false => (0.0, f64::INFINITY),
-        };
+        let posing =
+            if matches!(fault, SensorFault::ForceGain { .. }) { self.noisy * own / left } else { 0.0 };
+        let (value, deviation) =
+            if tells { (-slope / sound, left.sqrt() / sound) } else { (0.0, f64::INFINITY) };
+        Some(Score { value, deviation, posing, follows })
+    }
+}
+
+/// Scores of all constants at a solution with its `motions` at all samples of `log`. `remade` makes the record that the problem is on from
+/// changed contacts.
+pub(super) fn suspects(scores: &Scores, covariances: &Covariances<CONSTANTS>) -> Vec<Suspect> {
+    let problem = scores.problem;
+    let scale = scores.solved.misfit().max(1.0).sqrt();
+    let deviations: Vec<Tangent> = covariances.motions.iter().map(|of| covariances.deviations(of)).collect();
+    let one = |fault: SensorFault| {
+        let score = scores.of(fault, 0.0)?;
+        let deviation = (scale * score.deviation).hypot(score.posing);
         // A constant that is known no better than that is beyond what a linearisation tells.
         let far = deviation > LARGEST_DEVIATION * fault.natural(&problem.units);
-        let (value, deviation) = if far { (0.0, f64::INFINITY) } else { (value, deviation) };
+        let (value, deviation) = if far { (0.0, f64::INFINITY) } else { (score.value, deviation) };
         let moved = |(of, by): (&Tangent, &Tangent)| by.component_div(of).abs().max();
-        let most = deviations.iter().zip(&follows.motions).map(moved).fold(0.0, f64::max);
+        let most = deviations.iter().zip(&score.follows.motions).map(moved).fold(0.0, f64::max);
         Some(Suspect { fault, value, deviation, tolerated: most.recip() })
     };
-    Some(constants(log, problem).into_iter().filter_map(one).collect())
+    scores.sensors.constants(problem).into_iter().filter_map(one).collect()
 }
 
 /// Of a palm that is touched, N.
@@ -168,7 +235,7 @@ fn constants(log: &ContactLog, problem: &Problem) -> Vec<SensorFault> {
 
 impl SensorFault {
     /// Its natural unit.
-    fn natural(self, units: &Units) -> f64 {
+    pub(super) fn natural(self, units: &Units) -> f64 {
         let Units { length, speed, mass } = *units;
         match self {
             Self::ForceGain { .. } | Self::PalmTilt { .. } | Self::Friction => 1.0,

@@ -4,7 +4,7 @@ use super::equations::Equations;
 use super::problem::{Problem, Units};
 use super::samples::Deviations;
 use crate::chance::excess;
-use crate::faults::Suspect;
+use crate::faults::{Assumption, Explanation, Suspect};
 use crate::reliability::{LARGEST_DEVIATION, LARGEST_MISFIT, Reason, Reliability};
 use glam::DVec3;
 
@@ -58,10 +58,18 @@ impl ContactEvidence {
         (deviations < UNEXPLAINED).then_some(Reason::Still { deviations })
     }
 
-    /// The constant of the sensors that the data speak against most, where they do.
-    pub(super) fn against(suspects: &[Suspect]) -> Option<Reason> {
+    /// A constant of the sensors, where the data speak against one: the one that explains them best, if that was asked.
+    pub(super) fn against(suspects: &[Suspect], explanations: &[Explanation]) -> Option<Reason> {
         let most = suspects.iter().max_by(|a, b| a.score().abs().total_cmp(&b.score().abs()))?;
-        (most.score().abs() > UNEXPLAINED).then_some(Reason::Fault(*most))
+        let sensor = |of: &Explanation| match of.assumption {
+            Assumption::Sensor(fault) => {
+                let own = suspects.iter().find(|suspect| suspect.fault == fault)?;
+                Some(Suspect { value: of.value, deviation: of.deviation, ..*own })
+            }
+            _ => None,
+        };
+        let named = explanations.iter().find_map(sensor).unwrap_or(*most);
+        (most.score().abs() > UNEXPLAINED).then_some(Reason::Fault(named))
     }
 
     /// What all deviations are to be multiplied by: a misfit that is left is noise that was not stated.

@@ -4,7 +4,7 @@ use crate::contacts::estimate_contacts;
 use crate::contacts::{
     ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions,
 };
-use crate::{Reliability, Suspect};
+use crate::{Explanation, Reliability, Suspect};
 use glam::{DVec2, DVec3};
 use object_dynamics::planar::{BodyState, ContactLog, PlanarMass, in_plane};
 use object_dynamics::{ContactLogError, ContactMode, LoggedPalm, MOST_PALMS, MassError, MassProperties};
@@ -85,6 +85,8 @@ pub struct PlaneEstimate {
     pub inertia: (f64, f64),
     /// What the data say of constants of the sensors that were taken as known; none unless asked for.
     pub suspects: Vec<Suspect>,
+    /// Where something contradicts what was taken as known: what that may be, the most probable first.
+    pub explanations: Vec<Explanation>,
     /// Whether to believe it.
     pub reliability: Reliability,
     /// What it rests on.
@@ -161,6 +163,7 @@ impl PlaneEstimate {
             relied_on: of.relied_on,
             modes: of.modes,
             suspects: of.suspects,
+            explanations: of.explanations,
             reliability: of.reliability,
             evidence: of.evidence,
         }

@@ -27,6 +27,9 @@ pub(super) fn describe(data: &EstimateData, figures: &Value) -> String {
     if let Some(axes) = figures["evidence"]["std_axes"]["value"].as_str() {
         line("axes, deviations", format!("{axes} rad"));
     }
+    if let Some(explained) = figures["evidence"]["explained_by"]["value"].as_str() {
+        line("explained by", explained.to_owned());
+    }
     if let Some([position, velocity, _, turn]) = largest(found) {
         let [position, velocity, turn] = [position, velocity, turn].map(|std| brief_to(2, std));
         line("motion known to", format!("{position} m, {velocity} m/s, {turn} rad (largest std relied on)"));

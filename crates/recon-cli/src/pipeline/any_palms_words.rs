@@ -4,14 +4,18 @@ use super::evidence::{of_bounds, samples_together};
 use glam::DVec3;
 use recon::object_dynamics::MassProperties;
 use recon::observer::{
-    ContactEstimate, ContactEvidence, ContactNoiseLevel, ContactOptions, EstimatedModes, LearnedFriction,
-    Reason, Reliability, Suspect,
+    Assumption, ContactEstimate, ContactEvidence, ContactNoiseLevel, ContactOptions, EstimatedModes,
+    Explanation, LearnedFriction, Reason, Reliability, Suspect,
 };
 use recon_io::EvidenceValue::{Number, Text};
 use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Verdict, brief_to};
 
 /// Share of the samples whose motion must be relied on for a result without reservations.
 const ENOUGH: f64 = 0.5;
+/// Chi-squared over the conditions up to which a log is explained, as the estimator has it.
+const EXPLAINED: f64 = 1.4;
+/// Decades of odds up to which explanations are told side by side.
+const TOLD_APART: f64 = 2.0;
 
 /// What speaks for or against an estimate beside its own evidence.
 pub(super) struct Checks {
@@ -94,6 +98,7 @@ pub(super) fn evidence(
     rows.extend(fit(&estimate.evidence, &estimate.reliability, relied_on(estimate)));
     rows.extend(told(&options.noise));
     rows.extend(suspects(&estimate.suspects));
+    rows.extend(explained(&estimate.explanations));
     rows.extend(estimate.mode_odds.as_ref().map(modes).into_iter().flatten());
     if checks.together > 1 {
         rows.push(samples_together(checks.together));
@@ -318,6 +323,29 @@ pub(super) fn suspects(all: &[Suspect]) -> Vec<Evidence> {
         },
         neutral("sensor_accuracy_needed", "Needed to be known to", Text(needed.join("; ")), "", matters),
     ]
+}
+
+/// What explains a log that contradicts what was taken as known; none of a log that does not.
+pub(super) fn explained(all: &[Explanation]) -> Option<Evidence> {
+    let (first, others) = all.split_first()?;
+    let value = |of: &Explanation| match of.assumption {
+        Assumption::None => of.assumption.to_string(),
+        _ => format!("{}: {} +- {}", of.assumption, brief_to(3, of.value), brief_to(2, of.deviation)),
+    };
+    let explains = |of: &Explanation| of.assumption != Assumption::None && of.misfit < EXPLAINED;
+    let odds = |of: &Explanation| (first.log_odds - of.log_odds) / std::f64::consts::LN_10;
+    let said = if explains(first) {
+        let as_good: Vec<String> =
+            others.iter().filter(|of| odds(of) < TOLD_APART && explains(of)).map(value).collect();
+        let next = others.get(as_good.len());
+        let next = next.map(|of| format!("; {}, is 10^{:.0} times less probable", value(of), odds(of)));
+        [vec![value(first)], as_good].concat().join(", or ") + &next.unwrap_or_default()
+    } else {
+        "no single constant that was tried, nor noise".to_owned()
+    };
+    let meaning = "The log contradicts what was taken as known. Each of the constants alone was let go, and mass and inertia, and the noise: what explains \
+                   most, weighed against how much else it could have explained; those that are less than a hundred times less probable are told with it.";
+    Some(Evidence { level: Level::Bad, ..neutral("explained_by", "Explained by", Text(said), "", meaning) })
 }
 
 /// A row that speaks neither for nor against the result.

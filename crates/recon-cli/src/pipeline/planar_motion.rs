@@ -11,7 +11,7 @@ use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane
 use recon::observer::{ContactNoiseLevel, Reliability};
 use recon::shape_bounds::planar::NoiseError;
 use recon_io::{
-    Evidence, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, brief, brief_to, sensor_fault,
+    Evidence, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, brief, brief_to, explanation, sensor_fault,
     verdict_figures, write_plane_estimate_report,
 };
 use serde_json::{Value, json};
@@ -211,6 +211,9 @@ impl PlanarMotion {
         }));
         if !estimate.suspects.is_empty() {
             figures["sensor_faults"] = faults.collect();
+        }
+        if !estimate.explanations.is_empty() {
+            figures["explanations"] = estimate.explanations.iter().map(explanation).collect();
         }
         if let Some(bounds) = &self.bounds {
             figures["bounds"] = bounds.figures();

@@ -1,7 +1,7 @@
 //! What was taken as known of the sensors, and is not so.
 
 use super::*;
-use crate::faults::{SensorFault, Suspect};
+use crate::faults::{Assumption, SensorFault, Suspect};
 use crate::reliability::{Reason, Reliability};
 
 /// With the sensors' constants tested, the modes being told.
@@ -81,4 +81,45 @@ fn a_wrong_constant_is_named_with_its_value() {
         };
         assert!(named.is_some_and(alike), "{why:?}");
     }
+}
+
+/// What was changed comes out first, with its value; of a gain so large that no motion explains the log with it, too.
+#[test]
+fn what_is_wrong_explains_the_log_best() {
+    let (exact, noise) = (log(0.6, 500.0), noise(4e-5, 0.004));
+    let told = noisy(&exact, &noise, 5);
+    assert!(tested(&told, noise).explanations.is_empty(), "nothing contradicts it");
+    let gain = |by: f64| forces(&told, move |i, k, f| if i == 1 { f[k] / (1.0 + by) } else { f[k] });
+    let first = |log: &ContactLog| tested(log, noise).explanations[0];
+    for &by in crate::few_or_all(&[0.05][..], &[0.02, 0.05, 0.2]) {
+        let found = first(&gain(by));
+        // A gain is hardly told from a bias of the same palm.
+        let palm = match found.assumption {
+            Assumption::Sensor(SensorFault::ForceGain { palm }) => {
+                assert!((found.value - by).abs() < 5.0 * found.deviation, "{by}: {found:?}");
+                palm
+            }
+            Assumption::Sensor(SensorFault::ForceBias { palm }) => palm,
+            _ => panic!("{by}: {found:?}"),
+        };
+        assert!(palm == 2 && found.misfit < 1.4 && found.log_odds > 10.0, "{by}: {found:?}");
+    }
+    let louder = ContactNoiseLevel { contact: 8e-5, force_fixed: 0.008, ..noise };
+    let found = first(&noisy(&exact, &louder, 5));
+    assert_eq!(found.assumption, Assumption::Noise);
+    assert!((found.value - 1.0).abs() < 0.25, "twice as loud: {found:?}");
+}
+
+/// A body of another mass than it is stated to have.
+#[test]
+fn a_wrong_body_explains_the_log_best() {
+    let (exact, noise) = (log(0.6, 500.0), noise(4e-5, 0.004));
+    let told = noisy(&exact, &noise, 6);
+    let mass = 0.2;
+    let stated = MassProperties::uniform_ellipsoid(1.05 * mass, DVec3::new(0.05, 0.04, 0.03)).unwrap();
+    let options = ContactOptions { suspects: true, body: Some(stated), ..options(noise) };
+    let found = estimate_contacts(&told, Some(&modes(&told)), &options).unwrap();
+    let first = found.explanations[0];
+    assert_eq!(first.assumption, Assumption::Body, "{:?}", found.explanations);
+    assert!((1.05 * (1.0 + first.value) - 1.0).abs() < 5.0 * first.deviation, "{first:?}");
 }

@@ -176,6 +176,7 @@ fn estimate() -> EstimateData {
         pose_errors: None,
         misread: Vec::new(),
         suspects: Vec::new(),
+        explanations: Vec::new(),
         inertia_covariance: Default::default(),
         deviations: vec![[DVec3::splat(1e-3); 4]; count],
         // The third sample to the fifth, and the last one.
