@@ -6,6 +6,11 @@ use crate::cargo::{cargo, output, root};
 
 /// Name of a study, the file under docs/ that it writes, and what it is about.
 const STUDIES: &[(&str, &str, &str)] = &[
+    (
+        "assumptions",
+        "assumptions.md",
+        "what contradicts a log: false alarms of the score tests, and which assumption is named",
+    ),
     ("bounds_corners", "charts/bounds/corners.csv", "corners of half-spaces against rational arithmetic"),
     ("bounds_curvature", "charts/bounds/curvature.csv", "bounds from limits on the radii of curvature"),
     ("bounds_fuzz", "charts/bounds/fuzz.csv", "the hull on every kind of input, judged by exact predicates"),

@@ -4,6 +4,7 @@
 //!
 //! `cargo xtask study` and `cargo xtask chart` call it and know what each one writes.
 
+mod assumptions;
 mod bounds_corners;
 mod bounds_curvature;
 mod bounds_fuzz;
@@ -47,6 +48,7 @@ use std::process::ExitCode;
 type Run = fn() -> Result<(), String>;
 
 const STUDIES: &[(&str, Run)] = &[
+    ("assumptions", || in_words(assumptions::main())),
     ("bounds_corners", || in_words(bounds_corners::main())),
     ("bounds_curvature", || in_words(bounds_curvature::main())),
     ("bounds_fuzz", || in_words(bounds_fuzz::main())),
@@ -85,6 +87,7 @@ const STUDIES: &[(&str, Run)] = &[
 
 /// Those whose runs may be made in parts ([`rows`]).
 const OF_RUNS: &[&str] = &[
+    "assumptions",
     "bounds_noise",
     "bounds_noise_wrong",
     "bounds_planar_noise",

@@ -10,21 +10,21 @@ use recon::object_dynamics::{
 use recon_tests::Random;
 use std::f64::consts::TAU;
 
-pub(super) const G: f64 = 9.81;
+pub(crate) const G: f64 = 9.81;
 /// Natural times that a log lasts at least.
 const SHORTEST: f64 = 5.0;
 
 /// A body on its palms.
-pub(super) struct Body {
-    pub(super) size: f64,
-    pub(super) mass: MassProperties,
+pub(crate) struct Body {
+    pub(crate) size: f64,
+    pub(crate) mass: MassProperties,
     scene: ThreePalmScene<Ellipsoid>,
     start: InitialMotion,
     seed: u64,
 }
 
 /// So many bodies.
-pub(super) fn some(count: usize, seed: u64) -> Result<Vec<Body>, Failure> {
+pub(crate) fn some(count: usize, seed: u64) -> Result<Vec<Body>, Failure> {
     let mut random = Random::new(seed);
     let mut all = Vec::with_capacity(count);
     while all.len() < count {
@@ -58,12 +58,12 @@ fn one(random: &mut Random, seed: u64) -> Result<Body, Failure> {
 
 impl Body {
     /// Noise of contacts, m, and forces, N.
-    pub(super) fn noise(&self, share: f64) -> [f64; 2] {
+    pub(crate) fn noise(&self, share: f64) -> [f64; 2] {
         [share * self.size, share * self.mass.mass() * G]
     }
 
     /// Its noisy log and its motion; none that is too short.
-    pub(super) fn log(
+    pub(crate) fn log(
         &self,
         noise: f64,
         rate: f64,

@@ -5,10 +5,11 @@ use super::{Failure, with};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::{MassProperties, Sample, SensorLog};
+use recon::observer::{Assumption, SensorFault};
 use recon_tests::Random;
 
 /// One departure; its palm is the first one.
-pub(super) enum Fault {
+pub(crate) enum Fault {
     /// Contacts at taxels so far from each other, in sizes.
     Taxels(f64),
     /// Forces through a filter of first order with this time constant, s.
@@ -25,6 +26,8 @@ pub(super) enum Fault {
     Dropped(f64),
     /// s, in the middle.
     Gap(f64),
+    /// Contacts of a palm shifted along its first axis, in sizes.
+    Shifted(f64),
     /// Palm turned about its level axis, degrees.
     Turned(f64),
     /// Relative, stated too large.
@@ -33,7 +36,7 @@ pub(super) enum Fault {
     Moment(f64),
 }
 
-pub(super) const FAULTS: [Fault; 16] = [
+pub(crate) const FAULTS: [Fault; 16] = [
     Fault::Taxels(0.01),
     Fault::Lag(0.01),
     Fault::Delay(0.005),
@@ -53,7 +56,7 @@ pub(super) const FAULTS: [Fault; 16] = [
 ];
 
 impl Fault {
-    pub(super) fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         match self {
             Self::Taxels(pitch) => format!("taxels {} % of the size apart", 100.0 * pitch),
             Self::Lag(lag) => format!("forces lag by {} ms", 1e3 * lag),
@@ -63,6 +66,7 @@ impl Fault {
             Self::Outliers(share) => format!("{} % of the contacts a fifth of the size off", 100.0 * share),
             Self::Dropped(share) => format!("{} % of the samples missing", 100.0 * share),
             Self::Gap(gap) => format!("gap of {} ms", 1e3 * gap),
+            Self::Shifted(shift) => format!("contacts of a palm {} % of the size off", 100.0 * shift),
             Self::Turned(angle) => format!("a palm {angle} degrees off"),
             Self::Mass(share) => format!("mass stated {} % too large", 100.0 * share),
             Self::Inertia(share) => format!("inertia stated {} % too large", 100.0 * share),
@@ -71,11 +75,40 @@ impl Fault {
     }
 
     /// Whether it is in what is stated of the body.
-    pub(super) fn of_body(&self) -> bool {
+    pub(crate) fn of_body(&self) -> bool {
         matches!(self, Self::Mass(_) | Self::Inertia(_) | Self::Moment(_))
     }
 
-    pub(super) fn of_mass(&self, mass: MassProperties) -> MassProperties {
+    /// Whether this is what an estimate takes it for; a delay is what a lag is to first order.
+    pub(crate) fn is(&self, assumption: &Assumption) -> bool {
+        match (self, assumption) {
+            (Self::Mass(_) | Self::Inertia(_) | Self::Moment(_), Assumption::Body)
+            | (Self::Taxels(_) | Self::Outliers(_), Assumption::Noise) => true,
+            (_, Assumption::Sensor(fault)) => matches!(
+                (self, fault),
+                (Self::Bias(_), SensorFault::ForceBias { palm: 1 })
+                    | (Self::Gain(_), SensorFault::ForceGain { palm: 1 })
+                    | (Self::Delay(_) | Self::Lag(_), SensorFault::ForceDelay)
+                    | (Self::Turned(_), SensorFault::PalmTilt { palm: 1, axis: 0 })
+                    | (Self::Shifted(_), SensorFault::ContactOffset { palm: 1, axis: 0 })
+            ),
+            _ => false,
+        }
+    }
+
+    /// What an estimate is to find of it; none where that is no one number.
+    pub(crate) fn value(&self, body: &Body) -> Option<f64> {
+        match self {
+            Self::Gain(share) | Self::Mass(share) => Some(1.0 / (1.0 + share) - 1.0),
+            Self::Bias(bias) => Some(-bias * body.mass.mass() * G),
+            Self::Delay(delay) => Some(*delay),
+            Self::Shifted(shift) => Some(-shift * body.size),
+            Self::Turned(angle) => Some(-angle.to_radians()),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn of_mass(&self, mass: MassProperties) -> MassProperties {
         let moments = mass.principal().moments;
         let stated = match self {
             Self::Mass(share) => MassProperties::from_principal(mass.mass() * (1.0 + share), moments),
@@ -88,7 +121,7 @@ impl Fault {
         stated.unwrap_or(mass)
     }
 
-    pub(super) fn of_log(&self, log: &SensorLog, body: &Body) -> Result<SensorLog, Failure> {
+    pub(crate) fn of_log(&self, log: &SensorLog, body: &Body) -> Result<SensorLog, Failure> {
         let mut samples = log.samples().to_vec();
         let mut random = Random::new(7);
         let weight = body.mass.mass() * G;
@@ -114,6 +147,10 @@ impl Fault {
                 samples.retain(|sample| sample.t == 0.0 || random.within(0.0, 1.0) >= *share);
             }
             Self::Gap(gap) => samples.retain(|sample| (sample.t - 0.5 * last).abs() > 0.5 * gap),
+            Self::Shifted(shift) => {
+                let first = samples.iter_mut().filter_map(|sample| sample.palms[0].contact.as_mut());
+                first.for_each(|s| s[0] += shift * body.size);
+            }
             Self::Turned(angle) => {
                 for sample in &mut samples {
                     let normal = &mut sample.palms[0].normal;

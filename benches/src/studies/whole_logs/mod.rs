@@ -1,8 +1,8 @@
 //! Whole noisy logs of three palms without friction: random bodies from hand scale to metres, white noise as it is stated, and sensors,
 //! bodies and palms that are not as stated.
 
-mod body;
-mod fault;
+pub(crate) mod body;
+pub(crate) mod fault;
 mod tally;
 
 use body::Body;
@@ -104,7 +104,11 @@ fn run(
     Ok(())
 }
 
-fn options(body: &Body, noise: f64, mass: Option<recon::object_dynamics::MassProperties>) -> ContactOptions {
+pub(crate) fn options(
+    body: &Body,
+    noise: f64,
+    mass: Option<recon::object_dynamics::MassProperties>,
+) -> ContactOptions {
     let [contact, force] = body.noise(noise);
     let floor = 3e-5 * (body::G * body.size).sqrt();
     let noise = ContactNoiseLevel { contact, force_fixed: force, force_share: 0.0, impulse: None, floor };

@@ -18,7 +18,7 @@ use super::slips::Known;
 use super::solve::{Covariances, Solved};
 use super::stage::Stage;
 use super::state::Motion;
-use super::suspects::{Change, Scores, Sensors, suspects};
+use super::suspects::{Change, Scores, Sensors, slopes_of_forces, suspects};
 use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
 use crate::faults::{Explanation, Suspect};
@@ -289,7 +289,8 @@ impl Source<'_> {
             Some(open.as_ref().unwrap_or(&record).averaged(longest))
         };
         let Stage { problem, solved, free, .. } = stage;
-        let sensors = Sensors { log: self.log, motions, body: solved.unknowns.body, remade: &remade };
+        let slopes = slopes_of_forces(self.log, &self.units);
+        let sensors = Sensors::new(self.log, (motions, solved.unknowns.body), &slopes, &remade);
         let scores = Scores::new(&sensors, problem, solved);
         let suspects = scores.map_or_else(Vec::new, |scores| suspects(&scores, covariances));
         let evidence = stage.evidence(record, covariances);

@@ -47,10 +47,9 @@ pub(super) fn explanations(
 ) -> Vec<Explanation> {
     let conditions = solved.equations.conditions.max(1) as f64;
     let stated = solved.equations.cost;
-    let mut all = vec![
-        Tried { assumption: Assumption::None, value: 0.0, deviation: 0.0, cost: stated, could: 0.0 },
-        noise(stated, conditions),
-    ];
+    let mut all =
+        vec![Tried { assumption: Assumption::None, value: 0.0, deviation: 0.0, cost: stated, could: 0.0 }];
+    all.extend(noise(stated, conditions));
     all.extend(body.map(other_body));
     all.extend(wrong_sensors(sensors, problem, solved));
     // What even the best leaves unexplained makes all of them less certain.
@@ -85,17 +84,20 @@ fn share(value: f64, deviation: f64, usual: f64) -> f64 {
     (TAU.sqrt() * deviation * density).max(f64::MIN_POSITIVE).ln().min(0.0)
 }
 
-/// All readings are noisier by one factor.
-fn noise(cost: f64, conditions: f64) -> Tried {
-    let factor = (cost / conditions).max(f64::MIN_POSITIVE);
+/// All readings are noisier by one factor, where they are.
+fn noise(cost: f64, conditions: f64) -> Option<Tried> {
+    let factor = cost / conditions;
+    if factor.is_nan() || factor <= 1.0 {
+        return None;
+    }
     let deviation = (2.0 / conditions).sqrt();
-    Tried {
+    Some(Tried {
         assumption: Assumption::Noise,
         value: factor.sqrt() - 1.0,
         deviation: 0.5 * deviation * factor.sqrt(),
         cost: conditions * (1.0 + factor.ln()),
         could: share(factor.ln(), deviation, USUAL_NOISE),
-    }
+    })
 }
 
 fn other_body(body: &FreeBody) -> Tried {
@@ -128,6 +130,9 @@ fn wrong_sensors(sensors: &Sensors, problem: &Problem, stated: &Solved<CONSTANTS
         all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         all.truncate(KEPT);
     }
+    if let Some(late) = all.iter_mut().find(|correction| correction.fault == SensorFault::ForceDelay) {
+        late.by_samples(sensors, problem);
+    }
     all.iter().map(|correction| correction.told(problem)).collect()
 }
 
@@ -146,29 +151,54 @@ struct Correction {
 impl Correction {
     /// By one correction; none where there is no more to gain.
     fn goes_on(&mut self, sensors: &Sensors, problem: &Problem) -> Option<()> {
-        let (fault, next) = (self.fault, self.value + self.step);
         let enough = CORRECTED * self.deviation * self.misfit.max(1.0).sqrt();
-        if next.is_nan() || next.abs() > FARTHEST * fault.natural(&problem.units) || self.step.abs() < enough
-        {
+        if self.step.abs() < enough {
             return None;
         }
-        let record = sensors.without(fault, next, problem)?;
+        let next = self.at(self.value + self.step, sensors, problem)?;
+        // A first order may promise too much.
+        if next.cost > self.cost {
+            self.step *= SHORTER
+        } else {
+            *self = next
+        }
+        Some(())
+    }
+
+    /// By times from sample to sample as long as that explains more. Forces that are late jump from sample to sample, of which their slopes tell nothing.
+    fn by_samples(&mut self, sensors: &Sensors, problem: &Problem) {
+        let each = sensors.interval();
+        for step in [each, -each] {
+            while let Some(next) =
+                self.at(self.value + step, sensors, problem).filter(|next| next.cost < self.cost)
+            {
+                *self = next;
+            }
+        }
+    }
+
+    /// With another value.
+    fn at(&self, value: f64, sensors: &Sensors, problem: &Problem) -> Option<Self> {
+        let fault = self.fault;
+        if value.is_nan() || value.abs() > FARTHEST * fault.natural(&problem.units) {
+            return None;
+        }
+        let record = sensors.without(fault, value)?;
         let own = problem.on(&record);
         let solved = solve::<CONSTANTS>(&own, self.unknowns.clone(), MOST, ENOUGH[1])?;
-        // A first order that promised too much.
-        if solved.equations.cost > self.cost {
-            self.step *= SHORTER;
-            return Some(());
-        }
-        let sensors = Sensors { body: solved.unknowns.body, ..*sensors };
-        let score = Scores::new(&sensors, &own, &solved)?.of(fault, next)?;
-        if !score.deviation.is_finite() {
-            return None;
-        }
-        let cost = solved.equations.cost;
-        let (step, deviation, misfit) = (score.value, score.deviation, solved.misfit());
-        *self = Self { fault, value: next, step, deviation, unknowns: solved.unknowns, cost, misfit };
-        Some(())
+        let sensors = sensors.of_body(solved.unknowns.body);
+        let score = Scores::new(&sensors, &own, &solved)?.of(fault, value)?;
+        let (cost, misfit) = (solved.equations.cost, solved.misfit());
+        let (step, deviation) = (score.value, score.deviation);
+        deviation.is_finite().then_some(Self {
+            fault,
+            value,
+            step,
+            deviation,
+            unknowns: solved.unknowns,
+            cost,
+            misfit,
+        })
     }
 
     fn told(&self, problem: &Problem) -> Tried {

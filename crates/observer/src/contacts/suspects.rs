@@ -36,39 +36,60 @@ const STEP: f64 = 1e-6;
 /// A change of what a log says, by a constant of the sensors that is not what it was taken for.
 pub(super) struct Change<'a> {
     fault: SensorFault,
+    /// Near which the change is small: forces that are late are taken from the samples nearest to when they were by it.
+    value: f64,
     by: f64,
     log: &'a ContactLog,
     /// Motion at all samples, positions from the record's origin.
     motions: &'a [(Motion, Deviations)],
     body: &'a Body,
-    /// What the forces change by in a unit of time, N/s, by palm and sample; none where that is not asked for.
-    slopes: &'a [Vec<DVec3>],
+    /// What the forces change by in a unit of time, N/s, by palm and sample; and what is taken for that from `value` on.
+    slopes: [&'a [Vec<DVec3>]; 2],
 }
 
 /// What a log says of the constants of its sensors.
+#[derive(Clone, Copy)]
 pub(super) struct Sensors<'a> {
-    pub(super) log: &'a ContactLog,
+    log: &'a ContactLog,
     /// Motion at all samples, positions from the record's origin.
-    pub(super) motions: &'a [(Motion, Deviations)],
-    pub(super) body: Body,
+    motions: &'a [(Motion, Deviations)],
+    body: Body,
+    /// What the forces change by in a unit of time, N/s, by palm and sample.
+    slopes: &'a [Vec<DVec3>],
     /// Makes the record that a problem is on from changed contacts.
-    pub(super) remade: &'a dyn Fn(&Change) -> Option<Record>,
+    remade: &'a dyn Fn(&Change) -> Option<Record>,
 }
 
-impl Sensors<'_> {
+impl<'a> Sensors<'a> {
+    /// Of `log` with a motion of `body`; `slopes` are [`slopes_of_forces`].
+    pub(super) fn new(
+        log: &'a ContactLog,
+        (motions, body): (&'a [(Motion, Deviations)], Body),
+        slopes: &'a [Vec<DVec3>],
+        remade: &'a dyn Fn(&Change) -> Option<Record>,
+    ) -> Self {
+        Self { log, motions, body, slopes, remade }
+    }
+
+    /// With another body.
+    pub(super) fn of_body(self, body: Body) -> Self {
+        Self { body, ..self }
+    }
+
+    /// From sample to sample on average, s.
+    pub(super) fn interval(&self) -> f64 {
+        self.log.duration() / (self.log.times().len() - 1).max(1) as f64
+    }
+
     /// The record of a log whose `fault` is known.
-    pub(super) fn without(&self, fault: SensorFault, value: f64, problem: &Problem) -> Option<Record> {
-        let slopes = if fault == SensorFault::ForceDelay { self.slopes(problem) } else { Vec::new() };
-        self.changed(fault, value, &slopes)
+    pub(super) fn without(&self, fault: SensorFault, value: f64) -> Option<Record> {
+        self.changed(fault, [value, 0.0], self.slopes)
     }
 
-    fn changed(&self, fault: SensorFault, by: f64, slopes: &[Vec<DVec3>]) -> Option<Record> {
-        let Self { log, motions, body, remade } = self;
-        remade(&Change { fault, by, log, motions, body, slopes })
-    }
-
-    fn slopes(&self, problem: &Problem) -> Vec<Vec<DVec3>> {
-        slopes_of_forces(self.log, SMOOTH * problem.units.time(), force)
+    /// With a value of the constant, and a step from there along which the forces have some `slopes`.
+    fn changed(&self, fault: SensorFault, [value, step]: [f64; 2], slopes: &[Vec<DVec3>]) -> Option<Record> {
+        let Self { log, motions, ref body, remade, .. } = *self;
+        remade(&Change { fault, value, by: value + step, log, motions, body, slopes: [self.slopes, slopes] })
     }
 
     /// Constants that the log may have.
@@ -120,7 +141,7 @@ impl<'a> Scores<'a> {
         let Self { sensors, problem, solved, equations, solver, followed, residuals, .. } = self;
         let step = STEP * fault.natural(&problem.units);
         let told = |slopes: &[Vec<DVec3>]| {
-            let record = sensors.changed(fault, value + step, slopes)?;
+            let record = sensors.changed(fault, [value, step], slopes)?;
             let changed = Residuals::new(&problem.on(&record), &solved.unknowns)?;
             let by = Residuals::slope(&changed, residuals, step)?;
             let (slope, own, mixed) = residuals.normal(equations, &by)?;
@@ -129,11 +150,10 @@ impl<'a> Scores<'a> {
             Some((slope + mixed.dot(followed), own, own + mixed.dot(&follows), follows))
         };
         let delay = fault == SensorFault::ForceDelay;
-        let (slope, own, left, follows) = told(&if delay { sensors.slopes(problem) } else { Vec::new() })?;
+        let (slope, own, left, follows) = told(sensors.slopes)?;
         // Noise in the slopes of forces poses as information on their delay.
-        let smooth = SMOOTH * problem.units.time();
         let spurious = match delay {
-            true => told(&slopes_of_noise(sensors.log, smooth, &problem.noise))?.2,
+            true => told(&slopes_of_noise(sensors.log, &problem.units, &problem.noise))?.2,
             false => 0.0,
         };
         let sound = left - spurious;
@@ -171,27 +191,31 @@ fn force(palm: &LoggedPalm, k: usize) -> Option<DVec3> {
     palm.touch(k).and_then(|_| palm.force(k)).map(|force| force.vector)
 }
 
-/// By palm and sample, N/s, of `value` at each: of the line through those around, `smooth` on either side in time and as far as the palm is touched.
-/// The noise of two neighbours would be taken for slope.
-fn slopes_of_forces(
+/// What the forces change by in a unit of time, N/s, by palm and sample.
+pub(super) fn slopes_of_forces(log: &ContactLog, units: &Units) -> Vec<Vec<DVec3>> {
+    slopes_of(log, units, force)
+}
+
+/// The same of noise that is drawn in place of the forces.
+fn slopes_of_noise(log: &ContactLog, units: &Units, noise: &ContactNoiseLevel) -> Vec<Vec<DVec3>> {
+    let mut random = Normal::seeded(SEED);
+    slopes_of(log, units, |palm, k| {
+        let drawn = DVec3::new(random.draw(), random.draw(), random.draw());
+        force(palm, k).map(|force| drawn * noise.force(force))
+    })
+}
+
+/// Of `value` at each: of the line through those around, as far as the palm is touched. The noise of two neighbours would be taken for slope.
+fn slopes_of(
     log: &ContactLog,
-    smooth: f64,
+    units: &Units,
     mut value: impl FnMut(&LoggedPalm, usize) -> Option<DVec3>,
 ) -> Vec<Vec<DVec3>> {
     let of = |palm| {
         let values: Vec<Option<DVec3>> = (0..log.times().len()).map(|k| value(palm, k)).collect();
-        slopes(log.times(), &values, smooth)
+        slopes(log.times(), &values, SMOOTH * units.time())
     };
     log.palms().iter().map(of).collect()
-}
-
-/// The same of noise that is drawn in place of the forces.
-fn slopes_of_noise(log: &ContactLog, smooth: f64, noise: &ContactNoiseLevel) -> Vec<Vec<DVec3>> {
-    let mut random = Normal::seeded(SEED);
-    slopes_of_forces(log, smooth, |palm, k| {
-        let drawn = DVec3::new(random.draw(), random.draw(), random.draw());
-        force(palm, k).map(|force| drawn * noise.force(force))
-    })
 }
 
 /// Share of noise in the squares of the impulses.
@@ -254,7 +278,7 @@ impl Change<'_> {
         match self.fault {
             SensorFault::ForceGain { palm } if palm == number => contact.f *= 1.0 + by,
             SensorFault::ForceBias { palm } if palm == number => contact.f += contact.n * by,
-            SensorFault::ForceDelay => contact.f += self.slope_of_force(k, contact) * by,
+            SensorFault::ForceDelay => contact.f += self.later(k, contact),
             SensorFault::ContactOffset { palm: of, axis } if of == number => {
                 let moved = palm.motion(k).pose.R_WP * (DVec3::AXES[axis] * by);
                 contact.c += moved;
@@ -279,8 +303,19 @@ impl Change<'_> {
         }
     }
 
-    fn slope_of_force(&self, k: usize, contact: &Contact) -> DVec3 {
-        let slope = self.slopes[contact.palm][k];
-        if contact.frictionless { slope.project_onto_normalized(contact.n) } else { slope }
+    /// What the force is more that a palm tells later than at sample `k`. From whole samples, as far as there are: what is between two of them has
+    /// less noise than each.
+    fn later(&self, k: usize, contact: &Contact) -> DVec3 {
+        let (palm, times) = (&self.log.palms()[contact.palm], self.log.times());
+        let after = times.partition_point(|t| *t < times[k] + self.value).min(times.len() - 1);
+        let before = after.saturating_sub(1);
+        let off = |k: usize, of: usize| times[k] + self.value - times[of];
+        let nearest = if off(k, before).abs() < off(k, after).abs() { before } else { after };
+        let at = if force(palm, nearest).is_some() { nearest } else { k };
+        let told = |k: usize| force(palm, k).unwrap_or_default();
+        let [own, along] = self.slopes.map(|slopes| slopes[contact.palm][at]);
+        let rest = times[k] + self.value - times[at];
+        let more = told(at) - told(k) + own * rest + along * (self.by - self.value);
+        if contact.frictionless { more.project_onto_normalized(contact.n) } else { more }
     }
 }
