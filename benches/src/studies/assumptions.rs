@@ -173,7 +173,9 @@ fn outcome(found: &ContactEstimate, fault: &Fault, body: &Body) -> (usize, bool)
     let own = found.explanations.iter().filter(explains).find(|of| fault.is(&of.assumption));
     match own {
         Some(own) if own.assumption == first.assumption => {
-            let right = fault.value(body).is_none_or(|value| (own.value - value).abs() < 5.0 * own.deviation);
+            let right = fault
+                .value(body, RATE_OF_FAULTS)
+                .is_none_or(|value| (own.value - value).abs() < 5.0 * own.deviation);
             (2, right)
         }
         Some(own) if first.log_odds - own.log_odds < HUNDREDFOLD => (3, false),

@@ -96,12 +96,12 @@ impl Fault {
         }
     }
 
-    /// What an estimate is to find of it; none where that is no one number.
-    pub(crate) fn value(&self, body: &Body) -> Option<f64> {
+    /// What an estimate is to find of it at so many samples a second; none where that is no one number.
+    pub(crate) fn value(&self, body: &Body, rate: f64) -> Option<f64> {
         match self {
             Self::Gain(share) | Self::Mass(share) => Some(1.0 / (1.0 + share) - 1.0),
             Self::Bias(bias) => Some(-bias * body.mass.mass() * G),
-            Self::Delay(delay) => Some(*delay),
+            Self::Delay(delay) => Some((delay * rate).ceil() / rate),
             Self::Shifted(shift) => Some(-shift * body.size),
             Self::Turned(angle) => Some(-angle.to_radians()),
             _ => None,
