@@ -43,6 +43,7 @@ pub mod planar;
 mod planner;
 mod random;
 mod reach;
+pub mod rolling;
 pub mod space;
 mod theory;
 
