@@ -65,6 +65,8 @@ pub struct Rest {
 const STEP: f64 = 0.02;
 /// An orientation is known to within this, rad.
 const SETTLED: f64 = 1e-11;
+/// Where it is predicted on a body that is drawn, this will do.
+const ROUGHLY: f64 = 1e-4;
 /// Halvings at most: the rule used also halves.
 const HALVINGS: usize = 60;
 /// A body that turns by more than so many rad while no palm turns by more than [`super::palms::SENSED`] falls.
@@ -74,6 +76,15 @@ pub(super) const FALL: f64 = 0.3;
 /// the foot of the fold where that has ended. None if it is at rest nowhere: no closed convex body does that.
 #[must_use]
 pub fn settle<B: RollingBody>(body: &B, palms: &PalmPair, phi: f64) -> Option<Rest> {
+    settle_within(body, palms, phi, SETTLED)
+}
+
+/// The same, as near as predictions need it.
+pub(super) fn settle_roughly<B: RollingBody>(body: &B, palms: &PalmPair, phi: f64) -> Option<Rest> {
+    settle_within(body, palms, phi, ROUGHLY)
+}
+
+fn settle_within<B: RollingBody>(body: &B, palms: &PalmPair, phi: f64, within: f64) -> Option<Rest> {
     let slope = |phi: f64| Balance::at(body, palms, phi).slope;
     let here = slope(phi);
     if here == 0.0 {
@@ -86,7 +97,7 @@ pub fn settle<B: RollingBody>(body: &B, palms: &PalmPair, phi: f64) -> Option<Re
         let far = near + down * STEP;
         let at_far = slope(far);
         if at_far * here <= 0.0 {
-            let root = bracketed(slope, [near, far], [at_near, at_far]);
+            let root = bracketed(slope, [near, far], [at_near, at_far], within);
             return Some(Rest { phi: root, turned: (root - phi).abs() });
         }
         if at_far.is_nan() {
@@ -98,14 +109,17 @@ pub fn settle<B: RollingBody>(body: &B, palms: &PalmPair, phi: f64) -> Option<Re
 }
 
 /// The root between `ends`, where the values `at` have opposite signs: false position with halved values (Illinois).
-fn bracketed(f: impl Fn(f64) -> f64, ends: [f64; 2], at: [f64; 2]) -> f64 {
+fn bracketed(f: impl Fn(f64) -> f64, ends: [f64; 2], at: [f64; 2], within: f64) -> f64 {
     let ([mut a, mut b], [mut fa, mut fb]) = (ends, at);
     for round in 0..HALVINGS {
-        if fb == 0.0 || (b - a).abs() <= SETTLED {
+        if fb == 0.0 || (b - a).abs() <= within {
             break;
         }
         // Every third step halves: a corner's slope jumps, and false position alone creeps there.
         let c = if round % 3 == 2 { 0.5 * (a + b) } else { (a * fb - b * fa) / (fb - fa) };
+        if (c - b).abs() <= within {
+            return c;
+        }
         let fc = f(c);
         if fc * fb <= 0.0 {
             (a, fa) = (b, fb);

@@ -18,6 +18,8 @@ pub(super) struct Belief {
     pub(super) bodies: Vec<DrawnBody>,
     /// Orientations in rad.
     pub(super) phis: Vec<f64>,
+    /// Contacts nearer to one that there is are not taken, rad.
+    pub(super) spacing: f64,
 }
 
 /// Sides of the polygon that stands for the upper bound while that has no end.
@@ -33,12 +35,13 @@ impl Belief {
         known: &PlanarKnowledge,
         track: &Track,
         workspace: &Workspace,
+        spacing: f64,
         count: usize,
         seed: u64,
     ) -> Self {
         let cells = Arc::new(cells(known, workspace.size));
         let mut source = Source::new(seed);
-        let mut belief = Self { cells, bodies: Vec::new(), phis: Vec::new() };
+        let mut belief = Self { cells, bodies: Vec::new(), phis: Vec::new(), spacing };
         for _ in 0..count {
             let body = DrawnBody::draw(&belief.cells, &mut source);
             let centre = track.centre(body.centre());
@@ -83,11 +86,12 @@ fn cells(known: &PlanarKnowledge, size: f64) -> Vec<Cell> {
     let touched: Vec<(DVec2, f64)> = sides.iter().map(touch).collect();
     let mut angle = touched.first().map_or(0.0, |t| t.1);
     let mut all = Vec::with_capacity(touched.len());
+    let real = |k: usize| sides[k % sides.len()].2;
     for (k, ((p, a), (q, b))) in touched.iter().zip(touched.iter().cycle().skip(1)).enumerate() {
         let (from, corner) = (angle, sides[k].1);
         angle += (b - a).rem_euclid(TAU);
         let area = 0.5 * (corner - *p).perp_dot(*q - *p).max(0.0);
-        all.push(Cell { from, to: angle, points: [*p, *q], corner, area });
+        all.push(Cell { from, to: angle, points: [*p, *q], corner, real: [real(k), real(k + 1)], area });
     }
     all
 }

@@ -236,6 +236,7 @@ pub fn explore_rolling(
             workspace: &task.workspace,
             goal: &task.goal,
             risk: task.risk,
+            spacing: task.spacing,
             motion,
         };
         let proposal = match planner.next(&view) {

@@ -1,11 +1,11 @@
 //! Everything that the palms can do with a body, by a flood over their lattice: how to get to what no single motion reaches, and
 //! what nothing reaches.
 
-use super::balance::{Balance, settle};
+use super::balance::{Balance, settle_roughly};
 use super::belief::Belief;
 use super::drawn::{DrawnBody, cell_at};
 use super::gain::removed;
-use super::palms::SENSED;
+use super::palms::PREDICTED;
 use super::planner::{RollPlanError, RollProposal, View};
 use super::predict::Course;
 use super::workspace::{along, pair, radians};
@@ -73,9 +73,9 @@ fn followed(
     mut phi: f64,
 ) -> Option<(f64, Vec<f64>)> {
     let mut thetas = Vec::new();
-    for palms in along(from, to, SENSED) {
+    for palms in along(from, to, PREDICTED) {
         let pair = pair(palms)?;
-        phi = settle(body, &pair, phi)?.phi;
+        phi = settle_roughly(body, &pair, phi)?.phi;
         let balance = Balance::at(body, &pair, phi);
         if balance.s.iter().any(|s| *s > view.workspace.length) {
             return None;
@@ -95,7 +95,8 @@ pub(super) fn far_motion(
     let mut best: Option<RollProposal> = None;
     for (body, phi) in belief.bodies.iter().zip(&belief.phis).take(ROUTED) {
         let places = flood(view, body, *phi);
-        let gains: Vec<f64> = places.iter().map(|p| removed(&belief.cells, body, &p.thetas)).collect();
+        let gains: Vec<f64> =
+            places.iter().map(|p| removed(&belief.cells, belief.spacing, body, &p.thetas)).collect();
         let most = gains.iter().copied().fold(0.0, f64::max);
         if most < least {
             continue;
@@ -136,10 +137,7 @@ fn unreached(view: &View<'_>, belief: &Belief) -> Vec<Direction> {
     for (body, phi) in belief.bodies.iter().zip(&belief.phis) {
         for theta in flood(view, body, *phi).iter().flat_map(|p| &p.thetas) {
             let (cell, theta) = cell_at(&belief.cells, *theta);
-            let part = &belief.cells[cell];
-            // Beside its rim: a contact there takes nothing.
-            let inside = (theta - part.from).min(part.to - theta) > 0.1 * (part.to - part.from);
-            reached[cell] |= inside;
+            reached[cell] |= belief.cells[cell].takes(theta, belief.spacing);
         }
     }
     let least = NAMED * belief.between();

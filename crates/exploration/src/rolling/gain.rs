@@ -15,6 +15,8 @@ pub(super) struct Cell {
     pub(super) points: [DVec2; 2],
     /// Where their tangents meet, m.
     pub(super) corner: DVec2,
+    /// Whether a contact is at either end: else a guess is, and all beside it is new.
+    pub(super) real: [bool; 2],
     /// Area in m^2.
     pub(super) area: f64,
 }
@@ -23,6 +25,12 @@ impl Cell {
     /// The direction in its middle, rad.
     pub(super) fn middle(&self) -> f64 {
         0.5 * (self.from + self.to)
+    }
+
+    /// Whether a contact at `theta` (rad) is taken: not beside one that there is, within `spacing` rad.
+    pub(super) fn takes(&self, theta: f64, spacing: f64) -> bool {
+        let beside = |i: usize, off: f64| self.real[i] && off < spacing;
+        !beside(0, theta - self.from) && !beside(1, self.to - theta)
     }
 }
 
@@ -39,8 +47,10 @@ fn triangle((p, a): (DVec2, f64), (q, b): (DVec2, f64)) -> f64 {
 }
 
 /// Area (m^2) that contacts of `body` at the directions `thetas` (rad) take of what is between the bounds.
-pub(super) fn removed<B: RollingBody>(cells: &[Cell], body: &B, thetas: &[f64]) -> f64 {
-    let mut touched: Vec<(usize, f64)> = thetas.iter().map(|theta| cell_at(cells, *theta)).collect();
+pub(super) fn removed<B: RollingBody>(cells: &[Cell], spacing: f64, body: &B, thetas: &[f64]) -> f64 {
+    let all = thetas.iter().map(|theta| cell_at(cells, *theta));
+    let taken = |at: &(usize, f64)| cells.get(at.0).is_some_and(|cell| cell.takes(at.1, spacing));
+    let mut touched: Vec<(usize, f64)> = all.filter(taken).collect();
     touched.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut sum = 0.0;
     for run in touched.chunk_by(|a, b| a.0 == b.0) {

@@ -6,6 +6,8 @@ use thiserror::Error;
 
 /// Contacts are read whenever a palm has turned by so many rad.
 pub(super) const SENSED: f64 = 0.05;
+/// Contacts are predicted in steps of so many rad: cells are not much smaller.
+pub(super) const PREDICTED: f64 = 0.1;
 
 /// What is felt at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -23,6 +23,8 @@ pub struct View<'a> {
     pub goal: &'a Goal<Direction>,
     /// Largest share of the bodies drawn that a motion may lose.
     pub risk: f64,
+    /// Contacts nearer than this to one that there is are not taken, in rad between normals.
+    pub spacing: f64,
     /// Number of the motion, from 0.
     pub motion: usize,
 }
@@ -116,7 +118,7 @@ pub(super) fn worth(view: &View<'_>, belief: &Belief) -> f64 {
 /// The bodies drawn for a view, of a planner with `seed`.
 pub(super) fn belief(view: &View<'_>, bodies: usize, seed: u64) -> Result<Belief, RollPlanError> {
     let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(view.motion as u64);
-    let belief = Belief::draw(view.known, view.track, view.workspace, bodies, seed);
+    let belief = Belief::draw(view.known, view.track, view.workspace, view.spacing, bodies, seed);
     let none = RollPlanError::NoBody { size: view.workspace.size };
     if belief.bodies.is_empty() { Err(none) } else { Ok(belief) }
 }

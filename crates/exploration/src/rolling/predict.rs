@@ -1,9 +1,9 @@
 //! What a motion of the palms is expected to bring, over all bodies drawn.
 
-use super::balance::{Balance, FALL, settle};
+use super::balance::{Balance, FALL, settle_roughly};
 use super::belief::Belief;
 use super::gain::removed;
-use super::palms::SENSED;
+use super::palms::PREDICTED;
 use super::track::Track;
 use super::workspace::{Workspace, along, pair, radians};
 
@@ -46,9 +46,9 @@ impl Course {
     pub(super) fn then(&self, belief: &Belief, workspace: &Workspace, to: [f64; 2]) -> Self {
         let mut next = self.clone();
         for (k, body) in belief.bodies.iter().enumerate() {
-            for palms in along(self.palms, to, SENSED) {
+            for palms in along(self.palms, to, PREDICTED) {
                 let Some(phi) = next.phis[k] else { break };
-                let rest = pair(palms).and_then(|pair| Some((settle(body, &pair, phi)?, pair)));
+                let rest = pair(palms).and_then(|pair| Some((settle_roughly(body, &pair, phi)?, pair)));
                 next.phis[k] = None;
                 if let Some((rest, pair)) = rest {
                     let balance = Balance::at(body, &pair, rest.phi);
@@ -69,7 +69,7 @@ impl Course {
     /// What it brings.
     pub(super) fn prediction(&self, belief: &Belief, workspace: &Workspace) -> Prediction {
         let count = belief.bodies.len().max(1) as f64;
-        let of = |(body, thetas): (_, &Vec<f64>)| removed(&belief.cells, body, thetas);
+        let of = |(body, thetas): (_, &Vec<f64>)| removed(&belief.cells, belief.spacing, body, thetas);
         let gain = belief.bodies.iter().zip(&self.thetas).map(of).sum::<f64>() / count;
         let lost = self.phis.iter().filter(|phi| phi.is_none()).count() as f64 / count;
         let falls = self.falls as f64 / count;
