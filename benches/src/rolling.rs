@@ -81,7 +81,7 @@ pub struct Rolling {
     pub planning: f64,
     /// Why it ended short, in a word; none where the goal is proven.
     pub short: Option<&'static str>,
-    /// Share of the directions named as out of reach at which the bounds are in fact apart from the body seen by the palms.
+    /// Directions that were named as out of reach.
     pub named: usize,
     /// Whether the body was between the bounds after every reading.
     pub holds: bool,

@@ -31,7 +31,7 @@ const FARTHEST: f64 = 0.45;
 const SAME: f64 = 0.1;
 /// Places at most.
 const MOST: usize = 600;
-/// Bodies on which ways are looked for; what nothing reaches is asked of all.
+/// Bodies on which ways are looked for; all of them if there is none on these.
 const ROUTED: usize = 4;
 /// Of all places with this share of the largest gain the nearest is gone to.
 const SHARE: f64 = 0.5;
@@ -93,7 +93,10 @@ pub(super) fn far_motion(
     least: f64,
 ) -> Result<RollProposal, RollPlanError> {
     let mut best: Option<RollProposal> = None;
-    for (body, phi) in belief.bodies.iter().zip(&belief.phis).take(ROUTED) {
+    for (k, (body, phi)) in belief.bodies.iter().zip(&belief.phis).enumerate() {
+        if k >= ROUTED && best.is_some() {
+            break;
+        }
         let places = flood(view, body, *phi);
         let gains: Vec<f64> =
             places.iter().map(|p| removed(&belief.cells, belief.spacing, body, &p.thetas)).collect();

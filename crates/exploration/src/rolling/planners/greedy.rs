@@ -1,3 +1,4 @@
+use super::idle::Idle;
 use super::{BODIES, first_largest};
 use crate::planner::Reason;
 use crate::rolling::flood::far_motion;
@@ -8,13 +9,14 @@ use crate::rolling::predict::Course;
 #[derive(Clone, Debug)]
 pub struct LargestGap {
     seed: u64,
+    idle: Idle,
 }
 
 impl LargestGap {
     /// With bodies of this seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
-        Self { seed }
+        Self { seed, idle: Idle::default() }
     }
 }
 
@@ -27,6 +29,9 @@ impl RollPlanner for LargestGap {
         let belief = belief(view, BODIES, self.seed)?;
         let all = candidates(view, &belief, &Course::start(&belief, view.track));
         let least = worth(view, &belief);
+        if let Some(instead) = self.idle.instead(view, &belief, least, self.seed)? {
+            return Ok(instead);
+        }
         match first_largest(all.iter().map(|c| c.prediction.gain)) {
             Some((k, gain)) if gain > least => Ok(RollProposal {
                 legs: vec![all[k].to],

@@ -1,6 +1,7 @@
 //! Planners of palm motions.
 
 mod greedy;
+mod idle;
 mod near;
 mod random;
 mod rate;

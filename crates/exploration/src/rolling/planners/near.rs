@@ -1,3 +1,4 @@
+use super::idle::Idle;
 use super::{BODIES, first_largest};
 use crate::planner::Reason;
 use crate::rolling::balance::Rest;
@@ -15,16 +16,17 @@ use crate::rolling::predict::Course;
 pub struct NearestGap {
     seed: u64,
     share: f64,
+    idle: Idle,
 }
 
 /// Share of the best gain that is enough.
-const SHARE: f64 = 0.3;
+const SHARE: f64 = 0.5;
 
 impl NearestGap {
     /// With bodies of this seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
-        Self { seed, share: SHARE }
+        Self { seed, share: SHARE, idle: Idle::default() }
     }
 
     /// With another share of the best gain that is enough, in [0, 1]; 1 is greedy.
@@ -44,6 +46,9 @@ impl RollPlanner for NearestGap {
         let start = Course::start(&belief, view.track);
         let all = candidates(view, &belief, &start);
         let least = worth(view, &belief);
+        if let Some(instead) = self.idle.instead(view, &belief, least, self.seed)? {
+            return Ok(instead);
+        }
         let Some((best, gain)) = first_largest(all.iter().map(|c| c.prediction.gain)).filter(|b| b.1 > least)
         else {
             return far_motion(view, &belief, least);

@@ -1,4 +1,5 @@
 use super::BODIES;
+use super::idle::Idle;
 use crate::planner::Reason;
 use crate::rolling::flood::far_motion;
 use crate::rolling::planner::{RollPlanError, RollPlanner, RollProposal, View, belief, candidates, worth};
@@ -17,6 +18,7 @@ pub struct InformationRate {
     seed: u64,
     horizon: usize,
     cost: Cost,
+    idle: Idle,
 }
 
 /// Where the first motion of a course goes, and what it brings.
@@ -31,7 +33,7 @@ impl InformationRate {
     /// Looking `horizon` motions ahead (2 or 3; 1 looks no further than the next), on bodies of this seed.
     #[must_use]
     pub fn new(seed: u64, horizon: usize) -> Self {
-        Self { seed, horizon: horizon.max(1), cost: Cost::Seconds }
+        Self { seed, horizon: horizon.max(1), cost: Cost::Seconds, idle: Idle::default() }
     }
 
     /// Per radian of palm motion in place of per second.
@@ -60,6 +62,9 @@ impl RollPlanner for InformationRate {
     fn next(&mut self, view: &View<'_>) -> Result<RollProposal, RollPlanError> {
         let belief = belief(view, BODIES, self.seed)?;
         let least = worth(view, &belief);
+        if let Some(instead) = self.idle.instead(view, &belief, least, self.seed)? {
+            return Ok(instead);
+        }
         // Courses, each with the first of its motions.
         let mut beam: Vec<(Course, Option<First>)> = vec![(Course::start(&belief, view.track), None)];
         let mut best: Option<(f64, First)> = None;
