@@ -1,7 +1,6 @@
 use super::idle::Idle;
 use super::{BODIES, first_largest};
 use crate::planner::Reason;
-use crate::rolling::flood::far_motion;
 use crate::rolling::planner::{RollPlanError, RollPlanner, RollProposal, View, belief, candidates, worth};
 use crate::rolling::predict::Course;
 
@@ -38,7 +37,7 @@ impl RollPlanner for LargestGap {
                 expected: Some(all[k].prediction),
                 reason: Reason::Best,
             }),
-            _ => far_motion(view, &belief, least),
+            _ => self.idle.far(view, &belief, least, self.seed),
         }
     }
 }

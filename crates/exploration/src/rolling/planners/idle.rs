@@ -12,17 +12,22 @@ use crate::rolling::planner::{RollPlanError, RollProposal, View, targets};
 pub(super) struct Idle {
     touches: usize,
     motions: usize,
+    /// Contacts when it was first found that nothing reaches what is left, and how often since.
+    touches_then: usize,
+    tries: usize,
 }
 
 /// Motions without a contact after which a place farther away is looked for, and after which the body is shaken.
 const FAR: usize = 2;
 const SHAKEN: usize = 4;
+/// Times that a body is shaken before it is believed that nothing reaches what is left.
+const TRIES: usize = 5;
 
 impl Idle {
     /// The motion to be made in place of a planner's own, if those before brought nothing.
     ///
     /// # Errors
-    /// Those of [`far_motion`].
+    /// Those of [`Self::far`].
     pub(super) fn instead(
         &mut self,
         view: &View<'_>,
@@ -35,8 +40,33 @@ impl Idle {
         self.touches = touches;
         match self.motions {
             0..FAR => Ok(None),
-            FAR..SHAKEN => far_motion(view, belief, least).map(Some),
+            FAR..SHAKEN => self.far(view, belief, least, seed).map(Some),
             _ => Ok(Some(shaken(view, seed))),
+        }
+    }
+
+    /// The way to a place farther away. That there is none is believed when other bodies drawn, after motions that let the body lie
+    /// otherwise, say so too, with no contact in between.
+    ///
+    /// # Errors
+    /// [`RollPlanError::Unreachable`] after so many tries.
+    pub(super) fn far(
+        &mut self,
+        view: &View<'_>,
+        belief: &Belief,
+        least: f64,
+        seed: u64,
+    ) -> Result<RollProposal, RollPlanError> {
+        let touches = view.known.touches();
+        if touches > self.touches_then {
+            (self.touches_then, self.tries) = (touches, 0);
+        }
+        match far_motion(view, belief, least) {
+            Err(RollPlanError::Unreachable { .. }) if self.tries < TRIES => {
+                self.tries += 1;
+                Ok(shaken(view, seed))
+            }
+            way => way,
         }
     }
 }

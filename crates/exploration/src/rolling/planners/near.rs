@@ -3,7 +3,6 @@ use super::{BODIES, first_largest};
 use crate::planner::Reason;
 use crate::rolling::balance::Rest;
 use crate::rolling::belief::Belief;
-use crate::rolling::flood::far_motion;
 use crate::rolling::metric::{PalmsInBody, distance};
 use crate::rolling::planner::{
     Candidate, RollPlanError, RollPlanner, RollProposal, View, belief, candidates, worth,
@@ -51,7 +50,7 @@ impl RollPlanner for NearestGap {
         }
         let Some((best, gain)) = first_largest(all.iter().map(|c| c.prediction.gain)).filter(|b| b.1 > least)
         else {
-            return far_motion(view, &belief, least);
+            return self.idle.far(view, &belief, least, self.seed);
         };
         let good = (0..all.len()).filter(|k| all[*k].prediction.gain >= self.share * gain);
         let way = |k: &usize| mean_distance(view, &belief, &start, &all[*k]);

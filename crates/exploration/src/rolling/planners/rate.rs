@@ -1,7 +1,6 @@
 use super::BODIES;
 use super::idle::Idle;
 use crate::planner::Reason;
-use crate::rolling::flood::far_motion;
 use crate::rolling::planner::{RollPlanError, RollPlanner, RollProposal, View, belief, candidates, worth};
 use crate::rolling::predict::{Course, Prediction};
 
@@ -91,7 +90,7 @@ impl RollPlanner for InformationRate {
             Some((_, (to, prediction))) => {
                 Ok(RollProposal { legs: vec![to], expected: Some(prediction), reason: Reason::Best })
             }
-            None => far_motion(view, &belief, least),
+            None => self.idle.far(view, &belief, least, self.seed),
         }
     }
 }
