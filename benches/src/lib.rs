@@ -25,6 +25,7 @@
 mod diagram;
 mod machine;
 pub mod reaching;
+pub mod rolling;
 mod timing;
 
 pub mod charts;

@@ -114,6 +114,7 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "exploration.md",
         "touches and way that planners take to a gap, false certificates under noise",
     ),
+    ("rolling", "rolling.md", "radians and seconds of palm motion that planners take to a gap in the plane"),
     (
         "shape_fits",
         "shape-fits.md",

@@ -10,6 +10,7 @@ mod parallel_palms;
 mod planar_bounds;
 mod reaching;
 mod reconstruction;
+mod rolling;
 mod shared;
 
 use crate::{Budget, Diagram};
@@ -39,6 +40,7 @@ pub const ALL: &[Chart] = &[
     contact_loss::CHART,
     planar_bounds::CHART,
     reaching::CHART,
+    rolling::CHART,
 ];
 
 #[cfg(test)]

@@ -33,6 +33,7 @@ mod planar_observability;
 mod planar_tally;
 mod pushes;
 mod reaching;
+mod rolling;
 mod rows;
 mod shape_fits;
 mod streaming;
@@ -77,6 +78,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("planar_observability", || in_words(planar_observability::main())),
     ("pushes", || in_words(pushes::main())),
     ("reaching", || in_words(reaching::main())),
+    ("rolling", || in_words(rolling::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),
     ("tilting_palms", || in_words(tilting_palms::main())),

@@ -26,6 +26,8 @@
 //! # }
 //! ```
 //!
+//! A body between palms is felt where it lies: [`rolling`] plans how the palms turn, in the plane.
+//!
 //! All lengths are in m, all coordinates in the body's frame. The same seeds give the same touches to the last bit: nothing here
 //! runs in more than one thread.
 
@@ -43,6 +45,7 @@ pub mod planar;
 mod planner;
 mod random;
 mod reach;
+pub mod rolling;
 pub mod space;
 mod theory;
 

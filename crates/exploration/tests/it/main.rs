@@ -7,3 +7,4 @@
 mod closed_loop;
 mod oracle;
 mod reaching;
+mod rolling;

@@ -1,0 +1,123 @@
+use super::{SIZE, body, palms};
+use exploration::generators::Family;
+use exploration::planar::{Noise, PlanarKnowledge};
+use exploration::rolling::{
+    InformationRate, LargestGap, NearestGap, PalmSweep, RandomTurns, RollEnd, RollOutcome, RollPlanner,
+    RollStep, RollTask, RollingBody, Workspace, explore_rolling,
+};
+use exploration::{Confidence, Goal, Heading, Knowledge, Spending};
+use shape_bounds::planar::Direction;
+
+/// All planners; a test that runs over them runs over every one.
+fn planners(seed: u64) -> Vec<Box<dyn RollPlanner>> {
+    vec![
+        Box::new(LargestGap::new(seed)),
+        Box::new(NearestGap::new(seed)),
+        Box::new(InformationRate::new(seed, 2)),
+        Box::new(InformationRate::new(seed, 2).per_radian()),
+        Box::new(PalmSweep::new()),
+        Box::new(RandomTurns::new(seed)),
+    ]
+}
+
+fn task(gap: f64) -> RollTask {
+    RollTask { radians: 40.0, ..RollTask::new(Goal::Gap(gap), Workspace::for_size(SIZE)) }
+}
+
+/// Largest amount, in m, by which the true body protrudes from the bounds.
+fn protrusion(known: &PlanarKnowledge, family: Family, seed: u64) -> f64 {
+    let truth = body(family, seed);
+    let off = |u: &Direction| {
+        let (low, high) = known.support(*u);
+        let h = truth.farthest(u.angle()).dot(u.get());
+        (low - h).max(h - high)
+    };
+    Direction::spread(90).iter().map(off).fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn run(
+    planner: &mut dyn RollPlanner,
+    family: Family,
+    seed: u64,
+    task: &RollTask,
+) -> (RollOutcome, Vec<RollStep>) {
+    let mut known = PlanarKnowledge::exact();
+    let mut steps = Vec::new();
+    let outcome = explore_rolling(&mut known, planner, &mut palms(family, seed), task, |step, known| {
+        steps.push(*step);
+        assert!(protrusion(known, family, seed) < 1e-9, "{family:?} {seed} after {step:?}");
+    });
+    (outcome.unwrap(), steps)
+}
+
+#[test]
+fn the_body_is_between_the_bounds_at_every_step_of_every_planner() {
+    for family in Family::ALL {
+        for mut planner in planners(3) {
+            let (outcome, steps) = run(&mut *planner, family, 3, &task(0.1));
+            let proven = outcome.certificate().proven;
+            assert!(steps.windows(2).all(|w| w[1].progress <= w[0].progress + 1e-12), "{}", planner.name());
+            assert!(steps.windows(2).all(|w| w[1].radians >= w[0].radians && w[1].seconds >= w[0].seconds));
+            assert_eq!(steps.last().unwrap().progress, proven);
+            assert_eq!(matches!(outcome, RollOutcome::Reached(_)), proven <= 0.1);
+        }
+    }
+}
+
+#[test]
+fn planned_motions_reach_a_gap() {
+    let mut reached = 0;
+    for seed in 0..6 {
+        let mut planner = InformationRate::new(seed, 2).per_radian();
+        let (outcome, _) = run(&mut planner, Family::Sum, seed, &task(0.1));
+        reached += usize::from(matches!(outcome, RollOutcome::Reached(_)));
+    }
+    assert!(reached >= 4, "{reached} of 6");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_motions_in_any_number_of_threads() {
+    let one = |k: usize| run(&mut *planners(5).swap_remove(k), Family::Egg, 5, &task(0.1));
+    let alone: Vec<_> = (0..planners(5).len()).map(one).collect();
+    let together: Vec<_> = std::thread::scope(|scope| {
+        let all: Vec<_> = (0..alone.len()).map(|k| scope.spawn(move || one(k))).collect();
+        all.into_iter().map(|t| t.join().unwrap()).collect()
+    });
+    assert_eq!(alone, together);
+}
+
+/// Palms that hardly move see little: what is left is said, and lies beyond what was felt.
+#[test]
+fn normals_that_no_motion_reaches_are_named() {
+    let narrow =
+        Workspace { angles: [[0.6, 0.9], [2.2, 2.5]], wedge: [1.4, 1.8], ..Workspace::for_size(SIZE) };
+    let task = RollTask { workspace: narrow, ..task(0.05) };
+    for mut planner in planners(2).into_iter().take(4) {
+        let (outcome, steps) = run(&mut *planner, Family::Egg, 2, &task);
+        let RollOutcome::Short { end: RollEnd::Unreachable { directions }, .. } = outcome else {
+            panic!("{}: {outcome:?}", planner.name());
+        };
+        assert!(!directions.is_empty());
+        let felt = || steps.iter().flat_map(|s| s.reading.contacts.map(|c| c.normal));
+        let nearest = felt().map(|n| n.angle_to(directions[0])).fold(f64::INFINITY, f64::min);
+        assert!(nearest > 0.1, "{} {nearest}", planner.name());
+    }
+}
+
+#[test]
+fn under_noise_bounds_hold_and_the_goal_is_proven() {
+    let spending = Spending::Budget(60);
+    let (mut wrong, mut reached) = (0, 0);
+    for seed in 0..8 {
+        let confidence = Confidence::new(0.95, spending).unwrap();
+        let mut known = PlanarKnowledge::noisy(Noise { point: 1.5e-3, normal: 2e-3, confidence });
+        let mut hands = palms(Family::Sum, seed).with_noise(1.5e-3, 2e-3, seed);
+        let mut planner = InformationRate::new(seed, 1).per_radian();
+        let task = RollTask { spending: Some(spending), ..task(0.2) };
+        let outcome = explore_rolling(&mut known, &mut planner, &mut hands, &task, |_, _| ()).unwrap();
+        wrong += usize::from(protrusion(&known, Family::Sum, seed) > 1e-9);
+        reached += usize::from(matches!(outcome, RollOutcome::Reached(_)));
+    }
+    // At 95 % more than 2 of 8 have a probability of six in a thousand.
+    assert!(wrong <= 2 && reached >= 5, "{wrong} {reached}");
+}
