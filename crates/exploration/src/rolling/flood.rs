@@ -135,7 +135,7 @@ fn proposed(view: &View<'_>, belief: &Belief, legs: Vec<[f64; 2]>) -> RollPropos
 const NAMED: f64 = 0.01;
 
 /// Middles of the cells that on no body are reached, the largest first; the largest of all if each is reached by some.
-fn unreached(view: &View<'_>, belief: &Belief) -> Vec<Direction> {
+pub(super) fn unreached(view: &View<'_>, belief: &Belief) -> Vec<Direction> {
     let mut reached = vec![false; belief.cells.len()];
     for (body, phi) in belief.bodies.iter().zip(&belief.phis) {
         for theta in flood(view, body, *phi).iter().flat_map(|p| &p.thetas) {

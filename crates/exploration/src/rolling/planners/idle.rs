@@ -4,7 +4,7 @@ use crate::knowledge::Knowledge;
 use crate::planner::Reason;
 use crate::random::Source;
 use crate::rolling::belief::Belief;
-use crate::rolling::flood::far_motion;
+use crate::rolling::flood::{far_motion, unreached};
 use crate::rolling::planner::{RollPlanError, RollProposal, View, targets};
 
 /// Counts motions that brought no contact.
@@ -20,6 +20,8 @@ pub(super) struct Idle {
 /// Motions without a contact after which a place farther away is looked for, and after which the body is shaken.
 const FAR: usize = 2;
 const SHAKEN: usize = 4;
+/// Motions without a contact after which what is left counts as out of reach, whatever bodies drawn say.
+const GIVEN_UP: usize = 16;
 /// Times that a body is shaken before it is believed that nothing reaches what is left.
 const TRIES: usize = 5;
 
@@ -41,7 +43,8 @@ impl Idle {
         match self.motions {
             0..FAR => Ok(None),
             FAR..SHAKEN => self.far(view, belief, least, seed).map(Some),
-            _ => Ok(Some(shaken(view, seed))),
+            SHAKEN..GIVEN_UP => Ok(Some(shaken(view, seed))),
+            _ => Err(RollPlanError::Unreachable { directions: unreached(view, belief) }),
         }
     }
 
