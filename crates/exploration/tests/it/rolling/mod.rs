@@ -9,6 +9,11 @@ use exploration::rolling::{RollingBody, SimulatedPalms, Workspace};
 use glam::DVec2;
 use shape_bounds::planar::Direction;
 
+/// What a test draws: a decisive few, or all where `RECON_TESTS=all` asks for it.
+pub(crate) fn few_or_all<T>(few: T, all: T) -> T {
+    if std::env::var_os("RECON_TESTS").is_some_and(|v| v == "all") { all } else { few }
+}
+
 /// A generator's body of uniform density.
 pub(crate) struct Body {
     pub(crate) outline: Outline,
