@@ -1,5 +1,6 @@
 use super::axes::ANY_TURN;
 use super::body::{Body, CONSTANTS};
+use super::changed::Averages;
 use super::cold;
 use super::explanations::explanations;
 use super::joint::pose_errors;
@@ -7,7 +8,7 @@ use super::mode_odds::{EstimatedModes, mode_odds};
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
 use super::problem::{Problem, Units};
-use super::record::{Contact, Record};
+use super::record::Record;
 use super::relabel::surer;
 use super::rivals::still;
 use super::rows::Rows;
@@ -18,7 +19,7 @@ use super::slips::Known;
 use super::solve::{Covariances, Solved};
 use super::stage::Stage;
 use super::state::Motion;
-use super::suspects::{Change, Scores, Sensors, slopes_of_forces, suspects};
+use super::suspects::{Scores, Sensors, slopes_of_forces, suspects};
 use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
 use crate::faults::{Explanation, Suspect};
@@ -219,7 +220,7 @@ impl Source<'_> {
         let short = (duration < needed).then_some(Reason::TooShort { duration, needed });
         let told = !exact && thinned.is_none() && (last || slips.is_empty());
         let wrong = match options.suspects && told {
-            true => self.suspects(&stage, &covariances, &motions, (log, &modes, longest)),
+            true => self.suspects(&stage, &covariances, &motions, (log, longest)),
             false => Wrong::default(),
         };
         let odds = || {
@@ -279,18 +280,12 @@ impl Source<'_> {
         stage: &Stage,
         covariances: &Covariances<CONSTANTS>,
         motions: &[(Motion, Deviations)],
-        (record, modes, longest): (&Record, &[[ContactMode; MOST_PALMS]], f64),
+        (record, longest): (&Record, f64),
     ) -> Wrong {
-        let remade = |change: &Change| {
-            let apply = |k: usize, contact: &mut Contact, origin| change.apply(k, contact, origin);
-            let mut record = self.with_blows(record.changed(self.log, self.options, apply)?);
-            record.set_modes(modes);
-            let open = record.with_gaps_open(self.units.time());
-            Some(open.as_ref().unwrap_or(&record).averaged(longest))
-        };
         let Stage { problem, solved, free, .. } = stage;
         let slopes = slopes_of_forces(self.log, &self.units);
-        let sensors = Sensors::new(self.log, (motions, solved.unknowns.body), &slopes, &remade);
+        let averages = Averages::new(self.log, &self.options.noise, [record, problem.record], longest);
+        let sensors = Sensors::new(self.log, (motions, solved.unknowns.body), &slopes, &averages);
         let scores = Scores::new(&sensors, problem, solved);
         let suspects = scores.map_or_else(Vec::new, |scores| suspects(&scores, covariances));
         let evidence = stage.evidence(record, covariances);

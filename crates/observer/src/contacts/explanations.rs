@@ -183,7 +183,7 @@ impl Correction {
         if value.is_nan() || value.abs() > FARTHEST * fault.natural(&problem.units) {
             return None;
         }
-        let record = sensors.without(fault, value)?;
+        let record = sensors.without(fault, value);
         let own = problem.on(&record);
         let solved = solve::<CONSTANTS>(&own, self.unknowns.clone(), MOST, ENOUGH[1])?;
         let sensors = sensors.of_body(solved.unknowns.body);

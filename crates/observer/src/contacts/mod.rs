@@ -4,6 +4,7 @@ mod axes;
 mod backwards;
 mod between;
 mod body;
+mod changed;
 mod cold;
 mod directly;
 mod elimination;

@@ -183,25 +183,6 @@ impl Record {
     /// direction of friction, the ratio by which modes are told, and how a force changes over an interval. The noises of both
     /// are taken to be independent; where no force is measured, it is that of the impulses around.
     pub(super) fn new(log: &ContactLog, options: &ContactOptions) -> Option<Self> {
-        Self::built(log, options, None, |_, _, _| {})
-    }
-
-    /// The same of its log where each contact is changed first, with its sample and the record's origin.
-    pub(super) fn changed(
-        &self,
-        log: &ContactLog,
-        options: &ContactOptions,
-        change: impl Fn(usize, &mut Contact, DVec3),
-    ) -> Option<Self> {
-        Self::built(log, options, Some(&self.misread), change)
-    }
-
-    fn built(
-        log: &ContactLog,
-        options: &ContactOptions,
-        known: Option<&[Misread]>,
-        change: impl Fn(usize, &mut Contact, DVec3),
-    ) -> Option<Self> {
         let noise = &options.noise;
         let times = log.times().to_vec();
         let points =
@@ -214,12 +195,8 @@ impl Record {
         let square = points().map(|touch| touch.p_WC.distance_squared(origin)).sum::<f64>();
         let mut contacts: Vec<Vec<Contact>> =
             (0..times.len()).map(|k| contacts_at(log, k, origin, options)).collect();
-        let misread =
-            known.map_or_else(|| misread(&contacts, &times, noise.contact, options.gravity), <[_]>::to_vec);
+        let misread = misread(&contacts, &times, noise.contact, options.gravity);
         mend(&mut contacts, &misread);
-        for (k, contacts) in contacts.iter_mut().enumerate() {
-            contacts.iter_mut().for_each(|contact| change(k, contact, origin));
-        }
         let sampled: Vec<bool> =
             log.palms().iter().map(|palm| impulses::read(palm, noise).is_none()).collect();
         let felt = |k: usize| contacts[k].iter().filter(|contact| sampled[contact.palm]);

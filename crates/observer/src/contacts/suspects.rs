@@ -5,6 +5,7 @@
 //! `1 / sqrt(I)`, and `g / sqrt(I)` is a standard normal number if nothing is wrong (Rao's score test).
 
 use super::body::{Body, CONSTANTS};
+use super::changed::{Averages, ChangeBy};
 use super::equations::Equations;
 use super::noise::{ContactNoiseLevel, force_trace};
 use super::problem::{Problem, Units};
@@ -34,7 +35,7 @@ const SMOOTH: f64 = 0.12;
 const STEP: f64 = 1e-6;
 
 /// A change of what a log says, by a constant of the sensors that is not what it was taken for.
-pub(super) struct Change<'a> {
+struct Change<'a> {
     fault: SensorFault,
     /// Near which the change is small: forces that are late are taken from the samples nearest to when they were by it.
     value: f64,
@@ -45,6 +46,8 @@ pub(super) struct Change<'a> {
     body: &'a Body,
     /// What the forces change by in a unit of time, N/s, by palm and sample; and what is taken for that from `value` on.
     slopes: [&'a [Vec<DVec3>]; 2],
+    /// Of contacts.
+    origin: DVec3,
 }
 
 /// What a log says of the constants of its sensors.
@@ -56,8 +59,8 @@ pub(super) struct Sensors<'a> {
     body: Body,
     /// What the forces change by in a unit of time, N/s, by palm and sample.
     slopes: &'a [Vec<DVec3>],
-    /// Makes the record that a problem is on from changed contacts.
-    remade: &'a dyn Fn(&Change) -> Option<Record>,
+    /// Of which the record is one that a problem is on.
+    averages: &'a Averages<'a>,
 }
 
 impl<'a> Sensors<'a> {
@@ -66,9 +69,9 @@ impl<'a> Sensors<'a> {
         log: &'a ContactLog,
         (motions, body): (&'a [(Motion, Deviations)], Body),
         slopes: &'a [Vec<DVec3>],
-        remade: &'a dyn Fn(&Change) -> Option<Record>,
+        averages: &'a Averages<'a>,
     ) -> Self {
-        Self { log, motions, body, slopes, remade }
+        Self { log, motions, body, slopes, averages }
     }
 
     /// With another body.
@@ -82,14 +85,17 @@ impl<'a> Sensors<'a> {
     }
 
     /// The record of a log whose `fault` is known.
-    pub(super) fn without(&self, fault: SensorFault, value: f64) -> Option<Record> {
+    pub(super) fn without(&self, fault: SensorFault, value: f64) -> Record {
         self.changed(fault, [value, 0.0], self.slopes)
     }
 
     /// With a value of the constant, and a step from there along which the forces have some `slopes`.
-    fn changed(&self, fault: SensorFault, [value, step]: [f64; 2], slopes: &[Vec<DVec3>]) -> Option<Record> {
-        let Self { log, motions, ref body, remade, .. } = *self;
-        remade(&Change { fault, value, by: value + step, log, motions, body, slopes: [self.slopes, slopes] })
+    fn changed(&self, fault: SensorFault, [value, step]: [f64; 2], slopes: &[Vec<DVec3>]) -> Record {
+        let Self { log, motions, ref body, averages, .. } = *self;
+        let slopes = [self.slopes, slopes];
+        let origin = averages.origin();
+        let change = Change { fault, value, by: value + step, log, motions, body, slopes, origin };
+        averages.changed(|k, contact| change.of(k, contact))
     }
 
     /// Constants that the log may have.
@@ -141,7 +147,7 @@ impl<'a> Scores<'a> {
         let Self { sensors, problem, solved, equations, solver, followed, residuals, .. } = self;
         let step = STEP * fault.natural(&problem.units);
         let told = |slopes: &[Vec<DVec3>]| {
-            let record = sensors.changed(fault, [value, step], slopes)?;
+            let record = sensors.changed(fault, [value, step], slopes);
             let changed = Residuals::new(&problem.on(&record), &solved.unknowns)?;
             let by = Residuals::slope(&changed, residuals, step)?;
             let (slope, own, mixed) = residuals.normal(equations, &by)?;
@@ -167,8 +173,7 @@ impl<'a> Scores<'a> {
     }
 }
 
-/// Scores of all constants at a solution with its `motions` at all samples of `log`. `remade` makes the record that the problem is on from
-/// changed contacts.
+/// Scores of all constants at a solution.
 pub(super) fn suspects(scores: &Scores, covariances: &Covariances<CONSTANTS>) -> Vec<Suspect> {
     let problem = scores.problem;
     let scale = scores.solved.misfit().max(1.0).sqrt();
@@ -271,35 +276,33 @@ impl SensorFault {
 }
 
 impl Change<'_> {
-    /// What a contact at sample `k` is then, its position from `origin`.
-    pub(super) fn apply(&self, k: usize, contact: &mut Contact, origin: DVec3) {
+    /// What a contact at sample `k` is different by then.
+    fn of(&self, k: usize, contact: &Contact) -> ChangeBy {
         let palm = &self.log.palms()[contact.palm];
         let (number, by) = (contact.palm + 1, self.by);
+        let none = ChangeBy::default();
         match self.fault {
-            SensorFault::ForceGain { palm } if palm == number => contact.f *= 1.0 + by,
-            SensorFault::ForceBias { palm } if palm == number => contact.f += contact.n * by,
-            SensorFault::ForceDelay => contact.f += self.later(k, contact),
+            SensorFault::ForceGain { palm } if palm == number => ChangeBy { f: contact.f * by, ..none },
+            SensorFault::ForceBias { palm } if palm == number => ChangeBy { f: contact.n * by, ..none },
+            SensorFault::ForceDelay => ChangeBy { f: self.later(k, contact), ..none },
             SensorFault::ContactOffset { palm: of, axis } if of == number => {
-                let moved = palm.motion(k).pose.R_WP * (DVec3::AXES[axis] * by);
-                contact.c += moved;
-                contact.u += contact.W.cross(moved);
+                ChangeBy { c: palm.motion(k).pose.R_WP * (DVec3::AXES[axis] * by), ..none }
             }
             SensorFault::PalmTilt { palm: of, axis } if of == number => {
                 let pose = palm.motion(k).pose;
                 let turn = exponential(pose.R_WP * (DVec3::AXES[axis] * by));
-                let pivot = pose.p_WP - origin;
-                let moved = pivot + turn * (contact.c - pivot);
-                contact.u += contact.W.cross(moved - contact.c);
-                (contact.c, contact.n, contact.f) = (moved, turn * contact.n, turn * contact.f);
+                let turned = |v: DVec3| turn * v - v;
+                let c = turned(contact.c - (pose.p_WP - self.origin));
+                ChangeBy { c, n: turned(contact.n), f: turned(contact.f) }
             }
             SensorFault::Friction if contact.frictionless => {
                 let motion = &self.motions[k].0;
                 let w = self.body.turn(motion.q, motion.L).w;
                 let slip = motion.v + w.cross(contact.c - motion.p) - contact.u;
                 let against = -slip.reject_from_normalized(contact.n).normalize_or_zero();
-                contact.f += against * (by * contact.f.dot(contact.n));
+                ChangeBy { f: against * (by * contact.f.dot(contact.n)), ..none }
             }
-            _ => {}
+            _ => none,
         }
     }
 

@@ -68,9 +68,9 @@ fn bent(record: &Record, longest: f64, deviation: f64) -> bool {
 
 /// A window of samples in the middle one of which there is to be a node, and the samples around it with the same contacts in
 /// the same modes.
-struct Window {
-    own: Range<usize>,
-    around: Range<usize>,
+pub(super) struct Window {
+    pub(super) own: Range<usize>,
+    pub(super) around: Range<usize>,
 }
 
 impl Window {
@@ -85,7 +85,7 @@ impl Window {
 }
 
 /// Windows of an odd number of samples.
-fn windows(record: &Record, longest: f64) -> Vec<Window> {
+pub(super) fn windows(record: &Record, longest: f64) -> Vec<Window> {
     let count = record.times.len();
     let touched = |k: usize| record.contacts[k].iter().map(|contact| (contact.palm, contact.mode));
     let same = |a: usize, b: usize| touched(a).eq(touched(b));
@@ -151,7 +151,7 @@ impl Parabola {
 
 /// Samples, and their weights in the value at the middle of a window: the mean over the window, less what slope and bend of the parabola through
 /// the samples around add to it. With too few of these the middle one stands for all.
-fn weights(window: &Window, times: &[f64]) -> (Range<usize>, Vec<f64>) {
+pub(super) fn weights(window: &Window, times: &[f64]) -> (Range<usize>, Vec<f64>) {
     let one = || {
         let row = Parabola::row(window, times)?;
         let normal: Matrix3<f64> = window.around.clone().map(|k| row(k) * row(k).transpose()).sum();

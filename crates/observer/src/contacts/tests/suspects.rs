@@ -1,6 +1,8 @@
 //! What was taken as known of the sensors, and is not so.
 
 use super::*;
+use crate::contacts::changed::{Averages, ChangeBy};
+use crate::contacts::record::Record;
 use crate::faults::{Assumption, SensorFault, Suspect};
 use crate::reliability::{Reason, Reliability};
 
@@ -122,4 +124,44 @@ fn a_wrong_body_explains_the_log_best() {
     let first = found.explanations[0];
     assert_eq!(first.assumption, Assumption::Body, "{:?}", found.explanations);
     assert!((1.05 * (1.0 + first.value) - 1.0).abs() < 5.0 * first.deviation, "{first:?}");
+}
+
+/// What is made of the averages is what averages of the changed log are: contacts to rounding, impulses to what the trapezoidal rule misses.
+#[test]
+fn changed_averages_are_those_of_the_changed_log() {
+    let (log, longest) = (log(0.2, 500.0), 0.02);
+    let options = options(noise(4e-5, 0.004));
+    let record = |log: &ContactLog| Record::new(log, &options).unwrap();
+    let (whole, by) = (record(&log), 1e-3);
+    let average = whole.averaged(longest);
+    let averages = Averages::new(&log, &options.noise, [&whole, &average], longest);
+    let along = |k: usize| log.palms()[1].motion(k).pose.R_WP * (DVec3::X * by);
+    let moved = averages.changed(|k, contact| match contact.palm {
+        1 => ChangeBy { c: along(k), ..ChangeBy::default() },
+        _ => ChangeBy::default(),
+    });
+    let louder = averages.changed(|_, contact| match contact.palm {
+        1 => ChangeBy { f: contact.f * by, ..ChangeBy::default() },
+        _ => ChangeBy::default(),
+    });
+    let gain = forces(&log, |i, k, f| if i == 1 { f[k] * (1.0 + by) } else { f[k] });
+    for (changed, log) in [(moved, shifted(&log, 1, by)), (louder, gain)] {
+        let expected = record(&log).averaged(longest);
+        // Each has the mean of its contacts for its origin.
+        let off = expected.origin - changed.origin;
+        assert_eq!(changed.samples, expected.samples);
+        for (a, b) in changed.contacts.iter().flatten().zip(expected.contacts.iter().flatten()) {
+            assert!((a.c - b.c).distance(off) < 1e-13 && a.f.distance(b.f) < 1e-13, "{a:?} {b:?}");
+            assert!(a.u.distance(b.u) < 1e-12 && a.n.distance(b.n) < 1e-14, "{a:?} {b:?}");
+        }
+        for (j, interval) in changed.intervals.iter().enumerate() {
+            let [was, is] = [average.intervals[j], expected.intervals[j]];
+            let moment = is.impulse.moment + off.cross(is.impulse.force);
+            let most = 1e-3 * (moment - was.impulse.moment).length().max(1e-9);
+            assert!(interval.impulse.moment.distance(moment) < most, "{j}: {interval:?} {is:?}");
+            let force = is.impulse.force.distance(was.impulse.force);
+            assert!(interval.impulse.force.distance(is.impulse.force) < 1e-3 * force.max(1e-9));
+            assert!(interval.first.distance(is.first) < 1e-3 * is.first.distance(was.first).max(1e-9));
+        }
+    }
 }

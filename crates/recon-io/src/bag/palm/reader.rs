@@ -12,6 +12,9 @@ use recon::object_dynamics::Track;
 /// Force below which a palm is not touched where the mapping does not say it, as a share of the largest.
 pub(super) const LEAST_SHARE: f64 = 0.01;
 
+/// Share of a force below which its noise is for a centre of pressure to be taken from less than that.
+const KNOWN: f64 = 1e-3;
+
 /// Reads the topics of one palm.
 pub(super) struct PalmReader<'a> {
     pub(super) source: Source<'a>,
@@ -200,7 +203,7 @@ impl<'a> PalmReader<'a> {
     pub(super) fn pressed(&self, wrench: &Wrenches, relied_on: bool) -> Result<Touches, Kind> {
         let push = |force: &DVec3| if self.surface == PalmSurface::Plane { force.z } else { force.length() };
         let largest = wrench.forces.values().iter().map(push).fold(0.0, f64::max);
-        let least = self.palm.least_force.unwrap_or(LEAST_SHARE * largest);
+        let least = self.palm.least_force.unwrap_or_else(|| least(wrench.forces.values(), largest));
         let mut readings = Vec::with_capacity(wrench.forces.times().len());
         for (k, &t) in wrench.forces.times().iter().enumerate() {
             let (force, torque) = (wrench.forces.values()[k], wrench.torques.values()[k]);
@@ -237,5 +240,46 @@ impl<'a> PalmReader<'a> {
             return Err(Kind::Array { topic, t: 0.0, found, expected: format!("`{joint}`"), key });
         }
         self.track(topic, times, torques)
+    }
+}
+
+/// Below which a palm is not touched whose forces are at most so large, N: of forces that are as good as exact small ones still say where they act.
+fn least(forces: &[DVec3], largest: f64) -> f64 {
+    (LEAST_SHARE * largest).min(roughness(forces) / KNOWN)
+}
+
+/// Standard deviation of the noise of each axis, by the median of the third differences, of which smooth forces have next to none.
+fn roughness(forces: &[DVec3]) -> f64 {
+    let third = |f: &[DVec3]| (f[3] - f[0] + 3.0 * (f[1] - f[2])).length_squared();
+    let mut squares: Vec<f64> = forces.windows(4).map(third).collect();
+    if squares.is_empty() {
+        return f64::INFINITY;
+    }
+    let middle = squares.len() / 2;
+    // White noise of unit deviation has 20 in each of three axes, and a median of 0.79 times the mean.
+    (*squares.select_nth_unstable_by(middle, f64::total_cmp).1 / (3.0 * 20.0 * 0.79)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A force that dips to 0.2 % of its largest, with as much noise as alternating signs of a length are.
+    fn forces(noise: f64) -> Vec<DVec3> {
+        let of = |k: i32| {
+            let t = f64::from(k) * 1e-3;
+            let sign = if (k * k + 3 * k * k * k / 7 + k / 3) % 2 == 0 { 1.0 } else { -1.0 };
+            DVec3::new(0.0, 0.0, 1.002 + (3.0 * t).cos()) + DVec3::splat(noise * sign)
+        };
+        (0..2000).map(of).collect()
+    }
+
+    #[test]
+    fn a_small_force_says_where_it_acts_unless_it_is_noisy() {
+        for (noise, expected) in [(0.0, 1e-5..1e-4), (1e-6, 4e-4..4e-3), (1e-3, 0.02..0.02003)] {
+            let least = least(&forces(noise), 2.002);
+            assert!(expected.contains(&least), "{noise}: {least}");
+        }
+        assert_eq!(least(&[DVec3::Z; 3], 1.0), LEAST_SHARE);
     }
 }
