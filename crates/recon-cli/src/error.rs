@@ -53,7 +53,8 @@ pub(crate) enum CliError {
     #[error("`{name}` is no format; these are: {names}")]
     NoFormat { name: String, names: String },
     #[error(
-        "a sensor log is read with its scene (--scene): gravity, and of palms that are not three planes through the origin what they are"
+        "a sensor log is read with its scene (--scene): gravity, of palms that are not three planes through the origin what they are, and \
+         unless they are to be estimated (--identify) mass and inertia of the object; `recon init` writes one to start from"
     )]
     LogNeedsScene,
     #[error("the mapping of topics cannot be used")]

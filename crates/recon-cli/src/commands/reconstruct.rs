@@ -11,7 +11,7 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     if args.without_forces {
         return super::without_forces::run(args, console);
     }
-    let path = args.scene.as_ref().ok_or(CliError::UnknownBody)?;
+    let path = args.scene.as_ref().ok_or(CliError::LogNeedsScene)?;
     let scene = match Scene::read(path) {
         Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
             return super::planar::reconstruct(args, path, console);

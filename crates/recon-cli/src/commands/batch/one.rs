@@ -153,7 +153,7 @@ pub(super) fn estimate_one(args: &BatchArgs, log: &Path) -> Row {
 }
 
 fn made(args: &BatchArgs, log: &Path, folder: &Path, begun: Instant) -> Result<Row, CliError> {
-    let scene_path = scene_of(args, log).ok_or(CliError::UnknownBody)?;
+    let scene_path = scene_of(args, log).ok_or(CliError::LogNeedsScene)?;
     let scene = Scene::read(&scene_path)?;
     let mapping = args.mapping.as_deref().filter(|_| is_bag(log));
     let loaded = load(LogSource { path: log, scene: &scene, mapping })?;

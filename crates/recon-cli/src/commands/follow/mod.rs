@@ -29,7 +29,7 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     let output = args.output.as_ref().filter(|path| !is_standard_output(path));
     let inputs: Vec<_> = [&args.log].into_iter().chain(&args.scene).cloned().collect();
     let target = output.map(|path| FileTarget::new(path, &inputs)).transpose()?;
-    let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::UnknownBody)?;
+    let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::LogNeedsScene)?;
     if is_bag(&args.log) {
         return Err(CliError::BagFollowed { path: args.log.clone() });
     }
