@@ -50,7 +50,7 @@ pub use number::{brief, brief_to, with_brief_numbers};
 pub use output::{
     AtomicFile, FileTarget, FolderTarget, OutputError, OutputFolder, Summed, fingerprint, is_standard_output,
 };
-pub use planar_figures::{FigureCurve, FigurePanel, write_figures};
+pub use planar_figures::{FigureCurve, FigureFrame, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities, implausible_contacts};
 pub use report::{
     BatchPage, Bound, Bounds, EstimateData, Evidence, EvidenceValue, ExplorationPage, FiguresPage, Level,

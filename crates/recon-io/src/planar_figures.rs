@@ -1,5 +1,9 @@
 //! Pictures of a planar reconstruction as one SVG file: shape, orientation, radius functions, errors.
 
+mod frames;
+
+pub use frames::FigureFrame;
+
 use crate::number::on_scale;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -32,6 +36,8 @@ pub struct FigurePanel {
     pub curves: Vec<FigureCurve>,
     /// Stretches to the right over which the panel is shaded.
     pub shaded: Vec<[f64; 2]>,
+    /// What is shown in turn with the curves, which are the last of it; none of a picture that stands still.
+    pub frames: Vec<FigureFrame>,
 }
 
 const SIZE: [f64; 2] = [460.0, 330.0];
@@ -169,14 +175,10 @@ fn draw(panel: &FigurePanel) -> String {
     for (k, curve) in panel.curves.iter().enumerate() {
         draw_band(curve, k % COLOURS, &frame, &mut out);
     }
-    for (k, curve) in panel.curves.iter().enumerate() {
-        draw_line(
-            &curve.reference,
-            (k % COLOURS, " stroke-dasharray=\"5 4\" stroke-opacity=\".75\""),
-            &frame,
-            &mut out,
-        );
-        draw_curve(curve, k % COLOURS, &frame, &mut out);
+    if panel.frames.is_empty() {
+        draw_curves(&panel.curves, &frame, &mut out);
+    } else {
+        frames::draw_in_turn(&panel.frames, &panel.curves, &frame, &mut out);
     }
     // Names in the line of the title, where no curve runs, the last one outermost.
     let mut x = right;
@@ -208,6 +210,15 @@ fn draw_band(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut String
             "<polygon class=\"c{colour}\" points=\"{}\" fill=\"currentColor\" fill-opacity=\".2\"/>",
             corners.join(" ")
         );
+    }
+}
+
+/// Each with what it is compared with.
+fn draw_curves(curves: &[FigureCurve], frame: &Frame, out: &mut String) {
+    for (k, curve) in curves.iter().enumerate() {
+        let dashed = (k % COLOURS, " stroke-dasharray=\"5 4\" stroke-opacity=\".75\"");
+        draw_line(&curve.reference, dashed, frame, out);
+        draw_curve(curve, k % COLOURS, frame, out);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Side;
 use recon::exploration::{Goal, Heading, Knowledge, Outcome, Proposal, least_gap, least_touches};
-use recon_io::{ExplorationPage, FigureCurve, FigurePanel, Level, TouchRow, Verdict, brief_to};
+use recon_io::{ExplorationPage, FigureCurve, FigureFrame, FigurePanel, Level, TouchRow, Verdict, brief_to};
 
 /// The course of an exploration.
 #[derive(Default)]
@@ -13,6 +13,27 @@ pub(super) struct Course {
     pub(super) sizes: Vec<[f64; 2]>,
     /// Way in all, in rad.
     pub(super) way: f64,
+    /// Pictures after each, by panel.
+    pub(super) pictures: Vec<Vec<FigurePanel>>,
+}
+
+/// Frames of a panel at most.
+const FRAMES: usize = 40;
+
+/// Pictures that are shown in turn: each of the last ones after those that were there before, if there are many some of them. They are told
+/// apart by `what`, with their number.
+pub(super) fn in_turn(
+    mut last: Vec<FigurePanel>,
+    before: Vec<Vec<FigurePanel>>,
+    what: &str,
+) -> Vec<FigurePanel> {
+    let every = before.len().div_ceil(FRAMES).max(1);
+    for (k, pictures) in before.into_iter().enumerate().step_by(every) {
+        for (panel, picture) in last.iter_mut().zip(pictures) {
+            panel.frames.push(FigureFrame { label: format!("{what} {}", k + 1), curves: picture.curves });
+        }
+    }
+    last
 }
 
 /// Everything that the page shows.
@@ -21,14 +42,15 @@ pub(super) fn page<S: Side>(
     known: &S::Known,
     ended: &Outcome<<S::Known as Knowledge>::Heading>,
     statement: &str,
-    Course { mut rows, sizes, way }: Course,
+    Course { mut rows, sizes, way, pictures }: Course,
     next: Option<&Proposal<S::Known>>,
 ) -> ExplorationPage {
     let certificate = ended.certificate();
     let level = if ended.is_reached() { Level::Good } else { Level::Caution };
     let goal = certificate.goal;
     let mut panels = vec![progress_panel(S::DIMENSION, &rows, &goal), sizes_panel(&sizes, S::UNIT)];
-    panels.extend(S::pictures(known, next.map(|p| p.along.coordinates()).as_deref()));
+    let last = S::pictures(known, next.map(|p| p.along.coordinates()).as_deref());
+    panels.extend(in_turn(last, pictures, "touch"));
     if let Some(next) = next {
         let along = next.along.coordinates();
         let here = rows.last().map_or(0.0, |row| {
@@ -96,7 +118,7 @@ fn facts<S: Side>(
 
 fn caption<H: Heading>(dimension: usize, goal: &Goal<H>) -> String {
     let bounds = "The body lies between the bounds. Strokes: contacts with their outward \
-                  normals; the long one: where to touch next.";
+                  normals; the long one: where to touch next, and in the pictures of each touch where that was.";
     let line = match goal {
         Goal::Gap(_) if dimension == 2 => {
             " Dashed: n*, the gap that no planner gets below around an ellipse of any shape (asymptotic formula)."

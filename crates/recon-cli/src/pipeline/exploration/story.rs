@@ -38,7 +38,8 @@ pub(crate) fn explored<S: Side>(
     let task = Task { spending: settings.spending(), width, ..Task::new(goal, settings.budget) };
     let mut course = Course::default();
     let mut before = f64::INFINITY;
-    let ended = explore(&mut known, &mut *planner, finger, &task, |step, _| {
+    let ended = explore(&mut known, &mut *planner, finger, &task, |step, known| {
+        course.pictures.push(S::pictures(known, Some(&step.proposal.along.coordinates())));
         course.way += step.turned;
         course.rows.push(row::<S>(step, before));
         course.sizes.push([step.lower, step.upper]);
