@@ -226,6 +226,14 @@ pub(crate) enum CliError {
     Check(#[from] CheckError),
     #[error("the object cannot be explored")]
     Explore(#[from] recon::exploration::ExploreError),
+    #[error("the object cannot be rolled")]
+    Roll(#[from] recon::exploration::rolling::RollError),
+    #[error("the object does not lie between the palms")]
+    Palms(#[from] recon::exploration::rolling::PalmsError),
+    #[error("`{name}` plans nothing for {what}; use {instead}")]
+    Planner { name: String, what: &'static str, instead: &'static str },
+    #[error("{} is a scene of space; palms turn in the plane (--rolling)", path.display())]
+    RolledInSpace { path: PathBuf },
     #[error("the confidence cannot be stated")]
     Confidence(#[from] recon::exploration::ConfidenceError),
     #[error("the goal cannot be had: {0}")]
@@ -315,6 +323,10 @@ impl CliError {
             | Self::PlanarNoise
             | Self::Export(_)
             | Self::Explore(_)
+            | Self::Roll(_)
+            | Self::Palms(_)
+            | Self::Planner { .. }
+            | Self::RolledInSpace { .. }
             | Self::Confidence(_)
             | Self::Goal(_)
             | Self::NoGoal { .. }

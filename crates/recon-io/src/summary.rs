@@ -23,6 +23,8 @@ pub enum SummaryOf {
     Bounds,
     /// Touches, one after the other, to a goal.
     Exploration,
+    /// Motions of palms, one after the other, to a goal.
+    Rolling,
     /// A simulated scene.
     Simulation,
     /// An object or a scene for simulators.
@@ -44,6 +46,7 @@ impl SummaryOf {
             Self::PlaneWithoutForces => "plane-without-forces/1",
             Self::Bounds => "bounds/1",
             Self::Exploration => "exploration/1",
+            Self::Rolling => "rolling/1",
             Self::Simulation => "simulation/1",
             Self::Export => "export/1",
             Self::Start => "start/1",

@@ -2,6 +2,7 @@
 
 use super::palms::{Palms, PalmsError, Reading, SENSED};
 use super::planner::{RollPlanError, RollPlanner, RollProposal, View};
+use super::predict::Prediction;
 use super::track::Track;
 use super::workspace::{Workspace, WorkspaceError, along, radians};
 use crate::certificate::Certificate;
@@ -10,6 +11,7 @@ use crate::goal::{Goal, GoalError};
 use crate::heading::Heading;
 use crate::knowledge::{Knowledge, KnowledgeError};
 use crate::planar::PlanarKnowledge;
+use crate::planner::Reason;
 use shape_bounds::planar::Direction;
 use thiserror::Error;
 
@@ -62,6 +64,8 @@ impl RollTask {
 pub struct RollStep {
     /// Number of the motion, from 1; 0 for what is felt at the start.
     pub motion: usize,
+    /// Why the motion is made, and what it is expected to bring; none of what is felt at the start.
+    pub why: Option<(Reason, Option<Prediction>)>,
     /// As felt.
     pub reading: Reading,
     /// Radians of palm motion up to it.
@@ -190,9 +194,10 @@ impl Loop<'_> {
         }
     }
 
-    fn step(&self, motion: usize, reading: Reading) -> RollStep {
+    fn step(&self, motion: usize, proposal: Option<&RollProposal>, reading: Reading) -> RollStep {
         let progress = self.known.progress(&self.task.goal);
-        RollStep { motion, reading, radians: self.radians, seconds: self.seconds, progress }
+        let why = proposal.map(|proposal| (proposal.reason, proposal.expected));
+        RollStep { motion, why, reading, radians: self.radians, seconds: self.seconds, progress }
     }
 }
 
@@ -217,7 +222,7 @@ pub fn explore_rolling(
     let mut state =
         Loop { known, task, track: Track::new(&first), taken: Vec::new(), last, radians: 0.0, seconds: 0.0 };
     state.learn(&first)?;
-    observe(&state.step(0, first), state.known);
+    observe(&state.step(0, None, first), state.known);
     let mut motion = 0;
     loop {
         if state.known.proves(&task.goal) {
@@ -274,7 +279,7 @@ fn carry_out(
             state.seconds += task.workspace.seconds(from, to);
             state.seconds += if reading.fell { task.workspace.settle } else { 0.0 };
             state.learn(&reading)?;
-            observe(&state.step(motion, reading), state.known);
+            observe(&state.step(motion, Some(proposal), reading), state.known);
             if state.known.proves(&task.goal) || state.radians >= task.radians || state.spent() {
                 return Ok(None);
             }

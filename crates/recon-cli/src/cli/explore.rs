@@ -1,6 +1,7 @@
 //! Arguments of `explore` and `next`.
 
-use super::{confidence, finite, not_negative};
+use super::{confidence, finite, not_negative, positive};
+use crate::error::CliError;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -19,12 +20,28 @@ pub(crate) enum PlannerAs {
     Sweep,
     /// Any direction: to compare with
     Random,
+    /// Of palms that turn: the most per second, two motions ahead: start there
+    PerSecond,
+    /// Of palms that turn: the most per radian, two motions ahead
+    PerRadian,
+}
+
+impl PlannerAs {
+    /// As it is written.
+    pub(crate) fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
+    /// It plans nothing for `what`.
+    pub(crate) fn not_for(self, what: &'static str, instead: &'static str) -> CliError {
+        CliError::Planner { name: self.name(), what, instead }
+    }
 }
 
 /// What is to be known, and how it is touched: of `explore` and `next`.
 #[derive(Args, Debug)]
 pub(crate) struct GoalArgs {
-    /// What decides where to touch [default: path-aware]
+    /// What decides where to touch [default: path-aware; of palms that turn per-second]
     #[arg(long, value_enum)]
     pub(crate) planner: Option<PlannerAs>,
     /// Seed of what is drawn: the start's orientation, random touches, noise [default: 1]
@@ -54,6 +71,10 @@ along a direction, to within so many m).
 With --contact-noise and --normal-noise touches are noisy, and the bounds hold at the confidence for all touches of the budget
 together, however they are chosen and whenever the looking ends. A goal below what the noise leaves is refused.
 
+With --rolling the palms of the scene are not looked at: two lines about a common hinge turn between 0.1 and 2.2 rad from their
+sides, slowly and without friction, and the object lies where its centre of mass is lowest. Contacts are in its own frame: what its
+orientation is known to belongs into the noise that is stated.
+
 The output folder appears as a whole or not at all: contacts.csv, the bounds, summary.json (goal, proof, each touch and why), and
 report.html. `recon next` goes on from there.
 
@@ -61,6 +82,7 @@ Examples:
   recon explore scene.toml --until gap=0.1
   recon explore scene.toml --until gap=0.2 --contact-noise 1e-3 --normal-noise 2e-3 -o out
   recon explore scene.toml --until hausdorff=0.05 --planner hausdorff -o out
+  recon explore plane.toml --rolling --until gap=0.1 -o out
   recon explore scene.toml --until width=0.001@0,0,1 --json | jq .proof")]
 pub(crate) struct ExploreArgs {
     /// Scene file (TOML)
@@ -73,6 +95,12 @@ pub(crate) struct ExploreArgs {
     /// Touch along rays rather than with a plane (line)
     #[arg(long)]
     pub(crate) rays: bool,
+    /// In the plane: turn two palms with the object between them, which rolls and is felt where it touches them
+    #[arg(long, conflicts_with = "rays")]
+    pub(crate) rolling: bool,
+    /// With --rolling: roughly the object's mean width, m; palms are four times as long [default: that of the scene's object]
+    #[arg(long, value_name = "M", requires = "rolling", value_parser = positive)]
+    pub(crate) width: Option<f64>,
     /// Folder to write; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,

@@ -1,15 +1,17 @@
-use crate::cli::ExploreArgs;
+use crate::cli::{ExploreArgs, PlannerAs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{Explored, InPlane, InSpace, Settings, explored, goal_of, write_files_folder};
+use crate::pipeline::{Explored, InPlane, InSpace, Settings, explored, goal_of, rolled, write_files_folder};
 use crate::progress::Progress;
 use glam::{DVec2, DVec3};
 use recon::contact_kinematics::planar::RadiusFunction;
 use recon::contact_kinematics::{Direction, SupportFunction};
-use recon::exploration::{Motion, planar, space};
+use recon::exploration::rolling::{RollingBody, SimulatedPalms, Workspace};
+use recon::exploration::{Heading, Motion, Source, planar, space};
 use recon::shape_bounds::planar as flat;
-use recon_io::{FolderTarget, PlanarScene, Scene, SceneErrorKind};
+use recon_io::{FolderTarget, PlanarBody, PlanarScene, Scene, SceneErrorKind};
 use serde_json::Value;
+use std::f64::consts::TAU;
 use std::slice;
 
 pub(crate) fn run(args: &ExploreArgs, console: &Console) -> Result<Outcome, CliError> {
@@ -19,8 +21,12 @@ pub(crate) fn run(args: &ExploreArgs, console: &Console) -> Result<Outcome, CliE
     let progress = Progress::new(args.goal.budget.map_or(0, u64::from), console.is_quiet());
     progress.step("reading the scene");
     let made = match Scene::read(&args.scene) {
+        Ok(_) if args.rolling => return Err(CliError::RolledInSpace { path: args.scene.clone() }),
         Ok(scene) => in_space(args, &scene, &progress)?,
-        Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => in_plane(args, &progress)?,
+        Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
+            let scene = PlanarScene::read(&args.scene)?;
+            if args.rolling { rolling(args, &scene, &progress)? } else { in_plane(args, &scene, &progress)? }
+        }
         Err(error) => return Err(error.into()),
     };
     match target {
@@ -55,8 +61,45 @@ fn in_space(args: &ExploreArgs, scene: &Scene, progress: &Progress) -> Result<Ex
     explored::<InSpace>(&title(args), goal, &settings, width, &mut finger, |_, words| progress.say(words))
 }
 
-fn in_plane(args: &ExploreArgs, progress: &Progress) -> Result<Explored, CliError> {
-    let scene = PlanarScene::read(&args.scene)?;
+/// Where palms are at first, rad.
+const PALMS: [f64; 2] = [0.7, 2.4];
+
+/// The scene's object about its centre of mass.
+struct Rolled<'a>(&'a PlanarBody);
+
+impl RollingBody for Rolled<'_> {
+    fn farthest(&self, theta: f64) -> DVec2 {
+        self.0.point(theta)
+    }
+
+    fn centre(&self) -> DVec2 {
+        DVec2::ZERO
+    }
+}
+
+fn rolling(args: &ExploreArgs, scene: &PlanarScene, progress: &Progress) -> Result<Explored, CliError> {
+    let body = Rolled(&scene.world.object().shape);
+    let mut settings = Settings::new(&args.goal, &Value::Null, 2);
+    settings.planner = args.goal.planner.unwrap_or(PlannerAs::PerSecond);
+    let workspace = Workspace::for_size(args.width.unwrap_or_else(|| mean_width(&body)));
+    let [point, normal] = settings.noise.map_or([0.0; 2], |(noise, _)| noise);
+    let let_go = Source::new(settings.seed).unit() * TAU;
+    let mut palms =
+        SimulatedPalms::new(body, workspace.length, PALMS, let_go)?.with_noise(point, normal, settings.seed);
+    progress.step("turning the palms");
+    rolled(&title(args), &args.until, &settings, workspace, &mut palms, |words| progress.say(words))
+}
+
+/// In m; to within what it is needed for: lengths of palms, and bodies that are drawn where nothing is known yet.
+fn mean_width(body: &Rolled) -> f64 {
+    let all = flat::Direction::spread(DIRECTIONS);
+    let value = |n: &flat::Direction| body.farthest(n.angle()).dot(n.get());
+    2.0 * all.iter().map(value).sum::<f64>() / all.len() as f64
+}
+
+const DIRECTIONS: usize = 90;
+
+fn in_plane(args: &ExploreArgs, scene: &PlanarScene, progress: &Progress) -> Result<Explored, CliError> {
     let body = &scene.world.object().shape;
     let settings = Settings::new(&args.goal, &Value::Null, 2);
     let support = |n: flat::Direction| -> DVec2 { body.point(n.angle()) };

@@ -2,7 +2,7 @@ use crate::cli::NextArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{InPlane, InSpace, Settings, goal_of, next_touch, until_of};
-use recon_io::{Touches, read_touches};
+use recon_io::{SummaryOf, Touches, read_touches};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -34,6 +34,10 @@ fn inputs(input: &Path) -> Result<(PathBuf, Value), CliError> {
     let path = input.join("summary.json");
     let wrong = |what: String| CliError::NotExplored { path: path.clone(), what };
     let text = std::fs::read_to_string(&path).map_err(|e| wrong(e.to_string()))?;
-    let summary = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+    let summary: Value = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+    if summary["schema"] == SummaryOf::Rolling.schema() {
+        // Where the palms are, and the object between them, is not in its files.
+        return Err(wrong("it is of palms that turned; next touches are those of a finger".to_owned()));
+    }
     Ok((input.join("contacts.csv"), summary))
 }

@@ -44,7 +44,9 @@ pub(crate) use concave::concave_bounds;
 pub(crate) use contacts::{ContactRun, simulate_contacts};
 pub(crate) use doubts::doubtful_fit;
 pub(crate) use estimate::{Asked, Estimated, estimated, estimated_planes};
-pub(crate) use exploration::{Explored, InPlane, InSpace, Settings, explored, goal_of, next_touch, until_of};
+pub(crate) use exploration::{
+    Explored, InPlane, InSpace, Settings, explored, goal_of, next_touch, rolled, until_of,
+};
 pub(crate) use fitted::{fit_words, fitted_shape};
 pub(crate) use folder::{Extra, write_bounds_folder, write_contact_folder, write_files_folder};
 pub(crate) use meshes::meshes_as;

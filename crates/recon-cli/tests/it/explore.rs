@@ -136,3 +136,42 @@ fn other_goals_planners_and_fingers_are_taken_and_bad_ones_named() {
     let run = scratch.run(&["next", "contacts.csv"]);
     assert!(run.code == Some(3) && run.stderr.contains("--until"), "{}", run.stderr);
 }
+
+/// Two palms turn, and the object between them, which rolls, lies between what they prove.
+#[test]
+fn palms_turn_until_the_gap_is_proven_and_say_what_they_cannot() {
+    let scratch = scratch("explore-rolling");
+    let rolling = |rest: &[&'static str]| [&["explore", "plane.toml", "--rolling"], rest].concat();
+    let made = json(&scratch, &rolling(&["--until", "gap=0.2", "-o", "out", "--json"]), 0);
+    assert_eq!((&made["schema"], &made["proof"]["reached"]), (&"rolling/1".into(), &true.into()));
+    let [lower, upper] =
+        ["lower_area_m2", "upper_area_m2"].map(|name| made["bounds"][name].as_f64().unwrap());
+    let truth = std::f64::consts::PI * 0.05 * 0.03;
+    assert!(lower < truth && truth < upper && upper - lower <= 0.2 * upper, "{lower} {truth} {upper}");
+    let motions = made["motions"].as_array().unwrap();
+    assert_eq!((&motions[0]["why"], &motions[0]["radians"]), (&"felt at the start".into(), &0.0.into()));
+    assert_eq!(motions.last().unwrap()["radians"], made["radians"]);
+    assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
+    let page = scratch.read("out/report.html");
+    assert!(page.contains("Motion by motion") && page.contains("after motion 1"), "shown in turn");
+    // The same seed gives the same folder, to the last byte.
+    scratch.run(&rolling(&["--until", "gap=0.2", "-o", "again"]));
+    assert_eq!(scratch.read("again/report.html"), page);
+    let refusals = [
+        (vec!["next", "out"], "of palms that turned"),
+        (vec!["explore", "space.toml", "--rolling", "--until", "gap=0.2"], "is a scene of space"),
+        (rolling(&["--planner", "gaussian", "--until", "gap=0.2"]), "use per-second"),
+        (vec!["explore", "plane.toml", "--planner", "per-second", "--until", "gap=0.2"], "use path-aware"),
+        (rolling(&["--until", "gap=0"]), "goal 0"),
+        (rolling(&["--until", "gap=0.2", "--width", "1e-9"]), "beyond its end"),
+    ];
+    for (arguments, says) in refusals {
+        let run = scratch.run(&arguments);
+        assert!(
+            run.code == Some(3) && run.stderr.contains(says),
+            "{arguments:?} {:?} {}",
+            run.code,
+            run.stderr
+        );
+    }
+}

@@ -12,18 +12,44 @@ const PAGE: &str = include_str!("assets/exploration.html");
 /// Wide tables scroll, and numbers stand under each other.
 const TABLE: &str = "\n.scroll { overflow-x: auto; }\n#touches td { font-variant-numeric: tabular-nums; white-space: nowrap; }\n";
 
-/// One touch, as the table of the page shows it.
+/// What is done, in the words of the page.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExplorationWords {
+    kicker: &'static str,
+    course: &'static str,
+    each: &'static str,
+    heads: [&'static str; 5],
+}
+
+impl ExplorationWords {
+    /// A finger touches where it is told.
+    pub const TOUCHES: Self = Self {
+        kicker: "Where a body was touched, and what that proves of its shape",
+        course: "Touch by touch",
+        each: "Each touch, and why there",
+        heads: ["Touch", "Why", "Along", "Met at, m", "Turned, rad"],
+    };
+    /// Palms turn, and the body between them rolls.
+    pub const MOTIONS: Self = Self {
+        kicker: "How palms turned a body, and what that proves of its shape",
+        course: "Motion by motion",
+        each: "Each motion, and why",
+        heads: ["Motion", "Why", "Palms to, rad", "Touched from the hinge, m", "Turned, rad"],
+    };
+}
+
+/// One touch or motion, as the table of the page shows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TouchRow {
-    /// Number of the touch; none for one that is yet to be made.
+    /// Its number; none for one that is yet to be made.
     pub touch: Option<usize>,
     /// Why there.
     pub why: String,
-    /// Unit vector along which the body was touched.
+    /// Unit vector along which the body was touched; angles of the palms after a motion, in rad.
     pub along: Vec<f64>,
-    /// Where it was met, in m; none for one that is yet to be made.
+    /// Where it was met, in m; none for one that is yet to be made. After a motion, distances of the contacts from the hinge.
     pub point: Option<Vec<f64>>,
-    /// Way from the touch before, in rad.
+    /// Way from the touch before, or turns of both palms, in rad.
     pub turned: f64,
     /// What it was expected to gain, in the unit of the progress.
     pub expected: Option<f64>,
@@ -36,6 +62,8 @@ pub struct TouchRow {
 /// What the page shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExplorationPage {
+    /// What is done.
+    pub words: ExplorationWords,
     /// Title.
     pub title: String,
     /// What is proven, in a sentence.
@@ -48,7 +76,7 @@ pub struct ExplorationPage {
     pub panels: Vec<FigurePanel>,
     /// What the pictures show.
     pub caption: String,
-    /// Touches in order, the next one last.
+    /// Touches or motions in order, the next one last.
     pub touches: Vec<TouchRow>,
 }
 
@@ -57,7 +85,12 @@ pub struct ExplorationPage {
 /// # Errors
 /// Those of `to`.
 pub fn write_exploration_report(page: &ExplorationPage, to: impl Write) -> io::Result<()> {
+    let heads = page.words.heads.iter().map(|head| format!("<th>{head}</th>")).collect();
     let parts = [
+        ("kicker", page.words.kicker.to_owned()),
+        ("course", page.words.course.to_owned()),
+        ("each", page.words.each.to_owned()),
+        ("heads", heads),
         ("head", head(&page.title, &(STYLE.to_owned() + TABLE))?),
         ("title", escape_text(&page.title)),
         ("verdict", notices(&page.verdict, ["Proven", "Not proven", "Refused"], &[])),
@@ -106,6 +139,7 @@ mod tests {
         };
         let next = TouchRow { touch: None, point: None, gained: None, progress: None, ..touch.clone() };
         let page = ExplorationPage {
+            words: ExplorationWords::MOTIONS,
             title: "An <egg>".to_owned(),
             verdict: Verdict { level: Level::Good, text: "gap & all".to_owned() },
             facts: vec![("Touches", "1".to_owned(), "")],
@@ -121,6 +155,7 @@ mod tests {
             text.contains("An &lt;egg&gt;") && text.contains("gap &amp; all") && text.contains("a &lt; b")
         );
         assert!(text.contains("<td>0.250, 2.000</td>") && text.contains("<td>next</td>"));
+        assert!(text.contains("<th>Palms to, rad</th>") && text.contains("Motion by motion"));
         assert!(!text.contains("{{") && !text.contains("http-equiv=\"refresh\"") && !text.contains("src="));
     }
 }

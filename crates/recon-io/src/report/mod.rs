@@ -24,7 +24,7 @@ pub use data::{
     Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
     ReportError, TrueShape, Verdict,
 };
-pub use exploration::{ExplorationPage, TouchRow, write_exploration_report};
+pub use exploration::{ExplorationPage, ExplorationWords, TouchRow, write_exploration_report};
 pub use figures_page::{FiguresPage, write_figures_page};
 pub use page::write_report;
 pub use pushes::{PushedLog, write_pushes_report};

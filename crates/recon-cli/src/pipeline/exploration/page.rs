@@ -2,7 +2,10 @@
 
 use super::Side;
 use recon::exploration::{Goal, Heading, Knowledge, Outcome, Proposal, least_gap, least_touches};
-use recon_io::{ExplorationPage, FigureCurve, FigureFrame, FigurePanel, Level, TouchRow, Verdict, brief_to};
+use recon_io::{
+    ExplorationPage, ExplorationWords, FigureCurve, FigureFrame, FigurePanel, Level, TouchRow, Verdict,
+    brief_to,
+};
 
 /// The course of an exploration.
 #[derive(Default)]
@@ -72,6 +75,7 @@ pub(super) fn page<S: Side>(
         });
     }
     ExplorationPage {
+        words: ExplorationWords::TOUCHES,
         title: title.to_owned(),
         verdict: Verdict { level, text: statement.to_owned() },
         facts: facts::<S>(known, ended, way),
@@ -82,7 +86,7 @@ pub(super) fn page<S: Side>(
     }
 }
 
-fn quantity<H: Heading>(goal: &Goal<H>) -> &'static str {
+pub(super) fn quantity<H: Heading>(goal: &Goal<H>) -> &'static str {
     match goal {
         Goal::Gap(_) => "Gap",
         Goal::Hausdorff(_) => "Distance, m",

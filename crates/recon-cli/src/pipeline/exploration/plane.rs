@@ -37,16 +37,19 @@ impl Side for InPlane {
         })
     }
 
-    fn planner(settings: &Settings) -> Box<dyn Planner<PlanarKnowledge>> {
+    fn planner(settings: &Settings) -> Result<Box<dyn Planner<PlanarKnowledge>>, CliError> {
         let start = turned_start(START, settings.seed);
-        match settings.planner {
+        Ok(match settings.planner {
             PlannerAs::PathAware => Box::new(PathAware::new(start)),
             PlannerAs::Volume => Box::new(AreaGreedy::new(start)),
             PlannerAs::Hausdorff => Box::new(HausdorffGreedy::new(start)),
             PlannerAs::Gaussian => Box::new(GaussianVariance::new(start)),
             PlannerAs::Sweep => Box::new(FixedSweep::new(start)),
             PlannerAs::Random => Box::new(RandomTouches::new(start, settings.seed)),
-        }
+            PlannerAs::PerSecond | PlannerAs::PerRadian => {
+                return Err(settings.planner.not_for("a finger that touches", "path-aware"));
+            }
+        })
     }
 
     fn heading(coordinates: &[f64]) -> Result<Direction, String> {
@@ -108,13 +111,13 @@ impl Side for InPlane {
 }
 
 /// Corners of the lower bound, counter-clockwise; none without one.
-fn lower(known: &PlanarKnowledge) -> Vec<DVec2> {
+pub(super) fn lower(known: &PlanarKnowledge) -> Vec<DVec2> {
     let polygon = known.bounds().and_then(|b| b.lower().polygon());
     polygon.map_or_else(Vec::new, |p| p.shape().vertices().to_vec())
 }
 
 /// Corners of the upper bound.
-fn upper(known: &PlanarKnowledge) -> Vec<DVec2> {
+pub(super) fn upper(known: &PlanarKnowledge) -> Vec<DVec2> {
     let region = known.bounds().and_then(|b| b.upper().bounded());
     region.map_or_else(Vec::new, |r| r.shape().vertices().to_vec())
 }

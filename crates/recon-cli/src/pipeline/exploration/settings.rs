@@ -42,9 +42,8 @@ impl Settings {
 
     /// As [`Settings::new`] reads them.
     pub(crate) fn figures(&self) -> Value {
-        let planner = self.planner.to_possible_value();
         let mut figures = json!({
-            "planner": planner.as_ref().map_or("", |p| p.get_name()),
+            "planner": self.planner.name(),
             "seed": self.seed,
             "budget": self.budget,
         });

@@ -24,8 +24,8 @@ pub(crate) trait Side {
     /// No contacts, of the noise that is stated.
     fn nothing(settings: &Settings) -> Result<Self::Known, CliError>;
 
-    /// The planner that is asked for.
-    fn planner(settings: &Settings) -> Box<dyn Planner<Self::Known>>;
+    /// The planner that is asked for, if it is one of touches.
+    fn planner(settings: &Settings) -> Result<Box<dyn Planner<Self::Known>>, CliError>;
 
     /// A direction from its coordinates, or what is wrong with them.
     fn heading(coordinates: &[f64]) -> Result<<Self::Known as Knowledge>::Heading, String>;

@@ -34,16 +34,19 @@ impl Side for InSpace {
         })
     }
 
-    fn planner(settings: &Settings) -> Box<dyn Planner<SpaceKnowledge>> {
+    fn planner(settings: &Settings) -> Result<Box<dyn Planner<SpaceKnowledge>>, CliError> {
         let start = turned_tetrahedron(settings.seed);
-        match settings.planner {
+        Ok(match settings.planner {
             PlannerAs::PathAware => Box::new(PathAware::new(start)),
             PlannerAs::Volume => Box::new(VolumeGreedy::new(start)),
             PlannerAs::Hausdorff => Box::new(HausdorffGreedy::new(start)),
             PlannerAs::Gaussian => Box::new(GaussianVariance::new(start)),
             PlannerAs::Sweep => Box::new(FixedSweep::new(start)),
             PlannerAs::Random => Box::new(RandomTouches::new(start, settings.seed)),
-        }
+            PlannerAs::PerSecond | PlannerAs::PerRadian => {
+                return Err(settings.planner.not_for("a finger that touches", "path-aware"));
+            }
+        })
     }
 
     fn heading(coordinates: &[f64]) -> Result<Direction, String> {

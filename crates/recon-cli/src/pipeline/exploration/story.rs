@@ -7,8 +7,8 @@ use super::side::{AnyFinger, Drawn};
 use crate::error::{CliError, Outcome as Exit};
 use crate::pipeline::folder::Extra;
 use recon::exploration::{
-    Certificate, Goal, Heading, Knowledge, Limits, Outcome, PlanError, Proposal, Shortfall, Situation, Step,
-    Task, explore, least_touches, touches_predicted,
+    Certificate, Goal, Heading, Knowledge, Limits, Outcome, PlanError, Planner, Proposal, Shortfall,
+    Situation, Step, Task, explore, least_touches, touches_predicted,
 };
 use recon_io::{SummaryOf, TouchRow, brief_to, write_exploration_report};
 use serde_json::{Value, json};
@@ -34,7 +34,7 @@ pub(crate) fn explored<S: Side>(
     mut watch: impl FnMut(usize, &str),
 ) -> Result<Explored, CliError> {
     let mut known = S::nothing(settings)?;
-    let mut planner = S::planner(settings);
+    let mut planner = S::planner(settings)?;
     let task = Task { spending: settings.spending(), width, ..Task::new(goal, settings.budget) };
     let mut course = Course::default();
     let mut before = f64::INFINITY;
@@ -46,7 +46,7 @@ pub(crate) fn explored<S: Side>(
         before = step.progress;
         watch(step.touch, &forecast(S::DIMENSION, step, &goal));
     })?;
-    let next = next_proposal::<S>(&known, &goal, settings).ok();
+    let next = next_proposal::<S>(&known, &goal, &mut *S::planner(settings)?).ok();
     let certificate = ended.certificate();
     let (statement, exit) = statement::<S>(&ended);
     let mut figures = SummaryOf::Exploration.named(json!({
@@ -54,7 +54,7 @@ pub(crate) fn explored<S: Side>(
         "dimension": S::DIMENSION,
         "goal": { "kind": goal.kind(), "value": goal.value(), "until": words_of(&goal) },
         "settings": settings.figures(),
-        "proof": proof(&ended),
+        "proof": proof(certificate, ended.is_reached()),
         "bounds": S::bounds(&known),
         "way_rad": course.way,
         "touches": course.rows.iter().map(touch_figures).collect::<Vec<_>>(),
@@ -127,23 +127,7 @@ fn touch_figures(row: &TouchRow) -> Value {
 
 /// What is proven, in a sentence, and whether that is what was asked for.
 fn statement<S: Side>(ended: &Outcome<HeadingOf<S>>) -> (String, Exit) {
-    let certificate = ended.certificate();
-    let Certificate { goal, proven, confidence, touches, .. } = certificate;
-    let sure = match confidence {
-        Some((level, _)) => format!(" at {} % confidence", 100.0 * level),
-        None => " for exact contacts".to_owned(),
-    };
-    let what = match goal {
-        Goal::Gap(_) => "the gap between the bounds",
-        Goal::Hausdorff(_) => "the largest distance of the bounds in m",
-        Goal::Width { .. } => "the difference of the bounds' widths in m",
-    };
-    let value = if proven.is_finite() {
-        format!("at most {}", brief_to(4, *proven))
-    } else {
-        "not bounded".to_owned()
-    };
-    let told = format!("{what} is {value}{sure} after {touches} touches, and {} was asked for", goal.value());
+    let told = proven(ended.certificate(), "touches");
     match ended {
         Outcome::Reached(_) => (told, Exit::Done),
         Outcome::Short { shortfall, .. } => {
@@ -159,9 +143,28 @@ fn statement<S: Side>(ended: &Outcome<HeadingOf<S>>) -> (String, Exit) {
     }
 }
 
-fn proof<H: Heading>(ended: &Outcome<H>) -> Value {
-    let certificate = ended.certificate();
-    let mut proof = json!({ "reached": ended.is_reached(), "touches": certificate.touches });
+/// What a certificate says, made of so many `touches`.
+pub(super) fn proven<H: Heading>(certificate: &Certificate<H>, made_of: &str) -> String {
+    let Certificate { goal, proven, confidence, touches, .. } = certificate;
+    let sure = match confidence {
+        Some((level, _)) => format!(" at {} % confidence", 100.0 * level),
+        None => " for exact contacts".to_owned(),
+    };
+    let what = match goal {
+        Goal::Gap(_) => "the gap between the bounds",
+        Goal::Hausdorff(_) => "the largest distance of the bounds in m",
+        Goal::Width { .. } => "the difference of the bounds' widths in m",
+    };
+    let value = if proven.is_finite() {
+        format!("at most {}", brief_to(4, *proven))
+    } else {
+        "not bounded".to_owned()
+    };
+    format!("{what} is {value}{sure} after {touches} {made_of}, and {} was asked for", goal.value())
+}
+
+pub(super) fn proof<H: Heading>(certificate: &Certificate<H>, reached: bool) -> Value {
+    let mut proof = json!({ "reached": reached, "touches": certificate.touches });
     if certificate.proven.is_finite() {
         proof["at_most"] = certificate.proven.into();
     }
@@ -175,11 +178,11 @@ fn proof<H: Heading>(ended: &Outcome<H>) -> Value {
 fn next_proposal<S: Side>(
     known: &S::Known,
     goal: &Goal<HeadingOf<S>>,
-    settings: &Settings,
+    planner: &mut dyn Planner<S::Known>,
 ) -> Result<Proposal<S::Known>, PlanError> {
     let here = S::contacts(known).last().map(S::normal);
     let limits = Limits::default();
-    S::planner(settings).next(&Situation { known, here, goal, limits: &limits })
+    planner.next(&Situation { known, here, goal, limits: &limits })
 }
 
 /// A touch as a robot reads it.
@@ -201,6 +204,7 @@ pub(crate) fn next_touch<S: Side>(
     settings: &Settings,
 ) -> Result<(Value, Exit), CliError> {
     goal.check().map_err(recon::exploration::ExploreError::Goal)?;
+    let mut planner = S::planner(settings)?;
     let mut known = S::nothing(settings)?;
     for contact in contacts {
         known.insert(*contact).map_err(recon::exploration::ExploreError::Knowledge)?;
@@ -227,7 +231,7 @@ pub(crate) fn next_touch<S: Side>(
     if done {
         return Ok((told, Exit::Done));
     }
-    match next_proposal::<S>(&known, &goal, settings) {
+    match next_proposal::<S>(&known, &goal, &mut *planner) {
         Ok(proposal) => {
             told["action"] = action::<S>(&proposal);
             Ok((told, Exit::Done))
