@@ -65,16 +65,22 @@ def bounds(
         run_height_deviation=run_height_deviation,
         tight=tight,
     )
+    names, columns = contact_columns(source, normals, curve)
+    if isinstance(source, (str, os.PathLike)):
+        return bounds_of_file(source, said, progress)
+    return bounds_of_columns(names, columns, said, progress)
+
+
+def contact_columns(source: Any, normals: ArrayLike | None, curve: ArrayLike | None = None) -> tuple[list[str], list[Array]]:
+    """Names and columns of contacts: of points with normals, or of a table; of a path none, as its file has them."""
     if isinstance(source, (str, os.PathLike)):
         _alone(normals, curve)
-        return bounds_of_file(source, said, progress)
+        return [], []
     if normals is None:
         _alone(normals, curve)
-        names, columns = columns_of(source)
-        return bounds_of_columns(names, columns, said, progress)
-    columns_by_name = _contacts(source, normals, curve)
-    columns = [np.ascontiguousarray(column) for column in columns_by_name.values()]
-    return bounds_of_columns(list(columns_by_name), columns, said, progress)
+        return columns_of(source)
+    columns = _contacts(source, normals, curve)
+    return list(columns), [np.ascontiguousarray(column) for column in columns.values()]
 
 
 def _alone(normals: ArrayLike | None, curve: ArrayLike | None) -> None:

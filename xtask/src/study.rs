@@ -73,6 +73,7 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "contact-exports.md",
         "exported scenes of any palms in MuJoCo, beside our own motion",
     ),
+    ("exported_objects", "exported-objects.md", "exported objects as MuJoCo, Drake and urdf-rs take them in"),
     (
         "contact_modes_estimated",
         "contact-modes-estimated.md",
@@ -114,6 +115,7 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "exploration.md",
         "touches and way that planners take to a gap, false certificates under noise",
     ),
+    ("result_bags", "result-bags.md", "bags of results as mcap-ros2-support reads them"),
     ("rolling", "rolling.md", "radians and seconds of palm motion that planners take to a gap in the plane"),
     (
         "shape_fits",

@@ -24,6 +24,7 @@ mod contact_exports;
 mod contact_logs;
 mod contact_modes_estimated;
 mod contact_wedging;
+mod exported_objects;
 mod mode_bank;
 mod no_force;
 mod planar_contacts;
@@ -33,6 +34,7 @@ mod planar_observability;
 mod planar_tally;
 mod pushes;
 mod reaching;
+mod result_bags;
 mod rolling;
 mod rows;
 mod shape_fits;
@@ -69,6 +71,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("contact_exports", || in_words(contact_exports::main())),
     ("contact_logs", || in_words(contact_logs::main())),
     ("contact_wedging", || in_words(contact_wedging::main())),
+    ("exported_objects", || in_words(exported_objects::main())),
     ("contact_modes_estimated", || in_words(contact_modes_estimated::main())),
     ("mode_bank", || in_words(mode_bank::main())),
     ("no_force", || in_words(no_force::main())),
@@ -78,6 +81,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("planar_observability", || in_words(planar_observability::main())),
     ("pushes", || in_words(pushes::main())),
     ("reaching", || in_words(reaching::main())),
+    ("result_bags", || in_words(result_bags::main())),
     ("rolling", || in_words(rolling::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),

@@ -15,7 +15,7 @@ mod progress;
 
 pub use in_memory::{
     Body, Bounded, Failure, FailureKind, Follower, Log, Outlines, PlaneLog, PlaneReconstructed, PlaneScene,
-    PlaneSimulated, Reconstructed, Simulated, check, unless_stopped,
+    PlaneSimulated, Reconstructed, Simulated, check, plan_of_columns, plan_of_file, unless_stopped,
 };
 pub use progress::Watch;
 

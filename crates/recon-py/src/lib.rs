@@ -11,6 +11,7 @@ mod errors;
 mod follower;
 mod log;
 mod mesh;
+mod plan;
 mod plane;
 mod plane_reconstruction;
 mod reconstruction;
@@ -47,6 +48,8 @@ fn _recon(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(reconstruction::reconstruct, module)?)?;
     module.add_function(wrap_pyfunction!(bounds::bounds_of_columns, module)?)?;
     module.add_function(wrap_pyfunction!(bounds::bounds_of_file, module)?)?;
+    module.add_function(wrap_pyfunction!(plan::plan_of_columns, module)?)?;
+    module.add_function(wrap_pyfunction!(plan::plan_of_file, module)?)?;
     // Classes of the same names as those of space.
     module.add("PlaneScene", module.py().get_type::<plane::PlaneScene>())?;
     module.add("PlaneLog", module.py().get_type::<plane::PlaneLog>())?;

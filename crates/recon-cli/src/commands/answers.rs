@@ -1,11 +1,8 @@
-//! What is said of every estimate: the body, how well things are known, and what to do next.
+//! What is said of every estimate: the body, and how well things are known.
 
 use recon::object_dynamics::MassProperties;
 use recon_io::{Bounds, brief, brief_to};
 use serde_json::Value;
-
-/// Share of the upper bound's volume that the lower one has where there is little left to gain.
-const TIGHT: f64 = 0.6;
 
 /// A number of the evidence in a summary.
 pub(super) fn evidence(figures: &Value, key: &str) -> Option<f64> {
@@ -28,37 +25,6 @@ pub(super) fn of_body(body: &MassProperties, figures: &Value) -> Vec<(&'static s
         ("mass", format!("{} kg{stated}", with(body.mass(), std_mass))),
         ("principal moments", format!("{moments} kg m^2{stated}")),
     ]
-}
-
-/// What decides on what to do next.
-pub(super) struct Advice<'a> {
-    pub(super) reliable: bool,
-    pub(super) bounds: Option<&'a Bounds>,
-    /// Whether mass and inertia were estimated.
-    pub(super) identified: bool,
-    /// Whether all of the inertia was learned, if so.
-    pub(super) learned: bool,
-}
-
-impl Advice<'_> {
-    /// The step that gains most.
-    pub(super) fn next(&self) -> &'static str {
-        let upper = self.bounds.and_then(|bounds| Some((bounds.lower.volume, bounds.upper.as_ref()?.volume)));
-        match (self.reliable, upper) {
-            (false, _) => {
-                "see which evidence is red in report.html, and what was read of the log: recon check-input LOG --scene SCENE"
-            }
-            (true, _) if self.identified && !self.learned => {
-                "turn the object about more axes: the log does not tell all of its inertia"
-            }
-            (true, None) => "touch the object from all sides: only then it has an upper bound",
-            (true, Some((lower, upper))) if lower < TIGHT * upper => {
-                "touch more of the object (a longer log): the bounds leave much of its shape open"
-            }
-            (true, Some(_)) if !self.identified => "--identify tells mass and inertia from the log as well",
-            (true, Some(_)) => "--export mjcf,urdf writes the object for simulators",
-        }
-    }
 }
 
 /// Names and values of what is said of the bounds and, where the truth is known, of the largest errors.

@@ -1,10 +1,10 @@
 //! What `recon reconstruct` says of contacts of any palms.
 
-use super::answers::{Advice, bounds_and_errors, of_body};
+use super::answers::{bounds_and_errors, of_body};
 use crate::pipeline::describe_times;
 use recon::object_dynamics::MassProperties;
 use recon::observer::ContactEstimate;
-use recon_io::{EstimateData, INERTIA_LEARNED, Level, brief, brief_to, estimated_mode_spans};
+use recon_io::{EstimateData, brief, brief_to, estimated_mode_spans};
 use serde_json::Value;
 use std::fmt::Write;
 
@@ -37,13 +37,7 @@ pub(super) fn describe(data: &EstimateData, figures: &Value) -> String {
     for (name, value) in bounds_and_errors(data.bounds.as_ref(), figures) {
         line(name, value);
     }
-    let advice = Advice {
-        reliable: data.verdict.level == Level::Good,
-        bounds: data.bounds.as_ref(),
-        identified: found.axes_deviations.is_none(),
-        learned: found.inertia_deviations.iter().all(|deviation| *deviation < INERTIA_LEARNED),
-    };
-    line("next", advice.next().to_owned());
+    line("next", data.next.clone());
     let spans: Vec<_> = (0..data.log.palms().len())
         .map(|palm| estimated_mode_spans(data.log.times(), &found.modes, found.mode_odds.as_ref(), palm))
         .collect();

@@ -291,5 +291,21 @@ fn describe(made: &BoundsResult, what: &str, about: &Value) -> String {
     if about["fit"].is_object() {
         text += &fit_words(&about["fit"]);
     }
+    let _ = writeln!(text, "  next                   {}", next_touch(made));
     text
+}
+
+/// Where to touch next.
+fn next_touch(made: &BoundsResult) -> String {
+    match made.drawn.farthest_apart() {
+        Some((at, apart)) => {
+            let [x, y, z] = at.to_array().map(|of| brief_to(4, of));
+            let apart = brief_to(3, apart);
+            format!("touch it about ({x}, {y}, {z}) m: there the bounds are {apart} m apart at least")
+        }
+        None if made.drawn.upper.is_none() => {
+            "touch the object from all sides: only then it has an upper bound".to_owned()
+        }
+        None => "nothing is left to touch: the bounds are one".to_owned(),
+    }
 }

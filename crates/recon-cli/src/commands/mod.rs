@@ -14,7 +14,7 @@ mod formats;
 mod init;
 mod inspect;
 mod manual;
-mod next;
+pub(crate) mod next;
 pub(crate) mod planar;
 mod planar_fit;
 mod plane;

@@ -8,26 +8,36 @@ use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &NextArgs) -> Result<Outcome, CliError> {
     let (contacts, earlier) = inputs(&args.input)?;
-    let until = args.until.clone().or_else(|| until_of(&earlier));
-    let until = until.ok_or_else(|| CliError::NoGoal { path: args.input.clone() })?;
-    let (told, exit) = match read_touches(&contacts)? {
-        Touches::Contacts { curves, .. } => {
-            let settings = Settings::new(&args.goal, &earlier, 3);
-            next_touch::<InSpace>(&curves.concat(), goal_of::<InSpace>(&until)?, &settings)?
-        }
-        Touches::PlanarContacts { curves, .. } => {
-            let settings = Settings::new(&args.goal, &earlier, 2);
-            next_touch::<InPlane>(&curves.concat(), goal_of::<InPlane>(&until)?, &settings)?
-        }
-        Touches::Poses(_) => return Err(CliError::PosesExplored { path: contacts }),
-    };
+    let (told, exit) = planned(args, &contacts, &earlier, &read_touches(&contacts)?)?;
     // For a program in any case: there is nothing else to say.
     Console::new(true, false).result("", &told)?;
     Ok(exit)
 }
 
+/// The next touch after those of the file `contacts`, and whether one is needed; `earlier` is a summary of `recon explore`.
+pub(crate) fn planned(
+    args: &NextArgs,
+    contacts: &Path,
+    earlier: &Value,
+    touches: &Touches,
+) -> Result<(Value, Outcome), CliError> {
+    let until = args.until.clone().or_else(|| until_of(earlier));
+    let until = until.ok_or_else(|| CliError::NoGoal { path: args.input.clone() })?;
+    match touches {
+        Touches::Contacts { curves, .. } => {
+            let settings = Settings::new(&args.goal, earlier, 3);
+            next_touch::<InSpace>(&curves.concat(), goal_of::<InSpace>(&until)?, &settings)
+        }
+        Touches::PlanarContacts { curves, .. } => {
+            let settings = Settings::new(&args.goal, earlier, 2);
+            next_touch::<InPlane>(&curves.concat(), goal_of::<InPlane>(&until)?, &settings)
+        }
+        Touches::Poses(_) => Err(CliError::PosesExplored { path: contacts.to_owned() }),
+    }
+}
+
 /// The file of contacts, and the summary beside it where a folder is named.
-fn inputs(input: &Path) -> Result<(PathBuf, Value), CliError> {
+pub(crate) fn inputs(input: &Path) -> Result<(PathBuf, Value), CliError> {
     if !input.is_dir() {
         return Ok((input.to_owned(), Value::Null));
     }

@@ -38,6 +38,11 @@ pub(super) fn describe(made: &PlanarBounds, count: usize) -> String {
     if made.about["fit"].is_object() {
         text += &fit_words(&made.about["fit"]);
     }
+    let next = match upper.is_finite() {
+        true => "touch it where the outlines of bounds.svg are farthest apart",
+        false => "touch the object from all sides: only then it has an upper bound",
+    };
+    let _ = writeln!(text, "  next                   {next}");
     text
 }
 

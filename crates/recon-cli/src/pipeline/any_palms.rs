@@ -1,7 +1,8 @@
 //! Motion of a body, with mass and inertia if they are unknown, from contacts of any palms.
 
+use super::advice::Advice;
 use super::any_palms_bounds::estimate_bounds;
-use super::any_palms_words::{Checks, evidence, verdict};
+use super::any_palms_words::{Checks, evidence, touch_next, verdict};
 use super::bounds::{BoundsResult, CONFIDENCE, NOTABLE_NOISE};
 use super::export::Object;
 use super::truth::true_motion;
@@ -16,7 +17,9 @@ use recon::observer::{
     estimate_contacts, nearest_turn,
 };
 use recon::shape_bounds::ContactSample;
-use recon_io::{EstimateData, Implausibility, MassDeviations, PalmContact, Scene, Sensors};
+use recon_io::{
+    EstimateData, INERTIA_LEARNED, Implausibility, Level, MassDeviations, PalmContact, Scene, Sensors,
+};
 use std::error::Error;
 use std::path::Path;
 
@@ -152,11 +155,24 @@ pub(crate) fn estimate_any_palms(
         bounds_at: bounds.is_some().then_some(CONFIDENCE),
         together: request.together,
     };
+    let verdict = verdict(&estimate, &checks);
+    let volumes =
+        |bounds: &BoundsResult| Some([bounds.drawn.lower.volume, bounds.drawn.upper.as_ref()?.volume]);
+    let advice = Advice {
+        reliable: verdict.level == Level::Good,
+        bounds: bounds.as_ref().and_then(volumes),
+        identified: estimate.axes_deviations.is_none(),
+        learned: estimate.inertia_deviations.iter().all(|deviation| *deviation < INERTIA_LEARNED),
+        in_plane: false,
+    };
+    let mut evidence = evidence(&estimate, &options, &checks);
+    evidence.extend(bounds.as_ref().and_then(|bounds| bounds.drawn.farthest_apart()).map(touch_next));
     let data = EstimateData {
         title: request.title.to_owned(),
-        verdict: verdict(&estimate, &checks),
+        next: advice.next().to_owned(),
+        verdict,
         note: request.note,
-        evidence: evidence(&estimate, &options, &checks),
+        evidence,
         log,
         estimate,
         curves,

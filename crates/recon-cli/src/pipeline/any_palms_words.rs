@@ -109,14 +109,24 @@ pub(super) fn evidence(
     rows
 }
 
+/// Keys and names of the principal moments.
+const MOMENTS: [(&str, &str); 3] = [("moment_x", "Least"), ("moment_y", "Middle"), ("moment_z", "Largest")];
+
 /// Mass and inertia that were stated, and how its axes lie.
 fn stated(estimate: &ContactEstimate, axes: DVec3) -> Vec<Evidence> {
     let lies = axes_known(axes);
     let deviations = axes.to_array().map(|of| brief_to(2, of)).join(", ");
     let meaning =
         "Standard deviations about the axes of the world at the first sample; beyond 1 nothing is known.";
-    vec![
-        neutral("mass", "Mass", Number(estimate.mass), "kg", "As the scene states it."),
+    let mut rows = vec![neutral("mass", "Mass", Number(estimate.mass), "kg", "As the scene states it.")];
+    if let Ok(mass) = MassProperties::new(estimate.mass, estimate.inertia) {
+        let moments = MOMENTS.into_iter().zip(mass.principal().moments.to_array());
+        rows.extend(moments.map(|((key, which), moment)| {
+            let name = format!("{which} principal moment");
+            neutral(key, &name, Number(moment), "kg m^2", "About the centre of mass, as the scene states it.")
+        }));
+    }
+    rows.extend([
         Evidence {
             level: if axes.max_element() < 1.0 { Level::Good } else { Level::Caution },
             ..neutral(
@@ -128,7 +138,8 @@ fn stated(estimate: &ContactEstimate, axes: DVec3) -> Vec<Evidence> {
             )
         },
         neutral("std_axes", "Uncertainty of the axes", Text(deviations), "rad", meaning),
-    ]
+    ]);
+    rows
 }
 
 /// Mass and inertia.
@@ -143,9 +154,8 @@ fn body(estimate: &ContactEstimate) -> Vec<Evidence> {
     ];
     // A tensor that no body has, as rounding may leave one, has no moments to tell.
     if let Ok(mass) = MassProperties::new(estimate.mass, estimate.inertia) {
-        let names = [("moment_x", "Least"), ("moment_y", "Middle"), ("moment_z", "Largest")];
         let principal = mass.principal();
-        for (i, (key, which)) in names.into_iter().enumerate() {
+        for (i, (key, which)) in MOMENTS.into_iter().enumerate() {
             let (meaning, name) =
                 ("About the centre of mass, as estimated from the log.", format!("{which} principal moment"));
             rows.push(neutral(key, &name, Number(principal.moments[i]), "kg m^2", meaning));
@@ -167,6 +177,16 @@ fn body(estimate: &ContactEstimate) -> Vec<Evidence> {
     let meaning = "Standard deviations of the logarithms of their roots.";
     rows.push(neutral("std_log_roots", "Uncertainty of second moments", Text(roots.join(", ")), "", meaning));
     rows
+}
+
+/// Where bounds are farthest apart, body axes, and by how much at least, m.
+pub(super) fn touch_next((at, apart): (DVec3, f64)) -> Evidence {
+    let place = at.to_array().map(|of| brief_to(4, of)).join(", ");
+    let meaning = format!(
+        "Corner of the upper bound, body axes, that is farthest from the lower one: by {} m at least.",
+        brief_to(3, apart)
+    );
+    neutral("touch_next", "Where to touch next", Text(place), "m", &meaning)
 }
 
 /// How the fit went.

@@ -1,5 +1,6 @@
 //! From files' contents to results in memory, and from results to a folder.
 
+mod advice;
 mod any_palms;
 mod any_palms_bounds;
 mod any_palms_words;

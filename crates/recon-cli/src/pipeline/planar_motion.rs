@@ -1,5 +1,6 @@
 //! Motion, mass and shape of a body in the plane from contacts of any palms.
 
+use super::advice::Advice;
 use super::any_palms::as_stated;
 use super::bounds::CONFIDENCE;
 use super::planar_motion_bounds::motion_bounds;
@@ -11,8 +12,8 @@ use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane
 use recon::observer::{ContactNoiseLevel, Reliability};
 use recon::shape_bounds::planar::NoiseError;
 use recon_io::{
-    Evidence, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, brief, brief_to, explanation, sensor_fault,
-    verdict_figures, write_plane_estimate_report,
+    Evidence, Level, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, Verdict, brief, brief_to,
+    explanation, sensor_fault, verdict_figures, write_plane_estimate_report,
 };
 use serde_json::{Value, json};
 use std::error::Error;
@@ -115,7 +116,7 @@ impl PlanarMotion {
 
     /// Whether it is to be relied on, in a sentence.
     pub(crate) fn verdict(&self) -> String {
-        verdict(&self.estimate, self.share(), self.known_body).text
+        self.judged().text
     }
 
     /// What it rests on.
@@ -150,12 +151,26 @@ impl PlanarMotion {
         all
     }
 
+    /// Whether the motion may be relied on, and why.
+    fn judged(&self) -> Verdict {
+        verdict(&self.estimate, self.share(), self.known_body)
+    }
+
+    /// What to do next.
+    fn next(&self) -> &'static str {
+        let reliable = self.judged().level == Level::Good;
+        // A moment that is known to half of itself is learned.
+        let learned = self.estimate.inertia.1 < 0.5 * self.estimate.inertia.0;
+        let (bounds, identified) = (self.bounds.as_ref().map(|bounds| bounds.areas), !self.known_body);
+        Advice { reliable, bounds, identified, learned, in_plane: true }.next()
+    }
+
     /// The page of the motion, under a title.
     pub(crate) fn write_report(&self, title: &str, to: &mut dyn Write) -> io::Result<()> {
         let estimate = &self.estimate;
         let page = PlaneEstimateData {
             title: title.to_owned(),
-            verdict: verdict(estimate, self.share(), self.known_body),
+            verdict: self.judged(),
             note: NOTE.to_owned(),
             log: &self.log,
             estimate,
@@ -163,6 +178,7 @@ impl PlanarMotion {
             panels: self.panels(),
             evidence: self.evidence(),
             warnings: self.warnings(),
+            next: self.next().to_owned(),
         };
         write_plane_estimate_report(&page, to)
     }
@@ -178,7 +194,7 @@ impl PlanarMotion {
         let evidence = &estimate.evidence;
         let last = estimate.deviations.last().copied().unwrap_or_default();
         let faults = estimate.suspects.iter().filter(|of| of.deviation.is_finite()).map(sensor_fault);
-        let verdict = verdict(estimate, self.share(), self.known_body);
+        let verdict = self.judged();
         let times = self.log.samples();
         let mut figures = SummaryOf::PlaneReconstruction.named(json!({
             "method": "contacts and forces, nodes linked by measured impulses",
@@ -235,7 +251,8 @@ impl PlanarMotion {
     /// In words for the console.
     pub(crate) fn describe(&self) -> String {
         let estimate = &self.estimate;
-        let mut text: String = self.warnings().iter().map(|w| format!("Warning: {w}\n")).collect();
+        let mut text = format!("{}\n", self.judged().text);
+        text.extend(self.warnings().iter().map(|w| format!("Warning: {w}\n")));
         let times = self.log.samples();
         text += &format!(
             "{} samples from t = {} s to {} s\n",
@@ -263,6 +280,7 @@ impl PlanarMotion {
             let percent = brief(100.0 * CONFIDENCE);
             line("outline", format!("between {lower} and {upper} m^2 at {percent} %"));
         }
+        line("next", self.next().to_owned());
         text
     }
 

@@ -6,7 +6,7 @@ use crate::error::CliError;
 use glam::DVec3;
 use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::{ContactLog, ForceChannel, PalmHinge, SensorLog};
-use recon_io::{PalmTrack, ReportData, Scene};
+use recon_io::{PalmTrack, ReportData, Scene, estimated_mode_spans};
 
 /// The log as one of any palms, with the normal forces that torques of the motors tell of palms without a force.
 pub(super) fn with_forces(log: &SensorLog, scene: &Scene) -> Result<ContactLog, CliError> {
@@ -48,6 +48,9 @@ pub(crate) fn as_planes(made: &AnyPalms, log: &SensorLog, scene: &Scene) -> Resu
     let mut palms = [PalmTrack::default(), PalmTrack::default(), PalmTrack::default()];
     for (i, (palm, curve)) in palms.iter_mut().zip(&data.curves).enumerate() {
         palm.contacts = curve.clone();
+        let sensed = &data.log.palms()[i];
+        palm.forces =
+            (0..log.samples().len()).map(|k| sensed.force(k).map(|force| force.vector.length())).collect();
         for sample in log.samples() {
             let frame = PalmFrame::from_normal(sample.palms[i].normal)
                 .map_err(|source| CliError::PalmFrame { palm: i + 1, t: sample.t, source })?;
@@ -69,10 +72,23 @@ pub(crate) fn as_planes(made: &AnyPalms, log: &SensorLog, scene: &Scene) -> Resu
         times: data.log.times().to_vec(),
         palms,
         motion: data.estimate.states.iter().map(|state| (*state).into()).collect(),
+        deviations: data.estimate.deviations.clone(),
+        relied_on: data.estimate.relied_on.clone(),
+        spans: (0..data.log.palms().len())
+            .map(|palm| {
+                estimated_mode_spans(
+                    data.log.times(),
+                    &data.estimate.modes,
+                    data.estimate.mode_odds.as_ref(),
+                    palm,
+                )
+            })
+            .collect(),
         truth: data.truth.clone(),
         bounds: data.bounds.clone(),
         true_shape: shape,
         evidence: data.evidence.clone(),
         warnings: data.warnings.clone(),
+        next: data.next.clone(),
     })
 }

@@ -11,9 +11,12 @@ use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::SensorLog;
 use recon::observer::{KnownTouch, NoForceEstimate, estimate_without_forces};
 use recon::shape_bounds::ContactSample;
-use recon_io::{FolderTarget, MotionState, Scene, SummaryOf, brief, status_in_words};
+use recon_io::{FolderTarget, MotionState, Scene, SummaryOf, brief, brief_to, status_in_words};
 use serde_json::{Value, json};
 use std::error::Error;
+
+/// Where the entries of the inertia over mass begin in the covariance.
+const FIRST_OF_INERTIA: usize = 12;
 
 /// What contacts and poses of three flat palms tell.
 pub(crate) struct WithoutForces {
@@ -135,7 +138,7 @@ fn figures(made: &WithoutForces) -> Value {
         "centre_m": shape.centre.to_array(),
         "orientation_wxyz": [q.w, q.x, q.y, q.z],
         "inertia_over_mass_m2": six(&found.inertia_per_mass),
-        "std_inertia_over_mass_m2": deviations(12),
+        "std_inertia_over_mass_m2": deviations(FIRST_OF_INERTIA),
         "samples": evidence.samples,
         "residual_rms_m": evidence.residual_rms,
         "noise_explains_m": evidence.noise_explains,
@@ -169,11 +172,21 @@ fn describe(made: &WithoutForces) -> String {
         brief(c.y),
         brief(c.z)
     ));
+    let deviation = |i: usize| found.covariance[(FIRST_OF_INERTIA + i, FIRST_OF_INERTIA + i)].max(0.0).sqrt();
+    let known = six(&found.inertia_per_mass);
+    for (of, range) in [("moments over mass", 0..3), ("products over mass", 3..6)] {
+        let words = range.map(|i| format!("{} +- {}", brief(known[i]), brief_to(2, deviation(i))));
+        lines.push(format!("  {of:<22} {} m^2", words.collect::<Vec<_>>().join(", ")));
+    }
     if let Some(bounded) = bounded {
         lines.push(format!("  lower bound            {} m^3", brief(bounded.drawn.lower.volume)));
         if let Some(upper) = &bounded.drawn.upper {
             lines.push(format!("  upper bound            {} m^3", brief(upper.volume)));
         }
     }
+    lines.push(
+        "  next                   forces, where palms measure them, tell the mass too (without --without-forces)"
+            .to_owned(),
+    );
     lines.join("\n")
 }

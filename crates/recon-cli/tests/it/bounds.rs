@@ -69,6 +69,12 @@ fn limits_on_the_curvature_tighten_the_bounds() {
     scratch.write("clean.csv", &sphere_contacts(0.0, 0.0)).write("noisy.csv", &sphere_contacts(1e-4, 0.2));
     let sphere = 4.0 / 3.0 * PI;
     let plain = volumes(&bounds(&scratch, &["clean.csv"]));
+    // Where to touch next is said with its place.
+    let said = scratch.run(&["bounds", "clean.csv"]).stdout;
+    assert!(
+        said.contains("  next                   touch it about (") && said.contains(" apart at least"),
+        "{said}"
+    );
     let limits = ["--rho-min", "0.8", "--rho-max", "1.3"];
     let sharp = volumes(&bounds(&scratch, &[&["clean.csv", "-o", "out"], &limits[..]].concat()));
     assert!(plain[0] < sharp[0] && sharp[0] < sphere && sphere < sharp[1] && sharp[1] < plain[1]);

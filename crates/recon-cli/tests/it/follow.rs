@@ -121,6 +121,9 @@ fn a_log_without_forces_gives_the_ellipsoid() {
     let run = scratch.run(&arguments);
     // The ellipsoid without bounds: under noise it is not known how far the contacts are off.
     assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);
+    for words in ["moments over mass", " +- ", "  next                   forces"] {
+        assert!(run.stdout.contains(words), "`{words}` is not in\n{}", run.stdout);
+    }
     let figures: serde_json::Value = serde_json::from_str(&scratch.read("recon-out/summary.json")).unwrap();
     for (axis, expected) in [1.0, 2.0, 2.5].into_iter().enumerate() {
         let found = figures["semi_axes_m"][axis].as_f64().unwrap();

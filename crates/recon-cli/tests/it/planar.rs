@@ -12,6 +12,9 @@ fn the_demo_and_its_log_without_forces_agree_with_the_truth() {
     let scratch = Scratch::new("planar");
     let run = scratch.run(&["planar"]);
     assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    // Verdict first, what to do next last.
+    assert!(run.stdout.starts_with("The fit settled, "), "{}", run.stdout);
+    assert!(run.stdout.contains("  next                   touch more of the object"), "{}", run.stdout);
     let log = scratch.read("recon-planar/log.csv");
     let header: Vec<&str> = log.lines().next().unwrap().split(',').collect();
     let column = |name: &str| header.iter().position(|h| *h == name).unwrap();

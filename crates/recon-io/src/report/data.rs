@@ -1,8 +1,12 @@
+use super::ModeSpan;
 use crate::TriangleMesh;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::PalmFrame;
 use recon::object_dynamics::TrueState;
 use thiserror::Error;
+
+/// Pairs of a corner and a facet that are weighed at most to find where bounds are farthest apart.
+const MOST_WEIGHED: usize = 4_000_000;
 
 /// Everything that is told about one reconstruction, independent of how it was made. SI units.
 ///
@@ -20,6 +24,12 @@ pub struct ReportData {
     pub palms: [PalmTrack; 3],
     /// Estimated motion, one state per time.
     pub motion: Vec<MotionState>,
+    /// Standard deviations of centre of mass, velocity, angular velocity and turn, world axes, one entry per time.
+    pub deviations: Vec<[DVec3; 4]>,
+    /// Whether the motion is relied on, one entry per time.
+    pub relied_on: Vec<bool>,
+    /// What the contact of each palm does.
+    pub spans: Vec<Vec<ModeSpan>>,
     /// True motion, one state per time.
     pub truth: Option<Vec<MotionState>>,
     /// Bounds on the shape, in body axes.
@@ -30,6 +40,8 @@ pub struct ReportData {
     pub evidence: Vec<Evidence>,
     /// What the reader must know, in plain words.
     pub warnings: Vec<String>,
+    /// What to do next, in plain words.
+    pub next: String,
 }
 
 /// Whether the result can be relied on, and why, in one sentence.
@@ -89,6 +101,8 @@ pub struct PalmTrack {
     pub frames: Vec<PalmFrame>,
     /// Contact at each time; none where the palm does not touch.
     pub contacts: Vec<Option<PalmContact>>,
+    /// Size of the normal force on the object at each time, N; none where it was not measured.
+    pub forces: Vec<Option<f64>>,
 }
 
 /// Where a palm touches the object at one time.
@@ -115,6 +129,27 @@ pub struct MotionState {
     pub v_WCm: DVec3,
     /// Angular velocity, rad/s, world axes.
     pub w_WO: DVec3,
+}
+
+impl Bounds {
+    /// The corner of the upper bound that is farthest from the lower one, body axes, and by how much it is beyond it at least, m:
+    /// where a touch tells most. None where there is no upper bound, or nothing between the two.
+    #[must_use]
+    pub fn farthest_apart(&self) -> Option<(DVec3, f64)> {
+        let (lower, upper) = (&self.lower.mesh, &self.upper.as_ref()?.mesh);
+        let corner = |index: u32| lower.vertices.get(index as usize).copied();
+        let plane = |of: &[u32; 3]| {
+            let [a, b, c] = [corner(of[0])?, corner(of[1])?, corner(of[2])?];
+            let n = (b - a).cross(c - a).try_normalize()?;
+            Some((n, n.dot(a)))
+        };
+        // Some of the planes leave the distance too small at most, and large bounds need not be weighed corner by facet.
+        let stride = (lower.triangles.len() * upper.vertices.len()).div_ceil(MOST_WEIGHED).max(1);
+        let planes: Vec<(DVec3, f64)> = lower.triangles.iter().step_by(stride).filter_map(plane).collect();
+        let beyond = |p: DVec3| planes.iter().map(|(n, offset)| n.dot(p) - offset).fold(0.0, f64::max);
+        let all = upper.vertices.iter().map(|&p| (p, beyond(p))).filter(|(_, beyond)| *beyond > 0.0);
+        all.reduce(|most, next| if next.1 > most.1 { next } else { most })
+    }
 }
 
 impl From<TrueState> for MotionState {
@@ -202,9 +237,17 @@ impl ReportData {
             [
                 (format!("frames of palm {i}"), palm.frames.len()),
                 (format!("contacts of palm {i}"), palm.contacts.len()),
+                (format!("forces of palm {i}"), palm.forces.len()),
             ]
         });
-        let tracks = std::iter::once(("motion".to_owned(), self.motion.len()))
+        let own = [
+            ("motion", self.motion.len()),
+            ("deviations", self.deviations.len()),
+            ("reliance", self.relied_on.len()),
+        ];
+        let tracks = own
+            .into_iter()
+            .map(|(what, found)| (what.to_owned(), found))
             .chain(self.truth.iter().map(|t| ("truth".to_owned(), t.len())))
             .chain(palms);
         for (what, found) in tracks {

@@ -1,5 +1,7 @@
 //! The report's data as compact JSON: thinned in time, rounded to what a screen can show.
 
+use super::contacts::doubtful_spans;
+use super::contacts::estimate::BAND;
 use super::data::{Bound, Departure, Level, MotionState, PalmTrack, ReportData, TrueShape};
 use crate::TriangleMesh;
 use crate::number::{on_scale, significant};
@@ -23,11 +25,14 @@ pub(super) fn encode(data: &ReportData) -> Value {
         "t": keep.iter().map(|&k| on_scale(data.times[k], duration(data), 5)).collect::<Vec<_>>(),
         "palms": ([0, 1, 2].map(|i| palm(data, i, &keep, size))),
         "motion": motion(&data.motion, &keep, size),
+        "band": band(data, &keep),
+        "doubtful": doubtful_spans(&data.times, &data.relied_on),
         "truth": data.truth.as_ref().map(|truth| motion(truth, &keep, size)),
         "departure": data.departures().map(|d| departure(&d, &keep)),
         "bounds": data.bounds.as_ref().map(|b| json!({
             "lower": bound(&b.lower, size),
             "upper": b.upper.as_ref().map(|u| bound(u, size)),
+            "apart": b.farthest_apart().map(|(p, _)| vector(p, size)),
         })),
         "shape": data.true_shape.as_ref().map(|s| shape(s, size)),
     })
@@ -68,6 +73,9 @@ fn palm(data: &ReportData, i: usize, keep: &[usize], size: f64) -> Value {
         "world": point(|c| c.p_WC),
         "body": point(|c| c.p_OC),
         "radius": keep.iter().map(|&k| radius(k)).collect::<Vec<_>>(),
+        // The palm's plane is known: what is not is the centre of mass along its normal.
+        "radiusBand": keep.iter().map(|&k| half_height((track.frames[k].n * data.deviations[k][0]).length())).collect::<Vec<_>>(),
+        "force": keep.iter().map(|&k| track.forces[k].and_then(|f| number(significant(f, 5)))).collect::<Vec<_>>(),
         "trueRadius": data.truth.as_ref().map(|_| keep.iter().map(|&k| true_radius(k)).collect::<Vec<_>>()),
     })
 }
@@ -91,6 +99,32 @@ fn motion(states: &[MotionState], keep: &[usize], size: f64) -> Value {
         "q": orientations(states, keep),
         "w": track(|s| s.w_WO, largest(|s| s.w_WO)),
     })
+}
+
+/// Half the heights of the bands about the curves of the motion.
+fn band(data: &ReportData, keep: &[usize]) -> Value {
+    let track = |of: &dyn Fn(usize) -> Vec<f64>| -> Vec<Option<f64>> {
+        keep.iter().flat_map(|&k| of(k)).map(half_height).collect()
+    };
+    let along = |i: usize| track(&|k| data.deviations[k][i].to_array().to_vec());
+    // A turn `a` about the world's axes changes an orientation `q` by `(0, a) q / 2`.
+    let orientation = |k: usize| {
+        let q = data.motion[k].R_WO;
+        let by_axis = |i: usize| {
+            let turn = DVec3::AXES[i] * data.deviations[k][3][i];
+            DQuat::from_xyzw(turn.x, turn.y, turn.z, 0.0) * q * 0.5
+        };
+        let [a, b, c] = [by_axis(0), by_axis(1), by_axis(2)];
+        [|q: DQuat| q.w, |q: DQuat| q.x, |q: DQuat| q.y, |q: DQuat| q.z]
+            .map(|of| DVec3::new(of(a), of(b), of(c)).length())
+            .to_vec()
+    };
+    json!({ "p": along(0), "w": along(2), "q": track(&orientation) })
+}
+
+/// Half the height of a band about a number with this standard deviation.
+fn half_height(deviation: f64) -> Option<f64> {
+    number(significant(BAND * deviation, 3))
 }
 
 /// Quaternions, w first, with signs chosen so that neighbours agree and the first is the one nearest to no rotation.

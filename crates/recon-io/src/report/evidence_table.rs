@@ -3,7 +3,7 @@
 use super::encode::level;
 use super::page::escape_text;
 use super::{Evidence, EvidenceValue, Level};
-use crate::number::{brief_to, with_brief_numbers};
+use crate::number::{brief, with_brief_numbers};
 
 /// A row.
 pub(super) fn row(of: &Evidence) -> String {
@@ -14,7 +14,7 @@ pub(super) fn row(of: &Evidence) -> String {
         Level::Neutral => "·",
     };
     let (class, value) = match &of.value {
-        EvidenceValue::Number(v) => ("number", brief_to(4, *v)),
+        EvidenceValue::Number(v) => ("number", brief(*v)),
         EvidenceValue::Count(n) => ("number", n.to_string()),
         EvidenceValue::Text(text) => ("words", escape_text(&with_brief_numbers(text))),
     };

@@ -81,7 +81,7 @@ mod tests {
         write_figures_page(&page, &mut out).unwrap();
         let text = String::from_utf8(out).unwrap();
         for part in
-            ["a &lt;b&gt;", "With care</strong>one &amp; two", "Warning</strong>mind &lt; this", "0.1235 m"]
+            ["a &lt;b&gt;", "With care</strong>one &amp; two", "Warning</strong>mind &lt; this", "0.123456 m"]
         {
             assert!(text.contains(part), "{part}");
         }

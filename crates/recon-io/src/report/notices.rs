@@ -11,6 +11,13 @@ pub(super) fn notice(of: Level, word: &str, text: &str) -> String {
     format!("<p class=\"notice {level}\"><strong>{word}</strong>{text}</p>\n")
 }
 
+/// What to do next.
+pub(super) fn next(step: &str) -> String {
+    let mut letters = step.chars();
+    let step: String = letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect();
+    notice(Level::Neutral, "Next", &format!("{step}."))
+}
+
 /// A verdict under the word for good, caution and bad, then the warnings.
 pub(super) fn notices(verdict: &Verdict, [good, caution, bad]: [&str; 3], warnings: &[String]) -> String {
     let word = match verdict.level {

@@ -1,10 +1,12 @@
-use super::EvidenceValue;
-use super::contacts::page::fact;
+use super::contacts::bands::bands;
+use super::contacts::doubtful_spans;
+use super::contacts::page::{STYLE as BANDS, fact};
 use super::data::{Departure, ReportData, ReportError};
 use super::encode::encode;
 use super::evidence_table::row;
-use super::notices::notices;
-use crate::number::brief_to;
+use super::notices::{next, notices};
+use super::{Bounds, Evidence, EvidenceValue};
+use crate::number::{brief, brief_to};
 use std::io::{self, Write};
 
 const HEAD: &str = include_str!("assets/head.html");
@@ -31,9 +33,14 @@ pub fn write_report(data: &ReportData, to: impl Write) -> io::Result<()> {
     data.check().map_err(|e: ReportError| io::Error::new(io::ErrorKind::InvalidInput, e))?;
     let json = serde_json::to_string(&encode(data))?;
     let parts = [
-        ("head", head(&data.title, "")?),
+        ("head", head(&data.title, BANDS)?),
         ("title", escape_text(&data.title)),
-        ("verdict", notices(&data.verdict, ["Reliable", "With care", "Unreliable"], &data.warnings)),
+        (
+            "verdict",
+            notices(&data.verdict, ["Reliable", "With care", "Unreliable"], &data.warnings)
+                + &next(&data.next),
+        ),
+        ("bands", bands(&data.spans, &[], &doubtful_spans(&data.times, &data.relied_on))),
         ("facts", facts(data).iter().map(fact).collect()),
         ("evidence", data.evidence.iter().map(row).collect()),
         ("data", escape_script(&json)),
@@ -46,27 +53,54 @@ pub fn write_report(data: &ReportData, to: impl Write) -> io::Result<()> {
 fn facts(data: &ReportData) -> Vec<(&'static str, String, &'static str)> {
     let over = data.times.last().zip(data.times.first()).map_or(0.0, |(last, first)| last - first);
     let mut facts = vec![("Time", brief_to(4, over), "s"), ("Samples", data.times.len().to_string(), "")];
-    let of = |key: &str| data.evidence.iter().find(|row| row.key == key).map(|row| &row.value);
-    if let Some(EvidenceValue::Number(mass)) = of("mass") {
-        facts.push(("Mass", brief_to(4, *mass), "kg"));
-    }
-    if let Some(bounds) = &data.bounds {
-        let lower = bounds.lower.volume;
-        facts.push(("Lower bound", brief_to(4, lower), "m³"));
-        match bounds.upper.as_ref().map(|upper| upper.volume) {
-            Some(upper) => {
-                facts.push(("Upper bound", brief_to(4, upper), "m³"));
-                facts.push(("Lower / upper", brief_to(3, lower / upper), ""));
-            }
-            None => facts.push(("Upper bound", "unbounded".to_owned(), "")),
-        }
-    }
+    facts.extend(of_body(&data.evidence));
+    facts.extend(data.bounds.iter().flat_map(of_bounds));
     if let Some(all) = data.departures() {
         let most = |of: fn(&Departure) -> f64| brief_to(2, all.iter().map(of).fold(0.0, f64::max));
         facts.push(("Largest position error", most(|d| d.position), "m"));
         facts.push(("Largest rate error", most(|d| d.angular_velocity), "rad/s"));
     }
     facts
+}
+
+/// Mass and principal moments, with deviations where they were estimated.
+pub(super) fn of_body(evidence: &[Evidence]) -> Vec<(&'static str, String, &'static str)> {
+    let of = |key: &str| {
+        evidence.iter().find(|row| row.key == key).and_then(|row| match row.value {
+            EvidenceValue::Number(value) => Some(value),
+            _ => None,
+        })
+    };
+    let rows = [
+        ("Mass", "mass", "std_mass", "kg"),
+        ("Least moment", "moment_x", "std_moment_x", "kg m²"),
+        ("Middle moment", "moment_y", "std_moment_y", "kg m²"),
+        ("Largest moment", "moment_z", "std_moment_z", "kg m²"),
+        ("Moment of inertia", "inertia", "std_inertia", "kg m²"),
+    ];
+    let tile = |(name, key, deviation, unit)| {
+        let std = of(deviation).map_or_else(String::new, |std| {
+            format!("<small class=\"deviation\">± {}</small>", brief_to(2, std))
+        });
+        Some((name, brief(of(key)?) + &std, unit))
+    };
+    rows.into_iter().filter_map(tile).collect()
+}
+
+/// Volumes of bounds.
+pub(super) fn of_bounds(bounds: &Bounds) -> Vec<(&'static str, String, &'static str)> {
+    let lower = bounds.lower.volume;
+    let first = ("Lower bound", brief(lower), "m³");
+    match bounds.upper.as_ref().map(|upper| upper.volume) {
+        Some(upper) => {
+            vec![
+                first,
+                ("Upper bound", brief(upper), "m³"),
+                ("Lower / upper", brief_to(4, lower / upper), ""),
+            ]
+        }
+        None => vec![first, ("Upper bound", "unbounded".to_owned(), "")],
+    }
 }
 
 /// The head that all pages share, with what a page adds to their style.

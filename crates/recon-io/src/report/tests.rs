@@ -2,6 +2,7 @@ use super::*;
 use crate::{TriangleMesh, write_contact_curves, write_motion, write_radius_functions};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::PalmFrame;
+use recon::object_dynamics::ContactMode;
 
 /// A unit ball that spins about Z on three still palms, with a rounding error put on the estimate.
 fn data(count: usize) -> ReportData {
@@ -28,6 +29,7 @@ fn data(count: usize) -> ReportData {
                 })
             })
             .collect(),
+        forces: (0..count).map(|k| (k > 0).then_some(2.5)).collect(),
     };
     let tetrahedron = TriangleMesh::new(
         vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
@@ -40,6 +42,10 @@ fn data(count: usize) -> ReportData {
         times: (0..count).map(|k| 1e-2 * k as f64).collect(),
         palms: frames.map(palm),
         motion: (0..count).map(|k| state(k, 1e-7)).collect(),
+        deviations: vec![[DVec3::new(3e-3, 4e-3, 0.0), DVec3::ONE, DVec3::splat(0.5), DVec3::Z * 0.1]; count],
+        // The last quarter is not.
+        relied_on: (0..count).map(|k| 4 * k < 3 * count).collect(),
+        spans: vec![vec![ModeSpan { start: 0.0, end: 1.0, mode: ContactMode::Slide, sure: 10 }]; 3],
         truth: Some((0..count).map(|k| state(k, 0.0)).collect()),
         bounds: Some(Bounds { lower: bound(1.0 / 6.0), upper: Some(bound(8.0)), largest_gap: Some(1.5) }),
         true_shape: None,
@@ -52,6 +58,7 @@ fn data(count: usize) -> ReportData {
             level: Level::Bad,
         }],
         warnings: vec!["<b>mind</b>".into()],
+        next: "touch <more>".into(),
     }
 }
 
@@ -89,6 +96,9 @@ fn text_cannot_break_out_of_the_page() {
         "Warning</strong>&lt;b&gt;mind",
         "<dt>Upper bound</dt><dd>8<",
         "Infinite here.",
+        "Next</strong>Touch &lt;more&gt;.",
+        "<rect class=\"m1\"",
+        "<rect class=\"doubtful\"",
     ] {
         assert!(written.contains(part), "{part}");
     }
@@ -103,6 +113,59 @@ fn long_logs_are_thinned_and_gaps_are_kept() {
     assert_eq!(carried["palms"][0]["normals"].as_array().unwrap().len(), 3, "a still palm has one normal");
     let error = carried["departure"]["angle"][3].as_f64().unwrap();
     assert!((error - 1e-7).abs() < 1e-9, "{error}");
+}
+
+/// Bands are as high as 95 % of the errors are large: of the centre of mass, of its distance from a palm, of an orientation.
+#[test]
+fn curves_carry_their_uncertainty_forces_and_what_is_not_relied_on() {
+    let data = data(100);
+    let carried = embedded(&page(&data));
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert_eq!([0, 1, 2].map(|i| number(&carried["band"]["p"][i])), [5.88e-3, 7.84e-3, 0.0]);
+    assert_eq!(number(&carried["band"]["w"][0]), 0.98);
+    let n = data.palms[1].frames[0].n;
+    let along = 1.96 * (3e-3 * n.x).hypot(4e-3 * n.y);
+    assert!((number(&carried["palms"][1]["radiusBand"][0]) - along).abs() < 5e-3 * along);
+    // A turn about Z of a body that has turned about Z by next to nothing moves z of its quaternion, and half as much.
+    assert_eq!([0, 3].map(|i| number(&carried["band"]["q"][i])), [4.9e-9, 0.098]);
+    assert!(carried["palms"][0]["force"][0].is_null() && carried["palms"][0]["force"][1] == 2.5);
+    assert_eq!(carried["doubtful"], serde_json::json!([[0.745, 0.99]]));
+}
+
+#[test]
+fn the_next_touch_is_where_the_bounds_are_farthest_apart() {
+    let lower = TriangleMesh::net(8, 12, |unit| unit);
+    // Off on one side.
+    let upper = TriangleMesh::net(8, 12, |unit| unit * (1.1 + 0.5 * unit.x.max(0.0).powi(3)));
+    let of = |mesh: TriangleMesh| Bound { mesh, volume: 1.0 };
+    let bounds = Bounds { lower: of(lower), upper: Some(of(upper)), largest_gap: None };
+    let (at, gap) = bounds.farthest_apart().unwrap();
+    assert!(at.distance(DVec3::X * 1.6) < 1e-12 && (0.5..0.6).contains(&gap), "{at} {gap}");
+    let carried = embedded(&page(&ReportData { bounds: Some(bounds.clone()), ..data(20) }));
+    assert_eq!(carried["bounds"]["apart"], serde_json::json!([1.6, 0.0, 0.0]));
+    assert_eq!(Bounds { upper: None, ..bounds }.farthest_apart(), None);
+}
+
+/// The same numbers as on the console: six digits, two of a deviation.
+#[test]
+fn mass_and_inertia_are_tiles_with_their_deviations() {
+    let row = |key: &str, value: f64| Evidence {
+        key: key.into(),
+        name: String::new(),
+        value: EvidenceValue::Number(value),
+        unit: "kg".into(),
+        meaning: String::new(),
+        level: Level::Neutral,
+    };
+    let mut data = data(20);
+    data.evidence = vec![row("mass", 0.399_979_3), row("std_mass", 4.43e-5), row("moment_x", 1.6e-4)];
+    let page = page(&data);
+    for tile in [
+        "<dt>Mass</dt><dd>0.399979<small class=\"deviation\">± 4.4e-5</small><small>kg</small></dd>",
+        "<dt>Least moment</dt><dd>0.00016<small>kg m²</small></dd>",
+    ] {
+        assert!(page.contains(tile), "{tile}");
+    }
 }
 
 #[test]

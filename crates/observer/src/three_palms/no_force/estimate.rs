@@ -177,7 +177,9 @@ impl Scene<'_> {
         let rms = fit.normal.rms();
         let deviation = self.noise * nodes.variance.sqrt();
         let spectrum = Observability::new(&fit.normal.information);
-        let (words, weakest) = weakest(&spectrum, deviation.max(rms));
+        // What is left beyond noise, as steps between samples leave it in exact logs, moves the estimate as noise does.
+        let left = deviation.max(rms);
+        let (words, weakest) = weakest(&spectrum, left);
         let failed = fit.status == FitStatus::Failed;
         if !failed && (weakest.is_nan() || weakest > LARGEST_DEVIATION) {
             return Err(NoForceError::NotDetermined { words, deviation: weakest });
@@ -204,7 +206,7 @@ impl Scene<'_> {
             closure: closure(self.series, &problem, &fit.point, self.noise),
         };
         let inverse = spectrum.directions
-            * SMatrix::from_diagonal(&spectrum.eigenvalues.map(|v| deviation * deviation / v))
+            * SMatrix::from_diagonal(&spectrum.eigenvalues.map(|v| left * left / v))
             * spectrum.directions.transpose();
         let scales = problem.scales();
         let outward = by_numbers(&fit.point) * SMatrix::from_diagonal(&scales);

@@ -131,6 +131,23 @@ fn covariance_is_true_under_noise() {
     assert!((mean - 18.0).abs() < band, "{mean}");
 }
 
+/// What is left of an exact log is no noise, and is what the estimate is off by: deviations that count noise alone were too small by a
+/// factor of ten thousand and more.
+#[test]
+fn deviations_count_what_is_left_of_an_exact_log() {
+    let (_, log, truth) = general(3.0, 500.0);
+    let series = TouchSeries::new(&log).unwrap();
+    let noise = 1e-13;
+    let scene = Scene { series: &series, gravity: KNOWN.gravity, length: 2.0, noise, iterations: ITERATIONS };
+    let estimate = scene.estimate(&series.nodes(8), truth).unwrap();
+    assert!(estimate.evidence.residual_rms > 10.0 * estimate.evidence.noise_explains);
+    let error = found(&estimate) - entries(&truth);
+    for (i, error) in error.iter().enumerate() {
+        let deviation = estimate.covariance[(i, i)].sqrt();
+        assert!(error.abs() < 20.0 * deviation, "{i}: {error} against {deviation}");
+    }
+}
+
 /// Two linearisations from the truth leave no more than noise, and are no minimum: the answer would be as good as the
 /// guess.
 #[test]

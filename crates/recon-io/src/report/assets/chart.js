@@ -37,10 +37,10 @@ function ticks(low, high, count) {
 }
 
 // Lines over time with a legend that reads out the values at the clock's time.
-// series: { label, colour (CSS), values, truth (values or none) }.
+// series: { label, colour (CSS), values, truth (values or none), band (half its height about each value, or none) }; `shaded` stretches of time.
 class Chart {
-  constructor(parent, clock, { title, unit, series, logarithmic = false }) {
-    Object.assign(this, { clock, unit, series, logarithmic });
+  constructor(parent, clock, { title, unit, series, logarithmic = false, shaded = [] }) {
+    Object.assign(this, { clock, unit, series, logarithmic, shaded });
     const panel = element("div", { class: "panel chart" }, parent);
     const heading = element("h3", { text: title }, panel);
     if (unit) element("small", { text: "in " + unit }, heading);
@@ -72,15 +72,21 @@ class Chart {
     if (!all.length) [low, high] = this.logarithmic ? [1e-12, 1] : [0, 1];
     if (this.logarithmic) {
       low = Math.floor(Math.log10(low)); high = Math.ceil(Math.log10(high));
+      // What is left of rounding where two numbers are the same would take all of the height.
+      low = Math.max(low, high - 12);
       if (high - low < 2) { low -= 1; high += 1; }
     } else {
+      // Bands are shown whole as long as they leave the curves a third of the height.
+      const bands = this.series.flatMap((s) => s.band || []).filter((h) => h !== null);
+      const room = Math.min(bands.reduce((most, h) => Math.max(most, h), 0), high - low);
+      low -= room; high += room;
       const pad = (high - low || Math.abs(high) || 1) * 0.06;
       low -= pad; high += pad;
     }
     Object.assign(this, { low, high });
   }
 
-  level(v) { return this.logarithmic ? (v > 0 ? Math.log10(v) : null) : v; }
+  level(v) { return this.logarithmic ? (v > 0 ? Math.max(Math.log10(v), this.low) : null) : v; }
   x(t) { const ts = this.clock.times; return this.left + (t - ts[0]) / (ts[ts.length - 1] - ts[0]) * this.plotWidth; }
   y(v) { return this.top + (this.high - v) / (this.high - this.low) * this.plotHeight; }
   timeAt(x) {
@@ -95,7 +101,14 @@ class Chart {
     this.plotWidth = width - this.left - 10;
     this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     this.svg.replaceChildren();
+    for (const [from, to] of this.shaded) {
+      const x = this.x(from), width = this.x(to) - x;
+      element("svg:rect", { class: "shade", x, y: this.top, width, height: this.plotHeight }, this.svg);
+    }
     this.axes();
+    for (const s of this.series.filter((s) => s.band)) {
+      element("svg:path", { class: "band", d: this.around(s), style: `fill:${s.colour}` }, this.svg);
+    }
     for (const s of this.series) {
       // Under a dashed truth the estimate is a broad band of the same colour, so that both show where they agree.
       const look = s.truth ? "curve under" : this.logarithmic ? "curve fine" : "curve";
@@ -136,6 +149,20 @@ class Chart {
       d += (pen ? "L" : "M") + this.x(this.clock.times[k]).toFixed(1) + " " + this.y(v).toFixed(1);
       pen = true;
     });
+    return d;
+  }
+
+  // The outline of the band about a curve, in pieces where the curve is broken.
+  around({ values, band }) {
+    const inside = (v) => Math.max(this.top, Math.min(this.top + this.plotHeight, this.y(v))).toFixed(1);
+    let d = "", piece = [];
+    const close = () => {
+      const edge = (side) => piece.map((k) => this.x(this.clock.times[k]).toFixed(1) + " " + inside(values[k] + side * band[k]));
+      if (piece.length > 1) d += "M" + edge(1).join("L") + "L" + edge(-1).reverse().join("L") + "Z";
+      piece = [];
+    };
+    values.forEach((v, k) => { if (v === null || band[k] === null) close(); else piece.push(k); });
+    close();
     return d;
   }
 

@@ -76,6 +76,15 @@ function drawMotion(renderer, c, look, data, scene, k, extents, show) {
   palms(true);
 }
 
+// Where the arrow of each palm's force begins and ends, and which palm: the longest of the log is as long as the object is large.
+function forceArrows(data, scene, k) {
+  const largest = Math.max(...data.palms.flatMap((palm) => palm.force.filter((f) => f !== null)));
+  return normalsAt(scene, k).map((n, i) => {
+    const to = scene.curves[i].world[k], force = data.palms[i].force[k];
+    return to && force > 0 ? [sub(to, scale(n, 0.8 * data.size * force / largest)), to, i] : null;
+  }).filter(Boolean);
+}
+
 const stillKey = (scene, k) => scene.normals.map((n) => Math.min(k, n.length - 1)).join();
 
 function drawBody(renderer, c, scene, m, show) {

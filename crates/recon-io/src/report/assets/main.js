@@ -23,17 +23,28 @@ byId("theme").addEventListener("click", () => {
   stages.forEach((s) => s.show());
 });
 
-function stage(canvas, camera, draw) {
-  const made = new Stage(canvas, renderer, camera, draw);
+function stage(canvas, camera, draw, over) {
+  const made = new Stage(canvas, renderer, camera, draw, over);
   stages.push(made);
   return made;
 }
 
 function motionFigure() {
   const { extents, camera } = motionCamera(data, scene);
-  const show = { palms: true, trails: true, shape: true, upper: true };
+  const show = { palms: true, trails: true, forces: true, shape: true, upper: true };
   const draw = (look) => (r, c, l) => drawMotion(r, c, l, data, scene, look.k(), extents, look.show);
-  const main = stage(byId("motion-view"), camera, draw({ k: () => clock.index, show }));
+  const over = (o) => {
+    const k = clock.index, c = theme.colours;
+    if (show.forces) forceArrows(data, scene, k).forEach(([from, to, i]) => o.arrow(o.place(from), o.place(to), c[PALMS[i]], 2.4, 7));
+    o.context.fillStyle = cssColour(c.ink);
+    const [x, y] = o.place(scene.p[k]);
+    o.context.beginPath();
+    o.context.arc(x, y, 3.5 * o.ratio, 0, 7);
+    o.context.fill();
+    o.axes(["x", "y", "z"], [c.q1, c.q2, c.q3], c.bad);
+    o.bar(camera.target, c.soft);
+  };
+  const main = stage(byId("motion-view"), camera, draw({ k: () => clock.index, show }), over);
   const legend = byId("motion-toggles");
   PALMS.forEach((name, i) => {
     const key = element("span", { class: "key" }, legend);
@@ -41,6 +52,7 @@ function motionFigure() {
     element("span", { text: "palm " + (i + 1) }, key);
   });
   const layers = [["palms", "palms"], ["trails", "contacts on the palms"]];
+  if (data.palms.some((palm) => palm.force.some((f) => f > 0))) layers.push(["forces", "contact forces"]);
   if (scene.body.shape) layers.push(["shape", "true shape instead of bounds"]);
   else if (scene.body.upper) layers.push(["upper", "upper bound"]);
   toggles(legend, main, show, layers);
@@ -51,7 +63,8 @@ function motionFigure() {
   const still = scene.normals.every((n) => n.length === 1);
   byId("motion-caption").textContent =
     `The object on its three ${still ? "immobile" : "moving"} palms from ${format(first, 3)} s to ${format(last, 3)} s, as estimated. ` +
-    "Each colour is one palm: its surface, the path of the contact on it, and the path of the contact on the object. " +
+    "Each colour is one palm: its surface, the path of the contact on it, the path of the contact on the object, and its force. " +
+    "The black dot is the centre of mass, g gravity; the length is that at the middle of the picture. " +
     "Drag to turn, Ctrl and wheel to zoom; a small picture jumps to its time.";
   return main;
 }
@@ -115,22 +128,29 @@ function timeBar() {
 }
 
 function charts() {
-  const parent = byId("charts"), { motion, truth, departure } = data;
+  const parent = byId("charts"), { motion, truth, departure, band, doubtful: shaded } = data;
   const part = (list, size, i) => list.filter((_, k) => k % size === i);
   const split = (key, size, labels, colours) => labels.map((label, i) => ({
-    label, colour: `var(--${colours[i]})`, values: part(motion[key], size, i), truth: truth && part(truth[key], size, i),
+    label, colour: `var(--${colours[i]})`, values: part(motion[key], size, i), truth: truth && part(truth[key], size, i), band: part(band[key], size, i),
   }));
   new Chart(parent, clock, {
-    title: "Radius functions", unit: "m",
+    title: "Radius functions", unit: "m", shaded,
     series: data.palms.map((palm, i) => ({
-      label: `r${"₁₂₃"[i]} (palm ${i + 1})`, colour: `var(--p${i + 1})`, values: palm.radius, truth: palm.trueRadius,
+      label: `r${"₁₂₃"[i]} (palm ${i + 1})`, colour: `var(--p${i + 1})`, values: palm.radius, truth: palm.trueRadius, band: palm.radiusBand,
     })),
   });
   new Chart(parent, clock, {
-    title: "Orientation, body to world (unit quaternion)", series: split("q", 4, ["w", "x", "y", "z"], ["q0", "q1", "q2", "q3"]),
+    title: "Centre of mass, world", unit: "m", shaded, series: split("p", 3, ["x", "y", "z"], ["q1", "q2", "q3"]),
   });
   new Chart(parent, clock, {
-    title: "Angular velocity, world axes", unit: "rad/s", series: split("w", 3, ["ωx", "ωy", "ωz"], ["q1", "q2", "q3"]),
+    title: "Orientation, body to world (unit quaternion)", shaded, series: split("q", 4, ["w", "x", "y", "z"], ["q0", "q1", "q2", "q3"]),
+  });
+  new Chart(parent, clock, {
+    title: "Angular velocity, world axes", unit: "rad/s", shaded, series: split("w", 3, ["ωx", "ωy", "ωz"], ["q1", "q2", "q3"]),
+  });
+  if (data.palms.some((palm) => palm.force.some((f) => f !== null))) new Chart(parent, clock, {
+    title: "Contact forces", unit: "N", shaded,
+    series: data.palms.map((palm, i) => ({ label: `palm ${i + 1}`, colour: `var(--p${i + 1})`, values: palm.force })),
   });
   if (departure) new Chart(parent, clock, {
     title: "Distance from the truth", logarithmic: true, series: [
@@ -139,23 +159,33 @@ function charts() {
       { label: "angular velocity, rad/s", colour: "var(--q3)", values: departure.w },
     ],
   });
-  else new Chart(parent, clock, {
-    title: "Centre of mass, world", unit: "m", series: split("p", 3, ["x", "y", "z"], ["q1", "q2", "q3"]),
-  });
   byId("curves-caption").textContent =
     "The radius functions r₁, r₂, r₃ are the distances of the palms' planes from the centre of mass. " +
+    "Bands hold 95 % of what the estimate may be off by (two deviations). " + (shaded.length ? "Shaded: not relied on. " : "") +
     (truth ? "Estimates are broad lines, the truth is dashed. " : "") +
     "Move over a chart to read the values; all figures follow.";
 }
 
 function boundsFigure() {
   if (!data.bounds) { byId("bounds-section").remove(); return null; }
-  const show = { lower: true, upper: true, curves: true, truth: true };
-  const made = stage(byId("bounds-view"), boundsCamera(data, scene), (r, c) => drawBounds(r, c, scene, show, clock.index));
+  const show = { lower: true, upper: true, curves: true, truth: true, next: true };
+  const camera = boundsCamera(data, scene), spot = data.bounds.apart;
+  const over = (o) => {
+    const c = theme.colours;
+    if (spot && show.next) {
+      const from = o.place(scale(spot, 1 + 0.35 * data.size / norm(spot)));
+      o.arrow(from, o.place(spot), c.bad, 2.4);
+      o.text("touch next", from[0], from[1] - 10 * o.ratio, c.bad);
+    }
+    o.axes(["x", "y", "z"], [c.q1, c.q2, c.q3], null);
+    o.bar(camera.target, c.soft);
+  };
+  const made = stage(byId("bounds-view"), camera, (r, c) => drawBounds(r, c, scene, show, clock.index), over);
   const layers = [["lower", "lower bound", { colour: "body", kind: "fill" }]];
   if (scene.body.upper) layers.push(["upper", "upper bound", { colour: "glass", kind: "fill" }]);
   layers.push(["curves", "contact curves", { colour: "p1", kind: "three" }]);
   if (scene.body.wire) layers.push(["truth", "true shape", { colour: "truth", kind: "thin" }]);
+  if (spot) layers.push(["next", "where to touch next", { colour: "bad", kind: "thin" }]);
   toggles(byId("bounds-toggles"), made, show, layers);
   clock.listeners.push(() => made.show());
   const { lower, upper } = data.bounds, rows = [["Lower bound", lower.volume, "body"]];
@@ -164,7 +194,7 @@ function boundsFigure() {
   volumes(rows, lower, upper);
   byId("bounds-caption").textContent =
     "The object seen from its own axes. Every convex object with these contacts contains the lower bound, the hull of the contact curves" +
-    (upper ? ", and is contained in the upper bound, the room that the palms' planes left to it." : "; the palms' planes leave it unbounded on some side, so there is no upper bound.");
+    (upper ? ", and is contained in the upper bound, the room that the palms' planes left to it" + (spot ? "; the arrow shows where the two are farthest apart." : ".") : "; the palms' planes leave it unbounded on some side, so there is no upper bound.");
   return made;
 }
 
@@ -180,7 +210,7 @@ function volumes(rows, lower, upper) {
   };
   const largest = Math.max(...rows.map((r) => r[1]));
   rows.forEach(([name, volume, colour]) => {
-    const cell = row(name, format(volume, 5)), bar = element("i", { class: "bar-volume" }, cell);
+    const cell = row(name, brief(volume)), bar = element("i", { class: "bar-volume" }, cell);
     bar.style.cssText = `--c:var(--${colour});width:${(100 * volume / largest).toFixed(1)}%`;
   });
   if (!upper) row("Upper bound", "unbounded");

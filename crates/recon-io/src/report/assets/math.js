@@ -84,6 +84,9 @@ function fit(camera, list) {
   return camera;
 }
 
+// A number as on the console and in the key figures: six digits.
+const brief = (x) => String(Number(x.toPrecision(6)));
+
 // Numbers as people read them: four digits, a true minus, powers of ten as superscripts.
 function format(x, digits = 4) {
   if (x === null || x === undefined || !isFinite(x)) return "–";

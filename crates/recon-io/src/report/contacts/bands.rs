@@ -13,7 +13,7 @@ const BAND: f64 = 18.0;
 
 /// Bands of the spans of each palm over the time, as opaque as they are probable, as one SVG element; marks at the times of the pictures, and a shade over stretches
 /// of time that are not relied on.
-pub(super) fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]]) -> String {
+pub(in crate::report) fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]]) -> String {
     let (start, end) = (all.first().and_then(|s| s.first()), all.first().and_then(|s| s.last()));
     let (start, end) = start.zip(end).map_or((0.0, 1.0), |(first, last)| (first.start, last.end));
     let place = |t: f64| on_scale(LEFT + (WIDTH - LEFT - 8.0) * (t - start) / (end - start), 100.0, 4);

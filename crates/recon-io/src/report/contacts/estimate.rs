@@ -4,20 +4,20 @@ use super::super::encode::thin;
 use super::super::{Bounds, Evidence, MotionState, PalmContact, Verdict};
 use super::estimate_page::doubtful_spans;
 use super::moment::Shown;
-use super::picture::{Line, Picture};
+use super::picture::{Line, Picture, axes_of_space, per_newton};
 use super::space::{ShownPalm, palm};
 use super::view::View;
 use crate::planar_figures::{FigureCurve, FigurePanel};
 use glam::{DVec2, DVec3};
 use recon::contact_kinematics::SurfaceState;
-use recon::object_dynamics::{ContactLog, ContactMode};
+use recon::object_dynamics::{ContactLog, ContactMode, LoggedPalm};
 use recon::observer::ContactEstimate;
 use recon::shape_bounds::planar::Hull;
 
 /// Points of a contact curve that are drawn at most.
 const TRACED: usize = 400;
 /// Half the height of bands of uncertainty in standard deviations: 95 % of a normal variable lie within.
-const BAND: f64 = 1.96;
+pub(in crate::report) const BAND: f64 = 1.96;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Everything that is told about a motion that was estimated from contacts of any palms.
@@ -43,6 +43,8 @@ pub struct EstimateData {
     pub evidence: Vec<Evidence>,
     /// What the reader must know, in plain words.
     pub warnings: Vec<String>,
+    /// What to do next, in plain words.
+    pub next: String,
 }
 
 impl EstimateData {
@@ -75,11 +77,14 @@ impl EstimateData {
     pub(super) fn pictures(&self) -> Vec<Picture> {
         let samples: Vec<usize> = (0..self.log.times().len()).collect();
         let (reach, view) = (self.reach(), View::oblique());
-        Shown::instants(&samples).map(|k| self.picture(*k, reach, &view)).collect()
+        let palms = self.log.palms();
+        let forces = samples.iter().flat_map(|&k| palms.iter().filter_map(move |palm| palm.force(k)));
+        let newton = per_newton(reach, forces.map(|force| force.vector.length()));
+        Shown::instants(&samples).map(|k| self.picture(*k, reach, newton, &view)).collect()
     }
 
     /// What is seen at sample `k`, from back to front.
-    fn picture(&self, k: usize, reach: f64, view: &View) -> Picture {
+    fn picture(&self, k: usize, reach: f64, newton: f64, view: &View) -> Picture {
         let p_WCm = self.estimate.states[k].p_WCm;
         let shown: Vec<ShownPalm> = self.log.palms().iter().map(|palm| shown(palm, k, p_WCm)).collect();
         let before = |i: &usize| view.nearness(shown[*i].p_WC) > view.nearness(p_WCm);
@@ -88,13 +93,19 @@ impl EstimateData {
         let mut lines: Vec<Line> = back.into_iter().map(drawn).collect();
         lines.extend(self.object(k, view));
         lines.extend(front.into_iter().map(drawn));
+        lines.push(Line::centre(view.place(p_WCm)));
+        for palm in self.log.palms() {
+            if let (Some(touch), Some(force)) = (palm.touch(k), palm.force(k)) {
+                lines.push(Line::force(view.place(touch.p_WC), view.place(force.vector), newton));
+            }
+        }
         for (i, mode) in self.estimate.modes[k].iter().enumerate() {
             let touch = self.log.palms().get(i).and_then(|palm| palm.touch(k));
             if let Some(touch) = touch.filter(|_| *mode != ContactMode::Off) {
                 lines.push(Line::touch(*mode, view.place(touch.p_WC)));
             }
         }
-        Picture { t: self.log.times()[k], lines }
+        Picture { t: self.log.times()[k], lines, axes: axes_of_space(view) }
     }
 
     /// The silhouette of what the contacts span, and the contact curves where they are seen.
@@ -157,7 +168,20 @@ impl EstimateData {
             panel("Velocity", "m/s", curves(|s| s.v_WCm, 1)),
             panel("Angular velocity", "rad/s", curves(|s| s.w_WO, 2)),
             panel("Turn since the start", "degrees", vec![self.turn(&kept)]),
+            panel("Contact forces", "N", self.forces(&kept)),
         ]
+    }
+
+    /// Size of the force of each palm; no number where it was not measured.
+    fn forces(&self, kept: &[usize]) -> Vec<FigureCurve> {
+        let size =
+            |palm: &LoggedPalm, k: usize| palm.force(k).map_or(f64::NAN, |force| force.vector.length());
+        let curve = |(i, palm): (usize, &LoggedPalm)| FigureCurve {
+            name: format!("palm {}", i + 1),
+            points: kept.iter().map(|&k| [self.log.times()[k], size(palm, k)]).collect(),
+            ..FigureCurve::default()
+        };
+        self.log.palms().iter().enumerate().map(curve).collect()
     }
 
     /// Angle of the turn since the start; its band is that of the axis that is known worst.

@@ -1,6 +1,6 @@
 use super::super::evidence_table::row;
-use super::super::notices::{notice, notices};
-use super::super::page::{escape_text, fill, head};
+use super::super::notices::{next, notice, notices};
+use super::super::page::{escape_text, fill, head, of_body, of_bounds};
 use super::super::{Evidence, Level, Verdict};
 use super::bands::bands;
 use super::estimate::EstimateData;
@@ -25,6 +25,7 @@ pub(super) struct EstimatePage<'a> {
     pub(super) title: &'a str,
     pub(super) verdict: &'a Verdict,
     pub(super) note: &'a str,
+    pub(super) next: &'a str,
     pub(super) warnings: &'a [String],
     pub(super) facts: Facts,
     pub(super) pictures: Vec<Picture>,
@@ -52,23 +53,14 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
     }
     let (times, found) = (data.log.times(), &data.estimate);
     let mut facts = EstimatePage::common_facts(data.log.duration(), &found.relied_on);
-    facts.push(("Mass", brief_to(4, found.mass), "kg"));
-    if found.axes_deviations.is_none() {
-        facts.push(("Its deviation", brief_to(2, 100.0 * found.mass_deviation), "%"));
-    }
-    if let Some(bounds) = &data.bounds {
-        let upper = bounds.upper.as_ref();
-        facts.push(("Lower bound", brief_to(4, bounds.lower.volume), "m³"));
-        facts.push(match upper {
-            Some(upper) => ("Upper bound", brief_to(4, upper.volume), "m³"),
-            None => ("Upper bound", "unbounded".to_owned(), ""),
-        });
-    }
+    facts.extend(of_body(&data.evidence));
+    facts.extend(data.bounds.iter().flat_map(of_bounds));
     let object = if found.relied_on.contains(&true) { OBJECT } else { NO_OBJECT };
     let page = EstimatePage {
         title: &data.title,
         verdict: &data.verdict,
         note: &data.note,
+        next: &data.next,
         warnings: &data.warnings,
         facts,
         pictures: data.pictures(),
@@ -108,7 +100,8 @@ impl EstimatePage<'_> {
             (
                 "verdict",
                 notices(self.verdict, ["Reliable", "With care", "Unreliable"], self.warnings)
-                    + &notice(Level::Neutral, "Note", self.note),
+                    + &notice(Level::Neutral, "Note", self.note)
+                    + &next(self.next),
             ),
             ("facts", self.facts.iter().map(fact).collect()),
             ("pictures", drawn(&self.pictures)),

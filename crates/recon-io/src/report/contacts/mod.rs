@@ -1,7 +1,7 @@
 //! Reports of motions through contact modes, simulated or estimated: pictures, bands of modes, curves.
 
-mod bands;
-mod estimate;
+pub(super) mod bands;
+pub(super) mod estimate;
 mod estimate_page;
 mod moment;
 pub(super) mod page;

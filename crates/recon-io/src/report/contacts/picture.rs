@@ -1,7 +1,9 @@
 //! Pictures of object and palms at a few instants.
 
-use crate::number::on_scale;
-use glam::DVec2;
+use super::view::View;
+use crate::number::{brief_to, on_scale};
+use crate::planar_figures::round_step;
+use glam::{DVec2, DVec3};
 use recon::object_dynamics::ContactMode;
 use std::fmt::Write as _;
 
@@ -9,6 +11,14 @@ use std::fmt::Write as _;
 const WIDTH: f64 = 290.0;
 const HIGHEST: f64 = 1.5 * WIDTH;
 const MARGIN: f64 = 6.0;
+/// Height of the foot in which axes, gravity and a length stand, px.
+const FOOT: f64 = 46.0;
+/// Length of an axis, and of a scale bar at most, px.
+const AXIS: f64 = 24.0;
+const BAR: f64 = 80.0;
+/// Longest arrow of a force in sizes of the object, and its head as a share of the arrow.
+const LONGEST: f64 = 0.8;
+const HEAD: f64 = 0.25;
 
 /// A line of a picture, in m on the plane of view.
 pub(super) struct Line {
@@ -31,15 +41,48 @@ impl Line {
         // A line without length under a round cap is a dot.
         Self { class: format!("touch m{}", mode.number()), points: vec![at, at] }
     }
+
+    /// The centre of mass.
+    pub(super) fn centre(at: DVec2) -> Self {
+        Self::new("centre", vec![at, at])
+    }
+
+    /// A force on the object: an arrow that ends where it acts. `per_newton` is its length, m.
+    pub(super) fn force(at: DVec2, force: DVec2, per_newton: f64) -> Self {
+        let shaft = per_newton * force;
+        let side = |turn: f64| at - HEAD * DVec2::from_angle(turn).rotate(shaft);
+        Self::new("force", vec![at - shaft, at, side(0.4), at, side(-0.4)])
+    }
+}
+
+/// Length of a newton, m, in pictures of an object of the size `reach` whose largest force this is.
+pub(super) fn per_newton(reach: f64, forces: impl Iterator<Item = f64>) -> f64 {
+    let largest = forces.filter(|force| force.is_finite()).fold(0.0, f64::max);
+    if largest > 0.0 { LONGEST * reach / largest } else { 0.0 }
+}
+
+/// Where axes of the world are seen, and where gravity pulls: names and unit vectors on the picture.
+pub(super) type Axes = Vec<(&'static str, DVec2)>;
+
+/// Those of the vertical plane.
+pub(super) fn axes_of_plane() -> Axes {
+    vec![("x", DVec2::X), ("y", DVec2::Y), ("g", DVec2::NEG_Y)]
+}
+
+/// Those of space.
+pub(super) fn axes_of_space(view: &View) -> Axes {
+    let of = |axis| view.place(axis);
+    vec![("x", of(DVec3::X)), ("y", of(DVec3::Y)), ("z", of(DVec3::Z)), ("g", of(DVec3::NEG_Z))]
 }
 
 /// What is seen at a time in s, from back to front.
 pub(super) struct Picture {
     pub(super) t: f64,
     pub(super) lines: Vec<Line>,
+    pub(super) axes: Axes,
 }
 
-/// Pictures beside each other, all to one scale, as SVG elements.
+/// Pictures beside each other, all to one scale, as SVG elements; under the first one its axes, gravity and a length.
 pub(super) fn drawn(pictures: &[Picture]) -> String {
     let points = || pictures.iter().flat_map(|picture| &picture.lines).flat_map(|line| &line.points);
     let low = points().fold(DVec2::INFINITY, |low, p| low.min(*p));
@@ -52,18 +95,60 @@ pub(super) fn drawn(pictures: &[Picture]) -> String {
         at.map(|v| on_scale(v, 100.0, 3))
     };
     let mut out = String::new();
-    for Picture { t, lines } in pictures {
+    for (k, Picture { t, lines, axes }) in pictures.iter().enumerate() {
         let _ = writeln!(
             out,
             "<figure class=\"instant\"><svg viewBox=\"0 0 {WIDTH} {}\" role=\"img\">",
-            on_scale(height, 100.0, 3)
+            on_scale(height + FOOT, 100.0, 3)
         );
         for line in lines {
             let places: Vec<String> =
                 line.points.iter().map(|p| place(*p)).map(|[x, y]| format!("{x} {y}")).collect();
             let _ = writeln!(out, "<path class=\"{}\" d=\"M{}\"/>", line.class, places.join(" L"));
         }
+        if k == 0 {
+            out += &foot(axes, height, scale);
+        }
         let _ = writeln!(out, "</svg><figcaption>t = {} s</figcaption></figure>", on_scale(*t, 1.0, 3));
     }
+    out
+}
+
+/// Axes and gravity as arrows with names, and a bar of a round length; `scale` is px a metre.
+fn foot(axes: &Axes, top: f64, scale: f64) -> String {
+    let mut out = String::new();
+    let from = DVec2::new(AXIS + 14.0, top + 0.5 * FOOT);
+    let place = |p: DVec2| p.to_array().map(|v| on_scale(v, 100.0, 3));
+    for (name, axis) in axes {
+        let along = DVec2::new(axis.x, -axis.y);
+        // Gravity stands beside the axes, along one of which it pulls.
+        let (class, from) = if *name == "g" {
+            ("gravity", from + DVec2::new(2.0 * AXIS, -0.5 * AXIS))
+        } else {
+            ("axis", from)
+        };
+        let ([x, y], [to_x, to_y]) = (place(from), place(from + AXIS * along));
+        let [name_x, name_y] = place(from + (AXIS + 8.0) * along);
+        let head = if *name == "g" { " m-3.5 -6 l3.5 6 l3.5 -6" } else { "" };
+        let _ = writeln!(out, "<path class=\"{class}\" d=\"M{x} {y} L{to_x} {to_y}{head}\"/>");
+        let _ = writeln!(
+            out,
+            "<text x=\"{name_x}\" y=\"{}\" text-anchor=\"middle\">{name}</text>",
+            on_scale(name_y + 4.0, 100.0, 3)
+        );
+    }
+    // The largest round length of which the bar is no longer than it may be.
+    let longest = BAR / scale;
+    let step = round_step(0.5 * longest);
+    let length = if step <= longest { step } else { 0.5 * longest };
+    let (right, y) = (WIDTH - MARGIN - 4.0, top + FOOT - 14.0);
+    let left = on_scale(right - scale * length, 100.0, 3);
+    let _ = writeln!(out, "<path class=\"scale\" d=\"M{left} {} v8 m0 -4 H{right} m0 -4 v8\"/>", y - 4.0);
+    let _ = writeln!(
+        out,
+        "<text x=\"{right}\" y=\"{}\" text-anchor=\"end\">{} m</text>",
+        y - 9.0,
+        brief_to(1, length)
+    );
     out
 }

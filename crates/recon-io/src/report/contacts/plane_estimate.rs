@@ -1,12 +1,14 @@
 //! A motion that was estimated in the plane, as its page shows it.
 
+use super::super::page::of_body;
 use super::super::{Evidence, Verdict};
 use super::estimate_page::{EstimatePage, Facts};
 use super::moment::Shown;
 use super::picture::{Line, Picture};
+use super::picture::{axes_of_plane, per_newton};
 use super::plane::{PalmAt, palm};
 use super::spans::estimated_mode_spans;
-use crate::number::brief_to;
+use crate::number::brief;
 use crate::planar_figures::FigurePanel;
 use glam::DVec2;
 use recon::object_dynamics::ContactMode;
@@ -41,6 +43,8 @@ pub struct PlaneEstimateData<'a> {
     pub evidence: Vec<Evidence>,
     /// What the reader must know, in plain words.
     pub warnings: Vec<String>,
+    /// What to do next, in plain words.
+    pub next: String,
 }
 
 /// Writes a motion that was estimated in the plane as one HTML page that needs nothing else: as
@@ -62,6 +66,7 @@ pub fn write_plane_estimate_report(data: &PlaneEstimateData, to: impl Write) -> 
         title: &data.title,
         verdict: &data.verdict,
         note: &data.note,
+        next: &data.next,
         warnings: &data.warnings,
         facts: facts(data, &times),
         pictures: data.pictures(),
@@ -82,11 +87,10 @@ fn facts(data: &PlaneEstimateData, times: &[f64]) -> Facts {
     let found = data.estimate;
     let duration = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
     let mut facts = EstimatePage::common_facts(duration, &found.relied_on);
-    facts.push(("Mass", brief_to(4, found.mass.0), "kg"));
-    facts.push(("Moment of inertia", brief_to(4, found.inertia.0), "kg m²"));
+    facts.extend(of_body(&data.evidence));
     if let Some([lower, upper]) = data.areas {
-        facts.push(("Lower bound", brief_to(4, lower), "m²"));
-        facts.push(("Upper bound", brief_to(4, upper), "m²"));
+        facts.push(("Lower bound", brief(lower), "m²"));
+        facts.push(("Upper bound", brief(upper), "m²"));
     }
     facts
 }
@@ -114,7 +118,9 @@ impl PlaneEstimateData<'_> {
         let samples: Vec<usize> = (0..self.log.samples().len()).collect();
         let traces = self.traces();
         let reach = self.reach();
-        Shown::instants(&samples).map(|k| self.picture(*k, reach, &traces)).collect()
+        let forces = self.log.samples().iter().flat_map(|sample| &sample.palms);
+        let newton = per_newton(reach, forces.map(|palm| palm.force.length()));
+        Shown::instants(&samples).map(|k| self.picture(*k, [reach, newton], &traces)).collect()
     }
 
     /// Largest distance of a contact from the centre of mass, m.
@@ -123,7 +129,7 @@ impl PlaneEstimateData<'_> {
         contacts.map(|contact| contact.p_OC.length()).fold(0.0, f64::max)
     }
 
-    fn picture(&self, k: usize, reach: f64, traces: &[Vec<Option<&PlaneContact>>]) -> Picture {
+    fn picture(&self, k: usize, [reach, newton]: [f64; 2], traces: &[Vec<Option<&PlaneContact>>]) -> Picture {
         let (sample, state) = (&self.log.samples()[k], &self.estimate.states[k]);
         let surfaces = self.log.surfaces().iter().zip(&sample.palms).enumerate();
         let mut lines: Vec<Line> = surfaces
@@ -147,11 +153,15 @@ impl PlaneEstimateData<'_> {
                 lines.push(Line::new(&format!("trace p{}", i + 1), points));
             }
         }
+        lines.push(Line::centre(state.p_WCm));
+        for now in &sample.palms {
+            lines.extend(now.p_WC.map(|p_WC| Line::force(p_WC, now.force, newton)));
+        }
         for (now, mode) in sample.palms.iter().zip(&self.estimate.modes[k]) {
             if let Some(p_WC) = now.p_WC.filter(|_| *mode != ContactMode::Off) {
                 lines.push(Line::touch(*mode, p_WC));
             }
         }
-        Picture { t: sample.t, lines }
+        Picture { t: sample.t, lines, axes: axes_of_plane() }
     }
 }

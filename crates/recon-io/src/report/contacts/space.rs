@@ -1,7 +1,7 @@
 //! A simulated motion in space, as its page shows it.
 
 use super::moment::{Moment, Shown};
-use super::picture::{Line, Picture};
+use super::picture::{Line, Picture, axes_of_space, per_newton};
 use super::spans::mode_spans;
 use super::view::View;
 use glam::DVec3;
@@ -27,10 +27,12 @@ pub(super) fn shown<S: SupportFunction>(scene: &ContactScene<S>, simulation: &Co
         works: [now.palm_work, now.friction_work, now.blow_work],
         turn: first.map_or(0.0, |first| first.angle_between(now.state.body.R_WO)),
     };
+    // In sizes of the object.
+    let newton = per_newton(1.0, instants.iter().flat_map(|now| &now.forces).map(|force| force.length()));
     Shown {
         caption: CAPTION,
         moments: instants.iter().map(moment).collect(),
-        pictures: Shown::instants(instants).map(|now| picture(scene, now)).collect(),
+        pictures: Shown::instants(instants).map(|now| picture(scene, now, newton)).collect(),
         spans: (0..scene.palms().len()).map(|palm| mode_spans(simulation, palm)).collect(),
         changes: simulation.events.len(),
     }
@@ -47,7 +49,7 @@ fn slip(now: &ContactInstant, palm: usize) -> f64 {
 }
 
 /// What is seen at an instant, from back to front.
-fn picture<S: SupportFunction>(scene: &ContactScene<S>, now: &ContactInstant) -> Picture {
+fn picture<S: SupportFunction>(scene: &ContactScene<S>, now: &ContactInstant, newton: f64) -> Picture {
     let (view, at) = (View::oblique(), &now.state.body);
     let reach = reach(scene.body());
     let before = |i: &usize| view.nearness(now.contacts[*i].p_WC) > view.nearness(at.p_WCm);
@@ -60,10 +62,13 @@ fn picture<S: SupportFunction>(scene: &ContactScene<S>, now: &ContactInstant) ->
     lines.push(Line::new("object", view.outline(scene.body(), at)));
     lines.extend(view.meridians(scene.body(), at).into_iter().map(|points| Line::new("meridian", points)));
     lines.extend(front.into_iter().map(palm));
+    lines.push(Line::centre(view.place(at.p_WCm)));
     for (i, mode) in now.modes.iter().enumerate().filter(|(_, mode)| **mode != ContactMode::Off) {
-        lines.push(Line::touch(*mode, view.place(now.contacts[i].p_WC)));
+        let p_WC = view.place(now.contacts[i].p_WC);
+        lines.push(Line::force(p_WC, view.place(now.forces[i]), newton * reach));
+        lines.push(Line::touch(*mode, p_WC));
     }
-    Picture { t: now.state.t, lines }
+    Picture { t: now.state.t, lines, axes: axes_of_space(&view) }
 }
 
 /// A palm as it is drawn.

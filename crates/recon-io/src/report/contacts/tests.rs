@@ -42,11 +42,19 @@ fn the_page_is_whole_and_needs_nothing_else() {
         assert_eq!(page.matches(&format!("class=\"palm p{palm}\"")).count(), 6);
         assert!(page.contains(&format!("class=\"name p{palm}\"")));
     }
+    // A force goes with each contact, a centre of mass with each object; axes, gravity and a length stand under the first picture.
+    assert_eq!(page.matches("class=\"force\"").count(), page.matches("class=\"touch m").count());
+    assert_eq!(
+        ["centre", "axis", "gravity", "scale"].map(|of| page.matches(&format!("class=\"{of}\"")).count()),
+        [6, 3 + 4, 1, 1],
+        "an axis for each panel as well"
+    );
+    assert!(page.contains(">0.02 m</text>"), "a round length");
     // The object starts on the table alone and ends in three fingers that stick.
     let touches: Vec<usize> =
         page.split("<figure").skip(1).map(|one| one.matches("\"touch m2\"").count()).collect();
     assert_eq!((touches[0], touches[5]), (1, 3));
-    let bands = &page[page.find("class=\"bands\"").unwrap()..page.find("class=\"legend\"").unwrap()];
+    let bands = &page[page.find("class=\"bands\"").unwrap()..page.find("class=\"modes\"").unwrap()];
     assert!(bands.matches("class=\"m2\"").count() >= 4 && bands.matches("class=\"frame\"").count() == 5);
     for title in ["Normal force", "Speed of slip", "Energy since the start", "Turn since the start"] {
         assert!(page.contains(title), "{title}");
@@ -221,6 +229,7 @@ fn estimate() -> EstimateData {
             level: Level::Good,
         }],
         warnings: vec!["<b>mind</b>".into()],
+        next: "touch <more>".into(),
         log: log.split_truth().0,
         estimate,
     }
@@ -240,10 +249,10 @@ fn the_page_of_an_estimate_shows_palms_object_modes_and_doubts() {
     for palm in 1..=4 {
         assert_eq!(page.matches(&format!("class=\"palm p{palm}\"")).count(), 6);
     }
-    // The object is drawn each time, the doubts over bands of modes and over each of four panels.
+    // The object is drawn each time, the doubts over bands of modes and over each of five panels.
     assert_eq!(page.matches("class=\"object\"").count(), 6);
     assert_eq!(doubtful_spans(data.log.times(), &data.estimate.relied_on).len(), 2);
-    assert_eq!(page.matches("class=\"shade\"").count(), 8);
+    assert_eq!(page.matches("class=\"shade\"").count(), 10);
     assert_eq!(page.matches("<rect class=\"doubtful\" x=").count(), 2);
     let [first, last] = [
         doubtful_spans(data.log.times(), &data.estimate.relied_on)[0],
@@ -252,6 +261,8 @@ fn the_page_of_an_estimate_shows_palms_object_modes_and_doubts() {
     for (found, expected) in first.iter().chain(&last).zip([0.03, 0.09, 0.99, 1.0]) {
         assert!((found - expected).abs() < 1e-12, "{found} {expected}");
     }
+    assert_eq!(page.matches("class=\"force\"").count(), page.matches("class=\"touch m").count());
+    assert!(page.contains("Next</strong>Touch &lt;more&gt;.") && page.contains(">Contact forces</text>"));
     // Three components of three vectors and one turn, with their bands and the truth.
     assert_eq!(
         (page.matches("<polygon").count(), page.matches("stroke-dasharray=\"5 4\"").count()),
