@@ -26,6 +26,7 @@ mod diagram;
 mod machine;
 pub mod reaching;
 pub mod rolling;
+pub mod rows;
 mod timing;
 
 pub mod charts;

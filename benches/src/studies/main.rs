@@ -36,7 +36,6 @@ mod pushes;
 mod reaching;
 mod result_bags;
 mod rolling;
-mod rows;
 mod shape_fits;
 mod streaming;
 mod three_palms_monte_carlo;
@@ -44,6 +43,7 @@ mod three_palms_timing;
 mod tilting_palms;
 mod whole_logs;
 
+pub(crate) use recon_benches::rows;
 pub(crate) use rows::words;
 use std::fmt::Display;
 use std::process::ExitCode;

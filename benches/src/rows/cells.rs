@@ -1,7 +1,7 @@
 //! What came of a run as words that read back to the last bit.
 
 /// Something that is written as one cell or some.
-pub(crate) trait Cells: Sized {
+pub trait Cells: Sized {
     /// Appends its cells.
     fn write(&self, to: &mut Vec<String>);
 

@@ -6,7 +6,7 @@
 
 mod cells;
 
-pub(crate) use cells::Cells;
+pub use cells::Cells;
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
@@ -15,9 +15,13 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use thiserror::Error;
 
-/// Why the runs of a part, or the table of all, cannot be had.
+/// Why the runs of a part, or the table of all, cannot be had, with the value and the mend in its words.
 #[derive(Debug, Error)]
-pub(crate) enum RowsError {
+#[error(transparent)]
+pub struct RowsError(#[from] Why);
+
+#[derive(Debug, Error)]
+enum Why {
     #[error("--shard needs K/N with K below N, as 0/4, and not {given:?}")]
     Shard { given: String },
     #[error("{study} is not made in parts; these are: {}", of_runs.join(", "))]
@@ -64,31 +68,38 @@ struct Runs(Mutex<Rows>);
 static RUNS: Runs = Runs::new();
 
 /// The words of the study itself.
-pub(crate) fn words() -> impl Iterator<Item = String> {
+pub fn words() -> impl Iterator<Item = String> {
     std::env::args().skip(2).take_while(|word| !word.starts_with("--"))
 }
 
 /// Reads what part is asked for, and what is known of it, of one of the studies that are made of runs.
-pub(crate) fn begin(of_runs: &[&str]) -> Result<(), RowsError> {
+///
+/// # Errors
+/// [`RowsError`] for parts that are none, and studies that are not made in parts.
+pub fn begin(of_runs: &[&str]) -> Result<(), RowsError> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let (study, options) =
         args.split_at(args.iter().position(|word| word.starts_with("--")).unwrap_or(args.len()));
     if let Some(name) = study.first().filter(|of| !options.is_empty() && !of_runs.contains(&of.as_str())) {
         let of_runs = of_runs.iter().map(ToString::to_string).collect();
-        return Err(RowsError::Whole { study: name.clone(), of_runs });
+        return Err(Why::Whole { study: name.clone(), of_runs }.into());
     }
-    RUNS.begin(study, &options.iter().map(String::as_str).collect::<Vec<_>>())
+    Ok(RUNS.begin(study, &options.iter().map(String::as_str).collect::<Vec<_>>())?)
 }
 
 /// What came of the next run; none where it is of another part.
-pub(crate) fn row<T: Cells, E: From<RowsError>>(
-    compute: impl FnOnce() -> Result<T, E>,
-) -> Result<Option<T>, E> {
+///
+/// # Errors
+/// Those of the run, and [`RowsError`] where what is kept is not what it makes.
+pub fn row<T: Cells, E: From<RowsError>>(compute: impl FnOnce() -> Result<T, E>) -> Result<Option<T>, E> {
     RUNS.next(compute)
 }
 
 /// What came of the run of this number; none where it is of another part.
-pub(crate) fn row_of<T: Cells, E: From<RowsError>>(
+///
+/// # Errors
+/// As [`row`].
+pub fn row_of<T: Cells, E: From<RowsError>>(
     run: usize,
     compute: impl FnOnce() -> Result<T, E>,
 ) -> Result<Option<T>, E> {
@@ -105,16 +116,16 @@ impl Runs {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn begin(&self, study: &[String], options: &[&str]) -> Result<(), RowsError> {
+    fn begin(&self, study: &[String], options: &[&str]) -> Result<(), Why> {
         let mut rows = self.rows();
         match *options {
             [] => {}
             ["--shard", of, "--rows", folder] => {
                 let parts = of.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
                 let (k, n): (usize, usize) =
-                    parts.filter(|(k, n)| k < n).ok_or_else(|| RowsError::Shard { given: of.to_owned() })?;
+                    parts.filter(|(k, n)| k < n).ok_or_else(|| Why::Shard { given: of.to_owned() })?;
                 let path = Path::new(folder).join(format!("{k}-of-{n}.rows"));
-                let io = |source| RowsError::Io { path: path.clone(), source };
+                let io = |source| Why::Io { path: path.clone(), source };
                 fs::create_dir_all(folder).map_err(io)?;
                 let mut file = OpenOptions::new().create(true).append(true).open(&path).map_err(io)?;
                 let whole = rows.read(&path, study)?;
@@ -126,7 +137,7 @@ impl Runs {
                 rows.part = Part::One { k, n, path, file };
             }
             ["--merge", folder] => {
-                let io = |source| RowsError::Io { path: folder.into(), source };
+                let io = |source| Why::Io { path: folder.into(), source };
                 for entry in fs::read_dir(folder).map_err(io)? {
                     let path = entry.map_err(io)?.path();
                     if path.extension().is_some_and(|of| of == "rows") {
@@ -135,7 +146,7 @@ impl Runs {
                 }
                 rows.part = Part::Merged;
             }
-            _ => return Err(RowsError::Usage { given: options.join(" ") }),
+            _ => return Err(Why::Usage { given: options.join(" ") }),
         }
         Ok(())
     }
@@ -160,10 +171,10 @@ impl Runs {
         {
             let rows = self.rows();
             if let Some(cells) = rows.known.get(&run) {
-                return Ok(Some(T::of_row(cells).ok_or(RowsError::Cells { run })?));
+                return Ok(Some(T::of_row(cells).ok_or(RowsError(Why::Cells { run }))?));
             }
             match rows.part {
-                Part::Merged => return Err(RowsError::Missing { run }.into()),
+                Part::Merged => return Err(RowsError(Why::Missing { run }).into()),
                 Part::One { k, n, .. } if run % n != k => return Ok(None),
                 _ => {}
             }
@@ -173,7 +184,7 @@ impl Runs {
             let mut cells = vec![run.to_string()];
             made.write(&mut cells);
             let written = file.write_all(line(&cells).as_bytes());
-            written.map_err(|source| RowsError::Io { path: path.clone(), source })?;
+            written.map_err(|source| RowsError(Why::Io { path: path.clone(), source }))?;
         }
         Ok(Some(made))
     }
@@ -186,24 +197,23 @@ fn line(cells: &[String]) -> String {
 
 impl Rows {
     /// Reads the whole lines of a file of one part; returns how many bytes they have.
-    fn read(&mut self, path: &Path, study: &[String]) -> Result<u64, RowsError> {
-        let text =
-            fs::read_to_string(path).map_err(|source| RowsError::Io { path: path.to_owned(), source })?;
+    fn read(&mut self, path: &Path, study: &[String]) -> Result<u64, Why> {
+        let text = fs::read_to_string(path).map_err(|source| Why::Io { path: path.to_owned(), source })?;
         let whole = text.rfind('\n').map_or(0, |end| end + 1);
         for (i, text) in text[..whole].lines().enumerate() {
-            let wrong = || RowsError::Line { path: path.to_owned(), line: i + 1 };
+            let wrong = || Why::Line { path: path.to_owned(), line: i + 1 };
             let mut cells: Vec<String> = serde_json::from_str(text).map_err(|_| wrong())?;
             if i == 0 {
                 if cells != study {
                     let (path, asked) = (path.to_owned(), study.to_vec());
-                    return Err(RowsError::OtherStudy { path, found: cells, asked });
+                    return Err(Why::OtherStudy { path, found: cells, asked });
                 }
                 continue;
             }
             let run = cells.first().and_then(|cell| cell.parse().ok()).ok_or_else(wrong)?;
             cells.remove(0);
             if self.known.insert(run, cells).is_some() {
-                return Err(RowsError::Twice { run, path: path.to_owned() });
+                return Err(Why::Twice { run, path: path.to_owned() });
             }
         }
         Ok(whole as u64)
@@ -234,7 +244,7 @@ mod tests {
         Ok((format!("{sum:?} {words:?}"), computed))
     }
 
-    fn runs(options: &[&str]) -> Result<Runs, RowsError> {
+    fn runs(options: &[&str]) -> Result<Runs, Why> {
         let runs = Runs::new();
         runs.begin(&["small".to_owned(), "7".to_owned()], options)?;
         Ok(runs)
@@ -272,9 +282,9 @@ mod tests {
         let missing = study(&runs(&["--merge", &folder])?, 99).map_err(said);
         assert_eq!(missing, Err("run 1 is in no file; do its part first".to_owned()));
         study(&runs(&["--shard", "0/1", "--rows", &folder])?, 99)?;
-        assert!(matches!(runs(&["--merge", &folder]), Err(RowsError::Twice { run: 0, .. })));
+        assert!(matches!(runs(&["--merge", &folder]), Err(Why::Twice { run: 0, .. })));
         let other = Runs::new().begin(&["small".to_owned()], &["--merge", &folder]);
-        assert!(matches!(other, Err(RowsError::OtherStudy { .. })));
+        assert!(matches!(other, Err(Why::OtherStudy { .. })));
         for wrong in [&["--shard", "2/2", "--rows", &folder][..], &["--merge"]] {
             assert!(runs(wrong).is_err());
         }
