@@ -34,6 +34,7 @@ mod roughness;
 mod rows;
 mod samples;
 mod search;
+mod sensor_change;
 mod sharp;
 mod slips;
 mod slopes;

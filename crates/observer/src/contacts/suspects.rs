@@ -5,50 +5,28 @@
 //! `1 / sqrt(I)`, and `g / sqrt(I)` is a standard normal number if nothing is wrong (Rao's score test).
 
 use super::body::{Body, CONSTANTS};
-use super::changed::{Averages, ChangeBy};
+use super::changed::Averages;
 use super::equations::Equations;
-use super::noise::{ContactNoiseLevel, force_trace};
+use super::noise::force_trace;
 use super::problem::{Problem, Units};
 use super::reach::Residuals;
-use super::record::{Contact, Record};
+use super::record::Record;
 use super::samples::Deviations;
-use super::slopes::slopes;
+use super::sensor_change::{Change, slopes_of_noise};
 use super::solve::{Covariances, Reduced, Solved, Step};
 use super::state::{Motion, Tangent};
 use crate::faults::{SensorFault, Suspect};
-use crate::random::Normal;
 use crate::reliability::LARGEST_DEVIATION;
-use crate::rigid::exponential;
 use contact_kinematics::PalmSurface;
 use glam::DVec3;
-use object_dynamics::{ContactLog, LoggedPalm};
+use object_dynamics::ContactLog;
 
 /// What of the information on a constant must be left when motion and body have followed it, for the data to tell of it.
 const LEAST_LEFT: f64 = 1e-6;
 /// What of the information must not be noise that poses as such, for it to be corrected for that.
 const LEAST_SOUND: f64 = 0.3;
-/// Seed of noise that is drawn to see what of the information it makes.
-const SEED: u64 = 0xd31a;
-/// Natural times on either side over which slopes of forces are taken.
-const SMOOTH: f64 = 0.12;
 /// Step of differences to one side, in natural units: a millionth is what it leaves out, and rounding a tenth of that.
 const STEP: f64 = 1e-6;
-
-/// A change of what a log says, by a constant of the sensors that is not what it was taken for.
-struct Change<'a> {
-    fault: SensorFault,
-    /// Near which the change is small: forces that are late are taken from the samples nearest to when they were by it.
-    value: f64,
-    by: f64,
-    log: &'a ContactLog,
-    /// Motion at all samples, positions from the record's origin.
-    motions: &'a [(Motion, Deviations)],
-    body: &'a Body,
-    /// What the forces change by in a unit of time, N/s, by palm and sample; and what is taken for that from `value` on.
-    slopes: [&'a [Vec<DVec3>]; 2],
-    /// Of contacts.
-    origin: DVec3,
-}
 
 /// What a log says of the constants of its sensors.
 #[derive(Clone, Copy)]
@@ -191,38 +169,6 @@ pub(super) fn suspects(scores: &Scores, covariances: &Covariances<CONSTANTS>) ->
     scores.sensors.constants(problem).into_iter().filter_map(one).collect()
 }
 
-/// Of a palm that is touched, N.
-fn force(palm: &LoggedPalm, k: usize) -> Option<DVec3> {
-    palm.touch(k).and_then(|_| palm.force(k)).map(|force| force.vector)
-}
-
-/// What the forces change by in a unit of time, N/s, by palm and sample.
-pub(super) fn slopes_of_forces(log: &ContactLog, units: &Units) -> Vec<Vec<DVec3>> {
-    slopes_of(log, units, force)
-}
-
-/// The same of noise that is drawn in place of the forces.
-fn slopes_of_noise(log: &ContactLog, units: &Units, noise: &ContactNoiseLevel) -> Vec<Vec<DVec3>> {
-    let mut random = Normal::seeded(SEED);
-    slopes_of(log, units, |palm, k| {
-        let drawn = DVec3::new(random.draw(), random.draw(), random.draw());
-        force(palm, k).map(|force| drawn * noise.force(force))
-    })
-}
-
-/// Of `value` at each: of the line through those around, as far as the palm is touched. The noise of two neighbours would be taken for slope.
-fn slopes_of(
-    log: &ContactLog,
-    units: &Units,
-    mut value: impl FnMut(&LoggedPalm, usize) -> Option<DVec3>,
-) -> Vec<Vec<DVec3>> {
-    let of = |palm| {
-        let values: Vec<Option<DVec3>> = (0..log.times().len()).map(|k| value(palm, k)).collect();
-        slopes(log.times(), &values, SMOOTH * units.time())
-    };
-    log.palms().iter().map(of).collect()
-}
-
 /// Share of noise in the squares of the impulses.
 fn share_of_noise(record: &Record) -> f64 {
     let noise: f64 = record.intervals.iter().map(|interval| force_trace(&interval.noise.white)).sum();
@@ -272,53 +218,5 @@ impl SensorFault {
             Self::ForceDelay => length / speed,
             Self::ContactOffset { .. } => length,
         }
-    }
-}
-
-impl Change<'_> {
-    /// What a contact at sample `k` is different by then.
-    fn of(&self, k: usize, contact: &Contact) -> ChangeBy {
-        let palm = &self.log.palms()[contact.palm];
-        let (number, by) = (contact.palm + 1, self.by);
-        let none = ChangeBy::default();
-        match self.fault {
-            SensorFault::ForceGain { palm } if palm == number => ChangeBy { f: contact.f * by, ..none },
-            SensorFault::ForceBias { palm } if palm == number => ChangeBy { f: contact.n * by, ..none },
-            SensorFault::ForceDelay => ChangeBy { f: self.later(k, contact), ..none },
-            SensorFault::ContactOffset { palm: of, axis } if of == number => {
-                ChangeBy { c: palm.motion(k).pose.R_WP * (DVec3::AXES[axis] * by), ..none }
-            }
-            SensorFault::PalmTilt { palm: of, axis } if of == number => {
-                let pose = palm.motion(k).pose;
-                let turn = exponential(pose.R_WP * (DVec3::AXES[axis] * by));
-                let turned = |v: DVec3| turn * v - v;
-                let c = turned(contact.c - (pose.p_WP - self.origin));
-                ChangeBy { c, n: turned(contact.n), f: turned(contact.f) }
-            }
-            SensorFault::Friction if contact.frictionless => {
-                let motion = &self.motions[k].0;
-                let w = self.body.turn(motion.q, motion.L).w;
-                let slip = motion.v + w.cross(contact.c - motion.p) - contact.u;
-                let against = -slip.reject_from_normalized(contact.n).normalize_or_zero();
-                ChangeBy { f: against * (by * contact.f.dot(contact.n)), ..none }
-            }
-            _ => none,
-        }
-    }
-
-    /// What the force is more that a palm tells later than at sample `k`. From whole samples, as far as there are: what is between two of them has
-    /// less noise than each.
-    fn later(&self, k: usize, contact: &Contact) -> DVec3 {
-        let (palm, times) = (&self.log.palms()[contact.palm], self.log.times());
-        let after = times.partition_point(|t| *t < times[k] + self.value).min(times.len() - 1);
-        let before = after.saturating_sub(1);
-        let off = |k: usize, of: usize| times[k] + self.value - times[of];
-        let nearest = if off(k, before).abs() < off(k, after).abs() { before } else { after };
-        let at = if force(palm, nearest).is_some() { nearest } else { k };
-        let told = |k: usize| force(palm, k).unwrap_or_default();
-        let [own, along] = self.slopes.map(|slopes| slopes[contact.palm][at]);
-        let rest = times[k] + self.value - times[at];
-        let more = told(at) - told(k) + own * rest + along * (self.by - self.value);
-        if contact.frictionless { more.project_onto_normalized(contact.n) } else { more }
     }
 }

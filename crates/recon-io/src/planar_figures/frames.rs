@@ -1,6 +1,7 @@
 //! What changes in a panel, shown one after the other: by style alone, so that it runs without scripts and stands still where motion is not wanted.
 
-use super::{FigureCurve, Frame, MARGIN, SIZE, draw_curves, escape};
+use super::draw::draw_curves;
+use super::{FigureCurve, Frame, MARGIN, SIZE, escape};
 use std::fmt::Write as _;
 
 /// One of the pictures that a panel shows in turn.

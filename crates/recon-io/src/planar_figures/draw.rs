@@ -1,0 +1,116 @@
+//! Lines, bands and ticks of a panel.
+
+use super::{COLOURS, FigureCurve, Frame, MARGIN, SIZE, round_step};
+use crate::number::on_scale;
+use std::fmt::Write as _;
+
+pub(super) fn finite(point: &&[f64; 2]) -> bool {
+    point.iter().all(|v| v.is_finite())
+}
+
+/// The band about a curve, broken where it has no height.
+pub(super) fn draw_band(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut String) {
+    let pairs: Vec<_> = curve.points.iter().zip(&curve.half_heights).collect();
+    let there = |(point, height): &(&[f64; 2], &f64)| finite(point) && height.is_finite();
+    for piece in pairs.split(|pair| !there(pair)).filter(|piece| piece.len() > 1) {
+        let edge = |side: f64| move |&([x, y], h): &(&[f64; 2], &f64)| frame.place_within([*x, y + side * h]);
+        let around = piece.iter().map(edge(1.0)).chain(piece.iter().rev().map(edge(-1.0)));
+        let corners: Vec<String> = around.map(|[x, y]| format!("{x},{y}")).collect();
+        let _ = writeln!(
+            out,
+            "<polygon class=\"c{colour}\" points=\"{}\" fill=\"currentColor\" fill-opacity=\".2\"/>",
+            corners.join(" ")
+        );
+    }
+}
+
+/// Each with what it is compared with.
+pub(super) fn draw_curves(curves: &[FigureCurve], frame: &Frame, out: &mut String) {
+    for (k, curve) in curves.iter().enumerate() {
+        let dashed = (k % COLOURS, " stroke-dasharray=\"5 4\" stroke-opacity=\".75\"");
+        draw_line(&curve.reference, dashed, frame, out);
+        draw_curve(curve, k % COLOURS, frame, out);
+    }
+}
+
+fn draw_curve(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut String) {
+    if curve.dots {
+        let _ = writeln!(out, "<g class=\"c{colour}\" fill=\"currentColor\">");
+        for [x, y] in curve.points.iter().filter(finite).map(|&p| frame.place(p)) {
+            let _ = writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"1.2\"/>");
+        }
+        let _ = writeln!(out, "</g>");
+        return;
+    }
+    draw_line(&curve.points, (colour, ""), frame, out);
+}
+
+/// A line in a colour and with further attributes.
+pub(super) fn draw_line(
+    points: &[[f64; 2]],
+    (colour, further): (usize, &str),
+    frame: &Frame,
+    out: &mut String,
+) {
+    for piece in points.split(|p| !finite(&p)).filter(|piece| !piece.is_empty()) {
+        let mut path: Vec<String> =
+            piece.iter().map(|&p| frame.place(p).map(|v| v.to_string()).join(",")).collect();
+        if path.len() == 1 {
+            // A dot: a line needs two points.
+            path.push(path[0].clone());
+        }
+        let _ = writeln!(
+            out,
+            "<polyline class=\"c{colour}\" points=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1.4\" \
+             stroke-linecap=\"round\"{further}/>",
+            path.join(" ")
+        );
+    }
+}
+
+/// Lines at round numbers, at most six an axis.
+pub(super) fn ticks(frame: &Frame, out: &mut String) {
+    let inner = [SIZE[0] - MARGIN[0] - MARGIN[2], SIZE[1] - MARGIN[1] - MARGIN[3]];
+    let (right, bottom) = (SIZE[0] - MARGIN[2], SIZE[1] - MARGIN[3]);
+    for axis in 0..2 {
+        let span = inner[axis] / frame.scale[axis];
+        let step = round_step(span / 6.0);
+        let first = (frame.low[axis] / step).ceil();
+        for k in 0..=6 {
+            let value = (first + f64::from(k)) * step;
+            if value > frame.low[axis] + span {
+                break;
+            }
+            let mut point = frame.low;
+            point[axis] = value;
+            let [x, y] = frame.place(point);
+            let text = label(value, step);
+            let _ = if axis == 0 {
+                writeln!(
+                    out,
+                    "<path class=\"grid\" d=\"M{x} {} V{bottom}\"/><text class=\"tick\" x=\"{x}\" y=\"{}\" text-anchor=\"middle\">{text}</text>",
+                    MARGIN[1],
+                    bottom + 16.0
+                )
+            } else {
+                writeln!(
+                    out,
+                    "<path class=\"grid\" d=\"M{} {y} H{right}\"/><text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{text}</text>",
+                    MARGIN[0],
+                    MARGIN[0] - 5.0,
+                    y + 4.0
+                )
+            };
+        }
+    }
+}
+
+/// A multiple of `step` without the digits below it.
+fn label(value: f64, step: f64) -> String {
+    let rounded = on_scale(value, step, 1);
+    if rounded != 0.0 && !(1e-3..1e4).contains(&rounded.abs()) {
+        format!("{rounded:e}")
+    } else {
+        format!("{rounded}")
+    }
+}
