@@ -24,10 +24,11 @@ pub(super) fn encode(data: &ReportData) -> Value {
         "size": significant(size, 4),
         "t": keep.iter().map(|&k| on_scale(data.times[k], duration(data), 5)).collect::<Vec<_>>(),
         "palms": ([0, 1, 2].map(|i| palm(data, i, &keep, size))),
-        "motion": motion(&data.motion, &keep, size),
+        "motion": motion(&data.motion, &keep, size, DQuat::IDENTITY),
         "band": band(data, &keep),
         "doubtful": doubtful_spans(&data.times, &data.relied_on),
-        "truth": data.truth.as_ref().map(|truth| motion(truth, &keep, size)),
+        // Beside the estimate: of a half turn rounding would decide on each sign.
+        "truth": data.truth.as_ref().map(|truth| motion(truth, &keep, size, first_sign(&data.motion))),
         "departure": data.departures().map(|d| departure(&d, &keep)),
         "bounds": data.bounds.as_ref().map(|b| json!({
             "lower": bound(&b.lower, size),
@@ -87,7 +88,7 @@ fn normals(track: &PalmTrack, keep: &[usize]) -> Vec<Option<f64>> {
     shown.iter().flat_map(|&k| vector(track.frames[k].n, 1.0)).collect()
 }
 
-fn motion(states: &[MotionState], keep: &[usize], size: f64) -> Value {
+fn motion(states: &[MotionState], keep: &[usize], size: f64, near: DQuat) -> Value {
     let largest = |of: fn(&MotionState) -> DVec3| {
         states.iter().map(|s| of(s).abs().max_element()).filter(|v| v.is_finite()).fold(0.0, f64::max)
     };
@@ -96,7 +97,7 @@ fn motion(states: &[MotionState], keep: &[usize], size: f64) -> Value {
     };
     json!({
         "p": track(|s| s.p_WCm, size),
-        "q": orientations(states, keep),
+        "q": orientations(states, keep, near),
         "w": track(|s| s.w_WO, largest(|s| s.w_WO)),
     })
 }
@@ -127,9 +128,15 @@ fn half_height(deviation: f64) -> Option<f64> {
     number(significant(BAND * deviation, 3))
 }
 
-/// Quaternions, w first, with signs chosen so that neighbours agree and the first is the one nearest to no rotation.
-fn orientations(states: &[MotionState], keep: &[usize]) -> Vec<Option<f64>> {
-    let mut before = DQuat::IDENTITY;
+/// The first orientation, with the sign that is nearest to no rotation.
+fn first_sign(states: &[MotionState]) -> DQuat {
+    let first = states.first().map_or(DQuat::IDENTITY, |state| state.R_WO);
+    if first.dot(DQuat::IDENTITY) < 0.0 { -first } else { first }
+}
+
+/// Quaternions, w first, with signs chosen so that neighbours agree and the first is the one nearest to `near`.
+fn orientations(states: &[MotionState], keep: &[usize], near: DQuat) -> Vec<Option<f64>> {
+    let mut before = near;
     let mut numbers = Vec::with_capacity(4 * keep.len());
     for &k in keep {
         let q = states[k].R_WO;

@@ -132,6 +132,21 @@ fn curves_carry_their_uncertainty_forces_and_what_is_not_relied_on() {
     assert_eq!(carried["doubtful"], serde_json::json!([[0.745, 0.99]]));
 }
 
+/// Of half turns, whose w is zero but for rounding, on either side.
+#[test]
+fn truth_has_the_signs_of_the_estimate() {
+    let mut data = data(20);
+    let turned = |states: &mut [MotionState], z: f64| {
+        for (k, state) in states.iter_mut().enumerate() {
+            state.R_WO = DQuat::from_xyzw(0.0, 0.0, z, 1e-17) * DQuat::from_rotation_x(1e-2 * k as f64);
+        }
+    };
+    turned(&mut data.motion, -1.0);
+    turned(data.truth.as_mut().unwrap(), 1.0);
+    let carried = embedded(&page(&data));
+    assert_eq!(carried["truth"]["q"], carried["motion"]["q"]);
+}
+
 #[test]
 fn the_next_touch_is_where_the_bounds_are_farthest_apart() {
     let lower = TriangleMesh::net(8, 12, |unit| unit);

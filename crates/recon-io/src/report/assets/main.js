@@ -64,7 +64,7 @@ function motionFigure() {
   byId("motion-caption").textContent =
     `The object on its three ${still ? "immobile" : "moving"} palms from ${format(first, 3)} s to ${format(last, 3)} s, as estimated. ` +
     "Each colour is one palm: its surface, the path of the contact on it, the path of the contact on the object, and its force. " +
-    "The black dot is the centre of mass, g gravity; the length is that at the middle of the picture. " +
+    "The dot in the middle of it is the centre of mass, g gravity; the length is that at the middle of the picture. " +
     "Drag to turn, Ctrl and wheel to zoom; a small picture jumps to its time.";
   return main;
 }

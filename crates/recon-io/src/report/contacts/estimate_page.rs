@@ -13,7 +13,7 @@ use std::io::{self, Write};
 
 const PAGE: &str = include_str!("../assets/estimate.html");
 const OBJECT: &str = "The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, where they are seen, in the colours of the palms.";
-const CAPTION: &str = "Dots are contacts, also those behind the object, in the colours of the modes below. Flat palms go on beyond what is drawn.";
+const CAPTION: &str = "Coloured dots are contacts, also those behind the object, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Flat palms go on beyond what is drawn.";
 const NO_OBJECT: &str =
     "The object is not drawn: where it was touched is not known under a motion that is not to be relied on.";
 

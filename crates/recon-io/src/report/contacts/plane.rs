@@ -15,7 +15,7 @@ const LONG: f64 = 1.5;
 const WIDE: f64 = 12.0;
 /// Points of an outline.
 const POINTS: u32 = 192;
-const CAPTION: &str = "To one scale. Dots are contacts, in the colours of the modes below; the cross on the object turns with it. Palms go on beyond what is drawn, but for circles.";
+const CAPTION: &str = "To one scale. Coloured dots are contacts, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity; the cross on the object turns with it. Palms go on beyond what is drawn, but for circles.";
 
 /// What the page is made of.
 pub(super) fn shown<S: RadiusFunction>(scene: &ContactScene<S>, simulation: &ContactSimulation) -> Shown {

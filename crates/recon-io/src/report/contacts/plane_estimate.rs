@@ -19,8 +19,8 @@ use std::io::{self, Write};
 
 /// Points of a contact curve that are drawn at most.
 const TRACED: usize = 400;
-const CAPTION: &str = "To one scale. The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, in the colours of the palms. Dots are contacts, in the colours of the modes below. Palms go on beyond what is drawn, but for circles.";
-const NO_OBJECT: &str = "To one scale. The object is not drawn: where it was touched is not known under a motion that is not to be relied on. Dots are contacts, in the colours of the modes below. Palms go on beyond what is drawn, but for circles.";
+const CAPTION: &str = "To one scale. The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, in the colours of the palms. Coloured dots are contacts, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Palms go on beyond what is drawn, but for circles.";
+const NO_OBJECT: &str = "To one scale. The object is not drawn: where it was touched is not known under a motion that is not to be relied on. Coloured dots are contacts, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Palms go on beyond what is drawn, but for circles.";
 
 /// Everything that is told about a motion that was estimated in the plane.
 #[derive(Clone, Debug)]

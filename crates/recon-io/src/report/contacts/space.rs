@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 const BROAD: f64 = 1.15;
 /// Half of the angle over which a cup is drawn, rad.
 const CUP: f64 = 1.2;
-const CAPTION: &str = "Seen obliquely from above, to one scale. Dots are contacts, also those behind the object, in the colours of the modes below; lines on the object turn with it. Flat palms go on beyond what is drawn.";
+const CAPTION: &str = "Seen obliquely from above, to one scale. Coloured dots are contacts, also those behind the object, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity; lines on the object turn with it. Flat palms go on beyond what is drawn.";
 
 /// What the page is made of.
 pub(super) fn shown<S: SupportFunction>(scene: &ContactScene<S>, simulation: &ContactSimulation) -> Shown {
