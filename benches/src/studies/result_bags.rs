@@ -78,7 +78,7 @@ fn compare(
     let size = 10.0_f64.powf(source.between(-3.0, 1.0));
     let times: Vec<f64> = (0..samples).map(|k| 1e-3 * k as f64).collect();
     let mesh = TriangleMesh::net(5, 8, |unit| size * unit);
-    let bag = bag(&mut source, size, &times, &mesh, seed % 2 == 0);
+    let bag = bag(&mut source, size, &times, &mesh, seed.is_multiple_of(2));
     std::fs::write(path, bag.bytes()?)?;
     let mut told = decoded(path)?;
     for (topic, messages) in expected(&bag, &mesh) {
