@@ -1,0 +1,182 @@
+//! How probable a run of contacts is on a smooth piece of the surface, at a corner, on an edge, on a face.
+//!
+//! In a tangent direction, with lengths in sizes of the body, contacts and normals of one place lie on a line through the plane of both:
+//! contact over normal is the radius of curvature, the tangent of an angle from 0 (sharp) to a quarter turn (flat). A smooth
+//! surface has any angle beforehand, in two principal directions that are turned by any angle, and pays for each that the contacts
+//! tell by the share of the range that is left (Laplace). A corner is sharp in both, a face flat in both, an edge one of each. Contacts
+//! depart from the line by noise in both coordinates (errors in variables); where along it they are is free.
+//!
+//! Where nothing moves all four explain it alike, and the run stays open. A coordinate that is free and stays all the same is
+//! taken to be so once in [`STILL`] runs.
+
+use super::found::FeatureKind;
+use super::moments::Moments;
+use contact_kinematics::Direction;
+use glam::{DMat2, DVec2, DVec3};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Odds beforehand that a coordinate which is free to move does so within a run.
+const STILL: f64 = 50.0;
+/// Deviations of chi-squared beyond which a coordinate moves: one in a thousand does by chance.
+const MOVES: f64 = 3.1;
+/// Turns of the principal directions that are tried before the best is refined.
+const TURNS: u32 = 12;
+/// Steps of the refinement: to a thousandth of the spacing.
+const REFINED: u32 = 10;
+/// Step of the second difference in the turn, rad: chi-squared is a trigonometric function of it of low order.
+const DIFFERENCE: f64 = 0.01;
+
+/// Logarithms of the evidence for each kind, in the order of [`FeatureKind::ALL`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Evidence(pub(super) [f64; 4]);
+
+impl Evidence {
+    /// Evidence of all kinds together, each as probable beforehand.
+    pub(super) fn total(&self) -> f64 {
+        let most = self.0.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        most + self.0.iter().map(|e| (e - most).exp()).sum::<f64>().ln() - 4.0_f64.ln()
+    }
+
+    /// The kind that is more probable than all others together, and the logarithm of its odds.
+    pub(super) fn best(&self) -> (FeatureKind, f64) {
+        let best = (0..4).fold(0, |best, k| if self.0[k] > self.0[best] { k } else { best });
+        let others = (0..4).filter(|k| *k != best).map(|k| (self.0[k] - self.0[best]).exp()).sum::<f64>();
+        (FeatureKind::ALL[best], -others.ln())
+    }
+}
+
+/// Scatters of whitened contacts and normals in two tangent directions.
+struct Scatter {
+    count: f64,
+    points: DMat2,
+    normals: DMat2,
+    both: DMat2,
+    /// Deviation of a contact (in sizes) over that of a normal (rad).
+    ratio: f64,
+}
+
+/// The evidence of a run with these moments.
+pub(super) fn evidence(of: &Moments) -> Evidence {
+    let Some(s) = Scatter::of(of) else { return Evidence([0.0; 4]) };
+    let corner = -0.5 * trace(s.points) + s.stays(eigenvalues(s.normals));
+    let face = -0.5 * trace(s.normals) + s.stays(eigenvalues(s.points));
+    Evidence([s.smooth(), corner, s.edge(), face])
+}
+
+/// Direction of an edge that a run with these moments is on, body axes.
+pub(super) fn edge_direction(of: &Moments) -> Option<DVec3> {
+    let s = Scatter::of(of)?;
+    let (a, b) = Direction::new(of.normal).ok()?.tangent_basis();
+    let along = s.across_edge().perp();
+    Some(a * along.x + b * along.y)
+}
+
+impl Scatter {
+    /// None where normals cancel.
+    fn of(of: &Moments) -> Option<Self> {
+        let (a, b) = Direction::new(of.normal).ok()?.tangent_basis();
+        let in_tangent = |m: glam::DMat3| {
+            let (ma, mb) = (m * a, m * b);
+            DMat2::from_cols(DVec2::new(a.dot(ma), b.dot(ma)), DVec2::new(a.dot(mb), b.dot(mb)))
+        };
+        let (point, normal) = (of.point_variance.sqrt(), of.normal_variance.sqrt());
+        Some(Self {
+            count: of.count,
+            points: in_tangent(of.points) * (1.0 / of.point_variance),
+            normals: in_tangent(of.normals) * (1.0 / of.normal_variance),
+            both: in_tangent(of.both) * (1.0 / (point * normal)),
+            ratio: point / normal,
+        })
+    }
+
+    /// Logarithm of the odds that free coordinates with these squares move or stay as they do.
+    fn stays(&self, squares: [f64; 2]) -> f64 {
+        let expected = (self.count - 1.0).max(0.0);
+        let limit = expected + MOVES * (2.0 * expected).sqrt();
+        squares.into_iter().map(|square| if square > limit { 0.0 } else { -STILL.ln() }).sum()
+    }
+
+    /// The direction across the edge that explains most: sharp across, flat along.
+    fn across_edge(&self) -> DVec2 {
+        smallest_direction(self.points - self.normals)
+    }
+
+    fn edge(&self) -> f64 {
+        let across = self.across_edge();
+        let along = across.perp();
+        let misfit = along_direction(self.points, across) + along_direction(self.normals, along);
+        -0.5 * misfit
+            + self.stays([along_direction(self.normals, across), along_direction(self.points, along)])
+    }
+
+    fn smooth(&self) -> f64 {
+        let misfit = |turn: f64| {
+            let e = DVec2::from_angle(turn);
+            self.line(e).misfit + self.line(e.perp()).misfit
+        };
+        let spacing = FRAC_PI_2 / f64::from(TURNS);
+        let tried = (0..TURNS).map(|k| f64::from(k) * spacing);
+        let start = tried.fold(0.0, |best, turn| if misfit(turn) < misfit(best) { turn } else { best });
+        let (mut best, mut step) = (start, 0.5 * spacing);
+        for _ in 0..REFINED {
+            let around = [best - step, best + step];
+            best = around.into_iter().fold(best, |best, t| if misfit(t) < misfit(best) { t } else { best });
+            step *= 0.5;
+        }
+        let bend = misfit(best + DIFFERENCE) + misfit(best - DIFFERENCE) - 2.0 * misfit(best);
+        let e = DVec2::from_angle(best);
+        let lines = [self.line(e), self.line(e.perp())];
+        let told = lines.iter().map(|line| line.told).chain([0.5 * bend / (DIFFERENCE * DIFFERENCE)]);
+        let left: f64 = told.map(|told| left_of_range(told).ln()).sum();
+        -0.5 * (lines[0].misfit + lines[1].misfit) + left + self.stays(lines.map(|line| line.along))
+    }
+
+    /// The line that fits contacts over normals along a tangent direction, of those that rise.
+    fn line(&self, e: DVec2) -> Line {
+        let along = |m: DMat2| along_direction(m, e);
+        let (a, b, c) = (along(self.points), along(self.normals), along(self.both));
+        let (half, mean) = (0.5 * (a - b), 0.5 * (a + b));
+        let length = half.hypot(c.max(0.0));
+        // Of the angle between the line's normal and the axis of the normals, in whitened coordinates.
+        let angle = 0.5 * c.max(0.0).atan2(half);
+        let true_angle = (angle.sin() / self.ratio).atan2(angle.cos());
+        let (sin, cos) = true_angle.sin_cos();
+        let rate = self.ratio / (cos * cos + self.ratio * self.ratio * sin * sin);
+        Line { misfit: mean - length, along: mean + length, told: 2.0 * length * rate * rate }
+    }
+}
+
+struct Line {
+    /// Squares across it.
+    misfit: f64,
+    /// Squares along it.
+    along: f64,
+    /// Information on its angle, 1/rad^2.
+    told: f64,
+}
+
+/// The share of a quarter turn that is left of an angle with this information.
+fn left_of_range(told: f64) -> f64 {
+    if told > 0.0 { ((TAU / told).sqrt() / FRAC_PI_2).min(1.0) } else { 1.0 }
+}
+
+fn trace(m: DMat2) -> f64 {
+    m.x_axis.x + m.y_axis.y
+}
+
+fn along_direction(m: DMat2, e: DVec2) -> f64 {
+    e.dot(m * e)
+}
+
+fn eigenvalues(m: DMat2) -> [f64; 2] {
+    let (half, mean) = (0.5 * (m.x_axis.x - m.y_axis.y), 0.5 * trace(m));
+    let length = half.hypot(m.x_axis.y);
+    [mean - length, mean + length]
+}
+
+/// Eigenvector of the smallest eigenvalue of a symmetric matrix.
+fn smallest_direction(m: DMat2) -> DVec2 {
+    let half = 0.5 * (m.x_axis.x - m.y_axis.y);
+    // The largest one is at half of this angle.
+    DVec2::from_angle(0.5 * m.x_axis.y.atan2(half)).perp()
+}
