@@ -126,7 +126,8 @@ impl Place {
     fn apart(&self, other: &Self, u: DVec3, lever: f64, rounding: f64) -> f64 {
         let way = u.dot(self.point - other.point);
         let turned = lever * lever * (self.turn * self.turn + other.turn * other.turn);
-        let variance = u.dot((self.covariance + other.covariance) * u).max(0.0) + turned + rounding * rounding;
+        let variance =
+            u.dot((self.covariance + other.covariance) * u).max(0.0) + turned + rounding * rounding;
         way * way / variance
     }
 
@@ -136,9 +137,8 @@ impl Place {
         if way.length() <= self.single.max(other.single) {
             return true;
         }
-        let covariance = self.covariance
-            + other.covariance
-            + DMat3::from_diagonal(DVec3::splat(rounding * rounding));
+        let covariance =
+            self.covariance + other.covariance + DMat3::from_diagonal(DVec3::splat(rounding * rounding));
         let solved = covariance.inverse() * way;
         solved.is_finite() && way.dot(solved) <= length3(APART).powi(2)
     }
@@ -172,11 +172,20 @@ impl Group {
         let first = &self.places[0];
         let point = self.places.iter().map(|p| p.point * share(p)).sum::<DVec3>();
         let axis = self.places.iter().map(|p| p.axis * (share(p) * p.axis.dot(first.axis).signum()));
-        let covariance = self.places.iter().map(|p| p.covariance * share(p).powi(2)).fold(DMat3::ZERO, |a, b| a + b);
+        let covariance =
+            self.places.iter().map(|p| p.covariance * share(p).powi(2)).fold(DMat3::ZERO, |a, b| a + b);
         let turn = self.places.iter().map(|p| (p.turn * share(p)).powi(2)).sum::<f64>().sqrt();
         let single = self.places.iter().map(|p| p.single).fold(0.0, f64::max);
         let axis = axis.sum::<DVec3>().normalize_or(first.axis);
-        Place { run: first.run, count, point, covariance: covariance + self.scatter(point), single, axis, turn }
+        Place {
+            run: first.run,
+            count,
+            point,
+            covariance: covariance + self.scatter(point),
+            single,
+            axis,
+            turn,
+        }
     }
 
     /// By how much the places of a group differ beyond what noise explains, m^2.

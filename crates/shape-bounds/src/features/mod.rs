@@ -4,6 +4,7 @@
 //! the normal turns; on a face the normal stays while the point moves or jumps. In each of two tangent directions the
 //! ratio of both motions is a radius of curvature: zero, without end, or in between where the body is smooth.
 
+mod assign;
 mod evidence;
 mod found;
 mod join;
@@ -41,6 +42,8 @@ impl Features {
             let sums = moments::Sums::new(contacts, &units);
             runs.extend(segment::runs(&sums, options).into_iter().map(|run| FeatureRun { curve, ..run }));
         }
+        let first = join::joined(curves, runs, units.size, options);
+        let runs = assign::assigned(curves, &first, &units, options);
         Ok(join::joined(curves, runs, units.size, options))
     }
 }

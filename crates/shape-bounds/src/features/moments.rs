@@ -59,23 +59,37 @@ impl Sums {
         for contact in curve {
             let n = contact.contact.normal.get();
             let p = (contact.contact.point - units.centre) / units.size;
-            let trace = |m: DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
-            let tangent = |m: DMat3| 0.5 * (trace(m) - n.dot(m * n)).max(0.0);
-            let pose = &contact.noise.pose;
-            let square = units.size * units.size;
             sum.p += p;
             sum.n += n;
             sum.pp += outer(p, p);
             sum.nn += outer(n, n);
             sum.pn += outer(p, n);
-            sum.own[0] += tangent(contact.noise.point) / square;
-            sum.own[1] += contact.noise.normal.powi(2);
-            sum.pose[0] += tangent(pose.at(contact.contact.point)) / square;
-            // A turn about the normal leaves it.
-            sum.pose[1] += tangent(pose.rotation);
+            let (own, pose) = Self::of_one(contact);
+            let square = units.size * units.size;
+            sum.own[0] += own[0] / square;
+            sum.own[1] += own[1];
+            sum.pose[0] += pose[0] / square;
+            sum.pose[1] += pose[1];
             rows.push(sum);
         }
         Self(rows)
+    }
+
+    /// Variances of a contact's point along a tangent (m^2) and of its normal about one (rad^2): its own, and by its pose.
+    fn of_one(contact: &NoisyContact) -> ([f64; 2], [f64; 2]) {
+        let n = contact.contact.normal.get();
+        let trace = |m: DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
+        let tangent = |m: DMat3| 0.5 * (trace(m) - n.dot(m * n)).max(0.0);
+        let pose = &contact.noise.pose;
+        let own = [tangent(contact.noise.point), contact.noise.normal.powi(2)];
+        // A turn about the normal leaves it.
+        (own, [tangent(pose.at(contact.contact.point)), tangent(pose.rotation)])
+    }
+
+    /// All of that together, where the body is of this size, m.
+    pub(super) fn variances(contact: &NoisyContact, size: f64) -> [f64; 2] {
+        let (own, pose) = Self::of_one(contact);
+        [(own[0] + pose[0]).max((FLOOR * size).powi(2)), (own[1] + pose[1]).max(FLOOR * FLOOR)]
     }
 
     /// How many contacts there are.
@@ -90,9 +104,8 @@ impl Sums {
         let (p, n) = ((b.p - a.p) / count, (b.n - a.n) / count);
         let about = |all: DMat3, x: DVec3, y: DVec3| all - outer(x, y) * count;
         // What is alike in all does not average out: it counts as often as there are contacts.
-        let variance = |k: usize| {
-            ((b.own[k] - a.own[k]) / count + (b.pose[k] - a.pose[k]).max(0.0)).max(FLOOR * FLOOR)
-        };
+        let variance =
+            |k: usize| ((b.own[k] - a.own[k]) / count + (b.pose[k] - a.pose[k]).max(0.0)).max(FLOOR * FLOOR);
         Moments {
             count,
             normal: n,

@@ -43,7 +43,8 @@ impl Features {
         if self.faces.len() < 4 {
             return None;
         }
-        let half_space = |face: &super::Face| HalfSpace { point: face.point, normal: face.normal, margin: 0.0 };
+        let half_space =
+            |face: &super::Face| HalfSpace { point: face.point, normal: face.normal, margin: 0.0 };
         let half_spaces: Vec<HalfSpace> = self.faces.iter().map(half_space).collect();
         let Ok(Intersection::Bounded(made)) = Intersection::of(&half_spaces) else { return None };
         let limit = length3(APART);

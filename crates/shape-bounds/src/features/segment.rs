@@ -53,11 +53,11 @@ fn coarse(sums: &Sums) -> Vec<usize> {
     let mut best = vec![(0.0, 0)];
     let mut open = vec![0];
     for k in 1..=places {
-        let reached: Vec<f64> = open.iter().map(|&i: &usize| best[i].0 + of(sums, at(i), at(k)).total()).collect();
-        let (from, value) = open
-            .iter()
-            .zip(&reached)
-            .fold((0, f64::NEG_INFINITY), |most, (&i, &value)| if value > most.1 { (i, value) } else { most });
+        let reached: Vec<f64> =
+            open.iter().map(|&i: &usize| best[i].0 + of(sums, at(i), at(k)).total()).collect();
+        let (from, value) = open.iter().zip(&reached).fold((0, f64::NEG_INFINITY), |most, (&i, &value)| {
+            if value > most.1 { (i, value) } else { most }
+        });
         best.push((value - cost, from));
         let mut values = reached.into_iter();
         // Twice the cost: evidence of two parts may be below that of the whole by what each pays for its angles.

@@ -53,7 +53,9 @@ impl TouchedBody {
     /// A wedge: a right triangle in x and z, drawn out along y.
     #[must_use]
     pub fn wedge(length: f64, height: f64, half_width: f64) -> Self {
-        let corner = |x: f64, y: f64, z: f64| DVec3::new((x - 1.0 / 3.0) * length, y * half_width, (z - 1.0 / 3.0) * height);
+        let corner = |x: f64, y: f64, z: f64| {
+            DVec3::new((x - 1.0 / 3.0) * length, y * half_width, (z - 1.0 / 3.0) * height)
+        };
         let side = |y: f64| [corner(0.0, y, 0.0), corner(1.0, y, 0.0), corner(0.0, y, 1.0)];
         Self::Polytope([side(-1.0), side(1.0)].concat(), 0.0)
     }
@@ -62,7 +64,9 @@ impl TouchedBody {
     #[must_use]
     pub fn size(&self) -> f64 {
         match self {
-            Self::Polytope(corners, rounding) => corners.iter().map(|v| v.length()).fold(0.0, f64::max) + rounding,
+            Self::Polytope(corners, rounding) => {
+                corners.iter().map(|v| v.length()).fold(0.0, f64::max) + rounding
+            }
             Self::Ellipsoid(axes) => axes.max_element(),
         }
     }
@@ -96,7 +100,9 @@ impl TouchedBody {
     }
 
     fn by_fingertip(&self, centre: DVec3) -> (ContactSample, FeatureKind) {
-        let Self::Polytope(corners, rounding) = self else { return self.by_palm(centre.normalize_or(DVec3::X)) };
+        let Self::Polytope(corners, rounding) = self else {
+            return self.by_palm(centre.normalize_or(DVec3::X));
+        };
         let near = nearest(centre, &[], farthest(corners));
         let n = near.direction;
         (

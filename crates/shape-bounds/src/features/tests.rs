@@ -34,7 +34,11 @@ fn look() {
                 let c = right(&touched, &found);
                 println!(
                     "{name} {noise} {c:?} corners {} edges {} faces {} runs {} {:?}",
-                    found.corners.len(), found.edges.len(), found.faces.len(), found.runs.len(), t.elapsed()
+                    found.corners.len(),
+                    found.edges.len(),
+                    found.faces.len(),
+                    found.runs.len(),
+                    t.elapsed()
                 );
                 if let Some(p) = found.polyhedron() {
                     println!("   {} {}", p.volume, p.by_faces);
