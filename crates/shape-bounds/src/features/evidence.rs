@@ -6,8 +6,10 @@
 //! tell by the share of the range that is left (Laplace). A corner is sharp in both, a face flat in both, an edge one of each. Contacts
 //! depart from the line by noise in both coordinates (errors in variables); where along it they are is free.
 //!
-//! Where nothing moves all four explain it alike, and the run stays open. A coordinate that is free and stays all the same is
-//! taken to be so once in [`STILL`] runs.
+//! A coordinate that is free is charged with its squares about its mean as one that stays is, up to where it surely moves: so what
+//! noise does to a coordinate counts alike for all kinds. Where nothing moves all four explain it alike, and the run stays open.
+//! Beforehand a path is straight as often as not; but a contact that is free to move along an edge while it turns about it, or to turn
+//! while it moves, does only one of both in one of [`STAYS`] runs.
 
 use super::found::FeatureKind;
 use super::moments::Moments;
@@ -15,8 +17,10 @@ use contact_kinematics::Direction;
 use glam::{DMat2, DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Odds beforehand that a coordinate which is free to move does so within a run.
-const STILL: f64 = 50.0;
+/// Odds beforehand that a contact on an edge moves along it and turns about it within a run, rather than one of both.
+const STAYS: f64 = 50.0;
+/// Odds beforehand that a path is bent rather than straight.
+const STRAIGHT: f64 = 2.0;
 /// Deviations of chi-squared beyond which a coordinate moves: one in a thousand does by chance.
 const MOVES: f64 = 3.1;
 /// Turns of the principal directions that are tried before the best is refined.
@@ -58,8 +62,8 @@ struct Scatter {
 /// The evidence of a run with these moments.
 pub(super) fn evidence(of: &Moments) -> Evidence {
     let Some(s) = Scatter::of(of) else { return Evidence([0.0; 4]) };
-    let corner = -0.5 * trace(s.points) + s.stays(eigenvalues(s.normals));
-    let face = -0.5 * trace(s.normals) + s.stays(eigenvalues(s.points));
+    let corner = -0.5 * trace(s.points) + s.free(eigenvalues(s.normals), STRAIGHT);
+    let face = -0.5 * trace(s.normals) + s.free(eigenvalues(s.points), STRAIGHT);
     Evidence([s.smooth(), corner, s.edge(), face])
 }
 
@@ -89,11 +93,18 @@ impl Scatter {
         })
     }
 
-    /// Logarithm of the odds that free coordinates with these squares move or stay as they do.
-    fn stays(&self, squares: [f64; 2]) -> f64 {
-        let expected = (self.count - 1.0).max(0.0);
+    /// Logarithm of the evidence of two free coordinates with these squares, where one that moves alone has odds of one in `alone`.
+    fn free(&self, squares: [f64; 2], alone: f64) -> f64 {
+        let expected = (self.count - 1.0).max(1.0);
         let limit = expected + MOVES * (2.0 * expected).sqrt();
-        squares.into_iter().map(|square| if square > limit { 0.0 } else { -STILL.ln() }).sum()
+        let charge: f64 = squares.into_iter().map(|square| -0.5 * square.min(limit)).sum();
+        let moving = squares.into_iter().filter(|square| *square > limit).count();
+        charge
+            - match moving {
+                0 => (STRAIGHT * STAYS).ln(),
+                1 => alone.ln(),
+                _ => 0.0,
+            }
     }
 
     /// The direction across the edge that explains most: sharp across, flat along.
@@ -105,8 +116,11 @@ impl Scatter {
         let across = self.across_edge();
         let along = across.perp();
         let misfit = along_direction(self.points, across) + along_direction(self.normals, along);
-        -0.5 * misfit
-            + self.stays([along_direction(self.normals, across), along_direction(self.points, along)])
+        let [low, high] = eigenvalues(self.points - self.normals);
+        // Of half a turn.
+        let direction = (0.5 * left_of_range(high - low)).min(1.0).ln();
+        let squares = [along_direction(self.normals, across), along_direction(self.points, along)];
+        -0.5 * misfit + direction + self.free(squares, STAYS)
     }
 
     fn smooth(&self) -> f64 {
@@ -128,7 +142,7 @@ impl Scatter {
         let lines = [self.line(e), self.line(e.perp())];
         let told = lines.iter().map(|line| line.told).chain([0.5 * bend / (DIFFERENCE * DIFFERENCE)]);
         let left: f64 = told.map(|told| left_of_range(told).ln()).sum();
-        -0.5 * (lines[0].misfit + lines[1].misfit) + left + self.stays(lines.map(|line| line.along))
+        -0.5 * (lines[0].misfit + lines[1].misfit) + left + self.free(lines.map(|line| line.along), STRAIGHT)
     }
 
     /// The line that fits contacts over normals along a tangent direction, of those that rise.

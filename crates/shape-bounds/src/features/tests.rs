@@ -47,3 +47,40 @@ fn look() {
         }
     }
 }
+
+#[test]
+fn dig() {
+    let body = TouchedBody::cuboid(DVec3::splat(0.5), 0.0);
+    for (noise, seed) in [(1e-2, 140_001), (1e-2, 140_002), (1e-3, 140_001)] {
+        println!("== {noise} {seed}");
+        let touched = body.touched(&HOW, 600, noise, seed);
+        let found = Features::find(&touched.curves, &FeatureOptions::default()).unwrap();
+        for run in &found.runs {
+            let kinds = &touched.kinds[run.curve][run.first..run.first + run.count];
+            let mut c = [0; 4];
+            kinds.iter().for_each(|k| c[*k as usize] += 1);
+            let ex = &touched.exact[run.curve][run.first..run.first + run.count];
+            let (a, b) = (ex[0], ex[ex.len() - 1]);
+            let mark = match run.kind {
+                Some(k) if c[k as usize] * 10 < run.count * 9 => "<<<<",
+                None => "open",
+                _ => "",
+            };
+            println!(
+                "{} {:>3}+{:<3} {:?} {:?} {:.0} {:?} {:.2} -> {:.2}  n {:.2} -> {:.2} {:.1?} {mark}",
+                run.curve,
+                run.first,
+                run.count,
+                run.kind,
+                run.feature,
+                run.log_odds,
+                c,
+                a.point,
+                b.point,
+                a.normal.get(),
+                b.normal.get(),
+                run.log_evidence
+            );
+        }
+    }
+}
