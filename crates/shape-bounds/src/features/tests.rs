@@ -84,3 +84,38 @@ fn dig() {
         }
     }
 }
+
+#[test]
+fn bounds() {
+    use crate::noise::CertainBounds;
+    for (name, body) in [
+        ("cube", TouchedBody::cuboid(DVec3::splat(0.5), 0.0)),
+        ("wedge", TouchedBody::wedge(1.2, 0.8, 0.5)),
+        ("rounded", TouchedBody::cuboid(DVec3::splat(0.4), 0.1)),
+    ] {
+        for noise in [1e-3, 1e-2] {
+            let touched = body.touched(&HOW, 600, noise, 140_000);
+            let found = Features::find(&touched.curves, &FeatureOptions::default()).unwrap();
+            let plain = CertainBounds::from_noisy_curves(&touched.curves, 0.95).unwrap();
+            let t = std::time::Instant::now();
+            let with =
+                CertainBounds::from_features(&touched.curves, &FeatureOptions::default(), 0.95).unwrap();
+            for b in [plain, with] {
+                let low = b.lower.as_ref().and_then(|l| l.solid());
+                let out = low.map(|l| l.vertices().iter().map(|v| body.outside(*v)).fold(-1.0, f64::max));
+                let up = b.upper.as_ref().map(|u| {
+                    let f = u.face_half_spaces();
+                    f.iter()
+                        .map(|h| body.support(h.normal.get()) - h.normal.get().dot(h.point) - h.margin)
+                        .fold(-1.0, f64::max)
+                });
+                println!(
+                    "{name} {noise} {:?} {:?} {out:?} {up:?} {:?}",
+                    low.map(|l| l.volume()),
+                    b.upper.as_ref().map(|u| u.volume()),
+                    t.elapsed()
+                );
+            }
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! Bounds that hold at a stated confidence when contacts are measured with noise.
 
 pub(crate) mod assumptions;
+mod chosen;
 pub(crate) mod consistency;
 mod curvature;
 mod levels;
@@ -27,9 +28,11 @@ pub use pose::PoseNoise;
 pub(crate) use traced::FEWEST;
 
 use crate::bounds::{BoundsError, Gap, ShapeBounds};
+use crate::features::FeatureOptions;
 use crate::halfspaces::{Intersection, Polyhedron};
 use crate::hull::Hull;
-use lower::{certain_points, nearly_exact};
+use chosen::ChosenWindows;
+use lower::{certain_points, nearly_exact, points_of_corners};
 use upper::certain_half_spaces;
 use windows::{LONGEST, windows};
 
@@ -96,6 +99,46 @@ impl CertainBounds {
         confidence: f64,
         poses: f64,
     ) -> Result<Self, NoiseError> {
+        Self::from_means(curves, &ChosenWindows::default(), confidence, poses)
+    }
+
+    /// As [`Self::from_noisy_curves`], with means over all contacts of a corner or face, which carry still less noise. Every other
+    /// contact says which those are, and the mean is over the others: the bounds hold whatever is found.
+    ///
+    /// # Errors
+    /// As [`Self::from_noisy_curves`], and for odds that are none.
+    pub fn from_features(
+        curves: &[Vec<NoisyContact>],
+        options: &FeatureOptions,
+        confidence: f64,
+    ) -> Result<Self, NoiseError> {
+        NoiseError::check_confidence(confidence)?;
+        let alpha = 0.5 * (1.0 - confidence);
+        let poses = quantile::length6(alpha / curves.iter().map(Vec::len).sum::<usize>().max(1) as f64);
+        Self::from_features_of_poses(curves, options, 1.0 - alpha, poses)
+    }
+
+    /// [`Self::from_curves_of_poses`] with means over all contacts of a corner or face, as in [`Self::from_features`].
+    ///
+    /// # Errors
+    /// As [`Self::from_features`].
+    pub fn from_features_of_poses(
+        curves: &[Vec<NoisyContact>],
+        options: &FeatureOptions,
+        confidence: f64,
+        poses: f64,
+    ) -> Result<Self, NoiseError> {
+        NoiseError::check_confidence(confidence)?;
+        NoiseError::check_contacts(curves)?;
+        Self::from_means(curves, &ChosenWindows::of(curves, options)?, confidence, poses)
+    }
+
+    fn from_means(
+        curves: &[Vec<NoisyContact>],
+        chosen: &ChosenWindows,
+        confidence: f64,
+        poses: f64,
+    ) -> Result<Self, NoiseError> {
         NoiseError::check_confidence(confidence)?;
         NoiseError::check_contacts(curves)?;
         let contacts: Vec<_> = curves.iter().flatten().map(|c| c.contact).collect();
@@ -104,7 +147,7 @@ impl CertainBounds {
         let singles = windows(curves, 1);
         let exact = singles.first().is_some_and(|list| nearly_exact(list, alpha, poses));
         let lists = if exact { singles } else { windows(curves, LONGEST) };
-        let upper = match certain_half_spaces(&lists, alpha, poses) {
+        let upper = match certain_half_spaces(&lists, &chosen.faces, alpha, poses) {
             Ok(half_spaces) => match Intersection::of(&half_spaces).map_err(BoundsError::from)? {
                 Intersection::Bounded(upper) => Some(upper),
                 Intersection::Unbounded(_) => None,
@@ -112,7 +155,10 @@ impl CertainBounds {
             Err(NoiseError::NoUpperBound) => None,
             Err(error) => return Err(error),
         };
-        let points = certain_points(&lists, alpha, poses);
+        // Means over corners have half of the odds, where there are any.
+        let alpha = if chosen.corners.is_empty() { alpha } else { 0.5 * alpha };
+        let mut points = certain_points(&lists, alpha, poses);
+        points.extend(points_of_corners(&chosen.corners, alpha, poses));
         let lower =
             if points.is_empty() { None } else { Some(Hull::of(&points).map_err(BoundsError::from)?) };
         Ok(Self { lower, upper })
