@@ -14,7 +14,7 @@
 use super::found::FeatureKind;
 use super::moments::Moments;
 use contact_kinematics::Direction;
-use glam::{DMat2, DVec2, DVec3};
+use glam::{DMat2, DMat3, DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Odds beforehand that a contact on an edge moves along it and turns about it within a run, rather than one of both.
@@ -52,6 +52,8 @@ impl Evidence {
 /// Scatters of whitened contacts and normals in two tangent directions.
 struct Scatter {
     count: f64,
+    /// The directions, body axes: those in which most and least moves, so that nothing depends on the axes of the body.
+    axes: [DVec3; 2],
     points: DMat2,
     normals: DMat2,
     both: DMat2,
@@ -70,27 +72,35 @@ pub(super) fn evidence(of: &Moments) -> Evidence {
 /// Direction of an edge that a run with these moments is on, body axes.
 pub(super) fn edge_direction(of: &Moments) -> Option<DVec3> {
     let s = Scatter::of(of)?;
-    let (a, b) = Direction::new(of.normal).ok()?.tangent_basis();
     let along = s.across_edge().perp();
-    Some(a * along.x + b * along.y)
+    Some(s.axes[0] * along.x + s.axes[1] * along.y)
 }
 
 impl Scatter {
     /// None where normals cancel.
     fn of(of: &Moments) -> Option<Self> {
         let (a, b) = Direction::new(of.normal).ok()?.tangent_basis();
-        let in_tangent = |m: glam::DMat3| {
+        let any = Self::along(of, [a, b]);
+        let least = smallest_direction(any.points + any.normals);
+        let along = a * least.x + b * least.y;
+        Some(Self::along(of, [along, of.normal.normalize().cross(along)]))
+    }
+
+    fn along(of: &Moments, axes: [DVec3; 2]) -> Self {
+        let [a, b] = axes;
+        let in_tangent = |m: DMat3| {
             let (ma, mb) = (m * a, m * b);
             DMat2::from_cols(DVec2::new(a.dot(ma), b.dot(ma)), DVec2::new(a.dot(mb), b.dot(mb)))
         };
         let (point, normal) = (of.point_variance.sqrt(), of.normal_variance.sqrt());
-        Some(Self {
+        Self {
             count: of.count,
+            axes,
             points: in_tangent(of.points) * (1.0 / of.point_variance),
             normals: in_tangent(of.normals) * (1.0 / of.normal_variance),
             both: in_tangent(of.both) * (1.0 / (point * normal)),
             ratio: point / normal,
-        })
+        }
     }
 
     /// Logarithm of the evidence of two free coordinates with these squares, where one that moves alone has odds of one in `alone`.
@@ -124,25 +134,33 @@ impl Scatter {
     }
 
     fn smooth(&self) -> f64 {
-        let misfit = |turn: f64| {
-            let e = DVec2::from_angle(turn);
-            self.line(e).misfit + self.line(e.perp()).misfit
-        };
         let spacing = FRAC_PI_2 / f64::from(TURNS);
-        let tried = (0..TURNS).map(|k| f64::from(k) * spacing);
-        let start = tried.fold(0.0, |best, turn| if misfit(turn) < misfit(best) { turn } else { best });
-        let (mut best, mut step) = (start, 0.5 * spacing);
+        let better = |most: (f64, f64), turn: f64| {
+            let value = self.smooth_along(turn);
+            if value > most.1 { (turn, value) } else { most }
+        };
+        let start = (0.0, self.smooth_along(0.0));
+        let mut best = (1..TURNS).map(|k| f64::from(k) * spacing).fold(start, better);
+        let mut step = 0.5 * spacing;
         for _ in 0..REFINED {
-            let around = [best - step, best + step];
-            best = around.into_iter().fold(best, |best, t| if misfit(t) < misfit(best) { t } else { best });
+            best = [best.0 - step, best.0 + step].into_iter().fold(best, better);
             step *= 0.5;
         }
-        let bend = misfit(best + DIFFERENCE) + misfit(best - DIFFERENCE) - 2.0 * misfit(best);
-        let e = DVec2::from_angle(best);
-        let lines = [self.line(e), self.line(e.perp())];
-        let told = lines.iter().map(|line| line.told).chain([0.5 * bend / (DIFFERENCE * DIFFERENCE)]);
-        let left: f64 = told.map(|told| left_of_range(told).ln()).sum();
-        -0.5 * (lines[0].misfit + lines[1].misfit) + left + self.free(lines.map(|line| line.along), STRAIGHT)
+        let misfit = |turn: f64| self.lines(turn).map(|line| line.misfit).into_iter().sum::<f64>();
+        let bend = misfit(best.0 + DIFFERENCE) + misfit(best.0 - DIFFERENCE) - 2.0 * misfit(best.0);
+        best.1 + left_of_range(0.5 * bend / (DIFFERENCE * DIFFERENCE)).ln()
+    }
+
+    /// Logarithm of the evidence for a smooth surface whose principal directions are turned so far.
+    fn smooth_along(&self, turn: f64) -> f64 {
+        let lines = self.lines(turn);
+        let of_one = |line: &Line| left_of_range(line.told).ln() - 0.5 * line.misfit;
+        lines.iter().map(of_one).sum::<f64>() + self.free(lines.map(|line| line.along), STRAIGHT)
+    }
+
+    fn lines(&self, turn: f64) -> [Line; 2] {
+        let e = DVec2::from_angle(turn);
+        [self.line(e), self.line(e.perp())]
     }
 
     /// The line that fits contacts over normals along a tangent direction, of those that rise.
@@ -160,6 +178,7 @@ impl Scatter {
     }
 }
 
+#[derive(Clone, Copy)]
 struct Line {
     /// Squares across it.
     misfit: f64,

@@ -9,6 +9,7 @@ mod evidence;
 mod found;
 mod join;
 mod moments;
+mod pieces;
 mod polyhedron;
 mod segment;
 #[cfg(any(test, feature = "generators"))]
@@ -17,6 +18,7 @@ pub(crate) mod simulated;
 mod tests;
 
 pub use found::{Corner, Edge, Face, FeatureKind, FeatureOptions, FeatureRun, Features};
+pub use pieces::Pieces;
 pub use polyhedron::FoundPolyhedron;
 
 use crate::noise::{NoiseError, NoisyContact};

@@ -36,6 +36,9 @@ use lower::{certain_points, nearly_exact, points_of_corners};
 use upper::certain_half_spaces;
 use windows::{LONGEST, windows};
 
+/// Share of the odds of a failure that means over all contacts of a corner or face have: they are few, and the others hardly lose.
+const SHARE_OF_CHOSEN: f64 = 0.1;
+
 impl ShapeBounds {
     /// Bounds between which a convex body lies with at least the stated `confidence` (say 0.95), for both bounds and all
     /// contacts together.
@@ -99,7 +102,7 @@ impl CertainBounds {
         confidence: f64,
         poses: f64,
     ) -> Result<Self, NoiseError> {
-        Self::from_means(curves, &ChosenWindows::default(), confidence, poses)
+        Self::from_means(curves, None, confidence, poses)
     }
 
     /// As [`Self::from_noisy_curves`], with means over all contacts of a corner or face, which carry still less noise. Every other
@@ -130,12 +133,12 @@ impl CertainBounds {
     ) -> Result<Self, NoiseError> {
         NoiseError::check_confidence(confidence)?;
         NoiseError::check_contacts(curves)?;
-        Self::from_means(curves, &ChosenWindows::of(curves, options)?, confidence, poses)
+        Self::from_means(curves, Some(&ChosenWindows::of(curves, options)?), confidence, poses)
     }
 
     fn from_means(
         curves: &[Vec<NoisyContact>],
-        chosen: &ChosenWindows,
+        chosen: Option<&ChosenWindows>,
         confidence: f64,
         poses: f64,
     ) -> Result<Self, NoiseError> {
@@ -143,11 +146,15 @@ impl CertainBounds {
         NoiseError::check_contacts(curves)?;
         let contacts: Vec<_> = curves.iter().flatten().map(|c| c.contact).collect();
         ShapeBounds::check(&contacts)?;
-        let alpha = (1.0 - confidence) / 2.0;
+        let all = (1.0 - confidence) / 2.0;
+        // The same whether any are found: the odds must not depend on it.
+        let of_chosen = if chosen.is_some() { SHARE_OF_CHOSEN * all } else { 0.0 };
+        let alpha = all - of_chosen;
+        let (corners, faces) = chosen.map_or((&[][..], &[][..]), |found| (&found.corners, &found.faces));
         let singles = windows(curves, 1);
         let exact = singles.first().is_some_and(|list| nearly_exact(list, alpha, poses));
         let lists = if exact { singles } else { windows(curves, LONGEST) };
-        let upper = match certain_half_spaces(&lists, &chosen.faces, alpha, poses) {
+        let upper = match certain_half_spaces(&lists, faces, [alpha, of_chosen], poses) {
             Ok(half_spaces) => match Intersection::of(&half_spaces).map_err(BoundsError::from)? {
                 Intersection::Bounded(upper) => Some(upper),
                 Intersection::Unbounded(_) => None,
@@ -155,10 +162,8 @@ impl CertainBounds {
             Err(NoiseError::NoUpperBound) => None,
             Err(error) => return Err(error),
         };
-        // Means over corners have half of the odds, where there are any.
-        let alpha = if chosen.corners.is_empty() { alpha } else { 0.5 * alpha };
         let mut points = certain_points(&lists, alpha, poses);
-        points.extend(points_of_corners(&chosen.corners, alpha, poses));
+        points.extend(points_of_corners(corners, of_chosen, poses));
         let lower =
             if points.is_empty() { None } else { Some(Hull::of(&points).map_err(BoundsError::from)?) };
         Ok(Self { lower, upper })

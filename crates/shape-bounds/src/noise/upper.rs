@@ -24,7 +24,7 @@ struct Quantiles {
     poses: f64,
 }
 
-/// Half-spaces that all contain the body, except with probability `alpha`.
+/// Half-spaces that all contain the body, except with a probability of both parts of `alpha` together.
 ///
 /// For a contact measured as `x^`, `n^` where the truth is `x`, `n`, every point `y` of the body has
 /// `n^.(y - x^) <= (n^ - n).(y - x) - n^.(x^ - x)`: an error of the offset, and one of the normal that acts over the
@@ -33,17 +33,17 @@ struct Quantiles {
 /// `poses` is the number of deviations that the poses are off by at most: an error of the pose moves every `y` along `n^` by as
 /// much as a point of the body that stands there.
 ///
-/// Means over `faces` have half of the odds, where there are any.
+/// Means over `faces` have the second part of the odds.
 pub(super) fn certain_half_spaces(
     lists: &[Vec<Window>],
     faces: &[Window],
-    alpha: f64,
+    alpha: [f64; 2],
     poses: f64,
 ) -> Result<Vec<HalfSpace>, NoiseError> {
-    let alpha = if faces.is_empty() { alpha } else { 0.5 * alpha };
     let of = |each: f64| Quantiles { normal: quantile::normal(each), length: quantile::length3(each), poses };
     let count: usize = lists.iter().map(Vec::len).sum();
-    let [all, few] = [count, faces.len()].map(|count| of(alpha / (2 * count.max(1)) as f64));
+    let [all, few] = [(alpha[0], count), (alpha[1], faces.len())]
+        .map(|(alpha, count)| of(alpha / (2 * count.max(1)) as f64));
     let chosen = faces.iter().map(|face| (*face, few));
     let windows: Vec<(Window, Quantiles)> =
         lists.iter().flatten().map(|window| (*window, all)).chain(chosen).collect();
