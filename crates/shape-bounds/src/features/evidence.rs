@@ -45,7 +45,7 @@ impl Evidence {
     pub(super) fn best(&self) -> (FeatureKind, f64) {
         let best = (0..4).fold(0, |best, k| if self.0[k] > self.0[best] { k } else { best });
         let others = (0..4).filter(|k| *k != best).map(|k| (self.0[k] - self.0[best]).exp()).sum::<f64>();
-        (FeatureKind::ALL[best], -others.ln())
+        (FeatureKind::ALL[best], -others.max(f64::MIN_POSITIVE).ln())
     }
 }
 

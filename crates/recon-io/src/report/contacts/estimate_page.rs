@@ -64,6 +64,7 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
             None => ("Upper bound", "unbounded".to_owned(), ""),
         });
     }
+    facts.extend(data.marks.iter().flat_map(|marks| marks.facts.clone()));
     let object = if found.relied_on.contains(&true) { OBJECT } else { NO_OBJECT };
     let page = EstimatePage {
         title: &data.title,
