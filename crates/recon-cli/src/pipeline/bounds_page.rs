@@ -1,18 +1,20 @@
 //! The page of bounds, in space and in the plane.
 
 use super::bounds::BoundsResult;
-use super::features::FoundFeatures;
 use super::plane::PlanarBounds;
 use super::views::three_views;
 use glam::DVec3;
 use recon_io::EvidenceValue::{Count, Number, Text};
-use recon_io::{Evidence, EvidenceValue, FigurePanel, FiguresPage, Level, Verdict, brief, brief_to};
+use recon_io::{
+    Evidence, EvidenceValue, FigurePanel, FiguresPage, Level, ShapeMarks, Verdict, brief, brief_to,
+};
 use serde_json::Value;
 
 const KICKER: &str = "What touch guarantees about a shape";
 const IN_SPACE: &str =
     "Bounds as they are seen along the axes, and the contacts. Outlines are those of the whole bodies.";
-const MARKED: &str = " Contacts are marked by what they are on; smooth is what has a radius of curvature, open what the odds leave open.";
+const MARKED: &str =
+    " Below, contacts by what they are on; other ones are smooth, or the odds leave them open.";
 const IN_PLANE: &str = "Outlines of the bounds with the contacts, and how far they are apart.";
 
 /// The page of bounds in space, from `what` at these points.
@@ -29,26 +31,20 @@ pub(crate) fn bounds_page(
     let smooth = other("smooth_surface.ply").unwrap_or_default();
     let mut bodies = vec![("lower", &lower[..]), ("upper", &upper[..])];
     bodies.extend((!fitted.is_empty()).then_some(("fit", fitted)));
-    bodies.extend(made.polyhedron().map(|corners| ("polyhedron", corners)));
-    let marked = made.not_smooth().map(FoundFeatures::dots);
-    let contacts = match &marked {
-        Some(marked) => marked.iter().map(|(name, points)| (*name, &points[..])).collect(),
-        None => vec![("contacts", points)],
-    };
-    let dots: Vec<_> = contacts.into_iter().chain([("surface", smooth)]).collect();
+    let dots = [("contacts", points), ("surface", smooth)];
+    let marks = made.marks();
+    let caption = if marks.is_some() { MARKED } else { "" };
+    let ShapeMarks { facts: more, panels: marked } = marks.unwrap_or_default();
     let sizes = [Some(made.drawn.lower.volume), made.drawn.upper.as_ref().map(|upper| upper.volume)];
     FiguresPage {
         kicker: KICKER,
         title: title.to_owned(),
         verdict: verdict(about, what, sizes[1].is_some(), made.contradicts()),
         warnings: made.warnings.clone(),
-        facts: facts(sizes, "m³", made.drawn.largest_gap, about)
-            .into_iter()
-            .chain(made.not_smooth().map(FoundFeatures::facts).unwrap_or_default())
-            .collect(),
+        facts: facts(sizes, "m³", made.drawn.largest_gap, about).into_iter().chain(more).collect(),
         heading: "Bounds on the shape",
-        panels: three_views(&bodies, &dots),
-        caption: format!("{IN_SPACE}{}", if marked.is_some() { MARKED } else { "" }),
+        panels: three_views(&bodies, &dots).into_iter().chain(marked).collect(),
+        caption: format!("{IN_SPACE}{caption}"),
         evidence: evidence(about, made.contradiction),
     }
 }

@@ -108,26 +108,23 @@ impl FoundFeatures {
         text.into_bytes()
     }
 
-    /// Contacts by what they are on, for pictures; smooth ones last.
-    pub(crate) fn dots(&self) -> Vec<(&'static str, Vec<DVec3>)> {
+    /// Contacts by what they are on, for pictures; smooth and open ones together.
+    fn dots(&self) -> Vec<(&'static str, Vec<DVec3>)> {
         let of = self.found.run_of_each(self.curves.len());
-        let kinds = [
-            Some(FeatureKind::Corner),
-            Some(FeatureKind::Edge),
-            Some(FeatureKind::Face),
-            Some(FeatureKind::Smooth),
-            None,
-        ];
-        let points = |kind: Option<FeatureKind>| {
-            let pairs = self.curves.iter().zip(&of).flat_map(|(curve, runs)| curve.iter().zip(runs));
-            let of_kind = pairs.filter(|(_, run)| self.found.runs[**run].kind == kind);
-            (kind.map_or("open", FeatureKind::name), of_kind.map(|(contact, _)| contact.point).collect())
+        let name = |kind: Option<FeatureKind>| match kind {
+            None | Some(FeatureKind::Smooth) => "other",
+            Some(kind) => kind.name(),
         };
-        kinds.map(points).into_iter().filter(|(_, points): &(_, Vec<DVec3>)| !points.is_empty()).collect()
+        let points = |wanted: &'static str| {
+            let pairs = self.curves.iter().zip(&of).flat_map(|(curve, runs)| curve.iter().zip(runs));
+            let of_kind = pairs.filter(|(_, run)| name(self.found.runs[**run].kind) == wanted);
+            (wanted, of_kind.map(|(contact, _)| contact.point).collect())
+        };
+        ["corner", "edge", "face", "other"].map(points).to_vec()
     }
 
     /// Key figures of a page.
-    pub(crate) fn facts(&self) -> Vec<(&'static str, String, &'static str)> {
+    fn facts(&self) -> Vec<(&'static str, String, &'static str)> {
         let found = &self.found;
         let counts =
             [("Corners", found.corners.len()), ("Edges", found.edges.len()), ("Faces", found.faces.len())];
@@ -152,22 +149,16 @@ impl BoundsResult {
         Ok(self)
     }
 
-    /// What a page shows of it.
+    /// What a page shows of it: views of the contacts by what they are on, in the polyhedron or the lower bound.
     pub(super) fn marks(&self) -> Option<ShapeMarks> {
         let found = self.not_smooth()?;
-        let corners =
-            |mesh: &Option<TriangleMesh>| mesh.as_ref().map(|mesh| mesh.vertices.clone()).unwrap_or_default();
-        let [lower, upper] = [corners(&self.lower), corners(&self.upper)];
-        let mut bodies = vec![("lower", &lower[..]), ("upper", &upper[..])];
-        bodies.extend(self.polyhedron().map(|corners| ("polyhedron", corners)));
+        let made =
+            self.others.iter().find(|(name, ..)| *name == POLYHEDRON).map(|(.., mesh)| ("polyhedron", mesh));
+        let body = made.or(self.lower.as_ref().map(|lower| ("lower", lower)));
+        let body: Vec<_> = body.iter().map(|(name, mesh)| (*name, &mesh.vertices[..])).collect();
         let dots = found.dots();
         let dots: Vec<_> = dots.iter().map(|(name, points)| (*name, &points[..])).collect();
-        Some(ShapeMarks { facts: found.facts(), panels: three_views(&bodies, &dots) })
-    }
-
-    /// Corners of the polyhedron.
-    pub(crate) fn polyhedron(&self) -> Option<&[DVec3]> {
-        self.others.iter().find(|(name, ..)| *name == POLYHEDRON).map(|(.., mesh)| &mesh.vertices[..])
+        Some(ShapeMarks { facts: found.facts(), panels: three_views(&body, &dots) })
     }
 
     /// What was found that is not smooth.

@@ -11,6 +11,9 @@ use glam::DVec3;
 /// Odds at which a corner that all its faces meet in is taken for another.
 const APART: f64 = 1e-3;
 
+/// Share of the contacts that may be told to be smooth: of those told at odds of twenty to one so many may be wrong.
+const MAY_BE_WRONG: f64 = 0.05;
+
 /// A polyhedron that was found by its corners and faces. An estimate, and no bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundPolyhedron {
@@ -24,10 +27,11 @@ pub struct FoundPolyhedron {
 
 impl Features {
     /// The polyhedron that corners and faces make: where faces close it, and each corner is one of theirs, the intersection of their
-    /// half-spaces, else the hull of the corners. None where some of the surface is smooth, or they enclose nothing.
+    /// half-spaces, else the hull of the corners. None where more than one in twenty contacts is on smooth surface, or they enclose nothing.
     #[must_use]
     pub fn polyhedron(&self) -> Option<FoundPolyhedron> {
-        if self.contacts(Some(FeatureKind::Smooth)) > 0 {
+        let all: usize = self.runs.iter().map(|run| run.count).sum();
+        if self.contacts(Some(FeatureKind::Smooth)) as f64 > MAY_BE_WRONG * all as f64 {
             return None;
         }
         self.by_faces().or_else(|| self.by_corners())
