@@ -71,7 +71,7 @@ fn corner(radius: f64, noise: f64, seed: u64) -> Vec<Vec<NoisyContact>> {
     vec![curve, vec![NoisyContact { contact: far, noise: stated }]]
 }
 
-/// Of corners of radii about what noise lets tell: how many are told to be corners, and smooth; twenty times as many runs.
+/// Of corners of radii about what noise lets tell: how many are told to be corners, and smooth; four times as many runs.
 pub(super) fn rounding_table(runs: u64, seed: u64) -> Result<(String, FigurePanel), Failure> {
     let mut text = String::from(
         "One corner, swept by 100 contacts over ±0.4 rad in two directions; its radius in deviations to which these contacts tell \
@@ -81,7 +81,7 @@ pub(super) fn rounding_table(runs: u64, seed: u64) -> Result<(String, FigurePane
     for noise in super::NOISE {
         for radius in RADII {
             let mut counts = [0_u64; 5];
-            for run in 0..20 * runs {
+            for run in 0..4 * runs {
                 let curves = corner(radius * resolved(noise), noise, seed + 10_000 + run);
                 let found = Features::find(&curves, &FeatureOptions::default())?;
                 // The kind that most of the curve is told to be.
@@ -89,7 +89,7 @@ pub(super) fn rounding_table(runs: u64, seed: u64) -> Result<(String, FigurePane
                 let kind = most.and_then(|run| run.kind);
                 counts[kind.map_or(4, |kind: FeatureKind| kind as usize)] += 1;
             }
-            let share = |k: usize| 100.0 * counts[k] as f64 / (20 * runs) as f64;
+            let share = |k: usize| 100.0 * counts[k] as f64 / (4 * runs) as f64;
             writeln!(
                 text,
                 "| {noise:e} | {radius} | {:.1} % | {:.1} % | {:.1} % | {:.1} % | {:.1} % |",

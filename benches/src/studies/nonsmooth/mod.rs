@@ -59,7 +59,7 @@ pub(crate) fn main() -> Result<(), Failure> {
     writeln!(text, "\n## What is told\n\n{told}")?;
     writeln!(text, "## Bounds\n\n{bounded}")?;
     writeln!(text, "## How small a radius is told from a corner\n\n{rounding}")?;
-    writeln!(text, "## Rolled between palms\n\n{}", rolled::text(runs.min(20), seed)?)?;
+    writeln!(text, "## Rolled between palms\n\n{}", rolled::text(runs.min(10), seed)?)?;
     let mut svg = Vec::new();
     write_figures(&panels, &mut svg)?;
     std::fs::write("docs/charts/nonsmooth.svg", svg)?;

@@ -12,16 +12,16 @@ use recon_io::Scene;
 use shape_bounds::generators::{Source, Touched, TouchedBody};
 use std::fmt::Write as _;
 
-/// The power by which sides bulge, and the rounding, m: a contact crosses a side while the normal turns by a few mrad.
-const SHARPNESS: f64 = 300.0;
+/// The power by which sides bulge, and the rounding, m: a contact crosses a side while the normal turns by less than a mrad.
+const SHARPNESS: f64 = 3000.0;
 const ROUNDING: f64 = 1e-4;
 /// Slope of the palms and how far each is tilted, rad.
 const SLOPE: f64 = 0.7;
 const TILT: f64 = 0.5;
 /// Allowed local error of the simulation.
 const TOLERANCE: f64 = 1e-6;
-/// Share of a corner's weight from which the contact is on it alone.
-const ALONE: f64 = 0.05;
+/// Weight over that of the nearest corner from which another one counts.
+const ALONE: f64 = 1e-3;
 
 pub(super) fn text(runs: u64, seed: u64) -> Result<String, Failure> {
     let mut text = String::from(

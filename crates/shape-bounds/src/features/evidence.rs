@@ -8,8 +8,7 @@
 //!
 //! A coordinate that is free is charged with its squares about its mean as one that stays is, up to where it surely moves: so what
 //! noise does to a coordinate counts alike for all kinds. Where nothing moves all four explain it alike, and the run stays open.
-//! Beforehand a path is straight as often as not; but a contact that is free to move along an edge while it turns about it, or to turn
-//! while it moves, does only one of both in one of [`STAYS`] runs.
+//! Beforehand a coordinate that is free stays while the other one moves with odds of what noise lets tell to how far the other moves.
 
 use super::found::FeatureKind;
 use super::moments::Moments;
@@ -17,9 +16,7 @@ use contact_kinematics::Direction;
 use glam::{DMat2, DMat3, DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Odds beforehand that a contact on an edge moves along it and turns about it within a run, rather than one of both.
-const STAYS: f64 = 50.0;
-/// Odds beforehand that a path is bent rather than straight.
+/// Odds beforehand that a path is bent rather than straight, at least; and of a contact that moves in one way at all.
 const STRAIGHT: f64 = 2.0;
 /// Deviations of chi-squared beyond which a coordinate moves: one in a thousand does by chance.
 const MOVES: f64 = 3.1;
@@ -64,8 +61,8 @@ struct Scatter {
 /// The evidence of a run with these moments.
 pub(super) fn evidence(of: &Moments) -> Evidence {
     let Some(s) = Scatter::of(of) else { return Evidence([0.0; 4]) };
-    let corner = -0.5 * trace(s.points) + s.free(eigenvalues(s.normals), STRAIGHT);
-    let face = -0.5 * trace(s.normals) + s.free(eigenvalues(s.points), STRAIGHT);
+    let corner = -0.5 * trace(s.points) + s.free(eigenvalues(s.normals));
+    let face = -0.5 * trace(s.normals) + s.free(eigenvalues(s.points));
     Evidence([s.smooth(), corner, s.edge(), face])
 }
 
@@ -103,18 +100,18 @@ impl Scatter {
         }
     }
 
-    /// Logarithm of the evidence of two free coordinates with these squares, where one that moves alone has odds of one in `alone`.
-    fn free(&self, squares: [f64; 2], alone: f64) -> f64 {
+    /// Logarithm of the evidence of two free coordinates with these squares.
+    fn free(&self, squares: [f64; 2]) -> f64 {
         let expected = (self.count - 1.0).max(1.0);
         let limit = expected + MOVES * (2.0 * expected).sqrt();
         let charge: f64 = squares.into_iter().map(|square| -0.5 * square.min(limit)).sum();
-        let moving = squares.into_iter().filter(|square| *square > limit).count();
-        charge
-            - match moving {
-                0 => (STRAIGHT * STAYS).ln(),
-                1 => alone.ln(),
-                _ => 0.0,
-            }
+        let moves = |square: &f64| *square > limit;
+        let straight = match squares {
+            [a, b] if moves(&a) && moves(&b) => 1.0,
+            // Where nothing moves all kinds are alike.
+            [a, b] => STRAIGHT.max((a.max(b) / expected).sqrt()),
+        };
+        charge - straight.ln()
     }
 
     /// The direction across the edge that explains most: sharp across, flat along.
@@ -130,7 +127,7 @@ impl Scatter {
         // Of half a turn.
         let direction = (0.5 * left_of_range(high - low)).min(1.0).ln();
         let squares = [along_direction(self.normals, across), along_direction(self.points, along)];
-        -0.5 * misfit + direction + self.free(squares, STAYS)
+        -0.5 * misfit + direction + self.free(squares)
     }
 
     fn smooth(&self) -> f64 {
@@ -155,7 +152,7 @@ impl Scatter {
     fn smooth_along(&self, turn: f64) -> f64 {
         let lines = self.lines(turn);
         let of_one = |line: &Line| left_of_range(line.told).ln() - 0.5 * line.misfit;
-        lines.iter().map(of_one).sum::<f64>() + self.free(lines.map(|line| line.along), STRAIGHT)
+        lines.iter().map(of_one).sum::<f64>() + self.free(lines.map(|line| line.along))
     }
 
     fn lines(&self, turn: f64) -> [Line; 2] {

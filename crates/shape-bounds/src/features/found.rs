@@ -40,9 +40,9 @@ pub struct FeatureOptions {
 }
 
 impl Default for FeatureOptions {
-    /// Twenty to one.
+    /// Thirty to one: a curve has some tens of runs.
     fn default() -> Self {
-        Self { odds: 20.0 }
+        Self { odds: 30.0 }
     }
 }
 

@@ -11,7 +11,7 @@ use glam::DVec3;
 /// Odds at which a corner that all its faces meet in is taken for another.
 const APART: f64 = 1e-3;
 
-/// Share of the contacts that may be told to be smooth: of those told at odds of twenty to one so many may be wrong.
+/// Share of the contacts that may be told to be smooth: so many may be told wrong.
 const MAY_BE_WRONG: f64 = 0.05;
 
 /// A polyhedron that was found by its corners and faces. An estimate, and no bound.
