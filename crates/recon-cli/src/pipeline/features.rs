@@ -61,16 +61,18 @@ impl FoundFeatures {
         };
         let counts: serde_json::Map<String, Value> =
             self.counts().into_iter().map(|(name, count)| (name.to_owned(), count.into())).collect();
-        json!({
+        let mut figures = json!({
             "odds": self.odds,
             "contacts": counts,
             "corners": found.corners.iter().map(corner).collect::<Vec<_>>(),
             "edges": found.edges.iter().map(edge).collect::<Vec<_>>(),
             "faces": found.faces.iter().map(face).collect::<Vec<_>>(),
-            "polyhedron": self.polyhedron.as_ref().map(|made| json!({
-                "volume_m3": made.volume, "by": if made.by_faces { "faces" } else { "corners" },
-            })),
-        })
+        });
+        if let Some(made) = &self.polyhedron {
+            let by = if made.by_faces { "faces" } else { "corners" };
+            figures["polyhedron"] = json!({ "volume_m3": made.volume, "by": by });
+        }
+        figures
     }
 
     /// How many contacts are on what.
