@@ -24,7 +24,8 @@ const TOLERANCE: f64 = 1e-6;
 const ALONE: f64 = 1e-3;
 
 pub(super) fn text(runs: u64, seed: u64) -> Result<String, Failure> {
-    let mut text = String::from(
+    let mut text = String::from(include_str!("rolled.md"));
+    text.push_str(
         "| body | noise | runs (no motion) | corners: contacts, told right, open | edges | faces | smooth told | corners found | both bounds hold |\n|---|---|---|---|---|---|---|---|---|\n",
     );
     let cube = TouchedBody::cuboid(DVec3::splat(0.03), 0.0);
