@@ -40,6 +40,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
     ),
     ("mode_bank", "mode-bank.md", "banks of modes: error and cost against what is kept"),
     ("no_force", "no-force.md", "three palms without force sensors: random scenes from no guess"),
+    (
+        "nonsmooth",
+        "nonsmooth.md",
+        "corners, edges and faces told from contacts, and bounds of bodies that are not smooth",
+    ),
     ("three_palms_monte_carlo", "three-palms-monte-carlo.md", "three palms against the Cramer-Rao bound"),
     (
         "three_palms_timing",

@@ -27,6 +27,7 @@ mod contact_wedging;
 mod exported_objects;
 mod mode_bank;
 mod no_force;
+mod nonsmooth;
 mod planar_contacts;
 mod planar_estimates;
 mod planar_estimates_friction;
@@ -75,6 +76,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("contact_modes_estimated", || in_words(contact_modes_estimated::main())),
     ("mode_bank", || in_words(mode_bank::main())),
     ("no_force", || in_words(no_force::main())),
+    ("nonsmooth", || in_words(nonsmooth::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_estimates", || in_words(planar_estimates::main())),
     ("planar_estimates_friction", || in_words(planar_estimates_friction::main())),

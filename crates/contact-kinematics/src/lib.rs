@@ -25,8 +25,8 @@ pub use motion_law::MotionLaw;
 pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple};
 pub use stop::{Stopped, is_stopped, unless_stopped};
 pub use support::{
-    CurvatureRadii, Ellipsoid, MinkowskiSum, Monomial, PolynomialSupport, ShapeError, Sphere,
-    SupportFunction, SupportJet, Translated, check_convex, principal_radii,
+    CurvatureRadii, Ellipsoid, MinkowskiSum, Monomial, PolynomialSupport, RoundedPolytope, ShapeError,
+    Sphere, SupportFunction, SupportJet, Translated, check_convex, principal_radii,
 };
 pub use surface::{
     BodyPlace, ContactError, FASTEST_PALM, FASTEST_TURN, MotionPart, PalmSurface, PoseTable, Pressed,

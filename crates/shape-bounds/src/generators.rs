@@ -1,5 +1,6 @@
 //! Seeded inputs of the kinds on which hull algorithms are known to fail.
 
+pub use crate::features::simulated::{Touched, TouchedBody, Touching};
 use crate::random::random_bits;
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;

@@ -29,6 +29,7 @@ mod curvature;
 mod distance;
 mod erosion;
 mod faceted;
+mod features;
 mod fit;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
@@ -56,6 +57,9 @@ pub use curvature::{
 };
 pub use distance::{Nearest, nearest};
 pub use faceted::FacetError;
+pub use features::{
+    Corner, Edge, Face, FeatureKind, FeatureOptions, FeatureRun, Features, FoundPolyhedron, Pieces,
+};
 pub use fit::{
     COMPARED, Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel,
     Refutation, SIGNIFICANCE, ShapeChoice, ShapeFamily, ShapeFit, SkewEllipsoid, Superquadric,

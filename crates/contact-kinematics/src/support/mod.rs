@@ -3,10 +3,12 @@
 mod ellipsoid;
 mod harmonic;
 mod polynomial;
+mod polytope;
 mod sum;
 
 pub use ellipsoid::{Ellipsoid, Sphere};
 pub use polynomial::{Monomial, PolynomialSupport};
+pub use polytope::RoundedPolytope;
 pub use sum::{MinkowskiSum, Translated};
 
 use crate::Direction;
@@ -98,6 +100,28 @@ pub enum ShapeError {
         expected: usize,
         /// As given.
         found: usize,
+    },
+    /// A power of a rounded polytope that is none.
+    #[error("sharpness is {value}; it must lie between 2 and 1e6")]
+    Sharpness {
+        /// As given.
+        value: f64,
+    },
+    /// A polytope with too many corners.
+    #[error("polytope has {found} corners; at most {limit} are taken")]
+    CornerCount {
+        /// How many.
+        found: usize,
+        /// The highest accepted.
+        limit: usize,
+    },
+    /// A polytope that is flat, or does not hold its origin.
+    #[error(
+        "the origin (centre of mass, less the offset) is not inside of the {corners} corners; move them or give more"
+    )]
+    OriginOutside {
+        /// How many corners.
+        corners: usize,
     },
     /// The body is not certified to be smooth and strictly convex.
     #[error(

@@ -31,6 +31,7 @@ fn shapes() -> Vec<(&'static str, Box<dyn SupportFunction + Send + Sync>)> {
         ("translated", Box::new(Translated { body: ellipsoid, offset: DVec3::new(0.1, -0.2, 0.3) })),
         ("general", Box::new(MinkowskiSum(ellipsoid, saddle))),
         ("egg", Box::new(PolynomialSupport::egg(1.0, 0.1, 0.06).unwrap())),
+        ("rounded box", Box::new(RoundedPolytope::cuboid(DVec3::new(0.1, 0.09, 0.08), 0.2, 4.0).unwrap())),
         ("harmonics", Box::new(PolynomialSupport::from_harmonics(&harmonics).unwrap())),
     ]
 }

@@ -121,7 +121,8 @@ impl<S: SupportFunction + ?Sized> Search<'_, S> {
         let mut now = self.trial(start);
         for _ in 0..MOST_STEPS {
             let step = self.newton(&now);
-            if step.along.length() <= step.rounding {
+            // A unit vector tells no finer turn, however flat the body is.
+            if step.along.length() <= step.rounding.max(f64::EPSILON) {
                 return Ok(now);
             }
             now = self.along(&now, step.along);

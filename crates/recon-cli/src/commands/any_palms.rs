@@ -1,7 +1,7 @@
 //! What `recon reconstruct` says of contacts of any palms.
 
 use super::answers::{bounds_and_errors, of_body};
-use crate::pipeline::describe_times;
+use crate::pipeline::{describe_times, feature_lines};
 use recon::object_dynamics::MassProperties;
 use recon::observer::ContactEstimate;
 use recon_io::{EstimateData, brief, brief_to, estimated_mode_spans};
@@ -37,6 +37,7 @@ pub(super) fn describe(data: &EstimateData, figures: &Value) -> String {
     for (name, value) in bounds_and_errors(data.bounds.as_ref(), figures) {
         line(name, value);
     }
+    feature_lines(&figures["features"]).into_iter().for_each(|(name, value)| line(name, value));
     line("next", data.next.clone());
     let spans: Vec<_> = (0..data.log.palms().len())
         .map(|palm| estimated_mode_spans(data.log.times(), &found.modes, found.mode_odds.as_ref(), palm))

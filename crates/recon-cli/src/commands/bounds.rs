@@ -4,8 +4,8 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
     BoundsResult, Noise, PlanarBounds, PlanarRequest, bounds_page, concave_bounds, doubtful_fit,
-    exact_bounds, fit_words, fitted_shape, meshes_as, noisy_bounds, planar_bounds, pose_bounds, sharp_bounds,
-    write_bounds_folder,
+    exact_bounds, feature_lines, fit_words, fitted_shape, meshes_as, noisy_bounds, planar_bounds,
+    pose_bounds, sharp_bounds, write_bounds_folder,
 };
 use crate::progress::Progress;
 use glam::DVec3;
@@ -287,6 +287,9 @@ fn describe(made: &BoundsResult, what: &str, about: &Value) -> String {
     }
     if let Some(volume) = about["concave"]["alpha_volume_m3"].as_f64() {
         let _ = writeln!(text, "  alpha shape, about     {} m^3", brief(volume));
+    }
+    for (name, value) in feature_lines(&about["features"]) {
+        let _ = writeln!(text, "  {name:<22} {value}");
     }
     if about["fit"].is_object() {
         text += &fit_words(&about["fit"]);

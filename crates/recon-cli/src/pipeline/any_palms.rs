@@ -177,6 +177,7 @@ pub(crate) fn estimate_any_palms(
         estimate,
         curves,
         truth,
+        marks: bounds.as_ref().and_then(BoundsResult::marks),
         bounds: bounds.as_ref().map(|bounds| bounds.drawn.clone()),
         warnings,
     };

@@ -1,3 +1,4 @@
+use super::features::FoundFeatures;
 use crate::error::CliError;
 use recon::shape_bounds::{ContactSample, Hull, Intersection, Polyhedron, ShapeBounds, SolidHull};
 use recon_io::{Bound, Bounds, MeshError, TriangleMesh, stands_out};
@@ -24,6 +25,8 @@ pub(crate) struct BoundsResult {
     pub(crate) upper: Option<TriangleMesh>,
     /// Further surfaces: file, comment, mesh.
     pub(crate) others: Vec<(&'static str, &'static str, TriangleMesh)>,
+    /// Corners, edges and faces, where noise is known.
+    pub(crate) features: Option<FoundFeatures>,
     /// How far the lower bound stands out of the upper one, m: for exact contacts of a convex body at most rounding,
     /// however they were moved.
     pub(crate) contradiction: f64,
@@ -89,7 +92,7 @@ fn made(whole: ShapeBounds, contacts: &[ContactSample]) -> Result<BoundsResult, 
         largest_gap: whole.largest_gap().map(|gap| gap.distance),
     };
     // Half-spaces were moved out to where no contact lies beyond them.
-    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings })
+    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), features: None, contradiction: 0.0, warnings })
 }
 
 /// What to say where there is no upper bound.

@@ -5,12 +5,16 @@ use super::plane::PlanarBounds;
 use super::views::three_views;
 use glam::DVec3;
 use recon_io::EvidenceValue::{Count, Number, Text};
-use recon_io::{Evidence, EvidenceValue, FigurePanel, FiguresPage, Level, Verdict, brief, brief_to};
+use recon_io::{
+    Evidence, EvidenceValue, FigurePanel, FiguresPage, Level, ShapeMarks, Verdict, brief, brief_to,
+};
 use serde_json::Value;
 
 const KICKER: &str = "What touch guarantees about a shape";
 const IN_SPACE: &str =
     "Bounds as they are seen along the axes, and the contacts. Outlines are those of the whole bodies.";
+const MARKED: &str =
+    " Below, contacts by what they are on; other ones are smooth, or the odds leave them open.";
 const IN_PLANE: &str = "Outlines of the bounds with the contacts, and how far they are apart.";
 
 /// The page of bounds in space, from `what` at these points.
@@ -28,16 +32,19 @@ pub(crate) fn bounds_page(
     let mut bodies = vec![("lower", &lower[..]), ("upper", &upper[..])];
     bodies.extend((!fitted.is_empty()).then_some(("fit", fitted)));
     let dots = [("contacts", points), ("surface", smooth)];
+    let marks = made.marks();
+    let caption = if marks.is_some() { MARKED } else { "" };
+    let ShapeMarks { facts: more, panels: marked } = marks.unwrap_or_default();
     let sizes = [Some(made.drawn.lower.volume), made.drawn.upper.as_ref().map(|upper| upper.volume)];
     FiguresPage {
         kicker: KICKER,
         title: title.to_owned(),
         verdict: verdict(about, what, sizes[1].is_some(), made.contradicts()),
         warnings: made.warnings.clone(),
-        facts: facts(sizes, "m³", made.drawn.largest_gap, about),
+        facts: facts(sizes, "m³", made.drawn.largest_gap, about).into_iter().chain(more).collect(),
         heading: "Bounds on the shape",
-        panels: three_views(&bodies, &dots),
-        caption: IN_SPACE.to_owned(),
+        panels: three_views(&bodies, &dots).into_iter().chain(marked).collect(),
+        caption: format!("{IN_SPACE}{caption}"),
         evidence: evidence(about, made.contradiction),
     }
 }

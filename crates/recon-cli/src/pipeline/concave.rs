@@ -63,5 +63,8 @@ pub(crate) fn concave_bounds(
         ),
     ];
     let warnings = warnings.into_iter().chain(unbounded(&bounds)).collect();
-    Ok((BoundsResult { drawn, lower, upper, others, contradiction: 0.0, warnings }.compared(), about))
+    Ok((
+        BoundsResult { drawn, lower, upper, others, features: None, contradiction: 0.0, warnings }.compared(),
+        about,
+    ))
 }

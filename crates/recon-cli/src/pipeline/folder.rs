@@ -1,4 +1,5 @@
 use super::bounds::{BoundsResult, LOWER, UPPER};
+use super::features::MARKS;
 use super::{AnyPalms, ContactRun, Estimated};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
@@ -17,6 +18,9 @@ pub(crate) type Extra = (String, Vec<u8>);
 pub(crate) fn estimate_figures(made: &AnyPalms) -> Value {
     let mut figures = estimate_summary(&made.data);
     state_contradiction(&mut figures, made.bounds.as_ref().map_or(0.0, |bounds| bounds.contradiction));
+    if let Some(features) = made.bounds.as_ref().and_then(BoundsResult::not_smooth) {
+        figures["features"] = features.figures();
+    }
     figures
 }
 
@@ -114,6 +118,7 @@ pub(crate) fn write_bounds_folder(
         let mut folder = Folder(target.begin()?);
         folder.write_mesh(LOWER, "inside the object; metres", made.lower.as_ref())?;
         folder.write_mesh(UPPER, "around the object; metres", made.upper.as_ref())?;
+        folder.write_marks(made)?;
         for (name, comment, mesh) in &made.others {
             folder.write_mesh(name, comment, Some(mesh))?;
         }
@@ -149,7 +154,18 @@ impl Folder {
     fn write_bounds(&mut self, bounds: Option<&BoundsResult>) -> Result<(), CliError> {
         let (lower, upper) = bounds.map_or((None, None), |b| (b.lower.as_ref(), b.upper.as_ref()));
         self.write_mesh(LOWER, "inside the object; metres, body axes", lower)?;
-        self.write_mesh(UPPER, "around the object; metres, body axes", upper)
+        self.write_mesh(UPPER, "around the object; metres, body axes", upper)?;
+        let Some(bounds) = bounds else { return Ok(()) };
+        for (name, comment, mesh) in &bounds.others {
+            self.write_mesh(name, comment, Some(mesh))?;
+        }
+        self.write_marks(bounds)
+    }
+
+    /// What each contact is on, where something is not smooth.
+    fn write_marks(&mut self, bounds: &BoundsResult) -> Result<(), CliError> {
+        let Some(features) = bounds.not_smooth() else { return Ok(()) };
+        self.write(MARKS, |to| to.write_all(&features.table()))
     }
 
     fn write_mesh(&mut self, name: &str, comment: &str, mesh: Option<&TriangleMesh>) -> Result<(), CliError> {

@@ -15,6 +15,7 @@ mod estimate;
 mod evidence;
 mod exploration;
 mod export;
+mod features;
 mod fitted;
 mod folder;
 mod meshes;
@@ -48,6 +49,7 @@ pub(crate) use estimate::{Asked, Estimated, estimated, estimated_planes};
 pub(crate) use exploration::{
     Explored, InPlane, InSpace, Settings, explored, goal_of, next_touch, rolled, until_of,
 };
+pub(crate) use features::feature_lines;
 pub(crate) use fitted::{fit_words, fitted_shape};
 pub(crate) use folder::{Extra, write_bounds_folder, write_contact_folder, write_files_folder};
 pub(crate) use meshes::meshes_as;

@@ -2,14 +2,15 @@
 
 use super::bounds::{BoundsResult, drawn_surfaces, meshes, own};
 use super::doubts::Doubts;
+use super::features::FoundFeatures;
 use crate::error::CliError;
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::CurvatureRadii;
 use recon::observer::{PoseCovariance, PoseErrors};
 use recon::shape_bounds::{
-    BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, NoisyContact,
-    Outlier, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds, correlated_noise, estimate_noise,
-    independence_is_tested, with_noise_as_found, without_outliers,
+    BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, FeatureOptions,
+    Features, NoisyContact, Outlier, Pieces, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds,
+    correlated_noise, estimate_noise, independence_is_tested, with_noise_as_found, without_outliers,
 };
 use recon_io::{Bound, Bounds, brief_to};
 use serde_json::{Value, json};
@@ -34,13 +35,14 @@ pub(crate) fn noisy_bounds(
     noise: Noise,
     confidence: f64,
 ) -> Result<(BoundsResult, Value), CliError> {
-    let Cleaned { kept, warnings, about, correlated } = cleaned(curves, noise, confidence)?;
+    let Cleaned { kept, warnings, mut about, correlated, features } = cleaned(curves, noise, confidence)?;
     let bounds = if correlated {
         CertainBounds::from_correlated_curves(&kept, confidence)?
     } else {
-        CertainBounds::from_noisy_curves(&kept, confidence)?
+        CertainBounds::from_features(&kept, &FeatureOptions::default(), confidence)?
     };
-    Ok((finished(&bounds, warnings)?, about))
+    about["features"] = features.figures();
+    Ok((finished(&bounds, warnings)?.with_features(features)?, about))
 }
 
 /// Bounds of a convex body with radii of curvature within `radii`, from exact contacts or from noisy ones at a confidence.
@@ -51,7 +53,7 @@ pub(crate) fn sharp_bounds(
 ) -> Result<(BoundsResult, Value), CliError> {
     let (bounds, warnings, mut about) = match noise {
         Some((noise, confidence)) => {
-            let Cleaned { kept, warnings, about, correlated } = cleaned(curves, noise, confidence)?;
+            let Cleaned { kept, warnings, about, correlated, .. } = cleaned(curves, noise, confidence)?;
             // Each in a curve of its own: nothing is gained by means then.
             let single = || kept.iter().flatten().map(|c| vec![*c]).collect::<Vec<_>>();
             let kept = if correlated { single() } else { kept };
@@ -79,7 +81,16 @@ pub(crate) fn sharp_bounds(
         largest_gap: polytopes.largest_gap().map(|gap| gap.distance),
     };
     Ok((
-        BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings }.compared(),
+        BoundsResult {
+            drawn,
+            lower,
+            upper,
+            others: Vec::new(),
+            features: None,
+            contradiction: 0.0,
+            warnings,
+        }
+        .compared(),
         about,
     ))
 }
@@ -110,10 +121,14 @@ pub(super) fn bounds_of_poses(
         let pose = PoseNoise { rotation, translation, cross };
         NoisyContact { contact: of.contact, noise: ContactNoise { point: of.point, normal: of.normal, pose } }
     };
-    let curves: Vec<Vec<_>> = curves.iter().map(|curve| curve.iter().map(noisy).collect()).collect();
+    let noisy_curves: Vec<Vec<_>> = curves.iter().map(|curve| curve.iter().map(noisy).collect()).collect();
     let left = 1.0 - (1.0 - SHARE_OF_POSES) * alpha;
-    let bounds = CertainBounds::from_curves_of_poses(&curves, left, deviations)?;
-    finished(&bounds, Vec::new()).map(Some)
+    let options = FeatureOptions::default();
+    let features = Features::find(&noisy_curves, &options)?;
+    let bounds = CertainBounds::from_features_of_poses(&noisy_curves, &options, left, deviations)?;
+    let numbers = curves.iter().map(|curve| curve.iter().map(|of| of.sample + 1).collect()).collect();
+    let features = FoundFeatures::new(features, &noisy_curves, numbers, options.odds);
+    finished(&bounds, Vec::new())?.with_features(features).map(Some)
 }
 
 /// Covariance of a contact whose palm feels where on its surface it is touched, with this variance in each tangent direction.
@@ -156,7 +171,8 @@ fn finished(bounds: &CertainBounds, mut warnings: Vec<String>) -> Result<BoundsR
                 .to_owned(),
         );
     }
-    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), contradiction: 0.0, warnings }.compared())
+    Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), features: None, contradiction: 0.0, warnings }
+        .compared())
 }
 
 /// Contacts with their noise, without outliers.
@@ -166,6 +182,8 @@ pub(super) struct Cleaned {
     about: Value,
     /// Whether noise is alike from one contact to the next.
     correlated: bool,
+    /// What all contacts show of corners, edges and faces.
+    features: FoundFeatures,
 }
 
 pub(super) fn cleaned(
@@ -181,16 +199,30 @@ pub(super) fn cleaned(
         }
         Noise::Estimated => ("estimated", estimate_noise(curves, confidence)?),
     };
-    let alike = (correlated_noise(&noisy), independence_is_tested(&noisy));
-    let (noisy, levels) = with_noise_as_found(&noisy);
+    // Tests that take neighbours to lie on a smooth curve see pieces that do.
+    let (features, pieces) = features_and_pieces(&noisy)?;
+    let alike = (correlated_noise(&pieces.curves), independence_is_tested(&pieces.curves));
+    let (found, levels) = with_noise_as_found(&pieces.curves);
+    let levels = levels.into_iter().map(|doubt| pieces.doubt(doubt)).collect();
     let doubts = Doubts::new(levels, alike, noise)?;
-    let (kept, outliers) = without_outliers(&noisy, confidence)?;
+    let (kept, outliers) = without_outliers(&found, confidence)?;
+    let (noisy, kept) = (pieces.joined(found), pieces.joined(kept));
+    let outliers: Vec<Outlier> = outliers.into_iter().map(|outlier| pieces.outlier(outlier)).collect();
     let levels: Vec<Value> = noisy.iter().map(|curve| largest(curve.iter().map(level))).collect();
     let mut about =
         json!({ "confidence": confidence, "noise": { how: levels }, "outliers": listed(&outliers) });
     doubts.add_to(&mut about);
     let warnings = doubts.warnings().chain(left_out(&outliers)).chain(doubts.untested()).collect();
-    Ok(Cleaned { kept, warnings, about, correlated: doubts.correlated })
+    Ok(Cleaned { kept, warnings, about, correlated: doubts.correlated, features })
+}
+
+/// What curves show of corners, edges and faces, and the pieces in between.
+fn features_and_pieces(curves: &[Vec<NoisyContact>]) -> Result<(FoundFeatures, Pieces), CliError> {
+    let options = FeatureOptions::default();
+    let found = Features::find(curves, &options)?;
+    let pieces = Pieces::of(curves, &found);
+    let numbers = curves.iter().map(|curve| (1..=curve.len()).collect()).collect();
+    Ok((FoundFeatures::new(found, curves, numbers, options.odds), pieces))
 }
 
 /// Outliers, counted from 1.
@@ -298,8 +330,16 @@ pub(crate) fn pose_bounds(
         largest_gap: made.largest_gap().map(|gap| gap.distance),
     };
     Ok((
-        BoundsResult { drawn, lower, upper: Some(upper), others: Vec::new(), contradiction: 0.0, warnings }
-            .compared(),
+        BoundsResult {
+            drawn,
+            lower,
+            upper: Some(upper),
+            others: Vec::new(),
+            features: None,
+            contradiction: 0.0,
+            warnings,
+        }
+        .compared(),
         about,
     ))
 }

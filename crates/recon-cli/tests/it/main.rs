@@ -23,6 +23,7 @@ mod in_memory;
 #[cfg(unix)]
 mod interrupted;
 mod margins;
+mod not_smooth;
 mod nothing_lost;
 mod planar;
 mod pushes;

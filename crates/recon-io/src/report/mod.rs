@@ -16,8 +16,8 @@ mod tests;
 
 pub use batch::{BatchPage, LogCard, write_batch_report};
 pub use contacts::{
-    EstimateData, ModeSpan, PlaneEstimateData, doubtful_spans, estimated_mode_spans, mode_spans, mode_times,
-    planar_mode_spans, write_contact_report, write_estimate_report, write_planar_contact_report,
+    EstimateData, ModeSpan, PlaneEstimateData, ShapeMarks, doubtful_spans, estimated_mode_spans, mode_spans,
+    mode_times, planar_mode_spans, write_contact_report, write_estimate_report, write_planar_contact_report,
     write_plane_estimate_report,
 };
 pub use data::{

@@ -165,6 +165,15 @@ fn shape(table: ShapeTable) -> Result<(Shape, DVec3), Kind> {
             let radius = Kind::not_negative("simulation.shape.radius", radius)?;
             (Shape::EllipsoidPlusBall { semi_axes: axes(semi_axes)?, radius }, offset)
         }
+        ShapeTable::Polytope { corners, radius, sharpness, offset } => {
+            let corner = |(i, at): (usize, [f64; 3])| {
+                vector(&format!("simulation.shape.corners[{i}]"), at, Kind::finite)
+            };
+            let corners = corners.into_iter().enumerate().map(corner).collect::<Result<_, _>>()?;
+            let radius = Kind::positive("simulation.shape.radius", radius)?;
+            let sharpness = Kind::positive("simulation.shape.sharpness", sharpness)?;
+            (Shape::Polytope { corners, radius, sharpness }, offset)
+        }
         ShapeTable::Polynomial { terms, offset } => {
             for (i, term) in terms.iter().enumerate() {
                 Kind::finite(&format!("simulation.shape.terms[{i}].coefficient"), term.coefficient)?;

@@ -91,6 +91,13 @@ pub(super) enum ShapeTable {
         #[serde(default)]
         offset: [f64; 3],
     },
+    Polytope {
+        corners: Vec<[f64; 3]>,
+        radius: f64,
+        sharpness: f64,
+        #[serde(default)]
+        offset: [f64; 3],
+    },
     Polynomial {
         terms: Vec<TermTable>,
         #[serde(default)]

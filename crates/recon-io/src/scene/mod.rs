@@ -49,8 +49,9 @@ use std::path::Path;
 /// orientation = [1.0, 0.0, 0.0, 0.0]        # w first, body to world; the palms determine the position
 /// angular_velocity = [0.0, 0.3, 0.3]        # world axes
 /// seed = 1                                  # of the sensor noise
-/// ## kind: sphere (radius), ellipsoid (semi_axes), ellipsoid-plus-ball (semi_axes, radius), or polynomial (terms, each
-/// ## with a coefficient in m and the powers of n_x, n_y, n_z); offset: of the shape from the centre of mass.
+/// ## kind: sphere (radius), ellipsoid (semi_axes), ellipsoid-plus-ball (semi_axes, radius), polytope (corners, radius of
+/// ## the rounding, sharpness of the sides), or polynomial (terms, each with a coefficient in m and the powers of n_x,
+/// ## n_y, n_z); offset: of the shape from the centre of mass.
 /// shape = { kind = "ellipsoid", semi_axes = [2.5, 2.0, 1.0], offset = [0.0, 0.0, 0.0] }
 /// ## azimuth: the horizontal direction in which a palm rises; slope: against the horizontal. In rad without `_deg`.
 /// palms = [
@@ -173,6 +174,15 @@ pub enum Shape {
         semi_axes: DVec3,
         /// Radius of the ball in m.
         radius: f64,
+    },
+    /// Polytope with rounded edges and slightly bulging sides: [`recon::contact_kinematics::RoundedPolytope`].
+    Polytope {
+        /// Corners without the rounding, m.
+        corners: Vec<DVec3>,
+        /// Radius of the rounding, m.
+        radius: f64,
+        /// The power by which sides bulge: a contact crosses one while the normal turns by about its inverse, rad.
+        sharpness: f64,
     },
     /// Support function `sum c n_x^i n_y^j n_z^k` on unit normals.
     Polynomial {

@@ -1,6 +1,7 @@
 use super::{BoxedShape, Shape, Simulation};
 use recon::contact_kinematics::{
-    Ellipsoid, MinkowskiSum, Monomial, PolynomialSupport, ShapeError, Sphere, SupportFunction, Translated,
+    Ellipsoid, MinkowskiSum, Monomial, PolynomialSupport, RoundedPolytope, ShapeError, Sphere,
+    SupportFunction, Translated,
 };
 
 impl Simulation {
@@ -21,6 +22,9 @@ impl Simulation {
             }
             Shape::EllipsoidPlusBall { semi_axes, radius } => {
                 at(MinkowskiSum(Ellipsoid::new(*semi_axes)?, Sphere::new(*radius)?), self)
+            }
+            Shape::Polytope { corners, radius, sharpness } => {
+                at(RoundedPolytope::new(corners.clone(), *radius, *sharpness)?, self)
             }
             Shape::Polynomial { terms } => {
                 let term = |&(coefficient, powers): &(f64, [u8; 3])| Monomial {

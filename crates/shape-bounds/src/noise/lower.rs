@@ -56,16 +56,23 @@ fn shrunk(list: &[Window], quantile: f64, poses: f64) -> Option<Vec<DVec3>> {
 
 fn eroded(list: &[Window], quantile: f64, poses: f64) -> Vec<DVec3> {
     let points: Vec<DVec3> = list.iter().map(|w| w.point).collect();
-    eroded_hull(&points, |corner, u| {
-        let w = &list[corner];
-        let deviation = |m: DMat3| u.dot(m * u).max(0.0).sqrt();
-        quantile * deviation(w.covariance)
-            + poses * deviation(w.pose_of_point)
-            + w.pose_second_order(poses, 0.0)
-    })
+    eroded_hull(&points, |corner, u| list[corner].error_along(u, quantile, poses))
+}
+
+/// The same of means over corners.
+pub(super) fn points_of_corners(corners: &[Window], alpha: f64, poses: f64) -> Vec<DVec3> {
+    eroded(corners, quantile::length3(alpha / corners.len().max(1) as f64), poses)
 }
 
 impl Window {
+    /// How far the mean point may be off along `u`.
+    fn error_along(&self, u: DVec3, quantile: f64, poses: f64) -> f64 {
+        let deviation = |m: DMat3| u.dot(m * u).max(0.0).sqrt();
+        quantile * deviation(self.covariance)
+            + poses * deviation(self.pose_of_point)
+            + self.pose_second_order(poses, 0.0)
+    }
+
     /// How far the mean point may be off in any direction.
     fn largest_error(&self, quantile: f64, poses: f64) -> f64 {
         quantile * bound(self.covariance).sqrt()

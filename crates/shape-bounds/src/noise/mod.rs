@@ -1,6 +1,7 @@
 //! Bounds that hold at a stated confidence when contacts are measured with noise.
 
 pub(crate) mod assumptions;
+mod chosen;
 pub(crate) mod consistency;
 mod curvature;
 mod levels;
@@ -27,11 +28,16 @@ pub use pose::PoseNoise;
 pub(crate) use traced::FEWEST;
 
 use crate::bounds::{BoundsError, Gap, ShapeBounds};
+use crate::features::FeatureOptions;
 use crate::halfspaces::{Intersection, Polyhedron};
 use crate::hull::Hull;
-use lower::{certain_points, nearly_exact};
+use chosen::ChosenWindows;
+use lower::{certain_points, nearly_exact, points_of_corners};
 use upper::certain_half_spaces;
 use windows::{LONGEST, windows};
+
+/// Share of the odds of a failure that means over all contacts of a corner or face have: they are few, and the others hardly lose.
+const SHARE_OF_CHOSEN: f64 = 0.1;
 
 impl ShapeBounds {
     /// Bounds between which a convex body lies with at least the stated `confidence` (say 0.95), for both bounds and all
@@ -96,15 +102,59 @@ impl CertainBounds {
         confidence: f64,
         poses: f64,
     ) -> Result<Self, NoiseError> {
+        Self::from_means(curves, None, confidence, poses)
+    }
+
+    /// As [`Self::from_noisy_curves`], with means over all contacts of a corner or face, which carry still less noise. Every other
+    /// contact says which those are, and the mean is over the others: the bounds hold whatever is found.
+    ///
+    /// # Errors
+    /// As [`Self::from_noisy_curves`], and for odds that are none.
+    pub fn from_features(
+        curves: &[Vec<NoisyContact>],
+        options: &FeatureOptions,
+        confidence: f64,
+    ) -> Result<Self, NoiseError> {
+        NoiseError::check_confidence(confidence)?;
+        let alpha = 0.5 * (1.0 - confidence);
+        let poses = quantile::length6(alpha / curves.iter().map(Vec::len).sum::<usize>().max(1) as f64);
+        Self::from_features_of_poses(curves, options, 1.0 - alpha, poses)
+    }
+
+    /// [`Self::from_curves_of_poses`] with means over all contacts of a corner or face, as in [`Self::from_features`].
+    ///
+    /// # Errors
+    /// As [`Self::from_features`].
+    pub fn from_features_of_poses(
+        curves: &[Vec<NoisyContact>],
+        options: &FeatureOptions,
+        confidence: f64,
+        poses: f64,
+    ) -> Result<Self, NoiseError> {
+        NoiseError::check_confidence(confidence)?;
+        NoiseError::check_contacts(curves)?;
+        Self::from_means(curves, Some(&ChosenWindows::of(curves, options)?), confidence, poses)
+    }
+
+    fn from_means(
+        curves: &[Vec<NoisyContact>],
+        chosen: Option<&ChosenWindows>,
+        confidence: f64,
+        poses: f64,
+    ) -> Result<Self, NoiseError> {
         NoiseError::check_confidence(confidence)?;
         NoiseError::check_contacts(curves)?;
         let contacts: Vec<_> = curves.iter().flatten().map(|c| c.contact).collect();
         ShapeBounds::check(&contacts)?;
-        let alpha = (1.0 - confidence) / 2.0;
+        let all = (1.0 - confidence) / 2.0;
+        // The same whether any are found: the odds must not depend on it.
+        let of_chosen = if chosen.is_some() { SHARE_OF_CHOSEN * all } else { 0.0 };
+        let alpha = all - of_chosen;
+        let (corners, faces) = chosen.map_or((&[][..], &[][..]), |found| (&found.corners, &found.faces));
         let singles = windows(curves, 1);
         let exact = singles.first().is_some_and(|list| nearly_exact(list, alpha, poses));
         let lists = if exact { singles } else { windows(curves, LONGEST) };
-        let upper = match certain_half_spaces(&lists, alpha, poses) {
+        let upper = match certain_half_spaces(&lists, faces, [alpha, of_chosen], poses) {
             Ok(half_spaces) => match Intersection::of(&half_spaces).map_err(BoundsError::from)? {
                 Intersection::Bounded(upper) => Some(upper),
                 Intersection::Unbounded(_) => None,
@@ -112,7 +162,8 @@ impl CertainBounds {
             Err(NoiseError::NoUpperBound) => None,
             Err(error) => return Err(error),
         };
-        let points = certain_points(&lists, alpha, poses);
+        let mut points = certain_points(&lists, alpha, poses);
+        points.extend(points_of_corners(corners, of_chosen, poses));
         let lower =
             if points.is_empty() { None } else { Some(Hull::of(&points).map_err(BoundsError::from)?) };
         Ok(Self { lower, upper })

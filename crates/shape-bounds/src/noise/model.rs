@@ -61,6 +61,9 @@ pub enum NoiseError {
     /// A confidence that is none.
     #[error("confidence {0}: it must lie between 0.5 and 1, both excluded")]
     Confidence(f64),
+    /// Odds that are none.
+    #[error("odds of {0} to 1: they must be above 1 and finite")]
+    Odds(f64),
     /// A noise level that is negative, not finite or not a covariance.
     #[error("curve {curve}, contact {index}: noise `{name}` has the entry {value}, which is not possible")]
     Noise {
@@ -128,7 +131,7 @@ impl NoiseError {
     }
 
     /// Refuses noise levels that are none and points that are not finite.
-    pub(super) fn check_contacts(curves: &[Vec<NoisyContact>]) -> Result<(), Self> {
+    pub(crate) fn check_contacts(curves: &[Vec<NoisyContact>]) -> Result<(), Self> {
         for (curve, contacts) in curves.iter().enumerate() {
             for (index, NoisyContact { contact, noise }) in contacts.iter().enumerate() {
                 if let Some((name, value)) = noise.defect() {

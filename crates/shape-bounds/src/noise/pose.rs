@@ -51,7 +51,7 @@ impl PoseNoise {
     }
 
     /// Covariance of the displacement of `x`.
-    pub(super) fn at(&self, x: DVec3) -> DMat3 {
+    pub(crate) fn at(&self, x: DVec3) -> DMat3 {
         let arm = cross_matrix(x);
         let cross = arm * self.cross;
         arm * self.rotation * arm.transpose() - cross - cross.transpose() + self.translation

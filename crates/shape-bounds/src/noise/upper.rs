@@ -13,7 +13,8 @@ const TRIES: usize = 24;
 /// Rounds of computing how far errors of normals can act from the bound itself; the third gains less than a hundredth.
 const ROUNDS: usize = 3;
 
-/// Quantiles for all windows together.
+/// Quantiles for a window, so that margins hold for all together.
+#[derive(Clone, Copy)]
 struct Quantiles {
     /// One-sided, of a standard normal.
     normal: f64,
@@ -23,7 +24,7 @@ struct Quantiles {
     poses: f64,
 }
 
-/// Half-spaces that all contain the body, except with probability `alpha`.
+/// Half-spaces that all contain the body, except with a probability of both parts of `alpha` together.
 ///
 /// For a contact measured as `x^`, `n^` where the truth is `x`, `n`, every point `y` of the body has
 /// `n^.(y - x^) <= (n^ - n).(y - x) - n^.(x^ - x)`: an error of the offset, and one of the normal that acts over the
@@ -31,25 +32,32 @@ struct Quantiles {
 ///
 /// `poses` is the number of deviations that the poses are off by at most: an error of the pose moves every `y` along `n^` by as
 /// much as a point of the body that stands there.
+///
+/// Means over `faces` have the second part of the odds.
 pub(super) fn certain_half_spaces(
     lists: &[Vec<Window>],
-    alpha: f64,
+    faces: &[Window],
+    alpha: [f64; 2],
     poses: f64,
 ) -> Result<Vec<HalfSpace>, NoiseError> {
-    let windows: Vec<Window> = lists.iter().flatten().copied().collect();
-    let each = alpha / (2 * windows.len().max(1)) as f64;
-    let quantiles = Quantiles { normal: quantile::normal(each), length: quantile::length3(each), poses };
+    let of = |each: f64| Quantiles { normal: quantile::normal(each), length: quantile::length3(each), poses };
+    let count: usize = lists.iter().map(Vec::len).sum();
+    let [all, few] = [(alpha[0], count), (alpha[1], faces.len())]
+        .map(|(alpha, count)| of(alpha / (2 * count.max(1)) as f64));
+    let chosen = faces.iter().map(|face| (*face, few));
+    let windows: Vec<(Window, Quantiles)> =
+        lists.iter().flatten().map(|window| (*window, all)).chain(chosen).collect();
 
-    let centre = windows.iter().map(|w| w.point).sum::<DVec3>() / windows.len().max(1) as f64;
-    let size = windows.iter().map(|w| w.point.distance(centre)).fold(0.0, f64::max);
-    let (mut half_spaces, mut region) = prove_region(&windows, &quantiles, centre, size)?;
+    let centre = windows.iter().map(|(w, _)| w.point).sum::<DVec3>() / windows.len().max(1) as f64;
+    let size = windows.iter().map(|(w, _)| w.point.distance(centre)).fold(0.0, f64::max);
+    let (mut half_spaces, mut region) = prove_region(&windows, centre, size)?;
     for _ in 0..ROUNDS {
         let mut caps = region.caps();
         half_spaces = windows
             .iter()
-            .map(|w| {
+            .map(|(w, quantiles)| {
                 let plane = HalfSpace { point: w.point, normal: w.normal, margin: w.offset / w.shrink };
-                w.inflated(&quantiles, caps.reach(&plane, w.point))
+                w.inflated(quantiles, caps.reach(&plane, w.point))
             })
             .collect();
         match Intersection::of(&half_spaces) {
@@ -65,15 +73,16 @@ pub(super) fn certain_half_spaces(
 /// The half-spaces are inflated for the case that the body lies in a ball. If their intersection is strictly inside of
 /// that ball, the part of the body in the ball does not reach the ball's surface; a body in one piece is then all in it.
 fn prove_region(
-    windows: &[Window],
-    quantiles: &Quantiles,
+    windows: &[(Window, Quantiles)],
     centre: DVec3,
     size: f64,
 ) -> Result<(Vec<HalfSpace>, Polyhedron), NoiseError> {
     let mut radius = 1.5 * size;
     for _ in 0..TRIES {
-        let half_spaces: Vec<HalfSpace> =
-            windows.iter().map(|w| w.inflated(quantiles, radius + w.point.distance(centre))).collect();
+        let half_spaces: Vec<HalfSpace> = windows
+            .iter()
+            .map(|(w, quantiles)| w.inflated(quantiles, radius + w.point.distance(centre)))
+            .collect();
         match Intersection::of(&half_spaces) {
             Ok(Intersection::Bounded(region)) => {
                 if region.vertices().iter().all(|v| v.distance(centre) < radius) {

@@ -65,8 +65,11 @@ pub(super) fn windows(curves: &[Vec<NoisyContact>], longest: usize) -> Vec<Vec<W
 }
 
 impl Window {
-    /// The mean of `run`, which begins at contact `first`; `None` if its normals cancel.
-    fn mean(first: usize, run: &[NoisyContact]) -> Option<Self> {
+    /// The mean of `run`, which begins at contact `first`; `None` if there are none or their normals cancel.
+    pub(super) fn mean(first: usize, run: &[NoisyContact]) -> Option<Self> {
+        if run.is_empty() {
+            return None;
+        }
         let weight = 1.0 / run.len() as f64;
         let mean = |of: &dyn Fn(&NoisyContact) -> f64| run.iter().map(of).sum::<f64>() * weight;
         let point = run.iter().map(|c| c.contact.point).sum::<DVec3>() * weight;

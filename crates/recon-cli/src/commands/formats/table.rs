@@ -29,7 +29,7 @@ const TRUTH: Column = may(
     "truth, to compare with alone: centre of mass, body to world, velocities in world axes",
 );
 
-pub(super) const FORMATS: [Format; 17] = [
+pub(super) const FORMATS: [Format; 18] = [
     Format {
         name: "log",
         about: "sensor log, version 1: three flat palms through the origin. t1 of a palm is horizontal, t2 points up it, n towards the object, t1 = t2 x n",
@@ -236,6 +236,19 @@ pub(super) const FORMATS: [Format; 17] = [
             needed("t", "s", "time"),
             needed("x, y, z", "m", "point"),
             needed("nx, ny, nz", "1", "outward unit normal"),
+        ],
+    },
+    Format {
+        name: "contact-marks",
+        about: "contact_marks.csv: what each contact that bounds the object is on, where it is not smooth; recon bounds reads it",
+        columns: &[
+            needed("curve", "-", "number of the curve or palm, from 1"),
+            needed("contact", "-", "number of the contact in its curve, or of the log's sample, from 1"),
+            needed("x, y, z", "m", "point"),
+            needed("nx, ny, nz", "1", "outward unit normal"),
+            needed("kind", "-", "0 open, 1 smooth, 2 corner, 3 edge, 4 face"),
+            needed("feature", "-", "which corner, edge or face of the summary, from 1; 0 for none"),
+            needed("log_odds", "-", "natural logarithm of the odds for its kind against all others"),
         ],
     },
     Format {

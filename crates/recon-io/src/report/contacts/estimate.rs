@@ -39,12 +39,23 @@ pub struct EstimateData {
     pub truth: Option<Vec<MotionState>>,
     /// Bounds on the shape, in body axes.
     pub bounds: Option<Bounds>,
+    /// Corners, edges and faces; none where the object is smooth as far as it was touched.
+    pub marks: Option<ShapeMarks>,
     /// What the numbers rest on.
     pub evidence: Vec<Evidence>,
     /// What the reader must know, in plain words.
     pub warnings: Vec<String>,
     /// What to do next, in plain words.
     pub next: String,
+}
+
+/// What the page shows of a body that is not smooth.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ShapeMarks {
+    /// Key figures: name, value, unit.
+    pub facts: Vec<(&'static str, String, &'static str)>,
+    /// Views of the contacts, marked by what they are on.
+    pub panels: Vec<FigurePanel>,
 }
 
 impl EstimateData {
@@ -163,13 +174,14 @@ impl EstimateData {
             shaded: doubtful_spans(self.log.times(), &self.estimate.relied_on),
             ..FigurePanel::default()
         };
-        vec![
+        let motion = [
             panel("Centre of mass", "m", curves(|s| s.p_WCm, 0)),
             panel("Velocity", "m/s", curves(|s| s.v_WCm, 1)),
             panel("Angular velocity", "rad/s", curves(|s| s.w_WO, 2)),
             panel("Turn since the start", "degrees", vec![self.turn(&kept)]),
             panel("Contact forces", "N", self.forces(&kept)),
-        ]
+        ];
+        motion.into_iter().chain(self.marks.iter().flat_map(|marks| marks.panels.clone())).collect()
     }
 
     /// Size of the force of each palm; no number where it was not measured.

@@ -55,6 +55,7 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
     let mut facts = EstimatePage::common_facts(data.log.duration(), &found.relied_on);
     facts.extend(of_body(&data.evidence));
     facts.extend(data.bounds.iter().flat_map(of_bounds));
+    facts.extend(data.marks.iter().flat_map(|marks| marks.facts.clone()));
     let object = if found.relied_on.contains(&true) { OBJECT } else { NO_OBJECT };
     let page = EstimatePage {
         title: &data.title,

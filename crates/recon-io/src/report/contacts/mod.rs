@@ -15,7 +15,7 @@ mod view;
 #[cfg(test)]
 mod tests;
 
-pub use estimate::EstimateData;
+pub use estimate::{EstimateData, ShapeMarks};
 pub use estimate_page::{doubtful_spans, write_estimate_report};
 pub use page::{write_contact_report, write_planar_contact_report};
 pub use plane_estimate::{PlaneEstimateData, write_plane_estimate_report};

@@ -220,6 +220,7 @@ fn estimate() -> EstimateData {
         curves: log.palms().iter().map(|palm| (0..count).map(|k| contact(palm, k)).collect()).collect(),
         truth: Some(states.iter().map(|state| (*state).into()).collect()),
         bounds: None,
+        marks: None,
         evidence: vec![Evidence {
             key: "misfit".into(),
             name: "Chi-squared".into(),

@@ -1,0 +1,51 @@
+//! Corners, edges and faces of a body that is not smooth, from the contacts that it made.
+//!
+//! At a corner the contact stays at one body point while the normal sweeps; on an edge the point moves along a line about which
+//! the normal turns; on a face the normal stays while the point moves or jumps. In each of two tangent directions the
+//! ratio of both motions is a radius of curvature: zero, without end, or in between where the body is smooth.
+
+mod assign;
+mod evidence;
+mod found;
+mod join;
+mod moments;
+mod pieces;
+mod polyhedron;
+mod segment;
+#[cfg(any(test, feature = "generators"))]
+pub(crate) mod simulated;
+#[cfg(test)]
+mod tests;
+
+pub use found::{Corner, Edge, Face, FeatureKind, FeatureOptions, FeatureRun, Features};
+pub use pieces::Pieces;
+pub use polyhedron::FoundPolyhedron;
+
+use crate::noise::{NoiseError, NoisyContact};
+
+impl Features {
+    /// What `curves` of contacts, each in the order in which it was traced, say of corners, edges and faces.
+    ///
+    /// Each curve is cut into runs of one kind, by dynamic programming over the evidence of each (see `evidence`); a run has a
+    /// kind where the odds for it are those of `options` at least, else it is open. Runs at one corner, on one edge or face are joined
+    /// across curves where noise explains what they differ by. A run that is open is at a known corner or face where its contacts are
+    /// by those odds rather there than anywhere on the body.
+    ///
+    /// # Errors
+    /// [`NoiseError`] for noise levels that are none, points that are not finite and odds that are not above 1.
+    pub fn find(curves: &[Vec<NoisyContact>], options: &FeatureOptions) -> Result<Self, NoiseError> {
+        NoiseError::check_contacts(curves)?;
+        if !(options.odds > 1.0 && options.odds.is_finite()) {
+            return Err(NoiseError::Odds(options.odds));
+        }
+        let units = moments::Units::of(curves);
+        let mut runs = Vec::new();
+        for (curve, contacts) in curves.iter().enumerate() {
+            let sums = moments::Sums::new(contacts, &units);
+            runs.extend(segment::runs(&sums, options).into_iter().map(|run| FeatureRun { curve, ..run }));
+        }
+        let first = join::joined(curves, runs, units.size, options);
+        let runs = assign::assigned(curves, &first, &units, options);
+        Ok(join::joined(curves, runs, units.size, options))
+    }
+}
