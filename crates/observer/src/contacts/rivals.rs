@@ -19,9 +19,10 @@ use glam::{DMat3, DVec3};
 use nalgebra::SVector;
 use object_dynamics::MOST_PALMS;
 
-/// Rates of the starts in the plane, and what the spins of those in space are off by, in natural ones.
+/// Rates of the starts in the plane, and what the spins of those in space are off by, in natural ones: with the larger alone two of 140 motions of
+/// unknown bodies stood 45 and 57 of chi-squared above that of the known body, with the smaller alone another mode was missed that is as probable.
 const RATES: [f64; 3] = [0.0, 1.0, -1.0];
-const SHIFTED: f64 = 1.0;
+const SHIFTED: [f64; 2] = [0.5, 1.0];
 /// Linearisations that each may take, and after how many it is asked whether to go on; how many times as much as the best motion one may
 /// leave by then.
 const MOST: usize = 40;
@@ -190,11 +191,8 @@ fn starts(problem: &Problem, found: &Solved<CONSTANTS>) -> Vec<Unknowns> {
             .collect(),
         body: round.body,
     };
-    DVec3::AXES
-        .into_iter()
-        .flat_map(|axis| [axis, -axis])
-        .map(|axis| shifted(axis * (SHIFTED * rate)))
-        .collect()
+    let along = |shift: f64| DVec3::AXES.map(|axis| [axis * shift, axis * -shift]);
+    SHIFTED.into_iter().flat_map(along).flatten().map(|shift| shifted(shift * rate)).collect()
 }
 
 /// Where a start leads; none where that leaves far more than `best`.
