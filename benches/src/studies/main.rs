@@ -26,6 +26,7 @@ mod contact_modes_estimated;
 mod contact_wedging;
 mod mode_bank;
 mod no_force;
+mod palms;
 mod planar_contacts;
 mod planar_estimates;
 mod planar_estimates_friction;
@@ -72,6 +73,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("contact_modes_estimated", || in_words(contact_modes_estimated::main())),
     ("mode_bank", || in_words(mode_bank::main())),
     ("no_force", || in_words(no_force::main())),
+    ("palms", || in_words(palms::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_estimates", || in_words(planar_estimates::main())),
     ("planar_estimates_friction", || in_words(planar_estimates_friction::main())),

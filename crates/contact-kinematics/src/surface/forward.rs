@@ -14,6 +14,10 @@ const MOST_STEPS: u32 = 60;
 const LONGEST_STEP: f64 = 0.3;
 /// A residual of `D - x` below this many units of rounding of its terms is rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Steps (rad) below this that get no shorter are rounding of the body's own support function: polynomials of high degree lose some digits.
+const NO_SHORTER: f64 = 1e-11;
+/// Share of the step before from which on a step is no shorter. Where curvatures nearly match steps still halve.
+const STALLED: f64 = 0.9;
 
 pub(super) struct Found {
     pub(super) gap: f64,
@@ -118,12 +122,14 @@ impl<S: SupportFunction + ?Sized> Search<'_, S> {
     /// Newton's method from `start` on.
     fn settle(&self, start: DVec3) -> Result<Trial, ContactError> {
         let Some(start) = self.unit(start) else { return Err(ContactError::CentreInside { depth: 0.0 }) };
-        let mut now = self.trial(start);
+        let (mut now, mut before) = (self.trial(start), f64::INFINITY);
         for _ in 0..MOST_STEPS {
             let step = self.newton(&now);
-            if step.along.length() <= step.rounding {
+            let length = step.along.length();
+            if length <= step.rounding || (length <= NO_SHORTER && length >= STALLED * before) {
                 return Ok(now);
             }
+            before = length;
             now = self.along(&now, step.along);
         }
         Err(ContactError::NotFound { iterations: MOST_STEPS, residual: self.newton(&now).along.length() })
