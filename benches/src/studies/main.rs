@@ -98,6 +98,7 @@ const OF_RUNS: &[&str] = &[
     "cold_start",
     "contact_estimates_random",
     "no_force",
+    "palms",
     "planar_estimates",
     "planar_estimates_friction",
     "three_palms_monte_carlo",

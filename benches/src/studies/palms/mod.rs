@@ -1,42 +1,58 @@
-//! x
-use recon_benches::palms::*;
-use exploration::generators::Family;
-use recon::object_dynamics::{ContactStart, SampleTimes};
-use recon_benches::reaching::in_threads;
-use recon_benches::reaching::Bodies;
-use std::time::Instant;
+//! Are spherical palms better? Flat, convex and concave palms with the same motions on the same bodies.
+//!
+//! Usage: `palms [EACH [FIRST [FRICTION]]]`: bodies of each family (10), the first of their seeds and the coefficient of friction (0). Prints
+//! docs/palms.md and writes docs/charts/palms-*, which are of the seeds that it is called with.
 
-pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let w: Vec<f64> = crate::words().map(|a| a.parse()).collect::<Result<_, _>>()?;
-    let get = |k: usize, d: f64| w.get(k).copied().unwrap_or(d);
-    let (each, first) = (get(0, 1.0) as u64, get(1, 150000.0) as u64);
-    let m = Motion { slope: get(2, 55.0).to_radians(), tilts: [get(3, 0.35), get(4, 0.35)], ramp: get(5, 0.3), count: get(6, 12.0) as usize, friction: get(7, 0.2) };
-    let all: Vec<(Family, u64)> = Bodies { first, each }.all().collect();
-    let out = in_threads(&all, |&(family, seed)| {
-        let t0 = Instant::now();
-        let body = match palm_body(family, seed) { Ok(b) => b, Err(e) => return format!("{e}\n") };
-        use recon::contact_kinematics::SupportFunction;
-        let r = body.shape.curvature_radii();
-        let mut text = format!("{} {seed} rounding {} radii {:.2} {:.2} {:.2} s\n", family.name(), body.ball, r.min / SIZE, r.max / SIZE, t0.elapsed().as_secs_f64());
-        for kind in PalmKind::ALL {
-            let t0 = Instant::now();
-            let line = match held(&body, kind, &m, seed) {
-                Err(e) => e.to_string(),
-                Ok((scene, start)) => match scene.simulate(&ContactStart::touching(start), SampleTimes { duration: m.duration(), rate: 200.0 }, 1e-7) {
-                    Err(e) => e.to_string(),
-                    Ok(run) => {
-                        let last = run.instants.last().unwrap();
-                        let f = &run.instants[0].state.body; let l = &last.state.body;
-                        let touch = run.instants.iter().map(|i| i.modes.iter().filter(|m| !matches!(m, recon::object_dynamics::ContactMode::Off)).count()).sum::<usize>() as f64 / run.instants.len() as f64 / 3.0;
-                        format!("turn {:.0} deg, path {:.2} touch {:.2} moved {:.2} events {} height {:.2}", f.R_WO.angle_between(l.R_WO).to_degrees(), run.instants.windows(2).map(|w| w[0].state.body.R_WO.angle_between(w[1].state.body.R_WO)).sum::<f64>(), touch, (l.p_WCm - f.p_WCm).length() / SIZE, run.events.len(), l.p_WCm.z / SIZE)
-                    }
-                },
+mod charts;
+mod row;
+mod tables;
+
+use recon_benches::palms::{MOTION, Motion, PalmKind, palm_body, palm_run};
+use recon_benches::reaching::Bodies;
+use row::Row;
+
+type Failure = Box<dyn std::error::Error>;
+
+/// Seeds of the bodies: nothing was chosen on them. Those of tuning are 150000 to 150009.
+const FIRST_SEED: u64 = 151_000;
+
+pub(crate) fn main() -> Result<(), Failure> {
+    let each: u64 = crate::words().next().map_or(Ok(10), |a| a.parse())?;
+    let first: u64 = crate::words().nth(1).map_or(Ok(FIRST_SEED), |a| a.parse())?;
+    let friction: f64 = crate::words().nth(2).map_or(Ok(MOTION.friction), |a| a.parse())?;
+    let motion = Motion { friction, ..MOTION };
+    let mut all: [Vec<Row>; PalmKind::ALL.len()] = Default::default();
+    for (family, seed) in (Bodies { first, each }).all() {
+        let body = palm_body(family, seed)?;
+        for (kind, rows) in PalmKind::ALL.into_iter().zip(&mut all) {
+            let made = || -> Result<_, Failure> {
+                Ok(Row::of(&palm_run(&body, kind, &motion, seed, true)?).cells())
             };
-            eprintln!("{} {seed} {} {:.1}", family.name(), kind.name(), t0.elapsed().as_secs_f64());
-            text += &format!("   {:14} {:.2} s {line}\n", kind.name(), t0.elapsed().as_secs_f64());
+            rows.extend(crate::rows::row(made)?.map(Row::from_cells));
         }
-        text
-    });
-    out.iter().for_each(|t| print!("{t}"));
+    }
+    let radians = palm_motion(&motion, first)?;
+    let compared = tables::Compared { all, radians, seconds: motion.duration() };
+    if friction == MOTION.friction {
+        println!("{}", include_str!("intro.md").trim_end());
+        println!("\nMade by `cargo xtask study palms {each} {first}`.\n");
+    }
+    tables::print(&compared);
+    if friction == MOTION.friction {
+        charts::draw(&compared, std::path::Path::new("docs/charts"))?;
+        println!("{}", include_str!("outro.md").trim_end());
+    }
     Ok(())
+}
+
+/// Radians that the three palms turn through; it differs by the seed of the body, and by nothing else: the mean over some.
+fn palm_motion(motion: &Motion, first: u64) -> Result<f64, Failure> {
+    const SOME: u64 = 20;
+    let body = palm_body(exploration::generators::Family::Ellipsoid, first)?;
+    let mut sum = 0.0;
+    for seed in first..first + SOME {
+        let (scene, _) = recon_benches::palms::held(&body, PalmKind::Flat, motion, seed)?;
+        sum += recon_benches::palms::radians(&scene, motion.duration()) / SOME as f64;
+    }
+    Ok(sum)
 }
