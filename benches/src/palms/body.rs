@@ -92,12 +92,11 @@ fn parts(family: Family, seed: u64) -> Vec<Part> {
 
 /// Waves of degree 2 to 5 on a ball, as high as leaves its least radius of curvature above 0.1.
 fn egg(s: &mut Source) -> Vec<Part> {
-    let waves: Vec<(usize, f64, DVec3)> = (2..=5)
-        .flat_map(|l| [l; 2])
-        .map(|l| (l, s.normal() / (l * l) as f64, s.direction().get()))
-        .collect();
+    let waves: Vec<(usize, f64, DVec3)> =
+        (2..=5).flat_map(|l| [l; 2]).map(|l| (l, s.normal() / (l * l) as f64, s.direction().get())).collect();
     let scaled = |by: f64| {
-        let of = |&(degree, height, axis): &(usize, f64, DVec3)| Part::Wave { degree, height: by * height, axis };
+        let of =
+            |&(degree, height, axis): &(usize, f64, DVec3)| Part::Wave { degree, height: by * height, axis };
         waves.iter().map(of).collect::<Vec<_>>()
     };
     let low = shape(scaled(1.0), 1.0, DVec3::ZERO).radii_at(&Direction::spread(LATTICE)).min;

@@ -54,7 +54,10 @@ fn gap(lower: f64, upper: f64) -> f64 {
 
 /// A contact where a body has the normal.
 #[must_use]
-pub fn contact_at(body: &impl recon::contact_kinematics::SupportFunction, normal: Direction) -> ContactSample {
+pub fn contact_at(
+    body: &impl recon::contact_kinematics::SupportFunction,
+    normal: Direction,
+) -> ContactSample {
     ContactSample { point: body.point(normal), normal }
 }
 
@@ -64,8 +67,8 @@ mod tests {
     use recon::contact_kinematics::Sphere;
 
     #[test]
-    fn the_gap_of_a_ball_touched_everywhere_tends_to_nothing_and_as_theory_says() -> Result<(), Box<dyn std::error::Error>>
-    {
+    fn the_gap_of_a_ball_touched_everywhere_tends_to_nothing_and_as_theory_says()
+    -> Result<(), Box<dyn std::error::Error>> {
         let ball = Sphere::new(0.04)?;
         let mut gaps = Vec::new();
         for count in [40, 160, 640] {
@@ -82,8 +85,8 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_bounded_by_a_few_half_spaces_and_hollow_palms_bound_at_once() -> Result<(), Box<dyn std::error::Error>>
-    {
+    fn nothing_is_bounded_by_a_few_half_spaces_and_hollow_palms_bound_at_once()
+    -> Result<(), Box<dyn std::error::Error>> {
         let ball = Sphere::new(0.04)?;
         let [mut flat, mut hollow] = [GapOfContacts::default(), GapOfContacts::default()];
         // Contacts on one half alone.

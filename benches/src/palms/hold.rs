@@ -6,8 +6,8 @@ use super::shape::PalmShape;
 use exploration::Source;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{
-    Direction, DirectionError, MotionLaw, MotionPart, PalmFrame, PalmSurface, 
-    SupportFunction, SurfaceError, SurfaceMotion, SurfacePose,
+    Direction, DirectionError, MotionLaw, MotionPart, PalmFrame, PalmSurface, SupportFunction, SurfaceError,
+    SurfaceMotion, SurfacePose,
 };
 use recon::object_dynamics::{BodyState, ContactScene, ContactSceneError, PalmDrive, ScenePalm};
 use std::f64::consts::{PI, TAU};
@@ -175,7 +175,12 @@ pub type Held<'a> = (ContactScene<&'a PalmShape>, BodyState);
 ///
 /// # Errors
 /// [`HoldError`].
-pub fn held<'a>(body: &'a PalmBody, kind: PalmKind, motion: &Motion, seed: u64) -> Result<Held<'a>, HoldError> {
+pub fn held<'a>(
+    body: &'a PalmBody,
+    kind: PalmKind,
+    motion: &Motion,
+    seed: u64,
+) -> Result<Held<'a>, HoldError> {
     let frames = motion.frames();
     let start = lowest(&body.shape, frames.map(|f| f.n), Source::new(seed).rotation());
     let mut palms = Vec::with_capacity(3);

@@ -30,7 +30,8 @@ pub fn median_of(values: &[f64]) -> Interval {
     let mut source = Source::new(1);
     let mut medians: Vec<f64> = (0..DRAWS)
         .map(|_| {
-            let mut drawn: Vec<f64> = all.iter().map(|_| all[(source.unit() * all.len() as f64) as usize]).collect();
+            let mut drawn: Vec<f64> =
+                all.iter().map(|_| all[(source.unit() * all.len() as f64) as usize]).collect();
             drawn.sort_by(f64::total_cmp);
             median(&drawn)
         })

@@ -7,7 +7,8 @@ use super::hold::{HoldError, Motion, PalmKind, held};
 use super::told::{Told, told};
 use recon::contact_kinematics::PalmSurface;
 use recon::object_dynamics::{
-    ContactInstant, ContactMode, ContactScene, ContactSimulation, ContactSimulationError, ContactStart, PalmDrive, SampleTimes,
+    ContactInstant, ContactMode, ContactScene, ContactSimulation, ContactSimulationError, ContactStart,
+    PalmDrive, SampleTimes,
 };
 use recon::shape_bounds::BoundsError;
 use thiserror::Error;
@@ -109,7 +110,11 @@ pub fn palm_run(
         touched: touches as f64 / seen.len().max(1) as f64,
         turned: seen.windows(2).map(turn).sum(),
         in_balls: if hollow { known.gap_in_balls(SIZE) } else { None },
-        told: if estimated { first(&run, seen.len()).and_then(|run| told(&scene, &run, body, seed)) } else { None },
+        told: if estimated {
+            first(&run, seen.len()).and_then(|run| told(&scene, &run, body, seed))
+        } else {
+            None
+        },
     })
 }
 
@@ -143,7 +148,8 @@ fn looked(
         PalmSurface::Cup { radius } => radius,
         _ => f64::INFINITY,
     };
-    let (mut coverage, mut known, mut looks) = (Coverage::default(), GapOfContacts::default(), [[0.0; 2]; LOOKS]);
+    let (mut coverage, mut known, mut looks) =
+        (Coverage::default(), GapOfContacts::default(), [[0.0; 2]; LOOKS]);
     let mut from = 0;
     for (k, look) in looks.iter_mut().enumerate() {
         let to = ((k + 1) * all / LOOKS).min(seen.len());

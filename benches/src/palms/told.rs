@@ -6,10 +6,12 @@ use nalgebra::Matrix6;
 use recon::object_dynamics::{
     ChannelNoise, ContactLog, ContactMode, ContactNoise, ContactScene, ContactSimulation, MOST_PALMS,
 };
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, ImpulseNoise, estimate_contacts};
 
 /// Noise of contacts over the size, and of each axis of a force over the weight.
-pub const NOISE: [f64; 2] = [0.001, 0.01];
+pub const NOISE: [f64; 2] = [0.0005, 0.002];
+/// What impulses between samples are off by on each axis, over the weight times the interval.
+const IMPULSE: f64 = 0.002;
 /// What contact conditions are off by beside, over the natural speed.
 const FLOOR: f64 = 3e-5;
 
@@ -40,11 +42,13 @@ pub fn told(
 ) -> Option<Told> {
     let (contact, weight) = (NOISE[0] * SIZE, body.mass.mass() * GRAVITY);
     let force = ChannelNoise { fixed: NOISE[1] * weight, share: 0.0 };
-    let noise = ContactNoise { contact, force, ..ContactNoise::default() };
+    let interval = run.instants.get(1)?.state.t - run.instants[0].state.t;
+    let impulse = ChannelNoise { fixed: IMPULSE * weight * interval, share: 0.0 };
+    let noise = ContactNoise { contact, force, impulse, ..ContactNoise::default() };
     let log = ContactLog::from_simulation(scene, run).ok()?.with_noise(&noise, seed).ok()?;
     let floor = FLOOR * (GRAVITY * SIZE).sqrt();
-    let level =
-        ContactNoiseLevel { contact, force_fixed: force.fixed, force_share: 0.0, impulse: None, floor };
+    let impulse = Some(ImpulseNoise { fixed: impulse.fixed, share: 0.0 });
+    let level = ContactNoiseLevel { contact, force_fixed: force.fixed, force_share: 0.0, impulse, floor };
     let options = ContactOptions::new(level, GRAVITY);
     let modes = run.instants.iter().map(|now| {
         let mut modes = [ContactMode::Off; MOST_PALMS];

@@ -39,7 +39,16 @@ impl Row {
         let told = run.told.map_or([f64::NAN; 4], |t| [t.motion, t.mass, t.inertia, t.condition]);
         let judged = run.told.map_or([f64::NAN; 2], |t| [t.error, f64::from(u8::from(t.relied_on))]);
         let PalmRun { touched, turned, looks, .. } = *run;
-        Self { end: end.to_owned(), lost, touched, turned, in_balls: run.in_balls.unwrap_or(f64::NAN), told, judged, looks }
+        Self {
+            end: end.to_owned(),
+            lost,
+            touched,
+            turned,
+            in_balls: run.in_balls.unwrap_or(f64::NAN),
+            told,
+            judged,
+            looks,
+        }
     }
 
     pub(super) fn cells(self) -> RowCells {

@@ -99,7 +99,14 @@ pub(super) fn print(compared: &Compared) {
 
 fn ends(compared: &Compared) {
     println!("## What is held\n");
-    heads(&["bodies", "held to the end", "lost", "refused by the simulation", "lost after, s", "palms touched, mean"]);
+    heads(&[
+        "bodies",
+        "held to the end",
+        "lost",
+        "refused by the simulation",
+        "lost after, s",
+        "palms touched, mean",
+    ]);
     each_kind(0, |k| {
         let all = &compared.all[k];
         let count = |which: &dyn Fn(&Row) -> bool| all.iter().filter(|r| which(r)).count();
@@ -121,7 +128,15 @@ fn seen(compared: &Compared) {
     println!(
         "## What is seen of bodies that are held to the end\n\nAfter {seconds:.1} s and {radians:.1} rad of palm motion, medians with their 95 % intervals.\n"
     );
-    heads(&["bodies", "coverage, %", "gap, %", "gap with balls, %", "% covered a rad", "% covered a s", "body turned, rad"]);
+    heads(&[
+        "bodies",
+        "coverage, %",
+        "gap, %",
+        "gap with balls, %",
+        "% covered a rad",
+        "% covered a s",
+        "body turned, rad",
+    ]);
     let in_balls: Of = |r| (r.held() && r.in_balls.is_finite()).then_some(r.in_balls);
     each_kind(0, |k| {
         let coverage = compared.median(k, COVERAGE_HELD);
@@ -171,7 +186,15 @@ fn known(compared: &Compared) {
         "## What the estimator knows\n\nOf an unknown body after the first {ESTIMATED} s, by the deviations that it states: the largest of the motion in natural units (median over the samples), of the mass, \
          and of the inertia along the axes of its covariance over the mean moment; condition: the largest of those over the least.\n"
     );
-    heads(&["estimates", "motion", "mass", "inertia", "condition", "relied on", "mass off by more than 3 deviations"]);
+    heads(&[
+        "estimates",
+        "motion",
+        "mass",
+        "inertia",
+        "condition",
+        "relied on",
+        "mass off by more than 3 deviations",
+    ]);
     each_kind(0, |k| {
         let told: Vec<&Row> = compared.all[k].iter().filter(|r| r.told[2].is_finite()).collect();
         let relied: Vec<&&Row> = told.iter().filter(|r| r.judged[1] > 0.5).collect();
@@ -183,19 +206,30 @@ fn known(compared: &Compared) {
     println!(
         "Over those on flat palms, body by body. All kinds move by the same radians in the same time: information (one over the square) per radian and per second is that on flat palms over the square of this.\n"
     );
-    heads(&["estimates of both", "motion", "mass", "inertia", "condition", "information on the inertia, a rad and a s"]);
+    heads(&[
+        "estimates of both",
+        "motion",
+        "mass",
+        "inertia",
+        "condition",
+        "information on the inertia, a rad and a s",
+    ]);
     each_kind(1, |k| {
         let [motion, mass, inertia, condition] =
             [MOTION, MASS, INERTIA, CONDITION].map(|of| compared.ratio(k, of));
         let information =
-            paired(&compared.values(0, INERTIA), &compared.values(k, INERTIA), |flat, curved| (flat / curved).powi(2));
+            paired(&compared.values(0, INERTIA), &compared.values(k, INERTIA), |flat, curved| {
+                (flat / curved).powi(2)
+            });
         let cells = [motion, mass, inertia, condition, information].map(|of| cell(of, 1.0, 2));
         format!("{} | {}", inertia.count, cells.join(" | "))
     });
 }
 
 fn families(compared: &Compared) {
-    println!("## By family\n\nHeld to the end, and the median difference of coverage to flat palms (points) of all that were simulated.\n");
+    println!(
+        "## By family\n\nHeld to the end, and the median difference of coverage to flat palms (points) of all that were simulated.\n"
+    );
     heads(&Family::ALL.map(Family::name));
     let each = compared.all[0].len() / Family::ALL.len();
     each_kind(0, |k| {
