@@ -228,3 +228,49 @@ impl Trial {
         Ok(Found { gap: self.distance - radius, n_O: Direction::new_unchecked(self.u), jet: self.jet })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Monomial, PolynomialSupport, SurfacePose};
+    use glam::DQuat;
+
+    /// A ball with a wave of degree 16, whose terms are some hundred times as large as their sum: jets are rounded by as much more.
+    fn wavy() -> Result<PolynomialSupport, crate::ShapeError> {
+        let (mut before, mut now) = ([0.0; 17], [0.0; 17]);
+        now[0] = 1.0;
+        for l in 0..16 {
+            let m = l as f64;
+            let shifted = |k: usize| if k > 0 { now[k - 1] } else { 0.0 };
+            let next = std::array::from_fn(|k| ((2.0 * m + 1.0) * shifted(k) - m * before[k]) / (m + 1.0));
+            (before, now) = (now, next);
+        }
+        let wave = now.iter().enumerate().map(|(k, c)| (k as u32, 3e-3 * c));
+        let terms = wave.chain([(0, 1.0)]);
+        let term = |(power, coefficient)| Monomial { powers: [0, 0, power], coefficient };
+        PolynomialSupport::new(terms.map(term).collect())
+    }
+
+    #[test]
+    fn a_body_whose_own_function_is_rounded_more_is_found_to_that() {
+        let body = wavy().unwrap();
+        let place = BodyPlace { p_WCm: DVec3::ZERO, R_WO: glam::DMat3::IDENTITY };
+        let kinds = [
+            (PalmSurface::Sphere { radius: 0.5 }, 1.6),
+            (PalmSurface::Cylinder { radius: 0.5 }, 1.6),
+            (PalmSurface::Cup { radius: 4.0 }, 2.9),
+        ];
+        for (k, along) in directions().enumerate() {
+            let (surface, away) = kinds[k % kinds.len()];
+            let pose = SurfacePose::new(along * away, DQuat::from_rotation_z(0.3)).unwrap();
+            let palm = pose.at_rest();
+            let found = find(&body, &place, surface, &palm, None);
+            let found = found.unwrap_or_else(|e| panic!("{surface:?} {along}: {e}"));
+            // The palm's centre lies along the normal at the contact.
+            let axis = matches!(surface, PalmSurface::Cylinder { .. }).then(|| palm.R_WP.x_axis);
+            let across = (palm.p_WP - found.jet.point).reject_from_normalized(found.n_O.get());
+            let across = axis.map_or(across, |axis| across - axis * axis.dot(across));
+            assert!(across.length() < 1e-10, "{surface:?} {along}: {across}");
+        }
+    }
+}
