@@ -18,6 +18,8 @@ pub(super) type Of = fn(&Row) -> Option<f64>;
 
 /// Coverage at the end of runs that were held.
 pub(super) const COVERAGE_HELD: Of = |r| r.held().then_some(r.looks[LOOKS - 1][0]);
+/// Coverage after half of the motion of runs that were held to the end.
+const COVERAGE_HALF: Of = |r| r.held().then_some(r.looks[LOOKS / 2 - 1][0]);
 /// Gap at the end of runs that were held.
 const GAP_HELD: Of = |r| r.held().then_some(r.looks[LOOKS - 1][1]);
 /// Coverage at the end or the loss.
@@ -160,6 +162,8 @@ fn against_flat(compared: &Compared) {
     heads(&[
         "held by both",
         "coverage, points",
+        "more on, less on",
+        "coverage after half of the motion",
         "gap, points",
         "turn of the body, ratio",
         "simulated with both",
@@ -168,10 +172,15 @@ fn against_flat(compared: &Compared) {
     ]);
     each_kind(1, |k| {
         let (held, all) = (compared.difference(k, COVERAGE_HELD), compared.difference(k, COVERAGE_ALL));
+        let pairs = compared.values(0, COVERAGE_HELD).into_iter().zip(compared.values(k, COVERAGE_HELD));
+        let changes: Vec<f64> = pairs.filter_map(|(flat, curved)| Some(curved? - flat?)).collect();
+        let more = changes.iter().filter(|x| **x > 0.0).count();
+        let less = changes.iter().filter(|x| **x < 0.0).count();
         format!(
-            "{} | {} | {} | {} | {} | {} | {}",
+            "{} | {} | {more}, {less} | {} | {} | {} | {} | {} | {}",
             held.count,
             cell(held, 100.0, 1),
+            cell(compared.difference(k, COVERAGE_HALF), 100.0, 1),
             cell(compared.difference(k, GAP_HELD), 100.0, 1),
             cell(compared.ratio(k, TURNED), 1.0, 2),
             all.count,
