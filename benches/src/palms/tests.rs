@@ -91,7 +91,7 @@ fn all_kinds_start_at_the_same_contacts_and_move_the_same() -> Result<(), Failur
 }
 
 #[test]
-fn a_body_that_is_held_is_seen_more_and_more_and_one_on_fingertips_may_be_lost() -> Result<(), Failure> {
+fn a_body_that_is_held_is_seen_more_and_more() -> Result<(), Failure> {
     let body = palm_body(Family::Ellipsoid, 150_000)?;
     let short = Motion { count: 2, ..MOTION };
     let run = palm_run(&body, PalmKind::Concave(5.0), &short, 150_000, false)?;
