@@ -255,21 +255,14 @@ mod tests {
     fn a_body_whose_own_function_is_rounded_more_is_found_to_that() {
         let body = wavy().unwrap();
         let place = BodyPlace { p_WCm: DVec3::ZERO, R_WO: glam::DMat3::IDENTITY };
-        let kinds = [
-            (PalmSurface::Sphere { radius: 0.5 }, 1.6),
-            (PalmSurface::Cylinder { radius: 0.5 }, 1.6),
-            (PalmSurface::Cup { radius: 4.0 }, 2.9),
-        ];
+        let kinds = [(PalmSurface::Sphere { radius: 0.5 }, 1.6), (PalmSurface::Cup { radius: 4.0 }, 2.9)];
         for (k, along) in directions().enumerate() {
             let (surface, away) = kinds[k % kinds.len()];
-            let pose = SurfacePose::new(along * away, DQuat::from_rotation_z(0.3)).unwrap();
-            let palm = pose.at_rest();
+            let palm = SurfacePose::new(along * away, DQuat::IDENTITY).unwrap().at_rest();
             let found = find(&body, &place, surface, &palm, None);
             let found = found.unwrap_or_else(|e| panic!("{surface:?} {along}: {e}"));
             // The palm's centre lies along the normal at the contact.
-            let axis = matches!(surface, PalmSurface::Cylinder { .. }).then(|| palm.R_WP.x_axis);
             let across = (palm.p_WP - found.jet.point).reject_from_normalized(found.n_O.get());
-            let across = axis.map_or(across, |axis| across - axis * axis.dot(across));
             assert!(across.length() < 1e-10, "{surface:?} {along}: {across}");
         }
     }
