@@ -24,6 +24,7 @@
 
 mod diagram;
 mod machine;
+pub mod palms;
 pub mod reaching;
 pub mod rolling;
 pub mod rows;

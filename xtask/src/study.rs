@@ -110,6 +110,7 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "planar-contacts.md",
         "planar bodies on any palms: what a run keeps to, what it refuses",
     ),
+    ("palms", "palms.md", "flat, convex and concave palms on the same bodies: what is seen, held and known"),
     (
         "pushes",
         "pushes-study.md",

@@ -28,6 +28,7 @@ mod exported_objects;
 mod mode_bank;
 mod no_force;
 mod nonsmooth;
+mod palms;
 mod planar_contacts;
 mod planar_estimates;
 mod planar_estimates_friction;
@@ -77,6 +78,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("mode_bank", || in_words(mode_bank::main())),
     ("no_force", || in_words(no_force::main())),
     ("nonsmooth", || in_words(nonsmooth::main())),
+    ("palms", || in_words(palms::main())),
     ("planar_contacts", || in_words(planar_contacts::main())),
     ("planar_estimates", || in_words(planar_estimates::main())),
     ("planar_estimates_friction", || in_words(planar_estimates_friction::main())),
@@ -102,6 +104,7 @@ const OF_RUNS: &[&str] = &[
     "cold_start",
     "contact_estimates_random",
     "no_force",
+    "palms",
     "planar_estimates",
     "planar_estimates_friction",
     "three_palms_monte_carlo",

@@ -4,10 +4,9 @@
 //! Arguments: variants, first seed, tolerance. An ellipsoid at rest where it lies lowest on three flat palms through one point;
 //! each palm in turn, in random order, is tilted about its own horizontal axis and back. Writes a Markdown table.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{
-    Direction, Ellipsoid, MotionLaw, MotionPart, PalmFrame, PalmSurface, SupportFunction, SurfaceMotion,
-    SurfacePose,
+    Direction, Ellipsoid, MotionLaw, MotionPart, PalmFrame, PalmSurface, SurfaceMotion, SurfacePose,
 };
 use recon::object_dynamics::{
     BodyState, ContactInstant, ContactMode, ContactScene, ContactSimulation, ContactStart, MassProperties,
@@ -165,7 +164,8 @@ pub(crate) fn variant(
         palms.push(palm(azimuth, slope, source.between(0.2, 0.45), (place, ramp, pause))?);
     }
     let scene = ContactScene::new(body, mass, palms, GRAVITY)?;
-    let start = lowest(&scene, source.rotation());
+    let normals = [0, 1, 2].map(|i| scene.palm_state(i, 0.0, &scene.palms_at_start()[i]).R_WP.z_axis);
+    let start = recon_benches::palms::lowest(scene.body(), normals, source.rotation());
     Ok((scene, start, 4.0 * ramp + 3.0 * pause + 0.2))
 }
 
@@ -192,32 +192,4 @@ fn palm(
         drive: PalmDrive::Prescribed(SurfaceMotion::Parts { pose, parts }),
         friction: FRICTION,
     })
-}
-
-/// The body at rest on all three palms, turned from an orientation downhill to where its centre lies lowest.
-fn lowest(scene: &ContactScene<Ellipsoid>, start: DQuat) -> BodyState {
-    let normals: Vec<DVec3> = scene
-        .palms()
-        .iter()
-        .enumerate()
-        .map(|(i, _)| scene.palm_state(i, 0.0, &scene.palms_at_start()[i]).R_WP.z_axis)
-        .collect();
-    let inverse = DMat3::from_cols(normals[0], normals[1], normals[2]).transpose().inverse();
-    let place = |R_WO: DQuat| {
-        let support = |i: usize| Direction::new(R_WO.inverse() * -normals[i]).map(|u| scene.body().value(u));
-        inverse * DVec3::from_array([0, 1, 2].map(|i| support(i).unwrap_or(f64::NAN)))
-    };
-    let height = |x: DVec3, R: DQuat| place(DQuat::from_scaled_axis(x) * R).z;
-    let (mut R_WO, mut step) = (start.normalize(), 0.3);
-    // Downhill until the height says no more: at rest without friction, well inside of the cones with it.
-    while step > 1e-7 {
-        let slope = DVec3::AXES.map(|e| (height(1e-5 * e, R_WO) - height(-1e-5 * e, R_WO)) / 2e-5);
-        let down = -DVec3::from_array(slope).normalize_or_zero();
-        if height(step * down, R_WO) < height(DVec3::ZERO, R_WO) {
-            R_WO = (DQuat::from_scaled_axis(step * down) * R_WO).normalize();
-        } else {
-            step *= 0.5;
-        }
-    }
-    BodyState { p_WCm: place(R_WO), R_WO, v_WCm: DVec3::ZERO, w_WO: DVec3::ZERO }
 }

@@ -14,6 +14,10 @@ const MOST_STEPS: u32 = 60;
 const LONGEST_STEP: f64 = 0.3;
 /// A residual of `D - x` below this many units of rounding of its terms is rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Steps (rad) below this that get no shorter are rounding of the body's own support function: polynomials of high degree lose some digits.
+const NO_SHORTER: f64 = 1e-11;
+/// Share of the step before from which on a step is no shorter. Where curvatures nearly match steps still halve.
+const STALLED: f64 = 0.9;
 
 pub(super) struct Found {
     pub(super) gap: f64,
@@ -118,13 +122,14 @@ impl<S: SupportFunction + ?Sized> Search<'_, S> {
     /// Newton's method from `start` on.
     fn settle(&self, start: DVec3) -> Result<Trial, ContactError> {
         let Some(start) = self.unit(start) else { return Err(ContactError::CentreInside { depth: 0.0 }) };
-        let mut now = self.trial(start);
+        let (mut now, mut before) = (self.trial(start), f64::INFINITY);
         for _ in 0..MOST_STEPS {
             let step = self.newton(&now);
-            // A unit vector tells no finer turn, however flat the body is.
-            if step.along.length() <= step.rounding.max(f64::EPSILON) {
+            let length = step.along.length();
+            if length <= step.rounding || (length <= NO_SHORTER && length >= STALLED * before) {
                 return Ok(now);
             }
+            before = length;
             now = self.along(&now, step.along);
         }
         Err(ContactError::NotFound { iterations: MOST_STEPS, residual: self.newton(&now).along.length() })
@@ -221,5 +226,44 @@ impl Trial {
             return Err(ContactError::CentreInside { depth: -self.distance });
         }
         Ok(Found { gap: self.distance - radius, n_O: Direction::new_unchecked(self.u), jet: self.jet })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Monomial, PolynomialSupport, SurfacePose};
+    use glam::DQuat;
+
+    /// A ball with a wave of degree 16, whose terms are some hundred times as large as their sum: jets are rounded by as much more.
+    fn wavy() -> Result<PolynomialSupport, crate::ShapeError> {
+        let (mut before, mut now) = ([0.0; 17], [0.0; 17]);
+        now[0] = 1.0;
+        for l in 0..16 {
+            let m = l as f64;
+            let shifted = |k: usize| if k > 0 { now[k - 1] } else { 0.0 };
+            let next = std::array::from_fn(|k| ((2.0 * m + 1.0) * shifted(k) - m * before[k]) / (m + 1.0));
+            (before, now) = (now, next);
+        }
+        let wave = now.iter().enumerate().map(|(k, c)| (k as u32, 3e-3 * c));
+        let terms = wave.chain([(0, 1.0)]);
+        let term = |(power, coefficient)| Monomial { powers: [0, 0, power], coefficient };
+        PolynomialSupport::new(terms.map(term).collect())
+    }
+
+    #[test]
+    fn a_body_whose_own_function_is_rounded_more_is_found_to_that() {
+        let body = wavy().unwrap();
+        let place = BodyPlace { p_WCm: DVec3::ZERO, R_WO: glam::DMat3::IDENTITY };
+        let kinds = [(PalmSurface::Sphere { radius: 0.5 }, 1.6), (PalmSurface::Cup { radius: 4.0 }, 2.9)];
+        for (k, along) in directions().enumerate() {
+            let (surface, away) = kinds[k % kinds.len()];
+            let palm = SurfacePose::new(along * away, DQuat::IDENTITY).unwrap().at_rest();
+            let found = find(&body, &place, surface, &palm, None);
+            let found = found.unwrap_or_else(|e| panic!("{surface:?} {along}: {e}"));
+            // The palm's centre lies along the normal at the contact.
+            let across = (palm.p_WP - found.jet.point).reject_from_normalized(found.n_O.get());
+            assert!(across.length() < 1e-10, "{surface:?} {along}: {across}");
+        }
     }
 }
