@@ -143,7 +143,9 @@ impl FoundFeatures {
 
 impl BoundsResult {
     /// With corners, edges and faces; where there are any, also the polyhedron that they make.
-    pub(super) fn with_features(mut self, features: FoundFeatures) -> Result<Self, CliError> {
+    pub(super) fn with_features(mut self, mut features: FoundFeatures) -> Result<Self, CliError> {
+        // One that is smaller than what is certain lacks corners.
+        features.polyhedron = features.polyhedron.filter(|made| made.volume >= self.drawn.lower.volume);
         if let Some(mesh) = features.mesh()? {
             self.others.push((POLYHEDRON, "polyhedron of corners and faces; an estimate; metres", mesh));
         }

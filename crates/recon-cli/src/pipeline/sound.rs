@@ -41,8 +41,11 @@ pub(crate) fn noisy_bounds(
     } else {
         CertainBounds::from_features(&kept, &FeatureOptions::default(), confidence)?
     };
-    about["features"] = features.figures();
-    Ok((finished(&bounds, warnings)?.with_features(features)?, about))
+    let made = finished(&bounds, warnings)?.with_features(features)?;
+    if let Some(features) = &made.features {
+        about["features"] = features.figures();
+    }
+    Ok((made, about))
 }
 
 /// Bounds of a convex body with radii of curvature within `radii`, from exact contacts or from noisy ones at a confidence.
