@@ -39,7 +39,7 @@ pub(crate) fn main() -> Result<(), Failure> {
         "times left out; from no guess. Noise: of contacts as a share of the size, of forces as one of the weight. Errors of centre of mass, velocity and angular velocity at all"
     );
     println!(
-        "samples over their deviations: squared ones in the mean, and runs with one beyond five at any of some thousand samples. Milliseconds of one thread.\n"
+        "samples over their deviations: squared ones in the mean, and runs with one beyond five at any of some thousand samples. Milliseconds of processor time.\n"
     );
     println!("## As stated\n");
     println!(

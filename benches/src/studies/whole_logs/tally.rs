@@ -1,6 +1,6 @@
 //! What became of some runs.
 
-use cpu_time::ThreadTime;
+use cpu_time::ProcessTime;
 use glam::DVec3;
 use recon::object_dynamics::BodyState;
 use recon::observer::{ContactEstimate, ContactEstimateError, Reason, Reliability};
@@ -18,7 +18,7 @@ pub(super) fn judged(
     times: &[f64],
     (truth, rate): (&[BodyState], f64),
 ) -> Run {
-    let clock = ThreadTime::now();
+    let clock = ProcessTime::now();
     let found = run();
     let milliseconds = 1e3 * clock.elapsed().as_secs_f64();
     let Ok(found) = found else { return (milliseconds, None) };

@@ -142,6 +142,9 @@ impl<'a> Averages<'a> {
 impl Contact {
     /// Different by a share of that, its normal not yet of unit length; its palm's material is as fast as it is where it then is.
     fn add(&mut self, by: &ChangeBy, share: f64) {
+        if *by == ChangeBy::default() {
+            return;
+        }
         let moved = by.c * share;
         self.c += moved;
         self.u += self.W.cross(moved);

@@ -20,6 +20,8 @@ use crate::reliability::LARGEST_DEVIATION;
 use contact_kinematics::PalmSurface;
 use glam::DVec3;
 use object_dynamics::ContactLog;
+use std::panic::resume_unwind;
+use std::thread;
 
 /// What of the information on a constant must be left when motion and body have followed it, for the data to tell of it.
 const LEAST_LEFT: f64 = 1e-6;
@@ -166,7 +168,16 @@ pub(super) fn suspects(scores: &Scores, covariances: &Covariances<CONSTANTS>) ->
         let most = deviations.iter().zip(&score.follows.motions).map(moved).fold(0.0, f64::max);
         Some(Suspect { fault, value, deviation, tolerated: most.recip() })
     };
-    scores.sensors.constants(problem).into_iter().filter_map(one).collect()
+    // Each is a pass over all samples: two at a time.
+    let constants = scores.sensors.constants(problem);
+    let (here, there) = constants.split_at(constants.len() / 2);
+    let of = |faults: &[SensorFault]| faults.iter().copied().filter_map(one).collect::<Vec<_>>();
+    thread::scope(|scope| {
+        let there = scope.spawn(|| of(there));
+        let mut all = of(here);
+        all.extend(there.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        all
+    })
 }
 
 /// Share of noise in the squares of the impulses.

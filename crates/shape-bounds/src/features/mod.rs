@@ -22,6 +22,9 @@ pub use pieces::Pieces;
 pub use polyhedron::FoundPolyhedron;
 
 use crate::noise::{NoiseError, NoisyContact};
+use std::ops::Range;
+use std::panic::resume_unwind;
+use std::thread;
 
 impl Features {
     /// What `curves` of contacts, each in the order in which it was traced, say of corners, edges and faces.
@@ -39,13 +42,33 @@ impl Features {
             return Err(NoiseError::Odds(options.odds));
         }
         let units = moments::Units::of(curves);
-        let mut runs = Vec::new();
-        for (curve, contacts) in curves.iter().enumerate() {
-            let sums = moments::Sums::new(contacts, &units);
-            runs.extend(segment::runs(&sums, options).into_iter().map(|run| FeatureRun { curve, ..run }));
-        }
+        let of = |range: Range<usize>| {
+            let of_curve = |curve: usize| {
+                let runs = segment::runs(&moments::Sums::new(&curves[curve], &units), options);
+                runs.into_iter().map(move |run| FeatureRun { curve, ..run })
+            };
+            range.flat_map(of_curve).collect::<Vec<_>>()
+        };
+        let half = half_of(curves);
+        let runs = thread::scope(|scope| {
+            let second = scope.spawn(|| of(half..curves.len()));
+            let mut runs = of(0..half);
+            runs.extend(second.join().unwrap_or_else(|panic| resume_unwind(panic)));
+            runs
+        });
         let first = join::joined(curves, runs, units.size, options);
         let runs = assign::assigned(curves, &first, &units, options);
         Ok(join::joined(curves, runs, units.size, options))
     }
+}
+
+/// The curve before which about half of the contacts are.
+fn half_of(curves: &[Vec<NoisyContact>]) -> usize {
+    let all: usize = curves.iter().map(Vec::len).sum();
+    let mut before = 0;
+    let reached = |curve: &Vec<NoisyContact>| {
+        before += curve.len();
+        2 * before >= all
+    };
+    curves.iter().position(reached).unwrap_or(0)
 }
