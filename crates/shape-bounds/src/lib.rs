@@ -36,6 +36,7 @@ pub mod generators;
 mod halfspaces;
 mod hull;
 mod integrals;
+mod matrix;
 mod median;
 mod mesh;
 mod noise;

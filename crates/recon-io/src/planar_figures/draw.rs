@@ -46,12 +46,7 @@ fn draw_curve(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut Strin
 }
 
 /// A line in a colour and with further attributes.
-pub(super) fn draw_line(
-    points: &[[f64; 2]],
-    (colour, further): (usize, &str),
-    frame: &Frame,
-    out: &mut String,
-) {
+fn draw_line(points: &[[f64; 2]], (colour, further): (usize, &str), frame: &Frame, out: &mut String) {
     for piece in points.split(|p| !finite(&p)).filter(|piece| !piece.is_empty()) {
         let mut path: Vec<String> =
             piece.iter().map(|&p| frame.place(p).map(|v| v.to_string()).join(",")).collect();

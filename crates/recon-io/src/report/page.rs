@@ -1,4 +1,4 @@
-use super::contacts::bands::bands;
+use super::contacts::bands::{LEGEND, bands};
 use super::contacts::doubtful_spans;
 use super::contacts::page::{STYLE as BANDS, fact};
 use super::data::{Departure, ReportData, ReportError};
@@ -40,6 +40,7 @@ pub fn write_report(data: &ReportData, to: impl Write) -> io::Result<()> {
             notices(&data.verdict, ["Reliable", "With care", "Unreliable"], &data.warnings)
                 + &next(&data.next),
         ),
+        ("legend", LEGEND.to_owned()),
         ("bands", bands(&data.spans, &[], &doubtful_spans(&data.times, &data.relied_on))),
         ("facts", facts(data).iter().map(fact).collect()),
         ("evidence", data.evidence.iter().map(row).collect()),

@@ -2,7 +2,8 @@
 
 use super::evidence::edge_direction;
 use super::found::{Corner, Edge, Face, FeatureKind, FeatureOptions, FeatureRun, Features};
-use super::moments::{Sums, Units, outer};
+use super::moments::{Sums, Units};
+use crate::matrix::outer;
 use crate::noise::NoisyContact;
 use crate::noise::quantile::{length2, length3};
 use contact_kinematics::Direction;

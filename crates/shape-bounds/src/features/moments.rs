@@ -1,5 +1,6 @@
 //! Sums over contacts from which the moments of any run of them follow at once.
 
+use crate::matrix::outer;
 use crate::noise::NoisyContact;
 use glam::{DMat3, DVec3};
 
@@ -116,9 +117,4 @@ impl Sums {
             normal_variance: variance(1),
         }
     }
-}
-
-/// `a b'`.
-pub(super) fn outer(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }

@@ -61,6 +61,14 @@ impl ShapeBounds {
     }
 }
 
+/// Half of the odds of a failure for the poses of all contacts, each off by so many deviations at most, and the confidence that leaves for the rest.
+fn with_poses(curves: &[Vec<NoisyContact>], confidence: f64) -> Result<(f64, f64), NoiseError> {
+    NoiseError::check_confidence(confidence)?;
+    let alpha = 0.5 * (1.0 - confidence);
+    let poses = quantile::length6(alpha / curves.iter().map(Vec::len).sum::<usize>().max(1) as f64);
+    Ok((1.0 - alpha, poses))
+}
+
 /// What is certain of a convex body: bounds of which each may be missing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CertainBounds {
@@ -77,10 +85,8 @@ impl CertainBounds {
     /// [`NoiseError`] for an impossible confidence or noise, and for contacts that contradict each other by more than the
     /// stated noise can explain.
     pub fn from_noisy_curves(curves: &[Vec<NoisyContact>], confidence: f64) -> Result<Self, NoiseError> {
-        NoiseError::check_confidence(confidence)?;
-        let alpha = 0.5 * (1.0 - confidence);
-        let poses = quantile::length6(alpha / curves.iter().map(Vec::len).sum::<usize>().max(1) as f64);
-        Self::from_curves_of_poses(curves, 1.0 - alpha, poses)
+        let (confidence, poses) = with_poses(curves, confidence)?;
+        Self::from_curves_of_poses(curves, confidence, poses)
     }
 
     /// The same for noise that may be alike from one contact to the next, in any way: nothing is gained by means then.
@@ -115,10 +121,8 @@ impl CertainBounds {
         options: &FeatureOptions,
         confidence: f64,
     ) -> Result<Self, NoiseError> {
-        NoiseError::check_confidence(confidence)?;
-        let alpha = 0.5 * (1.0 - confidence);
-        let poses = quantile::length6(alpha / curves.iter().map(Vec::len).sum::<usize>().max(1) as f64);
-        Self::from_features_of_poses(curves, options, 1.0 - alpha, poses)
+        let (confidence, poses) = with_poses(curves, confidence)?;
+        Self::from_features_of_poses(curves, options, confidence, poses)
     }
 
     /// [`Self::from_curves_of_poses`] with means over all contacts of a corner or face, as in [`Self::from_features`].
@@ -131,26 +135,25 @@ impl CertainBounds {
         confidence: f64,
         poses: f64,
     ) -> Result<Self, NoiseError> {
-        NoiseError::check_confidence(confidence)?;
-        NoiseError::check_contacts(curves)?;
-        Self::from_means(curves, Some(&ChosenWindows::of(curves, options)?), confidence, poses)
+        Self::from_means(curves, Some(options), confidence, poses)
     }
 
     fn from_means(
         curves: &[Vec<NoisyContact>],
-        chosen: Option<&ChosenWindows>,
+        options: Option<&FeatureOptions>,
         confidence: f64,
         poses: f64,
     ) -> Result<Self, NoiseError> {
         NoiseError::check_confidence(confidence)?;
         NoiseError::check_contacts(curves)?;
+        let chosen = options.map(|options| ChosenWindows::of(curves, options)).transpose()?;
         let contacts: Vec<_> = curves.iter().flatten().map(|c| c.contact).collect();
         ShapeBounds::check(&contacts)?;
         let all = (1.0 - confidence) / 2.0;
         // The same whether any are found: the odds must not depend on it.
         let of_chosen = if chosen.is_some() { SHARE_OF_CHOSEN * all } else { 0.0 };
         let alpha = all - of_chosen;
-        let (corners, faces) = chosen.map_or((&[][..], &[][..]), |found| (&found.corners, &found.faces));
+        let ChosenWindows { corners, faces } = &chosen.unwrap_or_default();
         let singles = windows(curves, 1);
         let exact = singles.first().is_some_and(|list| nearly_exact(list, alpha, poses));
         let lists = if exact { singles } else { windows(curves, LONGEST) };

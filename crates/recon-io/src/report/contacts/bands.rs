@@ -6,6 +6,9 @@ use crate::planar_figures::round_step;
 use recon::object_dynamics::ContactMode;
 use std::fmt::Write as _;
 
+/// What the colours of modes mean, as entries of a legend.
+pub(in crate::report) const LEGEND: &str = include_str!("../assets/modes.html");
+
 const WIDTH: f64 = 920.0;
 const LEFT: f64 = 64.0;
 const ROW: f64 = 26.0;

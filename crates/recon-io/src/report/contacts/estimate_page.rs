@@ -2,7 +2,7 @@ use super::super::evidence_table::row;
 use super::super::notices::{next, notice, notices};
 use super::super::page::{escape_text, fill, head, of_body, of_bounds};
 use super::super::{Evidence, Level, Verdict};
-use super::bands::bands;
+use super::bands::{LEGEND, bands};
 use super::estimate::EstimateData;
 use super::page::{STYLE, fact};
 use super::picture::{Picture, drawn};
@@ -107,6 +107,7 @@ impl EstimatePage<'_> {
             ("facts", self.facts.iter().map(fact).collect()),
             ("pictures", drawn(&self.pictures)),
             ("caption", self.caption.clone()),
+            ("legend", LEGEND.to_owned()),
             ("bands", bands(&self.spans, &marks, &doubtful)),
             ("curves", figures_in_page(self.panels)?),
             ("dashed", dashed.to_owned()),

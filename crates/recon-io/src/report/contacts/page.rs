@@ -1,5 +1,5 @@
 use super::super::page::{escape_text, fill, head};
-use super::bands::bands;
+use super::bands::{LEGEND, bands};
 use super::moment::Shown;
 use super::picture::drawn;
 use super::{plane, space};
@@ -58,6 +58,7 @@ fn write(title: &str, shown: &Shown, to: impl Write) -> io::Result<()> {
         ("facts", facts.iter().map(fact).collect()),
         ("pictures", drawn(&shown.pictures)),
         ("caption", shown.caption.to_owned()),
+        ("legend", LEGEND.to_owned()),
         ("bands", bands(&shown.spans, &marks, &[])),
         ("curves", figures_in_page(&shown.panels())?),
     ];

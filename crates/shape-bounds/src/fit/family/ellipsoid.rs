@@ -1,4 +1,5 @@
-use super::{Model, outer};
+use super::Model;
+use crate::matrix::outer;
 use contact_kinematics::{CurvatureRadii, Direction, ShapeError, SupportFunction, SupportJet};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{DVector, Matrix3};

@@ -139,7 +139,3 @@ pub(super) trait Model {
 fn write(columns: &mut [DVec3], values: impl IntoIterator<Item = DVec3>) {
     columns.iter_mut().zip(values).for_each(|(column, value)| *column = value);
 }
-
-fn outer(a: DVec3, b: DVec3) -> glam::DMat3 {
-    glam::DMat3::from_cols(a * b.x, a * b.y, a * b.z)
-}

@@ -1,4 +1,5 @@
-use super::{Model, outer, write};
+use super::{Model, write};
+use crate::matrix::outer;
 use contact_kinematics::{CurvatureRadii, Direction, SupportFunction, SupportJet};
 use glam::{DMat3, DVec3};
 use nalgebra::DVector;
