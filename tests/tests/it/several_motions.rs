@@ -83,12 +83,15 @@ fn a_body_almost_of_revolution_is_not_held_where_it_is_not() {
         0.074002026817,
         DVec3::new(1.3385964081e-5, 1.3378660757e-5, 2.0619059481e-5),
     );
-    let palms =
-        [[-0.028923119498, 0.700841852435], [2.236067444606, 1.309504711030], [4.304665541378, 0.682792334046]];
+    let palms = [
+        [-0.028923119498, 0.700841852435],
+        [2.236067444606, 1.309504711030],
+        [4.304665541378, 0.682792334046],
+    ];
     let R_WO = DQuat::from_xyzw(0.004750964032, -0.327597876808, -0.943275677627, 0.053740631259);
     let w_WO = DVec3::new(-3.492601605122, -3.504154081847, -3.456426920300);
     let start = InitialMotion { R_WO: R_WO.normalize(), w_WO };
-    let worst = worst_as_known(body, palms, start, (1000.0, 119_034_001_010));
+    let worst = worst_as_known(body, palms, start, (1000.0, 119_035_010));
     assert!(worst.is_some_and(|worst| worst < 5.0), "{worst:?}");
 }
 
@@ -100,11 +103,16 @@ fn a_known_body_that_makes_the_log_dearer_is_refused() {
         74.492660715662,
         DVec3::new(1.643214999056, 1.940485351024, 2.275551336377),
     );
-    let palms =
-        [[-0.219548367906, 0.790343026508], [1.823905204692, 0.814617430462], [4.082388695857, 0.719458126895]];
+    let palms = [
+        [-0.219548367906, 0.790343026508],
+        [1.823905204692, 0.814617430462],
+        [4.082388695857, 0.719458126895],
+    ];
     let R_WO = DQuat::from_xyzw(0.602469845885, -0.442843105111, 0.574189274852, -0.333506740111);
     let w_WO = DVec3::new(0.344573520357, -0.107056787558, 0.407655526898);
     let start = InitialMotion { R_WO: R_WO.normalize(), w_WO };
-    let worst = worst_as_known(body, palms, start, (200.0, 118_001_000_210));
-    assert!(worst.is_none_or(|worst| worst < 5.0), "{worst:?}");
+    for seed in few_or_all(&[1, 8][..], &[1, 8, 118_001_210, 118_001_000_210]) {
+        let worst = worst_as_known(body, palms, start, (200.0, *seed));
+        assert!(worst.is_none_or(|worst| worst < 5.0), "seed {seed}: {worst:?}");
+    }
 }

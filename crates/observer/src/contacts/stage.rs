@@ -25,6 +25,8 @@ const NO_MORE: f64 = 1e-5;
 const FOLLOWED: usize = 3;
 /// How much dearer the log may be with a known body than without, in units of chi-squared: with the right motion one in two thousand is by more.
 const DEARER: f64 = 20.0;
+/// The same where an unknown body had several motions as probable, of which the right one may be none: one in twenty is by more.
+const DEARER_OF_SEVERAL: f64 = 9.5;
 
 /// A solution, and what is known of it so far.
 pub(super) struct Stage<'a> {
@@ -62,28 +64,18 @@ fn free_body(problem: &Problem, unknown: &Solved<CONSTANTS>, against: Option<Rea
     Some(FreeBody { cost: unknown.equations.cost, mass: mass - 1.0, departures })
 }
 
-/// Looks for the motion of a known body from starts of its own where that which was found from an unknown one makes the log far dearer; if none makes
-/// it less so it is another body, or a wrong motion. Linearisations of that.
-fn searched_again(
-    problem: &mut Problem,
-    known: &mut Oriented,
+/// Why the motion of a known body is not to be believed, by how much dearer it makes the log than that of an unknown one, of which there were others as
+/// probable where `open` says so.
+fn too_dear(
+    problem: &Problem,
+    known: &Oriented,
     unknown: &Solved<CONSTANTS>,
     mass: &MassProperties,
-) -> usize {
-    let dearer = |known: &Oriented| known.solved.equations.cost - unknown.equations.cost;
-    if known.against.is_some() || dearer(known) < DEARER {
-        return 0;
-    }
-    let before = (problem.body, problem.nodes.clone(), problem.frozen.clone());
-    let again = directly(problem, mass);
-    let iterations = again.as_ref().map_or(0, Ended::all);
-    match again.filter(|again| again.solved.equations.cost < known.solved.equations.cost) {
-        Some(again) => known.solved = again.solved,
-        None => (problem.body, problem.nodes, problem.frozen) = before,
-    }
-    let dearer = dearer(known);
-    known.against = if dearer > DEARER { against_by_cost(problem, unknown, mass, dearer) } else { None };
-    iterations
+    open: Option<Reason>,
+) -> [Option<Reason>; 2] {
+    let dearer = known.solved.equations.cost - unknown.equations.cost;
+    let other = || against_by_cost(problem, unknown, mass, dearer);
+    [if dearer > DEARER { other() } else { None }, open.filter(|_| dearer > DEARER_OF_SEVERAL)]
 }
 
 /// Each of the stages gives none where the equations are singular.
@@ -134,7 +126,8 @@ impl<'a> Stage<'a> {
     pub(super) fn of_known(mut self, mass: &MassProperties) -> Option<Self> {
         let problem = &mut self.problem;
         self.before += self.solved.iterations;
-        (self.covariances, self.open) = (None, None);
+        self.covariances = None;
+        let several = self.open.take();
         if problem.planar {
             let (solved, against) = plane::known_motion(problem, &self.solved, mass)?;
             self.free = free_body(problem, &self.solved, against);
@@ -167,8 +160,9 @@ impl<'a> Stage<'a> {
             let open = other.and_then(|other| as_probable(problem, &known.solved, &other.solved));
             self.open = self.open.or(open);
         }
-        self.before += searched_again(problem, &mut known, &self.solved, mass);
-        self.open = self.open.or(known.open);
+        let [other, several] = too_dear(problem, &known, &self.solved, mass, several);
+        known.against = known.against.or(other);
+        self.open = self.open.or(known.open).or(several);
         (self.doubt, self.against) = (Some(known.doubt), known.against);
         self.free = free_body(problem, &self.solved, known.against);
         self.solved = match with_any_axes(problem, &known.solved, mass) {
