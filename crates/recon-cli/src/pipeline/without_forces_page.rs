@@ -1,6 +1,6 @@
 //! The page of motion and shape without forces.
 
-use super::views::three_views;
+use super::views::views;
 use super::without_forces::WithoutForces;
 use glam::{DVec2, DVec3};
 use recon_io::EvidenceValue::{Count, Number, Text};
@@ -55,9 +55,10 @@ fn facts(made: &WithoutForces) -> Vec<(&'static str, String, &'static str)> {
 fn panels(made: &WithoutForces) -> Vec<FigurePanel> {
     let bounded = made.bounded.as_ref();
     let [lower, upper] = [bounded.and_then(|b| b.lower.as_ref()), bounded.and_then(|b| b.upper.as_ref())];
+    let next = bounded.and_then(|b| b.drawn.farthest_apart()).map(|(at, _)| at);
     let ellipsoid = on_ellipsoid(made);
     let bodies = [("lower", corners(lower)), ("upper", corners(upper)), ("ellipsoid", &ellipsoid[..])];
-    let mut panels = three_views(&bodies, &[]);
+    let mut panels = views(&bodies, &[], next);
     let (times, motion) = (made.times(), made.motion());
     panels.push(over_time("Centre of mass", "m", &times, &motion, |state| state.p_WCm));
     panels.push(over_time("Velocity", "m/s", &times, &motion, |state| state.v_WCm));
