@@ -170,7 +170,7 @@ pub(crate) fn estimate_any_palms(
         in_plane: false,
     };
     let mut evidence = evidence(&estimate, &options, &checks);
-    evidence.extend(bounds.as_ref().and_then(|bounds| bounds.drawn.farthest_apart()).map(touch_next));
+    evidence.extend(bounds.as_ref().and_then(|bounds| bounds.drawn.largest_gap).map(|gap| touch_next(&gap)));
     let marks = bounds.as_ref().and_then(BoundsResult::marks);
     let touched: Vec<DVec3> = curves.iter().flatten().flatten().map(|c| c.p_OC).collect();
     let data = EstimateData {

@@ -32,7 +32,7 @@ pub(crate) fn bounds_page(
     let mut bodies = vec![("lower", lower), ("upper", upper)];
     bodies.extend((!fitted.is_empty()).then_some(("fit", fitted)));
     let dots = [("contacts", points), ("surface", smooth)];
-    let next = made.drawn.farthest_apart().map(|(at, _)| at);
+    let next = made.drawn.largest_gap.map(|gap| gap.outer);
     let marks = made.marks();
     let caption = if marks.is_some() { MARKED } else { "" };
     let ShapeMarks { facts: more, panels: marked } = marks.unwrap_or_default();
@@ -42,7 +42,10 @@ pub(crate) fn bounds_page(
         title: title.to_owned(),
         verdict: verdict(about, what, sizes[1].is_some(), made.contradicts()),
         warnings: made.warnings.clone(),
-        facts: facts(sizes, "m³", made.drawn.largest_gap, about).into_iter().chain(more).collect(),
+        facts: facts(sizes, "m³", made.drawn.largest_gap.map(|gap| gap.distance), about)
+            .into_iter()
+            .chain(more)
+            .collect(),
         heading: "Bounds on the shape",
         panels: views(&bodies, &dots, next).into_iter().chain(marked).collect(),
         caption: format!("{IN_SPACE}{caption}"),

@@ -39,7 +39,7 @@ pub(crate) fn silhouette(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]
 /// Bounds, the contacts that they rest on, and where they are farthest apart.
 pub(crate) fn bounds_views(made: &BoundsResult, contacts: &[DVec3]) -> Vec<FigurePanel> {
     let upper = made.drawn.upper.as_ref().map_or(&[][..], |upper| &upper.mesh.vertices);
-    let next = made.drawn.farthest_apart().map(|(at, _)| at);
+    let next = made.drawn.largest_gap.map(|gap| gap.outer);
     views(&[("lower", &made.drawn.lower.mesh.vertices), ("upper", upper)], &[("contacts", contacts)], next)
 }
 

@@ -55,7 +55,7 @@ fn facts(made: &WithoutForces) -> Vec<(&'static str, String, &'static str)> {
 fn panels(made: &WithoutForces) -> Vec<FigurePanel> {
     let bounded = made.bounded.as_ref();
     let [lower, upper] = [bounded.and_then(|b| b.lower.as_ref()), bounded.and_then(|b| b.upper.as_ref())];
-    let next = bounded.and_then(|b| b.drawn.farthest_apart()).map(|(at, _)| at);
+    let next = bounded.and_then(|b| b.drawn.largest_gap).map(|gap| gap.outer);
     let ellipsoid = on_ellipsoid(made);
     let bodies = [("lower", corners(lower)), ("upper", corners(upper)), ("ellipsoid", &ellipsoid[..])];
     let mut panels = views(&bodies, &[], next);
