@@ -1,10 +1,10 @@
 //! Interruption and readers that go away.
 
-use crate::common::{PATIENCE, Scratch, scene, wait_for};
+use crate::common::{Scratch, scene, wait_for};
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 fn interrupt(child: &Child) {
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
