@@ -24,8 +24,9 @@ const MOVES: f64 = 3.1;
 const TURNS: usize = 12;
 /// Cosine and sine of twice the angle between them.
 const TWICE_SPACING: DVec2 = DVec2::new(0.965_925_826_289_068_3, 0.258_819_045_102_520_74);
-/// Steps of the refinement: to a thousandth of the spacing.
+/// Steps of the refinement, at most: to a thousandth of the spacing; and what of the evidence is not worth another one.
 const REFINED: usize = 10;
+const ENOUGH: f64 = 0.01;
 /// Step of the second difference in the turn, rad: chi-squared is a trigonometric function of it of low order.
 const DIFFERENCE: f64 = 0.01;
 
@@ -135,20 +136,22 @@ impl Scatter {
     /// The principal directions are turned by an angle of which only the double counts: it is gone through by its cosine and sine alone.
     fn smooth(&self) -> f64 {
         let forms = self.forms();
-        let better = |most: (DVec2, f64), twice: DVec2| {
-            let value = self.smooth_along(&forms, twice);
-            if value > most.1 { (twice, value) } else { most }
-        };
-        let mut best = (DVec2::X, self.smooth_along(&forms, DVec2::X));
+        let at = |twice: DVec2| (twice, self.smooth_along(&forms, twice));
+        let better = |most: (DVec2, f64), other: (DVec2, f64)| if other.1 > most.1 { other } else { most };
+        let mut best = at(DVec2::X);
         let mut twice = DVec2::X;
         for _ in 1..TURNS {
             twice = twice.rotate(TWICE_SPACING);
-            best = better(best, twice);
+            best = better(best, at(twice));
         }
         let mut step = half_angle(TWICE_SPACING);
         for _ in 0..REFINED {
-            let about = best.0;
-            best = [about.rotate(conjugate(step)), about.rotate(step)].into_iter().fold(best, better);
+            let beside = [best.0.rotate(conjugate(step)), best.0.rotate(step)].map(at);
+            let flat = beside.iter().all(|(_, value)| (value - best.1).abs() < ENOUGH);
+            best = beside.into_iter().fold(best, better);
+            if flat {
+                break;
+            }
             step = half_angle(step);
         }
         let misfit = |twice: DVec2| self.lines(&forms, twice).iter().map(|line| line.misfit).sum::<f64>();
@@ -226,10 +229,11 @@ fn conjugate(e: DVec2) -> DVec2 {
     DVec2::new(e.x, -e.y)
 }
 
-/// The unit vector at half of an angle below a quarter turn.
+/// The unit vector at half of an angle of at most half a turn either way.
 fn half_angle(e: DVec2) -> DVec2 {
-    let cos = (0.5 * (1.0 + e.x)).sqrt();
-    DVec2::new(cos, 0.5 * e.y / cos)
+    let larger = (0.5 * (1.0 + e.x.abs())).sqrt();
+    let smaller = 0.5 * e.y / larger;
+    if e.x < 0.0 { DVec2::new(smaller.abs(), larger.copysign(e.y)) } else { DVec2::new(larger, smaller) }
 }
 
 fn trace(m: DMat2) -> f64 {
@@ -248,9 +252,9 @@ fn eigenvalues(m: DMat2) -> [f64; 2] {
 
 /// Eigenvector of the smallest eigenvalue of a symmetric matrix.
 fn smallest_direction(m: DMat2) -> DVec2 {
-    let half = 0.5 * (m.x_axis.x - m.y_axis.y);
+    let twice = DVec2::new(0.5 * (m.x_axis.x - m.y_axis.y), m.x_axis.y);
     // The largest one is at half of this angle.
-    DVec2::from_angle(0.5 * m.x_axis.y.atan2(half)).perp()
+    half_angle(twice.normalize_or(DVec2::X)).perp()
 }
 
 #[cfg(test)]
