@@ -42,7 +42,7 @@ impl RollTask {
         Self { goal, workspace, motions: 100, radians: 100.0, spacing: 0.1, risk: 0.1, spending: None }
     }
 
-    fn check(&self) -> Result<(), RollError> {
+    pub(super) fn check(&self) -> Result<(), RollError> {
         self.goal.check()?;
         self.workspace.check()?;
         let numbers = [("radians of palm motion", self.radians), ("spacing of normals", self.spacing)];
@@ -288,7 +288,7 @@ fn carry_out(
     Ok(None)
 }
 
-fn inside(task: &RollTask, palms: [f64; 2]) -> Result<(), RollError> {
+pub(super) fn inside(task: &RollTask, palms: [f64; 2]) -> Result<(), RollError> {
     if task.workspace.allows(palms) { Ok(()) } else { Err(RollError::Outside { palms }) }
 }
 

@@ -19,6 +19,7 @@ mod palms;
 mod planner;
 mod planners;
 mod predict;
+mod sensed;
 mod simulated;
 mod track;
 mod workspace;
@@ -31,6 +32,10 @@ pub use palms::{Palms, PalmsError, Reading};
 pub use planner::{RollPlanError, RollPlanner, RollProposal, View};
 pub use planners::{InformationRate, LargestGap, NearestGap, PalmSweep, RandomTurns};
 pub use predict::Prediction;
+pub use sensed::{
+    Hands, HandsError, Look, SensedError, SensedOutcome, SensedStep, SensedTask, SimulatedHands,
+    explore_sensed, noisy_curves,
+};
 pub use simulated::SimulatedPalms;
 pub use track::Track;
 pub use workspace::{Workspace, WorkspaceError};

@@ -12,6 +12,8 @@ pub struct Track {
     pub phi: f64,
     /// Sums over readings of `m m^T` and `m (m . P)`, with the horizontal `m` in body axes and the point `P` where the forces meet.
     sums: (DMat2, DVec2),
+    /// Centre of mass in body axes, m, where it is known.
+    centre: Option<DVec2>,
 }
 
 /// Weight of where the centre of mass is thought to be beforehand against one reading of the line that it is on.
@@ -21,9 +23,16 @@ impl Track {
     /// After the first reading.
     #[must_use]
     pub fn new(reading: &Reading) -> Self {
-        let mut track = Self { palms: reading.palms, phi: reading.phi, sums: (DMat2::ZERO, DVec2::ZERO) };
+        let sums = (DMat2::ZERO, DVec2::ZERO);
+        let mut track = Self { palms: reading.palms, phi: reading.phi, sums, centre: None };
         track.follow(reading);
         track
+    }
+
+    /// Of palms at absolute angles and a body at the orientation `phi` (rad), in axes about its centre of mass.
+    #[must_use]
+    pub fn about_the_centre(palms: [f64; 2], phi: f64) -> Self {
+        Self { palms, phi, sums: (DMat2::ZERO, DVec2::ZERO), centre: Some(DVec2::ZERO) }
     }
 
     /// After another one. At rest the weight passes through the point where the forces meet: a line that the centre of mass is on.
@@ -39,6 +48,9 @@ impl Track {
     /// Where the centre of mass is (m, body axes) if it would be at `guess` for all that is known beforehand.
     #[must_use]
     pub fn centre(&self, guess: DVec2) -> DVec2 {
+        if let Some(centre) = self.centre {
+            return centre;
+        }
         let system = self.sums.0 + DMat2::from_diagonal(DVec2::splat(PRIOR));
         system.inverse() * (self.sums.1 + guess * PRIOR)
     }
