@@ -11,6 +11,7 @@
 mod balance;
 mod belief;
 mod drawn;
+mod dynamics;
 mod explore;
 mod flood;
 mod gain;
@@ -26,6 +27,7 @@ mod workspace;
 
 pub use balance::{Balance, Rest, RollingBody, settle};
 pub use drawn::DrawnBody;
+pub use dynamics::Dynamics;
 pub use explore::{RollEnd, RollError, RollOutcome, RollStep, RollTask, explore_rolling};
 pub use metric::{PalmsInBody, distance, duration};
 pub use palms::{Palms, PalmsError, Reading};

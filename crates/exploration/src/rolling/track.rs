@@ -1,5 +1,6 @@
 //! Where palms and body are, and what the rests so far tell of the centre of mass.
 
+use super::dynamics::Dynamics;
 use super::palms::Reading;
 use glam::{DMat2, DVec2};
 
@@ -14,6 +15,8 @@ pub struct Track {
     sums: (DMat2, DVec2),
     /// Centre of mass in body axes, m, where it is known.
     centre: Option<DVec2>,
+    /// Of palms that do not wait until the body rests: how it moves.
+    pub dynamics: Option<Dynamics>,
 }
 
 /// Weight of where the centre of mass is thought to be beforehand against one reading of the line that it is on.
@@ -24,15 +27,15 @@ impl Track {
     #[must_use]
     pub fn new(reading: &Reading) -> Self {
         let sums = (DMat2::ZERO, DVec2::ZERO);
-        let mut track = Self { palms: reading.palms, phi: reading.phi, sums, centre: None };
+        let mut track = Self { palms: reading.palms, phi: reading.phi, sums, centre: None, dynamics: None };
         track.follow(reading);
         track
     }
 
-    /// Of palms at absolute angles and a body at the orientation `phi` (rad), in axes about its centre of mass.
+    /// Of palms at absolute angles and a body at the orientation `phi` (rad), in axes about its centre of mass, that moves so; at rest without.
     #[must_use]
-    pub fn about_the_centre(palms: [f64; 2], phi: f64) -> Self {
-        Self { palms, phi, sums: (DMat2::ZERO, DVec2::ZERO), centre: Some(DVec2::ZERO) }
+    pub fn about_the_centre(palms: [f64; 2], phi: f64, dynamics: Option<Dynamics>) -> Self {
+        Self { palms, phi, sums: (DMat2::ZERO, DVec2::ZERO), centre: Some(DVec2::ZERO), dynamics }
     }
 
     /// After another one. At rest the weight passes through the point where the forces meet: a line that the centre of mass is on.

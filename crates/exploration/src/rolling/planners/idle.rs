@@ -5,7 +5,7 @@ use crate::planner::Reason;
 use crate::random::Source;
 use crate::rolling::belief::Belief;
 use crate::rolling::flood::{far_motion, unreached};
-use crate::rolling::planner::{RollPlanError, RollProposal, View, targets};
+use crate::rolling::planner::{RollPlanError, RollProposal, SPACING, View, targets};
 
 /// Counts motions that brought no contact.
 #[derive(Clone, Debug, Default)]
@@ -76,7 +76,7 @@ impl Idle {
 
 /// Any angles of the workspace: the body comes to lie otherwise.
 fn shaken(view: &View<'_>, seed: u64) -> RollProposal {
-    let all = targets(view.workspace, view.track.palms);
+    let all = targets(view.workspace, view.track.palms, SPACING);
     let drawn = Source::new(seed.wrapping_add(view.motion as u64)).unit();
     let to = all.get((drawn * all.len() as f64) as usize).copied().unwrap_or(view.track.palms);
     RollProposal { legs: vec![to], expected: None, reason: Reason::Sequence }

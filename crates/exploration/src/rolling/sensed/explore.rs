@@ -1,5 +1,6 @@
 //! The closed loop with the estimator in it.
 
+use super::super::dynamics::{Dynamics, lasts};
 use super::super::explore::{RollEnd, RollError, RollTask, inside};
 use super::super::palms::PalmsError;
 use super::super::planner::{RollPlanError, RollPlanner, RollProposal, View};
@@ -14,7 +15,8 @@ use crate::confidence::{Confidence, ConfidenceError, Spending};
 use crate::knowledge::Knowledge;
 use crate::planar::PlanarKnowledge;
 use crate::planner::Reason;
-use observer::planar::{PlaneOptions, estimate_plane};
+use object_dynamics::planar::PlanarMass;
+use observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
 use shape_bounds::planar::Direction;
 use thiserror::Error;
 
@@ -91,9 +93,6 @@ pub enum SensedError {
     Start(#[source] HandsError),
 }
 
-/// The fastest that a turn from rest to rest is, over its mean speed: the polynomial of degree 7.
-const PEAK: f64 = 35.0 / 16.0;
-
 struct Loop<'a> {
     task: &'a SensedTask,
     confidence: Confidence,
@@ -132,7 +131,8 @@ impl Loop<'_> {
         };
         let levels = (1.0 - share, self.confidence.level());
         let contact = self.task.sensors.noise.contact;
-        match Look::new(&log, &estimate, contact, levels, self.task.roll.spacing, hands.palms()) {
+        let place = (hands.palms(), self.dynamics(&estimate));
+        match Look::new(&log, &estimate, contact, levels, self.task.roll.spacing, place) {
             Ok(look) => {
                 let spending = Some(self.confidence.spending());
                 let now = Certificate::of(&look.proven, self.task.roll.goal, spending);
@@ -144,6 +144,14 @@ impl Loop<'_> {
             Err(error) => self.doubt = Some(error.to_string()),
         }
         Ok(())
+    }
+
+    /// How the body moves, by its estimate.
+    fn dynamics(&self, estimate: &PlaneEstimate) -> Option<Dynamics> {
+        let known = self.task.sensors.body;
+        let mass = known.or_else(|| PlanarMass::new(estimate.mass.0, estimate.inertia.0).ok())?;
+        let omega = estimate.states.last()?.omega0;
+        Some(Dynamics { mass, gravity: self.task.sensors.gravity, omega })
     }
 
     fn reached(&self) -> Option<Certificate<Direction>> {
@@ -178,7 +186,7 @@ impl Loop<'_> {
     ) -> Result<RollProposal, RollPlanError> {
         let (nothing, RollTask { goal, workspace, risk, spacing, .. }) =
             (PlanarKnowledge::exact(), &self.task.roll);
-        let still = Track::about_the_centre(palms, 0.0);
+        let still = Track::about_the_centre(palms, 0.0, None);
         let (known, track) = self.look.as_ref().map_or((&nothing, &still), |l| (&l.planned_on, &l.track));
         let (risk, spacing) = (*risk, *spacing);
         let view = View { known, track, workspace, goal, risk, spacing, motion };
@@ -244,7 +252,7 @@ pub fn explore_sensed(
         for leg in &proposal.legs {
             inside(&task.roll, *leg)?;
             let from = hands.palms();
-            let lasts = PEAK * workspace.seconds(from, *leg);
+            let lasts = lasts(&workspace, from, *leg);
             match hands.turn(*leg, lasts, workspace.settle) {
                 Ok(()) => {}
                 Err(HandsError::Off { palm, s, length }) => {

@@ -1,5 +1,6 @@
 //! What an estimate knows of the outline: for the proof all of its contacts with their noise, for a planner some that stand for them.
 
+use super::super::dynamics::Dynamics;
 use super::super::track::Track;
 use crate::knowledge::{Knowledge, KnowledgeError};
 use crate::planar::PlanarKnowledge;
@@ -80,12 +81,12 @@ impl Look {
         contact_noise: f64,
         (level, stated): (f64, f64),
         spacing: f64,
-        palms: [f64; 2],
+        (palms, dynamics): ([f64; 2], Option<Dynamics>),
     ) -> Result<Self, KnowledgeError> {
         let curves = noisy_curves(log, estimate, contact_noise);
         let proven = PlanarKnowledge::estimated(&curves, level, stated)?;
         let phi = estimate.states.last().map_or(0.0, |state| state.phi0);
-        let track = Track::about_the_centre(palms, phi);
+        let track = Track::about_the_centre(palms, phi, dynamics);
         Ok(Self { planned_on: standing_for(&curves, spacing), proven, track })
     }
 }

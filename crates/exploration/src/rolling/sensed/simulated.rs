@@ -1,15 +1,14 @@
 //! Palms and a body by the equations of motion, with Coulomb friction and noise of the sensors.
 
+use super::super::dynamics::{off, scene};
 use super::hands::{Hands, HandsError};
-use contact_kinematics::MotionLaw;
-use contact_kinematics::planar::{MotionPart, PalmSurface, RadiusFunction, SurfaceMotion, SurfacePose};
+use contact_kinematics::planar::{PalmSurface, RadiusFunction};
 use glam::DVec2;
 use object_dynamics::ContactMode;
 use object_dynamics::planar::{
     BodyState, ContactLog, ContactLogSample, ContactNoise, ContactScene, ContactSimulation, ContactStart,
-    PlanarObject, PlanarTruth, ScenePalm,
+    PlanarObject, PlanarTruth,
 };
-use std::f64::consts::PI;
 
 /// Relative tolerance of the integrator in a step.
 const TOLERANCE: f64 = 1e-9;
@@ -41,24 +40,16 @@ impl<S: RadiusFunction + Clone> SimulatedHands<S> {
         phi: f64,
         rate: f64,
     ) -> Result<Self, HandsError> {
-        let still = [0.0; 2].map(|_| MotionLaw::Constant { value: 0.0 });
-        let scene = scene(&object, friction, palms, still)?;
-        let bounds = object.shape.radius_bounds();
+        let start = ContactStart::default();
+        let (samples, truth, noise) = (Vec::new(), Vec::new(), (ContactNoise::default(), 0));
+        let mut hands = Self { object, friction, length, palms, rate, start, samples, truth, noise };
+        let scene = hands.scene(palms, [0.0, 1.0])?;
+        let bounds = hands.object.shape.radius_bounds();
         let (middle, half) = (0.5 * (palms[0] + palms[1]), 0.5 * (palms[1] - palms[0]));
         let far = 0.5 * (bounds.min + bounds.max) / half.sin();
         let guess = BodyState { p_WCm: DVec2::from_angle(middle) * far, phi0: phi, ..BodyState::default() };
-        let body = scene.place(0.0, guess, &[0, 1])?;
-        Ok(Self {
-            object,
-            friction,
-            length,
-            palms,
-            rate,
-            start: ContactStart { body, contacts: vec![0, 1] },
-            samples: Vec::new(),
-            truth: Vec::new(),
-            noise: (ContactNoise::default(), 0),
-        })
+        hands.start = ContactStart { body: scene.place(0.0, guess, &[0, 1])?, contacts: vec![0, 1] };
+        Ok(hands)
     }
 
     /// Orientation at the first sample, rad: there the axes of the estimate are those of the world.
@@ -87,39 +78,11 @@ impl<S: RadiusFunction + Clone> SimulatedHands<S> {
         }
     }
 
-    /// The body is at home where every contact is on a palm.
-    fn check(&self, run: &ContactSimulation) -> Result<(), HandsError> {
-        for at in &run.instants {
-            for (i, palm) in at.palms.iter().enumerate().filter(|(i, _)| at.modes[*i] != ContactMode::Off) {
-                let along = DVec2::from_angle(palm.angle) * if i == 0 { 1.0 } else { -1.0 };
-                let s = at.contacts[i].p_WC.dot(along);
-                if !(0.0..=self.length).contains(&s) {
-                    return Err(HandsError::Off { palm: i + 1, s, length: self.length });
-                }
-            }
-        }
-        Ok(())
+    fn scene(&self, to: [f64; 2], times: [f64; 2]) -> Result<ContactScene<S>, HandsError> {
+        let PlanarObject { shape, mass, gravity } = &self.object;
+        let object = PlanarObject { shape: shape.clone(), mass: *mass, gravity: *gravity };
+        Ok(scene(object, self.friction, [self.palms, to], times)?)
     }
-}
-
-/// Two lines through the origin, the object above the first and below the second as it is turned; each turns by its law.
-fn scene<S: RadiusFunction + Clone>(
-    object: &PlanarObject<S>,
-    friction: f64,
-    palms: [f64; 2],
-    laws: [MotionLaw; 2],
-) -> Result<ContactScene<S>, HandsError> {
-    let angles = [palms[0], palms[1] - PI];
-    let palm = |i: usize| ScenePalm {
-        surface: PalmSurface::Line,
-        motion: SurfaceMotion {
-            pose: SurfacePose { p_WP: DVec2::ZERO, angle: angles[i] },
-            parts: vec![MotionPart::Turn { pivot: DVec2::ZERO, law: laws[i] }],
-        },
-        friction,
-    };
-    let object = PlanarObject { shape: object.shape.clone(), mass: object.mass, gravity: object.gravity };
-    Ok(ContactScene::new(object, vec![palm(0), palm(1)])?)
 }
 
 impl<S: RadiusFunction + Clone> Hands for SimulatedHands<S> {
@@ -130,12 +93,13 @@ impl<S: RadiusFunction + Clone> Hands for SimulatedHands<S> {
     fn turn(&mut self, to: [f64; 2], seconds: f64, wait: f64) -> Result<(), HandsError> {
         let start = self.samples.last().map_or(0.0, |s| s.t);
         let duration = seconds.max(1.0 / self.rate);
-        let ramp = |i: usize| MotionLaw::Ramp { height: to[i] - self.palms[i], start, duration };
-        let scene = scene(&self.object, self.friction, self.palms, [ramp(0), ramp(1)])?;
+        let scene = self.scene(to, [start, duration])?;
         let count = ((duration + wait) * self.rate).ceil() as usize;
         let times: Vec<f64> = (0..=count).map(|k| start + k as f64 / self.rate).collect();
         let run = scene.simulate(&self.start, &times, TOLERANCE)?;
-        self.check(&run)?;
+        if let Some((palm, s)) = off(&run.instants, self.length) {
+            return Err(HandsError::Off { palm, s, length: self.length });
+        }
         self.take(&run, &run.log(&scene)?);
         if let Some(last) = run.instants.last() {
             let touching = (0..2).filter(|i| last.modes[*i] != ContactMode::Off).collect();
