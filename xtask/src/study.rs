@@ -124,6 +124,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
     ("result_bags", "result-bags.md", "bags of results as mcap-ros2-support reads them"),
     ("rolling", "rolling.md", "radians and seconds of palm motion that planners take to a gap in the plane"),
     (
+        "rolling_sensed",
+        "rolling-sensed.md",
+        "the same with noisy sensors and the estimator in the loop, false certificates, horizon against bodies drawn",
+    ),
+    (
         "shape_fits",
         "shape-fits.md",
         "shapes fitted to contacts against the Cramer-Rao bound, and their choice",

@@ -38,6 +38,7 @@ mod pushes;
 mod reaching;
 mod result_bags;
 mod rolling;
+mod rolling_sensed;
 mod shape_fits;
 mod streaming;
 mod three_palms_monte_carlo;
@@ -87,6 +88,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("reaching", || in_words(reaching::main())),
     ("result_bags", || in_words(result_bags::main())),
     ("rolling", || in_words(rolling::main())),
+    ("rolling_sensed", || in_words(rolling_sensed::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),
     ("tilting_palms", || in_words(tilting_palms::main())),
@@ -107,6 +109,7 @@ const OF_RUNS: &[&str] = &[
     "palms",
     "planar_estimates",
     "planar_estimates_friction",
+    "rolling_sensed",
     "three_palms_monte_carlo",
     "tilting_palms",
     "whole_logs",

@@ -81,8 +81,8 @@ pub struct RollStep {
 pub enum RollEnd {
     /// All motions or radians were made that were allowed for, or all contacts taken that the confidence was shared among.
     Budget,
-    /// What is left lies where no motion within the workspace reaches.
-    Unreachable {
+    /// The planner found no motion that uncovers what is left. Nothing is proven by that.
+    NotFound {
         /// Outward normals in body axes, with the most left first.
         directions: Vec<Direction>,
     },
@@ -246,8 +246,8 @@ pub fn explore_rolling(
         };
         let proposal = match planner.next(&view) {
             Ok(proposal) => proposal,
-            Err(RollPlanError::Unreachable { directions }) => {
-                return short(&state, RollEnd::Unreachable { directions });
+            Err(RollPlanError::NotFound { directions }) => {
+                return short(&state, RollEnd::NotFound { directions });
             }
             Err(error) => return Err(RollError::Plan(error)),
         };

@@ -112,7 +112,7 @@ pub(super) fn far_motion(
             best = Some(proposal);
         }
     }
-    best.ok_or_else(|| RollPlanError::Unreachable { directions: unreached(view, belief) })
+    best.ok_or_else(|| RollPlanError::NotFound { directions: unreached(view, belief) })
 }
 
 fn legs(places: &[Place], to: usize) -> Vec<[f64; 2]> {

@@ -35,7 +35,7 @@ pub use planner::{RollPlanError, RollPlanner, RollProposal, View};
 pub use planners::{InformationRate, LargestGap, NearestGap, PalmSweep, RandomTurns};
 pub use predict::Prediction;
 pub use sensed::{
-    Hands, HandsError, Look, SensedError, SensedOutcome, SensedStep, SensedTask, SimulatedHands,
+    Hands, HandsError, Look, SensedEnd, SensedError, SensedOutcome, SensedStep, SensedTask, SimulatedHands,
     explore_sensed, noisy_curves,
 };
 pub use simulated::SimulatedPalms;

@@ -43,9 +43,9 @@ pub struct RollProposal {
 /// Why there is no next motion.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum RollPlanError {
-    /// On no body drawn does a motion within the workspace reach what is left.
-    #[error("no motion within the workspace reaches what is left: {} directions of the body are out of reach", directions.len())]
-    Unreachable {
+    /// On no body drawn was a motion found that uncovers what is left: no proof that there is none on the true one.
+    #[error("no motion was found that uncovers what is left, at {} directions of the body; that is no proof that there is none", directions.len())]
+    NotFound {
         /// Outward normals in body axes, with the most left first.
         directions: Vec<Direction>,
     },

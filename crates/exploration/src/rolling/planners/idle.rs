@@ -44,7 +44,7 @@ impl Idle {
             0..FAR => Ok(None),
             FAR..SHAKEN => self.far(view, belief, least, seed).map(Some),
             SHAKEN..GIVEN_UP => Ok(Some(shaken(view, seed))),
-            _ => Err(RollPlanError::Unreachable { directions: unreached(view, belief) }),
+            _ => Err(RollPlanError::NotFound { directions: unreached(view, belief) }),
         }
     }
 
@@ -52,7 +52,7 @@ impl Idle {
     /// otherwise, say so too, with no contact in between.
     ///
     /// # Errors
-    /// [`RollPlanError::Unreachable`] after so many tries.
+    /// [`RollPlanError::NotFound`] after so many tries.
     pub(super) fn far(
         &mut self,
         view: &View<'_>,
@@ -65,7 +65,7 @@ impl Idle {
             (self.touches_then, self.tries) = (touches, 0);
         }
         match far_motion(view, belief, least) {
-            Err(RollPlanError::Unreachable { .. }) if self.tries < TRIES => {
+            Err(RollPlanError::NotFound { .. }) if self.tries < TRIES => {
                 self.tries += 1;
                 Ok(shaken(view, seed))
             }

@@ -15,7 +15,8 @@ use crate::confidence::{Confidence, ConfidenceError, Spending};
 use crate::knowledge::Knowledge;
 use crate::planar::PlanarKnowledge;
 use crate::planner::Reason;
-use object_dynamics::planar::PlanarMass;
+use object_dynamics::planar::{ContactLog, PlanarMass};
+use observer::Reliability;
 use observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
 use shape_bounds::planar::Direction;
 use thiserror::Error;
@@ -52,31 +53,28 @@ pub struct SensedStep {
     pub deviations: Option<[f64; 2]>,
 }
 
-/// How it ended.
+/// Why a goal was not reached.
 #[derive(Clone, Debug, PartialEq)]
-pub enum SensedOutcome {
-    /// The goal is proven.
-    Reached(Certificate<Direction>),
-    /// It is not.
-    Short {
-        /// Why, where the planner or the budget ended it; none where the palms cannot go on.
-        end: Option<RollEnd>,
-        /// Why the palms cannot go on.
-        stopped: Option<HandsError>,
-        /// The best that was proven; none if nothing ever was.
-        certificate: Option<Certificate<Direction>>,
+pub enum SensedEnd {
+    /// The budget, the planner, or a lost body.
+    Rolling(RollEnd),
+    /// The palms cannot go on.
+    Stopped(HandsError),
+    /// One estimate after the other was not relied on.
+    Doubted {
+        /// Why the last one was not.
+        doubt: String,
     },
 }
 
-impl SensedOutcome {
-    /// What is proven.
-    #[must_use]
-    pub fn certificate(&self) -> Option<&Certificate<Direction>> {
-        match self {
-            Self::Reached(certificate) => Some(certificate),
-            Self::Short { certificate, .. } => certificate.as_ref(),
-        }
-    }
+/// How it ended.
+pub struct SensedOutcome {
+    /// The goal is proven, or why not.
+    pub short: Option<SensedEnd>,
+    /// What was known when an estimate was last relied on; none if it never was.
+    pub look: Option<Look>,
+    /// What that proves.
+    pub certificate: Option<Certificate<Direction>>,
 }
 
 /// Why it cannot be made.
@@ -93,14 +91,19 @@ pub enum SensedError {
     Start(#[source] HandsError),
 }
 
+/// Estimates in a row that are not relied on before it is ended: what made them so stays in the log.
+const DOUBTS: usize = 4;
+
 struct Loop<'a> {
     task: &'a SensedTask,
     confidence: Confidence,
     look: Option<Look>,
-    best: Option<Certificate<Direction>>,
+    /// Estimates since then that were not relied on, and why the last one was not.
+    doubts: usize,
     doubt: Option<String>,
     deviations: Option<[f64; 2]>,
     radians: f64,
+    seconds: f64,
     looks: usize,
 }
 
@@ -109,41 +112,31 @@ impl Loop<'_> {
     fn look(&mut self, hands: &dyn Hands) -> Result<(), HandsError> {
         let log = hands.log()?;
         self.looks += 1;
-        (self.look, self.deviations) = (None, None);
-        let estimate = match estimate_plane(&log, &self.task.sensors) {
-            Ok(estimate) if estimate.reliability.is_reliable() => estimate,
-            Ok(estimate) => {
-                self.doubt = Some(format!("{:?}", estimate.reliability));
-                return Ok(());
-            }
-            Err(error) => {
-                self.doubt = Some(error.to_string());
-                return Ok(());
-            }
-        };
-        self.deviations = estimate.deviations.last().map(|d| [d.p_WCm.length(), d.phi0]);
-        let share = match self.confidence.share(self.looks) {
-            Ok(share) => share,
-            Err(spent) => {
-                self.doubt = Some(spent.to_string());
-                return Ok(());
-            }
-        };
-        let levels = (1.0 - share, self.confidence.level());
-        let contact = self.task.sensors.noise.contact;
-        let place = (hands.palms(), self.dynamics(&estimate));
-        match Look::new(&log, &estimate, contact, levels, self.task.roll.spacing, place) {
+        match self.seen(&log, hands.palms()) {
             Ok(look) => {
-                let spending = Some(self.confidence.spending());
-                let now = Certificate::of(&look.proven, self.task.roll.goal, spending);
-                if self.best.as_ref().is_none_or(|best| now.proven < best.proven) {
-                    self.best = Some(now);
-                }
-                (self.look, self.doubt) = (Some(look), None);
+                self.look = Some(look);
+                (self.doubts, self.doubt) = (0, None);
             }
-            Err(error) => self.doubt = Some(error.to_string()),
+            Err(doubt) => {
+                self.doubts += 1;
+                (self.doubt, self.deviations) = (Some(doubt), None);
+            }
         }
         Ok(())
+    }
+
+    /// What a log tells, or why it is not relied on.
+    fn seen(&mut self, log: &ContactLog, palms: [f64; 2]) -> Result<Look, String> {
+        let estimate = estimate_plane(log, &self.task.sensors).map_err(|error| error.to_string())?;
+        if let Reliability::Unreliable(reasons) = &estimate.reliability {
+            return Err(reasons.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
+        }
+        self.deviations = estimate.deviations.last().map(|d| [d.p_WCm.length(), d.phi0]);
+        let share = self.confidence.share(self.looks).map_err(|error| error.to_string())?;
+        let levels = (1.0 - share, self.confidence.level());
+        let (contact, spacing) = (self.task.sensors.noise.contact, self.task.roll.spacing);
+        let place = (palms, self.dynamics(&estimate));
+        Look::new(log, &estimate, contact, levels, spacing, place).map_err(|error| error.to_string())
     }
 
     /// How the body moves, by its estimate.
@@ -154,29 +147,32 @@ impl Loop<'_> {
         Some(Dynamics { mass, gravity: self.task.sensors.gravity, omega })
     }
 
-    fn reached(&self) -> Option<Certificate<Direction>> {
-        self.best.clone().filter(|best| best.proven <= self.task.roll.goal.value())
+    fn certificate(&self) -> Option<Certificate<Direction>> {
+        let of = |look: &Look| {
+            Certificate::of(&look.proven, self.task.roll.goal, Some(self.confidence.spending()))
+        };
+        self.look.as_ref().map(of)
     }
 
-    fn step(
-        &self,
-        motion: usize,
-        proposal: Option<&RollProposal>,
-        hands: &dyn Hands,
-        seconds: f64,
-    ) -> SensedStep {
+    fn ended(self, short: Option<SensedEnd>) -> SensedOutcome {
+        SensedOutcome { short, certificate: self.certificate(), look: self.look }
+    }
+
+    fn step(&self, motion: usize, proposal: Option<&RollProposal>, hands: &dyn Hands) -> SensedStep {
+        let proven = self.look.as_ref().filter(|_| self.doubts == 0);
         SensedStep {
             motion,
             why: proposal.map(|p| (p.reason, p.expected)),
             palms: hands.palms(),
             radians: self.radians,
-            seconds,
+            seconds: self.seconds,
             doubt: self.doubt.clone(),
-            progress: self.look.as_ref().map_or(f64::INFINITY, |l| l.proven.progress(&self.task.roll.goal)),
+            progress: proven.map_or(f64::INFINITY, |l| l.proven.progress(&self.task.roll.goal)),
             deviations: self.deviations,
         }
     }
 
+    /// The next motion. Without an estimate there is nothing to plan on: the palms sweep, so that there is something to estimate from.
     fn next(
         &self,
         planner: &mut dyn RollPlanner,
@@ -184,21 +180,62 @@ impl Loop<'_> {
         palms: [f64; 2],
         motion: usize,
     ) -> Result<RollProposal, RollPlanError> {
-        let (nothing, RollTask { goal, workspace, risk, spacing, .. }) =
-            (PlanarKnowledge::exact(), &self.task.roll);
-        let still = Track::about_the_centre(palms, 0.0, None);
-        let (known, track) = self.look.as_ref().map_or((&nothing, &still), |l| (&l.planned_on, &l.track));
+        let RollTask { goal, workspace, risk, spacing, .. } = &self.task.roll;
         let (risk, spacing) = (*risk, *spacing);
-        let view = View { known, track, workspace, goal, risk, spacing, motion };
-        // Without an estimate there is nothing to plan on: the palms move, so that there is something to estimate from.
-        if self.look.is_none() { sweep.next(&view) } else { planner.next(&view) }
+        if let Some(Look { planned_on: known, track, .. }) = self.look.as_ref().filter(|_| self.doubts == 0) {
+            let next = planner.next(&View { known, track, workspace, goal, risk, spacing, motion });
+            // No body: noise put contacts past each other, and the next estimate has others.
+            if !matches!(next, Err(RollPlanError::NoBody { .. })) {
+                return next;
+            }
+        }
+        let (known, track) = (&PlanarKnowledge::exact(), &Track::about_the_centre(palms, 0.0, None));
+        sweep.next(&View { known, track, workspace, goal, risk, spacing, motion })
+    }
+
+    /// Carries a motion out; why it cannot be.
+    fn carry_out(
+        &mut self,
+        proposal: &RollProposal,
+        hands: &mut dyn Hands,
+    ) -> Result<Option<SensedEnd>, SensedError> {
+        let workspace = &self.task.roll.workspace;
+        for leg in &proposal.legs {
+            inside(&self.task.roll, *leg)?;
+            let (from, lasts) = (hands.palms(), lasts(workspace, hands.palms(), *leg));
+            match hands.turn(*leg, lasts, workspace.settle) {
+                Ok(()) => {}
+                Err(HandsError::Off { palm, s, length }) => {
+                    let lost = PalmsError::Off { palm, s, length };
+                    return Ok(Some(SensedEnd::Rolling(RollEnd::Lost(lost))));
+                }
+                Err(error) => return Ok(Some(SensedEnd::Stopped(error))),
+            }
+            self.radians += radians(from, *leg);
+            self.seconds += lasts + workspace.settle;
+        }
+        Ok(self.look(hands).err().map(SensedEnd::Stopped))
+    }
+
+    /// Why no other motion is made, if none is; none within where the goal is proven.
+    fn done(&self, motion: usize) -> Option<Option<SensedEnd>> {
+        let RollTask { motions, radians, ref goal, .. } = self.task.roll;
+        if self.look.as_ref().is_some_and(|look| look.proven.proves(goal)) {
+            Some(None)
+        } else if motion >= motions || self.radians >= radians {
+            Some(Some(SensedEnd::Rolling(RollEnd::Budget)))
+        } else if self.doubts >= DOUBTS {
+            Some(Some(SensedEnd::Doubted { doubt: self.doubt.clone().unwrap_or_default() }))
+        } else {
+            None
+        }
     }
 }
 
 /// Turns `hands` as `planner` says until `task.roll.goal` is proven, or cannot be; `observe` sees each motion and what is known after it.
 ///
-/// After each motion the body's motion is estimated anew from all that was sensed. Where that estimate is not relied on nothing is proven by it, and
-/// the palms go on. The confidence is shared among all looks: a motion's bounds hold with one less a share of what may go wrong.
+/// After each motion the body's motion is estimated anew from all that was sensed. Where that estimate is not relied on nothing new is proven, and
+/// the palms go on. The confidence is shared among all looks: the bounds of each hold but for a share of what may go wrong.
 ///
 /// # Errors
 /// [`SensedError`] for tasks that are none.
@@ -208,65 +245,43 @@ pub fn explore_sensed(
     task: &SensedTask,
     mut observe: impl FnMut(&SensedStep, Option<&Look>),
 ) -> Result<SensedOutcome, SensedError> {
-    let RollTask { workspace, motions, radians: most, .. } = task.roll;
     task.roll.check()?;
     inside(&task.roll, hands.palms())?;
-    let confidence = Confidence::new(task.level, Spending::Budget(motions + 1))?;
+    let confidence = Confidence::new(task.level, Spending::Budget(task.roll.motions + 1))?;
+    let settle = task.roll.workspace.settle;
     let mut state = Loop {
         task,
         confidence,
         look: None,
-        best: None,
+        doubts: 0,
         doubt: None,
         deviations: None,
         radians: 0.0,
+        seconds: 2.0 * settle,
         looks: 0,
     };
-    let (mut sweep, mut seconds) = (PalmSweep::new(), 2.0 * workspace.settle);
-    hands.turn(hands.palms(), workspace.settle, workspace.settle).map_err(SensedError::Start)?;
+    hands.turn(hands.palms(), settle, settle).map_err(SensedError::Start)?;
     state.look(hands).map_err(SensedError::Start)?;
-    observe(&state.step(0, None, hands, seconds), state.look.as_ref());
-    let mut motion = 0;
+    observe(&state.step(0, None, hands), state.look.as_ref());
+    let (mut sweep, mut motion) = (PalmSweep::new(), 0);
     loop {
-        if let Some(certificate) = state.reached() {
-            return Ok(SensedOutcome::Reached(certificate));
-        }
-        let short = |state: &Loop<'_>, end, stopped| {
-            Ok(SensedOutcome::Short { end, stopped, certificate: state.best.clone() })
-        };
-        if motion >= motions || state.radians >= most {
-            return short(&state, Some(RollEnd::Budget), None);
+        if let Some(end) = state.done(motion) {
+            return Ok(state.ended(end));
         }
         let proposal = match state.next(planner, &mut sweep, hands.palms(), motion) {
             Ok(proposal) => proposal,
-            Err(RollPlanError::Unreachable { directions }) => {
-                return short(&state, Some(RollEnd::Unreachable { directions }), None);
+            Err(RollPlanError::NotFound { directions }) => {
+                return Ok(state.ended(Some(SensedEnd::Rolling(RollEnd::NotFound { directions }))));
             }
-            // Drawn from contacts that noise put past each other: the next estimate has others.
-            Err(RollPlanError::NoBody { .. }) => {
-                state.look = None;
-                continue;
-            }
+            Err(error) => return Err(RollError::Plan(error).into()),
         };
         motion += 1;
-        for leg in &proposal.legs {
-            inside(&task.roll, *leg)?;
-            let from = hands.palms();
-            let lasts = lasts(&workspace, from, *leg);
-            match hands.turn(*leg, lasts, workspace.settle) {
-                Ok(()) => {}
-                Err(HandsError::Off { palm, s, length }) => {
-                    let lost = RollEnd::Lost(PalmsError::Off { palm, s, length });
-                    return short(&state, Some(lost), None);
-                }
-                Err(error) => return short(&state, None, Some(error)),
-            }
-            state.radians += radians(from, *leg);
-            seconds += lasts + workspace.settle;
+        if let Some(end) = state.carry_out(&proposal, hands)? {
+            return Ok(state.ended(Some(end)));
         }
-        if let Err(error) = state.look(hands) {
-            return short(&state, None, Some(error));
-        }
-        observe(&state.step(motion, Some(&proposal), hands, seconds), state.look.as_ref());
+        observe(
+            &state.step(motion, Some(&proposal), hands),
+            state.look.as_ref().filter(|_| state.doubts == 0),
+        );
     }
 }

@@ -9,7 +9,7 @@ mod hands;
 mod look;
 mod simulated;
 
-pub use explore::{SensedError, SensedOutcome, SensedStep, SensedTask, explore_sensed};
+pub use explore::{SensedEnd, SensedError, SensedOutcome, SensedStep, SensedTask, explore_sensed};
 pub use hands::{Hands, HandsError};
 pub use look::{Look, noisy_curves};
 pub use simulated::SimulatedHands;

@@ -75,9 +75,9 @@ pub(crate) fn rolled(
     if exit == Exit::WithReservations {
         figures["warnings"] = json!([statement]);
     }
-    if let RollOutcome::Short { end: RollEnd::Unreachable { directions }, .. } = &ended {
+    if let RollOutcome::Short { end: RollEnd::NotFound { directions }, .. } = &ended {
         let named: Vec<_> = directions.iter().map(|n| n.get().to_array()).collect();
-        figures["out_of_reach"] = json!(named);
+        figures["not_found"] = json!(named);
     }
     let text = format!(
         "{title}\n  {statement}\n  motions                {}\n  palms turned           {} rad, {} s\n",
@@ -102,10 +102,11 @@ fn statement(ended: &RollOutcome) -> String {
         RollOutcome::Reached(_) => told,
         RollOutcome::Short { end, .. } => match end {
             RollEnd::Budget => format!("{told}: all motions or contacts that were allowed for are made"),
-            RollEnd::Unreachable { directions } => {
+            RollEnd::NotFound { directions } => {
                 let first = directions.first().map_or(f64::NAN, |n| n.angle().to_degrees());
                 format!(
-                    "{told}: no motion was found that reaches what is left, most of it at {} degrees on the object",
+                    "{told}: the planner found no motion that uncovers what is left, most of it at {} degrees on the object; that is no proof that \
+                     there is none",
                     brief_to(3, first)
                 )
             }
