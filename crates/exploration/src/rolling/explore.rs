@@ -105,6 +105,12 @@ pub enum RollOutcome {
 }
 
 impl RollOutcome {
+    /// Whether the goal is proven.
+    #[must_use]
+    pub fn is_reached(&self) -> bool {
+        matches!(self, Self::Reached(_))
+    }
+
     /// What is proven.
     #[must_use]
     pub fn certificate(&self) -> &Certificate<Direction> {

@@ -32,10 +32,11 @@ impl Track {
         track
     }
 
-    /// Of palms at absolute angles and a body at the orientation `phi` (rad), in axes about its centre of mass, that moves so; at rest without.
+    /// Of palms at absolute angles and a body at the orientation `phi` (rad) with its centre of mass at `centre` (m, body axes) that moves so; at
+    /// rest without.
     #[must_use]
-    pub fn about_the_centre(palms: [f64; 2], phi: f64, dynamics: Option<Dynamics>) -> Self {
-        Self { palms, phi, sums: (DMat2::ZERO, DVec2::ZERO), centre: Some(DVec2::ZERO), dynamics }
+    pub fn about(palms: [f64; 2], phi: f64, centre: DVec2, dynamics: Option<Dynamics>) -> Self {
+        Self { palms, phi, sums: (DMat2::ZERO, DVec2::ZERO), centre: Some(centre), dynamics }
     }
 
     /// After another one. At rest the weight passes through the point where the forces meet: a line that the centre of mass is on.

@@ -15,6 +15,7 @@ use crate::confidence::{Confidence, ConfidenceError, Spending};
 use crate::knowledge::Knowledge;
 use crate::planar::PlanarKnowledge;
 use crate::planner::Reason;
+use glam::DVec2;
 use object_dynamics::planar::{ContactLog, PlanarMass};
 use observer::Reliability;
 use observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
@@ -189,7 +190,7 @@ impl Loop<'_> {
                 return next;
             }
         }
-        let (known, track) = (&PlanarKnowledge::exact(), &Track::about_the_centre(palms, 0.0, None));
+        let (known, track) = (&PlanarKnowledge::exact(), &Track::about(palms, 0.0, DVec2::ZERO, None));
         sweep.next(&View { known, track, workspace, goal, risk, spacing, motion })
     }
 

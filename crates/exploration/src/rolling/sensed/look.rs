@@ -86,7 +86,7 @@ impl Look {
         let curves = noisy_curves(log, estimate, contact_noise);
         let proven = PlanarKnowledge::estimated(&curves, level, stated)?;
         let phi = estimate.states.last().map_or(0.0, |state| state.phi0);
-        let track = Track::about_the_centre(palms, phi, dynamics);
+        let track = Track::about(palms, phi, DVec2::ZERO, dynamics);
         Ok(Self { planned_on: standing_for(&curves, spacing), proven, track })
     }
 }
