@@ -122,6 +122,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "touches and way that planners take to a gap, false certificates under noise",
     ),
     ("result_bags", "result-bags.md", "bags of results as mcap-ros2-support reads them"),
+    (
+        "contour",
+        "contour.md",
+        "outlines that are not convex, followed by round fingers: what is felt, what is jumped over",
+    ),
     ("rolling", "rolling.md", "radians and seconds of palm motion that planners take to a gap in the plane"),
     (
         "rolling_sensed",

@@ -24,6 +24,7 @@ mod contact_exports;
 mod contact_logs;
 mod contact_modes_estimated;
 mod contact_wedging;
+mod contour;
 mod exported_objects;
 mod mode_bank;
 mod no_force;
@@ -74,6 +75,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("contact_exports", || in_words(contact_exports::main())),
     ("contact_logs", || in_words(contact_logs::main())),
     ("contact_wedging", || in_words(contact_wedging::main())),
+    ("contour", || in_words(contour::main())),
     ("exported_objects", || in_words(exported_objects::main())),
     ("contact_modes_estimated", || in_words(contact_modes_estimated::main())),
     ("mode_bank", || in_words(mode_bank::main())),

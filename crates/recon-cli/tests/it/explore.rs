@@ -170,7 +170,7 @@ fn palms_turn_until_the_gap_is_proven_and_say_what_they_cannot() {
         (vec!["explore", "plane.toml", "--planner", "per-second", "--until", "gap=0.2"], "use path-aware"),
         (rolling(&["--until", "gap=0"]), "goal 0"),
         (rolling(&["--until", "gap=0.2", "--contact-noise", "1e-4"]), "half of the noise"),
-        (vec!["explore", "plane.toml", "--until", "gap=0.2", "--normal-noise", "1e-4"], "half of the noise"),
+        (vec!["explore", "plane.toml", "--until", "gap=0.2", "--contact-noise", "1e-4"], "half of the noise"),
         (rolling(&["--until", "gap=0.2", "--width", "1e-9"]), "beyond its end"),
     ];
     for (arguments, says) in refusals {
