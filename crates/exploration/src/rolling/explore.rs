@@ -1,5 +1,6 @@
 //! The closed loop: plan, turn the palms, feel, learn, stop with a proof.
 
+use super::outcome::{RollEnd, RollOutcome};
 use super::palms::{Palms, PalmsError, Reading, SENSED};
 use super::planner::{RollPlanError, RollPlanner, RollProposal, View};
 use super::predict::Prediction;
@@ -74,50 +75,6 @@ pub struct RollStep {
     pub seconds: f64,
     /// The goal's quantity after it.
     pub progress: f64,
-}
-
-/// Why a goal was not reached.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RollEnd {
-    /// All motions or radians were made that were allowed for, or all contacts taken that the confidence was shared among.
-    Budget,
-    /// The planner found no motion that uncovers what is left. Nothing is proven by that.
-    NotFound {
-        /// Outward normals in body axes, with the most left first.
-        directions: Vec<Direction>,
-    },
-    /// The body left the palms.
-    Lost(PalmsError),
-}
-
-/// How an exploration ended.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RollOutcome {
-    /// The goal is proven.
-    Reached(Certificate<Direction>),
-    /// It is not.
-    Short {
-        /// Why.
-        end: RollEnd,
-        /// What is proven.
-        certificate: Certificate<Direction>,
-    },
-}
-
-impl RollOutcome {
-    /// Whether the goal is proven.
-    #[must_use]
-    pub fn is_reached(&self) -> bool {
-        matches!(self, Self::Reached(_))
-    }
-
-    /// What is proven.
-    #[must_use]
-    pub fn certificate(&self) -> &Certificate<Direction> {
-        match self {
-            Self::Reached(certificate) | Self::Short { certificate, .. } => certificate,
-        }
-    }
 }
 
 /// Why an exploration cannot be made, or broke off.

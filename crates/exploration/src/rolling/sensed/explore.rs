@@ -1,7 +1,8 @@
 //! The closed loop with the estimator in it.
 
 use super::super::dynamics::{Dynamics, lasts};
-use super::super::explore::{RollEnd, RollError, RollTask, inside};
+use super::super::explore::{RollError, RollTask, inside};
+use super::super::outcome::RollEnd;
 use super::super::palms::PalmsError;
 use super::super::planner::{RollPlanError, RollPlanner, RollProposal, View};
 use super::super::planners::PalmSweep;
