@@ -166,7 +166,7 @@ impl<O: SmoothOutline> ContourFinger for SimulatedFinger<O> {
                 let (stop, other) = self.jumped(self.t, next)?;
                 left -= self.centre(stop).distance(self.centre(self.t));
                 // On by next to nothing, off the place where both sides are touched.
-                self.t = other + sense * 1e-7;
+                self.t = other + sense * 1e-9;
                 continue;
             }
             left -= self.centre(next).distance(self.centre(self.t)).max(1e-12 * self.size);

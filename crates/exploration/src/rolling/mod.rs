@@ -24,6 +24,7 @@ mod predict;
 mod sensed;
 mod simulated;
 mod track;
+mod trap;
 mod workspace;
 
 pub use balance::{Balance, Rest, RollingBody, settle};

@@ -23,6 +23,9 @@ pub(crate) fn planned(
 ) -> Result<(Value, Outcome), CliError> {
     let until = args.until.clone().or_else(|| until_of(earlier));
     let until = until.ok_or_else(|| CliError::NoGoal { path: args.input.clone() })?;
+    if args.goal.contact_noise.is_some() != args.goal.normal_noise.is_some() {
+        return Err(CliError::HalfNoise);
+    }
     match touches {
         Touches::Contacts { curves, .. } => {
             let settings = Settings::new(&args.goal, earlier, 3);

@@ -135,6 +135,8 @@ fn other_goals_planners_and_fingers_are_taken_and_bad_ones_named() {
     scratch.write("contacts.csv", "x,y,nx,ny\n1,0,1,0\n");
     let run = scratch.run(&["next", "contacts.csv"]);
     assert!(run.code == Some(3) && run.stderr.contains("--until"), "{}", run.stderr);
+    let run = scratch.run(&["next", "contacts.csv", "--until", "gap=0.1", "--contact-noise", "1e-3"]);
+    assert!(run.code == Some(3) && run.stderr.contains("half of the noise"), "{}", run.stderr);
 }
 
 /// Two palms turn, and the object between them, which rolls, lies between what they prove.
