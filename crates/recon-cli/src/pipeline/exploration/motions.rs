@@ -129,17 +129,29 @@ impl Motions {
         let size = |v: f64| if v.is_finite() { brief_to(4, v) } else { "unbounded".to_owned() };
         let measures = known.measures();
         let falls: usize = self.motions.iter().map(|motion| motion.falls).sum();
-        let facts = vec![
+        // Of what is estimated contacts are told by the bounds alone, and falls are motions like others.
+        let felt = self.motions.iter().any(|motion| motion.last.contacts.is_some());
+        let mut facts = vec![
             ("Motions", self.count().to_string(), ""),
             ("Palms turned", brief_to(3, self.radians), "rad"),
             ("Time", brief_to(3, self.seconds), "s"),
-            ("Falls", falls.to_string(), ""),
             ("Contacts taken", certificate.touches.to_string(), ""),
             ("Proven", size(certificate.proven), ""),
             ("Asked for", brief_to(4, asked), ""),
             ("Lower bound", size(measures.lower), InPlane::UNIT),
             ("Upper bound", size(measures.upper), InPlane::UNIT),
         ];
+        if felt {
+            facts.insert(3, ("Falls", falls.to_string(), ""));
+        } else if let Some([place, turn]) =
+            self.motions.iter().rev().find_map(|motion| motion.last.deviations)
+        {
+            facts.push((
+                "Object known to",
+                format!("{} m, {}", brief_to(2, place), brief_to(2, turn)),
+                "rad",
+            ));
+        }
         let curve = |name: &str, k: usize| FigureCurve {
             name: name.to_owned(),
             points: self.course.iter().map(|of| [of[0], of[k]]).filter(|p| p[1].is_finite()).collect(),
@@ -166,12 +178,17 @@ impl Motions {
             facts,
             progress: quantity(&certificate.goal).to_owned(),
             panels,
-            caption: "The body lies between the bounds. Strokes: contacts with their outward normals; lines through two of them: the palms, as the \
-                      body sees them."
-                .to_owned(),
+            caption: caption(felt),
             touches: self.motions.iter().map(Motion::row).collect(),
         }
     }
+}
+
+/// What the panels show.
+fn caption(felt: bool) -> String {
+    let palms =
+        if felt { "; lines through two of them: the palms, as the body sees them" } else { ", some of them" };
+    format!("The body lies between the bounds. Strokes: contacts with their outward normals{palms}.")
 }
 
 impl Motion {

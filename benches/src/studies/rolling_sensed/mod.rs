@@ -81,7 +81,7 @@ pub(crate) fn main() -> Result<(), Failure> {
     let bodies: u64 = words.next().map_or(Ok(30), |a| a.parse())?;
     let runs: u64 = words.next().map_or(Ok(1000), |a| a.parse())?;
     let first: u64 = words.next().map_or(Ok(FIRST_SEED), |a| a.parse())?;
-    println!("# Rolling with the estimator in the loop\n");
+    println!("{}\n", include_str!("intro.md").trim_end());
     println!("Made by `cargo xtask study rolling_sensed {bodies} {runs} {first}`.\n");
     let seeds = first..first + bodies;
     let compared = PLANNERS
@@ -92,6 +92,7 @@ pub(crate) fn main() -> Result<(), Failure> {
     false_certificates(first + 1000, runs)?;
     lookahead(&seeds)?;
     others(&seeds)?;
+    println!("{}", include_str!("outro.md").trim_end());
     Ok(())
 }
 
