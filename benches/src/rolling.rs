@@ -165,9 +165,6 @@ pub fn run(
     let (short, named) = match &outcome {
         RollOutcome::Reached(_) => (None, 0),
         RollOutcome::Short { end: RollEnd::Budget, .. } => (Some("budget"), 0),
-        RollOutcome::Short { end: RollEnd::Unreachable { directions, .. }, .. } => {
-            (Some("unreachable"), directions.len())
-        }
         RollOutcome::Short { end: RollEnd::NotFound { directions }, .. } => {
             (Some("not found"), directions.len())
         }

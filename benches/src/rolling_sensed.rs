@@ -206,7 +206,7 @@ pub fn run(make: &dyn Fn(u64) -> Box<dyn RollPlanner>, seed: u64, of: Setting) -
     let end = match ended.short {
         None => End::Proven,
         Some(SensedEnd::Rolling(RollEnd::Budget)) => End::Budget,
-        Some(SensedEnd::Rolling(RollEnd::NotFound { .. } | RollEnd::Unreachable { .. })) => End::NotFound,
+        Some(SensedEnd::Rolling(RollEnd::NotFound { .. })) => End::NotFound,
         Some(SensedEnd::Rolling(RollEnd::Lost(_))) => End::Lost,
         Some(SensedEnd::Stopped(_)) => End::Stopped,
         Some(SensedEnd::Doubted { .. }) => End::Doubted,

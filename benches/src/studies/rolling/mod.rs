@@ -95,19 +95,18 @@ fn ways(all: &[Compared], what: usize, title: &str) {
 fn ends(all: &[Compared]) {
     println!("How runs to 5 % within {RADIANS:.0} rad end:\n");
     println!(
-        "| planner | proven | radians spent | no motion found | proven that there is none | of these proven by another planner | lost | falls a run | motions a run | ms a choice | bodies between the bounds after every reading |"
+        "| planner | proven | radians spent | no motion found | of these proven by another planner | lost | falls a run | motions a run | ms a choice | bodies between the bounds after every reading |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     for (name, runs) in all {
         let short = |why: &str| count(runs, |r| r.short == Some(why));
         let mean = |sum: usize| sum as f64 / runs.len() as f64;
         let motions: usize = runs.iter().map(|r| r.motions).sum();
         println!(
-            "| {name} | {} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {:.1} | {} of {} |",
+            "| {name} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {:.1} | {} of {} |",
             count(runs, |r| r.short.is_none()),
             short("budget"),
             short("not found"),
-            short("unreachable"),
             contradicted(all, runs),
             short("lost"),
             mean(runs.iter().map(|r| r.falls).sum()),

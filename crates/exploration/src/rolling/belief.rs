@@ -70,7 +70,7 @@ impl Belief {
 }
 
 /// The cells of the bounds; while the upper one has no end, within a polygon about the stated size.
-pub(super) fn cells(known: &PlanarKnowledge, size: f64) -> Vec<Cell> {
+fn cells(known: &PlanarKnowledge, size: f64) -> Vec<Cell> {
     let contacts = known.contacts();
     let upper = known.bounds().map(ShapeBounds::upper).and_then(|upper| upper.bounded());
     // Corners, and whether a contact made the side that starts there.

@@ -5,7 +5,6 @@ use super::palms::{Palms, PalmsError, Reading, SENSED};
 use super::planner::{RollPlanError, RollPlanner, RollProposal, View};
 use super::predict::Prediction;
 use super::track::Track;
-use super::trap::trapped;
 use super::workspace::{Workspace, WorkspaceError, along, radians};
 use crate::certificate::Certificate;
 use crate::confidence::Spending;
@@ -211,8 +210,7 @@ pub fn explore_rolling(
         let proposal = match planner.next(&view) {
             Ok(proposal) => proposal,
             Err(RollPlanError::NotFound { directions }) => {
-                let end = unreachable(&state).unwrap_or(RollEnd::NotFound { directions });
-                return short(&state, end);
+                return short(&state, RollEnd::NotFound { directions });
             }
             Err(error) => return Err(RollError::Plan(error)),
         };
@@ -255,14 +253,6 @@ fn carry_out(
 
 pub(super) fn inside(task: &RollTask, palms: [f64; 2]) -> Result<(), RollError> {
     if task.workspace.allows(palms) { Ok(()) } else { Err(RollError::Outside { palms }) }
-}
-
-/// That no motion reaches the goal, if that is proven.
-fn unreachable(state: &Loop<'_>) -> Option<RollEnd> {
-    let Goal::Gap(goal) = state.task.goal else { return None };
-    let trap = trapped(state.known, &state.track, &state.task.workspace).filter(|trap| trap.gap > goal)?;
-    let directions = trap.directions.into_iter().map(Direction::from_angle).collect();
-    Some(RollEnd::Unreachable { directions, gap: trap.gap })
 }
 
 fn check_floor(known: &PlanarKnowledge, task: &RollTask) -> Result<(), RollError> {

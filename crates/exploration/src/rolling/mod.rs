@@ -24,7 +24,6 @@ mod predict;
 mod sensed;
 mod simulated;
 mod track;
-mod trap;
 mod workspace;
 
 pub use balance::{Balance, Rest, RollingBody, settle};

@@ -9,14 +9,6 @@ use shape_bounds::planar::Direction;
 pub enum RollEnd {
     /// All motions or radians were made that were allowed for, or all contacts taken that the confidence was shared among.
     Budget,
-    /// No motion uncovers enough, for all bodies between the bounds: walls that they cannot turn past are the proof. For bodies without inertia,
-    /// palms without friction and exact contacts.
-    Unreachable {
-        /// Outward normals in body axes that are out of reach, with the most left first.
-        directions: Vec<Direction>,
-        /// The gap stays at this at least.
-        gap: f64,
-    },
     /// The planner found no motion that uncovers what is left. Nothing is proven by that.
     NotFound {
         /// Outward normals in body axes, with the most left first.

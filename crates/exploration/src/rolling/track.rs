@@ -21,8 +21,6 @@ pub struct Track {
 
 /// Weight of where the centre of mass is thought to be beforehand against one reading of the line that it is on.
 const PRIOR: f64 = 1e-3;
-/// Lines that differ by less than some hundredths of a rad cross where rounding says: least eigenvalue of the sum of their squares.
-const TOLD: f64 = 1e-3;
 
 impl Track {
     /// After the first reading.
@@ -49,14 +47,6 @@ impl Track {
             self.sums.0 += DMat2::from_cols(level * level.x, level * level.y);
             self.sums.1 += level * level.dot(met);
         }
-    }
-
-    /// Where the centre of mass is (m, body axes), where rests in orientations that differ have told it.
-    pub(super) fn certain_centre(&self) -> Option<DVec2> {
-        let (system, sum) = self.sums;
-        // The least eigenvalue is not below the determinant over the trace.
-        let told = system.determinant() > TOLD * (system.x_axis.x + system.y_axis.y);
-        self.centre.or(told.then(|| system.inverse() * sum))
     }
 
     /// Where the centre of mass is (m, body axes) if it would be at `guess` for all that is known beforehand.

@@ -78,10 +78,7 @@ pub(crate) fn rolled(
         files.push(state_file(&State::at_rest(&track, motion, &workspace, middle)));
     }
     let not_found = match &ended {
-        RollOutcome::Short {
-            end: RollEnd::NotFound { directions } | RollEnd::Unreachable { directions, .. },
-            ..
-        } => directions.as_slice(),
+        RollOutcome::Short { end: RollEnd::NotFound { directions }, .. } => directions.as_slice(),
         _ => &[],
     };
     let end = Ended { title, goal, statement, reached: level, not_found, certificate };
@@ -150,15 +147,6 @@ pub(super) fn why_short(end: &RollEnd) -> String {
             format!(
                 "the planner found no motion that uncovers what is left, most of it at {} degrees on the object; that is no proof that \
                  there is none",
-                brief_to(3, first)
-            )
-        }
-        RollEnd::Unreachable { directions, gap } => {
-            let first = directions.first().map_or(f64::NAN, |n| n.angle().to_degrees());
-            format!(
-                "no motion of the palms brings the gap below {}, on any object between the bounds: most of what is out of reach is at {} \
-                 degrees on the object",
-                brief_to(3, *gap),
                 brief_to(3, first)
             )
         }
