@@ -27,6 +27,7 @@ mod machine;
 pub mod palms;
 pub mod reaching;
 pub mod rolling;
+pub mod rolling_sensed;
 pub mod rows;
 mod timing;
 

@@ -98,9 +98,9 @@ impl Rolling {
 }
 
 /// Measures the time of another planner.
-struct Timed {
-    inner: Box<dyn RollPlanner>,
-    seconds: f64,
+pub(crate) struct Timed {
+    pub(crate) inner: Box<dyn RollPlanner>,
+    pub(crate) seconds: f64,
 }
 
 impl RollPlanner for Timed {
@@ -165,8 +165,8 @@ pub fn run(
     let (short, named) = match &outcome {
         RollOutcome::Reached(_) => (None, 0),
         RollOutcome::Short { end: RollEnd::Budget, .. } => (Some("budget"), 0),
-        RollOutcome::Short { end: RollEnd::Unreachable { directions }, .. } => {
-            (Some("out of reach"), directions.len())
+        RollOutcome::Short { end: RollEnd::NotFound { directions }, .. } => {
+            (Some("not found"), directions.len())
         }
         RollOutcome::Short { end: RollEnd::Lost(_), .. } => (Some("lost"), 0),
     };

@@ -122,7 +122,17 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "touches and way that planners take to a gap, false certificates under noise",
     ),
     ("result_bags", "result-bags.md", "bags of results as mcap-ros2-support reads them"),
+    (
+        "contour",
+        "contour.md",
+        "outlines that are not convex, followed by round fingers: what is felt, what is jumped over",
+    ),
     ("rolling", "rolling.md", "radians and seconds of palm motion that planners take to a gap in the plane"),
+    (
+        "rolling_sensed",
+        "rolling-sensed.md",
+        "the same with noisy sensors and the estimator in the loop, false certificates, horizon against bodies drawn",
+    ),
     (
         "shape_fits",
         "shape-fits.md",

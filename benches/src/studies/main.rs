@@ -24,6 +24,7 @@ mod contact_exports;
 mod contact_logs;
 mod contact_modes_estimated;
 mod contact_wedging;
+mod contour;
 mod exported_objects;
 mod mode_bank;
 mod no_force;
@@ -38,6 +39,7 @@ mod pushes;
 mod reaching;
 mod result_bags;
 mod rolling;
+mod rolling_sensed;
 mod shape_fits;
 mod streaming;
 mod three_palms_monte_carlo;
@@ -73,6 +75,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("contact_exports", || in_words(contact_exports::main())),
     ("contact_logs", || in_words(contact_logs::main())),
     ("contact_wedging", || in_words(contact_wedging::main())),
+    ("contour", || in_words(contour::main())),
     ("exported_objects", || in_words(exported_objects::main())),
     ("contact_modes_estimated", || in_words(contact_modes_estimated::main())),
     ("mode_bank", || in_words(mode_bank::main())),
@@ -87,6 +90,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("reaching", || in_words(reaching::main())),
     ("result_bags", || in_words(result_bags::main())),
     ("rolling", || in_words(rolling::main())),
+    ("rolling_sensed", || in_words(rolling_sensed::main())),
     ("shape_fits", || in_words(shape_fits::main())),
     ("streaming", || in_words(streaming::main())),
     ("tilting_palms", || in_words(tilting_palms::main())),
@@ -107,6 +111,7 @@ const OF_RUNS: &[&str] = &[
     "palms",
     "planar_estimates",
     "planar_estimates_friction",
+    "rolling_sensed",
     "three_palms_monte_carlo",
     "tilting_palms",
     "whole_logs",

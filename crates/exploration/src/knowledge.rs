@@ -51,6 +51,9 @@ pub enum KnowledgeError {
         #[source]
         reason: shape_bounds::planar::NoiseError,
     },
+    /// A contact beside an estimate.
+    #[error("contacts of an estimate come together with it: make the estimate anew")]
+    Estimated,
     /// More touches than the confidence was shared among.
     #[error(transparent)]
     Confidence(#[from] ConfidenceError),

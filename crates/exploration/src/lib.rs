@@ -33,6 +33,7 @@
 
 mod certificate;
 mod confidence;
+pub mod contour;
 mod finger;
 mod gaussian;
 #[cfg(any(test, feature = "generators"))]

@@ -219,6 +219,14 @@ pub(crate) enum CliError {
     Explore(#[from] recon::exploration::ExploreError),
     #[error("the object cannot be rolled")]
     Roll(#[from] recon::exploration::rolling::RollError),
+    #[error("the object cannot be rolled")]
+    Sensed(#[from] recon::exploration::rolling::SensedError),
+    #[error("the scene has no gravity, and palms do not hold an object without")]
+    RolledWithoutGravity,
+    #[error(
+        "half of the noise is stated: touches take --contact-noise and --normal-noise, palms that turn --contact-noise and --force-noise"
+    )]
+    HalfNoise,
     #[error("the object does not lie between the palms")]
     Palms(#[from] recon::exploration::rolling::PalmsError),
     #[error("`{name}` plans nothing for {what}; use {instead}")]
@@ -314,6 +322,9 @@ impl CliError {
             | Self::Export(_)
             | Self::Explore(_)
             | Self::Roll(_)
+            | Self::Sensed(_)
+            | Self::RolledWithoutGravity
+            | Self::HalfNoise
             | Self::Palms(_)
             | Self::Planner { .. }
             | Self::RolledInSpace { .. }

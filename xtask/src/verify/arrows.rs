@@ -16,8 +16,7 @@ const ALLOWED: [(&str, &[&str]); 13] = [
     ("object-dynamics", &["contact-kinematics"]),
     ("observer", &["contact-kinematics", "object-dynamics"]),
     ("shape-bounds", &["contact-kinematics"]),
-    // Its tests hold the rests of a body between palms against the dynamics.
-    ("exploration", &["contact-kinematics", "object-dynamics", "shape-bounds"]),
+    ("exploration", &["contact-kinematics", "object-dynamics", "observer", "shape-bounds"]),
     ("recon", &CORE),
     // What checks bounds has nothing of what makes them.
     ("certificate", &[]),

@@ -95,7 +95,7 @@ fn ways(all: &[Compared], what: usize, title: &str) {
 fn ends(all: &[Compared]) {
     println!("How runs to 5 % within {RADIANS:.0} rad end:\n");
     println!(
-        "| planner | proven | radians spent | out of reach, named | of these proven by another planner | lost | falls a run | motions a run | ms a choice | bodies between the bounds after every reading |"
+        "| planner | proven | radians spent | no motion found | of these proven by another planner | lost | falls a run | motions a run | ms a choice | bodies between the bounds after every reading |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|");
     for (name, runs) in all {
@@ -106,7 +106,7 @@ fn ends(all: &[Compared]) {
             "| {name} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {:.1} | {} of {} |",
             count(runs, |r| r.short.is_none()),
             short("budget"),
-            short("out of reach"),
+            short("not found"),
             contradicted(all, runs),
             short("lost"),
             mean(runs.iter().map(|r| r.falls).sum()),
@@ -119,10 +119,10 @@ fn ends(all: &[Compared]) {
     println!();
 }
 
-/// Runs that say that nothing reaches what is left, on bodies on which another planner has proven the goal.
+/// Runs whose planner found no motion any more, on bodies on which another planner has proven the goal.
 fn contradicted(all: &[Compared], runs: &[Rolling]) -> usize {
     let proven = |k: usize| all.iter().any(|(_, other)| other.get(k).is_some_and(|r| r.short.is_none()));
-    runs.iter().enumerate().filter(|(k, r)| r.short == Some("out of reach") && proven(*k)).count()
+    runs.iter().enumerate().filter(|(k, r)| r.short == Some("not found") && proven(*k)).count()
 }
 
 fn ratios(all: &[Compared]) {

@@ -27,6 +27,8 @@ pub struct Noise {
 pub struct PlanarKnowledge {
     contacts: Vec<ContactSample>,
     noise: Option<Noise>,
+    /// The level at which the bounds of an estimate are stated to hold; none where they come from touches.
+    estimated: Option<f64>,
     exact: IncrementalBounds,
     bounds: Option<ShapeBounds>,
 }
@@ -62,7 +64,20 @@ impl PlanarKnowledge {
     /// Of no contacts, which are to be exact.
     #[must_use]
     pub fn exact() -> Self {
-        Self { contacts: Vec::new(), noise: None, exact: IncrementalBounds::new(), bounds: None }
+        let exact = IncrementalBounds::new();
+        Self { contacts: Vec::new(), noise: None, estimated: None, exact, bounds: None }
+    }
+
+    /// What an estimator knows: contacts in the axes of the body, each with its noise and that of the pose. Bounds hold with probability `level`,
+    /// and are stated to hold at `stated` for all looks together.
+    ///
+    /// # Errors
+    /// [`KnowledgeError::Plane`] for noise that is none and contacts that contradict each other beyond it.
+    pub fn estimated(curves: &[Vec<NoisyContact>], level: f64, stated: f64) -> Result<Self, KnowledgeError> {
+        let contacts: Vec<ContactSample> = curves.iter().flatten().map(|c| c.contact).collect();
+        let touch = contacts.len();
+        let bounds = sound(curves, level).map_err(|reason| KnowledgeError::Plane { touch, reason })?;
+        Ok(Self { contacts, estimated: Some(stated), bounds, ..Self::exact() })
     }
 
     /// Of no contacts, which are to have this noise, independent from contact to contact.
@@ -102,15 +117,7 @@ impl PlanarKnowledge {
         // One list for each contact: means over neighbours in time are of nothing here.
         let single: Vec<Vec<NoisyContact>> =
             self.contacts.iter().map(|c| vec![NoisyContact { contact: *c, noise: each }]).collect();
-        match ShapeBounds::from_noisy_curves(&single, confidence) {
-            Ok(bounds) => Ok(Some(bounds)),
-            Err(
-                NoiseError::NoLowerBound
-                | NoiseError::NoUpperBound { .. }
-                | NoiseError::Bounds(BoundsError::TooFew { .. }),
-            ) => Ok(None),
-            Err(reason) => Err(KnowledgeError::Plane { touch, reason }),
-        }
+        sound(&single, confidence).map_err(|reason| KnowledgeError::Plane { touch, reason })
     }
 
     /// The exact bounds without a contact that was refused after it was taken in: a contradiction may show only then.
@@ -141,6 +148,19 @@ impl PlanarKnowledge {
     }
 }
 
+/// Bounds at a confidence; none while contacts are too few or noise leaves nothing certain.
+fn sound(curves: &[Vec<NoisyContact>], confidence: f64) -> Result<Option<ShapeBounds>, NoiseError> {
+    match ShapeBounds::from_noisy_curves(curves, confidence) {
+        Ok(bounds) => Ok(Some(bounds)),
+        Err(
+            NoiseError::NoLowerBound
+            | NoiseError::NoUpperBound { .. }
+            | NoiseError::Bounds(BoundsError::TooFew { .. }),
+        ) => Ok(None),
+        Err(reason) => Err(reason),
+    }
+}
+
 /// Where touches are dense, the luckiest of them count: by this many deviations bounds may be closer than margins say.
 const LUCK: f64 = 1.0;
 
@@ -156,6 +176,9 @@ impl Knowledge for PlanarKnowledge {
     type Point = DVec2;
 
     fn insert(&mut self, contact: ContactSample) -> Result<(), KnowledgeError> {
+        if self.estimated.is_some() {
+            return Err(KnowledgeError::Estimated);
+        }
         self.contacts.push(contact);
         let taken = self.update(&contact);
         if taken.is_err() {
@@ -188,7 +211,7 @@ impl Knowledge for PlanarKnowledge {
     }
 
     fn confidence(&self) -> Option<f64> {
-        self.noise.map(|noise| noise.confidence.level())
+        self.estimated.or(self.noise.map(|noise| noise.confidence.level()))
     }
 
     /// As in space: the bounds lose what the margins, less a deviation for luck, take of a disc of diameter `width`, for which outline over area is least.

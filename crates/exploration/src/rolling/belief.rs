@@ -2,6 +2,7 @@
 
 use super::balance::{RollingBody, settle};
 use super::drawn::DrawnBody;
+use super::dynamics::{Dynamics, Swing};
 use super::gain::Cell;
 use super::track::Track;
 use super::workspace::{Workspace, pair};
@@ -16,8 +17,10 @@ use std::sync::Arc;
 pub(super) struct Belief {
     pub(super) cells: Arc<Vec<Cell>>,
     pub(super) bodies: Vec<DrawnBody>,
-    /// Orientations in rad.
-    pub(super) phis: Vec<f64>,
+    /// Orientations in rad and angular velocities in rad/s.
+    pub(super) swings: Vec<Swing>,
+    /// How they move, if they are not let come to rest.
+    pub(super) dynamics: Option<Dynamics>,
     /// Contacts nearer to one that there is are not taken, rad.
     pub(super) spacing: f64,
 }
@@ -41,15 +44,20 @@ impl Belief {
     ) -> Self {
         let cells = Arc::new(cells(known, workspace.size));
         let mut source = Source::new(seed);
-        let mut belief = Self { cells, bodies: Vec::new(), phis: Vec::new(), spacing };
+        let dynamics = track.dynamics;
+        let mut belief = Self { cells, bodies: Vec::new(), swings: Vec::new(), dynamics, spacing };
         for _ in 0..count {
             let body = DrawnBody::draw(&belief.cells, &mut source);
             let centre = track.centre(body.centre());
             let body = body.with_centre(centre);
-            let rest = pair(track.palms).and_then(|palms| settle(&body, &palms, track.phi));
-            if let Some(rest) = rest {
+            let rest = || pair(track.palms).and_then(|palms| settle(&body, &palms, track.phi));
+            let swing = match dynamics {
+                Some(dynamics) => Some((track.phi, dynamics.omega)),
+                None => rest().map(|rest| (rest.phi, 0.0)),
+            };
+            if let Some(swing) = swing {
                 belief.bodies.push(body);
-                belief.phis.push(rest.phi);
+                belief.swings.push(swing);
             }
         }
         belief

@@ -1,5 +1,6 @@
 //! The closed loop: plan, turn the palms, feel, learn, stop with a proof.
 
+use super::outcome::{RollEnd, RollOutcome};
 use super::palms::{Palms, PalmsError, Reading, SENSED};
 use super::planner::{RollPlanError, RollPlanner, RollProposal, View};
 use super::predict::Prediction;
@@ -42,7 +43,7 @@ impl RollTask {
         Self { goal, workspace, motions: 100, radians: 100.0, spacing: 0.1, risk: 0.1, spending: None }
     }
 
-    fn check(&self) -> Result<(), RollError> {
+    pub(super) fn check(&self) -> Result<(), RollError> {
         self.goal.check()?;
         self.workspace.check()?;
         let numbers = [("radians of palm motion", self.radians), ("spacing of normals", self.spacing)];
@@ -74,44 +75,6 @@ pub struct RollStep {
     pub seconds: f64,
     /// The goal's quantity after it.
     pub progress: f64,
-}
-
-/// Why a goal was not reached.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RollEnd {
-    /// All motions or radians were made that were allowed for, or all contacts taken that the confidence was shared among.
-    Budget,
-    /// What is left lies where no motion within the workspace reaches.
-    Unreachable {
-        /// Outward normals in body axes, with the most left first.
-        directions: Vec<Direction>,
-    },
-    /// The body left the palms.
-    Lost(PalmsError),
-}
-
-/// How an exploration ended.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RollOutcome {
-    /// The goal is proven.
-    Reached(Certificate<Direction>),
-    /// It is not.
-    Short {
-        /// Why.
-        end: RollEnd,
-        /// What is proven.
-        certificate: Certificate<Direction>,
-    },
-}
-
-impl RollOutcome {
-    /// What is proven.
-    #[must_use]
-    pub fn certificate(&self) -> &Certificate<Direction> {
-        match self {
-            Self::Reached(certificate) | Self::Short { certificate, .. } => certificate,
-        }
-    }
 }
 
 /// Why an exploration cannot be made, or broke off.
@@ -246,8 +209,8 @@ pub fn explore_rolling(
         };
         let proposal = match planner.next(&view) {
             Ok(proposal) => proposal,
-            Err(RollPlanError::Unreachable { directions }) => {
-                return short(&state, RollEnd::Unreachable { directions });
+            Err(RollPlanError::NotFound { directions }) => {
+                return short(&state, RollEnd::NotFound { directions });
             }
             Err(error) => return Err(RollError::Plan(error)),
         };
@@ -288,7 +251,7 @@ fn carry_out(
     Ok(None)
 }
 
-fn inside(task: &RollTask, palms: [f64; 2]) -> Result<(), RollError> {
+pub(super) fn inside(task: &RollTask, palms: [f64; 2]) -> Result<(), RollError> {
     if task.workspace.allows(palms) { Ok(()) } else { Err(RollError::Outside { palms }) }
 }
 

@@ -93,7 +93,7 @@ pub(super) fn far_motion(
     least: f64,
 ) -> Result<RollProposal, RollPlanError> {
     let mut best: Option<RollProposal> = None;
-    for (k, (body, phi)) in belief.bodies.iter().zip(&belief.phis).enumerate() {
+    for (k, (body, (phi, _))) in belief.bodies.iter().zip(&belief.swings).enumerate() {
         if k >= ROUTED && best.is_some() {
             break;
         }
@@ -112,7 +112,7 @@ pub(super) fn far_motion(
             best = Some(proposal);
         }
     }
-    best.ok_or_else(|| RollPlanError::Unreachable { directions: unreached(view, belief) })
+    best.ok_or_else(|| RollPlanError::NotFound { directions: unreached(view, belief) })
 }
 
 fn legs(places: &[Place], to: usize) -> Vec<[f64; 2]> {
@@ -137,7 +137,7 @@ const NAMED: f64 = 0.01;
 /// Middles of the cells that on no body are reached, the largest first; the largest of all if each is reached by some.
 pub(super) fn unreached(view: &View<'_>, belief: &Belief) -> Vec<Direction> {
     let mut reached = vec![false; belief.cells.len()];
-    for (body, phi) in belief.bodies.iter().zip(&belief.phis) {
+    for (body, (phi, _)) in belief.bodies.iter().zip(&belief.swings) {
         for theta in flood(view, body, *phi).iter().flat_map(|p| &p.thetas) {
             let (cell, theta) = cell_at(&belief.cells, *theta);
             reached[cell] |= belief.cells[cell].takes(theta, belief.spacing);

@@ -11,26 +11,35 @@
 mod balance;
 mod belief;
 mod drawn;
+mod dynamics;
 mod explore;
 mod flood;
 mod gain;
 mod metric;
+mod outcome;
 mod palms;
 mod planner;
 mod planners;
 mod predict;
+mod sensed;
 mod simulated;
 mod track;
 mod workspace;
 
 pub use balance::{Balance, Rest, RollingBody, settle};
 pub use drawn::DrawnBody;
-pub use explore::{RollEnd, RollError, RollOutcome, RollStep, RollTask, explore_rolling};
+pub use dynamics::Dynamics;
+pub use explore::{RollError, RollStep, RollTask, explore_rolling};
 pub use metric::{PalmsInBody, distance, duration};
+pub use outcome::{RollEnd, RollOutcome};
 pub use palms::{Palms, PalmsError, Reading};
 pub use planner::{RollPlanError, RollPlanner, RollProposal, View};
 pub use planners::{InformationRate, LargestGap, NearestGap, PalmSweep, RandomTurns};
 pub use predict::Prediction;
+pub use sensed::{
+    Hands, HandsError, Look, SensedEnd, SensedError, SensedOutcome, SensedStep, SensedTask, SimulatedHands,
+    explore_sensed, noisy_curves,
+};
 pub use simulated::SimulatedPalms;
 pub use track::Track;
 pub use workspace::{Workspace, WorkspaceError};

@@ -43,9 +43,9 @@ pub struct RollProposal {
 /// Why there is no next motion.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum RollPlanError {
-    /// On no body drawn does a motion within the workspace reach what is left.
-    #[error("no motion within the workspace reaches what is left: {} directions of the body are out of reach", directions.len())]
-    Unreachable {
+    /// On no body drawn was a motion found that uncovers what is left: no proof that there is none on the true one.
+    #[error("no motion was found that uncovers what is left, at {} directions of the body; that is no proof that there is none", directions.len())]
+    NotFound {
         /// Outward normals in body axes, with the most left first.
         directions: Vec<Direction>,
     },
@@ -79,15 +79,17 @@ pub(super) struct Candidate {
 }
 
 /// Spacing of the angles that palms are turned to, rad.
-const SPACING: f64 = 0.3;
+pub(super) const SPACING: f64 = 0.3;
+/// The same where each prediction is a simulation.
+const SIMULATED: f64 = 0.6;
 /// Short motions beside those, rad.
 const NEARBY: f64 = 0.2;
 /// A motion is worth its way if it is expected to bring this share of what is still to be gained.
 const WORTH: f64 = 0.02;
 
 /// Angles that palms may be turned to from `here`, in a fixed order.
-pub(super) fn targets(workspace: &Workspace, here: [f64; 2]) -> Vec<[f64; 2]> {
-    let mut all = workspace.lattice(SPACING);
+pub(super) fn targets(workspace: &Workspace, here: [f64; 2], spacing: f64) -> Vec<[f64; 2]> {
+    let mut all = workspace.lattice(spacing);
     let steps = [-NEARBY, 0.0, NEARBY];
     let near = steps.iter().flat_map(|a| steps.iter().map(move |b| [here[0] + a, here[1] + b]));
     all.extend(near.filter(|palms| *palms != here && workspace.allows(*palms)));
@@ -102,7 +104,8 @@ pub(super) fn candidates(view: &View<'_>, belief: &Belief, course: &Course) -> V
         let prediction = course.prediction(belief, view.workspace);
         Candidate { to, course, prediction }
     };
-    let all = targets(view.workspace, course.palms).into_iter().map(one);
+    let spacing = if belief.dynamics.is_some() { SIMULATED } else { SPACING };
+    let all = targets(view.workspace, course.palms, spacing).into_iter().map(one);
     all.filter(|c| c.prediction.lost <= view.risk).collect()
 }
 

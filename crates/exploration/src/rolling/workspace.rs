@@ -75,6 +75,14 @@ impl Workspace {
         }
     }
 
+    /// The same for a body that is not let come to rest: palms turn by 0.45 rad in a natural time (of half the size under `gravity`, m/s^2), as
+    /// the estimate of its motion needs, and wait for two natural times after each motion.
+    #[must_use]
+    pub fn in_motion(size: f64, gravity: f64) -> Self {
+        let time = (0.5 * size / gravity).sqrt();
+        Self { speed: 0.45 / time, settle: 2.0 * time, ..Self::for_size(size) }
+    }
+
     /// Whether these are limits.
     ///
     /// # Errors

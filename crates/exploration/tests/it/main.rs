@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of tests may panic, as a test may")]
 
 mod closed_loop;
+mod contour;
 mod oracle;
 mod reaching;
 mod rolling;

@@ -51,7 +51,7 @@ pub(crate) struct GoalArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) budget: Option<u32>,
     /// Standard deviation per axis of the contact points, m [default: exact contacts]
-    #[arg(long, value_name = "M", requires = "normal_noise", value_parser = not_negative)]
+    #[arg(long, value_name = "M", value_parser = not_negative)]
     pub(crate) contact_noise: Option<f64>,
     /// Standard deviation of the normals about each tangent axis, rad
     #[arg(long, value_name = "RAD", requires = "contact_noise", value_parser = not_negative)]
@@ -72,8 +72,9 @@ With --contact-noise and --normal-noise touches are noisy, and the bounds hold a
 together, however they are chosen and whenever the looking ends. A goal below what the noise leaves is refused.
 
 With --rolling the palms of the scene are not looked at: two lines about a common hinge turn between 0.1 and 2.2 rad from their
-sides, slowly and without friction, and the object lies where its centre of mass is lowest. Contacts are in its own frame: what its
-orientation is known to belongs into the noise that is stated.
+sides, slowly and without friction, and the object lies where its centre of mass is lowest; contacts are exact, in its own frame. With
+--contact-noise and --force-noise the object moves by the equations of motion, sensors are noisy, and its motion is estimated from all that
+was sensed after each motion of the palms: nothing else is known of it, and bounds hold at the confidence for all these looks together.
 
 The output folder appears as a whole or not at all: contacts.csv, the bounds, summary.json (goal, proof, each touch and why), and
 report.html. `recon next` goes on from there.
@@ -83,6 +84,7 @@ Examples:
   recon explore scene.toml --until gap=0.2 --contact-noise 1e-3 --normal-noise 2e-3 -o out
   recon explore scene.toml --until hausdorff=0.05 --planner hausdorff -o out
   recon explore plane.toml --rolling --until gap=0.1 -o out
+  recon explore plane.toml --rolling --until gap=0.1 --contact-noise 5e-5 --force-noise 2e-3 -o out
   recon explore scene.toml --until width=0.001@0,0,1 --json | jq .proof")]
 pub(crate) struct ExploreArgs {
     /// Scene file (TOML)
@@ -101,6 +103,13 @@ pub(crate) struct ExploreArgs {
     /// With --rolling: roughly the object's mean width, m; palms are four times as long [default: that of the scene's object]
     #[arg(long, value_name = "M", requires = "rolling", value_parser = positive)]
     pub(crate) width: Option<f64>,
+    /// With --rolling and --contact-noise: standard deviation of each axis of the forces, N; the object's motion is then estimated from
+    /// contacts and forces, and nothing of it is taken as known
+    #[arg(long, value_name = "N", requires_all = ["rolling", "contact_noise"], conflicts_with = "normal_noise", value_parser = positive)]
+    pub(crate) force_noise: Option<f64>,
+    /// With --force-noise: coefficient of friction of both palms, which the estimate is not told [default: 0, which it is]
+    #[arg(long, value_name = "MU", requires = "force_noise", value_parser = not_negative)]
+    pub(crate) friction: Option<f64>,
     /// Folder to write; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
@@ -115,6 +124,9 @@ Reads contacts.csv (x, y, z and nx, ny, nz; in the plane x, y and nx, ny) from a
 to which contacts may have been added since, and prints JSON: whether the goal is proven, and else the direction along which to
 touch, a ray for a finger that moves on one, what the touch is expected to gain, and how many touches are expected in all. Goal and
 settings are those of the folder's summary.json unless they are given.
+
+From a folder of `recon explore --rolling` it reads state.json as well (where palms and object are, which whoever has turned them writes anew)
+and prints the next motion of the palms: the absolute angles that they are turned to, one pair after another, and what that is expected to bring.
 
 Examples:
   recon next out

@@ -1,13 +1,19 @@
 use crate::cli::{ExploreArgs, PlannerAs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{Explored, InPlane, InSpace, Settings, explored, goal_of, rolled, write_files_folder};
+use crate::pipeline::{
+    CONFIDENCE, Explored, InPlane, InSpace, Settings, explored, goal_of, rolled, sensed, write_files_folder,
+};
 use crate::progress::Progress;
 use glam::{DVec2, DVec3};
 use recon::contact_kinematics::planar::RadiusFunction;
 use recon::contact_kinematics::{Direction, SupportFunction};
-use recon::exploration::rolling::{RollingBody, SimulatedPalms, Workspace};
+use recon::exploration::rolling::{RollingBody, SensedError, SimulatedHands, SimulatedPalms, Workspace};
 use recon::exploration::{Heading, Motion, Source, planar, space};
+use recon::object_dynamics::ChannelNoise;
+use recon::object_dynamics::planar::{ContactNoise, PlanarObject};
+use recon::observer::planar::PlaneOptions;
+use recon::observer::{ContactNoiseLevel, ImpulseNoise};
 use recon::shape_bounds::planar as flat;
 use recon_io::{FolderTarget, PlanarBody, PlanarScene, Scene, SceneErrorKind};
 use serde_json::Value;
@@ -19,6 +25,9 @@ pub(crate) fn run(args: &ExploreArgs, console: &Console) -> Result<Outcome, CliE
     let target =
         args.output.as_ref().map(|folder| FolderTarget::new(folder, inputs, args.force)).transpose()?;
     let progress = Progress::new(args.goal.budget.map_or(0, u64::from), console.is_quiet());
+    if !args.rolling && args.goal.contact_noise.is_some() != args.goal.normal_noise.is_some() {
+        return Err(CliError::HalfNoise);
+    }
     progress.step("reading the scene");
     let made = match Scene::read(&args.scene) {
         Ok(_) if args.rolling => return Err(CliError::RolledInSpace { path: args.scene.clone() }),
@@ -81,13 +90,73 @@ fn rolling(args: &ExploreArgs, scene: &PlanarScene, progress: &Progress) -> Resu
     let body = Rolled(&scene.world.object().shape);
     let mut settings = Settings::new(&args.goal, &Value::Null, 2);
     settings.planner = args.goal.planner.unwrap_or(PlannerAs::PerSecond);
-    let workspace = Workspace::for_size(args.width.unwrap_or_else(|| mean_width(&body)));
-    let [point, normal] = settings.noise.map_or([0.0; 2], |(noise, _)| noise);
+    let width = args.width.unwrap_or_else(|| mean_width(&body));
     let let_go = Source::new(settings.seed).unit() * TAU;
-    let mut palms =
-        SimulatedPalms::new(body, workspace.length, PALMS, let_go)?.with_noise(point, normal, settings.seed);
     progress.step("turning the palms");
-    rolled(&title(args), &args.until, &settings, workspace, &mut palms, |words| progress.say(words))
+    match (args.goal.contact_noise, args.force_noise) {
+        (Some(contact), Some(force)) => {
+            settings.planner = args.goal.planner.unwrap_or(PlannerAs::PerRadian);
+            settings.noise = None;
+            settings.sensors = Some(([contact, force], args.goal.confidence.unwrap_or(CONFIDENCE)));
+            settings.budget = args.goal.budget.map_or(MOTIONS, |budget| budget as usize);
+            estimated(args, scene, &settings, width, let_go, progress)
+        }
+        (None, None) if args.goal.normal_noise.is_none() => {
+            let workspace = Workspace::for_size(width);
+            let mut palms = SimulatedPalms::new(body, workspace.length, PALMS, let_go)?;
+            rolled(&title(args), &args.until, &settings, workspace, &mut palms, |words| progress.say(words))
+        }
+        _ => Err(CliError::HalfNoise),
+    }
+}
+
+/// Samples of the sensors in a natural time: what the estimate of the motion needs.
+const SAMPLED: f64 = 36.0;
+/// Contact conditions are off by this much beside the noise, as a share of the natural speed: what the simulation is.
+const FLOOR: f64 = 1e-6;
+/// Motions at most where the motion is estimated: the confidence is shared among the looks after each.
+const MOTIONS: usize = 25;
+
+/// With noisy sensors: the object moves by the equations of motion, and what it does is estimated.
+fn estimated(
+    args: &ExploreArgs,
+    scene: &PlanarScene,
+    settings: &Settings,
+    width: f64,
+    let_go: f64,
+    progress: &Progress,
+) -> Result<Explored, CliError> {
+    let PlanarObject { shape, mass, gravity } = scene.world.object();
+    if *gravity <= 0.0 {
+        return Err(CliError::RolledWithoutGravity);
+    }
+    let Some(([contact, force], level)) = settings.sensors else { return Err(CliError::HalfNoise) };
+    let natural = (0.5 * width / gravity).sqrt();
+    let rate = SAMPLED / natural;
+    let channel = |fixed: f64| ChannelNoise { fixed, ..ChannelNoise::default() };
+    let noise = ContactNoise { contact, force: channel(force), impulse: channel(force / rate) };
+    let workspace = Workspace::in_motion(width, *gravity);
+    let object = PlanarObject { shape: shape.clone(), mass: *mass, gravity: *gravity };
+    let hands =
+        SimulatedHands::new(object, args.friction.unwrap_or(0.0), workspace.length, PALMS, let_go, rate);
+    let mut hands = hands.map_err(SensedError::Start)?.with_noise(noise, settings.seed);
+    let sensors = PlaneOptions {
+        noise: ContactNoiseLevel {
+            contact,
+            force_fixed: force,
+            force_share: 0.0,
+            impulse: Some(ImpulseNoise { fixed: force / rate, share: 0.0 }),
+            floor: FLOOR * (0.5 * width * gravity).sqrt(),
+        },
+        gravity: *gravity,
+        // Friction is not known to the estimator; that there is none is.
+        friction: vec![args.friction.is_none_or(|f| f == 0.0).then_some(0.0); 2],
+        body: None,
+        size: None,
+        suspects: false,
+    };
+    let with = (workspace, sensors, level);
+    sensed(&title(args), &args.until, settings, with, &mut hands, |words| progress.say(words))
 }
 
 /// In m; to within what it is needed for: lengths of palms, and bodies that are drawn where nothing is known yet.

@@ -1,7 +1,7 @@
 use crate::cli::NextArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{InPlane, InSpace, Settings, goal_of, next_touch, until_of};
+use crate::pipeline::{InPlane, InSpace, STATE, Settings, State, goal_of, next_motion, next_touch, until_of};
 use recon_io::{SummaryOf, Touches, read_touches};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -23,10 +23,22 @@ pub(crate) fn planned(
 ) -> Result<(Value, Outcome), CliError> {
     let until = args.until.clone().or_else(|| until_of(earlier));
     let until = until.ok_or_else(|| CliError::NoGoal { path: args.input.clone() })?;
+    if args.goal.contact_noise.is_some() != args.goal.normal_noise.is_some() {
+        return Err(CliError::HalfNoise);
+    }
     match touches {
         Touches::Contacts { curves, .. } => {
             let settings = Settings::new(&args.goal, earlier, 3);
             next_touch::<InSpace>(&curves.concat(), goal_of::<InSpace>(&until)?, &settings)
+        }
+        Touches::PlanarContacts { curves, .. } if earlier["schema"] == SummaryOf::Rolling.schema() => {
+            let settings = Settings::new(&args.goal, earlier, 2);
+            let state = State::read(&contacts.with_file_name(STATE))?;
+            // What is proven at a confidence is in the summary; of exact contacts it follows from them.
+            let same = until_of(earlier).as_ref() == Some(&until);
+            let stated = earlier["proof"]["at_most"].as_f64().filter(|_| same).unwrap_or(f64::INFINITY);
+            let proven = settings.sensors.map(|_| stated);
+            next_motion(&curves.concat(), &state, goal_of::<InPlane>(&until)?, &settings, proven)
         }
         Touches::PlanarContacts { curves, .. } => {
             let settings = Settings::new(&args.goal, earlier, 2);
@@ -45,9 +57,5 @@ pub(crate) fn inputs(input: &Path) -> Result<(PathBuf, Value), CliError> {
     let wrong = |what: String| CliError::NotExplored { path: path.clone(), what };
     let text = std::fs::read_to_string(&path).map_err(|e| wrong(e.to_string()))?;
     let summary: Value = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
-    if summary["schema"] == SummaryOf::Rolling.schema() {
-        // Where the palms are, and the object between them, is not in its files.
-        return Err(wrong("it is of palms that turned; next touches are those of a finger".to_owned()));
-    }
     Ok((input.join("contacts.csv"), summary))
 }

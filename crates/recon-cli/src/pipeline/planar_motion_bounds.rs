@@ -2,15 +2,11 @@
 
 use super::plane::{PlanarBounds, drawn};
 use crate::error::CliError;
-use glam::DMat2;
-use recon::contact_kinematics::planar::PalmSurface;
+use recon::exploration::rolling::noisy_curves;
 use recon::object_dynamics::planar::ContactLog;
-use recon::observer::planar::{PlaneContact, PlaneDeviations, PlaneEstimate};
-use recon::shape_bounds::planar::{ContactNoise, ContactSample, Direction, NoisyContact, ShapeBounds};
+use recon::observer::planar::PlaneEstimate;
+use recon::shape_bounds::planar::ShapeBounds;
 use serde_json::json;
-
-/// Samples whose contacts bound the body, at most: more of them gain next to nothing.
-const SAMPLES: usize = 6000;
 
 /// Bounds that hold at `confidence` for the noise of the contacts (`contact_noise`, m) and for the errors of the poses, in the axes of the
 /// body that are those of the world at the first sample. None where no sample is relied on.
@@ -23,15 +19,7 @@ pub(super) fn motion_bounds(
     contact_noise: f64,
     confidence: f64,
 ) -> Result<Option<PlanarBounds>, CliError> {
-    let samples = estimate.states.len();
-    let stride = samples.div_ceil(SAMPLES).max(1);
-    let curve = |(surface, contacts): (&PalmSurface, &Vec<Option<PlaneContact>>)| -> Vec<NoisyContact> {
-        let turning = contact_noise * curvature(*surface);
-        let used = (0..samples).step_by(stride).filter(|k| estimate.relied_on[*k]);
-        used.filter_map(|k| Some(noisy(&contacts[k]?, &estimate.deviations[k], [contact_noise, turning])))
-            .collect()
-    };
-    let curves: Vec<_> = log.surfaces().iter().zip(&estimate.contacts).map(curve).collect();
+    let curves = noisy_curves(log, estimate, contact_noise);
     if curves.iter().all(Vec::is_empty) {
         return Ok(None);
     }
@@ -40,32 +28,6 @@ pub(super) fn motion_bounds(
     let mut made = drawn(&bounds, about);
     made.points = curves.iter().flatten().map(|c| c.contact.point).collect();
     Ok(Some(made))
-}
-
-/// A contact with noise along the palm (m) and of the normal (rad), under a pose with these deviations.
-fn noisy(contact: &PlaneContact, pose: &PlaneDeviations, [along, normal]: [f64; 2]) -> NoisyContact {
-    let t = contact.normal.perp();
-    NoisyContact {
-        contact: ContactSample {
-            point: contact.p_OC,
-            normal: Direction::from_angle(contact.normal.to_angle()),
-        },
-        noise: ContactNoise {
-            point: DMat2::from_cols(t * t.x, t * t.y) * (along * along),
-            normal,
-            // Along no axis is it more than both together, however they go along with each other.
-            pose_translation: pose.p_WCm.length(),
-            pose_rotation: pose.phi0,
-        },
-    }
-}
-
-/// By which noise along a palm turns its normal, 1/m.
-fn curvature(surface: PalmSurface) -> f64 {
-    match surface {
-        PalmSurface::Line => 0.0,
-        PalmSurface::Arc { radius } | PalmSurface::Cup { radius } => 1.0 / radius,
-    }
 }
 
 #[cfg(test)]

@@ -135,6 +135,8 @@ fn other_goals_planners_and_fingers_are_taken_and_bad_ones_named() {
     scratch.write("contacts.csv", "x,y,nx,ny\n1,0,1,0\n");
     let run = scratch.run(&["next", "contacts.csv"]);
     assert!(run.code == Some(3) && run.stderr.contains("--until"), "{}", run.stderr);
+    let run = scratch.run(&["next", "contacts.csv", "--until", "gap=0.1", "--contact-noise", "1e-3"]);
+    assert!(run.code == Some(3) && run.stderr.contains("half of the noise"), "{}", run.stderr);
 }
 
 /// Two palms turn, and the object between them, which rolls, lies between what they prove.
@@ -154,15 +156,23 @@ fn palms_turn_until_the_gap_is_proven_and_say_what_they_cannot() {
     assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
     let page = scratch.read("out/report.html");
     assert!(page.contains("Motion by motion") && page.contains("after motion 1"), "shown in turn");
+    // What is done needs no further motion; a finer goal does, from where the palms are.
+    assert_eq!(json(&scratch, &["next", "out"], 0)["done"], true);
+    let next = json(&scratch, &["next", "out", "--until", "gap=0.05"], 0);
+    assert_eq!(next["done"], false);
+    let to = |k: usize| next["action"]["palms_rad"][0][k].as_f64().unwrap();
+    assert!(to(0) > 0.0 && to(1) < 3.1 && to(1) - to(0) > 0.5, "{next}");
+    assert!(next["action"]["expected"]["area_m2"].as_f64().unwrap() > 0.0);
     // The same seed gives the same folder, to the last byte.
     scratch.run(&rolling(&["--until", "gap=0.2", "-o", "again"]));
     assert_eq!(scratch.read("again/report.html"), page);
     let refusals = [
-        (vec!["next", "out"], "of palms that turned"),
         (vec!["explore", "space.toml", "--rolling", "--until", "gap=0.2"], "is a scene of space"),
         (rolling(&["--planner", "gaussian", "--until", "gap=0.2"]), "use per-second"),
         (vec!["explore", "plane.toml", "--planner", "per-second", "--until", "gap=0.2"], "use path-aware"),
         (rolling(&["--until", "gap=0"]), "goal 0"),
+        (rolling(&["--until", "gap=0.2", "--contact-noise", "1e-4"]), "half of the noise"),
+        (vec!["explore", "plane.toml", "--until", "gap=0.2", "--contact-noise", "1e-4"], "half of the noise"),
         (rolling(&["--until", "gap=0.2", "--width", "1e-9"]), "beyond its end"),
     ];
     for (arguments, says) in refusals {
@@ -174,4 +184,27 @@ fn palms_turn_until_the_gap_is_proven_and_say_what_they_cannot() {
             run.stderr
         );
     }
+}
+
+/// With noisy sensors nothing is known of the object but what is estimated, and the certificate is at a confidence.
+#[test]
+fn palms_with_noisy_sensors_prove_a_gap_by_an_estimate() {
+    let scratch = scratch("explore-sensed");
+    let noise = ["--contact-noise", "4e-5", "--force-noise", "2e-3"];
+    let with = |rest: &[&'static str]| [&["explore", "plane.toml", "--rolling"], &noise[..], rest].concat();
+    let made = json(&scratch, &with(&["--until", "gap=0.2", "-o", "out", "--json"]), 0);
+    assert_eq!((&made["proof"]["reached"], &made["proof"]["confidence"]), (&true.into(), &0.95.into()));
+    let [lower, upper] =
+        ["lower_area_m2", "upper_area_m2"].map(|name| made["bounds"][name].as_f64().unwrap());
+    let truth = std::f64::consts::PI * 0.05 * 0.03;
+    assert!(lower < truth && truth < upper && upper - lower <= 0.2 * upper, "{lower} {truth} {upper}");
+    assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
+    assert_eq!(json(&scratch, &["next", "out"], 0)["done"], true);
+    let next = json(&scratch, &["next", "out", "--until", "gap=0.01"], 0);
+    assert_eq!((&next["done"], &next["confidence"]), (&false.into(), &0.95.into()));
+    assert!(next["action"]["palms_rad"][0][1].is_number(), "{next}");
+    // A state that is none is named.
+    scratch.write("out/state.json", "{}");
+    let run = scratch.run(&["next", "out", "--until", "gap=0.01"]);
+    assert!(run.code == Some(3) && run.stderr.contains("motion"), "{}", run.stderr);
 }

@@ -5,7 +5,7 @@ use crate::planner::Reason;
 use crate::random::Source;
 use crate::rolling::belief::Belief;
 use crate::rolling::flood::{far_motion, unreached};
-use crate::rolling::planner::{RollPlanError, RollProposal, View, targets};
+use crate::rolling::planner::{RollPlanError, RollProposal, SPACING, View, targets};
 
 /// Counts motions that brought no contact.
 #[derive(Clone, Debug, Default)]
@@ -44,7 +44,7 @@ impl Idle {
             0..FAR => Ok(None),
             FAR..SHAKEN => self.far(view, belief, least, seed).map(Some),
             SHAKEN..GIVEN_UP => Ok(Some(shaken(view, seed))),
-            _ => Err(RollPlanError::Unreachable { directions: unreached(view, belief) }),
+            _ => Err(RollPlanError::NotFound { directions: unreached(view, belief) }),
         }
     }
 
@@ -52,7 +52,7 @@ impl Idle {
     /// otherwise, say so too, with no contact in between.
     ///
     /// # Errors
-    /// [`RollPlanError::Unreachable`] after so many tries.
+    /// [`RollPlanError::NotFound`] after so many tries.
     pub(super) fn far(
         &mut self,
         view: &View<'_>,
@@ -65,7 +65,7 @@ impl Idle {
             (self.touches_then, self.tries) = (touches, 0);
         }
         match far_motion(view, belief, least) {
-            Err(RollPlanError::Unreachable { .. }) if self.tries < TRIES => {
+            Err(RollPlanError::NotFound { .. }) if self.tries < TRIES => {
                 self.tries += 1;
                 Ok(shaken(view, seed))
             }
@@ -76,7 +76,7 @@ impl Idle {
 
 /// Any angles of the workspace: the body comes to lie otherwise.
 fn shaken(view: &View<'_>, seed: u64) -> RollProposal {
-    let all = targets(view.workspace, view.track.palms);
+    let all = targets(view.workspace, view.track.palms, SPACING);
     let drawn = Source::new(seed.wrapping_add(view.motion as u64)).unit();
     let to = all.get((drawn * all.len() as f64) as usize).copied().unwrap_or(view.track.palms);
     RollProposal { legs: vec![to], expected: None, reason: Reason::Sequence }

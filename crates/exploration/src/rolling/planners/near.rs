@@ -64,7 +64,7 @@ impl RollPlanner for NearestGap {
 /// Distance (m) of both ends of a motion, mean over the bodies that are not lost.
 fn mean_distance(view: &View<'_>, belief: &Belief, start: &Course, candidate: &Candidate) -> f64 {
     let place = |k: usize, course: &Course| {
-        let rest = Rest { phi: course.phis[k]?, turned: 0.0 };
+        let rest = Rest { phi: course.swings[k]?.0, turned: 0.0 };
         PalmsInBody::of(&belief.bodies[k], course.palms, &rest)
     };
     let one = |k: usize| {

@@ -16,6 +16,7 @@ enum Cost {
 pub struct InformationRate {
     seed: u64,
     horizon: usize,
+    bodies: usize,
     cost: Cost,
     idle: Idle,
 }
@@ -32,13 +33,20 @@ impl InformationRate {
     /// Looking `horizon` motions ahead (2 or 3; 1 looks no further than the next), on bodies of this seed.
     #[must_use]
     pub fn new(seed: u64, horizon: usize) -> Self {
-        Self { seed, horizon: horizon.max(1), cost: Cost::Seconds, idle: Idle::default() }
+        let horizon = horizon.max(1);
+        Self { seed, horizon, bodies: BODIES, cost: Cost::Seconds, idle: Idle::default() }
     }
 
     /// Per radian of palm motion in place of per second.
     #[must_use]
     pub fn per_radian(self) -> Self {
         Self { cost: Cost::Radians, ..self }
+    }
+
+    /// On so many bodies drawn, one at least.
+    #[must_use]
+    pub fn with_bodies(self, bodies: usize) -> Self {
+        Self { bodies: bodies.max(1), ..self }
     }
 
     fn rate(&self, p: &Prediction, depth: usize) -> f64 {
@@ -59,7 +67,7 @@ impl RollPlanner for InformationRate {
     }
 
     fn next(&mut self, view: &View<'_>) -> Result<RollProposal, RollPlanError> {
-        let belief = belief(view, BODIES, self.seed)?;
+        let belief = belief(view, self.bodies, self.seed)?;
         let least = worth(view, &belief);
         if let Some(instead) = self.idle.instead(view, &belief, least, self.seed)? {
             return Ok(instead);

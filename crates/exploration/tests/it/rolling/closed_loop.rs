@@ -92,13 +92,13 @@ fn the_same_seed_gives_the_same_motions_in_any_number_of_threads() {
 
 /// Palms that hardly move see little: what is left is said, and lies beyond what was felt.
 #[test]
-fn normals_that_no_motion_reaches_are_named() {
+fn normals_that_no_motion_was_found_for_are_named() {
     let narrow =
         Workspace { angles: [[0.6, 0.9], [2.2, 2.5]], wedge: [1.4, 1.8], ..Workspace::for_size(SIZE) };
     let task = RollTask { workspace: narrow, ..task(0.05) };
     for mut planner in planners(2).into_iter().take(4) {
         let (outcome, steps) = run(&mut *planner, Family::Egg, 2, &task);
-        let RollOutcome::Short { end: RollEnd::Unreachable { directions }, .. } = outcome else {
+        let RollOutcome::Short { end: RollEnd::NotFound { directions }, .. } = outcome else {
             panic!("{}: {outcome:?}", planner.name());
         };
         assert!(!directions.is_empty());

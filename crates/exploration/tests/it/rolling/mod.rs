@@ -3,6 +3,7 @@
 mod against_dynamics;
 mod bad_input;
 mod closed_loop;
+mod sensed;
 
 use exploration::generators::{Family, Outline, outline};
 use exploration::rolling::{RollingBody, SimulatedPalms, Workspace};

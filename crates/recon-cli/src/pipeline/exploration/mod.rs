@@ -1,16 +1,21 @@
 //! Explorations, in space and in the plane: what is asked for, what was done, where the next touch would be.
 
+mod motions;
 mod page;
 mod plane;
 mod rolling;
+mod sensed;
 mod settings;
 mod side;
 mod space;
+mod state;
 mod story;
 
 pub(crate) use plane::InPlane;
-pub(crate) use rolling::rolled;
-pub(crate) use settings::{Settings, goal_of, until_of};
+pub(crate) use rolling::{next_motion, rolled};
+pub(crate) use sensed::sensed;
+pub(crate) use settings::{CONFIDENCE, Settings, goal_of, until_of};
 pub(crate) use side::Side;
 pub(crate) use space::InSpace;
+pub(crate) use state::{STATE, State};
 pub(crate) use story::{Explored, explored, next_touch};

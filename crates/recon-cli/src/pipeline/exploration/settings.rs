@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use recon::exploration::{Confidence, Goal, Heading, Knowledge, Spending};
 use serde_json::{Value, json};
 
-const CONFIDENCE: f64 = 0.95;
+pub(crate) const CONFIDENCE: f64 = 0.95;
 /// Touches at most in the plane and in space: some four times what ten and twenty per cent take.
 const BUDGETS: [u32; 2] = [60, 200];
 
@@ -19,6 +19,8 @@ pub(crate) struct Settings {
     pub(crate) budget: usize,
     /// Standard deviations of points (m) and normals (rad), and the confidence.
     pub(crate) noise: Option<([f64; 2], f64)>,
+    /// Standard deviations of points along palms (m) and of forces (N), and the confidence, where palms turn and the motion is estimated.
+    pub(crate) sensors: Option<([f64; 2], f64)>,
 }
 
 impl Settings {
@@ -37,6 +39,9 @@ impl Settings {
             seed: args.seed.or_else(|| was["seed"].as_u64()).unwrap_or(1),
             budget: budget.unwrap_or(u64::from(always)) as usize,
             noise: noise.map(|(point, normal)| ([point, normal], confidence)),
+            sensors: number("contact_noise_m")
+                .zip(number("force_noise_n"))
+                .map(|(a, b)| ([a, b], confidence)),
         }
     }
 
@@ -50,6 +55,11 @@ impl Settings {
         if let Some(([point, normal], confidence)) = self.noise {
             figures["contact_noise_m"] = point.into();
             figures["normal_noise_rad"] = normal.into();
+            figures["confidence"] = confidence.into();
+        }
+        if let Some(([point, force], confidence)) = self.sensors {
+            figures["contact_noise_m"] = point.into();
+            figures["force_noise_n"] = force.into();
             figures["confidence"] = confidence.into();
         }
         figures

@@ -113,6 +113,39 @@ fn errors_of_the_pose_that_a_whole_curve_shares_are_covered() {
     }
     // At 95 % the number of failures in 100 runs is above 13 with a probability of 5e-4.
     assert!(with >= 87 && without < 20, "{with} {without}");
+    // Turns alone, so large that what they do beyond first order counts.
+    let turned = |seed| {
+        let curves = with_pose_errors(0.0, 0.03, &mut Source::new(500 + seed));
+        ShapeBounds::from_noisy_curves(&curves, 0.95).is_ok_and(|b| holds(&b))
+    };
+    assert!((0..runs).filter(|seed| turned(*seed)).count() >= 87);
+}
+
+/// A disc about the body's origin looks the same however it is turned: errors of the turn cost next to nothing of its bounds, where a shift of as
+/// much costs what it is; about another origin they cost again.
+#[test]
+fn turns_move_contacts_across_themselves_alone() {
+    let gap = |centre: DVec2, pose: [f64; 2]| {
+        let contact = |k: u32| {
+            let n = DVec2::from_angle(TAU * f64::from(k) / 240.0);
+            let contact = ContactSample { point: centre + n, normal: Direction::new(n).unwrap() };
+            let noise = ContactNoise {
+                pose_translation: pose[0],
+                pose_rotation: pose[1],
+                ..ContactNoise::isotropic(0.0, 0.0)
+            };
+            NoisyContact { contact, noise }
+        };
+        let curves = vec![(0..240).map(contact).collect::<Vec<_>>()];
+        let bounds = ShapeBounds::from_noisy_curves(&curves, 0.95).unwrap();
+        1.0 - bounds.lower_area() / bounds.upper_area()
+    };
+    let [none, turned, shifted] = [[0.0; 2], [0.0, 4e-3], [4e-3, 0.0]].map(|pose| gap(DVec2::ZERO, pose));
+    // Margins are some 4.7 deviations; the outline over the area is 2: 0.037 for each bound.
+    assert!((shifted - none) > 0.06, "{none} {shifted}");
+    // Neighbours are 0.026 apart and a turn acts over the reach between them; 0.2 of it to second order.
+    assert!((turned - none) < 0.004, "{none} {turned}");
+    assert!(gap(DVec2::X, [0.0, 4e-3]) - none > 0.02);
 }
 
 #[test]

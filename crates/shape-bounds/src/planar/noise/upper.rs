@@ -75,9 +75,12 @@ impl Window {
         let independent = normal * self.offset_sd + length * self.normal_sd * reach;
         // A normal of unit length is also shortened along the true one, by half the square of its angle.
         let second_order = 0.5 * (length * self.single_normal_sd).powi(2) * reach;
-        // Of two standard normals, where the rotation is one: on the safe side.
-        let pose =
-            normal * self.pose_translation + length * self.pose_rotation * (reach + self.point.length());
+        // A pose that is turned by `d` about the body's origin turns the line with it: at `y` that is `d (t . y)` along the normal, with the
+        // line's direction `t`, and `d^2 |y| / 2` beyond first order. `t . y` is that of the contact, and the reach from there.
+        // Quantiles are of two standard normals where the rotation is one: on the safe side.
+        let turned = length * (self.pose_turning + self.pose_rotation * reach)
+            + 0.5 * (length * self.most_rotation).powi(2) * (self.point.length() + reach);
+        let pose = normal * self.pose_translation + turned;
         let margin = (self.offset + independent + second_order + pose) / self.shrink;
         HalfPlane { point: self.point, normal: self.normal, margin }
     }

@@ -29,6 +29,15 @@ pub(super) struct Window {
     /// Mean standard deviations of the pose.
     pub(super) pose_translation: f64,
     pub(super) pose_rotation: f64,
+    /// The largest standard deviation of a rotation.
+    pub(super) most_rotation: f64,
+    /// Mean of the rotations' deviations times the distances of the contacts from the mean point.
+    pub(super) pose_spread: f64,
+    /// Mean distance of the contacts from the body's origin, m.
+    pub(super) arm: f64,
+    /// Mean of the rotations' deviations times how far the contacts are from where the lines are nearest to the body's origin: a turn moves
+    /// a line by as much at its contact.
+    pub(super) pose_turning: f64,
 }
 
 /// Windows of each length over `curves`, one list for each length.
@@ -59,6 +68,8 @@ impl Window {
         });
         // Errors of the normals turn the lines about their own contacts, not about the mean point.
         let turning = mean(&|c| c.noise.normal.powi(2) * c.contact.point.distance_squared(point));
+        let turned = |c: &NoisyContact, arm: f64| c.noise.pose_rotation * arm;
+        let spread = |c: &NoisyContact| turned(c, c.contact.point.distance(point));
         let covariance =
             run.iter().map(|c| c.noise.point).fold(DMat2::ZERO, |sum, m| sum + m) * (weight * weight);
         Some(Self {
@@ -73,6 +84,13 @@ impl Window {
             single_normal_sd: run.iter().map(|c| c.noise.normal).fold(0.0, f64::max),
             pose_translation: mean(&|c| c.noise.pose_translation),
             pose_rotation: mean(&|c| c.noise.pose_rotation),
+            most_rotation: run.iter().map(|c| c.noise.pose_rotation).fold(0.0, f64::max),
+            pose_spread: mean(&spread),
+            arm: mean(&|c| c.contact.point.length()),
+            pose_turning: mean(&|c| {
+                let foot = c.contact.normal.get().perp_dot(c.contact.point).abs();
+                turned(c, foot) + spread(c)
+            }),
         })
     }
 }
