@@ -270,6 +270,7 @@ impl Source<'_> {
             let still = still(log, noise, units);
             stage = if still.is_none() { stage.decided()? } else { stage };
             stage.open = stage.open.or(still);
+            stage = if exact { stage } else { stage.blurred()? };
         }
         if sharp { stage.sharpened() } else { Some(stage) }
     }
@@ -330,8 +331,9 @@ fn slips(problem: &Problem, motions: &[(Motion, Deviations)], body: &Body) -> Sl
         let turn = body.turn(motion.q, motion.L);
         let from = record.samples[j.saturating_sub(1)];
         let to = record.samples.get(j + 1).copied().unwrap_or(record.samples[j]);
+        let noise = problem.noise_at(j);
         for contact in record.contacts[j].iter().filter(|c| c.mode == ContactMode::Stick) {
-            let rows = Rows::new(contact, motion, &turn, &problem.noise, false);
+            let rows = Rows::new(contact, motion, &turn, &noise, false);
             if rows.is_some_and(|rows| rows.cost() > CONTRADICTED) {
                 slips.push((from..to + 1, contact.palm));
             }
