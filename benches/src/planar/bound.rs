@@ -48,6 +48,15 @@ pub struct TrueSample {
     pub palms: PalmPairState,
 }
 
+/// Where the error of a contact that is read beside where it is counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactErrors {
+    /// In its condition and, by the same number, in the moment of its force: as it is.
+    Once,
+    /// In both, as if they were two independent ones: what an estimator can do that takes them for that.
+    Apart,
+}
+
 /// Length (m) and time (s) in which numbers are of the order of one.
 #[derive(Clone, Copy, Debug)]
 pub struct Scales {
@@ -66,9 +75,10 @@ pub fn least_covariance(
     known: bool,
     noise: PlanarNoise,
     scales: Scales,
+    errors: ContactErrors,
 ) -> Option<SMatrix<f64, 5, 5>> {
     let read = SVector::from([noise.contact, noise.contact, noise.force, noise.force]);
-    let mut filter = Filter::begun(mass, known, read, scales);
+    let mut filter = Filter { errors, ..Filter::begun(mass, known, read, scales) };
     filter.condition(samples.first()?)?;
     for pair in samples.windows(2) {
         filter.carry([&pair[0], &pair[1]])?;
@@ -127,6 +137,7 @@ struct Filter {
     read: SVector<f64, READ>,
     /// Deviation of a condition by itself, m/s.
     rounding: f64,
+    errors: ContactErrors,
     covariance: Covariance,
 }
 
@@ -144,14 +155,22 @@ impl Filter {
         deviations.fixed_rows_mut::<OWN>(0).copy_from(&(SVector::from(natural) * UNKNOWN));
         deviations.fixed_rows_mut::<READ>(OWN).copy_from(&read);
         let covariance = Covariance::from_diagonal(&deviations.component_mul(&deviations));
-        Self { body, read, rounding: ROUNDING * speed, covariance }
+        Self { body, read, rounding: ROUNDING * speed, errors: ContactErrors::Once, covariance }
     }
 
     /// To the next sample, whose readings have errors of their own; rates change linearly in between.
     fn carry(&mut self, [before, after]: [&TrueSample; 2]) -> Option<()> {
         let half = 0.5 * (after.t - before.t);
-        let ((own, inputs), (next, next_inputs)) =
+        let ((own, mut inputs), (next, mut next_inputs)) =
             (before.derivatives(self.body), after.derivatives(self.body));
+        let mut apart = 0.0;
+        if self.errors == ContactErrors::Apart {
+            for palm in 0..2 {
+                // All of a sample's error in the interval after it.
+                apart += (2.0 * half * inputs[(4, palm)] * self.read[palm]).powi(2);
+                (inputs[(4, palm)], next_inputs[(4, palm)]) = (0.0, 0.0);
+            }
+        }
         let implicit = (Own::identity() - next * half).try_inverse()?;
         let mut step = Covariance::zeros();
         step.fixed_view_mut::<OWN, OWN>(0, 0).copy_from(&(implicit * (Own::identity() + own * half)));
@@ -161,6 +180,7 @@ impl Filter {
         fresh.fixed_view_mut::<READ, READ>(OWN, 0).fill_with_identity();
         let fresh = fresh * SMatrix::<f64, READ, READ>::from_diagonal(&self.read);
         self.covariance = step * self.covariance * step.transpose() + fresh * fresh.transpose();
+        self.covariance[(4, 4)] += apart;
         Some(())
     }
 

@@ -2,6 +2,7 @@
 
 use super::scene::Scene;
 use recon::object_dynamics::planar::*;
+use recon::observer::SensorFault;
 use recon_tests::Random;
 
 type Failure = Box<dyn std::error::Error>;
@@ -112,6 +113,19 @@ impl Wrong {
             }
         }
         Ok(PlanarLog::new(samples, log.truth().map(<[_]>::to_vec))?)
+    }
+
+    /// The constant of the sensors that it is, and its value.
+    #[must_use]
+    pub fn constant(self, scene: &Scene) -> Option<(SensorFault, f64)> {
+        match self {
+            Self::ForcesLate => Some((SensorFault::ForceDelay, LATE)),
+            Self::ContactsLate => Some((SensorFault::ContactDelay, LATE)),
+            Self::Palm => Some((SensorFault::PalmTilt { palm: 2, axis: 1 }, 0.5_f64.to_radians())),
+            Self::Gain => Some((SensorFault::ForceGain { palm: 1 }, 0.01)),
+            Self::Bias => Some((SensorFault::ForceBias { palm: 1 }, 0.01 * scene.weight())),
+            _ => None,
+        }
     }
 
     /// What is told of the body.

@@ -1,7 +1,7 @@
 //! Bodies between two frictionless palms in the plane, drawn at random: bodies of 3 cm to 3 m, palms that stand, swing slowly or fast, bodies
 //! that turn on, turn back or are let go at rest.
 
-use super::bound::{Scales, TrueSample, least_covariance};
+use super::bound::{ContactErrors, Scales, TrueSample, least_covariance};
 use nalgebra::SMatrix;
 use recon::contact_kinematics::planar::{FourierBody, RadiusFunction};
 use recon::object_dynamics::planar::*;
@@ -124,7 +124,7 @@ impl Scene {
     }
 
     /// Of an exact log.
-    fn true_samples(&self, log: &PlanarLog) -> Result<Vec<TrueSample>, Failure> {
+    pub(super) fn true_samples(&self, log: &PlanarLog) -> Result<Vec<TrueSample>, Failure> {
         let truth = log.truth().ok_or("no truth")?;
         let one = |(of, truth): (&PlanarSample, &PlanarTruth)| {
             let [Some(a), Some(b)] = of.contacts else { return Err("a palm without contact".into()) };
@@ -139,10 +139,16 @@ impl Scene {
     ///
     /// # Errors
     /// Those of a log that is not exact, and of equations that are singular.
-    pub fn bound(&self, exact: &PlanarLog, known: bool, share: f64) -> Result<SMatrix<f64, 5, 5>, Failure> {
+    pub fn bound(
+        &self,
+        exact: &PlanarLog,
+        known: bool,
+        share: f64,
+        errors: ContactErrors,
+    ) -> Result<SMatrix<f64, 5, 5>, Failure> {
         let samples = self.true_samples(exact)?;
         let scales = Scales { length: self.length, time: self.time };
-        let least = least_covariance(&samples, self.object.mass, known, self.noise(share), scales);
+        let least = least_covariance(&samples, self.object.mass, known, self.noise(share), scales, errors);
         let mut least = least.ok_or("no bound")?;
         let speed = self.length / self.time;
         let natural = [self.length, self.length, speed, speed, self.time.recip()];

@@ -100,7 +100,8 @@ fn the_filter_is_all_least_squares_at_once() {
             }
             let oracle =
                 Readings { samples: &samples, mass }.least(&DVector::from_vec(deviations), ROUNDING * speed);
-            let found = least_covariance(&samples, mass, known, noise, scales).expect("not singular");
+            let found = least_covariance(&samples, mass, known, noise, scales, ContactErrors::Once)
+                .expect("not singular");
             for k in 0..5 {
                 let (found, oracle) = (found[(k, k)].sqrt(), oracle[(k, k)].sqrt());
                 // The differences' own error: products of deviations of 10 natural units are of the second order, and cancel in central differences
@@ -115,9 +116,12 @@ fn the_filter_is_all_least_squares_at_once() {
 fn less_noise_and_a_known_body_allow_less() {
     for scene in drawn(3, 6).expect("scenes") {
         let exact = scene.log(20.0 / scene.time).expect("simulated before");
-        let bound = |known, share| scene.bound(&exact, known, share).expect("not singular");
+        let bound =
+            |known, share| scene.bound(&exact, known, share, ContactErrors::Once).expect("not singular");
         let [known, unknown, noisier] = [bound(true, 1e-3), bound(false, 1e-3), bound(true, 1e-2)];
+        let apart = scene.bound(&exact, true, 1e-2, ContactErrors::Apart).expect("not singular");
         for k in 0..5 {
+            assert!(noisier[(k, k)] < apart[(k, k)]);
             assert!(known[(k, k)] <= unknown[(k, k)] * (1.0 + 1e-6) && known[(k, k)] < noisier[(k, k)]);
         }
     }

@@ -14,7 +14,7 @@ use super::rivals::still;
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{problem, thinned};
-use super::sensor_change::slopes_of_forces;
+use super::sensor_change::{slopes_of_contacts, slopes_of_forces};
 use super::sharp::{is_rounded, is_sharp, leaves_something};
 use super::slips::Known;
 use super::solve::{Covariances, Solved};
@@ -285,9 +285,10 @@ impl Source<'_> {
         (record, longest): (&Record, f64),
     ) -> Wrong {
         let Stage { problem, solved, free, .. } = stage;
-        let slopes = slopes_of_forces(self.log, &self.units);
+        let slopes = [slopes_of_forces(self.log, &self.units), slopes_of_contacts(self.log, &self.units)];
+        let slopes = slopes.each_ref().map(Vec::as_slice);
         let averages = Averages::new(self.log, &self.options.noise, [record, problem.record], longest);
-        let sensors = Sensors::new(self.log, (motions, solved.unknowns.body), &slopes, &averages);
+        let sensors = Sensors::new(self.log, (motions, solved.unknowns.body), slopes, &averages);
         let scores = Scores::new(&sensors, problem, solved);
         let suspects = scores.map_or_else(Vec::new, |scores| suspects(&scores, covariances));
         let evidence = stage.evidence(record, covariances);
