@@ -234,6 +234,6 @@ fn bounds(bounds: &Bounds) -> Value {
         "lower_volume_m3": lower,
         "upper_volume_m3": upper,
         "lower_over_upper": upper.map(|u| lower / u),
-        "largest_gap_m": bounds.largest_gap,
+        "largest_gap_m": bounds.largest_gap.map(|gap| gap.distance),
     })
 }

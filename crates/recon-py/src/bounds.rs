@@ -90,7 +90,7 @@ impl Bounds {
     fn largest_gap(&self) -> Option<f64> {
         match self.made.outlines() {
             Some(outlines) => outlines.largest_gap,
-            None => self.made.bounds()?.largest_gap,
+            None => self.made.bounds()?.largest_gap.map(|gap| gap.distance),
         }
     }
 

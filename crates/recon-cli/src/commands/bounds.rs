@@ -257,7 +257,7 @@ fn figures(made: &BoundsResult, what: &str, about: &Value) -> Value {
             "lower_volume_m3": lower,
             "upper_volume_m3": upper,
             "lower_over_upper": upper.map(|u| lower / u),
-            "largest_gap_m": made.drawn.largest_gap,
+            "largest_gap_m": made.drawn.largest_gap.map(|gap| gap.distance),
             "contradiction_m": made.contradiction,
         },
         "warnings": made.warnings,
@@ -282,7 +282,7 @@ fn describe(made: &BoundsResult, what: &str, about: &Value) -> String {
         let _ = writeln!(text, "  upper bound            {} m^3", brief(upper.volume));
         let _ = writeln!(text, "  lower / upper          {}", brief_to(4, lower / upper.volume));
     }
-    if let Some(gap) = made.drawn.largest_gap {
+    if let Some(gap) = made.drawn.largest_gap.map(|gap| gap.distance) {
         let _ = writeln!(text, "  gap, at most           {} m", brief(gap));
     }
     if let Some(volume) = about["concave"]["alpha_volume_m3"].as_f64() {
@@ -300,11 +300,11 @@ fn describe(made: &BoundsResult, what: &str, about: &Value) -> String {
 
 /// Where to touch next.
 fn next_touch(made: &BoundsResult) -> String {
-    match made.drawn.farthest_apart() {
-        Some((at, apart)) => {
-            let [x, y, z] = at.to_array().map(|of| brief_to(4, of));
-            let apart = brief_to(3, apart);
-            format!("touch it about ({x}, {y}, {z}) m: there the bounds are {apart} m apart at least")
+    match made.drawn.largest_gap {
+        Some(gap) => {
+            let [x, y, z] = gap.outer.to_array().map(|of| brief_to(4, of));
+            let apart = brief_to(3, gap.distance);
+            format!("touch it about ({x}, {y}, {z}) m: there the bounds are {apart} m apart")
         }
         None if made.drawn.upper.is_none() => {
             "touch the object from all sides: only then it has an upper bound".to_owned()

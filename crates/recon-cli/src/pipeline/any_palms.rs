@@ -166,7 +166,7 @@ pub(crate) fn estimate_any_palms(
         in_plane: false,
     };
     let mut evidence = evidence(&estimate, &options, &checks);
-    evidence.extend(bounds.as_ref().and_then(|bounds| bounds.drawn.farthest_apart()).map(touch_next));
+    evidence.extend(bounds.as_ref().and_then(|bounds| bounds.drawn.largest_gap).map(|gap| touch_next(&gap)));
     let data = EstimateData {
         title: request.title.to_owned(),
         next: advice.next().to_owned(),

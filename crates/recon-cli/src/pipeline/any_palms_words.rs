@@ -7,6 +7,7 @@ use recon::observer::{
     Assumption, ContactEstimate, ContactEvidence, ContactNoiseLevel, ContactOptions, EstimatedModes,
     Explanation, LearnedFriction, Reason, Reliability, Suspect,
 };
+use recon::shape_bounds::Gap;
 use recon_io::EvidenceValue::{Number, Text};
 use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Verdict, brief_to};
 
@@ -180,11 +181,11 @@ fn body(estimate: &ContactEstimate) -> Vec<Evidence> {
 }
 
 /// Where bounds are farthest apart, body axes, and by how much at least, m.
-pub(super) fn touch_next((at, apart): (DVec3, f64)) -> Evidence {
-    let place = at.to_array().map(|of| brief_to(4, of)).join(", ");
+pub(super) fn touch_next(gap: &Gap) -> Evidence {
+    let place = gap.outer.to_array().map(|of| brief_to(4, of)).join(", ");
     let meaning = format!(
-        "Corner of the upper bound, body axes, that is farthest from the lower one: by {} m at least.",
-        brief_to(3, apart)
+        "Corner of the upper bound, body axes, that is farthest from the lower one: by {} m.",
+        brief_to(3, gap.distance)
     );
     neutral("touch_next", "Where to touch next", Text(place), "m", &meaning)
 }

@@ -89,7 +89,7 @@ fn made(whole: ShapeBounds, contacts: &[ContactSample]) -> Result<BoundsResult, 
         upper: upper
             .clone()
             .map(|all| Bound { mesh: few_upper.unwrap_or(all), volume: whole.upper_volume() }),
-        largest_gap: whole.largest_gap().map(|gap| gap.distance),
+        largest_gap: whole.largest_gap(),
     };
     // Half-spaces were moved out to where no contact lies beyond them.
     Ok(BoundsResult { drawn, lower, upper, others: Vec::new(), features: None, contradiction: 0.0, warnings })

@@ -41,7 +41,10 @@ pub(crate) fn bounds_page(
         title: title.to_owned(),
         verdict: verdict(about, what, sizes[1].is_some(), made.contradicts()),
         warnings: made.warnings.clone(),
-        facts: facts(sizes, "m³", made.drawn.largest_gap, about).into_iter().chain(more).collect(),
+        facts: facts(sizes, "m³", made.drawn.largest_gap.map(|gap| gap.distance), about)
+            .into_iter()
+            .chain(more)
+            .collect(),
         heading: "Bounds on the shape",
         panels: three_views(&bodies, &dots).into_iter().chain(marked).collect(),
         caption: format!("{IN_SPACE}{caption}"),

@@ -52,7 +52,7 @@ pub(crate) fn concave_bounds(
     let drawn = Bounds {
         lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: bounds.lower_volume() },
         upper: upper.clone().map(|mesh| Bound { mesh, volume: bounds.upper_volume() }),
-        largest_gap: bounds.largest_gap().map(|gap| gap.distance),
+        largest_gap: bounds.largest_gap(),
     };
     let others = vec![
         ("alpha_shape.ply", "alpha shape, an approximation and no bound; metres", own(alpha.mesh(radius)?)?),

@@ -81,7 +81,7 @@ pub(crate) fn sharp_bounds(
     let drawn = Bounds {
         lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: bounds.lower().volume() },
         upper: upper.clone().map(|mesh| Bound { mesh, volume: bounds.upper().volume() }),
-        largest_gap: polytopes.largest_gap().map(|gap| gap.distance),
+        largest_gap: polytopes.largest_gap(),
     };
     Ok((
         BoundsResult {
@@ -160,7 +160,7 @@ fn finished(bounds: &CertainBounds, mut warnings: Vec<String>) -> Result<BoundsR
             mesh,
             volume: bounds.upper.as_ref().map_or(f64::INFINITY, |upper| upper.volume()),
         }),
-        largest_gap: bounds.largest_gap().map(|gap| gap.distance),
+        largest_gap: bounds.largest_gap(),
     };
     if lower.is_none() {
         warnings.push(
@@ -330,7 +330,7 @@ pub(crate) fn pose_bounds(
     let drawn = Bounds {
         lower: Bound { mesh: lower.clone().unwrap_or_default(), volume: solid.map_or(0.0, |s| s.volume()) },
         upper: Some(Bound { mesh: upper.clone(), volume: made.upper.volume() }),
-        largest_gap: made.largest_gap().map(|gap| gap.distance),
+        largest_gap: made.largest_gap(),
     };
     Ok((
         BoundsResult {

@@ -105,10 +105,13 @@ fn what_is_done_is_kept_and_what_has_changed_is_done_again() {
 #[test]
 fn a_log_has_the_scene_of_its_name_and_bad_folders_are_named() {
     let scratch = logs("batch-scenes");
-    // A scene that does not go with the log, of its name.
-    scratch.write("logs/slow.toml", &scene().replace("gravity = 9.81", "gravity = 1.62"));
+    // A scene of the log's name that cannot be, where the one of all logs can.
+    scratch.write("logs/slow.toml", &scene().replace("gravity = 9.81", "gravity = -9.81"));
     let (_, said) = batch(&scratch, &[]);
-    assert_eq!(said["relied_on"], 1, "{said}");
+    assert_eq!([&said["relied_on"], &said["skipped"]], [1, 2], "{said}");
+    let rows = said["rows"].as_array().unwrap();
+    let why = rows.iter().find(|row| row["log"] == "slow.csv").unwrap()["why"].as_str().unwrap();
+    assert!(why.contains("slow.toml") && why.contains("gravity"), "{why}");
     let refused = |folder: &str, word: &str| {
         let run = scratch.run(&["batch", folder, "--scene", "scene.toml", "-o", "other"]);
         assert_eq!(run.code, Some(3));

@@ -72,7 +72,7 @@ fn limits_on_the_curvature_tighten_the_bounds() {
     // Where to touch next is said with its place.
     let said = scratch.run(&["bounds", "clean.csv"]).stdout;
     assert!(
-        said.contains("  next                   touch it about (") && said.contains(" apart at least"),
+        said.contains("  next                   touch it about (") && said.contains(" m apart"),
         "{said}"
     );
     let limits = ["--rho-min", "0.8", "--rho-max", "1.3"];

@@ -3,10 +3,8 @@ use crate::TriangleMesh;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::PalmFrame;
 use recon::object_dynamics::TrueState;
+use recon::shape_bounds::Gap;
 use thiserror::Error;
-
-/// Pairs of a corner and a facet that are weighed at most to find where bounds are farthest apart.
-const MOST_WEIGHED: usize = 4_000_000;
 
 /// Everything that is told about one reconstruction, independent of how it was made. SI units.
 ///
@@ -131,27 +129,6 @@ pub struct MotionState {
     pub w_WO: DVec3,
 }
 
-impl Bounds {
-    /// The corner of the upper bound that is farthest from the lower one, body axes, and by how much it is beyond it at least, m:
-    /// where a touch tells most. None where there is no upper bound, or nothing between the two.
-    #[must_use]
-    pub fn farthest_apart(&self) -> Option<(DVec3, f64)> {
-        let (lower, upper) = (&self.lower.mesh, &self.upper.as_ref()?.mesh);
-        let corner = |index: u32| lower.vertices.get(index as usize).copied();
-        let plane = |of: &[u32; 3]| {
-            let [a, b, c] = [corner(of[0])?, corner(of[1])?, corner(of[2])?];
-            let n = (b - a).cross(c - a).try_normalize()?;
-            Some((n, n.dot(a)))
-        };
-        // Some of the planes leave the distance too small at most, and large bounds need not be weighed corner by facet.
-        let stride = (lower.triangles.len() * upper.vertices.len()).div_ceil(MOST_WEIGHED).max(1);
-        let planes: Vec<(DVec3, f64)> = lower.triangles.iter().step_by(stride).filter_map(plane).collect();
-        let beyond = |p: DVec3| planes.iter().map(|(n, offset)| n.dot(p) - offset).fold(0.0, f64::max);
-        let all = upper.vertices.iter().map(|&p| (p, beyond(p))).filter(|(_, beyond)| *beyond > 0.0);
-        all.reduce(|most, next| if next.1 > most.1 { next } else { most })
-    }
-}
-
 impl From<TrueState> for MotionState {
     fn from(s: TrueState) -> Self {
         Self { p_WCm: s.p_WCm, R_WO: s.R_WO, v_WCm: s.v_WCm, w_WO: s.w_WO }
@@ -165,8 +142,9 @@ pub struct Bounds {
     pub lower: Bound,
     /// Around the object; none where the contacts leave it unbounded.
     pub upper: Option<Bound>,
-    /// No less than the Hausdorff distance between the two, m; none without an upper bound.
-    pub largest_gap: Option<f64>,
+    /// Where the upper bound is farthest from the lower one, body axes: a touch tells most there, and the distance is the Hausdorff distance of the
+    /// two. None without an upper bound, or where nothing is between them.
+    pub largest_gap: Option<Gap>,
 }
 
 /// A convex bound.

@@ -33,7 +33,7 @@ pub(super) fn encode(data: &ReportData) -> Value {
         "bounds": data.bounds.as_ref().map(|b| json!({
             "lower": bound(&b.lower, size),
             "upper": b.upper.as_ref().map(|u| bound(u, size)),
-            "apart": b.farthest_apart().map(|(p, _)| vector(p, size)),
+            "apart": b.largest_gap.map(|gap| vector(gap.outer, size)),
         })),
         "shape": data.true_shape.as_ref().map(|s| shape(s, size)),
     })

@@ -20,10 +20,13 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 const STRAIGHT: f64 = 2.0;
 /// Deviations of chi-squared beyond which a coordinate moves: one in a thousand does by chance.
 const MOVES: f64 = 3.1;
-/// Turns of the principal directions that are tried before the best is refined.
-const TURNS: u32 = 12;
-/// Steps of the refinement: to a thousandth of the spacing.
-const REFINED: u32 = 10;
+/// Turns of the principal directions that are tried before the best is refined, of a quarter turn.
+const TURNS: usize = 12;
+/// Cosine and sine of twice the angle between them.
+const TWICE_SPACING: DVec2 = DVec2::new(0.965_925_826_289_068_3, 0.258_819_045_102_520_74);
+/// Steps of the refinement, at most: to a thousandth of the spacing; and what of the evidence is not worth another one.
+const REFINED: usize = 10;
+const ENOUGH: f64 = 0.01;
 /// Step of the second difference in the turn, rad: chi-squared is a trigonometric function of it of low order.
 const DIFFERENCE: f64 = 0.01;
 
@@ -130,48 +133,79 @@ impl Scatter {
         -0.5 * misfit + direction + self.free(squares)
     }
 
+    /// The principal directions are turned by an angle of which only the double counts: it is gone through by its cosine and sine alone.
     fn smooth(&self) -> f64 {
-        let spacing = FRAC_PI_2 / f64::from(TURNS);
-        let better = |most: (f64, f64), turn: f64| {
-            let value = self.smooth_along(turn);
-            if value > most.1 { (turn, value) } else { most }
-        };
-        let start = (0.0, self.smooth_along(0.0));
-        let mut best = (1..TURNS).map(|k| f64::from(k) * spacing).fold(start, better);
-        let mut step = 0.5 * spacing;
-        for _ in 0..REFINED {
-            best = [best.0 - step, best.0 + step].into_iter().fold(best, better);
-            step *= 0.5;
+        let forms = self.forms();
+        let at = |twice: DVec2| (twice, self.smooth_along(&forms, twice));
+        let better = |most: (DVec2, f64), other: (DVec2, f64)| if other.1 > most.1 { other } else { most };
+        let mut best = at(DVec2::X);
+        let mut twice = DVec2::X;
+        for _ in 1..TURNS {
+            twice = twice.rotate(TWICE_SPACING);
+            best = better(best, at(twice));
         }
-        let misfit = |turn: f64| self.lines(turn).map(|line| line.misfit).into_iter().sum::<f64>();
-        let bend = misfit(best.0 + DIFFERENCE) + misfit(best.0 - DIFFERENCE) - 2.0 * misfit(best.0);
+        let mut step = half_angle(TWICE_SPACING);
+        for _ in 0..REFINED {
+            let beside = [best.0.rotate(conjugate(step)), best.0.rotate(step)].map(at);
+            let flat = beside.iter().all(|(_, value)| (value - best.1).abs() < ENOUGH);
+            best = beside.into_iter().fold(best, better);
+            if flat {
+                break;
+            }
+            step = half_angle(step);
+        }
+        let misfit = |twice: DVec2| self.lines(&forms, twice).iter().map(|line| line.misfit).sum::<f64>();
+        let step = DVec2::from_angle(2.0 * DIFFERENCE);
+        let beside = misfit(best.0.rotate(step)) + misfit(best.0.rotate(conjugate(step)));
+        let bend = beside - 2.0 * misfit(best.0);
         best.1 + left_of_range(0.5 * bend / (DIFFERENCE * DIFFERENCE)).ln()
     }
 
-    /// Logarithm of the evidence for a smooth surface whose principal directions are turned so far.
-    fn smooth_along(&self, turn: f64) -> f64 {
-        let lines = self.lines(turn);
-        let of_one = |line: &Line| left_of_range(line.told).ln() - 0.5 * line.misfit;
-        lines.iter().map(of_one).sum::<f64>() + self.free(lines.map(|line| line.along))
+    fn forms(&self) -> [Form; 3] {
+        [self.points, self.normals, self.both].map(Form::of)
     }
 
-    fn lines(&self, turn: f64) -> [Line; 2] {
-        let e = DVec2::from_angle(turn);
-        [self.line(e), self.line(e.perp())]
+    /// Logarithm of the evidence for a smooth surface whose principal directions are turned by half the angle of `twice`.
+    fn smooth_along(&self, forms: &[Form; 3], twice: DVec2) -> f64 {
+        let [a, b] = self.lines(forms, twice);
+        let left = left_of_range(a.told) * left_of_range(b.told);
+        left.ln() - 0.5 * (a.misfit + b.misfit) + self.free([a.along, b.along])
+    }
+
+    /// The lines along two directions at right angles.
+    fn lines(&self, forms: &[Form; 3], twice: DVec2) -> [Line; 2] {
+        [self.line(forms, twice), self.line(forms, -twice)]
     }
 
     /// The line that fits contacts over normals along a tangent direction, of those that rise.
-    fn line(&self, e: DVec2) -> Line {
-        let along = |m: DMat2| along_direction(m, e);
-        let (a, b, c) = (along(self.points), along(self.normals), along(self.both));
-        let (half, mean) = (0.5 * (a - b), 0.5 * (a + b));
-        let length = half.hypot(c.max(0.0));
-        // Of the angle between the line's normal and the axis of the normals, in whitened coordinates.
-        let angle = 0.5 * c.max(0.0).atan2(half);
-        let true_angle = (angle.sin() / self.ratio).atan2(angle.cos());
-        let (sin, cos) = true_angle.sin_cos();
-        let rate = self.ratio / (cos * cos + self.ratio * self.ratio * sin * sin);
+    fn line(&self, forms: &[Form; 3], twice: DVec2) -> Line {
+        let [points, normals, both] = forms.each_ref().map(|form| form.along(twice));
+        let (half, mean) = (0.5 * (points - normals), 0.5 * (points + normals));
+        let across = both.max(0.0);
+        let length = DVec2::new(half, across).length();
+        // Squares of cosine and sine of the angle between the line's normal and the axis of the normals, in whitened coordinates, twice each;
+        // the angle by which the true one moves is that times the rate.
+        let tilt = if length > 0.0 { half / length } else { 1.0 };
+        let rate = 0.5 * (self.ratio * (1.0 + tilt) + (1.0 - tilt) / self.ratio);
         Line { misfit: mean - length, along: mean + length, told: 2.0 * length * rate * rate }
+    }
+}
+
+/// A quadratic form along a tangent direction, by cosine and sine of twice its angle.
+#[derive(Clone, Copy)]
+struct Form {
+    mean: f64,
+    wave: DVec2,
+}
+
+impl Form {
+    fn of(m: DMat2) -> Self {
+        let (half, off) = (0.5 * (m.x_axis.x - m.y_axis.y), 0.5 * (m.x_axis.y + m.y_axis.x));
+        Self { mean: 0.5 * trace(m), wave: DVec2::new(half, off) }
+    }
+
+    fn along(&self, twice: DVec2) -> f64 {
+        self.mean + self.wave.dot(twice)
     }
 }
 
@@ -190,6 +224,18 @@ fn left_of_range(told: f64) -> f64 {
     if told > 0.0 { ((TAU / told).sqrt() / FRAC_PI_2).min(1.0) } else { 1.0 }
 }
 
+/// The unit vector of the opposite angle.
+fn conjugate(e: DVec2) -> DVec2 {
+    DVec2::new(e.x, -e.y)
+}
+
+/// The unit vector at half of an angle of at most half a turn either way.
+fn half_angle(e: DVec2) -> DVec2 {
+    let larger = (0.5 * (1.0 + e.x.abs())).sqrt();
+    let smaller = 0.5 * e.y / larger;
+    if e.x < 0.0 { DVec2::new(smaller.abs(), larger.copysign(e.y)) } else { DVec2::new(larger, smaller) }
+}
+
 fn trace(m: DMat2) -> f64 {
     m.x_axis.x + m.y_axis.y
 }
@@ -206,7 +252,40 @@ fn eigenvalues(m: DMat2) -> [f64; 2] {
 
 /// Eigenvector of the smallest eigenvalue of a symmetric matrix.
 fn smallest_direction(m: DMat2) -> DVec2 {
-    let half = 0.5 * (m.x_axis.x - m.y_axis.y);
+    let twice = DVec2::new(0.5 * (m.x_axis.x - m.y_axis.y), m.x_axis.y);
     // The largest one is at half of this angle.
-    DVec2::from_angle(0.5 * m.x_axis.y.atan2(half)).perp()
+    half_angle(twice.normalize_or(DVec2::X)).perp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Against the angles themselves: of the line, and of its normal before lengths were whitened.
+        #[test]
+        fn lines_are_those_of_their_angles(
+            [p, q, r, s] in prop::array::uniform4(-10.0..10.0_f64),
+            rise in 0.0..1.0_f64,
+            ratio in 1e-3..1e3_f64,
+            turn in 0.0..FRAC_PI_2,
+        ) {
+            let matrix = |a: f64, b: f64| DMat2::from_cols(DVec2::new(a * a, a * b), DVec2::new(a * b, b * b));
+            let (points, normals) = (matrix(p, q) + DMat2::IDENTITY, matrix(r, s) + DMat2::IDENTITY);
+            let both = (points + normals) * (0.4 * rise);
+            let scatter = Scatter { count: 9.0, axes: [DVec3::X, DVec3::Y], points, normals, both, ratio };
+            let line = scatter.line(&scatter.forms(), DVec2::from_angle(2.0 * turn));
+
+            let e = DVec2::from_angle(turn);
+            let [a, b, c] = [points, normals, both].map(|m| along_direction(m, e));
+            let angle = 0.5 * c.max(0.0).atan2(0.5 * (a - b));
+            let length = (0.5 * (a - b)).hypot(c.max(0.0));
+            let true_angle = (angle.sin() / ratio).atan2(angle.cos());
+            let rate = ratio / (true_angle.cos().powi(2) + (ratio * true_angle.sin()).powi(2));
+            let told = 2.0 * length * rate * rate;
+            prop_assert!((line.misfit - (0.5 * (a + b) - length)).abs() < 1e-12 * (a + b));
+            prop_assert!((line.told - told).abs() < 1e-9 * told, "{} {told}", line.told);
+        }
+    }
 }
