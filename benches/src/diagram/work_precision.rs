@@ -229,7 +229,9 @@ impl WorkPrecision {
             };
             let tooltip = format!("{}, {setting}: error {error:.2e}, cost {cost:.3e}", method.name);
             curve.points.push((at, tooltip));
-            notes.push(Note { at, text: setting.clone(), below: false });
+            if !is_on_the_axis(setting, error) {
+                notes.push(Note { at, text: setting.clone(), below: false });
+            }
         }
         drawing.notes.extend(ends(notes));
         drawing.curves.push(curve);
@@ -240,10 +242,30 @@ impl WorkPrecision {
     }
 }
 
+/// Whether a setting is the error itself, as printed: the axis has it, and a note would only lie over those of other curves.
+fn is_on_the_axis(setting: &str, error: f64) -> bool {
+    setting.parse().is_ok_and(|value: f64| (value - error).abs() <= 0.01 * error.abs())
+}
+
 /// The notes of the dearest and the cheapest point of a curve, above and below it: a label at every point would
 /// bury the curves.
 fn ends(mut notes: Vec<Note>) -> impl Iterator<Item = Note> {
     notes.sort_by(|a, b| b.at.1.total_cmp(&a.at.1));
     let cheapest = if notes.len() > 1 { notes.pop() } else { None };
     notes.into_iter().take(1).chain(cheapest.map(|note| Note { below: true, ..note }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_axis_tells_is_not_noted() {
+        let noted = |setting: &str, error: f64| {
+            let method = Method::new("m").point(setting, error, 1.0);
+            let chart = WorkPrecision::new("c", "").method(method);
+            chart.drawing().unwrap().notes.len()
+        };
+        assert_eq!((noted("0.063", 0.06295), noted("1e-6", 0.063), noted("2 ms", 2.0)), (0, 1, 1));
+    }
 }

@@ -1,6 +1,6 @@
 //! Bags of results, read back by another implementation: every message as `mcap-ros2-support` decodes it beside what was written.
 //!
-//! Arguments: bags, samples a bag. Needs Python with `mcap-ros2-support`. Writes a Markdown table.
+//! Arguments: bags, samples a bag. Needs Python with `mcap-ros2-support`, `rosbags` and `rerun-sdk`. Writes Markdown tables.
 
 use glam::DVec3;
 use recon_io::{ResultBag, ResultContact, ResultPose, TriangleMesh};
@@ -64,6 +64,24 @@ pub(crate) fn main() -> Result<(), Failure> {
     println!(
         "\nPoints of clouds are in single precision, as viewers take them: half of {SINGLE:.1e} of a number is what that leaves."
     );
+    in_viewers(&path, samples)
+}
+
+/// What viewers make of a bag, topic by topic.
+fn in_viewers(path: &Path, samples: usize) -> Result<(), Failure> {
+    let times: Vec<f64> = (0..samples).map(|k| 1e-3 * k as f64).collect();
+    let mesh = TriangleMesh::net(5, 8, |unit| unit);
+    std::fs::write(path, bag(&mut Source::new(0), 1.0, &times, &mesh, true).bytes()?)?;
+    let told = script("in_viewers.py", path);
+    let _ = std::fs::remove_file(path);
+    println!("\n## In viewers\n");
+    println!(
+        "The first of these bags, as Rerun's own loader takes it in (`rerun mcap convert`, what its viewer does with a bag), and its definitions beside \
+         those that ROS 2 publishes (Jazzy, as `rosbags` has them), field by field (`tests/ros2/in_viewers.py`). Rerun has no archetype for poses with \
+         covariance and for markers: it shows the moving frame and the points, and arrows and meshes as messages to be read; the meshes it shows from \
+         `--mesh glb`. Foxglove's 3D panel lists all of these types; that it draws them was not looked at, for it does not run here.\n"
+    );
+    println!("| topic | type | as published | in Rerun (rows) |\n|---|---|---|---|\n{}", told?.trim_end());
     Ok(())
 }
 
@@ -140,6 +158,8 @@ fn expected(bag: &ResultBag<'_>, mesh: &TriangleMesh) -> Vec<(String, Vec<Vec<Va
         }
         numbers(entries)
     };
+    let touched =
+        |k: usize| points((0..PALMS).filter_map(|palm| Some(bag.origin + bag.contacts[palm][k]?.p_WC)));
     let touch = |palm: usize, k: usize| {
         let contact = bag.contacts[palm][k].map(|c| [bag.origin + c.p_WC, c.force.unwrap_or_default()]);
         let touched = Value::from(u8::from(contact.is_some()));
@@ -152,7 +172,7 @@ fn expected(bag: &ResultBag<'_>, mesh: &TriangleMesh) -> Vec<(String, Vec<Vec<Va
         let words = vec![name.into(), id.into(), 11.into(), 0.into()];
         [head(EPOCH, &["object"]), words, upright, points(corners)].concat()
     };
-    let mut all = vec![
+    let mut all_topics = vec![
         ("/tf".to_owned(), moving(&place, &["world", "object"])),
         ("/recon/pose".to_owned(), moving(&|k| [place(k), covariance(k)].concat(), &["world"])),
         ("/recon/contact_curves".to_owned(), still(points(bag.curves.iter().copied()))),
@@ -160,23 +180,21 @@ fn expected(bag: &ResultBag<'_>, mesh: &TriangleMesh) -> Vec<(String, Vec<Vec<Va
         ("/recon/upper_bound".to_owned(), still(points(mesh.vertices.iter().copied()))),
         ("/recon/bounds".to_owned(), vec![[triangles("lower", 0), triangles("upper", 1)].concat()]),
     ];
+    // As often as markers.
+    let often = moving(&touched, &["world"]).into_iter().step_by(10).collect();
+    all_topics.push(("/recon/contacts".to_owned(), often));
     let palms =
         (0..PALMS).map(|i| (format!("/recon/palm_{}/contact", i + 1), moving(&|k| touch(i, k), &["world"])));
-    all.extend(palms);
-    all
+    all_topics.extend(palms);
+    all_topics
 }
 
 /// Type and messages of each topic.
 type Topics = BTreeMap<String, (String, Vec<Vec<Value>>)>;
 
 fn decoded(path: &Path) -> Result<Topics, Failure> {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/ros2/read_back.py");
-    let run = Command::new("python3").arg(script).arg(path).output()?;
-    if !run.status.success() {
-        return Err(String::from_utf8_lossy(&run.stderr).into_owned().into());
-    }
     let mut topics = Topics::new();
-    for line in String::from_utf8(run.stdout)?.lines() {
+    for line in script("read_back.py", path)?.lines() {
         let told: Value = serde_json::from_str(line)?;
         let word = |key: &str| told[key].as_str().unwrap_or_default().to_owned();
         if word("topic") == MARKERS {
@@ -186,6 +204,16 @@ fn decoded(path: &Path) -> Result<Topics, Failure> {
         messages.push(told["values"].as_array().cloned().unwrap_or_default());
     }
     Ok(topics)
+}
+
+/// What a script of `tests/ros2` prints of a bag.
+fn script(name: &str, bag: &Path) -> Result<String, Failure> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/ros2").join(name);
+    let run = Command::new("python3").arg(script).arg(bag).output()?;
+    if !run.status.success() {
+        return Err(String::from_utf8_lossy(&run.stderr).into_owned().into());
+    }
+    Ok(String::from_utf8(run.stdout)?)
 }
 
 impl Tally {

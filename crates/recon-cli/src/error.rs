@@ -1,4 +1,3 @@
-use recon::contact_kinematics::PalmError;
 use recon::object_dynamics::planar as object_planar;
 use recon::object_dynamics::{
     ContactLogError, ContactSimulationError, LogError, MassError, NotThreePlanes,
@@ -161,14 +160,6 @@ pub(crate) enum CliError {
         /// Number from 1.
         palm: usize,
     },
-    #[error("palm {palm} at t = {t} s")]
-    PalmFrame {
-        /// Number from 1.
-        palm: usize,
-        /// s.
-        t: f64,
-        source: PalmError,
-    },
     #[error("the log gives no motion, and is unlike its scene: {odd}")]
     OddLog {
         /// What is odd about it.
@@ -308,7 +299,6 @@ impl CliError {
             | Self::ContactNoise(_)
             | Self::Noise(_)
             | Self::NoPalmForce { .. }
-            | Self::PalmFrame { .. }
             | Self::OddLog { .. }
             | Self::Stream(_)
             | Self::NoPage

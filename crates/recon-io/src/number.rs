@@ -72,11 +72,6 @@ pub(crate) fn on_scale(value: f64, scale: f64, digits: i32) -> f64 {
     if rounded.is_finite() { rounded + 0.0 } else { value }
 }
 
-/// `value` rounded to `digits` significant digits.
-pub(crate) fn significant(value: f64, digits: i32) -> f64 {
-    on_scale(value, value.abs(), digits - 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,9 +82,6 @@ mod tests {
         assert_eq!(on_scale(1.234_567, 2.5, 4), 1.2346);
         assert_eq!(on_scale(-1e-9, 2.5, 4), 0.0);
         assert!(on_scale(f64::NAN, 1.0, 3).is_nan());
-        assert_eq!(significant(0.000_123_456, 3), 0.000_123);
-        assert_eq!(significant(123_456.0, 3), 123_000.0);
-        assert_eq!(significant(0.0, 3), 0.0);
     }
 
     #[test]

@@ -4,6 +4,7 @@ mod draw;
 mod frames;
 
 pub use frames::FigureFrame;
+pub(crate) use frames::Turn;
 
 use crate::number::on_scale;
 use draw::{draw_band, draw_curves, finite, ticks};
@@ -23,6 +24,8 @@ pub struct FigureCurve {
     pub half_heights: Vec<f64>,
     /// What it is compared with, dashed; empty for nothing.
     pub reference: Vec<[f64; 2]>,
+    /// Whether what it encloses is tinted.
+    pub filled: bool,
 }
 
 /// One panel of the picture.
@@ -38,6 +41,8 @@ pub struct FigurePanel {
     pub curves: Vec<FigureCurve>,
     /// Stretches to the right over which the panel is shaded.
     pub shaded: Vec<[f64; 2]>,
+    /// Points that lie within the panel beside those of the curves.
+    pub room: Vec<[f64; 2]>,
     /// What is shown in turn with the curves, which are the last of it; none of a picture that stands still.
     pub frames: Vec<FigureFrame>,
 }
@@ -55,11 +60,13 @@ const COLOURS: usize = 5;
 /// Width of a character in the legend, px: generous for a proportional font of 12 px.
 const CHARACTER: f64 = 7.0;
 
-/// Panels as pictures of their own, for a page that sets them beside each other where it is wide enough.
-pub(crate) fn figures_in_page(panels: &[FigurePanel]) -> io::Result<String> {
-    let mut pictures = Vec::new();
-    panels.iter().try_for_each(|panel| write_figures(std::slice::from_ref(panel), &mut pictures))?;
-    Ok(String::from_utf8_lossy(&pictures).into_owned())
+/// Panels as pictures of their own, for a page that sets them beside each other where it is wide enough, and has colours.
+pub(crate) fn figures_in_page(panels: &[FigurePanel]) -> String {
+    let one = |panel: &FigurePanel| {
+        let [width, height] = SIZE;
+        format!("<div><svg viewBox=\"0 0 {width} {height}\" role=\"img\">\n{}</svg></div>\n", draw(panel))
+    };
+    panels.iter().map(one).collect()
 }
 
 /// Writes panels two in a row.
@@ -92,7 +99,7 @@ struct Frame {
 impl Frame {
     fn new(panel: &FigurePanel) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        let points = panel.curves.iter().flat_map(|c| c.points.iter().chain(&c.reference));
+        let points = panel.curves.iter().flat_map(|c| c.points.iter().chain(&c.reference)).chain(&panel.room);
         for point in points.filter(finite) {
             for i in 0..2 {
                 low[i] = low[i].min(point[i]);

@@ -90,10 +90,8 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
             mode_times(&estimated_mode_spans(times, &found.modes, None, i)).map(|seconds| seconds / duration);
         json!({ "palm": i + 1, "off": off, "slides": slides, "sticks": sticks })
     };
-    let departures: Option<Vec<Departure>> = data.truth.as_ref().filter(|_| relied > 0).map(|truth| {
-        let pairs = found.states.iter().zip(truth).zip(&found.relied_on).filter(|(_, relied)| **relied);
-        pairs.map(|((state, truth), _)| Departure::between(&(*state).into(), truth)).collect()
-    });
+    let departures = data.departures().filter(|of| !of.is_empty());
+    let departures: Option<Vec<Departure>> = departures.map(|of| of.into_iter().map(|(_, d)| d).collect());
     let mut figures = json!({
         "title": data.title,
         "method": "motion, mass and inertia from contacts of any palms",
@@ -113,6 +111,9 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         "rms_error": departures.as_deref().map(|d| errors(d, rms_of)),
         "warnings": data.warnings,
     });
+    if let Some(shape) = &data.true_shape {
+        figures["true_volume_m3"] = shape.volume.into();
+    }
     if !found.suspects.is_empty() {
         figures["sensor_faults"] =
             found.suspects.iter().filter(|of| of.deviation.is_finite()).map(sensor_fault).collect();

@@ -2,7 +2,7 @@
 
 use crate::log::TRUTH;
 use crate::number::exact;
-use crate::report::{MotionState, PalmContact, ReportData};
+use crate::report::{MotionState, PalmContact};
 use recon::observer::{ContactEstimate, ContactOdds};
 use std::io::{self, Write};
 
@@ -106,15 +106,21 @@ pub fn write_contact_curves(
     to.flush()
 }
 
-/// Writes the radius functions over time: `t, r_1, r_2, r_3`, `nan` where a palm does not touch.
+/// Writes the radius functions over time: `t, r_1, r_2, ...`, `nan` where a palm does not touch.
 ///
 /// # Errors
 /// Those of `to`.
-pub fn write_radius_functions(data: &ReportData, mut to: impl Write) -> io::Result<()> {
-    writeln!(to, "t,r_1,r_2,r_3")?;
-    for (k, t) in data.times.iter().enumerate() {
-        let radius = |i: usize| data.palms[i].contacts[k].map_or(f64::NAN, |c| c.radius);
-        writeln!(to, "{}", [*t, radius(0), radius(1), radius(2)].map(exact).join(","))?;
+pub fn write_radius_functions(
+    times: &[f64],
+    palms: &[&[Option<PalmContact>]],
+    mut to: impl Write,
+) -> io::Result<()> {
+    let names: Vec<String> = (1..=palms.len()).map(|i| format!("r_{i}")).collect();
+    writeln!(to, "t,{}", names.join(","))?;
+    for (k, t) in times.iter().enumerate() {
+        let radii = palms.iter().map(|palm| palm[k].map_or(f64::NAN, |c| c.radius));
+        let row: Vec<String> = std::iter::once(*t).chain(radii).map(exact).collect();
+        writeln!(to, "{}", row.join(","))?;
     }
     to.flush()
 }

@@ -36,7 +36,7 @@ addEventListener('load', () => {
   const root = document.documentElement;
   parent.postMessage({
     overflow: root.scrollWidth - root.clientWidth,
-    drawn: document.querySelectorAll('svg, canvas').length,
+    drawn: document.querySelectorAll('svg').length,
   }, '*');
 });
 </script>";
@@ -86,6 +86,9 @@ fn complaints(browser: &str, page: &Path) -> Result<Vec<String>, String> {
     put(&probed, text.replacen("<head>", &format!("<head>{PROBE}"), 1))?;
     let name = probed.file_name().unwrap_or_default().to_string_lossy();
     let mut wrong = Vec::new();
+    if !text.split("<script>").next().unwrap_or_default().contains("<svg") {
+        wrong.push(format!("{}: there is no picture without its script", page.display()));
+    }
     for width in WIDTHS {
         put(&framed, frame(&name, width))?;
         let dom = output(

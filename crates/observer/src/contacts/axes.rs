@@ -32,11 +32,27 @@ const KNOWN: f64 = 1e-4;
 pub(super) const ANY_TURN: f64 = 1.8;
 /// Deviation of the axes of a known body, rad, from which on the log does not tell them: by then they lie on a bend that no covariance follows.
 const UNTOLD: f64 = 0.9;
+/// How much dearer a motion of any axes is at most, in units of chi-squared, than that of certain ones, which is one of them: if more, what is held of
+/// its inertia is held at a wrong place.
+const DEARER: f64 = 20.0;
 
 /// Squared departure of a known body from what was found without knowing it, of four degrees of freedom, beyond which it is another one:
 /// chance goes there once in a million. What it costs to explain the log by it must go there too, as where little is known of an inertia a
 /// covariance does not reach as far.
 const CONTRADICTED: f64 = 33.4;
+
+/// That a known body is not the one, by how much dearer the log is with it than without: as many squares of four degrees of freedom.
+pub(super) fn against_by_cost(
+    problem: &Problem,
+    unknown: &Solved<CONSTANTS>,
+    mass: &MassProperties,
+    squares: f64,
+) -> Option<Reason> {
+    let covariance = unknown.equations.covariances(&problem.natural_information())?.body;
+    let log_mass = unknown.unknowns.body.log_mass - mass.mass().ln();
+    let deviations = log_mass.abs() / covariance[(0, 0)].max(f64::MIN_POSITIVE).sqrt();
+    Some(Reason::OtherBody { mass: log_mass.exp(), deviations, squares })
+}
 
 /// What an unknown body may need more than a known one: half of what is left to gain where a fit has settled, twice over.
 const MISSED: f64 = 1.0;
@@ -184,6 +200,7 @@ pub(super) fn with_any_axes(
     let found = known.unknowns.body;
     let start = known.unknowns.with(Body::free(found.log_mass, found.inertia()));
     let solved = problem.take_any_axes(mass).and_then(|()| fine(problem, start));
+    let solved = solved.filter(|solved| solved.equations.cost < known.equations.cost + DEARER);
     if solved.is_none() {
         (problem.body, problem.frozen) = (body, frozen);
     }

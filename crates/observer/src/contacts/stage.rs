@@ -1,6 +1,6 @@
 //! A motion on its way from a search to what is reported: one stage after the other replaces it by a better one.
 
-use super::axes::{Oriented, known_motion, with_any_axes};
+use super::axes::{Oriented, against_by_cost, known_motion, with_any_axes};
 use super::body::CONSTANTS;
 use super::directly::directly;
 use super::explanations::FreeBody;
@@ -23,6 +23,10 @@ const ROUNDS: usize = 4;
 const NO_MORE: f64 = 1e-5;
 /// How many of the motions that are as good for an unknown body are looked at for a known one.
 const FOLLOWED: usize = 3;
+/// How much dearer the log may be with a known body than without, in units of chi-squared: with the right motion one in two thousand is by more.
+const DEARER: f64 = 20.0;
+/// The same where an unknown body had several motions as probable, of which the right one may be none: one in twenty is by more.
+const DEARER_OF_SEVERAL: f64 = 9.5;
 
 /// A solution, and what is known of it so far.
 pub(super) struct Stage<'a> {
@@ -58,6 +62,20 @@ fn free_body(problem: &Problem, unknown: &Solved<CONSTANTS>, against: Option<Rea
     let deviation = |i: u8| covariances.body[(usize::from(i), usize::from(i))].max(0.0).sqrt();
     let departures = (0..departures).map(|i| (each * deviation(i), deviation(i))).collect();
     Some(FreeBody { cost: unknown.equations.cost, mass: mass - 1.0, departures })
+}
+
+/// Why the motion of a known body is not to be believed, by how much dearer it makes the log than that of an unknown one, of which there were others as
+/// probable where `open` says so.
+fn too_dear(
+    problem: &Problem,
+    known: &Oriented,
+    unknown: &Solved<CONSTANTS>,
+    mass: &MassProperties,
+    open: Option<Reason>,
+) -> [Option<Reason>; 2] {
+    let dearer = known.solved.equations.cost - unknown.equations.cost;
+    let other = || against_by_cost(problem, unknown, mass, dearer);
+    [if dearer > DEARER { other() } else { None }, open.filter(|_| dearer > DEARER_OF_SEVERAL)]
 }
 
 /// Each of the stages gives none where the equations are singular.
@@ -113,7 +131,8 @@ impl<'a> Stage<'a> {
     pub(super) fn of_known(mut self, mass: &MassProperties) -> Option<Self> {
         let problem = &mut self.problem;
         self.before += self.solved.iterations;
-        (self.covariances, self.open) = (None, None);
+        self.covariances = None;
+        let several = self.open.take();
         if problem.planar {
             let (solved, against) = plane::known_motion(problem, &self.solved, mass)?;
             self.free = free_body(problem, &self.solved, against);
@@ -146,7 +165,9 @@ impl<'a> Stage<'a> {
             let open = other.and_then(|other| as_probable(problem, &known.solved, &other.solved));
             self.open = self.open.or(open);
         }
-        self.open = self.open.or(known.open);
+        let [other, several] = too_dear(problem, &known, &self.solved, mass, several);
+        known.against = known.against.or(other);
+        self.open = self.open.or(known.open).or(several);
         (self.doubt, self.against) = (Some(known.doubt), known.against);
         self.free = free_body(problem, &self.solved, known.against);
         self.solved = match with_any_axes(problem, &known.solved, mass) {

@@ -5,7 +5,8 @@ use super::any_palms_bounds::estimate_bounds;
 use super::any_palms_words::{Checks, evidence, touch_next, verdict};
 use super::bounds::{BoundsResult, CONFIDENCE, NOTABLE_NOISE};
 use super::export::Object;
-use super::truth::true_motion;
+use super::truth::{true_motion, true_shape};
+use super::views::bounds_views;
 use super::words::{margins, sentence};
 use crate::error::CliError;
 use crate::progress::Progress;
@@ -120,12 +121,15 @@ pub(crate) fn estimate_any_palms(
         other => CliError::ContactEstimate(other),
     })?;
     let curves: Vec<_> = log.palms().iter().enumerate().map(|of| curve(of, &estimate)).collect();
-    let truth = truth.filter(|truth| !truth.is_empty()).map(|truth| {
+    let truth = truth.filter(|truth| !truth.is_empty());
+    let axes = truth.as_ref().map(|truth| {
         let (at, found) = (truth[0].R_WO, estimate.states[0].R_WO);
         // Axes of an unknown body are those of the world at the first sample, those of a known one its own but for half turns.
-        let axes = options.body.as_ref().map_or(at.inverse() * found, |mass| nearest_turn(mass, at, found));
-        true_motion(&truth, axes)
+        options.body.as_ref().map_or(at.inverse() * found, |mass| nearest_turn(mass, at, found))
     });
+    let simulated = request.scene.simulation.as_ref().zip(axes);
+    let true_shape = simulated.map(|(simulation, axes)| true_shape(simulation, axes)).transpose()?;
+    let truth = truth.zip(axes).map(|(truth, axes)| true_motion(&truth, axes));
     let mut warnings = request.warnings;
     warnings.extend(not_relied_on(&estimate));
     warnings.extend(impulses_not_read(&log, &options));
@@ -167,6 +171,8 @@ pub(crate) fn estimate_any_palms(
     };
     let mut evidence = evidence(&estimate, &options, &checks);
     evidence.extend(bounds.as_ref().and_then(|bounds| bounds.drawn.largest_gap).map(|gap| touch_next(&gap)));
+    let marks = bounds.as_ref().and_then(BoundsResult::marks);
+    let touched: Vec<DVec3> = curves.iter().flatten().flatten().map(|c| c.p_OC).collect();
     let data = EstimateData {
         title: request.title.to_owned(),
         next: advice.next().to_owned(),
@@ -177,7 +183,16 @@ pub(crate) fn estimate_any_palms(
         estimate,
         curves,
         truth,
-        marks: bounds.as_ref().and_then(BoundsResult::marks),
+        true_shape,
+        marks: marks.as_ref().map(|marks| marks.facts.clone()).unwrap_or_default(),
+        shape: bounds
+            .as_ref()
+            .map(|of| bounds_views(of, &touched))
+            .into_iter()
+            .chain(marks.map(|of| of.panels))
+            .flatten()
+            .collect(),
+        force_noise: [options.noise.force_fixed, options.noise.force_share],
         bounds: bounds.as_ref().map(|bounds| bounds.drawn.clone()),
         warnings,
     };

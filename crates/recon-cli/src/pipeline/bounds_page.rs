@@ -2,17 +2,17 @@
 
 use super::bounds::BoundsResult;
 use super::plane::PlanarBounds;
-use super::views::three_views;
+use super::views::views;
 use glam::DVec3;
 use recon_io::EvidenceValue::{Count, Number, Text};
 use recon_io::{
-    Evidence, EvidenceValue, FigurePanel, FiguresPage, Level, ShapeMarks, Verdict, brief, brief_to,
+    Evidence, EvidenceValue, Fact, FigurePanel, FiguresPage, Level, ShapeMarks, Verdict, brief, brief_to,
 };
 use serde_json::Value;
 
 const KICKER: &str = "What touch guarantees about a shape";
-const IN_SPACE: &str =
-    "Bounds as they are seen along the axes, and the contacts. Outlines are those of the whole bodies.";
+const IN_SPACE: &str = "Bounds as they are seen along the axes and from all around, and the contacts. The body lies between the outlines; the arrow shows where \
+     they are farthest apart: a touch there tells most.";
 const MARKED: &str =
     " Below, contacts by what they are on; other ones are smooth, or the odds leave them open.";
 const IN_PLANE: &str = "Outlines of the bounds with the contacts, and how far they are apart.";
@@ -23,15 +23,16 @@ pub(crate) fn bounds_page(
     (made, about, what): (&BoundsResult, &Value, &str),
     points: &[DVec3],
 ) -> FiguresPage {
-    let corners = |mesh: &Option<recon_io::TriangleMesh>| mesh.as_ref().map(|mesh| mesh.vertices.clone());
-    let [lower, upper] = [&made.lower, &made.upper].map(|mesh| corners(mesh).unwrap_or_default());
+    let lower = &made.drawn.lower.mesh.vertices[..];
+    let upper = made.drawn.upper.as_ref().map_or(&[][..], |upper| &upper.mesh.vertices);
     let other =
         |file: &str| made.others.iter().find(|(name, ..)| *name == file).map(|(.., mesh)| &mesh.vertices[..]);
     let fitted = other("fitted_shape.ply").unwrap_or_default();
     let smooth = other("smooth_surface.ply").unwrap_or_default();
-    let mut bodies = vec![("lower", &lower[..]), ("upper", &upper[..])];
+    let mut bodies = vec![("lower", lower), ("upper", upper)];
     bodies.extend((!fitted.is_empty()).then_some(("fit", fitted)));
     let dots = [("contacts", points), ("surface", smooth)];
+    let next = made.drawn.largest_gap.map(|gap| gap.outer);
     let marks = made.marks();
     let caption = if marks.is_some() { MARKED } else { "" };
     let ShapeMarks { facts: more, panels: marked } = marks.unwrap_or_default();
@@ -46,7 +47,7 @@ pub(crate) fn bounds_page(
             .chain(more)
             .collect(),
         heading: "Bounds on the shape",
-        panels: three_views(&bodies, &dots).into_iter().chain(marked).collect(),
+        panels: views(&bodies, &dots, next).into_iter().chain(marked).collect(),
         caption: format!("{IN_SPACE}{caption}"),
         evidence: evidence(about, made.contradiction),
     }
@@ -93,12 +94,7 @@ fn verdict(about: &Value, what: &str, closed: bool, contradicts: bool) -> Verdic
     Verdict { level: if about["fit"]["status"] == "refused" { Level::Caution } else { level }, text }
 }
 
-fn facts(
-    [lower, upper]: [Option<f64>; 2],
-    unit: &'static str,
-    gap: Option<f64>,
-    about: &Value,
-) -> Vec<(&'static str, String, &'static str)> {
+fn facts([lower, upper]: [Option<f64>; 2], unit: &'static str, gap: Option<f64>, about: &Value) -> Vec<Fact> {
     let size = |size: Option<f64>| match size {
         Some(size) => (brief_to(4, size), unit),
         None => ("unbounded".to_owned(), ""),

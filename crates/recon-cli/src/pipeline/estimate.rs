@@ -5,7 +5,7 @@ use super::bounds::BoundsResult;
 use super::condensed::condensed;
 use super::export::exported;
 use super::folder::{Extra, estimate_figures, write_estimate_folder};
-use super::planes::{as_planes, with_forces};
+use super::planes::with_forces;
 use super::read::{LogOf, LogStand, ReadLog};
 use super::result_bag::bag_of_estimate;
 use super::simulate::known_body;
@@ -15,8 +15,8 @@ use crate::error::CliError;
 use crate::progress::Progress;
 use recon::object_dynamics::SensorLog;
 use recon_io::{
-    FolderTarget, Implausibility, Level, ReportData, Scene, TriangleMesh, implausibilities,
-    implausible_contacts, write_estimate_report, write_report,
+    FolderTarget, Implausibility, Level, Scene, TriangleMesh, implausibilities, implausible_contacts,
+    write_estimate_report,
 };
 use serde_json::Value;
 use std::io::{self, Write};
@@ -35,8 +35,8 @@ pub(crate) struct Asked<'a> {
 /// What a log tells, with what its files need beside it.
 pub(crate) struct Estimated {
     pub(crate) made: AnyPalms,
-    /// What the page of three palms shows, where they are that.
-    pub(super) page: Option<ReportData>,
+    /// Whether the palms are three planes without friction, on which radius functions tell the motion.
+    pub(super) of_planes: bool,
 }
 
 /// Everything that the log tells. Truth in it is only compared with, never used.
@@ -55,7 +55,7 @@ pub(crate) fn estimated(
             request.doubt(&odd, warnings);
             request.note = sentence(&format!("{why}; the estimate is that from contacts of any palms"));
             let made = estimate_any_palms(*log, request, progress);
-            Ok(Estimated { made: made.map_err(|error| odd_first(error, &odd))?, page: None })
+            Ok(Estimated { made: made.map_err(|error| odd_first(error, &odd))?, of_planes: false })
         }
     }
 }
@@ -81,8 +81,7 @@ pub(crate) fn estimated_planes(
     request.note = "Three flat palms without friction.".to_owned();
     request.doubt(&odd, warnings);
     let made = estimate_any_palms(contacts, request, progress).map_err(|error| odd_first(error, &odd))?;
-    let page = as_planes(&made, &log, scene)?;
-    Ok(Estimated { made, page: Some(page) })
+    Ok(Estimated { made, of_planes: true })
 }
 
 /// Of an estimate that fails on a log that does not go with its scene, that it does not.
@@ -120,13 +119,8 @@ impl Estimated {
     /// The summary.
     pub(crate) fn figures(&self) -> Value {
         let mut figures = estimate_figures(&self.made);
-        let Some(page) = &self.page else { return figures };
-        if let Some(shape) = &page.true_shape {
-            figures["true_volume_m3"] = shape.volume.into();
-        }
-        if let (Some(errors), Some(largest)) =
-            (figures["largest_error"].as_object_mut(), page.largest_radius_error())
-        {
+        let radius = self.made.data.largest_radius_error().filter(|_| self.of_planes);
+        if let (Some(errors), Some(largest)) = (figures["largest_error"].as_object_mut(), radius) {
             errors.insert("radius_function_m".to_owned(), largest.into());
         }
         figures
@@ -134,10 +128,7 @@ impl Estimated {
 
     /// Writes its page.
     pub(crate) fn write_page(&self, to: &mut dyn Write) -> io::Result<()> {
-        match &self.page {
-            Some(page) => write_report(page, to),
-            None => write_estimate_report(&self.made.data, to),
-        }
+        write_estimate_report(&self.made.data, to)
     }
 
     /// Writes its folder; returns the summary.

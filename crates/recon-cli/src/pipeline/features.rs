@@ -1,7 +1,7 @@
 //! Corners, edges and faces that contacts show: for programs, in words, as a table.
 
 use super::bounds::{BoundsResult, own};
-use super::views::three_views;
+use super::views::views;
 use crate::error::CliError;
 use glam::{DMat3, DVec3};
 use recon::shape_bounds::{ContactSample, FeatureKind, Features, FoundPolyhedron, NoisyContact};
@@ -162,7 +162,7 @@ impl BoundsResult {
         let body: Vec<_> = body.iter().map(|(name, mesh)| (*name, &mesh.vertices[..])).collect();
         let dots = found.dots();
         let dots: Vec<_> = dots.iter().map(|(name, points)| (*name, &points[..])).collect();
-        Some(ShapeMarks { facts: found.facts(), panels: three_views(&body, &dots) })
+        Some(ShapeMarks { facts: found.facts(), panels: views(&body, &dots, None) })
     }
 
     /// What was found that is not smooth.

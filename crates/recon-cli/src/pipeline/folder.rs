@@ -43,8 +43,8 @@ pub(crate) fn write_estimate_folder(
         for (name, contents) in extras {
             folder.write(name, |to| to.write_all(contents))?;
         }
-        if let Some(page) = &estimated.page {
-            folder.write("radius_functions.csv", |to| write_radius_functions(page, to))?;
+        if estimated.of_planes {
+            folder.write("radius_functions.csv", |to| write_radius_functions(times, &curves, to))?;
         }
         folder.write("report.html", |to| estimated.write_page(to))?;
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;

@@ -25,7 +25,7 @@ pub(super) const ENOUGH: f64 = 0.5;
 /// A log in the plane and what was estimated from it.
 pub(crate) struct PlanarMotion {
     pub(super) log: ContactLog,
-    noise: ContactNoiseLevel,
+    pub(super) noise: ContactNoiseLevel,
     pub(super) estimate: PlaneEstimate,
     known_body: bool,
     /// Bounds on the outline, where there are any.
@@ -176,6 +176,7 @@ impl PlanarMotion {
             estimate,
             areas: self.bounds.as_ref().map(|bounds| bounds.areas),
             panels: self.panels(),
+            shape: self.bounds.iter().map(PlanarBounds::panel).collect(),
             evidence: self.evidence(),
             warnings: self.warnings(),
             next: self.next().to_owned(),

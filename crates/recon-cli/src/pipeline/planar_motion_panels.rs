@@ -1,7 +1,8 @@
 //! Curves of a motion that was estimated in the plane.
 
 use super::planar_motion::PlanarMotion;
-use super::plane::PlanarBounds;
+use glam::DVec2;
+use recon::observer::planar::PlaneContact;
 use recon_io::{FigureCurve, FigurePanel, doubtful_spans};
 
 impl PlanarMotion {
@@ -52,7 +53,20 @@ impl PlanarMotion {
         });
         let radii = self.estimate.contacts.iter().enumerate().map(|(i, contacts)| {
             let radius = |k: usize| contacts[k].map_or(f64::NAN, |contact| contact.radius);
-            line(format!("r{}", i + 1), over(&radius), Vec::new())
+            // Where a palm is touched is known: what is not is the centre of mass along its normal.
+            let wide = |k: usize| {
+                let along = |contact: PlaneContact| {
+                    let n = DVec2::from_angle(self.estimate.states[k].phi0).rotate(contact.normal);
+                    2.0 * (n * self.estimate.deviations[k].p_WCm).length()
+                };
+                contacts[k].map_or(f64::NAN, along)
+            };
+            line(format!("r{}", i + 1), over(&radius), (0..times.len()).map(wide).collect())
+        });
+        let forces = (0..self.estimate.contacts.len()).map(|i| {
+            let size = |k: usize| self.log.samples()[k].palms[i].force.length();
+            let wide = |k: usize| 2.0 * self.noise.force_fixed.hypot(self.noise.force_share * size(k));
+            line(format!("palm {}", i + 1), over(&size), (0..times.len()).map(wide).collect())
         });
         let mut panels = vec![
             FigurePanel {
@@ -64,7 +78,8 @@ impl PlanarMotion {
             },
             panel("Orientation, with two deviations", "phi0 in rad", vec![turn]),
             panel("Centre of mass, with two deviations", "m", place.collect()),
-            panel("Radius functions at the contacts", "r in m", radii.collect()),
+            panel("Radius functions, with two deviations", "r in m", radii.collect()),
+            panel("Contact forces, with two deviations", "N", forces.collect()),
         ];
         if let Some(errors) = self.errors().filter(|errors| !errors.is_empty()) {
             let names = ["error in x (m)", "error in y (m)", "error in phi0 (rad)"];
@@ -73,7 +88,6 @@ impl PlanarMotion {
             });
             panels.push(panel("Errors", "m, rad", curves.collect()));
         }
-        panels.extend(self.bounds.as_ref().map(PlanarBounds::panel));
         panels
     }
 }

@@ -3,6 +3,7 @@
 use super::doubts::{Doubts, doubtful_fit};
 use super::fitted::{fitted_outline, relative_noise};
 use super::sound::{Noise, largest, left_out, listed};
+use super::views::touch_next;
 use crate::cli::FitAs;
 use crate::error::CliError;
 use glam::DVec2;
@@ -83,6 +84,7 @@ impl PlanarBounds {
         let closed = |name: &str, outline: &[DVec2]| FigureCurve {
             name: name.to_owned(),
             points: outline.iter().chain(outline.first()).map(|p| p.to_array()).collect(),
+            filled: true,
             ..FigureCurve::default()
         };
         let [lower, upper] = &self.outlines;
@@ -94,6 +96,7 @@ impl PlanarBounds {
         };
         let mut curves = vec![closed("lower bound", lower), closed("upper bound", upper), contacts];
         curves.push(closed("fit", &self.fitted));
+        curves.extend(self.next().map(|at| touch_next(at, upper)));
         curves.retain(|curve| !curve.points.is_empty());
         FigurePanel {
             title: "Bounds".to_owned(),
@@ -102,6 +105,13 @@ impl PlanarBounds {
             curves,
             ..FigurePanel::default()
         }
+    }
+
+    /// Where a touch tells most: the corner of the upper bound that lies farthest in the direction in which the bounds are farthest apart.
+    fn next(&self) -> Option<DVec2> {
+        let [angle, _] = *self.gaps.iter().max_by(|a, b| a[1].total_cmp(&b[1]))?;
+        let n = DVec2::from_angle(angle);
+        self.outlines[1].iter().copied().max_by(|a, b| n.dot(*a).total_cmp(&n.dot(*b)))
     }
 
     /// The Hausdorff distance of the bounds to the resolution of the directions, m; `None` where a side is open.

@@ -1,12 +1,10 @@
-//! Logs of three flat palms without friction: the estimate is that from contacts of any palms, the page that of three palms.
+//! Logs of three flat palms without friction as logs of any palms.
 
-use super::any_palms::AnyPalms;
-use super::truth::true_shape;
 use crate::error::CliError;
 use glam::DVec3;
-use recon::contact_kinematics::{Direction, PalmFrame};
+use recon::contact_kinematics::Direction;
 use recon::object_dynamics::{ContactLog, ForceChannel, PalmHinge, SensorLog};
-use recon_io::{PalmTrack, ReportData, Scene, estimated_mode_spans};
+use recon_io::Scene;
 
 /// The log as one of any palms, with the normal forces that torques of the motors tell of palms without a force.
 pub(super) fn with_forces(log: &SensorLog, scene: &Scene) -> Result<ContactLog, CliError> {
@@ -40,55 +38,4 @@ pub(super) fn with_forces(log: &SensorLog, scene: &Scene) -> Result<ContactLog, 
         records[i].force = ForceChannel::Normal(forces.into_iter().map(Option::unwrap_or_default).collect());
     }
     Ok(ContactLog::new(times, records, truth)?)
-}
-
-/// What the page of three palms shows.
-pub(crate) fn as_planes(made: &AnyPalms, log: &SensorLog, scene: &Scene) -> Result<ReportData, CliError> {
-    let data = &made.data;
-    let mut palms = [PalmTrack::default(), PalmTrack::default(), PalmTrack::default()];
-    for (i, (palm, curve)) in palms.iter_mut().zip(&data.curves).enumerate() {
-        palm.contacts = curve.clone();
-        let sensed = &data.log.palms()[i];
-        palm.forces =
-            (0..log.samples().len()).map(|k| sensed.force(k).map(|force| force.vector.length())).collect();
-        for sample in log.samples() {
-            let frame = PalmFrame::from_normal(sample.palms[i].normal)
-                .map_err(|source| CliError::PalmFrame { palm: i + 1, t: sample.t, source })?;
-            palm.frames.push(frame);
-        }
-    }
-    // Truth stands in the body axes of the estimate.
-    let own =
-        log.truth().zip(data.truth.as_ref()).and_then(|(told, shown)| Some((told.first()?, shown.first()?)));
-    let shape = match (&scene.simulation, own) {
-        (Some(simulation), Some((told, shown))) => {
-            Some(true_shape(simulation, told.R_WO.inverse() * shown.R_WO)?)
-        }
-        _ => None,
-    };
-    Ok(ReportData {
-        title: data.title.clone(),
-        verdict: data.verdict.clone(),
-        times: data.log.times().to_vec(),
-        palms,
-        motion: data.estimate.states.iter().map(|state| (*state).into()).collect(),
-        deviations: data.estimate.deviations.clone(),
-        relied_on: data.estimate.relied_on.clone(),
-        spans: (0..data.log.palms().len())
-            .map(|palm| {
-                estimated_mode_spans(
-                    data.log.times(),
-                    &data.estimate.modes,
-                    data.estimate.mode_odds.as_ref(),
-                    palm,
-                )
-            })
-            .collect(),
-        truth: data.truth.clone(),
-        bounds: data.bounds.clone(),
-        true_shape: shape,
-        evidence: data.evidence.clone(),
-        warnings: data.warnings.clone(),
-        next: data.next.clone(),
-    })
 }

@@ -1,6 +1,6 @@
 //! The page of motion and shape without forces.
 
-use super::views::three_views;
+use super::views::views;
 use super::without_forces::WithoutForces;
 use glam::{DVec2, DVec3};
 use recon_io::EvidenceValue::{Count, Number, Text};
@@ -22,7 +22,7 @@ pub(crate) fn without_forces_page(title: &str, made: &WithoutForces) -> FiguresP
         facts: facts(made),
         heading: "Shape and motion",
         panels: panels(made),
-        caption: "The bounds and the fitted ellipsoid as they are seen along the body axes, and the motion over time.".to_owned(),
+        caption: "The bounds and the fitted ellipsoid as they are seen along the body axes, and the motion over time with bands of two deviations.".to_owned(),
         evidence: rows(made),
     }
 }
@@ -55,13 +55,16 @@ fn facts(made: &WithoutForces) -> Vec<(&'static str, String, &'static str)> {
 fn panels(made: &WithoutForces) -> Vec<FigurePanel> {
     let bounded = made.bounded.as_ref();
     let [lower, upper] = [bounded.and_then(|b| b.lower.as_ref()), bounded.and_then(|b| b.upper.as_ref())];
+    let next = bounded.and_then(|b| b.drawn.largest_gap).map(|gap| gap.outer);
     let ellipsoid = on_ellipsoid(made);
     let bodies = [("lower", corners(lower)), ("upper", corners(upper)), ("ellipsoid", &ellipsoid[..])];
-    let mut panels = three_views(&bodies, &[]);
-    let (times, motion) = (made.times(), made.motion());
-    panels.push(over_time("Centre of mass", "m", &times, &motion, |state| state.p_WCm));
-    panels.push(over_time("Velocity", "m/s", &times, &motion, |state| state.v_WCm));
-    panels.push(over_time("Angular velocity", "rad/s", &times, &motion, |state| state.w_WO));
+    let mut panels = views(&bodies, &[], next);
+    let over_time = |title: &str, unit: &str, what: fn(&MotionState) -> DVec3, deviation: usize| {
+        over_time(made, [title, unit], what, deviation)
+    };
+    panels.push(over_time("Centre of mass", "m", |state| state.p_WCm, 0));
+    panels.push(over_time("Velocity", "m/s", |state| state.v_WCm, 1));
+    panels.push(over_time("Angular velocity", "rad/s", |state| state.w_WO, 2));
     panels
 }
 
@@ -81,22 +84,23 @@ fn on_ellipsoid(made: &WithoutForces) -> Vec<DVec3> {
     (0..POINTS).map(point).collect()
 }
 
-/// The three coordinates of what moves.
+/// The three coordinates of what moves, with bands of two deviations.
 fn over_time(
-    title: &str,
-    unit: &str,
-    times: &[f64],
-    motion: &[MotionState],
+    made: &WithoutForces,
+    [title, unit]: [&str; 2],
     what: fn(&MotionState) -> DVec3,
+    deviation: usize,
 ) -> FigurePanel {
+    let (times, motion) = (made.times(), made.motion());
     let curve = |axis: usize| FigureCurve {
         name: ["x", "y", "z"][axis].to_owned(),
-        points: times.iter().zip(motion).map(|(t, state)| [*t, what(state)[axis]]).collect(),
+        points: times.iter().zip(&motion).map(|(t, state)| [*t, what(state)[axis]]).collect(),
+        half_heights: made.found.deviations.iter().map(|of| 2.0 * of[deviation][axis]).collect(),
         ..FigureCurve::default()
     };
     FigurePanel {
         title: title.to_owned(),
-        axes: ["t in s".to_owned(), format!("{} in {unit}", title.to_lowercase())],
+        axes: ["t in s".to_owned(), unit.to_owned()],
         curves: (0..3).map(curve).collect(),
         ..FigurePanel::default()
     }

@@ -1,8 +1,10 @@
 //! Many logs: each as if it were alone, what is broken named, what is done kept.
 
-use crate::common::{Scratch, Table, scene};
+use crate::common::{Scratch, Table, scene, wait_for};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
+use std::process::Stdio;
 use std::time::SystemTime;
 
 /// A folder `logs` of two logs with spins of their own and one that was spoiled.
@@ -100,6 +102,37 @@ fn what_is_done_is_kept_and_what_has_changed_is_done_again() {
     // Other options: nothing of it is taken as done.
     scratch.write("logs/fast one.csv", &fast);
     assert_eq!(batch(&scratch, &["--identify"]).1["done_before"], 0);
+}
+
+/// Killed without a chance to tidy up, at whatever it was: what is whole is kept, the rest is done, and nothing else stays.
+#[test]
+fn killed_in_the_middle_it_goes_on_to_the_same_table() {
+    let scratch = logs("batch-killed");
+    for k in 0..4 {
+        scratch.write(&format!("logs/more {k}.csv"), &scratch.read("logs/slow.csv"));
+    }
+    batch(&scratch, &["--jobs", "1"]);
+    let whole = table(&scratch);
+    fs::rename(scratch.path().join("out"), scratch.path().join("whole")).unwrap();
+    let words = ["batch", "logs", "--scene", "scene.toml", "-o", "out", "--jobs", "1"];
+    let mut child = scratch.command(&words).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let is_begun = || scratch.path().join("out/more 1").exists();
+    assert!(wait_for(&mut child, is_begun), "it was done before it could be killed");
+    child.kill().unwrap(); // SIGKILL
+    child.wait().unwrap();
+    assert!(!scratch.path().join("out/results.csv").exists(), "no table of a part");
+    let (code, said) = batch(&scratch, &["--jobs", "2"]);
+    let before = said["done_before"].as_u64().unwrap();
+    assert!(code == Some(4) && (1..6).contains(&before), "{before}");
+    assert_eq!(table(&scratch), whole);
+    let names = |folder: &str| -> BTreeSet<_> {
+        fs::read_dir(scratch.path().join(folder)).unwrap().map(|entry| entry.unwrap().file_name()).collect()
+    };
+    assert_eq!(names("out"), names("whole"));
+    for name in ["slow", "more 3"] {
+        let summary = |folder: &str| scratch.read(&format!("{folder}/{name}/summary.json"));
+        assert_eq!(summary("out"), summary("whole"));
+    }
 }
 
 #[test]

@@ -1,32 +1,14 @@
 //! Interruption and readers that go away.
 
-use crate::common::{Scratch, scene};
+use crate::common::{Scratch, scene, wait_for};
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
-
-/// Longest wait for something that comes within a fraction of it.
-const PATIENCE: Duration = Duration::from_secs(60);
+use std::time::Duration;
 
 fn interrupt(child: &Child) {
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
-}
-
-/// Waits until `condition` holds; false when the child ended before.
-fn wait_for(child: &mut Child, condition: impl Fn() -> bool) -> bool {
-    let start = Instant::now();
-    while start.elapsed() < PATIENCE {
-        if condition() {
-            return true;
-        }
-        if child.try_wait().unwrap().is_some() {
-            return false;
-        }
-        sleep(Duration::from_millis(2));
-    }
-    panic!("nothing happened in {PATIENCE:?}");
 }
 
 /// Whether a process has a handler for SIGINT, which is signal 2.

@@ -169,7 +169,7 @@ fn tilting_palms_turn_the_object_over_and_a_page_shows_it() {
     let sticks = [0, 1, 2].map(|i| summary["palms"][i]["sticks_s"].as_f64().unwrap());
     assert!(sticks.iter().all(|seconds| *seconds > 0.5), "{sticks:?}");
     let page = scratch.read("out/report.html");
-    assert!(page.contains("<title>Three tilting palms") && page.matches("<figure").count() == 6);
+    assert!(page.contains("<title>Three tilting palms") && page.matches("<figure").count() == 1 + 6);
     assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
     // Its own scene goes on.
     if few_or_all(true, false) {

@@ -35,14 +35,18 @@ pub(super) fn draw_curves(curves: &[FigureCurve], frame: &Frame, out: &mut Strin
 
 fn draw_curve(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut String) {
     if curve.dots {
-        let _ = writeln!(out, "<g class=\"c{colour}\" fill=\"currentColor\">");
-        for [x, y] in curve.points.iter().filter(finite).map(|&p| frame.place(p)) {
-            let _ = writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"1.2\"/>");
-        }
-        let _ = writeln!(out, "</g>");
+        // Lines without length under round caps.
+        let places = curve.points.iter().filter(finite).map(|&p| frame.place(p));
+        let dots: String = places.map(|[x, y]| format!("M{x} {y}h0")).collect();
+        let _ = writeln!(
+            out,
+            "<path class=\"c{colour}\" d=\"{dots}\" stroke=\"currentColor\" stroke-width=\"2.4\" stroke-linecap=\"round\"/>"
+        );
         return;
     }
-    draw_line(&curve.points, (colour, ""), frame, out);
+    // As faint as two that lie over each other may be.
+    let tint = if curve.filled { " style=\"fill:currentColor;fill-opacity:.1\"" } else { "" };
+    draw_line(&curve.points, (colour, tint), frame, out);
 }
 
 /// A line in a colour and with further attributes.

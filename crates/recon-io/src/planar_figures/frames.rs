@@ -13,29 +13,69 @@ pub struct FigureFrame {
     pub curves: Vec<FigureCurve>,
 }
 
-/// How long a frame is shown, and the last one, s.
+/// How long a picture of a panel is shown, and the last one of all pictures in turn, s.
 const SHOWN: f64 = 0.35;
 const LAST: f64 = 2.5;
 
-/// Draws `frames`, and after them the panel's own `curves`, in turn; begins with these.
+/// Pictures that are shown one after the other for `shown` s each, after the `last` one, which is what stands still.
+#[derive(Clone, Copy)]
+pub(crate) struct Turn {
+    last: usize,
+    shown: f64,
+}
+
+impl Turn {
+    pub(crate) fn new(pictures: usize, shown: f64) -> Self {
+        Self { last: pictures.saturating_sub(1), shown }
+    }
+
+    /// How long all of them take, s.
+    fn all(&self) -> f64 {
+        self.shown * self.last as f64 + LAST
+    }
+
+    /// What tells apart the rules of turns of different lengths.
+    fn name(&self) -> String {
+        format!("{}-{:.0}", self.last, 1e3 * self.shown)
+    }
+
+    /// The rules by which they are shown.
+    pub(crate) fn style(&self) -> String {
+        let (all, name) = (self.all(), self.name());
+        let (shown, last) = (100.0 * self.shown / all, 100.0 * LAST / all);
+        format!(
+            "<style>.turn{{visibility:hidden}}.turn.last{{visibility:visible}}@keyframes shown{name}{{0%{{visibility:visible}}{shown:.3}%{{visibility:hidden}}}}\
+             @keyframes last{name}{{0%{{visibility:visible}}{last:.3}%{{visibility:hidden}}}}\
+             @media print,(prefers-reduced-motion:reduce){{.turn{{animation:none!important}}}}</style>"
+        )
+    }
+
+    /// What makes an element the picture `k` of them.
+    pub(crate) fn attributes(&self, k: usize) -> String {
+        let (class, rule, after) =
+            if k == self.last { (" last", "last", 0.0) } else { ("", "shown", LAST + self.shown * k as f64) };
+        let (name, all) = (self.name(), self.all());
+        format!(
+            "class=\"turn{class}\" data-pace=\"{:.3}\" style=\"animation:{rule}{name} {all:.3}s step-end {:.3}s infinite\"",
+            self.shown,
+            after - all
+        )
+    }
+}
+
+/// Draws `frames` in turn, and after them the panel's own `curves`, which stand still.
 pub(super) fn draw_in_turn(frames: &[FigureFrame], curves: &[FigureCurve], frame: &Frame, out: &mut String) {
-    let count = frames.len();
-    let all = SHOWN * count as f64 + LAST;
-    let (shown, last) = (100.0 * SHOWN / all, 100.0 * LAST / all);
-    let _ = writeln!(
-        out,
-        "<style>.turn{{visibility:hidden}}.turn.last{{visibility:visible}}@keyframes shown{count}{{0%{{visibility:visible}}{shown:.3}%{{visibility:hidden}}}}\
-         @keyframes last{count}{{0%{{visibility:visible}}{last:.3}%{{visibility:hidden}}}}\
-         @media print,(prefers-reduced-motion:reduce){{.turn{{animation:none!important}}}}</style>"
-    );
+    let turn = Turn::new(frames.len() + 1, SHOWN);
+    let _ = writeln!(out, "{}", turn.style());
     let within = [SIZE[0] - MARGIN[0] - MARGIN[2], SIZE[1] - MARGIN[1] - MARGIN[3]];
     let (x, y, [width, height]) = (MARGIN[0], MARGIN[1], within);
-    let mut one = |class: &str, name: &str, after: f64, label: &str, curves: &[FigureCurve]| {
-        let delay = after - all;
+    let own = ("", curves);
+    let all = frames.iter().map(|of| (of.label.as_str(), &of.curves[..])).chain([own]);
+    for (k, (label, curves)) in all.enumerate() {
         let _ = writeln!(
             out,
-            "<svg class=\"turn{class}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" viewBox=\"{x} {y} {width} {height}\" \
-             style=\"animation:{name}{count} {all:.3}s step-end {delay:.3}s infinite\">"
+            "<svg {} x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" viewBox=\"{x} {y} {width} {height}\">",
+            turn.attributes(k)
         );
         let _ = writeln!(
             out,
@@ -46,10 +86,6 @@ pub(super) fn draw_in_turn(frames: &[FigureFrame], curves: &[FigureCurve], frame
         );
         draw_curves(curves, frame, out);
         let _ = writeln!(out, "</svg>");
-    };
-    one(" last", "last", 0.0, "", curves);
-    for (k, of) in frames.iter().enumerate() {
-        one("", "shown", LAST + SHOWN * k as f64, &of.label, &of.curves);
     }
 }
 
@@ -74,9 +110,9 @@ mod tests {
             .collect();
         let all = 3.0 * SHOWN + LAST;
         let begins: Vec<f64> = delays.iter().map(|delay| delay + all).collect();
-        let expected = [0.0, LAST, LAST + SHOWN, LAST + 2.0 * SHOWN];
+        let expected = [LAST, LAST + SHOWN, LAST + 2.0 * SHOWN, 0.0];
         assert!(begins.iter().zip(expected).all(|(a, b)| (a - b).abs() < 2e-3), "{begins:?}");
-        assert!((begins[3] + SHOWN - all).abs() < 2e-3, "the turn ends with the frame before the last");
+        assert!((begins[2] + SHOWN - all).abs() < 2e-3, "the turn ends with the frame before the last");
         assert!(drawn.contains("&lt;2&gt;") && drawn.matches("class=\"turn last\"").count() == 1);
         assert_eq!(drawn.matches("<polyline").count(), 4, "each curve once");
     }

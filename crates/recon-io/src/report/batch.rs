@@ -1,20 +1,11 @@
 //! The page of many logs: a small picture of each, and a link to its own page.
 
 use super::Level;
-use super::contacts::page::{STYLE, fact};
-use super::encode::level;
-use super::page::{escape_text, fill, head};
+use super::data::level;
+use super::page::{Fact, Page, escape_text};
 use crate::number::with_brief_numbers;
 use crate::planar_figures::{FigurePanel, figures_in_page};
 use std::io::{self, Write};
-
-const PAGE: &str = include_str!("assets/batch.html");
-/// As many beside each other as there is room for.
-const CARDS: &str = "
-.cards { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 330px), 1fr)); gap: 16px; }
-.card h2 { font-size: 16px; margin: 12px 14px 2px; overflow-wrap: anywhere; } .card p { margin: 2px 14px; font-size: 13.5px; overflow-wrap: anywhere; }
-.card .word { color: var(--tone); } .card .curves { grid-template-columns: 1fr; } .card { padding-bottom: 10px; } a { color: var(--accent); }
-";
 
 /// One log of many.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +30,7 @@ pub struct BatchPage {
     /// Title.
     pub title: String,
     /// Key figures: name, value, unit.
-    pub facts: Vec<(&'static str, String, &'static str)>,
+    pub facts: Vec<Fact>,
     /// What the pictures show.
     pub caption: String,
     /// Name of the table beside the page.
@@ -53,36 +44,32 @@ pub struct BatchPage {
 /// # Errors
 /// Those of `to`.
 pub fn write_batch_report(page: &BatchPage, to: impl Write) -> io::Result<()> {
-    let parts = [
-        ("head", head(&page.title, &(STYLE.to_owned() + CARDS))?),
-        ("title", escape_text(&page.title)),
-        ("facts", page.facts.iter().map(fact).collect()),
-        ("caption", escape_text(&page.caption)),
-        ("table", escape_text(page.table)),
-        ("cards", page.cards.iter().map(card).collect::<io::Result<String>>()?),
-    ];
-    fill(PAGE, &parts, to)
+    let cards: String = page.cards.iter().map(card).collect();
+    let (caption, table) = (escape_text(&page.caption), escape_text(page.table));
+    let body = format!(
+        "<p class=\"caption\">{caption} All numbers are in <a href=\"{table}\">{table}</a>.</p>\n\
+         <section class=\"figure cards\" aria-label=\"Logs\">\n{cards}</section>\n"
+    );
+    let (kicker, verdict) = ("Many logs", String::new());
+    Page { kicker, title: &page.title, verdict, facts: &page.facts, body }.write(to)
 }
 
-fn card(of: &LogCard) -> io::Result<String> {
+fn card(of: &LogCard) -> String {
     let name = escape_text(&of.name);
     let name = match &of.link {
         Some(link) => format!("<a href=\"{}\">{name}</a>", encoded(link)),
         None => name,
     };
     let line = |line: &String| format!("<p>{}</p>\n", escape_text(&with_brief_numbers(line)));
-    let picture = match &of.panel {
-        Some(panel) => {
-            format!("<div class=\"curves\">{}</div>\n", figures_in_page(std::slice::from_ref(panel))?)
-        }
-        None => String::new(),
-    };
-    Ok(format!(
+    let picture = of.panel.as_ref().map_or_else(String::new, |panel| {
+        format!("<div class=\"curves\">{}</div>\n", figures_in_page(std::slice::from_ref(panel)))
+    });
+    format!(
         "<article class=\"panel card\">\n<h2>{name}</h2>\n<p class=\"word {}\">{}</p>\n{picture}{}</article>\n",
         level(of.level),
         escape_text(of.word),
         of.lines.iter().map(line).collect::<String>()
-    ))
+    )
 }
 
 /// A path as an address.

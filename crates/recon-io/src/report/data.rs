@@ -1,46 +1,7 @@
-use super::ModeSpan;
 use crate::TriangleMesh;
 use glam::{DQuat, DVec3};
-use recon::contact_kinematics::PalmFrame;
 use recon::object_dynamics::TrueState;
 use recon::shape_bounds::Gap;
-use thiserror::Error;
-
-/// Everything that is told about one reconstruction, independent of how it was made. SI units.
-///
-/// Frames: world `W` (Z up), body `O` (origin in the estimated centre of mass, axes as estimated). Truth, where there
-/// is one, must be given in the same body axes, so that orientations can be compared.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ReportData {
-    /// What was reconstructed, such as the name of the log.
-    pub title: String,
-    /// How far the result can be relied on.
-    pub verdict: Verdict,
-    /// Times of the samples in s, strictly increasing.
-    pub times: Vec<f64>,
-    /// The three palms, one entry per time.
-    pub palms: [PalmTrack; 3],
-    /// Estimated motion, one state per time.
-    pub motion: Vec<MotionState>,
-    /// Standard deviations of centre of mass, velocity, angular velocity and turn, world axes, one entry per time.
-    pub deviations: Vec<[DVec3; 4]>,
-    /// Whether the motion is relied on, one entry per time.
-    pub relied_on: Vec<bool>,
-    /// What the contact of each palm does.
-    pub spans: Vec<Vec<ModeSpan>>,
-    /// True motion, one state per time.
-    pub truth: Option<Vec<MotionState>>,
-    /// Bounds on the shape, in body axes.
-    pub bounds: Option<Bounds>,
-    /// The true shape, in body axes.
-    pub true_shape: Option<TrueShape>,
-    /// What the numbers rest on: residual, rank, condition and the like.
-    pub evidence: Vec<Evidence>,
-    /// What the reader must know, in plain words.
-    pub warnings: Vec<String>,
-    /// What to do next, in plain words.
-    pub next: String,
-}
 
 /// Whether the result can be relied on, and why, in one sentence.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +23,16 @@ pub enum Level {
     Bad,
     /// Neither for nor against.
     Neutral,
+}
+
+/// The name of a level in JSON and in style.
+pub(crate) fn level(level: Level) -> &'static str {
+    match level {
+        Level::Good => "good",
+        Level::Caution => "caution",
+        Level::Bad => "bad",
+        Level::Neutral => "neutral",
+    }
 }
 
 /// One number or word that the result rests on.
@@ -90,17 +61,6 @@ pub enum EvidenceValue {
     Count(u64),
     /// A word, such as a status.
     Text(String),
-}
-
-/// One palm over time.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct PalmTrack {
-    /// Frame at each time, world axes.
-    pub frames: Vec<PalmFrame>,
-    /// Contact at each time; none where the palm does not touch.
-    pub contacts: Vec<Option<PalmContact>>,
-    /// Size of the normal force on the object at each time, N; none where it was not measured.
-    pub forces: Vec<Option<f64>>,
 }
 
 /// Where a palm touches the object at one time.
@@ -161,105 +121,8 @@ pub struct Bound {
 pub struct TrueShape {
     /// Surface, body axes.
     pub mesh: TriangleMesh,
-    /// Lines on the surface, body axes.
-    pub wireframe: Vec<Vec<DVec3>>,
     /// Volume in m^3.
     pub volume: Option<f64>,
-}
-
-/// Report data that do not fit together.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum ReportError {
-    /// A track has another length than the times.
-    #[error("{what} has {found} entries for {expected} times")]
-    Length {
-        /// Which track.
-        what: String,
-        /// Number of times.
-        expected: usize,
-        /// Its length.
-        found: usize,
-    },
-    /// There is nothing to show.
-    #[error("a report needs at least two times; there are {found}")]
-    TooShort {
-        /// How many there are.
-        found: usize,
-    },
-    /// Times that are not numbers or do not increase.
-    #[error("time {index} is {value}; times must be finite and increase")]
-    Times {
-        /// Which, from 0.
-        index: usize,
-        /// As given.
-        value: f64,
-    },
-}
-
-impl ReportData {
-    /// Checks that all tracks are as long as the times, and that time increases.
-    ///
-    /// # Errors
-    /// [`ReportError`] names the track or the time.
-    pub fn check(&self) -> Result<(), ReportError> {
-        let expected = self.times.len();
-        if expected < 2 {
-            return Err(ReportError::TooShort { found: expected });
-        }
-        let increasing =
-            |k: usize| self.times[k].is_finite() && (k == 0 || self.times[k] > self.times[k - 1]);
-        if let Some(index) = (0..expected).find(|&k| !increasing(k)) {
-            return Err(ReportError::Times { index, value: self.times[index] });
-        }
-        let palms = self.palms.iter().zip(1..).flat_map(|(palm, i)| {
-            [
-                (format!("frames of palm {i}"), palm.frames.len()),
-                (format!("contacts of palm {i}"), palm.contacts.len()),
-                (format!("forces of palm {i}"), palm.forces.len()),
-            ]
-        });
-        let own = [
-            ("motion", self.motion.len()),
-            ("deviations", self.deviations.len()),
-            ("reliance", self.relied_on.len()),
-        ];
-        let tracks = own
-            .into_iter()
-            .map(|(what, found)| (what.to_owned(), found))
-            .chain(self.truth.iter().map(|t| ("truth".to_owned(), t.len())))
-            .chain(palms);
-        for (what, found) in tracks {
-            if found != expected {
-                return Err(ReportError::Length { what, expected, found });
-            }
-        }
-        Ok(())
-    }
-
-    /// Largest error of a radius function, m; none without truth.
-    #[must_use]
-    pub fn largest_radius_error(&self) -> Option<f64> {
-        Some(self.departures()?.iter().map(|of| of.radius).fold(0.0, f64::max))
-    }
-
-    /// How far the estimate is from the truth at each time; none without truth.
-    pub(crate) fn departures(&self) -> Option<Vec<Departure>> {
-        let truth = self.truth.as_ref()?;
-        let one = |(k, (a, b)): (usize, (&MotionState, &MotionState))| Departure {
-            radius: self.palms.iter().fold(0.0, |most: f64, palm| {
-                let error = palm.contacts[k].map_or(0.0, |c| c.radius - palm.frames[k].n.dot(b.p_WCm));
-                most.max(error.abs())
-            }),
-            ..Departure::between(a, b)
-        };
-        Some(self.motion.iter().zip(truth).enumerate().map(one).collect())
-    }
-
-    /// True radius functions at time `k`: `r_i = n_i . p_WCm`, as the palms pass through the origin.
-    pub(crate) fn true_radii(&self, k: usize) -> Option<[f64; 3]> {
-        let state = self.truth.as_ref()?[k];
-        Some([0, 1, 2].map(|i| self.palms[i].frames[k].n.dot(state.p_WCm)))
-    }
 }
 
 /// How far an estimate is from the truth at one time.
@@ -273,19 +136,16 @@ pub(crate) struct Departure {
     pub(crate) velocity: f64,
     /// Of the angular velocity, rad/s.
     pub(crate) angular_velocity: f64,
-    /// Of the worst of the three radius functions, m.
-    pub(crate) radius: f64,
 }
 
 impl Departure {
-    /// Of two states of motion; nothing is said of radius functions.
+    /// Of two states of motion.
     pub(crate) fn between(a: &MotionState, b: &MotionState) -> Self {
         Self {
             position: a.p_WCm.distance(b.p_WCm),
             angle: rotation_between(a.R_WO, b.R_WO),
             velocity: a.v_WCm.distance(b.v_WCm),
             angular_velocity: a.w_WO.distance(b.w_WO),
-            radius: 0.0,
         }
     }
 }

@@ -1,12 +1,16 @@
 //! Rows of the table of what a result rests on.
 
-use super::encode::level;
+use super::data::level;
 use super::page::escape_text;
 use super::{Evidence, EvidenceValue, Level};
 use crate::number::{brief, with_brief_numbers};
 
-/// A row.
-pub(super) fn row(of: &Evidence) -> String {
+/// All rows.
+pub(super) fn rows(of: &[Evidence]) -> String {
+    of.iter().map(row).collect()
+}
+
+fn row(of: &Evidence) -> String {
     let mark = match of.level {
         Level::Good => "✓",
         Level::Caution => "!",

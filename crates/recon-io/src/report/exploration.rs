@@ -1,16 +1,11 @@
 //! The page of an exploration: what is proven, what each touch brought, where the next one would be.
 
 use super::Verdict;
-use super::contacts::page::{STYLE, fact};
 use super::notices::notices;
-use super::page::{escape_text, fill, head};
+use super::page::{Fact, Page, curves_section, escape_text, section};
 use crate::number::brief_to;
-use crate::planar_figures::{FigurePanel, figures_in_page};
+use crate::planar_figures::FigurePanel;
 use std::io::{self, Write};
-
-const PAGE: &str = include_str!("assets/exploration.html");
-/// Wide tables scroll, and numbers stand under each other.
-const TABLE: &str = "\n.scroll { overflow-x: auto; }\n#touches td { font-variant-numeric: tabular-nums; white-space: nowrap; }\n";
 
 /// What is done, in the words of the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +64,7 @@ pub struct ExplorationPage {
     /// What is proven, in a sentence.
     pub verdict: Verdict,
     /// Key figures: name, value, unit.
-    pub facts: Vec<(&'static str, String, &'static str)>,
+    pub facts: Vec<Fact>,
     /// What the touches are to bring down, as the head of its column.
     pub progress: String,
     /// Pictures, two in a row.
@@ -85,22 +80,17 @@ pub struct ExplorationPage {
 /// # Errors
 /// Those of `to`.
 pub fn write_exploration_report(page: &ExplorationPage, to: impl Write) -> io::Result<()> {
-    let heads = page.words.heads.iter().map(|head| format!("<th>{head}</th>")).collect();
-    let parts = [
-        ("kicker", page.words.kicker.to_owned()),
-        ("course", page.words.course.to_owned()),
-        ("each", page.words.each.to_owned()),
-        ("heads", heads),
-        ("head", head(&page.title, &(STYLE.to_owned() + TABLE))?),
-        ("title", escape_text(&page.title)),
-        ("verdict", notices(&page.verdict, ["Proven", "Not proven", "Refused"], &[])),
-        ("facts", page.facts.iter().map(fact).collect()),
-        ("curves", figures_in_page(&page.panels)?),
-        ("caption", escape_text(&page.caption)),
-        ("progress", escape_text(&page.progress)),
-        ("touches", page.touches.iter().map(row).collect()),
-    ];
-    fill(PAGE, &parts, to)
+    let ExplorationWords { kicker, course, each, heads } = page.words;
+    let heads: String = heads.iter().map(|head| format!("<th>{head}</th>")).collect();
+    let table = format!(
+        "<div class=\"scroll\"><table class=\"touches\">\n<thead><tr>{heads}<th>Expected</th><th>Gained</th><th>{}</th></tr></thead>\n\
+         <tbody>\n{}</tbody>\n</table></div>\n",
+        escape_text(&page.progress),
+        page.touches.iter().map(row).collect::<String>()
+    );
+    let body = curves_section(course, &page.panels, &page.caption) + &section(each, &table, "");
+    let verdict = notices(&page.verdict, ["Proven", "Not proven", "Refused"], &[]);
+    Page { kicker, title: &page.title, verdict, facts: &page.facts, body }.write(to)
 }
 
 fn row(touch: &TouchRow) -> String {

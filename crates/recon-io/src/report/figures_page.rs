@@ -1,14 +1,11 @@
 //! The page of a result that figures and a table tell: bounds, fits, motion without forces.
 
-use super::contacts::page::{STYLE, fact};
-use super::evidence_table::row;
+use super::evidence_table::rows;
 use super::notices::notices;
-use super::page::{escape_text, fill, head};
+use super::page::{Fact, Page, curves_section, evidence_section};
 use super::{Evidence, Verdict};
-use crate::planar_figures::{FigurePanel, figures_in_page};
+use crate::planar_figures::FigurePanel;
 use std::io::{self, Write};
-
-const PAGE: &str = include_str!("assets/figures.html");
 
 /// What the page shows.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +19,7 @@ pub struct FiguresPage {
     /// What the reader must know.
     pub warnings: Vec<String>,
     /// Key figures: name, value, unit.
-    pub facts: Vec<(&'static str, String, &'static str)>,
+    pub facts: Vec<Fact>,
     /// What the figures are of.
     pub heading: &'static str,
     /// Pictures, two in a row.
@@ -38,18 +35,10 @@ pub struct FiguresPage {
 /// # Errors
 /// Those of `to`.
 pub fn write_figures_page(page: &FiguresPage, to: impl Write) -> io::Result<()> {
-    let parts = [
-        ("head", head(&page.title, STYLE)?),
-        ("kicker", escape_text(page.kicker)),
-        ("title", escape_text(&page.title)),
-        ("verdict", notices(&page.verdict, ["Good", "With care", "Unreliable"], &page.warnings)),
-        ("facts", page.facts.iter().map(fact).collect()),
-        ("heading", escape_text(page.heading)),
-        ("curves", figures_in_page(&page.panels)?),
-        ("caption", escape_text(&page.caption)),
-        ("evidence", page.evidence.iter().map(row).collect()),
-    ];
-    fill(PAGE, &parts, to)
+    let body = curves_section(page.heading, &page.panels, &page.caption)
+        + &evidence_section("What the result rests on", &rows(&page.evidence));
+    let verdict = notices(&page.verdict, ["Good", "With care", "Unreliable"], &page.warnings);
+    Page { kicker: page.kicker, title: &page.title, verdict, facts: &page.facts, body }.write(to)
 }
 
 #[cfg(test)]

@@ -3,16 +3,13 @@
 mod batch;
 mod contacts;
 mod data;
-mod encode;
 mod evidence_table;
 mod exploration;
 mod figures_page;
 mod notices;
 mod page;
 mod pushes;
-
-#[cfg(test)]
-mod tests;
+mod thin;
 
 pub use batch::{BatchPage, LogCard, write_batch_report};
 pub use contacts::{
@@ -20,14 +17,10 @@ pub use contacts::{
     mode_times, planar_mode_spans, write_contact_report, write_estimate_report, write_planar_contact_report,
     write_plane_estimate_report,
 };
-pub use data::{
-    Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, PalmTrack, ReportData,
-    ReportError, TrueShape, Verdict,
-};
+pub use data::{Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, TrueShape, Verdict};
 pub use exploration::{ExplorationPage, ExplorationWords, TouchRow, write_exploration_report};
 pub use figures_page::{FiguresPage, write_figures_page};
-pub use page::write_report;
+pub use page::Fact;
 pub use pushes::{PushedLog, write_pushes_report};
 
-pub(crate) use data::Departure;
-pub(crate) use encode::level;
+pub(crate) use data::{Departure, level};

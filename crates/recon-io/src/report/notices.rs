@@ -1,6 +1,6 @@
 //! The verdict, notes and warnings on top of a page.
 
-use super::encode::level;
+use super::data::level;
 use super::page::escape_text;
 use super::{Level, Verdict};
 use crate::number::with_brief_numbers;

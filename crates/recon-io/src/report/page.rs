@@ -1,71 +1,90 @@
-use super::contacts::bands::{LEGEND, bands};
-use super::contacts::doubtful_spans;
-use super::contacts::page::{STYLE as BANDS, fact};
-use super::data::{Departure, ReportData, ReportError};
-use super::encode::encode;
-use super::evidence_table::row;
-use super::notices::{next, notices};
+//! What all pages are made of: one head, verdict, key figures, sections, evidence.
+
 use super::{Bounds, Evidence, EvidenceValue};
 use crate::number::{brief, brief_to};
+use crate::planar_figures::{FigurePanel, figures_in_page};
 use std::io::{self, Write};
 
-const HEAD: &str = include_str!("assets/head.html");
 const PAGE: &str = include_str!("assets/page.html");
 const STYLE: &str = include_str!("assets/style.css");
+/// What moves pictures that are shown in turn; without it they run by themselves.
+const SCRIPT: &str = include_str!("assets/turn.js");
 
-/// The page's script, in the order in which its parts build on each other.
-const SCRIPT: [&str; 8] = [
-    include_str!("assets/math.js"),
-    include_str!("assets/geometry.js"),
-    include_str!("assets/webgl.js"),
-    include_str!("assets/painter.js"),
-    include_str!("assets/stage.js"),
-    include_str!("assets/chart.js"),
-    include_str!("assets/figures.js"),
-    include_str!("assets/main.js"),
-];
+/// A key figure: name, value and unit.
+pub type Fact = (&'static str, String, &'static str);
 
-/// Writes the report as one HTML page that needs nothing else: no network, no other file.
-///
-/// # Errors
-/// [`ReportError`] (as [`io::ErrorKind::InvalidInput`]) when the tracks do not fit together, and those of `to`.
-pub fn write_report(data: &ReportData, to: impl Write) -> io::Result<()> {
-    data.check().map_err(|e: ReportError| io::Error::new(io::ErrorKind::InvalidInput, e))?;
-    let json = serde_json::to_string(&encode(data))?;
-    let parts = [
-        ("head", head(&data.title, BANDS)?),
-        ("title", escape_text(&data.title)),
-        (
-            "verdict",
-            notices(&data.verdict, ["Reliable", "With care", "Unreliable"], &data.warnings)
-                + &next(&data.next),
-        ),
-        ("legend", LEGEND.to_owned()),
-        ("bands", bands(&data.spans, &[], &doubtful_spans(&data.times, &data.relied_on))),
-        ("facts", facts(data).iter().map(fact).collect()),
-        ("evidence", data.evidence.iter().map(row).collect()),
-        ("data", escape_script(&json)),
-        ("script", SCRIPT.concat()),
-    ];
-    fill(PAGE, &parts, to)
+/// A page that needs nothing else: no network, no other file.
+pub(super) struct Page<'a> {
+    /// What kind of result it is.
+    pub(super) kicker: &'a str,
+    /// Of what, such as the name of a log.
+    pub(super) title: &'a str,
+    /// Notices, as HTML.
+    pub(super) verdict: String,
+    pub(super) facts: &'a [Fact],
+    /// Sections, as HTML.
+    pub(super) body: String,
 }
 
-/// Key figures: name, value and unit.
-fn facts(data: &ReportData) -> Vec<(&'static str, String, &'static str)> {
-    let over = data.times.last().zip(data.times.first()).map_or(0.0, |(last, first)| last - first);
-    let mut facts = vec![("Time", brief_to(4, over), "s"), ("Samples", data.times.len().to_string(), "")];
-    facts.extend(of_body(&data.evidence));
-    facts.extend(data.bounds.iter().flat_map(of_bounds));
-    if let Some(all) = data.departures() {
-        let most = |of: fn(&Departure) -> f64| brief_to(2, all.iter().map(of).fold(0.0, f64::max));
-        facts.push(("Largest position error", most(|d| d.position), "m"));
-        facts.push(("Largest rate error", most(|d| d.angular_velocity), "rad/s"));
+impl Page<'_> {
+    pub(super) fn write(&self, to: impl Write) -> io::Result<()> {
+        let parts = [
+            ("title", escape_text(self.title)),
+            ("style", STYLE.to_owned()),
+            ("kicker", escape_text(self.kicker)),
+            ("verdict", self.verdict.clone()),
+            ("facts", tiles(self.facts)),
+            ("body", self.body.clone()),
+            ("version", env!("CARGO_PKG_VERSION").to_owned()),
+            ("script", SCRIPT.to_owned()),
+        ];
+        fill(PAGE, &parts, to)
     }
-    facts
+}
+
+/// Key figures as tiles.
+pub(super) fn tiles(facts: &[Fact]) -> String {
+    let tile = |(name, value, unit): &Fact| {
+        format!("<div><dt>{name}</dt><dd>{value}<small>{unit}</small></dd></div>\n")
+    };
+    let all: String = facts.iter().map(tile).collect();
+    if all.is_empty() {
+        all
+    } else {
+        format!("<dl class=\"facts\" aria-label=\"Key figures\">\n{all}</dl>\n")
+    }
+}
+
+/// A section: what it shows as HTML, and what is said of it.
+pub(super) fn section(heading: &str, shown: &str, caption: &str) -> String {
+    let (heading, caption) = (escape_text(heading), escape_text(caption));
+    let caption = if caption.is_empty() { caption } else { format!("<p class=\"caption\">{caption}</p>\n") };
+    format!(
+        "<section class=\"figure\" aria-label=\"{heading}\">\n<h2>{heading}</h2>\n{shown}{caption}</section>\n"
+    )
+}
+
+/// A section of curves and views; none without any.
+pub(super) fn curves_section(heading: &str, panels: &[FigurePanel], caption: &str) -> String {
+    if panels.is_empty() {
+        return String::new();
+    }
+    let curves = figures_in_page(panels);
+    section(heading, &format!("<div class=\"panel curves\">\n{curves}</div>\n"), caption)
+}
+
+/// The section of what the result rests on; none without rows.
+pub(super) fn evidence_section(heading: &str, rows: &str) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let head =
+        "<thead><tr><th>Quantity</th><th class=\"number\">Value</th><th>What it tells</th></tr></thead>";
+    section(heading, &format!("<table class=\"evidence\">\n{head}\n<tbody>\n{rows}</tbody>\n</table>\n"), "")
 }
 
 /// Mass and principal moments, with deviations where they were estimated.
-pub(super) fn of_body(evidence: &[Evidence]) -> Vec<(&'static str, String, &'static str)> {
+pub(super) fn of_body(evidence: &[Evidence]) -> Vec<Fact> {
     let of = |key: &str| {
         evidence.iter().find(|row| row.key == key).and_then(|row| match row.value {
             EvidenceValue::Number(value) => Some(value),
@@ -89,7 +108,7 @@ pub(super) fn of_body(evidence: &[Evidence]) -> Vec<(&'static str, String, &'sta
 }
 
 /// Volumes of bounds.
-pub(super) fn of_bounds(bounds: &Bounds) -> Vec<(&'static str, String, &'static str)> {
+pub(super) fn of_bounds(bounds: &Bounds) -> Vec<Fact> {
     let lower = bounds.lower.volume;
     let first = ("Lower bound", brief(lower), "m³");
     match bounds.upper.as_ref().map(|upper| upper.volume) {
@@ -104,15 +123,8 @@ pub(super) fn of_bounds(bounds: &Bounds) -> Vec<(&'static str, String, &'static 
     }
 }
 
-/// The head that all pages share, with what a page adds to their style.
-pub(super) fn head(title: &str, style: &str) -> io::Result<String> {
-    let mut head = Vec::new();
-    fill(HEAD, &[("title", escape_text(title)), ("style", STYLE.to_owned() + style)], &mut head)?;
-    Ok(String::from_utf8_lossy(&head).into_owned())
-}
-
 /// Writes a page with each `{{name}}` in it replaced by the part of that name.
-pub(super) fn fill(page: &str, parts: &[(&str, String)], mut to: impl Write) -> io::Result<()> {
+fn fill(page: &str, parts: &[(&str, String)], mut to: impl Write) -> io::Result<()> {
     let mut rest = page;
     while let Some((before, after)) = rest.split_once("{{") {
         to.write_all(before.as_bytes())?;
@@ -130,7 +142,45 @@ pub(super) fn escape_text(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Keeps text in JSON strings from ending the element that holds it.
-fn escape_script(json: &str) -> String {
-    json.replace('<', "\\u003c")
+#[cfg(test)]
+mod tests {
+    use super::super::Level;
+    use super::*;
+
+    #[test]
+    fn pages_refer_to_nothing_outside_and_text_cannot_break_out() {
+        let (title, verdict) = ("a <log> & \"more\"", super::super::notices::next("</script>"));
+        let body = section("<b>", "", "1 < 2");
+        let page = Page { kicker: "k", title, verdict, facts: &[("Time", "1".to_owned(), "s")], body };
+        let mut out = Vec::new();
+        page.write(&mut out).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        for outside in ["http:", "https:", "src=", "href=", "@import", "url(h", "fetch(", "{{", "<b>"] {
+            assert!(!text.contains(outside), "{outside}");
+        }
+        assert!(text.contains("default-src 'none'") && text.matches("</script>").count() == 1);
+        assert!(text.contains("<title>a &lt;log&gt; &amp; \"more\" – recon</title>"));
+        assert!(text.contains("<dt>Time</dt><dd>1<small>s</small></dd>") && text.contains("1 &lt; 2"));
+    }
+
+    /// The same numbers as on the console: six digits, two of a deviation.
+    #[test]
+    fn mass_and_inertia_are_tiles_with_their_deviations() {
+        let row = |key: &str, value: f64| Evidence {
+            key: key.into(),
+            name: String::new(),
+            value: EvidenceValue::Number(value),
+            unit: "kg".into(),
+            meaning: String::new(),
+            level: Level::Neutral,
+        };
+        let rows = [row("mass", 0.399_979_3), row("std_mass", 4.43e-5), row("moment_x", 1.6e-4)];
+        let page = tiles(&of_body(&rows));
+        for tile in [
+            "<dt>Mass</dt><dd>0.399979<small class=\"deviation\">± 4.4e-5</small><small>kg</small></dd>",
+            "<dt>Least moment</dt><dd>0.00016<small>kg m²</small></dd>",
+        ] {
+            assert!(page.contains(tile), "{tile}");
+        }
+    }
 }

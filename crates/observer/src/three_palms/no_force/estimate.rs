@@ -1,5 +1,6 @@
 use super::NoForceError;
 use super::closure::{Closure, closure};
+use super::deviations::deviations;
 use super::problem::{Guess, Row, TouchProblem, UNKNOWNS};
 use super::search::search;
 use super::series::{Nodes, TouchSeries};
@@ -79,6 +80,9 @@ pub struct NoForceEvidence {
 pub struct NoForceEstimate {
     /// Motion at the nodes of the estimate. Body axes are those of the world at the first sample.
     pub motion: Vec<MotionState>,
+    /// Standard deviations of the motion at the same nodes: centre of mass (m), velocity (m/s), angular velocity (rad/s) and turn since the
+    /// first node (rad), world axes.
+    pub deviations: Vec<[DVec3; 4]>,
     /// The shape.
     pub shape: TouchShape,
     /// Inertia tensor over mass about the centre of mass, body axes, m^2.
@@ -192,7 +196,7 @@ impl Scene<'_> {
             let (iterations, residual, noise) = (fit.iterations, rms, deviation);
             return Err(NoForceError::NotSettled { iterations, residual, noise });
         }
-        let motion = problem.motion(&fit.point, nodes.t.len()).ok_or(no_fit)?;
+        let motion = problem.motion(&fit.point, nodes.t.len()).ok_or(no_fit.clone())?;
         let (largest, smallest) = (spectrum.eigenvalues[UNKNOWNS - 1], spectrum.eigenvalues[0]);
         let evidence = NoForceEvidence {
             status: fit.status,
@@ -217,8 +221,10 @@ impl Scene<'_> {
             v_WCm: now.rates.v_WCm,
             w_WO: now.w_WO,
         };
+        let deviations = deviations(&problem, &fit.point, motion.len(), &inverse).ok_or(no_fit)?;
         Ok(NoForceEstimate {
             motion: motion.iter().map(state).collect(),
+            deviations,
             shape: shape(&fit.point),
             inertia_per_mass: inertia_of_numbers(&fit.point.inertia),
             covariance: outward * inverse * outward.transpose(),

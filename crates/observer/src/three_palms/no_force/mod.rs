@@ -1,6 +1,7 @@
 //! No force sensors: motion, shape and inertia over mass from contacts and palm poses alone.
 
 mod closure;
+mod deviations;
 mod error;
 mod estimate;
 mod orientations;

@@ -15,7 +15,7 @@ pub(super) type Row = SVector<f64, UNKNOWNS>;
 
 /// Step of the differences that derivatives are taken from, in natural sizes: the error by the third derivative and
 /// that by rounding are then both below 1e-8.
-const DIFFERENCE: f64 = 1e-5;
+pub(super) const DIFFERENCE: f64 = 1e-5;
 
 /// A motion and the body that makes it: body axes are the world's at the first node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +59,16 @@ impl<'a> TouchProblem<'a> {
             6..=11 | 15..=17 => self.length,
             _ => 1.0,
         })
+    }
+
+    /// The numbers a step away, which is in natural sizes.
+    pub(super) fn retract_by(&self, point: &Guess, step: &Row) -> Guess {
+        let step = step.component_mul(&self.scales());
+        Guess {
+            w: point.w + DVec3::new(step[0], step[1], step[2]),
+            shape: std::array::from_fn(|i| point.shape[i] + step[3 + i]),
+            inertia: std::array::from_fn(|i| point.inertia[i] + step[3 + SHAPE_NUMBERS + i]),
+        }
     }
 
     /// The motion at every node, with contacts; none where the numbers make no motion.
@@ -150,12 +160,7 @@ impl LeastSquares<UNKNOWNS> for TouchProblem<'_> {
     }
 
     fn retract(&self, point: &Guess, step: &Row) -> Guess {
-        let step = step.component_mul(&self.scales());
-        Guess {
-            w: point.w + DVec3::new(step[0], step[1], step[2]),
-            shape: std::array::from_fn(|i| point.shape[i] + step[3 + i]),
-            inertia: std::array::from_fn(|i| point.inertia[i] + step[3 + SHAPE_NUMBERS + i]),
-        }
+        self.retract_by(point, step)
     }
 }
 

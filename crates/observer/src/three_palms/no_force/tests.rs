@@ -90,6 +90,8 @@ fn motion_shape_and_inertia_come_from_contacts_alone() {
     assert!((last.p_WCm - now.unwrap().touch.p_WCm).length() < 1e-7);
     assert!((last.w_WO - now.unwrap().w_WO).length() < 1e-7);
     assert_eq!(estimate.evidence.rank, UNKNOWNS);
+    // Axes of the body are those of the world at the first node, by definition.
+    assert!(estimate.deviations.len() == estimate.motion.len() && estimate.deviations[0][3] == DVec3::ZERO);
     // The curves cross; what is left at the crossings is of second order in the angle, 0.03^2 x 2.5 m at most.
     let closure = estimate.evidence.closure.unwrap();
     assert!(closure.pairs > 20 && closure.distance_rms < 2e-3, "{closure:?}");
@@ -105,12 +107,14 @@ fn found(estimate: &NoForceEstimate) -> Row {
 }
 
 /// Squared errors over their covariance have mean 18 and, over 30 runs, a deviation of sqrt(2 18 / 30) = 1.1: four of
-/// those. The noise is 0.1 % of the size.
+/// those. The noise is 0.1 % of the size. So has each of the 12 numbers of the motion at the last node a squared error of its deviation
+/// in the mean; that they are independent of each other is not claimed.
 #[test]
 fn covariance_is_true_under_noise() {
-    let (_, clean, truth) = general(3.0, 500.0);
+    let (simulation, clean, truth) = general(3.0, 500.0);
     let noise = 2.5e-3;
     let (mut sum, runs) = (0.0, crate::few_or_all(10, 30));
+    let mut of_motion = [[0.0; 3]; 4];
     for seed in 0..runs {
         let level = SensorNoise { contact: noise, force: 0.0, torque: 0.0 };
         let series = TouchSeries::new(&clean.with_noise(&level, seed).unwrap()).unwrap();
@@ -119,6 +123,10 @@ fn covariance_is_true_under_noise() {
         let estimate = scene.estimate(&series.nodes(8), truth).unwrap();
         let error = found(&estimate) - entries(&truth);
         sum += error.dot(&estimate.covariance.cholesky().unwrap().solve(&error));
+        for (sums, (error, deviation)) in of_motion.iter_mut().zip(errors_at_the_end(&estimate, &simulation))
+        {
+            (0..3).for_each(|axis| sums[axis] += (error[axis] / deviation[axis]).powi(2));
+        }
         let rms = estimate.evidence.residual_rms / estimate.evidence.noise_explains;
         assert!((0.9..1.1).contains(&rms), "{rms}");
         let closure = estimate.evidence.closure.unwrap();
@@ -129,6 +137,26 @@ fn covariance_is_true_under_noise() {
     // Chi-squared of 18 numbers, four deviations of its mean.
     let band = 4.0 * (36.0 / runs as f64).sqrt();
     assert!((mean - 18.0).abs() < band, "{mean}");
+    // Of one number the mean of squares has a deviation of sqrt(2 / runs): below four of them above 1 each, and none far too small.
+    let (count, all) = (runs as f64, of_motion.as_flattened());
+    let high = 1.0 + 4.0 * (2.0 / count).sqrt();
+    assert!(all.iter().all(|sum| (0.1..high).contains(&(sum / count))), "{of_motion:?}");
+    let mean = all.iter().sum::<f64>() / (12.0 * count);
+    assert!((0.5..1.8).contains(&mean), "{mean}");
+}
+
+/// Errors of centre of mass, velocity, angular velocity and turn at the last node, with their deviations.
+fn errors_at_the_end(estimate: &NoForceEstimate, truth: &Simulation) -> [(DVec3, DVec3); 4] {
+    let (last, deviations) = (estimate.motion.last().unwrap(), estimate.deviations.last().unwrap());
+    let now = truth.instants.iter().find(|now| (now.t - last.t).abs() < 1e-9).unwrap();
+    let d = last.R_WO * now.R_WO.conjugate();
+    let errors = [
+        last.p_WCm - now.touch.p_WCm,
+        last.v_WCm - now.rates.v_WCm,
+        last.w_WO - now.w_WO,
+        2.0 * d.w.signum() * d.xyz(),
+    ];
+    std::array::from_fn(|i| (errors[i], deviations[i]))
 }
 
 /// What is left of an exact log is no noise, and is what the estimate is off by: deviations that count noise alone were too small by a

@@ -5,7 +5,8 @@ use crate::console::causes;
 use crate::error::CliError;
 use crate::pipeline::{Asked, LogSource, estimated, load, sorted_with_forces};
 use crate::progress::Progress;
-use recon_io::{FolderTarget, MotionState, Scene, brief_to, fingerprint, is_bag, with_brief_numbers};
+use recon::observer::ContactEstimate;
+use recon_io::{FolderTarget, Scene, brief_to, fingerprint, is_bag, with_brief_numbers};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -35,6 +36,9 @@ impl State {
     }
 }
 
+/// Time (s) and place of the centre of mass (m), and the standard deviations of that, where they are finite.
+pub(super) type PathPoint = ([f64; 4], [Option<f64>; 3]);
+
 /// What one log told.
 pub(super) struct Row {
     /// File name of the log.
@@ -50,8 +54,8 @@ pub(super) struct Row {
     pub(super) seconds: f64,
     /// The summary; null of a broken log.
     pub(super) summary: Value,
-    /// Times (s) and places of the centre of mass (m), some of all.
-    pub(super) path: Vec<[f64; 4]>,
+    /// Where the centre of mass was, at some of all times.
+    pub(super) path: Vec<PathPoint>,
 }
 
 impl Row {
@@ -162,8 +166,7 @@ fn made(args: &BatchArgs, log: &Path, folder: &Path, begun: Instant) -> Result<R
     let estimate = estimated(sorted_with_forces(loaded, &scene), &asked, &Progress::watched(None))?;
     let relied_on = estimate.is_reliable();
     let data = &estimate.made.data;
-    let states = data.estimate.states.iter().map(|state| MotionState::from(*state));
-    let (path, why) = (path(data.log.times(), states), data.verdict.text.clone());
+    let (path, why) = (path(data.log.times(), &data.estimate), data.verdict.text.clone());
     let seconds = begun.elapsed().as_secs_f64();
     let of = json!({ "made_from": made_from(args, log), "relied_on": relied_on, "seconds": seconds, "path": path });
     let mut extras = estimate.extras(&args.export, ShapeAs::Auto, None)?;
@@ -175,8 +178,12 @@ fn made(args: &BatchArgs, log: &Path, folder: &Path, begun: Instant) -> Result<R
     Ok(Row { log, folder, state, why, before: false, seconds, summary, path })
 }
 
-fn path(times: &[f64], motion: impl ExactSizeIterator<Item = MotionState>) -> Vec<[f64; 4]> {
+fn path(times: &[f64], found: &ContactEstimate) -> Vec<PathPoint> {
     let step = times.len().div_ceil(SHOWN).max(1);
-    let point = |(t, state): (&f64, MotionState)| [*t, state.p_WCm.x, state.p_WCm.y, state.p_WCm.z];
-    times.iter().zip(motion).step_by(step).map(point).collect()
+    let point = |k: usize| {
+        let (p, std) = (found.states[k].p_WCm, found.deviations[k][0].to_array());
+        // What is not finite has no place in JSON.
+        ([times[k], p.x, p.y, p.z], std.map(|std| Some(std).filter(|std| std.is_finite())))
+    };
+    (0..times.len()).step_by(step).map(point).collect()
 }

@@ -17,7 +17,8 @@ pub(super) fn page(folder: &Path, rows: &[Row]) -> BatchPage {
             ("Not relied on", count(State::Doubtful), ""),
             ("Skipped", count(State::Broken), ""),
         ],
-        caption: "Where the centre of mass went from where it was first.".to_owned(),
+        caption: "Where the centre of mass went from where it was first, with bands of two deviations."
+            .to_owned(),
         table: TABLE,
         cards: rows.iter().map(card).collect(),
     }
@@ -46,10 +47,11 @@ fn card(row: &Row) -> LogCard {
 
 /// Where the centre of mass went.
 fn picture(row: &Row) -> Option<FigurePanel> {
-    let first = row.path.first()?;
+    let (first, _) = row.path.first()?;
     let curve = |axis: usize| FigureCurve {
         name: ["x", "y", "z"][axis - 1].to_owned(),
-        points: row.path.iter().map(|point| [point[0], point[axis] - first[axis]]).collect(),
+        points: row.path.iter().map(|(at, _)| [at[0], at[axis] - first[axis]]).collect(),
+        half_heights: row.path.iter().map(|(_, std)| 2.0 * std[axis - 1].unwrap_or(f64::NAN)).collect(),
         ..FigureCurve::default()
     };
     Some(FigurePanel {

@@ -7,7 +7,12 @@ pub(crate) mod schema;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Longest wait for something that comes within a fraction of it.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A folder of this test's own, removed at its end.
 pub(crate) struct Scratch(PathBuf);
@@ -99,6 +104,21 @@ impl Drop for Scratch {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }
+}
+
+/// Waits until `condition` holds; false when the child ended before.
+pub(crate) fn wait_for(child: &mut Child, condition: impl Fn() -> bool) -> bool {
+    let start = Instant::now();
+    while start.elapsed() < PATIENCE {
+        if condition() {
+            return true;
+        }
+        if child.try_wait().unwrap().is_some() {
+            return false;
+        }
+        sleep(Duration::from_millis(2));
+    }
+    panic!("nothing happened in {PATIENCE:?}");
 }
 
 /// The scene of the paper's Fig. 5, sampled at 100 Hz.

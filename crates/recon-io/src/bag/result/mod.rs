@@ -65,7 +65,7 @@ impl ResultBag<'_> {
     /// The bag, whole: profile `ros2`, messages in CDR, chunks packed by zstd.
     ///
     /// Topics: `/tf` (`object` in `world`), `/recon/pose` with covariance, `/recon/palm_i/contact` (`recon_msgs/msg/Contact`), `/recon/markers`
-    /// (contacts and forces, at most 100 a second), `/recon/bounds` (meshes), `/recon/contact_curves`, `/recon/lower_bound` and
+    /// (contacts and forces, at most 100 a second), `/recon/contacts` (their points, as often, for viewers without markers), `/recon/bounds` (meshes), `/recon/contact_curves`, `/recon/lower_bound` and
     /// `/recon/upper_bound` (their points).
     ///
     /// # Errors
@@ -86,6 +86,8 @@ impl ResultBag<'_> {
             if k % stride == 0 {
                 let markers = self.markers(k, time, scale);
                 bag.write("/recon/markers", Definition::MarkerArray, time, &encode::markers(&markers))?;
+                let points = encode::cloud(Header { time, frame: "world" }, &self.touched(k));
+                bag.write("/recon/contacts", Definition::PointCloud2, time, &points)?;
             }
         }
         bag.to.finish().map_err(io::Error::other)?;
@@ -135,6 +137,12 @@ impl ResultBag<'_> {
             bag.write(&topic, Definition::Contact, time, &encode::contact(header, contact))?;
         }
         Ok(())
+    }
+
+    /// Where palms touch the object.
+    fn touched(&self, k: usize) -> Vec<DVec3> {
+        let contacts = self.contacts.iter().filter_map(|palm| palm.get(k).copied().flatten());
+        contacts.map(|contact| self.origin + contact.p_WC).collect()
     }
 
     /// A ball at each contact and an arrow for its force; where there is none, what was there is taken away.

@@ -42,6 +42,7 @@ fn results_read_back() {
     let expected = [
         ("/recon/bounds", 1),
         ("/recon/contact_curves", 1),
+        ("/recon/contacts", 10),
         ("/recon/lower_bound", 1),
         ("/recon/markers", 10),
         ("/recon/palm_1/contact", 10),

@@ -1,5 +1,6 @@
 //! What each contact does over time, as bands.
 
+use super::super::page::section;
 use super::spans::ModeSpan;
 use crate::number::on_scale;
 use crate::planar_figures::round_step;
@@ -7,16 +8,35 @@ use recon::object_dynamics::ContactMode;
 use std::fmt::Write as _;
 
 /// What the colours of modes mean, as entries of a legend.
-pub(in crate::report) const LEGEND: &str = include_str!("../assets/modes.html");
+const LEGEND: &str = "<span><svg><rect class=\"m0\"/></svg>off</span>
+<span><svg><rect class=\"m1\"/></svg>slides</span>
+<span><svg><rect class=\"m2\"/></svg>sticks (rolls)</span>
+<span><svg><rect class=\"flight\"/></svg>touches nothing</span>
+";
+const DOUBTFUL: &str = "<span><svg><rect class=\"doubtful\"/></svg>not relied on</span>\n";
 
 const WIDTH: f64 = 920.0;
 const LEFT: f64 = 64.0;
 const ROW: f64 = 26.0;
 const BAND: f64 = 18.0;
 
+/// The section of contact modes: bands, and what their colours mean.
+pub(super) fn modes_section(
+    all: &[Vec<ModeSpan>],
+    marks: &[f64],
+    doubtful: Option<&[[f64; 2]]>,
+    caption: &str,
+) -> String {
+    let drawn = bands(all, marks, doubtful.unwrap_or_default());
+    let doubt = if doubtful.is_some() { DOUBTFUL } else { "" };
+    let shown =
+        format!("<div class=\"panel\">\n{drawn}<div class=\"modes\">\n{LEGEND}{doubt}</div>\n</div>\n");
+    section("Contact modes", &shown, caption)
+}
+
 /// Bands of the spans of each palm over the time, as opaque as they are probable, as one SVG element; marks at the times of the pictures, and a shade over stretches
 /// of time that are not relied on.
-pub(in crate::report) fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]]) -> String {
+fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]]) -> String {
     let (start, end) = (all.first().and_then(|s| s.first()), all.first().and_then(|s| s.last()));
     let (start, end) = start.zip(end).map_or((0.0, 1.0), |(first, last)| (first.start, last.end));
     let place = |t: f64| on_scale(LEFT + (WIDTH - LEFT - 8.0) * (t - start) / (end - start), 100.0, 4);

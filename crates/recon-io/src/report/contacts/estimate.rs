@@ -1,13 +1,11 @@
 //! A motion that was estimated from contacts of any palms, as its page shows it.
 
-use super::super::encode::thin;
-use super::super::{Bounds, Evidence, MotionState, PalmContact, Verdict};
-use super::estimate_page::doubtful_spans;
-use super::moment::Shown;
-use super::picture::{Line, Picture, axes_of_space, per_newton};
-use super::space::{ShownPalm, palm};
+use super::super::page::Fact;
+use super::super::{Bounds, Evidence, MotionState, PalmContact, TrueShape, Verdict};
+use super::picture::{Line, Picture, Pictures, axes_of_space, per_newton};
+use super::space::{ShownPalm, normals, palms};
 use super::view::View;
-use crate::planar_figures::{FigureCurve, FigurePanel};
+use crate::planar_figures::FigurePanel;
 use glam::{DVec2, DVec3};
 use recon::contact_kinematics::SurfaceState;
 use recon::object_dynamics::{ContactLog, ContactMode, LoggedPalm};
@@ -15,10 +13,7 @@ use recon::observer::ContactEstimate;
 use recon::shape_bounds::planar::Hull;
 
 /// Points of a contact curve that are drawn at most.
-const TRACED: usize = 400;
-/// Half the height of bands of uncertainty in standard deviations: 95 % of a normal variable lie within.
-pub(in crate::report) const BAND: f64 = 1.96;
-const AXES: [&str; 3] = ["x", "y", "z"];
+const TRACED: usize = 200;
 
 /// Everything that is told about a motion that was estimated from contacts of any palms.
 #[derive(Clone, Debug)]
@@ -39,8 +34,14 @@ pub struct EstimateData {
     pub truth: Option<Vec<MotionState>>,
     /// Bounds on the shape, in body axes.
     pub bounds: Option<Bounds>,
-    /// Corners, edges and faces; none where the object is smooth as far as it was touched.
-    pub marks: Option<ShapeMarks>,
+    /// The true shape, in body axes.
+    pub true_shape: Option<TrueShape>,
+    /// Key figures of corners, edges and faces, where the object is not smooth as far as it was touched.
+    pub marks: Vec<Fact>,
+    /// Views of the bounds, and of what is not smooth.
+    pub shape: Vec<FigurePanel>,
+    /// Noise of the forces: a fixed standard deviation in N, and one as a share of the force.
+    pub force_noise: [f64; 2],
     /// What the numbers rest on.
     pub evidence: Vec<Evidence>,
     /// What the reader must know, in plain words.
@@ -53,7 +54,7 @@ pub struct EstimateData {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShapeMarks {
     /// Key figures: name, value, unit.
-    pub facts: Vec<(&'static str, String, &'static str)>,
+    pub facts: Vec<Fact>,
     /// Views of the contacts, marked by what they are on.
     pub panels: Vec<FigurePanel>,
 }
@@ -85,25 +86,26 @@ impl EstimateData {
     }
 
     /// Object and palms at a few instants.
-    pub(super) fn pictures(&self) -> Vec<Picture> {
+    pub(super) fn pictures(&self) -> Pictures {
         let samples: Vec<usize> = (0..self.log.times().len()).collect();
-        let (reach, view) = (self.reach(), View::oblique());
         let palms = self.log.palms();
+        let first: Vec<_> =
+            palms.iter().map(|palm| (palm.surface(), palm.motion(0).pose.at_rest())).collect();
+        let view = View::onto(&normals(first.iter().map(|(surface, at)| (*surface, at))));
+        let reach = self.reach();
         let forces = samples.iter().flat_map(|&k| palms.iter().filter_map(move |palm| palm.force(k)));
         let newton = per_newton(reach, forces.map(|force| force.vector.length()));
-        Shown::instants(&samples).map(|k| self.picture(*k, reach, newton, &view)).collect()
+        Pictures::of(&samples, |k| self.picture(*k, reach, newton, &view))
     }
 
     /// What is seen at sample `k`, from back to front.
     fn picture(&self, k: usize, reach: f64, newton: f64, view: &View) -> Picture {
         let p_WCm = self.estimate.states[k].p_WCm;
         let shown: Vec<ShownPalm> = self.log.palms().iter().map(|palm| shown(palm, k, p_WCm)).collect();
-        let before = |i: &usize| view.nearness(shown[*i].p_WC) > view.nearness(p_WCm);
-        let (front, back): (Vec<usize>, Vec<usize>) = (0..shown.len()).partition(before);
-        let drawn = |i: usize| palm(view, i, &shown[i], p_WCm, reach);
-        let mut lines: Vec<Line> = back.into_iter().map(drawn).collect();
+        let (mut lines, front) = palms(view, &shown, p_WCm, reach);
+        lines.extend(self.paths(k, view));
         lines.extend(self.object(k, view));
-        lines.extend(front.into_iter().map(drawn));
+        lines.extend(front);
         lines.push(Line::centre(view.place(p_WCm)));
         for palm in self.log.palms() {
             if let (Some(touch), Some(force)) = (palm.touch(k), palm.force(k)) {
@@ -117,6 +119,25 @@ impl EstimateData {
             }
         }
         Picture { t: self.log.times()[k], lines, axes: axes_of_space(view) }
+    }
+
+    /// Where the palms were touched until sample `k`, moved with them.
+    fn paths(&self, k: usize, view: &View) -> Vec<Line> {
+        let stride = self.log.times().len().div_ceil(TRACED);
+        let path = |(i, palm): (usize, &LoggedPalm)| {
+            let now = palm.motion(k).pose.at_rest();
+            let place = |j: usize| {
+                let touch = palm.touch(j)?;
+                Some(view.place(now.to_world(palm.motion(j).pose.at_rest().to_palm(touch.p_WC))))
+            };
+            let places: Vec<Option<DVec2>> = (0..=k).step_by(stride).map(place).collect();
+            let pieces = places.split(Option::is_none).filter(|piece| piece.len() > 1);
+            let line = |piece: &[Option<DVec2>]| {
+                Line::new(&format!("path p{}", i + 1), piece.iter().copied().flatten().collect())
+            };
+            pieces.map(line).collect::<Vec<_>>()
+        };
+        self.log.palms().iter().enumerate().flat_map(path).collect()
     }
 
     /// The silhouette of what the contacts span, and the contact curves where they are seen.
@@ -135,87 +156,20 @@ impl EstimateData {
                 traces.push(Line::new(&format!("trace p{}", i + 1), points));
             }
         }
-        let hull = Hull::of(&all).ok();
-        let outline = hull.as_ref().and_then(Hull::polygon).map(|polygon| {
-            let corners = polygon.shape().vertices();
-            Line::new("object", corners.iter().chain(corners.first()).copied().collect())
-        });
-        outline.into_iter().chain(traces).collect()
-    }
-
-    /// The panels of curves: estimates with their bands, truth dashed.
-    pub(super) fn panels(&self) -> Vec<FigurePanel> {
-        let kept = thin(self.log.times().len());
-        let curves = |of: fn(&MotionState) -> DVec3, deviation: usize| -> Vec<FigureCurve> {
-            let axis = |i: usize| {
-                let at = |k: usize, state: &MotionState| [self.log.times()[k], of(state)[i]];
-                let states = &self.estimate.states;
-                FigureCurve {
-                    name: AXES[i].to_owned(),
-                    points: kept.iter().map(|&k| at(k, &states[k].into())).collect(),
-                    half_heights: kept
-                        .iter()
-                        .map(|&k| BAND * self.estimate.deviations[k][deviation][i])
-                        .collect(),
-                    reference: self
-                        .truth
-                        .iter()
-                        .flat_map(|truth| kept.iter().map(|&k| at(k, &truth[k])))
-                        .collect(),
-                    dots: false,
-                }
-            };
-            (0..3).map(axis).collect()
-        };
-        let panel = |title: &str, unit: &str, curves| FigurePanel {
-            title: title.to_owned(),
-            axes: ["t in s".to_owned(), unit.to_owned()],
-            curves,
-            shaded: doubtful_spans(self.log.times(), &self.estimate.relied_on),
-            ..FigurePanel::default()
-        };
-        let motion = [
-            panel("Centre of mass", "m", curves(|s| s.p_WCm, 0)),
-            panel("Velocity", "m/s", curves(|s| s.v_WCm, 1)),
-            panel("Angular velocity", "rad/s", curves(|s| s.w_WO, 2)),
-            panel("Turn since the start", "degrees", vec![self.turn(&kept)]),
-            panel("Contact forces", "N", self.forces(&kept)),
-        ];
-        motion.into_iter().chain(self.marks.iter().flat_map(|marks| marks.panels.clone())).collect()
-    }
-
-    /// Size of the force of each palm; no number where it was not measured.
-    fn forces(&self, kept: &[usize]) -> Vec<FigureCurve> {
-        let size =
-            |palm: &LoggedPalm, k: usize| palm.force(k).map_or(f64::NAN, |force| force.vector.length());
-        let curve = |(i, palm): (usize, &LoggedPalm)| FigureCurve {
-            name: format!("palm {}", i + 1),
-            points: kept.iter().map(|&k| [self.log.times()[k], size(palm, k)]).collect(),
-            ..FigureCurve::default()
-        };
-        self.log.palms().iter().enumerate().map(curve).collect()
-    }
-
-    /// Angle of the turn since the start; its band is that of the axis that is known worst.
-    fn turn(&self, kept: &[usize]) -> FigureCurve {
-        let times = self.log.times();
-        let states = &self.estimate.states;
-        let angle = |k: usize| states[0].R_WO.angle_between(states[k].R_WO).to_degrees();
-        let wide = |k: usize| BAND * self.estimate.deviations[k][3].max_element().to_degrees();
-        let truth = self.truth.iter().flat_map(|truth| {
-            kept.iter().map(|&k| [times[k], truth[0].R_WO.angle_between(truth[k].R_WO).to_degrees()])
-        });
-        FigureCurve {
-            name: "object".to_owned(),
-            points: kept.iter().map(|&k| [times[k], angle(k)]).collect(),
-            half_heights: kept.iter().map(|&k| wide(k)).collect(),
-            reference: truth.collect(),
-            dots: false,
-        }
+        let shape = self.true_shape.iter().flat_map(|shape| &shape.mesh.vertices);
+        let shape: Vec<DVec2> = shape.map(|p| view.place(state.p_WCm + state.R_WO * *p)).collect();
+        outline("object", &all).into_iter().chain(traces).chain(outline("true", &shape)).collect()
     }
 }
 
-fn shown(palm: &recon::object_dynamics::LoggedPalm, k: usize, p_WCm: DVec3) -> ShownPalm {
+/// The line around points; none of points on a line.
+pub(super) fn outline(class: &str, points: &[DVec2]) -> Option<Line> {
+    let hull = Hull::of(points).ok()?;
+    let corners = hull.polygon()?.shape().vertices();
+    Some(Line::new(class, corners.iter().chain(corners.first()).copied().collect()))
+}
+
+fn shown(palm: &LoggedPalm, k: usize, p_WCm: DVec3) -> ShownPalm {
     let at: SurfaceState = palm.motion(k).pose.at_rest();
     let next = || palm.surface().nearest(at.to_palm(p_WCm)).map_or(at.p_WP, |point| at.to_world(point.p_P));
     let p_WC = palm.touch(k).map_or_else(next, |touch| touch.p_WC);

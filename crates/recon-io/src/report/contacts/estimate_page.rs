@@ -1,24 +1,28 @@
-use super::super::evidence_table::row;
+use super::super::evidence_table::rows;
 use super::super::notices::{next, notice, notices};
-use super::super::page::{escape_text, fill, head, of_body, of_bounds};
+use super::super::page::{Fact, Page, curves_section, evidence_section, of_body, of_bounds};
 use super::super::{Evidence, Level, Verdict};
-use super::bands::{LEGEND, bands};
+use super::bands::modes_section;
 use super::estimate::EstimateData;
-use super::page::{STYLE, fact};
-use super::picture::{Picture, drawn};
+use super::picture::Pictures;
 use super::spans::{ModeSpan, estimated_mode_spans};
 use crate::number::brief_to;
-use crate::planar_figures::{FigurePanel, figures_in_page};
+use crate::planar_figures::FigurePanel;
 use std::io::{self, Write};
 
-const PAGE: &str = include_str!("../assets/estimate.html");
 const OBJECT: &str = "The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, where they are seen, in the colours of the palms.";
+const PATHS: &str = "Faint lines on the palms are where each was touched until then.";
 const CAPTION: &str = "Coloured dots are contacts, also those behind the object, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Flat palms go on beyond what is drawn.";
+const TRUE_SHAPE: &str = " Dashed: the outline of the true shape, from the scene.";
 const NO_OBJECT: &str =
     "The object is not drawn: where it was touched is not known under a motion that is not to be relied on.";
 
-/// Key figures: name, value and unit.
-pub(super) type Facts = Vec<(&'static str, String, &'static str)>;
+const KICKER: &str = "Motion, mass and inertia from contacts of any palms";
+const BANDS: &str = "Bands hold 95 % of what the estimate may be off by, or a reading by its noise, as standard deviations say.";
+const DASHED: &str = " Dashed: the true motion, from the log.";
+const MODES: &str = "Modes from the ratio of friction to normal force and, in space, from the slip: the paler, the less sure. Time in s. \
+    Dashed lines: the instants of the small pictures.";
+const SHAPE: &str = "The object lies between the lower and the upper bound; the arrow shows where they are farthest apart: a touch there tells most.";
 
 /// What the page of an estimate is made of, in space and in the plane alike.
 pub(super) struct EstimatePage<'a> {
@@ -27,8 +31,8 @@ pub(super) struct EstimatePage<'a> {
     pub(super) note: &'a str,
     pub(super) next: &'a str,
     pub(super) warnings: &'a [String],
-    pub(super) facts: Facts,
-    pub(super) pictures: Vec<Picture>,
+    pub(super) facts: Vec<Fact>,
+    pub(super) pictures: Pictures,
     /// What is said of the pictures.
     pub(super) caption: String,
     /// What each palm's contact does.
@@ -37,6 +41,8 @@ pub(super) struct EstimatePage<'a> {
     pub(super) times: &'a [f64],
     pub(super) relied_on: &'a [bool],
     pub(super) panels: &'a [FigurePanel],
+    /// Views of the bounds, and of what is not smooth.
+    pub(super) shape: &'a [FigurePanel],
     pub(super) has_truth: bool,
     pub(super) evidence: &'a [Evidence],
 }
@@ -55,8 +61,10 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
     let mut facts = EstimatePage::common_facts(data.log.duration(), &found.relied_on);
     facts.extend(of_body(&data.evidence));
     facts.extend(data.bounds.iter().flat_map(of_bounds));
-    facts.extend(data.marks.iter().flat_map(|marks| marks.facts.clone()));
+    facts.extend(data.marks.iter().cloned());
+    facts.extend(data.largest_errors());
     let object = if found.relied_on.contains(&true) { OBJECT } else { NO_OBJECT };
+    let truth = if data.true_shape.is_some() { TRUE_SHAPE } else { "" };
     let page = EstimatePage {
         title: &data.title,
         verdict: &data.verdict,
@@ -65,13 +73,14 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
         warnings: &data.warnings,
         facts,
         pictures: data.pictures(),
-        caption: format!("Seen obliquely from above, to one scale. {object} {CAPTION}"),
+        caption: format!("Seen obliquely from above, to one scale. {object} {PATHS} {CAPTION}{truth}"),
         spans: (0..data.log.palms().len())
             .map(|palm| estimated_mode_spans(times, &found.modes, found.mode_odds.as_ref(), palm))
             .collect(),
         times,
         relied_on: &found.relied_on,
         panels: &data.panels(),
+        shape: &data.shape,
         has_truth: data.truth.is_some(),
         evidence: &data.evidence,
     };
@@ -80,7 +89,7 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
 
 impl EstimatePage<'_> {
     /// Time, samples, and how many of them are relied on.
-    pub(super) fn common_facts(duration: f64, relied_on: &[bool]) -> Facts {
+    pub(super) fn common_facts(duration: f64, relied_on: &[bool]) -> Vec<Fact> {
         let relied = relied_on.iter().filter(|relied| **relied).count();
         // Nearly all is not all.
         let share = 1000.0 * relied as f64 / relied_on.len() as f64;
@@ -92,28 +101,21 @@ impl EstimatePage<'_> {
     }
 
     pub(super) fn write(&self, to: impl Write) -> io::Result<()> {
-        let marks: Vec<f64> = self.pictures.iter().map(|picture| picture.t).collect();
         let doubtful = doubtful_spans(self.times, self.relied_on);
-        let dashed = if self.has_truth { " Dashed: the true motion, from the log." } else { "" };
-        let parts = [
-            ("head", head(self.title, STYLE)?),
-            ("title", escape_text(self.title)),
-            (
-                "verdict",
-                notices(self.verdict, ["Reliable", "With care", "Unreliable"], self.warnings)
-                    + &notice(Level::Neutral, "Note", self.note)
-                    + &next(self.next),
-            ),
-            ("facts", self.facts.iter().map(fact).collect()),
-            ("pictures", drawn(&self.pictures)),
-            ("caption", self.caption.clone()),
-            ("legend", LEGEND.to_owned()),
-            ("bands", bands(&self.spans, &marks, &doubtful)),
-            ("curves", figures_in_page(self.panels)?),
-            ("dashed", dashed.to_owned()),
-            ("evidence", self.evidence.iter().map(row).collect()),
-        ];
-        fill(PAGE, &parts, to)
+        let dashed = if self.has_truth { DASHED } else { "" };
+        let body = self.pictures.section(&self.caption)
+            + &curves_section(
+                "Motion over time",
+                self.panels,
+                &format!("{BANDS}{dashed} Shaded: not relied on."),
+            )
+            + &modes_section(&self.spans, &self.pictures.times(), Some(&doubtful), MODES)
+            + &curves_section("Bounds on the shape", self.shape, SHAPE)
+            + &evidence_section("Mass, inertia, and what the result rests on", &rows(self.evidence));
+        let verdict = notices(self.verdict, ["Reliable", "With care", "Unreliable"], self.warnings)
+            + &notice(Level::Neutral, "Note", self.note)
+            + &next(self.next);
+        Page { kicker: KICKER, title: self.title, verdict, facts: &self.facts, body }.write(to)
     }
 }
 

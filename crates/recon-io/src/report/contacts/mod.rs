@@ -1,10 +1,11 @@
 //! Reports of motions through contact modes, simulated or estimated: pictures, bands of modes, curves.
 
-pub(super) mod bands;
-pub(super) mod estimate;
+mod bands;
+mod estimate;
+mod estimate_curves;
 mod estimate_page;
 mod moment;
-pub(super) mod page;
+mod page;
 mod picture;
 mod plane;
 mod plane_estimate;

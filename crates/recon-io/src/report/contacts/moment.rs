@@ -1,19 +1,16 @@
 //! What the page of a simulated motion is made of, in space and in the plane alike.
 
-use super::super::encode::thin;
-use super::picture::Picture;
+use super::super::thin::thin;
+use super::picture::Pictures;
 use super::spans::ModeSpan;
 use crate::planar_figures::{FigureCurve, FigurePanel};
-
-/// Instants that are shown as pictures.
-const PICTURES: usize = 6;
 
 /// A simulated motion as it is shown.
 pub(super) struct Shown {
     /// What is said of the pictures.
     pub(super) caption: &'static str,
     pub(super) moments: Vec<Moment>,
-    pub(super) pictures: Vec<Picture>,
+    pub(super) pictures: Pictures,
     /// What each palm's contact does.
     pub(super) spans: Vec<Vec<ModeSpan>>,
     /// How often modes change.
@@ -37,11 +34,6 @@ pub(super) struct Moment {
 }
 
 impl Shown {
-    /// The samples that become pictures.
-    pub(super) fn instants<T>(all: &[T]) -> impl Iterator<Item = &T> {
-        (0..PICTURES).filter_map(|k| all.get(k * all.len().saturating_sub(1) / (PICTURES - 1)))
-    }
-
     /// The panels of curves.
     pub(super) fn panels(&self) -> Vec<FigurePanel> {
         let kept: Vec<&Moment> = thin(self.moments.len()).into_iter().map(|k| &self.moments[k]).collect();

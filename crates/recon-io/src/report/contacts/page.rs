@@ -1,17 +1,15 @@
-use super::super::page::{escape_text, fill, head};
-use super::bands::{LEGEND, bands};
+use super::super::page::{Page, curves_section};
+use super::bands::modes_section;
 use super::moment::Shown;
-use super::picture::drawn;
 use super::{plane, space};
 use crate::number::brief_to;
-use crate::planar_figures::figures_in_page;
 use recon::contact_kinematics::SupportFunction;
 use recon::contact_kinematics::planar::RadiusFunction;
 use recon::object_dynamics::{ContactScene, ContactSimulation, planar};
 use std::io::{self, Write};
 
-const PAGE: &str = include_str!("../assets/contacts.html");
-pub(in crate::report) const STYLE: &str = include_str!("../assets/contacts.css");
+const ENERGY: &str =
+    "Kinetic and potential energy changes by the work that the palms' motion, friction and blows have done.";
 
 /// Writes a simulation through contact modes as one HTML page that needs nothing else: pictures, bands of modes, curves of force,
 /// slip and energy.
@@ -51,21 +49,14 @@ fn write(title: &str, shown: &Shown, to: impl Write) -> io::Result<()> {
         ("Turn at the end", brief_to(3, last.turn.to_degrees()), "degrees"),
         ("Energy not accounted for", brief_to(2, shown.energy_defect()), "J"),
     ];
-    let marks: Vec<f64> = shown.pictures.iter().map(|picture| picture.t).collect();
-    let parts = [
-        ("head", head(title, STYLE)?),
-        ("title", escape_text(title)),
-        ("facts", facts.iter().map(fact).collect()),
-        ("pictures", drawn(&shown.pictures)),
-        ("caption", shown.caption.to_owned()),
-        ("legend", LEGEND.to_owned()),
-        ("bands", bands(&shown.spans, &marks, &[])),
-        ("curves", figures_in_page(&shown.panels())?),
-    ];
-    fill(PAGE, &parts, to)
-}
-
-/// A key figure: name, value and unit.
-pub(in crate::report) fn fact((name, value, unit): &(&str, String, &str)) -> String {
-    format!("<div><dt>{name}</dt><dd>{value}<small>{unit}</small></dd></div>\n")
+    let body = shown.pictures.section(shown.caption)
+        + &modes_section(
+            &shown.spans,
+            &shown.pictures.times(),
+            None,
+            "Time in s. Dashed lines: the instants of the small pictures.",
+        )
+        + &curves_section("Forces, slip, energy", &shown.panels(), ENERGY);
+    let (kicker, verdict) = ("Contact modes of a simulated motion", String::new());
+    Page { kicker, title, verdict, facts: &facts, body }.write(to)
 }

@@ -1,21 +1,27 @@
-//! Pictures of object and palms at a few instants.
+//! Pictures of object and palms: a film of many instants, and a few of them beside it.
 
+use super::super::page::section;
 use super::view::View;
 use crate::number::{brief_to, on_scale};
-use crate::planar_figures::round_step;
+use crate::planar_figures::{Turn, round_step};
 use glam::{DVec2, DVec3};
 use recon::object_dynamics::ContactMode;
 use std::fmt::Write as _;
 
+/// Pictures that stand still, and those of the film.
+const STILLS: usize = 6;
+const FILM: usize = 48;
+/// How long the film takes at least and at most, s: else as long as the motion.
+const LASTS: [f64; 2] = [4.0, 20.0];
 /// Width of a picture and largest height, px.
 const WIDTH: f64 = 290.0;
 const HIGHEST: f64 = 1.5 * WIDTH;
 const MARGIN: f64 = 6.0;
 /// Height of the foot in which axes, gravity and a length stand, px.
-const FOOT: f64 = 46.0;
+const FOOT: f64 = 26.0;
 /// Length of an axis, and of a scale bar at most, px.
-const AXIS: f64 = 24.0;
-const BAR: f64 = 80.0;
+const AXIS: f64 = 12.0;
+const BAR: f64 = 45.0;
 /// Longest arrow of a force in sizes of the object, and its head as a share of the arrow.
 const LONGEST: f64 = 0.8;
 const HEAD: f64 = 0.25;
@@ -34,6 +40,11 @@ impl Line {
     /// The palm `i` (from 0); lines that enclose nothing are `open`.
     pub(super) fn palm(i: usize, open: bool, points: Vec<DVec2>) -> Self {
         Self { class: format!("palm p{}{}", i + 1, if open { " open" } else { "" }), points }
+    }
+
+    /// The same before the object, which shows through.
+    pub(super) fn in_front(self) -> Self {
+        Self { class: self.class + " front", ..self }
     }
 
     /// A contact.
@@ -82,42 +93,117 @@ pub(super) struct Picture {
     pub(super) axes: Axes,
 }
 
-/// Pictures beside each other, all to one scale, as SVG elements; under the first one its axes, gravity and a length.
-pub(super) fn drawn(pictures: &[Picture]) -> String {
-    let points = || pictures.iter().flat_map(|picture| &picture.lines).flat_map(|line| &line.points);
-    let low = points().fold(DVec2::INFINITY, |low, p| low.min(*p));
-    let high = points().fold(DVec2::NEG_INFINITY, |high, p| high.max(*p));
-    let size = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
-    let scale = ((WIDTH - 2.0 * MARGIN) / size.x).min((HIGHEST - 2.0 * MARGIN) / size.y);
-    let (height, left) = (scale * size.y + 2.0 * MARGIN, 0.5 * (WIDTH - scale * size.x));
-    let place = |p: DVec2| {
-        let at = [left + scale * (p.x - low.x), MARGIN + scale * (high.y - p.y)];
-        at.map(|v| on_scale(v, 100.0, 3))
-    };
-    let mut out = String::new();
-    for (k, Picture { t, lines, axes }) in pictures.iter().enumerate() {
-        let _ = writeln!(
-            out,
-            "<figure class=\"instant\"><svg viewBox=\"0 0 {WIDTH} {}\" role=\"img\">",
-            on_scale(height + FOOT, 100.0, 3)
-        );
-        for line in lines {
-            let places: Vec<String> =
-                line.points.iter().map(|p| place(*p)).map(|[x, y]| format!("{x} {y}")).collect();
-            let _ = writeln!(out, "<path class=\"{}\" d=\"M{}\"/>", line.class, places.join(" L"));
-        }
-        if k == 0 {
-            out += &foot(axes, height, scale);
-        }
-        let _ = writeln!(out, "</svg><figcaption>t = {} s</figcaption></figure>", on_scale(*t, 1.0, 3));
+/// A motion as it is shown: a film, and pictures of a few instants.
+#[derive(Default)]
+pub(super) struct Pictures {
+    film: Vec<Picture>,
+    stills: Vec<Picture>,
+}
+
+impl Pictures {
+    /// Of samples, spread evenly over them.
+    pub(super) fn of<T>(all: &[T], picture: impl Fn(&T) -> Picture) -> Self {
+        let some = |count: usize| -> Vec<Picture> {
+            let at = |k: usize| all.get(k * all.len().saturating_sub(1) / (count - 1));
+            (0..count).filter_map(at).map(&picture).collect()
+        };
+        Self { film: some(FILM), stills: some(STILLS) }
     }
-    out
+
+    /// Of the pictures that stand still, s.
+    pub(super) fn times(&self) -> Vec<f64> {
+        self.stills.iter().map(|picture| picture.t).collect()
+    }
+
+    /// All of them to one scale, with axes, gravity and a length, as a section of the page.
+    pub(super) fn section(&self, caption: &str) -> String {
+        let paper = Paper::under(self.film.iter().chain(&self.stills));
+        let stills: String = self.stills.iter().map(|picture| paper.still(picture)).collect();
+        let shown = format!(
+            "<div class=\"motion\">\n<figure class=\"panel film instant\">\n{}</figure>\n<div class=\"instants\">\n{stills}</div>\n</div>\n",
+            paper.film(&self.film)
+        );
+        section("Object and palms", &shown, caption)
+    }
+}
+
+/// Where what is seen is on a picture.
+struct Paper {
+    low: DVec2,
+    high: DVec2,
+    /// px a metre.
+    scale: f64,
+    /// px.
+    left: f64,
+    height: f64,
+}
+
+impl Paper {
+    /// On which all pictures have room.
+    fn under<'a>(pictures: impl Iterator<Item = &'a Picture> + Clone) -> Self {
+        let points = || pictures.clone().flat_map(|picture| &picture.lines).flat_map(|line| &line.points);
+        let low = points().fold(DVec2::INFINITY, |low, p| low.min(*p));
+        let high = points().fold(DVec2::NEG_INFINITY, |high, p| high.max(*p));
+        let size = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
+        let scale = ((WIDTH - 2.0 * MARGIN) / size.x).min((HIGHEST - 2.0 * MARGIN) / size.y);
+        let (height, left) = (scale * size.y + 2.0 * MARGIN, 0.5 * (WIDTH - scale * size.x));
+        Self { low, high, scale, left, height: on_scale(height, 100.0, 3) }
+    }
+
+    fn lines(&self, picture: &Picture) -> String {
+        let place = |p: &DVec2| {
+            let at = [self.left + self.scale * (p.x - self.low.x), MARGIN + self.scale * (self.high.y - p.y)];
+            let [x, y] = at.map(|v| on_scale(v, 100.0, 3));
+            format!("{x} {y}")
+        };
+        let line = |line: &Line| {
+            let places: Vec<String> = line.points.iter().map(place).collect();
+            format!("<path class=\"{}\" d=\"M{}\"/>\n", line.class, places.join(" L"))
+        };
+        picture.lines.iter().map(line).collect()
+    }
+
+    fn still(&self, picture: &Picture) -> String {
+        format!(
+            "<figure class=\"panel instant\"><svg viewBox=\"0 0 {WIDTH} {}\" role=\"img\">\n{}</svg><figcaption>{}</figcaption></figure>\n",
+            self.height,
+            self.lines(picture),
+            time(picture)
+        )
+    }
+
+    fn film(&self, pictures: &[Picture]) -> String {
+        let lasts = pictures.last().zip(pictures.first()).map_or(0.0, |(last, first)| last.t - first.t);
+        let turn = Turn::new(pictures.len(), lasts.clamp(LASTS[0], LASTS[1]) / FILM as f64);
+        let height = on_scale(self.height + FOOT, 100.0, 3);
+        let mut out = format!("<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\">\n{ROUND}{}", turn.style());
+        for (k, picture) in pictures.iter().enumerate() {
+            let (x, y) = (0.5 * WIDTH, self.height + FOOT - 8.0);
+            let _ = writeln!(
+                out,
+                "<g {}>\n{}<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\">{}</text></g>",
+                turn.attributes(k),
+                self.lines(picture),
+                time(picture)
+            );
+        }
+        out += &pictures.first().map_or_else(String::new, |of| foot(&of.axes, self.height, self.scale));
+        out + "</svg>\n"
+    }
+}
+
+/// Light on the object, from above on the left.
+const ROUND: &str = "<defs><radialGradient id=\"round\" cx=\".38\" cy=\".3\" r=\".8\"><stop class=\"near\" offset=\"0\"/>\
+    <stop class=\"far\" offset=\"1\"/></radialGradient></defs>\n";
+
+fn time(picture: &Picture) -> String {
+    format!("t = {} s", on_scale(picture.t, 1.0, 3))
 }
 
 /// Axes and gravity as arrows with names, and a bar of a round length; `scale` is px a metre.
 fn foot(axes: &Axes, top: f64, scale: f64) -> String {
     let mut out = String::new();
-    let from = DVec2::new(AXIS + 14.0, top + 0.5 * FOOT);
+    let from = DVec2::new(AXIS + 8.0, top + 0.5 * FOOT);
     let place = |p: DVec2| p.to_array().map(|v| on_scale(v, 100.0, 3));
     for (name, axis) in axes {
         let along = DVec2::new(axis.x, -axis.y);
@@ -128,26 +214,26 @@ fn foot(axes: &Axes, top: f64, scale: f64) -> String {
             ("axis", from)
         };
         let ([x, y], [to_x, to_y]) = (place(from), place(from + AXIS * along));
-        let [name_x, name_y] = place(from + (AXIS + 8.0) * along);
-        let head = if *name == "g" { " m-3.5 -6 l3.5 6 l3.5 -6" } else { "" };
+        let [name_x, name_y] = place(from + (AXIS + 4.0) * along);
+        let head = if *name == "g" { " m-2 -3.5 l2 3.5 l2 -3.5" } else { "" };
         let _ = writeln!(out, "<path class=\"{class}\" d=\"M{x} {y} L{to_x} {to_y}{head}\"/>");
         let _ = writeln!(
             out,
             "<text x=\"{name_x}\" y=\"{}\" text-anchor=\"middle\">{name}</text>",
-            on_scale(name_y + 4.0, 100.0, 3)
+            on_scale(name_y + 2.0, 100.0, 3)
         );
     }
     // The largest round length of which the bar is no longer than it may be.
     let longest = BAR / scale;
     let step = round_step(0.5 * longest);
     let length = if step <= longest { step } else { 0.5 * longest };
-    let (right, y) = (WIDTH - MARGIN - 4.0, top + FOOT - 14.0);
+    let (right, y) = (WIDTH - MARGIN - 4.0, top + FOOT - 8.0);
     let left = on_scale(right - scale * length, 100.0, 3);
-    let _ = writeln!(out, "<path class=\"scale\" d=\"M{left} {} v8 m0 -4 H{right} m0 -4 v8\"/>", y - 4.0);
+    let _ = writeln!(out, "<path class=\"scale\" d=\"M{left} {} v4 m0 -2 H{right} m0 -2 v4\"/>", y - 2.0);
     let _ = writeln!(
         out,
         "<text x=\"{right}\" y=\"{}\" text-anchor=\"end\">{} m</text>",
-        y - 9.0,
+        y - 5.0,
         brief_to(1, length)
     );
     out

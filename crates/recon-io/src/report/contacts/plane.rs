@@ -1,7 +1,7 @@
 //! A simulated motion in the plane, as its page shows it.
 
 use super::moment::{Moment, Shown};
-use super::picture::{Line, Picture, axes_of_plane, per_newton};
+use super::picture::{Line, Picture, Pictures, axes_of_plane, per_newton};
 use super::spans::planar_mode_spans;
 use glam::DVec2;
 use recon::contact_kinematics::planar::{PalmSurface, RadiusFunction};
@@ -34,7 +34,7 @@ pub(super) fn shown<S: RadiusFunction>(scene: &ContactScene<S>, simulation: &Con
     Shown {
         caption: CAPTION,
         moments: instants.iter().map(moment).collect(),
-        pictures: Shown::instants(instants).map(|now| picture(scene, now, newton)).collect(),
+        pictures: Pictures::of(instants, |now| picture(scene, now, newton)),
         spans: (0..scene.palms().len()).map(|palm| planar_mode_spans(simulation, palm)).collect(),
         changes: simulation.events.len(),
     }

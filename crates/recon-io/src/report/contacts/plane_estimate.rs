@@ -1,11 +1,10 @@
 //! A motion that was estimated in the plane, as its page shows it.
 
-use super::super::page::of_body;
+use super::super::page::{Fact, of_body};
 use super::super::{Evidence, Verdict};
-use super::estimate_page::{EstimatePage, Facts};
-use super::moment::Shown;
-use super::picture::{Line, Picture};
-use super::picture::{axes_of_plane, per_newton};
+use super::estimate::outline;
+use super::estimate_page::EstimatePage;
+use super::picture::{Line, Picture, Pictures, axes_of_plane, per_newton};
 use super::plane::{PalmAt, palm};
 use super::spans::estimated_mode_spans;
 use crate::number::brief;
@@ -14,11 +13,10 @@ use glam::DVec2;
 use recon::object_dynamics::ContactMode;
 use recon::object_dynamics::planar::ContactLog;
 use recon::observer::planar::{PlaneContact, PlaneEstimate};
-use recon::shape_bounds::planar::Hull;
 use std::io::{self, Write};
 
 /// Points of a contact curve that are drawn at most.
-const TRACED: usize = 400;
+const TRACED: usize = 200;
 const CAPTION: &str = "To one scale. The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, in the colours of the palms. Coloured dots are contacts, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Palms go on beyond what is drawn, but for circles.";
 const NO_OBJECT: &str = "To one scale. The object is not drawn: where it was touched is not known under a motion that is not to be relied on. Coloured dots are contacts, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Palms go on beyond what is drawn, but for circles.";
 
@@ -37,8 +35,10 @@ pub struct PlaneEstimateData<'a> {
     pub estimate: &'a PlaneEstimate,
     /// Areas of the lower and the upper bound on the outline, m^2.
     pub areas: Option<[f64; 2]>,
-    /// Curves of motion and shape.
+    /// Curves of the motion.
     pub panels: Vec<FigurePanel>,
+    /// Views of the bounds.
+    pub shape: Vec<FigurePanel>,
     /// What the numbers rest on.
     pub evidence: Vec<Evidence>,
     /// What the reader must know, in plain words.
@@ -77,13 +77,14 @@ pub fn write_plane_estimate_report(data: &PlaneEstimateData, to: impl Write) -> 
         times: &times,
         relied_on: &found.relied_on,
         panels: &data.panels,
+        shape: &data.shape,
         has_truth: data.log.truth().is_some(),
         evidence: &data.evidence,
     };
     page.write(to)
 }
 
-fn facts(data: &PlaneEstimateData, times: &[f64]) -> Facts {
+fn facts(data: &PlaneEstimateData, times: &[f64]) -> Vec<Fact> {
     let found = data.estimate;
     let duration = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
     let mut facts = EstimatePage::common_facts(duration, &found.relied_on);
@@ -114,13 +115,13 @@ impl PlaneEstimateData<'_> {
     }
 
     /// Object and palms at a few instants.
-    fn pictures(&self) -> Vec<Picture> {
+    fn pictures(&self) -> Pictures {
         let samples: Vec<usize> = (0..self.log.samples().len()).collect();
         let traces = self.traces();
         let reach = self.reach();
         let forces = self.log.samples().iter().flat_map(|sample| &sample.palms);
         let newton = per_newton(reach, forces.map(|palm| palm.force.length()));
-        Shown::instants(&samples).map(|k| self.picture(*k, [reach, newton], &traces)).collect()
+        Pictures::of(&samples, |k| self.picture(*k, [reach, newton], &traces))
     }
 
     /// Largest distance of a contact from the centre of mass, m.
@@ -142,11 +143,7 @@ impl PlaneEstimateData<'_> {
         let turn = DVec2::from_angle(state.phi0);
         let placed = |contact: &PlaneContact| state.p_WCm + turn.rotate(contact.p_OC);
         let all: Vec<DVec2> = traces.iter().flatten().flatten().map(|contact| placed(contact)).collect();
-        let hull = Hull::of(&all).ok();
-        lines.extend(hull.as_ref().and_then(Hull::polygon).map(|polygon| {
-            let corners = polygon.shape().vertices();
-            Line::new("object", corners.iter().chain(corners.first()).copied().collect())
-        }));
+        lines.extend(outline("object", &all));
         for (i, trace) in traces.iter().enumerate() {
             for piece in trace.split(Option::is_none).filter(|piece| piece.len() > 1) {
                 let points = piece.iter().flatten().map(|contact| placed(contact)).collect();

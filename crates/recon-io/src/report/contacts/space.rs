@@ -1,7 +1,7 @@
 //! A simulated motion in space, as its page shows it.
 
 use super::moment::{Moment, Shown};
-use super::picture::{Line, Picture, axes_of_space, per_newton};
+use super::picture::{Line, Picture, Pictures, axes_of_space, per_newton};
 use super::spans::mode_spans;
 use super::view::View;
 use glam::DVec3;
@@ -29,10 +29,12 @@ pub(super) fn shown<S: SupportFunction>(scene: &ContactScene<S>, simulation: &Co
     };
     // In sizes of the object.
     let newton = per_newton(1.0, instants.iter().flat_map(|now| &now.forces).map(|force| force.length()));
+    let planes = scene.palms().iter().zip(instants.first().into_iter().flat_map(|now| &now.palms));
+    let view = View::onto(&normals(planes.map(|(palm, at)| (palm.surface, at))));
     Shown {
         caption: CAPTION,
         moments: instants.iter().map(moment).collect(),
-        pictures: Shown::instants(instants).map(|now| picture(scene, now, newton)).collect(),
+        pictures: Pictures::of(instants, |now| picture(scene, now, (newton, &view))),
         spans: (0..scene.palms().len()).map(|palm| mode_spans(simulation, palm)).collect(),
         changes: simulation.events.len(),
     }
@@ -49,26 +51,28 @@ fn slip(now: &ContactInstant, palm: usize) -> f64 {
 }
 
 /// What is seen at an instant, from back to front.
-fn picture<S: SupportFunction>(scene: &ContactScene<S>, now: &ContactInstant, newton: f64) -> Picture {
-    let (view, at) = (View::oblique(), &now.state.body);
+fn picture<S: SupportFunction>(
+    scene: &ContactScene<S>,
+    now: &ContactInstant,
+    (newton, view): (f64, &View),
+) -> Picture {
+    let at = &now.state.body;
     let reach = reach(scene.body());
-    let before = |i: &usize| view.nearness(now.contacts[*i].p_WC) > view.nearness(at.p_WCm);
-    let (front, back): (Vec<usize>, Vec<usize>) = (0..scene.palms().len()).partition(before);
-    let palm = |i: usize| {
-        let (surface, at, p_WC) = (scene.palms()[i].surface, now.palms[i], now.contacts[i].p_WC);
-        palm(&view, i, &ShownPalm { surface, at, p_WC }, now.state.body.p_WCm, reach)
-    };
-    let mut lines: Vec<Line> = back.into_iter().map(palm).collect();
+    let shown = scene.palms().iter().zip(&now.palms).zip(&now.contacts);
+    let shown =
+        shown.map(|((palm, at), contact)| ShownPalm { surface: palm.surface, at: *at, p_WC: contact.p_WC });
+    let shown: Vec<ShownPalm> = shown.collect();
+    let (mut lines, front) = palms(view, &shown, at.p_WCm, reach);
     lines.push(Line::new("object", view.outline(scene.body(), at)));
     lines.extend(view.meridians(scene.body(), at).into_iter().map(|points| Line::new("meridian", points)));
-    lines.extend(front.into_iter().map(palm));
+    lines.extend(front);
     lines.push(Line::centre(view.place(at.p_WCm)));
     for (i, mode) in now.modes.iter().enumerate().filter(|(_, mode)| **mode != ContactMode::Off) {
         let p_WC = view.place(now.contacts[i].p_WC);
         lines.push(Line::force(p_WC, view.place(now.forces[i]), newton * reach));
         lines.push(Line::touch(*mode, p_WC));
     }
-    Picture { t: now.state.t, lines, axes: axes_of_space(&view) }
+    Picture { t: now.state.t, lines, axes: axes_of_space(view) }
 }
 
 /// A palm as it is drawn.
@@ -80,9 +84,29 @@ pub(super) struct ShownPalm {
     pub(super) p_WC: DVec3,
 }
 
+/// Normals of those surfaces that are planes.
+pub(super) fn normals<'a>(surfaces: impl Iterator<Item = (PalmSurface, &'a SurfaceState)>) -> Vec<DVec3> {
+    let plane = |(surface, at): (PalmSurface, &SurfaceState)| {
+        matches!(surface, PalmSurface::Plane).then_some(at.R_WP.z_axis)
+    };
+    surfaces.filter_map(plane).collect()
+}
+
+/// The palms about an object with its centre in `p_WCm` and of the size `reach`: those behind it, and those before it.
+pub(super) fn palms(view: &View, shown: &[ShownPalm], p_WCm: DVec3, reach: f64) -> (Vec<Line>, Vec<Line>) {
+    let before = |i: &usize| match shown[*i].surface {
+        // Its front is turned away.
+        PalmSurface::Plane => view.nearness(shown[*i].at.R_WP.z_axis) < 0.0,
+        _ => view.nearness(shown[*i].p_WC) > view.nearness(p_WCm),
+    };
+    let (front, back): (Vec<usize>, Vec<usize>) = (0..shown.len()).partition(before);
+    let line = |i: usize| palm(view, i, shown, p_WCm, reach);
+    (back.into_iter().map(line).collect(), front.into_iter().map(|i| line(i).in_front()).collect())
+}
+
 /// The palm `i` (from 0) about an object with its centre in `p_WCm` and of the size `reach`.
-pub(super) fn palm(view: &View, i: usize, shown: &ShownPalm, p_WCm: DVec3, reach: f64) -> Line {
-    let ShownPalm { surface, at, p_WC } = shown;
+fn palm(view: &View, i: usize, all: &[ShownPalm], p_WCm: DVec3, reach: f64) -> Line {
+    let ShownPalm { surface, at, p_WC } = &all[i];
     let centre = at.p_WP;
     let points = match *surface {
         PalmSurface::Plane => {
@@ -90,7 +114,14 @@ pub(super) fn palm(view: &View, i: usize, shown: &ShownPalm, p_WCm: DVec3, reach
             let n = at.R_WP.z_axis;
             let foot = p_WCm - n * n.dot(p_WCm - centre);
             let [a, b] = level_axes(n).map(|axis| BROAD * reach * axis);
-            [a + b, b - a, -a - b, a - b, a + b].iter().map(|corner| view.place(foot + *corner)).collect()
+            let mut corners = [a + b, b - a, -a - b, a - b].map(|corner| foot + corner).to_vec();
+            let others =
+                all.iter().enumerate().filter(|(j, other)| *j != i && other.surface == PalmSurface::Plane);
+            for (_, other) in others {
+                corners = within(&corners, other.at.R_WP.z_axis, other.at.p_WP);
+            }
+            corners.extend(corners.first().copied());
+            corners.into_iter().map(|corner| view.place(corner)).collect()
         }
         PalmSurface::Sphere { radius } => view.arc(centre, radius, [0.0, TAU]),
         PalmSurface::Cup { radius } => {
@@ -108,6 +139,22 @@ pub(super) fn palm(view: &View, i: usize, shown: &ShownPalm, p_WCm: DVec3, reach
         }
     };
     Line::palm(i, matches!(surface, PalmSurface::Cup { .. }), points)
+}
+
+/// The part of a convex polygon on the side of a plane through `p` to which its normal `n` points (Sutherland and Hodgman, 1974).
+fn within(corners: &[DVec3], n: DVec3, p: DVec3) -> Vec<DVec3> {
+    let mut kept = Vec::new();
+    for (k, &from) in corners.iter().enumerate() {
+        let to = corners[(k + 1) % corners.len()];
+        let [a, b] = [from, to].map(|corner| n.dot(corner - p));
+        if a >= 0.0 {
+            kept.push(from);
+        }
+        if (a < 0.0) != (b < 0.0) {
+            kept.push(from + (to - from) * (a / (a - b)));
+        }
+    }
+    kept
 }
 
 /// Axes of a plane with the normal `n`: a level one and one that rises.

@@ -1,4 +1,4 @@
-//! How the scene is looked at: along one fixed direction, obliquely from above.
+//! How the scene is looked at: along one direction, obliquely from above.
 
 use glam::{DVec2, DVec3};
 use recon::contact_kinematics::{Direction, SupportFunction};
@@ -7,8 +7,10 @@ use std::f64::consts::TAU;
 
 /// Points of an outline.
 const POINTS: u32 = 96;
-/// Azimuth from which the scene is seen and height of the eye, rad.
+/// Azimuth from which the scene is seen, if none is better, and height of the eye, rad.
 const FROM: [f64; 2] = [-0.9, 0.5];
+/// Azimuths that are compared.
+const AROUND: u32 = 36;
 
 /// A parallel projection.
 #[derive(Clone, Copy, Debug)]
@@ -19,8 +21,16 @@ pub(super) struct View {
 }
 
 impl View {
-    pub(super) fn oblique() -> Self {
-        let [(sin_a, cos_a), (sin_e, cos_e)] = FROM.map(f64::sin_cos);
+    /// Obliquely from above, onto planes with these normals towards the object: from where the one that is seen most from its edge is least so.
+    pub(super) fn onto(normals: &[DVec3]) -> Self {
+        let open = |view: &Self| normals.iter().map(|n| n.dot(view.towards).abs()).fold(1.0, f64::min);
+        let azimuths = (0..AROUND).map(|k| FROM[0] + TAU * f64::from(k) / f64::from(AROUND));
+        let better = |best: Self, next: Self| if open(&next) > open(&best) + 1e-9 { next } else { best };
+        azimuths.map(Self::from).fold(Self::from(FROM[0]), better)
+    }
+
+    fn from(azimuth: f64) -> Self {
+        let [(sin_a, cos_a), (sin_e, cos_e)] = [azimuth, FROM[1]].map(f64::sin_cos);
         let towards = DVec3::new(cos_e * cos_a, cos_e * sin_a, sin_e);
         let right = DVec3::new(-sin_a, cos_a, 0.0);
         Self { right, up: towards.cross(right), towards }
@@ -87,12 +97,24 @@ mod tests {
     use glam::DQuat;
     use recon::contact_kinematics::Ellipsoid;
 
+    /// Three planes as wide open as three walls of a corner: from nowhere is one of them seen from its edge.
+    #[test]
+    fn planes_are_not_seen_from_their_edges() {
+        let normal = |azimuth: f64| DVec3::new(azimuth.cos(), azimuth.sin(), 1.0).normalize();
+        for turn in [0.0, 0.3, 1.1] {
+            let normals = [0.0, TAU / 3.0, -TAU / 3.0].map(|azimuth| normal(azimuth + turn));
+            let view = View::onto(&normals);
+            assert!(normals.iter().all(|n| n.dot(view.towards).abs() > 0.25), "{turn}");
+        }
+        assert_eq!(View::onto(&[DVec3::Z]).towards, View::onto(&[]).towards);
+    }
+
     #[test]
     fn the_outline_of_an_ellipsoid_is_its_shadow() {
         let body = Ellipsoid::new(DVec3::new(0.05, 0.04, 0.03)).unwrap();
         let R_WO = DQuat::from_scaled_axis(DVec3::new(0.4, -1.1, 0.7));
         let at = BodyState { p_WCm: DVec3::new(0.1, 0.2, 0.3), R_WO, v_WCm: DVec3::ZERO, w_WO: DVec3::ZERO };
-        let view = View::oblique();
+        let view = View::onto(&[]);
         assert!(view.right.cross(view.up).distance(view.towards) < 1e-15);
         let outline = view.outline(&body, &at);
         // Every point of the body is seen inside of it, and the farthest in each direction on it.

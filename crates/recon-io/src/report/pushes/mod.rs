@@ -5,18 +5,17 @@ mod evidence;
 mod outline;
 mod panels;
 
-use super::contacts::page::{STYLE, fact};
-use super::encode::level;
-use super::page::{escape_text, fill, head};
-use super::{Level, Verdict};
+use super::Verdict;
+use super::notices::notices;
+use super::page::{Fact, Page, curves_section, evidence_section, section, tiles};
 use crate::number::brief_to;
-use crate::planar_figures::write_figures;
 use recon::observer::pushes::{PushFriction, PushesEstimate};
 use std::io::{self, Write};
 
-const PAGE: &str = include_str!("../assets/pushes.html");
-const LOG: &str = include_str!("../assets/pushed_log.html");
-const OWN_STYLE: &str = include_str!("../assets/pushes.css");
+const BANDS: &str = "A row for each push, over the time since it began, in s. The paler, the less sure. Left and right as the finger looks at the object. \
+    Before, the finger is under way to the object or loads it.";
+const LEGEND: &str = "<div class=\"modes\">\n<span><svg><rect class=\"m2\"/></svg>sticks</span>\n\
+    <span><svg><rect class=\"m1\"/></svg>slides to the left</span>\n<span><svg><rect class=\"mr\"/></svg>slides to the right</span>\n</div>\n";
 const CURVES: &str = "Angles are those of the force against the inward normal, in windows of a tenth of a second; shaded is the edge of the friction cone, \
     the coefficient and twice the deviation from push to push. Each dot of the next two is the own coefficient of a push that slides; the line with its band is that of all \
     with twice its deviation. Last, what is left between finger and outline at the first and the last touch of each push.";
@@ -43,56 +42,30 @@ pub struct PushedLog<'a> {
 /// # Errors
 /// Those of `to`.
 pub fn write_pushes_report(title: &str, logs: &[PushedLog], to: impl Write) -> io::Result<()> {
-    let mut sections = Vec::new();
-    for log in logs {
-        section(log, &mut sections)?;
-    }
-    let parts = [
-        ("head", head(title, &(STYLE.to_owned() + OWN_STYLE))?),
-        ("title", escape_text(title)),
-        ("logs", String::from_utf8_lossy(&sections).into_owned()),
-    ];
-    fill(PAGE, &parts, to)
+    let body = logs.iter().map(of_log).collect();
+    let (kicker, verdict) = ("What a finger that pushes an object on a table feels of it", String::new());
+    Page { kicker, title, verdict, facts: &[], body }.write(to)
 }
 
-fn section(log: &PushedLog, to: &mut Vec<u8>) -> io::Result<()> {
-    let mut curves = Vec::new();
-    write_figures(&panels::panels(log.told), &mut curves)?;
+fn of_log(log: &PushedLog) -> String {
     let name = log.number.map_or_else(|| "Pushes".to_owned(), |number| format!("Log {number}"));
-    let heading = log.number.map_or_else(String::new, |_| format!("  <h2>{name}</h2>\n"));
+    let heading = log.number.map_or_else(String::new, |_| format!("<h2>{name}</h2>\n"));
+    let verdict = notices(&log.verdict, ["Told", "With reservations", "Not to be relied on"], &log.warnings);
     let (outline, caption) = outline::drawn(log.told);
-    let parts = [
-        ("heading", heading),
-        ("name", name),
-        ("verdict", verdict(log)),
-        ("facts", facts(log).iter().map(fact).collect()),
-        ("outline", outline),
-        ("caption", escape_text(&caption)),
-        ("bands", bands::bands(log.told)),
-        ("curves", String::from_utf8_lossy(&curves).into_owned()),
-        ("curves_caption", CURVES.to_owned()),
-        ("evidence", evidence::rows(log)),
-    ];
-    fill(LOG, &parts, to)
-}
-
-fn verdict(log: &PushedLog) -> String {
-    let word = match log.verdict.level {
-        Level::Good => "Told",
-        Level::Caution => "With reservations",
-        Level::Bad => "Not to be relied on",
-        Level::Neutral => "Note",
-    };
-    let notice = |tone: Level, word: &str, text: &str| {
-        format!("  <p class=\"notice {}\"><strong>{word}</strong>{}</p>\n", level(tone), escape_text(text))
-    };
-    let mut text = notice(log.verdict.level, word, &log.verdict.text);
-    text.extend(log.warnings.iter().map(|warning| notice(Level::Caution, "Mind", warning)));
-    text
+    let outline = section("Outline", &format!("<div class=\"panel\">\n{outline}</div>\n"), &caption);
+    let bands = format!("<div class=\"panel\">\n{}{LEGEND}</div>\n", bands::bands(log.told));
+    let bands = section("Sticking and sliding", &bands, BANDS);
+    let curves = curves_section("Friction, and what the fit leaves", &panels::panels(log.told), CURVES);
+    let (facts, evidence) =
+        (tiles(&facts(log)), evidence_section("What the result rests on", &evidence::rows(log)));
+    format!(
+        "<section class=\"pushed\" aria-label=\"{name}\">\n{heading}{verdict}{facts}\
+         <div class=\"pair\">\n{outline}{bands}</div>\n{curves}{evidence}</section>\n"
+    )
 }
 
 /// The tiles.
-fn facts(log: &PushedLog) -> Vec<(&'static str, String, &'static str)> {
+fn facts(log: &PushedLog) -> Vec<Fact> {
     let told = log.told;
     let instants = || told.pushes.iter().flat_map(|p| &p.instants);
     let sticks = instants().map(|i| i.stick).sum::<f64>() / instants().count().max(1) as f64;
