@@ -2,7 +2,6 @@
 
 use crate::planar_common::{errors, noise_level, options, scene, times};
 use recon::object_dynamics::planar::*;
-use recon::observer::SensorFault;
 use recon::observer::planar::*;
 use recon_tests::few_or_all;
 
@@ -67,18 +66,6 @@ fn a_contact_offset_is_hardly_observable() {
         assert!(suspect.deviation > 5.0 * CONTACT, "{suspect}");
     }
     assert_eq!(offsets.count(), 2);
-}
-
-/// Contacts of two samples ago: the test of that constant names it, as a delay.
-#[test]
-fn late_contacts_are_told() {
-    let whole = log(|_, _| {});
-    let late = whole.samples().windows(3).map(|w| PlanarSample { contacts: w[0].contacts, ..w[2] });
-    let truth = whole.truth().unwrap()[2..].to_vec();
-    let made = estimate(&PlanarLog::new(late.collect(), Some(truth)).unwrap(), 1.0, 1.0);
-    let delay = made.suspects.iter().find(|suspect| suspect.fault == SensorFault::ContactDelay).unwrap();
-    println!("{delay}: {:?}", made.reliability);
-    assert!(!made.reliability.is_reliable() && delay.value > 0.0 && delay.score() > 4.75, "{delay}");
 }
 
 /// A gap of 50 ms, three quarters of a natural time, and a palm that is not felt for as long: what is relied on is right, and the motion goes on.
