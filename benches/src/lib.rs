@@ -25,6 +25,7 @@
 mod diagram;
 mod machine;
 pub mod palms;
+pub mod planar;
 pub mod reaching;
 pub mod rolling;
 pub mod rolling_sensed;

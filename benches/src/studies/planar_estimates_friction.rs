@@ -3,7 +3,6 @@
 //!
 //! `cargo xtask study planar_estimates_friction [BODIES [SEED]]` writes docs/planar-estimates-friction.md.
 
-use super::planar_estimates::outline;
 use crate::planar_tally::Tally;
 use glam::DVec2;
 use recon::contact_kinematics::MotionLaw;
@@ -14,6 +13,7 @@ use recon::object_dynamics::planar::*;
 use recon::object_dynamics::{ChannelNoise, ContactMode};
 use recon::observer::planar::*;
 use recon::observer::{ContactNoiseLevel, ImpulseNoise};
+use recon_benches::planar::scene::outline;
 use recon_tests::Random;
 use std::f64::consts::{PI, TAU};
 
@@ -186,6 +186,6 @@ fn run(
         size: None,
         suspects: true,
     };
-    tally.run(&log, &options, of.length)?;
+    tally.run(&log, &options, of.length, None)?;
     Ok(())
 }

@@ -3,13 +3,14 @@
 use crate::rows::RowsError;
 use cpu_time::ThreadTime;
 use recon::object_dynamics::planar::{ContactLog, PlanarTruth};
+use recon::observer::SensorFault;
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
 
 /// Deviations beyond which an error that nothing warned of is silent.
 pub(crate) const SILENT: f64 = 5.0;
 
 /// Microseconds; none where there is an error, then the errors where it is relied on.
-type Run = (f64, Option<Option<[f64; 4]>>);
+type Run = (f64, Option<Option<[f64; 5]>>);
 
 /// Runs, those that are relied on, and how far these are off.
 #[derive(Default)]
@@ -21,17 +22,20 @@ pub(crate) struct Tally {
     squares: f64,
     numbers: f64,
     places: Vec<f64>,
+    /// What is wrong in its deviations, in silent runs.
+    told: Vec<f64>,
     microseconds: f64,
     samples: f64,
 }
 
 impl Tally {
-    /// Estimates the motion of a body of the size `length` (m), and counts what comes of it.
+    /// Estimates the motion of a body of the size `length` (m), and counts what comes of it; `wrong` is what is wrong of the sensors.
     pub(crate) fn run(
         &mut self,
         log: &ContactLog,
         options: &PlaneOptions,
         length: f64,
+        wrong: Option<(SensorFault, f64)>,
     ) -> Result<(), RowsError> {
         let run = crate::rows::row(|| -> Result<Run, RowsError> {
             let clock = ThreadTime::now();
@@ -39,7 +43,9 @@ impl Tally {
             let microseconds = 1e6 * clock.elapsed().as_secs_f64();
             let reliable = |made: PlaneEstimate| {
                 let truth = log.truth().unwrap_or_default();
-                made.reliability.is_reliable().then(|| errors(&made, truth, length))
+                let told = told(&made, wrong);
+                let errors = errors(&made, truth, length);
+                made.reliability.is_reliable().then(|| [errors[0], errors[1], errors[2], errors[3], told])
             };
             Ok((microseconds, made.ok().map(reliable)))
         })?;
@@ -48,11 +54,14 @@ impl Tally {
         self.samples += log.samples().len() as f64;
         self.runs += 1;
         self.refused += usize::from(made.is_none());
-        if let Some([worst, squares, numbers, place]) = made.flatten() {
+        if let Some([worst, squares, numbers, place, told]) = made.flatten() {
             self.squares += squares;
             self.numbers += numbers;
             self.relied += 1;
-            self.silent += usize::from(worst > SILENT);
+            if worst > SILENT {
+                self.silent += 1;
+                self.told.push(told);
+            }
             self.places.push(place);
         }
         Ok(())
@@ -65,8 +74,10 @@ impl Tally {
         let mean =
             if self.numbers > 0.0 { format!("{:.2}", self.squares / self.numbers) } else { "-".to_owned() };
         let refused = if self.refused > 0 { format!(" ({} errors)", self.refused) } else { String::new() };
+        let most = self.told.iter().copied().fold(0.0, f64::max);
+        let told = if most > 0.0 { format!(" (told to {most:.1})") } else { String::new() };
         format!(
-            "{} | {}{refused} | {} | {mean} | {place} | {:.0}",
+            "{} | {}{refused} | {}{told} | {mean} | {place} | {:.0}",
             self.runs,
             self.relied,
             self.silent,
@@ -75,8 +86,16 @@ impl Tally {
     }
 }
 
+/// What is wrong of the sensors in the deviation that is stated of it; zero where none is.
+fn told(made: &PlaneEstimate, wrong: Option<(SensorFault, f64)>) -> f64 {
+    wrong.map_or(0.0, |(fault, value)| {
+        let own = made.suspects.iter().find(|suspect| suspect.fault == fault);
+        own.map_or(0.0, |suspect| value.abs() / suspect.deviation)
+    })
+}
+
 /// The largest of the errors in their deviations, the sum of their squares, how many there are; and the largest of the place over the size.
-fn errors(made: &PlaneEstimate, truth: &[PlanarTruth], length: f64) -> [f64; 4] {
+pub(crate) fn errors(made: &PlaneEstimate, truth: &[PlanarTruth], length: f64) -> [f64; 4] {
     let [mut worst, mut squares, mut numbers, mut place] = [0.0_f64; 4];
     for (k, truth) in truth.iter().enumerate().filter(|(k, _)| made.relied_on[*k]) {
         let (state, of) = (&made.states[k], &made.deviations[k]);

@@ -17,6 +17,8 @@ pub enum SensorFault {
     },
     /// Time by which all forces come late, s.
     ForceDelay,
+    /// Time by which all contacts come late, s. Tested of flat palms in the plane.
+    ContactDelay,
     /// How far contacts are from where a palm says, along one of its axes, m.
     ContactOffset {
         /// Number from 1.
@@ -102,6 +104,7 @@ impl fmt::Display for SensorFault {
             Self::ForceGain { palm } => write!(f, "gain of the forces of palm {palm} less 1"),
             Self::ForceBias { palm } => write!(f, "bias of the forces of palm {palm} (N)"),
             Self::ForceDelay => write!(f, "delay of the forces (s)"),
+            Self::ContactDelay => write!(f, "delay of the contacts (s)"),
             Self::ContactOffset { palm, axis } => {
                 write!(f, "offset of the contacts of palm {palm} along its {} axis (m)", name(axis))
             }

@@ -181,6 +181,7 @@ fn constant(fault: SensorFault) -> Value {
         SensorFault::ForceGain { palm } => ("force_gain", Some(palm), None),
         SensorFault::ForceBias { palm } => ("force_bias_n", Some(palm), None),
         SensorFault::ForceDelay => ("force_delay_s", None, None),
+        SensorFault::ContactDelay => ("contact_delay_s", None, None),
         SensorFault::ContactOffset { palm, axis } => ("contact_offset_m", Some(palm), Some(axis)),
         SensorFault::PalmTilt { palm, axis } => ("palm_tilt_rad", Some(palm), Some(axis)),
         SensorFault::Friction => ("friction", None, None),

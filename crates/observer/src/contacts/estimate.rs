@@ -14,7 +14,7 @@ use super::rivals::still;
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{problem, thinned};
-use super::sensor_change::slopes_of_forces;
+use super::sensor_change::{slopes_of_contacts, slopes_of_forces};
 use super::sharp::{is_rounded, is_sharp, leaves_something};
 use super::slips::Known;
 use super::solve::{Covariances, Solved};
@@ -270,6 +270,7 @@ impl Source<'_> {
             let still = still(log, noise, units);
             stage = if still.is_none() { stage.decided()? } else { stage };
             stage.open = stage.open.or(still);
+            stage = if exact { stage } else { stage.blurred()? };
         }
         if sharp { stage.sharpened() } else { Some(stage) }
     }
@@ -284,9 +285,10 @@ impl Source<'_> {
         (record, longest): (&Record, f64),
     ) -> Wrong {
         let Stage { problem, solved, free, .. } = stage;
-        let slopes = slopes_of_forces(self.log, &self.units);
+        let slopes = [slopes_of_forces(self.log, &self.units), slopes_of_contacts(self.log, &self.units)];
+        let slopes = slopes.each_ref().map(Vec::as_slice);
         let averages = Averages::new(self.log, &self.options.noise, [record, problem.record], longest);
-        let sensors = Sensors::new(self.log, (motions, solved.unknowns.body), &slopes, &averages);
+        let sensors = Sensors::new(self.log, (motions, solved.unknowns.body), slopes, &averages);
         let scores = Scores::new(&sensors, problem, solved);
         let suspects = scores.map_or_else(Vec::new, |scores| suspects(&scores, covariances));
         let evidence = stage.evidence(record, covariances);
@@ -330,8 +332,9 @@ fn slips(problem: &Problem, motions: &[(Motion, Deviations)], body: &Body) -> Sl
         let turn = body.turn(motion.q, motion.L);
         let from = record.samples[j.saturating_sub(1)];
         let to = record.samples.get(j + 1).copied().unwrap_or(record.samples[j]);
+        let noise = problem.noise_at(j);
         for contact in record.contacts[j].iter().filter(|c| c.mode == ContactMode::Stick) {
-            let rows = Rows::new(contact, motion, &turn, &problem.noise, false);
+            let rows = Rows::new(contact, motion, &turn, &noise, false);
             if rows.is_some_and(|rows| rows.cost() > CONTRADICTED) {
                 slips.push((from..to + 1, contact.palm));
             }

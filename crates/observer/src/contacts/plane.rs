@@ -2,7 +2,7 @@
 
 use super::body::{Body, CONSTANTS};
 use super::problem::{Problem, Units};
-use super::samples::Deviations;
+use super::samples::{Deviations, deviations};
 use super::search::fine;
 use super::solve::Solved;
 use super::state::Tangent;
@@ -19,6 +19,10 @@ const KNOWN: f64 = 1e-4;
 /// Squared departure of a known body's mass and moment of inertia from what was found without knowing them, beyond which it is another one:
 /// two numbers in their deviations go there once in a hundred. What it costs to explain the log by it must go there too.
 const CONTRADICTED: f64 = 9.2;
+
+/// How often conditions are taken for off by what is not known of the spin, and the share of their deviation from which on a change of that counts.
+const ROUNDS: usize = 4;
+const BLURS: f64 = 0.3;
 
 type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
 
@@ -61,6 +65,51 @@ pub(super) fn body(of: &Body, mass: f64, root: f64) -> (Body, OfBody) {
     information += swell * swell.transpose() * (2.0 * root * root).recip();
     information[(0, 0)] = mass.powi(-2);
     (body, information)
+}
+
+/// With conditions that are off as well by what is not known of the spin.
+///
+/// A contact that is read beside where it is, by `e`, is off in its condition by `z e`, of the spin `z` against the palm. Where that is as good as zero, as where a
+/// body turns back, the condition would be exact; but `z` is known to a deviation of its own, and of the product of both the variance is
+/// `(z^2 + var z) var e`.
+pub(super) fn blurred(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Option<Solved<CONSTANTS>> {
+    let (mut solved, mut before) = (solved, 0);
+    for _ in 0..ROUNDS {
+        let (blurred, change) = blur(problem, &solved)?;
+        if change < BLURS {
+            break;
+        }
+        problem.blurred = blurred;
+        before += solved.iterations;
+        solved = fine(problem, solved.unknowns)?;
+    }
+    solved.iterations += before;
+    Some(solved)
+}
+
+/// What conditions are off by for it at each sample of the record, m/s, and by how much that is another number than before, over the deviation that
+/// one has: the largest.
+fn blur(problem: &Problem, solved: &Solved<CONSTANTS>) -> Option<(Vec<f64>, f64)> {
+    let covariances = solved.covariances(problem)?;
+    let body = &solved.unknowns.body;
+    let (mut all, mut change) = (vec![0.0; problem.record.times.len()], 0.0);
+    let motions = problem.at_samples(&solved.unknowns);
+    for (j, (&from, motion)) in problem.nodes.iter().zip(&motions).enumerate() {
+        let unknown = deviations(motion, body, j, &covariances)[2].y;
+        let spin = body.spin(motion.q, motion.L).y;
+        let end = problem.nodes.get(j + 1).copied().unwrap_or(from + 1);
+        for (k, blurred) in all.iter_mut().enumerate().take(end).skip(from) {
+            let before = problem.noise_at(k).floor;
+            for contact in &problem.record.contacts[k] {
+                let read = problem.noise.contact / contact.samples.sqrt();
+                *blurred = f64::max(*blurred, unknown * read);
+                let now = problem.noise.floor.hypot(*blurred);
+                let all = before.hypot((spin - contact.W.y) * read);
+                change = f64::max(change, (now - before).abs() / all);
+            }
+        }
+    }
+    Some((all, change))
 }
 
 /// The motion of a known body, and why it cannot be that one; `problem` is left as it was solved.

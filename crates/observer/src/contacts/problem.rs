@@ -64,6 +64,8 @@ pub(super) struct Problem<'a> {
     pub(super) planar: bool,
     /// What a step over each interval misses of the motion, where that is known: else none of it.
     pub(super) missed: Vec<Tangent>,
+    /// What the conditions of each sample are off by beside noise, since the spin is not known that they are taken with, m/s; else nothing.
+    pub(super) blurred: Vec<f64>,
 }
 
 /// Unknowns: the motions at the nodes and the body's constants.
@@ -97,6 +99,7 @@ impl Problem<'_> {
     pub(super) fn on<'b>(&self, record: &'b Record) -> Problem<'b> {
         let Self { noise, floor, exact, friction, gravity, units, first, body, planar, .. } = *self;
         let (nodes, frozen) = (self.nodes.clone(), self.frozen.clone());
+        let blurred = self.blurred.clone();
         Problem {
             record,
             noise,
@@ -111,6 +114,7 @@ impl Problem<'_> {
             frozen,
             planar,
             missed: Vec::new(),
+            blurred,
         }
     }
 
@@ -303,6 +307,12 @@ impl Problem<'_> {
         LinkNoise::new(&self.about(noise, carried.motion.p), carried.after)
     }
 
+    /// Of the conditions of a sample.
+    pub(super) fn noise_at(&self, k: usize) -> ContactNoiseLevel {
+        let blurred = self.blurred.get(k).copied().unwrap_or(0.0);
+        ContactNoiseLevel { floor: self.noise.floor.hypot(blurred), ..self.noise }
+    }
+
     /// The conditions of a sample at a motion there, each in its deviation.
     fn rows<const P: usize>(
         &self,
@@ -317,14 +327,16 @@ impl Problem<'_> {
             return;
         }
         let changes = if P > 0 { body.by_inertia(turn) } else { Default::default() };
+        let noise = self.noise_at(k);
         for contact in contacts {
-            let Some(rows) = Rows::new(contact, motion, turn, &self.noise, self.friction) else { continue };
+            let Some(rows) = Rows::new(contact, motion, turn, &noise, self.friction) else { continue };
             rows.whitened(motion, turn, &changes).for_each(&mut visit);
         }
     }
 
     fn rows_cost(&self, k: usize, motion: &Motion, turn: &Turn) -> f64 {
-        let rows = |c| Rows::new(c, motion, turn, &self.noise, self.friction);
+        let noise = self.noise_at(k);
+        let rows = |c| Rows::new(c, motion, turn, &noise, self.friction);
         self.record.contacts[k].iter().filter_map(rows).map(|rows| rows.cost()).sum()
     }
 

@@ -115,9 +115,9 @@ impl Problem<'_> {
         at_nodes: &'a dyn Fn(Row<CONSTANTS>) -> (Row<CONSTANTS>, [DVec3; 4]),
     ) -> impl Iterator<Item = Condition> + 'a {
         let turn = body.turn(motion.q, motion.L);
-        let changes = body.by_inertia(&turn);
+        let (changes, noise) = (body.by_inertia(&turn), self.noise_at(k));
         self.record.contacts[k].iter().filter_map(move |contact| {
-            let rows = Rows::new(contact, motion, &turn, &self.noise, self.friction)?;
+            let rows = Rows::new(contact, motion, &turn, &noise, self.friction)?;
             Some(Condition {
                 node: j,
                 rows: rows.linear(motion, &turn, &changes).map(at_nodes).collect(),

@@ -33,7 +33,9 @@ impl Covariances<CONSTANTS> {
     /// Widened to what solutions with noise drawn so often spread by, where that is farther than deviations say. Where there is friction nothing is: forces
     /// have noise across normals there, of which most samples' nodes are made, and such spreads were three times the errors.
     pub(super) fn redrawn(mut self, problem: &Problem, solved: &Solved<CONSTANTS>, draws: usize) -> Self {
-        if self.body.diagonal().max() < SMALL * SMALL || !problem.record.frictionless() {
+        // Conditions that are off by what is not known of the spin are not linear in it.
+        let linear = self.body.diagonal().max() < SMALL * SMALL && problem.blurred.is_empty();
+        if linear || !problem.record.frictionless() {
             return self;
         }
         let mut random = Normal::seeded(SEED);
@@ -53,9 +55,16 @@ impl Covariances<CONSTANTS> {
         self.body = wider * self.body * wider;
         let known: Vec<_> =
             (0..own.motions.len()).map(|j| deviations(&own.motions[j], &own.body, j, &self)).collect();
+        // Axes that each of them has.
+        let axes = if problem.planar { [2.0, 2.0, 1.0, 1.0] } else { [3.0; 4] };
         let beyond = |(j, known): (usize, &[DVec3; 4])| {
             let spread = |i: usize| mean(&|at| (departure(own, at, j)[i] / known[i]).length_squared());
-            std::array::from_fn(|i| (spread(i) / (3.0 * AMOUNT * AMOUNT)).max(1.0).sqrt())
+            std::array::from_fn(|i| {
+                let mean = spread(i) / (axes[i] * AMOUNT * AMOUNT);
+                // Few axes have a spread that scatters by itself.
+                let scatter = (2.0 / (axes[i] * all.len().max(1) as f64)).sqrt();
+                (if problem.planar { mean - scatter } else { mean }).max(1.0).sqrt()
+            })
         };
         self.beyond = known.iter().enumerate().map(beyond).collect();
         self

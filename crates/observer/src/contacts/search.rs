@@ -272,6 +272,7 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: U
         body,
         planar: options.planar,
         missed: Vec::new(),
+        blurred: Vec::new(),
     }
 }
 

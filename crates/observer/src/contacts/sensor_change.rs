@@ -29,7 +29,8 @@ pub(super) struct Change<'a> {
     /// Motion at all samples, positions from the record's origin.
     pub(super) motions: &'a [(Motion, Deviations)],
     pub(super) body: &'a Body,
-    /// What the forces change by in a unit of time, N/s, by palm and sample; and what is taken for that from `value` on.
+    /// What the forces change by in a unit of time, N/s, by palm and sample; and what is taken for that from `value` on. Of contacts that are late
+    /// what they move by in axes of their palms, m/s.
     pub(super) slopes: [&'a [Vec<DVec3>]; 2],
     /// Of contacts.
     pub(super) origin: DVec3,
@@ -45,6 +46,11 @@ impl Change<'_> {
             SensorFault::ForceGain { palm } if palm == number => ChangeBy { f: contact.f * by, ..none },
             SensorFault::ForceBias { palm } if palm == number => ChangeBy { f: contact.n * by, ..none },
             SensorFault::ForceDelay => ChangeBy { f: self.later(k, contact), ..none },
+            SensorFault::ContactDelay => {
+                let [own, along] = self.slopes.map(|slopes| slopes[contact.palm][k]);
+                let moved = own * self.value + along * (by - self.value);
+                ChangeBy { c: palm.motion(k).pose.R_WP * moved, ..none }
+            }
             SensorFault::ContactOffset { palm: of, axis } if of == number => {
                 ChangeBy { c: palm.motion(k).pose.R_WP * (DVec3::AXES[axis] * by), ..none }
             }
@@ -93,6 +99,31 @@ pub(super) fn slopes_of_forces(log: &ContactLog, units: &Units) -> Vec<Vec<DVec3
     slopes_of(log, units, force)
 }
 
+/// What contacts move by in a unit of time in axes of their palms, m/s, by palm and sample: of the samples on both sides at least.
+pub(super) fn slopes_of_contacts(log: &ContactLog, units: &Units) -> Vec<Vec<DVec3>> {
+    let place = |palm: &LoggedPalm, k: usize| {
+        let pose = palm.motion(k).pose;
+        palm.touch(k).map(|touch| pose.R_WP.conjugate() * (touch.p_WC - pose.p_WP))
+    };
+    slopes_within(log, reach_of_contacts(log, units), place)
+}
+
+/// The same of noise that is drawn in place of the contacts, of so large a `deviation`, m, along the palms.
+pub(super) fn slopes_of_contact_noise(log: &ContactLog, units: &Units, deviation: f64) -> Vec<Vec<DVec3>> {
+    let mut random = Normal::seeded(SEED);
+    let drawn = |palm: &LoggedPalm, k: usize| {
+        let drawn = DVec3::new(random.draw(), random.draw(), 0.0);
+        palm.touch(k).map(|_| drawn * deviation)
+    };
+    slopes_within(log, reach_of_contacts(log, units), drawn)
+}
+
+/// Over which slopes of contacts are taken on either side, s.
+fn reach_of_contacts(log: &ContactLog, units: &Units) -> f64 {
+    let interval = log.duration() / (log.times().len() - 1).max(1) as f64;
+    (SMOOTH * units.time()).max(1.5 * interval)
+}
+
 /// The same of noise that is drawn in place of the forces.
 pub(super) fn slopes_of_noise(log: &ContactLog, units: &Units, noise: &ContactNoiseLevel) -> Vec<Vec<DVec3>> {
     let mut random = Normal::seeded(SEED);
@@ -106,11 +137,20 @@ pub(super) fn slopes_of_noise(log: &ContactLog, units: &Units, noise: &ContactNo
 fn slopes_of(
     log: &ContactLog,
     units: &Units,
+    value: impl FnMut(&LoggedPalm, usize) -> Option<DVec3>,
+) -> Vec<Vec<DVec3>> {
+    slopes_within(log, SMOOTH * units.time(), value)
+}
+
+/// The same of those at most `reach` away, s.
+fn slopes_within(
+    log: &ContactLog,
+    reach: f64,
     mut value: impl FnMut(&LoggedPalm, usize) -> Option<DVec3>,
 ) -> Vec<Vec<DVec3>> {
     let of = |palm| {
         let values: Vec<Option<DVec3>> = (0..log.times().len()).map(|k| value(palm, k)).collect();
-        slopes(log.times(), &values, SMOOTH * units.time())
+        slopes(log.times(), &values, reach)
     };
     log.palms().iter().map(of).collect()
 }

@@ -59,6 +59,7 @@ impl Known<'_> {
         record.set_modes(&free);
         let averaged = record.averaged(longest);
         let mut own = problem.on(&averaged);
+        own.blurred.clear();
         own.nodes = fine_nodes(&own);
         let at = own.node_samples().iter().map(|&k| motions[k].0).collect();
         let start = Unknowns { motions: at, body: solved.unknowns.body };

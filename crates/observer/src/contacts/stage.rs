@@ -112,6 +112,11 @@ impl<'a> Stage<'a> {
         Some(self)
     }
 
+    /// With conditions that are off as well by what is not known of the spin.
+    pub(super) fn blurred(self) -> Option<Self> {
+        self.replaced(plane::blurred)
+    }
+
     /// With conditions as bad as all that is left of them.
     pub(super) fn blunted(self) -> Option<Self> {
         self.replaced(blunted)
@@ -200,6 +205,7 @@ impl<'a> Stage<'a> {
         let place = |sample: &usize| record.samples.partition_point(|own| own < sample);
         let nodes: Vec<usize> = self.problem.node_samples().iter().map(place).collect();
         let mut problem = self.problem.on(record);
+        problem.blurred.clear();
         if !sharp {
             problem.frozen.clear();
         }

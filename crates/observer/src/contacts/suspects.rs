@@ -12,7 +12,7 @@ use super::problem::{Problem, Units};
 use super::reach::Residuals;
 use super::record::Record;
 use super::samples::Deviations;
-use super::sensor_change::{Change, slopes_of_noise};
+use super::sensor_change::{Change, slopes_of_contact_noise, slopes_of_noise};
 use super::solve::{Covariances, Reduced, Solved, Step};
 use super::state::{Motion, Tangent};
 use crate::faults::{SensorFault, Suspect};
@@ -39,19 +39,21 @@ pub(super) struct Sensors<'a> {
     body: Body,
     /// What the forces change by in a unit of time, N/s, by palm and sample.
     slopes: &'a [Vec<DVec3>],
+    /// What contacts move by in axes of their palms, m/s.
+    paths: &'a [Vec<DVec3>],
     /// Of which the record is one that a problem is on.
     averages: &'a Averages<'a>,
 }
 
 impl<'a> Sensors<'a> {
-    /// Of `log` with a motion of `body`; `slopes` are [`slopes_of_forces`].
+    /// Of `log` with a motion of `body`; slopes are [`slopes_of_forces`] and [`slopes_of_contacts`].
     pub(super) fn new(
         log: &'a ContactLog,
         (motions, body): (&'a [(Motion, Deviations)], Body),
-        slopes: &'a [Vec<DVec3>],
+        [slopes, paths]: [&'a [Vec<DVec3>]; 2],
         averages: &'a Averages<'a>,
     ) -> Self {
-        Self { log, motions, body, slopes, averages }
+        Self { log, motions, body, slopes, paths, averages }
     }
 
     /// With another body.
@@ -66,13 +68,18 @@ impl<'a> Sensors<'a> {
 
     /// The record of a log whose `fault` is known.
     pub(super) fn without(&self, fault: SensorFault, value: f64) -> Record {
-        self.changed(fault, [value, 0.0], self.slopes)
+        self.changed(fault, [value, 0.0], self.slopes_of(fault))
     }
 
-    /// With a value of the constant, and a step from there along which the forces have some `slopes`.
+    /// Of what comes late, if it is that.
+    fn slopes_of(&self, fault: SensorFault) -> &'a [Vec<DVec3>] {
+        if fault == SensorFault::ContactDelay { self.paths } else { self.slopes }
+    }
+
+    /// With a value of the constant, and a step from there along which what is late has some `slopes`.
     fn changed(&self, fault: SensorFault, [value, step]: [f64; 2], slopes: &[Vec<DVec3>]) -> Record {
         let Self { log, motions, ref body, averages, .. } = *self;
-        let slopes = [self.slopes, slopes];
+        let slopes = [self.slopes_of(fault), slopes];
         let origin = averages.origin();
         let change = Change { fault, value, by: value + step, log, motions, body, slopes, origin };
         averages.changed(|k, contact| change.of(k, contact))
@@ -135,12 +142,13 @@ impl<'a> Scores<'a> {
             let follows = solver.step(&mixed);
             Some((slope + mixed.dot(followed), own, own + mixed.dot(&follows), follows))
         };
-        let delay = fault == SensorFault::ForceDelay;
-        let (slope, own, left, follows) = told(sensors.slopes)?;
-        // Noise in the slopes of forces poses as information on their delay.
-        let spurious = match delay {
-            true => told(&slopes_of_noise(sensors.log, &problem.units, &problem.noise))?.2,
-            false => 0.0,
+        let (slope, own, left, follows) = told(sensors.slopes_of(fault))?;
+        // Noise in slopes poses as information on a delay.
+        let (log, units, noise) = (sensors.log, &problem.units, &problem.noise);
+        let spurious = match fault {
+            SensorFault::ForceDelay => told(&slopes_of_noise(log, units, noise))?.2,
+            SensorFault::ContactDelay => told(&slopes_of_contact_noise(log, units, noise.contact))?.2,
+            _ => 0.0,
         };
         let sound = left - spurious;
         let tells = sound > (LEAST_LEFT * own).max(LEAST_SOUND * left) && left.is_finite();
@@ -213,6 +221,9 @@ fn constants(log: &ContactLog, problem: &Problem) -> Vec<SensorFault> {
     if !problem.record.all_impulses {
         all.push(SensorFault::ForceDelay);
     }
+    if planar && log.palms().iter().all(|palm| palm.surface() == PalmSurface::Plane) {
+        all.push(SensorFault::ContactDelay);
+    }
     if problem.record.contacts.iter().flatten().any(|contact| contact.frictionless) {
         all.push(SensorFault::Friction);
     }
@@ -226,7 +237,7 @@ impl SensorFault {
         match self {
             Self::ForceGain { .. } | Self::PalmTilt { .. } | Self::Friction => 1.0,
             Self::ForceBias { .. } => mass * speed * speed / length,
-            Self::ForceDelay => length / speed,
+            Self::ForceDelay | Self::ContactDelay => length / speed,
             Self::ContactOffset { .. } => length,
         }
     }

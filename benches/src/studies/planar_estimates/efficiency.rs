@@ -1,0 +1,127 @@
+//! How near estimates are to the least deviations that the readings allow.
+
+use super::{Failure, options};
+use crate::planar_tally::{SILENT, errors};
+use cpu_time::ThreadTime;
+use nalgebra::SMatrix;
+use recon::object_dynamics::planar::PlanarTruth;
+use recon::observer::planar::{PlaneEstimate, estimate_plane};
+use recon_benches::planar::bound::ContactErrors;
+use recon_benches::planar::scene::Scene;
+
+/// Deviation of the place at the end, over the size, below which a run counts.
+const KNOWN_TO: f64 = 0.01;
+/// Deviations within which a normal number is 19 times of 20.
+const USUAL: f64 = 1.96;
+/// Numbers of a motion.
+const NUMBERS: f64 = 5.0;
+
+/// Microseconds; of a run that is relied on its largest error in deviations; least deviation of the place at the end over the size; sums of squared errors at the end over
+/// the bound, over that of two errors and over the stated deviations, and the variance of the last.
+type Run = (f64, Option<f64>, [f64; 5]);
+
+/// Over many runs.
+#[derive(Default)]
+pub(super) struct Efficiency {
+    runs: usize,
+    relied: usize,
+    silent: usize,
+    below: usize,
+    right: usize,
+    /// Over runs that count and are relied on: how many, sums as in a run.
+    counted: f64,
+    sums: [f64; 4],
+    microseconds: f64,
+    samples: f64,
+}
+
+impl Efficiency {
+    pub(super) fn run(
+        &mut self,
+        scene: &Scene,
+        rate: f64,
+        noise: f64,
+        known: bool,
+        seed: u64,
+    ) -> Result<(), Failure> {
+        let exact = scene.log(rate)?;
+        let truth = exact.truth().ok_or("no truth")?;
+        let run = crate::rows::row(|| -> Result<Run, Failure> {
+            let level = scene.noise(noise);
+            let log = level.add_to(&exact, seed).contact_log([0.0; 2]).ok_or("no forces")?;
+            let told = options(scene, level, known.then_some(scene.object.mass));
+            let clock = ThreadTime::now();
+            let made = estimate_plane(&log, &told)?;
+            let microseconds = 1e6 * clock.elapsed().as_secs_f64();
+            let least = scene.bound(&exact, known, noise, ContactErrors::Once)?;
+            let of_two = scene.bound(&exact, known, noise, ContactErrors::Apart)?;
+            let last = truth.last().ok_or("no sample")?;
+            let relied = made.reliability.is_reliable() && made.relied_on.last() == Some(&true);
+            let worst = relied.then(|| errors(&made, truth, scene.length)[0]);
+            Ok((microseconds, worst, at_end(scene, &made, last, [&least, &of_two])))
+        })?;
+        let Some((microseconds, worst, [place, sums @ ..])) = run else { return Ok(()) };
+        self.microseconds += microseconds;
+        self.samples += exact.samples().len() as f64;
+        self.runs += 1;
+        let counts = place < KNOWN_TO;
+        self.below += usize::from(counts);
+        let Some(worst) = worst else { return Ok(()) };
+        self.relied += 1;
+        self.silent += usize::from(worst > SILENT);
+        if counts {
+            self.right += usize::from(worst <= SILENT);
+            self.counted += 1.0;
+            self.sums.iter_mut().zip(sums).for_each(|(all, own)| *all += own);
+        }
+        Ok(())
+    }
+
+    /// Cells of a row.
+    pub(super) fn told(&self) -> String {
+        let [least, of_two, stated, variance] = self.sums;
+        let all = NUMBERS * self.counted.max(1.0);
+        let half = USUAL * variance.sqrt() / all;
+        format!(
+            "{} | {} | {} | {} | {} | {:.2} | {:.2} | {:.2} | {:.2} to {:.2} | {:.0}",
+            self.runs,
+            self.relied,
+            self.silent,
+            self.below,
+            self.right,
+            (least / all).sqrt(),
+            (of_two / all).sqrt(),
+            stated / all,
+            1.0 - half,
+            1.0 + half,
+            self.microseconds / self.samples.max(1.0)
+        )
+    }
+}
+
+/// The least deviation of the place, and the sums of a run.
+fn at_end(
+    scene: &Scene,
+    made: &PlaneEstimate,
+    truth: &PlanarTruth,
+    [least, of_two]: [&SMatrix<f64, 5, 5>; 2],
+) -> [f64; 5] {
+    let last = made.states.len() - 1;
+    let (state, of) = (&made.states[last], &made.deviations[last]);
+    let (p, v) = (state.p_WCm - truth.p_WCm, state.v_WCm - truth.v_WCm);
+    let errors = [p.x, p.y, v.x, v.y, state.omega0 - truth.omega0];
+    let stated = [of.p_WCm.x, of.p_WCm.y, of.v_WCm.x, of.v_WCm.y, of.omega0];
+    let speed = scene.length / scene.time;
+    let natural = [scene.length, scene.length, speed, speed, scene.time.recip()];
+    let mut sums = [0.0; 3];
+    for i in 0..5 {
+        let own = errors[i] / natural[i];
+        sums[0] += own * own / least[(i, i)];
+        sums[1] += own * own / of_two[(i, i)];
+        sums[2] += (errors[i] / stated[i]).powi(2);
+    }
+    // Of a sum of squares of normal numbers of unit variance with these correlations.
+    let correlated = |i: usize, j: usize| least[(i, j)] * least[(i, j)] / (least[(i, i)] * least[(j, j)]);
+    let variance: f64 = (0..5).flat_map(|i| (0..5).map(move |j| 2.0 * correlated(i, j))).sum();
+    [(least[(0, 0)] + least[(1, 1)]).sqrt(), sums[0], sums[1], sums[2], variance]
+}
