@@ -87,7 +87,7 @@ fn samples(scene: &Scene, count: usize) -> Vec<TrueSample> {
 #[test]
 fn the_filter_is_all_least_squares_at_once() {
     for (i, scene) in drawn(3, 5).expect("scenes").iter().enumerate() {
-        let samples = samples(scene, 60);
+        let samples = samples(scene, 30);
         for known in [false, true] {
             let scales = Scales { length: scene.length, time: scene.time };
             let (noise, mass) = (scene.noise(1e-2), scene.object.mass);
