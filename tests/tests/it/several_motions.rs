@@ -111,7 +111,7 @@ fn a_known_body_that_makes_the_log_dearer_is_refused() {
     let R_WO = DQuat::from_xyzw(0.602469845885, -0.442843105111, 0.574189274852, -0.333506740111);
     let w_WO = DVec3::new(0.344573520357, -0.107056787558, 0.407655526898);
     let start = InitialMotion { R_WO: R_WO.normalize(), w_WO };
-    for seed in few_or_all(&[1, 8][..], &[1, 8, 118_001_210, 118_001_000_210]) {
+    for seed in few_or_all(&[1, 8][..], &[1, 8, 118_001_210]) {
         let worst = worst_as_known(body, palms, start, (200.0, *seed));
         assert!(worst.is_none_or(|worst| worst < 5.0), "seed {seed}: {worst:?}");
     }
