@@ -4,7 +4,8 @@ mod explore;
 
 pub(crate) use explore::{ExploreArgs, GoalArgs, NextArgs, PlannerAs, Until, until};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 const EXIT_CODES: &str = "\
@@ -407,7 +408,7 @@ pub(crate) struct BoundsArgs {
     #[arg(long)]
     pub(crate) tight: bool,
     /// Height of the plane below the poses, m [default: 0]
-    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "M", value_parser = finite)]
     pub(crate) plane_height: Option<f64>,
     /// Standard deviation of that height, m: an error common to all runs
     #[arg(long, value_name = "M", value_parser = not_negative)]
@@ -736,10 +737,19 @@ fn finite(text: &str) -> Result<f64, String> {
     if value.is_finite() { Ok(value) } else { Err("it must be finite".to_owned()) }
 }
 
+impl Cli {
+    /// The command that these words make, the first of which is its name. A number below zero is a value that may be refused, and no option.
+    pub(crate) fn of(
+        words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+    ) -> Result<Self, clap::Error> {
+        let command = Self::command().mut_subcommands(|command| command.allow_negative_numbers(true));
+        Self::from_arg_matches(&command.try_get_matches_from(words)?)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn definitions_are_consistent() {

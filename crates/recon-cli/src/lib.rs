@@ -19,7 +19,6 @@ pub use in_memory::{
 };
 pub use progress::Watch;
 
-use clap::Parser;
 use cli::Cli;
 use console::Console;
 use std::ffi::OsString;
@@ -28,7 +27,7 @@ use std::ffi::OsString;
 ///
 /// From then on Ctrl-C, SIGTERM and SIGHUP end the process, or the writing of files that was begun.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
-    let cli = match Cli::try_parse_from(args) {
+    let cli = match Cli::of(args) {
         Ok(cli) => cli,
         Err(usage) => {
             // Help goes to standard output, mistakes to standard error; where nobody listens, nothing is lost.

@@ -2,12 +2,11 @@
 
 use super::failure::{Failure, FailureKind, keywords};
 use crate::cli::{Cli, Command};
-use clap::Parser;
 
 /// The command that `name` and these words make.
 pub(super) fn parsed(name: &str, words: &[String]) -> Result<Command, Failure> {
     let line = ["recon", name].into_iter().map(str::to_owned).chain(words.iter().cloned());
-    match Cli::try_parse_from(line) {
+    match Cli::of(line) {
         Ok(cli) => Ok(cli.command),
         Err(usage) => {
             let text = usage.render().to_string();

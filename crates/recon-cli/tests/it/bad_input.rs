@@ -197,6 +197,10 @@ fn command_lines_that_are_not_understood_have_their_own_code() {
         assert_eq!(run.code, Some(2), "{arguments:?}");
         assert!(run.stderr.contains("Usage") || run.stderr.contains("between"), "{}", run.stderr);
     }
+    // A number below zero is one that is refused, and no option that is not known.
+    let below = scratch.run(&["bounds", "a.csv", "--contact-noise", "-1"]);
+    assert!(below.code == Some(2) && below.stderr.contains("'-1'"), "{}", below.stderr);
+    assert!(below.stderr.contains("it must be"), "{}", below.stderr);
     let help = scratch.run(&["--help"]);
     assert_eq!(help.code, Some(0));
     assert!(help.stdout.contains("Exit codes:") && help.stdout.contains("Examples:"));
