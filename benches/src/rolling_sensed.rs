@@ -10,10 +10,7 @@ use glam::DVec2;
 use recon::contact_kinematics::planar::{
     Ellipse, FourierBody, RadiusBounds, RadiusFunction, RadiusJet, RoundedPolygon,
 };
-use recon::object_dynamics::ChannelNoise;
-use recon::object_dynamics::planar::{ContactNoise, PlanarMass, PlanarObject};
-use recon::observer::planar::PlaneOptions;
-use recon::observer::{ContactNoiseLevel, ImpulseNoise};
+use recon::object_dynamics::planar::{PlanarMass, PlanarObject};
 use recon::shape_bounds::planar::Direction;
 use std::f64::consts::TAU;
 use thiserror::Error;
@@ -170,29 +167,13 @@ pub enum RunError {
 /// [`RunError`].
 pub fn run(make: &dyn Fn(u64) -> Box<dyn RollPlanner>, seed: u64, of: Setting) -> Result<Run, RunError> {
     let (shape, mass) = (sensed(seed), PlanarMass::from_gyration(MASS, 0.45 * SIZE * SIZE)?);
-    let (contact, force) = (of.contact * SIZE, of.force * MASS * GRAVITY);
-    let channel = |fixed: f64| ChannelNoise { fixed, ..ChannelNoise::default() };
-    let noise = ContactNoise { contact, force: channel(force), impulse: channel(force / RATE) };
     let workspace = Workspace::in_motion(2.0 * SIZE, GRAVITY);
     let object = PlanarObject { shape: shape.clone(), mass, gravity: GRAVITY };
     let phi = Source::new(seed).between(0.0, TAU);
     let hands = SimulatedHands::new(object, of.friction, workspace.length, PALMS, phi, RATE)?;
-    let mut hands = hands.with_noise(noise, seed);
+    let mut hands = hands.with_noise([of.contact * SIZE, of.force * MASS * GRAVITY], seed);
     let first = hands.start_phi();
-    let sensors = PlaneOptions {
-        noise: ContactNoiseLevel {
-            contact,
-            force_fixed: force,
-            force_share: 0.0,
-            impulse: Some(ImpulseNoise { fixed: force / RATE, share: 0.0 }),
-            floor: 1e-6 * (SIZE * GRAVITY).sqrt(),
-        },
-        gravity: GRAVITY,
-        friction: vec![(of.friction == 0.0).then_some(0.0); 2],
-        body: None,
-        size: None,
-        suspects: false,
-    };
+    let sensors = hands.sensors(1e-6 * (SIZE * GRAVITY).sqrt());
     let roll = RollTask { motions: 25, radians: 40.0, ..RollTask::new(Goal::Gap(of.gap), workspace) };
     let task = SensedTask { roll, sensors, level: 0.95 };
     let mut planner = Timed { inner: make(seed), seconds: 0.0 };

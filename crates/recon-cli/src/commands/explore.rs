@@ -10,10 +10,7 @@ use recon::contact_kinematics::planar::RadiusFunction;
 use recon::contact_kinematics::{Direction, SupportFunction};
 use recon::exploration::rolling::{RollingBody, SensedError, SimulatedHands, SimulatedPalms, Workspace};
 use recon::exploration::{Heading, Motion, Source, planar, space};
-use recon::object_dynamics::ChannelNoise;
-use recon::object_dynamics::planar::{ContactNoise, PlanarObject};
-use recon::observer::planar::PlaneOptions;
-use recon::observer::{ContactNoiseLevel, ImpulseNoise};
+use recon::object_dynamics::planar::PlanarObject;
 use recon::shape_bounds::planar as flat;
 use recon_io::{FolderTarget, PlanarBody, PlanarScene, Scene, SceneErrorKind};
 use serde_json::Value;
@@ -130,31 +127,15 @@ fn estimated(
     if *gravity <= 0.0 {
         return Err(CliError::RolledWithoutGravity);
     }
-    let Some(([contact, force], level)) = settings.sensors else { return Err(CliError::HalfNoise) };
+    let Some((noise, level)) = settings.sensors else { return Err(CliError::HalfNoise) };
     let natural = (0.5 * width / gravity).sqrt();
     let rate = SAMPLED / natural;
-    let channel = |fixed: f64| ChannelNoise { fixed, ..ChannelNoise::default() };
-    let noise = ContactNoise { contact, force: channel(force), impulse: channel(force / rate) };
     let workspace = Workspace::in_motion(width, *gravity);
     let object = PlanarObject { shape: shape.clone(), mass: *mass, gravity: *gravity };
     let hands =
         SimulatedHands::new(object, args.friction.unwrap_or(0.0), workspace.length, PALMS, let_go, rate);
     let mut hands = hands.map_err(SensedError::Start)?.with_noise(noise, settings.seed);
-    let sensors = PlaneOptions {
-        noise: ContactNoiseLevel {
-            contact,
-            force_fixed: force,
-            force_share: 0.0,
-            impulse: Some(ImpulseNoise { fixed: force / rate, share: 0.0 }),
-            floor: FLOOR * (0.5 * width * gravity).sqrt(),
-        },
-        gravity: *gravity,
-        // Friction is not known to the estimator; that there is none is.
-        friction: vec![args.friction.is_none_or(|f| f == 0.0).then_some(0.0); 2],
-        body: None,
-        size: None,
-        suspects: false,
-    };
+    let sensors = hands.sensors(FLOOR * (0.5 * width * gravity).sqrt());
     let with = (workspace, sensors, level);
     sensed(&title(args), &args.until, settings, with, &mut hands, |words| progress.say(words))
 }

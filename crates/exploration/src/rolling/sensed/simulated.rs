@@ -4,11 +4,13 @@ use super::super::dynamics::{off, scene};
 use super::hands::{Hands, HandsError};
 use contact_kinematics::planar::{PalmSurface, RadiusFunction};
 use glam::DVec2;
-use object_dynamics::ContactMode;
 use object_dynamics::planar::{
     BodyState, ContactLog, ContactLogSample, ContactNoise, ContactScene, ContactSimulation, ContactStart,
     PlanarObject, PlanarTruth,
 };
+use object_dynamics::{ChannelNoise, ContactMode};
+use observer::planar::PlaneOptions;
+use observer::{ContactNoiseLevel, ImpulseNoise};
 
 /// Relative tolerance of the integrator in a step.
 const TOLERANCE: f64 = 1e-9;
@@ -58,10 +60,25 @@ impl<S: RadiusFunction + Clone> SimulatedHands<S> {
         self.truth.first().map_or(self.start.body.phi0, |first| first.phi0)
     }
 
-    /// With seeded noise of the sensors.
+    /// With seeded normal noise: standard deviations of a contact along its palm, in m, and of each axis of a force, in N, which an impulse has as the
+    /// force does over one interval.
     #[must_use]
-    pub fn with_noise(self, noise: ContactNoise, seed: u64) -> Self {
+    pub fn with_noise(self, [contact, force]: [f64; 2], seed: u64) -> Self {
+        let channel = |fixed: f64| ChannelNoise { fixed, ..ChannelNoise::default() };
+        let noise = ContactNoise { contact, force: channel(force), impulse: channel(force / self.rate) };
         Self { noise: (noise, seed), ..self }
+    }
+
+    /// What an estimator is told of them: noise as it is, conditions that are off by `floor` (m/s) beside it, and that there is no friction where there
+    /// is none; of one that there is nothing.
+    #[must_use]
+    pub fn sensors(&self, floor: f64) -> PlaneOptions {
+        let ContactNoise { contact, force, impulse } = self.noise.0;
+        let impulse = Some(ImpulseNoise { fixed: impulse.fixed, share: 0.0 });
+        let noise = ContactNoiseLevel { contact, force_fixed: force.fixed, force_share: 0.0, impulse, floor };
+        let friction = vec![(self.friction == 0.0).then_some(0.0); 2];
+        let gravity = self.object.gravity;
+        PlaneOptions { noise, gravity, friction, body: None, size: None, suspects: false }
     }
 
     /// Takes the samples of another motion that began at the last sample, whose impulses count from there.

@@ -7,8 +7,7 @@ use exploration::rolling::{
     SimulatedHands, Workspace, explore_sensed, noisy_curves,
 };
 use exploration::{ConfidenceError, Goal, Heading, Knowledge, KnowledgeError};
-use object_dynamics::ChannelNoise;
-use object_dynamics::planar::{ContactNoise, PlanarMass, PlanarObject};
+use object_dynamics::planar::{PlanarMass, PlanarObject};
 use observer::planar::{PlaneOptions, estimate_plane};
 use observer::{ContactNoiseLevel, ImpulseNoise};
 use shape_bounds::planar::Direction;
@@ -25,10 +24,7 @@ fn shape() -> FourierBody {
 fn hands(phi: f64, seed: u64) -> SimulatedHands<FourierBody> {
     let mass = PlanarMass::from_gyration(0.2, 1.1e-3).unwrap();
     let object = PlanarObject { shape: shape(), mass, gravity: GRAVITY };
-    let [contact, force] = NOISE;
-    let channel = |fixed: f64| ChannelNoise { fixed, ..ChannelNoise::default() };
-    let noise = ContactNoise { contact, force: channel(force), impulse: channel(force / RATE) };
-    SimulatedHands::new(object, 0.0, 0.4, [0.7, 2.4], phi, RATE).unwrap().with_noise(noise, seed)
+    SimulatedHands::new(object, 0.0, 0.4, [0.7, 2.4], phi, RATE).unwrap().with_noise(NOISE, seed)
 }
 
 fn task(gap: f64) -> SensedTask {
