@@ -132,8 +132,8 @@ impl Builder<'_> {
         let wrong = |what, value, must| Err(Error::Hinge { palm: self.palm, what, value, must });
         match not_finite(hinge.pivot) {
             Some(value) => wrong("pivot", value, "finite"),
-            None if hinge.inertia > 0.0 && hinge.inertia.is_finite() => Ok(()),
-            None => wrong("moment of inertia", hinge.inertia, "above zero and finite"),
+            None if hinge.inertia >= 0.0 && hinge.inertia.is_finite() => Ok(()),
+            None => wrong("moment of inertia", hinge.inertia, "zero or above, and finite"),
         }
     }
 

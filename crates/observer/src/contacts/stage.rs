@@ -117,7 +117,7 @@ impl<'a> Stage<'a> {
     }
 
     /// Of which nothing else is known.
-    fn at(problem: Problem<'a>, Ended { solved, found, before }: Ended) -> Self {
+    pub(super) fn at(problem: Problem<'a>, Ended { solved, found, before }: Ended) -> Self {
         let (covariances, others, doubt, untold, against, free, open) =
             (None, Vec::new(), None, None, None, None, None);
         Self { problem, solved, covariances, found, before, doubt, untold, against, free, others, open }
@@ -160,10 +160,9 @@ impl<'a> Stage<'a> {
     /// That of a body whose mass properties are known.
     pub(super) fn of_known(mut self, mass: &MassProperties) -> Option<Self> {
         let problem = &mut self.problem;
-        self.before += self.solved.iterations;
-        self.covariances = None;
-        let several = self.open.take();
         if problem.planar {
+            self.before += self.solved.iterations;
+            (self.covariances, self.open) = (None, None);
             let (solved, against) = plane::known_motion(problem, &self.solved, mass)?;
             self.free = free_body(problem, &self.solved, against);
             (self.solved, self.against, self.doubt) = (solved, against, Some(0.0));
@@ -171,13 +170,28 @@ impl<'a> Stage<'a> {
         }
         let short = (problem.is_smooth() && !self.found).then(|| directly(problem, mass));
         if let Some(ended) = short.flatten() {
+            self.before += self.solved.iterations + ended.before;
             (self.solved, self.doubt) = (ended.solved, Some(0.0));
-            self.before += ended.before;
+            (self.covariances, self.open) = (None, None);
             return Some(self);
         }
+        let mut certain = self.of_certain_axes(mass)?;
+        if let Some((solved, own)) = with_any_axes(&mut certain.problem, &certain.solved, mass) {
+            certain.before += certain.solved.iterations;
+            (certain.solved, certain.untold) = (solved, Some(own));
+        }
+        Some(certain)
+    }
+
+    /// The same of a body in space whose axes lie in one way, whether or not the log tells which.
+    pub(super) fn of_certain_axes(mut self, mass: &MassProperties) -> Option<Self> {
+        let problem = &mut self.problem;
+        self.before += self.solved.iterations;
+        self.covariances = None;
+        let several = self.open.take();
         let free = (problem.body, problem.frozen.clone());
-        let one = problem.exact || !problem.record.frictionless() || !self.solved.explained();
-        let settled = one || well_known(problem, &self.solved);
+        let in_noise = !problem.exact && !problem.planar && problem.record.frictionless();
+        let settled = !(in_noise && self.solved.explained()) || well_known(problem, &self.solved);
         let mut known = known_motion(problem, &self.solved, mass)?;
         self.before += known.iterations - known.solved.iterations;
         let mut others = Vec::new();
@@ -205,14 +219,7 @@ impl<'a> Stage<'a> {
         self.open = self.open.or(known.open).or(several);
         (self.doubt, self.against) = (Some(known.doubt), known.against);
         self.free = free_body(problem, &self.solved, known.against);
-        self.solved = match with_any_axes(problem, &known.solved, mass) {
-            Some((solved, own)) => {
-                self.before += known.solved.iterations;
-                self.untold = Some(own);
-                solved
-            }
-            None => known.solved,
-        };
+        self.solved = known.solved;
         Some(self)
     }
 

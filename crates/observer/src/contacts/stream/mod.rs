@@ -11,6 +11,7 @@
 mod estimate;
 mod front;
 mod planes;
+mod pull;
 mod sample;
 mod schedule;
 mod solution;

@@ -1,8 +1,8 @@
 //! The motion over a window of the latest samples.
 
+use super::pull::Pull;
 use super::sample::{ForceReading, PalmSensed, Raw, StreamPalm};
 use super::solution::{Of, Solution};
-use crate::contacts::axes::known_motion;
 use crate::contacts::body::{Body, CONSTANTS};
 use crate::contacts::cold;
 use crate::contacts::estimate::AVERAGED;
@@ -13,8 +13,8 @@ use crate::contacts::options::ContactOptions;
 use crate::contacts::problem::{Problem, Units, Unknowns};
 use crate::contacts::record::Record;
 use crate::contacts::search::{fine_nodes, fine_within, problem, thinned, whole};
-use crate::contacts::sharp::stated;
 use crate::contacts::solve::Solved;
+use crate::contacts::stage::Stage;
 use crate::contacts::state::Motion;
 use crate::contacts::windows::longest;
 use nalgebra::{Matrix3, Matrix6};
@@ -65,11 +65,12 @@ pub(super) struct Window {
     options: ContactOptions,
     samples: VecDeque<Raw>,
     before: Option<Before>,
+    pull: Pull,
 }
 
 impl Window {
     pub(super) fn new(palms: Vec<StreamPalm>, options: ContactOptions) -> Self {
-        Self { palms, options, samples: VecDeque::new(), before: None }
+        Self { palms, options, samples: VecDeque::new(), before: None, pull: Pull::default() }
     }
 
     /// Takes later samples and does what is asked for.
@@ -183,25 +184,45 @@ impl Window {
         let averaged = record.averaged(longest);
         let thinned = thinned(&averaged, &self.options, &units);
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), &self.options, units);
-        let (solved, against) = match asked {
-            Asked::Search => self.found(&mut problem)?,
-            Asked::Follow => (self.followed(record, &mut problem)?, false),
+        let (problem, solved, against) = match asked {
+            Asked::Search => self.found(problem)?,
+            Asked::Follow => {
+                let solved = self.followed(record, &mut problem)?;
+                (problem, solved, false)
+            }
         };
         // Not those of noise drawn once more, as for whole logs: few draws a window differ from one to the next by as much as they tell, and
         // motions were lost by that three times as often, while errors over their deviations stayed what they are.
         let covariances = solved.covariances(&problem)?;
+        if self.options.body.is_some() && !problem.planar {
+            let samples = problem.node_samples();
+            let number = |k: Option<&usize>| k.and_then(|k| self.samples.get(*k)).map_or(0, |raw| raw.number);
+            let over = (number(samples.first()), number(samples.last()));
+            self.pull.add(&problem, &solved, &covariances, over);
+        }
+        let against = against || self.pull.contradicts();
         let of = Of { problem: &problem, solved: &solved, covariances: &covariances, against };
         Some(self.taken(&of, (GAP * natural, record.missed_in_world(GAP * natural))))
     }
 
-    /// From nothing; whether the body is another one than was stated.
-    fn found(&mut self, problem: &mut Problem) -> Option<(Solved<CONSTANTS>, bool)> {
+    /// From nothing, and whether the body is another one than was stated. None where the window leaves it open which of several motions it is.
+    fn found<'a>(&mut self, mut problem: Problem<'a>) -> Option<(Problem<'a>, Solved<CONSTANTS>, bool)> {
         self.before = None;
-        let solved = whole(problem)?.solved;
-        let solved = if problem.exact { stated(problem, solved)? } else { solved };
-        let Some(mass) = &self.options.body else { return Some((solved, false)) };
-        let known = known_motion(problem, &solved, mass)?;
-        Some((known.solved, known.against.is_some()))
+        let ended = whole(&mut problem)?;
+        let mut stage = Stage::at(problem, ended);
+        if stage.problem.exact {
+            stage = stage.stated()?;
+        } else if !stage.problem.planar && stage.problem.record.frictionless() && stage.solved.explained() {
+            stage = stage.decided()?;
+        }
+        if let Some(mass) = &self.options.body {
+            stage = stage.of_certain_axes(mass)?;
+        }
+        let Stage { problem, solved, against, open, .. } = stage;
+        if !self.pull.contradicts() {
+            self.pull = Pull::default();
+        }
+        open.is_none().then_some((problem, solved, against.is_some()))
     }
 
     /// From the window before, whose axes go on.
