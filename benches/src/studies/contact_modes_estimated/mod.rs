@@ -2,7 +2,7 @@
 //!
 //! Arguments: the folder of the logs, the first seed, seeds, scenes. Writes a Markdown table.
 
-mod tally;
+pub(super) mod tally;
 
 use super::contact_estimates::{Case, case};
 use super::contact_logs::log::{Anything, Log};
