@@ -1,5 +1,7 @@
 //! What every sample must obey.
 
+mod edge;
+
 use super::*;
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Vector2};
 
