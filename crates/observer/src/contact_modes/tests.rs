@@ -1,6 +1,6 @@
 //! What every sample must obey.
 
-mod edge;
+mod between_cells;
 
 use super::*;
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Vector2};

@@ -1,4 +1,4 @@
-//! At the edge of the cone, and between the cells of a grid of frictions.
+//! Between the cells of a grid of frictions.
 
 use super::*;
 use crate::random::Normal;
@@ -43,20 +43,4 @@ fn forces_better_than_a_cell_of_the_grid_tell_modes() {
     let whole = whole_modes(&times, &[seen], &options()).unwrap();
     let right = (0..800).filter(|k| (whole.odds[0][*k].stick > 0.5) == sticks(*k)).count();
     assert!(right > 790, "{right}");
-}
-
-/// Sliding that slows down to a fifth of the noise of its slip, and goes on so for 0.2 s before it speeds up: the ratio at the cone is all that tells it from
-/// sticking.
-#[test]
-fn a_ratio_that_stays_at_the_cone_is_sliding() {
-    let slip = |k: i32| 4e-4 + 0.1 * (f64::from((k - 200).abs() - 100).max(0.0) / 100.0).powi(2);
-    let times: Vec<f64> = (0..400).map(|k| DT * f64::from(k)).collect();
-    let mut slides = 0.0;
-    for seed in 0..4 {
-        let mut normal = Normal::seeded(seed);
-        let seen: Vec<ContactSeen> = (0..400).map(|k| noisy(0.3, slip(k), 0.02, &mut normal)).collect();
-        let whole = whole_modes(&times, &[seen], &options()).unwrap();
-        slides += whole.odds[0][120..280].iter().map(|odds| odds.slide).sum::<f64>() / 640.0;
-    }
-    assert!(slides > 0.5, "{slides}");
 }
