@@ -1,7 +1,7 @@
 //! Contact modes in scenes whose contacts come, go, slide and stick: how often they are told right, and how far their probabilities
 //! are to be believed.
 //!
-//! Arguments: scenes of each kind, first seed, file of the picture. Writes a Markdown document.
+//! `cargo xtask study mode_switches [SCENES [FIRST SEED [PICTURE]]]` writes docs/mode-switches.md and docs/charts/mode-switches.svg.
 
 mod judge;
 mod picture;
@@ -32,6 +32,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
         4 * scenes
     );
     println!("{}", judge::tables(&all));
+    print!("{}", include_str!("outro.md"));
     Ok(std::fs::write(&file, picture::drawn(&all))?)
 }
 

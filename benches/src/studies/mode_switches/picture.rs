@@ -17,7 +17,7 @@ pub(super) fn drawn(all: &[&Judged]) -> String {
     for (k, way) in Way::ALL.into_iter().enumerate() {
         panel(&mut svg, all, way, EDGE + k as f64 * (SIDE + EDGE));
     }
-    let y = EDGE + SIDE + 46.0;
+    let y = EDGE + SIDE + 52.0;
     let _ = writeln!(
         svg,
         "<circle class=\"s\" cx=\"{EDGE}\" cy=\"{}\" r=\"4\"/><text x=\"{}\" y=\"{y}\">scenes in space</text><circle class=\"p\" cx=\"{}\" cy=\"{}\" r=\"4\"/><text x=\"{}\" y=\"{y}\">in the plane</text><text x=\"{}\" y=\"{y}\">area of a point: samples of its bin</text>\n</svg>",
@@ -43,7 +43,7 @@ fn panel(svg: &mut String, all: &[&Judged], way: Way, left: f64) {
     );
     for (value, anchor) in [(0.0, "middle"), (0.5, "middle"), (1.0, "middle")] {
         let (x, y) = place(value, 0.0);
-        let _ = writeln!(svg, "<text x=\"{x}\" y=\"{}\" text-anchor=\"{anchor}\">{value}</text>", y + 14.0);
+        let _ = writeln!(svg, "<text x=\"{x}\" y=\"{}\" text-anchor=\"{anchor}\">{value}</text>", y + 20.0);
         let (x, y) = place(0.0, value);
         let _ = writeln!(svg, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{value}</text>", x - 4.0, y + 4.0);
     }
@@ -51,7 +51,7 @@ fn panel(svg: &mut String, all: &[&Judged], way: Way, left: f64) {
         svg,
         "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">said to slide</text>",
         left + 0.5 * SIDE,
-        EDGE + SIDE + 28.0
+        EDGE + SIDE + 34.0
     );
     for (spatial, class) in [(true, "s"), (false, "p")] {
         let mut bins = [[0.0; 3]; 8];
