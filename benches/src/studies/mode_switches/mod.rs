@@ -45,8 +45,8 @@ fn on_two_cores(scenes: u64, first: u64) -> Result<Vec<Judged>, Box<dyn Error>> 
             if k >= 2 * scenes {
                 return Ok(own);
             }
-            let (spatial, seed) = (k % 2 == 0, first + k / 2);
-            let of = one(spatial, seed, (k / 2) % UNKNOWN == 0);
+            let (spatial, seed) = (k.is_multiple_of(2), first + k / 2);
+            let of = one(spatial, seed, (k / 2).is_multiple_of(UNKNOWN));
             let of = of.map_err(|error| format!("seed {seed}: {error}"))?;
             own.extend(of.into_iter().map(|judged| (k, judged)));
         }
