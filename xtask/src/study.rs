@@ -39,6 +39,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "noisy whole logs of random bodies on three palms: white noise, and what is not as stated",
     ),
     ("mode_bank", "mode-bank.md", "banks of modes: error and cost against what is kept"),
+    (
+        "mode_switches",
+        "mode-switches.md",
+        "contact modes where contacts come, go, slide and stick: how often right, how far to be believed",
+    ),
     ("no_force", "no-force.md", "three palms without force sensors: random scenes from no guess"),
     (
         "nonsmooth",

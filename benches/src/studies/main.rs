@@ -27,6 +27,7 @@ mod contact_wedging;
 mod contour;
 mod exported_objects;
 mod mode_bank;
+mod mode_switches;
 mod no_force;
 mod nonsmooth;
 mod palms;
@@ -79,6 +80,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("exported_objects", || in_words(exported_objects::main())),
     ("contact_modes_estimated", || in_words(contact_modes_estimated::main())),
     ("mode_bank", || in_words(mode_bank::main())),
+    ("mode_switches", || in_words(mode_switches::main())),
     ("no_force", || in_words(no_force::main())),
     ("nonsmooth", || in_words(nonsmooth::main())),
     ("palms", || in_words(palms::main())),

@@ -3,22 +3,20 @@
 //! Bands were set from the seeds beside them; what they rest on is in `docs/contact-modes.md`.
 
 use recon::observer::{ContactFriction, ContactModes, ContactModesOptions};
-use recon_tests::contact_modes::{LoggedContacts, Score, SlipNoise, classify, drawn};
+use recon_tests::contact_modes::{LoggedContacts, Score, SlipNoise, TWIST_CORRELATION, classify, drawn};
 use std::path::Path;
 use std::process::Command;
 
-/// Power of densities of slips whose errors last for 50 ms at 1 kHz.
-const CORRELATED: f64 = 0.1;
 const UNKNOWN: ContactFriction = ContactFriction::Unknown { material: 0 };
 
 fn run(
     log: &LoggedContacts,
     friction: ContactFriction,
-    (slips, slip_weight): (SlipNoise, f64),
+    (slips, slip_errors_last): (SlipNoise, f64),
     seed: u64,
 ) -> (Score, ContactModes) {
     let options =
-        ContactModesOptions { slip_weight, ..ContactModesOptions::new(log.natural_speed(), 0.01, 1.0) };
+        ContactModesOptions { slip_errors_last, ..ContactModesOptions::new(log.natural_speed(), 0.01, 1.0) };
     let mut modes = ContactModes::new(&vec![friction; log.palms()], options).unwrap();
     let score = classify(&mut modes, &log.moments(slips, seed)).unwrap();
     (score, modes)
@@ -60,7 +58,7 @@ fn excerpts_of_logs() {
     for (name, axes, friction) in [("S2", [0.05, 0.04, 0.03], 0.3), ("S4", [0.035, 0.03, 0.025], 0.8)] {
         let path = format!("{}/data/contacts_{name}.csv", env!("CARGO_MANIFEST_DIR"));
         let log = LoggedContacts::parse(&std::fs::read_to_string(path).unwrap(), axes);
-        let (score, _) = run(&log, ContactFriction::Known(friction), (SlipNoise::White, 1.0), 11);
+        let (score, _) = run(&log, ContactFriction::Known(friction), (SlipNoise::White, 0.0), 11);
         assert!(score.told.len() > 500, "{}", score.told.len());
         assert!(score.right() > 0.96, "{name} {}", score.right());
         assert!(score.confident_and_wrong() < 0.003, "{name} {}", score.confident_and_wrong());
@@ -88,7 +86,7 @@ fn whole_logs_beside_the_repository() {
         let text = Command::new("gzip").arg("-dc").arg(&packed).output().unwrap();
         let log = LoggedContacts::parse(&String::from_utf8(text.stdout).unwrap(), axes);
         let known = ContactFriction::Known(friction);
-        let (score, _) = run(&log, known, (SlipNoise::Correlated, CORRELATED), 21);
+        let (score, _) = run(&log, known, (SlipNoise::Correlated, TWIST_CORRELATION), 21);
         assert!((score.right() - right).abs() < 0.02, "{name} {} {right}", score.right());
         // Eight samples of one episode of S8 alone.
         assert!(score.confident_and_wrong() < 0.002, "{name} {}", score.confident_and_wrong());

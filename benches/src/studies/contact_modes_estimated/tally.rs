@@ -3,7 +3,7 @@
 use recon::object_dynamics::ContactMode;
 use std::fmt::Write as _;
 
-pub(super) const HEAD: &str = "| log | runs, relied on | samples | right | at all samples | by the ratio alone | above 0.99 | of all: above 0.99 and wrong (worst run) | Brier | friction: largest error, in its deviations |\n|---|---|---|---|---|---|---|---|---|---|";
+pub(crate) const HEAD: &str = "| log | runs, relied on | samples | right | at all samples | by the ratio alone | above 0.99 | of all: above 0.99 and wrong (worst run) | Brier | friction: largest error, in its deviations |\n|---|---|---|---|---|---|---|---|---|---|";
 /// Probability above which a mode is said with confidence.
 const CONFIDENT: f64 = 0.99;
 /// Edges of the bins of the probability to slide.
@@ -16,23 +16,23 @@ const DRAWS: usize = 2000;
 type Bin = [f64; 3];
 
 /// One log with one noise. Shares are over samples away from switches, but where it is said.
-pub(super) struct Run {
-    pub(super) name: String,
+pub(crate) struct Run {
+    pub(crate) name: String,
     relied_on: bool,
-    samples: f64,
-    right: f64,
+    pub(crate) samples: f64,
+    pub(crate) right: f64,
     all: [f64; 2],
     by_ratio: f64,
-    confident: f64,
-    wrong: f64,
-    brier: f64,
-    bins: [Bin; BINS],
+    pub(crate) confident: f64,
+    pub(crate) wrong: f64,
+    pub(crate) brier: f64,
+    pub(crate) bins: [Bin; BINS],
     /// Largest error of a friction, and the largest in its deviations.
     friction: Option<[f64; 2]>,
 }
 
 impl Run {
-    pub(super) fn new(name: &str, relied_on: bool) -> Self {
+    pub(crate) fn new(name: &str, relied_on: bool) -> Self {
         Self {
             name: name.to_owned(),
             relied_on,
@@ -49,7 +49,7 @@ impl Run {
     }
 
     /// A contact at a sample, and whether a switch is near.
-    pub(super) fn add(&mut self, truth: ContactMode, by_ratio: ContactMode, odds: [f64; 3], near: bool) {
+    pub(crate) fn add(&mut self, truth: ContactMode, by_ratio: ContactMode, odds: [f64; 3], near: bool) {
         let most = (0..3).fold(0, |best, m| if odds[m] > odds[best] { m } else { best });
         let right = ContactMode::ALL[most] == truth;
         self.all[0] += 1.0;
@@ -72,14 +72,14 @@ impl Run {
         }
     }
 
-    pub(super) fn friction(&mut self, found: f64, deviation: f64, truth: f64) {
+    pub(crate) fn friction(&mut self, found: f64, deviation: f64, truth: f64) {
         let error = (found - truth).abs();
         let [worst, in_deviations] = self.friction.unwrap_or_default();
         self.friction = Some([worst.max(error), in_deviations.max(error / deviation)]);
     }
 }
 
-pub(super) fn row(name: &str, runs: &[&Run]) -> String {
+pub(crate) fn row(name: &str, runs: &[&Run]) -> String {
     let sum = |of: fn(&Run) -> f64| runs.iter().map(|run| of(run)).sum::<f64>();
     let samples = sum(|run| run.samples).max(1.0);
     let share = |of: fn(&Run) -> f64| sum(of) / samples;
@@ -101,7 +101,7 @@ pub(super) fn row(name: &str, runs: &[&Run]) -> String {
 }
 
 /// What was said and what is true in each bin, with the 95 % of a bootstrap of runs, and the mean error weighted by samples.
-pub(super) fn reliability(runs: &[&Run]) -> String {
+pub(crate) fn reliability(runs: &[&Run]) -> String {
     let mut out = String::from(
         "| probability to slide | share of samples | said | true | true less said, 95 % |\n|---|---|---|---|---|\n",
     );

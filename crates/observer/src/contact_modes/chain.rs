@@ -54,10 +54,10 @@ impl Likelihood {
         self.ratios.fill(touches);
     }
 
-    /// Of a ratio, at this friction; those of the speeds are all the same.
-    pub(super) fn of_ratio(&mut self, steps: &Steps, ratio: &Ratio, friction: f64) {
-        self.speeds.fill(ratio.log_at(friction, 0.0));
-        for (k, log) in self.ratios.iter_mut().enumerate() {
+    /// Of a ratio, at this friction, give or take `unsure` (a variance); those of the speeds are all the same.
+    pub(super) fn of_ratio(&mut self, steps: &Steps, ratio: &Ratio, (friction, unsure): (f64, f64)) {
+        self.speeds.fill(ratio.log_at(friction, unsure));
+        for (k, log) in self.ratios.iter_mut().enumerate().take(steps.ratios.count()) {
             let spread = friction.powi(2) * steps.ratios.variance(k);
             *log = ratio.log_at(friction * steps.ratios.middle(k), spread);
         }
@@ -205,7 +205,7 @@ mod tests {
     /// `worth . predicted = worth before . now`, for any of both.
     #[test]
     fn a_step_back_is_the_transpose_of_a_step() {
-        let all = [1e-4, 1e-3, 0.02].map(|dt| [Steps::new(dt), Steps::of_friction(dt, 0.37)]);
+        let all = [1e-4, 1e-3, 0.02].map(|dt| [Steps::of_friction(dt, 0.05), Steps::of_friction(dt, 0.37)]);
         for steps in all.iter().flatten() {
             let (now, mut worth) = (some(steps, 1.7), some(steps, 0.9));
             let (mut next, mut spare) = (now.clone(), now.clone());

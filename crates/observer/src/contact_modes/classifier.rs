@@ -1,11 +1,12 @@
 //! The way of a sample.
 
+use super::bins::Bins;
 use super::contact::{Contact, Force, Modes};
 use super::error::ContactModesError;
 use super::friction::{ContactFriction, FrictionGrid, LearnedFriction};
 use super::options::ContactModesOptions;
 use super::reading::{ContactReading, ContactSeen, Place, turned};
-use super::steps::Steps;
+use super::steps::speeds;
 use super::twist::{Row, TwistError, left_out};
 use crate::core::ModeLabel;
 use nalgebra::{Matrix2, Matrix6, Vector2};
@@ -55,7 +56,8 @@ pub struct ContactOdds {
 #[derive(Clone, Debug)]
 pub struct ContactModes {
     options: ContactModesOptions,
-    steps: Steps,
+    /// Of the speed of sliding.
+    speeds: Bins,
     grids: Vec<FrictionGrid>,
     /// The grid of each contact.
     grid_of: Vec<usize>,
@@ -95,17 +97,16 @@ impl ContactModes {
             grid_of.push(same.unwrap_or(grids.len()));
             if same.is_none() {
                 grids.push(match *friction {
-                    ContactFriction::Known(value) => FrictionGrid::known(value),
-                    ContactFriction::Unknown { material } => FrictionGrid::unknown(material),
+                    ContactFriction::Known(value) => FrictionGrid::known(value, FIRST),
+                    ContactFriction::Unknown { material } => FrictionGrid::unknown(material, FIRST),
                 });
             }
         }
-        let steps = Steps::new(FIRST);
         let count = frictions.len();
         Ok(Self {
             options,
-            contacts: grid_of.iter().map(|grid| Contact::new(&grids[*grid], &steps)).collect(),
-            steps,
+            contacts: grid_of.iter().map(|grid| Contact::new(&grids[*grid])).collect(),
+            speeds: speeds(),
             grids,
             grid_of,
             odds: vec![[1.0 / 3.0; 3]; count],
@@ -118,7 +119,7 @@ impl ContactModes {
 
     /// Takes a sample, `dt` seconds after the one before (before the first, any time above zero), with slips whose errors are
     /// independent of each other. Returns the logarithm of its density given all before: forces in N, ratios as such, slips in
-    /// natural speeds, raised to [`ContactModesOptions::slip_weight`]. What was not read has no density; a contact that is known
+    /// natural speeds, raised to a power where their errors last ([`ContactModesOptions::slip_errors_last`]). What was not read has no density; a contact that is known
     /// to be off, or does not press, has that of its being off.
     ///
     /// # Errors
@@ -127,7 +128,7 @@ impl ContactModes {
     pub fn push(&mut self, dt: f64, seen: &[ContactSeen]) -> Result<f64, ContactModesError> {
         self.check(dt, seen)?;
         self.advance(dt, seen);
-        self.weigh_slips(seen, None);
+        self.weigh_slips(dt, seen, None);
         Ok(self.settle(dt, seen))
     }
 
@@ -146,7 +147,7 @@ impl ContactModes {
         self.check(dt, seen)?;
         let information = self.check_twist(twist)?;
         self.advance(dt, seen);
-        self.weigh_slips(seen, Some((twist, &information)));
+        self.weigh_slips(dt, seen, Some((twist, &information)));
         Ok(self.settle(dt, seen))
     }
 
@@ -224,21 +225,29 @@ impl ContactModes {
 
     /// A time step on, and the forces.
     fn advance(&mut self, dt: f64, seen: &[ContactSeen]) {
-        self.steps.follow(if self.samples == 0 { FIRST } else { dt });
+        let dt = if self.samples == 0 { FIRST } else { dt };
+        self.grids.iter_mut().flat_map(|grid| &mut grid.steps).for_each(|steps| steps.follow(dt));
         for (i, contact) in self.contacts.iter_mut().enumerate() {
+            let grid = &self.grids[self.grid_of[i]];
             if self.samples > 0 {
-                contact.predict(&self.steps);
+                contact.predict(grid);
             }
             let force = match &seen[i] {
                 ContactSeen::Missing => Force::Silent,
                 ContactSeen::Off => Force::Off,
                 ContactSeen::Read(reading) => reading.force(&self.options),
             };
-            contact.weigh_force(&force, &self.grids[self.grid_of[i]], &self.steps);
+            contact.weigh_force(&force, grid);
         }
     }
 
-    fn weigh_slips(&mut self, seen: &[ContactSeen], twist: Option<(&TwistError<'_>, &Matrix6<f64>)>) {
+    fn weigh_slips(
+        &mut self,
+        dt: f64,
+        seen: &[ContactSeen],
+        twist: Option<(&TwistError<'_>, &Matrix6<f64>)>,
+    ) {
+        let weight = self.options.slip_weight(dt);
         if let Some((twist, information)) = twist {
             for i in 0..self.contacts.len() {
                 self.odds[i] = self.contacts[i].average(&self.grids[self.grid_of[i]].weights);
@@ -250,8 +259,7 @@ impl ContactModes {
                         continue;
                     };
                     let (slip, turn) = self.slip(reading, error);
-                    let weight = self.options.slip_weight;
-                    self.odds[i] = self.contacts[i].try_slip(&slip, turn, weight, &self.steps);
+                    self.odds[i] = self.contacts[i].try_slip(&slip, turn, weight, &self.speeds);
                     self.set_row(i, &seen[i], twist);
                 }
             }
@@ -259,7 +267,7 @@ impl ContactModes {
         for i in 0..self.contacts.len() {
             let Some((reading, error)) = self.shared(i, &seen[i], twist) else { continue };
             let (slip, turn) = self.slip(reading, error);
-            self.contacts[i].weigh_slip(&slip, turn, self.options.slip_weight, &self.steps);
+            self.contacts[i].weigh_slip(&slip, turn, weight, &self.speeds);
         }
     }
 

@@ -1,9 +1,9 @@
 //! One contact at every coefficient of friction that it may have.
 
+use super::bins::Bins;
 use super::chain::{Chain, Likelihood};
 use super::density::{Ratio, Slip};
 use super::friction::FrictionGrid;
-use super::steps::Steps;
 
 /// Probabilities of one contact's modes, in the order off, slide, stick.
 pub(super) type Modes = [f64; 3];
@@ -13,8 +13,11 @@ pub(super) type Modes = [f64; 3];
 pub(super) struct Contact {
     chains: Vec<Chain>,
     pub(super) log_evidence: Vec<f64>,
+    /// To work in.
+    spares: Vec<Chain>,
+    /// As long as the longest chain needs.
     likelihood: Likelihood,
-    /// Sum over the frictions, by their weights: what the slip is weighed against.
+    /// Sum over the frictions, by their weights: what the slip is weighed against. All ratios are one cell: the slip tells none from another.
     mean: Chain,
     spare: Chain,
     tried: Chain,
@@ -40,25 +43,25 @@ pub(super) enum Force {
 }
 
 impl Contact {
-    pub(super) fn new(grid: &FrictionGrid, steps: &Steps) -> Self {
-        let chain = Chain::new(steps);
-        Self {
-            chains: vec![chain.clone(); grid.values.len()],
-            log_evidence: vec![0.0; grid.values.len()],
-            likelihood: Likelihood::none(steps),
-            mean: chain.clone(),
-            spare: chain.clone(),
-            tried: chain,
-        }
+    pub(super) fn new(grid: &FrictionGrid) -> Self {
+        let chains: Vec<Chain> = grid.steps.iter().map(Chain::new).collect();
+        let longest = grid.steps.iter().map(|steps| steps.ratios.count()).max().unwrap_or(0);
+        let mean = Chain { ratios: vec![0.0], ..chains[0].clone() };
+        let likelihood = Likelihood { ratios: vec![0.0; longest], ..Likelihood::none(&grid.steps[0]) };
+        let log_evidence = vec![0.0; chains.len()];
+        let (spare, tried) = (mean.clone(), mean.clone());
+        Self { spares: chains.clone(), chains, log_evidence, likelihood, mean, spare, tried }
     }
 
     /// One time step on.
-    pub(super) fn predict(&mut self, steps: &Steps) {
-        self.chains.iter_mut().for_each(|chain| chain.predict(steps, &mut self.spare));
+    pub(super) fn predict(&mut self, grid: &FrictionGrid) {
+        for ((chain, spare), steps) in self.chains.iter_mut().zip(&mut self.spares).zip(&grid.steps) {
+            chain.predict(steps, spare);
+        }
     }
 
     /// Weighs all by the forces.
-    pub(super) fn weigh_force(&mut self, force: &Force, grid: &FrictionGrid, steps: &Steps) {
+    pub(super) fn weigh_force(&mut self, force: &Force, grid: &FrictionGrid) {
         match force {
             Force::Silent => return,
             Force::Off => self.likelihood.set(0.0, f64::NEG_INFINITY),
@@ -68,36 +71,37 @@ impl Contact {
         for (i, friction) in grid.values.iter().enumerate() {
             let mut shift = 0.0;
             if let Force::Presses { ratio, touching, off } = force {
-                self.likelihood.of_ratio(steps, ratio, *friction);
+                self.likelihood.of_ratio(&grid.steps[i], ratio, (*friction, grid.unsure[i]));
                 // The common factor of the modes that touch is taken to the other side.
                 self.likelihood.off = off - touching;
                 shift = *touching;
             }
-            self.log_evidence[i] += self.chains[i].weigh(&self.likelihood, &mut self.spare) + shift;
+            self.log_evidence[i] += self.chains[i].weigh(&self.likelihood, &mut self.spares[i]) + shift;
         }
     }
 
     /// Weighs all by the slip. `turn` is the deviation of the direction of friction, rad; `weight` the power of the density.
-    pub(super) fn weigh_slip(&mut self, slip: &Slip, turn: f64, weight: f64, steps: &Steps) {
-        self.set_slip(slip, turn, weight, steps);
-        for (chain, log_evidence) in self.chains.iter_mut().zip(&mut self.log_evidence) {
-            *log_evidence += chain.weigh(&self.likelihood, &mut self.spare);
+    pub(super) fn weigh_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) {
+        self.set_slip(slip, turn, weight, speeds);
+        let all = self.chains.iter_mut().zip(&mut self.spares).zip(&mut self.log_evidence);
+        for ((chain, spare), log_evidence) in all {
+            *log_evidence += chain.weigh(&self.likelihood, spare);
         }
     }
 
     /// What the modes would be with this slip, without taking it; needs [`Self::average`] before.
-    pub(super) fn try_slip(&mut self, slip: &Slip, turn: f64, weight: f64, steps: &Steps) -> Modes {
-        self.set_slip(slip, turn, weight, steps);
+    pub(super) fn try_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) -> Modes {
+        self.set_slip(slip, turn, weight, speeds);
         self.tried.clone_from(&self.mean);
         self.tried.weigh(&self.likelihood, &mut self.spare);
         of(&self.tried)
     }
 
-    fn set_slip(&mut self, slip: &Slip, turn: f64, weight: f64, steps: &Steps) {
+    fn set_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) {
         self.likelihood.off = weight * slip.log_off();
         self.likelihood.ratios.fill(weight * slip.log_sticking());
         for (k, log) in self.likelihood.speeds.iter_mut().enumerate() {
-            let (speed, spread) = (steps.speeds.middle(k), steps.speeds.variance(k));
+            let (speed, spread) = (speeds.middle(k), speeds.variance(k));
             *log = weight * slip.log_sliding(speed, spread, turn);
         }
     }
@@ -107,11 +111,11 @@ impl Contact {
         let mean = &mut self.mean;
         mean.off = 0.0;
         mean.speeds.fill(0.0);
-        mean.ratios.fill(0.0);
+        mean.ratios[0] = 0.0;
         for (weight, chain) in weights.iter().zip(&self.chains) {
             mean.off += weight * chain.off;
             mean.speeds.iter_mut().zip(&chain.speeds).for_each(|(sum, mass)| *sum += weight * mass);
-            mean.ratios.iter_mut().zip(&chain.ratios).for_each(|(sum, mass)| *sum += weight * mass);
+            mean.ratios[0] += weight * chain.sticks();
         }
         of(mean)
     }

@@ -1,7 +1,9 @@
 //! Coefficients of friction: one that is known, or a grid of what it may be.
 
+use super::steps::Steps;
+
 /// The grid of an unknown friction: this many values, alike in ratio, from lowest to highest.
-const VALUES: usize = 160;
+const VALUES: u32 = 160;
 const LOWEST: f64 = 0.1;
 const HIGHEST: f64 = 1.2;
 /// The grid over a whole log, of steps of the same ratio: frictions that contradict it cost nothing for long there.
@@ -39,6 +41,10 @@ pub(super) struct FrictionGrid {
     /// None where the friction is known.
     pub(super) material: Option<usize>,
     pub(super) values: Vec<f64>,
+    /// Variance of each about its value.
+    pub(super) unsure: Vec<f64>,
+    /// What happens at each in a time step.
+    pub(super) steps: Vec<Steps>,
     /// Given all samples of the material; sum to one.
     pub(super) weights: Vec<f64>,
     logs: Vec<f64>,
@@ -49,22 +55,29 @@ pub(super) struct FrictionGrid {
 }
 
 impl FrictionGrid {
-    pub(super) fn known(friction: f64) -> Self {
+    /// For time steps of `dt`, s, at first.
+    pub(super) fn known(friction: f64, dt: f64) -> Self {
+        Self::of(None, vec![friction], vec![0.0], dt)
+    }
+
+    pub(super) fn unknown(material: usize, dt: f64) -> Self {
+        let values: Vec<f64> = (0..VALUES).map(|k| LOWEST * (f64::from(k) * log_step()).exp()).collect();
+        let unsure = values.iter().map(|value| unsure(*value)).collect();
+        Self::of(Some(material), values, unsure, dt)
+    }
+
+    fn of(material: Option<usize>, values: Vec<f64>, unsure: Vec<f64>, dt: f64) -> Self {
+        let count = values.len();
         Self {
-            material: None,
-            values: vec![friction],
-            weights: vec![1.0],
-            logs: vec![0.0],
+            material,
+            steps: values.iter().map(|friction| Steps::that_follow(dt, *friction)).collect(),
+            values,
+            unsure,
+            weights: vec![1.0 / count as f64; count],
+            logs: vec![0.0; count],
             last: 0.0,
             slid: 0.0,
         }
-    }
-
-    pub(super) fn unknown(material: usize) -> Self {
-        let ratio = (HIGHEST / LOWEST).powf(1.0 / (VALUES - 1) as f64);
-        let values = (0..VALUES).map(|k| LOWEST * ratio.powi(k as i32)).collect();
-        let weights = vec![1.0 / VALUES as f64; VALUES];
-        Self { material: Some(material), values, weights, logs: vec![0.0; VALUES], last: 0.0, slid: 0.0 }
     }
 
     /// Takes the evidence of all its contacts, and takes the largest of its sums away from each contact's, so that they stay
@@ -108,7 +121,12 @@ impl FrictionGrid {
 
 /// Logarithm of the ratio of one value of a grid to the one before.
 fn log_step() -> f64 {
-    (HIGHEST / LOWEST).ln() / (VALUES - 1) as f64
+    (HIGHEST / LOWEST).ln() / f64::from(VALUES - 1)
+}
+
+/// Variance of a friction that is anywhere in its cell of the grid. Without it forces that are known better than a cell is wide fit no cell.
+pub(super) fn unsure(friction: f64) -> f64 {
+    (friction * log_step()).powi(2) / 12.0
 }
 
 /// The frictions that are looked at over a whole log.

@@ -1,5 +1,6 @@
 //! What is stated about contacts whose modes are told.
 
+use super::classifier::LONGEST;
 use super::error::ContactModesError;
 
 /// What is stated about contacts whose modes are told.
@@ -12,9 +13,9 @@ pub struct ContactModesOptions {
     pub unloaded_deviation: f64,
     /// Mean normal force of a contact that touches, N, to its order of magnitude.
     pub typical_force: f64,
-    /// Power to which densities of slips are raised, above 0 up to 1: 1 where the errors of slips are independent from sample
-    /// to sample; else how many samples tell as much as one. At 1 kHz, errors that last for 50 ms: 0.1.
-    pub slip_weight: f64,
+    /// Time for which errors of slips last, s: 0 where they are independent from sample to sample. Samples within twice this time tell as
+    /// much as one.
+    pub slip_errors_last: f64,
     /// Probability above which a label changes, from 0.5 to below 1 (see [`ModeLabel`](crate::ModeLabel)).
     pub label_level: f64,
 }
@@ -23,7 +24,7 @@ impl ContactModesOptions {
     /// Independent errors of slips, and labels that change at 0.75.
     #[must_use]
     pub fn new(natural_speed: f64, unloaded_deviation: f64, typical_force: f64) -> Self {
-        Self { natural_speed, unloaded_deviation, typical_force, slip_weight: 1.0, label_level: 0.75 }
+        Self { natural_speed, unloaded_deviation, typical_force, slip_errors_last: 0.0, label_level: 0.75 }
     }
 
     pub(super) fn check(&self) -> Result<(), ContactModesError> {
@@ -40,10 +41,16 @@ impl ContactModesOptions {
                 });
             }
         }
-        if !(self.slip_weight > 0.0 && self.slip_weight <= 1.0) {
-            let (what, value) = ("weight of the slips", self.slip_weight);
-            return Err(ContactModesError::Option { what, value, needed: "above zero and at most one" });
+        let (what, value) = ("time for which errors of slips last", self.slip_errors_last);
+        if !(0.0..LONGEST).contains(&value) {
+            return Err(ContactModesError::Option { what, value, needed: "from zero to below 1000 s" });
         }
         Ok(())
+    }
+
+    /// Power to which the density of a slip is raised that comes `dt` after the one before, s.
+    pub(super) fn slip_weight(&self, dt: f64) -> f64 {
+        let twice = 2.0 * self.slip_errors_last;
+        if dt < twice { dt / twice } else { 1.0 }
     }
 }

@@ -3,10 +3,10 @@
 use super::chain::{Chain, Likelihood};
 use super::classifier::{ContactOdds, FIRST};
 use super::contact::Force;
-use super::friction::SURE;
+use super::friction::{SURE, unsure};
 use super::options::ContactModesOptions;
 use super::reading::{ContactReading, ContactSeen, turned};
-use super::steps::{SPEEDS, Steps, speeds};
+use super::steps::{SAME as KIND, SPEEDS, Steps, speeds};
 
 /// Logarithm of the odds against a friction at which it is given up: given the model it would come back once in 10^26.
 const GIVEN_UP: f64 = 60.0;
@@ -17,9 +17,6 @@ const SAME: f64 = 0.1;
 const NO_ACCOUNT: f64 = 25.0;
 /// Samples from one look for such frictions to the next.
 const LOOKS: usize = 8;
-
-/// Time steps within this share of one are of its kind: walks grow by its root, and are no better known. Each kind of each friction takes memory.
-const KIND: f64 = 0.1;
 
 /// Steps in time, each kind once.
 pub(super) struct Pace {
@@ -34,8 +31,8 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// Of slips whose errors last for `lasting`, s.
-    pub(super) fn new(times: &[f64], lasting: f64) -> Self {
+    /// Of the times of samples.
+    pub(super) fn new(times: &[f64], options: &ContactModesOptions) -> Self {
         let mut kinds: Vec<f64> = Vec::new();
         let step = |k: usize| if k == 0 { FIRST } else { times[k] - times[k - 1] };
         let steps: Vec<f64> = (0..times.len()).map(step).collect();
@@ -47,8 +44,7 @@ impl Pace {
                 kinds.push(*dt);
             }
         }
-        let weight = |dt: &f64| if *dt < 2.0 * lasting { dt / (2.0 * lasting) } else { 1.0 };
-        let mut weights: Vec<f64> = steps.iter().map(weight).collect();
+        let mut weights: Vec<f64> = steps.iter().map(|dt| options.slip_weight(*dt)).collect();
         if let [first, second, ..] = &mut weights[..] {
             *first = *second;
         }
@@ -257,7 +253,7 @@ impl Said {
             Force::Presses { touching, off, .. } => off - touching,
         };
         match &self.force {
-            Force::Presses { ratio, .. } => likelihood.of_ratio(steps, ratio, friction),
+            Force::Presses { ratio, .. } => likelihood.of_ratio(steps, ratio, (friction, unsure(friction))),
             _ => likelihood.set(0.0, 0.0),
         }
         likelihood.off = touches + self.off;
@@ -279,7 +275,7 @@ mod tests {
     fn few_frictions_tell_what_all_do() {
         let options = ContactModesOptions::new(0.6, 0.01, 1.0);
         let times: Vec<f64> = (0..200).map(|k| 1e-3 * f64::from(k)).collect();
-        let pace = Pace::new(&times, 0.0);
+        let pace = Pace::new(&times, &options);
         let at: Vec<AtFriction> = values().iter().map(|friction| pace.at(*friction)).collect();
         for (case, [begin, end, slips, noise]) in
             [[0.3, 0.3, 1.0, 0.02], [0.1, 0.25, 0.0, 0.02], [0.2, 0.5, 0.5, 0.01], [0.47, 0.47, 1.0, 2e-3]]

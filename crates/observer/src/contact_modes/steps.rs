@@ -7,27 +7,17 @@ use super::normal::below;
 pub(super) const SPEEDS: usize = 36;
 const RATIOS: usize = 40;
 
-/// Time steps within this share of each other are taken as one.
-const SAME: f64 = 0.02;
+/// Time steps within this share of each other are taken as one: walks grow by their root, and are no better known.
+pub(super) const SAME: f64 = 0.1;
 /// The time that the numbers below are of, s.
 const UNIT: f64 = 1e-3;
-/// How ratio and speed are taken to change, from one millisecond to the next.
-#[derive(Clone, Copy, Debug)]
-struct Habits {
-    /// Deviation of the change of the speed, in shares of the natural speed.
-    speed_step: f64,
-    /// Deviation of the change of the ratio, over the friction.
-    ratio_step: f64,
-    /// Probability that the ratio jumps anywhere in the disc.
-    jump: f64,
-    /// Share of sticking that begins near its cone.
-    near: f64,
-}
-
-/// Sample by sample, with a known friction.
-const FOLLOWED: Habits = Habits { speed_step: 0.004, ratio_step: 0.004 / 0.3, jump: 0.01, near: 0.8 };
-/// Of a whole log; the step of the ratio is one of the ratio itself. Set on noise of the seeds 1 to 3 of the reference logs.
-const WHOLE: Habits = Habits { speed_step: 0.006, ratio_step: 0.002, jump: 0.002, near: 0.95 };
+/// Deviation of the change of the speed, in shares of the natural speed, and of the ratio.
+const SPEED_STEP: f64 = 0.0055;
+const RATIO_STEP: f64 = 0.002;
+/// Probability that the ratio jumps anywhere in the disc.
+const JUMP: f64 = 0.002;
+/// Share of sticking that begins near its cone.
+const NEAR: f64 = 0.95;
 /// Bins of the ratio where frictions are to be told from each other: alike up to `LOW`, each wider than the one before beyond.
 const LOW: f64 = 0.1;
 const FINE: usize = 12;
@@ -38,8 +28,10 @@ const RIM: usize = 8;
 /// contact comes or goes.
 const BREAK: f64 = 0.002;
 const TOUCH: f64 = 0.002;
-/// Share of the walks that come to rest which stick; the others slide on, back.
-const CAPTURED: f64 = 0.5;
+/// Share of the walks that come to rest which stick; the others slide on, back. A walk that comes to zero crosses it again and again, where a speed
+/// with inertia comes to rest once: were each crossing a stop, sliding slowly and sticking near the cone would change with each other from sample to
+/// sample, and a ratio that stays at the cone would be held for sticking.
+const CAPTURED: f64 = 0.2;
 /// Steps of the ratio within which sticking begins near its cone.
 const NEAR_STEPS: f64 = 3.0;
 /// Deviation of the slip at touch-down, in shares of the natural speed.
@@ -50,7 +42,7 @@ const RATIO_ENDS: Ends = Ends { reflected: 1.0, stops: false };
 /// Least probability of a switch: nothing is ever impossible for good.
 const LEAST: f64 = 1e-12;
 
-/// What happens in one time step, the same for every friction.
+/// What happens in one time step to a contact of some friction.
 #[derive(Clone, Debug)]
 pub(super) struct Steps {
     pub(super) speeds: Bins,
@@ -69,18 +61,11 @@ pub(super) struct Steps {
     pub(super) landing: Vec<f64>,
     pub(super) stops: Vec<f64>,
     pub(super) disc: Vec<f64>,
+    friction: f64,
     dt: f64,
 }
 
 impl Steps {
-    /// For steps of this time, s, which is above zero; the same for every friction.
-    pub(super) fn new(dt: f64) -> Self {
-        let mut steps = Self::with(dt, Bins::new(RATIOS, relative), &FOLLOWED);
-        steps.speed.make_room();
-        steps.ratio.make_room();
-        steps
-    }
-
     /// For steps of this time, s, of a contact with this friction, where frictions are to be told from each other.
     ///
     /// Bins and walk of the ratio are those of any other friction, cut off at this one: how a contact sticks well within its cone then
@@ -95,12 +80,7 @@ impl Steps {
         let within = |edge: &f64| *edge < rim[0] - (rim[1] - rim[0]);
         let mut edges: Vec<f64> = (0..).map(|k| edge(k) / friction).take_while(within).collect();
         edges.extend(rim);
-        let habits = Habits { ratio_step: WHOLE.ratio_step / friction, ..WHOLE };
-        Self::with(dt, Bins::between(&edges), &habits)
-    }
-
-    fn with(dt: f64, ratios: Bins, habits: &Habits) -> Self {
-        let speeds = speeds();
+        let (speeds, ratios) = (speeds(), Bins::between(&edges));
         let [speed, ratio] = [&speeds, &ratios].map(|bins| Walk::on(bins.count()));
         let mut steps = Self {
             starts: vec![0.0; speeds.count()],
@@ -114,24 +94,33 @@ impl Steps {
             ratios,
             speed,
             ratio,
+            friction,
             dt,
         };
-        steps.set(dt, habits);
+        steps.set(dt);
+        steps
+    }
+
+    /// The same, with room to be made anew for another time without allocating.
+    pub(super) fn that_follow(dt: f64, friction: f64) -> Self {
+        let mut steps = Self::of_friction(dt, friction);
+        steps.speed.make_room();
+        steps.ratio.make_room();
         steps
     }
 
     /// For steps of another time.
-    fn set(&mut self, dt: f64, habits: &Habits) {
+    fn set(&mut self, dt: f64) {
         let share = (dt / UNIT).sqrt();
-        let (speed_step, ratio_step) = (habits.speed_step * share, habits.ratio_step * share);
+        let (speed_step, ratio_step) = (SPEED_STEP * share, RATIO_STEP / self.friction * share);
         self.speed.set(&self.speeds, speed_step, SPEED_ENDS);
         self.ratio.set(&self.ratios, ratio_step, RATIO_ENDS);
         let within = |a_unit: f64| (1.0 - (-rate_of(a_unit) * dt / UNIT).exp()).clamp(LEAST, 1.0 - LEAST);
-        (self.jump, self.breaks, self.touch) = (within(habits.jump), within(BREAK), within(TOUCH));
+        (self.jump, self.breaks, self.touch) = (within(JUMP), within(BREAK), within(TOUCH));
         self.speeds.put_shares(|s| below(s / speed_step), &mut self.starts);
         self.ratios.put_shares(|q| ((q - 1.0) / (NEAR_STEPS * ratio_step)).exp(), &mut self.stops);
         for (stop, disc) in self.stops.iter_mut().zip(&self.disc) {
-            *stop = habits.near * *stop + (1.0 - habits.near) * disc;
+            *stop = NEAR * *stop + (1.0 - NEAR) * disc;
         }
         self.dt = dt;
     }
@@ -139,7 +128,7 @@ impl Steps {
     /// Made anew where the time step is another. Clocks jitter, and the walks are no better known than this.
     pub(super) fn follow(&mut self, dt: f64) {
         if (dt - self.dt).abs() > SAME * self.dt {
-            self.set(dt, &FOLLOWED);
+            self.set(dt);
         }
     }
 }

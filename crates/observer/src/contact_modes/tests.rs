@@ -1,5 +1,7 @@
 //! What every sample must obey.
 
+mod between_cells;
+
 use super::*;
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Vector2};
 
@@ -242,11 +244,11 @@ fn what_is_wrong_is_named_and_nothing_changes() {
     assert_eq!(ContactModes::new(&[], options()).unwrap_err(), ContactModesError::NoContact);
     let no_speed = ContactModesOptions { natural_speed: 0.0, ..options() };
     assert!(refused(no_speed).to_string().contains("natural speed is 0"));
-    for slip_weight in [0.0, 1.5, f64::NAN] {
+    for slip_errors_last in [-1e-3, 1e3, f64::NAN] {
         assert!(
-            refused(ContactModesOptions { slip_weight, ..options() })
+            refused(ContactModesOptions { slip_errors_last, ..options() })
                 .to_string()
-                .contains("weight of the slips")
+                .contains("time for which errors of slips last")
         );
     }
     assert!(matches!(

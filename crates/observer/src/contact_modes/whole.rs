@@ -32,7 +32,6 @@ pub struct WholeModes {
 /// Tells the modes of contacts at all samples of a log from all of them, the friction unknown (from 0.02 to 2).
 ///
 /// `times` are those of the samples, s; `seen` has for each contact what is read of it at each sample, slips with errors that
-/// last for `lasting`, s (0 where they are independent from sample to sample).
 ///
 /// # Errors
 /// Where there is no contact, time does not go on, numbers of samples differ, an option is not usable, or a reading is not a number, has
@@ -40,11 +39,10 @@ pub struct WholeModes {
 pub fn whole_modes(
     times: &[f64],
     seen: &[Vec<ContactSeen>],
-    lasting: f64,
     options: &ContactModesOptions,
 ) -> Result<WholeModes, ContactModesError> {
-    check(times, seen, lasting, options)?;
-    let pace = Pace::new(times, lasting);
+    check(times, seen, options)?;
+    let pace = Pace::new(times, options);
     let frictions = values();
     let passages: Vec<Passage> = seen.iter().map(|seen| Passage::new(seen, &pace, options)).collect();
     let at: Vec<AtFriction> = frictions.iter().map(|friction| pace.at(*friction)).collect();
@@ -124,16 +122,11 @@ fn fewer(frictions: &[f64], weights: &[f64]) -> Vec<(f64, f64)> {
 fn check(
     times: &[f64],
     seen: &[Vec<ContactSeen>],
-    lasting: f64,
     options: &ContactModesOptions,
 ) -> Result<(), ContactModesError> {
     options.check()?;
     if seen.is_empty() {
         return Err(ContactModesError::NoContact);
-    }
-    if !(0.0..1e9).contains(&lasting) {
-        let (what, needed) = ("time for which errors of slips last", "not below zero and finite, in seconds");
-        return Err(ContactModesError::Option { what, value: lasting, needed });
     }
     for (k, pair) in times.windows(2).enumerate() {
         let value = pair[1] - pair[0];
@@ -206,7 +199,7 @@ mod tests {
     fn frictions_are_learned_and_told_to_be_one_or_several() {
         for (frictions, one) in [([0.3, 0.3], true), ([0.3, 0.6], false)] {
             let seen = [begins_to_slide(frictions[0], 240, 1), begins_to_slide(frictions[1], 240, 2)];
-            let found = whole_modes(&times(240), &seen, 0.0, &options()).unwrap();
+            let found = whole_modes(&times(240), &seen, &options()).unwrap();
             assert_eq!(found.one_friction > 0.9, one, "{}", found.one_friction);
             assert_eq!(found.one_friction < 0.1, !one, "{}", found.one_friction);
             for i in 0..2 {
@@ -227,13 +220,14 @@ mod tests {
         let mut normal = Normal::seeded(3);
         let at = |k: usize| 0.2 + 0.02 * (0.01 * k as f64).sin();
         let seen: Vec<ContactSeen> = (0..600).map(|k| read(at(k), 0.0, &mut normal)).collect();
-        let pace = Pace::new(&times(600), 0.05);
+        let lasting = ContactModesOptions { slip_errors_last: 0.05, ..options() };
+        let pace = Pace::new(&times(600), &lasting);
         let logs = Passage::new(&seen, &pace, &options())
             .evidence(&pace, &[0.35, 0.5, 0.8, 1.2].map(|friction| pace.at(friction)));
         // The disc that ratios are drawn from at first, and at jumps, grows by the square of the friction.
         let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         assert!(logs.iter().all(|log| most - log < 12.0), "{logs:?}");
-        let alone = whole_modes(&times(600), &[seen], 0.05, &options()).unwrap();
+        let alone = whole_modes(&times(600), &[seen], &lasting).unwrap();
         assert_eq!(alone.frictions, [None], "nothing slid");
         assert!(alone.odds[0].iter().filter(|odds| odds.stick > 0.9).count() > 590);
     }
@@ -243,7 +237,7 @@ mod tests {
     fn what_comes_later_counts() {
         let seen = begins_to_slide(0.3, 120, 4);
         let modes = |count: usize| {
-            let pace = Pace::new(&times(count), 0.0);
+            let pace = Pace::new(&times(count), &options());
             let mut sums = vec![[0.0; 3]; count];
             Passage::new(&seen[..count], &pace, &options()).add(&pace, 0.3, 1.0, &mut sums);
             sums
@@ -266,7 +260,7 @@ mod tests {
                 covariance: Matrix2::identity() * 1e-9,
             });
         }
-        let found = whole_modes(&times(200), &[seen], 0.0, &options()).unwrap();
+        let found = whole_modes(&times(200), &[seen], &options()).unwrap();
         assert!(found.odds[0][40..60].iter().all(|odds| odds.off == 1.0));
         let sum = |odds: &ContactOdds| odds.off + odds.slide + odds.stick;
         assert!(found.odds[0].iter().all(|odds| (sum(odds) - 1.0).abs() < 1e-9));
@@ -275,8 +269,9 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named() {
         let seen = begins_to_slide(0.3, 10, 6);
-        let refused = |times: &[f64], seen: &[Vec<ContactSeen>], lasting| {
-            whole_modes(times, seen, lasting, &options()).unwrap_err().to_string()
+        let refused = |times: &[f64], seen: &[Vec<ContactSeen>], slip_errors_last| {
+            let options = ContactModesOptions { slip_errors_last, ..options() };
+            whole_modes(times, seen, &options).unwrap_err().to_string()
         };
         assert!(refused(&times(10), &[], 0.0).contains("no contact"));
         assert!(

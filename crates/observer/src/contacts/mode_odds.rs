@@ -81,8 +81,8 @@ pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units)
     }
     let mut options = ContactModesOptions::new(units.speed, noise.force_fixed.max(1e-9), typical(record));
     options.unloaded_deviation = options.unloaded_deviation.max(1e-6 * options.typical_force);
-    let lasting = LASTING * units.length / units.speed;
-    let found = whole_modes(&record.times, &seen, lasting, &options).ok()?;
+    options.slip_errors_last = LASTING * units.length / units.speed;
+    let found = whole_modes(&record.times, &seen, &options).ok()?;
     let mut frictions = [None; MOST_PALMS];
     for ((palm, own), friction) in palms.into_iter().zip(&found.odds).zip(&found.frictions) {
         frictions[palm] = *friction;
