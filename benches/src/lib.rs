@@ -22,8 +22,13 @@
 //! assert!(chart.csv().starts_with("method,setting,"));
 //! ```
 
+pub mod atlas;
+pub mod departures;
 mod diagram;
+pub mod fault;
 mod machine;
+pub mod multipliers;
+pub mod noisy_contacts;
 pub mod palms;
 pub mod planar;
 pub mod reaching;

@@ -1,6 +1,6 @@
 //! Contacts whose noise is not what is stated: levels that change along a curve, correlation, wrong contacts.
 
-use super::bodies::Body;
+use super::Body;
 use glam::DVec3;
 use recon::contact_kinematics::{Direction, DirectionError};
 use shape_bounds::ContactSample;
@@ -12,7 +12,7 @@ const LEVELS: [f64; 3] = [1e-3, 1e-2, 1e-4];
 
 /// How the true standard deviation goes along a curve, in parts of the stated one.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Course {
+pub enum Course {
     /// The same everywhere.
     Constant(f64),
     /// From 1 to this and back, once in a sine of the logarithm.
@@ -52,11 +52,11 @@ impl Course {
 
 /// Contacts that are off by more than noise: by 5 to 40 deviations in the point, the normal or both.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct WrongContacts {
+pub struct WrongContacts {
     /// How many of all are, on the average.
-    pub(super) share: f64,
+    pub share: f64,
     /// Whether two neighbours each are off in the same way.
-    pub(super) pairs: bool,
+    pub pairs: bool,
 }
 
 const LEAST_OFF: f64 = 5.0;
@@ -82,32 +82,53 @@ impl WrongContacts {
 
 /// Noise of one row of the table.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TrueNoise {
-    pub(super) course: Course,
+pub struct TrueNoise {
+    /// Of the level.
+    pub course: Course,
     /// From one contact to the next.
-    pub(super) correlation: f64,
-    pub(super) wrong: Option<WrongContacts>,
+    pub correlation: f64,
+    /// Beside noise.
+    pub wrong: Option<WrongContacts>,
 }
 
 /// What was measured, what is stated about it, and the truth.
-pub(super) struct Case {
-    pub(super) body: Body,
-    pub(super) curves: Vec<Vec<ContactSample>>,
+pub struct Case {
+    /// What is touched.
+    pub body: Body,
+    /// As measured.
+    pub curves: Vec<Vec<ContactSample>>,
     /// Stated standard deviation per axis, m.
-    pub(super) point_sd: f64,
+    pub point_sd: f64,
     /// Stated standard deviation about each tangent axis, rad.
-    pub(super) normal_sd: f64,
+    pub normal_sd: f64,
     /// By how many deviations each contact is off beside its noise, if it is wrong.
-    pub(super) wrong: Vec<Vec<Option<f64>>>,
+    pub wrong: Vec<Vec<Option<f64>>>,
 }
 
 impl Case {
     /// Body, curves and level depend on the seed alone and are the same in all rows of the table.
-    pub(super) fn of_seed(noise: TrueNoise, count: usize, seed: u64) -> Result<Self, DirectionError> {
+    ///
+    /// # Errors
+    /// None: normals of bodies have a direction.
+    pub fn of_seed(noise: TrueNoise, count: usize, seed: u64) -> Result<Self, DirectionError> {
         let mut s = Source::new(seed.wrapping_mul(7919) ^ 0xBEEF);
         let body = Body::random(seed, &mut s);
         let exact = body.curves(count, &mut s);
         let level = LEVELS[(seed / 3 % 3) as usize];
+        Self::measured(body, &exact, level, noise, &mut s)
+    }
+
+    /// Exact curves of a body, measured at a stated level.
+    ///
+    /// # Errors
+    /// For noise that leaves a normal no direction.
+    pub fn measured(
+        body: Body,
+        exact: &[Vec<(DVec3, DVec3)>],
+        level: f64,
+        noise: TrueNoise,
+        s: &mut Source,
+    ) -> Result<Self, DirectionError> {
         let mut case = Self {
             body,
             curves: Vec::new(),
@@ -115,8 +136,8 @@ impl Case {
             normal_sd: level,
             wrong: Vec::new(),
         };
-        for curve in &exact {
-            case.measure(curve, noise, &mut s)?;
+        for curve in exact {
+            case.measure(curve, noise, s)?;
         }
         Ok(case)
     }

@@ -3,14 +3,10 @@
 //! Usage: `bounds_noise_wrong [RUNS [FIRST_SEED]]` (90 runs a row from seed 80000 by default). Writes the page to standard
 //! output.
 
-mod bodies;
-mod judge;
-mod noise;
-
-use judge::{Levels, Tally};
-use noise::{Case, Course, TrueNoise, WrongContacts};
+use recon_benches::noisy_contacts::{Case, Course, Levels, Tally, TrueNoise, WrongContacts};
 use std::ops::Range;
 
+const CONFIDENCE: f64 = 0.95;
 const COUNTS: [usize; 3] = [300, 600, 1000];
 /// Stated and estimated levels, each with all numbers of contacts.
 const COLUMNS: usize = 2 * COUNTS.len();
@@ -80,7 +76,7 @@ fn tally(noise: TrueNoise, seeds: Range<u64>) -> Result<[Tally; COLUMNS], Failur
         for seed in seeds.clone() {
             let run = crate::rows::row(|| -> Result<[[usize; 7]; 2], Failure> {
                 let case = Case::of_seed(noise, count, seed)?;
-                let of = |levels| Tally::of(&case, levels).counts().map(|count| *count);
+                let of = |levels| Tally::of(&case, levels, CONFIDENCE).counts().map(|count| *count);
                 Ok([of(Levels::Stated), of(Levels::Estimated)])
             })?;
             for (k, run) in run.into_iter().flatten().enumerate() {

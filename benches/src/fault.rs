@@ -1,15 +1,25 @@
-//! What is not as stated.
+//! What is not as stated of a log of three palms, or of the body on them.
 
-use super::body::{Body, G};
-use super::{Failure, with};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::{MassProperties, Sample, SensorLog};
 use recon::observer::{Assumption, SensorFault};
 use recon_tests::Random;
 
+type Failure = Box<dyn std::error::Error>;
+
+/// What departures are stated in.
+#[derive(Clone, Copy, Debug)]
+pub struct Scale {
+    /// Mean semi-axis, m.
+    pub size: f64,
+    /// Of the body, N.
+    pub weight: f64,
+}
+
 /// One departure; its palm is the first one.
-pub(crate) enum Fault {
+#[derive(Clone, Copy, Debug)]
+pub enum Fault {
     /// Contacts at taxels so far from each other, in sizes.
     Taxels(f64),
     /// Forces through a filter of first order with this time constant, s.
@@ -32,11 +42,14 @@ pub(crate) enum Fault {
     Turned(f64),
     /// Relative, stated too large.
     Mass(f64),
+    /// All moments of inertia.
     Inertia(f64),
+    /// One moment of inertia.
     Moment(f64),
 }
 
-pub(crate) const FAULTS: [Fault; 16] = [
+/// Those of the study of whole logs.
+pub const FAULTS: [Fault; 16] = [
     Fault::Taxels(0.01),
     Fault::Lag(0.01),
     Fault::Delay(0.005),
@@ -56,7 +69,9 @@ pub(crate) const FAULTS: [Fault; 16] = [
 ];
 
 impl Fault {
-    pub(crate) fn name(&self) -> String {
+    /// In words.
+    #[must_use]
+    pub fn name(&self) -> String {
         match self {
             Self::Taxels(pitch) => format!("taxels {} % of the size apart", 100.0 * pitch),
             Self::Lag(lag) => format!("forces lag by {} ms", 1e3 * lag),
@@ -75,12 +90,14 @@ impl Fault {
     }
 
     /// Whether it is in what is stated of the body.
-    pub(crate) fn of_body(&self) -> bool {
+    #[must_use]
+    pub fn of_body(&self) -> bool {
         matches!(self, Self::Mass(_) | Self::Inertia(_) | Self::Moment(_))
     }
 
     /// Whether this is what an estimate takes it for; a delay is what a lag is to first order.
-    pub(crate) fn is(&self, assumption: &Assumption) -> bool {
+    #[must_use]
+    pub fn is(&self, assumption: &Assumption) -> bool {
         match (self, assumption) {
             (Self::Mass(_) | Self::Inertia(_) | Self::Moment(_), Assumption::Body)
             | (Self::Taxels(_) | Self::Outliers(_), Assumption::Noise) => true,
@@ -97,18 +114,21 @@ impl Fault {
     }
 
     /// What an estimate is to find of it at so many samples a second; none where that is no one number.
-    pub(crate) fn value(&self, body: &Body, rate: f64) -> Option<f64> {
+    #[must_use]
+    pub fn value(&self, of: Scale, rate: f64) -> Option<f64> {
         match self {
             Self::Gain(share) | Self::Mass(share) => Some(1.0 / (1.0 + share) - 1.0),
-            Self::Bias(bias) => Some(-bias * body.mass.mass() * G),
+            Self::Bias(bias) => Some(-bias * of.weight),
             Self::Delay(delay) => Some((delay * rate).ceil() / rate),
-            Self::Shifted(shift) => Some(-shift * body.size),
+            Self::Shifted(shift) => Some(-shift * of.size),
             Self::Turned(angle) => Some(-angle.to_radians()),
             _ => None,
         }
     }
 
-    pub(crate) fn of_mass(&self, mass: MassProperties) -> MassProperties {
+    /// What is stated of a body.
+    #[must_use]
+    pub fn of_mass(&self, mass: MassProperties) -> MassProperties {
         let moments = mass.principal().moments;
         let stated = match self {
             Self::Mass(share) => MassProperties::from_principal(mass.mass() * (1.0 + share), moments),
@@ -121,10 +141,13 @@ impl Fault {
         stated.unwrap_or(mass)
     }
 
-    pub(crate) fn of_log(&self, log: &SensorLog, body: &Body) -> Result<SensorLog, Failure> {
+    /// A log that has it.
+    ///
+    /// # Errors
+    /// Those of readings that are no log any more.
+    pub fn of_log(&self, log: &SensorLog, of: Scale) -> Result<SensorLog, Failure> {
         let mut samples = log.samples().to_vec();
         let mut random = Random::new(7);
-        let weight = body.mass.mass() * G;
         let last = samples[samples.len() - 1].t;
         let contacts = |samples: &mut [Sample], change: &mut dyn FnMut(&mut [f64; 2])| {
             let all = samples.iter_mut().flat_map(|sample| &mut sample.palms);
@@ -132,15 +155,15 @@ impl Fault {
         };
         match self {
             Self::Taxels(pitch) => {
-                let pitch = pitch * body.size;
+                let pitch = pitch * of.size;
                 contacts(&mut samples, &mut |s| *s = s.map(|s| (s / pitch).round() * pitch));
             }
             Self::Outliers(share) => contacts(&mut samples, &mut |s| {
                 if random.within(0.0, 1.0) < *share {
-                    s[0] += 0.2 * body.size;
+                    s[0] += 0.2 * of.size;
                 }
             }),
-            Self::Bias(bias) => forces(&mut samples, |_, f| f + bias * weight),
+            Self::Bias(bias) => forces(&mut samples, |_, f| f + bias * of.weight),
             Self::Gain(gain) => forces(&mut samples, |_, f| f * (1.0 + gain)),
             Self::Lag(_) | Self::Delay(_) => self.late(log, &mut samples),
             Self::Dropped(share) => {
@@ -149,7 +172,7 @@ impl Fault {
             Self::Gap(gap) => samples.retain(|sample| (sample.t - 0.5 * last).abs() > 0.5 * gap),
             Self::Shifted(shift) => {
                 let first = samples.iter_mut().filter_map(|sample| sample.palms[0].contact.as_mut());
-                first.for_each(|s| s[0] += shift * body.size);
+                first.for_each(|s| s[0] += shift * of.size);
             }
             Self::Turned(angle) => {
                 for sample in &mut samples {
@@ -161,7 +184,7 @@ impl Fault {
             }
             Self::Mass(_) | Self::Inertia(_) | Self::Moment(_) => {}
         }
-        with(samples)
+        Ok(SensorLog::new(samples, None)?)
     }
 
     fn late(&self, log: &SensorLog, samples: &mut [Sample]) {

@@ -1,51 +1,55 @@
 //! The way from measured contacts to bounds, as `recon bounds` goes it, and what came of it.
 
-use super::noise::Case;
+use super::Case;
 use shape_bounds::{
     CertainBounds, ContactNoise, NoiseError, NoisyContact, Outlier, correlated_noise, estimate_noise,
     independence_is_tested, with_noise_as_found, without_outliers,
 };
 
-const CONFIDENCE: f64 = 0.95;
-
 /// Where the levels of noise come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Levels {
+pub enum Levels {
+    /// As stated.
     Stated,
+    /// From the contacts.
     Estimated,
 }
 
-/// Bounds, the contacts left out, and whether a warning says that noise is not as stated or may not be.
-struct Bounded {
-    bounds: CertainBounds,
-    outliers: Vec<Outlier>,
-    warned: bool,
+/// What came of measured contacts.
+pub struct Bounded {
+    /// The bounds.
+    pub bounds: CertainBounds,
+    /// The contacts left out.
+    pub outliers: Vec<Outlier>,
+    /// Whether a warning says that noise is not as stated or may not be.
+    pub warned: bool,
 }
 
 /// What became of the runs of one row with as many contacts each.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tally {
+pub struct Tally {
     /// Runs with bounds; the others are refused with an error.
-    pub(super) bounded: usize,
+    pub bounded: usize,
     /// Of these, both bounds hold.
-    pub(super) hold: usize,
+    pub hold: usize,
     /// Of these, noise is said to be not as stated, or not to be tested.
-    pub(super) warned: usize,
+    pub warned: usize,
     /// One of the bounds fails without that warning.
-    pub(super) silent: usize,
+    pub silent: usize,
     /// Wrong contacts in runs with bounds.
-    pub(super) wrong: usize,
+    pub wrong: usize,
     /// Of these, left out.
-    pub(super) found: usize,
+    pub found: usize,
     /// Right contacts that are left out.
-    pub(super) taken: usize,
+    pub taken: usize,
 }
 
 impl Tally {
     /// Of one run.
-    pub(super) fn of(case: &Case, levels: Levels) -> Self {
+    #[must_use]
+    pub fn of(case: &Case, levels: Levels, confidence: f64) -> Self {
         // Refused: the contacts contradict what is stated or assumed by more than can be mended.
-        let Ok(Some(run)) = bounded(case, levels) else { return Self::default() };
+        let Ok(Some(run)) = bounded(case, levels, confidence) else { return Self::default() };
         let holds = case.body.is_between(&run.bounds);
         let found = run.outliers.iter().filter(|o| case.wrong[o.curve][o.index].is_some()).count();
         Self {
@@ -59,17 +63,21 @@ impl Tally {
         }
     }
 
-    pub(super) fn counts(&mut self) -> [&mut usize; 7] {
+    /// All of them.
+    pub fn counts(&mut self) -> [&mut usize; 7] {
         let Self { bounded, hold, warned, silent, wrong, found, taken } = self;
         [bounded, hold, warned, silent, wrong, found, taken]
     }
 }
 
 /// None where estimated noise is alike from one contact to the next: the estimate says nothing then.
-fn bounded(case: &Case, levels: Levels) -> Result<Option<Bounded>, NoiseError> {
+///
+/// # Errors
+/// For contacts that contradict what is stated or assumed by more than can be mended.
+pub fn bounded(case: &Case, levels: Levels, confidence: f64) -> Result<Option<Bounded>, NoiseError> {
     let noisy = match levels {
         Levels::Stated => stated(case),
-        Levels::Estimated => estimate_noise(&case.curves, CONFIDENCE)?,
+        Levels::Estimated => estimate_noise(&case.curves, confidence)?,
     };
     let estimated = levels == Levels::Estimated;
     let correlated = correlated_noise(&noisy).is_some();
@@ -78,11 +86,11 @@ fn bounded(case: &Case, levels: Levels) -> Result<Option<Bounded>, NoiseError> {
     }
     let (noisy, doubts) = with_noise_as_found(&noisy);
     let untested = estimated && !independence_is_tested(&noisy);
-    let (kept, outliers) = without_outliers(&noisy, CONFIDENCE)?;
+    let (kept, outliers) = without_outliers(&noisy, confidence)?;
     let bounds = if correlated {
-        CertainBounds::from_correlated_curves(&kept, CONFIDENCE)?
+        CertainBounds::from_correlated_curves(&kept, confidence)?
     } else {
-        CertainBounds::from_noisy_curves(&kept, CONFIDENCE)?
+        CertainBounds::from_noisy_curves(&kept, confidence)?
     };
     Ok(Some(Bounded { bounds, outliers, warned: correlated || untested || !doubts.is_empty() }))
 }

@@ -17,18 +17,29 @@ const SHARE: f64 = 0.3;
 
 /// A body about the origin; lengths in m.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Body {
-    /// Semi-axes.
+pub enum Body {
+    /// With these semi-axes.
     Ellipsoid(DVec3),
     /// Support function `|axes n| + bulge n_z^3`.
-    Egg { axes: DVec3, bulge: f64 },
+    Egg {
+        /// Of the ellipsoid, m.
+        axes: DVec3,
+        /// Of the third axis' cube, m.
+        bulge: f64,
+    },
     /// A box with a ball around it: flat faces, edges and corners of one radius.
-    RoundedBox { half: DVec3, radius: f64 },
+    RoundedBox {
+        /// Half of the edges of the box, m.
+        half: DVec3,
+        /// Of the ball, m.
+        radius: f64,
+    },
 }
 
 impl Body {
     /// A third each ellipsoids (every other one that of the paper's Fig. 5), eggs and rounded boxes.
-    pub(super) fn random(seed: u64, s: &mut Source) -> Self {
+    #[must_use]
+    pub fn random(seed: u64, s: &mut Source) -> Self {
         match seed % 3 {
             0 if s.unit() < 0.5 => Self::Ellipsoid(AXES),
             0 => Self::Ellipsoid(lengths(0.8, 2.0, s)),
@@ -38,7 +49,8 @@ impl Body {
     }
 
     /// Largest semi-axis, or distance from the middle to a corner: what noise is relative to, m.
-    pub(super) fn size(&self) -> f64 {
+    #[must_use]
+    pub fn size(&self) -> f64 {
         match *self {
             Self::Ellipsoid(axes) | Self::Egg { axes, .. } => axes.max_element(),
             Self::RoundedBox { half, radius } => half.length() + radius,
@@ -46,7 +58,8 @@ impl Body {
     }
 
     /// Exact points and normals on three closed curves, `count / 3` on each.
-    pub(super) fn curves(&self, count: usize, s: &mut Source) -> Vec<Vec<(DVec3, DVec3)>> {
+    #[must_use]
+    pub fn curves(&self, count: usize, s: &mut Source) -> Vec<Vec<(DVec3, DVec3)>> {
         (0..3).map(|_| self.curve(count / 3, s.rotation(), s.unit() * TAU)).collect()
     }
 
@@ -61,7 +74,8 @@ impl Body {
 
     /// Point and normal: of an ellipsoid or an egg where the normal is `d`, of a box where the ray along `d` leaves it, since
     /// nearly all normals belong to its corners.
-    fn contact(&self, d: DVec3) -> (DVec3, DVec3) {
+    #[must_use]
+    pub fn contact(&self, d: DVec3) -> (DVec3, DVec3) {
         match *self {
             Self::Ellipsoid(axes) => (with_normal(axes, 0.0, d), d),
             Self::Egg { axes, bulge } => (with_normal(axes, bulge, d), d),
@@ -69,7 +83,9 @@ impl Body {
         }
     }
 
-    fn support(&self, n: DVec3) -> f64 {
+    /// How far it reaches along a unit vector, m.
+    #[must_use]
+    pub fn support(&self, n: DVec3) -> f64 {
         match *self {
             Self::Ellipsoid(axes) => (axes * n).length(),
             Self::Egg { axes, bulge } => (axes * n).length() + bulge * n.z.powi(3),
@@ -91,7 +107,8 @@ impl Body {
     }
 
     /// Whether the body lies between the bounds; one that is left out says nothing that could be wrong.
-    pub(super) fn is_between(&self, bounds: &CertainBounds) -> bool {
+    #[must_use]
+    pub fn is_between(&self, bounds: &CertainBounds) -> bool {
         let lower = bounds.lower.as_ref().and_then(Hull::solid);
         let holds_lower = lower.is_none_or(|s| s.vertices().iter().all(|v| self.outside(*v) <= ROUNDING));
         let upper = bounds.upper.as_ref().map(|u| u.face_half_spaces());

@@ -1,0 +1,278 @@
+//! The estimate in the plane, between two hinged palms without friction.
+
+use super::judged::Ran;
+use super::{DEVIATIONS, Failure, G, Method, Way};
+use crate::planar::broken::Wrong;
+use crate::planar::scene::Scene;
+use recon::contact_kinematics::planar::{FourierBody, RadiusFunction};
+use recon::object_dynamics::planar::{
+    HarmonicPalms, PlanarLog, PlanarMass, PlanarNoise, PlanarObject, PlanarStart, PlanarTruth,
+};
+use recon::observer::ContactNoiseLevel;
+use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
+use recon_tests::Random;
+use std::f64::consts::{PI, TAU};
+
+/// What contact conditions are off by beside noise, natural speeds.
+const FLOOR: f64 = 1e-6;
+/// What an estimate from exact readings may be off by, in sizes, natural speeds and rates.
+const EXACT: f64 = 1e-6;
+/// Bodies that are tried for one that stays between its palms.
+const TRIED: u64 = 8;
+
+const WAYS: &[Way] = {
+    use Way::*;
+    &[
+        Parallel, Flat, Sphere, Relative, Force, Hinge, Slow, Window, Noise, Unstated, Bias, Gain, Delay, Correlation, Taxels, Outliers, Gap,
+        Rate, Palm, Shaking, Long, Size,
+    ]
+};
+
+const WAYS_OF_KNOWN: &[Way] = {
+    use Way::*;
+    &[
+        Parallel, Flat, Sphere, Relative, Force, Hinge, Slow, Window, Noise, Unstated, Bias, Gain, Delay, Correlation, Taxels, Outliers, Gap,
+        Rate, Mass, Inertia, Palm, Shaking, Long, Size,
+    ]
+};
+
+const ABOUT: &str =
+    "two hinged palms, from no guess; right: centre, velocity and rate within five stated deviations at all samples relied on";
+
+pub(super) const KNOWN: Method = Method {
+    name: "planar, body known",
+    about: ABOUT,
+    ways: WAYS_OF_KNOWN,
+    seeds: 1,
+    run: |way, strength, seed| of_spec(Spec::of(way, strength), seed, true),
+};
+
+pub(super) const UNKNOWN: Method = Method {
+    name: "planar, body unknown",
+    about: ABOUT,
+    ways: WAYS,
+    seeds: 1,
+    run: |way, strength, seed| of_spec(Spec::of(way, strength), seed, false),
+};
+
+/// What a scene is drawn from, in natural units of its mean radius.
+#[derive(Clone, Copy)]
+pub(super) struct Spec {
+    pub(super) size: f64,
+    /// Of the harmonics of the outline.
+    pub(super) shape: f64,
+    /// Between the palms, rad.
+    pub(super) wedge: Option<f64>,
+    pub(super) swing: [f64; 2],
+    pub(super) spin: f64,
+    pub(super) lasts: f64,
+    pub(super) rate: f64,
+    pub(super) noise: [f64; 2],
+    pub(super) unstated: f64,
+    pub(super) correlation: f64,
+    pub(super) taxels: f64,
+    pub(super) by_torques: bool,
+    pub(super) may_end: bool,
+    pub(super) wrong: Wrong,
+}
+
+impl Spec {
+    /// Of a way.
+    pub(super) fn of(way: Way, strength: f64) -> Self {
+        let base = Self {
+            size: 0.05,
+            shape: 1.0,
+            wedge: None,
+            swing: [0.2, 0.3],
+            spin: 0.4,
+            lasts: 12.0,
+            rate: 14.0,
+            noise: [1e-3, 3e-3],
+            unstated: 1.0,
+            correlation: 0.0,
+            taxels: 0.0,
+            by_torques: false,
+            may_end: false,
+            wrong: Wrong::Nothing,
+        };
+        let natural = (base.size / G).sqrt();
+        let broken = |wrong| Self { wrong, ..base };
+        let degrees = strength.to_radians();
+        match way {
+            Way::Parallel => Self { wedge: Some(degrees), ..base },
+            Way::Flat => Self { wedge: Some(PI - 2.0 * degrees), ..base },
+            Way::Hinge => Self { wedge: Some(PI - 2.0 * degrees), by_torques: true, swing: [0.0, 1.0], ..base },
+            Way::Sphere => Self { shape: 2.0 * strength, ..base },
+            Way::Relative => Self { swing: [0.2, 2.0 * strength], ..base },
+            Way::Force => Self { spin: strength, may_end: true, ..base },
+            Way::Slow => Self { spin: strength, swing: [0.0, 1.0], ..base },
+            Way::Window => Self { lasts: strength, ..base },
+            Way::Noise => Self { noise: [strength, 3.0 * strength], ..base },
+            Way::Unstated => Self { unstated: strength, ..base },
+            Way::Correlation => Self { correlation: strength, ..base },
+            Way::Taxels => Self { taxels: strength, ..base },
+            Way::Bias => broken(Wrong::Bias(strength)),
+            Way::Gain => broken(Wrong::Gain(strength)),
+            Way::Delay => broken(Wrong::ForcesLate(strength * natural)),
+            Way::Outliers => broken(Wrong::Outliers(strength)),
+            Way::Gap => broken(Wrong::Gap(strength * natural)),
+            Way::Mass => broken(Wrong::Mass(strength)),
+            Way::Inertia => broken(Wrong::Inertia(strength)),
+            Way::Palm => broken(Wrong::Palm(strength)),
+            Way::Rate => Self { rate: strength, ..base },
+            Way::Shaking => Self { swing: [0.1_f64.min(0.3 / (strength * strength)), strength], ..base },
+            Way::Long => Self { lasts: strength, rate: 10.0, ..base },
+            Way::Size => Self { size: strength, ..base },
+            _ => base,
+        }
+    }
+
+    /// One body between its palms; none that is not convex.
+    pub(super) fn scene(&self, seed: u64) -> Result<Option<Scene>, Failure> {
+        let mut random = Random::new(seed);
+        let mut between = |a: f64, b: f64| random.within(a, b);
+        let (length, time) = (self.size, (self.size / G).sqrt());
+        let mut part = |most: f64| length * self.shape * between(-most, most);
+        let cosines = [length, part(0.2), part(0.11), part(0.04), part(0.02)];
+        let sines = [0.0, part(0.2), part(0.11), part(0.04), part(0.02)];
+        let Ok(shape) = FourierBody::new(&cosines, &sines) else { return Ok(None) };
+        if shape.radius_bounds().min < 0.1 * length {
+            return Ok(None);
+        }
+        let mass = PlanarMass::from_gyration(
+            200.0 * length * length * between(0.5, 2.0),
+            length * length * between(0.35, 0.6),
+        )?;
+        let (drawn, middle) = (between(1.2, 2.0), between(-0.2, 0.2));
+        let wedge = self.wedge.unwrap_or(drawn);
+        let (amplitude, frequency) = (self.swing[0].min(0.3 * wedge), self.swing[1] / time);
+        let palms = HarmonicPalms {
+            centres: [0.5 * (PI - wedge) + middle * wedge.min(PI - wedge).min(1.0), wedge],
+            amplitudes: [amplitude, 0.4 * amplitude.min(PI - wedge)],
+            frequencies: [frequency, frequency * between(0.6, 1.4)],
+            phases: [between(0.0, TAU), between(0.0, TAU)],
+        };
+        let way = if between(-1.0, 1.0) > 0.0 { 1.0 } else { -1.0 };
+        let start = PlanarStart { phi0: between(0.0, TAU), omega0: way * self.spin / time };
+        let object = PlanarObject { shape, mass, gravity: G };
+        Ok(Some(Scene { object, palms, start, length, time, lasts: self.lasts }))
+    }
+
+    /// The scene that lasts, or lasts longest, with its log.
+    fn drawn(&self, seed: u64) -> Result<(Scene, PlanarLog), Failure> {
+        let tried = if self.may_end { 1 } else { TRIED };
+        let mut longest: Option<(Scene, PlanarLog)> = None;
+        let mut failure: Failure = "contact is lost at once".into();
+        for attempt in 0..tried {
+            let Some(scene) = self.scene(seed * TRIED + attempt)? else { continue };
+            match self.wrong.log(&scene, self.rate / scene.time) {
+                Ok(log) => {
+                    let whole = log.samples().last().is_some_and(|last| last.t >= (self.lasts - 1.0) * scene.time);
+                    if longest.as_ref().is_none_or(|(_, other)| other.samples().len() < log.samples().len()) {
+                        longest = Some((scene, log));
+                    }
+                    if whole {
+                        break;
+                    }
+                }
+                Err(error) => failure = error,
+            }
+        }
+        longest.ok_or(failure)
+    }
+}
+
+/// One run.
+pub(super) fn of_spec(of: Spec, seed: u64, known: bool) -> Result<Ran, Failure> {
+    let (scene, exact) = of.drawn(seed)?;
+    let [contact, force] = [of.noise[0] * scene.length, of.noise[1] * scene.weight()];
+    let added = PlanarNoise {
+        contact: contact * of.unstated,
+        force: force * of.unstated,
+        torque: force * scene.length * of.unstated,
+    };
+    let noisy = added.add_to(&exact, seed);
+    let log = of.wrong.misread(misread(&of, &exact, &noisy)?, scene.length, seed)?;
+    let Some(log) = log.contact_log([0.0; 2]) else {
+        return Ok(Ran::Refused("a torque has no lever, or an angle is that of no palm".to_owned()));
+    };
+    let body = if known { Some(of.wrong.told(scene.object.mass)?) } else { None };
+    let options = PlaneOptions {
+        noise: ContactNoiseLevel {
+            contact,
+            force_fixed: force,
+            force_share: 0.0,
+            impulse: None,
+            floor: FLOOR * scene.length / scene.time,
+        },
+        gravity: G,
+        friction: vec![Some(0.0); 2],
+        body,
+        size: None,
+        suspects: true,
+    };
+    let found = match estimate_plane(&log, &options) {
+        Ok(found) => found,
+        Err(error) => return Ok(Ran::refused(&error)),
+    };
+    let off = errors(&found, exact.truth().ok_or("no truth")?, &scene, contact == 0.0);
+    let doubt = match &found.reliability {
+        reliability if !reliability.is_reliable() => Some(format!("{reliability:?}")),
+        _ if !found.relied_on.contains(&true) => Some("no sample is relied on".to_owned()),
+        _ => None,
+    };
+    Ok(Ran::Found { off: off / DEVIATIONS, doubt })
+}
+
+/// Noise that is alike, contacts at taxels, torques alone.
+fn misread(of: &Spec, exact: &PlanarLog, noisy: &PlanarLog) -> Result<PlanarLog, Failure> {
+    let mut samples = noisy.samples().to_vec();
+    let fresh = (1.0 - of.correlation * of.correlation).sqrt();
+    let mut held = [0.0; 4];
+    for (k, sample) in samples.iter_mut().enumerate() {
+        let clean = &exact.samples()[k];
+        let (before, share) = if k == 0 { (0.0, 1.0) } else { (of.correlation, fresh) };
+        let colour = |held: &mut f64, value: &mut f64, exact: f64| {
+            *held = before * *held + share * (*value - exact);
+            *value = exact + *held;
+        };
+        for i in 0..2 {
+            if let (Some(s), Some(e)) = (&mut sample.contacts[i], clean.contacts[i]) {
+                colour(&mut held[i], s, e);
+                if of.taxels > 0.0 {
+                    let pitch = of.taxels * of.size;
+                    *s = (*s / pitch).round() * pitch;
+                }
+            }
+            if let (Some(f), Some(e)) = (&mut sample.forces, clean.forces) {
+                colour(&mut held[2 + i], &mut f[i], e[i]);
+            }
+        }
+        *(if of.by_torques { &mut sample.forces } else { &mut sample.torques }) = None;
+    }
+    Ok(PlanarLog::new(samples, noisy.truth().map(<[_]>::to_vec))?)
+}
+
+/// The largest error in deviations.
+fn errors(made: &PlaneEstimate, truth: &[PlanarTruth], scene: &Scene, exact: bool) -> f64 {
+    let share = if exact { EXACT } else { 0.0 };
+    let least = [scene.length, scene.length / scene.time, scene.time.recip()].map(|unit| share * unit);
+    let mut worst = 0.0;
+    for (k, truth) in truth.iter().enumerate().filter(|(k, _)| made.relied_on[*k]) {
+        let (state, of) = (&made.states[k], &made.deviations[k]);
+        let (p, v) = (state.p_WCm - truth.p_WCm, state.v_WCm - truth.v_WCm);
+        let spin = state.omega0 - truth.omega0;
+        let parts = [
+            (p.x, of.p_WCm.x, least[0]),
+            (p.y, of.p_WCm.y, least[0]),
+            (v.x, of.v_WCm.x, least[1]),
+            (v.y, of.v_WCm.y, least[1]),
+            (spin, of.omega0, least[2]),
+        ];
+        for (error, deviation, least) in parts {
+            let off: f64 = error.abs() / deviation.max(least);
+            worst = if off > worst || off.is_nan() { off } else { worst };
+        }
+    }
+    worst
+}
