@@ -22,7 +22,7 @@ pub(super) const STATED: Method = Method {
         use Way::*;
         &[Sphere, Revolution, Noise, Unstated, Correlation, Outliers, Size, Contacts, Cone]
     },
-    seeds: 4,
+    seeds: 30,
     run: stated,
 };
 
@@ -33,7 +33,7 @@ pub(super) const CURVED: Method = Method {
         use Way::*;
         &[Sphere, Revolution, Noise, Unstated, Size, Contacts, Cone, Limit]
     },
-    seeds: 4,
+    seeds: 30,
     run: curved,
 };
 

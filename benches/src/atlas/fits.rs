@@ -21,7 +21,7 @@ pub(super) const METHOD: Method = Method {
         use Way::*;
         &[Sphere, Revolution, Noise, Unstated, Correlation, Outliers, Size, Contacts, Cone, Family]
     },
-    seeds: 4,
+    seeds: 30,
     run,
 };
 

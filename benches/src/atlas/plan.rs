@@ -97,7 +97,7 @@ impl Spot {
     pub fn seeds(&self, each: u64) -> u64 {
         match self {
             Self::Cell(method, ..) => each * method.seeds,
-            Self::Place(..) => each.div_ceil(2),
+            Self::Place(..) => each,
         }
     }
 }

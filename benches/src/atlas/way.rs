@@ -21,6 +21,10 @@ pub enum Way {
     Force,
     /// Dropped: contacts begin one after the other, with blows.
     Drop,
+    /// A log that goes on after contact is lost, which is marked.
+    Loss,
+    /// The same with sensors that hold the last contact.
+    Held,
     /// Forces from torques of motors, contacts towards the hinge: `s_i2` to zero.
     Hinge,
     /// Let go where it lies lowest, with less and less spin.
@@ -91,6 +95,7 @@ pub(super) struct Entry {
 
 const SHARES: &[f64] = &[1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0];
 const DEPARTURES: &[f64] = &[0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 1e-3, 0.0];
+const LOST: &[f64] = &[0.004, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5];
 const SLOPES: &[f64] = &[45.0, 30.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.2];
 
 macro_rules! entry {
@@ -103,7 +108,7 @@ impl Way {
     /// All of them.
     pub const ALL: &[Self] = &[
         Self::Parallel, Self::Flat, Self::Steep, Self::Sphere, Self::Revolution, Self::Pole, Self::Relative, Self::Force, Self::Drop,
-        Self::Hinge, Self::Slow, Self::Window, Self::Start, Self::Noise, Self::Unstated, Self::Bias, Self::Gain, Self::Delay,
+        Self::Loss, Self::Held, Self::Hinge, Self::Slow, Self::Window, Self::Start, Self::Noise, Self::Unstated, Self::Bias, Self::Gain, Self::Delay,
         Self::Correlation, Self::Taxels, Self::Outliers, Self::Gap, Self::Dropped, Self::Rate, Self::Mass, Self::Inertia, Self::Palm,
         Self::Friction, Self::Shaking, Self::Long, Self::Switches, Self::Size, Self::Contacts, Self::Cone, Self::Tolerance, Self::Limit,
         Self::Family, Self::Coefficient,
@@ -144,6 +149,8 @@ impl Way {
             Self::Relative => entry!("relative", "a palm's rate over the body's: rotation through zero", "1", &[0.0, 0.2, 0.5, 0.8, 1.0, 1.5, 3.0, 6.0]),
             Self::Force => entry!("force", "spin, to where forces vanish and contact ends", "natural", &[0.1, 0.3, 0.5, 0.8, 1.1, 1.5, 2.0, 3.0]),
             Self::Drop => entry!("drop", "contact lost and back: height of fall", "sizes", &[1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3]),
+            Self::Loss => entry!("loss", "contact lost, log goes on for", "s", LOST),
+            Self::Held => entry!("held", "contact lost and not marked, log goes on for", "s", LOST),
             Self::Hinge => entry!("hinge", "forces from torques, contacts to the hinge (s_i2 to 0): slope", "degrees", SLOPES),
             Self::Slow => entry!("slow", "towards rest: spin where it lies lowest", "natural", &[0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6, 0.0]),
             Self::Window => entry!("window", "short window", "natural times", &[12.0, 8.0, 6.0, 5.0, 4.0, 3.0, 1.5, 0.3]),

@@ -3,10 +3,10 @@
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
-    ContactLog, InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation,
+    ContactLog, InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation,
     SimulationError, ThreePalmScene,
 };
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, Reliability, estimate_contacts};
+use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
 
 /// A simulation close to rounding, and its log without truth.
 pub(super) fn exact_log<S: SupportFunction>(
@@ -61,31 +61,8 @@ pub(super) fn noisy_estimate<S: SupportFunction>(
     estimate_contacts(&log, None, &options).map_err(|error| error.to_string())
 }
 
-/// Largest error of centre of mass, velocity and angular velocity at the first sample, in its own stated deviations.
-pub(super) fn start_in_deviations(estimate: &ContactEstimate, truth: &Instant) -> f64 {
-    let (state, deviations) = (estimate.states[0], estimate.deviations[0]);
-    let errors = [state.p_WCm - truth.touch.p_WCm, state.v_WCm - truth.rates.v_WCm, state.w_WO - truth.w_WO];
-    errors.iter().zip(deviations).map(|(error, of)| (error.abs() / of).max_element()).fold(0.0, f64::max)
-}
-
 /// Largest error of the centre of mass over the log, m.
 pub(super) fn centre_error(estimate: &ContactEstimate, simulation: &Simulation) -> f64 {
     let pairs = estimate.states.iter().zip(&simulation.instants);
     pairs.map(|(state, now)| state.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max)
-}
-
-/// Why not to believe an estimate from contacts at the first sample, if there is a reason.
-pub(super) fn doubt(estimate: &ContactEstimate) -> Option<String> {
-    let there = || (!estimate.relied_on[0]).then(|| "the first sample is not relied on".to_owned());
-    warning(&estimate.reliability).or_else(there)
-}
-
-/// The first reason not to believe an estimate, if there is one.
-pub(super) fn warning(reliability: &Reliability) -> Option<String> {
-    match reliability {
-        Reliability::Reliable => None,
-        Reliability::Unreliable(reasons) => {
-            Some(reasons.first().map_or_else(String::new, ToString::to_string))
-        }
-    }
 }

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
-const SEEDS: u64 = 4;
+const SEEDS: u64 = 1;
 const FIRST: u64 = 20_000;
 /// Longest time of a run, s: beyond it, it is counted as a crash.
 const LONGEST: f64 = 120.0;

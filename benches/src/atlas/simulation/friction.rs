@@ -17,7 +17,7 @@ pub(in super::super) const METHOD: Method = Method {
         use Way::*;
         &[Parallel, Flat, Steep, Sphere, Revolution, Relative, Drop, Slow, Friction, Shaking, Long, Switches, Size, Tolerance]
     },
-    seeds: 1,
+    seeds: 8,
     run,
 };
 

@@ -18,7 +18,7 @@ pub(in super::super) const METHOD: Method = Method {
         use Way::*;
         &[Parallel, Flat, Steep, Sphere, Revolution, Pole, Relative, Force, Slow, Rate, Shaking, Long, Size, Tolerance]
     },
-    seeds: 3,
+    seeds: 30,
     run,
 };
 

@@ -4,9 +4,10 @@ use super::super::judged::Ran;
 use super::super::{DEVIATIONS, Failure, G, Method, Way};
 use super::contacts::{self, LoggedMotion};
 use super::scene::{Motion, Spec, state};
-use super::{WAYS, WAYS_OF_KNOWN, in_deviations, worse};
+use super::{WAYS, WAYS_OF_KNOWN, in_deviations, lost, worse};
 use glam::DVec3;
-use recon::object_dynamics::{BodyState, ContactLog};
+use recon::contact_kinematics::Direction;
+use recon::object_dynamics::{BodyState, ContactLog, ContactLogError, ForceChannel, PalmHinge};
 use recon::observer::{
     ContactEstimate, ContactNoiseLevel, ContactOptions, Reliability, estimate_contacts,
 };
@@ -38,6 +39,9 @@ fn run(way: Way, strength: f64, seed: u64, known: bool) -> Result<Ran, Failure> 
     if let Way::Drop | Way::Friction | Way::Switches = way {
         return Ok(of_contacts(&contacts::logged((way, strength), None, seed)?, known));
     }
+    if let Way::Loss | Way::Held = way {
+        return lost::run(strength, way == Way::Held, known, seed);
+    }
     of_spec(Spec::of(way, strength), seed, known)
 }
 
@@ -51,23 +55,43 @@ fn of_contacts(of: &LoggedMotion, known: bool) -> Ran {
     let options =
         ContactOptions { friction: *friction, body: known.then_some(*mass), ..options(*noise, *size, log) };
     let own = |t: f64| log.times().iter().position(|at| *at == t).and_then(|k| truth.get(k).copied());
-    judged(log, &options, (mass.mass(), *size), own)
+    judged(log, &options, (mass.mass(), *size, false), own)
 }
 
 /// Of three palms without friction.
 pub(in super::super) fn of_spec(of: Spec, seed: u64, known: bool) -> Result<Ran, Failure> {
     let motion = Motion::drawn(of, seed)?;
     let (log, noise) = motion.log()?;
-    let log = match ContactLog::try_from(&log) {
+    let log = ContactLog::try_from(&log).and_then(|log| if of.by_torques { by_torques(&log) } else { Ok(log) });
+    let log = match log {
         Ok(log) => log,
         Err(error) => return Ok(Ran::refused(&error)),
     };
-    let options = ContactOptions {
+    let mut options = ContactOptions {
         friction: Some(0.0),
         body: known.then(|| motion.told()),
         ..options(noise, of.size, &log)
     };
-    Ok(judged(&log, &options, (motion.scene.mass.mass(), of.size), |t| motion.at(t).map(state)))
+    if of.by_torques {
+        // What noise of torques makes of forces hangs on the levers: it is read off the forces, as the command does.
+        options.noise = ContactNoiseLevel::by_roughness(&log, options.noise.floor, false);
+    }
+    Ok(judged(&log, &options, (motion.scene.mass.mass(), of.size, noise[0] == 0.0), |t| motion.at(t).map(state)))
+}
+
+/// With normal forces from the torques of palms that turn about a level axis through the origin.
+fn by_torques(log: &ContactLog) -> Result<ContactLog, ContactLogError> {
+    let mut records = log.records();
+    for (record, palm) in records.iter_mut().zip(log.palms()) {
+        let axis = Direction::new_unchecked(palm.motion(0).pose.R_WP * DVec3::X);
+        record.hinge = Some(PalmHinge { pivot: DVec3::ZERO, axis, inertia: 0.0 });
+    }
+    let hinged = ContactLog::new(log.times().to_vec(), records.clone(), None)?;
+    for (i, record) in records.iter_mut().enumerate() {
+        let forces = hinged.forces_of_torque(i)?;
+        record.force = ForceChannel::Normal(forces.into_iter().map(Option::unwrap_or_default).collect());
+    }
+    ContactLog::new(log.times().to_vec(), records, None)
 }
 
 /// Of contacts (m) and forces (N) with so much noise.
@@ -81,14 +105,13 @@ fn options([contact, force_fixed]: [f64; 2], size: f64, log: &ContactLog) -> Con
 fn judged(
     log: &ContactLog,
     options: &ContactOptions,
-    (mass, size): (f64, f64),
+    (mass, size, exact): (f64, f64, bool),
     truth: impl Fn(f64) -> Option<BodyState>,
 ) -> Ran {
     let found = match estimate_contacts(log, None, options) {
         Ok(found) => found,
         Err(error) => return Ran::refused(&error),
     };
-    let exact = options.noise.contact == 0.0;
     let mut off = if options.body.is_some() || exact { 0.0 } else { of_mass(&found, mass) };
     for (k, t) in log.times().iter().enumerate().filter(|(k, _)| found.relied_on[*k]) {
         let Some(truth) = truth(*t) else { continue };
@@ -109,7 +132,8 @@ fn of_mass(found: &ContactEstimate, mass: f64) -> f64 {
     (found.mass / mass).ln().abs() / found.mass_deviation / DEVIATIONS
 }
 
-fn doubt(found: &ContactEstimate) -> Option<String> {
+/// Why it says not to rely on it.
+pub(super) fn doubt(found: &ContactEstimate) -> Option<String> {
     match &found.reliability {
         Reliability::Unreliable(reasons) => {
             Some(reasons.first().map_or_else(|| "not relied on".to_owned(), ToString::to_string))

@@ -3,6 +3,7 @@
 mod contacts;
 pub(super) use contacts::Rubbed;
 mod estimate;
+mod lost;
 mod paper;
 pub(super) mod scene;
 mod stream;
@@ -20,7 +21,7 @@ use recon::object_dynamics::BodyState;
 const WAYS: &[super::Way] = {
     use super::Way::*;
     &[
-        Parallel, Flat, Steep, Sphere, Revolution, Pole, Relative, Force, Drop, Hinge, Slow, Window, Noise, Unstated, Bias, Gain,
+        Parallel, Flat, Steep, Sphere, Revolution, Pole, Relative, Force, Drop, Loss, Held, Hinge, Slow, Window, Noise, Unstated, Bias, Gain,
         Delay, Correlation, Taxels, Outliers, Gap, Dropped, Rate, Palm, Friction, Shaking, Long, Switches, Size,
     ]
 };
@@ -29,7 +30,7 @@ const WAYS: &[super::Way] = {
 const WAYS_OF_KNOWN: &[super::Way] = {
     use super::Way::*;
     &[
-        Parallel, Flat, Steep, Sphere, Revolution, Pole, Relative, Force, Drop, Hinge, Slow, Window, Noise, Unstated, Bias, Gain,
+        Parallel, Flat, Steep, Sphere, Revolution, Pole, Relative, Force, Drop, Loss, Held, Hinge, Slow, Window, Noise, Unstated, Bias, Gain,
         Delay, Correlation, Taxels, Outliers, Gap, Dropped, Rate, Mass, Inertia, Palm, Friction, Shaking, Long, Switches, Size,
     ]
 };

@@ -26,7 +26,7 @@ pub(in super::super) const METHOD: Method = Method {
             Shaking, Long, Size,
         ]
     },
-    seeds: 2,
+    seeds: 30,
     run,
 };
 

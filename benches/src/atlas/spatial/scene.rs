@@ -13,7 +13,7 @@ use recon_tests::Random;
 use std::f64::consts::TAU;
 
 /// Bodies that are tried for one that stays on its palms over the whole log.
-const TRIED: u64 = 8;
+const TRIED: u64 = 12;
 const TOLERANCE: f64 = 1e-11;
 
 /// What a scene is drawn from. Times and rates are natural ones, of the mean semi-axis.
@@ -63,7 +63,7 @@ impl Spec {
             lowest: false,
             pole: None,
             lasts: 10.0,
-            rate: 14.0,
+            rate: 10.0,
             may_end: false,
             noise: [1e-3, 3e-3],
             unstated: 1.0,
@@ -75,9 +75,9 @@ impl Spec {
         let faulty = |fault| Self { fault: Some(fault), ..base };
         let degrees = strength.to_radians();
         match way {
-            Way::Parallel => Self { azimuths: [0.0, 0.5 * (TAU - degrees), 0.5 * (TAU + degrees)], ..base },
-            Way::Flat | Way::Steep => Self { slope: Some(degrees), ..base },
-            Way::Hinge => Self { slope: Some(degrees), by_torques: true, ..base },
+            Way::Parallel => Self { lowest: true, azimuths: [0.0, 0.5 * (TAU - degrees), 0.5 * (TAU + degrees)], ..base },
+            Way::Flat | Way::Steep => Self { slope: Some(degrees), lowest: true, ..base },
+            Way::Hinge => Self { slope: Some(degrees), by_torques: true, lowest: true, ..base },
             Way::Sphere => Self { uniform: true, axes: Some(DVec3::new(1.0, 1.0 + strength, 1.0 + 2.0 * strength)), ..base },
             Way::Revolution => Self { uniform: true, axes: Some(DVec3::new(1.0, 1.0 + strength, 2.0)), ..base },
             Way::Pole => Self { pole: Some(strength), ..base },
@@ -94,7 +94,7 @@ impl Spec {
             Way::Taxels => faulty(Fault::Taxels(strength)),
             Way::Outliers => faulty(Fault::Outliers(strength)),
             Way::Gap => Self { lasts: 12.0, ..faulty(Fault::Gap(strength * natural)) },
-            Way::Dropped => Self { rate: 28.0, ..faulty(Fault::Dropped(strength)) },
+            Way::Dropped => Self { rate: 20.0, ..faulty(Fault::Dropped(strength)) },
             Way::Mass => faulty(Fault::Mass(strength)),
             Way::Inertia => faulty(Fault::Inertia(strength)),
             Way::Palm => faulty(Fault::Turned(strength)),

@@ -27,7 +27,7 @@ pub(in super::super) const METHOD: Method = Method {
 fn run(way: Way, strength: f64, seed: u64) -> Result<Ran, Failure> {
     let of = Spec::of(way, strength);
     // A motion is stated after some seven natural times: other ways than that of the window have some after it.
-    let lasts = if way == Way::Window { of.lasts } else { of.lasts.max(16.0) };
+    let lasts = if way == Way::Window { of.lasts } else { of.lasts.max(13.0) };
     let of = Spec { lasts, ..of };
     let motion = Motion::drawn(of, seed)?;
     let (log, [contact, force_fixed]) = motion.log()?;

@@ -1,6 +1,5 @@
-//! Random scenes of three palms that swing.
+//! Random scenes of three palms that swing, followed sample by sample at the pace of a robot.
 
-use super::Failure;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, MotionLaw, Palm};
 use recon::object_dynamics::integrate::Tolerance;
@@ -9,7 +8,13 @@ use recon::object_dynamics::{
 };
 use recon::observer::{ContactNoiseLevel, ContactOptions, MotionStream, PlaneReadings, StreamOptions};
 use recon_tests::Random;
+use cpu_time::ProcessTime;
+use recon::observer::StreamEstimate;
 use std::f64::consts::TAU;
+use std::thread::sleep;
+use std::time::Duration;
+
+type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 const GRAVITY: f64 = 9.81;
 const MASS: f64 = 1.3;
@@ -20,29 +25,43 @@ const TRIED: u64 = 20;
 /// What conditions are off by beside noise, as a share of the natural speed.
 const FLOOR: f64 = 3e-5;
 
-pub(super) struct Case {
-    pub(super) truth: Vec<Instant>,
-    pub(super) samples: Vec<Sample>,
-    pub(super) natural: f64,
+/// A noisy log with its truth.
+pub struct Case {
+    /// At each sample.
+    pub truth: Vec<Instant>,
+    /// As measured.
+    pub samples: Vec<Sample>,
+    /// Natural time, s.
+    pub natural: f64,
     mass: MassProperties,
     noise: ContactNoiseLevel,
     rate: f64,
 }
 
 impl Case {
-    pub(super) fn start(&self) -> f64 {
+    /// Time of the first sample, s.
+    #[must_use]
+    pub fn start(&self) -> f64 {
         self.samples.first().map_or(0.0, |sample| sample.t)
     }
 
-    pub(super) fn stream(&self, known: bool) -> Result<MotionStream, Failure> {
+    /// A stream for it, of a body that is known or not.
+    ///
+    /// # Errors
+    /// None: its options are usable.
+    pub fn stream(&self, known: bool) -> Result<MotionStream, Failure> {
         let body = known.then_some(self.mass);
         let contacts = ContactOptions { body, ..ContactOptions::new(self.noise, GRAVITY) };
         Ok(MotionStream::new(PlaneReadings::palms(), StreamOptions { contacts, sample_rate: self.rate })?)
     }
 }
 
-/// So many of a size (m), of sensors of a quality in per cent, as far as there are.
-pub(super) fn some(
+/// So many of a size (m), of sensors of a quality (noise of contacts as a share of the size, of forces as one of what a palm carries, per cent), as far
+/// as there are, of so many seconds or natural times at most.
+///
+/// # Errors
+/// Those of scenes that are none.
+pub fn some(
     count: usize,
     seed: u64,
     size: f64,
@@ -104,4 +123,40 @@ fn one(
     let floor = FLOOR * size / natural;
     let noise = ContactNoiseLevel { contact, force_fixed: force, force_share: 0.0, impulse: None, floor };
     Ok(Some(Case { truth: run.instants, samples: noisy.samples().to_vec(), natural, mass, noise, rate }))
+}
+
+/// What came of a stream whose samples were pushed when their time had come.
+pub struct Paced {
+    /// Wall time of each push, microseconds.
+    pub microseconds: Vec<f64>,
+    /// Processor time of both threads over wall time.
+    pub cores: f64,
+    /// Estimates with the numbers of their samples.
+    pub estimates: Vec<(usize, StreamEstimate)>,
+}
+
+/// Follows a case at its own pace.
+///
+/// # Errors
+/// What the stream refuses.
+pub fn paced(case: &Case, known: bool) -> Result<Paced, Failure> {
+    let mut stream = case.stream(known)?;
+    let mut readings = PlaneReadings::new(None);
+    let mut microseconds = Vec::with_capacity(case.samples.len());
+    let mut estimates = Vec::with_capacity(case.samples.len());
+    let (clock, processor) = (std::time::Instant::now(), ProcessTime::now());
+    for (k, sample) in case.samples.iter().enumerate() {
+        let due = Duration::from_secs_f64((sample.t - case.start()).max(0.0));
+        if let Some(early) = due.checked_sub(clock.elapsed()) {
+            sleep(early);
+        }
+        let begun = std::time::Instant::now();
+        if let Some((t, sensed)) = readings.push(sample)? {
+            let estimate = stream.push(t, &sensed)?;
+            microseconds.push(1e6 * begun.elapsed().as_secs_f64());
+            estimates.push((k.saturating_sub(1), estimate));
+        }
+    }
+    let cores = processor.elapsed().as_secs_f64() / clock.elapsed().as_secs_f64();
+    Ok(Paced { microseconds, cores, estimates })
 }
