@@ -45,7 +45,12 @@ impl Departures {
     }
 }
 
-fn of_contact(scene: &ContactScene<Ellipsoid>, now: &ContactInstant, i: usize, mode: ContactMode) -> Departures {
+fn of_contact(
+    scene: &ContactScene<Ellipsoid>,
+    now: &ContactInstant,
+    i: usize,
+    mode: ContactMode,
+) -> Departures {
     let (contact, force) = (&now.contacts[i], now.forces[i]);
     let normal = contact.n.dot(force);
     let cone = contact.in_tangent(force).length() - scene.palms()[i].friction * normal;

@@ -43,7 +43,8 @@ pub mod charts;
 mod self_check;
 
 pub use diagram::{
-    Axis, ChartError, Diagram, Goal, Method, Outcome, Outlines, Point, Scale, Stroke, WorkPrecision, WrittenChart,
+    Axis, ChartError, Diagram, Goal, Method, Outcome, Outlines, Point, Scale, Stroke, WorkPrecision,
+    WrittenChart,
 };
 pub use machine::machine_line;
 pub use timing::{Budget, SideBySide, Study, Timing};

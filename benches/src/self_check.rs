@@ -3,9 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{
-    Axis, Budget, ChartError, Diagram, Method, Outcome, Study, WorkPrecision, WrittenChart,
-};
+use crate::{Axis, Budget, ChartError, Diagram, Method, Outcome, Study, WorkPrecision, WrittenChart};
 
 /// A folder that is gone at the end of the test; `RECON_KEEP_CHARTS=FOLDER` keeps the files for a look.
 struct Folder(PathBuf, bool);
@@ -127,7 +125,9 @@ fn the_same_figures_give_the_same_files() {
     let folder = Folder::new("same");
     let invented = Method::new("random").point("10", 0.1, 3.0).point("20", 0.01, 7.0).point("40", 0.0, 9.0);
     let other = (0..12).fold(Method::new("other"), |m, k| m.point("n", 0.5_f64.powi(k), f64::from(k + 1)));
-    let chart = || WorkPrecision::new("same", "Twice").methods([invented.clone(), other.clone()]).goal("goal", 0.1, 3.0);
+    let chart = || {
+        WorkPrecision::new("same", "Twice").methods([invented.clone(), other.clone()]).goal("goal", 0.1, 3.0)
+    };
     let save = |name: &str| Diagram::from(chart()).save(&folder.0.join(name)).expect("it can be written");
     let (once, twice) = (save("once"), save("twice"));
     assert_written(&once);

@@ -1,15 +1,15 @@
 //! Random scenes of three palms that swing, followed sample by sample at the pace of a robot.
 
+use cpu_time::ProcessTime;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, MotionLaw, Palm};
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, Instant, MassProperties, Sample, SampleTimes, SensorNoise, ThreePalmScene,
 };
+use recon::observer::StreamEstimate;
 use recon::observer::{ContactNoiseLevel, ContactOptions, MotionStream, PlaneReadings, StreamOptions};
 use recon_tests::Random;
-use cpu_time::ProcessTime;
-use recon::observer::StreamEstimate;
 use std::f64::consts::TAU;
 use std::thread::sleep;
 use std::time::Duration;

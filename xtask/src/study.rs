@@ -14,7 +14,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "assumptions.md",
         "what contradicts a log: false alarms of the score tests, and which assumption is named",
     ),
-    ("atlas", "atlas.md", "every method along every way of failing: right, reported, wrong without a warning"),
+    (
+        "atlas",
+        "atlas.md",
+        "every method along every way of failing: right, reported, wrong without a warning",
+    ),
     ("bounds_corners", "charts/bounds/corners.csv", "corners of half-spaces against rational arithmetic"),
     ("bounds_curvature", "charts/bounds/curvature.csv", "bounds from limits on the radii of curvature"),
     ("bounds_fuzz", "charts/bounds/fuzz.csv", "the hull on every kind of input, judged by exact predicates"),
@@ -148,7 +152,8 @@ const STUDIES: &[(&str, &str, &str)] = &[
 /// The atlas of failures, all of it or in parts: what came of its runs is kept while it is made, so that one that was broken off goes on where it
 /// was. `--smoke` makes few runs and writes nothing, nor does `one`.
 pub(crate) fn atlas(words: impl Iterator<Item = String>) -> ExitCode {
-    let words: Vec<String> = words.map(|word| if word == "--smoke" { "smoke".to_owned() } else { word }).collect();
+    let words: Vec<String> =
+        words.map(|word| if word == "--smoke" { "smoke".to_owned() } else { word }).collect();
     let first = words.first().map(String::as_str);
     if first == Some("smoke") || first == Some("one") {
         let mut command = cargo("run --release --quiet --package recon-benches --bin study -- atlas");

@@ -23,6 +23,7 @@ pub(super) const STATED: Method = Method {
         &[Sphere, Revolution, Noise, Unstated, Correlation, Outliers, Size, Contacts, Cone]
     },
     seeds: 30,
+    every: 1,
     run: stated,
 };
 
@@ -34,6 +35,7 @@ pub(super) const CURVED: Method = Method {
         &[Sphere, Revolution, Noise, Unstated, Size, Contacts, Cone, Limit]
     },
     seeds: 30,
+    every: 1,
     run: curved,
 };
 

@@ -22,6 +22,7 @@ pub(super) const METHOD: Method = Method {
         &[Sphere, Revolution, Noise, Unstated, Correlation, Outliers, Size, Contacts, Cone, Family]
     },
     seeds: 30,
+    every: 1,
     run,
 };
 

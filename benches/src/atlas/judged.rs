@@ -158,7 +158,8 @@ mod tests {
 
     #[test]
     fn a_run_reads_back_to_the_last_bit() {
-        let run = Run { outcome: Outcome::Silent, off: 1.0 / 3.0, why: "a, \"b\"".to_owned(), milliseconds: 0.1 };
+        let run =
+            Run { outcome: Outcome::Silent, off: 1.0 / 3.0, why: "a, \"b\"".to_owned(), milliseconds: 0.1 };
         let mut cells = Vec::new();
         run.write(&mut cells);
         assert_eq!(Run::of_row(&cells), Some(run));

@@ -42,6 +42,8 @@ pub struct Method {
     pub ways: &'static [Way],
     /// Seeds at each strength, for each that is asked for: cheap methods have more.
     pub seeds: u64,
+    /// Of the strengths of a way every one, or the second, fourth and so on: dear methods have fewer.
+    pub every: usize,
     run: fn(Way, f64, u64) -> Result<Ran, Failure>,
 }
 
@@ -64,9 +66,51 @@ pub const METHODS: &[Method] = &[
 ];
 
 impl Method {
+    /// Its strengths of a way.
+    #[must_use]
+    pub fn strengths(&self, way: Way) -> Vec<f64> {
+        way.strengths().iter().skip(self.every - 1).step_by(self.every).copied().collect()
+    }
+
     /// One run, whatever becomes of it.
     #[must_use]
     pub fn run(&self, way: Way, strength: f64, seed: u64) -> Run {
         judged::caught(|| (self.run)(way, strength, seed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The harmless end of the ways of all methods that cost milliseconds: each is right somewhere, and none crashes.
+    #[test]
+    fn cheap_methods_are_right_where_their_ways_are_harmless() {
+        let cheap = [
+            &simulation::THREE_PALMS,
+            &simulation::PLANAR,
+            &bounds::CURVED,
+            &fits::METHOD,
+            &modes::METHOD,
+            &spatial::PAPER,
+        ];
+        for method in cheap {
+            let runs = method.ways.iter().map(|way| method.run(*way, way.strengths()[1], 3));
+            let runs: Vec<Run> = runs.collect();
+            assert!(runs.iter().all(|run| run.outcome != Outcome::Crash), "{}: {runs:?}", method.name);
+            let right = runs.iter().filter(|run| run.outcome == Outcome::Right).count();
+            assert!(2 * right > runs.len(), "{}: {runs:?}", method.name);
+        }
+    }
+
+    /// A run is of its method, way, strength and seed alone: what is kept of it is what it would be again.
+    #[test]
+    fn the_same_run_comes_to_the_same() {
+        let again = || fits::METHOD.run(Way::Cone, 60.0, 11);
+        let (once, twice) = (again(), again());
+        assert_eq!(
+            (once.outcome, once.off.to_bits(), once.why),
+            (twice.outcome, twice.off.to_bits(), twice.why)
+        );
     }
 }

@@ -22,6 +22,7 @@ pub(super) const METHOD: Method = Method {
         &[Unstated, Bias, Gain, Delay, Correlation, Gap, Dropped, Coefficient, Friction]
     },
     seeds: 30,
+    every: 1,
     run,
 };
 

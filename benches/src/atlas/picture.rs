@@ -31,12 +31,22 @@ pub fn picture(method: &Method, rows: &[Vec<Counts>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = LABEL + columns as f64 * (CELL[0] + GAP) + 20.0;
     let height = TOP + rows.len() as f64 * (CELL[1] + GAP) + 16.0;
-    let mut svg = head(width, height, method.name, "ways of failing downwards, strength to the right; figures in the cells: strength");
+    let mut svg = head(
+        width,
+        height,
+        method.name,
+        "ways of failing downwards, strength to the right; figures in the cells: strength",
+    );
     for (i, (way, counts)) in method.ways.iter().zip(rows).enumerate() {
         let y = TOP + i as f64 * (CELL[1] + GAP);
         let words = format!("{}, {}", way.words(), way.unit()).replace(", 1", "");
-        let _ = write!(svg, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\" font-size=\"11\">{words}</text>", LABEL - 8.0, y + 16.0);
-        for (k, (strength, counts)) in way.strengths().iter().zip(counts).enumerate() {
+        let _ = write!(
+            svg,
+            "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\" font-size=\"11\">{words}</text>",
+            LABEL - 8.0,
+            y + 16.0
+        );
+        for (k, (strength, counts)) in method.strengths(*way).iter().zip(counts).enumerate() {
             let title = format!("{} {} {}", way.words(), short(*strength), way.unit());
             cell(&mut svg, [LABEL + k as f64 * (CELL[0] + GAP), y], counts, &title, &short(*strength));
         }
@@ -50,13 +60,20 @@ pub fn map_picture(map: &Map, rows: &[Vec<Counts>]) -> String {
     let (right, up) = (map.right, map.up);
     let width = LABEL * 0.4 + right.2.len() as f64 * (CELL[0] + GAP) + 20.0;
     let height = TOP + up.2.len() as f64 * (CELL[1] + GAP) + 60.0;
-    let axes = format!("upwards: {}, {}; to the right: {}, {}", up.0, up.1, right.0, right.1).replace(", 1;", ";");
+    let axes =
+        format!("upwards: {}, {}; to the right: {}, {}", up.0, up.1, right.0, right.1).replace(", 1;", ";");
     let axes = axes.strip_suffix(", 1").unwrap_or(&axes).to_owned();
     let mut svg = head(width.max(820.0), height, map.name, &axes);
     for (i, (value, counts)) in up.2.iter().zip(rows).enumerate() {
         let y = TOP + (up.2.len() - 1 - i) as f64 * (CELL[1] + GAP);
         let x = 0.4 * LABEL;
-        let _ = write!(svg, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\" font-size=\"11\">{}</text>", x - 8.0, y + 16.0, short(*value));
+        let _ = write!(
+            svg,
+            "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\" font-size=\"11\">{}</text>",
+            x - 8.0,
+            y + 16.0,
+            short(*value)
+        );
         for (k, (at, counts)) in right.2.iter().zip(counts).enumerate() {
             let title = format!("{} {}, {} {}", right.0, short(*at), up.0, short(*value));
             cell(&mut svg, [x + k as f64 * (CELL[0] + GAP), y], counts, &title, "");
@@ -65,7 +82,11 @@ pub fn map_picture(map: &Map, rows: &[Vec<Counts>]) -> String {
     let y = TOP + up.2.len() as f64 * (CELL[1] + GAP) + 14.0;
     for (k, at) in right.2.iter().enumerate() {
         let x = 0.4 * LABEL + (k as f64 + 0.5) * (CELL[0] + GAP);
-        let _ = write!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" font-size=\"11\">{}</text>", short(*at));
+        let _ = write!(
+            svg,
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" font-size=\"11\">{}</text>",
+            short(*at)
+        );
     }
     svg + "</svg>\n"
 }
@@ -104,17 +125,30 @@ fn cell(svg: &mut String, [x, y]: [f64; 2], counts: &Counts, title: &str, label:
     let mut from = x;
     for (outcome, n) in Outcome::ALL.into_iter().zip(counts.of).filter(|(_, n)| *n > 0) {
         let share = width * n as f64 / all as f64;
-        let _ = write!(svg, "<rect class=\"{}\" x=\"{from:.1}\" y=\"{y:.1}\" width=\"{share:.1}\" height=\"{height:.0}\"/>", class(outcome));
+        let _ = write!(
+            svg,
+            "<rect class=\"{}\" x=\"{from:.1}\" y=\"{y:.1}\" width=\"{share:.1}\" height=\"{height:.0}\"/>",
+            class(outcome)
+        );
         from += share;
     }
     if counts.count(Outcome::Silent) + counts.count(Outcome::Crash) > 0 {
-        let _ = write!(svg, "<rect class=\"ring\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.0}\" height=\"{height:.0}\"/>");
+        let _ = write!(
+            svg,
+            "<rect class=\"ring\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.0}\" height=\"{height:.0}\"/>"
+        );
     }
     if !label.is_empty() {
         // The middle of the cell decides which ink is seen on it.
-        let bright = in_the_middle(counts).is_none_or(|of| matches!(of, Outcome::Reported | Outcome::Error | Outcome::NoScene));
+        let bright = in_the_middle(counts)
+            .is_none_or(|of| matches!(of, Outcome::Reported | Outcome::Error | Outcome::NoScene));
         let ink = if bright { "dark" } else { "in" };
-        let _ = write!(svg, "<text class=\"{ink}\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>", x + 0.5 * width, y + 16.0);
+        let _ = write!(
+            svg,
+            "<text class=\"{ink}\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
+            x + 0.5 * width,
+            y + 16.0
+        );
     }
     svg.push_str("</g>");
 }

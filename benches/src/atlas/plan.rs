@@ -16,10 +16,10 @@ pub struct Map {
     run: fn([f64; 2], u64) -> Result<Ran, Failure>,
 }
 
-const WINDOWS: &[f64] = &[0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 12.0, 16.0];
-const NOISES: &[f64] = &[1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1];
-const FRICTIONS: &[f64] = &[1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3];
-const DEPARTURES: &[f64] = &[0.0, 1e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+const WINDOWS: &[f64] = &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 12.0];
+const NOISES: &[f64] = &[1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1];
+const FRICTIONS: &[f64] = &[3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3];
+const DEPARTURES: &[f64] = &[0.0, 0.01, 0.03, 0.1, 0.2, 0.5];
 
 fn window([lasts, noise]: [f64; 2]) -> Spec {
     Spec { noise: [noise, 3.0 * noise], ..Spec::of(Way::Window, lasts) }
@@ -108,7 +108,7 @@ pub fn spots() -> Vec<Spot> {
     let mut all = Vec::new();
     for method in METHODS {
         for way in method.ways {
-            all.extend(way.strengths().iter().map(|strength| Spot::Cell(method, *way, *strength)));
+            all.extend(method.strengths(*way).into_iter().map(|strength| Spot::Cell(method, *way, strength)));
         }
     }
     for map in MAPS {

@@ -29,13 +29,26 @@ pub fn counts_csv(spots: &[Spot], counts: &[Counts]) -> String {
 pub fn page(spots: &[Spot], counts: &[Counts]) -> String {
     let mut text = totals(spots, counts);
     for method in METHODS {
-        let own: Vec<(&Spot, &Counts)> =
-            spots.iter().zip(counts).filter(|(spot, _)| matches!(spot, Spot::Cell(of, ..) if of.name == method.name)).collect();
+        let own: Vec<(&Spot, &Counts)> = spots
+            .iter()
+            .zip(counts)
+            .filter(|(spot, _)| matches!(spot, Spot::Cell(of, ..) if of.name == method.name))
+            .collect();
         if own.is_empty() {
             continue;
         }
-        let _ = writeln!(text, "\n## {}\n\n{}.\n\n![{}](atlas/{}.svg)\n", capital(method.name), capital(method.about), method.name, stem(method.name));
-        let _ = writeln!(text, "| way | right at | half and more right up to | then | median ms |\n|---|---|---|---|---|");
+        let _ = writeln!(
+            text,
+            "\n## {}\n\n{}.\n\n![{}](atlas/{}.svg)\n",
+            capital(method.name),
+            capital(method.about),
+            method.name,
+            stem(method.name)
+        );
+        let _ = writeln!(
+            text,
+            "| way | right at | half and more right up to | then | median ms |\n|---|---|---|---|---|"
+        );
         for way in method.ways {
             let cells: Vec<(f64, &Counts)> = own
                 .iter()
@@ -47,7 +60,10 @@ pub fn page(spots: &[Spot], counts: &[Counts]) -> String {
             let _ = writeln!(text, "{}", boundary(way.words(), way.unit(), &cells));
         }
     }
-    let maps: Vec<&str> = spots.iter().filter_map(|spot| if let Spot::Place(map, _) = spot { Some(map.name) } else { None }).collect();
+    let maps: Vec<&str> = spots
+        .iter()
+        .filter_map(|spot| if let Spot::Place(map, _) = spot { Some(map.name) } else { None })
+        .collect();
     if !maps.is_empty() {
         text.push_str("\n## Two causes\n");
     }
@@ -124,7 +140,12 @@ fn wrong(spots: &[Spot], counts: &[Counts]) -> String {
         for (seed, off, words) in &counts.bad {
             let command = match spot {
                 Spot::Cell(method, way, strength) => {
-                    format!("cargo xtask atlas one \"{}\" {} {} {seed}", method.name, way.word(), short(*strength))
+                    format!(
+                        "cargo xtask atlas one \"{}\" {} {} {seed}",
+                        method.name,
+                        way.word(),
+                        short(*strength)
+                    )
                 }
                 Spot::Place(map, at) => {
                     format!("cargo xtask atlas one \"{}\" {} {} {seed}", map.name, short(at[0]), short(at[1]))

@@ -43,12 +43,17 @@ fn draw(budget: Budget) -> Drawn {
         study.fallible_case("minimal coordinates, Runge-Kutta 4", setting, run, error);
     }
     let methods = study.measure(budget, DURATION);
-    let mut chart = WorkPrecision::new("fig5-simulation", "Simulation of the paper's Fig. 5: cost against error")
-        .subtitle("largest pose error (m, rad) over 4.2 s, every 0.2 s, against the exact motion; points: tolerance or step")
-        .axes(Axis::log("pose error", "m, rad"), Axis::log("cost", "ms per simulated second"))
-        .methods(methods);
+    let mut chart = WorkPrecision::new(
+        "fig5-simulation",
+        "Simulation of the paper's Fig. 5: cost against error",
+    )
+    .subtitle(
+        "largest pose error (m, rad) over 4.2 s, every 0.2 s, exact to 16 digits; points: tolerance or step",
+    )
+    .axes(Axis::log("pose error", "m, rad"), Axis::log("cost", "ms per simulated second"))
+    .methods(methods);
     // Our own settings of MuJoCo, and those of the logs' maker beside them: neither should look worse than it can.
-    chart = chart.methods(mujoco::measure(&exact)).method(recorded_mujoco());
+    chart = chart.method(mujoco::measure(&exact)).method(recorded_mujoco());
     let chart = chart
         .method(
             Method::recorded("Drake 1.51", "the log's README")

@@ -14,8 +14,16 @@ const OF_STUDIES: &[(&str, &str)] = &[
     ("pushes", "pushes"),
 ];
 
+/// Titles of diagrams that have none in the picture.
+const TITLES: &[(&str, &str)] = &[
+    ("nonsmooth", "Corners, edges and faces told from contacts"),
+    ("planar-observability", "Observability in the plane, along S1 to S4"),
+    ("pushes", "Friction and outlines from pushes"),
+];
+
 /// Charts of several diagrams, by the stems of these.
-const OF_CHARTS: &[(&str, &str)] = &[("reaching-", "reaching"), ("rolling-", "rolling"), ("streaming-", "streaming"), ("bounds-", "bounds")];
+const OF_CHARTS: &[(&str, &str)] =
+    &[("reaching-", "reaching"), ("rolling-", "rolling"), ("streaming-", "streaming"), ("bounds-", "bounds")];
 
 /// Rows of a table that are shown.
 const MOST_ROWS: usize = 200;
@@ -34,7 +42,9 @@ nav a{display:inline-block;margin:0 .9rem .2rem 0}\
 /// A folder or file that cannot be read or written.
 pub fn write_page(folder: &Path) -> std::io::Result<usize> {
     let mut stems: Vec<String> = fs::read_dir(folder)?
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok()?.strip_suffix(".svg").map(str::to_owned))
+        .filter_map(|entry| {
+            entry.ok()?.file_name().into_string().ok()?.strip_suffix(".svg").map(str::to_owned)
+        })
         .collect();
     stems.sort();
     let mut page = format!(
@@ -47,7 +57,8 @@ pub fn write_page(folder: &Path) -> std::io::Result<usize> {
     for stem in &stems {
         let svg = fs::read_to_string(folder.join(format!("{stem}.svg")))?;
         let csv = fs::read_to_string(folder.join(format!("{stem}.csv"))).unwrap_or_default();
-        let title = title(&svg).unwrap_or_else(|| stem.replace('-', " "));
+        let known = TITLES.iter().find(|(of, _)| of == stem).map(|(_, title)| (*title).to_owned());
+        let title = known.or_else(|| title(&svg)).unwrap_or_else(|| stem.replace('-', " "));
         let _ = write!(page, "<a href=\"#{stem}\">{}</a>", escaped(&title));
         bodies += &section(stem, &title, &svg, &csv, &commit(folder, stem));
     }
@@ -60,7 +71,8 @@ fn section(stem: &str, title: &str, svg: &str, csv: &str, commit: &str) -> Strin
     let rows: Vec<Vec<String>> = csv.lines().map(cells).collect();
     let (head, rows) = rows.split_first().map_or((&[][..], &[][..]), |(head, rows)| (head.as_slice(), rows));
     let origin = head.iter().position(|name| name == "origin");
-    let mut machines: Vec<&str> = rows.iter().filter_map(|row| row.get(origin?).map(String::as_str)).collect();
+    let mut machines: Vec<&str> =
+        rows.iter().filter_map(|row| row.get(origin?).map(String::as_str)).collect();
     machines.sort_unstable();
     machines.dedup();
     let command = command(stem);
@@ -75,7 +87,11 @@ fn section(stem: &str, title: &str, svg: &str, csv: &str, commit: &str) -> Strin
     }
     text += "</p>";
     if !rows.is_empty() {
-        let kept: Vec<usize> = (0..head.len()).filter(|k| Some(*k) != origin && rows.iter().any(|row| row.get(*k).is_some_and(|c| !c.is_empty()))).collect();
+        let kept: Vec<usize> = (0..head.len())
+            .filter(|k| {
+                Some(*k) != origin && rows.iter().any(|row| row.get(*k).is_some_and(|c| !c.is_empty()))
+            })
+            .collect();
         let row = |cells: &[String], tag: &str| {
             let cells: String = kept
                 .iter()
@@ -83,7 +99,12 @@ fn section(stem: &str, title: &str, svg: &str, csv: &str, commit: &str) -> Strin
                 .collect();
             format!("<tr>{cells}</tr>")
         };
-        let _ = write!(text, "<details><summary>{} rows</summary><div class=\"table\"><table>{}", rows.len(), row(head, "th"));
+        let _ = write!(
+            text,
+            "<details><summary>{} rows</summary><div class=\"table\"><table>{}",
+            rows.len(),
+            row(head, "th")
+        );
         rows.iter().take(MOST_ROWS).for_each(|cells| text += &row(cells, "td"));
         text += "</table></div></details>";
     }
@@ -120,7 +141,8 @@ fn title(svg: &str) -> Option<String> {
     };
     let text = svg.split("<text").skip(1).find(large)?;
     let words = text.split_once('>')?.1.split("</text>").next()?;
-    let plain: String = words.split('<').map(|part| part.split_once('>').map_or(part, |(_, rest)| rest)).collect();
+    let plain: String =
+        words.split('<').map(|part| part.split_once('>').map_or(part, |(_, rest)| rest)).collect();
     let plain = plain.trim().replace("&apos;", "'").replace("&#39;", "'").replace("&amp;", "&");
     (!plain.is_empty()).then_some(plain)
 }

@@ -6,7 +6,9 @@ use super::{Chart, Drawn};
 use crate::{Axis, Budget, Method, Outcome, Study, WorkPrecision};
 use recon::contact_kinematics::Ellipsoid;
 use recon::object_dynamics::{SensorLog, SensorNoise, Simulation, ThreePalmScene};
-use recon::observer::{ContactEstimate, PaperMethod, PaperStart, PredictorCorrector, Track, integrate_paper_system};
+use recon::observer::{
+    ContactEstimate, PaperMethod, PaperStart, PredictorCorrector, Track, integrate_paper_system,
+};
 
 pub(super) const BY_WINDOW: Chart = Chart {
     name: "reconstruction-by-window",

@@ -9,8 +9,11 @@ pub(super) const CHART: Chart =
     Chart { name: "streaming", about: "sample by sample, by rate and quality of the sensors", draw };
 
 /// Noise of contacts as a share of the size, and of forces as one of what a palm carries, per cent.
-const QUALITIES: [([f64; 2], &str); 3] =
-    [([0.01, 0.1], "0.01 % and 0.1 % noise"), ([0.1, 1.0], "0.1 % and 1 % noise"), ([1.0, 2.0], "1 % and 2 % noise")];
+const QUALITIES: [([f64; 2], &str); 3] = [
+    ([0.01, 0.1], "0.01 % and 0.1 % noise"),
+    ([0.1, 1.0], "0.1 % and 1 % noise"),
+    ([1.0, 2.0], "1 % and 2 % noise"),
+];
 const RATES: [f64; 4] = [100.0, 200.0, 500.0, 1000.0];
 /// m.
 const SIZE: f64 = 0.3;
@@ -36,7 +39,9 @@ fn draw(_: Budget) -> Drawn {
         available.push(by_rate);
     }
     let times = WorkPrecision::new("streaming-time", "Sample by sample: time against error")
-        .subtitle("body of 0.3 m, unknown, followed for 30 natural times at its own pace; points: samples a second")
+        .subtitle(
+            "body of 0.3 m, unknown, followed for 30 natural times at its own pace; points: samples a second",
+        )
         .axes(Axis::log("mean error of the centre of mass", "m"), Axis::log("time of a push, 99 %", "us"))
         .methods(errors);
     let shares = WorkPrecision::new("streaming-available", "Sample by sample: when a motion is stated")

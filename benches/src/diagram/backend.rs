@@ -176,7 +176,8 @@ fn theme() -> Theme {
 
 fn annotate(mut layout: Layout, drawing: &Drawing, frame: &Frame) -> Layout {
     for Placed { at, text } in placed(drawing, [frame.x, frame.y], [PLOT_WIDTH, PLOT_HEIGHT]) {
-        layout = layout.with_annotation(TextAnnotation::new(text.as_str(), at.0, at.1).with_font_size(NOTE_SIZE));
+        layout =
+            layout.with_annotation(TextAnnotation::new(text.as_str(), at.0, at.1).with_font_size(NOTE_SIZE));
     }
     layout
 }

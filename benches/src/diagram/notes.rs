@@ -41,7 +41,14 @@ pub(super) fn placed(drawing: &Drawing, axes: [(f64, f64); 2], size: [f64; 2]) -
         let above = MARKER + 2.0;
         let low = -0.5 * LINE;
         // Middle and foot of the text from the point.
-        let around = [(0.0, above), (0.0, -above - LINE), (aside, low), (-aside, low), (aside, above), (-aside, above)];
+        let around = [
+            (0.0, above),
+            (0.0, -above - LINE),
+            (aside, low),
+            (-aside, low),
+            (aside, above),
+            (-aside, above),
+        ];
         let free = around.into_iter().find_map(|(dx, dy)| {
             let own = [x + dx - half, y + dy, x + dx + half, y + dy + LINE];
             let inside = own[0] >= 0.0 && own[1] >= 0.0 && own[2] <= size[0] && own[3] <= size[1];
@@ -62,8 +69,8 @@ fn overlap(a: &Extent, b: &Extent) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagram::drawing::Note;
     use crate::Axis;
+    use crate::diagram::drawing::Note;
 
     fn drawing(places: &[Place]) -> Drawing {
         let axis = Axis::linear("x", "m");
@@ -79,7 +86,8 @@ mod tests {
         assert!((4..9).contains(&all.len()), "{all:?}");
         for (i, a) in all.iter().enumerate() {
             for b in &all[..i] {
-                let far = (a.at.0 - b.at.0).abs() * 4.0 >= 30.0 || (a.at.1 - b.at.1).abs() * 4.0 >= LINE - 1e-9;
+                let far =
+                    (a.at.0 - b.at.0).abs() * 4.0 >= 30.0 || (a.at.1 - b.at.1).abs() * 4.0 >= LINE - 1e-9;
                 assert!(far, "{a:?} {b:?}");
             }
         }

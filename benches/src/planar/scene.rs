@@ -87,7 +87,14 @@ fn one(random: &mut Random) -> Result<Option<Scene>, Failure> {
     if shape.radius_bounds().min < 0.1 * length {
         return Ok(None);
     }
-    Ok(Some(Scene { object: PlanarObject { shape, mass, gravity: GRAVITY }, palms, start, length, time, lasts: LASTS }))
+    Ok(Some(Scene {
+        object: PlanarObject { shape, mass, gravity: GRAVITY },
+        palms,
+        start,
+        length,
+        time,
+        lasts: LASTS,
+    }))
 }
 
 /// Time from the first sample to the last, s.

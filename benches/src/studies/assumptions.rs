@@ -5,8 +5,8 @@
 use crate::whole_logs::body::{self, Body};
 use crate::whole_logs::options;
 use recon::object_dynamics::ContactLog;
-use recon_benches::fault::Fault;
 use recon::observer::{Assumption, ContactEstimate, SensorFault, estimate_contacts};
+use recon_benches::fault::Fault;
 
 type Failure = Box<dyn std::error::Error>;
 

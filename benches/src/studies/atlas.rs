@@ -4,7 +4,7 @@
 use crate::rows;
 use recon::contact_kinematics::unless_stopped;
 use recon_benches::atlas::{
-    Counts, METHODS, MAPS, Outcome, Run, Spot, counts_csv, map_picture, page, picture, spots, stem,
+    Counts, MAPS, METHODS, Outcome, Run, Spot, counts_csv, map_picture, page, picture, spots, stem,
 };
 use std::fs;
 use std::path::Path;
@@ -117,15 +117,16 @@ fn pictures(spots: &[Spot], counts: &[Counts]) -> Result<(), Failure> {
     for method in METHODS {
         let mut rows = Vec::new();
         for way in method.ways {
-            let strengths = way.strengths().len();
+            let strengths = method.strengths(*way).len();
             rows.push(counts[at..at + strengths].to_vec());
             at += strengths;
         }
         fs::write(folder.join(stem(method.name) + ".svg"), picture(method, &rows))?;
     }
     for map in MAPS {
-        let rows: Vec<Vec<Counts>> =
-            (0..map.up.2.len()).map(|k| counts[at + k * map.right.2.len()..][..map.right.2.len()].to_vec()).collect();
+        let rows: Vec<Vec<Counts>> = (0..map.up.2.len())
+            .map(|k| counts[at + k * map.right.2.len()..][..map.right.2.len()].to_vec())
+            .collect();
         at += map.right.2.len() * map.up.2.len();
         fs::write(folder.join(stem(map.name) + ".svg"), map_picture(map, &rows))?;
     }
@@ -138,7 +139,7 @@ fn smoke() -> Result<(), Failure> {
     let begun = Instant::now();
     let chosen: Vec<Spot> = spots()
         .into_iter()
-        .filter(|spot| matches!(spot, Spot::Cell(_, way, strength) if way.strengths()[2] == *strength))
+        .filter(|spot| matches!(spot, Spot::Cell(of, way, strength) if of.strengths(*way).get(2 / of.every) == Some(strength)))
         .collect();
     let jobs: Vec<(usize, u64)> = (0..chosen.len()).map(|k| (k, 7)).collect();
     let mut right = vec![0; METHODS.len()];
@@ -151,7 +152,13 @@ fn smoke() -> Result<(), Failure> {
             complaints.push(format!("{}, {} {strength}, seed {seed}: {}", method.name, way.word(), run.why));
         }
     }
-    complaints.extend(METHODS.iter().zip(&right).filter(|(_, n)| **n == 0).map(|(of, _)| format!("{} is right nowhere", of.name)));
+    complaints.extend(
+        METHODS
+            .iter()
+            .zip(&right)
+            .filter(|(_, n)| **n == 0)
+            .map(|(of, _)| format!("{} is right nowhere", of.name)),
+    );
     println!("{} runs in {:.0} s, right: {right:?}", jobs.len(), begun.elapsed().as_secs_f64());
     if complaints.is_empty() { Ok(()) } else { Err(complaints.join("\n").into()) }
 }
@@ -169,6 +176,12 @@ fn one(words: &[String]) -> Result<(), Failure> {
             .and_then(|of| Some(Spot::Cell(of, *of.ways.iter().find(|way| way.word() == a)?, at))),
     };
     let run = spot.ok_or("no such method, map or way")?.run(seed);
-    println!("{}: {:.3} of what is allowed, {:.0} ms {}", run.outcome.words(), run.off, run.milliseconds, run.why);
+    println!(
+        "{}: {:.3} of what is allowed, {:.0} ms {}",
+        run.outcome.words(),
+        run.off,
+        run.milliseconds,
+        run.why
+    );
     Ok(())
 }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use recon_benches::charts::{ALL, Chart, write_page};
 use recon_benches::Budget;
+use recon_benches::charts::{ALL, Chart, write_page};
 
 struct Options {
     out: PathBuf,

@@ -9,8 +9,8 @@ use recon::contact_kinematics::{
     Direction, Ellipsoid, MotionLaw, MotionPart, PalmFrame, PalmSurface, SurfaceMotion, SurfacePose,
 };
 use recon::object_dynamics::{
-    BodyState, ContactScene, ContactSimulation, ContactStart, MassProperties,
-    PalmDrive, SampleTimes, ScenePalm,
+    BodyState, ContactScene, ContactSimulation, ContactStart, MassProperties, PalmDrive, SampleTimes,
+    ScenePalm,
 };
 use recon_benches::departures::Departures;
 use shape_bounds::generators::Source;

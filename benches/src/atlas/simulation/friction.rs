@@ -15,9 +15,13 @@ pub(in super::super) const METHOD: Method = Method {
     about: "three palms with friction 0.3 at a tolerance of 1e-7; right: overlap below 1e-5 sizes, forces in their cones to 1e-5 weights, sticking contacts slower than 2e-4 natural speeds, energy accounted for to 1e-4",
     ways: {
         use Way::*;
-        &[Parallel, Flat, Steep, Sphere, Revolution, Relative, Drop, Slow, Friction, Shaking, Long, Switches, Size, Tolerance]
+        &[
+            Parallel, Flat, Steep, Sphere, Revolution, Relative, Drop, Slow, Friction, Shaking, Long,
+            Switches, Size, Tolerance,
+        ]
     },
     seeds: 8,
+    every: 1,
     run,
 };
 

@@ -24,6 +24,7 @@ pub(in super::super) const METHOD: Method = Method {
         &[Parallel, Flat, Sphere, Relative, Force, Slow, Shaking, Long, Size, Tolerance]
     },
     seeds: 30,
+    every: 1,
     run,
 };
 
@@ -37,7 +38,9 @@ fn run(way: Way, strength: f64, seed: u64) -> Result<Ran, Failure> {
         Ok(run) => run,
         Err(error) => return Ok(Ran::refused(&error)),
     };
-    let Some(first) = run.samples.first() else { return Ok(Ran::Refused("no contact at the start".to_owned())) };
+    let Some(first) = run.samples.first() else {
+        return Ok(Ran::Refused("no contact at the start".to_owned()));
+    };
     let truth = first.truth;
     let body = BodyState { p_WCm: truth.p_WCm, phi0: truth.phi0, v_WCm: truth.v_WCm, omega0: truth.omega0 };
     let other = any_palms(&scene)?;

@@ -16,9 +16,13 @@ pub(in super::super) const METHOD: Method = Method {
     about: "minimal coordinates at a tolerance of 1e-9, over ten natural times or to the loss of contact; right: poses within ten thousand tolerances (sizes, rad) of those by multipliers at 1e-13",
     ways: {
         use Way::*;
-        &[Parallel, Flat, Steep, Sphere, Revolution, Pole, Relative, Force, Slow, Rate, Shaking, Long, Size, Tolerance]
+        &[
+            Parallel, Flat, Steep, Sphere, Revolution, Pole, Relative, Force, Slow, Rate, Shaking, Long,
+            Size, Tolerance,
+        ]
     },
     seeds: 30,
+    every: 1,
     run,
 };
 

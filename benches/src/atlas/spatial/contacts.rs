@@ -7,8 +7,8 @@ use recon::contact_kinematics::{
     Direction, Ellipsoid, MotionLaw, MotionPart, PalmFrame, PalmSurface, SurfaceMotion, SurfacePose,
 };
 use recon::object_dynamics::{
-    BodyState, ChannelNoise, ContactLog, ContactNoise, ContactScene, ContactSimulation, ContactStart, ForceChannel,
-    MassProperties, PalmDrive, ScenePalm,
+    BodyState, ChannelNoise, ContactLog, ContactNoise, ContactScene, ContactSimulation, ContactStart,
+    ForceChannel, MassProperties, PalmDrive, ScenePalm,
 };
 use recon_tests::Random;
 use std::f64::consts::TAU;
@@ -94,7 +94,11 @@ fn palm(
 }
 
 /// A noisy log of a way and a strength, its forces with a noise of their own (weights) where it is stated.
-pub(super) fn logged((way, strength): (Way, f64), force: Option<f64>, seed: u64) -> Result<LoggedMotion, Failure> {
+pub(super) fn logged(
+    (way, strength): (Way, f64),
+    force: Option<f64>,
+    seed: u64,
+) -> Result<LoggedMotion, Failure> {
     let rubbed = Rubbed::drawn(way, strength, seed)?;
     let simulation = rubbed.simulate(TOLERANCE)?;
     let (exact, truth) = ContactLog::from_simulation(&rubbed.scene, &simulation)?.split_truth();

@@ -8,9 +8,7 @@ use super::{WAYS, WAYS_OF_KNOWN, in_deviations, lost, worse};
 use glam::DVec3;
 use recon::contact_kinematics::Direction;
 use recon::object_dynamics::{BodyState, ContactLog, ContactLogError, ForceChannel, PalmHinge};
-use recon::observer::{
-    ContactEstimate, ContactNoiseLevel, ContactOptions, Reliability, estimate_contacts,
-};
+use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, Reliability, estimate_contacts};
 
 /// What conditions are off by beside noise, as a share of the natural speed.
 pub(super) const FLOOR: f64 = 3e-5;
@@ -24,6 +22,7 @@ pub(in super::super) const KNOWN: Method = Method {
     about: ABOUT,
     ways: WAYS_OF_KNOWN,
     seeds: 1,
+    every: 2,
     run: |way, strength, seed| run(way, strength, seed, true),
 };
 
@@ -32,6 +31,7 @@ pub(in super::super) const UNKNOWN: Method = Method {
     about: ABOUT,
     ways: WAYS,
     seeds: 1,
+    every: 1,
     run: |way, strength, seed| run(way, strength, seed, false),
 };
 
@@ -62,7 +62,8 @@ fn of_contacts(of: &LoggedMotion, known: bool) -> Ran {
 pub(in super::super) fn of_spec(of: Spec, seed: u64, known: bool) -> Result<Ran, Failure> {
     let motion = Motion::drawn(of, seed)?;
     let (log, noise) = motion.log()?;
-    let log = ContactLog::try_from(&log).and_then(|log| if of.by_torques { by_torques(&log) } else { Ok(log) });
+    let log =
+        ContactLog::try_from(&log).and_then(|log| if of.by_torques { by_torques(&log) } else { Ok(log) });
     let log = match log {
         Ok(log) => log,
         Err(error) => return Ok(Ran::refused(&error)),
@@ -76,15 +77,20 @@ pub(in super::super) fn of_spec(of: Spec, seed: u64, known: bool) -> Result<Ran,
         // What noise of torques makes of forces hangs on the levers: it is read off the forces, as the command does.
         options.noise = ContactNoiseLevel::by_roughness(&log, options.noise.floor, false);
     }
-    Ok(judged(&log, &options, (motion.scene.mass.mass(), of.size, noise[0] == 0.0), |t| motion.at(t).map(state)))
+    Ok(judged(&log, &options, (motion.scene.mass.mass(), of.size, noise[0] == 0.0), |t| {
+        motion.at(t).map(state)
+    }))
 }
+
+/// Moment of inertia of palms, kg m^2: as they stand still, it does not matter.
+const STILL: f64 = 1.0;
 
 /// With normal forces from the torques of palms that turn about a level axis through the origin.
 fn by_torques(log: &ContactLog) -> Result<ContactLog, ContactLogError> {
     let mut records = log.records();
     for (record, palm) in records.iter_mut().zip(log.palms()) {
         let axis = Direction::new_unchecked(palm.motion(0).pose.R_WP * DVec3::X);
-        record.hinge = Some(PalmHinge { pivot: DVec3::ZERO, axis, inertia: 0.0 });
+        record.hinge = Some(PalmHinge { pivot: DVec3::ZERO, axis, inertia: STILL });
     }
     let hinged = ContactLog::new(log.times().to_vec(), records.clone(), None)?;
     for (i, record) in records.iter_mut().enumerate() {

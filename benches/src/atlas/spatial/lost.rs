@@ -31,18 +31,15 @@ pub(super) fn run(after: f64, held: bool, known: bool, seed: u64) -> Result<Ran,
     let noise = ContactNoiseLevel::guessed(&log, GRAVITY, None).ok_or("no two palms are touched at once")?;
     let mass = MassProperties::uniform_ellipsoid(1.0, DVec3::new(2.5, 2.0, 1.0))?;
     let body = known.then_some(mass);
-    let options = ContactOptions {
-        friction: Some(0.0),
-        body,
-        suspects: true,
-        ..ContactOptions::new(noise, GRAVITY)
-    };
+    let options =
+        ContactOptions { friction: Some(0.0), body, suspects: true, ..ContactOptions::new(noise, GRAVITY) };
     let found = match estimate_contacts(&log, None, &options) {
         Ok(found) => found,
         Err(error) => return Ok(Ran::refused(&error)),
     };
     let mut off = 0.0;
-    for (k, (state, truth)) in found.states.iter().zip(truth).enumerate().filter(|(k, _)| found.relied_on[*k]) {
+    for (k, (state, truth)) in found.states.iter().zip(truth).enumerate().filter(|(k, _)| found.relied_on[*k])
+    {
         let allowed = RIGHT.max(super::super::DEVIATIONS * found.deviations[k][0].max_element());
         off = worse(off, state.p_WCm.distance(truth.p_WCm) / allowed);
     }

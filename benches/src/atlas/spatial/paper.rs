@@ -22,11 +22,12 @@ pub(in super::super) const METHOD: Method = Method {
     ways: {
         use Way::*;
         &[
-            Parallel, Flat, Steep, Sphere, Revolution, Pole, Relative, Force, Slow, Start, Noise, Bias, Gain, Delay, Taxels, Outliers, Gap, Rate, Palm,
-            Shaking, Long, Size,
+            Parallel, Flat, Steep, Sphere, Revolution, Pole, Relative, Force, Slow, Start, Noise, Bias, Gain,
+            Delay, Taxels, Outliers, Gap, Rate, Palm, Shaking, Long, Size,
         ]
     },
     seeds: 30,
+    every: 1,
     run,
 };
 

@@ -62,7 +62,7 @@ impl Spec {
             spin: 0.3,
             lowest: false,
             pole: None,
-            lasts: 10.0,
+            lasts: 8.0,
             rate: 10.0,
             may_end: false,
             noise: [1e-3, 3e-3],
@@ -75,11 +75,19 @@ impl Spec {
         let faulty = |fault| Self { fault: Some(fault), ..base };
         let degrees = strength.to_radians();
         match way {
-            Way::Parallel => Self { lowest: true, azimuths: [0.0, 0.5 * (TAU - degrees), 0.5 * (TAU + degrees)], ..base },
+            Way::Parallel => {
+                Self { lowest: true, azimuths: [0.0, 0.5 * (TAU - degrees), 0.5 * (TAU + degrees)], ..base }
+            }
             Way::Flat | Way::Steep => Self { slope: Some(degrees), lowest: true, ..base },
             Way::Hinge => Self { slope: Some(degrees), by_torques: true, lowest: true, ..base },
-            Way::Sphere => Self { uniform: true, axes: Some(DVec3::new(1.0, 1.0 + strength, 1.0 + 2.0 * strength)), ..base },
-            Way::Revolution => Self { uniform: true, axes: Some(DVec3::new(1.0, 1.0 + strength, 2.0)), ..base },
+            Way::Sphere => Self {
+                uniform: true,
+                axes: Some(DVec3::new(1.0, 1.0 + strength, 1.0 + 2.0 * strength)),
+                ..base
+            },
+            Way::Revolution => {
+                Self { uniform: true, axes: Some(DVec3::new(1.0, 1.0 + strength, 2.0)), ..base }
+            }
             Way::Pole => Self { pole: Some(strength), ..base },
             Way::Relative => Self { swing: [0.1, 3.0 * strength], ..base },
             Way::Force => Self { spin: strength, may_end: true, ..base },
@@ -151,12 +159,15 @@ impl Scene {
             palms.push(Palm::new(azimuth, MotionLaw::Sinusoid { mean, amplitude, frequency, phase })?);
         }
         let scene = ThreePalmScene::new(Ellipsoid::new(axes)?, mass, [palms[0], palms[1], palms[2]], G)?;
+        // Only palms with an inertia have a torque; as they stand still, which one does not matter.
+        let scene = if of.by_torques { scene.with_palm_inertias([1.0; 3])? } else { scene };
         let turned = DQuat::from_scaled_axis(random.vector(-3.0, 3.0));
         let about = random.vector(-1.0, 1.0).normalize_or(DVec3::X);
         let R_WO = match of.pole {
             _ if of.lowest => crate::palms::lowest(&Ellipsoid::new(axes)?, normals, turned).R_WO,
             Some(angle) => {
-                let at_pole = DQuat::from_rotation_arc(DVec3::new(angle.sin(), 0.0, angle.cos()), -normals[0]);
+                let at_pole =
+                    DQuat::from_rotation_arc(DVec3::new(angle.sin(), 0.0, angle.cos()), -normals[0]);
                 DQuat::from_axis_angle(normals[0], about.x) * at_pole
             }
             None => turned,
@@ -203,7 +214,9 @@ impl Motion {
                 break;
             }
         }
-        longest.filter(|of| of.simulation.instants.len() > 1).ok_or_else(|| failure.unwrap_or_else(|| "contact is lost at once".into()))
+        longest
+            .filter(|of| of.simulation.instants.len() > 1)
+            .ok_or_else(|| failure.unwrap_or_else(|| "contact is lost at once".into()))
     }
 
     /// What is sensed, noisy and with what is not as stated, and the noise of contacts (m) and forces (N) as stated.

@@ -7,7 +7,8 @@ use super::scene::{Motion, Spec, state};
 use super::{in_deviations, worse};
 use glam::DVec3;
 use recon::observer::{
-    ContactNoiseLevel, ContactOptions, MotionStream, PlaneReadings, StreamEstimate, StreamOptions, StreamStage,
+    ContactNoiseLevel, ContactOptions, MotionStream, PlaneReadings, StreamEstimate, StreamOptions,
+    StreamStage,
 };
 
 pub(in super::super) const METHOD: Method = Method {
@@ -16,11 +17,36 @@ pub(in super::super) const METHOD: Method = Method {
     ways: {
         use Way::*;
         &[
-            Parallel, Flat, Steep, Sphere, Revolution, Relative, Force, Slow, Window, Noise, Unstated, Bias, Gain, Delay, Correlation,
-            Taxels, Outliers, Gap, Dropped, Rate, Mass, Inertia, Palm, Shaking, Long, Size,
+            Parallel,
+            Flat,
+            Steep,
+            Sphere,
+            Revolution,
+            Relative,
+            Force,
+            Slow,
+            Window,
+            Noise,
+            Unstated,
+            Bias,
+            Gain,
+            Delay,
+            Correlation,
+            Taxels,
+            Outliers,
+            Gap,
+            Dropped,
+            Rate,
+            Mass,
+            Inertia,
+            Palm,
+            Shaking,
+            Long,
+            Size,
         ]
     },
     seeds: 1,
+    every: 2,
     run,
 };
 

@@ -17,11 +17,30 @@ pub(in super::super) const METHOD: Method = Method {
     ways: {
         use Way::*;
         &[
-            Parallel, Flat, Steep, Sphere, Revolution, Pole, Relative, Slow, Window, Noise, Unstated, Correlation, Taxels, Outliers, Gap,
-            Dropped, Rate, Palm, Shaking, Size,
+            Parallel,
+            Flat,
+            Steep,
+            Sphere,
+            Revolution,
+            Pole,
+            Relative,
+            Slow,
+            Window,
+            Noise,
+            Unstated,
+            Correlation,
+            Taxels,
+            Outliers,
+            Gap,
+            Dropped,
+            Rate,
+            Palm,
+            Shaking,
+            Size,
         ]
     },
     seeds: 1,
+    every: 2,
     run,
 };
 
