@@ -44,7 +44,7 @@ fn draw(budget: Budget) -> Drawn {
         });
     }
     let chart = WorkPrecision::new("bounds-by-contacts", "Bounds on a shape: time against gap")
-        .subtitle("ellipsoid 2.5, 2, 1 m touched along three curves, noise of 2.5 m and in rad, confidence 0.95; points: contacts")
+        .subtitle("ellipsoid 2.5, 2, 1 m touched along three curves, noise of the size and in rad, 95 %; points: contacts")
         .axes(Axis::log("volume between the bounds over the true one", "1"), Axis::log("time", "ms"))
         .methods(study.measure(budget, 1.0));
     Ok(vec![chart.into()])

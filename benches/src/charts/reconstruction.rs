@@ -1,7 +1,7 @@
 //! Reconstruction of the paper's Fig. 5 motion: cost against error by length of log and by sample rate, for the
 //! estimator that needs no guess and for the paper's own integration from exact initial conditions.
 
-use super::shared::{centre_error, estimate, exact_log, noisy_estimate};
+use super::shared::{FLOOR, centre_error, estimate, exact_log, noisy_estimate};
 use super::{Chart, Drawn};
 use crate::{Axis, Budget, Method, Outcome, Study, WorkPrecision};
 use recon::contact_kinematics::Ellipsoid;
@@ -58,8 +58,8 @@ fn by_window(budget: Budget) -> Drawn {
             .fallible_case("no noise", format!("{duration} s"), run, |found| centre_error(found, simulation));
     }
     for (name, duration, logs, simulation, noise) in &noisy {
-        let run = || noisy_estimate(&scene, &logs[0], noise);
-        let others = logs[1..].iter().filter_map(|log| noisy_estimate(&scene, log, noise).ok());
+        let run = || noisy_estimate(&scene, &logs[0], noise, FLOOR);
+        let others = logs[1..].iter().filter_map(|log| noisy_estimate(&scene, log, noise, FLOOR).ok());
         let others: Vec<f64> = others.map(|found| mean_square(&found, simulation)).collect();
         study.fallible_case(*name, format!("{duration} s"), run, |found| {
             let sum = mean_square(found, simulation) + others.iter().sum::<f64>();
@@ -143,7 +143,7 @@ fn least_deviation(
     noise: &SensorNoise,
 ) -> Result<f64, Box<dyn std::error::Error + Send + Sync>> {
     let small = SensorNoise { contact: SMALL * noise.contact, force: SMALL * noise.force, torque: 0.0 };
-    let found = noisy_estimate(scene, &log.with_noise(&small, 1)?, &small)?;
+    let found = noisy_estimate(scene, &log.with_noise(&small, 1)?, &small, SMALL * SMALL * FLOOR)?;
     let squares: f64 = found.deviations.iter().map(|of| of[0].length_squared()).sum();
     Ok((squares / found.deviations.len() as f64).sqrt() / SMALL)
 }

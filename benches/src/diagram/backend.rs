@@ -31,7 +31,7 @@ const FAINT: &str = "#7B8794";
 const SUBTITLE_COLUMNS: usize = 100;
 const NOTE_SIZE: u32 = 10;
 /// What the axes leave of the usual width and height for the diagram itself.
-const PLOT_WIDTH: f64 = 440.0;
+const PLOT_WIDTH: f64 = 540.0;
 const PLOT_HEIGHT: f64 = 360.0;
 
 /// Lays out a drawing.

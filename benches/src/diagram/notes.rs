@@ -3,7 +3,7 @@
 use super::drawing::{Drawing, Place};
 
 /// Mean width of a character and height of a line of a note, in units of the drawing.
-const CHARACTER: f64 = 6.0;
+const CHARACTER: f64 = 5.6;
 const LINE: f64 = 11.0;
 /// Half of what a marker takes.
 const MARKER: f64 = 5.0;

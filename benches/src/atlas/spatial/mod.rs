@@ -6,6 +6,7 @@ mod estimate;
 mod lost;
 mod paper;
 pub(super) mod scene;
+mod sensed;
 mod stream;
 mod without_forces;
 

@@ -1,6 +1,7 @@
 //! Random bodies on three palms, changed along a way of failing, and their logs.
 
 use super::super::{Failure, G, Way};
+use super::sensed::{correlated, late};
 use crate::fault::{Fault, Scale};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, MotionLaw, Palm, PalmFrame};
@@ -45,6 +46,8 @@ pub(in super::super) struct Spec {
     pub(in super::super) noise: [f64; 2],
     pub(in super::super) unstated: f64,
     pub(in super::super) correlation: f64,
+    /// How late all forces are.
+    pub(in super::super) delay: f64,
     pub(in super::super) by_torques: bool,
     pub(in super::super) fault: Option<Fault>,
 }
@@ -68,6 +71,7 @@ impl Spec {
             noise: [1e-3, 3e-3],
             unstated: 1.0,
             correlation: 0.0,
+            delay: 0.0,
             by_torques: false,
             fault: None,
         };
@@ -98,7 +102,7 @@ impl Spec {
             Way::Correlation => Self { correlation: strength, ..base },
             Way::Bias => faulty(Fault::Bias(strength)),
             Way::Gain => faulty(Fault::Gain(strength)),
-            Way::Delay => faulty(Fault::Delay(strength * natural)),
+            Way::Delay => Self { delay: strength, ..base },
             Way::Taxels => faulty(Fault::Taxels(strength)),
             Way::Outliers => faulty(Fault::Outliers(strength)),
             Way::Gap => Self { lasts: 12.0, ..faulty(Fault::Gap(strength * natural)) },
@@ -224,6 +228,7 @@ impl Motion {
         let Scene { of, scene, .. } = &self.scene;
         let scale = self.scene.scale();
         let clean = self.simulation.sensor_log(scene)?.split_truth().0;
+        let clean = if of.delay > 0.0 { late(&clean, of.delay * of.rate)? } else { clean };
         let [contact, force] = [of.noise[0] * scale.size, of.noise[1] * scale.weight];
         let noise = SensorNoise { contact, force, torque: force * scale.size };
         let noise = SensorNoise {
@@ -261,29 +266,4 @@ impl Motion {
 /// State of an instant.
 pub(in super::super) fn state(now: &Instant) -> BodyState {
     BodyState { p_WCm: now.touch.p_WCm, v_WCm: now.rates.v_WCm, w_WO: now.w_WO, R_WO: now.R_WO }
-}
-
-/// The white noise of a log through a filter of first order that leaves its deviation as it is.
-fn correlated(clean: &SensorLog, noisy: &SensorLog, correlation: f64) -> Result<SensorLog, Failure> {
-    let fresh = (1.0 - correlation * correlation).sqrt();
-    let mut samples = noisy.samples().to_vec();
-    let mut held = [[0.0; 3]; 3];
-    for (k, sample) in samples.iter_mut().enumerate() {
-        for (i, (palm, held)) in sample.palms.iter_mut().zip(&mut held).enumerate() {
-            let exact = &clean.samples()[k].palms[i];
-            let share = if k == 0 { 1.0 } else { fresh };
-            let before = if k == 0 { 0.0 } else { correlation };
-            if let (Some(s), Some(e)) = (&mut palm.contact, exact.contact) {
-                for axis in 0..2 {
-                    held[axis] = before * held[axis] + share * (s[axis] - e[axis]);
-                    s[axis] = e[axis] + held[axis];
-                }
-            }
-            if let (Some(f), Some(e)) = (&mut palm.force, exact.force) {
-                held[2] = before * held[2] + share * (*f - e);
-                *f = e + held[2];
-            }
-        }
-    }
-    Ok(SensorLog::new(samples, None)?)
 }

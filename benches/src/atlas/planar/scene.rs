@@ -1,127 +1,40 @@
-//! The estimate in the plane, between two hinged palms without friction.
+//! Random bodies between two hinged palms, changed along a way of failing.
 
-use super::judged::Ran;
-use super::{DEVIATIONS, Failure, G, Method, Way};
+use super::super::{Failure, G, Way};
 use crate::planar::broken::Wrong;
 use crate::planar::scene::Scene;
 use recon::contact_kinematics::planar::{FourierBody, RadiusFunction};
-use recon::object_dynamics::planar::{
-    HarmonicPalms, PlanarLog, PlanarMass, PlanarNoise, PlanarObject, PlanarStart, PlanarTruth,
-};
-use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
-use recon::observer::{ContactNoiseLevel, Reliability};
+use recon::object_dynamics::planar::{HarmonicPalms, PlanarLog, PlanarMass, PlanarObject, PlanarStart};
 use recon_tests::Random;
 use std::f64::consts::{PI, TAU};
 
-/// What contact conditions are off by beside noise, natural speeds.
-const FLOOR: f64 = 1e-6;
-/// What an estimate from exact readings may be off by, in sizes, natural speeds and rates.
-const EXACT: f64 = 1e-6;
 /// Bodies that are tried for one that stays between its palms.
 const TRIED: u64 = 8;
 
-const WAYS: &[Way] = {
-    use Way::*;
-    &[
-        Parallel,
-        Flat,
-        Sphere,
-        Relative,
-        Force,
-        Hinge,
-        Slow,
-        Window,
-        Noise,
-        Unstated,
-        Bias,
-        Gain,
-        Delay,
-        Correlation,
-        Taxels,
-        Outliers,
-        Gap,
-        Rate,
-        Palm,
-        Shaking,
-        Long,
-        Size,
-    ]
-};
-
-const WAYS_OF_KNOWN: &[Way] = {
-    use Way::*;
-    &[
-        Parallel,
-        Flat,
-        Sphere,
-        Relative,
-        Force,
-        Hinge,
-        Slow,
-        Window,
-        Noise,
-        Unstated,
-        Bias,
-        Gain,
-        Delay,
-        Correlation,
-        Taxels,
-        Outliers,
-        Gap,
-        Rate,
-        Mass,
-        Inertia,
-        Palm,
-        Shaking,
-        Long,
-        Size,
-    ]
-};
-
-const ABOUT: &str = "two hinged palms, from no guess; right: centre, velocity and rate within five stated deviations at all samples relied on";
-
-pub(super) const KNOWN: Method = Method {
-    name: "planar, body known",
-    about: ABOUT,
-    ways: WAYS_OF_KNOWN,
-    seeds: 1,
-    every: 1,
-    run: |way, strength, seed| of_spec(Spec::of(way, strength), seed, true),
-};
-
-pub(super) const UNKNOWN: Method = Method {
-    name: "planar, body unknown",
-    about: ABOUT,
-    ways: WAYS,
-    seeds: 1,
-    every: 1,
-    run: |way, strength, seed| of_spec(Spec::of(way, strength), seed, false),
-};
-
 /// What a scene is drawn from, in natural units of its mean radius.
 #[derive(Clone, Copy)]
-pub(super) struct Spec {
-    pub(super) size: f64,
+pub(in super::super) struct Spec {
+    pub(in super::super) size: f64,
     /// Of the harmonics of the outline.
-    pub(super) shape: f64,
+    pub(in super::super) shape: f64,
     /// Between the palms, rad.
-    pub(super) wedge: Option<f64>,
-    pub(super) swing: [f64; 2],
-    pub(super) spin: f64,
-    pub(super) lasts: f64,
-    pub(super) rate: f64,
-    pub(super) noise: [f64; 2],
-    pub(super) unstated: f64,
-    pub(super) correlation: f64,
-    pub(super) taxels: f64,
-    pub(super) by_torques: bool,
-    pub(super) may_end: bool,
-    pub(super) wrong: Wrong,
+    pub(in super::super) wedge: Option<f64>,
+    pub(in super::super) swing: [f64; 2],
+    pub(in super::super) spin: f64,
+    pub(in super::super) lasts: f64,
+    pub(in super::super) rate: f64,
+    pub(in super::super) noise: [f64; 2],
+    pub(in super::super) unstated: f64,
+    pub(in super::super) correlation: f64,
+    pub(in super::super) taxels: f64,
+    pub(in super::super) by_torques: bool,
+    pub(in super::super) may_end: bool,
+    pub(in super::super) wrong: Wrong,
 }
 
 impl Spec {
     /// Of a way.
-    pub(super) fn of(way: Way, strength: f64) -> Self {
+    pub(in super::super) fn of(way: Way, strength: f64) -> Self {
         let base = Self {
             size: 0.05,
             shape: 1.0,
@@ -173,7 +86,7 @@ impl Spec {
     }
 
     /// One body between its palms; none that is not convex.
-    pub(super) fn scene(&self, seed: u64) -> Result<Option<Scene>, Failure> {
+    pub(in super::super) fn scene(&self, seed: u64) -> Result<Option<Scene>, Failure> {
         let mut random = Random::new(seed);
         let mut between = |a: f64, b: f64| random.within(a, b);
         let (length, time) = (self.size, (self.size / G).sqrt());
@@ -204,7 +117,7 @@ impl Spec {
     }
 
     /// The scene that lasts, or lasts longest, with its log.
-    fn drawn(&self, seed: u64) -> Result<(Scene, PlanarLog), Failure> {
+    pub(super) fn drawn(&self, seed: u64) -> Result<(Scene, PlanarLog), Failure> {
         let tried = if self.may_end { 1 } else { TRIED };
         let mut longest: Option<(Scene, PlanarLog)> = None;
         let mut failure: Failure = "contact is lost at once".into();
@@ -228,52 +141,8 @@ impl Spec {
     }
 }
 
-/// One run.
-pub(super) fn of_spec(of: Spec, seed: u64, known: bool) -> Result<Ran, Failure> {
-    let (scene, exact) = of.drawn(seed)?;
-    let [contact, force] = [of.noise[0] * scene.length, of.noise[1] * scene.weight()];
-    let added = PlanarNoise {
-        contact: contact * of.unstated,
-        force: force * of.unstated,
-        torque: force * scene.length * of.unstated,
-    };
-    let noisy = added.add_to(&exact, seed);
-    let log = of.wrong.misread(misread(&of, &exact, &noisy)?, scene.length, seed)?;
-    let Some(log) = log.contact_log([0.0; 2]) else {
-        return Ok(Ran::Refused("a torque has no lever, or an angle is that of no palm".to_owned()));
-    };
-    let body = if known { Some(of.wrong.told(scene.object.mass)?) } else { None };
-    let options = PlaneOptions {
-        noise: ContactNoiseLevel {
-            contact,
-            force_fixed: force,
-            force_share: 0.0,
-            impulse: None,
-            floor: FLOOR * scene.length / scene.time,
-        },
-        gravity: G,
-        friction: vec![Some(0.0); 2],
-        body,
-        size: None,
-        suspects: true,
-    };
-    let found = match estimate_plane(&log, &options) {
-        Ok(found) => found,
-        Err(error) => return Ok(Ran::refused(&error)),
-    };
-    let off = errors(&found, exact.truth().ok_or("no truth")?, &scene, contact == 0.0);
-    let doubt = match &found.reliability {
-        Reliability::Unreliable(reasons) => {
-            Some(reasons.first().map_or_else(|| "not relied on".to_owned(), ToString::to_string))
-        }
-        _ if !found.relied_on.contains(&true) => Some("no sample is relied on".to_owned()),
-        _ => None,
-    };
-    Ok(Ran::Found { off: off / DEVIATIONS, doubt })
-}
-
 /// Noise that is alike, contacts at taxels, torques alone.
-fn misread(of: &Spec, exact: &PlanarLog, noisy: &PlanarLog) -> Result<PlanarLog, Failure> {
+pub(super) fn misread(of: &Spec, exact: &PlanarLog, noisy: &PlanarLog) -> Result<PlanarLog, Failure> {
     let mut samples = noisy.samples().to_vec();
     let fresh = (1.0 - of.correlation * of.correlation).sqrt();
     let mut held = [0.0; 4];
@@ -299,28 +168,4 @@ fn misread(of: &Spec, exact: &PlanarLog, noisy: &PlanarLog) -> Result<PlanarLog,
         *(if of.by_torques { &mut sample.forces } else { &mut sample.torques }) = None;
     }
     Ok(PlanarLog::new(samples, noisy.truth().map(<[_]>::to_vec))?)
-}
-
-/// The largest error in deviations.
-fn errors(made: &PlaneEstimate, truth: &[PlanarTruth], scene: &Scene, exact: bool) -> f64 {
-    let share = if exact { EXACT } else { 0.0 };
-    let least = [scene.length, scene.length / scene.time, scene.time.recip()].map(|unit| share * unit);
-    let mut worst = 0.0;
-    for (k, truth) in truth.iter().enumerate().filter(|(k, _)| made.relied_on[*k]) {
-        let (state, of) = (&made.states[k], &made.deviations[k]);
-        let (p, v) = (state.p_WCm - truth.p_WCm, state.v_WCm - truth.v_WCm);
-        let spin = state.omega0 - truth.omega0;
-        let parts = [
-            (p.x, of.p_WCm.x, least[0]),
-            (p.y, of.p_WCm.y, least[0]),
-            (v.x, of.v_WCm.x, least[1]),
-            (v.y, of.v_WCm.y, least[1]),
-            (spin, of.omega0, least[2]),
-        ];
-        for (error, deviation, least) in parts {
-            let off: f64 = error.abs() / deviation.max(least);
-            worst = if off > worst || off.is_nan() { off } else { worst };
-        }
-    }
-    worst
 }
