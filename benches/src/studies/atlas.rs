@@ -18,7 +18,7 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 const SEEDS: u64 = 1;
 const FIRST: u64 = 20_000;
 /// Longest time of a run, s: beyond it, it is counted as a crash.
-const LONGEST: f64 = 120.0;
+const LONGEST: f64 = 60.0;
 /// Runs between two lines of progress.
 const TOLD: usize = 500;
 
