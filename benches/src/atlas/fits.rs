@@ -21,7 +21,7 @@ pub(super) const METHOD: Method = Method {
         use Way::*;
         &[Sphere, Revolution, Noise, Unstated, Correlation, Outliers, Size, Contacts, Cone, Family]
     },
-    seeds: 30,
+    seeds: 10,
     every: 1,
     run,
 };

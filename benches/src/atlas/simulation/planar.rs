@@ -23,7 +23,7 @@ pub(in super::super) const METHOD: Method = Method {
         use Way::*;
         &[Parallel, Flat, Sphere, Relative, Force, Slow, Shaking, Long, Size, Tolerance]
     },
-    seeds: 30,
+    seeds: 10,
     every: 1,
     run,
 };

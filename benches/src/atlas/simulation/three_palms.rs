@@ -21,7 +21,7 @@ pub(in super::super) const METHOD: Method = Method {
             Size, Tolerance,
         ]
     },
-    seeds: 30,
+    seeds: 10,
     every: 1,
     run,
 };
