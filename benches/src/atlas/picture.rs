@@ -4,7 +4,7 @@ use super::plan::{Counts, Map};
 use super::{Method, Outcome};
 use std::fmt::Write;
 
-const LABEL: f64 = 330.0;
+const LABEL: f64 = 372.0;
 const CELL: [f64; 2] = [74.0, 24.0];
 const GAP: f64 = 3.0;
 const TOP: f64 = 84.0;
@@ -39,7 +39,11 @@ pub fn picture(method: &Method, rows: &[Vec<Counts>]) -> String {
     );
     for (i, (way, counts)) in method.ways.iter().zip(rows).enumerate() {
         let y = TOP + i as f64 * (CELL[1] + GAP);
-        let words = format!("{}, {}", way.words(), way.unit()).replace(", 1", "");
+        let words = if way.unit() == "1" {
+            way.words().to_owned()
+        } else {
+            format!("{}, {}", way.words(), way.unit())
+        };
         let _ = write!(
             svg,
             "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\" font-size=\"11\">{words}</text>",
@@ -169,8 +173,7 @@ mod tests {
 
     #[test]
     fn a_cell_is_filled_by_shares_and_ringed_where_something_was_wrong() {
-        let mut good = Counts::default();
-        good.of = [3, 1, 0, 0, 0, 0];
+        let good = Counts { of: [3, 1, 0, 0, 0, 0], ..Counts::default() };
         let mut bad = good.clone();
         bad.of[3] = 1;
         let mut svg = String::new();

@@ -62,7 +62,7 @@ pub fn write_page(folder: &Path) -> std::io::Result<usize> {
         let _ = write!(page, "<a href=\"#{stem}\">{}</a>", escaped(&title));
         bodies += &section(stem, &title, &svg, &csv, &commit(folder, stem));
     }
-    let _ = write!(page, "</nav>{bodies}</body></html>\n");
+    let _ = writeln!(page, "</nav>{bodies}</body></html>");
     fs::write(folder.join("index.html"), page)?;
     Ok(stems.len())
 }

@@ -69,12 +69,7 @@ impl Way {
             ),
             Self::Loss => entry!("loss", "contact lost, log goes on for", "s", LOST),
             Self::Held => entry!("held", "contact lost and not marked, log goes on for", "s", LOST),
-            Self::Hinge => entry!(
-                "hinge",
-                "forces from torques, contacts to the hinge (s_i2 to 0): slope",
-                "degrees",
-                SLOPES
-            ),
+            Self::Hinge => entry!("hinge", "forces from torques, s_i2 towards 0: slope", "degrees", SLOPES),
             Self::Slow => entry!(
                 "slow",
                 "towards rest: spin where it lies lowest",
