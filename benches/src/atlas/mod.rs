@@ -95,7 +95,7 @@ mod tests {
             &spatial::PAPER,
         ];
         for method in cheap {
-            let runs = method.ways.iter().map(|way| method.run(*way, way.strengths()[1], 3));
+            let runs = method.ways.iter().step_by(2).map(|way| method.run(*way, way.strengths()[1], 3));
             let runs: Vec<Run> = runs.collect();
             assert!(runs.iter().all(|run| run.outcome != Outcome::Crash), "{}: {runs:?}", method.name);
             let right = runs.iter().filter(|run| run.outcome == Outcome::Right).count();

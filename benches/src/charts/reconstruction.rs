@@ -28,7 +28,7 @@ const MUJOCO: &str = include_str!("../../../tests/data/mj_A_fig5_thinned.csv");
 const SIZE: f64 = 2.5;
 const LOAD: f64 = 6.5;
 /// Draws of the noise.
-const NOISES: u64 = 5;
+const NOISES: u64 = 40;
 /// Factor by which the noise is made small where the bound is taken.
 const SMALL: f64 = 0.01;
 
@@ -84,7 +84,7 @@ fn by_window(budget: Budget) -> Drawn {
     let chart =
         WorkPrecision::new("reconstruction-by-window", "Motion from a log, no guess: cost against error")
             .subtitle(
-                "Fig. 5 scene at 1 kHz, mass and inertia known; points: length of the log; with noise the root mean square of five draws, and the least that is possible at the same cost",
+                "Fig. 5 scene at 1 kHz, mass and inertia known; points: length of the log; with noise the root mean square of forty draws, and the least that is possible at the same cost",
             )
             .axes(Axis::log("error of the centre of mass", "m"), Axis::log("cost", "ms a log"))
             .methods(methods)
