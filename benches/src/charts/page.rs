@@ -23,7 +23,7 @@ const TITLES: &[(&str, &str)] = &[
 
 /// Charts of several diagrams, by the stems of these.
 const OF_CHARTS: &[(&str, &str)] =
-    &[("reaching-", "reaching"), ("rolling-", "rolling"), ("streaming-", "streaming"), ("bounds-", "bounds")];
+    &[("reaching-", "reaching"), ("rolling-", "rolling"), ("bounds-", "bounds")];
 
 /// Rows of a table that are shown.
 const MOST_ROWS: usize = 200;

@@ -22,33 +22,27 @@ const LONGEST: [f64; 2] = [6.0, 30.0];
 const SEED: u64 = 61_000;
 
 fn draw(_: Budget) -> Drawn {
-    let (mut errors, mut available) = (Vec::new(), Vec::new());
+    let mut methods = Vec::new();
     for (quality, name) in QUALITIES {
-        let (mut by_time, mut by_rate) = (Method::new(name), Method::new(name));
+        let mut method = Method::new(name);
         for rate in RATES {
             for case in some(1, SEED, SIZE, rate, quality, LONGEST)? {
                 let Paced { mut microseconds, estimates, .. } = paced(&case, false)?;
                 microseconds.sort_by(f64::total_cmp);
                 let slow = microseconds[(microseconds.len() - 1) * 99 / 100];
                 let (error, share) = judged(&case, &estimates);
-                by_time = by_time.point(format!("{rate} Hz"), error, slow);
-                by_rate = by_rate.point(format!("{rate} Hz"), rate, 100.0 * share);
+                method = method.point(format!("{rate} Hz, {:.0} %", 100.0 * share), error, slow);
             }
         }
-        errors.push(by_time);
-        available.push(by_rate);
+        methods.push(method);
     }
-    let times = WorkPrecision::new("streaming-time", "Sample by sample: time against error")
+    let chart = WorkPrecision::new("streaming", "Sample by sample: time against error")
         .subtitle(
-            "body of 0.3 m, unknown, followed for 30 natural times at its own pace; points: samples a second",
+            "body of 0.3 m, unknown, 30 natural times at its own pace; points: rate, samples with a motion",
         )
         .axes(Axis::log("mean error of the centre of mass", "m"), Axis::log("time of a push, 99 %", "us"))
-        .methods(errors);
-    let shares = WorkPrecision::new("streaming-available", "Sample by sample: when a motion is stated")
-        .subtitle("the same runs; share of the samples after the first stated motion at which one is stated")
-        .axes(Axis::log("samples a second", "Hz"), Axis::linear("motion stated", "%"))
-        .methods(available);
-    Ok(vec![times.into(), shares.into()])
+        .methods(methods);
+    Ok(vec![chart.into()])
 }
 
 /// Root mean square error of the centre where a motion is stated, m, and the share of samples where one is after the first.
