@@ -1,9 +1,8 @@
-//! Charts of cost against error, failure sweeps, and the timing that feeds them.
+//! Charts of cost against error, the atlas of failures, and the timing that feeds them.
 //!
 //! A *work-precision* chart has one curve per method and one point per setting, error against cost, both
-//! logarithmic: a method is better where its curve is lower and further to the left. A *sweep* moves one parameter
-//! towards the place where methods fail and colours each point by what the method said about itself: right, reported
-//! as unreliable, or wrong without a warning. Each is written as CSV, SVG and PNG.
+//! logarithmic: a method is better where its curve is lower and further to the left. It is written as CSV, SVG and PNG. Where methods fail, and what
+//! they say of themselves there, is in the [`atlas`].
 //!
 //! [`Study`] runs methods, asks for their error and times them side by side; [`charts`] lists the diagrams of this
 //! project, which `cargo xtask chart` draws into `docs/charts/`.
@@ -22,14 +21,20 @@
 //! assert!(chart.csv().starts_with("method,setting,"));
 //! ```
 
+pub mod atlas;
+pub mod departures;
 mod diagram;
+pub mod fault;
 mod machine;
+pub mod multipliers;
+pub mod noisy_contacts;
 pub mod palms;
 pub mod planar;
 pub mod reaching;
 pub mod rolling;
 pub mod rolling_sensed;
 pub mod rows;
+pub mod streaming;
 mod timing;
 
 pub mod charts;
@@ -38,8 +43,8 @@ pub mod charts;
 mod self_check;
 
 pub use diagram::{
-    Axis, ChartError, Diagram, Goal, Judged, Method, Outcome, Outlines, Point, Scale, Stroke, Subject, Sweep,
-    Verdict, WorkPrecision, WrittenChart,
+    Axis, ChartError, Diagram, Goal, Method, Outcome, Outlines, Point, Scale, Stroke, WorkPrecision,
+    WrittenChart,
 };
 pub use machine::machine_line;
 pub use timing::{Budget, SideBySide, Study, Timing};

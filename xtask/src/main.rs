@@ -12,11 +12,14 @@ use std::process::ExitCode;
 
 const USAGE: &str = "usage:
   cargo xtask verify [--list] [--only STEP].. [--skip STEP].. [--with STEP]..
-  cargo xtask chart  [--list] [--quick] [--out FOLDER] [NAME..]
+  cargo xtask chart  [--list] [--page] [--quick] [--out FOLDER] [NAME..]
+  cargo xtask atlas  [SEEDS [FIRST]] [--smoke | --shard K/N [--rows FOLDER] | --merge [FOLDER]]
+  cargo xtask atlas  one NAME WAY STRENGTH SEED
   cargo xtask study  NAME [ARGUMENT..] [--shard K/N [--rows FOLDER] | --merge [FOLDER]]
 
 verify  runs the checks of the house; optional steps run only with --with or --only
-chart   draws charts of cost against error and failure sweeps into docs/charts
+chart   draws charts of cost against error into docs/charts, and the page of all of them
+atlas   takes every method along every way of failing, and writes docs/atlas.md with its pictures
 study   runs a long study and writes its table under docs; in N parts, on as many machines, merged to the same table";
 
 fn main() -> ExitCode {
@@ -24,6 +27,7 @@ fn main() -> ExitCode {
     match words.next().as_deref() {
         Some("verify") => verify::main(words),
         Some("chart") => chart::main(words),
+        Some("atlas") => study::atlas(words),
         Some("study") => study::main(words),
         Some("help" | "--help" | "-h") => {
             println!("{USAGE}");

@@ -2,7 +2,10 @@
 
 use std::process::ExitCode;
 
-use crate::cargo::{cargo, output, root};
+use crate::cargo::{cargo, output, root, run};
+
+/// Where rows of parts are kept.
+const ROWS: &str = "target/study-rows";
 
 /// Name of a study, the file under docs/ that it writes, and what it is about.
 const STUDIES: &[(&str, &str, &str)] = &[
@@ -10,6 +13,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "assumptions",
         "assumptions.md",
         "what contradicts a log: false alarms of the score tests, and which assumption is named",
+    ),
+    (
+        "atlas",
+        "atlas.md",
+        "every method along every way of failing: right, reported, wrong without a warning",
     ),
     ("bounds_corners", "charts/bounds/corners.csv", "corners of half-spaces against rational arithmetic"),
     ("bounds_curvature", "charts/bounds/curvature.csv", "bounds from limits on the radii of curvature"),
@@ -146,6 +154,41 @@ const STUDIES: &[(&str, &str, &str)] = &[
     ("streaming", "streaming.md", "three palms sample by sample over a minute: time and accuracy"),
 ];
 
+/// The atlas of failures, all of it or in parts: what came of its runs is kept while it is made, so that one that was broken off goes on where it
+/// was. `--smoke` makes few runs and writes nothing, nor does `one`.
+pub(crate) fn atlas(words: impl Iterator<Item = String>) -> ExitCode {
+    let words: Vec<String> =
+        words.map(|word| if word == "--smoke" { "smoke".to_owned() } else { word }).collect();
+    let first = words.first().map(String::as_str);
+    if first == Some("smoke") || first == Some("one") {
+        let mut command = cargo("run --release --quiet --package recon-benches --bin study -- atlas");
+        return match run(command.args(&words)) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(complaint) => {
+                eprintln!("{complaint}");
+                ExitCode::FAILURE
+            }
+        };
+    }
+    let study = |more: &[&str]| {
+        let more = more.iter().map(|word| (*word).to_owned());
+        main(std::iter::once("atlas".to_owned()).chain(words.iter().cloned()).chain(more))
+    };
+    if words.iter().any(|word| word.starts_with("--")) {
+        return study(&[]);
+    }
+    let made = study(&["--shard", "0/1"]);
+    if made != ExitCode::SUCCESS {
+        return made;
+    }
+    let merged = study(&["--merge"]);
+    if merged == ExitCode::SUCCESS {
+        // They are of this state of the code alone.
+        let _ = std::fs::remove_dir_all(root().join(ROWS).join("atlas"));
+    }
+    merged
+}
+
 /// Runs the study that is named first; what follows is handed to it. Of a part (`--shard k/n`) what came of its runs is kept in a folder
 /// (`--rows`, if not stated one under target), and `--merge` writes the table from it.
 pub(crate) fn main(mut words: impl Iterator<Item = String>) -> ExitCode {
@@ -161,7 +204,7 @@ pub(crate) fn main(mut words: impl Iterator<Item = String>) -> ExitCode {
         words.push("--rows".to_owned());
     }
     if words.last().is_some_and(|word| word == "--rows" || word == "--merge") {
-        words.push(format!("target/study-rows/{name}"));
+        words.push(format!("{ROWS}/{name}"));
     }
     let mut command = cargo(&format!("run --release --quiet --package recon-benches --bin study -- {name}"));
     let path = root().join("docs").join(file);

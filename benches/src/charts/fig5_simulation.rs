@@ -1,11 +1,12 @@
 //! Simulation of the paper's Fig. 5: cost against error, for formulations, integrators and other simulators.
 
 use super::{Chart, Drawn, mujoco};
+use crate::multipliers::{Pose, by_multipliers, turning};
 use crate::{Axis, Budget, Method, Study, WorkPrecision};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::Ellipsoid;
-use recon::object_dynamics::integrate::{Dop853, FixedScheme, Tolerance, integrate_fixed};
-use recon::object_dynamics::{BodyState, InitialMotion, SampleTimes, ThreePalmScene};
+use recon::object_dynamics::integrate::{FixedScheme, Tolerance, integrate_fixed};
+use recon::object_dynamics::{InitialMotion, SampleTimes, ThreePalmScene};
 
 pub(super) const CHART: Chart =
     Chart { name: "fig5-simulation", about: "integrators and formulations on the paper's Fig. 5", draw };
@@ -15,9 +16,6 @@ const DURATION: f64 = 4.2;
 const SAMPLES: usize = 21;
 /// The same scene to 16 digits.
 const EXACT: &str = include_str!("../../../tests/data/golden_A_fig5.csv");
-
-/// Position of the centre of mass and orientation.
-type Pose = (DVec3, DQuat);
 
 fn draw(budget: Budget) -> Drawn {
     let (scene, start) = recon_tests::fig5(9.81);
@@ -34,7 +32,7 @@ fn draw(budget: Budget) -> Drawn {
             error,
         );
         if exponent % 2 == 0 {
-            let run = move || multiplier(scene, start, tolerance);
+            let run = move || by_multipliers(scene, start, (0.2, SAMPLES + 1), tolerance);
             study.fallible_case("multiplier form (30)-(34), DOP853", setting, run, error);
         }
     }
@@ -45,12 +43,17 @@ fn draw(budget: Budget) -> Drawn {
         study.fallible_case("minimal coordinates, Runge-Kutta 4", setting, run, error);
     }
     let methods = study.measure(budget, DURATION);
-    let mut chart = WorkPrecision::new("fig5-simulation", "Simulation of the paper's Fig. 5: cost against error")
-        .subtitle("largest pose error (m, rad) over 4.2 s, every 0.2 s, against the exact motion; points: tolerance or step")
-        .axes(Axis::log("pose error", "m, rad"), Axis::log("cost", "ms per simulated second"))
-        .methods(methods);
+    let mut chart = WorkPrecision::new(
+        "fig5-simulation",
+        "Simulation of the paper's Fig. 5: cost against error",
+    )
+    .subtitle(
+        "largest pose error (m, rad) over 4.2 s, every 0.2 s, exact to 16 digits; points: tolerance or step",
+    )
+    .axes(Axis::log("pose error", "m, rad"), Axis::log("cost", "ms per simulated second"))
+    .methods(methods);
     // Our own settings of MuJoCo, and those of the logs' maker beside them: neither should look worse than it can.
-    chart = chart.methods(mujoco::measure(&exact)).method(recorded_mujoco());
+    chart = chart.method(mujoco::measure(&exact)).method(recorded_mujoco());
     let chart = chart
         .method(
             Method::recorded("Drake 1.51", "the log's README")
@@ -103,54 +106,8 @@ fn minimal_fixed(scene: &ThreePalmScene<Ellipsoid>, start: InitialMotion, steps:
     Ok(poses)
 }
 
-/// Thirteen states with the contact forces as multipliers.
-fn multiplier(scene: &ThreePalmScene<Ellipsoid>, start: InitialMotion, tolerance: Tolerance) -> Poses {
-    let field = |t: f64, y: &[f64; 13]| {
-        let state = maximal(y);
-        let solution = scene.multiplier_form(t, &state).map_err(|e| e.to_string())?;
-        let solution = solution.ok_or("singular multiplier system")?.accelerations;
-        let rate = turning(state.R_WO, state.w_WO);
-        let (v, a, alpha) = (state.v_WCm, solution.a_WCm, solution.alpha_WO);
-        Ok::<_, String>([
-            v.x, v.y, v.z, rate.w, rate.x, rate.y, rate.z, a.x, a.y, a.z, alpha.x, alpha.y, alpha.z,
-        ])
-    };
-    let now = scene.instant(0.0, start.R_WO, start.w_WO).map_err(|e| e.to_string())?;
-    let (p, q, v, w) = (now.touch.p_WCm, start.R_WO, now.rates.v_WCm, start.w_WO);
-    let y = [p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z];
-    let mut solver = Dop853::new(field, 0.0, y, tolerance).map_err(|e| e.to_string())?;
-    let mut poses = vec![(p, q)];
-    while solver.time() < DURATION {
-        let normalise = |y: &mut [f64; 13]| {
-            let length = (y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6]).sqrt();
-            y[3..7].iter_mut().for_each(|v| *v /= length);
-        };
-        solver.step(DURATION, normalise).map_err(|e| e.to_string())?;
-        let Some(dense) = solver.dense().map_err(|e| e.to_string())? else { continue };
-        while poses.len() as f64 * 0.2 <= solver.time() + 1e-12 {
-            let state = maximal(&dense.at(poses.len() as f64 * 0.2));
-            poses.push((state.p_WCm, state.R_WO.normalize()));
-        }
-    }
-    Ok(poses)
-}
-
-fn maximal(y: &[f64; 13]) -> BodyState {
-    BodyState {
-        p_WCm: DVec3::new(y[0], y[1], y[2]),
-        R_WO: DQuat::from_xyzw(y[4], y[5], y[6], y[3]).normalize(),
-        v_WCm: DVec3::new(y[7], y[8], y[9]),
-        w_WO: DVec3::new(y[10], y[11], y[12]),
-    }
-}
-
 fn quaternion(y: &[f64; 7]) -> DQuat {
     DQuat::from_xyzw(y[1], y[2], y[3], y[0])
-}
-
-/// Rate of a quaternion at an angular velocity in world axes.
-fn turning(q: DQuat, w: DVec3) -> DQuat {
-    DQuat::from_xyzw(w.x, w.y, w.z, 0.0) * q * 0.5
 }
 
 fn exact_poses() -> Result<Vec<Pose>, Failure> {

@@ -2,16 +2,18 @@
 //!
 //! A new diagram is a new file here with a constant of the type [`Chart`], and one line in [`ALL`].
 
-mod contact_loss;
+mod bounds;
 mod fig5_simulation;
 mod mujoco;
-mod near_sphere;
-mod parallel_palms;
+mod page;
 mod planar_bounds;
 mod reaching;
 mod reconstruction;
 mod rolling;
 mod shared;
+mod streaming;
+
+pub use page::write_page;
 
 use crate::{Budget, Diagram};
 
@@ -35,9 +37,8 @@ pub const ALL: &[Chart] = &[
     fig5_simulation::CHART,
     reconstruction::BY_WINDOW,
     reconstruction::BY_RATE,
-    parallel_palms::CHART,
-    near_sphere::CHART,
-    contact_loss::CHART,
+    streaming::CHART,
+    bounds::CHART,
     planar_bounds::CHART,
     reaching::CHART,
     rolling::CHART,

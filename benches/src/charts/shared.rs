@@ -3,10 +3,10 @@
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
-    ContactLog, InitialMotion, Instant, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation,
+    ContactLog, InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation,
     SimulationError, ThreePalmScene,
 };
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, Reliability, estimate_contacts};
+use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
 
 /// A simulation close to rounding, and its log without truth.
 pub(super) fn exact_log<S: SupportFunction>(
@@ -41,17 +41,18 @@ pub(super) fn exact_estimate(
     estimate_contacts(log, None, &options).map_err(|error| error.to_string())
 }
 
-/// What conditions are off by beside noise, as a share of the natural speed of a body of one metre.
-const FLOOR: f64 = 1e-4;
+/// What conditions are off by beside noise, m/s.
+pub(super) const FLOOR: f64 = 1e-4;
 
-/// The same from a noisy log, as one of contacts.
+/// The same from a noisy log, as one of contacts; `floor` is what conditions are off by beside noise, m/s.
 pub(super) fn noisy_estimate<S: SupportFunction>(
     scene: &ThreePalmScene<S>,
     log: &SensorLog,
     noise: &SensorNoise,
+    floor: f64,
 ) -> Result<ContactEstimate, String> {
     let (contact, force_fixed) = (noise.contact, noise.force);
-    let level = ContactNoiseLevel { contact, force_fixed, force_share: 0.0, impulse: None, floor: FLOOR };
+    let level = ContactNoiseLevel { contact, force_fixed, force_share: 0.0, impulse: None, floor };
     let options = ContactOptions {
         friction: Some(0.0),
         body: Some(*scene.mass()),
@@ -61,31 +62,8 @@ pub(super) fn noisy_estimate<S: SupportFunction>(
     estimate_contacts(&log, None, &options).map_err(|error| error.to_string())
 }
 
-/// Largest error of centre of mass, velocity and angular velocity at the first sample, in its own stated deviations.
-pub(super) fn start_in_deviations(estimate: &ContactEstimate, truth: &Instant) -> f64 {
-    let (state, deviations) = (estimate.states[0], estimate.deviations[0]);
-    let errors = [state.p_WCm - truth.touch.p_WCm, state.v_WCm - truth.rates.v_WCm, state.w_WO - truth.w_WO];
-    errors.iter().zip(deviations).map(|(error, of)| (error.abs() / of).max_element()).fold(0.0, f64::max)
-}
-
 /// Largest error of the centre of mass over the log, m.
 pub(super) fn centre_error(estimate: &ContactEstimate, simulation: &Simulation) -> f64 {
     let pairs = estimate.states.iter().zip(&simulation.instants);
     pairs.map(|(state, now)| state.p_WCm.distance(now.touch.p_WCm)).fold(0.0, f64::max)
-}
-
-/// Why not to believe an estimate from contacts at the first sample, if there is a reason.
-pub(super) fn doubt(estimate: &ContactEstimate) -> Option<String> {
-    let there = || (!estimate.relied_on[0]).then(|| "the first sample is not relied on".to_owned());
-    warning(&estimate.reliability).or_else(there)
-}
-
-/// The first reason not to believe an estimate, if there is one.
-pub(super) fn warning(reliability: &Reliability) -> Option<String> {
-    match reliability {
-        Reliability::Reliable => None,
-        Reliability::Unreliable(reasons) => {
-            Some(reasons.first().map_or_else(String::new, ToString::to_string))
-        }
-    }
 }

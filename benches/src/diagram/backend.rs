@@ -10,7 +10,7 @@ use kuva::backend::svg::SvgBackend;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::plot::line::LineStyle;
 use kuva::plot::{LinePlot, MarkerShape, ScatterPlot};
-use kuva::render::annotations::{ReferenceLine, TextAnnotation};
+use kuva::render::annotations::TextAnnotation;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
@@ -18,6 +18,7 @@ use kuva::render::theme::Theme;
 
 use super::axis::Scale;
 use super::drawing::{Curve, Drawing, LegendItem, Place};
+use super::notes::{Placed, placed};
 use super::style::{Marker, Style};
 
 const WIDTH: f64 = 800.0;
@@ -26,30 +27,22 @@ const HEIGHT: f64 = 480.0;
 const PIXELS: f32 = 2.0;
 const INK: &str = "#1F2933";
 const FAINT: &str = "#7B8794";
-const THREAD: &str = "#CBD2D9";
 /// A subtitle is broken into lines of at most so many characters, which fit into the width.
 const SUBTITLE_COLUMNS: usize = 100;
 const NOTE_SIZE: u32 = 10;
-/// kuva writes a note 6 units above its place; these lift it clear of a marker, or hang it below one.
-const NOTE_LIFT: f64 = 4.0;
-const NOTE_DROP: f64 = 25.0;
+/// What the axes leave of the usual width and height for the diagram itself.
+const PLOT_WIDTH: f64 = 540.0;
+const PLOT_HEIGHT: f64 = 360.0;
 
 /// Lays out a drawing.
 pub(super) fn scene(drawing: &Drawing) -> Scene {
     let frame = Frame::around(drawing);
     let mut plots = Vec::new();
-    if !drawing.off_scale.is_empty() {
-        let across = [(frame.x.0, frame.off_scale), (frame.x.1, frame.off_scale)];
-        plots.push(LinePlot::new().with_data(across).with_color(THREAD).with_stroke_width(1.0).into());
-    }
     for curve in &drawing.curves {
         plots.extend(plots_of(curve));
     }
     for star in &drawing.stars {
         plots.push(points(vec![(star.at, star.label.clone())], Style::goal()));
-    }
-    for (x, style, tooltip) in &drawing.off_scale {
-        plots.push(points(vec![((*x, frame.off_scale), tooltip.clone())], *style));
     }
     let layout = frame.apply(annotate(layout(drawing, &plots), drawing, &frame));
     let mut scene = render_multiple(plots, layout);
@@ -119,7 +112,6 @@ fn shape(marker: Marker) -> MarkerShape {
         Marker::TriangleDown => MarkerShape::TriangleDown,
         Marker::Pentagon => MarkerShape::Pentagon,
         Marker::Hexagon => MarkerShape::Hexagon,
-        Marker::Cross => MarkerShape::Cross,
         Marker::Star => MarkerShape::Star,
     }
 }
@@ -183,22 +175,9 @@ fn theme() -> Theme {
 }
 
 fn annotate(mut layout: Layout, drawing: &Drawing, frame: &Frame) -> Layout {
-    for rule in &drawing.rules {
-        let line = ReferenceLine::horizontal(rule.at).with_color(FAINT).with_label(rule.label.as_str());
-        layout = layout.with_reference_line(line);
-    }
-    let unit = (frame.y.1 - frame.y.0) / HEIGHT;
-    let notes = drawing.notes.iter().map(|note| (note.at, &note.text, note.below));
-    for ((x, y), text, below) in notes.chain(drawing.stars.iter().map(|star| (star.at, &star.label, false))) {
-        let y = if below { y - NOTE_DROP * unit } else { y + NOTE_LIFT * unit };
-        let note = TextAnnotation::new(text.as_str(), x, y).with_font_size(NOTE_SIZE);
-        layout = layout.with_annotation(note);
-    }
-    if !drawing.off_scale.is_empty() {
-        let x = frame.x.1 - 60.0 * (frame.x.1 - frame.x.0) / WIDTH;
-        layout = layout.with_annotation(
-            TextAnnotation::new("no estimate", x, frame.off_scale + NOTE_LIFT * unit).with_font_size(11),
-        );
+    for Placed { at, text } in placed(drawing, [frame.x, frame.y], [PLOT_WIDTH, PLOT_HEIGHT]) {
+        layout =
+            layout.with_annotation(TextAnnotation::new(text.as_str(), at.0, at.1).with_font_size(NOTE_SIZE));
     }
     layout
 }
@@ -232,8 +211,6 @@ fn add_foot(scene: &mut Scene, drawing: &Drawing) {
 struct Frame {
     x: (f64, f64),
     y: (f64, f64),
-    /// Where points without a place upwards are drawn.
-    off_scale: f64,
     scales: (Scale, Scale),
 }
 
@@ -241,10 +218,8 @@ impl Frame {
     fn around(drawing: &Drawing) -> Self {
         let (xs, ys) = drawing.extent();
         let x = range(&xs, drawing.x.scale);
-        let mut y = range(&ys, drawing.y.scale);
-        let headroom = if drawing.off_scale.is_empty() { 0.0 } else { 0.12 * (y.1 - y.0) };
-        y.1 += headroom;
-        Self { x, y, off_scale: y.1 - 0.5 * headroom, scales: (drawing.x.scale, drawing.y.scale) }
+        let y = range(&ys, drawing.y.scale);
+        Self { x, y, scales: (drawing.x.scale, drawing.y.scale) }
     }
 
     fn apply(&self, mut layout: Layout) -> Layout {

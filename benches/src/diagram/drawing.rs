@@ -18,20 +18,12 @@ pub(super) struct Curve {
 pub(super) struct Note {
     pub(super) at: Place,
     pub(super) text: String,
-    pub(super) below: bool,
 }
 
 /// A goal.
 #[derive(Debug)]
 pub(super) struct Star {
     pub(super) at: Place,
-    pub(super) label: String,
-}
-
-/// A horizontal line across the diagram.
-#[derive(Debug)]
-pub(super) struct Rule {
-    pub(super) at: f64,
     pub(super) label: String,
 }
 
@@ -52,11 +44,8 @@ pub(super) struct Drawing {
     pub(super) curves: Vec<Curve>,
     pub(super) notes: Vec<Note>,
     pub(super) stars: Vec<Star>,
-    pub(super) rules: Vec<Rule>,
     /// Groups of entries under a heading; one group without a heading where there is one only.
     pub(super) legend: Vec<(&'static str, Vec<LegendItem>)>,
-    /// Points that have a place to the right but none upwards; drawn on a line above the others.
-    pub(super) off_scale: Vec<(f64, Style, String)>,
     /// Points that have no place at all; their number is written under the title.
     pub(super) left_out: usize,
 }
@@ -72,16 +61,14 @@ impl Drawing {
             curves: Vec::new(),
             notes: Vec::new(),
             stars: Vec::new(),
-            rules: Vec::new(),
             legend: Vec::new(),
-            off_scale: Vec::new(),
             left_out: 0,
         }
     }
 
     /// An error unless there is at least one point.
     pub(super) fn require_points(&self, chart: &str) -> Result<(), ChartError> {
-        if self.off_scale.is_empty() && self.curves.iter().all(|curve| curve.points.is_empty()) {
+        if self.curves.iter().all(|curve| curve.points.is_empty()) {
             return Err(ChartError::NothingToDraw { chart: chart.to_owned(), left_out: self.left_out });
         }
         Ok(())
@@ -91,8 +78,6 @@ impl Drawing {
     pub(super) fn extent(&self) -> (Vec<f64>, Vec<f64>) {
         let points = || self.curves.iter().flat_map(|curve| curve.points.iter().map(|(at, _)| *at));
         let places = || points().chain(self.stars.iter().map(|star| star.at));
-        let x = places().map(|at| at.0).chain(self.off_scale.iter().map(|(x, ..)| *x)).collect();
-        let y = places().map(|at| at.1).chain(self.rules.iter().map(|rule| rule.at)).collect();
-        (x, y)
+        places().unzip()
     }
 }

@@ -6,9 +6,9 @@ mod csv;
 mod drawing;
 mod error;
 mod files;
+mod notes;
 mod outline;
 mod style;
-mod sweep;
 mod work_precision;
 
 use std::path::Path;
@@ -17,7 +17,6 @@ pub use axis::{Axis, Scale};
 pub use error::ChartError;
 pub use files::WrittenChart;
 pub use outline::{Outlines, Stroke};
-pub use sweep::{Judged, Subject, Sweep, Verdict};
 pub use work_precision::{Goal, Method, Outcome, Point, WorkPrecision};
 
 /// Any diagram.
@@ -25,8 +24,6 @@ pub use work_precision::{Goal, Method, Outcome, Point, WorkPrecision};
 pub enum Diagram {
     /// Cost against error.
     WorkPrecision(WorkPrecision),
-    /// Error against a parameter, with verdicts.
-    Sweep(Sweep),
     /// Outlines in the plane.
     Outlines(Outlines),
 }
@@ -37,7 +34,6 @@ impl Diagram {
     pub fn name(&self) -> &str {
         match self {
             Self::WorkPrecision(chart) => &chart.name,
-            Self::Sweep(sweep) => &sweep.name,
             Self::Outlines(outlines) => &outlines.name,
         }
     }
@@ -52,7 +48,6 @@ impl Diagram {
     pub fn save(&self, folder: &Path) -> Result<WrittenChart, ChartError> {
         let (csv, drawing) = match self {
             Self::WorkPrecision(chart) => (chart.csv(), chart.drawing()?),
-            Self::Sweep(sweep) => (sweep.csv(), sweep.drawing()?),
             Self::Outlines(outlines) => (outlines.csv(), outlines.drawing()?),
         };
         let scene = backend::scene(&drawing);
@@ -66,11 +61,5 @@ impl Diagram {
 impl From<WorkPrecision> for Diagram {
     fn from(chart: WorkPrecision) -> Self {
         Self::WorkPrecision(chart)
-    }
-}
-
-impl From<Sweep> for Diagram {
-    fn from(sweep: Sweep) -> Self {
-        Self::Sweep(sweep)
     }
 }

@@ -68,9 +68,9 @@ impl Outlines {
         let axis = |name| Axis::linear(name, "m");
         let mut drawing = Drawing::new(&self.title, &self.subtitle, &axis("x"), &axis("y"));
         let mut legend = Vec::new();
-        for (index, Outline { label, points, stroke }) in self.outlines.iter().enumerate() {
+        let styles = Style::of_methods(self.outlines.iter().map(|outline| outline.label.as_str()));
+        for (Outline { label, points, stroke }, style) in self.outlines.iter().zip(styles) {
             let dots = *stroke == Stroke::Points;
-            let style = Style::of_method(index);
             let style = match stroke {
                 Stroke::Line => Style { marker: Marker::None, ..style },
                 Stroke::Ink => Style { marker: Marker::None, ..Style { line_width: 2.4, ..Style::goal() } },
@@ -97,6 +97,6 @@ fn even_scale(drawing: &Drawing) -> Curve {
     let height = (high - low).max((right - left) / FRAME);
     let (x, y) = (0.5 * (left + right), 0.5 * (low + high));
     let corner = |side: f64| ((x + side * 0.5 * height * FRAME, y + side * 0.5 * height), String::new());
-    let style = Style { line_width: 0.0, marker: Marker::None, ..Style::of_method(0) };
+    let style = Style { line_width: 0.0, marker: Marker::None, ..Style::goal() };
     Curve { points: vec![corner(-1.0), corner(1.0)], style, dashed: false }
 }

@@ -1,8 +1,6 @@
 //! Colours and markers: the Okabe-Ito set, which colour-blind readers can tell apart, and one marker per curve for
 //! print in grey.
 
-use super::Verdict;
-
 /// Shape of the points of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Marker {
@@ -14,7 +12,6 @@ pub(super) enum Marker {
     TriangleDown,
     Pentagon,
     Hexagon,
-    Cross,
     Star,
 }
 
@@ -39,9 +36,63 @@ const MARKERS: [Marker; 7] = [
     Marker::Hexagon,
 ];
 
+/// Methods that more than one diagram shows, each with the place of its colour and marker, so that it looks the same on all of them. Names are told by
+/// how they begin.
+const KNOWN: &[(&str, usize)] = &[
+    ("minimal coordinates, DOP853", 0),
+    ("multiplier form", 1),
+    ("minimal coordinates, Runge-Kutta", 2),
+    ("any palms", 2),
+    ("MuJoCo", 3),
+    ("Drake", 5),
+    ("SciPy", 6),
+    ("no noise", 0),
+    ("from contacts, no guess", 0),
+    ("0.1 %", 4),
+    ("1 %", 2),
+    ("Cram", 7),
+    ("(35)-(37), Adams, held", 17),
+    ("(35)-(37), Adams", 9),
+    ("(35)-(37), Heun", 25),
+    ("random", 7),
+    ("Gaussian process", 3),
+    ("Hausdorff-greedy", 0),
+    ("largest gap", 0),
+    ("path-aware", 2),
+    ("golden-angle sweep", 5),
+    ("R2 sweep", 5),
+    ("fixed sweep", 5),
+    ("n* of", 6),
+    ("area-greedy", 1),
+    ("volume-greedy", 1),
+    ("hull", 4),
+    ("half-", 1),
+    ("inner", 0),
+    ("outer", 2),
+];
+
 impl Style {
-    /// The style of the curve with this index; 56 curves differ in colour or marker.
-    pub(super) fn of_method(index: usize) -> Self {
+    /// The styles of the curves of one diagram, by their names: known ones as on all diagrams, the others by what is left of 56 that differ in colour or
+    /// marker.
+    pub(super) fn of_methods<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<Self> {
+        let places: Vec<Option<usize>> = names
+            .into_iter()
+            .map(|name| KNOWN.iter().find(|(known, _)| name.starts_with(known)).map(|(_, place)| *place))
+            .collect();
+        let mut taken: Vec<usize> = Vec::with_capacity(places.len());
+        // Two of one family on one diagram (a version measured here and one recorded elsewhere) keep apart by their markers.
+        let mut free = |wanted: Option<usize>| {
+            let step = if wanted.is_some() { COLOURS.len() } else { 1 };
+            let kept = |place: &usize| wanted == Some(*place) || !places.contains(&Some(*place));
+            let own = (0..).map(|k| wanted.unwrap_or(0) + k * step).find(|p| !taken.contains(p) && kept(p));
+            let own = own.unwrap_or_default();
+            taken.push(own);
+            own
+        };
+        places.iter().map(|wanted| Self::of_place(free(*wanted))).collect()
+    }
+
+    fn of_place(index: usize) -> Self {
         Self {
             colour: COLOURS[index % COLOURS.len()],
             marker: MARKERS[index % MARKERS.len()],
@@ -50,36 +101,9 @@ impl Style {
         }
     }
 
-    /// Points of a sweep: the colour says the verdict. Wrong without a warning is a large red cross.
-    pub(super) fn of_verdict(verdict: Verdict, marker: Marker) -> Self {
-        let (colour, marker, size) = match verdict {
-            Verdict::Right => ("#0072B2", marker, 4.5),
-            Verdict::ReportedAsUnreliable => ("#E69F00", marker, 4.5),
-            Verdict::WrongWithoutWarning => ("#B00020", Marker::Cross, 7.0),
-        };
-        Self { colour, marker, line_width: 0.0, size }
-    }
-
-    /// Legend entry of a marker whose colour carries another meaning.
-    pub(super) fn neutral(marker: Marker) -> Self {
-        Self { colour: "#7B8794", marker, line_width: 0.0, size: 4.5 }
-    }
-
-    /// The thin line that joins the points of one subject of a sweep.
-    pub(super) fn thread() -> Self {
-        Self { colour: "#CBD2D9", marker: Marker::None, line_width: 1.2, size: 0.0 }
-    }
-
     /// A goal on a work-precision chart.
     pub(super) fn goal() -> Self {
         Self { colour: "#1F2933", marker: Marker::Star, line_width: 0.0, size: 6.5 }
-    }
-}
-
-impl Marker {
-    /// The marker of the subject of a sweep with this index.
-    pub(super) fn of_subject(index: usize) -> Self {
-        MARKERS[index % MARKERS.len()]
     }
 }
 
@@ -88,13 +112,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn neighbouring_methods_never_look_alike() {
+    fn places_never_look_alike() {
         let count = COLOURS.len() * MARKERS.len();
         for i in 0..count {
             for j in 0..i {
-                let (a, b) = (Style::of_method(i), Style::of_method(j));
+                let (a, b) = (Style::of_place(i), Style::of_place(j));
                 assert!(a.colour != b.colour || a.marker != b.marker, "{i} {j}");
             }
+        }
+    }
+
+    #[test]
+    fn a_method_looks_the_same_wherever_it_is_and_two_never_alike_on_one_diagram() {
+        let one = Style::of_methods(["new", "random", "MuJoCo 4.0.0", "MuJoCo 4.0, recorded", "other"]);
+        let two = Style::of_methods(["MuJoCo 3", "random"]);
+        assert_eq!((one[1], one[2]), (two[1], two[0]));
+        assert_eq!(one[2].colour, one[3].colour);
+        for (i, a) in one.iter().enumerate() {
+            assert!(one[..i].iter().all(|b| a.colour != b.colour || a.marker != b.marker), "{i}");
         }
     }
 }

@@ -196,8 +196,8 @@ impl WorkPrecision {
         check_name(&self.name)?;
         let mut drawing = Drawing::new(&self.title, &self.subtitle, &self.error, &self.cost);
         let mut legend = Vec::new();
-        for (index, method) in self.methods.iter().enumerate() {
-            let style = Style::of_method(index);
+        let styles = Style::of_methods(self.methods.iter().map(Method::name));
+        for (method, style) in self.methods.iter().zip(styles) {
             self.draw_method(&mut drawing, method, style);
             legend.push(LegendItem { label: method.legend(), style });
         }
@@ -230,7 +230,7 @@ impl WorkPrecision {
             let tooltip = format!("{}, {setting}: error {error:.2e}, cost {cost:.3e}", method.name);
             curve.points.push((at, tooltip));
             if !is_on_the_axis(setting, error) {
-                notes.push(Note { at, text: setting.clone(), below: false });
+                notes.push(Note { at, text: setting.clone() });
             }
         }
         drawing.notes.extend(ends(notes));
@@ -247,12 +247,11 @@ fn is_on_the_axis(setting: &str, error: f64) -> bool {
     setting.parse().is_ok_and(|value: f64| (value - error).abs() <= 0.01 * error.abs())
 }
 
-/// The notes of the dearest and the cheapest point of a curve, above and below it: a label at every point would
-/// bury the curves.
+/// The notes of the dearest and the cheapest point of a curve: a label at every point would bury the curves.
 fn ends(mut notes: Vec<Note>) -> impl Iterator<Item = Note> {
     notes.sort_by(|a, b| b.at.1.total_cmp(&a.at.1));
     let cheapest = if notes.len() > 1 { notes.pop() } else { None };
-    notes.into_iter().take(1).chain(cheapest.map(|note| Note { below: true, ..note }))
+    notes.into_iter().take(1).chain(cheapest)
 }
 
 #[cfg(test)]

@@ -7,51 +7,46 @@ use recon_tests::Random;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// How late readings are, s.
-const LATE: f64 = 0.004;
-/// Half of a gap, s.
-const HALF_GAP: f64 = 0.024;
-
 /// What is wrong with a log or with what is told of it.
 #[derive(Clone, Copy)]
 pub enum Wrong {
     /// Nothing.
     Nothing,
-    /// The moment of inertia, by 10 %.
-    Inertia,
-    /// Mass and moment of inertia, by 5 %.
-    Mass,
-    /// Forces are 4 ms old.
-    ForcesLate,
-    /// Contacts are 4 ms old.
-    ContactsLate,
-    /// Nothing is read for 48 ms.
-    Gap,
-    /// The angle of a palm, by half a degree.
-    Palm,
-    /// The gain of a palm's force, by 1 %.
-    Gain,
-    /// Both gains, by 1 %.
-    BothGains,
-    /// A force, by 1 % of the weight.
-    Bias,
-    /// One contact in a hundred, by up to a fifth of the size.
-    Outliers,
+    /// The moment of inertia, by this share.
+    Inertia(f64),
+    /// Mass and moment of inertia, by this share.
+    Mass(f64),
+    /// Forces are so old, s.
+    ForcesLate(f64),
+    /// Contacts are so old, s.
+    ContactsLate(f64),
+    /// Nothing is read for so long, s.
+    Gap(f64),
+    /// The angle of a palm, degrees.
+    Palm(f64),
+    /// The gain of a palm's force, by this share.
+    Gain(f64),
+    /// Both gains, by this share.
+    BothGains(f64),
+    /// A force, in weights.
+    Bias(f64),
+    /// This share of the contacts, by up to a fifth of the size.
+    Outliers(f64),
 }
 
-/// All of them, with their names.
+/// Those of the study, with their names.
 pub const FAULTS: [(Wrong, &str); 11] = [
     (Wrong::Nothing, "nothing"),
-    (Wrong::Inertia, "inertia 10 %"),
-    (Wrong::Mass, "mass and inertia 5 %"),
-    (Wrong::ForcesLate, "forces 4 ms late"),
-    (Wrong::ContactsLate, "contacts 4 ms late"),
-    (Wrong::Gap, "gap of 48 ms"),
-    (Wrong::Palm, "angle of a palm 0.5 degrees"),
-    (Wrong::Gain, "gain of a palm 1 %"),
-    (Wrong::BothGains, "both gains 1 %"),
-    (Wrong::Bias, "bias of 1 % of the weight"),
-    (Wrong::Outliers, "1 % outliers of contacts"),
+    (Wrong::Inertia(0.1), "inertia 10 %"),
+    (Wrong::Mass(0.05), "mass and inertia 5 %"),
+    (Wrong::ForcesLate(0.004), "forces 4 ms late"),
+    (Wrong::ContactsLate(0.004), "contacts 4 ms late"),
+    (Wrong::Gap(0.048), "gap of 48 ms"),
+    (Wrong::Palm(0.5), "angle of a palm 0.5 degrees"),
+    (Wrong::Gain(0.01), "gain of a palm 1 %"),
+    (Wrong::BothGains(0.01), "both gains 1 %"),
+    (Wrong::Bias(0.01), "bias of 1 % of the weight"),
+    (Wrong::Outliers(0.01), "1 % outliers of contacts"),
 ];
 
 impl Wrong {
@@ -69,30 +64,30 @@ impl Wrong {
             }
         };
         match self {
-            Self::Gain => gains(&mut samples, [1.01, 1.0], 0.0),
-            Self::BothGains => gains(&mut samples, [1.01, 1.01], 0.0),
-            Self::Bias => gains(&mut samples, [1.0, 1.0], 0.01 * scene.weight()),
-            Self::Palm => samples.iter_mut().for_each(|s| s.angles[1] += 0.5_f64.to_radians()),
-            Self::ForcesLate | Self::ContactsLate => {
-                let late = scene.log_at(rate, LATE)?;
+            Self::Gain(by) => gains(&mut samples, [1.0 + by, 1.0], 0.0),
+            Self::BothGains(by) => gains(&mut samples, [1.0 + by; 2], 0.0),
+            Self::Bias(by) => gains(&mut samples, [1.0; 2], by * scene.weight()),
+            Self::Palm(by) => samples.iter_mut().for_each(|s| s.angles[1] += by.to_radians()),
+            Self::ForcesLate(age) | Self::ContactsLate(age) => {
+                let late = scene.log_at(rate, age)?;
                 // Samples before the first one that is late.
-                let early = samples.iter().take_while(|sample| sample.t - LATE <= 0.0).count();
+                let early = samples.iter().take_while(|sample| sample.t - age <= 0.0).count();
                 for (sample, late) in samples[early..].iter_mut().zip(&late.samples()[1..]) {
                     match self {
-                        Self::ForcesLate => sample.forces = late.forces,
+                        Self::ForcesLate(_) => sample.forces = late.forces,
                         _ => sample.contacts = late.contacts,
                     }
                 }
                 let end = samples.len().min(early + late.samples().len() - 1);
                 return Ok(PlanarLog::new(samples[early..end].to_vec(), Some(truth[early..end].to_vec()))?);
             }
-            Self::Gap => {
+            Self::Gap(gap) => {
                 let middle = samples[samples.len() / 2].t;
-                let kept = |(of, _): &(&PlanarSample, &PlanarTruth)| (of.t - middle).abs() > HALF_GAP;
+                let kept = |(of, _): &(&PlanarSample, &PlanarTruth)| (of.t - middle).abs() > 0.5 * gap;
                 let (samples, truth) = samples.iter().zip(&truth).filter(kept).unzip();
                 return Ok(PlanarLog::new(samples, Some(truth))?);
             }
-            Self::Nothing | Self::Inertia | Self::Mass | Self::Outliers => {}
+            Self::Nothing | Self::Inertia(_) | Self::Mass(_) | Self::Outliers(_) => {}
         }
         Ok(PlanarLog::new(samples, Some(truth))?)
     }
@@ -102,13 +97,11 @@ impl Wrong {
     /// # Errors
     /// Never: times are those of `log`.
     pub fn misread(self, log: PlanarLog, length: f64, seed: u64) -> Result<PlanarLog, Failure> {
-        if !matches!(self, Self::Outliers) {
-            return Ok(log);
-        }
+        let Self::Outliers(share) = self else { return Ok(log) };
         let mut random = Random::new(seed);
         let mut samples = log.samples().to_vec();
         for contact in samples.iter_mut().flat_map(|sample| &mut sample.contacts) {
-            if random.within(0.0, 1.0) < 0.01 {
+            if random.within(0.0, 1.0) < share {
                 *contact = contact.map(|s| s + length * random.within(-0.2, 0.2));
             }
         }
@@ -119,11 +112,11 @@ impl Wrong {
     #[must_use]
     pub fn constant(self, scene: &Scene) -> Option<(SensorFault, f64)> {
         match self {
-            Self::ForcesLate => Some((SensorFault::ForceDelay, LATE)),
-            Self::ContactsLate => Some((SensorFault::ContactDelay, LATE)),
-            Self::Palm => Some((SensorFault::PalmTilt { palm: 2, axis: 1 }, 0.5_f64.to_radians())),
-            Self::Gain => Some((SensorFault::ForceGain { palm: 1 }, 0.01)),
-            Self::Bias => Some((SensorFault::ForceBias { palm: 1 }, 0.01 * scene.weight())),
+            Self::ForcesLate(age) => Some((SensorFault::ForceDelay, age)),
+            Self::ContactsLate(age) => Some((SensorFault::ContactDelay, age)),
+            Self::Palm(by) => Some((SensorFault::PalmTilt { palm: 2, axis: 1 }, by.to_radians())),
+            Self::Gain(by) => Some((SensorFault::ForceGain { palm: 1 }, by)),
+            Self::Bias(by) => Some((SensorFault::ForceBias { palm: 1 }, by * scene.weight())),
             _ => None,
         }
     }
@@ -134,8 +127,8 @@ impl Wrong {
     /// Those of a body that has no mass.
     pub fn told(self, body: PlanarMass) -> Result<PlanarMass, Failure> {
         let [mass, inertia] = match self {
-            Self::Inertia => [1.0, 1.1],
-            Self::Mass => [1.05, 1.05],
+            Self::Inertia(by) => [1.0, 1.0 + by],
+            Self::Mass(by) => [1.0 + by; 2],
             _ => [1.0, 1.0],
         };
         Ok(PlanarMass::new(body.mass() * mass, body.inertia() * inertia)?)

@@ -27,6 +27,8 @@ pub struct Scene {
     pub length: f64,
     /// Natural time, s.
     pub time: f64,
+    /// Length of its logs, natural times.
+    pub lasts: f64,
 }
 
 /// Mean radius of a random outline, m, and the harmonics of its radius function.
@@ -85,7 +87,14 @@ fn one(random: &mut Random) -> Result<Option<Scene>, Failure> {
     if shape.radius_bounds().min < 0.1 * length {
         return Ok(None);
     }
-    Ok(Some(Scene { object: PlanarObject { shape, mass, gravity: GRAVITY }, palms, start, length, time }))
+    Ok(Some(Scene {
+        object: PlanarObject { shape, mass, gravity: GRAVITY },
+        palms,
+        start,
+        length,
+        time,
+        lasts: LASTS,
+    }))
 }
 
 /// Time from the first sample to the last, s.
@@ -105,7 +114,7 @@ impl Scene {
 
     /// With all times shifted, s.
     pub(super) fn log_at(&self, rate: f64, shift: f64) -> Result<PlanarLog, Failure> {
-        let count = (LASTS * self.time * rate) as usize;
+        let count = (self.lasts * self.time * rate) as usize;
         let times = (1..=count).map(|k| k as f64 / rate - shift).filter(|t| *t > 0.0);
         let times: Vec<f64> = std::iter::once(0.0).chain(times).collect();
         Ok(simulate_prescribed(&self.object, &self.palms, self.start, &times, 1e-12)?.log()?)

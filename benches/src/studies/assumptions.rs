@@ -3,10 +3,10 @@
 //! `cargo xtask study assumptions [BODIES [SEED]]` writes docs/assumptions.md.
 
 use crate::whole_logs::body::{self, Body};
-use crate::whole_logs::fault::Fault;
 use crate::whole_logs::options;
 use recon::object_dynamics::ContactLog;
 use recon::observer::{Assumption, ContactEstimate, SensorFault, estimate_contacts};
+use recon_benches::fault::Fault;
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -160,7 +160,7 @@ fn scores(body: &Body, noise: f64, rate: f64, known: bool) -> Result<Option<(usi
 /// Which count a run goes to, and whether the value is right where it is the first.
 fn faulty(body: &Body, noise: f64, fault: &Fault) -> Result<Option<(usize, bool)>, Failure> {
     let Some((log, _)) = body.log(noise, RATE_OF_FAULTS, SECONDS)? else { return Ok(None) };
-    let log = fault.of_log(&log, body)?;
+    let log = fault.of_log(&log, body.scale())?;
     let options = options(body, noise, fault.of_body().then(|| fault.of_mass(body.mass)));
     let Ok(found) = estimate_contacts(&ContactLog::try_from(&log)?, None, &options) else { return Ok(None) };
     Ok(Some(outcome(&found, fault, body)))
@@ -174,7 +174,7 @@ fn outcome(found: &ContactEstimate, fault: &Fault, body: &Body) -> (usize, bool)
     match own {
         Some(own) if own.assumption == first.assumption => {
             let right = fault
-                .value(body, RATE_OF_FAULTS)
+                .value(body.scale(), RATE_OF_FAULTS)
                 .is_none_or(|value| (own.value - value).abs() < 5.0 * own.deviation);
             (2, right)
         }

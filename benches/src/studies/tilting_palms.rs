@@ -9,9 +9,10 @@ use recon::contact_kinematics::{
     Direction, Ellipsoid, MotionLaw, MotionPart, PalmFrame, PalmSurface, SurfaceMotion, SurfacePose,
 };
 use recon::object_dynamics::{
-    BodyState, ContactInstant, ContactMode, ContactScene, ContactSimulation, ContactStart, MassProperties,
-    PalmDrive, SampleTimes, ScenePalm,
+    BodyState, ContactScene, ContactSimulation, ContactStart, MassProperties, PalmDrive, SampleTimes,
+    ScenePalm,
 };
+use recon_benches::departures::Departures;
 use shape_bounds::generators::Source;
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -19,30 +20,6 @@ use std::time::Instant;
 
 const FRICTION: f64 = 0.3;
 const GRAVITY: f64 = 9.81;
-
-/// Largest departures over a run from what must hold.
-#[derive(Clone, Copy, Default)]
-struct Seen {
-    /// Overlap, or gap in contact, m.
-    gap: f64,
-    /// Force beyond its cone, N.
-    cone: f64,
-    /// Slip of a sticking contact, m/s.
-    creep: f64,
-    /// Energy not accounted for, J.
-    energy: f64,
-}
-
-impl Seen {
-    fn or(self, other: Self) -> Self {
-        Self {
-            gap: self.gap.max(other.gap),
-            cone: self.cone.max(other.cone),
-            creep: self.creep.max(other.creep),
-            energy: self.energy.max(other.energy),
-        }
-    }
-}
 
 /// Seconds; why it is refused, or how many changes of modes there are, the angle that it is turned by, and departures.
 type Run = (f64, Option<String>, Option<(usize, f64, [f64; 4])>);
@@ -52,7 +29,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let wanted: usize = words.next().map_or(Ok(140), |s| s.parse())?;
     let mut source = Source::new(words.next().map_or(Ok(1), |s| s.parse())?);
     let tolerance: f64 = words.next().map_or(Ok(1e-8), |s| s.parse())?;
-    let (mut through, mut refused, mut worst) = (0, Vec::new(), Seen::default());
+    let (mut through, mut refused, mut worst) = (0, Vec::new(), Departures::default());
     let (mut times, mut turns, mut changes) = (Vec::new(), Vec::new(), 0);
     for k in 0..wanted {
         let (scene, body, duration) = variant(&mut source)?;
@@ -64,7 +41,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
             Ok(match run {
                 Err(error) => (seconds, Some(error.to_string()), None),
                 Ok(run) => {
-                    let Seen { gap, cone, creep, energy } = departures(&scene, &run);
+                    let Departures { gap, cone, creep, energy } = Departures::of(&scene, &run);
                     (seconds, None, Some((run.events.len(), turn(&run), [gap, cone, creep, energy])))
                 }
             })
@@ -76,7 +53,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
             through += 1;
             changes += events;
             turns.push(turn);
-            worst = worst.or(Seen { gap, cone, creep, energy });
+            worst = worst.or(Departures { gap, cone, creep, energy });
         }
     }
     for sorted in [&mut times, &mut turns] {
@@ -110,37 +87,6 @@ fn turn(run: &ContactSimulation) -> f64 {
     let [first, last] =
         [run.instants.first(), run.instants.last()].map(|now| now.map_or(DQuat::NAN, |n| n.state.body.R_WO));
     first.angle_between(last)
-}
-
-fn departures(scene: &ContactScene<Ellipsoid>, run: &ContactSimulation) -> Seen {
-    let mut worst = Seen::default();
-    let first = scene.energy(&run.instants[0].state.body);
-    for now in &run.instants {
-        for (i, mode) in now.modes.iter().enumerate() {
-            worst = worst.or(contact_departure(scene, now, i, *mode));
-        }
-        let energy =
-            scene.energy(&now.state.body) - first - now.friction_work - now.palm_work - now.blow_work;
-        worst.energy = worst.energy.max(energy.abs());
-    }
-    worst
-}
-
-fn contact_departure(
-    scene: &ContactScene<Ellipsoid>,
-    now: &ContactInstant,
-    i: usize,
-    mode: ContactMode,
-) -> Seen {
-    let (contact, force) = (&now.contacts[i], now.forces[i]);
-    let normal = contact.n.dot(force);
-    let cone = contact.in_tangent(force).length() - scene.palms()[i].friction * normal;
-    Seen {
-        gap: if mode == ContactMode::Off { -contact.gap } else { contact.gap.abs() },
-        cone: cone.max(-normal),
-        creep: if mode == ContactMode::Stick { now.rates[i].slip.length() } else { 0.0 },
-        energy: 0.0,
-    }
 }
 
 /// A scene, its body at rest, and how long it lasts, s.

@@ -1,11 +1,13 @@
-//! Jobs timed in turns, so that a machine that slows down for a while slows all of them.
+//! Jobs timed in turns, so that a machine that slows down for a while slows all of them; by the processor time of this thread, so that others who
+//! use the machine at the same time do not count.
 
+use cpu_time::ThreadTime;
 use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How long to measure.
 ///
-/// Batches are short beside the time slices of a system (a few milliseconds), so that another process spoils whole
+/// Batches are short beside the time slices of a system (a few milliseconds), so that what another process does to the caches spoils whole
 /// batches, which the median passes over, rather than a part of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
@@ -143,7 +145,7 @@ impl Plan {
 }
 
 fn time_of(job: &mut dyn FnMut(), calls: u32) -> Duration {
-    let start = Instant::now();
+    let start = ThreadTime::now();
     for _ in 0..calls {
         job();
     }

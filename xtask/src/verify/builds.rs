@@ -30,6 +30,11 @@ pub(crate) fn all_tests() -> Result<Outcome, String> {
     Ok(Outcome::Passed)
 }
 
+/// By the profile that the tests are built with.
+pub(crate) fn atlas() -> Result<Outcome, String> {
+    all(["run --package recon-benches --bin study -- atlas smoke".to_owned()])
+}
+
 /// In a build of the whole workspace a crate that may be picked alone sees the features that others switch on in its dependencies. Here
 /// it has its own only, and the least of them. Its tests are compiled and not run: they ran with the workspace, and
 /// what a feature of a dependency changes is whether something is there.

@@ -51,6 +51,11 @@ const STEPS: &[Step] = &[
         "the tests with all their seeds and cases, RECON_TESTS=all (long)",
         builds::all_tests,
     ),
+    optional(
+        "atlas",
+        "a run of each method along each way of failing: none crashes, each is right somewhere (a minute)",
+        builds::atlas,
+    ),
     optional("hack", "cargo-hack: all combinations of features build", extras::hack),
     optional(
         "semver",

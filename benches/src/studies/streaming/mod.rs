@@ -2,14 +2,13 @@
 //! what gaps cost; and at the pace of a robot, the time of a sample.
 
 mod paced;
-mod scene;
 mod tally;
 
 use recon::observer::{PlaneReadings, StreamEstimate};
-use scene::Case;
+use recon_benches::streaming::{Case, some};
 use tally::Tally;
 
-pub(crate) type Failure = Box<dyn std::error::Error>;
+pub(crate) type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 /// Noise of contacts as a share of the size, and of forces as one of what a palm carries, in per cent.
 const QUALITIES: [[f64; 2]; 4] = [[1e-6, 1e-5], [0.01, 0.1], [0.1, 1.0], [1.0, 2.0]];
@@ -50,7 +49,7 @@ pub(crate) fn main() -> Result<(), Failure> {
         for quality in QUALITIES {
             for (name, known) in [("known", true), ("unknown", false)] {
                 let mut tally = Tally::default();
-                for case in scene::some(SCENES, SEED, size, rate, quality, LONGEST)? {
+                for case in some(SCENES, SEED, size, rate, quality, LONGEST)? {
                     tally.take(&case, &followed(&case, known, |_| true)?, f64::NEG_INFINITY);
                 }
                 println!("| {size} | {}, {} | {name} |{}", quality[0], quality[1], tally.row());
@@ -75,7 +74,7 @@ fn gaps() -> Result<(), Failure> {
     for gap in GAPS {
         for (name, known) in [("known", true), ("unknown", false)] {
             let mut tally = Tally::default();
-            for case in scene::some(WITH_GAPS, SEED, 0.3, 500.0, QUALITIES[2], LONGEST)? {
+            for case in some(WITH_GAPS, SEED, 0.3, 500.0, QUALITIES[2], LONGEST)? {
                 let from = case.start() + 25.0 * case.natural;
                 let to = from + gap / 1000.0;
                 let estimates = followed(&case, known, |t| !(from..to).contains(&t))?;

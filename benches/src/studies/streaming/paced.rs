@@ -1,12 +1,8 @@
 //! At the pace of a robot: how long a sample takes while the other thread solves, and how much of a core that takes.
 
-use super::scene::{Case, some};
 use super::tally::quantile;
 use super::{Failure, QUALITIES, SEED};
-use cpu_time::ProcessTime;
-use recon::observer::PlaneReadings;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use recon_benches::streaming::{Paced, paced, some};
 
 /// Sizes, m.
 const SIZES: [f64; 3] = [0.03, 0.3, 3.0];
@@ -26,7 +22,7 @@ pub(super) fn main() -> Result<(), Failure> {
     for size in SIZES {
         for (name, known) in [("known", true), ("unknown", false)] {
             for case in some(1, SEED, size, RATE, QUALITIES[2], [LONGEST, f64::INFINITY])? {
-                let (mut microseconds, cores) = paced(&case, known)?;
+                let Paced { mut microseconds, cores, .. } = paced(&case, known)?;
                 microseconds.sort_by(f64::total_cmp);
                 let slow = microseconds.iter().filter(|&&us| us > 1000.0).count();
                 println!(
@@ -40,23 +36,4 @@ pub(super) fn main() -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-fn paced(case: &Case, known: bool) -> Result<(Vec<f64>, f64), Failure> {
-    let mut stream = case.stream(known)?;
-    let mut readings = PlaneReadings::new(None);
-    let mut microseconds = Vec::with_capacity(case.samples.len());
-    let (clock, processor) = (Instant::now(), ProcessTime::now());
-    for sample in &case.samples {
-        let due = Duration::from_secs_f64((sample.t - case.start()).max(0.0));
-        if let Some(early) = due.checked_sub(clock.elapsed()) {
-            sleep(early);
-        }
-        let begun = Instant::now();
-        if let Some((t, sensed)) = readings.push(sample)? {
-            stream.push(t, &sensed)?;
-            microseconds.push(1e6 * begun.elapsed().as_secs_f64());
-        }
-    }
-    Ok((microseconds, processor.elapsed().as_secs_f64() / clock.elapsed().as_secs_f64()))
 }

@@ -1,8 +1,8 @@
 //! What came of a stream over many scenes.
 
-use super::scene::Case;
 use nalgebra::SVector;
 use recon::observer::{StreamEstimate, StreamStage};
+use recon_benches::streaming::Case;
 
 /// Deviations beyond which a stated number is wrong without a warning.
 const SILENT: f64 = 5.0;

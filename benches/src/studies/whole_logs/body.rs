@@ -7,6 +7,7 @@ use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     BodyState, InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, ThreePalmScene,
 };
+use recon_benches::fault::Scale;
 use recon_tests::Random;
 use std::f64::consts::TAU;
 
@@ -57,6 +58,10 @@ fn one(random: &mut Random, seed: u64) -> Result<Body, Failure> {
 }
 
 impl Body {
+    pub(crate) fn scale(&self) -> Scale {
+        Scale { size: self.size, weight: self.mass.mass() * G }
+    }
+
     /// Noise of contacts, m, and forces, N.
     pub(crate) fn noise(&self, share: f64) -> [f64; 2] {
         [share * self.size, share * self.mass.mass() * G]

@@ -2,13 +2,12 @@
 //! bodies and palms that are not as stated.
 
 pub(crate) mod body;
-pub(crate) mod fault;
 mod tally;
 
 use body::Body;
-use fault::{FAULTS, Fault};
-use recon::object_dynamics::{ContactLog, SensorLog};
+use recon::object_dynamics::ContactLog;
 use recon::observer::{ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon_benches::fault::{FAULTS, Fault};
 use tally::{Run, Tally, judged};
 
 type Failure = Box<dyn std::error::Error>;
@@ -91,7 +90,7 @@ fn run(
     let run = crate::rows::row(|| -> Result<Option<Run>, Failure> {
         let Some((log, truth)) = body.log(noise, rate, seconds)? else { return Ok(None) };
         let log = match fault {
-            Some(fault) => fault.of_log(&log, body)?,
+            Some(fault) => fault.of_log(&log, body.scale())?,
             None => log,
         };
         let stated = fault.map_or(body.mass, |fault| fault.of_mass(body.mass));
@@ -113,9 +112,4 @@ pub(crate) fn options(
     let floor = 3e-5 * (body::G * body.size).sqrt();
     let noise = ContactNoiseLevel { contact, force_fixed: force, force_share: 0.0, impulse: None, floor };
     ContactOptions { friction: Some(0.0), body: mass, suspects: true, ..ContactOptions::new(noise, body::G) }
-}
-
-/// With other samples.
-fn with(samples: Vec<recon::object_dynamics::Sample>) -> Result<SensorLog, Failure> {
-    Ok(SensorLog::new(samples, None)?)
 }
