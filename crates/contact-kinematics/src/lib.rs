@@ -7,7 +7,7 @@
 //! Frames: `W` world (Z up), `O` object, `P_i` palm `i`. Units: SI.
 
 mod contact;
-mod direction;
+
 mod motion_law;
 mod palm;
 pub mod planar;
@@ -20,7 +20,6 @@ pub use contact::{
     acceleration_defect, body_normal, body_normal_rate, contact_curve_rates, contact_velocity, darboux,
     radius_rate, separation_rates,
 };
-pub use direction::{Direction, DirectionError};
 pub use motion_law::MotionLaw;
 pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple};
 pub use stop::{Stopped, is_stopped, unless_stopped};
@@ -33,3 +32,4 @@ pub use surface::{
     PressureError, SurfaceContact, SurfaceError, SurfaceMotion, SurfacePoint, SurfacePose, SurfaceRates,
     SurfaceState, TaxelArray,
 };
+pub use unit_direction::{Direction, DirectionError};

@@ -1,9 +1,9 @@
 //! Polytopes inside and outside of a curved convex body, within a tolerance of each other.
 
 use crate::bounds::{BoundsError, Gap, ShapeBounds};
-use crate::halfspaces::{Intersection, Unbounded};
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;
+use exact_hull::{Intersection, Unbounded};
 use glam::DVec3;
 use std::collections::HashSet;
 use thiserror::Error;

@@ -33,22 +33,13 @@ mod features;
 mod fit;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
-mod halfspaces;
-mod hull;
-mod integrals;
 mod matrix;
 mod median;
-mod mesh;
 mod noise;
 mod palms;
-#[cfg(feature = "parry")]
-mod parry;
 pub mod planar;
 mod poses;
-mod predicates;
-mod random;
 mod sample;
-mod twofold;
 
 pub use bounds::{BoundsError, Contradiction, Gap, IncrementalBounds, ShapeBounds};
 pub use concave::{AlphaError, AlphaShape, HermiteSurface, SurfaceError};
@@ -57,6 +48,11 @@ pub use curvature::{
     RoundedIntersection, SharpBounds,
 };
 pub use distance::{Nearest, nearest};
+pub use exact_hull::{
+    HalfSpace, Hull, HullCertificate, IncrementalHull, IncrementalIntersection, Intersection,
+    IntersectionError, PointsError, Polyhedron, SolidHull, SolidMoments, SupportWalk, TriangleMesh,
+    Unbounded,
+};
 pub use faceted::FacetError;
 pub use features::{
     Corner, Edge, Face, FeatureKind, FeatureOptions, FeatureRun, Features, FoundPolyhedron, Pieces,
@@ -65,10 +61,6 @@ pub use fit::{
     COMPARED, Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel,
     Refutation, SIGNIFICANCE, ShapeChoice, ShapeFamily, ShapeFit, SkewEllipsoid, Superquadric,
 };
-pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
-pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
-pub use integrals::SolidMoments;
-pub use mesh::TriangleMesh;
 pub use noise::quantile;
 pub use noise::{
     CertainBounds, ContactNoise, NoiseDoubt, NoiseError, NoisyContact, Outlier, PoseNoise, correlated_noise,
@@ -79,7 +71,7 @@ pub use poses::{
     BodyPose, CALIBRATED_RUNS, CONFIDENCES, ContradictingRun, PlaneHeight, PoseBounds, PoseError, PoseRule,
     half_space_above_plane,
 };
-pub use sample::{ContactError, ContactSample, HalfSpace, NORMAL_TOLERANCE};
+pub use sample::{ContactError, ContactSample, NORMAL_TOLERANCE};
 
 /// How much of a test is run: a decisive part of it, all of it where the environment says `RECON_TESTS=all`, as
 /// `cargo xtask verify --only all-tests` does.

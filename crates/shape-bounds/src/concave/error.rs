@@ -1,18 +1,12 @@
-use crate::hull::PointsError;
+use exact_hull::delaunay::DelaunayError;
 use thiserror::Error;
 
 /// Why points have no alpha shape.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum AlphaError {
-    /// The points have no hull either.
+    /// The points have no Delaunay tetrahedra.
     #[error(transparent)]
-    Points(#[from] PointsError),
-    /// The points span no volume.
-    #[error("the points span {dimension} dimensions; tetrahedra need 3")]
-    Flat {
-        /// Dimension of the hull of the points.
-        dimension: usize,
-    },
+    Points(#[from] DelaunayError),
     /// A radius that is none.
     #[error("alpha is {0} m; it must be above zero")]
     Alpha(f64),

@@ -1,4 +1,4 @@
-use crate::hull::PointsError;
+use exact_hull::PointsError;
 use thiserror::Error;
 
 /// Why contacts and limits on the radii of curvature give no bounds.

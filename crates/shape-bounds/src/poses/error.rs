@@ -1,6 +1,6 @@
 use super::BodyPose;
-use crate::halfspaces::IntersectionError;
 use contact_kinematics::Direction;
+use exact_hull::IntersectionError;
 use thiserror::Error;
 
 /// Why poses above a plane give no bound.
