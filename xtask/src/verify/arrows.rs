@@ -7,15 +7,18 @@ const CORE: [&str; 5] = ["contact-kinematics", "object-dynamics", "observer", "s
 
 /// The crates that someone may pick alone: the core, and what certifies its bounds.
 pub(crate) fn alone() -> impl Iterator<Item = &'static str> {
-    CORE.into_iter().chain(["certificate"])
+    CORE.into_iter().chain(["unit-direction", "exact-hull", "certificate"])
 }
 
 /// Each member and the members that it may depend on, in any way (normal, build, dev).
-const ALLOWED: [(&str, &[&str]); 13] = [
-    ("contact-kinematics", &[]),
+const ALLOWED: [(&str, &[&str]); 15] = [
+    ("unit-direction", &[]),
+    // Geometry of points and planes, which knows nothing of robots.
+    ("exact-hull", &["unit-direction"]),
+    ("contact-kinematics", &["unit-direction"]),
     ("object-dynamics", &["contact-kinematics"]),
     ("observer", &["contact-kinematics", "object-dynamics"]),
-    ("shape-bounds", &["contact-kinematics"]),
+    ("shape-bounds", &["contact-kinematics", "exact-hull"]),
     ("exploration", &["contact-kinematics", "object-dynamics", "observer", "shape-bounds"]),
     ("recon", &CORE),
     // What checks bounds has nothing of what makes them.
@@ -91,10 +94,12 @@ mod tests {
     /// A workspace as the architecture wants it, with lines replaced by those with the same name.
     fn house(changes: &[&str]) -> Metadata {
         let plan = [
-            "contact-kinematics: glam proptest/dev",
+            "unit-direction: glam",
+            "exact-hull: unit-direction glam",
+            "contact-kinematics: unit-direction glam proptest/dev",
             "object-dynamics: contact-kinematics glam",
             "observer: contact-kinematics object-dynamics glam",
-            "shape-bounds: contact-kinematics parry",
+            "shape-bounds: contact-kinematics exact-hull parry",
             "exploration: contact-kinematics shape-bounds",
             "recon: contact-kinematics object-dynamics observer shape-bounds exploration",
             "certificate: glam",
@@ -130,7 +135,7 @@ mod tests {
 
     #[test]
     fn an_arrow_against_the_flow_is_caught() {
-        let found = complaints(&house(&["contact-kinematics: glam object-dynamics"]));
+        let found = complaints(&house(&["contact-kinematics: unit-direction glam object-dynamics"]));
         assert_eq!(found, ["contact-kinematics -> object-dynamics: not an arrow of the architecture"]);
     }
 
@@ -154,7 +159,7 @@ mod tests {
     #[test]
     fn a_member_without_a_place_in_the_plan_is_caught() {
         let mut metadata = house(&[]);
-        metadata.packages[10].name = "ytask".to_owned();
+        metadata.packages[12].name = "ytask".to_owned();
         let found = complaints(&metadata);
         assert!(found.len() == 2 && found[0].contains("ytask") && found[1].contains("xtask"), "{found:?}");
     }

@@ -5,8 +5,8 @@ use crate::bounds::ShapeBounds;
 use crate::generators::{AXES, InputKind, Source, ellipsoid_contacts};
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;
-use exact_hull::delaunay::DelaunayError;
 use exact_hull::PointsError;
+use exact_hull::delaunay::DelaunayError;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
