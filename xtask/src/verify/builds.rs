@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn this_workspace_has_features_to_check() {
         let lines = feature_lines(&Metadata::load().expect("cargo describes this workspace"));
-        assert!(lines.iter().any(|line| line.contains("--package observer")), "{lines:?}");
+        assert!(lines.iter().any(|line| line.contains("--package touch-observer")), "{lines:?}");
     }
 
     #[test]
