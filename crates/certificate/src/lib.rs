@@ -17,6 +17,8 @@
 //! # Ok::<(), certificate::SurfaceError>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod inside;
 mod outline;
 mod star;

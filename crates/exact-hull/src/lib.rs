@@ -91,6 +91,8 @@
 //! Lengths are in m in the documentation; any other unit serves. The feature `parry` turns meshes into shapes of parry3d, `generators` holds the
 //! kinds of points that the table above counts.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 pub mod delaunay;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;

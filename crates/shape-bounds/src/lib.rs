@@ -23,6 +23,8 @@
 //!
 //! All lengths are in m, all coordinates in the body's frame.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod bounds;
 mod concave;
 mod curvature;

@@ -17,6 +17,8 @@
 //!
 //! In the plane: [`planar`].
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 pub mod planar;
 mod space;
 
