@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::metadata::{Metadata, Package};
+use crate::metadata::{Edge, Kind, Metadata, Package};
 
 /// What stands at the end of each README.md.
 const FOOTER: &str = "\n## Licence\n\nMIT or Apache-2.0, at your choice.\n";
@@ -22,7 +22,7 @@ pub(crate) fn page(package: &Package) -> Result<Vec<String>, String> {
 }
 
 /// README.md from the first page: hidden lines of examples left out, links to items, which only rustdoc resolves, as plain code.
-pub(crate) fn readme(package: &Package, page: &[String]) -> String {
+pub(crate) fn readme(metadata: &Metadata, package: &Package, page: &[String]) -> String {
     let mut text = format!("# {}\n\n", package.name);
     if package.library != package.name.replace('-', "_") {
         text += &format!("The library of this package is called `{}`.\n\n", package.library);
@@ -44,7 +44,29 @@ pub(crate) fn readme(package: &Package, page: &[String]) -> String {
         }
         text.push('\n');
     }
+    text += &spoken(metadata, package);
     text + FOOTER
+}
+
+/// Which versions of the libraries of vectors and matrices a package speaks: another version is another type.
+fn spoken(metadata: &Metadata, package: &Package) -> String {
+    let named = |edge: &&Edge| edge.kinds.contains(&Kind::Normal);
+    let versions = package.edges.iter().filter(named).map(|edge| &metadata.packages[edge.to]);
+    let versions = versions.filter(|other| ["glam", "nalgebra"].contains(&other.name.as_str()));
+    let mut versions: Vec<String> = versions
+        .map(|other| {
+            let numbers: Vec<&str> = other.version.split('.').take(2).collect();
+            format!("{} {}", other.name, numbers.join("."))
+        })
+        .collect();
+    versions.sort_unstable();
+    if versions.is_empty() {
+        return String::new();
+    }
+    format!(
+        "\nVectors and matrices are those of {}: another version would be other types.\n",
+        versions.join(" and ")
+    )
 }
 
 /// The first example of a page as a program.
@@ -85,9 +107,10 @@ fn without_item_links(line: &str) -> String {
 /// Writes README.md of all crates that are published; says which have changed.
 pub(crate) fn write() -> Result<Vec<String>, String> {
     let mut changed = Vec::new();
-    for package in Metadata::load()?.published() {
+    let metadata = Metadata::load()?;
+    for package in metadata.published() {
         let path = folder(package).join("README.md");
-        let text = readme(package, &page(package)?);
+        let text = readme(&metadata, package, &page(package)?);
         if std::fs::read_to_string(&path).is_ok_and(|old| old == text) {
             continue;
         }
@@ -109,7 +132,7 @@ pub(crate) fn complaints(metadata: &Metadata) -> Vec<String> {
         if example(&page).is_none() {
             return Some(format!("{name}: its first page has no example"));
         }
-        (text != readme(package, &page)).then(|| {
+        (text != readme(metadata, package, &page)).then(|| {
             format!("{name}: README.md is not the first page of src/lib.rs: run `cargo xtask readme`")
         })
     };
@@ -139,13 +162,13 @@ mod tests {
         );
         let program = example(&page).expect("there is one");
         assert_eq!(program, "use a::b;\nfn main() {\n#[allow(unused)]\nlet x = b();\n}");
-        let mut metadata = crate::metadata::made_up::workspace(&["a-b:"]);
+        let mut metadata = crate::metadata::made_up::workspace(&["a-b: glam", "|glam@0.33.1:"]);
         metadata.packages[0].library = "b".to_owned();
-        let text = readme(&metadata.packages[0], &page);
+        let text = readme(&metadata, &metadata.packages[0], &page);
         assert!(
             text.starts_with("# a-b\n\nThe library of this package is called `b`.\n\nText.\n## Start here\n"),
             "{text}"
         );
-        assert!(text.contains("```rust\nuse a::b;\n#[allow(unused)]\nlet x = b();\n```\nMore.\n"), "{text}");
+        assert!(text.contains("```rust\nuse a::b;\n#[allow(unused)]\nlet x = b();\n```\nMore.\n\nVectors and matrices are those of glam 0.33: another"), "{text}");
     }
 }

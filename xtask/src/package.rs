@@ -152,9 +152,7 @@ fn manifest(metadata: &Metadata, program: &str, unpacked: &Path) -> String {
         );
     }
     for library in ["glam", "nalgebra"].into_iter().filter(|library| named(library)) {
-        let version =
-            metadata.packages.iter().find(|package| package.name == library).map(|p| p.version.as_str());
-        text += &format!("{library} = \"{}\"\n", version.unwrap_or("*"));
+        text += &format!("{library} = \"{}\"\n", version_of(metadata, library).unwrap_or("*"));
     }
     text += "\n[patch.crates-io]\n";
     for package in metadata.published() {
@@ -162,6 +160,13 @@ fn manifest(metadata: &Metadata, program: &str, unpacked: &Path) -> String {
         text += &format!("{} = {{ path = {:?} }}\n", package.name, folder);
     }
     text
+}
+
+/// The version of a library that the members build on; others may be in the tree beside it.
+fn version_of<'a>(metadata: &'a Metadata, library: &str) -> Option<&'a str> {
+    let edges = metadata.published().flat_map(|member| &member.edges);
+    let found = edges.map(|edge| &metadata.packages[edge.to]).find(|package| package.name == library);
+    found.map(|package| package.version.as_str())
 }
 
 #[cfg(test)]
@@ -177,7 +182,7 @@ mod tests {
 
     #[test]
     fn a_project_depends_on_what_its_program_names() {
-        let mut metadata = workspace(&["ab-c:", "d:", "|glam:"]);
+        let mut metadata = workspace(&["ab-c: glam@1.0.0", "d:", "|glam@0.9.0:", "|glam@1.0.0:"]);
         metadata.packages[0].library = "c".to_owned();
         let text = manifest(&metadata, "use c::X; use glam::DVec3;", Path::new("p"));
         assert!(
