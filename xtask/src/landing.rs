@@ -162,7 +162,7 @@ mod tests {
         );
         let program = example(&page).expect("there is one");
         assert_eq!(program, "use a::b;\nfn main() {\n#[allow(unused)]\nlet x = b();\n}");
-        let mut metadata = crate::metadata::made_up::workspace(&["a-b: glam", "|glam@0.33.1:"]);
+        let mut metadata = crate::metadata::made_up::workspace(&["a-b: glam@0.33.1", "|glam@0.33.1:"]);
         metadata.packages[0].library = "b".to_owned();
         let text = readme(&metadata, &metadata.packages[0], &page);
         assert!(

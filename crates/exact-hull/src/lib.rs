@@ -89,7 +89,7 @@
 //! - Nothing here is constructed exactly: for exact coordinates of corners, use rational arithmetic.
 //!
 //! Lengths are in m in the documentation; any other unit serves. The feature `parry` turns meshes into shapes of parry3d, `generators` holds the
-//! kinds of points that the table above counts.
+//! kinds of points that the table above counts, `strategies` the same for proptest.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -100,6 +100,8 @@ mod half_space;
 mod halfspaces;
 mod hull;
 mod integrals;
+#[cfg(test)]
+mod laws;
 mod mesh;
 #[cfg(feature = "parry")]
 mod parry;
@@ -107,6 +109,8 @@ pub mod planar;
 pub mod predicates;
 mod random;
 mod scaled;
+#[cfg(any(test, feature = "strategies"))]
+pub mod strategies;
 mod twofold;
 
 pub use half_space::HalfSpace;

@@ -21,6 +21,7 @@ pub enum Reliability {
 
 /// Why not to believe an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Reason {
     /// The fit did not settle.
     NotConverged {

@@ -23,6 +23,7 @@ const FEWEST: usize = 4;
 
 /// Why contacts give no bounds.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum BoundsError {
     /// Too few contacts.
     #[error("{found} contacts: bounds in space need at least {needed}")]

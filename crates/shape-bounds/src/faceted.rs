@@ -21,6 +21,7 @@ const FAR: f64 = 1e6;
 
 /// Why a curved body has no polytopes around it.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum FacetError {
     /// A tolerance that is not positive and finite.
     #[error("tolerance is {value} m; it must be positive and finite")]

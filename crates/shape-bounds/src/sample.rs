@@ -7,6 +7,7 @@ pub const NORMAL_TOLERANCE: f64 = 2e-6;
 
 /// Why a point and a normal are not a contact.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactError {
     /// A coordinate of the point is NaN or infinite.
     #[error("contact {index}: point ({}, {}, {}) has a coordinate that is not finite", point.x, point.y, point.z)]

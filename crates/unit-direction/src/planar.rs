@@ -9,6 +9,7 @@ pub struct Direction(DVec2);
 
 /// Why a vector is not a direction.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum DirectionError {
     /// A component is NaN or infinite.
     #[error("direction ({0}, {1}) has a component that is not finite", vector.x, vector.y)]

@@ -8,6 +8,7 @@ pub struct Direction(DVec3);
 
 /// Why a vector is not a direction.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum DirectionError {
     /// A component is NaN or infinite.
     #[error("direction ({0}, {1}, {2}) has a component that is not finite", vector.x, vector.y, vector.z)]

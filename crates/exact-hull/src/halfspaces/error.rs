@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why half-spaces have no intersection that can be described.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum IntersectionError {
     /// No half-spaces at all: everything is inside.
     #[error("no half-spaces: their intersection is all of space")]

@@ -9,6 +9,7 @@ use thiserror::Error;
 
 /// Why a set of points has no hull.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PointsError {
     /// No points at all.
     #[error("no points: a hull needs at least one")]

@@ -3,6 +3,7 @@ use thiserror::Error;
 
 /// Why points have no alpha shape.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum AlphaError {
     /// The points have no Delaunay tetrahedra.
     #[error(transparent)]
@@ -14,6 +15,7 @@ pub enum AlphaError {
 
 /// Why contacts have no smooth surface through them.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// Too few or too many contacts.
     #[error(

@@ -15,6 +15,7 @@ const FEWEST: usize = 3;
 
 /// Why contacts give no bounds.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum BoundsError {
     /// Too few contacts.
     #[error("{found} contacts: bounds in the plane need at least {needed}")]

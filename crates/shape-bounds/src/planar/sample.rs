@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// Why a point and a normal are not a contact.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactError {
     /// A coordinate of the point is NaN or infinite.
     #[error("contact {index}: point ({}, {}) has a coordinate that is not finite", point.x, point.y)]

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// Why poses above a plane give no bound.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PoseError {
     /// A pose that is not finite, or whose quaternion is not of unit length.
     #[error("run {run}, frame {frame}: pose {pose:?} above the plane at {plane_z} m is not finite and unit")]

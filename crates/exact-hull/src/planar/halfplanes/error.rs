@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why half-planes have no intersection that can be described.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum IntersectionError {
     /// No half-planes at all: everything is inside.
     #[error("no half-planes: their intersection is the whole plane")]
