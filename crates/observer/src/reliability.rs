@@ -21,7 +21,6 @@ pub enum Reliability {
 
 /// Why not to believe an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Reason {
     /// The fit did not settle.
     NotConverged {

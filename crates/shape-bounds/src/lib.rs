@@ -35,6 +35,8 @@ mod features;
 mod fit;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
+#[cfg(test)]
+mod laws;
 mod matrix;
 mod median;
 mod noise;
@@ -42,6 +44,8 @@ mod palms;
 pub mod planar;
 mod poses;
 mod sample;
+#[cfg(any(test, feature = "strategies"))]
+pub mod strategies;
 
 pub use bounds::{BoundsError, Contradiction, Gap, IncrementalBounds, ShapeBounds};
 pub use concave::{AlphaError, AlphaShape, HermiteSurface, SurfaceError};

@@ -65,6 +65,19 @@ proptest! {
     }
 
     #[test]
+    fn a_flat_hull_needs_each_of_its_corners(mut points in points(1..40)) {
+        points.iter_mut().for_each(|p| p.z = 0.7);
+        let hull = Hull::of(&points)?;
+        prop_assert!(hull.dimension() < 3);
+        let corners = hull.corner_points(&points);
+        for left_out in 0..if corners.len() > 1 { corners.len() } else { 0 } {
+            let mut others = corners.clone();
+            others.remove(left_out);
+            prop_assert!(!is_same(&hull, &points, &Hull::of(&others)?, &others), "{left_out}");
+        }
+    }
+
+    #[test]
     fn a_point_more_never_takes_from_a_hull(points in points(2..40)) {
         let all = Hull::of(&points)?;
         let before = Hull::of(&points[..points.len() - 1])?;
@@ -79,7 +92,13 @@ proptest! {
     #![proptest_config(cases(24))]
 
     #[test]
-    fn point_by_point_is_all_at_once_at_every_prefix(points in points(1..24)) {
+    fn point_by_point_is_all_at_once_at_every_prefix(
+        mut points in points(1..24), flat in 0_usize..12, far in 0_usize..3,
+    ) {
+        // The first ones in a plane, the last ones far beyond what came before.
+        let height = points[0].z;
+        points.iter_mut().take(flat).for_each(|p| p.z = height);
+        points.iter_mut().rev().take(far).for_each(|p| *p *= 1e9);
         let mut growing = IncrementalHull::new();
         for (k, p) in points.iter().enumerate() {
             growing.insert(*p)?;

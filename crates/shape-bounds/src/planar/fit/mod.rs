@@ -28,7 +28,6 @@ use std::fmt;
 
 /// Families of outlines, by what their parameters are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
 pub enum OutlineFamily {
     /// A disc: centre and radius, 3 parameters.
     Circle,
