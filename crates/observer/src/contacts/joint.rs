@@ -3,12 +3,16 @@
 use super::body::CONSTANTS;
 use super::problem::{Problem, Unknowns};
 use super::solve::{Covariances, Solved};
+use super::state::Tangent;
 use crate::random::Normal;
-use crate::rigid::{DRAWS, PoseErrors, exponential, kept, normals, root, turned};
+use crate::rigid::{DRAWS, PoseErrors, exponential, normals, root, turned};
 use glam::{DQuat, DVec3};
 
 /// Seed of what motions are drawn from.
 const SEED: u64 = 0x6a01;
+/// Natural times from node to node at which errors are kept, at least, and how many such times at most: between them errors go straight.
+const SPACING: f64 = 0.08;
+const KEPT: f64 = 400.0;
 
 /// Joint errors of the poses at those nodes (by number) whose motion is relied on, in body axes that stand at `axes` in those of the first
 /// sample, those of the body itself where it is `known`; all of them `wider` than the covariances say. None without such a node.
@@ -20,27 +24,45 @@ pub(super) fn pose_errors(
     (axes, known, wider): (DQuat, bool, f64),
 ) -> Option<PoseErrors> {
     let mut random = Normal::seeded(SEED);
-    let nodes: Vec<usize> = kept(relied_on.len()).into_iter().map(|k| relied_on[k]).collect();
+    let nodes = kept(problem, relied_on);
     let samples = problem.node_samples();
     let motions = &solved.unknowns.motions;
     let poses: Vec<_> = nodes.iter().map(|&j| (motions[j].p, (motions[j].q * axes).normalize())).collect();
-    let body = root(&covariances.body);
+    let (body, joint) = (root(&covariances.body), covariances.joint(&nodes));
     let draw = |_: usize| {
         let constants = body * normals(&mut random);
-        let steps = covariances.drawn(&constants, || normals(&mut random));
+        let steps = joint.draw(&constants, &mut random);
         // Of a known body the last constants are how its own axes lie at the first sample.
         let lie = if known { DVec3::from_slice(&constants.as_slice()[4..7]) * wider } else { DVec3::ZERO };
         let own = (exponential(lie) * axes).normalize();
-        let moved = |(j, (p, _)): (&usize, &(DVec3, DQuat))| {
-            let part = |i: usize| DVec3::from_slice(&steps[*j].as_slice()[i..i + 3]) * wider;
+        let moved = |((j, (p, _)), step): ((&usize, &(DVec3, DQuat)), &Tangent)| {
+            let part = |i: usize| DVec3::from_slice(&step.as_slice()[i..i + 3]) * wider;
             let [place, _, _, turn] = covariances.beyond(*j);
             (*p + part(0) * place, turned((motions[*j].q * own).normalize(), part(9) * turn))
         };
-        nodes.iter().zip(&poses).map(moved).collect()
+        nodes.iter().zip(&poses).zip(&steps).map(moved).collect()
     };
     let draws = (0..DRAWS).map(draw);
     let lasting = lasting(problem, solved);
     PoseErrors::from_draws(nodes.iter().map(|&j| samples[j]).collect(), &poses, draws, lasting, known)
+}
+
+/// Of some nodes those at which errors are kept: apart by a share of the natural time at least, the first and the last among them.
+fn kept(problem: &Problem, of: &[usize]) -> Vec<usize> {
+    let time = |j: usize| problem.record.times[problem.nodes[j]];
+    let (Some(&first), Some(&last)) = (of.first(), of.last()) else { return Vec::new() };
+    let apart = (SPACING * problem.units.time()).max((time(last) - time(first)) / KEPT);
+    let mut kept = vec![first];
+    let mut before = time(first);
+    for &j in of {
+        if time(j) >= before + apart && time(last) >= time(j) + 0.5 * apart {
+            kept.push(j);
+            before = time(j);
+        }
+    }
+    kept.push(last);
+    kept.dedup();
+    kept
 }
 
 /// Deviation of contacts, m, that would explain what is left of conditions that are not off by noise: soft contacts of simulators shift them so.

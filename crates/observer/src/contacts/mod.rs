@@ -7,6 +7,7 @@ mod body;
 mod changed;
 mod cold;
 mod directly;
+mod drawn;
 mod elimination;
 mod equations;
 mod estimate;

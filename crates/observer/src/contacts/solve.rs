@@ -175,19 +175,6 @@ impl<const P: usize> Covariances<P> {
             .diagonal()
             .map(|variance| variance.max(f64::MIN_POSITIVE).sqrt())
     }
-
-    /// Errors of the motions at all nodes that go with one of the constants, from a standard normal vector for each node.
-    pub(super) fn drawn(&self, body: &SVector<f64, P>, mut normals: impl FnMut() -> Tangent) -> Vec<Tangent> {
-        let mut after = Tangent::zeros();
-        let mut one = |node: &Eliminated<P>| {
-            // A standard normal vector for the rows of a node has the covariance of its equations after it.
-            after = node.up(&normals(), &after, body);
-            after
-        };
-        let mut errors: Vec<Tangent> = self.chain.iter().rev().map(&mut one).collect();
-        errors.reverse();
-        errors
-    }
 }
 
 /// Minimises the cost from `start` by at most so many linearisations, until a step promises to lower it by less than

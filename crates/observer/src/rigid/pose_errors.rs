@@ -11,8 +11,6 @@ use nalgebra::{Cholesky, SMatrix, SVector};
 
 /// Draws of the joint error: one in twenty is then known to some 1 %, and the rank that is taken holds for any number of them.
 pub(crate) const DRAWS: usize = 500;
-/// Nodes at which the errors are kept, at most: between them they go straight.
-const KEPT: usize = 400;
 /// What covariances are raised by, relative to the largest: next to nothing, but they can be inverted.
 const RIDGE: f64 = 1e-9;
 
@@ -170,12 +168,6 @@ const NEXT_TO_NO_TURN: f64 = 1e-3;
 
 /// Seed of what lasting errors are drawn from.
 const LASTING_SEED: u64 = 0x1a57;
-
-/// Indices of at most [`KEPT`] of `count` nodes, the first and the last among them.
-pub(crate) fn kept(count: usize) -> Vec<usize> {
-    let most = count.min(KEPT);
-    (0..most).map(|k| k * count.saturating_sub(1) / most.saturating_sub(1).max(1)).collect()
-}
 
 /// What takes points from body axes as estimated to true ones, at each node: `x = R' (p^ + R^ x^ - p)`.
 fn errors_of(estimated: &[Pose], drawn: &[Pose]) -> Vec<Pose> {
