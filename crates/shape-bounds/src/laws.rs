@@ -106,7 +106,8 @@ proptest! {
         for (k, contact) in contacts.iter().enumerate() {
             growing.insert(contact)?;
             if k < 3 {
-                prop_assert!(matches!(growing.bounds(), Err(BoundsError::TooFew { .. })));
+                let too_few = matches!(growing.bounds(), Err(BoundsError::TooFew { .. }));
+                prop_assert!(too_few);
                 continue;
             }
             let (one, all) = (growing.bounds()?, ShapeBounds::from_contacts(&contacts[..=k])?);

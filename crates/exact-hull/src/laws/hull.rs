@@ -1,4 +1,5 @@
 use super::cases;
+use crate::predicates::{drop_axis, turn};
 use crate::strategies::{exact_isometry, points, shuffled};
 use crate::{Hull, HullCertificate, IncrementalHull, PointsError};
 use glam::DVec3;
@@ -65,15 +66,14 @@ proptest! {
     }
 
     #[test]
-    fn a_flat_hull_needs_each_of_its_corners(mut points in points(1..40)) {
+    fn a_flat_hull_turns_one_way_at_each_of_its_corners(mut points in points(1..40)) {
         points.iter_mut().for_each(|p| p.z = 0.7);
         let hull = Hull::of(&points)?;
         prop_assert!(hull.dimension() < 3);
-        let corners = hull.corner_points(&points);
-        for left_out in 0..if corners.len() > 1 { corners.len() } else { 0 } {
-            let mut others = corners.clone();
-            others.remove(left_out);
-            prop_assert!(!is_same(&hull, &points, &Hull::of(&others)?, &others), "{left_out}");
+        if let Hull::Polygon(corners) = &hull {
+            let at = |k: usize| drop_axis(points[corners[k % corners.len()]], 2);
+            let turns: Vec<f64> = (0..corners.len()).map(|k| turn(at(k), at(k + 1), at(k + 2))).collect();
+            prop_assert!(turns.iter().all(|t| *t > 0.0) || turns.iter().all(|t| *t < 0.0), "{turns:?}");
         }
     }
 
@@ -95,10 +95,11 @@ proptest! {
     fn point_by_point_is_all_at_once_at_every_prefix(
         mut points in points(1..24), flat in 0_usize..12, far in 0_usize..3,
     ) {
-        // The first ones in a plane, the last ones far beyond what came before.
+        // The first ones in a plane; the last ones far beyond what came before, in the planes of its facets but for rounding.
         let height = points[0].z;
         points.iter_mut().take(flat).for_each(|p| p.z = height);
-        points.iter_mut().rev().take(far).for_each(|p| *p *= 1e9);
+        let (start, along) = (points[0], points[points.len() / 2] - points[0]);
+        points.iter_mut().rev().take(far).enumerate().for_each(|(k, p)| *p = start + along * 1e5_f64.powi(1 + k as i32));
         let mut growing = IncrementalHull::new();
         for (k, p) in points.iter().enumerate() {
             growing.insert(*p)?;
