@@ -1,7 +1,9 @@
 //! Geometry: an answer that keeps its promise, or a typed error.
 
 use exact_hull::predicates::turn;
-use exact_hull::{Direction, HalfSpace, Hull, HullCertificate, IncrementalHull, Intersection, delaunay, planar};
+use exact_hull::{
+    Direction, HalfSpace, Hull, HullCertificate, IncrementalHull, Intersection, delaunay, planar,
+};
 use glam::{DVec2, DVec3};
 
 /// As many points as are judged against each other.
@@ -109,7 +111,9 @@ pub(crate) fn tetrahedra(bytes: &[u8]) -> bool {
 pub(crate) fn planar_hull(bytes: &[u8]) -> bool {
     let points = planar_points(bytes);
     let Ok(hull) = planar::Hull::of(&points) else { return false };
-    let ordinary = points.iter().all(|p| p.abs().max_element() < 1e100 && p.to_array().iter().all(|c| *c == 0.0 || c.abs() > 1e-100));
+    let ordinary = points
+        .iter()
+        .all(|p| p.abs().max_element() < 1e100 && p.to_array().iter().all(|c| *c == 0.0 || c.abs() > 1e-100));
     if let Some(polygon) = hull.polygon().filter(|_| ordinary) {
         let corners = polygon.shape().vertices();
         let at = |k: usize| corners[k % corners.len()];

@@ -6,8 +6,26 @@ use std::path::Path;
 
 /// Words that are numbers, or nearly.
 const WORDS: [&str; 20] = [
-    "nan", "inf", "-0", "1e999", "1e-999", "-1", "0", "1", "18446744073709551616", "0x10", "1,5", "\"", "\n", "\r\n", "\u{feff}", ",,", "[[palm]]",
-    "= {", "true", "\u{0}",
+    "nan",
+    "inf",
+    "-0",
+    "1e999",
+    "1e-999",
+    "-1",
+    "0",
+    "1",
+    "18446744073709551616",
+    "0x10",
+    "1,5",
+    "\"",
+    "\n",
+    "\r\n",
+    "\u{feff}",
+    ",,",
+    "[[palm]]",
+    "= {",
+    "true",
+    "\u{0}",
 ];
 /// No input is longer.
 const LONGEST: usize = 1 << 17;
@@ -18,7 +36,8 @@ const LONGEST: usize = 1 << 17;
 /// Where the folder of a target that has one cannot be read.
 pub fn seeds(target: &str) -> io::Result<Vec<Vec<u8>>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("seeds").join(target);
-    let mut files: Vec<_> = folder.read_dir()?.collect::<Result<Vec<_>, _>>()?.into_iter().map(|file| file.path()).collect();
+    let mut files: Vec<_> =
+        folder.read_dir()?.collect::<Result<Vec<_>, _>>()?.into_iter().map(|file| file.path()).collect();
     files.sort();
     files.into_iter().map(std::fs::read).collect()
 }

@@ -62,7 +62,8 @@ mod tests {
     fn each_target_has_its_file_for_libfuzzer() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz_targets");
         for target in TARGETS {
-            let text = std::fs::read_to_string(folder.join(format!("{}.rs", target.name))).unwrap_or_default();
+            let text =
+                std::fs::read_to_string(folder.join(format!("{}.rs", target.name))).unwrap_or_default();
             assert!(text.contains(&format!("\"{}\"", target.name)), "{}", target.name);
         }
     }

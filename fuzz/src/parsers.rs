@@ -4,8 +4,8 @@ use glam::{DQuat, DVec3};
 use recon::contact_kinematics::planar::PalmSurface as PlanarSurface;
 use recon::contact_kinematics::{PalmSurface, SurfacePose};
 use recon_io::{
-    BagMapping, PalmSetup, PlanarScene, Scene, parse_any_log, parse_bag, parse_contact_log, parse_contacts, parse_log,
-    parse_planar_contact_log, parse_planar_contacts, parse_planar_log, parse_poses,
+    BagMapping, PalmSetup, PlanarScene, Scene, parse_any_log, parse_bag, parse_contact_log, parse_contacts,
+    parse_log, parse_planar_contact_log, parse_planar_contacts, parse_planar_log, parse_poses,
 };
 use std::fmt::Display;
 
@@ -27,7 +27,13 @@ fn is_value_of_text<T, E: Display>(bytes: &[u8], parse: impl Fn(&str) -> Result<
 
 fn palms() -> [PalmSetup; 2] {
     let pose = SurfacePose::new(DVec3::ZERO, DQuat::IDENTITY).ok();
-    let plane = PalmSetup { surface: PalmSurface::Plane, friction: Some(0.3), pose, hinge: None, largest_offset: 1e-3 };
+    let plane = PalmSetup {
+        surface: PalmSurface::Plane,
+        friction: Some(0.3),
+        pose,
+        hinge: None,
+        largest_offset: 1e-3,
+    };
     [plane, PalmSetup { pose: None, largest_offset: f64::INFINITY, ..plane }]
 }
 

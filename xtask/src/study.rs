@@ -4,6 +4,9 @@ use std::process::ExitCode;
 
 use crate::cargo::{cargo, output, root};
 
+/// The study of the fuzz targets, which are outside of the workspace.
+const FUZZ: &str = "fuzz_targets";
+
 /// Name of a study, the file under docs/ that it writes, and what it is about.
 const STUDIES: &[(&str, &str, &str)] = &[
     (
@@ -138,6 +141,7 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "shape-fits.md",
         "shapes fitted to contacts against the Cramer-Rao bound, and their choice",
     ),
+    (FUZZ, "fuzz.md", "every parser, hulls, half-spaces on a million inputs made of the committed seeds"),
     ("streaming", "streaming.md", "three palms sample by sample over a minute: time and accuracy"),
 ];
 
@@ -158,7 +162,11 @@ pub(crate) fn main(mut words: impl Iterator<Item = String>) -> ExitCode {
     if words.last().is_some_and(|word| word == "--rows" || word == "--merge") {
         words.push(format!("target/study-rows/{name}"));
     }
-    let mut command = cargo(&format!("run --release --quiet --package recon-benches --bin study -- {name}"));
+    let mut command = if *name == FUZZ {
+        cargo("run --release --quiet --locked --manifest-path fuzz/Cargo.toml --bin study --")
+    } else {
+        cargo(&format!("run --release --quiet --package recon-benches --bin study -- {name}"))
+    };
     let path = root().join("docs").join(file);
     let written = output(command.args(&words)).and_then(|table| match is_part {
         true => Ok(words.last().cloned().unwrap_or_default()),

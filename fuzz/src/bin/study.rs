@@ -28,7 +28,9 @@ fn main() -> Result<(), Box<dyn Error>> {
          assertion of the library, or because what it returned does not keep its promise (hulls are judged by exact signs).\n",
         each * TARGETS.len()
     );
-    println!("| target | seeds | inputs | accepted | refused by name | broken | slowest, ms | all, s |\n|---|---|---|---|---|---|---|---|");
+    println!(
+        "| target | seeds | inputs | accepted | refused by name | broken | slowest, ms | all, s |\n|---|---|---|---|---|---|---|---|"
+    );
     let mut broken = 0;
     for (which, target) in TARGETS.iter().enumerate() {
         let seeds = inputs::seeds(target.name)?;
@@ -45,7 +47,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             tally.time.as_secs_f64()
         );
     }
-    if broken > 0 { Err(format!("{broken} inputs broke a promise: see fuzz/artifacts").into()) } else { Ok(()) }
+    if broken > 0 {
+        Err(format!("{broken} inputs broke a promise: see fuzz/artifacts").into())
+    } else {
+        Ok(())
+    }
 }
 
 fn run(target: &Target, seeds: &[Vec<u8>], count: usize, which: u64) -> Result<Tally, Box<dyn Error>> {

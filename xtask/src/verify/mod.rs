@@ -57,6 +57,7 @@ const STEPS: &[Step] = &[
         "the tests with all their seeds and cases, RECON_TESTS=all (long)",
         builds::all_tests,
     ),
+    optional("fuzz", "the fuzz targets are linted, and each one runs its committed seeds", builds::fuzz),
     optional("hack", "cargo-hack: all combinations of features build", extras::hack),
     optional(
         "semver",
