@@ -47,6 +47,7 @@
 //! | Delaunay tetrahedra | [`delaunay`] |
 //! | a mesh of anybody's, judged as the hull of points | [`HullCertificate`] |
 //! | signs, and points scaled so that they are exact | [`predicates`], [`ScaledPoints`] |
+//! | sums and products that lose no digits where plain ones do | [`arithmetic`] |
 //! | the plane | [`planar`] |
 //!
 //! # What is exact
@@ -93,6 +94,7 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+pub mod arithmetic;
 pub mod delaunay;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
@@ -118,10 +120,9 @@ pub use halfspaces::{Caps, IncrementalIntersection, Intersection, IntersectionEr
 pub use hull::{
     Farthest, Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk, insertion_order,
 };
-pub use integrals::{Compensated, SolidMoments};
+pub use integrals::SolidMoments;
 pub use mesh::TriangleMesh;
 pub use scaled::ScaledPoints;
-pub use twofold::cross_of_differences;
 pub use unit_direction::{Direction, DirectionError};
 
 /// How much of a test is run: a decisive part of it, all of it where the environment says `RECON_TESTS=all`.

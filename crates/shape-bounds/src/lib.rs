@@ -4,6 +4,8 @@
 //! contained in the half-spaces `n_k . (y - x_k) <= 0` (Moll and Erdmann, WAFR 2002, section 8). Which point is outside of
 //! which facet is decided by exact arithmetic, so that the bounds hold on thin, flat, repeated and far-away data.
 //!
+//! Start with [`ShapeBounds::from_contacts`]:
+//!
 //! ```
 //! use glam::DVec3;
 //! use shape_bounds::{ContactSample, ShapeBounds};
@@ -20,6 +22,19 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! | what is known besides | take |
+//! |---|---|
+//! | nothing; contacts come one by one | [`ShapeBounds`]; [`IncrementalBounds`] |
+//! | how noisy contacts are, or that they are | [`CertainBounds`], [`estimate_noise`] |
+//! | limits on the radii of curvature | [`CurvatureBounds`], [`SharpBounds`] |
+//! | a family of shapes of few parameters | [`ShapeFit`] |
+//! | that there are corners, edges and faces | [`Features`] |
+//! | that the body is not convex | [`ShapeBounds::from_concave_contacts`], [`AlphaShape`], [`HermiteSurface`] |
+//! | poses of a body that rests on a plane | [`PoseBounds`] |
+//! | that it all lies in a plane | [`planar`] |
+//!
+//! Hulls and half-spaces themselves are those of the crate `exact-hull`.
 //!
 //! All lengths are in m, all coordinates in the body's frame.
 

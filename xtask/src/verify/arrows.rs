@@ -31,8 +31,8 @@ const ALLOWED: [(&str, &[&str]); 15] = [
     // The scenes of the tests are the scenes of the charts.
     // Likewise `exploration`.
     ("recon-benches", &["recon-touch", "recon-touch-io", "recon-tests", "shape-bounds", "touch-exploration"]),
-    // It names the last two to be built with the features that they have beside it in tests.
-    ("recon-py", &["recon-touch-cli", "recon-touch-io", "shape-bounds", "touch-exploration"]),
+    // It names the last three to be built with the features that they have beside it in tests.
+    ("recon-py", &["recon-touch-cli", "recon-touch-io", "shape-bounds", "touch-exploration", "exact-hull"]),
     ("xtask", &[]),
 ];
 

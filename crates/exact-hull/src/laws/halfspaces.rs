@@ -117,10 +117,10 @@ proptest! {
             growing.insert(*h)?;
             let (one, all) = (growing.intersection()?, Intersection::of(&spaces[..=k])?);
             prop_assert_eq!(one.bounded().is_some(), all.bounded().is_some(), "{}", k);
-            if let (Intersection::Bounded(one), Intersection::Bounded(all)) = (one, all) {
-                if all.vertices().iter().all(|v| v.length() < 25.0) {
-                    prop_assert!(is_same(&one, &all), "{}: {} {}", k, one.volume(), all.volume());
-                }
+            if let (Intersection::Bounded(one), Intersection::Bounded(all)) = (one, all)
+                && all.vertices().iter().all(|v| v.length() < 25.0)
+            {
+                prop_assert!(is_same(&one, &all), "{}: {} {}", k, one.volume(), all.volume());
             }
         }
     }

@@ -8,7 +8,7 @@ use super::surface::{Corner, Shape};
 use crate::bounds::ShapeBounds;
 use crate::faceted::{FacetError, faceted_by_support};
 use contact_kinematics::Direction;
-use exact_hull::Compensated;
+use exact_hull::arithmetic::Compensated;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 

@@ -12,7 +12,7 @@ use crate::bounds::ShapeBounds;
 use crate::faceted::{FacetError, faceted_by_support};
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;
-use exact_hull::Compensated;
+use exact_hull::arithmetic::Compensated;
 use exact_hull::insertion_order;
 use glam::DVec3;
 use std::f64::consts::PI;
