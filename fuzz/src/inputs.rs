@@ -49,7 +49,7 @@ pub fn made(seeds: &[Vec<u8>], s: &mut Source) -> Vec<u8> {
         return (0..s.below(1000)).map(|_| s.bits() as u8).collect();
     }
     let mut bytes = seeds[s.below(seeds.len())].clone();
-    for _ in 0..=s.below(6) {
+    for _ in 0..s.below(5) {
         changed(&mut bytes, &seeds[s.below(seeds.len())], s);
     }
     bytes.truncate(LONGEST);
@@ -60,7 +60,7 @@ pub fn made(seeds: &[Vec<u8>], s: &mut Source) -> Vec<u8> {
 fn changed(bytes: &mut Vec<u8>, other: &[u8], s: &mut Source) {
     let at = s.below(bytes.len() + 1);
     let end = (at + s.below(64)).min(bytes.len());
-    match s.below(9) {
+    match s.below(12) {
         0 if at < bytes.len() => bytes[at] = s.bits() as u8,
         1 if at < bytes.len() => bytes[at] ^= 1 << s.below(8),
         2 => drop(bytes.drain(at..end)),
@@ -74,13 +74,13 @@ fn changed(bytes: &mut Vec<u8>, other: &[u8], s: &mut Source) {
             bytes.splice(at..end, other[from..to].iter().copied());
         }
         5 => bytes.truncate(at),
-        6 => {
+        6..=8 => {
             let digit = bytes.iter().skip(at).position(u8::is_ascii_digit);
             if let Some(digit) = digit {
                 bytes[at + digit] = b'0' + s.below(10) as u8;
             }
         }
-        7 => {
+        9 | 10 => {
             let length = bytes[at..].iter().take_while(|b| b.is_ascii_digit() || b".-+e".contains(b)).count();
             bytes.splice(at..at + length, WORDS[s.below(WORDS.len())].bytes());
         }

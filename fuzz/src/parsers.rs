@@ -26,15 +26,15 @@ fn is_value_of_text<T, E: Display>(bytes: &[u8], parse: impl Fn(&str) -> Result<
 }
 
 fn palms() -> [PalmSetup; 2] {
-    let pose = SurfacePose::new(DVec3::ZERO, DQuat::IDENTITY).ok();
     let plane = PalmSetup {
         surface: PalmSurface::Plane,
         friction: Some(0.3),
-        pose,
+        pose: None,
         hinge: None,
-        largest_offset: 1e-3,
+        largest_offset: f64::INFINITY,
     };
-    [plane, PalmSetup { pose: None, largest_offset: f64::INFINITY, ..plane }]
+    // The second stands still unless the log says otherwise.
+    [plane, PalmSetup { pose: SurfacePose::new(DVec3::ZERO, DQuat::IDENTITY).ok(), ..plane }]
 }
 
 pub(crate) fn log(bytes: &[u8]) -> bool {

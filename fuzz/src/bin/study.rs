@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         each * TARGETS.len()
     );
     println!(
-        "| target | seeds | inputs | accepted | refused by name | broken | slowest, ms | all, s |\n|---|---|---|---|---|---|---|---|"
+        "| target | seeds (accepted) | inputs | accepted | refused by name | broken | slowest, ms | all, s |\n|---|---|---|---|---|---|---|---|"
     );
     let mut broken = 0;
     for (which, target) in TARGETS.iter().enumerate() {
@@ -38,9 +38,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         broken += tally.broken;
         let refused = each - tally.accepted - tally.broken;
         println!(
-            "| {} | {} | {each} | {} | {refused} | {} | {:.1} | {:.1} |",
+            "| {} | {} ({}) | {each} | {} | {refused} | {} | {:.1} | {:.1} |",
             target.name,
             seeds.len(),
+            seeds.iter().filter(|seed| (target.run)(seed)).count(),
             tally.accepted,
             tally.broken,
             1e3 * tally.slowest.as_secs_f64(),
