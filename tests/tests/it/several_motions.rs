@@ -95,9 +95,10 @@ fn a_body_almost_of_revolution_is_not_held_where_it_is_not() {
     assert!(worst.is_some_and(|worst| worst < 5.0), "{worst:?}");
 }
 
-/// Where the motion of a known body that is found makes the log far dearer than an unknown one, it is not the motion.
+/// A body that turns slowly, for 6.3 natural times: there is a motion of a third of the natural rate more that explains the log almost as well, and
+/// the search comes to it. Bodies of the known moments that turn otherwise lead to the right one.
 #[test]
-fn a_known_body_that_makes_the_log_dearer_is_refused() {
+fn a_known_body_is_looked_for_in_other_spins() {
     let body = (
         DVec3::new(0.243075290551, 0.214489135422, 0.287819817480),
         74.492660715662,
@@ -113,6 +114,8 @@ fn a_known_body_that_makes_the_log_dearer_is_refused() {
     let start = InitialMotion { R_WO: R_WO.normalize(), w_WO };
     for seed in few_or_all(&[1, 8][..], &[1, 8, 118_001_210]) {
         let worst = worst_as_known(body, palms, start, (200.0, *seed));
-        assert!(worst.is_none_or(|worst| worst < 5.0), "seed {seed}: {worst:?}");
+        // Of the second seed another motion is nearly as probable, and it is refused for that.
+        let refused = *seed == 8 && worst.is_none();
+        assert!(refused || worst.is_some_and(|worst| worst < 5.0), "seed {seed}: {worst:?}");
     }
 }

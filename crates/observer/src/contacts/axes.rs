@@ -162,7 +162,7 @@ impl Problem<'_> {
     /// Takes a body of a mass that is known and of axes that may lie in any way: its inertia is about what it is in the mean over these.
     ///
     /// The motion is nearly linear in the inertia, which for a body that is almost a ball hardly depends on its axes; in the axes it is not.
-    fn take_any_axes(&mut self, mass: &MassProperties) -> Option<()> {
+    pub(super) fn take_any_axes(&mut self, mass: &MassProperties) -> Option<()> {
         let log_mass = mass.mass().ln();
         let round = Body::free(
             log_mass,

@@ -81,6 +81,21 @@ pub(super) fn turning(problem: &Problem, body: Body, w: DVec3) -> Unknowns {
     Unknowns { motions, body }
 }
 
+/// A motion whose angular velocity is another one by `shift` all along, of the body `body`: it is turned accordingly, and has the velocities that
+/// contacts leave it.
+pub(super) fn shifted(problem: &Problem, from: &Unknowns, body: Body, shift: DVec3) -> Unknowns {
+    let times = &problem.record.times;
+    let one = |(motion, &k): (&Motion, &usize)| {
+        let contacts: Vec<_> = problem.record.contacts[k].iter().collect();
+        let w = from.body.spin(motion.q, motion.L) + shift;
+        let q = (exponential(shift * (times[k] - times[0])) * motion.q).normalize();
+        let L = body.inertia_along(DMat3::from_quat(q)) * w;
+        Motion { v: along(&contacts, motion.p, w), L, q, ..*motion }
+    };
+    let motions = from.motions.iter().zip(&problem.nodes).map(one).collect();
+    Unknowns { motions, body }
+}
+
 /// Velocity of `centre` that fits the normal conditions of some contacts at an angular velocity, as small as it may be.
 fn along(contacts: &[&Contact], centre: DVec3, w: DVec3) -> DVec3 {
     let mut normal = Matrix3::identity() * RIDGE;

@@ -1,21 +1,21 @@
 //! A motion on its way from a search to what is reported: one stage after the other replaces it by a better one.
 
 use super::axes::{Oriented, against_by_cost, known_motion, with_any_axes};
-use super::body::CONSTANTS;
+use super::body::{Body, CONSTANTS};
 use super::directly::directly;
 use super::explanations::FreeBody;
 use super::plane;
 use super::problem::Problem;
 use super::record::Record;
 use super::redrawn::DRAWS;
-use super::rivals::{Decided, as_probable, decided};
+use super::rivals::{Decided, Rival, as_probable, decided, others_of_any_axes, well_known};
 use super::search::{Ended, fine, finest_nodes, refined, search};
 use super::sharp::{blunted, sharpened, sharpest, stated};
 use super::solve::{Covariances, Solved};
 use super::state::Tangent;
 use crate::reliability::{LARGEST_MISFIT, Reason};
 use glam::DQuat;
-use nalgebra::SVector;
+use nalgebra::SMatrix;
 use object_dynamics::MassProperties;
 
 /// How often a motion is carried over all samples for what is missed, at most, and what is a change of that, as a share of what conditions are off by.
@@ -46,8 +46,8 @@ pub(super) struct Stage<'a> {
     pub(super) against: Option<Reason>,
     /// The solution without it, where it is not.
     pub(super) free: Option<FreeBody>,
-    /// Motions of an unknown body that are as good, with what of it is held in each.
-    others: Vec<(Solved<CONSTANTS>, Vec<SVector<f64, CONSTANTS>>)>,
+    /// Motions of an unknown body that are as good.
+    others: Vec<Rival>,
     /// What else the readings leave open.
     pub(super) open: Option<Reason>,
 }
@@ -76,6 +76,36 @@ fn too_dear(
     let dearer = known.solved.equations.cost - unknown.equations.cost;
     let other = || against_by_cost(problem, unknown, mass, dearer);
     [if dearer > DEARER { other() } else { None }, open.filter(|_| dearer > DEARER_OF_SEVERAL)]
+}
+
+/// What is known of a body beforehand.
+type Beforehand = (Body, SMatrix<f64, CONSTANTS, CONSTANTS>);
+
+/// Replaces the motion of a known body by a more probable one that others lead to, each with what was known of the body in it; those that are less
+/// probable go to `others`. Gives the linearisations.
+fn followed(
+    problem: &mut Problem,
+    known: &mut Oriented,
+    others: &mut Vec<Solved<CONSTANTS>>,
+    rivals: Vec<(Rival, Beforehand)>,
+    mass: &MassProperties,
+) -> usize {
+    let mut iterations = 0;
+    for ((rival, frozen), body) in rivals.into_iter().take(FOLLOWED) {
+        let of_known = (problem.body, std::mem::replace(&mut problem.frozen, frozen));
+        problem.body = body;
+        let other = known_motion(problem, &rival, mass);
+        iterations += other.as_ref().map_or(0, |other| other.iterations);
+        let better = |other: &Oriented| other.solved.equations.cost < known.solved.equations.cost;
+        match other {
+            Some(other) if better(&other) => others.push(std::mem::replace(known, other).solved),
+            other => {
+                (problem.body, problem.frozen) = of_known;
+                others.extend(other.map(|other| other.solved));
+            }
+        }
+    }
+    iterations
 }
 
 /// Each of the stages gives none where the equations are singular.
@@ -146,25 +176,30 @@ impl<'a> Stage<'a> {
             return Some(self);
         }
         let free = (problem.body, problem.frozen.clone());
+        let one = problem.exact || !problem.record.frictionless() || !self.solved.explained();
+        let settled = one || well_known(problem, &self.solved);
         let mut known = known_motion(problem, &self.solved, mass)?;
         self.before += known.iterations - known.solved.iterations;
+        let mut others = Vec::new();
         // What was as good for an unknown body need not be for this one.
-        for (other, frozen) in self.others.drain(..).take(FOLLOWED) {
-            let of_known = (problem.body, std::mem::replace(&mut problem.frozen, frozen));
-            problem.body = free.0;
-            let other = known_motion(problem, &other, mass);
-            self.before += other.as_ref().map_or(0, |other| other.iterations);
-            let better = |other: &Oriented| other.solved.equations.cost < known.solved.equations.cost;
-            let other = match other {
-                Some(other) if better(&other) => Some(std::mem::replace(&mut known, other)),
-                other => {
-                    (problem.body, problem.frozen) = of_known;
-                    other
-                }
-            };
-            let open = other.and_then(|other| as_probable(problem, &known.solved, &other.solved));
-            self.open = self.open.or(open);
+        let rivals = self.others.drain(..).map(|rival| (rival, free.0)).collect();
+        self.before += followed(problem, &mut known, &mut others, rivals, mass);
+        for _ in 0..if settled { 0 } else { FOLLOWED } {
+            let before = known.solved.equations.cost;
+            let of_known = (problem.body, problem.frozen.clone());
+            let rivals = others_of_any_axes(problem, &known.solved, mass).unwrap_or_default();
+            let any = problem.body;
+            (problem.body, problem.frozen) = of_known;
+            let rivals = rivals.into_iter().map(|rival| (rival, any)).collect();
+            self.before += followed(problem, &mut known, &mut others, rivals, mass);
+            if known.solved.equations.cost > before - 1.0 {
+                break;
+            }
+            // It is by the unknown body that a known one is judged, and not by one of any axes.
+            known.against = None;
         }
+        let open = others.iter().find_map(|other| as_probable(problem, &known.solved, other));
+        self.open = self.open.or(open);
         let [other, several] = too_dear(problem, &known, &self.solved, mass, several);
         known.against = known.against.or(other);
         self.open = self.open.or(known.open).or(several);
