@@ -152,7 +152,11 @@ fn manifest(metadata: &Metadata, program: &str, unpacked: &Path) -> String {
         );
     }
     for library in ["glam", "nalgebra"].into_iter().filter(|library| named(library)) {
-        text += &format!("{library} = \"{}\"\n", version_of(metadata, library).unwrap_or("*"));
+        let version = version_of(metadata, library).unwrap_or("*");
+        // The least of it, as the members have it: the rest may never have been downloaded here.
+        text += &format!(
+            "{library} = {{ version = \"{version}\", default-features = false, features = [\"std\"] }}\n"
+        );
     }
     text += "\n[patch.crates-io]\n";
     for package in metadata.published() {
