@@ -190,7 +190,7 @@ mod tests {
         metadata.packages[0].library = "c".to_owned();
         let text = manifest(&metadata, "use c::X; use glam::DVec3;", Path::new("p"));
         assert!(
-            text.contains("\nc = { package = \"ab-c\", version = \"1.0.0\" }\nglam = \"1.0.0\"\n"),
+            text.contains("\nc = { package = \"ab-c\", version = \"1.0.0\" }\nglam = { version = \"1.0.0\", default-features = false"),
             "{text}"
         );
         assert!(text.contains("[patch.crates-io]\nab-c = { path = \"p/ab-c-1.0.0\" }\nd = {"), "{text}");
