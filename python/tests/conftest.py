@@ -26,7 +26,7 @@ def command() -> str:
     built = [target / profile / "recon" for profile in ("release", "debug")]
     found = [os.environ.get("RECON_COMMAND"), *(str(path) for path in built if path.is_file()), shutil.which("recon")]
     names = [name for name in found if name]
-    assert names, "no command `recon`: build it (cargo build -p recon-cli), or install the package"
+    assert names, "no command `recon`: build it (cargo build -p recon-touch-cli), or install the package"
     return names[0]
 
 

@@ -3,7 +3,9 @@
 
 mod cargo;
 mod chart;
+mod landing;
 mod metadata;
+mod package;
 mod steps;
 mod study;
 mod verify;
@@ -15,11 +17,15 @@ const USAGE: &str = "usage:
   cargo xtask chart  [--list] [--page] [--quick] [--out FOLDER] [NAME..]
   cargo xtask atlas  [SEEDS [FIRST]] [--smoke | --shard K/N [--rows FOLDER] | --merge [FOLDER]]
   cargo xtask atlas  one NAME WAY STRENGTH SEED
+  cargo xtask package [--try [NAME..]]
+  cargo xtask readme
   cargo xtask study  NAME [ARGUMENT..] [--shard K/N [--rows FOLDER] | --merge [FOLDER]]
 
 verify  runs the checks of the house; optional steps run only with --with or --only
 chart   draws charts of cost against error into docs/charts, and the page of all of them
 atlas   takes every method along every way of failing, and writes docs/atlas.md with its pictures
+package makes the packages of all crates; --try runs the example of each one's first page in a new project outside of this one
+readme  writes README.md of each crate from the first page of its documentation
 study   runs a long study and writes its table under docs; in N parts, on as many machines, merged to the same table";
 
 fn main() -> ExitCode {
@@ -28,6 +34,8 @@ fn main() -> ExitCode {
         Some("verify") => verify::main(words),
         Some("chart") => chart::main(words),
         Some("atlas") => study::atlas(words),
+        Some("package") => package::main(words),
+        Some("readme") => readme(),
         Some("study") => study::main(words),
         Some("help" | "--help" | "-h") => {
             println!("{USAGE}");
@@ -38,6 +46,19 @@ fn main() -> ExitCode {
                 other.map_or_else(|| "no task given".to_owned(), |task| format!("no task {task}"));
             eprintln!("{complaint}\n{USAGE}");
             ExitCode::from(2)
+        }
+    }
+}
+
+fn readme() -> ExitCode {
+    match landing::write() {
+        Ok(changed) => {
+            changed.iter().for_each(|path| println!("wrote {path}"));
+            ExitCode::SUCCESS
+        }
+        Err(complaint) => {
+            eprintln!("{complaint}");
+            ExitCode::FAILURE
         }
     }
 }

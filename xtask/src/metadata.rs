@@ -32,6 +32,12 @@ pub(crate) struct Package {
     /// Names of its Cargo features, `default` among them.
     pub(crate) features: Vec<String>,
     pub(crate) member: bool,
+    /// What its library is called.
+    pub(crate) library: String,
+    /// Whether the registry may have it.
+    pub(crate) published: bool,
+    /// What a registry wants to know and its manifest does not say.
+    pub(crate) lacking: Vec<&'static str>,
     pub(crate) edges: Vec<Edge>,
 }
 
@@ -72,6 +78,11 @@ impl Metadata {
         Some(Self { root: value["workspace_root"].as_str()?.to_owned(), packages })
     }
 
+    /// The members that a registry may have, in the order of their names.
+    pub(crate) fn published(&self) -> impl Iterator<Item = &Package> {
+        self.members().filter(|package| package.published)
+    }
+
     pub(crate) fn members(&self) -> impl Iterator<Item = &Package> {
         self.packages.iter().filter(|package| package.member)
     }
@@ -97,6 +108,16 @@ impl Metadata {
     }
 }
 
+/// What a registry wants to know of a package.
+const WANTED: [&str; 5] = ["description", "license", "repository", "documentation", "readme"];
+
+/// What the library of a package is called.
+fn library(package: &Value) -> Option<String> {
+    let is_library =
+        |target: &&Value| target["kind"].as_array().is_some_and(|kinds| kinds.contains(&"lib".into()));
+    package["targets"].as_array()?.iter().find(is_library)?["name"].as_str().map(str::to_owned)
+}
+
 fn parse_package(package: &Value, member: bool) -> Option<Package> {
     let text = |key: &str| package[key].as_str().map(str::to_owned);
     Some(Package {
@@ -107,6 +128,9 @@ fn parse_package(package: &Value, member: bool) -> Option<Package> {
         manifest: text("manifest_path")?,
         features: package["features"].as_object()?.keys().cloned().collect(),
         member,
+        library: library(package).or_else(|| text("name").map(|name| name.replace('-', "_")))?,
+        published: !package["publish"].is_array(),
+        lacking: WANTED.into_iter().filter(|field| package[field].is_null()).collect(),
         edges: Vec::new(),
     })
 }

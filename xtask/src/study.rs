@@ -7,6 +7,9 @@ use crate::cargo::{cargo, output, root, run};
 /// Where rows of parts are kept.
 const ROWS: &str = "target/study-rows";
 
+/// The study of the fuzz targets, which are outside of the workspace.
+const FUZZ: &str = "fuzz_targets";
+
 /// Name of a study, the file under docs/ that it writes, and what it is about.
 const STUDIES: &[(&str, &str, &str)] = &[
     (
@@ -151,6 +154,7 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "shape-fits.md",
         "shapes fitted to contacts against the Cramer-Rao bound, and their choice",
     ),
+    (FUZZ, "fuzz.md", "every parser, hulls, half-spaces on a million inputs made of the committed seeds"),
     ("streaming", "streaming.md", "three palms sample by sample over a minute: time and accuracy"),
 ];
 
@@ -206,7 +210,11 @@ pub(crate) fn main(mut words: impl Iterator<Item = String>) -> ExitCode {
     if words.last().is_some_and(|word| word == "--rows" || word == "--merge") {
         words.push(format!("{ROWS}/{name}"));
     }
-    let mut command = cargo(&format!("run --release --quiet --package recon-benches --bin study -- {name}"));
+    let mut command = if *name == FUZZ {
+        cargo("run --release --quiet --locked --manifest-path fuzz/Cargo.toml --bin study --")
+    } else {
+        cargo(&format!("run --release --quiet --package recon-benches --bin study -- {name}"))
+    };
     let path = root().join("docs").join(file);
     let written = output(command.args(&words)).and_then(|table| match is_part {
         true => Ok(words.last().cloned().unwrap_or_default()),

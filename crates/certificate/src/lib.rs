@@ -8,14 +8,18 @@
 //! use certificate::{Solid, Surface};
 //! use glam::DVec3;
 //!
+//! # fn main() -> Result<(), certificate::SurfaceError> {
 //! let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 //! let tetrahedron = Surface::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 //! assert_eq!(tetrahedron.not_convex(0.0), None);
 //! let inside = Solid::new(&tetrahedron);
 //! assert_eq!(inside.winding(DVec3::splat(0.2)), 1);
 //! assert_eq!(inside.farthest_outside(&[DVec3::splat(0.2), -DVec3::X]), Some((1, 1.0)));
-//! # Ok::<(), certificate::SurfaceError>(())
+//! # Ok(())
+//! # }
 //! ```
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod inside;
 mod outline;

@@ -13,6 +13,7 @@ pub struct Surface {
 
 /// Corners and triangles that are no surface.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// A coordinate is infinite or no number.
     #[error("corner {} is {position}; it must be finite", corner + 1)]

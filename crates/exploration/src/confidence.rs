@@ -25,6 +25,7 @@ pub struct Confidence {
 
 /// Why a confidence is none.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ConfidenceError {
     /// A level that is none.
     #[error("confidence {0}: it must lie between 0.5 and 1, both excluded")]

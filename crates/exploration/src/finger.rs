@@ -6,6 +6,7 @@ use thiserror::Error;
 
 /// Why a touch gave no contact.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum TouchError {
     /// A ray that does not meet the body.
     #[error("the ray met nothing: the finger passed the place where the bounds said that the body is")]

@@ -21,6 +21,7 @@ pub enum Goal<H> {
 
 /// Why a goal is none.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum GoalError {
     /// Not a number, or infinite.
     #[error("goal {value}: it must be a finite number")]

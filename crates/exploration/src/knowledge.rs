@@ -32,6 +32,7 @@ impl Measures {
 
 /// Why a contact says nothing of the shape.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum KnowledgeError {
     /// In space: not finite, contradictory beyond the noise, or noise that is none.
     #[error("contact {touch} (from 1): {reason}")]

@@ -31,6 +31,8 @@
 //! All lengths are in m, all coordinates in the body's frame. The same seeds give the same touches to the last bit: nothing here
 //! runs in more than one thread.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod certificate;
 mod confidence;
 pub mod contour;

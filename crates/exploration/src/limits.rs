@@ -22,6 +22,7 @@ pub struct Limits<H> {
 
 /// Why limits are none.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum LimitsError {
     /// An angle that is none.
     #[error("cone {index} of the limits: half angle {half_angle} rad must be from 0 to pi")]

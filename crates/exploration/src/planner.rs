@@ -7,6 +7,7 @@ use thiserror::Error;
 
 /// Why a place was chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Reason {
     /// One of the first, which close the upper bound.
     Start,
@@ -68,6 +69,7 @@ pub struct Situation<'a, K: Knowledge> {
 
 /// Why there is no next touch.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PlanError {
     /// Nothing within reach has anything to gain.
     #[error("no direction within reach has anything to gain: {} would, out of reach", directions.len())]

@@ -59,6 +59,7 @@ pub struct Step<K: Knowledge> {
 
 /// Why an exploration cannot be made, or broke off.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ExploreError {
     /// The goal is none.
     #[error(transparent)]

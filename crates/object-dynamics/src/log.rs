@@ -41,6 +41,7 @@ pub type TrueState = BodyState;
 
 /// Why samples are not a log.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum LogError {
     /// Too few samples, out of order, or with truth of another length.
     #[error(transparent)]

@@ -23,6 +23,7 @@ pub struct PrincipalInertia {
 
 /// Which law a mass or an inertia breaks.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum MassError {
     /// Mass is zero, negative or not a number.
     #[error("mass is {mass} kg; it must be positive and finite")]

@@ -7,6 +7,7 @@ const LATEST: f64 = 1e10;
 
 /// Why samples are not a series.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SeriesError {
     /// Fewer than two samples.
     #[error("log has {found} sample(s); at least 2 are needed")]

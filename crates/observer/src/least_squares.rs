@@ -59,6 +59,7 @@ pub trait LeastSquares<const P: usize> {
 
 /// How a fit ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FitStatus {
     /// A minimum: the linear model promises no lower cost to speak of.
     Converged,

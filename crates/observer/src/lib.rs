@@ -6,7 +6,50 @@
 //! direction, condition, covariance. For a system that changes between modes there is a bank of filters, one for each
 //! ([`Bank`]), which says how probable each mode is.
 //!
+//! Start with [`estimate_contacts`] for the motion, mass and inertia of a body between palms; for a system of your own with a [`Model`]:
+//!
+//! ```
+//! use nalgebra::{SMatrix, SVector};
+//! use observer::{ExtendedKalmanFilter, Model, Sample, Start, Status};
+//!
+//! /// Position and speed of a cart, sampled at 10 Hz; its position is measured.
+//! struct Cart;
+//!
+//! impl Model<2, 1> for Cart {
+//!     type Input = ();
+//!     fn flow(&self, x: &SVector<f64, 2>, (): &()) -> (SVector<f64, 2>, SMatrix<f64, 2, 2>) {
+//!         let slope = SMatrix::<f64, 2, 2>::new(1.0, 0.1, 0.0, 1.0);
+//!         (slope * x, slope)
+//!     }
+//!     fn output(&self, x: &SVector<f64, 2>, (): &()) -> (SVector<f64, 1>, SMatrix<f64, 1, 2>) {
+//!         (SVector::<f64, 1>::new(x[0]), SMatrix::<f64, 1, 2>::new(1.0, 0.0))
+//!     }
+//!     fn scales(&self) -> SVector<f64, 2> { SVector::<f64, 2>::new(1.0, 1.0) }
+//!     fn names(&self) -> [&'static str; 2] { ["position", "speed"] }
+//! }
+//!
+//! # fn main() -> Result<(), observer::ObserverError> {
+//! let mut filter = ExtendedKalmanFilter::new(Cart, &Start::guess(SVector::<f64, 2>::zeros()))?;
+//! let at = |position: f64| Sample {
+//!     input: (),
+//!     measured: SVector::<f64, 1>::new(position),
+//!     information: SVector::<f64, 1>::new(1e6), // one over (1 mm)^2
+//! };
+//! filter.push(&at(2.0));
+//! // One position says nothing of the speed, and the report says so.
+//! let report = filter.estimate().report;
+//! assert_eq!((report.status, report.rank), (Status::NotObservable, 1));
+//! (1..50).for_each(|k| filter.push(&at(2.0 + 0.03 * f64::from(k))));
+//! let found = filter.estimate();
+//! assert_eq!(found.report.status, Status::Converged);
+//! assert!((found.state[1] - 0.3).abs() < 1e-3);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! The feature `palms` (on by default) adds the estimators of shape and motion from touch.
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(feature = "palms")]
 mod chance;

@@ -1,8 +1,19 @@
 //! The command `recon`, and what it does for programs that have their readings in memory and want results there.
 //!
+//! Start with the command: `recon demo` makes a report to look at, `recon --help` names the rest. From a program:
+//!
+//! ```
+//! // The formats that it reads and writes, on standard output.
+//! assert_eq!(recon_cli::main(["recon", "formats"].map(Into::into)), 0);
+//! // An unknown option is a mistake of usage.
+//! assert_eq!(recon_cli::main(["recon", "--no-such-option"].map(Into::into)), 2);
+//! ```
+//!
 //! [`main`] is the command itself: arguments, files, words and exit codes. [`Log`], [`Reconstructed`], [`Bounded`], [`Simulated`] and
 //! [`Follower`] are the same pipeline without files, for fronts in other languages: from the same numbers they make the same results, to the
 //! last bit.
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod cli;
 mod commands;

@@ -1,8 +1,31 @@
 //! Files of recon: sensor logs, scene files, contact lists, meshes, tables and the report. No mathematics, but for what the
 //! check of results ([`check`]) reads off the corners of meshes.
 //!
+//! Start with [`read_any_log`] and [`Scene`] for what a robot recorded, [`parse_contacts`] for a list of contacts, [`OutputFolder`] for results:
+//!
+//! ```
+//! use recon_io::{TriangleMesh, parse_contacts, write_ply};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let text = "x,y,z,nx,ny,nz\n1,0,0,1,0,0\n-1,0,0,-1,0,0\n0,1,0,0,1,0\n0,-1,0,0,-1,0\n0,0,1,0,0,1\n0,0,-1,0,0,-1\n";
+//! let contacts = parse_contacts(text.as_bytes())?.concat();
+//! assert_eq!(contacts.len(), 6);
+//! // What is wrong is named with its place.
+//! let wrong = parse_contacts(&b"x,y,z,nx,ny,nz\n1,0,zero,1,0,0\n"[..]).unwrap_err();
+//! assert!(wrong.to_string().contains("line 2") && wrong.to_string().contains('z'), "{wrong}");
+//! let bounds = recon::shape_bounds::ShapeBounds::from_contacts(&contacts)?;
+//! let upper = bounds.upper().bounded().ok_or("open")?.mesh();
+//! let mut file = Vec::new();
+//! write_ply(&TriangleMesh::new(upper.vertices, upper.triangles)?, "the cube around it", &mut file)?;
+//! assert!(file.starts_with(b"ply"));
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! Errors of reading name the file, the line or key, the value and the mend. What is written as a whole appears as a
 //! whole or not at all ([`OutputFolder`], [`AtomicFile`]).
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(feature = "mcap")]
 mod bag;

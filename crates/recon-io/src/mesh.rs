@@ -17,6 +17,7 @@ pub struct TriangleMesh {
 
 /// Why vertices and triangles are not a mesh.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum MeshError {
     /// A triangle names a vertex that is not there.
     #[error("triangle {triangle} names vertex {vertex}, but the mesh has {vertices}")]

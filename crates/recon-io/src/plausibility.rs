@@ -26,6 +26,7 @@ const RAREST_SAMPLES: f64 = 2.0;
 
 /// Something in a log that does not go with the scene, most likely a unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Implausibility {
     /// Contact distances against radii of gyration.
     Spread {

@@ -10,6 +10,7 @@ use serde_json::{Map, Value, json};
 
 /// What a `summary.json` is of. Its keys are those of `docs/schema/summary.schema.json`.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[non_exhaustive]
 pub enum SummaryOf {
     /// Motion and shape from contacts and forces, in space.
     Reconstruction,

@@ -9,10 +9,11 @@ pub(crate) use agreement::{PRINTED, ROUNDING_ULPS, beyond};
 pub use gap::Gap;
 pub use incremental::IncrementalBounds;
 
-use crate::halfspaces::{Intersection, IntersectionError};
-use crate::hull::{Hull, PointsError};
-use crate::sample::{ContactSample, HalfSpace};
+use crate::sample::ContactSample;
 use contact_kinematics::Direction;
+use exact_hull::HalfSpace;
+use exact_hull::{Hull, PointsError};
+use exact_hull::{Intersection, IntersectionError};
 use gap::GapSearch;
 use glam::DVec3;
 use thiserror::Error;
@@ -22,6 +23,7 @@ const FEWEST: usize = 4;
 
 /// Why contacts give no bounds.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum BoundsError {
     /// Too few contacts.
     #[error("{found} contacts: bounds in space need at least {needed}")]

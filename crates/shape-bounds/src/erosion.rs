@@ -1,9 +1,9 @@
 //! What a convex body certainly holds of which points are known roughly.
 
-use crate::halfspaces::Intersection;
-use crate::hull::Hull;
-use crate::sample::HalfSpace;
 use contact_kinematics::Direction;
+use exact_hull::HalfSpace;
+use exact_hull::Hull;
+use exact_hull::Intersection;
 use glam::DVec3;
 
 /// Corners of a region that lies in every convex body which holds a point near each of `points`: nearer to point `k`, seen

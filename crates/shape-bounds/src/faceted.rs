@@ -1,9 +1,9 @@
 //! Polytopes inside and outside of a curved convex body, within a tolerance of each other.
 
 use crate::bounds::{BoundsError, Gap, ShapeBounds};
-use crate::halfspaces::{Intersection, Unbounded};
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;
+use exact_hull::{Intersection, Unbounded};
 use glam::DVec3;
 use std::collections::HashSet;
 use thiserror::Error;
@@ -21,6 +21,7 @@ const FAR: f64 = 1e6;
 
 /// Why a curved body has no polytopes around it.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum FacetError {
     /// A tolerance that is not positive and finite.
     #[error("tolerance is {value} m; it must be positive and finite")]

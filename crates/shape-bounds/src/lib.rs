@@ -4,6 +4,8 @@
 //! contained in the half-spaces `n_k . (y - x_k) <= 0` (Moll and Erdmann, WAFR 2002, section 8). Which point is outside of
 //! which facet is decided by exact arithmetic, so that the bounds hold on thin, flat, repeated and far-away data.
 //!
+//! Start with [`ShapeBounds::from_contacts`]:
+//!
 //! ```
 //! use glam::DVec3;
 //! use shape_bounds::{ContactSample, ShapeBounds};
@@ -21,7 +23,22 @@
 //! # }
 //! ```
 //!
+//! | what is known besides | take |
+//! |---|---|
+//! | nothing; contacts come one by one | [`ShapeBounds`]; [`IncrementalBounds`] |
+//! | how noisy contacts are, or that they are | [`CertainBounds`], [`estimate_noise`] |
+//! | limits on the radii of curvature | [`CurvatureBounds`], [`SharpBounds`] |
+//! | a family of shapes of few parameters | [`ShapeFit`] |
+//! | that there are corners, edges and faces | [`Features`] |
+//! | that the body is not convex | [`ShapeBounds::from_concave_contacts`], [`AlphaShape`], [`HermiteSurface`] |
+//! | poses of a body that rests on a plane | [`PoseBounds`] |
+//! | that it all lies in a plane | [`planar`] |
+//!
+//! Hulls and half-spaces themselves are those of the crate `exact-hull`.
+//!
 //! All lengths are in m, all coordinates in the body's frame.
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod bounds;
 mod concave;
@@ -33,22 +50,17 @@ mod features;
 mod fit;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
-mod halfspaces;
-mod hull;
-mod integrals;
+#[cfg(test)]
+mod laws;
 mod matrix;
 mod median;
-mod mesh;
 mod noise;
 mod palms;
-#[cfg(feature = "parry")]
-mod parry;
 pub mod planar;
 mod poses;
-mod predicates;
-mod random;
 mod sample;
-mod twofold;
+#[cfg(any(test, feature = "strategies"))]
+pub mod strategies;
 
 pub use bounds::{BoundsError, Contradiction, Gap, IncrementalBounds, ShapeBounds};
 pub use concave::{AlphaError, AlphaShape, HermiteSurface, SurfaceError};
@@ -57,6 +69,11 @@ pub use curvature::{
     RoundedIntersection, SharpBounds,
 };
 pub use distance::{Nearest, nearest};
+pub use exact_hull::{
+    HalfSpace, Hull, HullCertificate, IncrementalHull, IncrementalIntersection, Intersection,
+    IntersectionError, PointsError, Polyhedron, SolidHull, SolidMoments, SupportWalk, TriangleMesh,
+    Unbounded,
+};
 pub use faceted::FacetError;
 pub use features::{
     Corner, Edge, Face, FeatureKind, FeatureOptions, FeatureRun, Features, FoundPolyhedron, Pieces,
@@ -65,10 +82,6 @@ pub use fit::{
     COMPARED, Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel,
     Refutation, SIGNIFICANCE, ShapeChoice, ShapeFamily, ShapeFit, SkewEllipsoid, Superquadric,
 };
-pub use halfspaces::{Intersection, IntersectionError, Polyhedron, Unbounded};
-pub use hull::{Hull, HullCertificate, IncrementalHull, PointsError, SolidHull, SupportWalk};
-pub use integrals::SolidMoments;
-pub use mesh::TriangleMesh;
 pub use noise::quantile;
 pub use noise::{
     CertainBounds, ContactNoise, NoiseDoubt, NoiseError, NoisyContact, Outlier, PoseNoise, correlated_noise,
@@ -79,7 +92,7 @@ pub use poses::{
     BodyPose, CALIBRATED_RUNS, CONFIDENCES, ContradictingRun, PlaneHeight, PoseBounds, PoseError, PoseRule,
     half_space_above_plane,
 };
-pub use sample::{ContactError, ContactSample, HalfSpace, NORMAL_TOLERANCE};
+pub use sample::{ContactError, ContactSample, NORMAL_TOLERANCE};
 
 /// How much of a test is run: a decisive part of it, all of it where the environment says `RECON_TESTS=all`, as
 /// `cargo xtask verify --only all-tests` does.

@@ -60,6 +60,7 @@ impl PalmContact {
 
 /// Why contacts with palms give no bound.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PalmError {
     /// No contacts.
     #[error("no contacts: touch the body")]

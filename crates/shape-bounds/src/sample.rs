@@ -1,4 +1,4 @@
-use contact_kinematics::{Direction, DirectionError};
+use exact_hull::{Direction, DirectionError, HalfSpace};
 use glam::DVec3;
 use thiserror::Error;
 
@@ -7,6 +7,7 @@ pub const NORMAL_TOLERANCE: f64 = 2e-6;
 
 /// Why a point and a normal are not a contact.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactError {
     /// A coordinate of the point is NaN or infinite.
     #[error("contact {index}: point ({}, {}, {}) has a coordinate that is not finite", point.x, point.y, point.z)]
@@ -59,36 +60,5 @@ impl ContactSample {
     #[must_use]
     pub fn half_space(&self) -> HalfSpace {
         HalfSpace { point: self.point, normal: self.normal, margin: 0.0 }
-    }
-}
-
-/// The half-space `{ y : normal . (y - point) <= margin }`.
-///
-/// Point and margin are kept apart, rather than summed to one offset, because neighbouring half-spaces of a dense curve
-/// differ by less than the rounding of such a sum.
-///
-/// One to a cache line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(align(64))]
-pub struct HalfSpace {
-    /// A point of the plane when the margin is zero, in m.
-    pub point: DVec3,
-    /// Outward unit normal.
-    pub normal: Direction,
-    /// How far the plane is moved outwards, in m.
-    pub margin: f64,
-}
-
-impl HalfSpace {
-    /// Signed distance of `y` beyond the plane, in m; at most zero inside.
-    #[must_use]
-    pub fn excess(&self, y: DVec3) -> f64 {
-        self.normal.get().dot(y - self.point) - self.margin
-    }
-
-    /// The half-space with its plane `outwards` (m) further out.
-    #[inline]
-    pub(crate) fn moved(&self, outwards: f64) -> Self {
-        Self { margin: self.margin + outwards, ..*self }
     }
 }

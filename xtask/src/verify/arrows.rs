@@ -3,32 +3,36 @@
 use crate::metadata::{Metadata, Package};
 
 /// The crates that the facade joins.
-const CORE: [&str; 5] = ["contact-kinematics", "object-dynamics", "observer", "shape-bounds", "exploration"];
+const CORE: [&str; 5] =
+    ["contact-kinematics", "object-dynamics", "touch-observer", "shape-bounds", "touch-exploration"];
 
 /// The crates that someone may pick alone: the core, and what certifies its bounds.
 pub(crate) fn alone() -> impl Iterator<Item = &'static str> {
-    CORE.into_iter().chain(["certificate"])
+    CORE.into_iter().chain(["unit-direction", "exact-hull", "shape-certificate"])
 }
 
 /// Each member and the members that it may depend on, in any way (normal, build, dev).
-const ALLOWED: [(&str, &[&str]); 13] = [
-    ("contact-kinematics", &[]),
+const ALLOWED: [(&str, &[&str]); 15] = [
+    ("unit-direction", &[]),
+    // Geometry of points and planes, which knows nothing of robots.
+    ("exact-hull", &["unit-direction"]),
+    ("contact-kinematics", &["unit-direction"]),
     ("object-dynamics", &["contact-kinematics"]),
-    ("observer", &["contact-kinematics", "object-dynamics"]),
-    ("shape-bounds", &["contact-kinematics"]),
-    ("exploration", &["contact-kinematics", "object-dynamics", "observer", "shape-bounds"]),
-    ("recon", &CORE),
+    ("touch-observer", &["contact-kinematics", "object-dynamics"]),
+    ("shape-bounds", &["contact-kinematics", "exact-hull"]),
+    ("touch-exploration", &["contact-kinematics", "object-dynamics", "touch-observer", "shape-bounds"]),
+    ("recon-touch", &CORE),
     // What checks bounds has nothing of what makes them.
-    ("certificate", &[]),
-    ("recon-io", &["recon", "certificate"]),
-    ("recon-cli", &["recon", "recon-io", "recon-tests"]),
+    ("shape-certificate", &[]),
+    ("recon-touch-io", &["recon-touch", "shape-certificate"]),
+    ("recon-touch-cli", &["recon-touch", "recon-touch-io", "recon-tests"]),
     // The two name `shape-bounds` only to switch on its feature `generators`, which the facade has no reason to carry.
-    ("recon-tests", &["recon", "recon-io", "shape-bounds"]),
+    ("recon-tests", &["recon-touch", "recon-touch-io", "shape-bounds"]),
     // The scenes of the tests are the scenes of the charts.
     // Likewise `exploration`.
-    ("recon-benches", &["recon", "recon-io", "recon-tests", "shape-bounds", "exploration"]),
-    // It names the last two to be built with the features that they have beside it in tests.
-    ("recon-py", &["recon-cli", "recon-io", "shape-bounds", "exploration"]),
+    ("recon-benches", &["recon-touch", "recon-touch-io", "recon-tests", "shape-bounds", "touch-exploration"]),
+    // It names the last three to be built with the features that they have beside it in tests.
+    ("recon-py", &["recon-touch-cli", "recon-touch-io", "shape-bounds", "touch-exploration", "exact-hull"]),
     ("xtask", &[]),
 ];
 
@@ -91,18 +95,20 @@ mod tests {
     /// A workspace as the architecture wants it, with lines replaced by those with the same name.
     fn house(changes: &[&str]) -> Metadata {
         let plan = [
-            "contact-kinematics: glam proptest/dev",
+            "unit-direction: glam",
+            "exact-hull: unit-direction glam",
+            "contact-kinematics: unit-direction glam proptest/dev",
             "object-dynamics: contact-kinematics glam",
-            "observer: contact-kinematics object-dynamics glam",
-            "shape-bounds: contact-kinematics parry",
-            "exploration: contact-kinematics shape-bounds",
-            "recon: contact-kinematics object-dynamics observer shape-bounds exploration",
-            "certificate: glam",
-            "recon-io: recon certificate serde_json",
-            "recon-cli: recon recon-io clap",
-            "recon-tests: recon/dev recon-io/dev",
-            "recon-benches: recon recon-io kuva",
-            "recon-py: recon-cli recon-io",
+            "touch-observer: contact-kinematics object-dynamics glam",
+            "shape-bounds: contact-kinematics exact-hull parry",
+            "touch-exploration: contact-kinematics shape-bounds",
+            "recon-touch: contact-kinematics object-dynamics touch-observer shape-bounds touch-exploration",
+            "shape-certificate: glam",
+            "recon-touch-io: recon-touch shape-certificate serde_json",
+            "recon-touch-cli: recon-touch recon-touch-io clap",
+            "recon-tests: recon-touch/dev recon-touch-io/dev",
+            "recon-benches: recon-touch recon-touch-io kuva",
+            "recon-py: recon-touch-cli recon-touch-io",
             "xtask: serde_json",
             "|glam:",
             "|parry: glam",
@@ -130,21 +136,21 @@ mod tests {
 
     #[test]
     fn an_arrow_against_the_flow_is_caught() {
-        let found = complaints(&house(&["contact-kinematics: glam object-dynamics"]));
+        let found = complaints(&house(&["contact-kinematics: unit-direction glam object-dynamics"]));
         assert_eq!(found, ["contact-kinematics -> object-dynamics: not an arrow of the architecture"]);
     }
 
     #[test]
     fn an_arrow_for_tests_only_is_caught_as_well() {
-        let found = complaints(&house(&["shape-bounds: contact-kinematics observer/dev"]));
-        assert_eq!(found, ["shape-bounds -> observer: not an arrow of the architecture"]);
+        let found = complaints(&house(&["shape-bounds: contact-kinematics touch-observer/dev"]));
+        assert_eq!(found, ["shape-bounds -> touch-observer: not an arrow of the architecture"]);
     }
 
     #[test]
     fn a_heavy_crate_is_caught_through_others_with_its_way() {
         let found = complaints(&house(&["|parry: glam serde_json"]));
         // What is built on it carries it as well.
-        let ways = ["shape-bounds -> parry", "exploration -> shape-bounds -> parry"];
+        let ways = ["shape-bounds -> parry", "touch-exploration -> shape-bounds -> parry"];
         assert_eq!(found, ways.map(|way| format!("{way} -> serde_json: does not belong into a core crate")));
         let found = complaints(&house(&["object-dynamics: contact-kinematics clap/build"]));
         // The observer is built on it, so both are caught.
@@ -154,7 +160,7 @@ mod tests {
     #[test]
     fn a_member_without_a_place_in_the_plan_is_caught() {
         let mut metadata = house(&[]);
-        metadata.packages[10].name = "ytask".to_owned();
+        metadata.packages[12].name = "ytask".to_owned();
         let found = complaints(&metadata);
         assert!(found.len() == 2 && found[0].contains("ytask") && found[1].contains("xtask"), "{found:?}");
     }

@@ -50,6 +50,13 @@ pub(crate) fn alone() -> Result<Outcome, String> {
     all(arrows::alone().flat_map(|name| [Some(with(name, "")), least(name)]).flatten())
 }
 
+/// The fuzz targets without libFuzzer.
+pub(crate) fn fuzz() -> Result<Outcome, String> {
+    all(["fmt --all --check --manifest-path fuzz/Cargo.toml".to_owned()]
+        .into_iter()
+        .chain(["clippy", "test"].map(|line| format!("{line} --locked --manifest-path fuzz/Cargo.toml"))))
+}
+
 /// Its features are on where everything is linted, and no crate has it in its tree.
 const LINTED: &str = "recon-py";
 
@@ -96,7 +103,7 @@ mod tests {
     #[test]
     fn this_workspace_has_features_to_check() {
         let lines = feature_lines(&Metadata::load().expect("cargo describes this workspace"));
-        assert!(lines.iter().any(|line| line.contains("--package observer")), "{lines:?}");
+        assert!(lines.iter().any(|line| line.contains("--package touch-observer")), "{lines:?}");
     }
 
     #[test]

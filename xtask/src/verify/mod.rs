@@ -17,6 +17,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use crate::metadata::Metadata;
+use crate::package;
 use crate::steps::{Choice, Outcome, Step, When, run, table};
 
 /// How cargo names the default registry in its metadata, whatever mirror it downloads from.
@@ -32,6 +33,11 @@ const STEPS: &[Step] = &[
     step("sources", "every package is ours or from the default registry", || {
         check(licences::foreign_sources)
     }),
+    step(
+        "packages",
+        "each crate can be published: its page, licences, changes; nothing from outside",
+        package::check,
+    ),
     step("paths", "no tracked file names a folder of somebody's machine", paths::check),
     step("deny", "cargo-deny: bans, licences, sources", extras::deny),
     beside(
@@ -56,6 +62,7 @@ const STEPS: &[Step] = &[
         "a run of each method along each way of failing: none crashes, each is right somewhere (a minute)",
         builds::atlas,
     ),
+    optional("fuzz", "the fuzz targets are linted, and each one runs its committed seeds", builds::fuzz),
     optional("hack", "cargo-hack: all combinations of features build", extras::hack),
     optional(
         "semver",

@@ -86,6 +86,8 @@ fn tally(truth: Truth, count: usize, noise: f64, runs: u64) -> Result<Tally, Fai
             ShapeFamily::Ellipsoid => 1,
             ShapeFamily::Superquadric => 2,
             ShapeFamily::Harmonics { degree } => 1 + degree,
+            // A family that the tally does not know yet.
+            _ => continue,
         };
         tally.hits[place] += 1;
     }

@@ -38,6 +38,7 @@ pub struct Darboux {
 
 /// Why a curve cannot be used.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum CurveError {
     /// Times do not increase.
     #[error("t of curve point {index} is {time} s, not above {previous} s before it")]

@@ -13,6 +13,7 @@ use thiserror::Error;
 
 /// Why palms cannot be used as given.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PalmError {
     /// The palm's axis would be undefined: it is the horizontal line in the palm.
     #[error(

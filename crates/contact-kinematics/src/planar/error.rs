@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why numbers do not describe a smooth strictly convex planar body.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ShapeError {
     /// A length is zero, negative or not a number.
     #[error("{what} is {value} m; it must be positive and finite")]
@@ -80,6 +81,7 @@ pub enum ShapeError {
 
 /// Why a pair of palms cannot hold an object.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PalmPairError {
     /// The wedge between the palms is closed or flat.
     #[error(

@@ -64,6 +64,7 @@ pub struct CurvatureRadii {
 
 /// Why a shape cannot be used.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ShapeError {
     /// A length is zero, negative or not a number.
     #[error("{what} is {value} m; it must be positive and finite")]

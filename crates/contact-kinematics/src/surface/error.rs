@@ -7,6 +7,7 @@ pub const FASTEST_TURN: f64 = 60_000.0;
 
 /// Why the surface of a palm or its motion cannot be used as given.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// The radius is not a positive number.
     #[error("radius of the palm is {radius} m; it must be positive and finite")]
@@ -80,6 +81,7 @@ pub enum SurfaceError {
 
 /// Why a contact could not be found, or its rates not be told.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactError {
     /// Newton's iteration did not settle.
     #[error(

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why a measured wrench has no point of contact on a palm.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PressureError {
     /// Force or torque is NaN or infinite.
     #[error("force or torque is not finite")]

@@ -10,6 +10,7 @@ use thiserror::Error;
 
 /// Why a simulated finger cannot go on.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum StuckFinger {
     /// A radius that is none.
     #[error("the radius of the finger is {0} m; it must be positive and finite")]

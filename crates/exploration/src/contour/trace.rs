@@ -46,6 +46,7 @@ pub struct Tracing {
 
 /// Why nothing is followed.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum TraceError<E> {
     /// A setting that is none.
     #[error(
@@ -75,6 +76,7 @@ pub struct Bridge {
 
 /// How following ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum TraceEnd {
     /// Once round.
     Closed,

@@ -79,6 +79,7 @@ pub struct RollStep {
 
 /// Why an exploration cannot be made, or broke off.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum RollError {
     /// The goal is none.
     #[error(transparent)]

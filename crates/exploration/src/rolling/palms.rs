@@ -38,6 +38,7 @@ impl Reading {
 
 /// Why nothing is felt.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PalmsError {
     /// The body left a palm.
     #[error("contact on palm {palm} is {s:.4} m from the hinge, beyond its end at {length} m")]

@@ -42,6 +42,7 @@ pub struct RollProposal {
 
 /// Why there is no next motion.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum RollPlanError {
     /// On no body drawn was a motion found that uncovers what is left: no proof that there is none on the true one.
     #[error("no motion was found that uncovers what is left, at {} directions of the body; that is no proof that there is none", directions.len())]

@@ -25,6 +25,7 @@ pub struct Workspace {
 
 /// Why limits are none.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum WorkspaceError {
     /// A number that is none or has the wrong sign.
     #[error("{what} is {value}; it must be positive and finite")]

@@ -39,6 +39,7 @@ pub struct Speeds {
 
 /// Why two configurations have no distance.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum MetricError {
     /// Different numbers of palms.
     #[error("configurations of {from} and {to} palms: their numbers must be the same")]

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 /// Why what palms recorded is not a log. Palms count from 1, samples from 0.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactLogError {
     /// Too few samples, out of order, or with truth of another length.
     #[error(transparent)]

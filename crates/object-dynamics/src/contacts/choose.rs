@@ -21,6 +21,7 @@ pub(crate) const EXACT: f64 = 1e-10;
 
 /// Why no mode set can be taken. Modes are given as letters, palm by palm: O off, S slides, R sticks and rolls.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ModeError {
     /// Painlevé's paradox or a jam: rigid bodies with this friction have no motion here.
     #[error(

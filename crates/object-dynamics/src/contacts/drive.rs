@@ -51,6 +51,7 @@ pub struct PalmTorque {
 
 /// Why the drive of a palm cannot be used.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum DriveError {
     /// Its motion or pose.
     #[error(transparent)]

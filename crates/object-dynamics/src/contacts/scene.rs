@@ -32,6 +32,7 @@ pub struct ContactScene<S> {
 
 /// Why a scene cannot be used as given.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactSceneError {
     /// The body is not smooth and strictly convex.
     #[error(transparent)]

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// Why a simulation through contact modes cannot start or go on.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactSimulationError {
     /// Sample times or the state at the start are not usable.
     #[error(transparent)]

@@ -11,6 +11,7 @@ use thiserror::Error;
 
 /// Why an instant has no forces.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactInstantError {
     /// As many modes as palms are needed.
     #[error("{found} modes for {expected} palms")]

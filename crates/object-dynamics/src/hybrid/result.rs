@@ -35,6 +35,7 @@ pub struct ContactInstant {
 
 /// What has changed at a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ContactEventKind {
     /// The body has come to touch the palm: a blow.
     Touches,

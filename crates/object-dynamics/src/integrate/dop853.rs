@@ -40,6 +40,7 @@ impl Tolerance {
 
 /// Why an integration cannot go on. `E` is the error of the field itself.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum IntegrationError<E> {
     /// The tolerance cannot be met in double precision, or is not a positive number.
     #[error(

@@ -2,6 +2,7 @@ use thiserror::Error;
 
 /// Why no root was found.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum RootError {
     /// The function does not change sign between the ends.
     #[error("no sign change between {a} (value {fa}) and {b} (value {fb})")]

@@ -42,6 +42,7 @@ pub struct ContactLog {
 
 /// Why samples are not a log of palms.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactLogError {
     /// Too few samples, out of order, or with truth of another length.
     #[error(transparent)]

@@ -7,6 +7,7 @@ use thiserror::Error;
 
 /// Why a planar simulation cannot go on.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PlanarSimulationError {
     /// The palms close or flatten their wedge, or the step size collapses.
     #[error(transparent)]
@@ -34,6 +35,7 @@ pub enum PlanarSimulationError {
 
 /// Why samples are not a planar log.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PlanarLogError {
     /// Too few samples, out of order, or with truth of another length.
     #[error(transparent)]

@@ -26,6 +26,7 @@ pub struct Equilibrium {
 
 /// Why a branch of equilibria cannot be followed.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum FollowError {
     /// The stable branch ends in a fold: the object would jump.
     #[error(

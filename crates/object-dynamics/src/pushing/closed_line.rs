@@ -24,6 +24,7 @@ struct Edge {
 
 /// Corners that close no line.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ClosedLineError {
     /// Fewer than three.
     #[error("an outline needs at least three corners; there are {found}")]

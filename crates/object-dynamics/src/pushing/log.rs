@@ -67,6 +67,7 @@ pub struct PushLog {
 
 /// Pushes that are no log.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PushLogError {
     /// There is none.
     #[error("there is no push; give the log at least one")]

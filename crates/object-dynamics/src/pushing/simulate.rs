@@ -67,6 +67,7 @@ pub struct PushStep {
 
 /// Values that make no scene.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PushSceneError {
     /// One that must be positive and finite is not.
     #[error("{what} is {value}; it must be finite and above zero")]

@@ -3,6 +3,7 @@ use thiserror::Error;
 
 /// Why readings are no track.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum TrackError {
     /// Two readings for three, say.
     #[error("{times} times for {values} values")]

@@ -19,6 +19,7 @@ pub struct ThreePalmScene<S> {
 
 /// Why a scene cannot be used.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SceneError {
     /// The body is not smooth and convex.
     #[error("body: {0}")]

@@ -68,6 +68,7 @@ pub struct Simulation {
 
 /// Why a simulation cannot start or go on.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// A number that must be positive is not, or there would be too many samples.
     #[error("{what} is {value}; it must be positive and finite, and samples at most {MOST_SAMPLES}")]

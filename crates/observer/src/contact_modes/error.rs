@@ -6,6 +6,7 @@ use thiserror::Error;
 /// Why contact modes cannot be told. Contacts and samples are counted from zero. A sample that is refused leaves everything as
 /// it was before.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactModesError {
     /// There is no contact.
     #[error("there is no contact; state the friction of at least one")]

@@ -7,6 +7,7 @@ use thiserror::Error;
 
 /// Why there is no estimate.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactEstimateError {
     /// Nothing was touched.
     #[error("no palm was touched at any sample: there is nothing to estimate from")]

@@ -13,6 +13,7 @@ const OBSERVED_SHARE: f64 = 0.3;
 
 /// How an estimate stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Status {
     /// The last step was small against the standard deviations (or against rounding, without noise).
     Converged,
@@ -28,6 +29,7 @@ pub enum Status {
 
 /// Why an observer cannot start.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ObserverError {
     /// Too few samples.
     #[error("{found} sample(s) given, at least {needed} are needed")]

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 /// Why a planar estimate cannot be made.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PlanarEstimateError {
     /// A palm has no contact: the object left it, and what two contacts tell ends there.
     #[error("palm {palm} has no contact at t = {t} s; estimate from the samples before it")]

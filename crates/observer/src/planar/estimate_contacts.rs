@@ -30,6 +30,7 @@ pub struct PlaneOptions {
 
 /// Why there is no estimate.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PlaneEstimateError {
     /// The log.
     #[error(transparent)]

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// Why pushes tell no outline.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PushesError {
     /// A radius that no finger has, or none for this object.
     #[error(

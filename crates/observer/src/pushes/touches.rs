@@ -23,6 +23,7 @@ const AVERAGE: f64 = 0.15;
 
 /// Why a push touches nothing.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[non_exhaustive]
 pub enum NoTouch {
     /// The force stays at its noise.
     NoForce,

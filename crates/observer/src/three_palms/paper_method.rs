@@ -49,6 +49,7 @@ pub struct PaperStart {
 
 /// Why the paper's system cannot be integrated.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PaperError {
     /// The palms do not determine the centre of mass.
     #[error("at t = {t} s: {source}")]

@@ -15,6 +15,7 @@ const STILL: f64 = 1e-3;
 
 /// Why a log cannot be turned into a track.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum TrackError {
     /// Too few samples before contact is lost.
     #[error(

@@ -25,6 +25,7 @@ impl BagErrorKind {
 /// What is wrong with a bag, or with what a mapping says of it. Places are bytes from the start of the file; times are stamps,
 /// seconds since the first of the bag where it says `t`.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum BagErrorKind {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]
@@ -322,6 +323,7 @@ pub enum BagErrorKind {
 
 /// Why the messages of a topic are not read.
 #[derive(Clone, Debug, Error, Eq, PartialEq)]
+#[non_exhaustive]
 pub enum Unread {
     /// Its schema is of no kind that is read.
     #[error("messages of `{schema}` are not read; read are {}", known())]

@@ -3,6 +3,7 @@ use thiserror::Error;
 
 /// What does not hold in a folder of results.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum Fault {
     /// A file is not there.
     #[error("{file} is missing")]
@@ -160,6 +161,7 @@ pub enum Fault {
 
 /// Why a folder of results has no certificate.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum CheckError {
     /// It is not one.
     #[error("{} holds no manifest.json of recon, by which its results could be known", path.display())]

@@ -3,6 +3,7 @@ use thiserror::Error;
 
 /// Why an object cannot be exported.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ExportError {
     /// A name that does not do for files and elements.
     #[error("`{name}` cannot name a model; use letters, digits, `_` and `-`")]

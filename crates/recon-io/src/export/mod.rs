@@ -70,6 +70,7 @@ pub enum ExportShape {
 
 /// Formats of an exported object.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[non_exhaustive]
 pub enum ExportFormat {
     /// MuJoCo's: `NAME.xml`. Holds ellipsoids as such.
     Mjcf,

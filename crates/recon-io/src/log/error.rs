@@ -19,6 +19,7 @@ pub struct LogFileError {
 
 /// What is wrong with a sensor log. Lines count from 1, the header being line 1.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum LogFileErrorKind {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]

@@ -117,6 +117,7 @@ fn sample_of(error: &PlanarLogError) -> Option<usize> {
         | PlanarLogError::NegativeForce { sample, .. }
         | PlanarLogError::Palms { sample, .. } => Some(sample),
         PlanarLogError::Series(series) => series.sample(),
+        _ => None,
     }
 }
 

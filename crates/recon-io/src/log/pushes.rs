@@ -142,7 +142,7 @@ fn joined(samples: Samples, poses: &Poses) -> Result<BTreeMap<u32, PushLog>, Kin
                     at(push, sample)
                 }
                 PushLogError::Short { push, .. } | PushLogError::Twice { push } => at(push, 0),
-                PushLogError::Empty => None,
+                _ => None,
             };
             Kind::Pushes { log, line, source }
         })?;

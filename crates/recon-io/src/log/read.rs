@@ -239,6 +239,7 @@ fn sample_of(error: &LogError) -> Option<usize> {
         | LogError::NegativeForce { sample, .. }
         | LogError::Normal { sample, .. } => Some(sample),
         LogError::Series(series) => series.sample(),
+        _ => None,
     }
 }
 

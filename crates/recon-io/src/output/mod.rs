@@ -20,6 +20,7 @@ use thiserror::Error;
 
 /// Why a result cannot be written. Whatever stood at the target before stands there still.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum OutputError {
     /// Something could not be created, written or put in place.
     #[error("cannot {action} {}: {source}", path.display())]

@@ -17,6 +17,7 @@ pub struct SceneError {
 
 /// What is wrong with a scene. Keys are named by their full path, such as `object.mass`.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum SceneErrorKind {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]

@@ -17,6 +17,7 @@ pub struct TouchesError {
 
 /// What is wrong with contacts or poses. Lines count from 1, the header being line 1.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum TouchesErrorKind {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]

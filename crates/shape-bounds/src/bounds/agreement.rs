@@ -1,8 +1,9 @@
 //! Whether contacts are those of one convex body: no contact point lies beyond another's tangent plane.
 
 use super::{BoundsError, ShapeBounds};
-use crate::hull::{Farthest, Hull};
-use crate::sample::{ContactSample, HalfSpace, NORMAL_TOLERANCE};
+use crate::sample::{ContactSample, NORMAL_TOLERANCE};
+use exact_hull::HalfSpace;
+use exact_hull::{Farthest, Hull};
 use glam::DVec3;
 
 /// By how much a contact may lie beyond the plane of another, relative to the extent of the contacts: what coordinates and

@@ -1,9 +1,9 @@
 //! Where the bounds are apart: distances from the corners of the upper bound to the lower one.
 
 use crate::distance::{distance_to_triangle, farthest_of, nearest};
-use crate::halfspaces::Polyhedron;
-use crate::hull::{Hull, SupportWalk};
 use contact_kinematics::Direction;
+use exact_hull::Polyhedron;
+use exact_hull::{Hull, SupportWalk};
 use glam::DVec3;
 
 /// Where, and how far, the bounds are apart.

@@ -1,7 +1,6 @@
-use super::cavity::Tetrahedron;
-use super::delaunay::tetrahedra;
 use super::error::AlphaError;
-use crate::mesh::TriangleMesh;
+use exact_hull::TriangleMesh;
+use exact_hull::delaunay::{Tetrahedron, tetrahedra};
 use glam::DVec3;
 
 /// The alpha shapes of a set of points: unions of those Delaunay tetrahedra whose circumscribed sphere has at most a given
@@ -22,7 +21,7 @@ impl AlphaShape {
     /// The tetrahedra of `points`, for all radii at once.
     ///
     /// # Errors
-    /// [`AlphaError::Flat`] for points that span no volume, and the errors of [`crate::Hull::of`].
+    /// [`AlphaError::Points`] for points that have no Delaunay tetrahedra.
     pub fn of(points: &[DVec3]) -> Result<Self, AlphaError> {
         let tetrahedra = tetrahedra(points)?;
         // In units of the size, products of extreme coordinates stay in range.

@@ -1,6 +1,6 @@
 //! The zero surface of a function as triangles: marching tetrahedra.
 
-use crate::mesh::TriangleMesh;
+use exact_hull::TriangleMesh;
 use glam::DVec3;
 use std::collections::HashMap;
 

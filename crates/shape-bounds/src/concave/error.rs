@@ -1,18 +1,13 @@
-use crate::hull::PointsError;
+use exact_hull::delaunay::DelaunayError;
 use thiserror::Error;
 
 /// Why points have no alpha shape.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum AlphaError {
-    /// The points have no hull either.
+    /// The points have no Delaunay tetrahedra.
     #[error(transparent)]
-    Points(#[from] PointsError),
-    /// The points span no volume.
-    #[error("the points span {dimension} dimensions; tetrahedra need 3")]
-    Flat {
-        /// Dimension of the hull of the points.
-        dimension: usize,
-    },
+    Points(#[from] DelaunayError),
     /// A radius that is none.
     #[error("alpha is {0} m; it must be above zero")]
     Alpha(f64),
@@ -20,6 +15,7 @@ pub enum AlphaError {
 
 /// Why contacts have no smooth surface through them.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// Too few or too many contacts.
     #[error(

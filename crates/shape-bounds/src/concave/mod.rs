@@ -5,9 +5,7 @@
 //! surface through points and normals ([`HermiteSurface`]).
 
 mod alpha;
-mod cavity;
 mod contour;
-mod delaunay;
 mod error;
 mod surface;
 #[cfg(test)]

@@ -1,7 +1,7 @@
 use super::contour::zero_surface;
 use super::error::SurfaceError;
-use crate::mesh::TriangleMesh;
 use crate::sample::ContactSample;
+use exact_hull::TriangleMesh;
 use glam::{DMat3, DVec3};
 use nalgebra::{DMatrix, DVector};
 

@@ -1,57 +1,14 @@
-//! Concave bodies: exact Delaunay tetrahedra, volumes that converge, bounds of the hull, order of the interpolant.
+//! Concave bodies: volumes that converge, bounds of the hull, order of the interpolant.
 
-use super::cavity::Tetrahedron;
-use super::delaunay::tetrahedra;
 use super::*;
 use crate::bounds::ShapeBounds;
 use crate::generators::{AXES, InputKind, Source, ellipsoid_contacts};
-use crate::hull::{Hull, PointsError};
-use crate::predicates::above;
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;
+use exact_hull::PointsError;
+use exact_hull::delaunay::DelaunayError;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
-
-fn assert_delaunay(points: &[DVec3], all: &[Tetrahedron]) {
-    for (t, own) in all.iter().enumerate() {
-        for k in 0..4 {
-            let other = &all[own.neighbours[k] as usize];
-            assert!(other.neighbours.contains(&(t as u32)));
-        }
-        if own.is_outside() {
-            assert!(points.iter().all(|p| own.beyond(points, 3, *p) >= 0.0));
-            continue;
-        }
-        let [a, b, c, d] = own.corners.map(|i| points[i as usize]);
-        assert!(above(a, b, c, d) > 0.0);
-        assert!(points.iter().all(|p| !own.sphere_holds(points, *p)));
-    }
-}
-
-#[test]
-fn spheres_of_delaunay_tetrahedra_are_empty_on_every_kind_of_input() {
-    for kind in InputKind::ALL {
-        for seed in 0..crate::few_or_all(1, 3) {
-            let points = kind.points(70, seed);
-            match tetrahedra(&points) {
-                Ok(all) => {
-                    assert_delaunay(&points, &all);
-                    let hull = Hull::of(&points).unwrap();
-                    let shape = AlphaShape::of(&points).unwrap();
-                    let volume = shape.volume(f64::INFINITY).unwrap();
-                    let expected = hull.solid().unwrap().volume();
-                    let size = points.iter().map(|p| p.distance(points[0])).fold(0.0, f64::max);
-                    assert!((volume - expected).abs() < 1e-12 * size.powi(3), "{kind:?} {volume} {expected}");
-                }
-                Err(AlphaError::Flat { dimension }) => {
-                    assert_eq!(Hull::of(&points).unwrap().dimension(), dimension);
-                    assert!(dimension < 3, "{kind:?}");
-                }
-                Err(error) => panic!("{kind:?}: {error}"),
-            }
-        }
-    }
-}
 
 /// Contacts on a torus about z: radius of the circle `large`, of the tube `small`.
 fn torus(count: usize, large: f64, small: f64, s: &mut Source) -> Vec<ContactSample> {
@@ -168,8 +125,11 @@ fn the_surface_interpolates_and_converges() {
 fn bad_input_is_named() {
     let point = |i: usize| DVec3::new(i as f64, (i * i) as f64, 0.5);
     let flat: Vec<DVec3> = (0..8).map(point).collect();
-    assert!(matches!(AlphaShape::of(&flat), Err(AlphaError::Flat { dimension: 2 })));
-    assert!(matches!(AlphaShape::of(&[]), Err(AlphaError::Points(PointsError::Empty))));
+    assert!(matches!(AlphaShape::of(&flat), Err(AlphaError::Points(DelaunayError::Flat { dimension: 2 }))));
+    assert!(matches!(
+        AlphaShape::of(&[]),
+        Err(AlphaError::Points(DelaunayError::Points(PointsError::Empty)))
+    ));
     let shape = AlphaShape::of(&InputKind::Sphere.points(20, 1)).unwrap();
     for alpha in [0.0, -1.0, f64::NAN] {
         assert!(matches!(shape.volume(alpha), Err(AlphaError::Alpha(_))));

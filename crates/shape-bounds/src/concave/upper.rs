@@ -1,6 +1,7 @@
 use crate::bounds::{BoundsError, ShapeBounds, beyond};
-use crate::hull::Hull;
-use crate::sample::{ContactSample, HalfSpace};
+use crate::sample::ContactSample;
+use exact_hull::HalfSpace;
+use exact_hull::Hull;
 use glam::DVec3;
 
 /// By how much a contact may lie outside of another's plane and still count as inside, relative to the size: rounding.

@@ -7,8 +7,8 @@ use super::support::BallWalk;
 use super::surface::{Corner, Shape};
 use crate::bounds::ShapeBounds;
 use crate::faceted::{FacetError, faceted_by_support};
-use crate::integrals::Compensated;
 use contact_kinematics::Direction;
+use exact_hull::arithmetic::Compensated;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 

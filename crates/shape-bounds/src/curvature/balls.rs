@@ -10,10 +10,10 @@ use super::surface::{Shape, Surface};
 use super::{ROUNDING, VolumeRange, check_contacts};
 use crate::bounds::ShapeBounds;
 use crate::faceted::{FacetError, faceted_by_support};
-use crate::hull::insertion_order;
-use crate::integrals::Compensated;
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;
+use exact_hull::arithmetic::Compensated;
+use exact_hull::insertion_order;
 use glam::DVec3;
 use std::f64::consts::PI;
 

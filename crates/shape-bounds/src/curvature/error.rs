@@ -1,8 +1,9 @@
-use crate::hull::PointsError;
+use exact_hull::PointsError;
 use thiserror::Error;
 
 /// Why contacts and limits on the radii of curvature give no bounds.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum CurvatureError {
     /// Limits that no body has.
     #[error(

@@ -31,10 +31,11 @@ pub use rounded::RoundedHull;
 pub use sharp::{RoundedIntersection, SharpBounds};
 pub use steiner::ConvexMeasures;
 
-use crate::halfspaces::Intersection;
-use crate::hull::PointsError;
-use crate::sample::{ContactSample, HalfSpace};
+use crate::sample::ContactSample;
 use contact_kinematics::{CurvatureRadii, Direction};
+use exact_hull::HalfSpace;
+use exact_hull::Intersection;
+use exact_hull::PointsError;
 use glam::DVec3;
 
 /// By how much contacts may contradict the limits before it is an error, relative to their size: rounding.

@@ -4,10 +4,9 @@ use super::steiner::ConvexMeasures;
 use crate::bounds::ShapeBounds;
 use crate::distance::{farthest_of, nearest};
 use crate::faceted::{FacetError, faceted_by_support};
-use crate::hull::{Hull, PointsError, SolidHull, SupportWalk};
-use crate::integrals::Compensated;
-use crate::twofold::cross_of_differences;
 use contact_kinematics::Direction;
+use exact_hull::arithmetic::{Compensated, cross_of_differences};
+use exact_hull::{Hull, PointsError, SolidHull, SupportWalk};
 use glam::DVec3;
 use std::f64::consts::PI;
 

@@ -1,7 +1,7 @@
 use super::*;
 use crate::bounds::ShapeBounds;
 use crate::generators::{AXES, Source, curve_contacts, ellipsoid_contacts, ellipsoid_support};
-use crate::hull::HullCertificate;
+use exact_hull::HullCertificate;
 use std::f64::consts::PI;
 
 /// Radii of curvature of the test ellipsoid: from c^2 / a to a^2 / c.
@@ -199,7 +199,7 @@ fn polytopes_enclose_every_curved_bound() {
             low < volume && volume < high && high - low < 0.06 * volume,
             "{which}: {low} {volume} {high}"
         );
-        assert!(HullCertificate::of(&inner, &inner.vertices).holds());
+        assert!(HullCertificate::of(&inner, &inner.vertices).unwrap().holds());
         let hold = |p: DVec3| match which {
             0 => tight.lower().contains(p),
             1 => tight.upper().contains(p),

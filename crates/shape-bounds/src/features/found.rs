@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 
 /// What a body is like where it was touched.
 #[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
+#[non_exhaustive]
 pub enum FeatureKind {
     /// Radii of curvature between nothing and no end.
     Smooth,

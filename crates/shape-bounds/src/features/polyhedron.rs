@@ -1,11 +1,11 @@
 //! The polyhedron, where corners, edges and faces are all there is.
 
 use super::found::{FeatureKind, Features};
-use crate::halfspaces::Intersection;
-use crate::hull::Hull;
-use crate::mesh::TriangleMesh;
 use crate::noise::quantile::length3;
-use crate::sample::HalfSpace;
+use exact_hull::HalfSpace;
+use exact_hull::Hull;
+use exact_hull::Intersection;
+use exact_hull::TriangleMesh;
 use glam::DVec3;
 
 /// Odds at which a corner that all its faces meet in is taken for another.

@@ -15,6 +15,7 @@ const JUDGED: usize = 2000;
 
 /// By what contacts refute a shape.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum Refutation {
     /// Residuals are larger than the stated noise.
     #[error(

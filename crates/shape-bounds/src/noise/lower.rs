@@ -4,8 +4,8 @@ use super::pose::bound;
 use super::quantile;
 use super::windows::Window;
 use crate::erosion::eroded_hull;
-use crate::hull::Hull;
 use contact_kinematics::Direction;
+use exact_hull::Hull;
 use glam::{DMat3, DVec3};
 
 /// Corners of convex regions that lie in the body if no point is off by more than its margin, which fails with

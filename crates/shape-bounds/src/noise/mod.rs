@@ -29,9 +29,9 @@ pub(crate) use traced::FEWEST;
 
 use crate::bounds::{BoundsError, Gap, ShapeBounds};
 use crate::features::FeatureOptions;
-use crate::halfspaces::{Intersection, Polyhedron};
-use crate::hull::Hull;
 use chosen::ChosenWindows;
+use exact_hull::Hull;
+use exact_hull::{Intersection, Polyhedron};
 use lower::{certain_points, nearly_exact, points_of_corners};
 use upper::certain_half_spaces;
 use windows::{LONGEST, windows};

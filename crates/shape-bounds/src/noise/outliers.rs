@@ -4,7 +4,7 @@ use super::model::{NoiseError, NoisyContact};
 use super::quantile;
 use super::roughness::standing_out;
 use super::traced::Traced;
-use crate::hull::{Farthest, Hull};
+use exact_hull::{Farthest, Hull};
 
 /// Contacts against which the suspects are tried to tell which of a contradictory pair is wrong.
 const WITNESSES: usize = 1000;

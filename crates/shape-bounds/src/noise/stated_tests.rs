@@ -3,8 +3,8 @@
 use super::*;
 use crate::ContactSample;
 use crate::generators::{AXES, Source, ellipsoid_support, noisy_curves};
-use crate::halfspaces::Intersection;
 use contact_kinematics::Direction;
+use exact_hull::Intersection;
 
 const LEVEL: f64 = 1e-3;
 

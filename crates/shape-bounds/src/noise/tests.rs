@@ -2,8 +2,8 @@ use super::*;
 use crate::ContactSample;
 use crate::curvature::{CurvatureError, SharpBounds};
 use crate::generators::{AXES, Source, ellipsoid_support, noisy_curves};
-use crate::halfspaces::Intersection;
 use contact_kinematics::CurvatureRadii;
+use exact_hull::Intersection;
 use glam::DVec3;
 
 /// Bounds of one simulated noisy run, at noise relative to the ellipsoid's largest semi-axis.

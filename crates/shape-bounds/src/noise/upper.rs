@@ -3,8 +3,8 @@
 use super::model::NoiseError;
 use super::quantile;
 use super::windows::Window;
-use crate::halfspaces::{Intersection, Polyhedron};
-use crate::sample::HalfSpace;
+use exact_hull::HalfSpace;
+use exact_hull::{Intersection, Polyhedron};
 use glam::DVec3;
 
 /// Regions that are assumed to hold the body, each so many times as large as the one before, until one proves itself.

@@ -1,22 +1,21 @@
 //! Both bounds of a convex outline from its contacts, and the gap between them.
 
 use super::distance::nearest_around;
-use super::halfplanes::{OUTWARD_ULPS, interior_point};
-use super::ring::Ring;
 use super::{
-    ContactSample, Direction, HalfPlane, Hull, IncrementalHull, Intersection, IntersectionError, PointsError,
+    ContactSample, Direction, HalfPlane, Hull, IncrementalHull, IncrementalIntersection, Intersection,
+    IntersectionError, PointsError,
 };
 use crate::bounds::{Contradiction, PRINTED, ROUNDING_ULPS};
+use exact_hull::planar::Ring;
 use glam::DVec2;
 use thiserror::Error;
 
 /// Contacts that a body in the plane needs at least for bounds with an area.
 const FEWEST: usize = 3;
-/// A dual is kept while its centre is at least this deep inside of every half-plane, relative to the size of the data.
-const DEEP: f64 = 1e-3;
 
 /// Why contacts give no bounds.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum BoundsError {
     /// Too few contacts.
     #[error("{found} contacts: bounds in the plane need at least {needed}")]
@@ -180,16 +179,7 @@ fn farthest_along_normals(hull: &Hull, contacts: &[ContactSample]) -> Vec<usize>
 #[derive(Default)]
 pub struct IncrementalBounds {
     lower: IncrementalHull,
-    half_planes: Vec<HalfPlane>,
-    dual: Option<Dual>,
-}
-
-struct Dual {
-    centre: DVec2,
-    /// Largest coordinate that the outward rounding was made for.
-    largest: f64,
-    outer: Vec<HalfPlane>,
-    hull: IncrementalHull,
+    upper: IncrementalIntersection,
 }
 
 impl IncrementalBounds {
@@ -205,39 +195,22 @@ impl IncrementalBounds {
     /// [`BoundsError`] for a contact that is not finite or contradicts those before (a smallest contradictory set is
     /// named); it is then not taken.
     pub fn insert(&mut self, contact: &ContactSample) -> Result<(), BoundsError> {
-        if !contact.point.is_finite() {
-            let index = self.half_planes.len();
-            return Err(PointsError::NotFinite { index, point: contact.point }.into());
-        }
-        self.half_planes.push(contact.half_plane());
-        if let Err(error) = self.update_dual() {
-            self.half_planes.pop();
-            return Err(error);
-        }
+        self.lower.check(contact.point)?;
+        self.upper.insert(contact.half_plane())?;
         self.lower.insert(contact.point)?;
-        Ok(())
-    }
-
-    fn update_dual(&mut self) -> Result<(), BoundsError> {
-        if let (Some(dual), Some(last)) = (&mut self.dual, self.half_planes.last())
-            && dual.has_room_for(last)
-        {
-            return dual.take(last);
-        }
-        self.dual = Some(Dual::start(&self.half_planes)?);
         Ok(())
     }
 
     /// Contacts so far.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.half_planes.len()
+        self.upper.half_planes().len()
     }
 
     /// Whether there are no contacts yet.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.half_planes.is_empty()
+        self.upper.half_planes().is_empty()
     }
 
     /// The bounds as they are now, in time O(n).
@@ -245,40 +218,12 @@ impl IncrementalBounds {
     /// # Errors
     /// [`BoundsError::TooFew`] before the third contact.
     pub fn bounds(&self) -> Result<ShapeBounds, BoundsError> {
-        let found = self.half_planes.len();
-        let Some(dual) = self.dual.as_ref().filter(|_| found >= FEWEST) else {
+        let found = self.upper.half_planes().len();
+        if found < FEWEST {
             return Err(BoundsError::TooFew { found, needed: FEWEST });
-        };
+        }
         let lower = self.lower.hull()?;
         let corners = lower.corner_points(self.lower.points());
-        let Dual { centre, outer, hull, .. } = dual;
-        let upper = Intersection::from_dual(hull.hull()?, &self.half_planes, outer, hull.points(), *centre)?;
-        Ok(ShapeBounds { lower, corners, upper })
-    }
-}
-
-impl Dual {
-    fn start(half_planes: &[HalfPlane]) -> Result<Self, BoundsError> {
-        let centre = interior_point(half_planes)?;
-        // Room to grow: rounding is provided for coordinates of twice the size.
-        let largest = 2.0 * half_planes.iter().map(|h| h.point.abs().max_element()).fold(0.0, f64::max);
-        let mut dual = Self { centre, largest, outer: Vec::new(), hull: IncrementalHull::new() };
-        for h in half_planes {
-            dual.take(h)?;
-        }
-        Ok(dual)
-    }
-
-    fn has_room_for(&self, half_plane: &HalfPlane) -> bool {
-        let size = half_plane.point.abs().max_element();
-        size <= self.largest && -half_plane.excess(self.centre) >= DEEP * self.largest
-    }
-
-    fn take(&mut self, half_plane: &HalfPlane) -> Result<(), BoundsError> {
-        let margin = half_plane.margin + OUTWARD_ULPS * f64::EPSILON * self.largest;
-        let outer = HalfPlane { margin, ..*half_plane };
-        self.hull.insert(outer.normal.get() / -outer.excess(self.centre))?;
-        self.outer.push(outer);
-        Ok(())
+        Ok(ShapeBounds { lower, corners, upper: self.upper.intersection()? })
     }
 }

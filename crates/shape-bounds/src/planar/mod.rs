@@ -18,30 +18,23 @@
 //! ```
 
 mod bounds;
-mod chain;
 mod curvature;
-mod direction;
 mod distance;
 mod fit;
-mod halfplanes;
-mod hull;
 mod noise;
-mod polygon;
-mod ring;
 mod sample;
 #[cfg(test)]
 mod tests;
 
 pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
-pub(crate) use chain::convex_corners;
 pub use curvature::{CurvatureBounds, CurvatureError, Disc, DiscIntersection, RoundedHull, Side};
-pub use direction::{Direction, DirectionError};
+pub use exact_hull::planar::{
+    ConvexPolygon, Direction, DirectionError, HalfPlane, Hull, HullPolygon, IncrementalHull,
+    IncrementalIntersection, Intersection, IntersectionError, PointsError, Region, Unbounded,
+};
 pub use fit::{FitError, FittedOutline, OutlineChoice, OutlineFamily, OutlineFit, TurnedEllipse};
-pub use halfplanes::{Intersection, IntersectionError, Region, Unbounded};
-pub use hull::{Hull, HullPolygon, IncrementalHull, PointsError};
 pub use noise::{
     ContactNoise, NoiseError, NoisyContact, correlated_noise, estimate_noise, independence_is_tested,
     with_noise_as_found, without_outliers,
 };
-pub use polygon::ConvexPolygon;
-pub use sample::{ContactError, ContactSample, HalfPlane};
+pub use sample::{ContactError, ContactSample};

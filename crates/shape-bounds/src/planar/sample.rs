@@ -1,10 +1,11 @@
-use super::{Direction, DirectionError};
+use super::{Direction, DirectionError, HalfPlane};
 use crate::sample::NORMAL_TOLERANCE;
 use glam::DVec2;
 use thiserror::Error;
 
 /// Why a point and a normal are not a contact.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactError {
     /// A coordinate of the point is NaN or infinite.
     #[error("contact {index}: point ({}, {}) has a coordinate that is not finite", point.x, point.y)]
@@ -57,24 +58,5 @@ impl ContactSample {
     #[must_use]
     pub fn half_plane(&self) -> HalfPlane {
         HalfPlane { point: self.point, normal: self.normal, margin: 0.0 }
-    }
-}
-
-/// The half-plane `{ y : normal . (y - point) <= margin }`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HalfPlane {
-    /// A point of the line when the margin is zero, in m.
-    pub point: DVec2,
-    /// Outward unit normal.
-    pub normal: Direction,
-    /// How far the line is moved outwards, in m.
-    pub margin: f64,
-}
-
-impl HalfPlane {
-    /// Signed distance of `y` beyond the line, in m; at most zero inside.
-    #[must_use]
-    pub fn excess(&self, y: DVec2) -> f64 {
-        self.normal.get().dot(y - self.point) - self.margin
     }
 }

@@ -1,10 +1,11 @@
 use super::BodyPose;
-use crate::halfspaces::IntersectionError;
 use contact_kinematics::Direction;
+use exact_hull::IntersectionError;
 use thiserror::Error;
 
 /// Why poses above a plane give no bound.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PoseError {
     /// A pose that is not finite, or whose quaternion is not of unit length.
     #[error("run {run}, frame {frame}: pose {pose:?} above the plane at {plane_z} m is not finite and unit")]

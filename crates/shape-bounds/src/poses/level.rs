@@ -1,8 +1,8 @@
 //! The noise level of poses above a plane, from their own consistency.
 
 use super::{BodyPose, Observation, PoseError, PoseRule, intersect};
-use crate::halfspaces::Polyhedron;
 use crate::median::{OF_NORMAL, median};
+use exact_hull::Polyhedron;
 
 /// Touching poses needed for a share of them to be a quantile, up to 98 %.
 pub(super) const FEWEST: usize = 50;

@@ -2,8 +2,8 @@
 
 use super::Observation;
 use crate::erosion::eroded_hull;
-use crate::halfspaces::Polyhedron;
-use crate::sample::HalfSpace;
+use exact_hull::HalfSpace;
+use exact_hull::Polyhedron;
 use glam::DVec3;
 
 /// Shares of the touching poses, best first, of which each makes a region; a few well-known points can prove more than

@@ -21,10 +21,10 @@ pub use rule::{CALIBRATED_RUNS, CONFIDENCES, PoseRule};
 pub use runs::ContradictingRun;
 
 use crate::bounds::{Gap, ShapeBounds};
-use crate::halfspaces::{Intersection, Polyhedron};
-use crate::hull::Hull;
-use crate::sample::HalfSpace;
 use contact_kinematics::Direction;
+use exact_hull::HalfSpace;
+use exact_hull::Hull;
+use exact_hull::{Intersection, Polyhedron};
 use glam::{DQuat, DVec3};
 use runs::Agreed;
 

@@ -7,8 +7,8 @@
 
 use super::level::RESTING;
 use super::{Observation, intersect};
-use crate::halfspaces::Polyhedron;
-use crate::sample::HalfSpace;
+use exact_hull::HalfSpace;
+use exact_hull::Polyhedron;
 
 /// Gaps that close by less than this share of the height say nothing: the half-spaces of a square prism close by 0.41 on its edges
 /// and 0.73 on its corners, touches on the sides not at all.

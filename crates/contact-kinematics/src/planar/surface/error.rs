@@ -2,6 +2,7 @@ use thiserror::Error;
 
 /// Why the surface of a palm or its motion cannot be used as given.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// The radius is not a positive number.
     #[error("radius of the palm is {radius} m; it must be positive and finite")]
@@ -32,6 +33,7 @@ pub enum SurfaceError {
 
 /// Why a contact could not be found, or its rates not be told.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactError {
     /// Newton's iteration did not settle.
     #[error(

@@ -81,6 +81,7 @@ pub struct SensedOutcome {
 
 /// Why it cannot be made.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SensedError {
     /// Goal, limits or settings that are none; a planner that cannot plan.
     #[error(transparent)]

@@ -7,6 +7,7 @@ use thiserror::Error;
 
 /// Why palms cannot go on.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum HandsError {
     /// The body left the palms.
     #[error("a contact on palm {palm} is {s:.4} m from the hinge; the palm is {length} m long")]

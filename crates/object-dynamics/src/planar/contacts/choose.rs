@@ -25,6 +25,7 @@ pub(in crate::planar) struct Choice {
 /// Why no modes can be taken. A set is told by the letters of its touching contacts, in the order of the palms: `O`
 /// off, `S` sliding (with the sign of its slip along the palm's tangent), `R` sticking.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ModeError {
     /// Painleve's paradox or a jam: rigid bodies with this friction have no motion here.
     #[error(

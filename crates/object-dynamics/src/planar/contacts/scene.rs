@@ -24,6 +24,7 @@ pub struct ContactScene<S> {
 
 /// Why a scene cannot be used as given.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactSceneError {
     /// No palm, or more than can be treated.
     #[error("scene has {found} palms; 1 to {MOST_PALMS} are possible")]

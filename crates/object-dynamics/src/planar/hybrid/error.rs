@@ -6,6 +6,7 @@ use thiserror::Error;
 
 /// Why a simulation with contacts cannot start or go on. Palms are numbered from 1.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactSimulationError {
     /// Sample times are missing, do not increase, or one is not a number.
     #[error(
@@ -102,6 +103,7 @@ pub struct PalmContactError {
 
 /// Why accelerations cannot be told.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum FieldError {
     /// A contact.
     #[error(transparent)]
@@ -113,6 +115,7 @@ pub enum FieldError {
 
 /// Why a state is no start. Palms are numbered from 1.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum StartError {
     /// A number is not finite.
     #[error("the object's position, orientation or velocity is not finite")]

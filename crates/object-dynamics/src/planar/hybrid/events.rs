@@ -20,6 +20,7 @@ const HALVINGS: u32 = 30;
 
 /// What has changed at a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ContactEventKind {
     /// The body has come to touch the palm: a blow.
     Touches,

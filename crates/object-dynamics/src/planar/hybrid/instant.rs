@@ -13,6 +13,7 @@ use thiserror::Error;
 
 /// Why an instant has no forces.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactInstantError {
     /// As many modes as palms are needed.
     #[error("{found} modes for {expected} palms")]

@@ -84,6 +84,7 @@ pub enum StreamStage {
 
 /// Why a stream cannot start, or cannot use a sample.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum StreamError {
     /// An option is not a usable number.
     #[error("{what} is {value}; it must be {needed}")]

@@ -5,6 +5,7 @@ use thiserror::Error;
 /// Why a bank of modes cannot be set up, or cannot take a sample. Modes and samples are counted from zero. A bank that
 /// refuses a sample stays as it was before.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum BankError {
     /// There is no mode.
     #[error("the bank has no member; give at least one mode")]

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// Why a quasistatic reconstruction cannot be made.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum QuasistaticError {
     /// Fewer than four samples.
     #[error("{found} sample(s) given, at least 4 are needed")]

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// Why a log without forces gives no estimate.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum NoForceError {
     /// The log cannot be used.
     #[error("{0}")]

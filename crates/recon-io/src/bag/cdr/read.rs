@@ -6,6 +6,7 @@ const PADDING: usize = 3;
 
 /// Why bytes are no message of the kind that their schema names. Places are bytes from the start of the message.
 #[derive(Clone, Debug, Error, Eq, PartialEq)]
+#[non_exhaustive]
 pub enum CdrError {
     /// The header is missing, or names another representation.
     #[error(

@@ -13,6 +13,7 @@ pub struct MappingError {
 
 /// What is wrong with a mapping.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum MappingErrorKind {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]

@@ -4,7 +4,7 @@ use glam::DMat3;
 use recon::contact_kinematics::{PalmSurface, PoseTable, SurfaceMotion, SurfacePose};
 use recon::object_dynamics::{PalmDrive, PalmSpring};
 
-const PICK_UP: &str = include_str!("../../../../recon-cli/scenes/pick-up.toml");
+const PICK_UP: &str = include_str!("../../../scenes/pick-up.toml");
 
 fn model() -> SceneModel {
     SceneModel::new("pick_up", &Scene::parse(PICK_UP).unwrap()).unwrap()

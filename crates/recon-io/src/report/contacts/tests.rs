@@ -11,7 +11,7 @@ use recon::observer::{
     ContactEstimate, ContactEvidence, ContactOdds, EstimatedModes, LearnedFriction, Reliability,
 };
 
-const PICK_UP: &str = include_str!("../../../../recon-cli/scenes/pick-up.toml");
+const PICK_UP: &str = include_str!("../../../scenes/pick-up.toml");
 const OTHERS: &str = r#"
 [[palm]]
 kind = "cylinder"

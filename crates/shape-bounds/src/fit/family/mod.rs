@@ -23,6 +23,7 @@ use std::fmt;
 
 /// Families of shapes, by what their parameters are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ShapeFamily {
     /// A ball: centre and radius, 4 parameters.
     Sphere,

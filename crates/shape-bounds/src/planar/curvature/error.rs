@@ -3,6 +3,7 @@ use thiserror::Error;
 
 /// Why contacts and discs give no bounds.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum CurvatureError {
     /// Limits that no body has.
     #[error(

@@ -1,8 +1,8 @@
 //! A point inside of discs and half-planes, or which few of them have nothing in common.
 
 use super::Disc;
-use crate::planar::halfplanes::interior_point;
 use crate::planar::{Direction, HalfPlane, IntersectionError};
+use exact_hull::planar::interior_point;
 use glam::DVec2;
 
 /// Cuts before the search is content with what it has; a few are enough but for lenses thinner than a millionth.

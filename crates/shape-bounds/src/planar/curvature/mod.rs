@@ -16,9 +16,9 @@ pub use rounded::RoundedHull;
 
 #[cfg(test)]
 use super::HalfPlane;
-use super::ring::Ring;
 use super::{ContactSample, Direction};
 use contact_kinematics::planar::RadiusBounds;
+use exact_hull::planar::Ring;
 use glam::DVec2;
 
 /// Smallest turning between points of an outline that is drawn, in rad.

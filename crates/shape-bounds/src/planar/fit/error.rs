@@ -7,6 +7,7 @@ use thiserror::Error;
 
 /// Why contacts give no fitted outline.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum FitError {
     /// Fewer equations than parameters.
     #[error("{family}: {found} contacts give {} equations; at least {needed} contacts are needed", 2 * found)]

@@ -59,6 +59,7 @@ pub struct NoisyContact {
 
 /// Why noisy contacts give no bounds.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum NoiseError {
     /// A confidence that is none.
     #[error("confidence {0}: it must lie between 0.5 and 1, both excluded")]

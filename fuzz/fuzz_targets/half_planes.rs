@@ -1,0 +1,6 @@
+#![no_main]
+//! libFuzzer on the target of this name.
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    recon_fuzz::target("half_planes").map(|target| (target.run)(bytes));
+});
