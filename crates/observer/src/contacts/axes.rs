@@ -39,7 +39,7 @@ const DEARER: f64 = 20.0;
 /// Squared departure of a known body from what was found without knowing it, of four degrees of freedom, beyond which it is another one:
 /// chance goes there once in a million. What it costs to explain the log by it must go there too, as where little is known of an inertia a
 /// covariance does not reach as far.
-pub(super) const CONTRADICTED: f64 = 33.4;
+const CONTRADICTED: f64 = 33.4;
 
 /// That a known body is not the one, by how much dearer the log is with it than without: as many squares of four degrees of freedom.
 pub(super) fn against_by_cost(

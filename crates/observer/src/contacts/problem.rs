@@ -488,7 +488,7 @@ impl Problem<'_> {
     }
 
     /// With what keeps the frozen combinations.
-    pub(super) fn body_information(&self) -> SMatrix<f64, CONSTANTS, CONSTANTS> {
+    fn body_information(&self) -> SMatrix<f64, CONSTANTS, CONSTANTS> {
         self.frozen.iter().fold(self.body.1, |all, g| all + g * g.transpose() * FROZEN)
     }
 

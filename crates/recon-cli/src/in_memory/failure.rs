@@ -7,7 +7,6 @@ use std::fmt;
 
 /// What kind of failure it is.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-#[non_exhaustive]
 pub enum FailureKind {
     /// A fault of recon itself.
     Fault,

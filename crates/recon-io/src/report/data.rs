@@ -54,7 +54,6 @@ pub struct Evidence {
 
 /// A number or a word.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum EvidenceValue {
     /// A measured or computed number.
     Number(f64),

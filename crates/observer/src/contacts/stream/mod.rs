@@ -8,10 +8,10 @@
 //! What the thread is given at one sample is taken at a fixed number of samples later, whenever it was done: the same samples give the
 //! same estimates on every machine. On one that is too slow for that, a push waits.
 
+mod dearer;
 mod estimate;
 mod front;
 mod planes;
-mod pull;
 mod sample;
 mod schedule;
 mod solution;

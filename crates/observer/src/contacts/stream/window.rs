@@ -1,6 +1,6 @@
 //! The motion over a window of the latest samples.
 
-use super::pull::Pull;
+use super::dearer::Dearer;
 use super::sample::{ForceReading, PalmSensed, Raw, StreamPalm};
 use super::solution::{Of, Solution};
 use crate::contacts::body::{Body, CONSTANTS};
@@ -65,12 +65,12 @@ pub(super) struct Window {
     options: ContactOptions,
     samples: VecDeque<Raw>,
     before: Option<Before>,
-    pull: Pull,
+    dearer: Dearer,
 }
 
 impl Window {
     pub(super) fn new(palms: Vec<StreamPalm>, options: ContactOptions) -> Self {
-        Self { palms, options, samples: VecDeque::new(), before: None, pull: Pull::default() }
+        Self { palms, options, samples: VecDeque::new(), before: None, dearer: Dearer::default() }
     }
 
     /// Takes later samples and does what is asked for.
@@ -184,23 +184,26 @@ impl Window {
         let averaged = record.averaged(longest);
         let thinned = thinned(&averaged, &self.options, &units);
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), &self.options, units);
-        let (problem, solved, against) = match asked {
+        let free = problem.body;
+        let (mut problem, solved, against) = match asked {
             Asked::Search => self.found(problem)?,
             Asked::Follow => {
                 let solved = self.followed(record, &mut problem)?;
                 (problem, solved, false)
             }
         };
+        let samples = problem.node_samples();
+        let number = |k: Option<&usize>| k.and_then(|k| self.samples.get(*k)).map_or(0, |raw| raw.number);
+        let over = number(samples.first())..number(samples.last());
+        // As of whole logs constants are judged by noise, and not by what steps from sample to sample miss.
+        let judged = self.options.body.is_some() && !problem.planar && !problem.exact;
+        if judged && asked == Asked::Follow && self.dearer.is_due(&over) {
+            self.dearer.count(&mut problem, &solved, free, over);
+        }
+        let against = against || self.dearer.contradicts();
         // Not those of noise drawn once more, as for whole logs: few draws a window differ from one to the next by as much as they tell, and
         // motions were lost by that three times as often, while errors over their deviations stayed what they are.
         let covariances = solved.covariances(&problem)?;
-        if self.options.body.is_some() && !problem.planar {
-            let samples = problem.node_samples();
-            let number = |k: Option<&usize>| k.and_then(|k| self.samples.get(*k)).map_or(0, |raw| raw.number);
-            let over = (number(samples.first()), number(samples.last()));
-            self.pull.add(&problem, &solved, &covariances, over);
-        }
-        let against = against || self.pull.contradicts();
         let of = Of { problem: &problem, solved: &solved, covariances: &covariances, against };
         Some(self.taken(&of, (GAP * natural, record.missed_in_world(GAP * natural))))
     }
@@ -219,9 +222,7 @@ impl Window {
             stage = stage.of_certain_axes(mass)?;
         }
         let Stage { problem, solved, against, open, .. } = stage;
-        if !self.pull.contradicts() {
-            self.pull = Pull::default();
-        }
+        self.dearer = Dearer::default();
         open.is_none().then_some((problem, solved, against.is_some()))
     }
 
