@@ -72,10 +72,8 @@ pub(super) fn turning(problem: &Problem, body: Body, w: DVec3) -> Unknowns {
     let of_contacts = start(problem, body, DQuat::IDENTITY);
     let times = &problem.record.times;
     let one = |(motion, &k): (Motion, &usize)| {
-        let contacts: Vec<_> = problem.record.contacts[k].iter().collect();
         let q = exponential(w * (times[k] - times[0]));
-        let L = body.inertia_along(DMat3::from_quat(q)) * w;
-        Motion { v: along(&contacts, motion.p, w), L, q, ..motion }
+        spinning(problem, k, &body, Motion { q, ..motion }, w)
     };
     let motions = of_contacts.motions.into_iter().zip(&problem.nodes).map(one).collect();
     Unknowns { motions, body }
@@ -86,14 +84,19 @@ pub(super) fn turning(problem: &Problem, body: Body, w: DVec3) -> Unknowns {
 pub(super) fn shifted(problem: &Problem, from: &Unknowns, body: Body, shift: DVec3) -> Unknowns {
     let times = &problem.record.times;
     let one = |(motion, &k): (&Motion, &usize)| {
-        let contacts: Vec<_> = problem.record.contacts[k].iter().collect();
         let w = from.body.spin(motion.q, motion.L) + shift;
         let q = (exponential(shift * (times[k] - times[0])) * motion.q).normalize();
-        let L = body.inertia_along(DMat3::from_quat(q)) * w;
-        Motion { v: along(&contacts, motion.p, w), L, q, ..*motion }
+        spinning(problem, k, &body, Motion { q, ..*motion }, w)
     };
     let motions = from.motions.iter().zip(&problem.nodes).map(one).collect();
     Unknowns { motions, body }
+}
+
+/// A motion at sample `k` with another angular velocity, and the velocity that contacts leave it.
+fn spinning(problem: &Problem, k: usize, body: &Body, motion: Motion, w: DVec3) -> Motion {
+    let contacts: Vec<_> = problem.record.contacts[k].iter().collect();
+    let L = body.inertia_along(DMat3::from_quat(motion.q)) * w;
+    Motion { v: along(&contacts, motion.p, w), L, ..motion }
 }
 
 /// Velocity of `centre` that fits the normal conditions of some contacts at an angular velocity, as small as it may be.

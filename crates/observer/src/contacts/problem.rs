@@ -38,6 +38,9 @@ impl Units {
     }
 }
 
+/// What is known of a body beforehand: its constants, and the information of these.
+pub(super) type Beforehand = (Body, SMatrix<f64, CONSTANTS, CONSTANTS>);
+
 /// What is to be solved: a record cut into links at `nodes`.
 #[derive(Debug)]
 pub(super) struct Problem<'a> {
@@ -57,7 +60,7 @@ pub(super) struct Problem<'a> {
     /// What is known of the first motion: value and information of each number.
     pub(super) first: (Motion, Tangent),
     /// What is known of the body beforehand: values and information.
-    pub(super) body: (Body, SMatrix<f64, CONSTANTS, CONSTANTS>),
+    pub(super) body: Beforehand,
     /// Combinations of the body's constants that keep their value from beforehand.
     pub(super) frozen: Vec<SVector<f64, CONSTANTS>>,
     /// Whether all motion is in the plane of x and z.

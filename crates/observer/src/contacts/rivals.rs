@@ -28,7 +28,7 @@ const MOST: usize = 40;
 const TRIED: usize = 12;
 const HOPELESS: f64 = 3.0;
 /// How often the better ones are looked for again from where a better one was found.
-const ROUNDS: usize = 3;
+pub(super) const SEARCHES: usize = 3;
 /// Fall of chi-squared that makes one motion the more probable one: odds of a thousand to one.
 const MORE_PROBABLE: f64 = 13.8;
 /// Deviations from which on another motion is one that they do not reach.
@@ -116,7 +116,7 @@ pub(super) struct Decided {
 pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option<Decided> {
     let mut all = vec![(found, std::mem::take(&mut problem.frozen))];
     let mut best = 0;
-    for _ in 0..ROUNDS {
+    for _ in 0..SEARCHES {
         let (solved, frozen) = &all[best];
         problem.frozen.clone_from(frozen);
         if !problem.planar && well_known(problem, solved) {

@@ -1,21 +1,20 @@
 //! A motion on its way from a search to what is reported: one stage after the other replaces it by a better one.
 
 use super::axes::{Oriented, against_by_cost, known_motion, with_any_axes};
-use super::body::{Body, CONSTANTS};
+use super::body::CONSTANTS;
 use super::directly::directly;
 use super::explanations::FreeBody;
 use super::plane;
-use super::problem::Problem;
+use super::problem::{Beforehand, Problem};
 use super::record::Record;
 use super::redrawn::DRAWS;
-use super::rivals::{Decided, Rival, as_probable, decided, others_of_any_axes, well_known};
+use super::rivals::{Decided, Rival, SEARCHES, as_probable, decided, others_of_any_axes, well_known};
 use super::search::{Ended, fine, finest_nodes, refined, search};
 use super::sharp::{blunted, sharpened, sharpest, stated};
 use super::solve::{Covariances, Solved};
 use super::state::Tangent;
 use crate::reliability::{LARGEST_MISFIT, Reason};
 use glam::DQuat;
-use nalgebra::SMatrix;
 use object_dynamics::MassProperties;
 
 /// How often a motion is carried over all samples for what is missed, at most, and what is a change of that, as a share of what conditions are off by.
@@ -78,9 +77,6 @@ fn too_dear(
     [if dearer > DEARER { other() } else { None }, open.filter(|_| dearer > DEARER_OF_SEVERAL)]
 }
 
-/// What is known of a body beforehand.
-type Beforehand = (Body, SMatrix<f64, CONSTANTS, CONSTANTS>);
-
 /// Replaces the motion of a known body by a more probable one that others lead to, each with what was known of the body in it; those that are less
 /// probable go to `others`. Gives the linearisations.
 fn followed(
@@ -134,6 +130,19 @@ impl<'a> Stage<'a> {
         Some(self)
     }
 
+    /// Whether noise is all that is left of a solution in space without friction: others may be as probable.
+    pub(super) fn is_in_noise(&self) -> bool {
+        let Problem { exact, planar, record, .. } = &self.problem;
+        !exact && !planar && record.frictionless() && self.solved.explained()
+    }
+
+    /// Makes room for another solution; gives what the readings left open with this one.
+    fn supersede(&mut self) -> Option<Reason> {
+        self.before += self.solved.iterations;
+        self.covariances = None;
+        self.open.take()
+    }
+
     /// The most probable of the motions that are found.
     pub(super) fn decided(mut self) -> Option<Self> {
         self.before += self.solved.iterations;
@@ -159,20 +168,19 @@ impl<'a> Stage<'a> {
 
     /// That of a body whose mass properties are known.
     pub(super) fn of_known(mut self, mass: &MassProperties) -> Option<Self> {
-        let problem = &mut self.problem;
-        if problem.planar {
-            self.before += self.solved.iterations;
-            (self.covariances, self.open) = (None, None);
+        if self.problem.planar {
+            self.supersede();
+            let problem = &mut self.problem;
             let (solved, against) = plane::known_motion(problem, &self.solved, mass)?;
             self.free = free_body(problem, &self.solved, against);
             (self.solved, self.against, self.doubt) = (solved, against, Some(0.0));
             return Some(self);
         }
-        let short = (problem.is_smooth() && !self.found).then(|| directly(problem, mass));
+        let short = (self.problem.is_smooth() && !self.found).then(|| directly(&mut self.problem, mass));
         if let Some(ended) = short.flatten() {
-            self.before += self.solved.iterations + ended.before;
+            self.supersede();
+            self.before += ended.before;
             (self.solved, self.doubt) = (ended.solved, Some(0.0));
-            (self.covariances, self.open) = (None, None);
             return Some(self);
         }
         let mut certain = self.of_certain_axes(mass)?;
@@ -185,20 +193,17 @@ impl<'a> Stage<'a> {
 
     /// The same of a body in space whose axes lie in one way, whether or not the log tells which.
     pub(super) fn of_certain_axes(mut self, mass: &MassProperties) -> Option<Self> {
+        let several = self.supersede();
+        let settled = !self.is_in_noise() || well_known(&self.problem, &self.solved);
         let problem = &mut self.problem;
-        self.before += self.solved.iterations;
-        self.covariances = None;
-        let several = self.open.take();
         let free = (problem.body, problem.frozen.clone());
-        let in_noise = !problem.exact && !problem.planar && problem.record.frictionless();
-        let settled = !(in_noise && self.solved.explained()) || well_known(problem, &self.solved);
         let mut known = known_motion(problem, &self.solved, mass)?;
         self.before += known.iterations - known.solved.iterations;
         let mut others = Vec::new();
         // What was as good for an unknown body need not be for this one.
         let rivals = self.others.drain(..).map(|rival| (rival, free.0)).collect();
         self.before += followed(problem, &mut known, &mut others, rivals, mass);
-        for _ in 0..if settled { 0 } else { FOLLOWED } {
+        for _ in 0..if settled { 0 } else { SEARCHES } {
             let before = known.solved.equations.cost;
             let of_known = (problem.body, problem.frozen.clone());
             let rivals = others_of_any_axes(problem, &known.solved, mass).unwrap_or_default();

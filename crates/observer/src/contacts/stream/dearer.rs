@@ -7,11 +7,10 @@
 use crate::chance::excess;
 use crate::contacts::body::{Body, CONSTANTS};
 use crate::contacts::onward::FOLLOWED;
-use crate::contacts::problem::Problem;
+use crate::contacts::problem::{Beforehand, Problem};
 use crate::contacts::search::fine_within;
 use crate::contacts::solve::Solved;
 use crate::contacts::verdict::UNEXPLAINED;
-use nalgebra::SMatrix;
 use std::ops::Range;
 
 /// Constants that are stated: mass and principal moments.
@@ -38,7 +37,7 @@ impl Dearer {
         &mut self,
         problem: &mut Problem,
         solved: &Solved<CONSTANTS>,
-        free: (Body, SMatrix<f64, CONSTANTS, CONSTANTS>),
+        free: Beforehand,
         samples: Range<usize>,
     ) {
         let known = problem.cost_of_log(solved);

@@ -215,7 +215,7 @@ impl Window {
         let mut stage = Stage::at(problem, ended);
         if stage.problem.exact {
             stage = stage.stated()?;
-        } else if !stage.problem.planar && stage.problem.record.frictionless() && stage.solved.explained() {
+        } else if stage.is_in_noise() {
             stage = stage.decided()?;
         }
         if let Some(mass) = &self.options.body {
