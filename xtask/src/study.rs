@@ -233,3 +233,27 @@ pub(crate) fn main(mut words: impl Iterator<Item = String>) -> ExitCode {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is registered with the binary names its parts there: a study without has no place in that table.
+    #[test]
+    fn studies_of_xtask_are_those_of_the_binary() {
+        let table = include_str!("../../benches/src/studies/main.rs");
+        let registered = |name: &str| {
+            ["OF_RUNS", "TIMES", "SHORT", "DRAWN"]
+                .iter()
+                .any(|parts| table.contains(&format!("(\"{name}\", {parts}, ")))
+        };
+        for (name, ..) in STUDIES.iter().filter(|(name, ..)| *name != FUZZ) {
+            assert!(registered(name), "{name} is not in the binary of studies");
+        }
+        let lines = table.lines().filter(|line| line.trim_start().starts_with("(\""));
+        let unlisted: Vec<_> = lines
+            .filter(|line| !STUDIES.iter().any(|(name, ..)| line.contains(&format!("(\"{name}\", "))))
+            .collect();
+        assert_eq!(unlisted, [""; 0]);
+    }
+}
