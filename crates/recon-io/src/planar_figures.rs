@@ -7,7 +7,7 @@ pub use frames::FigureFrame;
 pub(crate) use frames::Turn;
 
 use crate::number::on_scale;
-use draw::{draw_band, draw_curves, finite, names, ticks};
+use draw::{draw_band, draw_curves, finite, names_of, ticks};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -181,7 +181,7 @@ fn draw(panel: &FigurePanel) -> String {
     } else {
         frames::draw_in_turn(&panel.frames, &panel.curves, &frame, &mut out);
     }
-    out + &names(panel)
+    out + &names_of(panel)
 }
 
 /// The smallest of 1, 2, 5 times a power of ten that is not below `least`.
@@ -197,6 +197,22 @@ fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_of_curves_stand_below_a_title_that_they_would_run_into() {
+        let line = |names: &[&str]| {
+            let curve = |name: &&str| FigureCurve { name: (*name).to_owned(), ..FigureCurve::default() };
+            let curves = names.iter().map(curve).collect();
+            let drawn = names_of(&FigurePanel {
+                title: "Seen from the front".into(),
+                curves,
+                ..FigurePanel::default()
+            });
+            [drawn.contains("y=\"18\""), drawn.contains("y=\"12\"") && drawn.contains("y=\"26\"")]
+        };
+        assert_eq!(line(&["lower", "upper", "ellipsoid"]), [true, false]);
+        assert_eq!(line(&["lower", "upper", "fit", "contacts", "touch next"]), [false, true]);
+    }
 
     #[test]
     fn lines_are_broken_where_there_is_no_number() {

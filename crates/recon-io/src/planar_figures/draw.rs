@@ -121,7 +121,7 @@ fn label(value: f64, step: f64) -> String {
 }
 
 /// Title and names of the curves, where none of these runs: in one line if there is room for it.
-pub(super) fn names(panel: &FigurePanel) -> String {
+pub(super) fn names_of(panel: &FigurePanel) -> String {
     let width = |text: &str, character: f64| character * text.chars().count() as f64;
     let legend: f64 = panel.curves.iter().map(|curve| width(&curve.name, CHARACTER) + BETWEEN).sum();
     let room = SIZE[0] - MARGIN[0] - MARGIN[2];
