@@ -65,9 +65,9 @@ const DRAWN: Parts = Parts::Whole("its runs are drawn one after the other from o
 const STUDIES: &[(&str, Parts, Run)] = &[
     ("assumptions", OF_RUNS, || in_words(assumptions::main())),
     ("atlas", OF_RUNS, || in_words(atlas::main())),
-    ("bounds_corners", SHORT, || in_words(bounds_corners::main())),
-    ("bounds_curvature", SHORT, || in_words(bounds_curvature::main())),
-    ("bounds_fuzz", SHORT, || in_words(bounds_fuzz::main())),
+    ("bounds_corners", OF_RUNS, || in_words(bounds_corners::main())),
+    ("bounds_curvature", OF_RUNS, || in_words(bounds_curvature::main())),
+    ("bounds_fuzz", OF_RUNS, || in_words(bounds_fuzz::main())),
     ("bounds_incremental", TIMES, || in_words(bounds_incremental::main())),
     ("bounds_noise", OF_RUNS, || in_words(bounds_noise::main())),
     ("bounds_noise_wrong", OF_RUNS, || in_words(bounds_noise_wrong::main())),

@@ -149,7 +149,7 @@ impl Frame {
 
 fn draw(panel: &FigurePanel) -> String {
     let frame = Frame::new(panel);
-    let mut out = String::new();
+    let mut out = names_of(panel);
     let (right, bottom) = (SIZE[0] - MARGIN[2], SIZE[1] - MARGIN[3]);
     for [from, to] in &panel.shaded {
         let [from, to] = [from, to].map(|x| frame.place([*x, frame.low[1]])[0].clamp(MARGIN[0], right));
@@ -181,7 +181,7 @@ fn draw(panel: &FigurePanel) -> String {
     } else {
         frames::draw_in_turn(&panel.frames, &panel.curves, &frame, &mut out);
     }
-    out + &names_of(panel)
+    out
 }
 
 /// The smallest of 1, 2, 5 times a power of ten that is not below `least`.
