@@ -10,7 +10,8 @@ const ROWS: &str = "target/study-rows";
 /// The study of the fuzz targets, which are outside of the workspace.
 const FUZZ: &str = "fuzz_targets";
 
-/// Name of a study, the file under docs/ that it writes, and what it is about.
+/// Name of a study, the file under docs/ that it writes, and what it is about. Which are made in parts, and why others are not, stands in the
+/// table of `benches/src/studies/main.rs`, and is told where a part is asked for.
 const STUDIES: &[(&str, &str, &str)] = &[
     (
         "assumptions",
@@ -36,6 +37,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "bounds_noise_wrong",
         "bounds-noise-wrong.md",
         "bounds of contacts whose noise is not as stated: how often they hold, what is said about it",
+    ),
+    (
+        "bounds_planar",
+        "charts/bounds/planar.csv",
+        "bounds in the plane and of concave bodies: time, soundness, what they give away",
     ),
     (
         "bounds_planar_noise",
