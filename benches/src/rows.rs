@@ -27,8 +27,8 @@ pub struct RowsError(#[from] Why);
 enum Why {
     #[error("--shard needs K/N with K below N, as 0/4, and not {given:?}")]
     Shard { given: String },
-    #[error("{study} is not made in parts: {why}")]
-    Whole { study: String, why: &'static str },
+    #[error("it is not made in parts: {why}")]
+    Whole { why: &'static str },
     #[error(
         "after the words of the study come --shard K/N --rows FOLDER, or --merge FOLDER, and not {given:?}"
     )]
@@ -151,9 +151,7 @@ impl Runs {
         let (study, options) =
             words.split_at(words.iter().position(|word| word.starts_with("--")).unwrap_or(words.len()));
         match parts {
-            Parts::Whole(why) if !options.is_empty() => {
-                Err(Why::Whole { study: study.first().cloned().unwrap_or_default(), why })
-            }
+            Parts::Whole(why) if !options.is_empty() => Err(Why::Whole { why }),
             _ => self.begin(study, &options.iter().map(String::as_str).collect::<Vec<_>>()),
         }
     }
