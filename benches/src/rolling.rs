@@ -1,6 +1,7 @@
 //! Palm motions on seeded bodies: the runs behind the study `rolling` and its chart.
 
-use crate::reaching::{Bodies, in_threads};
+use crate::reaching::Bodies;
+use crate::rows::{Cells, rows_in_threads};
 use exploration::generators::{Family, Outline, outline};
 use exploration::planar::{Noise, PlanarKnowledge};
 use exploration::rolling::{
@@ -164,11 +165,11 @@ pub fn run(
     })?;
     let (short, named) = match &outcome {
         RollOutcome::Reached(_) => (None, 0),
-        RollOutcome::Short { end: RollEnd::Budget, .. } => (Some("budget"), 0),
+        RollOutcome::Short { end: RollEnd::Budget, .. } => (Some(SHORT[0]), 0),
         RollOutcome::Short { end: RollEnd::NotFound { directions }, .. } => {
-            (Some("not found"), directions.len())
+            (Some(SHORT[1]), directions.len())
         }
-        RollOutcome::Short { end: RollEnd::Lost(_), .. } => (Some("lost"), 0),
+        RollOutcome::Short { end: RollEnd::Lost(_), .. } => (Some(SHORT[2]), 0),
     };
     let (planning, contacts) = (planner.seconds, known.touches());
     Ok(Rolling { family, steps, motions, falls, planning, short, named, holds, contacts })
@@ -183,7 +184,7 @@ fn contains(known: &PlanarKnowledge, body: &Rolled) -> bool {
     })
 }
 
-/// The runs of a planner on all bodies, in two threads, in the order of the bodies.
+/// The runs of a planner on all bodies (of a part of a study: of some), in two threads, in the order of the bodies.
 ///
 /// # Errors
 /// The first error of a run.
@@ -193,7 +194,33 @@ pub fn runs(
     goal: f64,
     radians: f64,
     noise: Option<Noisy>,
-) -> Result<Vec<Rolling>, RollError> {
+) -> Result<Vec<Rolling>, Box<dyn std::error::Error + Send + Sync>> {
     let all: Vec<_> = bodies.all().collect();
-    in_threads(&all, |body| run(roller.make, *body, goal, radians, noise)).into_iter().collect()
+    rows_in_threads(&all, |body| Ok(run(roller.make, *body, goal, radians, noise)?))
+}
+
+/// How runs end short.
+const SHORT: [&str; 3] = ["budget", "not found", "lost"];
+
+impl Cells for Rolling {
+    fn write(&self, to: &mut Vec<String>) {
+        self.family.name().to_owned().write(to);
+        self.steps.write(to);
+        [self.motions, self.falls, self.named, self.contacts].write(to);
+        (self.planning, self.short.map(str::to_owned), self.holds).write(to);
+    }
+
+    fn read<'a>(from: &mut impl Iterator<Item = &'a str>) -> Option<Self> {
+        let name = String::read(from)?;
+        let family = Family::ALL.into_iter().find(|family| family.name() == name)?;
+        let steps = Cells::read(from)?;
+        let [motions, falls, named, contacts] = Cells::read(from)?;
+        let (planning, word, holds): (_, Option<String>, _) = Cells::read(from)?;
+        let short = match word {
+            // A word that is none of them is no row.
+            Some(word) => Some(SHORT.into_iter().find(|short| *short == word)?),
+            None => None,
+        };
+        Some(Self { family, steps, motions, falls, planning, short, named, holds, contacts })
+    }
 }

@@ -5,9 +5,12 @@
 //! part has from before. `study NAME WORD.. --merge FOLDER` does none: it prints the table from the files of all parts.
 
 mod cells;
+#[cfg(test)]
+mod tests;
 
 pub use cells::Cells;
 
+use crate::reaching::in_threads;
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -24,8 +27,8 @@ pub struct RowsError(#[from] Why);
 enum Why {
     #[error("--shard needs K/N with K below N, as 0/4, and not {given:?}")]
     Shard { given: String },
-    #[error("{study} is not made in parts; these are: {}", of_runs.join(", "))]
-    Whole { study: String, of_runs: Vec<String> },
+    #[error("it is not made in parts: {why}")]
+    Whole { why: &'static str },
     #[error(
         "after the words of the study come --shard K/N --rows FOLDER, or --merge FOLDER, and not {given:?}"
     )]
@@ -72,19 +75,22 @@ pub fn words() -> impl Iterator<Item = String> {
     std::env::args().skip(2).take_while(|word| !word.starts_with("--"))
 }
 
-/// Reads what part is asked for, and what is known of it, of one of the studies that are made of runs.
+/// Whether a study is made of runs that several processes may share.
+#[derive(Clone, Copy, Debug)]
+pub enum Parts {
+    /// It is.
+    OfRuns,
+    /// It is made by one process, and why.
+    Whole(&'static str),
+}
+
+/// Reads what part is asked for, and what is known of it, of a study.
 ///
 /// # Errors
-/// [`RowsError`] for parts that are none, and studies that are not made in parts.
-pub fn begin(of_runs: &[&str]) -> Result<(), RowsError> {
+/// [`RowsError`] for parts that are none, and of studies that are not made in parts.
+pub fn begin(parts: Parts) -> Result<(), RowsError> {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let (study, options) =
-        args.split_at(args.iter().position(|word| word.starts_with("--")).unwrap_or(args.len()));
-    if let Some(name) = study.first().filter(|of| !options.is_empty() && !of_runs.contains(&of.as_str())) {
-        let of_runs = of_runs.iter().map(ToString::to_string).collect();
-        return Err(Why::Whole { study: name.clone(), of_runs }.into());
-    }
-    Ok(RUNS.begin(study, &options.iter().map(String::as_str).collect::<Vec<_>>())?)
+    Ok(RUNS.asked(parts, &args)?)
 }
 
 /// What came of the next run; none where it is of another part.
@@ -106,6 +112,30 @@ pub fn row_of<T: Cells, E: From<RowsError>>(
     RUNS.of(run, compute)
 }
 
+/// What came of those of the next runs that are of this part, in their order, made by two threads.
+///
+/// # Errors
+/// As [`row`]: the first of them.
+pub fn rows_in_threads<I: Sync, T: Cells + Send, E: From<RowsError> + Send>(
+    items: &[I],
+    compute: impl Fn(&I) -> Result<T, E> + Sync,
+) -> Result<Vec<T>, E> {
+    let first = {
+        let mut rows = RUNS.rows();
+        rows.next += items.len();
+        rows.next - items.len()
+    };
+    let numbered: Vec<(usize, &I)> = items.iter().enumerate().map(|(k, item)| (first + k, item)).collect();
+    let made = in_threads(&numbered, |(run, item)| RUNS.of(*run, || compute(item)));
+    made.into_iter().filter_map(Result::transpose).collect()
+}
+
+/// Whether runs of other parts are left out: then tables that compare runs cannot be made.
+#[must_use]
+pub fn is_part() -> bool {
+    matches!(RUNS.rows().part, Part::One { .. })
+}
+
 impl Runs {
     const fn new() -> Self {
         Self(Mutex::new(Rows { part: Part::All, known: BTreeMap::new(), next: 0 }))
@@ -114,6 +144,16 @@ impl Runs {
     fn rows(&self) -> MutexGuard<'_, Rows> {
         // A run is known or not, also after a panic.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Of the words of the command line: those of the study, then its part.
+    fn asked(&self, parts: Parts, words: &[String]) -> Result<(), Why> {
+        let (study, options) =
+            words.split_at(words.iter().position(|word| word.starts_with("--")).unwrap_or(words.len()));
+        match parts {
+            Parts::Whole(why) if !options.is_empty() => Err(Why::Whole { why }),
+            _ => self.begin(study, &options.iter().map(String::as_str).collect::<Vec<_>>()),
+        }
     }
 
     fn begin(&self, study: &[String], options: &[&str]) -> Result<(), Why> {
@@ -217,77 +257,5 @@ impl Rows {
             }
         }
         Ok(whole as u64)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    type Failure = Box<dyn std::error::Error>;
-
-    /// A table of some runs, and which of them were computed.
-    fn study(runs: &Runs, failing_at: usize) -> Result<(String, Vec<usize>), Failure> {
-        let (mut sum, mut computed, mut words) = (0.0, Vec::new(), Vec::new());
-        for k in 0..10 {
-            let made = runs.next(|| -> Result<_, Failure> {
-                if k == failing_at {
-                    return Err("killed".into());
-                }
-                computed.push(k);
-                Ok((1.0 / (k as f64 - 3.0), (k % 2 == 0).then(|| format!("{k}\n\"")), [k, k * k]))
-            })?;
-            let Some((number, word, [_, square])) = made else { continue };
-            sum += if number.is_finite() { number } else { square as f64 };
-            words.extend(word);
-        }
-        Ok((format!("{sum:?} {words:?}"), computed))
-    }
-
-    fn runs(options: &[&str]) -> Result<Runs, Why> {
-        let runs = Runs::new();
-        runs.begin(&["small".to_owned(), "7".to_owned()], options)?;
-        Ok(runs)
-    }
-
-    fn folder(name: &str) -> String {
-        let path = std::env::temp_dir().join(format!("recon-rows-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        path.to_string_lossy().into_owned()
-    }
-
-    #[test]
-    fn parts_that_were_broken_off_and_gone_on_with_merge_to_the_table_of_one_process() -> Result<(), Failure>
-    {
-        let folder = folder("merged");
-        for part in ["0/3", "1/3"] {
-            study(&runs(&["--shard", part, "--rows", &folder])?, 99)?;
-        }
-        let last = ["--shard", "2/3", "--rows", &folder];
-        assert!(study(&runs(&last)?, 8).is_err());
-        let path = Path::new(&folder).join("2-of-3.rows");
-        // As if the process had ended in the middle of a line.
-        OpenOptions::new().append(true).open(path)?.write_all(b"[\"8\",\"0.")?;
-        assert_eq!(study(&runs(&last)?, 99)?.1, [8]);
-        let (merged, computed) = study(&runs(&["--merge", &folder])?, 99)?;
-        assert_eq!((merged, computed.len()), (study(&runs(&[])?, 99)?.0, 0));
-        Ok(fs::remove_dir_all(folder)?)
-    }
-
-    #[test]
-    fn what_is_missing_twice_or_of_another_study_is_named() -> Result<(), Failure> {
-        let folder = folder("wrong");
-        study(&runs(&["--shard", "0/2", "--rows", &folder])?, 99)?;
-        let said = |error: Failure| error.to_string();
-        let missing = study(&runs(&["--merge", &folder])?, 99).map_err(said);
-        assert_eq!(missing, Err("run 1 is in no file; do its part first".to_owned()));
-        study(&runs(&["--shard", "0/1", "--rows", &folder])?, 99)?;
-        assert!(matches!(runs(&["--merge", &folder]), Err(Why::Twice { run: 0, .. })));
-        let other = Runs::new().begin(&["small".to_owned()], &["--merge", &folder]);
-        assert!(matches!(other, Err(Why::OtherStudy { .. })));
-        for wrong in [&["--shard", "2/2", "--rows", &folder][..], &["--merge"]] {
-            assert!(runs(wrong).is_err());
-        }
-        Ok(fs::remove_dir_all(folder)?)
     }
 }

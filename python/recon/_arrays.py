@@ -58,7 +58,7 @@ def columns_of(frame: Any) -> tuple[list[str], list[Array]]:
         return list(frame.column_names), [column(name, frame.column(name).to_numpy()) for name in frame.column_names]
     else:
         raise InputError(
-            f"a {type(frame).__name__} is no table of named columns; give a data frame, a dictionary of arrays, a path or a recon.Log"
+            f"a value of type {type(frame).__name__} is no table of named columns; give a data frame, a dictionary of arrays, a path or a recon.Log"
         )
     return names, [column(name, frame[name]) for name in names]
 

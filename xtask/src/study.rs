@@ -10,7 +10,8 @@ const ROWS: &str = "target/study-rows";
 /// The study of the fuzz targets, which are outside of the workspace.
 const FUZZ: &str = "fuzz_targets";
 
-/// Name of a study, the file under docs/ that it writes, and what it is about.
+/// Name of a study, the file under docs/ that it writes, and what it is about. Which are made in parts, and why others are not, stands in the
+/// table of `benches/src/studies/main.rs`, and is told where a part is asked for.
 const STUDIES: &[(&str, &str, &str)] = &[
     (
         "assumptions",
@@ -36,6 +37,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "bounds_noise_wrong",
         "bounds-noise-wrong.md",
         "bounds of contacts whose noise is not as stated: how often they hold, what is said about it",
+    ),
+    (
+        "bounds_planar",
+        "charts/bounds/planar.csv",
+        "bounds in the plane and of concave bodies: time, soundness, what they give away",
     ),
     (
         "bounds_planar_noise",
@@ -231,5 +237,29 @@ pub(crate) fn main(mut words: impl Iterator<Item = String>) -> ExitCode {
             eprintln!("{complaint}");
             ExitCode::FAILURE
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is registered with the binary names its parts there: a study without has no place in that table.
+    #[test]
+    fn studies_of_xtask_are_those_of_the_binary() {
+        let table = include_str!("../../benches/src/studies/main.rs");
+        let registered = |name: &str| {
+            ["OF_RUNS", "TIMES", "SHORT", "DRAWN"]
+                .iter()
+                .any(|parts| table.contains(&format!("(\"{name}\", {parts}, ")))
+        };
+        for (name, ..) in STUDIES.iter().filter(|(name, ..)| *name != FUZZ) {
+            assert!(registered(name), "{name} is not in the binary of studies");
+        }
+        let lines = table.lines().filter(|line| line.trim_start().starts_with("(\""));
+        let unlisted: Vec<_> = lines
+            .filter(|line| !STUDIES.iter().any(|(name, ..)| line.contains(&format!("(\"{name}\", "))))
+            .collect();
+        assert_eq!(unlisted, [""; 0]);
     }
 }

@@ -4,6 +4,7 @@ pub mod plane;
 pub mod space;
 pub mod statistics;
 
+use crate::rows::Cells;
 use exploration::generators::Family;
 
 /// A planner with the name that tables give it, and how one is made from a seed.
@@ -33,6 +34,20 @@ impl Trace {
     pub fn to(&self, goal: f64) -> Option<(usize, f64)> {
         let at = self.progress.iter().position(|gap| *gap <= goal)?;
         Some((at + 1, self.way[at]))
+    }
+}
+
+impl Cells for Trace {
+    fn write(&self, to: &mut Vec<String>) {
+        (self.family.name().to_owned(), self.seconds).write(to);
+        (self.progress.clone(), self.way.clone()).write(to);
+    }
+
+    fn read<'a>(from: &mut impl Iterator<Item = &'a str>) -> Option<Self> {
+        let (name, seconds): (String, f64) = Cells::read(from)?;
+        let family = Family::ALL.into_iter().find(|family| family.name() == name)?;
+        let (progress, way) = Cells::read(from)?;
+        Some(Self { family, progress, way, seconds })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Runs in the plane.
 
-use super::{Bodies, Named, Trace, in_threads};
+use super::{Bodies, Named, Trace};
+use crate::rows::rows_in_threads;
 use exploration::generators::{Family, Outline, outline};
 use exploration::planar::{
     AreaGreedy, FixedSweep, GaussianVariance, HausdorffGreedy, Noise, PathAware, PlanarKnowledge,
@@ -74,7 +75,7 @@ pub fn run(
     Ok(Trace { family, progress, way, seconds: planner.seconds })
 }
 
-/// The runs of a planner on all bodies, to a gap.
+/// The runs of a planner on all bodies (of a part of a study: of some), to a gap.
 ///
 /// # Errors
 /// The first error of a run.
@@ -83,11 +84,9 @@ pub fn runs(
     bodies: Bodies,
     gap: f64,
     most: usize,
-) -> Result<Vec<Trace>, ExploreError> {
+) -> Result<Vec<Trace>, Box<dyn std::error::Error + Send + Sync>> {
     let all: Vec<_> = bodies.all().collect();
-    in_threads(&all, |(family, seed)| run(planner.make, *family, *seed, Goal::Gap(gap), most))
-        .into_iter()
-        .collect()
+    rows_in_threads(&all, |(family, seed)| Ok(run(planner.make, *family, *seed, Goal::Gap(gap), most)?))
 }
 
 /// Mean width of a body in m.

@@ -56,6 +56,17 @@ impl<T: Cells, const N: usize> Cells for [T; N] {
     }
 }
 
+impl<T: Cells> Cells for Vec<T> {
+    fn write(&self, to: &mut Vec<String>) {
+        self.len().write(to);
+        self.iter().for_each(|value| value.write(to));
+    }
+
+    fn read<'a>(from: &mut impl Iterator<Item = &'a str>) -> Option<Self> {
+        (0..usize::read(from)?).map(|_| T::read(from)).collect()
+    }
+}
+
 macro_rules! tuple {
     ($($name:ident $place:tt),*) => {
         impl<$($name: Cells),*> Cells for ($($name,)*) {

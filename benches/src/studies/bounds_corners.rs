@@ -9,34 +9,38 @@ use num_rational::BigRational;
 use shape_bounds::generators::{AXES, Source, curve_contacts};
 use shape_bounds::{HalfSpace, Hull, Intersection, Polyhedron};
 
+type Failure = Box<dyn std::error::Error>;
+
 const CORNERS: usize = 20_000;
 /// Corners whose planes are the closest to parallel.
 const WORST: usize = 5_000;
 const CONTACTS: usize = 200;
 
-pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn main() -> Result<(), Failure> {
     let largest: usize = crate::words().next().map_or(Ok(1_000_000), |a| a.parse())?;
     println!(
         "contacts,corners_checked,error_median,error_99,error_largest,error_of_worst_determined,residual_largest,contacts_checked,cut_off"
     );
     for n in [1000, 10_000, 100_000, 1_000_000].into_iter().filter(|n| *n <= largest) {
-        let contacts = curve_contacts(n, 1);
-        let spaces: Vec<HalfSpace> = contacts.iter().map(|c| c.half_space()).collect();
-        let intersection = Intersection::of(&spaces)?;
-        let body = intersection.bounded().ok_or("unbounded")?;
-        let (errors, worst, residual) = corner_errors(body);
-        let hull = Hull::of(body.vertices())?;
-        let hull = hull.solid().ok_or("flat")?;
-        let mut s = Source::new(3);
-        let cut_off = (0..CONTACTS).filter(|_| !hull.contains(contacts[s.below(n)].point)).count();
-        let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize];
-        println!(
-            "{n},{},{:.1e},{:.1e},{:.1e},{worst:.1e},{residual:.1e},{CONTACTS},{cut_off}",
-            errors.len(),
-            at(0.5),
-            at(0.99),
-            at(1.0)
-        );
+        crate::print_line(|| -> Result<String, Failure> {
+            let contacts = curve_contacts(n, 1);
+            let spaces: Vec<HalfSpace> = contacts.iter().map(|c| c.half_space()).collect();
+            let intersection = Intersection::of(&spaces)?;
+            let body = intersection.bounded().ok_or("unbounded")?;
+            let (errors, worst, residual) = corner_errors(body);
+            let hull = Hull::of(body.vertices())?;
+            let hull = hull.solid().ok_or("flat")?;
+            let mut s = Source::new(3);
+            let cut_off = (0..CONTACTS).filter(|_| !hull.contains(contacts[s.below(n)].point)).count();
+            let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize];
+            Ok(format!(
+                "{n},{},{:.1e},{:.1e},{:.1e},{worst:.1e},{residual:.1e},{CONTACTS},{cut_off}",
+                errors.len(),
+                at(0.5),
+                at(0.99),
+                at(1.0)
+            ))
+        })?;
     }
     Ok(())
 }

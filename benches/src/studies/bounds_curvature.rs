@@ -5,6 +5,7 @@
 //! Usage: `bounds_curvature [BODIES]` (10,000 by default). Prints the table `docs/charts/bounds/curvature.csv` and
 //! writes `docs/charts/bounds/curvature_timing.csv`.
 
+use crate::rows;
 use cpu_time::ThreadTime;
 use glam::DVec3;
 use recon::contact_kinematics::{CurvatureRadii, Direction};
@@ -25,13 +26,15 @@ pub(crate) fn main() -> Result<(), Failure> {
     std::fs::create_dir_all("docs/charts/bounds")?;
     let (mut broken, mut skipped) = (0, 0);
     for seed in 0..bodies {
-        let (ok, left_out) = chain_holds(seed)?;
+        let Some((ok, left_out)) = rows::row(|| chain_holds(seed))? else { continue };
         broken += usize::from(!ok);
         skipped += left_out;
     }
     println!("# {bodies} random bodies: {broken} broken chains, {skipped} balls left out");
     gains()?;
-    std::fs::write("docs/charts/bounds/curvature_timing.csv", timing()?)?;
+    if !rows::is_part() {
+        std::fs::write("docs/charts/bounds/curvature_timing.csv", timing()?)?;
+    }
     if broken > 0 { Err("a chain is broken".into()) } else { Ok(()) }
 }
 
@@ -87,13 +90,23 @@ fn gains() -> Result<(), Failure> {
     for count in [1000, 3000] {
         let mut ratios = [Vec::new(), Vec::new()];
         for seed in 0..20 {
-            let contacts = curve_contacts(count, seed);
-            let plain = ShapeBounds::from_contacts(&contacts)?;
-            let tight = CurvatureBounds::from_contacts(&contacts, radii)?;
-            let sharp = SharpBounds::from_contacts(&contacts, radii)?;
-            let (a, b) = (plain.lower_volume() / truth, plain.upper_volume() / truth);
-            let (d, c) = (tight.lower().volume() / truth, tight.upper().volume() / truth);
-            let (e, f) = (sharp.lower().volume() / truth, sharp.upper().volume() / truth);
+            let volumes = rows::row(|| -> Result<[f64; 6], Failure> {
+                let contacts = curve_contacts(count, seed);
+                let plain = ShapeBounds::from_contacts(&contacts)?;
+                let tight = CurvatureBounds::from_contacts(&contacts, radii)?;
+                let sharp = SharpBounds::from_contacts(&contacts, radii)?;
+                Ok([
+                    plain.lower_volume(),
+                    plain.upper_volume(),
+                    tight.upper().volume(),
+                    tight.lower().volume(),
+                    sharp.lower().volume(),
+                    sharp.upper().volume(),
+                ])
+            })?;
+            let Some([a, b, c, d, e, f]) = volumes.map(|all| all.map(|volume| volume / truth)) else {
+                continue;
+            };
             let both = [(c - d) / (b - a), (f - e) / (b - a)];
             println!(
                 "{count},{seed},{a:.4},{d:.4},{e:.4},{f:.4},{c:.4},{b:.4},{:.4},{:.4}",
@@ -103,7 +116,7 @@ fn gains() -> Result<(), Failure> {
         }
         for (name, mut ratios) in ["(c)-(d)", "(c+)-(d+)"].into_iter().zip(ratios) {
             ratios.sort_unstable_by(f64::total_cmp);
-            let [low, median, high] = [0, 10, 19].map(|k| ratios[k]);
+            let [low, median, high] = [0, 10, 19].map(|k: usize| ratios.get(k).copied().unwrap_or(f64::NAN));
             println!("# {count} contacts, {name} to (b)-(a): {low:.3} to {high:.3}, median {median:.3}");
         }
     }

@@ -51,75 +51,62 @@ mod whole_logs;
 
 pub(crate) use recon_benches::rows;
 pub(crate) use rows::words;
+use rows::{Parts, RowsError};
 use std::fmt::Display;
 use std::process::ExitCode;
 
 type Run = fn() -> Result<(), String>;
 
-const STUDIES: &[(&str, Run)] = &[
-    ("assumptions", || in_words(assumptions::main())),
-    ("atlas", || in_words(atlas::main())),
-    ("bounds_corners", || in_words(bounds_corners::main())),
-    ("bounds_curvature", || in_words(bounds_curvature::main())),
-    ("bounds_fuzz", || in_words(bounds_fuzz::main())),
-    ("bounds_incremental", || in_words(bounds_incremental::main())),
-    ("bounds_noise", || in_words(bounds_noise::main())),
-    ("bounds_noise_wrong", || in_words(bounds_noise_wrong::main())),
-    ("bounds_planar", || in_words(bounds_planar::main())),
-    ("bounds_planar_noise", || in_words(bounds_planar_noise::main())),
-    ("bounds_timing", || in_words(bounds_timing::main())),
-    ("bounds_tosses", || in_words(bounds_tosses::main())),
-    ("cold_start", || in_words(cold_start::main())),
-    ("contact_changes", || in_words(contact_changes::main())),
-    ("contact_estimates", || in_words(contact_estimates::main())),
-    ("contact_estimates_impulses", || in_words(contact_estimates::impulses::main())),
-    ("contact_estimates_random", || in_words(contact_estimates::random::main())),
-    ("contact_cost", || in_words(contact_cost::main())),
-    ("contact_exports", || in_words(contact_exports::main())),
-    ("contact_logs", || in_words(contact_logs::main())),
-    ("contact_wedging", || in_words(contact_wedging::main())),
-    ("contour", || in_words(contour::main())),
-    ("exported_objects", || in_words(exported_objects::main())),
-    ("contact_modes_estimated", || in_words(contact_modes_estimated::main())),
-    ("mode_bank", || in_words(mode_bank::main())),
-    ("mode_switches", || in_words(mode_switches::main())),
-    ("no_force", || in_words(no_force::main())),
-    ("nonsmooth", || in_words(nonsmooth::main())),
-    ("palms", || in_words(palms::main())),
-    ("planar_contacts", || in_words(planar_contacts::main())),
-    ("planar_estimates", || in_words(planar_estimates::main())),
-    ("planar_estimates_friction", || in_words(planar_estimates_friction::main())),
-    ("planar_observability", || in_words(planar_observability::main())),
-    ("pushes", || in_words(pushes::main())),
-    ("reaching", || in_words(reaching::main())),
-    ("result_bags", || in_words(result_bags::main())),
-    ("rolling", || in_words(rolling::main())),
-    ("rolling_sensed", || in_words(rolling_sensed::main())),
-    ("shape_fits", || in_words(shape_fits::main())),
-    ("streaming", || in_words(streaming::main())),
-    ("tilting_palms", || in_words(tilting_palms::main())),
-    ("whole_logs", || in_words(whole_logs::main())),
-    ("three_palms_monte_carlo", || in_words(three_palms_monte_carlo::main())),
-    ("three_palms_timing", || in_words(three_palms_timing::main())),
-];
+const OF_RUNS: Parts = Parts::OfRuns;
+const TIMES: Parts = Parts::Whole("the times that it compares are of one machine");
+const SHORT: Parts = Parts::Whole("it is done within minutes");
+const DRAWN: Parts = Parts::Whole("its runs are drawn one after the other from one source of random numbers");
 
-/// Those whose runs may be made in parts ([`rows`]).
-const OF_RUNS: &[&str] = &[
-    "assumptions",
-    "atlas",
-    "bounds_noise",
-    "bounds_noise_wrong",
-    "bounds_planar_noise",
-    "cold_start",
-    "contact_estimates_random",
-    "no_force",
-    "palms",
-    "planar_estimates",
-    "planar_estimates_friction",
-    "rolling_sensed",
-    "three_palms_monte_carlo",
-    "tilting_palms",
-    "whole_logs",
+const STUDIES: &[(&str, Parts, Run)] = &[
+    ("assumptions", OF_RUNS, || in_words(assumptions::main())),
+    ("atlas", OF_RUNS, || in_words(atlas::main())),
+    ("bounds_corners", OF_RUNS, || in_words(bounds_corners::main())),
+    ("bounds_curvature", OF_RUNS, || in_words(bounds_curvature::main())),
+    ("bounds_fuzz", OF_RUNS, || in_words(bounds_fuzz::main())),
+    ("bounds_incremental", TIMES, || in_words(bounds_incremental::main())),
+    ("bounds_noise", OF_RUNS, || in_words(bounds_noise::main())),
+    ("bounds_noise_wrong", OF_RUNS, || in_words(bounds_noise_wrong::main())),
+    ("bounds_planar", SHORT, || in_words(bounds_planar::main())),
+    ("bounds_planar_noise", OF_RUNS, || in_words(bounds_planar_noise::main())),
+    ("bounds_timing", TIMES, || in_words(bounds_timing::main())),
+    ("bounds_tosses", SHORT, || in_words(bounds_tosses::main())),
+    ("cold_start", OF_RUNS, || in_words(cold_start::main())),
+    ("contact_changes", DRAWN, || in_words(contact_changes::main())),
+    ("contact_estimates", SHORT, || in_words(contact_estimates::main())),
+    ("contact_estimates_impulses", SHORT, || in_words(contact_estimates::impulses::main())),
+    ("contact_estimates_random", OF_RUNS, || in_words(contact_estimates::random::main())),
+    ("contact_cost", TIMES, || in_words(contact_cost::main())),
+    ("contact_exports", SHORT, || in_words(contact_exports::main())),
+    ("contact_logs", SHORT, || in_words(contact_logs::main())),
+    ("contact_wedging", DRAWN, || in_words(contact_wedging::main())),
+    ("contour", SHORT, || in_words(contour::main())),
+    ("exported_objects", SHORT, || in_words(exported_objects::main())),
+    ("contact_modes_estimated", SHORT, || in_words(contact_modes_estimated::main())),
+    ("mode_bank", SHORT, || in_words(mode_bank::main())),
+    ("mode_switches", SHORT, || in_words(mode_switches::main())),
+    ("no_force", OF_RUNS, || in_words(no_force::main())),
+    ("nonsmooth", OF_RUNS, || in_words(nonsmooth::main())),
+    ("palms", OF_RUNS, || in_words(palms::main())),
+    ("planar_contacts", OF_RUNS, || in_words(planar_contacts::main())),
+    ("planar_estimates", OF_RUNS, || in_words(planar_estimates::main())),
+    ("planar_estimates_friction", OF_RUNS, || in_words(planar_estimates_friction::main())),
+    ("planar_observability", SHORT, || in_words(planar_observability::main())),
+    ("pushes", SHORT, || in_words(pushes::main())),
+    ("reaching", OF_RUNS, || in_words(reaching::main())),
+    ("result_bags", SHORT, || in_words(result_bags::main())),
+    ("rolling", OF_RUNS, || in_words(rolling::main())),
+    ("rolling_sensed", OF_RUNS, || in_words(rolling_sensed::main())),
+    ("shape_fits", OF_RUNS, || in_words(shape_fits::main())),
+    ("streaming", OF_RUNS, || in_words(streaming::main())),
+    ("tilting_palms", OF_RUNS, || in_words(tilting_palms::main())),
+    ("whole_logs", OF_RUNS, || in_words(whole_logs::main())),
+    ("three_palms_monte_carlo", OF_RUNS, || in_words(three_palms_monte_carlo::main())),
+    ("three_palms_timing", TIMES, || in_words(three_palms_timing::main())),
 ];
 
 fn main() -> ExitCode {
@@ -127,18 +114,26 @@ fn main() -> ExitCode {
     if name == "chart" {
         return chart::main();
     }
-    let Some((_, run)) = STUDIES.iter().find(|(known, _)| *known == name) else {
+    let Some((_, parts, run)) = STUDIES.iter().find(|(known, ..)| *known == name) else {
         eprintln!("no study is called {name:?}; there are:");
-        STUDIES.iter().for_each(|(known, _)| eprintln!("  {known}"));
+        STUDIES.iter().for_each(|(known, ..)| eprintln!("  {known}"));
         return ExitCode::from(2);
     };
-    match in_words(rows::begin(OF_RUNS)).and_then(|()| run()) {
+    match in_words(rows::begin(*parts)).and_then(|()| run()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(complaint) => {
             eprintln!("{name}: {complaint}");
             ExitCode::FAILURE
         }
     }
+}
+
+/// Prints a line of a table, one that is of this part.
+pub(crate) fn print_line<E: From<RowsError>>(line: impl FnOnce() -> Result<String, E>) -> Result<(), E> {
+    if let Some(line) = rows::row(line)? {
+        println!("{line}");
+    }
+    Ok(())
 }
 
 fn in_words<E: Display>(ran: Result<(), E>) -> Result<(), String> {

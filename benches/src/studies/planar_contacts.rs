@@ -40,11 +40,13 @@ pub(crate) fn main() -> Result<(), Failure> {
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for largest_mu in [0.0, 0.3, 0.6, 1.2] {
-        let mut row = Row::default();
-        for seed in first..first + scenes {
-            run(&mut Source::new(seed), largest_mu, &mut row)?;
-        }
-        row.print(largest_mu);
+        crate::print_line(|| -> Result<String, Failure> {
+            let mut row = Row::default();
+            for seed in first..first + scenes {
+                run(&mut Source::new(seed), largest_mu, &mut row)?;
+            }
+            Ok(row.line(largest_mu))
+        })?;
     }
     Ok(())
 }
@@ -185,9 +187,9 @@ impl Row {
         }
     }
 
-    fn print(&self, largest_mu: f64) {
+    fn line(&self, largest_mu: f64) -> String {
         let scenes = self.simulated + self.ambiguous + self.inconsistent + self.not_p + self.other;
-        println!(
+        format!(
             "| {largest_mu} | {} | {} | {} | {} | {} | {} | {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.2} |",
             self.simulated,
             self.ambiguous,
@@ -202,6 +204,6 @@ impl Row {
             self.energy,
             self.momentum,
             1e3 * self.seconds / f64::from(scenes.max(1)),
-        );
+        )
     }
 }

@@ -16,7 +16,7 @@ type Failure = Box<dyn Error>;
 const EPOCH: i64 = 1_760_000_000_000_000_000;
 const PALMS: usize = 3;
 /// Balls and arrows at the contacts, whose sizes follow from the whole bag: they are decoded, and not compared.
-const MARKERS: &str = "/recon/markers";
+const DRAWN: [&str; 2] = ["/recon/markers", "/recon/forces"];
 /// Single precision keeps a share of a number of half of this.
 const SINGLE: f64 = f32::EPSILON as f64;
 
@@ -48,7 +48,8 @@ pub(crate) fn main() -> Result<(), Failure> {
         "Made by `cargo xtask study result_bags`: {bags} bags of {samples} random samples each (lengths from 1 mm to 10 m, {PALMS} palms, contacts \
          that come and go, a covariance or none), written as `--mcap` does and decoded by `mcap-ros2-support` through the definitions in the bag \
          (`tests/ros2/read_back.py`), with all checksums verified. Numbers are compared with what was written, in the order of the definition. Balls and arrows at contacts \
-         (`{MARKERS}`) are decoded, and not compared.\n"
+         (`{}`) are decoded, and not compared.\n",
+        DRAWN.join("`, `")
     );
     println!(
         "| topics of type | messages | numbers | stamps and names that differ | largest difference, of the number |"
@@ -77,9 +78,9 @@ fn in_viewers(path: &Path, samples: usize) -> Result<(), Failure> {
     println!("\n## In viewers\n");
     println!(
         "The first of these bags, as Rerun's own loader takes it in (`rerun mcap convert`, what its viewer does with a bag), and its definitions beside \
-         those that ROS 2 publishes (Jazzy, as `rosbags` has them), field by field (`tests/ros2/in_viewers.py`). Rerun has no archetype for poses with \
-         covariance and for markers: it shows the moving frame and the points, and arrows and meshes as messages to be read; the meshes it shows from \
-         `--mesh glb`. Foxglove's 3D panel lists all of these types; that it draws them was not looked at, for it does not run here.\n"
+         those that ROS 2 publishes (Jazzy, as `rosbags` has them), field by field (`tests/ros2/in_viewers.py`). Rerun makes nothing of poses with \
+         covariance and of markers but messages to be read: it shows the moving frame, contacts, forces (as points along their arrows), curves and the corners of \
+         the bounds; the meshes it shows from `--mesh glb`. Foxglove's 3D panel lists all of these types; that it draws them was not looked at, for it does not run here.\n"
     );
     println!("| topic | type | as published | in Rerun (rows) |\n|---|---|---|---|\n{}", told?.trim_end());
     Ok(())
@@ -197,7 +198,7 @@ fn decoded(path: &Path) -> Result<Topics, Failure> {
     for line in script("read_back.py", path)?.lines() {
         let told: Value = serde_json::from_str(line)?;
         let word = |key: &str| told[key].as_str().unwrap_or_default().to_owned();
-        if word("topic") == MARKERS {
+        if DRAWN.contains(&word("topic").as_str()) {
             continue;
         }
         let (_, messages) = topics.entry(word("topic")).or_insert_with(|| (word("type"), Vec::new()));

@@ -72,6 +72,7 @@ pub use mesh_formats::{write_glb, write_stl};
 pub use number::{brief, brief_to, with_brief_numbers};
 pub use output::{
     AtomicFile, FileTarget, FolderTarget, OutputError, OutputFolder, Summed, fingerprint, is_standard_output,
+    remove_left_behind,
 };
 pub use planar_figures::{FigureCurve, FigureFrame, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities, implausible_contacts};

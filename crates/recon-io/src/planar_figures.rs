@@ -7,7 +7,7 @@ pub use frames::FigureFrame;
 pub(crate) use frames::Turn;
 
 use crate::number::on_scale;
-use draw::{draw_band, draw_curves, finite, ticks};
+use draw::{draw_band, draw_curves, finite, names_of, ticks};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -57,8 +57,6 @@ const STYLE: &str = "\
 .ground{fill:#15181c}.text{fill:#e6e6e6}.tick{fill:#a8a8a8}.axis{stroke:#a8a8a8}.grid{stroke:#2b3036}
 .c0{color:#6cb6ef}.c1{color:#ff8a7a}.c2{color:#6fd39a}.c3{color:#cf9bea}.c4{color:#d6c456}}";
 const COLOURS: usize = 5;
-/// Width of a character in the legend, px: generous for a proportional font of 12 px.
-const CHARACTER: f64 = 7.0;
 
 /// Panels as pictures of their own, for a page that sets them beside each other where it is wide enough, and has colours.
 pub(crate) fn figures_in_page(panels: &[FigurePanel]) -> String {
@@ -151,14 +149,8 @@ impl Frame {
 
 fn draw(panel: &FigurePanel) -> String {
     let frame = Frame::new(panel);
-    let mut out = String::new();
+    let mut out = names_of(panel);
     let (right, bottom) = (SIZE[0] - MARGIN[2], SIZE[1] - MARGIN[3]);
-    let title = escape(&panel.title);
-    let _ = writeln!(
-        out,
-        "<text class=\"text\" x=\"{}\" y=\"18\" font-weight=\"bold\">{title}</text>",
-        MARGIN[0]
-    );
     for [from, to] in &panel.shaded {
         let [from, to] = [from, to].map(|x| frame.place([*x, frame.low[1]])[0].clamp(MARGIN[0], right));
         let (width, height) = (on_scale(to - from, 100.0, 3), bottom - MARGIN[1]);
@@ -189,16 +181,6 @@ fn draw(panel: &FigurePanel) -> String {
     } else {
         frames::draw_in_turn(&panel.frames, &panel.curves, &frame, &mut out);
     }
-    // Names in the line of the title, where no curve runs, the last one outermost.
-    let mut x = right;
-    for (k, curve) in panel.curves.iter().enumerate().rev() {
-        let (name, colour) = (escape(&curve.name), k % COLOURS);
-        let _ = writeln!(
-            out,
-            "<text class=\"c{colour}\" fill=\"currentColor\" x=\"{x}\" y=\"18\" text-anchor=\"end\">{name}</text>"
-        );
-        x -= CHARACTER * curve.name.chars().count() as f64 + 10.0;
-    }
     out
 }
 
@@ -215,6 +197,22 @@ fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_of_curves_stand_below_a_title_that_they_would_run_into() {
+        let line = |names: &[&str]| {
+            let curve = |name: &&str| FigureCurve { name: (*name).to_owned(), ..FigureCurve::default() };
+            let curves = names.iter().map(curve).collect();
+            let drawn = names_of(&FigurePanel {
+                title: "Seen from the front".into(),
+                curves,
+                ..FigurePanel::default()
+            });
+            [drawn.contains("y=\"18\""), drawn.contains("y=\"12\"") && drawn.contains("y=\"26\"")]
+        };
+        assert_eq!(line(&["lower", "upper", "ellipsoid"]), [true, false]);
+        assert_eq!(line(&["lower", "upper", "fit", "contacts", "touch next"]), [false, true]);
+    }
 
     #[test]
     fn lines_are_broken_where_there_is_no_number() {

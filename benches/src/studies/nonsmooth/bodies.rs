@@ -80,15 +80,19 @@ pub(super) fn rounding_table(runs: u64, seed: u64) -> Result<(String, FigurePane
     let mut lines = [("corner", Vec::new()), ("smooth", Vec::new()), ("open", Vec::new())];
     for noise in super::NOISE {
         for radius in RADII {
-            let mut counts = [0_u64; 5];
-            for run in 0..4 * runs {
-                let curves = corner(radius * resolved(noise), noise, seed + 10_000 + run);
-                let found = Features::find(&curves, &FeatureOptions::default())?;
-                // The kind that most of the curve is told to be.
-                let most = found.runs.iter().filter(|r| r.curve == 0).max_by_key(|r| r.count);
-                let kind = most.and_then(|run| run.kind);
-                counts[kind.map_or(4, |kind: FeatureKind| kind as usize)] += 1;
-            }
+            let counts = crate::rows::row(|| -> Result<[u64; 5], Failure> {
+                let mut counts = [0; 5];
+                for run in 0..4 * runs {
+                    let curves = corner(radius * resolved(noise), noise, seed + 10_000 + run);
+                    let found = Features::find(&curves, &FeatureOptions::default())?;
+                    // The kind that most of the curve is told to be.
+                    let most = found.runs.iter().filter(|r| r.curve == 0).max_by_key(|r| r.count);
+                    let kind = most.and_then(|run| run.kind);
+                    counts[kind.map_or(4, |kind: FeatureKind| kind as usize)] += 1;
+                }
+                Ok(counts)
+            })?;
+            let Some(counts) = counts else { continue };
             let share = |k: usize| 100.0 * counts[k] as f64 / (4 * runs) as f64;
             writeln!(
                 text,

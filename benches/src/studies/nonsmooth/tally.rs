@@ -8,7 +8,6 @@ pub(super) const BOUNDS_HEAD: &str = "| body | noise | runs | both hold | withou
 
 /// One run.
 pub(super) struct Judged {
-    pub(super) features: Features,
     confusion: [[usize; 5]; 4],
     /// Corners that were touched, and distances of those found from the nearest true one with their stated deviations, m.
     corners: (usize, Vec<[f64; 2]>),
@@ -24,7 +23,7 @@ impl Judged {
     pub(super) fn new(
         body: &TouchedBody,
         touched: &Touched,
-        features: Features,
+        features: &Features,
         bounds: [CertainBounds; 2],
         seconds: f64,
     ) -> Self {
@@ -35,8 +34,8 @@ impl Judged {
             [lower / volume, upper / volume]
         };
         Self {
-            confusion: confusion(touched, &features),
-            corners: corners(body, touched, &features),
+            confusion: confusion(touched, features),
+            corners: corners(body, touched, features),
             polyhedron: features.polyhedron().map(|made| {
                 let count = match body {
                     TouchedBody::Polytope(corners, _) => corners.len(),
@@ -46,7 +45,6 @@ impl Judged {
             }),
             holds: [holds(body, &bounds[0]), holds(body, &bounds[1])],
             volumes: [sizes(&bounds[0]), sizes(&bounds[1])],
-            features,
             seconds,
         }
     }

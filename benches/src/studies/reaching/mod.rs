@@ -11,7 +11,7 @@ use exploration::least_touches;
 use recon_benches::reaching::{Bodies, Trace, plane, space};
 use tables::{Compared, by_family, distance_table, ratios, touches_table};
 
-type Failure = Box<dyn std::error::Error>;
+type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 /// Seeds of the bodies: nothing was chosen on them. Those of tuning are 1000 to 1009 and 2000 to 2029.
 const FIRST_SEED: u64 = 77_000;

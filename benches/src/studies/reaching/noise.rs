@@ -4,19 +4,16 @@ use super::Failure;
 use exploration::Spending;
 use exploration::generators::Family;
 use recon_benches::reaching::statistics::{interval, quantile};
-use recon_benches::reaching::{Bodies, in_threads, plane, space};
+use recon_benches::reaching::{Bodies, plane, space};
+use recon_benches::rows::rows_in_threads;
 
 /// Points off by this share of the mean width per axis, normals by twice as many rad.
 const LEVEL: f64 = 1e-3;
 /// Touches that the confidence is shared among.
 const BUDGETS: [usize; 2] = [30, 120];
 
-/// A run, as both dimensions give it.
-struct Run {
-    touches: Option<f64>,
-    holds: bool,
-    bounds_gap: bool,
-}
+/// Touches, whether the body lies between the bounds, and whether the gap that is stated bounds that of exact contacts.
+type Run = (Option<f64>, bool, bool);
 
 type Work = fn(&(Family, u64, u64, Spending)) -> Result<Run, exploration::ExploreError>;
 
@@ -24,14 +21,14 @@ fn in_plane(
     (family, seed, noise, spending): &(Family, u64, u64, Spending),
 ) -> Result<Run, exploration::ExploreError> {
     let c = plane::certified_run(*family, *seed, *noise, LEVEL, 0.1, *spending)?;
-    Ok(Run { touches: c.touches.map(|n| n as f64), holds: c.holds, bounds_gap: c.bounds_gap })
+    Ok((c.touches.map(|n| n as f64), c.holds, c.bounds_gap))
 }
 
 fn in_space(
     (family, seed, noise, spending): &(Family, u64, u64, Spending),
 ) -> Result<Run, exploration::ExploreError> {
     let c = space::certified_run(*family, *seed, *noise, LEVEL, 0.2, *spending)?;
-    Ok(Run { touches: c.touches.map(|n| n as f64), holds: c.holds, bounds_gap: c.bounds_gap })
+    Ok((c.touches.map(|n| n as f64), c.holds, c.bounds_gap))
 }
 
 /// All bodies, each as often as makes `runs` in all.
@@ -61,14 +58,11 @@ pub(super) fn tables(bodies: Bodies, runs: u64) -> Result<(), Failure> {
             let items: Vec<_> = (0..times)
                 .flat_map(|k| all.iter().map(move |(f, s)| (*f, *s, 1_000_000 * (k + 1) + *s, spending)))
                 .collect();
-            let mut done = Vec::with_capacity(items.len());
-            for run in in_threads(&items, work) {
-                done.push(run?);
-            }
-            let touches: Vec<Option<f64>> = done.iter().map(|r| r.touches).collect();
+            let done = rows_in_threads(&items, |item| -> Result<Run, Failure> { Ok(work(item)?) })?;
+            let touches: Vec<Option<f64>> = done.iter().map(|(touches, ..)| *touches).collect();
             let smooth: Vec<Option<f64>> =
-                items.iter().zip(&done).filter(|(i, _)| i.0.is_smooth()).map(|(_, r)| r.touches).collect();
-            let wrong = done.iter().filter(|r| !r.holds).count();
+                items.iter().zip(&done).filter(|(i, _)| i.0.is_smooth()).map(|(_, run)| run.0).collect();
+            let wrong = done.iter().filter(|(_, holds, _)| !holds).count();
             let [low, high] = interval(wrong, done.len()).map(|p| 100.0 * p);
             println!(
                 "| {name} | {goal} | {words} | {} | {} / {} | {} / {} | {} | {wrong} ({low:.2} to {high:.2} %) | {} |",
@@ -78,7 +72,7 @@ pub(super) fn tables(bodies: Bodies, runs: u64) -> Result<(), Failure> {
                 super::tables::number(quantile(&smooth, 0.5)),
                 super::tables::number(quantile(&smooth, 0.9)),
                 touches.iter().filter(|t| t.is_none()).count(),
-                done.iter().filter(|r| !r.bounds_gap).count()
+                done.iter().filter(|(.., bounds_gap)| !bounds_gap).count()
             );
         }
     }

@@ -4,7 +4,8 @@ use super::{Failure, touches};
 use exploration::Goal;
 use exploration::generators::{Family, outline, solid};
 use recon_benches::reaching::statistics::{mean, quantile, ratio_of_medians};
-use recon_benches::reaching::{Bodies, Trace, in_threads, plane, space};
+use recon_benches::reaching::{Bodies, Trace, plane, space};
+use recon_benches::rows::{is_part, rows_in_threads};
 
 /// A planner and what it did.
 pub(super) struct Compared {
@@ -60,7 +61,7 @@ pub(super) fn by_family(all: &[Compared], goal: f64) {
 
 /// Ratios of medians to the first planner.
 pub(super) fn ratios(all: &[Compared], goal: f64) {
-    let Some((first, others)) = all.split_first() else { return };
+    let Some((first, others)) = all.split_first().filter(|_| !is_part()) else { return };
     let under = touches(&first.traces, goal);
     println!(
         "\nTouches over those of {}, ratio of medians (95 % bootstrap interval over bodies):",
@@ -89,20 +90,16 @@ pub(super) fn distance_table(bodies: Bodies) -> Result<(), Failure> {
     let wanted = ["path-aware", "area-greedy", "volume-greedy", "Hausdorff-greedy", "random"];
     let planners = plane::PLANNERS.iter().zip(&space::PLANNERS).filter(|(p, _)| wanted.contains(&p.name));
     for (flat, round) in planners {
-        let in_plane: Vec<Trace> = in_threads(&all, |(family, seed)| {
+        let in_plane = rows_in_threads(&all, |(family, seed)| -> Result<Trace, Failure> {
             let goal = PLANE_SHARE * plane::mean_width(&outline(*family, *seed));
             let trace = plane::run(flat.make, *family, *seed, Goal::Hausdorff(goal), 40)?;
             Ok(scaled(trace, goal))
-        })
-        .into_iter()
-        .collect::<Result<_, exploration::ExploreError>>()?;
-        let in_space: Vec<Trace> = in_threads(&all, |(family, seed)| {
+        })?;
+        let in_space = rows_in_threads(&all, |(family, seed)| -> Result<Trace, Failure> {
             let goal = SPACE_SHARE * space::mean_width(&solid(*family, *seed));
             let trace = space::run(round.make, *family, *seed, Goal::Hausdorff(goal), 150)?;
             Ok(scaled(trace, goal))
-        })
-        .into_iter()
-        .collect::<Result<_, exploration::ExploreError>>()?;
+        })?;
         let cells = [&in_plane, &in_space].map(|traces| {
             let reached = touches(traces, 1.0);
             let ways: Vec<Option<f64>> = traces.iter().map(|t| t.to(1.0).map(|(_, way)| way)).collect();

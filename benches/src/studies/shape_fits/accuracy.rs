@@ -40,7 +40,7 @@ pub(super) fn accuracy(runs: u64) -> Result<(), Failure> {
         for (count, curves, noise) in
             [(60, false, 1e-3), (60, false, 1e-2), (300, false, 1e-3), (300, true, 1e-3), (300, true, 1e-2)]
         {
-            row(truth, name, family, count, curves, noise, runs)?;
+            crate::print_line(|| row(truth, name, family, count, curves, noise, runs))?;
         }
     }
     Ok(())
@@ -54,7 +54,7 @@ fn row(
     curves: bool,
     noise: f64,
     runs: u64,
-) -> Result<(), Failure> {
+) -> Result<String, Failure> {
     let options = FitOptions { smallest_radius: Some(0.01), ..FitOptions::default() };
     let mut sums = Sums::default();
     let mut fitted = 0;
@@ -97,7 +97,7 @@ fn row(
         format!("{:.3} ({:.3})", sums.nees / n, (2.0 / n / family.parameters() as f64).sqrt())
     };
     let place = if curves { "3 curves" } else { "scattered" };
-    println!(
+    Ok(format!(
         "| {name} | {count} {place} | {noise:e} | {:.3} | {:.3} | {:.3} | {nees} | {} | {} | {:.2} |",
         rms * 1e3,
         bound * 1e3,
@@ -105,6 +105,5 @@ fn row(
         sums.held,
         sums.failed,
         sums.milliseconds / n
-    );
-    Ok(())
+    ))
 }

@@ -27,8 +27,10 @@ pub(super) fn choice(runs: u64) -> Result<(), Failure> {
     println!("|---|---|---|---|---|---|---|---|---|---|");
     for (truth, name, _) in Truth::ALL {
         for (count, noise) in [(30, 1e-2), (100, 1e-2), (100, 1e-3), (300, 1e-3)] {
-            let tally = tally(truth, count, noise, runs)?;
-            println!("| {name} | {count} | {noise:e} | {} |", tally.row(runs));
+            crate::print_line(|| -> Result<String, Failure> {
+                let tally = tally(truth, count, noise, runs)?;
+                Ok(format!("| {name} | {count} | {noise:e} | {} |", tally.row(runs)))
+            })?;
         }
     }
     Ok(())
@@ -129,13 +131,15 @@ pub(super) fn times() -> Result<(), Failure> {
         let normals = normals(count, true, &mut s);
         let contacts: Vec<NoisyContact> =
             if noise > 0.0 { measured(&body, &normals, noise, &mut s)? } else { exact(&body, &normals)? };
-        let start = ThreadTime::now();
-        let choice = ShapeFit::choose(&contacts, &ShapeFamily::candidates(count), &options);
-        let seconds = start.elapsed().as_secs_f64();
-        let chosen =
-            unless_refused(choice)?.map_or_else(|| "refused".to_owned(), |c| c.best.family().to_string());
-        let level = if options.noise_level == NoiseLevel::Stated { "stated" } else { "unknown" };
-        println!("| {name} | {count} | {noise:e}, {level} | {chosen} | {seconds:.2} |");
+        crate::print_line(|| -> Result<String, Failure> {
+            let start = ThreadTime::now();
+            let choice = ShapeFit::choose(&contacts, &ShapeFamily::candidates(count), &options);
+            let seconds = start.elapsed().as_secs_f64();
+            let chosen =
+                unless_refused(choice)?.map_or_else(|| "refused".to_owned(), |c| c.best.family().to_string());
+            let level = if options.noise_level == NoiseLevel::Stated { "stated" } else { "unknown" };
+            Ok(format!("| {name} | {count} | {noise:e}, {level} | {chosen} | {seconds:.2} |"))
+        })?;
     }
     Ok(())
 }

@@ -31,32 +31,34 @@ pub(super) fn incremental() -> Result<(), Failure> {
         ShapeFamily::Harmonics { degree: 4 },
         ShapeFamily::Harmonics { degree: 6 },
     ] {
-        let harmonic = matches!(family, ShapeFamily::Harmonics { .. });
-        let ball = Sphere::new(1.5)?;
-        let body: &dyn SupportFunction = match family {
-            ShapeFamily::Sphere => &ball,
-            _ if harmonic => &rounded,
-            _ => &core,
-        };
-        let mut s = Source::new(3);
-        let normals = normals(1000, false, &mut s);
-        let contacts = measured(body, &normals, 1e-3, &mut s)?;
-        let start = ThreadTime::now();
-        let mut running = IncrementalFit::new(family, FitOptions::default());
-        let mut last = None;
-        for contact in &contacts {
-            last = running.insert(*contact)?.or(last);
-        }
-        let each = start.elapsed().as_secs_f64() * 1e6 / 1000.0;
-        let start = ThreadTime::now();
-        let fit = ShapeFit::nearest(&contacts, family, &FitOptions::default())?;
-        let whole = start.elapsed().as_secs_f64() * 1e3;
-        let error = last.ok_or("no estimate")? - fit.parameters();
-        let distance =
-            fit.covariance().clone().cholesky().map_or(f64::NAN, |c| error.dot(&c.solve(&error)).sqrt());
-        let distance =
-            if family == ShapeFamily::Superquadric { String::new() } else { format!("{distance:.4}") };
-        println!("| {family} | {each:.0} | {whole:.1} | {distance} |");
+        crate::print_line(|| -> Result<String, Failure> {
+            let harmonic = matches!(family, ShapeFamily::Harmonics { .. });
+            let ball = Sphere::new(1.5)?;
+            let body: &dyn SupportFunction = match family {
+                ShapeFamily::Sphere => &ball,
+                _ if harmonic => &rounded,
+                _ => &core,
+            };
+            let mut s = Source::new(3);
+            let normals = normals(1000, false, &mut s);
+            let contacts = measured(body, &normals, 1e-3, &mut s)?;
+            let start = ThreadTime::now();
+            let mut running = IncrementalFit::new(family, FitOptions::default());
+            let mut last = None;
+            for contact in &contacts {
+                last = running.insert(*contact)?.or(last);
+            }
+            let each = start.elapsed().as_secs_f64() * 1e6 / 1000.0;
+            let start = ThreadTime::now();
+            let fit = ShapeFit::nearest(&contacts, family, &FitOptions::default())?;
+            let whole = start.elapsed().as_secs_f64() * 1e3;
+            let error = last.ok_or("no estimate")? - fit.parameters();
+            let distance =
+                fit.covariance().clone().cholesky().map_or(f64::NAN, |c| error.dot(&c.solve(&error)).sqrt());
+            let distance =
+                if family == ShapeFamily::Superquadric { String::new() } else { format!("{distance:.4}") };
+            Ok(format!("| {family} | {each:.0} | {whole:.1} | {distance} |"))
+        })?;
     }
     Ok(())
 }

@@ -30,13 +30,13 @@ pub(super) fn minima(runs: u64) -> Result<(), Failure> {
         for (noise, noise_level) in
             [(1e-3, NoiseLevel::Stated), (1e-2, NoiseLevel::Stated), (1e-2, NoiseLevel::Estimated)]
         {
-            row(count, noise, noise_level, runs)?;
+            crate::print_line(|| row(count, noise, noise_level, runs))?;
         }
     }
     Ok(())
 }
 
-fn row(count: usize, noise: f64, noise_level: NoiseLevel, runs: u64) -> Result<(), Failure> {
+fn row(count: usize, noise: f64, noise_level: NoiseLevel, runs: u64) -> Result<String, Failure> {
     let options = FitOptions { noise_level, ..FitOptions::default() };
     let (mut refused, mut beaten, mut off, mut milliseconds) = (0, 0, 0, 0.0);
     for seed in 0..runs {
@@ -60,11 +60,10 @@ fn row(count: usize, noise: f64, noise_level: NoiseLevel, runs: u64) -> Result<(
         off += usize::from(far.contains(&true));
     }
     let level = if noise_level == NoiseLevel::Stated { "stated" } else { "unknown" };
-    println!(
+    Ok(format!(
         "| {count} | {noise:e}, {level} | {refused} | {beaten} | {off} | {:.0} |",
         milliseconds / runs as f64
-    );
-    Ok(())
+    ))
 }
 
 /// The sum of squares at a body, over points and normals, with the likeliest true normals by Gauss-Newton steps.

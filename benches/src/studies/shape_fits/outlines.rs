@@ -81,22 +81,24 @@ pub(super) fn false_alarms(runs: u64) -> Result<(), Failure> {
     println!("|---|---|---|---|---|");
     for family in [OutlineFamily::Circle, OutlineFamily::Ellipse, OutlineFamily::Fourier { order: 4 }] {
         for count in [12, 60, 600] {
-            let mut alarms = [0; 3];
-            for seed in 0..each {
-                let mut s = Source::new(seed + 50_000);
-                let body = right(family, &mut s)?;
-                let noise = [1e-3, 1e-2, 3e-2][seed as usize % 3];
-                let contacts = measured(body.as_ref(), count, noise, &mut s);
-                for (i, options) in [FitOptions::default(), UNKNOWN].iter().enumerate() {
-                    alarms[i] += u32::from(refused(OutlineFit::of(&contacts, family, options))?);
+            crate::print_line(|| -> Result<String, Failure> {
+                let mut alarms = [0; 3];
+                for seed in 0..each {
+                    let mut s = Source::new(seed + 50_000);
+                    let body = right(family, &mut s)?;
+                    let noise = [1e-3, 1e-2, 3e-2][seed as usize % 3];
+                    let contacts = measured(body.as_ref(), count, noise, &mut s);
+                    for (i, options) in [FitOptions::default(), UNKNOWN].iter().enumerate() {
+                        alarms[i] += u32::from(refused(OutlineFit::of(&contacts, family, options))?);
+                    }
+                    let curve: Vec<ContactSample> = contacts.iter().map(|c| c.contact).collect();
+                    if let Ok(estimated) = estimate_noise(&[curve], 0.95) {
+                        let fit = OutlineFit::of(&estimated.concat(), family, &FitOptions::default());
+                        alarms[2] += u32::from(refused(fit)?);
+                    }
                 }
-                let curve: Vec<ContactSample> = contacts.iter().map(|c| c.contact).collect();
-                if let Ok(estimated) = estimate_noise(&[curve], 0.95) {
-                    let fit = OutlineFit::of(&estimated.concat(), family, &FitOptions::default());
-                    alarms[2] += u32::from(refused(fit)?);
-                }
-            }
-            println!("| {family} | {count} | {} | {} | {} |", alarms[0], alarms[1], alarms[2]);
+                Ok(format!("| {family} | {count} | {} | {} | {} |", alarms[0], alarms[1], alarms[2]))
+            })?;
         }
     }
     Ok(())
@@ -137,20 +139,23 @@ pub(super) fn power(runs: u64) -> Result<(), Failure> {
     println!("|---|---|---|---|---|---|");
     for (name, body) in strangers()? {
         for (count, noise) in [(12, 1e-2), (60, 1e-2), (60, 1e-3), (600, 1e-2), (600, 1e-3)] {
-            let mut row = format!("| {name} | {count} | {noise:e} |");
-            let auto = OutlineFamily::candidates(count);
-            for families in [&[OutlineFamily::Ellipse][..], &[OutlineFamily::Fourier { order: 3 }], &auto] {
-                let mut hits = [0; 2];
-                for seed in 0..runs {
-                    let contacts = measured(body.as_ref(), count, noise, &mut Source::new(seed + 80_000));
-                    for (i, options) in [FitOptions::default(), UNKNOWN].iter().enumerate() {
-                        hits[i] += u32::from(refused(OutlineFit::choose(&contacts, families, options))?);
+            crate::print_line(|| -> Result<String, Failure> {
+                let mut row = format!("| {name} | {count} | {noise:e} |");
+                let auto = OutlineFamily::candidates(count);
+                for families in [&[OutlineFamily::Ellipse][..], &[OutlineFamily::Fourier { order: 3 }], &auto]
+                {
+                    let mut hits = [0; 2];
+                    for seed in 0..runs {
+                        let contacts = measured(body.as_ref(), count, noise, &mut Source::new(seed + 80_000));
+                        for (i, options) in [FitOptions::default(), UNKNOWN].iter().enumerate() {
+                            hits[i] += u32::from(refused(OutlineFit::choose(&contacts, families, options))?);
+                        }
                     }
+                    let [stated, unknown] = hits.map(|h| f64::from(h) / runs as f64);
+                    row += &format!(" {stated:.2}, {unknown:.2} |");
                 }
-                let [stated, unknown] = hits.map(|h| f64::from(h) / runs as f64);
-                row += &format!(" {stated:.2}, {unknown:.2} |");
-            }
-            println!("{row}");
+                Ok(row)
+            })?;
         }
     }
     Ok(())

@@ -48,11 +48,13 @@ pub(crate) fn main() -> Result<(), Failure> {
     for (size, rate) in SIZES {
         for quality in QUALITIES {
             for (name, known) in [("known", true), ("unknown", false)] {
-                let mut tally = Tally::default();
-                for case in some(SCENES, SEED, size, rate, quality, LONGEST)? {
-                    tally.take(&case, &followed(&case, known, |_| true)?, f64::NEG_INFINITY);
-                }
-                println!("| {size} | {}, {} | {name} |{}", quality[0], quality[1], tally.row());
+                crate::print_line(|| -> Result<String, Failure> {
+                    let mut tally = Tally::default();
+                    for case in some(SCENES, SEED, size, rate, quality, LONGEST)? {
+                        tally.take(&case, &followed(&case, known, |_| true)?, f64::NEG_INFINITY);
+                    }
+                    Ok(format!("| {size} | {}, {} | {name} |{}", quality[0], quality[1], tally.row()))
+                })?;
             }
         }
     }
@@ -73,14 +75,16 @@ fn gaps() -> Result<(), Failure> {
     println!("|---|---|---|---|---|---|---|");
     for gap in GAPS {
         for (name, known) in [("known", true), ("unknown", false)] {
-            let mut tally = Tally::default();
-            for case in some(WITH_GAPS, SEED, 0.3, 500.0, QUALITIES[2], LONGEST)? {
-                let from = case.start() + 25.0 * case.natural;
-                let to = from + gap / 1000.0;
-                let estimates = followed(&case, known, |t| !(from..to).contains(&t))?;
-                tally.take(&case, &estimates, to);
-            }
-            println!("| {gap} | {name} |{}", tally.after_gap());
+            crate::print_line(|| -> Result<String, Failure> {
+                let mut tally = Tally::default();
+                for case in some(WITH_GAPS, SEED, 0.3, 500.0, QUALITIES[2], LONGEST)? {
+                    let from = case.start() + 25.0 * case.natural;
+                    let to = from + gap / 1000.0;
+                    let estimates = followed(&case, known, |t| !(from..to).contains(&t))?;
+                    tally.take(&case, &estimates, to);
+                }
+                Ok(format!("| {gap} | {name} |{}", tally.after_gap()))
+            })?;
         }
     }
     Ok(())

@@ -22,16 +22,18 @@ pub(super) fn main() -> Result<(), Failure> {
     for size in SIZES {
         for (name, known) in [("known", true), ("unknown", false)] {
             for case in some(1, SEED, size, RATE, QUALITIES[2], [LONGEST, f64::INFINITY])? {
-                let Paced { mut microseconds, cores, .. } = paced(&case, known)?;
-                microseconds.sort_by(f64::total_cmp);
-                let slow = microseconds.iter().filter(|&&us| us > 1000.0).count();
-                println!(
-                    "| {size} | {name} | {} | {:.1} | {:.0} | {:.0} | {slow} | {cores:.2} |",
-                    microseconds.len(),
-                    quantile(&microseconds, 0.5),
-                    quantile(&microseconds, 0.99),
-                    quantile(&microseconds, 1.0)
-                );
+                crate::print_line(|| -> Result<String, Failure> {
+                    let Paced { mut microseconds, cores, .. } = paced(&case, known)?;
+                    microseconds.sort_by(f64::total_cmp);
+                    let slow = microseconds.iter().filter(|&&us| us > 1000.0).count();
+                    Ok(format!(
+                        "| {size} | {name} | {} | {:.1} | {:.0} | {:.0} | {slow} | {cores:.2} |",
+                        microseconds.len(),
+                        quantile(&microseconds, 0.5),
+                        quantile(&microseconds, 0.99),
+                        quantile(&microseconds, 1.0)
+                    ))
+                })?;
             }
         }
     }

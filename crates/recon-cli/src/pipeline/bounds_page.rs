@@ -1,6 +1,7 @@
 //! The page of bounds, in space and in the plane.
 
 use super::bounds::BoundsResult;
+use super::fitted::unit_of;
 use super::plane::PlanarBounds;
 use super::views::views;
 use glam::DVec3;
@@ -96,18 +97,18 @@ fn verdict(about: &Value, what: &str, closed: bool, contradicts: bool) -> Verdic
 
 fn facts([lower, upper]: [Option<f64>; 2], unit: &'static str, gap: Option<f64>, about: &Value) -> Vec<Fact> {
     let size = |size: Option<f64>| match size {
-        Some(size) => (brief_to(4, size), unit),
+        Some(size) => (brief(size), unit),
         None => ("unbounded".to_owned(), ""),
     };
     let of = |name, (value, unit)| (name, value, unit);
     let mut facts = vec![of("Lower bound", size(lower)), of("Upper bound", size(upper))];
     if let Some((lower, upper)) = lower.zip(upper) {
-        facts.push(("Lower / upper", brief_to(3, lower / upper), ""));
+        facts.push(("Lower / upper", brief_to(4, lower / upper), ""));
     }
-    facts.extend(gap.map(|gap| ("Gap, at most", brief_to(3, gap), "m")));
+    facts.extend(gap.map(|gap| ("Gap, at most", brief(gap), "m")));
     facts.extend(about["confidence"].as_f64().map(|level| ("Confidence", brief_to(4, 100.0 * level), "%")));
     if let Some(volume) = about["concave"]["alpha_volume_m3"].as_f64() {
-        facts.push(("Alpha shape, about", brief_to(4, volume), "m³"));
+        facts.push(("Alpha shape, about", brief(volume), "m³"));
     }
     facts
 }
@@ -194,7 +195,7 @@ fn fit(fit: &Value) -> Vec<Evidence> {
                 name,
                 name,
                 Number(value),
-                "",
+                unit_of(name),
                 &format!("Standard deviation {}.", brief_to(2, std)),
             ));
         }

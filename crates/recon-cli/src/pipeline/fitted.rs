@@ -204,7 +204,9 @@ pub(crate) fn fit_words(report: &Value) -> String {
     for parameter in report["parameters"].as_array().into_iter().flatten().take(NAMED) {
         let of = |name: &str| parameter[name].as_f64().unwrap_or(f64::NAN);
         let name = parameter["name"].as_str().unwrap_or_default();
-        text += &format!("    {name:<20} {} +- {:.1e}\n", brief(of("value")), of("std"));
+        let unit = unit_of(name);
+        let space = if unit.is_empty() { "" } else { " " };
+        text += &format!("    {name:<20} {} +- {:.1e}{space}{unit}\n", brief(of("value")), of("std"));
     }
     let count = report["parameters"].as_array().map_or(0, Vec::len);
     if count > NAMED {
@@ -218,6 +220,16 @@ pub(crate) fn fit_words(report: &Value) -> String {
         );
     }
     text
+}
+
+/// The unit of a parameter of that name, of any family.
+pub(crate) fn unit_of(name: &str) -> &'static str {
+    match name {
+        _ if name.starts_with("exponent") => "",
+        _ if name.starts_with("turn") => "rad",
+        // Places, radii, semi-axes, and what waves and harmonics add to a support function.
+        _ => "m",
+    }
 }
 
 /// Parameters that are told one by one.

@@ -263,7 +263,7 @@ impl PlanarMotion {
         );
         let mut line = |name: &str, value: String| text += &format!("  {name:<22} {value}\n");
         let as_stated = |(value, deviation): (f64, f64), unit: &str| match self.known_body {
-            true => format!("{} {unit} as stated", brief(value)),
+            true => format!("{} {unit}, as stated", brief(value)),
             false => format!("{} +- {} {unit}", brief(value), brief(deviation)),
         };
         line("size, about", format!("{} m (lengths are in metres)", brief_to(3, size(&self.log))));

@@ -93,7 +93,8 @@ pub(crate) fn load(from: LogSource) -> Result<LoadedLog, CliError> {
         let log = AnyLog::Contacts(made.log);
         return Ok(LoadedLog { log, notes: made.notes, warnings: made.warnings, stand });
     }
-    if mapping.is_some() {
+    // What is not there at all is named by the reader.
+    if mapping.is_some() && path.exists() {
         return Err(CliError::MappingOfNoBag { path: path.to_owned() });
     }
     Ok(read_any_log(path, scene.palm_setups().as_deref())?.into())

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use recon_io::EvidenceValue::{Count, Number, Text};
 use recon_io::{
     Evidence, EvidenceValue, FigureCurve, FigurePanel, FiguresPage, Level, MotionState, TriangleMesh,
-    Verdict, brief_to, status_in_words,
+    Verdict, brief, brief_to, status_in_words,
 };
 
 /// Points on an ellipsoid by which it is drawn: its outline is off by less than a thousandth of its size.
@@ -43,9 +43,9 @@ fn facts(made: &WithoutForces) -> Vec<(&'static str, String, &'static str)> {
     let axes = made.found.shape.semi_axes.to_array().map(|axis| brief_to(4, axis)).join(", ");
     let mut facts = vec![("Time", brief_to(4, over), "s"), ("Semi-axes", axes, "m")];
     if let Some(bounded) = &made.bounded {
-        facts.push(("Lower bound", brief_to(4, bounded.drawn.lower.volume), "m³"));
+        facts.push(("Lower bound", brief(bounded.drawn.lower.volume), "m³"));
         facts.push(match &bounded.drawn.upper {
-            Some(upper) => ("Upper bound", brief_to(4, upper.volume), "m³"),
+            Some(upper) => ("Upper bound", brief(upper.volume), "m³"),
             None => ("Upper bound", "unbounded".to_owned(), ""),
         });
     }

@@ -160,6 +160,11 @@ fn bags_that_cannot_be_used_say_why_and_leave_nothing() {
     let words = ["clocks disagree", "/palm_1/contact", "ahead = 0.00299"];
     refused(&["reconstruct", &s4, "-m", "s4.toml", "-s", "fingertips.toml", "-o", "out"], 3, &words);
     refused(&["reconstruct", &whole, "-s", "scene.toml"], 3, &["--mapping", "recon inspect"]);
+    refused(
+        &["reconstruct", "none.mcap", "-s", "scene.toml", "-m", "map.toml"],
+        3,
+        &["none.mcap", "cannot be read"],
+    );
     refused(&["reconstruct", "map.toml", "-m", "map.toml", "-s", "scene.toml"], 2, &["MCAP", "is none"]);
     refused(
         &["follow", &s4, "-s", "scene.toml", "--contact-noise", "1e-3", "--force-noise", "1e-3"],

@@ -121,6 +121,9 @@ fn killed_in_the_middle_it_goes_on_to_the_same_table() {
     child.kill().unwrap(); // SIGKILL
     child.wait().unwrap();
     assert!(!scratch.path().join("out/results.csv").exists(), "no table of a part");
+    // As if it had been killed while it wrote one of a log that is skipped now, too.
+    fs::create_dir(scratch.path().join("out/.spoiled.partial-1")).unwrap();
+    scratch.write("out/.spoiled.partial-1/.in-use", "").write("out/.spoiled.partial-1/motion.csv", "half");
     let (code, said) = batch(&scratch, &["--jobs", "2"]);
     let before = said["done_before"].as_u64().unwrap();
     assert!(code == Some(4) && (1..4).contains(&before), "{before}");

@@ -1,5 +1,5 @@
 use super::place::{input_at, is_block_device, is_open_file, last_link, resolved};
-use super::{OutputError, sibling};
+use super::{OutputError, left, sibling};
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, BufWriter, LineWriter, Write};
 use std::path::{Path, PathBuf};
@@ -59,8 +59,10 @@ impl FileTarget {
             }
             Kind::Regular { place, permissions } => (place, permissions),
         };
-        let temporary = sibling(&target, "partial")?;
+        left::clear_beside(&target);
+        let temporary = sibling(&target)?;
         let file = File::create(&temporary).map_err(OutputError::io("create", &named))?;
+        let _ = file.try_lock();
         let writer = Some(Writer::Partial(BufWriter::new(file)));
         // Dropped, this removes the file: from here on nothing is left by an error.
         let made = AtomicFile { named, writer, place: Some(Place { target, temporary: temporary.clone() }) };

@@ -1,7 +1,8 @@
 use super::checksum::Summed;
+use super::left::Held;
 use super::manifest::{Contents, Entry, MANIFEST, Manifest, STAGE};
 use super::place::{input_in, resolved};
-use super::{OutputError, sibling};
+use super::{OutputError, left, sibling};
 use crate::check::{CheckError, certify};
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -60,14 +61,17 @@ impl FolderTarget {
     pub fn begin(self) -> Result<OutputFolder, OutputError> {
         let temporary = if self.place.is_dir() {
             // Within the folder: it may be a file system of its own, and what stands beside results stays untouched.
+            left::clear(&self.place, |name| name.starts_with(STAGE));
             self.place.join(format!("{STAGE}-{}", std::process::id()))
         } else {
             let parent = self.place.parent().unwrap_or(Path::new("/"));
             fs::create_dir_all(parent).map_err(OutputError::io("create", parent))?;
-            sibling(&self.place, "partial")?
+            left::clear_beside(&self.place);
+            sibling(&self.place)?
         };
-        fs::create_dir(&temporary).map_err(OutputError::io("create", &self.named))?;
-        Ok(OutputFolder { target: self, temporary, files: Vec::new() })
+        let made = fs::create_dir(&temporary).and_then(|()| Held::new(&temporary));
+        let held = made.map_err(OutputError::io("create", &self.named))?;
+        Ok(OutputFolder { target: self, temporary, held, files: Vec::new() })
     }
 
     /// What stands there now, apart from the hidden folder of new files.
@@ -89,6 +93,7 @@ const NAMED: usize = 5;
 pub struct OutputFolder {
     target: FolderTarget,
     temporary: PathBuf,
+    held: Held,
     files: Vec<Entry>,
 }
 
@@ -146,6 +151,7 @@ impl OutputFolder {
         })?;
         let FolderTarget { named, place, .. } = &self.target;
         if !self.temporary.starts_with(place) {
+            self.held.release().map_err(OutputError::io("put in place", named))?;
             return fs::rename(&self.temporary, place).map_err(OutputError::io("put in place", named));
         }
         // Whatever has appeared or changed since the start is not recon's either.
@@ -184,13 +190,17 @@ fn exchange(stage: &Path, place: &Path, old: &[String], new: &[&str]) -> io::Res
     Ok(())
 }
 
+/// Whether files of an earlier run wait in a hidden folder.
+pub(super) fn is_stranded(stage: &Path) -> bool {
+    fs::read_dir(stage.join(EARLIER)).is_ok_and(|mut files| files.next().is_some())
+}
+
 impl Drop for OutputFolder {
     fn drop(&mut self) {
         // After a commit there is nothing under this name; otherwise there is no one left to tell of a failure. What
         // could not be moved back to its place is not removed.
-        let stranded =
-            fs::read_dir(self.temporary.join(EARLIER)).is_ok_and(|mut files| files.next().is_some());
-        if !stranded {
+        if !is_stranded(&self.temporary) {
+            let _ = self.held.release();
             let _ = fs::remove_dir_all(&self.temporary);
         }
     }

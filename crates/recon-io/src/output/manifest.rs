@@ -1,4 +1,5 @@
 use super::checksum::Checksum;
+use super::left::is_left;
 use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -113,7 +114,12 @@ impl Contents {
                     contents.foreign.push((name, " (without the manifest.json that recon writes beside it)"));
                 }
                 _ if name.to_string_lossy().starts_with(STAGE) => {
-                    contents.foreign.push((name, " (of a run of recon that was cut off or still goes on)"));
+                    // What nobody uses any more goes when the next run begins.
+                    if !is_left(&folder.join(&name)) {
+                        contents
+                            .foreign
+                            .push((name, " (of a run of recon that still goes on or was cut off)"));
+                    }
                 }
                 _ => contents.foreign.push((name, "")),
             }

@@ -3,6 +3,7 @@
 mod checksum;
 mod file;
 mod folder;
+mod left;
 pub(crate) mod manifest;
 mod place;
 #[cfg(test)]
@@ -13,6 +14,7 @@ pub(crate) use checksum::Checksum;
 pub use checksum::{Summed, fingerprint};
 pub use file::{AtomicFile, FileTarget};
 pub use folder::{FolderTarget, OutputFolder};
+pub use left::remove_left_behind;
 pub use place::is_standard_output;
 
 use std::path::{Path, PathBuf};
@@ -115,10 +117,7 @@ impl OutputError {
 }
 
 /// A name beside `target`, on the same file system, that no other process uses.
-fn sibling(target: &Path, purpose: &str) -> Result<PathBuf, OutputError> {
+fn sibling(target: &Path) -> Result<PathBuf, OutputError> {
     let name = target.file_name().ok_or_else(|| OutputError::NoName { path: target.to_owned() })?;
-    let mut hidden = std::ffi::OsString::from(".");
-    hidden.push(name);
-    hidden.push(format!(".{purpose}-{}", std::process::id()));
-    Ok(target.with_file_name(hidden))
+    Ok(target.with_file_name(left::partial(name)))
 }

@@ -3,6 +3,8 @@ use super::*;
 use std::fs;
 use std::io::{self, Write};
 
+mod killed;
+
 /// A folder of this test's own, removed at its end.
 struct Scratch(PathBuf);
 

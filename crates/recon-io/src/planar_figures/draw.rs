@@ -1,8 +1,14 @@
 //! Lines, bands and ticks of a panel.
 
-use super::{COLOURS, FigureCurve, Frame, MARGIN, SIZE, round_step};
+use super::{COLOURS, FigureCurve, FigurePanel, Frame, MARGIN, SIZE, escape, round_step};
 use crate::number::on_scale;
 use std::fmt::Write as _;
+
+/// Width of a character in the legend, px: generous for a proportional font of 12 px.
+const CHARACTER: f64 = 7.0;
+/// The same of a title, and the space between two names.
+const BOLD: f64 = 7.6;
+const BETWEEN: f64 = 10.0;
 
 pub(super) fn finite(point: &&[f64; 2]) -> bool {
     point.iter().all(|v| v.is_finite())
@@ -112,4 +118,29 @@ fn label(value: f64, step: f64) -> String {
     } else {
         format!("{rounded}")
     }
+}
+
+/// Title and names of the curves, where none of these runs: in one line if there is room for it.
+pub(super) fn names_of(panel: &FigurePanel) -> String {
+    let width = |text: &str, character: f64| character * text.chars().count() as f64;
+    let legend: f64 = panel.curves.iter().map(|curve| width(&curve.name, CHARACTER) + BETWEEN).sum();
+    let room = SIZE[0] - MARGIN[0] - MARGIN[2];
+    let [title_y, legend_y] =
+        if width(&panel.title, BOLD) + legend > room { [12.0, 26.0] } else { [18.0, 18.0] };
+    let mut out = format!(
+        "<text class=\"text\" x=\"{}\" y=\"{title_y}\" font-weight=\"bold\">{}</text>\n",
+        MARGIN[0],
+        escape(&panel.title)
+    );
+    // The last one outermost.
+    let mut x = SIZE[0] - MARGIN[2];
+    for (k, curve) in panel.curves.iter().enumerate().rev() {
+        let (name, colour) = (escape(&curve.name), k % COLOURS);
+        let _ = writeln!(
+            out,
+            "<text class=\"c{colour}\" fill=\"currentColor\" x=\"{x}\" y=\"{legend_y}\" text-anchor=\"end\">{name}</text>"
+        );
+        x -= width(&curve.name, CHARACTER) + BETWEEN;
+    }
+    out
 }

@@ -9,7 +9,7 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::interrupt::{asked, check, while_writing};
 use one::{Row, State, done_before, estimate_one};
-use recon_io::{FileTarget, OutputError, write_batch_report};
+use recon_io::{FileTarget, OutputError, remove_left_behind, write_batch_report};
 use serde_json::json;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -50,6 +50,8 @@ pub(crate) fn run(args: &BatchArgs, console: &Console) -> Result<Outcome, CliErr
         work();
     });
     check()?;
+    // Of logs that are skipped, or are no longer there, as well: no run will come past their folders.
+    remove_left_behind(&args.output);
     let rows: Vec<Row> = rows.into_iter().filter_map(|row| row.into_inner().ok().flatten()).collect();
     let mut page = Vec::new();
     write_batch_report(&page::page(&args.folder, &rows), &mut page).map_err(CliError::Page)?;

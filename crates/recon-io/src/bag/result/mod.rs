@@ -1,4 +1,4 @@
-//! Results as a bag, which Foxglove shows as it is (motion, contacts, forces, bounds) and Rerun in part (transforms and points).
+//! Results as a bag, which Foxglove and Rerun show as it is: motion, contacts, forces, bounds; Rerun, which has no markers, as frames and points.
 
 mod definitions;
 mod encode;
@@ -17,6 +17,8 @@ const OBJECT: &str = "object";
 const MOST_MARKERS: f64 = 100.0;
 /// Length of the largest force's arrow, as a share of the reach of the contacts.
 const LONGEST_ARROW: f64 = 0.5;
+/// Points by which an arrow is drawn for viewers without markers.
+const ALONG_ARROW: u32 = 16;
 /// Nanoseconds in a second.
 const SECOND: i64 = 1_000_000_000;
 
@@ -65,7 +67,8 @@ impl ResultBag<'_> {
     /// The bag, whole: profile `ros2`, messages in CDR, chunks packed by zstd.
     ///
     /// Topics: `/tf` (`object` in `world`), `/recon/pose` with covariance, `/recon/palm_i/contact` (`recon_msgs/msg/Contact`), `/recon/markers`
-    /// (contacts and forces, at most 100 a second), `/recon/contacts` (their points, as often, for viewers without markers), `/recon/bounds` (meshes), `/recon/contact_curves`, `/recon/lower_bound` and
+    /// (contacts and forces, at most 100 a second), `/recon/contacts` and `/recon/forces` (their points and
+    /// points along the arrows, as often, for viewers without markers), `/recon/bounds` (meshes), `/recon/contact_curves`, `/recon/lower_bound` and
     /// `/recon/upper_bound` (their points).
     ///
     /// # Errors
@@ -86,8 +89,11 @@ impl ResultBag<'_> {
             if k % stride == 0 {
                 let markers = self.markers(k, time, scale);
                 bag.write("/recon/markers", Definition::MarkerArray, time, &encode::markers(&markers))?;
-                let points = encode::cloud(Header { time, frame: "world" }, &self.touched(k));
-                bag.write("/recon/contacts", Definition::PointCloud2, time, &points)?;
+                let clouds = [("contacts", self.touched(k)), ("forces", self.along_arrows(k, scale))];
+                for (name, points) in clouds {
+                    let cloud = encode::cloud(Header { time, frame: "world" }, &points);
+                    bag.write(&format!("/recon/{name}"), Definition::PointCloud2, time, &cloud)?;
+                }
             }
         }
         bag.to.finish().map_err(io::Error::other)?;
@@ -143,6 +149,17 @@ impl ResultBag<'_> {
     fn touched(&self, k: usize) -> Vec<DVec3> {
         let contacts = self.contacts.iter().filter_map(|palm| palm.get(k).copied().flatten());
         contacts.map(|contact| self.origin + contact.p_WC).collect()
+    }
+
+    /// Points from the tail of each force's arrow to where it pushes.
+    fn along_arrows(&self, k: usize, scale: f64) -> Vec<DVec3> {
+        let contacts = self.contacts.iter().filter_map(|palm| palm.get(k).copied().flatten());
+        let arrow = |contact: ResultContact| {
+            let force = contact.force.filter(|force| *force != DVec3::ZERO)?;
+            let at = move |j: u32| (f64::from(j) / f64::from(ALONG_ARROW) - 1.0) * scale * force;
+            Some((0..=ALONG_ARROW).map(move |j| self.origin + contact.p_WC + at(j)))
+        };
+        contacts.filter_map(arrow).flatten().collect()
     }
 
     /// A ball at each contact and an arrow for its force; where there is none, what was there is taken away.

@@ -43,6 +43,7 @@ fn results_read_back() {
         ("/recon/bounds", 1),
         ("/recon/contact_curves", 1),
         ("/recon/contacts", 10),
+        ("/recon/forces", 10),
         ("/recon/lower_bound", 1),
         ("/recon/markers", 10),
         ("/recon/palm_1/contact", 10),
@@ -57,6 +58,18 @@ fn results_read_back() {
     let Reading::Transforms(transforms) = &bag.topics["/tf"].messages[3].reading else { panic!() };
     assert_eq!((&*transforms[0].parent, &*transforms[0].child), ("world", "object"));
     assert_eq!(transforms[0].pose[..3], [0.1 * 3.0, 0.0, 6.0]);
+}
+
+/// The largest force is half of the reach of the contacts long, and ends where it pushes.
+#[test]
+fn forces_are_drawn_by_points_too() {
+    let times = [0.0, 0.1, 0.6];
+    let mesh = tetrahedron();
+    let bag = result(&times, &mesh);
+    let points = bag.along_arrows(1, bag.arrow_scale());
+    assert_eq!(points.len(), 17);
+    assert_eq!([points[0], points[16]], [DVec3::new(0.1, 0.0, 4.5), DVec3::new(0.1, 0.0, 5.0)]);
+    assert!(bag.along_arrows(2, bag.arrow_scale()).is_empty(), "nothing is touched");
 }
 
 /// The contact message of our own is a source of logs: of a palm at rest under the object.
