@@ -27,6 +27,7 @@ mod contact_modes_estimated;
 mod contact_wedging;
 mod contour;
 mod exported_objects;
+mod least_model;
 mod mode_bank;
 mod mode_switches;
 mod no_force;
@@ -80,6 +81,7 @@ const STUDIES: &[(&str, Run)] = &[
     ("contact_wedging", || in_words(contact_wedging::main())),
     ("contour", || in_words(contour::main())),
     ("exported_objects", || in_words(exported_objects::main())),
+    ("least_model", || in_words(least_model::main())),
     ("contact_modes_estimated", || in_words(contact_modes_estimated::main())),
     ("mode_bank", || in_words(mode_bank::main())),
     ("mode_switches", || in_words(mode_switches::main())),
