@@ -22,6 +22,9 @@ pub(super) struct Logged {
     pub(super) size: f64,
     /// Samples in a natural time.
     pub(super) density: f64,
+    /// Whether palms rub, and whether all is in a plane.
+    pub(super) rubs: bool,
+    pub(super) is_planar: bool,
 }
 
 /// One of a kind, from 0; none where there is no motion of ten natural times.
@@ -29,9 +32,9 @@ pub(super) fn logged(kind: usize, seed: u64) -> Result<Option<Logged>, Failure> 
     let mut random = Random::new(seed ^ 0xBEEF);
     let Some(of) = scene(kind, seed)? else { return Ok(None) };
     let natural = (of.size / G).sqrt();
-    let density = 15.0 * 60_f64.powf(random.within(0.0, 1.0));
-    let lasts = random.within(10.0, 18.0);
-    let share = 1e-2 * 0.01_f64.powf(random.within(0.0, 1.0));
+    let density = 20.0 * 50_f64.powf(random.within(0.0, 1.0));
+    let lasts = random.within(8.0, 14.0);
+    let share = 2e-3 * 0.025_f64.powf(random.within(0.0, 1.0));
     let times = SampleTimes { duration: lasts * natural, rate: density / natural };
     let Some((exact, mass, weight)) = exact(&of, times)? else { return Ok(None) };
     let [contact, force] = [share * of.size, 3.0 * share * weight];
@@ -49,9 +52,9 @@ pub(super) fn logged(kind: usize, seed: u64) -> Result<Option<Logged>, Failure> 
     let floor = 3e-5 * (G * of.size).sqrt();
     let noise = ContactNoiseLevel { contact, force_fixed: force, force_share: 0.0, impulse: None, floor };
     let options = ContactOptions { body: Some(mass), suspects: true, ..ContactOptions::new(noise, G) };
-    let truth = truth.unwrap_or_default().iter().map(|state| *state).collect();
+    let truth = truth.unwrap_or_default();
     let size = contact_size(&log);
-    Ok(Some(Logged { kind: of.kind, log, options, truth, size, density }))
+    Ok(Some(Logged { kind: of.kind, log, options, truth, size, density, rubs: of.rubs(), is_planar: matches!(of.world, World::Plane { .. }) }))
 }
 
 fn exact(of: &Scene, times: SampleTimes) -> Result<Option<(ContactLog, MassProperties, f64)>, Failure> {

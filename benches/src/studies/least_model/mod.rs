@@ -1,95 +1,107 @@
-//! Exploration.
+//! The least model that serves, on scenes drawn by a seed: whether the wanted accuracy is reached, and what that costs beside the cheapest found by
+//! trying all.
+//!
+//! Usage: `least_model [SCENES] [SEED]` (100 by default: half of them simulated, half of them logs to estimate from).
+
+mod estimates;
+mod logs;
+mod motions;
+mod picture;
 mod scenes;
-use glam::{DQuat, DVec3};
-use scenes::{World, scene};
-use std::time::Instant;
 
 type Failure = Box<dyn std::error::Error>;
 
-fn run(world: &World, times: recon::object_dynamics::SampleTimes, tol: f64) -> Result<(Vec<(DVec3, DQuat)>, usize, usize), Failure> {
-    Ok(match world {
-        World::Space { scene, start } => {
-            let run = scene.simulate(start, times, tol)?;
-            (run.instants.iter().map(|i| (i.state.body.p_WCm, i.state.body.R_WO)).collect(), run.statistics.evaluations, run.events.len())
-        }
-        World::Plane { scene, start } => {
-            let run = scene.simulate(start, &times.all()?, tol)?;
-            (run.instants.iter().map(|i| (DVec3::new(i.body.p_WCm.x, 0.0, i.body.p_WCm.y), DQuat::from_rotation_y(-i.body.phi0))).collect(), run.statistics.evaluations, run.events.len())
-        }
-    })
-}
+/// Seed of the scenes, on which nothing was set.
+const SEED: u64 = 77_000;
 
-fn off(a: &[(DVec3, DQuat)], b: &[(DVec3, DQuat)], size: f64) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a.0.distance(b.0) / size).max(a.1.angle_between(b.1))).fold(0.0, f64::max)
+/// What came of a scene.
+pub(crate) struct Outcome {
+    kind: &'static str,
+    wanted: f64,
+    /// Error against the truth, and what was stated of it.
+    error: f64,
+    stated: f64,
+    is_reached: bool,
+    /// Processor time of what was chosen, of all that led to it and of the cheapest that was found to reach the accuracy, ms.
+    chosen: f64,
+    all: f64,
+    cheapest: f64,
+    /// What was chosen, and what was the cheapest.
+    what: [String; 2],
 }
 
 pub(crate) fn main() -> Result<(), Failure> {
-    if crate::words().next().as_deref() == Some("b") { return logs(); }
-    for kind in 0..3 {
-        for seed in 1..8 {
-            let Some(of) = scene(kind, seed)? else { continue };
-            let Ok(truth) = run(&of.world, of.times, 3e-14) else { println!("{kind} {seed} no truth"); continue };
-            println!("{} {seed} samples {} of {} events {}", of.kind, truth.0.len(), of.times.duration * of.times.rate, truth.2);
-            for e in 2..13 {
-                let tol = 10f64.powi(-e);
-                let clock = Instant::now();
-                let Ok(made) = run(&of.world, of.times, tol) else { println!("  {tol:e} failed"); continue };
-                let us = clock.elapsed().as_secs_f64() * 1e6;
-                let n = truth.0.len();
-                let q = |k: usize| off(&made.0[..n * k / 8], &truth.0, of.size);
-                println!("  {tol:e} {:>6} ev {us:>8.0} us  err/tol: 1/8 {:.1e} 1/4 {:.1e} 1/2 {:.1e} all {:.1e}  err {:.1e}", made.1, q(1) / tol, q(2) / tol, q(4) / tol, q(8) / tol, q(8));
-            }
-        }
-    }
+    let count: usize = crate::words().next().map_or(Ok(100), |word| word.parse())?;
+    let seed: u64 = crate::words().nth(1).map_or(Ok(SEED), |word| word.parse())?;
+    println!("# The least model that serves\n\nMade by `cargo xtask study least_model {count} {seed}`.\n");
+    println!("{}", include_str!("about.md"));
+    let motions = motions::some(count / 2, seed)?;
+    table("Simulations", &motions);
+    let estimates = estimates::some(count - count / 2, seed)?;
+    table("Estimates", &estimates);
+    picture::write(&motions, &estimates)?;
+    println!("\n![Cost beside the cheapest](charts/least-model.svg)");
     Ok(())
 }
 
-use crate::whole_logs::body;
-use cpu_time::ProcessTime;
-use recon::object_dynamics::{ContactLog, SensorLog};
-use recon::observer::{ContactEstimate, estimate_contacts};
-
-fn every(log: &SensorLog, k: usize) -> Result<SensorLog, Failure> {
-    Ok(SensorLog::new(log.samples().iter().copied().step_by(k).collect(), None)?)
+/// Says how far it is.
+fn progress(of: &Outcome) {
+    eprintln!(
+        "{}: {:.1e} wanted, {:.1e} off, {:.2} of the cheapest ({} beside {})",
+        of.kind,
+        of.wanted,
+        of.error,
+        of.chosen / of.cheapest,
+        of.what[0],
+        of.what[1]
+    );
 }
 
-fn bound(found: &ContactEstimate, size: f64) -> [f64; 2] {
-    let n = found.deviations.len() as f64;
-    [0, 3].map(|i| (found.deviations.iter().map(|d| d[i].length_squared()).sum::<f64>() / n).sqrt() / if i == 0 { size } else { 1.0 })
-}
-
-pub(crate) fn logs() -> Result<(), Failure> {
-    for (noise, rate, seconds) in [(0.001, 1000.0, 3.0), (0.01, 1000.0, 3.0), (0.0, 1000.0, 3.0), (1e-5, 1000.0, 3.0)] {
-        for of in &body::some(4, 7)? {
-            let Some((log, truth)) = of.log(noise, rate, seconds)? else { continue };
-            println!("noise {noise} size {} samples {} natural times {:.1}", of.size, log.samples().len(), log.duration() / (of.size / 9.81).sqrt());
-            for known in [true, false] {
-                for k in [1, 2, 4, 8, 16, 32, 64] {
-                    let part = ContactLog::try_from(&every(&log, k)?)?;
-                    let mut options = crate::whole_logs::options(of, noise, known.then_some(of.mass));
-                    if noise == 0.0 {
-                        options.noise = recon::observer::ContactNoiseLevel::guessed(&part, 9.81, None).ok_or("no")?;
-                    }
-                    let mut line = format!("  known {known} every {k:>2}: ");
-                    for suspects in [false, true] {
-                        options.suspects = suspects;
-                        let clock = ProcessTime::now();
-                        let found = estimate_contacts(&part, None, &options);
-                        let ms = clock.elapsed().as_secs_f64() * 1e3;
-                        let Ok(found) = found else { line += "none"; continue };
-                        if suspects { line += &format!(" with suspects {ms:.0} ms"); continue; }
-                        let n = found.states.len() as f64;
-                        let p = (found.states.iter().zip(truth.iter().step_by(k)).map(|(s, t)| s.p_WCm.distance_squared(t.p_WCm)).sum::<f64>() / n).sqrt() / of.size;
-                        let t0 = truth[0].R_WO;
-                        let f0 = found.states[0].R_WO;
-                        let q = (found.states.iter().zip(truth.iter().step_by(k)).map(|(s, t)| (s.R_WO * f0.inverse()).angle_between(t.R_WO * t0.inverse()).powi(2)).sum::<f64>() / n).sqrt();
-                        let [bp, bq] = bound(&found, of.size);
-                        line += &format!("{:>5.0} ms nodes {:>4} it {:>3} bound {bp:.1e} {bq:.1e} err {p:.1e} {q:.1e} {}", ms, found.evidence.nodes, found.evidence.iterations[1], if found.reliability.is_reliable() { "" } else { "UNRELIABLE" });
-                    }
-                    println!("{line}");
-                }
-            }
-        }
+fn table(name: &str, all: &[Outcome]) {
+    println!("\n## {name}\n");
+    println!(
+        "| scenes | runs | reached | said so | wrong in silence | cost over the cheapest: median | 90 % | largest | within twice | with all trials: median | 90 % |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    let mut kinds: Vec<&str> = all.iter().map(|of| of.kind).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    for kind in kinds {
+        row(kind, &all.iter().filter(|of| of.kind == kind).collect::<Vec<_>>());
     }
-    Ok(())
+    row("all", &all.iter().collect::<Vec<_>>());
+    let missed: Vec<&Outcome> =
+        all.iter().filter(|of| of.error > of.wanted || of.chosen > 2.0 * of.cheapest).collect();
+    if !missed.is_empty() {
+        println!("\nNot reached, or dearer than twice the cheapest:\n");
+    }
+    for of in missed {
+        println!(
+            "- {}: {:.1e} wanted, {:.1e} stated, {:.1e} off; {} in {:.2} ms, cheapest {} in {:.2} ms",
+            of.kind, of.wanted, of.stated, of.error, of.what[0], of.chosen, of.what[1], of.cheapest
+        );
+    }
+}
+
+fn row(name: &str, all: &[&Outcome]) {
+    let count = |is: &dyn Fn(&Outcome) -> bool| all.iter().filter(|of| is(of)).count();
+    let share = |mut ratios: Vec<f64>, p: f64| {
+        ratios.sort_by(f64::total_cmp);
+        ratios.get(((ratios.len() as f64 - 1.0) * p) as usize).copied().unwrap_or(f64::NAN)
+    };
+    let own = || all.iter().filter(|of| of.cheapest.is_finite()).map(|of| of.chosen / of.cheapest).collect::<Vec<_>>();
+    let whole = || all.iter().filter(|of| of.cheapest.is_finite()).map(|of| of.all / of.cheapest).collect::<Vec<_>>();
+    println!(
+        "| {name} | {} | {} | {} | {} | {:.2} | {:.2} | {:.2} | {} | {:.2} | {:.2} |",
+        all.len(),
+        count(&|of| of.error <= of.wanted),
+        count(&|of| of.is_reached),
+        count(&|of| of.is_reached && of.error > of.wanted),
+        share(own(), 0.5),
+        share(own(), 0.9),
+        share(own(), 1.0),
+        count(&|of| of.chosen <= 2.0 * of.cheapest),
+        share(whole(), 0.5),
+        share(whole(), 0.9),
+    );
 }

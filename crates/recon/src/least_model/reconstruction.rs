@@ -14,12 +14,13 @@ use std::time::Instant;
 /// of all weighted sums of squares with one mean a single one goes farthest (Szekely and Bakirov 2003), so that it is the
 /// 0.9875 quantile of a normal number. Of position and orientation both stay below with 95 %.
 const QUANTILE: f64 = 2.2414;
-/// Samples in a natural time from which on cost grows with their number; with 10 and fewer fits are lost and refused.
-const DENSE: f64 = 60.0;
+/// Samples in a natural time that are left: with twice as many cost grows with their number, with fewer contacts are no longer averaged where they
+/// are noisy, which takes five times as long.
+const DENSE: f64 = 250.0;
 /// How much better than predicted a bound is asked for, as the one at another thinning scatters.
 const MARGIN: f64 = 1.15;
-/// What a known body makes of a bound, at best: 0.6 was seen.
-const BETTER_KNOWN: f64 = 0.6;
+/// What a known body makes of a bound, at best: 0.2 was seen.
+const BETTER_KNOWN: f64 = 0.2;
 /// Estimates at most.
 const TRIALS: usize = 6;
 
@@ -80,7 +81,7 @@ struct Trial {
 }
 
 /// The cheapest estimate of a log that states an accuracy as good as `wanted`, or the best there is: begun with what costs least (mass and
-/// inertia unknown, some sixty samples in a natural time, no friction and no third dimension where tests find neither), and going on to
+/// inertia unknown, some hundreds of samples in a natural time, no friction and no third dimension where tests find neither), and going on to
 /// what costs more where the stated accuracy is not enough or the estimate is not to be relied on. `options.body` is the body as it is stated, if it is.
 ///
 /// # Errors
@@ -213,32 +214,31 @@ impl<'a> Search<'a> {
         found.filter(|setting| !tried(setting))
     }
 
+    /// What else could be known or modelled, the likeliest first.
     fn richer(&self, of: Setting) -> Option<Setting> {
-        let could_be_known = self.options.body.is_some() && !of.known;
-        if of.planar && !self.options.planar {
-            Some(Setting { planar: false, ..of })
+        if self.options.body.is_some() && !of.known {
+            Some(Setting { known: true, ..of })
         } else if of.frictionless {
             Some(Setting { frictionless: false, ..of })
-        } else if of.every > 1 {
-            Some(Setting { every: 1, ..of })
+        } else if of.planar && !self.options.planar {
+            Some(Setting { planar: false, ..of })
         } else {
-            could_be_known.then_some(Setting { known: true, ..of })
+            (of.every > 1).then_some(Setting { every: 1, ..of })
         }
     }
 
+    /// What is known better, by the body as it is stated where that may be enough, else by more samples.
     fn nearer(&self, of: Setting, accuracy: f64) -> Option<Setting> {
-        let could_be_known = self.options.body.is_some() && !of.known;
         let wanted = self.wanted.get();
-        if of.every == 1 {
-            let worth = could_be_known && BETTER_KNOWN * accuracy <= wanted;
-            return worth.then_some(Setting { known: true, ..of });
-        }
         // White noise: a bound goes with the root of the time between samples.
         let short = MARGIN * accuracy / wanted;
         let needed = (of.every as f64 / (short * short)) as usize;
+        let known = self.options.body.is_some() && !of.known;
         let of_all = accuracy / (of.every as f64).sqrt();
-        let known = could_be_known && of_all > wanted && BETTER_KNOWN * of_all <= wanted;
-        Some(Setting { every: needed.clamp(1, of.every - 1), known: of.known || known, ..of })
+        if known && 2 * needed < of.every.max(2) && BETTER_KNOWN * of_all <= wanted {
+            return Some(Setting { known: true, ..of });
+        }
+        (of.every > 1).then(|| Setting { every: needed.clamp(1, of.every - 1), ..of })
     }
 
     fn choice(&self, chosen: usize, estimate: &ContactEstimate, seconds: f64) -> Choice {
