@@ -11,6 +11,7 @@ mod reconstruction;
 mod simulation;
 mod thinned;
 mod three_planes;
+mod words;
 
 pub use accuracy::{Accuracy, AccuracyError};
 pub use choice::{Alternative, Choice, Decision, Evidence, Model, Question};
@@ -18,4 +19,4 @@ pub use left_out::{is_frictionless, is_planar, out_of_balance};
 pub use reconstruction::{LeastEstimate, contact_size, least_estimate, stated_accuracy};
 pub use simulation::{Least, Pose, least_tolerance};
 pub use thinned::one_of;
-pub use three_planes::{LeastMotion, body_size, least_motion};
+pub use three_planes::{LeastMotion, body_size, least_motion, outline_size};

@@ -2,6 +2,7 @@
 
 use super::simulation::{Least, Pose, least_tolerance};
 use super::{Accuracy, Alternative, Choice, Decision, Evidence, Model, Question};
+use contact_kinematics::planar::RadiusFunction;
 use contact_kinematics::{Palm, PalmSurface, SupportFunction};
 use glam::DVec3;
 use object_dynamics::integrate::Tolerance;
@@ -9,6 +10,7 @@ use object_dynamics::{
     BodyState, ContactScene, ContactSimulationError, ContactStart, End, InitialMotion, PalmDrive,
     SampleTimes, ThreePalmScene,
 };
+use std::f64::consts::FRAC_PI_2;
 
 /// Unit vectors along x, y, z and back: enough for the mean radius of a body to within what its shape leaves open.
 const AXES: [DVec3; 3] = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -35,6 +37,12 @@ pub fn body_size<S: SupportFunction>(body: &S) -> f64 {
         0.5 * (along(axis) + along(-axis))
     };
     AXES.iter().map(|axis| half(*axis)).sum::<f64>() / 3.0
+}
+
+/// The same of an outline in the plane, m.
+#[must_use]
+pub fn outline_size<S: RadiusFunction>(outline: &S) -> f64 {
+    (0..4).map(|quarter| outline.jet(f64::from(quarter) * FRAC_PI_2).r).sum::<f64>() / 4.0
 }
 
 /// The motion of a scene at the sample times, to within `wanted` of the natural size: in minimal coordinates where the palms are three planes
