@@ -34,7 +34,8 @@ pub(super) fn some(count: usize, seed: u64) -> Result<Vec<Outcome>, Failure> {
             break;
         }
         let of_seed = seed + k;
-        let outcome = logged(KINDS[(k % 3) as usize], of_seed)?.map(|of| one(&of, of_seed)).transpose()?.flatten();
+        let outcome =
+            logged(KINDS[(k % 3) as usize], of_seed)?.map(|of| one(&of, of_seed)).transpose()?.flatten();
         outcome.iter().for_each(super::progress);
         all.extend(outcome);
     }

@@ -38,11 +38,8 @@ pub(super) fn logged(kind: usize, seed: u64) -> Result<Option<Logged>, Failure> 
     let times = SampleTimes { duration: lasts * natural, rate: density / natural };
     let Some((exact, mass, weight)) = exact(&of, times)? else { return Ok(None) };
     let [contact, force] = [share * of.size, 3.0 * share * weight];
-    let noise = ContactNoise {
-        contact,
-        force: ChannelNoise { fixed: force, share: 0.0 },
-        ..ContactNoise::default()
-    };
+    let noise =
+        ContactNoise { contact, force: ChannelNoise { fixed: force, share: 0.0 }, ..ContactNoise::default() };
     let (log, truth) = exact.with_noise(&noise, seed)?.split_truth();
     let mut records = log.records();
     for record in &mut records {
@@ -54,7 +51,16 @@ pub(super) fn logged(kind: usize, seed: u64) -> Result<Option<Logged>, Failure> 
     let options = ContactOptions { body: Some(mass), suspects: true, ..ContactOptions::new(noise, G) };
     let truth = truth.unwrap_or_default();
     let size = contact_size(&log);
-    Ok(Some(Logged { kind: of.kind, log, options, truth, size, density, rubs: of.rubs(), is_planar: matches!(of.world, World::Plane { .. }) }))
+    Ok(Some(Logged {
+        kind: of.kind,
+        log,
+        options,
+        truth,
+        size,
+        density,
+        rubs: of.rubs(),
+        is_planar: matches!(of.world, World::Plane { .. }),
+    }))
 }
 
 fn exact(of: &Scene, times: SampleTimes) -> Result<Option<(ContactLog, MassProperties, f64)>, Failure> {

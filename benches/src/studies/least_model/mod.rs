@@ -89,8 +89,11 @@ fn row(name: &str, all: &[&Outcome]) {
         ratios.sort_by(f64::total_cmp);
         ratios.get(((ratios.len() as f64 - 1.0) * p) as usize).copied().unwrap_or(f64::NAN)
     };
-    let own = || all.iter().filter(|of| of.cheapest.is_finite()).map(|of| of.chosen / of.cheapest).collect::<Vec<_>>();
-    let whole = || all.iter().filter(|of| of.cheapest.is_finite()).map(|of| of.all / of.cheapest).collect::<Vec<_>>();
+    let own = || {
+        all.iter().filter(|of| of.cheapest.is_finite()).map(|of| of.chosen / of.cheapest).collect::<Vec<_>>()
+    };
+    let whole =
+        || all.iter().filter(|of| of.cheapest.is_finite()).map(|of| of.all / of.cheapest).collect::<Vec<_>>();
     println!(
         "| {name} | {} | {} | {} | {} | {:.2} | {:.2} | {:.2} | {} | {:.2} | {:.2} |",
         all.len(),

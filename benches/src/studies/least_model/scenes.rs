@@ -6,9 +6,12 @@ use recon::contact_kinematics::planar::{
     FourierBody, MotionPart as PlanarPart, PalmSurface as PlanarSurface, SurfaceMotion as PlanarMotion,
     SurfacePose as PlanarPose,
 };
-use recon::contact_kinematics::{Ellipsoid, MotionLaw, Palm, PalmFrame, PalmSurface, SurfaceMotion, SurfacePose};
+use recon::contact_kinematics::{
+    Ellipsoid, MotionLaw, Palm, PalmFrame, PalmSurface, SurfaceMotion, SurfacePose,
+};
 use recon::object_dynamics::{
-    BodyState, ContactScene, ContactStart, MassProperties, PalmDrive, SampleTimes, ScenePalm, ThreePalmScene, planar,
+    BodyState, ContactScene, ContactStart, MassProperties, PalmDrive, SampleTimes, ScenePalm, ThreePalmScene,
+    planar,
 };
 use recon_benches::planar::scene::{Scene as InPlane, drawn};
 use recon_tests::Random;

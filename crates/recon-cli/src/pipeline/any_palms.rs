@@ -14,9 +14,7 @@ use crate::progress::Progress;
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::Direction;
 use recon::least_model::{Accuracy, Choice, least_estimate, one_of};
-use recon::object_dynamics::{
-    ContactLog, LoggedPalm, MassProperties, NotThreePlanes, SensedAxes, TrueState,
-};
+use recon::object_dynamics::{ContactLog, LoggedPalm, MassProperties, NotThreePlanes, SensedAxes, TrueState};
 use recon::observer::{
     ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, ImpulseNoise,
     estimate_contacts, nearest_turn,

@@ -43,8 +43,8 @@ pub(super) fn choice_rows(choice: &Choice) -> Vec<Evidence> {
 
 fn row(of: &Decision) -> Evidence {
     let one = |of: &Alternative| format!("{} ({})", of.model, of.told());
-    let [chosen, others] =
-        [true, false].map(|is| of.alternatives.iter().filter(|of| of.chosen == is).map(one).collect::<Vec<_>>());
+    let [chosen, others] = [true, false]
+        .map(|is| of.alternatives.iter().filter(|of| of.chosen == is).map(one).collect::<Vec<_>>());
     let model = of.alternatives.iter().find(|of| of.chosen).map(|of| of.model.to_string());
     let others = if others.is_empty() { String::new() } else { format!(" Left out: {}.", others.join("; ")) };
     Evidence {

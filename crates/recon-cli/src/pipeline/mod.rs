@@ -53,8 +53,8 @@ pub(crate) use exploration::{
 };
 pub(crate) use features::feature_lines;
 pub(crate) use fitted::{fit_words, fitted_shape};
-pub(crate) use least_model::{choice_figures, explained};
 pub(crate) use folder::{Extra, write_bounds_folder, write_contact_folder, write_files_folder};
+pub(crate) use least_model::{choice_figures, explained};
 pub(crate) use meshes::meshes_as;
 pub(crate) use modes::describe_times;
 pub(crate) use planar_contacts::{PlanarContactRun, simulate_planar_contacts};

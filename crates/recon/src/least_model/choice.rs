@@ -61,8 +61,10 @@ pub struct Alternative {
     /// Whether it was taken.
     pub chosen: bool,
     /// Time that it takes, s; none where it was not tried and nothing predicts it.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
     /// The accuracy that it reaches; none where nothing says so.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<f64>,
     /// How that is known.
     pub evidence: Evidence,
@@ -120,7 +122,7 @@ pub enum Evidence {
     Predicted,
     /// A test of what is left: a statistic that is one of chance below its limit.
     Test {
-        /// What was measured; null where it is beyond all numbers.
+        /// What was measured; the largest number where it is beyond all noise.
         value: f64,
         /// What it may be, by chance once in a thousand.
         limit: f64,

@@ -9,6 +9,9 @@ mod choice;
 mod left_out;
 mod reconstruction;
 mod simulation;
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests fail by panics")]
+mod tests;
 mod thinned;
 mod three_planes;
 mod words;

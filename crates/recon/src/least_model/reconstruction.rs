@@ -137,7 +137,8 @@ impl<'a> Search<'a> {
         let size = options.size.unwrap_or_else(|| contact_size(log));
         let natural = (size / options.gravity).sqrt();
         let density = (log.times().len() - 1) as f64 / log.duration() * natural;
-        let given = |stated: bool, test: &dyn Fn() -> Evidence| if stated { Evidence::Stated } else { test() };
+        let given =
+            |stated: bool, test: &dyn Fn() -> Evidence| if stated { Evidence::Stated } else { test() };
         let planar = given(options.planar, &|| is_planar(log, &options.noise));
         let all_known = log.palms().iter().all(|palm| palm.friction().or(options.friction).is_some());
         let frictionless = given(all_known, &|| is_frictionless(log, &options.noise));
@@ -235,7 +236,9 @@ impl<'a> Search<'a> {
         let needed = (of.every as f64 / (short * short)) as usize;
         let known = self.options.body.is_some() && !of.known;
         let of_all = accuracy / (of.every as f64).sqrt();
-        if known && 2 * needed < of.every.max(2) && BETTER_KNOWN * of_all <= wanted {
+        let worth = 2 * needed < of.every && BETTER_KNOWN * of_all <= wanted;
+        // With all samples there is nothing else, even if only to tell what can be reached.
+        if known && (worth || of.every == 1) {
             return Some(Setting { known: true, ..of });
         }
         (of.every > 1).then(|| Setting { every: needed.clamp(1, of.every - 1), ..of })
@@ -245,7 +248,7 @@ impl<'a> Search<'a> {
         let trial = &self.trials[chosen];
         Choice {
             wanted: self.wanted,
-            reached: trial.accuracy.unwrap_or(f64::INFINITY),
+            reached: trial.accuracy.unwrap_or(f64::MAX),
             is_reached: self.serves(trial),
             decisions: self.decisions(chosen, estimate),
             seconds,

@@ -85,7 +85,8 @@ pub fn least_tolerance<T, E>(
             return Ok(Least { run: made, tolerance, choice });
         }
         before = Some((own, tolerance, seconds));
-        (tolerance, rounds) = ((tolerance * (0.5 * goal / error).clamp(1e-4, 1e-2)).max(TIGHTEST), rounds + 1);
+        (tolerance, rounds) =
+            ((tolerance * (0.5 * goal / error).clamp(1e-4, 1e-2)).max(TIGHTEST), rounds + 1);
     }
 }
 
@@ -101,7 +102,10 @@ fn apart(a: &[Pose], b: &[Pose], size: f64) -> f64 {
     if a.len() != b.len() {
         return 1.0;
     }
-    a.iter().zip(b).map(|(a, b)| a.off(b, size)).fold(0.0, |most, off| if off > most || off.is_nan() { off } else { most })
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| a.off(b, size))
+        .fold(0.0, |most, off| if off > most || off.is_nan() { off } else { most })
 }
 
 /// Of runs, the last of which is chosen.

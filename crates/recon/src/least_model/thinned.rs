@@ -1,8 +1,6 @@
 //! One of so many samples of a log.
 
-use object_dynamics::{
-    ContactLog, ContactLogError, ContactPoints, ForceChannel, PalmRecord, RecordedMotion,
-};
+use object_dynamics::{ContactLog, ContactLogError, ContactPoints, ForceChannel, PalmRecord, RecordedMotion};
 
 /// The log with its first sample and every `every`-th one after it. Impulses are integrals, so that they lose nothing between samples.
 ///

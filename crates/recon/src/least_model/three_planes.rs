@@ -106,9 +106,9 @@ fn minimal<S: SupportFunction + Clone>(scene: &ContactScene<S>, start: &ContactS
     let still = |drive: &PalmDrive| matches!(drive, PalmDrive::Prescribed(motion) if motion.is_immobile());
     let simple = palms.len() == 3
         && !start.in_flight
-        && palms.iter().all(|palm| {
-            palm.surface == PalmSurface::Plane && palm.friction == 0.0 && still(&palm.drive)
-        });
+        && palms
+            .iter()
+            .all(|palm| palm.surface == PalmSurface::Plane && palm.friction == 0.0 && still(&palm.drive));
     if !simple {
         return None;
     }
@@ -136,9 +136,10 @@ impl<S: SupportFunction> Minimal<S> {
     fn run(&self, times: SampleTimes, wanted: Accuracy, size: f64) -> Result<LeastMotion, f64> {
         let clock = std::time::Instant::now();
         let run = |tolerance: f64| {
-            self.scene.simulate(self.start, times, Tolerance::uniform(tolerance)).map_err(|_| ()).and_then(
-                |run| if run.end == End::Completed { Ok(run) } else { Err(()) },
-            )
+            self.scene
+                .simulate(self.start, times, Tolerance::uniform(tolerance))
+                .map_err(|_| ())
+                .and_then(|run| if run.end == End::Completed { Ok(run) } else { Err(()) })
         };
         let state = |now: &object_dynamics::Instant| BodyState {
             p_WCm: now.touch.p_WCm + self.apex,

@@ -1,14 +1,16 @@
 //! What is said of a choice.
 
-use super::{ContactEstimate, Search, SensedAxes, Setting, Trial, out_of_balance};
 use super::{Alternative, Decision, Evidence, Model, Question};
+use super::{ContactEstimate, Search, SensedAxes, Setting, Trial, out_of_balance};
 
 impl Search<'_> {
     pub(super) fn decisions(&self, chosen: usize, estimate: &ContactEstimate) -> Vec<Decision> {
         let of = self.trials[chosen].setting;
-        let two = |question, [one, other]: [Alternative; 2]| Decision { question, alternatives: vec![one, other] };
+        let two =
+            |question, [one, other]: [Alternative; 2]| Decision { question, alternatives: vec![one, other] };
         let balance = out_of_balance(self.log, &self.options.noise, estimate.mass, self.options.gravity);
-        let untold = |model, chosen, evidence| Alternative { model, chosen, seconds: None, accuracy: None, evidence };
+        let untold =
+            |model, chosen, evidence| Alternative { model, chosen, seconds: None, accuracy: None, evidence };
         let three = self.log.palms().iter().any(|palm| palm.force_axes() == Some(SensedAxes::Three));
         let normal = of.frictionless || !three;
         let axes = if three { self.frictionless } else { Evidence::Impossible };
@@ -30,16 +32,22 @@ impl Search<'_> {
             two(
                 Question::Friction,
                 [
-                    self.tried(Model::Frictionless, of.frictionless || self.is_stated_frictionless(), self.frictionless, |s| s.frictionless),
-                    untold(Model::Friction, !of.frictionless && !self.is_stated_frictionless(), Evidence::Needless),
+                    self.tried(
+                        Model::Frictionless,
+                        of.frictionless || self.is_stated_frictionless(),
+                        self.frictionless,
+                        |s| s.frictionless,
+                    ),
+                    untold(
+                        Model::Friction,
+                        !of.frictionless && !self.is_stated_frictionless(),
+                        Evidence::Needless,
+                    ),
                 ],
             ),
             two(
                 Question::Body,
-                [
-                    self.tried(Model::EstimatedBody, !of.known, Evidence::Run, |s| !s.known),
-                    self.known(of),
-                ],
+                [self.tried(Model::EstimatedBody, !of.known, Evidence::Run, |s| !s.known), self.known(of)],
             ),
             two(
                 Question::Forces,
@@ -51,7 +59,10 @@ impl Search<'_> {
             ),
             two(
                 Question::Axes,
-                [untold(Model::NormalForce, normal, axes), untold(Model::ThreeAxes, !normal, Evidence::Needless)],
+                [
+                    untold(Model::NormalForce, normal, axes),
+                    untold(Model::ThreeAxes, !normal, Evidence::Needless),
+                ],
             ),
             Decision {
                 question: Question::Window,
