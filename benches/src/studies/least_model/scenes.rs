@@ -82,7 +82,7 @@ fn three_planes(kind: &'static str, friction: f64, seed: u64) -> Result<Option<S
     let spin = random.vector(-1.0, 1.0).normalize_or(DVec3::X) * random.within(0.1, 0.6) / natural;
     let lasts = random.within(5.0, 25.0);
     let body = Ellipsoid::new(axes)?;
-    let held = ThreePalmScene::new(body.clone(), mass, [held[0], held[1], held[2]], G)?;
+    let held = ThreePalmScene::new(body, mass, [held[0], held[1], held[2]], G)?;
     let now = held.instant(0.0, R_WO, spin)?;
     let scene = ContactScene::new(body, mass, palms, G)?;
     let (p_WCm, v_WCm) = (now.touch.p_WCm, now.rates.v_WCm);

@@ -124,7 +124,7 @@ fn three_planes(
         palms.push(ScenePalm { surface: PalmSurface::Plane, drive, friction });
     }
     let body = Ellipsoid::new(AXES).unwrap();
-    let held = ThreePalmScene::new(body.clone(), mass, [held[0], held[1], held[2]], G).unwrap();
+    let held = ThreePalmScene::new(body, mass, [held[0], held[1], held[2]], G).unwrap();
     let start = InitialMotion { R_WO: DQuat::from_rotation_x(0.4), w_WO: DVec3::new(2.0, 1.0, 3.0) };
     let now = held.instant(0.0, start.R_WO, start.w_WO).unwrap();
     let state =
