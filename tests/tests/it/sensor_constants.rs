@@ -22,7 +22,7 @@ fn assert_found(found: &ContactEstimate, fault: SensorFault, value: f64, beyond:
 #[test]
 fn a_wrong_force_gain_is_refused() {
     let (scene, start) = f5();
-    let (_, log) = exact_log(&scene, start, 3.0, 200.0);
+    let (_, log) = exact_log(&scene, start, 3.0, few_or_all(100.0, 200.0));
     let log = log.with_noise(&NOISE, 1).unwrap();
     let right = estimated(&scene, &log, NOISE, true);
     assert!(right.reliability.is_reliable(), "{}", words(&right.reliability));
@@ -38,7 +38,7 @@ fn a_wrong_force_gain_is_refused() {
 #[test]
 fn a_gain_and_a_bias_are_found_within_their_deviations() {
     let (scene, start) = g2();
-    let (_, log) = exact_log(&scene, start, 4.0, 500.0);
+    let (_, log) = exact_log(&scene, start, 4.0, few_or_all(250.0, 500.0));
     let log = log.with_noise(&NOISE, 3).unwrap();
     let with = |change: &dyn Fn(f64) -> f64| {
         changed(&log, |_, i, palm| {

@@ -42,7 +42,7 @@ fn what_a_short_log_leaves_open_stays_within_what_can_be() {
     let (scene, start) = g2();
     let (simulation, log) = exact_log(&scene, start, 0.7, 100.0);
     let noise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };
-    for seed in 0..few_or_all(2, 4) {
+    for seed in 0..few_or_all(1, 4) {
         let found = estimated(&scene, &log.with_noise(&noise, seed).unwrap(), noise, false);
         let worst = worst_of_all(&found, &simulation.instants);
         assert!(worst < 5.0 || !found.reliability.is_reliable(), "seed {seed}: {worst}");
@@ -112,7 +112,7 @@ fn a_known_body_is_looked_for_in_other_spins() {
     let R_WO = DQuat::from_xyzw(0.602469845885, -0.442843105111, 0.574189274852, -0.333506740111);
     let w_WO = DVec3::new(0.344573520357, -0.107056787558, 0.407655526898);
     let start = InitialMotion { R_WO: R_WO.normalize(), w_WO };
-    for seed in few_or_all(&[1, 8][..], &[1, 8, 118_001_210]) {
+    for seed in few_or_all(&[1][..], &[1, 8, 118_001_210]) {
         let worst = worst_as_known(body, palms, start, (200.0, *seed));
         // Of the second seed another motion is nearly as probable, and it is refused for that.
         let refused = *seed == 8 && worst.is_none();

@@ -7,7 +7,6 @@
 
 use super::body::CONSTANTS;
 use super::problem::{Problem, Unknowns};
-use super::search::ENOUGH;
 use super::solve::{Solved, solve};
 use super::suspects::{Scores, Sensors};
 use crate::faults::{Assumption, Explanation, SensorFault};
@@ -26,8 +25,10 @@ const CORRECTED: f64 = 0.1;
 const SHORTER: f64 = 0.3;
 /// Natural units up to which a constant may be off.
 const FARTHEST: f64 = 1.0;
-/// Linearisations of each solution.
+/// Linearisations of each solution, and what a step of it promises in units of what is left for each condition: twice what it may be off by in a
+/// logarithm of odds.
 const MOST: usize = 30;
+const ENOUGH: f64 = 0.1;
 
 /// What is found with the body's mass and inertia free, where they contradict the stated ones.
 pub(super) struct FreeBody {
@@ -185,7 +186,7 @@ impl Correction {
         }
         let record = sensors.without(fault, value);
         let own = problem.on(&record);
-        let solved = solve::<CONSTANTS>(&own, self.unknowns.clone(), MOST, ENOUGH[1])?;
+        let solved = solve::<CONSTANTS>(&own, self.unknowns.clone(), MOST, ENOUGH * self.misfit)?;
         let sensors = sensors.of_body(solved.unknowns.body);
         let score = Scores::new(&sensors, &own, &solved)?.of(fault, value)?;
         let (cost, misfit) = (solved.equations.cost, solved.misfit());

@@ -31,8 +31,9 @@ const HOPELESS: f64 = 3.0;
 pub(super) const SEARCHES: usize = 3;
 /// Fall of chi-squared that makes one motion the more probable one: odds of a thousand to one.
 const MORE_PROBABLE: f64 = 13.8;
-/// Deviations from which on another motion is one that they do not reach.
+/// Deviations from which on another motion is one that they do not reach, and within which it is the same.
 const BEYOND: f64 = 5.0;
+const SAME: f64 = 1.0;
 
 /// Spread of the contacts along their palms in natural lengths, and of the whole force about its mean in weights, below which a log of the plane
 /// tells nothing of a motion: at rest, in slow rocking and for discs forces spread by less than 0.004, for a disc with its centre of mass
@@ -125,9 +126,10 @@ pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option
         let before = best;
         let body = solved.unknowns.body;
         let body = if problem.planar { body } else { round(&body) };
+        let covariances = solved.covariances(problem)?;
         for start in starts(problem, &solved.unknowns, body) {
             problem.frozen.clear();
-            if let Some(other) = tried(problem, start, all[best].0.equations.cost) {
+            if let Some(other) = tried(problem, start, [&all[before].0, &all[best].0], &covariances) {
                 all.push((other, problem.frozen.clone()));
                 let last = all.len() - 1;
                 // What was found first stays unless another one is clearly better: the best of several is no better for a share of a deviation.
@@ -182,7 +184,7 @@ pub(super) fn others_of_any_axes(
     let mut others: Vec<Rival> = Vec::new();
     for start in starts(problem, &known.unknowns, problem.body.0) {
         problem.frozen.clear();
-        let Some(other) = tried(problem, start, known.equations.cost) else { continue };
+        let Some(other) = tried(problem, start, [known; 2], &covariances) else { continue };
         let likely = other.equations.cost < known.equations.cost + MORE_PROBABLE;
         let another = |of: &Solved<CONSTANTS>| apart(known, of, &covariances) > BEYOND;
         let found = |(of, _): &Rival| (of.equations.cost - other.equations.cost).abs() < ENOUGH[0];
@@ -218,10 +220,15 @@ fn round(body: &Body) -> Body {
     Body::free(body.log_mass, DMat3::from_diagonal(DVec3::splat(moment)))
 }
 
-/// Where a start leads; none where that leaves far more than `best`.
-fn tried(problem: &mut Problem, start: Unknowns, best: f64) -> Option<Solved<CONSTANTS>> {
+/// Where a start leads; none where that leaves far more than the best motion so far, or back to the one that it was made of, whose covariances these are.
+fn tried(
+    problem: &mut Problem,
+    start: Unknowns,
+    [from, best]: [&Solved<CONSTANTS>; 2],
+    covariances: &Covariances<CONSTANTS>,
+) -> Option<Solved<CONSTANTS>> {
     let first = solve::<CONSTANTS>(problem, start, TRIED, ENOUGH[1])?;
-    if first.equations.cost > HOPELESS * best {
+    if first.equations.cost > HOPELESS * best.equations.cost || apart(from, &first, covariances) < SAME {
         return None;
     }
     fine_within(problem, first.unknowns, MOST)

@@ -37,6 +37,8 @@ const MOST_OF_BLOWS: usize = 400;
 const FIRST: usize = 12;
 /// A step that promises less in units of chi-squared than these is not worth taking: coarse solution, last one.
 pub(super) const ENOUGH: [f64; 2] = [1.0, 1e-2];
+/// Share of their cost by which two solutions may differ to be taken for one.
+const ALIKE: f64 = 1e-3;
 /// Deviation of the logarithms of the roots of the second moments before the log is read, about those of a ball of the body's
 /// size, and of that of the mass.
 const PRIOR: f64 = 0.7;
@@ -51,6 +53,8 @@ pub(super) struct Ended {
     pub(super) found: bool,
     /// Linearisations before the last solution.
     pub(super) before: usize,
+    /// Whether searches on ways of their own came to it, so that there is nothing to look for on others though it is not explained.
+    pub(super) agreed: bool,
 }
 
 impl Problem<'_> {
@@ -81,7 +85,7 @@ impl Ended {
     pub(super) fn at(problem: &mut Problem, solved: Solved<CONSTANTS>, before: usize) -> Self {
         let first = solved.iterations;
         let (solved, found) = found(problem, solved);
-        Self { solved, found, before: if found { before + first } else { before } }
+        Self { solved, found, before: if found { before + first } else { before }, agreed: false }
     }
 
     /// Linearisations.
@@ -92,12 +96,21 @@ impl Ended {
     fn cost(&self) -> f64 {
         self.solved.equations.cost
     }
+
+    /// Whether another one is the same solution: neither of both can be lowered, and they cost the same.
+    fn agrees(&self, other: &Self) -> bool {
+        let apart = (self.cost() - other.cost()).abs();
+        self.solved.settled && other.solved.settled && apart < ALIKE * self.cost()
+    }
 }
 
 /// The most probable motion and body from nothing; of a body in space without friction that is not explained from the end of the record as well.
 pub(super) fn search(problem: &mut Problem) -> Option<Ended> {
     let ended = forwards(problem);
-    if ended.as_ref().is_some_and(|ended| ended.found) || problem.planar || !problem.record.frictionless() {
+    if ended.as_ref().is_some_and(|ended| ended.found || ended.agreed)
+        || problem.planar
+        || !problem.record.frictionless()
+    {
         return ended;
     }
     let (nodes, frozen) = (problem.nodes.clone(), problem.frozen.clone());
@@ -130,6 +143,9 @@ pub(super) fn forwards(problem: &mut Problem) -> Option<Ended> {
         }
         before += ended.all();
         keep(&mut best, ended, problem);
+        if best.as_ref().is_some_and(|(best, _)| best.agreed) {
+            break;
+        }
     }
     let (best, frozen) = best?;
     (problem.nodes, problem.frozen) = (fine_nodes(problem), frozen);
@@ -172,7 +188,12 @@ pub(super) fn whole(problem: &mut Problem) -> Option<Ended> {
 /// What leaves least so far, with the combinations of the body's constants that are held in it.
 type Best = Option<(Ended, Vec<SVector<f64, CONSTANTS>>)>;
 
-fn keep(best: &mut Best, ended: Ended, problem: &Problem) {
+/// Keeps what leaves less; two that agree are one.
+fn keep(best: &mut Best, mut ended: Ended, problem: &Problem) {
+    if let Some((best, _)) = best {
+        ended.agreed |= best.agrees(&ended);
+        best.agreed |= ended.agreed;
+    }
     if best.as_ref().is_none_or(|(best, _)| ended.cost() < best.cost()) {
         *best = Some((ended, problem.frozen.clone()));
     }

@@ -13,6 +13,7 @@ use super::search::{Ended, fine, finest_nodes, refined, search};
 use super::sharp::{blunted, sharpened, sharpest, stated};
 use super::solve::{Covariances, Solved};
 use super::state::Tangent;
+use super::verdict::is_explained;
 use crate::reliability::{LARGEST_MISFIT, Reason};
 use glam::DQuat;
 use object_dynamics::MassProperties;
@@ -113,7 +114,7 @@ impl<'a> Stage<'a> {
     }
 
     /// Of which nothing else is known.
-    pub(super) fn at(problem: Problem<'a>, Ended { solved, found, before }: Ended) -> Self {
+    pub(super) fn at(problem: Problem<'a>, Ended { solved, found, before, .. }: Ended) -> Self {
         let (covariances, others, doubt, untold, against, free, open) =
             (None, Vec::new(), None, None, None, None, None);
         Self { problem, solved, covariances, found, before, doubt, untold, against, free, others, open }
@@ -269,7 +270,7 @@ impl<'a> Stage<'a> {
             against,
             free,
             open,
-            ..Stage::at(problem, Ended { solved, found, before })
+            ..Stage::at(problem, Ended { solved, found, before, agreed: false })
         })
     }
 
@@ -285,8 +286,13 @@ impl<'a> Stage<'a> {
         Some(self)
     }
 
+    /// Beyond what a linear model makes of them only for what is not refused anyway.
     pub(super) fn covariances(&mut self) -> Option<Covariances<CONSTANTS>> {
         let claimed = self.covariances.take().or_else(|| self.solved.covariances(&self.problem))?;
-        Some(claimed.redrawn(&self.problem, &self.solved, DRAWS))
+        let refused = self.open.is_some()
+            || self.against.is_some()
+            || !self.solved.settled
+            || !is_explained(self.solved.misfit(), self.solved.equations.conditions);
+        Some(if refused { claimed } else { claimed.redrawn(&self.problem, &self.solved, DRAWS) })
     }
 }

@@ -39,10 +39,7 @@ impl ContactEvidence {
         if !self.settled {
             reliability.add(Reason::NotConverged { iterations: self.iterations[1] });
         }
-        // Of few conditions chance alone makes more.
-        let conditions = self.conditions as f64;
-        let chance = excess(self.misfit * conditions, conditions) < UNLIKELY;
-        if self.misfit.is_nan() || (self.misfit > LARGEST_MISFIT && !chance) {
+        if !is_explained(self.misfit, self.conditions) {
             reliability.add(Reason::Inconsistent { misfit: self.misfit });
         }
         reliability
@@ -76,6 +73,13 @@ impl ContactEvidence {
     pub(super) fn widening(&self) -> f64 {
         self.misfit.max(1.0).sqrt()
     }
+}
+
+/// Whether noise explains this misfit, of so many conditions.
+pub(super) fn is_explained(misfit: f64, conditions: usize) -> bool {
+    // Of few conditions chance alone makes more.
+    let conditions = conditions as f64;
+    misfit <= LARGEST_MISFIT || excess(misfit * conditions, conditions) < UNLIKELY
 }
 
 /// For each node, by how many deviations of a normal variable the misfit of the stretch around it exceeds that of the whole.

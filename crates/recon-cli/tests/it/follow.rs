@@ -16,7 +16,7 @@ contact_std = 2.5e-3
 force_std = 0.065
 [simulation]
 duration = 5.0
-sample_rate = 1000.0
+sample_rate = 250.0
 orientation = [1.0, 0.0, 0.0, 0.0]
 angular_velocity = [0.2, 0.3, -0.4]
 shape = { kind = "ellipsoid", semi_axes = [1.0, 2.0, 2.5] }
@@ -57,12 +57,12 @@ fn the_motion_is_followed_from_a_file_and_from_a_pipe() {
     let motion = Table::parse(&table);
     assert_eq!(motion.rows.len(), 51);
     assert_eq!(motion.rows[0][motion.column("stage")], "gathering");
-    // Rows stand at multiples of 0.1 s, samples at those of 0.001 s.
+    // Rows stand at multiples of 0.1 s, samples at those of 0.004 s.
     for (row, stage) in motion.rows.iter().map(|row| row[motion.column("stage")].as_str()).enumerate() {
         if stage != "tracking" {
             continue;
         }
-        let sample = row * 100;
+        let sample = row * 25;
         assert_eq!(number(&motion, row, "t"), number(&log, sample, "t"));
         let error = |names: [&str; 3]| {
             let square = |name| (number(&motion, row, name) - number(&log, sample, name)).powi(2);
