@@ -23,8 +23,15 @@ const RATE: f64 = 10.0;
 
 /// What is simulated.
 pub(super) enum World {
-    Space { scene: Box<ContactScene<Ellipsoid>>, start: ContactStart, held: Box<ThreePalmScene<Ellipsoid>> },
-    Plane { scene: Box<planar::ContactScene<FourierBody>>, start: planar::ContactStart },
+    Space {
+        scene: Box<ContactScene<Ellipsoid>>,
+        start: Box<ContactStart>,
+        held: Box<ThreePalmScene<Ellipsoid>>,
+    },
+    Plane {
+        scene: Box<planar::ContactScene<FourierBody>>,
+        start: planar::ContactStart,
+    },
 }
 
 /// A scene to simulate.
@@ -88,7 +95,7 @@ fn three_planes(kind: &'static str, friction: f64, seed: u64) -> Result<Option<S
     let (p_WCm, v_WCm) = (now.touch.p_WCm, now.rates.v_WCm);
     let start = ContactStart::touching(BodyState { p_WCm, v_WCm, w_WO: spin, R_WO });
     let times = SampleTimes { duration: lasts * natural, rate: RATE / natural };
-    let world = World::Space { scene: Box::new(scene), start, held: Box::new(held) };
+    let world = World::Space { scene: Box::new(scene), start: Box::new(start), held: Box::new(held) };
     Ok(Some(Scene { kind, world, size, times }))
 }
 
