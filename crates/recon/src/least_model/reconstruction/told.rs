@@ -13,7 +13,7 @@ impl Search<'_> {
             |model, chosen, evidence| Alternative { model, chosen, seconds: None, accuracy: None, evidence };
         let three = self.log.palms().iter().any(|palm| palm.force_axes() == Some(SensedAxes::Three));
         let normal = of.frictionless || !three;
-        let axes = if three { self.frictionless } else { Evidence::Impossible };
+        let axes = if three { self.frictionless } else { Evidence::Stated };
         vec![
             two(
                 Question::Space,
