@@ -61,6 +61,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "mode-switches.md",
         "contact modes where contacts come, go, slide and stick: how often right, how far to be believed",
     ),
+    (
+        "least_model",
+        "least-model.md",
+        "the least model that serves: whether the wanted accuracy is reached, and what it costs beside trying all",
+    ),
     ("no_force", "no-force.md", "three palms without force sensors: random scenes from no guess"),
     (
         "nonsmooth",

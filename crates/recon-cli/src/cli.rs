@@ -5,6 +5,7 @@ mod explore;
 pub(crate) use explore::{ExploreArgs, GoalArgs, NextArgs, PlannerAs, Until, until};
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use recon::least_model::Accuracy;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -102,6 +103,7 @@ the vertical plane, and its log a planar one of version 2.
 Examples:
   recon simulate scene.toml -o log.csv
   recon simulate scene.toml -o log.csv --report page.html
+  recon simulate scene.toml -o log.csv --accuracy 1e-6 --explain
   recon simulate scene.toml -o - | head -3")]
 pub(crate) struct SimulateArgs {
     /// Scene file (TOML)
@@ -113,8 +115,15 @@ pub(crate) struct SimulateArgs {
     #[arg(long)]
     pub(crate) report: Option<PathBuf>,
     /// Tolerance of the integration, relative and absolute
-    #[arg(long, default_value_t = 1e-12, value_parser = tolerance)]
+    #[arg(long, default_value_t = 1e-12, value_parser = tolerance, conflicts_with = "accuracy")]
     pub(crate) tolerance: f64,
+    /// Accuracy that is wanted, at any sample: of the centre of mass in sizes of the object and of its orientation in rad. The loosest tolerance
+    /// that reaches it is chosen, by an error estimate
+    #[arg(long, value_name = "SHARE", value_parser = accuracy)]
+    pub(crate) accuracy: Option<Accuracy>,
+    /// Say what was modelled, what was left out, and what that costs
+    #[arg(long, requires = "accuracy")]
+    pub(crate) explain: bool,
 }
 
 #[derive(Args, Debug)]
@@ -146,6 +155,7 @@ Examples:
   recon reconstruct log.csv --scene scene.toml -o out
   recon reconstruct log.csv --scene scene.toml -o out --identify --export mjcf,urdf
   recon reconstruct log.csv --scene scene.toml -o out --mesh stl,glb
+  recon reconstruct log.csv --scene scene.toml -o out --accuracy 1e-2 --explain
   recon reconstruct log.csv --scene scene.toml -o out --without-forces
   recon reconstruct bag.mcap --mapping map.toml --scene scene.toml -o out --mcap
   recon reconstruct log.csv --scene scene.toml -o out --json | jq .bounds")]
@@ -167,6 +177,13 @@ pub(crate) struct ReconstructArgs {
     /// Estimate mass and inertia too, with their deviations
     #[arg(long)]
     pub(crate) identify: bool,
+    /// Accuracy that is wanted, with 95 %, root mean square over the log: of the centre of mass in sizes of the object and of its turn in rad. The
+    /// cheapest model that reaches it is chosen: in the plane, without friction, of an unknown body, by fewer samples
+    #[arg(long, value_name = "SHARE", value_parser = accuracy, conflicts_with = "without_forces")]
+    pub(crate) accuracy: Option<Accuracy>,
+    /// Say what was modelled, what was left out, and what that costs
+    #[arg(long, requires = "accuracy")]
+    pub(crate) explain: bool,
     /// Use no forces, though the log may have them: for an ellipsoid, on palms without force sensors
     #[arg(long, conflicts_with_all = ["identify", "export"])]
     pub(crate) without_forces: bool,
@@ -703,6 +720,11 @@ fn tolerance(text: &str) -> Result<f64, String> {
     } else {
         Err("it must lie between 1e-15 and 1e-2".to_owned())
     }
+}
+
+fn accuracy(text: &str) -> Result<Accuracy, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    Accuracy::new(value).map_err(|error| error.to_string())
 }
 
 fn positive(text: &str) -> Result<f64, String> {

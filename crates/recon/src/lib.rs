@@ -1,6 +1,7 @@
 //! Shape, motion and bounds of an unknown convex object from touch: the five core crates under one name.
 //!
-//! This facade adds nothing of its own; each crate can be used alone. Start with the one that answers your question:
+//! Each crate can be used alone; this facade adds [`least_model`], which needs several of them: the cheapest model that reaches a wanted accuracy,
+//! and why. Start with the crate that answers your question:
 //!
 //! | question | crate |
 //! |---|---|
@@ -25,6 +26,8 @@
 //! ```
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
+
+pub mod least_model;
 
 #[doc(inline)]
 pub use contact_kinematics;

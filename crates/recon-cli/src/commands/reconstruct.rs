@@ -1,7 +1,7 @@
 use crate::cli::ReconstructArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{Asked, Estimated, LogSource, estimated, meshes_as, read_log};
+use crate::pipeline::{Asked, Estimated, LogSource, estimated, explained, meshes_as, read_log};
 use crate::progress::Progress;
 use recon_io::{FolderTarget, Scene, SceneErrorKind};
 use serde_json::Value;
@@ -14,6 +14,9 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let path = args.scene.as_ref().ok_or(CliError::LogNeedsScene)?;
     let scene = match Scene::read(path) {
         Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
+            if args.accuracy.is_some() {
+                return Err(CliError::AccuracyInPlane);
+            }
             return super::planar::reconstruct(args, path, console);
         }
         read => read?,
@@ -24,13 +27,22 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
     let read = read_log(source(args, &scene), console)?;
     let stand = read.stand;
-    let asked = Asked { path: &args.log, scene: &scene, title: &title, identify: args.identify };
+    let asked = Asked {
+        path: &args.log,
+        scene: &scene,
+        title: &title,
+        identify: args.identify,
+        accuracy: args.accuracy,
+    };
     let made = estimated(read, &asked, &progress)?;
     progress.step("writing the results");
     let mut extras = made.extras(&args.export, args.export_shape, args.mcap.then_some(stand))?;
     extras.extend(meshes_as(made.surfaces(), &args.mesh)?);
     let figures = made.write(target, &extras)?;
     drop(progress);
+    if let Some(choice) = made.made.choice.as_ref().filter(|_| args.explain) {
+        console.note(&explained(choice, true));
+    }
     tell(console, &made, figures, &args.output)
 }
 

@@ -2,11 +2,15 @@ use crate::cli::SimulateArgs;
 use crate::console::{Console, listened};
 use crate::error::{CliError, Outcome};
 use crate::interrupt::{Checked, while_writing};
-use crate::pipeline::{Simulated, simulate, simulate_contacts, simulate_planar_contacts};
+use crate::pipeline::{
+    ContactRun, PlanarContactRun, Simulated, choice_figures, explained, simulate, simulate_contacts,
+    simulate_planar_contacts,
+};
 use crate::progress::Progress;
+use recon::least_model::{Choice, body_size, least_tolerance, outline_size};
 use recon::object_dynamics::{End, planar};
 use recon_io::{
-    AnyLog, FileTarget, OutputError, PlanarScene, Scene, SceneErrorKind, is_standard_output,
+    AnyLog, FileTarget, OutputError, PlanarScene, Scene, SceneError, SceneErrorKind, is_standard_output,
     write_contact_log, write_contact_report, write_log, write_planar_contact_log,
     write_planar_contact_report,
 };
@@ -86,6 +90,23 @@ pub(crate) struct Made {
     pub(crate) outcome: Outcome,
 }
 
+impl Made {
+    /// With why it was simulated so, in the figures, and in the text where that is asked for.
+    fn with(mut self, choice: Option<&Choice>, args: &SimulateArgs) -> Self {
+        let Some(choice) = choice else { return self };
+        self.figures["least_model"] = choice_figures(choice);
+        self.text += &format!("\n{}", explained(choice, args.explain));
+        if !choice.is_reached {
+            self.outcome = Outcome::WithReservations;
+        }
+        self
+    }
+}
+
+fn in_file(args: &SimulateArgs, kind: SceneErrorKind) -> SceneError {
+    SceneError { path: args.scene.clone(), kind }
+}
+
 /// Simulates a scene of space.
 pub(crate) fn in_space(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
     match scene.palms {
@@ -95,16 +116,33 @@ pub(crate) fn in_space(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliEr
 }
 
 fn any_palms(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
-    let run = simulate_contacts(scene, &args.scene, args.tolerance)?;
+    let (run, choice) = match args.accuracy {
+        None => (simulate_contacts(scene, &args.scene, args.tolerance)?, None),
+        Some(wanted) => {
+            let size = body_size(scene.contact_scene().map_err(|kind| in_file(args, kind))?.body());
+            let run = |tolerance| simulate_contacts(scene, &args.scene, tolerance);
+            let least = least_tolerance(wanted, size, run, ContactRun::poses)?;
+            (least.run, Some(least.choice))
+        }
+    };
     let told = run.told();
     let report = report(args, |title, to| write_contact_report(title, &run.world, &run.simulation, to))?;
     let log = MadeLog::Space(AnyLog::Contacts(run.log));
-    Ok(Made { log, report, text: told.describe(), figures: told.figures(), outcome: Outcome::Done })
+    let made = Made { log, report, text: told.describe(), figures: told.figures(), outcome: Outcome::Done };
+    Ok(made.with(choice.as_ref(), args))
 }
 
 /// Simulates a scene of the plane.
 pub(crate) fn in_the_plane(scene: &PlanarScene, args: &SimulateArgs) -> Result<Made, CliError> {
-    let run = simulate_planar_contacts(scene, args.tolerance)?;
+    let (run, choice) = match args.accuracy {
+        None => (simulate_planar_contacts(scene, args.tolerance)?, None),
+        Some(wanted) => {
+            let run = |tolerance| simulate_planar_contacts(scene, tolerance);
+            let size = outline_size(&scene.world.object().shape);
+            let least = least_tolerance(wanted, size, run, PlanarContactRun::poses)?;
+            (least.run, Some(least.choice))
+        }
+    };
     let told = run.told();
     let (mut text, mut figures) = (told.describe(), told.figures());
     figures["laid_by_m"] = run.laid.into();
@@ -113,19 +151,31 @@ pub(crate) fn in_the_plane(scene: &PlanarScene, args: &SimulateArgs) -> Result<M
     }
     let report =
         report(args, |title, to| write_planar_contact_report(title, &scene.world, &run.simulation, to))?;
-    Ok(Made { log: MadeLog::Plane(run.log), report, text, figures, outcome: Outcome::Done })
+    let made = Made { log: MadeLog::Plane(run.log), report, text, figures, outcome: Outcome::Done };
+    Ok(made.with(choice.as_ref(), args))
 }
 
 fn three_palms(scene: &Scene, args: &SimulateArgs) -> Result<Made, CliError> {
     if args.report.is_some() {
         return Err(CliError::NoPage);
     }
-    let simulated = simulate(scene, &args.scene, args.tolerance)?;
+    let (simulated, choice) = match args.accuracy {
+        None => (simulate(scene, &args.scene, args.tolerance)?, None),
+        Some(wanted) => {
+            let size = match &scene.simulation {
+                Some(simulation) => body_size(&simulation.body()?),
+                None => return Err(CliError::NothingToSimulate { path: args.scene.clone() }),
+            };
+            let run = |tolerance| simulate(scene, &args.scene, tolerance);
+            let least = least_tolerance(wanted, size, run, Simulated::poses)?;
+            (least.run, Some(least.choice))
+        }
+    };
     let (text, figures) = (describe(&simulated), figures(&simulated));
     let whole = simulated.end == End::Completed;
     let outcome = if whole { Outcome::Done } else { Outcome::WithReservations };
     let log = MadeLog::Space(AnyLog::ThreePalms(simulated.log));
-    Ok(Made { log, report: None, text, figures, outcome })
+    Ok(Made { log, report: None, text, figures, outcome }.with(choice.as_ref(), args))
 }
 
 fn write_any(log: &MadeLog, to: impl Write) -> io::Result<()> {

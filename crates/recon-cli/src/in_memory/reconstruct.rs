@@ -67,7 +67,13 @@ impl Reconstructed {
         } else {
             let read = sorted_with_forces(loaded, scene);
             let stand = read.stand;
-            let asked = Asked { path: &log.path, scene, title: &title, identify: args.identify };
+            let asked = Asked {
+                path: &log.path,
+                scene,
+                title: &title,
+                identify: args.identify,
+                accuracy: args.accuracy,
+            };
             (Made::Estimated(Box::new(estimated(read, &asked, &progress)?)), stand)
         };
         let figures = match &made {

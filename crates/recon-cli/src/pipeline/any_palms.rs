@@ -5,6 +5,7 @@ use super::any_palms_bounds::estimate_bounds;
 use super::any_palms_words::{Checks, evidence, touch_next, verdict};
 use super::bounds::{BoundsResult, CONFIDENCE, NOTABLE_NOISE};
 use super::export::Object;
+use super::least_model::choice_rows;
 use super::truth::{true_motion, true_shape};
 use super::views::bounds_views;
 use super::words::{margins, sentence};
@@ -12,7 +13,8 @@ use crate::error::CliError;
 use crate::progress::Progress;
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::Direction;
-use recon::object_dynamics::{ContactLog, LoggedPalm, MassProperties, NotThreePlanes, SensedAxes};
+use recon::least_model::{Accuracy, Choice, least_estimate, one_of};
+use recon::object_dynamics::{ContactLog, LoggedPalm, MassProperties, NotThreePlanes, SensedAxes, TrueState};
 use recon::observer::{
     ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, ImpulseNoise,
     estimate_contacts, nearest_turn,
@@ -32,6 +34,8 @@ pub(crate) struct AnyPalmsRequest<'a> {
     pub(crate) identify: bool,
     /// Coefficient of friction of the palms that do not state one, if it is known.
     pub(crate) friction: Option<f64>,
+    /// How near the motion is wanted, where the least model is to be chosen by that.
+    pub(crate) accuracy: Option<Accuracy>,
     /// Samples of the log that were taken as one.
     pub(crate) together: usize,
     /// Why it is this estimate, in one sentence.
@@ -44,8 +48,8 @@ pub(crate) struct AnyPalmsRequest<'a> {
 
 impl<'a> AnyPalmsRequest<'a> {
     pub(crate) fn new(scene: &'a Scene, title: &'a str, identify: bool) -> Self {
-        let (note, warnings) = Default::default();
-        Self { scene, title, identify, friction: None, together: 1, note, warnings, implausible: false }
+        let (note, warnings, accuracy, friction) = Default::default();
+        Self { scene, title, identify, friction, accuracy, together: 1, note, warnings, implausible: false }
     }
 
     /// What does not go with the scene, before all other warnings.
@@ -62,6 +66,8 @@ pub(crate) struct AnyPalms {
     pub(crate) bounds: Option<BoundsResult>,
     /// Noise of contacts, m.
     pub(crate) contact_noise: f64,
+    /// Why it was modelled as it is, where an accuracy was wanted.
+    pub(crate) choice: Option<Choice>,
 }
 
 impl AnyPalms {
@@ -115,11 +121,7 @@ pub(crate) fn estimate_any_palms(
         options.body = request.scene.mass_properties().ok().flatten();
     }
     progress.step("estimating the motion");
-    let (log, truth) = log.split_truth();
-    let estimate = estimate_contacts(&log, None, &options).map_err(|error| match error {
-        ContactEstimateError::NoSize => CliError::SizeNotStated,
-        other => CliError::ContactEstimate(other),
-    })?;
+    let (log, truth, estimate, choice) = modelled(log, &mut options, request.accuracy)?;
     let curves: Vec<_> = log.palms().iter().enumerate().map(|of| curve(of, &estimate)).collect();
     let truth = truth.filter(|truth| !truth.is_empty());
     let axes = truth.as_ref().map(|truth| {
@@ -131,6 +133,7 @@ pub(crate) fn estimate_any_palms(
     let true_shape = simulated.map(|(simulation, axes)| true_shape(simulation, axes)).transpose()?;
     let truth = truth.zip(axes).map(|(truth, axes)| true_motion(&truth, axes));
     let mut warnings = request.warnings;
+    warnings.extend(choice.iter().filter(|choice| !choice.is_reached).map(Choice::verdict));
     warnings.extend(not_relied_on(&estimate));
     warnings.extend(impulses_not_read(&log, &options));
     warnings.extend(misread(&log, &estimate));
@@ -179,6 +182,7 @@ pub(crate) fn estimate_any_palms(
         verdict,
         note: request.note,
         evidence,
+        least_model: choice.iter().flat_map(choice_rows).collect(),
         log,
         estimate,
         curves,
@@ -196,7 +200,30 @@ pub(crate) fn estimate_any_palms(
         bounds: bounds.as_ref().map(|bounds| bounds.drawn.clone()),
         warnings,
     };
-    Ok(AnyPalms { data, bounds, contact_noise: options.noise.contact })
+    Ok(AnyPalms { data, bounds, contact_noise: options.noise.contact, choice })
+}
+
+/// The log without its truth, its truth, and the estimate: by the least model that serves where an accuracy is wanted, which then changes the options.
+type Modelled = (ContactLog, Option<Vec<TrueState>>, ContactEstimate, Option<Choice>);
+
+fn modelled(
+    log: ContactLog,
+    options: &mut ContactOptions,
+    accuracy: Option<Accuracy>,
+) -> Result<Modelled, CliError> {
+    let refused = |error| match error {
+        ContactEstimateError::NoSize => CliError::SizeNotStated,
+        other => CliError::ContactEstimate(other),
+    };
+    let Some(wanted) = accuracy else {
+        let (log, truth) = log.split_truth();
+        let estimate = estimate_contacts(&log, None, options).map_err(refused)?;
+        return Ok((log, truth, estimate, None));
+    };
+    let least = least_estimate(&log.clone().split_truth().0, options, wanted).map_err(refused)?;
+    *options = least.options;
+    let (log, truth) = one_of(&log, least.every)?.split_truth();
+    Ok((log, truth, least.estimate, Some(least.choice)))
 }
 
 /// What the estimator is told: as the scene states it, and the noise that it does not state from the roughness of the readings.

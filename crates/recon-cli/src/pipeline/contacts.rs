@@ -2,6 +2,7 @@
 
 use super::modes::ModesTold;
 use crate::error::CliError;
+use recon::least_model::Pose;
 use recon::object_dynamics::{ContactLog, ContactNoise, ContactScene, ContactSimulation};
 use recon_io::{BoxedShape, Scene, SceneError, mode_spans};
 use std::path::Path;
@@ -31,6 +32,10 @@ pub(crate) fn simulate_contacts(scene: &Scene, path: &Path, tolerance: f64) -> R
 }
 
 impl ContactRun {
+    pub(crate) fn poses(&self) -> Vec<Pose> {
+        self.simulation.instants.iter().map(|now| Pose::from(now.state.body)).collect()
+    }
+
     pub(crate) fn told(&self) -> ModesTold {
         use recon::object_dynamics::ContactEventKind::{ConeLeft, Lifts, SlipEnds, Touches};
         let count = |kind| self.simulation.events.iter().filter(|event| event.kind == kind).count();

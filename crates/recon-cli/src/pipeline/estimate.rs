@@ -13,6 +13,7 @@ use super::words::sentence;
 use crate::cli::{ExportAs, ShapeAs};
 use crate::error::CliError;
 use crate::progress::Progress;
+use recon::least_model::Accuracy;
 use recon::object_dynamics::SensorLog;
 use recon_io::{
     FolderTarget, Implausibility, Level, Scene, TriangleMesh, implausibilities, implausible_contacts,
@@ -30,6 +31,8 @@ pub(crate) struct Asked<'a> {
     pub(crate) title: &'a str,
     /// Whether mass and inertia of the scene are not to be looked at.
     pub(crate) identify: bool,
+    /// How near the motion is wanted, where the least model is to be chosen by that.
+    pub(crate) accuracy: Option<Accuracy>,
 }
 
 /// What a log tells, with what its files need beside it.
@@ -45,8 +48,8 @@ pub(crate) fn estimated(
     asked: &Asked<'_>,
     progress: &Progress,
 ) -> Result<Estimated, CliError> {
-    let Asked { path, scene, title, identify } = *asked;
-    let mut request = AnyPalmsRequest::new(scene, title, identify);
+    let Asked { path, scene, title, identify, accuracy } = *asked;
+    let mut request = AnyPalmsRequest { accuracy, ..AnyPalmsRequest::new(scene, title, identify) };
     match log {
         LogOf::ThreePalms(log) => estimated_planes(log, asked, warnings, progress),
         LogOf::AnyPalms(log, why) => {
@@ -67,12 +70,12 @@ pub(crate) fn estimated_planes(
     warnings: Vec<String>,
     progress: &Progress,
 ) -> Result<Estimated, CliError> {
-    let Asked { scene, title, identify, .. } = *asked;
+    let Asked { scene, title, identify, accuracy, .. } = *asked;
     if !identify {
         // What is to be estimated is asked for.
         known_body(scene)?;
     }
-    let mut request = AnyPalmsRequest::new(scene, title, identify);
+    let mut request = AnyPalmsRequest { accuracy, ..AnyPalmsRequest::new(scene, title, identify) };
     let odd = implausibilities(&log, scene);
     let (log, together) = condensed(log);
     let contacts = with_forces(&log, scene)?;

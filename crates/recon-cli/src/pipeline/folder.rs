@@ -1,5 +1,6 @@
 use super::bounds::{BoundsResult, LOWER, UPPER};
 use super::features::MARKS;
+use super::least_model::choice_figures;
 use super::{AnyPalms, ContactRun, Estimated};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
@@ -20,6 +21,9 @@ pub(crate) fn estimate_figures(made: &AnyPalms) -> Value {
     state_contradiction(&mut figures, made.bounds.as_ref().map_or(0.0, |bounds| bounds.contradiction));
     if let Some(features) = made.bounds.as_ref().and_then(BoundsResult::not_smooth) {
         figures["features"] = features.figures();
+    }
+    if let Some(choice) = &made.choice {
+        figures["least_model"] = choice_figures(choice);
     }
     figures
 }

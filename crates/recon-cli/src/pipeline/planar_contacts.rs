@@ -2,8 +2,10 @@
 
 use super::modes::ModesTold;
 use crate::error::CliError;
+use recon::least_model::Pose;
 use recon::object_dynamics::planar::{
-    ContactEventKind as Kind, ContactLog, ContactNoise, ContactSimulation, ContactStart,
+    ContactEventKind as Kind, ContactLog, ContactNoise, ContactSimulation, ContactStart, in_space,
+    turn_in_space,
 };
 use recon_io::{PlanarScene, planar_mode_spans};
 
@@ -33,6 +35,14 @@ pub(crate) fn simulate_planar_contacts(
 }
 
 impl PlanarContactRun {
+    pub(crate) fn poses(&self) -> Vec<Pose> {
+        let pose = |now: &recon::object_dynamics::planar::ContactInstant| Pose {
+            p_WCm: in_space(now.body.p_WCm),
+            R_WO: turn_in_space(now.body.phi0),
+        };
+        self.simulation.instants.iter().map(pose).collect()
+    }
+
     pub(crate) fn told(&self) -> ModesTold {
         let count = |kind| self.simulation.events.iter().filter(|event| event.kind == kind).count();
         let instants = &self.simulation.instants;

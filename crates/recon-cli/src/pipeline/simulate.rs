@@ -1,4 +1,5 @@
 use crate::error::CliError;
+use recon::least_model::Pose;
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{End, InitialMotion, SampleTimes, SensorLog, SensorNoise, ThreePalmScene};
 use recon_io::Scene;
@@ -10,6 +11,13 @@ pub(crate) struct Simulated {
     pub(crate) end: End,
     /// Time asked for, s.
     pub(crate) duration: f64,
+    poses: Vec<Pose>,
+}
+
+impl Simulated {
+    pub(crate) fn poses(&self) -> Vec<Pose> {
+        self.poses.clone()
+    }
 }
 
 /// Simulates the scene of three flat palms through the origin read from `path`, with sensor noise where the scene gives it.
@@ -36,7 +44,8 @@ pub(crate) fn simulate(scene: &Scene, path: &Path, tolerance: f64) -> Result<Sim
     } else {
         ideal.with_noise(&noise, simulation.seed).map_err(CliError::Noise)?
     };
-    Ok(Simulated { log, end: run.end, duration: simulation.duration })
+    let poses = run.instants.iter().map(|now| Pose { p_WCm: now.touch.p_WCm, R_WO: now.R_WO }).collect();
+    Ok(Simulated { log, end: run.end, duration: simulation.duration, poses })
 }
 
 /// Mass and inertia of a scene that must have them.

@@ -22,6 +22,7 @@ mod guides;
 mod in_memory;
 #[cfg(unix)]
 mod interrupted;
+mod least_model;
 mod margins;
 mod not_smooth;
 mod nothing_lost;

@@ -44,6 +44,8 @@ pub struct EstimateData {
     pub force_noise: [f64; 2],
     /// What the numbers rest on.
     pub evidence: Vec<Evidence>,
+    /// What was modelled and what was left out, where an accuracy was wanted.
+    pub least_model: Vec<Evidence>,
     /// What the reader must know, in plain words.
     pub warnings: Vec<String>,
     /// What to do next, in plain words.

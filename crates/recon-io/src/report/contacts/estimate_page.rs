@@ -22,6 +22,7 @@ const BANDS: &str = "Bands hold 95 % of what the estimate may be off by, or a re
 const DASHED: &str = " Dashed: the true motion, from the log.";
 const MODES: &str = "Modes from the ratio of friction to normal force and, in space, from the slip: the paler, the less sure. Time in s. \
     Dashed lines: the instants of the small pictures.";
+const LEFT_OUT: &str = "What was modelled, what was left out, what that costs";
 const SHAPE: &str = "The object lies between the lower and the upper bound; the arrow shows where they are farthest apart: a touch there tells most.";
 
 /// What the page of an estimate is made of, in space and in the plane alike.
@@ -45,6 +46,8 @@ pub(super) struct EstimatePage<'a> {
     pub(super) shape: &'a [FigurePanel],
     pub(super) has_truth: bool,
     pub(super) evidence: &'a [Evidence],
+    /// What was modelled and what was left out, where an accuracy was wanted.
+    pub(super) least_model: &'a [Evidence],
 }
 
 /// Writes a motion that was estimated from contacts of any palms as one HTML page that needs nothing else: the verdict, pictures,
@@ -83,6 +86,7 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
         shape: &data.shape,
         has_truth: data.truth.is_some(),
         evidence: &data.evidence,
+        least_model: &data.least_model,
     };
     page.write(to)
 }
@@ -111,6 +115,7 @@ impl EstimatePage<'_> {
             )
             + &modes_section(&self.spans, &self.pictures.times(), Some(&doubtful), MODES)
             + &curves_section("Bounds on the shape", self.shape, SHAPE)
+            + &evidence_section(LEFT_OUT, &rows(self.least_model))
             + &evidence_section("Mass, inertia, and what the result rests on", &rows(self.evidence));
         let verdict = notices(self.verdict, ["Reliable", "With care", "Unreliable"], self.warnings)
             + &notice(Level::Neutral, "Note", self.note)

@@ -80,6 +80,7 @@ pub fn write_plane_estimate_report(data: &PlaneEstimateData, to: impl Write) -> 
         shape: &data.shape,
         has_truth: data.log.truth().is_some(),
         evidence: &data.evidence,
+        least_model: &[],
     };
     page.write(to)
 }

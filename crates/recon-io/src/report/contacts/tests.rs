@@ -233,6 +233,7 @@ fn estimate() -> EstimateData {
             meaning: "About 1 & good.".into(),
             level: Level::Good,
         }],
+        least_model: Vec::new(),
         warnings: vec!["<b>mind</b>".into()],
         next: "touch <more>".into(),
         log: log.split_truth().0,
