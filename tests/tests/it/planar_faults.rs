@@ -2,7 +2,9 @@
 
 use crate::planar_common::{errors, noise_level, options, scene, times};
 use recon::object_dynamics::planar::*;
+use recon::object_dynamics::{ChannelNoise, ContactNoise};
 use recon::observer::planar::*;
+use recon::observer::{ContactNoiseLevel, ContactOptions, estimate_contacts};
 use recon_tests::few_or_all;
 
 const CONTACT: f64 = 1e-4;
@@ -88,6 +90,34 @@ fn gaps_and_lost_contacts_are_got_over() {
         println!("{name}: {off:?} {:?}", made.reliability);
         assert!(off.worst < 5.0 || !made.reliability.is_reliable(), "{name}: {off:?}");
     }
+}
+
+/// A log in space of what moves in a plane, with noise across it too: that moves no centre of mass, and the plane's own place is known as well as is said.
+#[test]
+fn noise_across_the_plane_moves_nothing() {
+    let (object, motion, start) = scene("S2_rotating_pair");
+    let run = simulate_prescribed(&object, &motion, start, &times(250.0, 1.0), 1e-13).unwrap();
+    let log = run.log().unwrap().contact_log([0.0; 2]).unwrap().in_space(&[Some(0.0); 2]).unwrap();
+    let fixed = ChannelNoise { fixed: FORCE, share: 0.0 };
+    let log = log
+        .with_noise(&ContactNoise { contact: CONTACT, force: fixed, ..ContactNoise::default() }, 3)
+        .unwrap();
+    let (floor, size) = (3e-5 * (object.gravity * 0.04).sqrt(), 0.04);
+    let noise =
+        ContactNoiseLevel { contact: CONTACT, force_fixed: FORCE, force_share: 0.0, impulse: None, floor };
+    let told =
+        ContactOptions { planar: true, size: Some(size), ..ContactOptions::new(noise, object.gravity) };
+    let found = estimate_contacts(&log, None, &told).unwrap();
+    let across: Vec<f64> = found.states.iter().map(|state| state.p_WCm.y).collect();
+    assert!(across.iter().all(|y| (y - across[0]).abs() < 1e-12), "{across:?}");
+    // Of two contacts at each of 251 samples.
+    let known = CONTACT / 502_f64.sqrt();
+    let told = found.deviations[0][0].y;
+    assert!(
+        (told / known - 1.0).abs() < 0.15 && across[0].abs() < 4.0 * told,
+        "{told} {known} {}",
+        across[0]
+    );
 }
 
 /// Noise that is left out is read off the log.

@@ -40,12 +40,13 @@ pub(super) fn unfelt(units: &Units) -> Matrix6<f64> {
     Matrix6::from_diagonal(&Vector6::new(0.0, impulse, 0.0, moment, 0.0, moment).map(|noise| noise * noise))
 }
 
-/// Without deviations of what cannot be otherwise.
-pub(super) fn flatten(deviations: &mut Deviations) {
+/// Without deviations of what cannot be otherwise, but for the place of the plane, m.
+pub(super) fn flatten(deviations: &mut Deviations, across: f64) {
     let along = [DVec3::new(1.0, 0.0, 1.0), DVec3::Y];
     for (i, of) in deviations.iter_mut().enumerate() {
         *of *= along[i / 2];
     }
+    deviations[0].y = across;
 }
 
 /// How the constants of a body change with the logarithm of the root of its moment of inertia about y.

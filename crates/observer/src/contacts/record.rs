@@ -83,6 +83,8 @@ pub(super) struct Record {
     pub(super) by_samples: bool,
     /// Contacts that were misread, and stand where those around them say.
     pub(super) misread: Vec<Misread>,
+    /// Deviation of the mean of what they scatter by along y, m: of the plane's place, where all is in one.
+    pub(super) across: f64,
 }
 
 impl Contact {
@@ -193,6 +195,7 @@ impl Record {
         }
         let origin = points().map(|touch| touch.p_WC).sum::<DVec3>() / count as f64;
         let square = points().map(|touch| touch.p_WC.distance_squared(origin)).sum::<f64>();
+        let across = points().map(|touch| (touch.p_WC.y - origin.y).powi(2)).sum::<f64>();
         let mut contacts: Vec<Vec<Contact>> =
             (0..times.len()).map(|k| contacts_at(log, k, origin, options)).collect();
         let misread = misread(&contacts, &times, noise.contact, options.gravity);
@@ -216,6 +219,7 @@ impl Record {
             all_impulses,
             by_samples,
             misread,
+            across: across.sqrt() / count as f64,
         })
     }
 
@@ -305,7 +309,9 @@ fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, options: &ContactOptio
         let force = force_at(log, logged, k, &options.noise, frictionless)?;
         let motion = logged.motion(k);
         let felt = Contact::new(palm, logged.surface(), &touch, &motion, force, frictionless, options.planar);
-        Some(Contact { c: felt.c - origin, ..felt })
+        // All in one plane, about which they scatter by noise alone.
+        let c = felt.c - origin;
+        Some(Contact { c: if options.planar { c.with_y(0.0) } else { c }, ..felt })
     };
     log.palms().iter().enumerate().filter_map(one).collect()
 }

@@ -35,7 +35,7 @@ pub(super) fn at_all<const P: usize>(
         }
     }
     if problem.planar {
-        all.iter_mut().for_each(|(_, deviations)| plane::flatten(deviations));
+        all.iter_mut().for_each(|(_, deviations)| plane::flatten(deviations, log.across));
     }
     all
 }

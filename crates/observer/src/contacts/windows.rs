@@ -190,6 +190,7 @@ impl Record {
             all_impulses: self.all_impulses,
             by_samples: self.by_samples,
             misread: Vec::new(),
+            across: self.across,
         }
     }
 
@@ -210,6 +211,7 @@ impl Record {
             all_impulses: self.all_impulses,
             by_samples: self.by_samples,
             misread: Vec::new(),
+            across: self.across,
         }
     }
 
