@@ -18,8 +18,8 @@ use glam::{DMat3, DVec3};
 use nalgebra::SVector;
 use object_dynamics::{MOST_PALMS, MassProperties};
 
-/// Rates of starts in the plane, and what spins of starts are off by, in natural ones: motions that explain a log almost as well were seen to lie
-/// 0.2 apart and more.
+/// Rates of the starts in the plane, and what the spins of those in space are off by, in natural ones: motions that explain a log almost as well were
+/// seen to lie 0.2 apart and more.
 const RATES: [f64; 3] = [0.0, 1.0, -1.0];
 const SHIFTED: [f64; 3] = [0.2, 0.3, 0.7];
 /// Linearisations that each may take, and after how many it is asked whether to go on; how many times as much as the best motion one may
@@ -202,16 +202,15 @@ pub(super) fn well_known(problem: &Problem, solved: &Solved<CONSTANTS>) -> bool 
     claimed.is_some_and(|claimed| claimed.body.diagonal().max() < SMALL * SMALL)
 }
 
-/// The motion as it is, of `body`, that spins otherwise; in the plane also bodies that turn at a constant rate.
+/// In the plane bodies that turn at a constant rate; in space the motion as it is, of `body`, that spins otherwise.
 fn starts(problem: &Problem, found: &Unknowns, body: Body) -> Vec<Unknowns> {
     let rate = problem.units.speed / problem.units.length;
-    let axes = if problem.planar { &DVec3::AXES[1..2] } else { &DVec3::AXES[..] };
-    let along = |shift: f64| axes.iter().flat_map(move |axis| [*axis * shift, *axis * -shift]);
-    let shifts = SHIFTED.into_iter().flat_map(along);
-    let shifted = shifts.map(|shift| cold::shifted(problem, found, body, shift * rate));
-    let turning = RATES.into_iter().take(if problem.planar { RATES.len() } else { 0 });
-    let turning = turning.map(|turns| cold::turning(problem, body, -DVec3::Y * (turns * rate)));
-    turning.chain(shifted).collect()
+    if problem.planar {
+        return RATES.map(|turns| cold::turning(problem, body, -DVec3::Y * (turns * rate))).into();
+    }
+    let along = |shift: f64| DVec3::AXES.map(|axis| [axis * shift, axis * -shift]);
+    let shifts = SHIFTED.into_iter().flat_map(along).flatten();
+    shifts.map(|shift| cold::shifted(problem, found, body, shift * rate)).collect()
 }
 
 /// A body as heavy as another one, and round.
