@@ -27,9 +27,12 @@ palms = [
 ]
 "#;
 
-fn scratch(test: &str) -> (Scratch, Table) {
+/// The rate of the scene as it stands.
+const SEEN: &str = "sample_rate = 250.0";
+
+fn scratch(test: &str, rate: &str) -> (Scratch, Table) {
     let scratch = Scratch::new(test);
-    scratch.write("scene.toml", SCENE);
+    scratch.write("scene.toml", &SCENE.replace(SEEN, rate));
     let run = scratch.run(&["simulate", "scene.toml", "-o", "log.csv"]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let log = Table::parse(&scratch.read("log.csv"));
@@ -49,7 +52,7 @@ fn number(table: &Table, row: usize, column: &str) -> f64 {
 
 #[test]
 fn the_motion_is_followed_from_a_file_and_from_a_pipe() {
-    let (scratch, log) = scratch("follow");
+    let (scratch, log) = scratch("follow", SEEN);
     let run = scratch.run(&["follow", "log.csv", "--scene", "scene.toml", "-o", "motion.csv"]);
     assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
     assert!(run.stdout.contains("the motion is known from "), "{}", run.stdout);
@@ -91,7 +94,7 @@ fn the_motion_is_followed_from_a_file_and_from_a_pipe() {
 /// As palms of any shape.
 #[test]
 fn the_motion_is_followed_on_any_palms() {
-    let (scratch, _) = scratch("follow-any");
+    let (scratch, _) = scratch("follow-any", SEEN);
     let log = ContactLog::try_from(&read_log(scratch.path().join("log.csv")).unwrap()).unwrap();
     let mut text = Vec::new();
     write_contact_log(&log, &mut text).unwrap();
@@ -115,7 +118,7 @@ fn the_motion_is_followed_on_any_palms() {
 
 #[test]
 fn a_log_without_forces_gives_the_ellipsoid() {
-    let (scratch, log) = scratch("without-forces");
+    let (scratch, log) = scratch("without-forces", "sample_rate = 1000.0");
     scratch.write("bare.csv", &without(&log, "f_"));
     let arguments = ["reconstruct", "bare.csv", "--scene", "scene.toml", "--without-forces"];
     let run = scratch.run(&arguments);
@@ -139,7 +142,7 @@ fn a_log_without_forces_gives_the_ellipsoid() {
 
 #[test]
 fn bad_input_is_refused() {
-    let (scratch, mut log) = scratch("follow-bad");
+    let (scratch, mut log) = scratch("follow-bad", SEEN);
     log.rows.truncate(40);
     scratch.write("log.csv", &log.text());
     scratch.write("bare.csv", &without(&log, "f_"));
