@@ -188,7 +188,7 @@ pub(super) fn whole(problem: &mut Problem) -> Option<Ended> {
 /// What leaves least so far, with the combinations of the body's constants that are held in it.
 type Best = Option<(Ended, Vec<SVector<f64, CONSTANTS>>)>;
 
-/// Keeps what leaves less; two that agree are one. Not of exact logs, of which other ways lead on from three of 400 where two agreed.
+/// Keeps what leaves less; two that agree are one. Not of exact logs: of one in 400 other ways led on where two agreed.
 fn keep(best: &mut Best, mut ended: Ended, problem: &Problem) {
     if let Some((best, _)) = best.as_mut().filter(|_| !problem.exact) {
         ended.agreed |= best.agrees(&ended);
