@@ -2,11 +2,15 @@
 //! that turn on, turn back or are let go at rest.
 
 use super::bound::{ContactErrors, Scales, TrueSample, least_covariance};
+use glam::DVec2;
 use nalgebra::SMatrix;
-use recon::contact_kinematics::planar::{FourierBody, RadiusFunction};
+use recon::contact_kinematics::MotionLaw;
+use recon::contact_kinematics::planar::{
+    FourierBody, MotionPart, PalmSurface, RadiusFunction, SurfaceMotion, SurfacePose,
+};
 use recon::object_dynamics::planar::*;
 use recon_tests::Random;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -104,6 +108,30 @@ fn lasts(log: &PlanarLog) -> f64 {
 }
 
 impl Scene {
+    /// The same palms as lines that turn about the hinge, with a friction.
+    ///
+    /// # Errors
+    /// Those of the scene.
+    pub fn any_palms(&self, friction: f64) -> Result<ContactScene<FourierBody>, Failure> {
+        let palms = &self.palms;
+        let turn = |i: usize| MotionPart::Turn {
+            pivot: DVec2::ZERO,
+            law: MotionLaw::Sinusoid {
+                mean: 0.0,
+                amplitude: palms.amplitudes[i],
+                frequency: palms.frequencies[i],
+                phase: palms.phases[i],
+            },
+        };
+        let [first, second] = palms.centres;
+        let line = |angle: f64, parts: Vec<MotionPart>| -> Result<ScenePalm, Failure> {
+            let motion = SurfaceMotion { pose: SurfacePose::new(DVec2::ZERO, angle)?, parts };
+            Ok(ScenePalm { surface: PalmSurface::Line, motion, friction })
+        };
+        let all = vec![line(first, vec![turn(0)])?, line(first + second + PI, vec![turn(0), turn(1)])?];
+        Ok(ContactScene::new(self.object.clone(), all)?)
+    }
+
     /// What is sensed, without noise.
     ///
     /// # Errors

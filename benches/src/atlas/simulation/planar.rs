@@ -2,16 +2,9 @@
 
 use super::super::judged::Ran;
 use super::super::planar::Spec;
-use super::super::{Failure, G, Method, Way};
+use super::super::{Failure, Method, Way};
 use super::{GROWN, TOLERANCE};
-use crate::planar::scene::Scene;
-use glam::DVec2;
-use recon::contact_kinematics::MotionLaw;
-use recon::contact_kinematics::planar::{FourierBody, MotionPart, PalmSurface, SurfaceMotion, SurfacePose};
-use recon::object_dynamics::planar::{
-    BodyState, ContactScene, ContactStart, PlanarObject, ScenePalm, simulate_prescribed,
-};
-use std::f64::consts::PI;
+use recon::object_dynamics::planar::{BodyState, ContactStart, simulate_prescribed};
 
 /// Tolerance of the other way.
 const FINE: f64 = 1e-12;
@@ -43,7 +36,7 @@ fn run(way: Way, strength: f64, seed: u64) -> Result<Ran, Failure> {
     };
     let truth = first.truth;
     let body = BodyState { p_WCm: truth.p_WCm, phi0: truth.phi0, v_WCm: truth.v_WCm, omega0: truth.omega0 };
-    let other = any_palms(&scene)?;
+    let other = scene.any_palms(0.0)?;
     let start = ContactStart { body, contacts: vec![0, 1] };
     let count = run.samples.len();
     let other = other.simulate(&start, &times[..count], FINE)?;
@@ -54,26 +47,4 @@ fn run(way: Way, strength: f64, seed: u64) -> Result<Ran, Failure> {
         off = if error > off || error.is_nan() { error } else { off };
     }
     Ok(Ran::Found { off: off / (GROWN * tolerance), doubt: None })
-}
-
-/// The same palms as lines that turn.
-fn any_palms(scene: &Scene) -> Result<ContactScene<FourierBody>, Failure> {
-    let palms = &scene.palms;
-    let turn = |i: usize| MotionPart::Turn {
-        pivot: DVec2::ZERO,
-        law: MotionLaw::Sinusoid {
-            mean: 0.0,
-            amplitude: palms.amplitudes[i],
-            frequency: palms.frequencies[i],
-            phase: palms.phases[i],
-        },
-    };
-    let [first, second] = palms.centres;
-    let line = |angle: f64, parts: Vec<MotionPart>| -> Result<ScenePalm, Failure> {
-        let motion = SurfaceMotion { pose: SurfacePose::new(DVec2::ZERO, angle)?, parts };
-        Ok(ScenePalm { surface: PalmSurface::Line, motion, friction: 0.0 })
-    };
-    let all = vec![line(first, vec![turn(0)])?, line(first + second + PI, vec![turn(0), turn(1)])?];
-    let object = PlanarObject { shape: scene.object.shape.clone(), mass: scene.object.mass, gravity: G };
-    Ok(ContactScene::new(object, all)?)
 }

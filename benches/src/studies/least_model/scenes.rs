@@ -1,21 +1,16 @@
 //! Scenes to simulate, drawn at random: three frictionless planes, three planes that rub, two palms in the plane.
 
 use super::Failure;
-use glam::{DQuat, DVec2, DVec3};
-use recon::contact_kinematics::planar::{
-    FourierBody, MotionPart as PlanarPart, PalmSurface as PlanarSurface, SurfaceMotion as PlanarMotion,
-    SurfacePose as PlanarPose,
-};
-use recon::contact_kinematics::{
-    Ellipsoid, MotionLaw, Palm, PalmFrame, PalmSurface, SurfaceMotion, SurfacePose,
-};
+use glam::{DQuat, DVec3};
+use recon::contact_kinematics::planar::FourierBody;
+use recon::contact_kinematics::{Ellipsoid, Palm, PalmFrame, PalmSurface, SurfaceMotion, SurfacePose};
 use recon::object_dynamics::{
     BodyState, ContactScene, ContactStart, MassProperties, PalmDrive, SampleTimes, ScenePalm, ThreePalmScene,
     planar,
 };
 use recon_benches::planar::scene::{Scene as InPlane, drawn};
 use recon_tests::Random;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 const G: f64 = 9.81;
 /// Samples in a natural time.
@@ -105,24 +100,7 @@ fn in_plane(seed: u64) -> Result<Option<Scene>, Failure> {
     let Some(of) = drawn.first() else { return Ok(None) };
     let InPlane { object, palms, start, length, time, .. } = of;
     let friction = if random.within(0.0, 1.0) < 0.5 { 0.0 } else { random.within(0.05, 0.4) };
-    let turn = |i: usize| PlanarPart::Turn {
-        pivot: DVec2::ZERO,
-        law: MotionLaw::Sinusoid {
-            mean: 0.0,
-            amplitude: palms.amplitudes[i],
-            frequency: palms.frequencies[i],
-            phase: palms.phases[i],
-        },
-    };
-    let [first, second] = palms.centres;
-    let line = |angle: f64, parts: Vec<PlanarPart>| -> Result<planar::ScenePalm, Failure> {
-        let motion = PlanarMotion { pose: PlanarPose::new(DVec2::ZERO, angle)?, parts };
-        Ok(planar::ScenePalm { surface: PlanarSurface::Line, motion, friction })
-    };
-    let all = vec![line(first, vec![turn(0)])?, line(first + second + PI, vec![turn(0), turn(1)])?];
-    let shape = object.shape.clone();
-    let world =
-        planar::ContactScene::new(planar::PlanarObject { shape, mass: object.mass, gravity: G }, all)?;
+    let world = of.any_palms(friction)?;
     let lasts = random.within(5.0, 20.0);
     let times = SampleTimes { duration: lasts * time, rate: RATE / time };
     // As two palms without friction hold it at the start.
