@@ -66,11 +66,20 @@ pub(super) struct Window {
     samples: VecDeque<Raw>,
     before: Option<Before>,
     dearer: Dearer,
+    /// Whether a motion of this search was relied on.
+    believed: bool,
 }
 
 impl Window {
     pub(super) fn new(palms: Vec<StreamPalm>, options: ContactOptions) -> Self {
-        Self { palms, options, samples: VecDeque::new(), before: None, dearer: Dearer::default() }
+        Self {
+            palms,
+            options,
+            samples: VecDeque::new(),
+            before: None,
+            dearer: Dearer::default(),
+            believed: false,
+        }
     }
 
     /// Takes later samples and does what is asked for.
@@ -197,10 +206,10 @@ impl Window {
         let over = number(samples.first())..number(samples.last());
         // As of whole logs constants are judged by noise, and not by what steps from sample to sample miss.
         let judged = self.options.body.is_some() && !problem.planar && !problem.exact;
-        if judged && asked == Asked::Follow && self.dearer.is_due(&over) {
+        if judged && (!self.believed || self.dearer.is_due(&over)) {
             self.dearer.count(&mut problem, &solved, free, over);
         }
-        let against = against || self.dearer.contradicts();
+        let against = against || self.dearer.contradicts(self.believed);
         // Not those of noise drawn once more, as for whole logs: few draws a window differ from one to the next by as much as they tell, and
         // motions were lost by that three times as often, while errors over their deviations stayed what they are.
         let covariances = solved.covariances(&problem)?;
@@ -222,7 +231,7 @@ impl Window {
             stage = stage.of_certain_axes(mass)?;
         }
         let Stage { problem, solved, against, open, .. } = stage;
-        self.dearer = Dearer::default();
+        (self.dearer, self.believed) = (Dearer::default(), false);
         open.is_none().then_some((problem, solved, against.is_some()))
     }
 
@@ -269,6 +278,7 @@ impl Window {
         let last = samples.len() - 1;
         let at = (number(last), raw(last).map_or(f64::NAN, |raw| raw.t));
         let solution = Solution::new(of, at, self.options.body.as_ref(), turned, missed);
+        self.believed |= solution.explained && solution.relied_on;
         if solution.explained {
             let nodes = (0..=last).map(|j| (number(j), of.motion(j), of.turn(j))).collect();
             self.before = Some(Before { nodes, body: solution.body, turned });
