@@ -52,7 +52,7 @@ fn interrupted_while_computing_leaves_nothing() {
 #[test]
 fn interrupted_while_writing_leaves_nothing() {
     let scratch = Scratch::new("writing");
-    scratch.write("scene.toml", &spinning_ball(100.0, 2000.0, 1.0)).write("log.csv", "an earlier log");
+    scratch.write("scene.toml", &spinning_ball(50.0, 2000.0, 1.0)).write("log.csv", "an earlier log");
     let mut child = scratch
         .command(&["simulate", "scene.toml", "-o", "log.csv"])
         .stdout(Stdio::null())
