@@ -24,6 +24,7 @@ mod planar_faults;
 mod planar_oracles;
 mod planar_quasistatic;
 mod planar_shape_fit;
+mod readme;
 mod sensor_constants;
 mod several_motions;
 mod simulation_oracle;

@@ -82,9 +82,9 @@ fn motion_has_the_columns_of_the_truth_and_its_values() {
     assert!(header.starts_with("t,cmx,cmy,cmz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,std_cmx,"), "{header}");
     assert!(header.ends_with("mode_1,mode_2,mode_3,relied_on"), "{header}");
     assert_eq!(motion.rows.len(), log.rows.len());
-    // At 100 Hz the quadrature of the readings is good to some 1e-6 of a 2 m, 1 rad/s scene.
+    // At 100 Hz the quadrature of the readings is good to some 1e-7 of a 2 m, 1 rad/s scene.
     for column in ["t", "cmx", "cmy", "cmz", "vx", "vy", "vz", "wx", "wy", "wz"] {
-        assert!(difference(&log, &motion, column) < 1e-5, "{column}");
+        assert!(difference(&log, &motion, column) < 1e-6, "{column}");
     }
     let summary = scratch.read("out/summary.json");
     // A second run replaces the first: torques of motors that hold the palms tell their forces, and no inertia is needed for that.
