@@ -81,7 +81,7 @@ pub(crate) fn push(text: &mut String, value: f64) {
         from -= 1;
         digits[from] = digit;
     };
-    if left % 10 != 0 {
+    if !left.is_multiple_of(10) {
         place(b'0' + (left % 10) as u8);
         place(b'.');
     }
