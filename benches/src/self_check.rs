@@ -137,6 +137,28 @@ fn the_same_figures_give_the_same_files() {
     }
 }
 
+/// The example of the first page, line for line.
+#[test]
+fn the_example_of_the_first_page_holds() {
+    use recon_benches::{Axis, Budget, Study, WorkPrecision};
+
+    let mut study = Study::new();
+    for n in [10_u32, 100, 1000] {
+        let mean = move || (0..n).map(|i| (f64::from(i) / f64::from(n)).exp()).sum::<f64>() / f64::from(n);
+        study.case("left sum", format!("n = {n}"), mean, |mean| (mean - (1.0_f64.exp() - 1.0)).abs());
+    }
+    let chart = WorkPrecision::new("quadrature", "Integral of exp over the unit interval")
+        .axes(Axis::log("error", "1"), Axis::log("time", "ms"))
+        .methods(study.measure(Budget::quick(), 1.0));
+    assert!(chart.csv().starts_with("method,setting,"));
+
+    let page = include_str!("lib.rs").lines().filter_map(|line| line.strip_prefix("//! "));
+    let shown = page.skip_while(|line| *line != "```").skip(1).take_while(|line| *line != "```");
+    let (_, here) = include_str!("self_check.rs").split_once("first_page_holds").expect("this function");
+    let other: Vec<&str> = shown.filter(|line| !here.contains(&format!("    {line}\n"))).collect();
+    assert!(other.is_empty() && here.len() > 1000, "not run here: {other:?}");
+}
+
 #[test]
 fn a_chart_without_a_point_is_an_error_that_says_so() {
     let folder = Folder::new("empty");

@@ -17,11 +17,6 @@ use recon::object_dynamics::{
 use std::process::Command;
 use std::sync::LazyLock;
 
-/// The first use that the README shows must compile and hold.
-#[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-struct Readme;
-
 /// How much of a test is run: a decisive part of it, all of it where the environment says `RECON_TESTS=all`, as
 /// `cargo xtask verify --only all-tests` does.
 #[must_use]

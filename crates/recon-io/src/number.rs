@@ -1,5 +1,7 @@
 //! How numbers are printed: exactly in data files, briefly for people.
 
+use std::fmt::Write as _;
+
 /// Longest text that a number has in full: `-1.7976931348623157e308` and its like, and a few more.
 const LONGEST: usize = 25;
 
@@ -56,6 +58,55 @@ pub fn with_brief_numbers(text: &str) -> String {
 /// The shortest decimal that reads back as the same `f64`; `nan`, `inf` and `-inf` where there is no number.
 pub(crate) fn exact(value: f64) -> String {
     if value.is_nan() { "nan".to_owned() } else { format!("{value:?}") }
+}
+
+/// Appends `value` as `{}` writes it: of tenths, which places on a screen are, several times as fast.
+pub(crate) fn push(text: &mut String, value: f64) {
+    let tenths = (10.0 * value).round();
+    let is_plain =
+        tenths.abs() < MOST_TENTHS && tenths / 10.0 == value && (value != 0.0 || value.is_sign_positive());
+    if !is_plain {
+        let _ = write!(text, "{value}");
+        return;
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole, not negative, below the limit"
+    )]
+    let mut left = tenths.abs() as u64;
+    let mut digits = [0; 16];
+    let mut from = digits.len();
+    let mut place = |digit: u8| {
+        from -= 1;
+        digits[from] = digit;
+    };
+    if !left.is_multiple_of(10) {
+        place(b'0' + (left % 10) as u8);
+        place(b'.');
+    }
+    left /= 10;
+    loop {
+        place(b'0' + (left % 10) as u8);
+        left /= 10;
+        if left == 0 {
+            break;
+        }
+    }
+    if value < 0.0 {
+        text.push('-');
+    }
+    text.extend(digits[from..].iter().map(|&digit| char::from(digit)));
+}
+
+/// Up to here tenths are told apart by their shortest decimals, and fit.
+const MOST_TENTHS: f64 = 1e14;
+
+/// Appends two numbers with something between them.
+pub(crate) fn push_pair(text: &mut String, [x, y]: [f64; 2], between: char) {
+    push(text, x);
+    text.push(between);
+    push(text, y);
 }
 
 /// `value` rounded to a multiple of the power of ten that lies `digits` below `scale`: for pictures, where a
@@ -123,6 +174,17 @@ mod tests {
             }
             let sentence = with_brief_numbers(&format!("from {value} to {value:.6}."));
             prop_assert!(sentence.split(' ').all(|word| word.len() <= LONGEST + 2), "{sentence}");
+        }
+
+        #[test]
+        fn what_is_pushed_is_what_is_displayed(bits in any::<u64>(), tenths in -2_000_000_000_000_000_i64..2_000_000_000_000_000, small in -99_999..99_999) {
+            let value = f64::from_bits(bits);
+            let tenths = [tenths, i64::from(small)].map(|tenths| tenths as f64 / 10.0);
+            for value in [value, value % 1e4, on_scale(value % 1e4, 100.0, 3), 0.0, -0.0, tenths[0], tenths[1]] {
+                let mut text = String::new();
+                push(&mut text, value);
+                prop_assert_eq!(text, value.to_string());
+            }
         }
 
         #[test]

@@ -24,6 +24,8 @@ mod planar_faults;
 mod planar_oracles;
 mod planar_quasistatic;
 mod planar_shape_fit;
+#[expect(clippy::unit_arg, reason = "as README.md has it in ten lines")]
+mod readme;
 mod sensor_constants;
 mod several_motions;
 mod simulation_oracle;

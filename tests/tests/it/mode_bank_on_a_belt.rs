@@ -5,6 +5,7 @@
 
 use recon::observer::{Bank, BankOptions, Memory, ModeLabel, smooth_backward};
 use recon_tests::belt::{Entry, belt_velocity, modes, run, start};
+use recon_tests::few_or_all;
 use std::sync::LazyLock;
 
 const RUNS: u64 = 40;
@@ -31,6 +32,11 @@ fn odds(seed: u64, entry: Entry, options: BankOptions) -> Odds {
 
 fn all(entry: Entry, options: BankOptions) -> Vec<Odds> {
     (0..RUNS).map(|seed| odds(seed, entry, options)).collect()
+}
+
+/// The first of them: on the same readings two banks differ by far less than runs do.
+fn some(entry: Entry, options: BankOptions) -> Vec<Odds> {
+    (0..few_or_all(12, RUNS)).map(|seed| odds(seed, entry, options)).collect()
 }
 
 fn with(memory: Memory, lag: usize) -> BankOptions {
@@ -152,14 +158,14 @@ fn padding_with_zeros_is_far_worse_than_a_stated_prior() {
 fn what_is_given_up_is_bounded_and_told() {
     let exact = &*EXACT;
     for drop in [1e-2, 1e-3, 1e-4] {
-        let odds = all(Entry::TRUE, BankOptions { memory: EVERY_SWITCH, drop, ..BankOptions::default() });
+        let odds = some(Entry::TRUE, BankOptions { memory: EVERY_SWITCH, drop, ..BankOptions::default() });
         let off = distance(&odds, exact);
         assert!(off > 0.5 * drop && off < 4.0 * drop, "{drop}: {off}");
         assert!(odds.iter().all(|o| o.lost > 0.0 && o.lost <= drop * SAMPLES as f64), "{drop}");
     }
     // What is not run is counted too: of each hypothesis less than the share, of 400 at most.
     for skip in [1e-4, 1e-6] {
-        let odds = all(Entry::TRUE, BankOptions { memory: EVERY_SWITCH, skip, ..BankOptions::default() });
+        let odds = some(Entry::TRUE, BankOptions { memory: EVERY_SWITCH, skip, ..BankOptions::default() });
         let (off, lost) = (distance(&odds, exact), mean(odds.iter().map(|o| o.lost)) / SAMPLES as f64);
         assert!(
             lost > 0.0 && lost < 400.0 * skip && off > 0.5 * lost && off < 5.0 * lost,

@@ -177,6 +177,9 @@ fn torques_of_palms_with_inertia() {
         let found = estimate(inertias, body);
         let off = errors(&found, clean.truth().unwrap());
         assert!(found.reliability.is_reliable() && off.place < 1e-7 && off.worst < 5.0, "{off:?}");
+        if body.is_none() && few_or_all(true, false) {
+            continue;
+        }
         let wrong = estimate([0.0; 2], body).reliability;
         let against = |reason: &Reason| {
             matches!(reason, Reason::Inconsistent { .. } | Reason::Fault(_) | Reason::OtherBody { .. })

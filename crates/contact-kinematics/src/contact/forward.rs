@@ -50,14 +50,15 @@ impl ThreeContacts {
     #[must_use]
     pub fn new(body: &(impl SupportFunction + ?Sized), R_WO: DMat3, palms: PalmTriple) -> Self {
         let R_OW = R_WO.transpose();
-        let touched = palms.normals().map(|n| {
-            let n_O = Direction::new_unchecked(R_OW * -n);
-            let jet = body.jet(n_O);
-            (n_O, jet, R_WO * jet.point)
-        });
-        let p_WCm = palms.solve(DVec3::from_array(touched.map(|(_, jet, _)| jet.value)));
-        let contacts = touched.map(|(n_O, jet, b_W)| Contact { n_O, jet, b_W, p_WC: p_WCm + b_W });
         let normals = palms.normals();
+        let mut contacts: [Contact; 3] = std::array::from_fn(|i| {
+            let n_O = Direction::new_unchecked(R_OW * -normals[i]);
+            let jet = body.jet(n_O);
+            let b_W = R_WO * jet.point;
+            Contact { n_O, jet, b_W, p_WC: b_W }
+        });
+        let p_WCm = palms.solve(DVec3::from_array(std::array::from_fn(|i| contacts[i].jet.value)));
+        contacts.iter_mut().for_each(|contact| contact.p_WC = p_WCm + contact.b_W);
         let arms: [DVec3; 3] = std::array::from_fn(|i| normals[i].cross(contacts[i].b_W));
         let jacobian = palms.inverse() * DMat3::from_cols(arms[0], arms[1], arms[2]).transpose();
         Self { R_WO, p_WCm, contacts, jacobian, palms }

@@ -5,9 +5,11 @@ use glam::DVec2;
 
 /// Indices of the strictly convex corners of `points`, anticlockwise from the lexicographically least; exact.
 ///
-/// Andrew's monotone chain. One index for coincident points, two for collinear ones.
+/// Andrew's monotone chain, of the points that are not plainly inside. One index for coincident points, two for collinear ones.
 pub(crate) fn convex_corners(points: &[DVec2]) -> Vec<u32> {
-    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    let ring = ring(points);
+    let mut order: Vec<u32> =
+        (0..points.len() as u32).filter(|i| !is_within(&ring, points[*i as usize])).collect();
     // Adding zero makes -0 and 0 one value for the total order.
     let at = |i: u32| points[i as usize] + DVec2::ZERO;
     order.sort_unstable_by(|&i, &j| {
@@ -22,6 +24,54 @@ pub(crate) fn convex_corners(points: &[DVec2]) -> Vec<u32> {
     let upper = half_chain(order.iter().rev().copied(), at);
     corners.extend_from_slice(&upper[..upper.len() - 1]);
     corners
+}
+
+/// Directions in which the farthest points are looked for, anticlockwise: rounded numbers, as any points will do.
+const AROUND: [[f64; 2]; 16] = [
+    [1.0, 0.0],
+    [0.92, 0.38],
+    [0.71, 0.71],
+    [0.38, 0.92],
+    [0.0, 1.0],
+    [-0.38, 0.92],
+    [-0.71, 0.71],
+    [-0.92, 0.38],
+    [-1.0, 0.0],
+    [-0.92, -0.38],
+    [-0.71, -0.71],
+    [-0.38, -0.92],
+    [0.0, -1.0],
+    [0.38, -0.92],
+    [0.71, -0.71],
+    [0.92, -0.38],
+];
+/// Fewer points are sorted as soon as looked through.
+const MANY: usize = 64;
+
+/// Some of the points that lie far out, all around; none of few points.
+fn ring(points: &[DVec2]) -> Vec<DVec2> {
+    if points.len() < MANY {
+        return Vec::new();
+    }
+    let mut farthest = [(f64::NEG_INFINITY, points[0]); AROUND.len()];
+    for p in points {
+        for ((most, at), [x, y]) in farthest.iter_mut().zip(AROUND) {
+            let along = x * p.x + y * p.y;
+            if along > *most {
+                (*most, *at) = (along, *p);
+            }
+        }
+    }
+    let mut ring: Vec<DVec2> = farthest.into_iter().map(|(_, at)| at).collect();
+    ring.dedup();
+    ring
+}
+
+/// Whether a point is left of every edge of a ring, exactly: then each edge goes round it anticlockwise, so the ring does, and a closed line
+/// goes round nothing outside of the hull of its points. It is no corner, whatever the ring (Akl and Toussaint, "A fast convex hull algorithm", 1978).
+fn is_within(ring: &[DVec2], point: DVec2) -> bool {
+    let next = ring.iter().cycle().skip(1);
+    ring.len() > 2 && ring.iter().zip(next).all(|(a, b)| a == b || turn(*a, *b, point) > 0.0)
 }
 
 /// The chain that turns left all along `order`, from its first to its last point.

@@ -3,6 +3,9 @@
 use glam::DVec2;
 use thiserror::Error;
 
+/// Edges that lie in one box; room about it, and what of the square of a distance to it, both of them far more than rounding.
+const STRETCH: usize = 16;
+const ROUNDING: f64 = 1e-9;
 /// Distance from a corner below which its direction says nothing, m.
 const AT_CORNER: f64 = 1e-12;
 
@@ -11,6 +14,8 @@ const AT_CORNER: f64 = 1e-12;
 pub struct ClosedLine {
     corners: Vec<DVec2>,
     edges: Vec<Edge>,
+    /// Boxes about `STRETCH` edges each, in their order.
+    boxes: Vec<[DVec2; 2]>,
 }
 
 /// From a corner to the next one: the way there, and its inverse squared length, zero for an edge too short to have one.
@@ -20,6 +25,15 @@ struct Edge {
     to: DVec2,
     along: DVec2,
     inverse_square: f64,
+}
+
+impl Edge {
+    /// The share of it that lies before its point nearest to another one, that point, and the square of their distance.
+    fn nearest(&self, to: DVec2) -> (f64, DVec2, f64) {
+        let along = ((to - self.from).dot(self.along) * self.inverse_square).clamp(0.0, 1.0);
+        let point = self.from + self.along * along;
+        (along, point, point.distance_squared(to))
+    }
 }
 
 /// Corners that close no line.
@@ -90,8 +104,16 @@ impl ClosedLine {
             let inverse = along.length_squared().recip();
             Edge { from, to, along, inverse_square: if inverse.is_finite() { inverse } else { 0.0 } }
         };
-        let edges = (0..corners.len()).map(edge).collect();
-        Ok(Self { corners, edges })
+        let edges: Vec<Edge> = (0..corners.len()).map(edge).collect();
+        let about = |stretch: &[Edge]| {
+            let start = [stretch[0].from; 2];
+            let [low, high] =
+                stretch.iter().fold(start, |[low, high], edge| [low.min(edge.to), high.max(edge.to)]);
+            let room = DVec2::splat(ROUNDING * low.abs().max(high.abs()).max_element());
+            [low - room, high + room]
+        };
+        let boxes = edges.chunks(STRETCH).map(about).collect();
+        Ok(Self { corners, edges, boxes })
     }
 
     /// Corners, counter-clockwise.
@@ -114,20 +136,30 @@ impl ClosedLine {
     /// The nearest point of the line.
     #[must_use]
     pub fn nearest(&self, to: DVec2) -> Nearest {
+        // No edge of a box is nearer than the box, and none is farther than the nearest one of any box.
+        let from_box = |[low, high]: &[DVec2; 2]| to.clamp(*low, *high).distance_squared(to);
+        let least = self.boxes.iter().map(from_box).enumerate();
+        let least = least.fold((0, f64::INFINITY), |least, now| if now.1 < least.1 { now } else { least });
+        let some = if self.boxes.len() > 1 { &self.edges[least.0 * STRETCH..] } else { &[] };
+        let around = some.iter().take(STRETCH).map(|edge| edge.nearest(to).2);
+        let enough = around.fold(f64::INFINITY, f64::min) * (1.0 + ROUNDING);
         let mut best = (f64::INFINITY, 0, 0.0, DVec2::ZERO);
         let mut inside = false;
-        for (k, edge) in self.edges.iter().enumerate() {
-            let way = to - edge.from;
-            let along = (way.dot(edge.along) * edge.inverse_square).clamp(0.0, 1.0);
-            let point = edge.from + edge.along * along;
-            let squared = point.distance_squared(to);
-            if squared < best.0 {
-                best = (squared, k, along, point);
+        for (k, stretch) in self.edges.chunks(STRETCH).enumerate() {
+            let [low, high] = self.boxes[k];
+            if (to.y < low.y || to.y > high.y) && from_box(&[low, high]) > enough {
+                continue;
             }
-            // A ray to the right crosses the line an odd number of times from inside.
-            let crosses = (edge.from.y > to.y) != (edge.to.y > to.y);
-            if crosses && (edge.along.perp_dot(way) > 0.0) == (edge.along.y > 0.0) {
-                inside = !inside;
+            for (k, edge) in (k * STRETCH..).zip(stretch) {
+                let (along, point, squared) = edge.nearest(to);
+                if squared < best.0 {
+                    best = (squared, k, along, point);
+                }
+                // A ray to the right crosses the line an odd number of times from inside.
+                let crosses = (edge.from.y > to.y) != (edge.to.y > to.y);
+                if crosses && (edge.along.perp_dot(to - edge.from) > 0.0) == (edge.along.y > 0.0) {
+                    inside = !inside;
+                }
             }
         }
         let (squared, edge, along, point) = best;
@@ -169,6 +201,35 @@ mod tests {
         let corner = square.nearest(DVec2::new(-0.3, -0.4));
         assert!((corner.distance - 0.5).abs() < 1e-15);
         assert!(corner.normal.distance(DVec2::new(-0.6, -0.8)) < 1e-15);
+    }
+
+    /// What boxes leave out is never the nearest edge, nor one that tells inside from outside.
+    #[test]
+    fn boxes_leave_out_nothing() {
+        for (corners, far) in [(3, 0.0), (40, 0.0), (365, 0.0), (365, 1e6)] {
+            let turn = |k: usize| std::f64::consts::TAU * k as f64 / corners as f64;
+            let radius = |k: usize| 1.0 + 0.3 * (5.0 * turn(k)).sin() + 1e-3 * (91.0 * k as f64).sin();
+            let at = |k: usize| DVec2::splat(far) + DVec2::from_angle(turn(k)) * radius(k);
+            let line = ClosedLine::new((0..corners).map(at).collect()).unwrap();
+            for k in 0..2000 {
+                let angle = 0.7 * f64::from(k);
+                let place = DVec2::splat(far) + DVec2::from_angle(angle) * (1e-3 * f64::from(k));
+                // On the line and beside a corner too.
+                let corner = line.corners[k as usize % corners];
+                for to in [place, line.nearest(place).point, corner, corner + DVec2::X * 1e-9] {
+                    let nearest = line.nearest(to);
+                    let each = line.edges.iter().map(|edge| edge.nearest(to).2);
+                    let least = each.clone().fold(f64::INFINITY, f64::min);
+                    assert_eq!(Some(nearest.edge), each.clone().position(|squared| squared == least));
+                    let crossings = line.edges.iter().filter(|edge| {
+                        let over = (edge.from.y > to.y) != (edge.to.y > to.y);
+                        over && (edge.along.perp_dot(to - edge.from) > 0.0) == (edge.along.y > 0.0)
+                    });
+                    let inside = crossings.count() % 2 == 1;
+                    assert!(nearest.distance == if inside { -least.sqrt() } else { least.sqrt() });
+                }
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Logs and scenes of palms of any shape that are three planes through a point, without friction.
 
-use crate::common::{Scratch, Table, scene, scratch_with_log};
+use crate::common::{Scratch, Table, scene, scratch_reconstructed, scratch_with_log};
 use glam::DVec3;
 use recon::object_dynamics::{ContactLog, ForceChannel, RecordedMotion};
 use recon_io::{read_log, write_contact_log};
@@ -41,9 +41,10 @@ fn reconstruct(scratch: &Scratch, log: &str, scene: &str, folder: &str) -> (Opti
 #[test]
 fn three_planes_are_estimated_in_either_version_and_anywhere() {
     let scratch = scratch("any-palms", DVec3::new(0.3, -0.2, 0.1));
-    let (code, _, one) = reconstruct(&scratch, "log.csv", "scene.toml", "one");
-    let (code_two, errors, two) = reconstruct(&scratch, "any.csv", "any.toml", "two");
-    assert_eq!(code, code_two, "{errors}");
+    let (made, _) = scratch_reconstructed("any-palms-one", false);
+    let one: Value = serde_json::from_str(&made.read("out/summary.json")).unwrap();
+    let (code, errors, two) = reconstruct(&scratch, "any.csv", "any.toml", "two");
+    assert_eq!(code, Some(0), "{errors}");
     for key in ["position_m", "angular_velocity_rad_per_s"] {
         let [a, b] = [&one, &two].map(|summary| summary["largest_error"][key].as_f64().unwrap());
         assert!((a - b).abs() < 1e-9, "{key}: {a} {b}");
@@ -64,7 +65,7 @@ fn planes() -> String {
     let normals = ["[0.0, 0.866025404, 0.5]", "[-0.75, -0.433012702, 0.5]", "[0.75, -0.433012702, 0.5]"];
     known
         + &normals.map(plane).concat()
-        + "[simulation]\nduration = 4.2\nsample_rate = 100.0\nposition = [0.0, -0.24804843, 4.035183758]\n\
+        + "[simulation]\nduration = 2.1\nsample_rate = 100.0\nposition = [0.0, -0.24804843, 4.035183758]\n\
            velocity = [-0.508133446, 0.0, 0.0]\nangular_velocity = [0.0, 0.3, 0.3]\n\
            shape = { kind = \"ellipsoid\", semi_axes = [2.5, 2.0, 1.0] }\n"
 }
@@ -78,8 +79,8 @@ fn three_planes_are_simulated_through_modes_and_estimated_from_their_log() {
     assert!(run.stdout.contains("no change of modes"), "{}", run.stdout);
     let (code, errors, summary) = reconstruct(&scratch, "any.csv", "any.toml", "out");
     assert_eq!(code, Some(0), "{errors}");
-    // 2.5e-6 m and 3.0e-5 rad/s: what a step of order 4 between readings so far apart is good to.
-    for (key, most) in [("position_m", 4e-6), ("angular_velocity_rad_per_s", 4e-5)] {
+    // 6.6e-9 m and 4.7e-8 rad/s: what a step between readings so far apart is good to.
+    for (key, most) in [("position_m", 2e-8), ("angular_velocity_rad_per_s", 1.5e-7)] {
         let error = summary["largest_error"][key].as_f64().unwrap();
         assert!(error < most, "{key}: {error}");
     }
@@ -109,7 +110,7 @@ fn motors() -> String {
         );
         scene = scene.replace(normal, &format!("{normal}\n{motor}"));
     }
-    scene.replace("duration = 4.2", "duration = 2.0")
+    scene.replace("duration = 2.1", "duration = 2.0")
 }
 
 #[test]
@@ -145,7 +146,7 @@ fn a_motion_is_estimated_from_torques_alone() {
 #[test]
 fn motors_are_as_noisy_as_the_scene_says() {
     let scratch = Scratch::new("motor-noise");
-    // Of 303 readings: known to 4.1 %.
+    // Of 603 readings: known to 2.9 %.
     scratch.write("noisy.toml", &(motors() + "[sensors]\ntorque_std = 0.2\n"));
     assert_eq!(scratch.run(&["simulate", "noisy.toml", "-o", "noisy.csv"]).code, Some(0));
     let noisy = Table::parse(&scratch.read("noisy.csv"));
@@ -154,7 +155,7 @@ fn motors_are_as_noisy_as_the_scene_says() {
         noisy.rows.iter().map(|row| (row[place].parse::<f64>().unwrap() - mean).powi(2)).sum::<f64>()
     });
     let deviation = (squares.iter().sum::<f64>() / (3 * noisy.rows.len()) as f64).sqrt();
-    assert!((deviation / 0.2 - 1.0).abs() < 0.16, "{deviation}");
+    assert!((deviation / 0.2 - 1.0).abs() < 0.12, "{deviation}");
 }
 
 #[test]
@@ -178,10 +179,6 @@ fn what_is_neither_three_planes_nor_has_all_forces_is_refused_by_name() {
     refused(&reconstruct, &["any.csv", "has 3 palm(s)", "the scene has 4"]);
     scratch.write("bad.toml", known.split("[[palm]]").next().unwrap());
     refused(&reconstruct, &["any.csv", "[[palm]] for each"]);
-    let noise = ["--contact-noise", "1e-3", "--force-noise", "1e-3"];
-    let follow = [&["follow", "any.csv", "--scene", "any.toml"][..], &noise].concat();
-    let run = scratch.run(&follow);
-    assert!(run.code == Some(0) && run.stderr.contains("the motion is known"), "{}", run.stderr);
     // Forces that rub.
     let log = ContactLog::try_from(&read_log(scratch.path().join("log.csv")).unwrap()).unwrap();
     let mut records = log.records();

@@ -10,18 +10,21 @@ fn wobble(k: usize) -> f64 {
     (k as f64 * 78.233).sin()
 }
 
+/// Contacts of a curve.
+const EACH: usize = 150;
+
 /// Contacts along three great-circle-like curves of normals on the unit sphere, off by up to `noise`; contact 41 of curve 2
 /// is off by `wrong`.
 fn sphere_contacts(noise: f64, wrong: f64) -> String {
     let mut text = String::from("curve,x,y,z,nx,ny,nz\n");
-    for k in 0..900 {
-        let (curve, place) = (k / 300, k % 300);
-        let (s, c) = (TAU * place as f64 / 300.0).sin_cos();
-        let lift = 0.4 * (2.0 * TAU * place as f64 / 300.0).sin();
+    for k in 0..3 * EACH {
+        let (curve, turn) = (k / EACH, TAU * (k % EACH) as f64 / EACH as f64);
+        let (s, c) = turn.sin_cos();
+        let lift = 0.4 * (2.0 * turn).sin();
         let n = [[c, s, lift], [lift, c, s], [s, lift, c]][curve];
         let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
         let n = n.map(|x| x / length);
-        let off = |i: usize| noise * wobble(3 * k + i) + if k == 340 && i == 0 { wrong } else { 0.0 };
+        let off = |i: usize| noise * wobble(3 * k + i) + if k == EACH + 40 && i == 0 { wrong } else { 0.0 };
         let x: Vec<String> = (0..3).map(|i| (n[i] + off(i)).to_string()).collect();
         writeln!(text, "{},{},{},{},{}", curve + 1, x.join(","), n[0], n[1], n[2]).unwrap();
     }

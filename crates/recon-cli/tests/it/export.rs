@@ -1,6 +1,6 @@
 //! The exported object: its files, and MuJoCo's motion of it on palms as in the log.
 
-use crate::common::{Scratch, scratch_with_log};
+use crate::common::{Scratch, fig5, scratch_reconstructed, scratch_with_log, scratch_with_log_of};
 use recon_tests::mujoco_is_there;
 use serde_json::Value;
 use std::process::Command;
@@ -26,7 +26,7 @@ fn reconstructed(scratch: Scratch, shape: &str) -> Scratch {
 
 #[test]
 fn an_ellipsoid_is_exported_as_one_with_its_bounds_beside_it() {
-    let scratch = reconstructed(scratch_with_log("export"), "auto");
+    let (scratch, _) = scratch_reconstructed("export", false);
     let mjcf = scratch.read("out/object.xml");
     assert!(mjcf.contains(r#"type="ellipsoid""#) && mjcf.contains(r#"mass="1.0""#), "{mjcf}");
     for file in ["object.urdf", "object_inner.obj", "object_outer.obj", "object_ellipsoid.obj"] {
@@ -79,7 +79,7 @@ fn mujoco_repeats_the_log_with_the_exported_ellipsoid() {
     if !mujoco_is_there() {
         return;
     }
-    let scratch = reconstructed(scratch_with_log("replay"), "auto");
+    let scratch = reconstructed(scratch_with_log_of("replay", &fig5()), "auto");
     let found = replay(&scratch, "out/object.xml", &[]);
     assert!(found["seconds"].as_f64().unwrap() > 4.15 && found["mass_kg"] == 1.0, "{found}");
     assert_eq!(found["parted"], 0, "{found}");
@@ -94,9 +94,8 @@ fn mujoco_repeats_the_log_on_moving_palms() {
         return;
     }
     let scratch = Scratch::new("replay-moving");
-    let mut scene = crate::common::scene()
-        .replace("duration = 4.2", "duration = 2.0")
-        .replace("rate = 100.0", "rate = 200.0");
+    let mut scene =
+        fig5().replace("duration = 4.2", "duration = 2.0").replace("rate = 100.0", "rate = 200.0");
     for (azimuth, frequency, phase) in [("270.0", 3.0, 0.0), ("30.0", 2.0, 1.0), ("150.0", 2.5, 2.0)] {
         let still = format!("azimuth_deg = {azimuth}, slope_deg = 60.0");
         let swing =
@@ -122,9 +121,7 @@ fn mujoco_holds_the_inner_bound_and_the_urdf_on_the_palms() {
         return;
     }
     let scratch = Scratch::new("replay-hull");
-    let scene = crate::common::scene()
-        .replace("duration = 4.2", "duration = 1.0")
-        .replace("rate = 100.0", "rate = 1000.0");
+    let scene = fig5().replace("duration = 4.2", "duration = 1.0").replace("rate = 100.0", "rate = 1000.0");
     scratch.write("scene.toml", &scene);
     assert_eq!(scratch.run(&["simulate", "scene.toml", "-o", "log.csv"]).code, Some(0));
     let scratch = reconstructed(scratch, "inner");

@@ -1,6 +1,6 @@
 //! What a newcomer is given: files to begin from, formats, what was understood of an input, help.
 
-use crate::common::{Scratch, Table, scratch_with_log};
+use crate::common::{Scratch, Table, scratch_reconstructed, scratch_with_log};
 use serde_json::Value;
 use std::fs;
 
@@ -28,7 +28,7 @@ fn every_command_that_init_names_runs_on_its_files() {
 
 #[test]
 fn formats_name_every_column_that_is_written() {
-    let scratch = scratch_with_log("formats");
+    let (scratch, _) = scratch_reconstructed("formats", false);
     let formats = json(&scratch.run(&["formats", "--json"]).stdout);
     let columns = |name: &str| -> Vec<String> {
         let format = formats.as_array().unwrap().iter().find(|format| format["name"] == name).unwrap();
@@ -39,7 +39,6 @@ fn formats_name_every_column_that_is_written() {
         let run = scratch.run(words);
         assert!(matches!(run.code, Some(0 | 4)), "{}", run.stderr);
     };
-    ran(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]);
     let noise = ["--contact-noise", "1e-6", "--force-noise", "1e-4"];
     ran(&[&["follow", "log.csv", "--scene", "scene.toml", "-o", "rows.csv"], &noise[..]].concat());
     fs::create_dir(scratch.path().join("logs")).unwrap();
@@ -162,10 +161,8 @@ fn quiet_leaves_results_and_errors() {
 
 #[test]
 fn the_console_answers_what_was_asked() {
-    let scratch = scratch_with_log("answers");
-    let words = ["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"];
-    let known = scratch.run(&words);
-    let asked = scratch.run(&[&words[..], &["--identify"]].concat());
+    let (_, known) = scratch_reconstructed("answers-known", false);
+    let (scratch, asked) = scratch_reconstructed("answers", true);
     let line = |text: &str, name: &str| -> String {
         let found = text.lines().find(|line| line.trim_start().starts_with(name));
         found.unwrap_or_else(|| panic!("{name} is not in\n{text}")).to_owned()
@@ -185,10 +182,7 @@ fn the_console_answers_what_was_asked() {
 
 #[test]
 fn bounds_are_written_as_stl_and_gltf_too() {
-    let scratch = scratch_with_log("meshes");
-    let run =
-        scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out", "--mesh", "stl,glb"]);
-    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let (scratch, _) = scratch_reconstructed("meshes", false);
     let bytes = |name: &str| fs::read(scratch.path().join("out").join(name)).unwrap();
     for bound in ["lower_bound", "upper_bound"] {
         let ply = bytes(&format!("{bound}.ply"));

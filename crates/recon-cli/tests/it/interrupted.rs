@@ -28,7 +28,7 @@ pub(crate) fn spinning_ball(duration: f64, rate: f64, spin: f64) -> String {
         .replace("[1.0, 1.45, 2.05]", "[0.4, 0.4, 0.4]")
         .replace("kind = \"ellipsoid\", semi_axes = [2.5, 2.0, 1.0]", "kind = \"sphere\", radius = 1.0")
         .replace("[0.0, 0.3, 0.3]", &format!("[0.0, 0.0, {spin:?}]"))
-        .replace("duration = 4.2", &format!("duration = {duration:?}"))
+        .replace("duration = 2.1", &format!("duration = {duration:?}"))
         .replace("sample_rate = 100.0", &format!("sample_rate = {rate:?}"))
 }
 
@@ -52,7 +52,7 @@ fn interrupted_while_computing_leaves_nothing() {
 #[test]
 fn interrupted_while_writing_leaves_nothing() {
     let scratch = Scratch::new("writing");
-    scratch.write("scene.toml", &spinning_ball(100.0, 2000.0, 1.0)).write("log.csv", "an earlier log");
+    scratch.write("scene.toml", &spinning_ball(50.0, 2000.0, 1.0)).write("log.csv", "an earlier log");
     let mut child = scratch
         .command(&["simulate", "scene.toml", "-o", "log.csv"])
         .stdout(Stdio::null())

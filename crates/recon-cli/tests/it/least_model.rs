@@ -1,6 +1,6 @@
 //! `--accuracy` and `--explain`: the least model that serves, and why.
 
-use crate::common::{Scratch, scratch_with_log};
+use crate::common::{Scratch, scratch_reconstructed, scratch_with_log};
 use serde_json::Value;
 
 fn chosen<'a>(summary: &'a Value, question: &str) -> &'a Value {
@@ -41,18 +41,15 @@ fn a_simulation_is_as_exact_as_asked_and_says_why() {
 
 #[test]
 fn an_estimate_says_what_it_left_out() {
-    let scratch = scratch_with_log("least-estimate");
-    let reconstruct = |more: &[&str]| {
-        scratch.run(&[&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"], more].concat())
-    };
-    let plain = reconstruct(&[]);
-    assert_eq!(plain.code, Some(0), "{}", plain.stderr);
+    let (scratch, _) = scratch_reconstructed("least-estimate", false);
     let summary =
         |scratch: &Scratch| -> Value { serde_json::from_str(&scratch.read("out/summary.json")).unwrap() };
     assert!(
         summary(&scratch)["least_model"].is_null() && !scratch.read("out/report.html").contains("left out")
     );
-    let run = reconstruct(&["--accuracy", "1e-2", "--explain"]);
+    let words =
+        ["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out", "--accuracy", "1e-2", "--explain"];
+    let run = scratch.run(&words);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     assert!(
         run.stderr.contains("Mass and inertia:") && run.stderr.contains("* estimated with the motion"),

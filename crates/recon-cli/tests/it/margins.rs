@@ -1,6 +1,6 @@
 //! Bounds of reconstructed bodies against the truth that stands in the log.
 
-use crate::common::{Scratch, Table, scene};
+use crate::common::{Scratch, Table, fig5};
 use glam::{DQuat, DVec3};
 use recon_tests::few_or_all;
 use serde_json::Value;
@@ -128,23 +128,28 @@ fn bounds_hold_on_logs_of_other_simulators() {
 fn bounds_hold_under_noise_and_keep_most_of_the_volume() {
     let axes = DVec3::new(2.5, 2.0, 1.0);
     let scratch = Scratch::new("margins");
-    let text = scene().replace("sample_rate = 100.0", "sample_rate = 200.0");
-    let mut free = 0.0;
+    let text = fig5().replace("sample_rate = 100.0", "sample_rate = 200.0");
+    let mut free = [0.0; 2];
     for (level, seed) in [(0.0, 0), (1e-3, 1), (1e-2, 3)] {
         let sensors = format!("\n[sensors]\ncontact_std = {}\nforce_std = {}\n", 2.5 * level, 9.81 * level);
         let seeded = text.replace("[simulation]", &format!("[simulation]\nseed = {seed}"));
         scratch.write("scene.toml", &if level > 0.0 { seeded + &sensors } else { seeded });
         assert_eq!(scratch.run(&["simulate", "scene.toml", "-o", "log.csv"]).code, Some(0));
         let summary = reconstructed(&scratch, "log.csv");
-        let lower = summary["bounds"]["lower_volume_m3"].as_f64().unwrap();
+        let volumes = ["lower_volume_m3", "upper_volume_m3"].map(|key| summary["bounds"][key].as_f64());
+        let (lower, upper) = (volumes[0].unwrap(), volumes[1].unwrap_or(f64::INFINITY));
+        let warned = summary["warnings"].to_string().contains("at 95 % confidence");
+        assert_eq!(warned, level > 0.0, "{summary:#}");
         let excess = out_of_truth(&scratch, &scratch.read("log.csv"), axes, &summary);
         if level == 0.0 {
-            free = lower;
+            free = [lower, upper];
             // What the quadrature of the forces between samples leaves.
             assert!(excess.iter().flatten().all(|e| (-1e-4..=0.0).contains(e)), "{excess:?}");
             continue;
         }
         assert!(excess.iter().flatten().all(|e| *e <= 0.0), "noise {level}: {excess:?}");
-        assert!(lower > if level < 5e-3 { 0.9 } else { 0.6 } * free, "noise {level}: {lower} of {free}");
+        let (least, most) = if level < 5e-3 { (0.9, 2.0) } else { (0.6, f64::INFINITY) };
+        assert!(least * free[0] < lower && lower < free[0], "noise {level}: {lower} of {free:?}");
+        assert!(free[1] < upper && upper <= most * free[1], "noise {level}: {upper} of {free:?}");
     }
 }

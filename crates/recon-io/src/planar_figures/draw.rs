@@ -1,7 +1,7 @@
 //! Lines, bands and ticks of a panel.
 
 use super::{COLOURS, FigureCurve, FigurePanel, Frame, MARGIN, SIZE, escape, round_step};
-use crate::number::on_scale;
+use crate::number::{on_scale, push_pair};
 use std::fmt::Write as _;
 
 /// Width of a character in the legend, px: generous for a proportional font of 12 px.
@@ -21,11 +21,10 @@ pub(super) fn draw_band(curve: &FigureCurve, colour: usize, frame: &Frame, out: 
     for piece in pairs.split(|pair| !there(pair)).filter(|piece| piece.len() > 1) {
         let edge = |side: f64| move |&([x, y], h): &(&[f64; 2], &f64)| frame.place_within([*x, y + side * h]);
         let around = piece.iter().map(edge(1.0)).chain(piece.iter().rev().map(edge(-1.0)));
-        let corners: Vec<String> = around.map(|[x, y]| format!("{x},{y}")).collect();
+        let corners = pairs_of(around);
         let _ = writeln!(
             out,
-            "<polygon class=\"c{colour}\" points=\"{}\" fill=\"currentColor\" fill-opacity=\".2\"/>",
-            corners.join(" ")
+            "<polygon class=\"c{colour}\" points=\"{corners}\" fill=\"currentColor\" fill-opacity=\".2\"/>"
         );
     }
 }
@@ -43,7 +42,11 @@ fn draw_curve(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut Strin
     if curve.dots {
         // Lines without length under round caps.
         let places = curve.points.iter().filter(finite).map(|&p| frame.place(p));
-        let dots: String = places.map(|[x, y]| format!("M{x} {y}h0")).collect();
+        let dots = places.fold(String::new(), |mut dots, at| {
+            dots.push('M');
+            push_pair(&mut dots, at, ' ');
+            dots + "h0"
+        });
         let _ = writeln!(
             out,
             "<path class=\"c{colour}\" d=\"{dots}\" stroke=\"currentColor\" stroke-width=\"2.4\" stroke-linecap=\"round\"/>"
@@ -58,19 +61,27 @@ fn draw_curve(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut Strin
 /// A line in a colour and with further attributes.
 fn draw_line(points: &[[f64; 2]], (colour, further): (usize, &str), frame: &Frame, out: &mut String) {
     for piece in points.split(|p| !finite(&p)).filter(|piece| !piece.is_empty()) {
-        let mut path: Vec<String> =
-            piece.iter().map(|&p| frame.place(p).map(|v| v.to_string()).join(",")).collect();
-        if path.len() == 1 {
-            // A dot: a line needs two points.
-            path.push(path[0].clone());
-        }
+        // Of a dot twice: a line needs two points.
+        let again = piece.iter().filter(|_| piece.len() == 1);
+        let path = pairs_of(piece.iter().chain(again).map(|&p| frame.place(p)));
         let _ = writeln!(
             out,
-            "<polyline class=\"c{colour}\" points=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1.4\" \
-             stroke-linecap=\"round\"{further}/>",
-            path.join(" ")
+            "<polyline class=\"c{colour}\" points=\"{path}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1.4\" \
+             stroke-linecap=\"round\"{further}/>"
         );
     }
+}
+
+/// Places as SVG lists them.
+fn pairs_of(places: impl Iterator<Item = [f64; 2]>) -> String {
+    let mut text = String::new();
+    for at in places {
+        if !text.is_empty() {
+            text.push(' ');
+        }
+        push_pair(&mut text, at, ',');
+    }
+    text
 }
 
 /// Lines at round numbers, at most six an axis.

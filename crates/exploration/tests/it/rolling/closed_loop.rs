@@ -68,7 +68,7 @@ fn the_body_is_between_the_bounds_at_every_step_of_every_planner() {
 
 #[test]
 fn planned_motions_reach_a_gap() {
-    let (seeds, wanted) = few_or_all((2, 1), (6, 4));
+    let (seeds, wanted) = few_or_all((1, 1), (6, 4));
     let mut reached = 0;
     for seed in 0..seeds {
         let mut planner = InformationRate::new(seed, 2).per_radian();
@@ -80,7 +80,7 @@ fn planned_motions_reach_a_gap() {
 
 #[test]
 fn the_same_seed_gives_the_same_motions_in_any_number_of_threads() {
-    let task = RollTask { radians: few_or_all(1.5, 40.0), ..task(0.1) };
+    let task = RollTask { radians: few_or_all(0.7, 40.0), ..task(0.1) };
     let one = |k: usize| run(&mut *planners(5).swap_remove(k), Family::Egg, 5, &task);
     let alone: Vec<_> = (0..planners(5).len()).map(one).collect();
     let together: Vec<_> = std::thread::scope(|scope| {

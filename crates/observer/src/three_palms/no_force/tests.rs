@@ -195,7 +195,7 @@ fn a_fit_that_has_not_settled_is_refused() {
 
 #[test]
 fn what_contacts_do_not_determine_is_refused_in_words() {
-    let ball = run(Sphere::new(2.0).unwrap(), uniform(DVec3::splat(2.0), DQuat::IDENTITY), 2.0, 200.0).1;
+    let ball = run(Sphere::new(2.0).unwrap(), uniform(DVec3::splat(2.0), DQuat::IDENTITY), 1.5, 100.0).1;
     match estimate_without_forces(&ball, &KNOWN) {
         Err(NoForceError::NotDetermined { words, deviation }) => {
             assert!(!words.is_empty() && deviation > 0.25, "{words} {deviation}");

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::OnceLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -18,6 +19,7 @@ pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 pub(crate) struct Scratch(PathBuf);
 
 /// What a run left.
+#[derive(Clone)]
 pub(crate) struct Run {
     pub(crate) code: Option<i32>,
     pub(crate) stdout: String,
@@ -122,13 +124,58 @@ pub(crate) fn wait_for(child: &mut Child, condition: impl Fn() -> bool) -> bool 
 }
 
 /// The scene of the paper's Fig. 5, sampled at 100 Hz.
-pub(crate) fn scene() -> String {
+pub(crate) fn fig5() -> String {
     include_str!("../../../scenes/fig5.toml").replace("sample_rate = 1000.0", "sample_rate = 100.0")
 }
 
-/// A folder with that scene and its log.
+/// Half of its time: contacts all round the body, so that it has bounds on both sides.
+pub(crate) fn scene() -> String {
+    fig5().replace("duration = 4.2", "duration = 2.1")
+}
+
+/// A folder with that scene and its log, which is made once for all tests.
 pub(crate) fn scratch_with_log(test: &str) -> Scratch {
-    scratch_with_log_of(test, &scene())
+    static LOG: OnceLock<String> = OnceLock::new();
+    let scratch = Scratch::new(test);
+    let log = LOG.get_or_init(|| scratch_with_log_of("log-of-all", &scene()).read("log.csv"));
+    scratch.write("scene.toml", &scene()).write("log.csv", log);
+    scratch
+}
+
+/// Such a folder, and what a reconstruction of the log left in `out` and said, made once for all tests: with meshes and models in all formats
+/// beside what is written anyway, or with an estimate of mass and inertia alone.
+pub(crate) fn scratch_reconstructed(test: &str, identify: bool) -> (Scratch, Run) {
+    static MADE: [OnceLock<Made>; 2] = [OnceLock::new(), OnceLock::new()];
+    let made = MADE[usize::from(identify)].get_or_init(|| {
+        let options =
+            if identify { &["--identify"][..] } else { &["--mesh", "stl,glb", "--export", "mjcf,urdf"] };
+        Made::with(options)
+    });
+    let scratch = scratch_with_log(test);
+    fs::create_dir(scratch.path().join("out")).unwrap();
+    made.files
+        .iter()
+        .for_each(|(name, bytes)| fs::write(scratch.path().join("out").join(name), bytes).unwrap());
+    (scratch, made.run.clone())
+}
+
+/// A folder of results.
+struct Made {
+    files: Vec<(String, Vec<u8>)>,
+    run: Run,
+}
+
+impl Made {
+    fn with(options: &[&str]) -> Self {
+        let scratch = scratch_with_log(&format!("made{}", options.concat()));
+        let words = ["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"];
+        let run = scratch.run(&[&words, options].concat());
+        assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+        let entries = fs::read_dir(scratch.path().join("out")).unwrap().map(Result::unwrap);
+        let file =
+            |entry: fs::DirEntry| (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap());
+        Self { files: entries.map(file).collect(), run }
+    }
 }
 
 /// A folder with a scene and its log, of three palms that are touched throughout.

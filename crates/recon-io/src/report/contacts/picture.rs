@@ -2,7 +2,7 @@
 
 use super::super::page::section;
 use super::view::View;
-use crate::number::{brief_to, on_scale};
+use crate::number::{brief_to, on_scale, push_pair};
 use crate::planar_figures::{Turn, round_step};
 use glam::{DVec2, DVec3};
 use recon::object_dynamics::ContactMode;
@@ -153,14 +153,18 @@ impl Paper {
     fn lines(&self, picture: &Picture) -> String {
         let place = |p: &DVec2| {
             let at = [self.left + self.scale * (p.x - self.low.x), MARGIN + self.scale * (self.high.y - p.y)];
-            let [x, y] = at.map(|v| on_scale(v, 100.0, 3));
-            format!("{x} {y}")
+            at.map(|v| on_scale(v, 100.0, 3))
         };
-        let line = |line: &Line| {
-            let places: Vec<String> = line.points.iter().map(place).collect();
-            format!("<path class=\"{}\" d=\"M{}\"/>\n", line.class, places.join(" L"))
-        };
-        picture.lines.iter().map(line).collect()
+        let mut text = String::new();
+        for line in &picture.lines {
+            let _ = write!(text, "<path class=\"{}\" d=\"M", line.class);
+            for (k, at) in line.points.iter().map(place).enumerate() {
+                text += if k > 0 { " L" } else { "" };
+                push_pair(&mut text, at, ' ');
+            }
+            text += "\"/>\n";
+        }
+        text
     }
 
     fn still(&self, picture: &Picture) -> String {
