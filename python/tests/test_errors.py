@@ -92,6 +92,9 @@ def test_options(log: recon.Log) -> None:
         recon.bounds(poles, poles, contact_noise=-1.0, normal_noise=1e-3)
     with pytest.raises(recon.OptionError, match="contact_noise is 'much'|much"):
         recon.bounds(poles, poles, contact_noise="much", normal_noise=1e-3)
+    for wrong in ("perhaps", 2, [True]):
+        with pytest.raises(recon.OptionError, match="identify is .*; give True or False"):
+            recon.reconstruct("log.csv", {"gravity": 9.81}, identify=wrong)  # type: ignore[arg-type]
     with pytest.raises(recon.OptionError, match="fit"):
         recon.bounds(poles, poles, fit="cube")
     with pytest.raises(recon.OptionError, match="plane_height"):

@@ -19,7 +19,7 @@ pub enum MappingErrorKind {
     #[error("cannot be read: {0}")]
     Read(#[from] std::io::Error),
     /// Not TOML, or a key that is unknown, missing or of the wrong type; the message shows the place.
-    #[error("is not a mapping of topics\n{0}")]
+    #[error("is not a mapping of topics\n{}", crate::scene::in_words(.0))]
     Toml(#[from] toml::de::Error),
     /// A number outside of what the quantity can be.
     #[error("`{key}` is {value}; it must be {must}")]
