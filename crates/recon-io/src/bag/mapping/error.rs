@@ -36,6 +36,16 @@ pub enum MappingErrorKind {
         "has no [[palm]]; give one for each, in the order of the scene. `recon inspect` drafts a mapping"
     )]
     NoPalms,
+    /// What two palms cannot share.
+    #[error("`palm[{}].{key}` and `palm[{}].{key}` are both `{name}`; each palm has its own", palms[0], palms[1])]
+    Shared {
+        /// `frame`, `wrench` or `contact`.
+        key: &'static str,
+        /// The palms, from 1.
+        palms: [usize; 2],
+        /// What both are.
+        name: String,
+    },
     /// Nothing tells where a palm is touched.
     #[error(
         "`palm[{palm}]` has none of `contact`, `taxels` and `wrench`; one of them tells where it is touched"
