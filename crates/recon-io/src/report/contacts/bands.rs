@@ -13,6 +13,7 @@ const LEGEND: &str = "<span><svg><rect class=\"m0\"/></svg>off</span>
 <span><svg><rect class=\"m2\"/></svg>sticks (rolls)</span>
 <span><svg><rect class=\"flight\"/></svg>touches nothing</span>
 ";
+const MISSING: &str = "<span><svg><rect class=\"missing\"/></svg>no samples</span>\n";
 const DOUBTFUL: &str = "<span><svg><rect class=\"doubtful\"/></svg>not relied on</span>\n";
 
 /// Height of a palm's row and of the band in it, px. Along the time the picture is as wide as the page lets it, with text of one size.
@@ -24,18 +25,21 @@ pub(super) fn modes_section(
     all: &[Vec<ModeSpan>],
     marks: &[f64],
     doubtful: Option<&[[f64; 2]]>,
+    gaps: &[[f64; 2]],
     caption: &str,
 ) -> String {
-    let drawn = bands(all, marks, doubtful.unwrap_or_default());
+    let drawn = bands(all, marks, doubtful.unwrap_or_default(), gaps);
+    let missing = if gaps.is_empty() { "" } else { MISSING };
     let doubt = if doubtful.is_some() { DOUBTFUL } else { "" };
-    let shown =
-        format!("<div class=\"panel\">\n{drawn}<div class=\"modes\">\n{LEGEND}{doubt}</div>\n</div>\n");
+    let shown = format!(
+        "<div class=\"panel\">\n{drawn}<div class=\"modes\">\n{LEGEND}{missing}{doubt}</div>\n</div>\n"
+    );
     section("Contact modes", &shown, caption)
 }
 
 /// Bands of the spans of each palm over the time, as opaque as they are probable, as one SVG element; marks at the times of the pictures, and a shade over stretches
 /// of time that are not relied on.
-fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]]) -> String {
+fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]], gaps: &[[f64; 2]]) -> String {
     let (start, end) = (all.first().and_then(|s| s.first()), all.first().and_then(|s| s.last()));
     let (start, end) = start.zip(end).map_or((0.0, 1.0), |(first, last)| (first.start, last.end));
     let place = |t: f64| on_scale(100.0 * (t - start) / (end - start), 100.0, 5);
@@ -66,6 +70,9 @@ fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]]) -> String 
             out += &bar(&look, [span.start, span.end], y, BAND);
         }
         out += &bar("class=\"frame\"", [start, end], y, BAND);
+    }
+    for gap in gaps {
+        out += &bar("class=\"missing\"", *gap, 0.0, bottom);
     }
     for span in doubtful {
         out += &bar("class=\"doubtful\"", *span, 0.0, bottom);
@@ -129,5 +136,15 @@ mod tests {
         let two = vec![span(0.0, 0.5, stick), span(0.5, 3.0, off), span(3.0, 4.0, stick)];
         assert_eq!(flights(&[one.clone(), two]), [[0.5, 1.0], [2.0, 3.0]]);
         assert!(flights(&[one, vec![span(0.0, 4.0, stick)]]).is_empty());
+    }
+
+    #[test]
+    fn gaps_are_marked_and_named() {
+        let spans = vec![vec![ModeSpan { start: 0.0, end: 2.0, mode: ContactMode::Stick, sure: 10 }]];
+        let drawn = |gaps: &[[f64; 2]]| modes_section(&spans, &[], None, gaps, "");
+        assert!(!drawn(&[]).contains("missing") && !drawn(&[]).contains("no samples"));
+        let with = drawn(&[[0.5, 1.0]]);
+        assert!(with.contains("class=\"missing\" x=\"25%\" y=\"0\" width=\"25.000%\""), "{with}");
+        assert!(with.contains("</svg>no samples</span>"));
     }
 }

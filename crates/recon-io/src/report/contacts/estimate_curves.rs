@@ -4,7 +4,7 @@ use super::super::page::Fact;
 use super::super::thin::thin;
 use super::super::{Departure, MotionState, PalmContact};
 use super::estimate::EstimateData;
-use super::estimate_page::doubtful_spans;
+use super::estimate_page::{doubtful_spans, sample_gaps};
 use crate::number::brief_to;
 use crate::planar_figures::{FigureCurve, FigurePanel};
 use glam::DVec3;
@@ -44,6 +44,7 @@ impl EstimateData {
             axes: ["t in s".to_owned(), unit.to_owned()],
             curves,
             shaded: doubtful_spans(self.log.times(), &self.estimate.relied_on),
+            missing: sample_gaps(self.log.times()),
             ..FigurePanel::default()
         };
         let motion = [

@@ -8,6 +8,7 @@ use super::picture::Pictures;
 use super::spans::{ModeSpan, estimated_mode_spans};
 use crate::number::brief_to;
 use crate::planar_figures::FigurePanel;
+use recon::object_dynamics::Rhythm;
 use std::io::{self, Write};
 
 const OBJECT: &str = "The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, where they are seen, in the colours of the palms.";
@@ -105,15 +106,16 @@ impl EstimatePage<'_> {
     }
 
     pub(super) fn write(&self, to: impl Write) -> io::Result<()> {
-        let doubtful = doubtful_spans(self.times, self.relied_on);
+        let [doubtful, gaps] = [doubtful_spans(self.times, self.relied_on), sample_gaps(self.times)];
+        let no_samples = if gaps.is_empty() { "" } else { " Grey, where lines are broken: no samples." };
         let dashed = if self.has_truth { DASHED } else { "" };
         let body = self.pictures.section(&self.caption)
             + &curves_section(
                 "Motion over time",
                 self.panels,
-                &format!("{BANDS}{dashed} Shaded: not relied on."),
+                &format!("{BANDS}{dashed} Shaded: not relied on.{no_samples}"),
             )
-            + &modes_section(&self.spans, &self.pictures.times(), Some(&doubtful), MODES)
+            + &modes_section(&self.spans, &self.pictures.times(), Some(&doubtful), &gaps, MODES)
             + &curves_section("Bounds on the shape", self.shape, SHAPE)
             + &evidence_section(LEFT_OUT, &rows(self.least_model))
             + &evidence_section("Mass, inertia, and what the result rests on", &rows(self.evidence));
@@ -122,6 +124,19 @@ impl EstimatePage<'_> {
             + &next(self.next);
         Page { kicker: KICKER, title: self.title, verdict, facts: &self.facts, body }.write(to)
     }
+}
+
+/// Gaps that are marked, at most: the longest. Of a log that has more none stands out.
+const MARKED: usize = 100;
+
+/// Stretches of time without samples, s: longer than one and a half of the usual time between two.
+#[must_use]
+pub fn sample_gaps(times: &[f64]) -> Vec<[f64; 2]> {
+    let mut gaps: Vec<[f64; 2]> = Rhythm::of(times).silences.iter().map(|gap| [gap.from, gap.to]).collect();
+    gaps.sort_by(|a, b| (b[1] - b[0]).total_cmp(&(a[1] - a[0])));
+    gaps.truncate(MARKED);
+    gaps.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    gaps
 }
 
 /// Stretches of time whose motion is not relied on, s: each sample stands for half the time to its neighbours.

@@ -16,6 +16,8 @@ const FORCE: f64 = 24.0;
 const LEAST_BAND: f64 = 4.0;
 /// From a corner's ellipse to its name, px.
 const LABEL: f64 = 12.0;
+/// Half of the longest name, px.
+const NAME: f64 = 132.0;
 /// Ways to a touch, as a share of the way around, beyond which the outline is inferred.
 const FELT: f64 = 0.01;
 
@@ -155,19 +157,15 @@ fn draw_corner(corner: &OutlineCorner, factor: f64, frame: &Frame, out: &mut Str
         "<ellipse class=\"corner\" rx=\"{a:.1}\" ry=\"{b:.1}\" transform=\"translate({:.1} {:.1}) rotate({angle:.1})\"/>",
         place.x, place.y
     );
-    // Above or below its ellipse, and from its side of the picture inwards, where the longest has room.
+    // Above or below its ellipse, with room for the longest name in the letters of a narrow page.
     let side = if place.y < 0.5 * HEIGHT { -1.0 } else { 1.0 };
     let y =
         (place.y + side * (LABEL + factor * frame.scale * reach(corner).y)).clamp(20.0, HEIGHT - 6.0) + 4.0;
-    let half = factor * frame.scale * reach(corner).x;
-    let (x, anchor) = match place.x < 0.5 * WIDTH {
-        true => ((place.x - half).max(4.0), "start"),
-        false => ((place.x + half).min(WIDTH - 4.0), "end"),
-    };
+    let x = place.x.clamp(NAME, WIDTH - NAME);
     let [px, py] = corner.point.to_array().map(|v| v * 1e3);
     let _ = writeln!(
         out,
-        "<text class=\"label\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">({px:.1}, {py:.1}) ± {:.1} mm</text>",
+        "<text class=\"label\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\">({px:.1}, {py:.1}) ± {:.1} mm</text>",
         corner.deviation() * 1e3
     );
 }
@@ -175,7 +173,7 @@ fn draw_corner(corner: &OutlineCorner, factor: f64, frame: &Frame, out: &mut Str
 /// A bar of a round length, and the origin.
 fn draw_scale(length: f64, frame: &Frame, out: &mut String) {
     let bar = crate::planar_figures::round_step(0.04 * length);
-    let (end, y) = (WIDTH - 80.0, 24.0);
+    let (end, y) = (WIDTH - 96.0, 24.0);
     let x = end - bar * frame.scale;
     let _ =
         writeln!(out, "<path class=\"scale\" d=\"M{x:.1} {} v8 M{x:.1} {y} H{end:.1} m0 -4 v8\"/>", y - 4.0);
