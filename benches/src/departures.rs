@@ -21,14 +21,16 @@ impl Departures {
     #[must_use]
     pub fn of(scene: &ContactScene<Ellipsoid>, run: &ContactSimulation) -> Self {
         let mut worst = Self::default();
-        let Some(first) = run.instants.first().map(|now| scene.energy(&now.state.body)) else { return worst };
+        // Less what forces and blows have done so far: the first of them may come before the first sample.
+        let left = |now: &ContactInstant| {
+            scene.energy(&now.state.body) - now.friction_work - now.palm_work - now.blow_work
+        };
+        let Some(first) = run.instants.first().map(left) else { return worst };
         for now in &run.instants {
             for (i, mode) in now.modes.iter().take(scene.palms().len()).enumerate() {
                 worst = worst.or(of_contact(scene, now, i, *mode));
             }
-            let energy =
-                scene.energy(&now.state.body) - first - now.friction_work - now.palm_work - now.blow_work;
-            worst.energy = worst.energy.max(energy.abs());
+            worst.energy = worst.energy.max((left(now) - first).abs());
         }
         worst
     }

@@ -84,6 +84,32 @@ impl MotionLaw {
         matches!(self, Self::Constant { .. })
     }
 
+    /// How fast its changes change at `t`, rad/s: over a time that is short against the inverse it is nearly a polynomial of low degree.
+    #[must_use]
+    pub fn quickness(&self, t: f64) -> f64 {
+        match *self {
+            Self::Constant { .. } | Self::Steady { .. } => 0.0,
+            Self::Sinusoid { frequency, .. } => frequency.abs(),
+            // The fourth root of the largest fourth derivative, 840 heights.
+            Self::Ramp { start, duration, .. } if (start..start + duration).contains(&t) => 5.4 / duration,
+            Self::Ramp { .. } => 0.0,
+        }
+    }
+
+    /// The largest rate that it reaches about the time `t`: until the next joint.
+    #[must_use]
+    pub fn fastest(&self, t: f64) -> f64 {
+        match *self {
+            Self::Constant { .. } => 0.0,
+            Self::Steady { rate, .. } => rate.abs(),
+            Self::Sinusoid { amplitude, frequency, .. } => (amplitude * frequency).abs(),
+            Self::Ramp { height, start, duration } if (start..start + duration).contains(&t) => {
+                140.0 / 64.0 * height.abs() / duration
+            }
+            Self::Ramp { .. } => 0.0,
+        }
+    }
+
     /// Times at which a derivative of higher than the second order jumps: an integrator of high order stops there.
     #[must_use]
     pub fn joints(&self) -> Option<[f64; 2]> {
@@ -112,6 +138,20 @@ mod tests {
                 assert!(((after[0] - before[0]) / (2.0 * h) - rate).abs() < 1e-8, "{law:?}");
                 assert!(((after[1] - before[1]) / (2.0 * h) - acceleration).abs() < 1e-7, "{law:?}");
             }
+        }
+    }
+
+    #[test]
+    fn no_law_is_faster_than_its_fastest_rate() {
+        let laws = [
+            MotionLaw::Sinusoid { mean: 0.9, amplitude: -0.08, frequency: 1.7, phase: 0.3 },
+            MotionLaw::Steady { start: 0.2, rate: -0.4 },
+            MotionLaw::Ramp { height: -0.6, start: 0.0, duration: 4.0 },
+        ];
+        for law in laws {
+            let rates = (0..=400).map(|k| law.at(0.01 * f64::from(k))[1].abs());
+            let reached = rates.fold(0.0, f64::max) / law.fastest(1.0);
+            assert!((0.999..=1.0 + 1e-12).contains(&reached), "{law:?}: {reached}");
         }
     }
 

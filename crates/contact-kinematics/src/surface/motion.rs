@@ -80,6 +80,20 @@ impl SurfaceMotion {
         }
     }
 
+    /// How fast directions of the palm and its own motion change about the time `t` at most, rad/s: over a time that is short against the
+    /// inverse, and has no joint, every distance to the palm is nearly a polynomial of low degree.
+    #[must_use]
+    pub fn quickness(&self, t: f64) -> f64 {
+        let of_part = |part: &MotionPart| match part {
+            MotionPart::Shift { law, .. } => law.quickness(t),
+            MotionPart::Turn { law, .. } => law.quickness(t) + law.fastest(t),
+        };
+        match self {
+            Self::Parts { parts, .. } => parts.iter().map(of_part).sum(),
+            Self::Table(table) => table.at(t).w_WP.length(),
+        }
+    }
+
     /// Times at which the motion is less smooth than elsewhere, ascending: an integrator of high order stops there.
     #[must_use]
     pub fn joints(&self) -> Vec<f64> {

@@ -107,6 +107,16 @@ impl PalmDrive {
         }
     }
 
+    /// How fast what is prescribed of it changes about the time `t`, rad/s; see [`SurfaceMotion::quickness`].
+    #[must_use]
+    pub fn quickness(&self, t: f64) -> f64 {
+        match self {
+            Self::Prescribed(motion) => motion.quickness(t),
+            Self::Spring(spring) => spring.command.quickness(t),
+            Self::Torque(drive) => drive.torque.quickness(t),
+        }
+    }
+
     /// Times at which its motion is less smooth than elsewhere.
     #[must_use]
     pub fn joints(&self) -> Vec<f64> {

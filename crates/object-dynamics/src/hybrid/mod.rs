@@ -6,6 +6,7 @@ mod crawl;
 mod error;
 mod events;
 mod field;
+mod gaps;
 mod guards;
 mod instant;
 mod packed;

@@ -3,6 +3,7 @@
 use super::error::ContactSimulationError as Error;
 use super::events::{Crossing, first_crossing};
 use super::field::Evaluated;
+use super::gaps::{Gaps, any_dips};
 use super::guards::{Guards, suspicious};
 use super::project::projected;
 use super::result::ContactEventKind;
@@ -28,7 +29,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
         let (scene, units) = (self.scene, self.units);
         let now = Cell::new(self.stretch);
         let (doubt, at_start) = (Cell::new(false), Cell::new(Guards::default()));
-        let failed = Cell::new(None);
+        let (failed, latest) = (Cell::new(None), Cell::new(Gaps::default()));
         let field = |t: f64, y: &[f64; N]| {
             if !y.iter().all(|v| v.is_finite()) {
                 return Ok([f64::NAN; N]);
@@ -45,6 +46,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             if suspicious(&stretch.guards(&evaluated, &units), &at_start.get()) {
                 doubt.set(true);
             }
+            latest.set(stretch.gaps(&evaluated));
             Ok(evaluated.rates(scene, &units))
         };
         let mut solver = Dop853::new(field, self.t, self.y, self.tolerance).map_err(Error::Integration)?;
@@ -70,14 +72,20 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             // A table of poses has a joint at every row: thousands of them.
             let next = self.joints.partition_point(|joint| *joint <= t);
             let next_joint = self.joints.get(next).copied().unwrap_or(limit);
+            let (gaps, longest) =
+                (self.stretch.gaps(&evaluated), self.stretch.longest_step(scene, &evaluated, &units));
             let project = |t: f64, y: &mut [f64; N]| self.project(t, y);
-            if let Err(error) = solver.step_onto(limit.min(next_joint), project) {
+            if let Err(error) = solver.step_onto(limit.min(next_joint).min(t + longest), project) {
                 return Err(match (&error, failed.get()) {
                     (IntegrationError::NotFinite { t }, Some(source)) => Error::Contact { t: *t, source },
                     _ => self.stuck(&evaluated, error),
                 });
             }
             let (end, next_sample) = (solver.time(), self.result.instants.len() as f64 / self.sample_rate);
+            // The field was seen last at the end of the step.
+            if any_dips(&gaps, &latest.get(), end - t) {
+                doubt.set(true);
+            }
             if !doubt.get() && next_sample > end {
                 continue;
             }

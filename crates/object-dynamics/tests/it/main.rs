@@ -8,6 +8,7 @@ mod approach;
 mod closed_forms;
 mod contact_modes;
 mod crawl;
+mod flight;
 mod giving_way;
 mod motor_palms;
 mod sliding;
