@@ -58,8 +58,12 @@ fn of_command(command: &Command) -> io::Result<String> {
 fn rendered(section: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<String> {
     let mut text = Vec::new();
     section(&mut text)?;
-    // Paragraphs that stand beside a break are none, which manuals are checked for.
-    Ok(String::from_utf8_lossy(&text).replace(".br\n.sp\n", ".sp\n").replace(".sp\n.br\n", ".sp\n"))
+    let text = String::from_utf8_lossy(&text);
+    let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
+    // A break beside an empty line is none, which manuals are checked for.
+    let is_space = |k: usize| lines.get(k).is_some_and(|line| line.is_empty());
+    let idle = |k: usize| lines[k] == ".br" && (is_space(k.wrapping_sub(1)) || is_space(k + 1));
+    Ok((0..lines.len()).filter(|k| !idle(*k)).map(|k| format!("{}\n", lines[k])).collect())
 }
 
 /// What `--help` says at its end, line by line as there.

@@ -24,7 +24,6 @@ const DASHED: &str = " Dashed: the true motion, from the log.";
 const MODES: &str = "Modes from the ratio of friction to normal force and, in space, from the slip: the paler, the less sure. Time in s. \
     Dashed lines: the instants of the small pictures.";
 const LEFT_OUT: &str = "What was modelled, what was left out, what that costs";
-const SHAPE: &str = "The object lies between the lower and the upper bound; the arrow shows where they are farthest apart: a touch there tells most.";
 
 /// What the page of an estimate is made of, in space and in the plane alike.
 pub(super) struct EstimatePage<'a> {
@@ -116,7 +115,7 @@ impl EstimatePage<'_> {
                 &format!("{BANDS}{dashed} Shaded: not relied on.{no_samples}"),
             )
             + &modes_section(&self.spans, &self.pictures.times(), Some(&doubtful), &gaps, MODES)
-            + &curves_section("Bounds on the shape", self.shape, SHAPE)
+            + &curves_section("Bounds on the shape", self.shape, &of_shape(self.shape))
             + &evidence_section(LEFT_OUT, &rows(self.least_model))
             + &evidence_section("Mass, inertia, and what the result rests on", &rows(self.evidence));
         let verdict = notices(self.verdict, ["Reliable", "With care", "Unreliable"], self.warnings)
@@ -124,6 +123,24 @@ impl EstimatePage<'_> {
             + &next(self.next);
         Page { kicker: KICKER, title: self.title, verdict, facts: &self.facts, body }.write(to)
     }
+}
+
+/// What is said of the views of the bounds: of what is drawn alone.
+fn of_shape(views: &[FigurePanel]) -> String {
+    let drawn =
+        |name: &str| views.iter().flat_map(|view| &view.curves).any(|curve| curve.name.starts_with(name));
+    let bounds = match (drawn("lower"), drawn("upper")) {
+        (true, true) => "The object lies between the lower and the upper bound",
+        (true, false) => "The object holds the lower bound, and goes beyond it",
+        (false, true) => "The object lies within the upper bound",
+        (false, false) => "Where the object was touched, in its own axes",
+    };
+    let next = if drawn("touch next") {
+        "; the arrow shows where they are farthest apart: a touch there tells most."
+    } else {
+        "."
+    };
+    format!("{bounds}{next}")
 }
 
 /// Gaps that are marked, at most: the longest. Of a log that has more none stands out.
