@@ -2,7 +2,7 @@
 
 use super::judged::Ran;
 use super::{Failure, Method, Way};
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 use recon::observer::{ContactFriction, ContactModes, ContactModesOptions, ContactSeen};
 use recon_tests::Random;
 use recon_tests::contact_modes::{Moment, classify, drawn};
@@ -32,15 +32,18 @@ fn run(way: Way, strength: f64, seed: u64) -> Result<Ran, Failure> {
     changed(&mut moments, way, strength, seed);
     let stated = if way == Way::Coefficient { friction * (1.0 + strength) } else { friction };
     let options = ContactModesOptions::new(1.0, 0.02, 1.0);
-    let score = ContactModes::new(&[ContactFriction::Known(stated)], options)
-        .and_then(|mut modes| classify(&mut modes, &moments));
-    Ok(match score {
+    let mut modes = match ContactModes::new(&[ContactFriction::Known(stated)], options) {
+        Ok(modes) => modes,
+        Err(error) => return Ok(Ran::refused(&error)),
+    };
+    Ok(match classify(&mut modes, &moments) {
         Err(error) => Ran::refused(&error),
         Ok(score) => {
-            let doubt = (score.right() < TOLD).then(|| "modes are left open".to_owned());
+            let open = (score.right() < TOLD).then(|| "modes are left open".to_owned());
             let wrong = score.confident_and_wrong() / WRONG;
             // What is confident and wrong is no doubt.
-            Ran::Found { off: wrong, doubt: doubt.filter(|_| wrong <= 1.0) }
+            let doubt = modes.doubts().next().map(|doubt| doubt.to_string());
+            Ran::Found { off: wrong, doubt: doubt.or(open.filter(|_| wrong <= 1.0)) }
         }
     })
 }
@@ -77,9 +80,12 @@ fn changed(moments: &mut Vec<Moment>, way: Way, strength: f64, seed: u64) {
                 for (held, part) in held.iter_mut().zip(parts) {
                     *held = *held * if k == 0 { 0.0 } else { strength } + part * fresh;
                 }
+                // Beside the noise that is there, and stated as a whole: what is not as stated is that it lasts.
                 reading.friction += held[0];
+                reading.force_deviation *= std::f64::consts::SQRT_2;
                 if let Some(slip) = &mut reading.slip {
                     slip.velocity += held[1];
+                    slip.covariance += Matrix2::identity() * 3.6e-3 * 3.6e-3;
                 }
             }
             _ => {}

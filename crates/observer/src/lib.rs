@@ -80,8 +80,9 @@ mod three_palms;
 
 #[cfg(feature = "palms")]
 pub use contact_modes::{
-    ContactFriction, ContactModes, ContactModesError, ContactModesOptions, ContactOdds, ContactReading,
-    ContactSeen, ContactSlip, LearnedFriction, TwistError, WholeModes, whole_modes,
+    ContactFriction, ContactModes, ContactModesDoubt, ContactModesError, ContactModesOptions, ContactOdds,
+    ContactReading, ContactSeen, ContactSlip, DoubtedReading, LearnedFriction, TwistError, WholeModes,
+    whole_modes,
 };
 #[cfg(feature = "palms")]
 pub use contacts::{

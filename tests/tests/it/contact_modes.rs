@@ -2,7 +2,9 @@
 //!
 //! Bands were set from the seeds beside them; what they rest on is in `docs/contact-modes.md`.
 
-use recon::observer::{ContactFriction, ContactModes, ContactModesOptions};
+use recon::observer::{
+    ContactFriction, ContactModes, ContactModesOptions, ContactReading, ContactSeen, DoubtedReading,
+};
 use recon_tests::contact_modes::{LoggedContacts, Score, SlipNoise, TWIST_CORRELATION, classify, drawn};
 use std::path::Path;
 use std::process::Command;
@@ -41,6 +43,35 @@ fn a_drawn_contact_is_told_and_hardly_ever_wrong_with_confidence() {
     }
 }
 
+/// What of a drawn contact is doubted after each reading was changed so.
+fn doubted(seed: u64, change: impl Fn(&mut ContactReading)) -> Option<DoubtedReading> {
+    let mut moments = drawn(0.3, 1000, seed);
+    for seen in moments.iter_mut().flat_map(|moment| &mut moment.seen) {
+        if let ContactSeen::Read(reading) = seen {
+            change(reading);
+        }
+    }
+    let mut modes =
+        ContactModes::new(&[ContactFriction::Known(0.3)], ContactModesOptions::new(1.0, 0.02, 1.0)).unwrap();
+    classify(&mut modes, &moments).unwrap();
+    modes.doubts().next().map(|doubt| doubt.about)
+}
+
+#[test]
+fn readings_that_are_not_as_stated_are_doubted() {
+    for seed in 110..114 {
+        assert_eq!(doubted(seed, |_| ()), None);
+        let gain = |reading: &mut ContactReading| reading.friction *= 1.05;
+        assert_eq!(doubted(seed, gain), Some(DoubtedReading::Friction));
+        let forces = |reading: &mut ContactReading| reading.force_deviation *= 0.6;
+        assert_eq!(doubted(seed, forces), Some(DoubtedReading::Forces));
+        let slips = |reading: &mut ContactReading| {
+            reading.slip.as_mut().unwrap().covariance *= 0.4;
+        };
+        assert_eq!(doubted(seed, slips), Some(DoubtedReading::Slips));
+    }
+}
+
 #[test]
 fn the_friction_of_a_drawn_contact_is_learned() {
     let options = ContactModesOptions::new(1.0, 0.01, 1.0);
@@ -58,7 +89,8 @@ fn excerpts_of_logs() {
     for (name, axes, friction) in [("S2", [0.05, 0.04, 0.03], 0.3), ("S4", [0.035, 0.03, 0.025], 0.8)] {
         let path = format!("{}/data/contacts_{name}.csv", env!("CARGO_MANIFEST_DIR"));
         let log = LoggedContacts::parse(&std::fs::read_to_string(path).unwrap(), axes);
-        let (score, _) = run(&log, ContactFriction::Known(friction), (SlipNoise::White, 0.0), 11);
+        let (score, modes) = run(&log, ContactFriction::Known(friction), (SlipNoise::White, 0.0), 11);
+        assert_eq!(modes.doubts().next(), None, "{name}");
         assert!(score.told.len() > 500, "{}", score.told.len());
         assert!(score.right() > 0.96, "{name} {}", score.right());
         assert!(score.confident_and_wrong() < 0.003, "{name} {}", score.confident_and_wrong());

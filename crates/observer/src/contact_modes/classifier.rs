@@ -2,6 +2,8 @@
 
 use super::bins::Bins;
 use super::contact::{Contact, Force, Modes};
+use super::density::Slip;
+use super::doubt::{ContactModesDoubt, Left};
 use super::error::ContactModesError;
 use super::friction::{ContactFriction, FrictionGrid, LearnedFriction};
 use super::options::ContactModesOptions;
@@ -66,6 +68,9 @@ pub struct ContactModes {
     labels: Vec<ModeLabel>,
     told: Vec<ContactMode>,
     rows: Vec<Row>,
+    /// Of the last sample, in natural units.
+    slips: Vec<Option<Slip>>,
+    left: Vec<Left>,
     samples: usize,
 }
 
@@ -113,6 +118,8 @@ impl ContactModes {
             labels: vec![label; count],
             told: vec![ContactMode::Off; count],
             rows: vec![Row::NONE; count],
+            slips: vec![None; count],
+            left: vec![Left::default(); count],
             samples: 0,
         })
     }
@@ -169,6 +176,13 @@ impl ContactModes {
     #[must_use]
     pub fn friction(&self, contact: usize) -> Option<LearnedFriction> {
         self.grid_of.get(contact).and_then(|grid| self.grids[*grid].learned())
+    }
+
+    /// What contradicts that readings are as stated, of each contact the clearest: odds of a contact that is doubted can be sure and wrong.
+    /// Figures, and what is not seen (forces that are late): `docs/contact-modes.md` of the repository.
+    pub fn doubts(&self) -> impl Iterator<Item = ContactModesDoubt> + '_ {
+        let slips_last = self.options.slip_errors_last > 0.0;
+        self.left.iter().enumerate().filter_map(move |(contact, left)| left.doubt(contact, slips_last))
     }
 
     /// Samples taken.
@@ -265,9 +279,11 @@ impl ContactModes {
             }
         }
         for i in 0..self.contacts.len() {
+            self.slips[i] = None;
             let Some((reading, error)) = self.shared(i, &seen[i], twist) else { continue };
             let (slip, turn) = self.slip(reading, error);
             self.contacts[i].weigh_slip(&slip, turn, weight, &self.speeds);
+            self.slips[i] = Some(slip);
         }
     }
 
@@ -290,11 +306,7 @@ impl ContactModes {
         Some((reading, error))
     }
 
-    fn slip(
-        &self,
-        reading: &ContactReading,
-        error: Option<(Vector2<f64>, Matrix2<f64>)>,
-    ) -> (super::density::Slip, f64) {
+    fn slip(&self, reading: &ContactReading, error: Option<(Vector2<f64>, Matrix2<f64>)>) -> (Slip, f64) {
         let (u, turn) = reading.direction();
         let (mut velocity, mut covariance) = reading
             .slip
@@ -333,6 +345,17 @@ impl ContactModes {
             if matches!(seen[i], ContactSeen::Read(ContactReading { slip: Some(_), .. })) {
                 grid.count(self.odds[i][1], dt);
             }
+            let ratio = match &seen[i] {
+                ContactSeen::Read(reading) => reading.ratio(),
+                _ => None,
+            };
+            let [off, slide, stick] = self.odds[i];
+            self.left[i].take(
+                &ContactOdds { off, slide, stick },
+                ratio.as_ref(),
+                self.slips[i].as_ref(),
+                grid.told(),
+            );
             self.told[i] = match self.labels[i].follow(self.odds[i]) {
                 0 => ContactMode::Off,
                 1 => ContactMode::Slide,

@@ -105,6 +105,15 @@ impl FrictionGrid {
         new
     }
 
+    /// The friction, where it is known.
+    pub(super) fn told(&self) -> Option<f64> {
+        if self.material.is_none() {
+            self.values.first().copied()
+        } else {
+            self.learned().map(|learned| learned.coefficient)
+        }
+    }
+
     /// Counts the time in which a contact of its slid.
     pub(super) fn count(&mut self, slides: f64, dt: f64) {
         if slides >= SURE {

@@ -4,13 +4,14 @@
 //! Each mode gives a density of the same outputs (`density.rs`), and remembers what changes slowly: sliding its speed, sticking
 //! the ratio of friction to normal force, on bins (`bins.rs`, `steps.rs`, `chain.rs`). A friction that is not known is carried
 //! as a grid (`friction.rs`, `contact.rs`). Slips of several contacts share the error of one twist (`twist.rs`).
-//! `classifier.rs` is the way of a sample.
+//! What is left of readings where modes are told is held against their noise (`doubt.rs`). `classifier.rs` is the way of a sample.
 
 mod bins;
 mod chain;
 mod classifier;
 mod contact;
 mod density;
+mod doubt;
 mod error;
 mod friction;
 pub(crate) mod normal;
@@ -24,6 +25,7 @@ mod twist;
 mod whole;
 
 pub use classifier::{ContactModes, ContactOdds};
+pub use doubt::{ContactModesDoubt, DoubtedReading};
 pub use error::ContactModesError;
 pub use friction::{ContactFriction, LearnedFriction};
 pub use options::ContactModesOptions;

@@ -105,15 +105,22 @@ impl ContactReading {
         at.within("deviation of the slip, in natural speeds", widest, MOST)
     }
 
+    /// The ratio of friction to normal force, where it presses.
+    pub(super) fn ratio(&self) -> Option<Ratio> {
+        let normal = self.normal_force;
+        if normal <= PRESSES * self.force_deviation {
+            return None;
+        }
+        let size = self.friction.norm() / normal;
+        Some(Ratio { size, deviation: self.force_deviation * (1.0 + size * size).sqrt() / normal })
+    }
+
     /// What the forces tell.
     pub(super) fn force(&self, options: &ContactModesOptions) -> Force {
         let normal = self.normal_force;
-        if normal <= PRESSES * self.force_deviation {
+        let Some(ratio) = self.ratio() else {
             return if self.touches { Force::Touches } else { Force::Off };
-        }
-        let size = self.friction.norm() / normal;
-        let deviation = self.force_deviation * (1.0 + size * size).sqrt() / normal;
-        let ratio = Ratio { size, deviation };
+        };
         let touching = -options.typical_force.ln() - normal / options.typical_force;
         let unloaded = options.unloaded_deviation;
         let off = if self.touches {
