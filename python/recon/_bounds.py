@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from recon._arrays import Array, array, columns_of, same_length
+from recon._arrays import Array, array, columns_of, numbers, same_length
 from recon._recon import Bounds, InputError, Mesh, bounds_of_columns, bounds_of_file
 from recon._reconstruct import Progress
 from recon._words import words
@@ -89,13 +89,14 @@ def _alone(normals: ArrayLike | None, curve: ArrayLike | None) -> None:
 
 
 def _contacts(points: ArrayLike, normals: ArrayLike, curve: ArrayLike | None) -> dict[str, Array]:
-    planar = np.ndim(points) == 2 and np.shape(points)[1] == 2
+    points = numbers("points", points)
+    planar = points.ndim == 2 and points.shape[1] == 2
     axes = "xy" if planar else "xyz"
     p, n = array("points", points, ("n", len(axes))), array("normals", normals, ("n", len(axes)))
-    numbers = None if curve is None else array("curve", curve, ("n",))
-    same_length("points", len(p), normals=n, curve=numbers)
+    of_curve = None if curve is None else array("curve", curve, ("n",))
+    same_length("points", len(p), normals=n, curve=of_curve)
     columns = {axis: p[:, k] for k, axis in enumerate(axes)} | {f"n{axis}": n[:, k] for k, axis in enumerate(axes)}
-    return columns if numbers is None else columns | {"curve": numbers}
+    return columns if of_curve is None else columns | {"curve": of_curve}
 
 
 @dataclass(frozen=True)

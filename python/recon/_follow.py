@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon import _recon
-from recon._arrays import Array, columns_of
+from recon._arrays import Array, columns_of, numbers
 from recon._log import LogLike, SceneLike, _scene, log
 from recon._recon import InputError, Log
 from recon._words import words
@@ -126,7 +126,7 @@ class Follower:
 
     def push_all(self, rows: Array) -> list[Estimate]:
         """Takes many samples, (n, columns); returns all estimates that they make known."""
-        rows = np.asarray(rows, dtype=np.float64)
+        rows = numbers("rows", rows)
         if rows.ndim != 2:
             raise InputError(f"the rows have the shape {rows.shape}; give (n, {len(self._columns)})")
         made = [_estimate(row) for row in self._follower.push_all(rows, rows.shape[1])]

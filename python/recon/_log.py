@@ -10,7 +10,7 @@ from typing import Any, TypeVar, Union
 import numpy as np
 from numpy.typing import ArrayLike
 
-from recon._arrays import Array, array, columns_of, same_length
+from recon._arrays import Array, array, columns_of, numbers, same_length
 from recon._recon import InputError, Log, PlaneScene, Scene
 
 SceneLike = Union[Scene, Mapping[str, Any], str, "os.PathLike[str]", None]
@@ -132,7 +132,8 @@ def log_from_contacts(
     """
     times, points = array("t", t, ("n",)), array("contacts", contacts, ("n", "palms", 3))
     palms = points.shape[1]
-    force = array("forces", forces, ("n", palms) if np.ndim(forces) == 2 else ("n", palms, 3))
+    forces = numbers("forces", forces)
+    force = array("forces", forces, ("n", palms) if forces.ndim == 2 else ("n", palms, 3))
     groups: dict[str, tuple[Array, list[str]]] = {
         "contacts": (points, [("s" if in_palm_axes else "p") + axis for axis in "xyz"]),
         "forces": (force[..., None], ["fn"]) if force.ndim == 2 else (force, ["fx", "fy", "fz"]),

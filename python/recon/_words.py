@@ -5,7 +5,12 @@ from __future__ import annotations
 import os
 from typing import Any
 
+import numpy as np
+
 from recon._recon import OptionError
+
+FLAGS = {"concave", "estimate_noise", "identify", "tight", "without_forces"}
+"""Options that are set or not."""
 
 
 def words(**options: Any) -> list[str]:
@@ -13,10 +18,10 @@ def words(**options: Any) -> list[str]:
     said = []
     for name, value in options.items():
         option = "--" + name.replace("_", "-")
-        if value is None or value is False:
+        if name in FLAGS:
+            said.extend([option] if flag(name, value) else [])
+        elif value is None:
             continue
-        if value is True:
-            said.append(option)
         elif isinstance(value, (str, os.PathLike)):
             said.append(f"{option}={os.fspath(value)}")
         elif isinstance(value, (list, tuple)):
@@ -24,6 +29,13 @@ def words(**options: Any) -> list[str]:
         else:
             said.append(f"{option}={number(name, value)!r}")
     return said
+
+
+def flag(name: str, value: Any) -> bool:
+    """A value as one of two."""
+    if value is not None and not isinstance(value, (bool, np.bool_)):
+        raise OptionError(f"{name} is {value!r}; give True or False")
+    return bool(value)
 
 
 def number(name: str, value: Any) -> float:

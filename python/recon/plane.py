@@ -23,7 +23,7 @@ from recon._recon import PlaneSimulation as Simulation
 from recon._recon import reconstruct_plane as _reconstruct
 from recon._recon import simulate_plane as _simulate
 from recon._reconstruct import Progress
-from recon._words import words
+from recon._words import flag, words
 
 __all__ = ["Log", "Reconstruction", "Scene", "Simulation", "log_from_frame", "read_log", "reconstruct", "scene", "simulate"]
 
@@ -73,7 +73,7 @@ def reconstruct(
         log = Log._read(source, known)
     else:
         log = log_from_frame(source, known)
-    return _reconstruct(log, known, identify, progress)
+    return _reconstruct(log, known, flag("identify", identify), progress)
 
 
 def simulate(

@@ -60,6 +60,8 @@ def test_shapes_of_arrays() -> None:
         recon.log_from_contacts(t, np.zeros((4, 1, 3)), np.zeros((4, 1, 3)), {"gravity": 9.81})
     with pytest.raises(recon.InputError, match="points"):
         recon.bounds(np.zeros((3, 4)), np.zeros((3, 4)))
+    with pytest.raises(recon.InputError, match="points is no array.*one length"):
+        recon.bounds([[1.0, 2.0, 3.0], [1.0, 2.0]], np.eye(3)[:2])  # type: ignore[list-item]
     with pytest.raises(recon.InputError, match="row 1"):
         recon.bounds(np.eye(3), np.diag([1.0, 2.0, 1.0]))
     with pytest.raises(recon.InputError, match="row 2.*finite"):
@@ -92,6 +94,9 @@ def test_options(log: recon.Log) -> None:
         recon.bounds(poles, poles, contact_noise=-1.0, normal_noise=1e-3)
     with pytest.raises(recon.OptionError, match="contact_noise is 'much'|much"):
         recon.bounds(poles, poles, contact_noise="much", normal_noise=1e-3)
+    for wrong in ("perhaps", 2, [True]):
+        with pytest.raises(recon.OptionError, match="identify is .*; give True or False"):
+            recon.reconstruct("log.csv", {"gravity": 9.81}, identify=wrong)  # type: ignore[arg-type]
     with pytest.raises(recon.OptionError, match="fit"):
         recon.bounds(poles, poles, fit="cube")
     with pytest.raises(recon.OptionError, match="plane_height"):

@@ -42,6 +42,18 @@ impl Console {
         }
     }
 
+    /// Prints a mistake of usage for a program.
+    pub(crate) fn usage(mistake: &clap::Error) {
+        let text = mistake.to_string();
+        let told = text
+            .trim()
+            .trim_start_matches("error: ")
+            .split("\n\nFor more information")
+            .next()
+            .unwrap_or_default();
+        let _ = writeln!(io::stderr().lock(), "{:#}", json!({ "error": told, "causes": [] }));
+    }
+
     /// Prints an error with its chain of causes.
     pub(crate) fn error(&self, error: &CliError) {
         let causes = causes(error);

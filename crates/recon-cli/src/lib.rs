@@ -38,11 +38,17 @@ use std::ffi::OsString;
 ///
 /// From then on Ctrl-C, SIGTERM and SIGHUP end the process, or the writing of files that was begun.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
-    let cli = match Cli::of(args) {
+    let args: Vec<OsString> = args.into_iter().collect();
+    let cli = match Cli::of(&args) {
         Ok(cli) => cli,
         Err(usage) => {
-            // Help goes to standard output, mistakes to standard error; where nobody listens, nothing is lost.
-            let _ = usage.print();
+            // Nothing else is known of a command line that is not understood.
+            let json = args.iter().take_while(|arg| *arg != "--").any(|arg| arg == "--json");
+            match json && usage.use_stderr() {
+                true => Console::usage(&usage),
+                // Help goes to standard output, mistakes to standard error; where nobody listens, nothing is lost.
+                false => drop(usage.print()),
+            }
             return u8::try_from(usage.exit_code()).unwrap_or(2);
         }
     };

@@ -80,7 +80,7 @@ pub use report::{
     BatchPage, Bound, Bounds, EstimateData, Evidence, EvidenceValue, ExplorationPage, ExplorationWords, Fact,
     FiguresPage, Level, LogCard, ModeSpan, MotionState, PalmContact, PlaneEstimateData, PushedLog,
     ShapeMarks, TouchRow, TrueShape, Verdict, doubtful_spans, estimated_mode_spans, mode_spans, mode_times,
-    planar_mode_spans, write_batch_report, write_contact_report, write_estimate_report,
+    planar_mode_spans, sample_gaps, write_batch_report, write_contact_report, write_estimate_report,
     write_exploration_report, write_figures_page, write_planar_contact_report, write_plane_estimate_report,
     write_pushes_report,
 };

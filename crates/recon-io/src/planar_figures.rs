@@ -41,6 +41,8 @@ pub struct FigurePanel {
     pub curves: Vec<FigureCurve>,
     /// Stretches to the right over which the panel is shaded.
     pub shaded: Vec<[f64; 2]>,
+    /// Stretches to the right of which nothing is known: marked, and lines are broken over them.
+    pub missing: Vec<[f64; 2]>,
     /// Points that lie within the panel beside those of the curves.
     pub room: Vec<[f64; 2]>,
     /// What is shown in turn with the curves, which are the last of it; none of a picture that stands still.
@@ -51,7 +53,7 @@ const SIZE: [f64; 2] = [460.0, 330.0];
 const MARGIN: [f64; 4] = [64.0, 30.0, 16.0, 44.0];
 /// Colours of the curves, of text, of axes and of the ground, on a light and on a dark screen.
 const STYLE: &str = "\
-.ground{fill:#fff}.text{fill:#222}.tick{fill:#555;font-size:10px}.axis{stroke:#555;fill:none}.grid{stroke:#e4e4e4}.shade{fill:#888;fill-opacity:.16}
+.ground{fill:#fff}.text{fill:#222}.tick{fill:#555;font-size:10px}.axis{stroke:#555;fill:none}.grid{stroke:#e4e4e4}.shade{fill:#888;fill-opacity:.16}.missing{fill:#888;fill-opacity:.3}
 .c0{color:#1b6ca8}.c1{color:#c0392b}.c2{color:#2e8b57}.c3{color:#8e44ad}.c4{color:#8a7a12}
 @media (prefers-color-scheme:dark){
 .ground{fill:#15181c}.text{fill:#e6e6e6}.tick{fill:#a8a8a8}.axis{stroke:#a8a8a8}.grid{stroke:#2b3036}
@@ -151,12 +153,13 @@ fn draw(panel: &FigurePanel) -> String {
     let frame = Frame::new(panel);
     let mut out = names_of(panel);
     let (right, bottom) = (SIZE[0] - MARGIN[2], SIZE[1] - MARGIN[3]);
-    for [from, to] in &panel.shaded {
+    let shaded = panel.shaded.iter().map(|span| ("shade", span));
+    for (class, [from, to]) in shaded.chain(panel.missing.iter().map(|span| ("missing", span))) {
         let [from, to] = [from, to].map(|x| frame.place([*x, frame.low[1]])[0].clamp(MARGIN[0], right));
         let (width, height) = (on_scale(to - from, 100.0, 3), bottom - MARGIN[1]);
         let _ = writeln!(
             out,
-            "<rect class=\"shade\" x=\"{from}\" y=\"{}\" width=\"{width}\" height=\"{height}\"/>",
+            "<rect class=\"{class}\" x=\"{from}\" y=\"{}\" width=\"{width}\" height=\"{height}\"/>",
             MARGIN[1]
         );
     }
@@ -173,11 +176,13 @@ fn draw(panel: &FigurePanel) -> String {
         "<text class=\"text\" transform=\"translate(14 {}) rotate(-90)\" text-anchor=\"end\">{up}</text>",
         MARGIN[1]
     );
-    for (k, curve) in panel.curves.iter().enumerate() {
+    let curves: Vec<FigureCurve> =
+        panel.curves.iter().map(|curve| curve.broken_over(&panel.missing)).collect();
+    for (k, curve) in curves.iter().enumerate() {
         draw_band(curve, k % COLOURS, &frame, &mut out);
     }
     if panel.frames.is_empty() {
-        draw_curves(&panel.curves, &frame, &mut out);
+        draw_curves(&curves, &frame, &mut out);
     } else {
         frames::draw_in_turn(&panel.frames, &panel.curves, &frame, &mut out);
     }
@@ -245,6 +250,22 @@ mod tests {
         assert_eq!(pieces.iter().map(Vec::len).collect::<Vec<_>>(), [2, 2, 2], "{drawn}");
         assert!(pieces[1][0] == pieces[1][1] && pieces[0][1] != pieces[1][0]);
         assert!(!drawn.contains("NaN") && !drawn.contains("inf"));
+    }
+
+    #[test]
+    fn lines_and_bands_are_broken_over_what_is_missing() {
+        let curve = FigureCurve {
+            points: (0..6).map(|k| [f64::from(k), 0.0]).collect(),
+            half_heights: vec![0.1; 6],
+            reference: (0..6).map(|k| [f64::from(k), 1.0]).collect(),
+            ..FigureCurve::default()
+        };
+        let count = |missing| {
+            let drawn = draw(&FigurePanel { curves: vec![curve.clone()], missing, ..FigurePanel::default() });
+            ["<polyline", "<polygon", "\"missing\""].map(|what| drawn.matches(what).count())
+        };
+        assert_eq!(count(vec![]), [2, 1, 0]);
+        assert_eq!(count(vec![[2.0, 3.0]]), [4, 2, 1]);
     }
 
     #[test]

@@ -62,7 +62,7 @@ pub(crate) struct GoalArgs {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_long_help = "\
 The object is that of the scene's [simulation], in space or in the plane. A planner that sees contacts alone says where it is
 touched; the lower bound is the hull of the contacts, the upper one the intersection of their half-spaces, and the gap what is
 between them over the upper one. Goals: gap=0.1, hausdorff=0.01 (largest distance of the bounds, m), width=0.001@1,0,0 (width
@@ -119,7 +119,7 @@ pub(crate) struct ExploreArgs {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_long_help = "\
 Reads contacts.csv (x, y, z and nx, ny, nz; in the plane x, y and nx, ny) from a folder of `recon explore`, or a file of contacts,
 to which contacts may have been added since, and prints JSON: whether the goal is proven, and else the direction along which to
 touch, a ray for a finger that moves on one, what the touch is expected to gain, and how many touches are expected in all. Goal and

@@ -3,6 +3,12 @@
 use recon::object_dynamics::MassProperties;
 use recon_io::{Bounds, brief, brief_to};
 use serde_json::Value;
+use std::path::Path;
+
+/// The line that tells the folder of results; none without one.
+pub(super) fn written_to(folder: Option<&Path>) -> String {
+    folder.map_or_else(String::new, |folder| format!("  written to             {}\n", folder.display()))
+}
 
 /// A number of the evidence in a summary.
 pub(super) fn evidence(figures: &Value, key: &str) -> Option<f64> {

@@ -1,3 +1,4 @@
+use super::answers::written_to;
 use super::plane;
 use crate::cli::{BoundsArgs, FitAs, MeshAs};
 use crate::console::Console;
@@ -43,7 +44,7 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
         None => made.check(&figures)?,
     }
     drop(progress);
-    console.result(&made.describe(), &figures)?;
+    console.result(&(made.describe() + &written_to(args.output.as_deref())), &figures)?;
     Ok(if made.is_whole() { Outcome::Done } else { Outcome::WithReservations })
 }
 
@@ -308,6 +309,9 @@ fn next_touch(made: &BoundsResult) -> String {
         }
         None if made.drawn.upper.is_none() => {
             "touch the object from all sides: only then it has an upper bound".to_owned()
+        }
+        None if made.drawn.lower.volume == 0.0 => {
+            "more contacts or poses, or better ones: nothing is certain to be inside yet".to_owned()
         }
         None => "nothing is left to touch: the bounds are one".to_owned(),
     }

@@ -1,3 +1,4 @@
+use super::answers::written_to;
 use crate::cli::{ExploreArgs, PlannerAs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
@@ -40,7 +41,7 @@ pub(crate) fn run(args: &ExploreArgs, console: &Console) -> Result<Outcome, CliE
         None => made.drawn.check(&made.figures)?,
     }
     drop(progress);
-    console.result(&made.text, &made.figures)?;
+    console.result(&(made.text + &written_to(args.output.as_deref())), &made.figures)?;
     Ok(made.exit)
 }
 

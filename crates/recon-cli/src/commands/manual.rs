@@ -3,7 +3,8 @@
 use crate::cli::{Cli, CompletionsArgs};
 use crate::console::listened;
 use crate::error::{CliError, Outcome};
-use clap::CommandFactory;
+use clap::{Command, CommandFactory};
+use clap_mangen::Man;
 use std::io::{self, Write};
 
 /// Completions for a shell, on standard output.
@@ -18,20 +19,57 @@ pub(crate) fn completions(args: &CompletionsArgs) -> Result<Outcome, CliError> {
 pub(crate) fn page() -> Result<Outcome, CliError> {
     let mut command = Cli::command();
     command.build();
-    let mut text = Vec::new();
-    let written = || -> io::Result<()> {
-        clap_mangen::Man::new(command.clone()).render(&mut text)?;
-        for sub in command.get_subcommands().filter(|sub| sub.get_name() != "help") {
-            let man = clap_mangen::Man::new(sub.clone());
-            // A part of the page, of which each command has its name as the title.
-            writeln!(text, ".SH \"RECON {}\"", sub.get_name().to_uppercase())?;
-            man.render_description_section(&mut text)?;
-            man.render_synopsis_section(&mut text)?;
-            man.render_options_section(&mut text)?;
-        }
-        Ok(())
-    };
-    let mut written = written;
-    listened(written().and_then(|()| io::stdout().lock().write_all(&text)))?;
+    let written = manual(&command).and_then(|text| io::stdout().lock().write_all(text.as_bytes()));
+    listened(written)?;
     Ok(Outcome::Done)
+}
+
+/// The page: each command is a part of it, not a page of its own.
+fn manual(command: &Command) -> io::Result<String> {
+    let version = command.get_version().unwrap_or_default();
+    let mut text = format!(".TH RECON 1 \"\" \"recon {version}\" \"User Commands\"\n");
+    text += &rendered(|to| Man::new(command.clone()).render_name_section(to))?;
+    text += &of_command(command)?;
+    let mut list = rendered(|to| Man::new(command.clone()).render_subcommands_section(to))?;
+    for sub in command.get_subcommands() {
+        let name = sub.get_name().replace('-', r"\-");
+        list = list.replace(&format!(r"recon\-{name}(1)"), &format!("recon {name}"));
+    }
+    text += &list;
+    text += &further(command, "SH");
+    for sub in command.get_subcommands().filter(|sub| sub.get_name() != "help") {
+        text += &format!(".SH \"RECON {}\"\n", sub.get_name().to_uppercase());
+        text += &of_command(sub)?.replace("\n.SH ", "\n.SS ");
+        text += &further(sub, "SS");
+    }
+    Ok(text)
+}
+
+/// Description, synopsis and options.
+fn of_command(command: &Command) -> io::Result<String> {
+    let man = Man::new(command.clone());
+    rendered(|to| {
+        man.render_description_section(to)?;
+        man.render_synopsis_section(to)?;
+        man.render_options_section(to)
+    })
+}
+
+fn rendered(section: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<String> {
+    let mut text = Vec::new();
+    section(&mut text)?;
+    let text = String::from_utf8_lossy(&text);
+    let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
+    // A break beside an empty line is none, which manuals are checked for.
+    let is_space = |k: usize| lines.get(k).is_some_and(|line| line.is_empty());
+    let idle = |k: usize| lines[k] == ".br" && (is_space(k.wrapping_sub(1)) || is_space(k + 1));
+    Ok((0..lines.len()).filter(|k| !idle(*k)).map(|k| format!("{}\n", lines[k])).collect())
+}
+
+/// What `--help` says at its end, line by line as there.
+fn further(command: &Command, heading: &str) -> String {
+    let Some(help) = command.get_after_long_help() else { return String::new() };
+    let help = help.to_string().replace('\\', r"\e").replace('-', r"\-").replace('\'', r"\(aq");
+    let line = |line: &str| if line.starts_with('.') { format!("\\&{line}\n") } else { format!("{line}\n") };
+    format!(".{heading} \"MORE\"\n.nf\n{}.fi\n", help.lines().map(line).collect::<String>())
 }

@@ -1,5 +1,6 @@
 //! `recon planar`, and `recon reconstruct` of a scene in the plane.
 
+use super::answers::written_to;
 use super::planar_fit;
 use crate::cli::{PlanarArgs, ReconstructArgs};
 use crate::console::Console;
@@ -95,7 +96,7 @@ fn finish(
         Made::Motion(made) => (made.describe(), made.is_reliable()),
         Made::Fit(made) => (planar_fit::describe(made), made.warnings.is_empty()),
     };
-    console.result(&format!("{text}  written to             {}\n", folder.display()), &figures)?;
+    console.result(&(text + &written_to(Some(folder))), &figures)?;
     Ok(if sound { Outcome::Done } else { Outcome::WithReservations })
 }
 

@@ -12,8 +12,8 @@ use recon_io::{
 use serde_json::Value;
 
 const KICKER: &str = "What touch guarantees about a shape";
-const IN_SPACE: &str = "Bounds as they are seen along the axes and from all around, and the contacts. The body lies between the outlines; the arrow shows where \
-     they are farthest apart: a touch there tells most.";
+const IN_SPACE: &str = "Bounds as they are seen along the axes and from all around, and the contacts. The body lies between the outlines.";
+const TOUCH_NEXT: &str = " The arrow shows where they are farthest apart: a touch there tells most.";
 const MARKED: &str =
     " Below, contacts by what they are on; other ones are smooth, or the odds leave them open.";
 const IN_PLANE: &str = "Outlines of the bounds with the contacts, and how far they are apart.";
@@ -35,13 +35,14 @@ pub(crate) fn bounds_page(
     let dots = [("contacts", points), ("surface", smooth)];
     let next = made.drawn.largest_gap.map(|gap| gap.outer);
     let marks = made.marks();
-    let caption = if marks.is_some() { MARKED } else { "" };
+    let touch = if next.is_some() { TOUCH_NEXT } else { "" };
+    let marked_below = if marks.is_some() { MARKED } else { "" };
     let ShapeMarks { facts: more, panels: marked } = marks.unwrap_or_default();
     let sizes = [Some(made.drawn.lower.volume), made.drawn.upper.as_ref().map(|upper| upper.volume)];
     FiguresPage {
         kicker: KICKER,
         title: title.to_owned(),
-        verdict: verdict(about, what, sizes[1].is_some(), made.contradicts()),
+        verdict: verdict(about, what, sizes, made.contradicts()),
         warnings: made.warnings.clone(),
         facts: facts(sizes, "m³", made.drawn.largest_gap.map(|gap| gap.distance), about)
             .into_iter()
@@ -49,7 +50,7 @@ pub(crate) fn bounds_page(
             .collect(),
         heading: "Bounds on the shape",
         panels: views(&bodies, &dots, next).into_iter().chain(marked).collect(),
-        caption: format!("{IN_SPACE}{caption}"),
+        caption: format!("{IN_SPACE}{touch}{marked_below}"),
         evidence: evidence(about, made.contradiction),
     }
 }
@@ -65,7 +66,7 @@ pub(crate) fn plane_bounds_page(
     FiguresPage {
         kicker: KICKER,
         title: title.to_owned(),
-        verdict: verdict(&made.about, what, sizes[1].is_some(), false),
+        verdict: verdict(&made.about, what, sizes, false),
         warnings: made.warnings.clone(),
         facts: facts(sizes, "m²", made.largest_gap(), &made.about),
         heading: "Bounds on the outline",
@@ -75,7 +76,7 @@ pub(crate) fn plane_bounds_page(
     }
 }
 
-fn verdict(about: &Value, what: &str, closed: bool, contradicts: bool) -> Verdict {
+fn verdict(about: &Value, what: &str, [lower, upper]: [Option<f64>; 2], contradicts: bool) -> Verdict {
     if contradicts {
         let text = format!("Do not rely on these bounds: the {what} contradict each other.");
         return Verdict { level: Level::Bad, text };
@@ -84,9 +85,15 @@ fn verdict(about: &Value, what: &str, closed: bool, contradicts: bool) -> Verdic
         Some(confidence) => format!("at {} % confidence", brief(100.0 * confidence)),
         None => "if these are exact".to_owned(),
     };
-    let (level, says) = match closed {
-        true => (Level::Good, "the object lies between the lower and the upper bound"),
-        false => (Level::Caution, "the object holds the lower bound; on some side it is not bounded"),
+    let (level, says) = match (lower.is_some_and(|size| size > 0.0), upper.is_some()) {
+        (true, true) => (Level::Good, "the object lies between the lower and the upper bound"),
+        (true, false) => (Level::Caution, "the object holds the lower bound; on some side it is not bounded"),
+        (false, true) => {
+            (Level::Caution, "the object lies within the upper bound; nothing is certain to be inside")
+        }
+        (false, false) => {
+            (Level::Caution, "nothing is certain to be inside, and on some side it is not bounded")
+        }
     };
     let mut text = format!("From {what}: {says}, {sure}.");
     if about["fit"]["status"] == "refused" {

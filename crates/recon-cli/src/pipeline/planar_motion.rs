@@ -42,7 +42,7 @@ pub(crate) fn planar_motion(log: ContactLog, known: &PlanarKnown) -> Result<Plan
         gravity: known.gravity,
         friction: known.palms.iter().map(|(_, friction)| *friction).collect(),
         body: known.mass,
-        size: None,
+        size: known.size,
         suspects: true,
     };
     let estimate = estimate_plane(&log, &options)?;
@@ -82,8 +82,12 @@ fn bounded(
 /// As it is stated, and what is not from the roughness of the readings.
 fn noise(log: &ContactLog, known: &PlanarKnown) -> Result<ContactNoiseLevel, CliError> {
     let sensors = &known.sensors;
-    let floor =
-        sensors.contact_speed_std.unwrap_or(ContactNoiseLevel::guessed_floor(known.gravity, size(log)));
+    let length = known.size.unwrap_or_else(|| size(log));
+    if length == 0.0 {
+        return Err(CliError::SizeNotStated);
+    }
+    let guessed = ContactNoiseLevel::guessed_floor(known.gravity, length);
+    let floor = sensors.contact_speed_std.unwrap_or(guessed);
     let friction: Vec<_> = known.palms.iter().map(|(_, friction)| *friction).collect();
     let rough =
         plane_noise(log, &friction, floor).map_err(recon::observer::planar::PlaneEstimateError::from)?;
@@ -307,5 +311,5 @@ pub(crate) fn hinged_pair(
 ) -> PlanarKnown {
     let sensors = Sensors { contact_std, force_std, ..Sensors::default() };
     let line = (recon::contact_kinematics::planar::PalmSurface::Line, Some(0.0));
-    PlanarKnown { gravity, mass, palms: vec![line; 2], sensors }
+    PlanarKnown { gravity, mass, size: None, palms: vec![line; 2], sensors }
 }

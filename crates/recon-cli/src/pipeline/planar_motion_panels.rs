@@ -3,7 +3,7 @@
 use super::planar_motion::PlanarMotion;
 use glam::DVec2;
 use recon::observer::planar::PlaneContact;
-use recon_io::{FigureCurve, FigurePanel, doubtful_spans};
+use recon_io::{FigureCurve, FigurePanel, doubtful_spans, sample_gaps};
 
 impl PlanarMotion {
     /// The paper's Figs. 2b and 3a (contact points), 2c (orientation) and 3b (errors, where the truth is known); bands of two deviations,
@@ -11,11 +11,13 @@ impl PlanarMotion {
     pub(crate) fn panels(&self) -> Vec<FigurePanel> {
         let times: Vec<f64> = self.log.samples().iter().map(|sample| sample.t).collect();
         let shaded = doubtful_spans(&times, &self.estimate.relied_on);
+        let missing = sample_gaps(&times);
         let panel = |title: &str, unit: &str, curves| FigurePanel {
             title: title.to_owned(),
             axes: ["t in s".to_owned(), unit.to_owned()],
             curves,
             shaded: shaded.clone(),
+            missing: missing.clone(),
             ..FigurePanel::default()
         };
         let line = |name: String, points: Vec<[f64; 2]>, half_heights: Vec<f64>| FigureCurve {

@@ -185,6 +185,17 @@ fn errors_are_json_where_a_program_asked() {
     let error: serde_json::Value = serde_json::from_str(&run.stderr).unwrap();
     assert_eq!(error["error"], "the scene cannot be used");
     assert!(error["causes"][0].as_str().unwrap().contains("none.toml"));
+    // Of a command line that is not understood too.
+    for (arguments, word) in [
+        (&["reconstruct", "--json"][..], "<LOG>"),
+        (&["bounds", "a.csv", "--confidence", "2", "--json"], "between 0.5 and 1"),
+        (&["--json", "no-such"], "no-such"),
+    ] {
+        let run = scratch.run(arguments);
+        let error: serde_json::Value = serde_json::from_str(&run.stderr).unwrap();
+        let told = error["error"].as_str().unwrap();
+        assert!(run.code == Some(2) && told.contains(word) && !told.contains("--help"), "{told}");
+    }
 }
 
 #[test]

@@ -48,6 +48,11 @@ fn each_log_is_as_if_it_were_alone_and_a_broken_one_is_named() {
     let (code, said) = batch(&scratch, &["--identify"]);
     assert_eq!(code, Some(4));
     assert_eq!([&said["logs"], &said["relied_on"], &said["skipped"]], [3, 2, 1]);
+    // Of logs that are all skipped there is a table as well.
+    scratch.write("none.toml", "");
+    let none = scratch.run(&["batch", "logs", "--scene", "none.toml", "-o", "nothing"]);
+    assert!(none.code == Some(4) && none.stdout.contains("3 skipped"), "{}{}", none.stdout, none.stderr);
+    assert_eq!(scratch.read("nothing/results.csv").lines().count(), 4);
     let rows = said["rows"].as_array().unwrap();
     assert_eq!(rows[2]["log"], "spoiled.csv");
     let why = rows[2]["why"].as_str().unwrap();

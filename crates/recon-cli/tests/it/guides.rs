@@ -134,8 +134,11 @@ fn help_is_short_or_long_and_shells_and_manuals_know_all_commands() {
     let scratch = Scratch::new("help");
     let (short, long) = (scratch.run(&["-h"]).stdout, scratch.run(&["--help"]).stdout);
     assert!(short.len() < long.len() && !short.contains("Exit codes") && long.contains("Exit codes"));
-    let (short, long) = (scratch.run(&["bounds", "-h"]).stdout, scratch.run(&["bounds", "--help"]).stdout);
-    assert!(2 * short.lines().count() < long.lines().count() && long.contains("Examples:"), "{short}");
+    for command in ["bounds", "explore", "next"] {
+        let [short, long] = ["-h", "--help"].map(|help| scratch.run(&[command, help]).stdout);
+        assert!(!short.contains("Examples:") && long.contains("Examples:"), "{short}");
+        assert!(2 * short.lines().count() < long.lines().count(), "{short}");
+    }
     let page = scratch.run(&["man"]).stdout;
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let text = scratch.run(&["completions", shell]).stdout;
@@ -144,7 +147,11 @@ fn help_is_short_or_long_and_shells_and_manuals_know_all_commands() {
             assert!(page.contains(&format!("RECON {}", command.to_uppercase())), "{command}");
         }
     }
-    assert!(page.starts_with(".ie") || page.contains(".TH recon"), "{}", &page[..200]);
+    assert!(page.starts_with(".TH RECON 1"), "{}", &page[..200]);
+    // Examples stand line by line, as in the help.
+    assert!(
+        page.contains("\n  recon next out\n") && page.matches(".nf").count() == page.matches(".fi\n").count()
+    );
 }
 
 #[test]

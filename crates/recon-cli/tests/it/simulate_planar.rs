@@ -61,6 +61,9 @@ fn a_disc_on_a_slope_slides_and_then_rolls() {
     let scratch = Scratch::new("planar-slope");
     let run = simulate(&scratch, SLOPE);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
+    // One palm tells no size.
+    let refused = scratch.run(&["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "out"]);
+    assert!(refused.code == Some(3) && refused.stderr.contains("as object.size"), "{}", refused.stderr);
     let said: Value = serde_json::from_str(&run.stdout).unwrap();
     assert_eq!((said["samples"].as_u64(), said["duration_s"].as_f64()), (Some(101), Some(0.5)));
     assert_eq!(said["mode_changes"]["slip_ends"].as_u64(), Some(1), "{said}");

@@ -32,7 +32,8 @@ pub enum BagErrorKind {
     Read(#[from] std::io::Error),
     /// The file does not begin as bags do.
     #[error(
-        "is not an MCAP bag: it begins with {found:02x?}; bags of other storage are converted by `ros2 bag convert`"
+        "is not an MCAP bag: {}; bags of other storage are converted by `ros2 bag convert`",
+        if found.is_empty() { "it is empty".to_owned() } else { format!("it begins with {found:02x?}") }
     )]
     NoBag {
         /// Its first bytes.
@@ -165,7 +166,7 @@ pub enum BagErrorKind {
     },
     /// A frame that no transform leads to.
     #[error(
-        "{asked} is in frame `{frame}`, which no transform joins with `{to}`; frames that are: {known}. Name another by `{key}` in the \
+        "{asked} is in frame `{frame}`, which no transform joins with `{to}`; frames that could be: {known}. Name another by `{key}` in the \
          mapping, or record /tf and /tf_static"
     )]
     UnknownFrame {
@@ -175,7 +176,7 @@ pub enum BagErrorKind {
         frame: String,
         /// The frame it should be joined with.
         to: String,
-        /// Frames that are joined with that.
+        /// Frames that are joined with that; where there is no such frame, all.
         known: String,
         /// The key that would say another.
         key: String,

@@ -100,10 +100,10 @@ fn latency(topic: &Topic) -> Option<[f64; 3]> {
 }
 
 impl BagOverview {
-    /// Whether the bag is as long as it should be, and every topic of a kind that is read has messages that can be: with a frame, and without NaN.
+    /// Whether the bag has topics and is as long as it should be, and every topic of a kind that is read has messages that can be: with a frame, and without NaN.
     #[must_use]
     pub fn is_whole(&self) -> bool {
-        self.cut.is_none() && self.topics.iter().all(TopicOverview::is_whole)
+        !self.topics.is_empty() && self.cut.is_none() && self.topics.iter().all(TopicOverview::is_whole)
     }
 
     /// For people.
@@ -128,6 +128,9 @@ impl BagOverview {
                 topic.name, topic.count, topic.schema
             );
             topic.remarks(&mut text);
+        }
+        if self.topics.is_empty() {
+            let _ = writeln!(text, "The bag has no topics: record again.");
         }
         if let Some(place) = self.cut {
             let _ = writeln!(text, "The bag was cut off: it ends within the record at byte {place}.");

@@ -14,6 +14,26 @@ pub(super) fn finite(point: &&[f64; 2]) -> bool {
     point.iter().all(|v| v.is_finite())
 }
 
+impl FigureCurve {
+    /// Without the lines from before each of these stretches to after it.
+    pub(super) fn broken_over(&self, missing: &[[f64; 2]]) -> Self {
+        let mut curve = self.clone();
+        for [from, to] in missing {
+            let across = |pair: &[[f64; 2]]| pair[0][0] <= *from && pair[1][0] >= *to;
+            for (points, heights) in
+                [(&mut curve.points, Some(&mut curve.half_heights)), (&mut curve.reference, None)]
+            {
+                let Some(before) = points.windows(2).position(across) else { continue };
+                points.insert(before + 1, [f64::NAN; 2]);
+                if let Some(heights) = heights.filter(|heights| heights.len() > before) {
+                    heights.insert(before + 1, f64::NAN);
+                }
+            }
+        }
+        curve
+    }
+}
+
 /// The band about a curve, broken where it has no height.
 pub(super) fn draw_band(curve: &FigureCurve, colour: usize, frame: &Frame, out: &mut String) {
     let pairs: Vec<_> = curve.points.iter().zip(&curve.half_heights).collect();

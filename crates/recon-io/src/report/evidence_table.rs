@@ -22,7 +22,11 @@ fn row(of: &Evidence) -> String {
         EvidenceValue::Count(n) => ("number", n.to_string()),
         EvidenceValue::Text(text) => ("words", escape_text(&with_brief_numbers(text))),
     };
-    let (name, unit, meaning) = (escape_text(&of.name), escape_text(&of.unit), escape_text(&of.meaning));
+    let (name, unit, meaning) = (
+        escape_text(&of.name),
+        escape_text(&of.unit.replace("^2", "²").replace("^3", "³")),
+        escape_text(&of.meaning),
+    );
     format!(
         "<tr><td><span class=\"mark {}\">{mark}</span>{name}</td><td class=\"{class}\">{value} {unit}</td><td class=\"meaning\">{meaning}</td></tr>\n",
         level(of.level)

@@ -23,7 +23,7 @@ pub enum SceneErrorKind {
     #[error("cannot be read: {0}")]
     Read(#[from] std::io::Error),
     /// Not TOML, or a key that is unknown, missing or of the wrong type; the message shows the place.
-    #[error("is not a scene\n{0}")]
+    #[error("is not a scene\n{}", in_words(.0))]
     Toml(#[from] toml::de::Error),
     /// A number outside of what the quantity can be.
     #[error("`{key}` is {value}; it must be {must}")]
@@ -187,4 +187,20 @@ impl SceneErrorKind {
     pub(super) fn finite(key: &str, value: f64) -> Result<f64, Self> {
         Self::check(key, value, "finite", f64::is_finite)
     }
+}
+
+/// What is wrong with a file in TOML, with the place, and types by names that no Rust is needed for.
+pub(crate) fn in_words(error: &toml::de::Error) -> String {
+    const NAMES: [(&str, &str); 6] = [
+        ("f64", "a number"),
+        ("u64", "a whole number"),
+        ("u32", "a whole number"),
+        ("usize", "a whole number"),
+        ("a boolean", "true or false"),
+        ("struct ", ""),
+    ];
+    let of = |text: String, (name, word): (&str, &str)| {
+        text.replace(&format!("expected {name}"), &format!("expected {word}"))
+    };
+    NAMES.into_iter().fold(error.to_string(), of)
 }

@@ -11,6 +11,8 @@ mod shape;
 #[cfg(test)]
 mod tests;
 
+#[cfg(feature = "mcap")]
+pub(crate) use error::in_words;
 pub use error::{SceneError, SceneErrorKind};
 pub use palms::{BoxedShape, KnownPalm};
 pub use planar::{PlanarBody, PlanarKnown, PlanarScene};

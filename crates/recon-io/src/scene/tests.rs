@@ -71,6 +71,8 @@ fn unknown_keys_and_wrong_types_are_shown_in_place() {
     let kind = with("gravity = 9.81", "gravity = \"9.81\"").unwrap_err().to_string();
     assert!(kind.contains("line 2"), "{kind}");
     assert!(matches!(with("\"ellipsoid\"", "\"cube\""), Err(Kind::Toml(_))));
+    let typed = with("mass = 1.0", "mass = \"heavy\"").unwrap_err().to_string();
+    assert!(typed.contains("mass = \"heavy\"") && typed.contains("expected a number"), "{typed}");
 }
 
 #[test]

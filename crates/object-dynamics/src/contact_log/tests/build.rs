@@ -252,6 +252,27 @@ fn readings_that_cannot_be_are_named_with_palm_sample_and_value() {
     ));
 }
 
+/// What a palm does while nothing is recorded its velocities before and after do not say; what it does at the samples they do.
+#[test]
+fn a_way_within_a_gap_does_not_contradict_velocities() {
+    let usual = times(400);
+    let made = |pause: f64, factor: f64| {
+        let after = |k: usize| if k < 200 { 0.0 } else { 1.0 };
+        let times: Vec<f64> = usual.iter().enumerate().map(|(k, t)| t + pause * after(k)).collect();
+        let [_, mut record] = moving(&usual);
+        if let RecordedMotion::Measured(states) = &mut record.motion {
+            for (k, state) in states.iter_mut().enumerate() {
+                state.pose.p_WP += after(k) * 2.0 * DVec3::X;
+                state.v_WP *= factor;
+            }
+        }
+        ContactLog::new(times, vec![record], None)
+    };
+    assert!(made(0.5, 1.0).is_ok(), "{}", made(0.5, 1.0).unwrap_err());
+    let unit = made(0.5, 100.0).unwrap_err();
+    assert!(matches!(unit, ContactLogError::TwistAgainstPoses { palm: 1, .. }), "{unit}");
+}
+
 #[test]
 fn twists_that_contradict_the_poses_are_named() {
     let times = times(400);

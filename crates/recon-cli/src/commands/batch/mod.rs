@@ -26,6 +26,10 @@ pub(super) const PAGE: &str = "index.html";
 
 pub(crate) fn run(args: &BatchArgs, console: &Console) -> Result<Outcome, CliError> {
     let logs = logs_in(&args.folder)?;
+    // Before hours of work that could not be kept, and for the table of logs of which each is skipped.
+    std::fs::create_dir_all(&args.output).map_err(|source| {
+        CliError::from(OutputError::Io { action: "create", path: args.output.clone(), source })
+    })?;
     let all = args.jobs.unwrap_or_else(|| thread::available_parallelism().map_or(1, |count| count.get()));
     let rows: Vec<Mutex<Option<Row>>> = logs.iter().map(|_| Mutex::new(None)).collect();
     let (next, finished) = (AtomicUsize::new(0), AtomicUsize::new(0));

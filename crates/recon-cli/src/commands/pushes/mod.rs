@@ -3,6 +3,7 @@
 mod tables;
 mod words;
 
+use super::answers::written_to;
 use crate::cli::PushesArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
@@ -61,7 +62,7 @@ pub(crate) fn run(args: &PushesArgs, console: &Console) -> Result<Outcome, CliEr
     write_files_folder(target, &files, &figures)?;
     drop(progress);
     let mut text: String = told.iter().map(|told| words::described(told, only)).collect();
-    text += &format!("  written to             {}\n", args.output.display());
+    text += &written_to(Some(&args.output));
     console.result(&text, &figures)?;
     let sure = shown.iter().all(|log| log.verdict.level == Level::Good);
     Ok(if sure { Outcome::Done } else { Outcome::WithReservations })

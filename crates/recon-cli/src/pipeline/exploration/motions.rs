@@ -247,7 +247,7 @@ fn pictures(known: &PlanarKnowledge, step: Option<&Told>) -> Vec<FigurePanel> {
     let shown = known.contacts().iter().step_by(every);
     let contacts = shown.map(|c| (c.point.to_array(), c.normal.get().to_array())).collect();
     let outlines = [flat(lower(known)), flat(upper(known))];
-    let mut panel = outline_panel("Contacts and palms", ["x", "y"], outlines, contacts, None);
+    let mut panel = outline_panel("Contacts", ["x", "y"], outlines, contacts, None);
     let (low, high) = lower(known)
         .iter()
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
@@ -258,6 +258,7 @@ fn pictures(known: &PlanarKnowledge, step: Option<&Told>) -> Vec<FigurePanel> {
             [(point - along).to_array(), (point + along).to_array(), [f64::NAN; 2]]
         };
         let points = felt.iter().flat_map(|c| line((c.point, &c.normal))).collect();
+        panel.title += " and palms";
         panel.curves.push(FigureCurve { name: "palms".to_owned(), points, ..FigureCurve::default() });
     }
     vec![panel]

@@ -5,7 +5,7 @@ use super::plane::InPlane;
 use super::settings::{Settings, goal_of, words_of};
 use super::side::Side;
 use super::state::{State, state_file};
-use super::story::{Explored, proof, proven};
+use super::story::{Explored, proof, proven, sentence};
 use crate::cli::{PlannerAs, Until};
 use crate::error::{CliError, Outcome as Exit};
 use crate::pipeline::folder::Extra;
@@ -67,10 +67,11 @@ pub(crate) fn rolled(
         watch(&format!("{} {} of {}", goal.kind(), brief_to(3, step.progress), goal.value()));
     })?;
     let (level, certificate) = (ended.is_reached(), ended.certificate());
-    let statement = match &ended {
-        RollOutcome::Reached(_) => proven(certificate, "contacts"),
-        RollOutcome::Short { end, .. } => format!("{}: {}", proven(certificate, "contacts"), why_short(end)),
+    let why = match &ended {
+        RollOutcome::Reached(_) => None,
+        RollOutcome::Short { end, .. } => Some(why_short(end)),
     };
+    let statement = sentence(&proven(certificate, "contacts"), why.as_deref());
     let mut files = vec![InPlane::contacts_file(&known)?];
     if let Some((track, motion)) = state {
         let middle =
@@ -124,7 +125,7 @@ pub(super) fn written(
         figures["not_found"] = json!(named);
     }
     let text = format!(
-        "{title}\n  {statement}\n  motions                {}\n  palms turned           {} rad, {} s\n",
+        "{statement}\n  motions                {}\n  palms turned           {} rad, {} s\n",
         motions.count(),
         brief_to(3, motions.radians),
         brief_to(3, motions.seconds)

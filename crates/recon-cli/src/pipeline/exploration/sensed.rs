@@ -6,7 +6,7 @@ use super::rolling::{Ended, RADIANS, planner, why_short, written};
 use super::settings::{Settings, goal_of};
 use super::side::Side;
 use super::state::{State, state_file};
-use super::story::{Explored, proven};
+use super::story::{Explored, proven, sentence};
 use crate::cli::Until;
 use crate::error::CliError;
 use recon::exploration::planar::PlanarKnowledge;
@@ -40,15 +40,14 @@ pub(crate) fn sensed(
     let known = ended.look.as_ref().map_or(&nothing, |look| &look.proven);
     let none = || Certificate::of(&nothing, goal, Some(Spending::Budget(settings.budget + 1)));
     let certificate = ended.certificate.unwrap_or_else(none);
-    let told = proven(&certificate, "contacts");
-    let statement = match &ended.short {
-        None => told,
-        Some(SensedEnd::Rolling(end)) => format!("{told}: {}", why_short(end)),
-        Some(SensedEnd::Stopped(why)) => format!("{told}: the palms cannot go on ({why})"),
-        Some(SensedEnd::Doubted { doubt }) => {
-            format!("{told}: the estimate of the motion is not to be relied on any more ({doubt})")
+    let why = ended.short.as_ref().map(|short| match short {
+        SensedEnd::Rolling(end) => why_short(end),
+        SensedEnd::Stopped(why) => format!("the palms cannot go on ({why})"),
+        SensedEnd::Doubted { doubt } => {
+            format!("the estimate of the motion is not to be relied on any more ({doubt})")
         }
-    };
+    });
+    let statement = sentence(&proven(&certificate, "contacts"), why.as_deref());
     let mut files = Vec::new();
     if let Some(Look { planned_on, track, .. }) = &ended.look {
         // All contacts are in the estimate; these stand for them, and are what the next motion is planned on.

@@ -70,7 +70,7 @@ pub(crate) fn explored<S: Side>(
         figures["next"] = action::<S>(next);
     }
     let text = format!(
-        "{title}\n  {statement}\n  touches                {}\n  way                    {} rad\n",
+        "{statement}\n  touches                {}\n  way                    {} rad\n",
         certificate.touches,
         brief_to(3, course.way)
     );
@@ -129,7 +129,7 @@ fn touch_figures(row: &TouchRow) -> Value {
 fn statement<S: Side>(ended: &Outcome<HeadingOf<S>>) -> (String, Exit) {
     let told = proven(ended.certificate(), "touches");
     match ended {
-        Outcome::Reached(_) => (told, Exit::Done),
+        Outcome::Reached(_) => (sentence(&told, None), Exit::Done),
         Outcome::Short { shortfall, .. } => {
             let why = match shortfall {
                 Shortfall::Budget => "all touches that were allowed for are made".to_owned(),
@@ -138,9 +138,14 @@ fn statement<S: Side>(ended: &Outcome<HeadingOf<S>>) -> (String, Exit) {
                     format!("{} directions that would narrow the bounds are out of reach", directions.len())
                 }
             };
-            (format!("{told}: {why}"), Exit::WithReservations)
+            (sentence(&told, Some(&why)), Exit::WithReservations)
         }
     }
+}
+
+/// The verdict: what is proven, and why no more is.
+pub(super) fn sentence(told: &str, why: Option<&str>) -> String {
+    why.map_or_else(|| format!("{told}."), |why| format!("{told}: {why}."))
 }
 
 /// What a certificate says, made of so many `touches`.
@@ -151,9 +156,9 @@ pub(super) fn proven<H: Heading>(certificate: &Certificate<H>, made_of: &str) ->
         None => " for exact contacts".to_owned(),
     };
     let what = match goal {
-        Goal::Gap(_) => "the gap between the bounds",
-        Goal::Hausdorff(_) => "the largest distance of the bounds in m",
-        Goal::Width { .. } => "the difference of the bounds' widths in m",
+        Goal::Gap(_) => "The gap between the bounds",
+        Goal::Hausdorff(_) => "The largest distance of the bounds in m",
+        Goal::Width { .. } => "The difference of the bounds' widths in m",
     };
     let value = if proven.is_finite() {
         format!("at most {}", brief_to(4, *proven))

@@ -19,7 +19,7 @@ pub enum MappingErrorKind {
     #[error("cannot be read: {0}")]
     Read(#[from] std::io::Error),
     /// Not TOML, or a key that is unknown, missing or of the wrong type; the message shows the place.
-    #[error("is not a mapping of topics\n{0}")]
+    #[error("is not a mapping of topics\n{}", crate::scene::in_words(.0))]
     Toml(#[from] toml::de::Error),
     /// A number outside of what the quantity can be.
     #[error("`{key}` is {value}; it must be {must}")]
@@ -36,6 +36,16 @@ pub enum MappingErrorKind {
         "has no [[palm]]; give one for each, in the order of the scene. `recon inspect` drafts a mapping"
     )]
     NoPalms,
+    /// What two palms cannot share.
+    #[error("`palm[{}].{key}` and `palm[{}].{key}` are both `{name}`; each palm has its own", palms[0], palms[1])]
+    Shared {
+        /// `frame`, `wrench` or `contact`.
+        key: &'static str,
+        /// The palms, from 1.
+        palms: [usize; 2],
+        /// What both are.
+        name: String,
+    },
     /// Nothing tells where a palm is touched.
     #[error(
         "`palm[{palm}]` has none of `contact`, `taxels` and `wrench`; one of them tells where it is touched"

@@ -269,12 +269,35 @@ impl BagMapping {
         for (i, palm) in mapping.palms.iter().enumerate() {
             palm.check(i + 1)?;
         }
+        mapping.check_shared()?;
         for (i, clock) in mapping.clocks.iter().enumerate() {
             let key = format!("clock[{}].ahead", i + 1);
             // Beyond that it is no offset of a clock but another epoch, for which there is `time`.
             check(&key, clock.ahead, "within 1000 s of zero", |v| v.abs() <= 1000.0)?;
         }
         Ok(mapping)
+    }
+}
+
+impl BagMapping {
+    /// Each palm has its own frame, and sensors of its own.
+    fn check_shared(&self) -> Result<(), Kind> {
+        type Of = fn(&PalmTopics) -> Option<&String>;
+        let own: [(&'static str, Of); 3] = [
+            ("frame", |palm| palm.frame.as_ref()),
+            ("wrench", |palm| palm.wrench.as_ref()),
+            ("contact", |palm| palm.contact.as_ref()),
+        ];
+        for (j, palm) in self.palms.iter().enumerate() {
+            for (key, of) in own {
+                let first =
+                    self.palms[..j].iter().position(|other| of(palm).is_some() && of(other) == of(palm));
+                if let (Some(first), Some(name)) = (first, of(palm)) {
+                    return Err(Kind::Shared { key, palms: [first + 1, j + 1], name: name.clone() });
+                }
+            }
+        }
+        Ok(())
     }
 }
 

@@ -65,6 +65,13 @@ impl<'a> Source<'a> {
         setup: &PalmSetup,
     ) -> Result<PalmStreams<'a>, Kind> {
         let reader = PalmReader { source: self, number, palm, surface: setup.surface };
+        // A topic that is not there is named before a frame, which then is most likely not there either.
+        let taxels = palm.taxels.as_ref().filter(|_| palm.contact.is_none()).map(|taxels| &taxels.topic);
+        for (key, topic) in
+            [("wrench", palm.wrench.as_ref()), ("contact", palm.contact.as_ref()), ("taxels.topic", taxels)]
+        {
+            topic.map(|topic| self.heard(topic, &reader.key(key))).transpose()?;
+        }
         let pose = reader.pose(setup)?;
         let wrench = palm.wrench.as_ref().map(|topic| reader.wrenches(topic)).transpose()?;
         let (mut contact_force, mut normal_force) = (None, None);
@@ -93,6 +100,16 @@ impl<'a> Source<'a> {
         Ok(PalmStreams { number, pose, wrench, normal_force, touches, pressed, motor })
     }
 
+    /// A topic that has messages, and what they are; `asked` is the key that names it.
+    fn heard(self, topic: &str, asked: &str) -> Result<(&'a Topic, MessageKind), Kind> {
+        let found = self.topic(topic, asked)?;
+        let kind = found.kind.clone().map_err(|why| Kind::Unread { topic: topic.to_owned(), why })?;
+        if found.messages.is_empty() {
+            return Err(Kind::Silent { topic: topic.to_owned(), asked: asked.to_owned() });
+        }
+        Ok((found, kind))
+    }
+
     /// The messages of a topic at increasing times; `asked` is the key that names it.
     pub(super) fn messages(
         self,
@@ -100,8 +117,7 @@ impl<'a> Source<'a> {
         asked: &str,
         kinds: &[MessageKind],
     ) -> Result<(&'a Topic, Timed<'a>), Kind> {
-        let found = self.topic(topic, asked)?;
-        let kind = found.kind.clone().map_err(|why| Kind::Unread { topic: topic.to_owned(), why })?;
+        let (found, kind) = self.heard(topic, asked)?;
         if !kinds.contains(&kind) {
             return Err(Kind::OtherKind {
                 topic: topic.to_owned(),
@@ -109,9 +125,6 @@ impl<'a> Source<'a> {
                 found: kind.name().to_owned(),
                 needed: kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(" or "),
             });
-        }
-        if found.messages.is_empty() {
-            return Err(Kind::Silent { topic: topic.to_owned(), asked: asked.to_owned() });
         }
         let mut all: Vec<(f64, &Message)> =
             found.messages.iter().map(|message| (self.clock.seconds(topic, message), message)).collect();

@@ -71,10 +71,21 @@ impl<'a> PalmReader<'a> {
     }
 
     fn unknown(&self, asked: String, frame: &str, to: &str, key: &str) -> Kind {
-        let joined = |name: &&str| self.source.frames.way(name, to).is_some();
-        let known: Vec<&str> = self.source.frames.names().into_iter().filter(joined).collect();
+        let transforms = |topic: &&Topic| topic.schema == MessageKind::Transforms.name();
+        let mut topics = self.source.bag.topics.values().filter(transforms);
+        if let Some((topic, why)) =
+            topics.find_map(|topic| Some((topic.name.clone(), topic.kind.clone().err()?)))
+        {
+            return Kind::Unread { topic, why };
+        }
+        let all = self.source.frames.names();
+        // Where nothing stands in the world of the mapping, that is what has another name.
+        let no_world = !all.is_empty() && !all.contains(&plain(to)) && to == self.source.mapping.world;
+        let joined = |name: &&str| no_world || self.source.frames.way(name, to).is_some();
+        let known: Vec<&str> = all.iter().copied().filter(joined).collect();
         let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-        let (frame, to, key) = (frame.to_owned(), to.to_owned(), self.key(key));
+        let key = if no_world { "world".to_owned() } else { self.key(key) };
+        let (frame, to) = (frame.to_owned(), to.to_owned());
         Kind::UnknownFrame { asked, frame, to, known, key }
     }
 

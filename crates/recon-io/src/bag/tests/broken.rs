@@ -1,5 +1,8 @@
 use super::{bag, expected, path, topic};
-use crate::bag::{BagErrorKind, Unread, is_bag, parse_bag};
+use crate::bag::{
+    BagErrorKind, BagMapping, MappingErrorKind, Unread, draft_mapping, is_bag, log_of_bag, palms_of,
+    parse_bag,
+};
 use proptest::prelude::*;
 use serde_json::json;
 
@@ -47,6 +50,37 @@ fn what_is_no_bag_is_told() {
     assert!(matches!(error, BagErrorKind::NoBag { .. }), "{error}");
     assert!(matches!(parse_bag(&b""[..]), Err(BagErrorKind::NoBag { .. })));
     assert!(is_bag(path("fig5.mcap")) && !is_bag(path("mcap.json")) && !is_bag(path("")));
+}
+
+/// Why a bag gives no log by a mapping.
+fn refused(bag: &crate::bag::Bag, mapping: &BagMapping) -> BagErrorKind {
+    log_of_bag(bag, mapping, &palms_of(mapping, None).unwrap()).unwrap_err()
+}
+
+#[test]
+fn what_a_mapping_names_wrongly_is_told_by_what_is_wrong() {
+    let mut whole = bag("whole_short.mcap");
+    let good = draft_mapping(&whole, "a.mcap").unwrap();
+    // A world of another name: no frame of a palm is wrong.
+    let other = BagMapping { world: "map".to_owned(), ..good.mapping.clone() };
+    let error = refused(&whole, &other);
+    let BagErrorKind::UnknownFrame { key, known, .. } = &error else { panic!("{error}") };
+    assert!(key == "world" && known.contains("palm_1") && known.contains("world"), "{error}");
+    // Transforms that cannot be read are what is wrong, not the frames that they would have told.
+    let why = Unread::MessageEncoding { found: "xml".to_owned() };
+    let transforms = whole.topics.get_mut("/tf_static").unwrap();
+    transforms.messages.clear();
+    transforms.kind = Err(why.clone());
+    let error = refused(&whole, &good.mapping);
+    assert!(matches!(&error, BagErrorKind::Unread { topic, .. } if topic == "/tf_static"), "{error}");
+    // Without any topic it is topics that lack.
+    whole.topics.clear();
+    let error = refused(&whole, &good.mapping);
+    assert!(matches!(&error, BagErrorKind::NoTopic { asked, .. } if asked == "palm[1].wrench"), "{error}");
+    // Two palms with one sensor.
+    let twice = good.text.replace("/palm_2/wrench", "/palm_1/wrench");
+    let error = BagMapping::parse(&twice).unwrap_err();
+    assert!(matches!(error, MappingErrorKind::Shared { key: "wrench", palms: [1, 2], .. }), "{error}");
 }
 
 /// One flipped bit in a packed chunk is seen by its checksum, and the place is named.

@@ -13,10 +13,10 @@ const LEGEND: &str = "<span><svg><rect class=\"m0\"/></svg>off</span>
 <span><svg><rect class=\"m2\"/></svg>sticks (rolls)</span>
 <span><svg><rect class=\"flight\"/></svg>touches nothing</span>
 ";
+const MISSING: &str = "<span><svg><rect class=\"missing\"/></svg>no samples</span>\n";
 const DOUBTFUL: &str = "<span><svg><rect class=\"doubtful\"/></svg>not relied on</span>\n";
 
-const WIDTH: f64 = 920.0;
-const LEFT: f64 = 64.0;
+/// Height of a palm's row and of the band in it, px. Along the time the picture is as wide as the page lets it, with text of one size.
 const ROW: f64 = 26.0;
 const BAND: f64 = 18.0;
 
@@ -25,65 +25,67 @@ pub(super) fn modes_section(
     all: &[Vec<ModeSpan>],
     marks: &[f64],
     doubtful: Option<&[[f64; 2]]>,
+    gaps: &[[f64; 2]],
     caption: &str,
 ) -> String {
-    let drawn = bands(all, marks, doubtful.unwrap_or_default());
+    let drawn = bands(all, marks, doubtful.unwrap_or_default(), gaps);
+    let missing = if gaps.is_empty() { "" } else { MISSING };
     let doubt = if doubtful.is_some() { DOUBTFUL } else { "" };
-    let shown =
-        format!("<div class=\"panel\">\n{drawn}<div class=\"modes\">\n{LEGEND}{doubt}</div>\n</div>\n");
+    let shown = format!(
+        "<div class=\"panel\">\n{drawn}<div class=\"modes\">\n{LEGEND}{missing}{doubt}</div>\n</div>\n"
+    );
     section("Contact modes", &shown, caption)
 }
 
 /// Bands of the spans of each palm over the time, as opaque as they are probable, as one SVG element; marks at the times of the pictures, and a shade over stretches
 /// of time that are not relied on.
-fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]]) -> String {
+fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]], gaps: &[[f64; 2]]) -> String {
     let (start, end) = (all.first().and_then(|s| s.first()), all.first().and_then(|s| s.last()));
     let (start, end) = start.zip(end).map_or((0.0, 1.0), |(first, last)| (first.start, last.end));
-    let place = |t: f64| on_scale(LEFT + (WIDTH - LEFT - 8.0) * (t - start) / (end - start), 100.0, 4);
+    let place = |t: f64| on_scale(100.0 * (t - start) / (end - start), 100.0, 5);
     let bottom = ROW * all.len() as f64 + 4.0;
-    let mut out = format!("<svg class=\"bands\" viewBox=\"0 0 {WIDTH} {}\" role=\"img\">\n", bottom + 20.0);
+    let mut out = format!("<svg class=\"bands\" height=\"{}\" role=\"img\">\n", bottom + 20.0);
+    let bar = |look: &str, [from, to]: [f64; 2], y: f64, height: f64| {
+        let (x, width) = (place(from), place(to) - place(from));
+        format!("<rect {look} x=\"{x}%\" y=\"{y}\" width=\"{width:.3}%\" height=\"{height}\"/>\n")
+    };
     for flight in flights(all) {
-        let (x, width) = (place(flight[0]), place(flight[1]) - place(flight[0]));
-        let _ = writeln!(
-            out,
-            "<rect class=\"flight\" x=\"{x}\" y=\"0\" width=\"{width:.2}\" height=\"{bottom}\"/>"
-        );
+        out += &bar("class=\"flight\"", flight, 0.0, bottom);
     }
     for (i, spans) in all.iter().enumerate() {
         let y = ROW * i as f64 + 4.0;
-        let _ = writeln!(out, "<text class=\"name p{0}\" x=\"0\" y=\"{1}\">palm {0}</text>", i + 1, y + 13.0);
+        let _ = writeln!(
+            out,
+            "<text class=\"name p{0}\" x=\"-8\" y=\"{1}\" text-anchor=\"end\">palm {0}</text>",
+            i + 1,
+            y + 13.0
+        );
         for span in spans.iter().filter(|span| span.mode != ContactMode::Off) {
-            let (x, width) = (place(span.start), place(span.end) - place(span.start));
             let mode = span.mode.number();
             // What is known for sure needs no word: it is opaque.
-            let pale = match span.sure {
-                10.. => String::new(),
-                tenths => format!(" fill-opacity=\".{tenths}\""),
+            let look = match span.sure {
+                10.. => format!("class=\"m{mode}\""),
+                tenths => format!("class=\"m{mode}\" fill-opacity=\".{tenths}\""),
             };
-            let _ = writeln!(
-                out,
-                "<rect class=\"m{mode}\"{pale} x=\"{x}\" y=\"{y}\" width=\"{width:.2}\" height=\"{BAND}\"/>"
-            );
+            out += &bar(&look, [span.start, span.end], y, BAND);
         }
-        let (x, width) = (place(start), place(end) - place(start));
-        let _ = writeln!(
-            out,
-            "<rect class=\"frame\" x=\"{x}\" y=\"{y}\" width=\"{width:.2}\" height=\"{BAND}\"/>"
-        );
+        out += &bar("class=\"frame\"", [start, end], y, BAND);
     }
-    for [from, to] in doubtful {
-        let (x, width) = (place(*from), place(*to) - place(*from));
-        let _ = writeln!(
-            out,
-            "<rect class=\"doubtful\" x=\"{x}\" y=\"0\" width=\"{width:.2}\" height=\"{bottom}\"/>"
-        );
+    for gap in gaps {
+        out += &bar("class=\"missing\"", *gap, 0.0, bottom);
+    }
+    for span in doubtful {
+        out += &bar("class=\"doubtful\"", *span, 0.0, bottom);
     }
     for t in marks {
-        let _ = writeln!(out, "<path class=\"mark\" d=\"M{} 0 V{bottom}\"/>", place(*t));
+        let x = place(*t);
+        let _ = writeln!(out, "<line class=\"mark\" x1=\"{x}%\" x2=\"{x}%\" y2=\"{bottom}\"/>");
     }
-    for t in ticks(start, end) {
+    for (k, t) in ticks(start, end).into_iter().enumerate() {
+        // Every other one has no room on a narrow screen.
+        let class = if k % 2 == 1 { " class=\"between\"" } else { "" };
         let (x, y) = (place(t), bottom + 15.0);
-        let _ = writeln!(out, "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\">{t}</text>");
+        let _ = writeln!(out, "<text{class} x=\"{x}%\" y=\"{y}\" text-anchor=\"middle\">{t}</text>");
     }
     out + "</svg>\n"
 }
@@ -134,5 +136,15 @@ mod tests {
         let two = vec![span(0.0, 0.5, stick), span(0.5, 3.0, off), span(3.0, 4.0, stick)];
         assert_eq!(flights(&[one.clone(), two]), [[0.5, 1.0], [2.0, 3.0]]);
         assert!(flights(&[one, vec![span(0.0, 4.0, stick)]]).is_empty());
+    }
+
+    #[test]
+    fn gaps_are_marked_and_named() {
+        let spans = vec![vec![ModeSpan { start: 0.0, end: 2.0, mode: ContactMode::Stick, sure: 10 }]];
+        let drawn = |gaps: &[[f64; 2]]| modes_section(&spans, &[], None, gaps, "");
+        assert!(!drawn(&[]).contains("missing") && !drawn(&[]).contains("no samples"));
+        let with = drawn(&[[0.5, 1.0]]);
+        assert!(with.contains("class=\"missing\" x=\"25%\" y=\"0\" width=\"25.000%\""), "{with}");
+        assert!(with.contains("</svg>no samples</span>"));
     }
 }

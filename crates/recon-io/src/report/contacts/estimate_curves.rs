@@ -4,7 +4,7 @@ use super::super::page::Fact;
 use super::super::thin::thin;
 use super::super::{Departure, MotionState, PalmContact};
 use super::estimate::EstimateData;
-use super::estimate_page::doubtful_spans;
+use super::estimate_page::{doubtful_spans, sample_gaps};
 use crate::number::brief_to;
 use crate::planar_figures::{FigureCurve, FigurePanel};
 use glam::DVec3;
@@ -44,6 +44,7 @@ impl EstimateData {
             axes: ["t in s".to_owned(), unit.to_owned()],
             curves,
             shaded: doubtful_spans(self.log.times(), &self.estimate.relied_on),
+            missing: sample_gaps(self.log.times()),
             ..FigurePanel::default()
         };
         let motion = [
@@ -151,16 +152,22 @@ impl EstimateData {
     }
 }
 
+/// Powers of ten below its largest distance that a curve goes down: what is less is zero but for rounding, as is the turn of the first sample, from which
+/// turns are counted.
+const DOWN: f64 = 6.0;
+
 /// Distances from the truth as powers of ten.
 fn distances(times: &[f64], departures: &[(usize, Departure)]) -> Vec<FigureCurve> {
     type Of = fn(&Departure) -> f64;
-    let curve = |(name, of): (&str, Of)| FigureCurve {
-        name: name.to_owned(),
-        points: thin(departures.len())
-            .into_iter()
-            .map(|i| [times[departures[i].0], of(&departures[i].1).log10()])
-            .collect(),
-        ..FigureCurve::default()
+    let curve = |(name, of): (&str, Of)| {
+        let least = departures.iter().map(|(_, d)| of(d)).fold(0.0, f64::max).log10() - DOWN;
+        let power = |of: f64| Some(of.log10()).filter(|power| *power >= least).unwrap_or(f64::NAN);
+        let point = |i: usize| [times[departures[i].0], power(of(&departures[i].1))];
+        FigureCurve {
+            name: name.to_owned(),
+            points: thin(departures.len()).into_iter().map(point).collect(),
+            ..FigureCurve::default()
+        }
     };
     let all: [(&str, Of); 3] =
         [("m", |d| d.position), ("rad", |d| d.angle), ("rad/s", |d| d.angular_velocity)];

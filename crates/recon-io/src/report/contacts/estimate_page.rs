@@ -8,6 +8,7 @@ use super::picture::Pictures;
 use super::spans::{ModeSpan, estimated_mode_spans};
 use crate::number::brief_to;
 use crate::planar_figures::FigurePanel;
+use recon::object_dynamics::Rhythm;
 use std::io::{self, Write};
 
 const OBJECT: &str = "The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, where they are seen, in the colours of the palms.";
@@ -23,7 +24,6 @@ const DASHED: &str = " Dashed: the true motion, from the log.";
 const MODES: &str = "Modes from the ratio of friction to normal force and, in space, from the slip: the paler, the less sure. Time in s. \
     Dashed lines: the instants of the small pictures.";
 const LEFT_OUT: &str = "What was modelled, what was left out, what that costs";
-const SHAPE: &str = "The object lies between the lower and the upper bound; the arrow shows where they are farthest apart: a touch there tells most.";
 
 /// What the page of an estimate is made of, in space and in the plane alike.
 pub(super) struct EstimatePage<'a> {
@@ -105,16 +105,17 @@ impl EstimatePage<'_> {
     }
 
     pub(super) fn write(&self, to: impl Write) -> io::Result<()> {
-        let doubtful = doubtful_spans(self.times, self.relied_on);
+        let [doubtful, gaps] = [doubtful_spans(self.times, self.relied_on), sample_gaps(self.times)];
+        let no_samples = if gaps.is_empty() { "" } else { " Grey, where lines are broken: no samples." };
         let dashed = if self.has_truth { DASHED } else { "" };
         let body = self.pictures.section(&self.caption)
             + &curves_section(
                 "Motion over time",
                 self.panels,
-                &format!("{BANDS}{dashed} Shaded: not relied on."),
+                &format!("{BANDS}{dashed} Shaded: not relied on.{no_samples}"),
             )
-            + &modes_section(&self.spans, &self.pictures.times(), Some(&doubtful), MODES)
-            + &curves_section("Bounds on the shape", self.shape, SHAPE)
+            + &modes_section(&self.spans, &self.pictures.times(), Some(&doubtful), &gaps, MODES)
+            + &curves_section("Bounds on the shape", self.shape, &of_shape(self.shape))
             + &evidence_section(LEFT_OUT, &rows(self.least_model))
             + &evidence_section("Mass, inertia, and what the result rests on", &rows(self.evidence));
         let verdict = notices(self.verdict, ["Reliable", "With care", "Unreliable"], self.warnings)
@@ -122,6 +123,37 @@ impl EstimatePage<'_> {
             + &next(self.next);
         Page { kicker: KICKER, title: self.title, verdict, facts: &self.facts, body }.write(to)
     }
+}
+
+/// What is said of the views of the bounds: of what is drawn alone.
+fn of_shape(views: &[FigurePanel]) -> String {
+    let drawn =
+        |name: &str| views.iter().flat_map(|view| &view.curves).any(|curve| curve.name.starts_with(name));
+    let bounds = match (drawn("lower"), drawn("upper")) {
+        (true, true) => "The object lies between the lower and the upper bound",
+        (true, false) => "The object holds the lower bound, and goes beyond it",
+        (false, true) => "The object lies within the upper bound",
+        (false, false) => "Where the object was touched, in its own axes",
+    };
+    let next = if drawn("touch next") {
+        "; the arrow shows where they are farthest apart: a touch there tells most."
+    } else {
+        "."
+    };
+    format!("{bounds}{next}")
+}
+
+/// Gaps that are marked, at most: the longest. Of a log that has more none stands out.
+const MARKED: usize = 100;
+
+/// Stretches of time without samples, s: longer than one and a half of the usual time between two.
+#[must_use]
+pub fn sample_gaps(times: &[f64]) -> Vec<[f64; 2]> {
+    let mut gaps: Vec<[f64; 2]> = Rhythm::of(times).silences.iter().map(|gap| [gap.from, gap.to]).collect();
+    gaps.sort_by(|a, b| (b[1] - b[0]).total_cmp(&(a[1] - a[0])));
+    gaps.truncate(MARKED);
+    gaps.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    gaps
 }
 
 /// Stretches of time whose motion is not relied on, s: each sample stands for half the time to its neighbours.

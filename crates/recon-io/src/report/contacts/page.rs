@@ -54,6 +54,7 @@ fn write(title: &str, shown: &Shown, to: impl Write) -> io::Result<()> {
             &shown.spans,
             &shown.pictures.times(),
             None,
+            &[],
             "Time in s. Dashed lines: the instants of the small pictures.",
         )
         + &curves_section("Forces, slip, energy", &shown.panels(), ENERGY);

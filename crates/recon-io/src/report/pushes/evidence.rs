@@ -81,7 +81,7 @@ pub(super) fn rows(log: &PushedLog) -> String {
     ));
     let row = |(name, value, meaning): &(String, String, &str)| {
         format!(
-            "        <tr><td>{}</td><td class=\"number\">{}</td><td class=\"meaning\">{meaning}</td></tr>\n",
+            "        <tr><td>{}</td><td class=\"words\">{}</td><td class=\"meaning\">{meaning}</td></tr>\n",
             escape_text(name),
             escape_text(value)
         )

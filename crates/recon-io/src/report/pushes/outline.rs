@@ -16,6 +16,8 @@ const FORCE: f64 = 24.0;
 const LEAST_BAND: f64 = 4.0;
 /// From a corner's ellipse to its name, px.
 const LABEL: f64 = 12.0;
+/// Half of the longest name, px.
+const NAME: f64 = 132.0;
 /// Ways to a touch, as a share of the way around, beyond which the outline is inferred.
 const FELT: f64 = 0.01;
 
@@ -26,10 +28,14 @@ struct Frame {
 }
 
 impl Frame {
-    fn new(told: &PushesEstimate) -> Self {
-        let corners = told.outline.line.corners();
-        let low = corners.iter().fold(DVec2::INFINITY, |low, p| low.min(*p));
-        let high = corners.iter().fold(DVec2::NEG_INFINITY, |high, p| high.max(*p));
+    /// Holds the outline and, drawn wider by `factor`, the ellipses about its corners.
+    fn new(told: &PushesEstimate, factor: f64) -> Self {
+        let corners = told.outline.line.corners().iter().copied();
+        let ends =
+            |corner: &OutlineCorner| [-1.0, 1.0].map(|side| corner.point + side * factor * reach(corner));
+        let points: Vec<DVec2> = corners.chain(told.outline.corners.iter().flat_map(ends)).collect();
+        let low = points.iter().fold(DVec2::INFINITY, |low, p| low.min(*p));
+        let high = points.iter().fold(DVec2::NEG_INFINITY, |high, p| high.max(*p));
         let size = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
         let scale = ((WIDTH - 2.0 * ROOM) / size.x).min((HEIGHT - 2.0 * ROOM) / size.y);
         Self { middle: 0.5 * (low + high), scale }
@@ -50,16 +56,22 @@ impl Frame {
     }
 }
 
+/// From the middle of a corner's ellipse to its sides, m. Chi-squared of two degrees of freedom: 5.99 once in twenty.
+fn reach(corner: &OutlineCorner) -> DVec2 {
+    let of = |i: usize| (5.99 * corner.covariance[(i, i)].max(0.0)).sqrt();
+    DVec2::new(of(0), of(1))
+}
+
 /// The picture, and what it shows in words.
 pub(super) fn drawn(told: &PushesEstimate) -> (String, String) {
-    let frame = Frame::new(told);
     let outline = &told.outline;
+    let widest = outline.points.iter().fold(0.0, |most: f64, p| most.max(2.0 * p.deviation));
+    let factor = if widest * Frame::new(told, 1.0).scale >= LEAST_BAND { 1.0 } else { 10.0 };
+    let frame = Frame::new(told, factor);
     let mut out = format!("<svg class=\"outline\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\">\n");
     let corners = outline.line.corners();
     let around = frame.line(corners.iter().copied());
     let _ = writeln!(out, "<polygon class=\"object\" points=\"{around}\"/>");
-    let widest = outline.points.iter().fold(0.0, |most: f64, p| most.max(2.0 * p.deviation)) * frame.scale;
-    let factor = if widest >= LEAST_BAND { 1.0 } else { 10.0 };
     band(told, factor, &frame, &mut out);
     let _ = writeln!(out, "<polygon class=\"open\" points=\"{around}\"/>");
     let length = outline.line.edges().map(|(a, b)| a.distance(b)).sum::<f64>();
@@ -137,7 +149,6 @@ fn draw_push(push: &PushResult, told: &PushesEstimate, frame: &Frame, out: &mut 
 
 fn draw_corner(corner: &OutlineCorner, factor: f64, frame: &Frame, out: &mut String) {
     let eigen = corner.covariance.symmetric_eigen();
-    // Chi-squared of two degrees of freedom: 5.99 once in twenty.
     let [a, b] = [0, 1].map(|i| (5.99 * eigen.eigenvalues[i].max(0.0)).sqrt() * factor * frame.scale);
     let (along, place) = (eigen.eigenvectors.column(0), frame.place(corner.point));
     let angle = -along[1].atan2(along[0]).to_degrees();
@@ -146,10 +157,11 @@ fn draw_corner(corner: &OutlineCorner, factor: f64, frame: &Frame, out: &mut Str
         "<ellipse class=\"corner\" rx=\"{a:.1}\" ry=\"{b:.1}\" transform=\"translate({:.1} {:.1}) rotate({angle:.1})\"/>",
         place.x, place.y
     );
-    let away = (place - DVec2::new(0.5 * WIDTH, 0.5 * HEIGHT)).normalize_or_zero();
-    let (x, y) =
-        ((place.x - away.x * 30.0).clamp(84.0, WIDTH - 84.0), place.y + away.y.signum() * (LABEL + a.max(b)));
-    let y = y.clamp(14.0, HEIGHT - 6.0);
+    // Above or below its ellipse, with room for the longest name in the letters of a narrow page.
+    let side = if place.y < 0.5 * HEIGHT { -1.0 } else { 1.0 };
+    let y =
+        (place.y + side * (LABEL + factor * frame.scale * reach(corner).y)).clamp(20.0, HEIGHT - 6.0) + 4.0;
+    let x = place.x.clamp(NAME, WIDTH - NAME);
     let [px, py] = corner.point.to_array().map(|v| v * 1e3);
     let _ = writeln!(
         out,
@@ -161,7 +173,7 @@ fn draw_corner(corner: &OutlineCorner, factor: f64, frame: &Frame, out: &mut Str
 /// A bar of a round length, and the origin.
 fn draw_scale(length: f64, frame: &Frame, out: &mut String) {
     let bar = crate::planar_figures::round_step(0.04 * length);
-    let (end, y) = (WIDTH - 80.0, 24.0);
+    let (end, y) = (WIDTH - 96.0, 24.0);
     let x = end - bar * frame.scale;
     let _ =
         writeln!(out, "<path class=\"scale\" d=\"M{x:.1} {} v8 M{x:.1} {y} H{end:.1} m0 -4 v8\"/>", y - 4.0);

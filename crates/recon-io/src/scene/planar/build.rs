@@ -42,13 +42,17 @@ pub(super) fn known(file: &PlanarFile) -> Result<PlanarKnown, Kind> {
     if !file.plane {
         return Err(Kind::Missing { what: "`plane = true`", mend: "give it in a scene of the plane" });
     }
-    let common = palms_friction(file)?;
+    let (common, object) = (palms_friction(file)?, file.object.as_ref());
     let palm = |(i, table): (usize, &PalmTable)| {
         Ok((surface(i + 1, table)?, own_friction(i + 1, table)?.or(common)))
     };
     Ok(PlanarKnown {
         gravity: possible::gravity(file.gravity)?,
-        mass: file.object.as_ref().map(mass).transpose()?,
+        mass: object.map(mass).transpose()?.flatten(),
+        size: object
+            .and_then(|table| table.size)
+            .map(|size| Kind::positive("object.size", size))
+            .transpose()?,
         palms: file.palm.iter().enumerate().map(palm).collect::<Result<_, Kind>>()?,
         sensors: sensors(&file.sensors)?,
     })
@@ -63,8 +67,13 @@ fn own_friction(number: usize, table: &PalmTable) -> Result<Option<f64>, Kind> {
     table.friction.map(|f| Kind::not_negative(&key, f)).transpose()
 }
 
-fn mass(table: &ObjectTable) -> Result<PlanarMass, Kind> {
-    let mass = possible::mass(table.mass)?;
+/// Mass and moment of inertia; none where neither is stated.
+fn mass(table: &ObjectTable) -> Result<Option<PlanarMass>, Kind> {
+    let Some(mass) = table.mass.map(possible::mass).transpose()? else {
+        let alone = table.inertia.or(table.radius_of_gyration).is_some();
+        let missing = Kind::Missing { what: "`object.mass`", mend: "give it in kg, beside the inertia" };
+        return if alone { Err(missing) } else { Ok(None) };
+    };
     let inertia = match (table.inertia, table.radius_of_gyration) {
         (Some(inertia), None) => Kind::positive("object.inertia", inertia)?,
         (None, Some(radius)) => mass * Kind::positive("object.radius_of_gyration", radius)?.powi(2),
@@ -79,7 +88,7 @@ fn mass(table: &ObjectTable) -> Result<PlanarMass, Kind> {
             return Err(Kind::Ambiguous { keys });
         }
     };
-    Ok(PlanarMass::new(mass, inertia)?)
+    Ok(Some(PlanarMass::new(mass, inertia)?))
 }
 
 fn body(table: &ShapeTable) -> Result<PlanarBody, Kind> {

@@ -29,9 +29,10 @@ pub(super) struct PlanarFile {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObjectTable {
-    pub(super) mass: f64,
+    pub(super) mass: Option<f64>,
     pub(super) inertia: Option<f64>,
     pub(super) radius_of_gyration: Option<f64>,
+    pub(super) size: Option<f64>,
 }
 
 #[derive(Default, Deserialize)]

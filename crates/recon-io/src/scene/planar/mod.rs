@@ -78,6 +78,8 @@ pub struct PlanarKnown {
     pub gravity: f64,
     /// Mass and moment of inertia, where they are stated.
     pub mass: Option<PlanarMass>,
+    /// Mean radius, about, m, where it is stated.
+    pub size: Option<f64>,
     /// Shape of each palm, and its coefficient of friction where it is stated.
     pub palms: Vec<(PalmSurface, Option<f64>)>,
     /// The sensors.

@@ -110,3 +110,14 @@ fn plane_and_space_are_told_apart() {
     ));
     assert!(PlanarScene::parse("gravity = 9.81").is_err());
 }
+
+/// A log on one palm needs the size of a body of which nothing else need be known.
+#[test]
+fn a_size_may_be_stated_without_a_mass() {
+    let object =
+        |table: &str| PlanarScene::parse_known(&format!("plane = true\ngravity = 9.81\n[object]\n{table}"));
+    let known = object("size = 0.05").unwrap();
+    assert_eq!((known.size, known.mass), (Some(0.05), None));
+    assert!(object("size = 0.0").unwrap_err().to_string().contains("object.size"));
+    assert!(object("inertia = 1.0").unwrap_err().to_string().contains("object.mass"));
+}

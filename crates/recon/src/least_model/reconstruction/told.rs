@@ -13,7 +13,11 @@ impl Search<'_> {
             |model, chosen, evidence| Alternative { model, chosen, seconds: None, accuracy: None, evidence };
         let three = self.log.palms().iter().any(|palm| palm.force_axes() == Some(SensedAxes::Three));
         let normal = of.frictionless || !three;
-        let axes = if three { self.frictionless } else { Evidence::Stated };
+        let (axes, otherwise) = match three {
+            true => (self.frictionless, Evidence::Needless),
+            false => (Evidence::Stated, Evidence::Impossible),
+        };
+        let stated = self.is_stated_frictionless();
         vec![
             two(
                 Question::Space,
@@ -32,17 +36,12 @@ impl Search<'_> {
             two(
                 Question::Friction,
                 [
-                    self.tried(
-                        Model::Frictionless,
-                        of.frictionless || self.is_stated_frictionless(),
-                        self.frictionless,
-                        |s| s.frictionless,
-                    ),
-                    untold(
-                        Model::Friction,
-                        !of.frictionless && !self.is_stated_frictionless(),
-                        Evidence::Needless,
-                    ),
+                    self.tried(Model::Frictionless, of.frictionless || stated, self.frictionless, |s| {
+                        s.frictionless
+                    }),
+                    self.tried(Model::Friction, !of.frictionless && !stated, Evidence::Needless, |s| {
+                        !s.frictionless && !stated
+                    }),
                 ],
             ),
             two(
@@ -61,7 +60,7 @@ impl Search<'_> {
                 Question::Axes,
                 [
                     untold(Model::NormalForce, normal, axes),
-                    untold(Model::ThreeAxes, !normal, Evidence::Needless),
+                    self.tried(Model::ThreeAxes, !normal, otherwise, |s| three && !s.frictionless),
                 ],
             ),
             Decision {
