@@ -104,6 +104,18 @@ fn hollows_narrower_than_the_finger_are_named() {
 }
 
 /// Whether the finger gets in or not, the hull of the body is between the bounds, and these are close.
+/// What a path of the centre is longer by than its chord is all the room that the upper bound has: of fingers of seven sizes of the body a step is one chord.
+#[test]
+fn bounds_of_a_large_finger_do_not_cross() {
+    let body = Waved { size: 1.0, depth: 0.138_491_967_082_857_38, waves: 3 };
+    let found = traced(body, 7.219_590_742_937_798, 0.02);
+    let bounds = HullBounds::of(&found).unwrap();
+    for u in Direction::spread(24) {
+        let (low, high) = bounds.support(u);
+        assert!(low <= high && high - low < 1e-4, "{low} {high}");
+    }
+}
+
 #[test]
 fn bounds_of_the_hull_are_sound() {
     for body in bodies() {
