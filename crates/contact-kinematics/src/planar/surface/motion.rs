@@ -68,6 +68,17 @@ impl SurfaceMotion {
         self.parts.iter().fold(self.pose.at_rest(), |state, part| part.moved(&state, t))
     }
 
+    /// How fast the palm's direction and its own motion change about the time `t` at most, rad/s: over a time that is short against the
+    /// inverse, and has no joint, every distance to the palm is nearly a polynomial of low degree.
+    #[must_use]
+    pub fn quickness(&self, t: f64) -> f64 {
+        let of_part = |part: &MotionPart| match part {
+            MotionPart::Shift { law, .. } => law.quickness(t),
+            MotionPart::Turn { law, .. } => law.quickness(t) + law.fastest(t),
+        };
+        self.parts.iter().map(of_part).sum()
+    }
+
     /// Times at which the motion is less smooth than elsewhere, ascending: an integrator of high order stops there.
     #[must_use]
     pub fn joints(&self) -> Vec<f64> {

@@ -16,6 +16,9 @@ use contact_kinematics::planar::RadiusFunction;
 const ABSOLUTE_SHARE: f64 = 1e-2;
 /// Share of its size by which the body, or a palm at its place, may move in one step, so that no contact is passed by.
 const STEP_SHARE: f64 = 0.25;
+/// Angle by which body and a palm together may turn and swing in one step while a gap may close, rad: between eight looks at it the gap is then a
+/// polynomial of low degree.
+const TURN: f64 = 0.5;
 /// Changes of modes within one natural time after which they are taken to have no end. A body that rattles to rest in
 /// a wedge takes some tens, with much friction some hundreds.
 const MOST_CHANGES: usize = 5_000;
@@ -150,7 +153,7 @@ impl<S: RadiusFunction> Run<'_, S> {
     }
 
     /// How far the next step may go: to a joint of the palms' motions, the last sample, or, where a gap may close, a
-    /// share of the body's size.
+    /// share of the body's size and of a turn.
     fn step_limit(&self, phase: &Phase<'_, S>, t: f64, y: &Vector) -> f64 {
         let last = self.times[self.times.len() - 1];
         let next = self.joints.partition_point(|&joint| joint <= t);
@@ -162,7 +165,11 @@ impl<S: RadiusFunction> Run<'_, S> {
         let palms = self.tracker.scene.palms().iter().map(|palm| palm.motion.at(t));
         let fastest = palms.map(|palm| palm.material_velocity(body.p_WCm).length()).fold(0.0, f64::max);
         let speed = phase.tracker.speed(&body) + fastest;
-        (t + STEP_SHARE * self.tracker.size / speed).min(joint).min(last)
+        // A palm that is about to turn back is slow.
+        let palms = self.tracker.scene.palms().iter().map(|palm| palm.motion.quickness(t));
+        let quickest = palms.fold(0.0, f64::max) + body.omega0.abs();
+        let turned = if quickest > 0.0 { TURN / quickest } else { f64::INFINITY };
+        (t + (STEP_SHARE * self.tracker.size / speed).min(turned)).min(joint).min(last)
     }
 
     fn sample(&mut self, phase: &Phase<'_, S>, y: Vector) -> Result<(), ContactSimulationError> {
