@@ -96,9 +96,14 @@ impl MotionLaw {
         }
     }
 
-    /// The largest rate that it reaches about the time `t`: until the next joint.
+    /// The same of an angle by which something turns: directions change with the angle, too.
     #[must_use]
-    pub fn fastest(&self, t: f64) -> f64 {
+    pub fn quickness_of_turn(&self, t: f64) -> f64 {
+        self.quickness(t) + self.fastest(t)
+    }
+
+    /// The largest rate that it reaches about the time `t`: until the next joint.
+    fn fastest(&self, t: f64) -> f64 {
         match *self {
             Self::Constant { .. } => 0.0,
             Self::Steady { rate, .. } => rate.abs(),

@@ -1,6 +1,7 @@
 //! Whether measured twists of a palm are those of its poses: another unit, sign or frame is none that noise makes.
 
 use super::record::MeasuredMotion;
+use crate::streams::Rhythm;
 use glam::DVec3;
 
 /// Samples from which on it is asked.
@@ -30,7 +31,7 @@ pub(super) fn against_poses(times: &[f64], states: &[MeasuredMotion]) -> Option<
     if states.len() < FEWEST {
         return None;
     }
-    let usual = median(times.windows(2).map(|pair| pair[1] - pair[0]).collect());
+    let usual = Rhythm::of(times).period?;
     let seen: Vec<bool> = times.windows(2).map(|pair| pair[1] - pair[0] <= GAP * usual).collect();
     let turn = |pair: &[MeasuredMotion]| {
         let turn = pair[1].pose.R_WP * pair[0].pose.R_WP.inverse();
@@ -76,11 +77,6 @@ struct Step {
     h: f64,
     posed: DVec3,
     stated: DVec3,
-}
-
-fn median(mut of: Vec<f64>) -> f64 {
-    let middle = of.len() / 2;
-    *of.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// The sample up to which the sum of `steps` and the integral of `rates` are farthest apart, their lengths there and the distance.

@@ -18,7 +18,7 @@ use glam::{DQuat, DVec3};
 /// Sticking contacts creep by this share of the tolerance: what makes their forces one.
 const CREEP: f64 = 0.01;
 /// The smallest local error that time stepping is asked for. Sticking contacts creep by 1e-12 of the natural speed then; with a hundredth of
-/// that, over-constrained ones whose forces creep alone makes one took forces that were off by a tenth, and 36 times as long.
+/// that, over-constrained ones whose forces creep alone makes one took forces that were off by a tenth, and 3.6 times as long.
 const FINEST: f64 = 1e-10;
 /// What is left of the longest step that the tolerance allows, and the factors by which steps change at most.
 const MARGIN: f64 = 0.8;

@@ -1,7 +1,7 @@
 //! Where inside of a step a guard first falls to zero.
 
 use super::field::Stretch;
-use super::gaps::dips;
+use super::gaps::{Gaps, dips};
 use super::guards::Guards;
 use super::packed::Units;
 use super::result::ContactEventKind as Kind;
@@ -31,7 +31,7 @@ pub(super) fn first_crossing<S: SupportFunction, const N: usize>(
     scene: &ContactScene<S>,
     units: &Units,
     dense: &DenseOutput<N>,
-    at_start: &Guards,
+    (guards_at_start, gaps_at_start): (Guards, Gaps),
 ) -> Result<Option<Crossing>, PalmContactError> {
     let seen = |t: f64| {
         let now = stretch.evaluate(scene, units, units.unpack(t, &dense.at(t)))?;
@@ -39,7 +39,7 @@ pub(super) fn first_crossing<S: SupportFunction, const N: usize>(
     };
     let (start, end) = (dense.start(), dense.end());
     let located = LOCATED * end.abs().max(end - start);
-    let (mut before, mut values, mut gaps) = (start, *at_start, seen(start)?.1);
+    let (mut before, mut values, mut gaps) = (start, guards_at_start, gaps_at_start);
     for k in 1..=SEARCH_POINTS {
         let t = start + (end - start) * f64::from(k) / f64::from(SEARCH_POINTS);
         let (after, gaps_after) = seen(t)?;

@@ -91,7 +91,7 @@ impl<S: SupportFunction, const N: usize> Run<'_, S, N> {
             }
             let Some(dense) = solver.dense().map_err(Error::Integration)? else { continue };
             let crossing = match doubt.get() {
-                true => first_crossing(&self.stretch, scene, &units, &dense, &at_start.get())
+                true => first_crossing(&self.stretch, scene, &units, &dense, (at_start.get(), gaps))
                     .map_err(|source| Error::Contact { t, source })?,
                 false => None,
             };

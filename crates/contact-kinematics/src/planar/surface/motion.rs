@@ -74,7 +74,7 @@ impl SurfaceMotion {
     pub fn quickness(&self, t: f64) -> f64 {
         let of_part = |part: &MotionPart| match part {
             MotionPart::Shift { law, .. } => law.quickness(t),
-            MotionPart::Turn { law, .. } => law.quickness(t) + law.fastest(t),
+            MotionPart::Turn { law, .. } => law.quickness_of_turn(t),
         };
         self.parts.iter().map(of_part).sum()
     }
