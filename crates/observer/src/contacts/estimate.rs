@@ -376,7 +376,8 @@ impl Found<'_> {
             R_WO: (motion.q * own).normalize(),
         };
         let (mut reliability, wider) = (evidence.reliability(), evidence.widening());
-        let spin = |(motion, of): &(Motion, Deviations)| (body.turn(motion.q, motion.L).w, of[2] * wider);
+        let spin =
+            |(motion, of): &(Motion, Deviations)| (body.turn(motion.q, motion.L).w, of.map(|of| of * wider));
         let spins: Vec<_> = problem.node_samples().iter().map(|&k| spin(&motions[k])).collect();
         let against = [*short, *against, *open, ContactEvidence::still(&spins)];
         for reason in against.into_iter().flatten().chain(ContactEvidence::against(suspects, explanations)) {

@@ -22,6 +22,8 @@ use object_dynamics::{MOST_PALMS, MassProperties};
 /// seen to lie 0.2 apart and more.
 const RATES: [f64; 3] = [0.0, 1.0, -1.0];
 const SHIFTED: [f64; 3] = [0.2, 0.3, 0.7];
+/// How many of those in space there are.
+pub(super) const STARTS: usize = 6 * SHIFTED.len();
 /// Linearisations that each may take, and after how many it is asked whether to go on; how many times as much as the best motion one may
 /// leave by then.
 const MOST: usize = 40;
@@ -34,6 +36,9 @@ const MORE_PROBABLE: f64 = 13.8;
 /// Deviations from which on another motion is one that they do not reach, and within which it is the same.
 const BEYOND: f64 = 5.0;
 const SAME: f64 = 1.0;
+
+/// Deviation of a constant of a body, as a share of what it is, or of a turn in rad, from which on other motions are looked for as a stream goes on.
+const UNSURE: f64 = 0.1;
 
 /// Spread of the contacts along their palms in natural lengths, and of the whole force about its mean in weights, below which a log of the plane
 /// tells nothing of a motion: at rest, in slow rocking and for discs forces spread by less than 0.004, for a disc with its centre of mass
@@ -200,6 +205,31 @@ pub(super) fn others_of_any_axes(
 pub(super) fn well_known(problem: &Problem, solved: &Solved<CONSTANTS>) -> bool {
     let claimed = solved.equations.covariances(&problem.natural_information());
     claimed.is_some_and(|claimed| claimed.body.diagonal().max() < SMALL * SMALL)
+}
+
+/// Whether mass, inertia or how a known body lies are known so badly that other motions may explain the log as well.
+pub(super) fn is_unsure(problem: &Problem, solved: &Solved<CONSTANTS>) -> bool {
+    let claimed = solved.equations.covariances(&problem.natural_information());
+    let units = solved.unknowns.body.inertia_units();
+    let share = |i: usize, variance: f64| variance / if i == 0 { 1.0 } else { units[i - 1] * units[i - 1] };
+    claimed.is_none_or(|claimed| {
+        claimed.body.diagonal().iter().enumerate().any(|(i, of)| share(i, *of) > UNSURE * UNSURE)
+    })
+}
+
+/// Another motion that is about as probable as the one that was found, or more, from one of the other starts: of as many as there are each in turn.
+pub(super) fn another(
+    problem: &mut Problem,
+    found: &Solved<CONSTANTS>,
+    which: usize,
+) -> Option<Solved<CONSTANTS>> {
+    let covariances = found.covariances(problem)?;
+    let mut starts = starts(problem, &found.unknowns, found.unknowns.body);
+    let start = starts.swap_remove(which % starts.len());
+    problem.frozen.clear();
+    let other = tried(problem, start, [found; 2], &covariances)?;
+    let likely = other.equations.cost < found.equations.cost + MORE_PROBABLE;
+    (likely && apart(found, &other, &covariances) > BEYOND).then_some(other)
 }
 
 /// In the plane bodies that turn at a constant rate; in space the motion as it is, of `body`, that spins otherwise.

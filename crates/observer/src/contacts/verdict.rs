@@ -13,6 +13,8 @@ use glam::DVec3;
 pub(super) const UNEXPLAINED: f64 = 4.75;
 /// The same once in ten thousand.
 const UNLIKELY: f64 = 3.7;
+/// Share of a deviation of the velocity that a product of two deviations may be: it makes errors of that size at most which last.
+const BENT: f64 = 0.5;
 /// Length of a stretch in natural times.
 const STRETCH: f64 = 1.0;
 
@@ -39,20 +41,29 @@ impl ContactEvidence {
         if !self.settled {
             reliability.add(Reason::NotConverged { iterations: self.iterations[1] });
         }
-        if !is_explained(self.misfit, self.conditions) {
+        if !self.is_explained() {
             reliability.add(Reason::Inconsistent { misfit: self.misfit });
         }
         reliability
     }
 
-    /// Whether a body hardly turns, by its angular velocities at the nodes and their deviations.
-    pub(super) fn still(spins: &[(DVec3, DVec3)]) -> Option<Reason> {
-        let mean = spins.iter().map(|(w, _)| *w).sum::<DVec3>() / spins.len().max(1) as f64;
-        let change = |(w, deviation): &(DVec3, DVec3)| {
+    /// Whether noise explains what is left.
+    pub(super) fn is_explained(&self) -> bool {
+        is_explained(self.misfit, self.conditions)
+    }
+
+    /// Whether a body turns too little to tell where its centre of mass is, by its angular velocities at the nodes and the deviations there.
+    ///
+    /// The conditions hold the product of both. Where it does not change beyond its deviations the linear model of that product is kept as long
+    /// as the deviations of its factors, multiplied, hardly count beside the velocity that they are added to.
+    pub(super) fn still(nodes: &[(DVec3, Deviations)]) -> Option<Reason> {
+        let mean = nodes.iter().map(|(w, _)| *w).sum::<DVec3>() / nodes.len().max(1) as f64;
+        let change = |(w, [_, _, deviation, _]): &(DVec3, Deviations)| {
             ((*w - mean).abs() / deviation.max(DVec3::splat(f64::MIN_POSITIVE))).max_element()
         };
-        let deviations = spins.iter().map(change).fold(0.0, f64::max);
-        (deviations < UNEXPLAINED).then_some(Reason::Still { deviations })
+        let deviations = nodes.iter().map(change).fold(0.0, f64::max);
+        let bent = |(_, [p, v, w, _]): &(DVec3, Deviations)| p.length() * w.length() > BENT * v.length();
+        (deviations < UNEXPLAINED && nodes.iter().any(bent)).then_some(Reason::Still { deviations })
     }
 
     /// A constant of the sensors, where the data speak against one: the one that explains them best, if that was asked.
@@ -114,4 +125,27 @@ pub(super) fn relied_on(excess: f64, deviations: &Deviations, units: &Units) -> 
     let natural = [length, speed, speed / length, 1.0];
     let small = |(of, unit): (&glam::DVec3, f64)| of.max_element() <= LARGEST_DEVIATION * unit;
     excess <= UNEXPLAINED && deviations.iter().zip(natural).take(3).all(small)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a body that turns steadily its centre of mass is told by a product of two unknowns: as long as their deviations multiplied hardly count beside
+    /// that of the velocity, its linear model holds, and where they count the body is too still.
+    #[test]
+    fn a_body_that_turns_steadily_is_still_where_a_product_of_deviations_counts() {
+        let steady = |spin: f64| {
+            let of = [1e-4, 3e-4, spin, 0.1].map(DVec3::splat);
+            ContactEvidence::still(&[(DVec3::Z * 3.0, of), (DVec3::Z * (3.0 + spin), of)])
+        };
+        // Root of three of each: 1e-4 * spin * 3 against half of 3e-4 * sqrt(3).
+        let largest = 0.5 * 3e-4 / (1e-4 * 3.0_f64.sqrt());
+        assert_eq!(steady(0.99 * largest), None);
+        assert!(matches!(steady(1.01 * largest), Some(Reason::Still { .. })));
+        // One that changes its spin by more than its deviations tells them apart.
+        let of = [1e-2, 3e-4, 0.1, 0.1].map(DVec3::splat);
+        assert_eq!(ContactEvidence::still(&[(DVec3::ZERO, of), (DVec3::X, of)]), None);
+        assert!(ContactEvidence::still(&[(DVec3::ZERO, of), (DVec3::X * 0.5, of)]).is_some());
+    }
 }

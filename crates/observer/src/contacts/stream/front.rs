@@ -80,14 +80,16 @@ impl Front {
         self.at = *next;
     }
 
-    /// Whether this motion has foretold another one of the same sample to within its deviations.
+    /// Whether this motion has foretold another one of the same sample to within the deviations of both: a window that no longer holds the data of
+    /// the one before it may know less.
     pub(super) fn foretold(&self, other: &Self) -> bool {
         let (own, other) = (self.motion(), other.motion());
         let parts = |m: &StreamMotion| [m.state.p_WCm, m.state.v_WCm, m.state.w_WO];
         let (own_parts, other_parts) = (parts(&own), parts(&other));
         (0..9).all(|i| {
             let apart = own_parts[i / 3][i % 3] - other_parts[i / 3][i % 3];
-            apart * apart <= UNEXPLAINED * UNEXPLAINED * own.covariance[(i, i)]
+            let variance = own.covariance[(i, i)] + other.covariance[(i, i)];
+            apart * apart <= UNEXPLAINED * UNEXPLAINED * variance
         })
     }
 

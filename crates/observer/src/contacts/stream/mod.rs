@@ -11,6 +11,7 @@
 mod dearer;
 mod estimate;
 mod front;
+mod others;
 mod planes;
 mod sample;
 mod schedule;

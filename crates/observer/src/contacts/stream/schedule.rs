@@ -19,6 +19,8 @@ const SEARCHED: f64 = 1.0;
 const FIRST: usize = 20;
 /// Samples that a task is given at least.
 const FEWEST: usize = 4;
+/// Windows in a row that may come to no end while a motion is followed: forces alone carry it over two natural times.
+const UNSETTLED: usize = 4;
 /// Natural times from one search that found nothing to the next.
 const PATIENCE: f64 = 1.0;
 
@@ -46,6 +48,8 @@ pub struct MotionStream {
     stage: StreamStage,
     rounds: usize,
     count: usize,
+    /// How many of the latest windows came to no end.
+    unsettled: usize,
     left_out: usize,
     latest: f64,
 }
@@ -79,6 +83,7 @@ impl MotionStream {
             stage: StreamStage::Gathering,
             rounds: 0,
             count: 0,
+            unsettled: 0,
             left_out: 0,
             latest: f64::NEG_INFINITY,
         })
@@ -167,6 +172,14 @@ impl MotionStream {
         self.left_out += outcome.left_out;
         self.next = number;
         let found = outcome.solution.filter(|solution| solution.explained);
+        // An iteration that came to no end is no contradiction: the motion of the window before goes on with the forces.
+        let unsettled = found.as_ref().is_some_and(|solution| !solution.settled);
+        if unsettled && self.asked == Asked::Follow && self.unsettled < UNSETTLED {
+            self.unsettled += 1;
+            return;
+        }
+        self.unsettled = 0;
+        let found = found.filter(|solution| solution.settled);
         if let Some(front) = found.and_then(|solution| self.front(solution)) {
             // What the window before has foretold is confirmed.
             let confirmed =

@@ -19,6 +19,8 @@ pub(super) struct Of<'a> {
     pub(super) covariances: &'a Covariances<CONSTANTS>,
     /// Whether the body is another one than was stated.
     pub(super) against: bool,
+    /// Whether another motion explains it as well.
+    pub(super) open: bool,
 }
 
 /// The motion at the end of a window.
@@ -43,7 +45,8 @@ pub(super) struct Solution {
     pub(super) misfit: f64,
     /// What the trapezoidal rule misses of an impulse over a time, s, about the world's origin.
     pub(super) missed: (f64, Matrix6<f64>),
-    /// Whether the data do not speak against it, and whether it is known well enough at its end.
+    /// Whether iterations came to an end, whether the data do not speak against it, and whether it is known well enough at its end.
+    pub(super) settled: bool,
     pub(super) explained: bool,
     pub(super) relied_on: bool,
 }
@@ -51,7 +54,12 @@ pub(super) struct Solution {
 impl Of<'_> {
     /// At node `j`, from the world's origin.
     pub(super) fn motion(&self, j: usize) -> Motion {
-        let motion = &self.solved.unknowns.motions[j];
+        self.motion_of(self.solved, j)
+    }
+
+    /// That of another solution.
+    pub(super) fn motion_of(&self, solved: &Solved<CONSTANTS>, j: usize) -> Motion {
+        let motion = &solved.unknowns.motions[j];
         Motion { p: motion.p + self.problem.record.origin, ..*motion }
     }
 
@@ -85,13 +93,13 @@ impl Of<'_> {
         let (unknowns, last) = (&self.solved.unknowns, self.problem.nodes.len() - 1);
         let spin = |j: usize| {
             let motion = &unknowns.motions[j];
-            (unknowns.body.turn(motion.q, motion.L).w, self.deviations(j)[2])
+            (unknowns.body.turn(motion.q, motion.L).w, self.deviations(j))
         };
         let still = ContactEvidence::still(&(0..=last).map(spin).collect::<Vec<_>>());
         let excess = stretches(self.problem, &self.solved.equations)[last];
         let well_known = relied_on(excess, &self.deviations(last), &self.problem.units);
-        let explained = self.evidence().reliability().is_reliable() && !self.against && excess <= UNEXPLAINED;
-        [explained, well_known && still.is_none()]
+        let explained = self.evidence().is_explained() && !self.against && excess <= UNEXPLAINED;
+        [explained, well_known && still.is_none() && !self.open]
     }
 
     fn stated(&self, known: Option<&MassProperties>) -> StreamBody {
@@ -141,6 +149,7 @@ impl Solution {
             stated: of.stated(known),
             misfit: of.solved.misfit(),
             missed,
+            settled: of.solved.settled,
             explained,
             relied_on,
         }

@@ -101,8 +101,10 @@ fn motions_are_found_and_followed_whatever_the_sensors() {
         assert_eq!(estimates[0].1.stage, StreamStage::Gathering);
         assert!(estimates[0].1.motion.is_none());
         let first = estimates.iter().position(|(_, e)| e.stage == StreamStage::Tracking).expect("a motion");
-        // Five natural times of 0.43 s, one for the search, half of one until it is confirmed.
-        assert!(estimates[first].1.t < 4.0, "{}", estimates[first].1.t);
+        // Five natural times of 0.43 s, one for the search, half of one until it is confirmed; six windows of half of one more where noise leaves other
+        // motions possible.
+        let latest = if share < 0.01 { 4.0 } else { 5.3 };
+        assert!(estimates[first].1.t < latest, "{}", estimates[first].1.t);
         let lost = estimates[first..].iter().find(|(_, e)| e.stage != StreamStage::Tracking);
         assert!(lost.is_none(), "{share} {known}: {lost:?}");
         let squares = case.squares(&estimates);

@@ -1,6 +1,7 @@
 //! The motion over a window of the latest samples.
 
 use super::dearer::Dearer;
+use super::others::{AFTER_SEARCH, Followed};
 use super::sample::{ForceReading, PalmSensed, Raw, StreamPalm};
 use super::solution::{Of, Solution};
 use crate::contacts::body::{Body, CONSTANTS};
@@ -52,7 +53,7 @@ pub(super) struct Outcome {
 }
 
 /// A solved window, to begin the next one from.
-struct Before {
+pub(super) struct Before {
     /// Motions at nodes, from the world's origin, by numbers of samples; covariances of their turns.
     nodes: Vec<(usize, Motion, Matrix3<f64>)>,
     body: Body,
@@ -65,6 +66,12 @@ pub(super) struct Window {
     options: ContactOptions,
     samples: VecDeque<Raw>,
     before: Option<Before>,
+    /// Other motions that could not be ruled out, at the same nodes; how many starts others were looked for from, windows for which none
+    /// is stated, and how often others turned up after that.
+    pub(super) others: Vec<Before>,
+    pub(super) looked: usize,
+    pub(super) waits: usize,
+    pub(super) misled: usize,
     dearer: Dearer,
     /// Whether a motion of this search was relied on.
     believed: bool,
@@ -77,6 +84,10 @@ impl Window {
             options,
             samples: VecDeque::new(),
             before: None,
+            others: Vec::new(),
+            looked: 0,
+            waits: 0,
+            misled: 0,
             dearer: Dearer::default(),
             believed: false,
         }
@@ -194,11 +205,15 @@ impl Window {
         let thinned = thinned(&averaged, &self.options, &units);
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), &self.options, units);
         let free = problem.body;
-        let (mut problem, solved, against) = match asked {
-            Asked::Search => self.found(problem)?,
+        let (mut problem, solved, others, against) = match asked {
+            Asked::Search => {
+                let (problem, solved, against) = self.found(problem)?;
+                (problem, solved, Vec::new(), against)
+            }
             Asked::Follow => {
-                let solved = self.followed(record, &mut problem)?;
-                (problem, solved, false)
+                let solved = self.followed(record, &mut problem, self.before.as_ref()?)?;
+                let (solved, others) = self.most_probable(record, &mut problem, solved);
+                (problem, solved, others, false)
             }
         };
         let samples = problem.node_samples();
@@ -213,13 +228,16 @@ impl Window {
         // Not those of noise drawn once more, as for whole logs: few draws a window differ from one to the next by as much as they tell, and
         // motions were lost by that three times as often, while errors over their deviations stayed what they are.
         let covariances = solved.covariances(&problem)?;
-        let of = Of { problem: &problem, solved: &solved, covariances: &covariances, against };
-        Some(self.taken(&of, (GAP * natural, record.missed_in_world(GAP * natural))))
+        let open = self.waits > 0;
+        let of = Of { problem: &problem, solved: &solved, covariances: &covariances, against, open };
+        Some(self.taken(&of, &others, (GAP * natural, record.missed_in_world(GAP * natural))))
     }
 
     /// From nothing, and whether the body is another one than was stated. None where the window leaves it open which of several motions it is.
     fn found<'a>(&mut self, mut problem: Problem<'a>) -> Option<(Problem<'a>, Solved<CONSTANTS>, bool)> {
         self.before = None;
+        self.others.clear();
+        self.waits = AFTER_SEARCH;
         let ended = whole(&mut problem)?;
         let mut stage = Stage::at(problem, ended);
         if stage.problem.exact {
@@ -236,8 +254,12 @@ impl Window {
     }
 
     /// From the window before, whose axes go on.
-    fn followed(&self, record: &Record, problem: &mut Problem) -> Option<Solved<CONSTANTS>> {
-        let before = self.before.as_ref()?;
+    pub(super) fn followed(
+        &self,
+        record: &Record,
+        problem: &mut Problem,
+        before: &Before,
+    ) -> Option<Solved<CONSTANTS>> {
         if let Some(mass) = &self.options.body {
             problem.take_known(mass, before.body.orientation(mass));
         }
@@ -265,7 +287,7 @@ impl Window {
     }
 
     /// Keeps a solution to begin the next one from.
-    fn taken(&mut self, of: &Of, missed: (f64, Matrix6<f64>)) -> Solution {
+    fn taken(&mut self, of: &Of, others: &[Followed], missed: (f64, Matrix6<f64>)) -> Solution {
         let samples = of.problem.node_samples();
         let raw = |j: usize| samples.get(j).and_then(|&k| self.samples.get(k));
         let number = |j: usize| raw(j).map_or(0, |raw| raw.number);
@@ -278,10 +300,15 @@ impl Window {
         let last = samples.len() - 1;
         let at = (number(last), raw(last).map_or(f64::NAN, |raw| raw.t));
         let solution = Solution::new(of, at, self.options.body.as_ref(), turned, missed);
-        self.believed |= solution.explained && solution.relied_on;
-        if solution.explained {
-            let nodes = (0..=last).map(|j| (number(j), of.motion(j), of.turn(j))).collect();
-            self.before = Some(Before { nodes, body: solution.body, turned });
+        let sound = solution.explained && solution.settled;
+        self.believed |= sound && solution.relied_on;
+        if sound {
+            let begun = |solved: &Solved<CONSTANTS>| {
+                let node = |j| (number(j), of.motion_of(solved, j), of.turn(j));
+                Before { nodes: (0..=last).map(node).collect(), body: solved.unknowns.body, turned }
+            };
+            self.before = Some(begun(of.solved));
+            self.others = others.iter().map(|other| begun(&other.solved)).collect();
         }
         solution
     }
