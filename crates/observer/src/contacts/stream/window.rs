@@ -67,7 +67,7 @@ pub(super) struct Window {
     samples: VecDeque<Raw>,
     before: Option<Before>,
     /// Other motions that could not be ruled out, at the same nodes; how many starts others were looked for from, windows for which none
-    /// is stated, and how often others turned up after that.
+    /// is stated, and how often another one was better.
     pub(super) others: Vec<Before>,
     pub(super) looked: usize,
     pub(super) waits: usize,
@@ -228,7 +228,7 @@ impl Window {
         // Not those of noise drawn once more, as for whole logs: few draws a window differ from one to the next by as much as they tell, and
         // motions were lost by that three times as often, while errors over their deviations stayed what they are.
         let covariances = solved.covariances(&problem)?;
-        let open = self.waits > 0;
+        let open = !others.is_empty() || self.waits > 0;
         let of = Of { problem: &problem, solved: &solved, covariances: &covariances, against, open };
         Some(self.taken(&of, &others, (GAP * natural, record.missed_in_world(GAP * natural))))
     }

@@ -1,0 +1,89 @@
+//! Motions beside the one that is followed, which explain a window about as well.
+//!
+//! A search looks for them once. Of a body whose inertia, or how it lies, is hardly known the readings may speak for another motion later on, far
+//! from the one that is followed: each window of such a body is tried from one other start, and what that leads to is followed as well until the
+//! readings rule one of them out. As long as there are several none is stated. Where another one turned out to be the better one, there are likely
+//! to be more: none is stated then before all starts were tried in vain, and for twice as long each time that this was not enough.
+
+use super::window::Window;
+use crate::contacts::body::CONSTANTS;
+use crate::contacts::problem::{Beforehand, Problem};
+use crate::contacts::record::Record;
+use crate::contacts::rivals::{STARTS, another, as_probable, is_unsure};
+use crate::contacts::solve::Solved;
+use glam::DQuat;
+use nalgebra::SVector;
+
+/// How many are followed at most.
+const MOST: usize = 2;
+/// Windows that must show no other motion before one is stated: after a search, which has tried all starts, and after another one was better.
+pub(super) const AFTER_SEARCH: usize = 6;
+const AFTER_WRONG: usize = STARTS;
+/// How often the latter doubles.
+const MOST_DOUBLED: usize = 8;
+/// Fall of chi-squared by which another one must be the better one to take its place.
+const BETTER: f64 = 1.0;
+
+/// A solution, and what the problem was when it was solved.
+pub(super) struct Followed {
+    pub(super) solved: Solved<CONSTANTS>,
+    body: Beforehand,
+    frozen: Vec<SVector<f64, CONSTANTS>>,
+    q: DQuat,
+}
+
+impl Followed {
+    pub(super) fn of(problem: &Problem, solved: Solved<CONSTANTS>) -> Self {
+        let Problem { body, frozen, first, .. } = problem;
+        Self { solved, body: *body, frozen: frozen.clone(), q: first.0.q }
+    }
+
+    fn put(&self, problem: &mut Problem) {
+        problem.body = self.body;
+        problem.frozen.clone_from(&self.frozen);
+        problem.first.0.q = self.q;
+    }
+}
+
+impl Window {
+    /// The most probable of the motions that are followed, of which `first` was until now, and the others that cannot be ruled out. `problem` is left as
+    /// the first of them was solved.
+    pub(super) fn most_probable(
+        &mut self,
+        record: &Record,
+        problem: &mut Problem,
+        first: Solved<CONSTANTS>,
+    ) -> (Solved<CONSTANTS>, Vec<Followed>) {
+        let mut best = Followed::of(problem, first);
+        let mut all = Vec::new();
+        for before in &self.others {
+            let free = problem.body;
+            let solved = self.followed(record, problem, before);
+            all.extend(solved.map(|solved| Followed::of(problem, solved)));
+            problem.body = free;
+        }
+        best.put(problem);
+        let alone = !problem.planar && !problem.exact && record.frictionless() && all.len() < MOST;
+        let unsure = is_unsure(problem, &best.solved);
+        self.waits = if unsure { self.waits.saturating_sub(1) } else { 0 };
+        if alone && unsure {
+            self.looked += 1;
+            let other = another(problem, &best.solved, self.looked);
+            all.extend(other.map(|solved| Followed::of(problem, solved)));
+        }
+        let mut misled = false;
+        for other in &mut all {
+            if other.solved.equations.cost < best.solved.equations.cost - BETTER {
+                std::mem::swap(&mut best, other);
+                misled = true;
+            }
+        }
+        best.put(problem);
+        all.retain(|other| as_probable(problem, &best.solved, &other.solved).is_some());
+        if misled {
+            self.waits = AFTER_WRONG << self.misled.min(MOST_DOUBLED);
+            self.misled += 1;
+        }
+        (best.solved, all)
+    }
+}
