@@ -33,6 +33,8 @@ const HOPELESS: f64 = 3.0;
 pub(super) const SEARCHES: usize = 3;
 /// Fall of chi-squared that makes one motion the more probable one: odds of a thousand to one.
 const MORE_PROBABLE: f64 = 13.8;
+/// The same of the windows of a stream: twenty to one.
+const MORE_PROBABLE_IN_WINDOW: f64 = 6.0;
 /// Deviations from which on another motion is one that they do not reach, and within which it is the same.
 const BEYOND: f64 = 5.0;
 const SAME: f64 = 1.0;
@@ -172,7 +174,17 @@ pub(super) fn as_probable(
     best: &Solved<CONSTANTS>,
     other: &Solved<CONSTANTS>,
 ) -> Option<Reason> {
-    let likely = other.equations.cost < best.equations.cost + MORE_PROBABLE;
+    as_cheap(problem, best, other, MORE_PROBABLE)
+}
+
+/// The same of one that is dearer by less than `most`, in units of chi-squared.
+fn as_cheap(
+    problem: &Problem,
+    best: &Solved<CONSTANTS>,
+    other: &Solved<CONSTANTS>,
+    most: f64,
+) -> Option<Reason> {
+    let likely = other.equations.cost < best.equations.cost + most;
     let apart = likely.then(|| Some(apart(best, other, &best.covariances(problem)?))).flatten()?;
     (apart > BEYOND).then_some(Reason::Ambiguous { apart })
 }
@@ -217,7 +229,12 @@ pub(super) fn is_unsure(problem: &Problem, solved: &Solved<CONSTANTS>) -> bool {
     })
 }
 
-/// Another motion that is about as probable as the one that was found, or more, from one of the other starts: of as many as there are each in turn.
+/// Whether another motion of a stream's window cannot be ruled out: the windows before have spoken for the one that is followed.
+pub(super) fn goes_on_beside(problem: &Problem, best: &Solved<CONSTANTS>, other: &Solved<CONSTANTS>) -> bool {
+    as_cheap(problem, best, other, MORE_PROBABLE_IN_WINDOW).is_some()
+}
+
+/// Another motion of a stream's window that cannot be ruled out, from one of the other starts: of as many as there are each in turn.
 pub(super) fn another(
     problem: &mut Problem,
     found: &Solved<CONSTANTS>,
@@ -228,8 +245,7 @@ pub(super) fn another(
     let start = starts.swap_remove(which % starts.len());
     problem.frozen.clear();
     let other = tried(problem, start, [found; 2], &covariances)?;
-    let likely = other.equations.cost < found.equations.cost + MORE_PROBABLE;
-    (likely && apart(found, &other, &covariances) > BEYOND).then_some(other)
+    goes_on_beside(problem, found, &other).then_some(other)
 }
 
 /// In the plane bodies that turn at a constant rate; in space the motion as it is, of `body`, that spins otherwise.

@@ -9,7 +9,7 @@ use super::window::Window;
 use crate::contacts::body::CONSTANTS;
 use crate::contacts::problem::{Beforehand, Problem};
 use crate::contacts::record::Record;
-use crate::contacts::rivals::{STARTS, another, as_probable, is_unsure};
+use crate::contacts::rivals::{STARTS, another, goes_on_beside, is_unsure};
 use crate::contacts::solve::Solved;
 use glam::DQuat;
 use nalgebra::SVector;
@@ -79,7 +79,7 @@ impl Window {
             }
         }
         best.put(problem);
-        all.retain(|other| as_probable(problem, &best.solved, &other.solved).is_some());
+        all.retain(|other| goes_on_beside(problem, &best.solved, &other.solved));
         if misled {
             self.waits = AFTER_WRONG << self.misled.min(MOST_DOUBLED);
             self.misled += 1;
