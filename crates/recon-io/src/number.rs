@@ -57,7 +57,25 @@ pub fn with_brief_numbers(text: &str) -> String {
 
 /// The shortest decimal that reads back as the same `f64`; `nan`, `inf` and `-inf` where there is no number.
 pub(crate) fn exact(value: f64) -> String {
-    if value.is_nan() { "nan".to_owned() } else { format!("{value:?}") }
+    let mut text = String::new();
+    push_exact(&mut text, value);
+    text
+}
+
+/// Appends the same.
+pub(crate) fn push_exact(text: &mut String, value: f64) {
+    let mut buffer = zmij::Buffer::new();
+    text.push_str(if value.is_nan() { "nan" } else { buffer.format(value) });
+}
+
+/// Appends some of them, with commas between.
+pub(crate) fn push_row(text: &mut String, values: &[f64]) {
+    for (place, value) in values.iter().enumerate() {
+        if place > 0 {
+            text.push(',');
+        }
+        push_exact(text, *value);
+    }
 }
 
 /// Appends `value` as `{}` writes it: of tenths, which places on a screen are, several times as fast.
