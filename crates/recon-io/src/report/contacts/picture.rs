@@ -23,10 +23,10 @@ const FOOT: f64 = 26.0;
 const AXIS: f64 = 12.0;
 const BAR: f64 = 45.0;
 /// Longest arrow of a force in sizes of the object, and its head as a share of the arrow.
-const LONGEST: f64 = 0.8;
+const LONGEST: f64 = 1.0;
 const HEAD: f64 = 0.25;
 /// Times the median of all forces beyond which one is a blow, whose arrow is cut.
-const BLOW: f64 = 10.0;
+const BLOW: f64 = 4.0;
 
 /// A line of a picture, in m on the plane of view.
 pub(super) struct Line {

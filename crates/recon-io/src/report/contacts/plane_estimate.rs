@@ -122,7 +122,7 @@ impl PlaneEstimateData<'_> {
         let reach = self.reach();
         let forces = self.log.samples().iter().flat_map(|sample| &sample.palms);
         let scale = ForceScale::new(reach, forces.map(|palm| palm.force.length()));
-        Pictures::of(&samples, |k| self.picture(*k, [reach, scale], &traces))
+        Pictures::of(&samples, |k| self.picture(*k, (reach, scale), &traces))
     }
 
     /// Largest distance of a contact from the centre of mass, m.
@@ -131,7 +131,12 @@ impl PlaneEstimateData<'_> {
         contacts.map(|contact| contact.p_OC.length()).fold(0.0, f64::max)
     }
 
-    fn picture(&self, k: usize, [reach, scale]: [f64; 2], traces: &[Vec<Option<&PlaneContact>>]) -> Picture {
+    fn picture(
+        &self,
+        k: usize,
+        (reach, scale): (f64, ForceScale),
+        traces: &[Vec<Option<&PlaneContact>>],
+    ) -> Picture {
         let (sample, state) = (&self.log.samples()[k], &self.estimate.states[k]);
         let surfaces = self.log.surfaces().iter().zip(&sample.palms).enumerate();
         let mut lines: Vec<Line> = surfaces

@@ -54,7 +54,7 @@ fn slip(now: &ContactInstant, palm: usize) -> f64 {
 fn picture<S: SupportFunction>(
     scene: &ContactScene<S>,
     now: &ContactInstant,
-    (scale, view): (f64, &View),
+    (scale, view): (ForceScale, &View),
 ) -> Picture {
     let at = &now.state.body;
     let reach = reach(scene.body());
