@@ -65,7 +65,11 @@ pub(crate) fn exact(value: f64) -> String {
 /// Appends the same.
 pub(crate) fn push_exact(text: &mut String, value: f64) {
     let mut buffer = zmij::Buffer::new();
-    text.push_str(if value.is_nan() { "nan" } else { buffer.format(value) });
+    let _ = match value.abs() {
+        // The one decade that is written plainly there, and here with an exponent.
+        size if (1e-5..1e-4).contains(&size) => write!(text, "{value:?}"),
+        _ => text.write_str(if value.is_nan() { "nan" } else { buffer.format(value) }),
+    };
 }
 
 /// Appends some of them, with commas between.
@@ -206,10 +210,12 @@ mod tests {
         }
 
         #[test]
-        fn exact_reads_back(bits in any::<u64>()) {
-            let value = f64::from_bits(bits);
-            let back: f64 = exact(value).parse().unwrap();
-            prop_assert!(back.to_bits() == value.to_bits() || (back.is_nan() && value.is_nan()));
+        fn exact_reads_back_and_is_what_is_debugged(bits in any::<u64>(), near in -20.0_f64..20.0) {
+            for value in [f64::from_bits(bits), 10_f64.powf(near), -10_f64.powf(near), 10_f64.powi(near as i32), near.round()] {
+                let back: f64 = exact(value).parse().unwrap();
+                prop_assert!(back.to_bits() == value.to_bits() || (back.is_nan() && value.is_nan()));
+                prop_assert!(exact(value) == format!("{value:?}") || value.is_nan(), "{} {value:?}", exact(value));
+            }
         }
     }
 }

@@ -149,7 +149,11 @@ impl Problem<'_> {
     }
 
     /// Conditions and links of some nodes, with what the last of the links says of the node after it, which then is the last one.
-    fn linearised<const P: usize>(&self, at: &Unknowns, some: Range<usize>) -> Option<Equations<P>> {
+    pub(super) fn linearised<const P: usize>(
+        &self,
+        at: &Unknowns,
+        some: Range<usize>,
+    ) -> Option<Equations<P>> {
         let count = (some.end + 1).min(self.nodes.len()) - some.start;
         let mut all = Equations::none(count);
         for (i, j) in some.enumerate() {

@@ -13,9 +13,6 @@ const GROWTH: f64 = 1.5;
 const TRIES: usize = 24;
 /// Rounds of computing how far errors of normals can act from the bound itself; the third gains less than a hundredth.
 const ROUNDS: usize = 3;
-/// Share of the size by which a half-space that makes a face of the region may miss it by rounding.
-const TOUCHING: f64 = 1e-9;
-
 /// Quantiles for a window, so that margins hold for all together.
 #[derive(Clone, Copy)]
 struct Quantiles {
@@ -54,7 +51,6 @@ pub(super) fn certain_half_spaces(
     let centre = windows.iter().map(|(w, _)| w.point).sum::<DVec3>() / windows.len().max(1) as f64;
     let size = windows.iter().map(|(w, _)| w.point.distance(centre)).fold(0.0, f64::max);
     let (mut half_spaces, mut region) = prove_region(&windows, centre, size)?;
-    let windows = cutting(&windows, &region, size);
     for _ in 0..ROUNDS {
         half_spaces = by_halves(&windows, |windows| {
             let mut caps = region.caps();
@@ -70,18 +66,6 @@ pub(super) fn certain_half_spaces(
         }
     }
     Ok(half_spaces)
-}
-
-/// Those windows whose half-spaces cut a region that holds the body, when errors of normals act over no distance at all: the others cut no part of
-/// it, nor of smaller ones, however near they reach.
-fn cutting(windows: &[(Window, Quantiles)], region: &Polyhedron, size: f64) -> Vec<(Window, Quantiles)> {
-    by_halves(windows, |windows| {
-        let mut caps = region.caps();
-        let cuts = |(w, quantiles): &&(Window, Quantiles)| {
-            caps.height(&w.inflated(quantiles, 0.0)) >= -TOUCHING * size
-        };
-        windows.iter().filter(cuts).copied().collect()
-    })
 }
 
 /// A region that certainly holds the body, with the half-spaces that make it.

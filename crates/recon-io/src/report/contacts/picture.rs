@@ -265,3 +265,24 @@ fn foot(axes: &Axes, top: f64, scale: f64) -> String {
     );
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_blow_leaves_the_arrows_of_other_forces_as_long_as_they_were() {
+        let shaft = |scale: ForceScale, newton: f64| {
+            let arrow = Line::force(DVec2::ZERO, DVec2::new(newton, 0.0), scale);
+            arrow.points[0].distance(arrow.points[1])
+        };
+        let forces = [0.0, 1.0, 1.5, 2.0, f64::NAN];
+        let [calm, struck] =
+            [&[][..], &[1e4]].map(|blow: &[f64]| ForceScale::new(0.1, forces.iter().chain(blow).copied()));
+        assert_eq!([1.0, 2.0].map(|of| shaft(calm, of)), [0.5 * LONGEST * 0.1, LONGEST * 0.1]);
+        assert_eq!(shaft(struck, 1.0), shaft(calm, 1.0));
+        // What would leave the picture is cut.
+        assert!((shaft(struck, 1e4) - LONGEST * 0.1).abs() < 1e-15);
+        assert_eq!(shaft(ForceScale::new(0.1, [0.0].into_iter()), 1.0), 0.0);
+    }
+}
