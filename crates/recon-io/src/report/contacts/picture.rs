@@ -84,7 +84,7 @@ impl ForceScale {
         let mut sizes: Vec<f64> = forces.filter(|force| force.is_finite() && *force > 0.0).collect();
         sizes.sort_by(f64::total_cmp);
         let usual = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-        let largest = sizes.into_iter().filter(|size| *size <= BLOW * usual).next_back();
+        let largest = sizes.into_iter().rfind(|size| *size <= BLOW * usual);
         let longest = LONGEST * reach;
         Self { per_newton: largest.map_or(0.0, |largest| longest / largest), longest }
     }
