@@ -66,9 +66,10 @@ pub(crate) fn exact(value: f64) -> String {
 pub(crate) fn push_exact(text: &mut String, value: f64) {
     let mut buffer = zmij::Buffer::new();
     let _ = match value.abs() {
-        // The one decade that is written plainly there, and here with an exponent.
-        size if (1e-5..1e-4).contains(&size) => write!(text, "{value:?}"),
-        _ => text.write_str(if value.is_nan() { "nan" } else { buffer.format(value) }),
+        // Beyond these exponents are written otherwise there.
+        size if (1e-4..1e16).contains(&size) => text.write_str(buffer.format_finite(value)),
+        _ if value.is_nan() => text.write_str("nan"),
+        _ => write!(text, "{value:?}"),
     };
 }
 
