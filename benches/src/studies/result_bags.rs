@@ -78,11 +78,16 @@ fn in_viewers(path: &Path, samples: usize) -> Result<(), Failure> {
     println!("\n## In viewers\n");
     println!(
         "The first of these bags, as Rerun's own loader takes it in (`rerun mcap convert`, what its viewer does with a bag), and its definitions beside \
-         those that ROS 2 publishes (Jazzy, as `rosbags` has them), field by field (`tests/ros2/in_viewers.py`). Rerun makes nothing of poses with \
+         those that ROS 2 publishes (Jazzy, as `rosbags` has them), field by field (`tests/ros2/in_viewers.py`); and whether what is in the messages can be drawn: \
+         unit quaternions, arrows of two points, triangles of three corners to scale, colours that are seen, clouds whose fields and sizes fit, and of every frame a \
+         transform at or before the stamp, as Foxglove's 3D panel asks for. Rerun makes nothing of poses with \
          covariance and of markers but messages to be read: it shows the moving frame, contacts, forces (as points along their arrows), curves and the corners of \
-         the bounds; the meshes it shows from `--mesh glb`. Foxglove's 3D panel lists all of these types; that it draws them was not looked at, for it does not run here.\n"
+         the bounds; the meshes it shows from `--mesh glb`. Foxglove's 3D panel lists all of these types; that it draws them was not looked at, for it does not run here. No message has a schema of Foxglove's own (`foxglove.SceneUpdate` and the like).\n"
     );
-    println!("| topic | type | as published | in Rerun (rows) |\n|---|---|---|---|\n{}", told?.trim_end());
+    println!(
+        "| topic | type | as published | can be drawn | in Rerun (rows) |\n|---|---|---|---|---|\n{}",
+        told?.trim_end()
+    );
     Ok(())
 }
 

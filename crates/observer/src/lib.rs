@@ -60,6 +60,8 @@ mod contacts;
 mod core;
 #[cfg(feature = "palms")]
 mod faults;
+#[cfg(feature = "palms")]
+mod halves;
 mod least_squares;
 #[cfg(feature = "palms")]
 pub mod planar;

@@ -44,7 +44,7 @@ pub(crate) struct Cli {
     /// Print results as JSON on standard output, and errors as JSON on standard error
     #[arg(long, global = true)]
     pub(crate) json: bool,
-    /// Say nothing but results and errors: no progress, no notes
+    /// Say nothing but errors: no progress, no notes, and of results in files no word. What stands on standard output alone is printed
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
     /// What to do
@@ -115,7 +115,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long)]
     pub(crate) report: Option<PathBuf>,
     /// Tolerance of the integration, relative and absolute
-    #[arg(long, default_value_t = 1e-12, value_parser = tolerance, conflicts_with = "accuracy")]
+    #[arg(long, default_value = "1e-12", value_parser = tolerance, conflicts_with = "accuracy")]
     pub(crate) tolerance: f64,
     /// Accuracy that is wanted, at any sample: of the centre of mass in sizes of the object and of its orientation in rad. The loosest tolerance
     /// that reaches it is chosen, by an error estimate

@@ -13,7 +13,7 @@ pub(crate) struct Console {
 }
 
 impl Console {
-    /// As JSON for a program; `quiet` leaves out what is said beside results and errors.
+    /// As JSON for a program; `quiet` leaves out all but errors, what was asked for in JSON, and answers that stand nowhere else.
     pub(crate) fn new(json: bool, quiet: bool) -> Self {
         Self { json, quiet }
     }
@@ -28,10 +28,15 @@ impl Console {
         self.json
     }
 
-    /// Prints a result: `text` for a person, `value` for a program.
+    /// Prints a result that stands nowhere else: `text` for a person, `value` for a program.
     pub(crate) fn result(&self, text: &str, value: &Value) -> Result<(), CliError> {
         let line = if self.json { format!("{value:#}") } else { with_brief_numbers(text.trim_end()) };
         listened(writeln!(io::stdout().lock(), "{line}"))
+    }
+
+    /// Tells of a result that stands in files, and of what was asked for in JSON.
+    pub(crate) fn written(&self, text: &str, value: &Value) -> Result<(), CliError> {
+        if self.quiet && !self.json { Ok(()) } else { self.result(text, value) }
     }
 
     /// Says something beside the result; a program reads it from the result instead.

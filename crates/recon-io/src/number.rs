@@ -57,7 +57,30 @@ pub fn with_brief_numbers(text: &str) -> String {
 
 /// The shortest decimal that reads back as the same `f64`; `nan`, `inf` and `-inf` where there is no number.
 pub(crate) fn exact(value: f64) -> String {
-    if value.is_nan() { "nan".to_owned() } else { format!("{value:?}") }
+    let mut text = String::new();
+    push_exact(&mut text, value);
+    text
+}
+
+/// Appends the same.
+pub(crate) fn push_exact(text: &mut String, value: f64) {
+    let mut buffer = zmij::Buffer::new();
+    let _ = match value.abs() {
+        // Beyond these exponents are written otherwise there.
+        size if (1e-4..1e16).contains(&size) => text.write_str(buffer.format_finite(value)),
+        _ if value.is_nan() => text.write_str("nan"),
+        _ => write!(text, "{value:?}"),
+    };
+}
+
+/// Appends some of them, with commas between.
+pub(crate) fn push_row(text: &mut String, values: &[f64]) {
+    for (place, value) in values.iter().enumerate() {
+        if place > 0 {
+            text.push(',');
+        }
+        push_exact(text, *value);
+    }
 }
 
 /// Appends `value` as `{}` writes it: of tenths, which places on a screen are, several times as fast.
@@ -188,10 +211,14 @@ mod tests {
         }
 
         #[test]
-        fn exact_reads_back(bits in any::<u64>()) {
-            let value = f64::from_bits(bits);
-            let back: f64 = exact(value).parse().unwrap();
-            prop_assert!(back.to_bits() == value.to_bits() || (back.is_nan() && value.is_nan()));
+        fn exact_reads_back_and_is_as_long_as_what_is_debugged(bits in any::<u64>(), near in -20.0_f64..20.0) {
+            for value in [f64::from_bits(bits), 10_f64.powf(near), -10_f64.powf(near), 10_f64.powi(near as i32), near.round()] {
+                let back: f64 = exact(value).parse().unwrap();
+                prop_assert!(back.to_bits() == value.to_bits() || (back.is_nan() && value.is_nan()));
+                // Of two decimals as near the one or the other is written.
+                let form = |text: String| (text.len(), text.contains('e'));
+                prop_assert!(form(exact(value)) == form(format!("{value:?}")), "{} {value:?}", exact(value));
+            }
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Results as CSV tables, with numbers that read back bit for bit.
 
 use crate::log::TRUTH;
-use crate::number::exact;
+use crate::number::push_row;
 use crate::report::{MotionState, PalmContact};
 use recon::observer::{ContactEstimate, ContactOdds};
+use std::fmt::Write as _;
 use std::io::{self, Write};
 
 /// Writes the motion as `t` and the truth columns of the sensor-log format.
@@ -12,8 +13,11 @@ use std::io::{self, Write};
 /// Those of `to`.
 pub fn write_motion(times: &[f64], motion: &[MotionState], mut to: impl Write) -> io::Result<()> {
     writeln!(to, "t,{}", TRUTH.join(","))?;
+    let mut row = String::new();
     for (t, state) in times.iter().zip(motion) {
-        writeln!(to, "{}", cells(*t, state).map(exact).join(","))?;
+        row.clear();
+        push_row(&mut row, &cells(*t, state));
+        writeln!(to, "{row}")?;
     }
     to.flush()
 }
@@ -52,16 +56,22 @@ pub fn write_estimated_motion(
     let name = |i: usize| format!("p_slide_{i},p_stick_{i},");
     let named: String = odds.map_or_else(String::new, |_| (1..=palms).map(name).collect());
     writeln!(to, "t,{},{},{modes}{named}relied_on", TRUTH.join(","), DEVIATIONS.join(","))?;
+    let (mut row, mut numbers) = (String::new(), Vec::new());
     for (k, t) in times.iter().enumerate() {
-        let mut row = cells(*t, &estimate.states[k].into()).to_vec();
-        row.extend(estimate.deviations[k].iter().flat_map(|of| of.to_array()));
-        let numbers: Vec<String> = row.into_iter().map(exact).collect();
-        let modes: String =
-            estimate.modes[k].iter().take(palms).map(|mode| format!("{},", mode.number())).collect();
-        let odds = odds.map_or_else(String::new, |odds| {
-            odds[k].iter().take(palms).flat_map(probabilities).map(|p| format!("{p},")).collect()
-        });
-        writeln!(to, "{},{modes}{odds}{}", numbers.join(","), u8::from(estimate.relied_on[k]))?;
+        row.clear();
+        numbers.clear();
+        numbers.extend(cells(*t, &estimate.states[k].into()));
+        numbers.extend(estimate.deviations[k].iter().flat_map(|of| of.to_array()));
+        push_row(&mut row, &numbers);
+        for mode in estimate.modes[k].iter().take(palms) {
+            let _ = write!(row, ",{}", mode.number());
+        }
+        let odds = odds.map(|odds| odds[k].iter().take(palms).flat_map(probabilities));
+        for probability in odds.into_iter().flatten() {
+            // Digits of a probability are written as people read them: there are six at most.
+            let _ = write!(row, ",{probability}");
+        }
+        writeln!(to, "{row},{}", u8::from(estimate.relied_on[k]))?;
     }
     to.flush()
 }
@@ -96,11 +106,14 @@ pub fn write_contact_curves(
     mut to: impl Write,
 ) -> io::Result<()> {
     writeln!(to, "palm,t,x,y,z,nx,ny,nz")?;
+    let mut row = String::new();
     for (i, contacts) in palms.iter().enumerate() {
         for (t, contact) in times.iter().zip(*contacts) {
             let Some(contact) = contact else { continue };
             let (p, n) = (contact.p_OC, contact.normal);
-            writeln!(to, "{},{}", i + 1, [*t, p.x, p.y, p.z, n.x, n.y, n.z].map(exact).join(","))?;
+            row.clear();
+            push_row(&mut row, &[*t, p.x, p.y, p.z, n.x, n.y, n.z]);
+            writeln!(to, "{},{row}", i + 1)?;
         }
     }
     to.flush()
@@ -117,10 +130,14 @@ pub fn write_radius_functions(
 ) -> io::Result<()> {
     let names: Vec<String> = (1..=palms.len()).map(|i| format!("r_{i}")).collect();
     writeln!(to, "t,{}", names.join(","))?;
+    let (mut row, mut numbers) = (String::new(), Vec::new());
     for (k, t) in times.iter().enumerate() {
-        let radii = palms.iter().map(|palm| palm[k].map_or(f64::NAN, |c| c.radius));
-        let row: Vec<String> = std::iter::once(*t).chain(radii).map(exact).collect();
-        writeln!(to, "{}", row.join(","))?;
+        row.clear();
+        numbers.clear();
+        numbers.push(*t);
+        numbers.extend(palms.iter().map(|palm| palm[k].map_or(f64::NAN, |c| c.radius)));
+        push_row(&mut row, &numbers);
+        writeln!(to, "{row}")?;
     }
     to.flush()
 }

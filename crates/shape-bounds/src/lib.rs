@@ -50,6 +50,7 @@ mod features;
 mod fit;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
+mod halves;
 #[cfg(test)]
 mod laws;
 mod matrix;

@@ -73,26 +73,34 @@ impl<'a> Averages<'a> {
         self.record.origin
     }
 
-    /// The average where each contact, with the number of its sample in the log, is different by so much.
-    pub(super) fn changed(&self, by: impl Fn(usize, &Contact) -> ChangeBy) -> Record {
+    /// The average where each contact, with the number of its sample in the log, is different by so much, if it is.
+    pub(super) fn changed(&self, by: impl Fn(usize, &Contact) -> Option<ChangeBy>) -> Record {
         let mut changed = self.average.clone();
-        let (mut shares, mut node, mut before) = (self.shares.iter().peekable(), 0, Acting::default());
+        let (mut shares, mut node) = (self.shares.iter().peekable(), 0);
+        // Most constants are of one palm: what the others feel is passed by.
+        let (mut some, mut before) = (Vec::new(), None);
         for (k, contacts) in self.record.contacts.iter().enumerate() {
-            let mut all = [ChangeBy::default(); MOST_PALMS];
-            for (of, contact) in all.iter_mut().zip(contacts) {
-                *of = by(self.record.samples[k], contact);
-            }
-            let acting = self.acting(contacts, &all);
+            some.clear();
+            let of = |(i, contact)| Some((i, contact, by(self.record.samples[k], contact)?));
+            some.extend(contacts.iter().enumerate().filter_map(of));
+            let acting = (!some.is_empty()).then(|| self.acting(&some));
             while let Some(share) = shares.next_if(|share| share.sample == k) {
+                let Some(acting) = &acting else { continue };
                 let wrench = &mut changed.wrenches[share.window];
                 *wrench = *wrench + acting.wrench * share.wrench;
                 let to = &mut changed.contacts[share.window];
-                to.iter_mut().zip(&all).for_each(|(to, by)| to.add(by, share.contact));
+                for (i, _, by) in &some {
+                    to.get_mut(*i).into_iter().for_each(|to| to.add(by, share.contact));
+                }
             }
             if k > 0 {
                 node += usize::from(changed.times[node + 1] < self.record.times[k]);
+            }
+            if k > 0 && (before.is_some() || acting.is_some()) {
                 let since = self.record.times[k - 1] - changed.times[node];
-                let (impulse, first) = self.over(k, [&before, &acting]);
+                let none = Acting::default();
+                let ends = [&before, &acting].map(|acting| acting.as_ref().unwrap_or(&none));
+                let (impulse, first) = self.over(k, ends);
                 let interval = &mut changed.intervals[node];
                 interval.impulse = interval.impulse + impulse;
                 interval.first += first + impulse.force * since;
@@ -107,9 +115,9 @@ impl<'a> Averages<'a> {
         changed
     }
 
-    fn acting(&self, contacts: &[Contact], by: &[ChangeBy]) -> Acting {
+    fn acting(&self, some: &[(usize, &Contact, ChangeBy)]) -> Acting {
         let mut all = Acting::default();
-        for (contact, by) in contacts.iter().zip(by).filter(|(_, by)| **by != ChangeBy::default()) {
+        for (_, contact, by) in some {
             if self.impulses[contact.palm].is_some() {
                 all.moved[contact.palm] = Some(by.c);
             } else {
@@ -142,9 +150,6 @@ impl<'a> Averages<'a> {
 impl Contact {
     /// Different by a share of that, its normal not yet of unit length; its palm's material is as fast as it is where it then is.
     fn add(&mut self, by: &ChangeBy, share: f64) {
-        if *by == ChangeBy::default() {
-            return;
-        }
         let moved = by.c * share;
         self.c += moved;
         self.u += self.W.cross(moved);

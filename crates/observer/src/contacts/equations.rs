@@ -1,8 +1,9 @@
 //! Normal equations of a chain of nodes: what [`Problem`](super::problem::Problem) is linearised to.
 
+use super::body::Body;
 use super::flow::{Carried, Transition};
 use super::solve::Step;
-use super::state::{MOTION, Tangent, tangent};
+use super::state::{MOTION, Motion, Tangent, tangent};
 use glam::DVec3;
 use nalgebra::{SMatrix, SVector};
 
@@ -83,6 +84,44 @@ impl<const P: usize> Gradient<P> {
 }
 
 impl<const P: usize> Equations<P> {
+    /// Of so many nodes of which nothing is known.
+    pub(super) fn none(count: usize) -> Self {
+        let zero = NodeEquations {
+            own: Transition::zeros(),
+            next: Transition::zeros(),
+            body: SMatrix::zeros(),
+            gradient: Tangent::zeros(),
+            cost: 0.0,
+            conditions: 0,
+        };
+        Self {
+            nodes: vec![zero; count],
+            body: SMatrix::zeros(),
+            body_gradient: SVector::zeros(),
+            cost: 0.0,
+            conditions: 0,
+            links: Vec::with_capacity(count),
+        }
+    }
+
+    /// Together with those of the nodes from the last of these on, of which these tell what the link before it says.
+    pub(super) fn followed_by(mut self, rest: Self) -> Self {
+        let before = self.nodes.pop();
+        let boundary = self.nodes.len();
+        self.nodes.extend(rest.nodes);
+        if let Some((own, before)) = self.nodes.get_mut(boundary).zip(before) {
+            own.own += before.own;
+            own.body += before.body;
+            own.gradient += before.gradient;
+        }
+        self.links.extend(rest.links);
+        self.body += rest.body;
+        self.body_gradient += rest.body_gradient;
+        self.cost += rest.cost;
+        self.conditions += rest.conditions;
+        self
+    }
+
     pub(super) fn gradient(&self) -> Gradient<P> {
         Gradient { motions: self.nodes.iter().map(|node| node.gradient).collect(), body: self.body_gradient }
     }
@@ -129,5 +168,38 @@ impl<const P: usize> Equations<P> {
         if P > 0 {
             node.body.ger(1.0, &after, &row.by_body, 1.0);
         }
+    }
+
+    /// The link from node `i` to the next one, at whose end the motion comes to `carried` and is `next`, with the inverse covariance of the difference.
+    pub(super) fn add_link(
+        &mut self,
+        i: usize,
+        next: &Motion,
+        carried: &Carried<P>,
+        information: &Transition,
+        body: &Body,
+    ) {
+        let residual = next.from(&carried.motion);
+        let weighted = information * residual;
+        let adjusted = carried.adjusted(body, &residual);
+        let (by_motion, by_body) = adjusted.pulled(information);
+        let by_body = by_body.transpose();
+        let (of_motion, of_body) = adjusted.pulled(&by_motion.transpose());
+        let (gradient, body_gradient) = adjusted.pulled(&weighted);
+        let cost = weighted.dot(&residual);
+        self.cost += cost;
+        let node = &mut self.nodes[i];
+        node.cost += cost;
+        node.own += of_motion;
+        node.next -= by_motion;
+        node.gradient -= gradient;
+        node.body += of_body.transpose();
+        self.body += adjusted.pulled(&by_body).1;
+        self.body_gradient -= body_gradient;
+        let next = &mut self.nodes[i + 1];
+        next.own += information;
+        next.gradient += weighted;
+        next.body -= by_body;
+        self.links.push(LinkEquation { residual, carried: *carried, information: *information, adjusted });
     }
 }

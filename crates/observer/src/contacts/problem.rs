@@ -1,7 +1,7 @@
 //! Least squares over all nodes: links, contact conditions and what is known beforehand, linearised.
 
 use super::body::{Body, CONSTANTS};
-use super::equations::{Equations, LinkEquation, NodeEquations, Row};
+use super::equations::{Equations, Row};
 use super::flow::{Carried, Transition};
 use super::link::LinkNoise;
 use super::noise::{ContactNoiseLevel, WrenchNoise};
@@ -10,10 +10,12 @@ use super::record::{Record, Wrench};
 use super::rows::Rows;
 use super::solve::{Solved, Step};
 use super::state::{MOTION, Motion, Tangent, Turn, parts};
+use crate::halves::at_once;
 use crate::rigid::exponential;
 use contact_kinematics::is_stopped;
 use glam::{DQuat, DVec3};
 use nalgebra::{SMatrix, SVector, Vector6};
+use std::ops::Range;
 
 /// Links are never taken for better than this share of a condition's deviation, all together: without noise of the forces the
 /// chain would be rigid, and the equations singular in double precision. It adds a thousandth to the variance of a velocity where noise is what
@@ -22,6 +24,9 @@ const LINK_FLOOR: f64 = 0.03;
 
 /// Information that keeps a combination of the body's constants, where the conditions claim to have one.
 pub(super) const FROZEN: f64 = 1e4;
+
+/// Nodes from which on two threads linearise. Of whole logs alone: the windows of a stream are fewer, and leave the other cores to the robot.
+const SHARED: usize = 500;
 
 /// Natural units of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -125,34 +130,38 @@ impl Problem<'_> {
         [&self.record.wrenches[k], &self.record.wrenches[k + 1]]
     }
 
-    /// None where the unknowns are beyond all numbers.
+    /// Of many nodes one half on a thread of its own. None where the unknowns are beyond all numbers.
     pub(super) fn linearise<const P: usize>(&self, at: &Unknowns) -> Option<Equations<P>> {
         if is_stopped() {
             return None;
         }
-        let zero = NodeEquations {
-            own: Transition::zeros(),
-            next: Transition::zeros(),
-            body: SMatrix::zeros(),
-            gradient: Tangent::zeros(),
-            cost: 0.0,
-            conditions: 0,
-        };
         let count = self.nodes.len();
-        let mut all = Equations {
-            nodes: vec![zero; count],
-            body: SMatrix::zeros(),
-            body_gradient: SVector::zeros(),
-            cost: 0.0,
-            conditions: 0,
-            links: Vec::with_capacity(count),
+        let mut all = if count < SHARED {
+            self.linearised(at, 0..count)?
+        } else {
+            let half = count / 2;
+            let (first, second) =
+                at_once(|| self.linearised(at, 0..half), || self.linearised(at, half..count));
+            first?.followed_by(second?)
         };
-        for j in 0..count {
+        self.add_prior(at, &mut all);
+        all.cost.is_finite().then_some(all)
+    }
+
+    /// Conditions and links of some nodes, with what the last of the links says of the node after it, which then is the last one.
+    pub(super) fn linearised<const P: usize>(
+        &self,
+        at: &Unknowns,
+        some: Range<usize>,
+    ) -> Option<Equations<P>> {
+        let count = (some.end + 1).min(self.nodes.len()) - some.start;
+        let mut all = Equations::none(count);
+        for (i, j) in some.enumerate() {
             let mut carried = Carried::<P>::new(at.motions[j], &at.body);
             let from = self.nodes[j];
             let end = self.nodes.get(j + 1).copied().unwrap_or(from);
             if end != from + 1 {
-                self.rows(from, &carried.motion, &carried.turn, &at.body, |row| all.add(j, &row));
+                self.rows(from, &carried.motion, &carried.turn, &at.body, |row| all.add(i, &row));
             }
             let mut noise = WrenchNoise::default();
             for k in from..end {
@@ -160,20 +169,19 @@ impl Problem<'_> {
                 noise += self.record.intervals[k].noise;
                 if k + 1 < end {
                     self.rows(k + 1, &carried.motion, &carried.turn, &at.body, |row| {
-                        all.add(j, &carried.at_node(&row));
+                        all.add(i, &carried.at_node(&row));
                     });
                 }
             }
             if end == from + 1 {
-                self.add_split(j, &carried, at, &mut all);
+                self.add_split((i, j), &carried, at, &mut all);
             }
             if end > from {
                 let information = self.link_noise(&noise, &carried)?.information(&at.body, &carried.turn);
-                self.add_link(j, &carried, &information, at, &mut all);
+                all.add_link(i, &at.motions[j + 1], &carried, &information, &at.body);
             }
         }
-        self.add_prior(at, &mut all);
-        all.cost.is_finite().then_some(all)
+        Some(all)
     }
 
     /// The unknowns after a step, and their cost. None beyond all numbers.
@@ -387,7 +395,7 @@ impl Problem<'_> {
     }
 
     /// The motion alone.
-    fn step<const P: usize>(&self, carried: &mut Carried<P>, k: usize, body: &Body) {
+    pub(super) fn step<const P: usize>(&self, carried: &mut Carried<P>, k: usize, body: &Body) {
         carried.step(&self.record.intervals[k], self.wrenches(k), body, self.gravity);
         self.missed.get(k).into_iter().for_each(|missed| carried.shift(missed, body));
     }
@@ -411,10 +419,10 @@ impl Problem<'_> {
         missed
     }
 
-    /// Conditions of a node with a link of one interval after it.
+    /// Conditions of node `j`, number `i` of the equations, with a link of one interval after it.
     fn add_split<const P: usize>(
         &self,
-        j: usize,
+        (i, j): (usize, usize),
         carried: &Carried<P>,
         at: &Unknowns,
         all: &mut Equations<P>,
@@ -423,40 +431,8 @@ impl Problem<'_> {
         let turn = at.body.turn(motion.q, motion.L);
         self.rows(self.nodes[j], &motion, &turn, &at.body, |row| {
             let (own, after) = self.split_row(j, carried, &row);
-            all.add_split(j, &own, &after);
+            all.add_split(i, &own, &after);
         });
-    }
-
-    fn add_link<const P: usize>(
-        &self,
-        j: usize,
-        carried: &Carried<P>,
-        information: &Transition,
-        at: &Unknowns,
-        all: &mut Equations<P>,
-    ) {
-        let residual = at.motions[j + 1].from(&carried.motion);
-        let weighted = information * residual;
-        let adjusted = carried.adjusted(&at.body, &residual);
-        let (by_motion, by_body) = adjusted.pulled(information);
-        let by_body = by_body.transpose();
-        let (of_motion, of_body) = adjusted.pulled(&by_motion.transpose());
-        let (gradient, body_gradient) = adjusted.pulled(&weighted);
-        let cost = weighted.dot(&residual);
-        all.cost += cost;
-        let node = &mut all.nodes[j];
-        node.cost += cost;
-        node.own += of_motion;
-        node.next -= by_motion;
-        node.gradient -= gradient;
-        node.body += of_body.transpose();
-        all.body += adjusted.pulled(&by_body).1;
-        all.body_gradient -= body_gradient;
-        let next = &mut all.nodes[j + 1];
-        next.own += information;
-        next.gradient += weighted;
-        next.body -= by_body;
-        all.links.push(LinkEquation { residual, carried: *carried, information: *information, adjusted });
     }
 
     fn add_prior<const P: usize>(&self, at: &Unknowns, all: &mut Equations<P>) {

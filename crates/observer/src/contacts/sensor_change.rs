@@ -37,12 +37,12 @@ pub(super) struct Change<'a> {
 }
 
 impl Change<'_> {
-    /// What a contact at sample `k` is different by then.
-    pub(super) fn of(&self, k: usize, contact: &Contact) -> ChangeBy {
+    /// What a contact at sample `k` is different by then; none where it is as it was.
+    pub(super) fn of(&self, k: usize, contact: &Contact) -> Option<ChangeBy> {
         let palm = &self.log.palms()[contact.palm];
         let (number, by) = (contact.palm + 1, self.by);
         let none = ChangeBy::default();
-        match self.fault {
+        let by = match self.fault {
             SensorFault::ForceGain { palm } if palm == number => ChangeBy { f: contact.f * by, ..none },
             SensorFault::ForceBias { palm } if palm == number => ChangeBy { f: contact.n * by, ..none },
             SensorFault::ForceDelay => ChangeBy { f: self.later(k, contact), ..none },
@@ -68,8 +68,9 @@ impl Change<'_> {
                 let against = -slip.reject_from_normalized(contact.n).normalize_or_zero();
                 ChangeBy { f: against * (by * contact.f.dot(contact.n)), ..none }
             }
-            _ => none,
-        }
+            _ => return None,
+        };
+        Some(by)
     }
 
     /// What the force is more that a palm tells later than at sample `k`. From whole samples, as far as there are: what is between two of them has

@@ -144,8 +144,9 @@ impl<const P: usize> Equations<P> {
         let (mut after, mut follows) = (Transition::zeros(), SMatrix::<f64, MOTION, P>::zeros());
         for node in reduced.nodes.iter().rev() {
             let (own, by_next, by_body) = node.inverse();
-            next.push(-by_next * after);
-            after = own + by_next * after * by_next.transpose();
+            let with_next = by_next * after;
+            next.push(-with_next);
+            after = own + with_next * by_next.transpose();
             follows = -by_body - by_next * follows;
             motions.push((after, follows));
         }

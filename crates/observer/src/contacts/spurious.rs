@@ -109,28 +109,45 @@ impl Covariances<CONSTANTS> {
         let turned = at.motions[0].q.conjugate();
         let mut all = Matrix3::zeros();
         for (j, link) in equations.links.iter().enumerate() {
-            let left = self.left(j, link).fixed_view::<3, 3>(3, 3).into_owned();
             let ends = [&at.motions[j], &at.motions[j + 1]];
-            let noise = Spins::new(ends, &at.body, &self.motions[j].0, &self.motions[j + 1].0, &self.next[j]);
-            let slopes: [[Matrix3<f64>; 2]; 3] = std::array::from_fn(|i| {
+            let slopes: [_; 3] = std::array::from_fn(|i| {
                 ends.map(|motion| Matrix3::from(cross_matrix(motion.q * turned * DVec3::AXES[i])))
             });
-            for i in 0..3 {
-                for k in 0..3 {
-                    all[(i, k)] += (left * noise.covariance(&slopes[i], &slopes[k])).trace();
-                }
-            }
+            self.add_claimed((j, link, 3), at, &slopes, |i, k, share| all[(i, k)] += share);
         }
         0.5 * (all + all.transpose())
     }
 
-    /// What the residual of a link says of constants, the motions free to follow.
-    fn left(&self, j: usize, link: &LinkEquation<CONSTANTS>) -> Transition {
+    /// What noise of the angular velocities adds to the information on constants of which a link's momenta (`from` which number on) fall by `slopes`
+    /// times these at its ends: of each pair of constants.
+    fn add_claimed<const N: usize>(
+        &self,
+        (j, link, from): (usize, &LinkEquation<CONSTANTS>, usize),
+        at: &Unknowns,
+        slopes: &[[Matrix3<f64>; 2]; N],
+        mut add: impl FnMut(usize, usize, f64),
+    ) {
+        let left = self.left(j, link, from);
+        let ends = [&at.motions[j], &at.motions[j + 1]];
+        let noise = Spins::new(ends, &at.body, &self.motions[j].0, &self.motions[j + 1].0, &self.next[j]);
+        for (i, slope) in slopes.iter().enumerate() {
+            // The trace of what is left times the covariance of two changes is the sum of products of entries.
+            let weighted = noise.of_change(slope).map(|of| left * of);
+            for (k, other) in slopes.iter().enumerate() {
+                add(i, k, weighted[0].dot(&other[0]) + weighted[1].dot(&other[1]));
+            }
+        }
+    }
+
+    /// What the residual of a link says of constants by three of its numbers from one on, the motions free to follow.
+    fn left(&self, j: usize, link: &LinkEquation<CONSTANTS>, from: usize) -> Matrix3<f64> {
         let (before, after, cross) = (&self.motions[j].0, &self.motions[j + 1].0, &self.next[j]);
         let (by_motion, _) = link.adjusted.derivatives();
-        let mixed = by_motion * cross;
-        let residual = after + by_motion * before * by_motion.transpose() - mixed - mixed.transpose();
-        link.information - link.information * residual * link.information
+        let rows = link.information.fixed_rows::<3>(from).into_owned();
+        let carried = rows * by_motion;
+        let mixed = carried * cross * rows.transpose();
+        let residual = rows * after * rows.transpose() + carried * before * carried.transpose();
+        rows.fixed_columns::<3>(from) - (residual - mixed - mixed.transpose())
     }
 
     /// With what was known beforehand alone along directions of the body's constants of which errors of derivatives may claim as much as the
@@ -170,18 +187,11 @@ impl Covariances<CONSTANTS> {
     fn spurious(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> OfBody {
         let mut all = OfBody::zeros();
         for (j, link) in equations.links.iter().enumerate() {
-            let left = self.left(j, link).fixed_view::<3, 3>(6, 6).into_owned();
             let ends = [&at.motions[j], &at.motions[j + 1]];
-            let noise = Spins::new(ends, &at.body, &self.motions[j].0, &self.motions[j + 1].0, &self.next[j]);
             let slope =
                 |motion: &Motion, i| Matrix3::from(at.body.slope_along(DMat3::from_quat(motion.q), i));
-            let slopes: [[Matrix3<f64>; 2]; INERTIA] =
-                std::array::from_fn(|i| ends.map(|motion| slope(motion, i)));
-            for i in 0..INERTIA {
-                for k in 0..INERTIA {
-                    all[(i + 1, k + 1)] += (left * noise.covariance(&slopes[i], &slopes[k])).trace();
-                }
-            }
+            let slopes: [_; INERTIA] = std::array::from_fn(|i| ends.map(|motion| slope(motion, i)));
+            self.add_claimed((j, link, 6), at, &slopes, |i, k, share| all[(i + 1, k + 1)] += share);
         }
         0.5 * (all + all.transpose())
     }
@@ -206,10 +216,8 @@ impl Spins {
         Self { own, between: a * cross * b.transpose() }
     }
 
-    /// Of the changes along the link of two matrices times the angular velocity; each matrix as it is at both ends.
-    fn covariance(&self, [a0, a1]: &[Matrix3<f64>; 2], [b0, b1]: &[Matrix3<f64>; 2]) -> Matrix3<f64> {
-        a1 * self.own[1] * b1.transpose() + a0 * self.own[0] * b0.transpose()
-            - a0 * self.between * b1.transpose()
-            - a1 * self.between.transpose() * b0.transpose()
+    /// Of the change along the link of a matrix times the angular velocity, the matrix as it is at both ends, with the angular velocities at them.
+    fn of_change(&self, [a0, a1]: &[Matrix3<f64>; 2]) -> [Matrix3<f64>; 2] {
+        [a0 * self.own[0] - a1 * self.between.transpose(), a1 * self.own[1] - a0 * self.between]
     }
 }

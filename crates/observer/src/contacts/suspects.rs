@@ -9,19 +9,18 @@ use super::changed::Averages;
 use super::equations::Equations;
 use super::noise::force_trace;
 use super::problem::{Problem, Units};
-use super::reach::Residuals;
+use super::reach::{Conditions, Residuals};
 use super::record::Record;
 use super::samples::Deviations;
 use super::sensor_change::{Change, slopes_of_contact_noise, slopes_of_noise};
 use super::solve::{Covariances, Reduced, Solved, Step};
 use super::state::{Motion, Tangent};
 use crate::faults::{SensorFault, Suspect};
+use crate::halves::at_once;
 use crate::reliability::LARGEST_DEVIATION;
 use contact_kinematics::PalmSurface;
 use glam::DVec3;
 use object_dynamics::ContactLog;
-use std::panic::resume_unwind;
-use std::thread;
 
 /// What of the information on a constant must be left when motion and body have followed it, for the data to tell of it.
 const LEAST_LEFT: f64 = 1e-6;
@@ -99,6 +98,7 @@ pub(super) struct Scores<'a> {
     equations: Equations<CONSTANTS>,
     solver: Reduced<CONSTANTS>,
     followed: Step<CONSTANTS>,
+    conditions: Conditions,
     residuals: Residuals,
     /// Share of noise in the squares of the impulses.
     noisy: f64,
@@ -124,20 +124,21 @@ impl<'a> Scores<'a> {
         let equations = problem.unfrozen(&solved.equations, &solved.unknowns);
         let solver = equations.solver(&problem.natural_information())?.0;
         let followed = solver.step(&equations.gradient());
+        let conditions = Conditions::new(problem, &solved.unknowns);
         let residuals = Residuals::new(problem, &solved.unknowns)?;
         let noisy = share_of_noise(problem.record);
-        Some(Self { sensors, problem, solved, equations, solver, followed, residuals, noisy })
+        Some(Self { sensors, problem, solved, equations, solver, followed, conditions, residuals, noisy })
     }
 
     /// Of a constant that the problem's record has as `value`. None where conditions come or go with it.
     pub(super) fn of(&self, fault: SensorFault, value: f64) -> Option<Score> {
-        let Self { sensors, problem, solved, equations, solver, followed, residuals, .. } = self;
+        let Self { sensors, problem, solved, equations, solver, followed, conditions, residuals, .. } = self;
         let step = STEP * fault.natural(&problem.units);
         let told = |slopes: &[Vec<DVec3>]| {
             let record = sensors.changed(fault, [value, step], slopes);
             let changed = Residuals::new(&problem.on(&record), &solved.unknowns)?;
             let by = Residuals::slope(&changed, residuals, step)?;
-            let (slope, own, mixed) = residuals.normal(equations, &by)?;
+            let (slope, own, mixed) = conditions.normal(equations, residuals, &by)?;
             // What motion and body take up when they follow: the step of a gradient is minus the inverse times it.
             let follows = solver.step(&mixed);
             Some((slope + mixed.dot(followed), own, own + mixed.dot(&follows), follows))
@@ -180,12 +181,9 @@ pub(super) fn suspects(scores: &Scores, covariances: &Covariances<CONSTANTS>) ->
     let constants = scores.sensors.constants(problem);
     let (here, there) = constants.split_at(constants.len() / 2);
     let of = |faults: &[SensorFault]| faults.iter().copied().filter_map(one).collect::<Vec<_>>();
-    thread::scope(|scope| {
-        let there = scope.spawn(|| of(there));
-        let mut all = of(here);
-        all.extend(there.join().unwrap_or_else(|panic| resume_unwind(panic)));
-        all
-    })
+    let (mut all, there) = at_once(|| of(here), || of(there));
+    all.extend(there);
+    all
 }
 
 /// Share of noise in the squares of the impulses.

@@ -11,6 +11,7 @@ use nalgebra::SVector;
 use object_dynamics::*;
 
 mod frictionless;
+mod halves;
 mod impulses;
 mod known;
 mod mode_odds;

@@ -44,7 +44,11 @@ pub(crate) fn run(args: &BoundsArgs, console: &Console) -> Result<Outcome, CliEr
         None => made.check(&figures)?,
     }
     drop(progress);
-    console.result(&(made.describe() + &written_to(args.output.as_deref())), &figures)?;
+    let text = made.describe() + &written_to(args.output.as_deref());
+    match args.output {
+        Some(_) => console.written(&text, &figures)?,
+        None => console.result(&text, &figures)?,
+    }
     Ok(if made.is_whole() { Outcome::Done } else { Outcome::WithReservations })
 }
 

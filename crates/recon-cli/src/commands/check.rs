@@ -6,6 +6,6 @@ use serde_json::json;
 pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<Outcome, CliError> {
     let held = recon_io::check(&args.folder)?;
     let text = format!("{}: holds\n  {}", args.folder.display(), held.join("\n  "));
-    console.result(&text, &json!({ "folder": args.folder.to_string_lossy(), "holds": held }))?;
+    console.written(&text, &json!({ "folder": args.folder.to_string_lossy(), "holds": held }))?;
     Ok(Outcome::Done)
 }

@@ -69,7 +69,7 @@ fn any_palms(args: &DemoArgs, title: &str, text: &str, console: &Console) -> Res
         told.describe(),
         args.output.join("report.html").display()
     );
-    console.result(&said, &figures)?;
+    console.written(&said, &figures)?;
     Ok(Outcome::Done)
 }
 

@@ -41,7 +41,11 @@ pub(crate) fn run(args: &ExploreArgs, console: &Console) -> Result<Outcome, CliE
         None => made.drawn.check(&made.figures)?,
     }
     drop(progress);
-    console.result(&(made.text + &written_to(args.output.as_deref())), &made.figures)?;
+    let text = made.text + &written_to(args.output.as_deref());
+    match args.output {
+        Some(_) => console.written(&text, &made.figures)?,
+        None => console.result(&text, &made.figures)?,
+    }
     Ok(made.exit)
 }
 

@@ -17,6 +17,6 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<Outcome, CliEr
     write_files_folder(target, &files, &figures)?;
     figures["folder"] = args.output.to_string_lossy().into();
     let text = format!("{}: {}", args.output.display(), names.join(", "));
-    console.result(&text, &figures)?;
+    console.written(&text, &figures)?;
     Ok(Outcome::Done)
 }

@@ -44,7 +44,7 @@ pub(crate) fn run(args: &InitArgs, console: &Console) -> Result<Outcome, CliErro
         "contacts.csv   points with outward normals (columns: recon formats contacts)",
     ];
     let text = format!("{folder}\n  {}\nGo on with\n  {}", told.join("\n  "), commands.join("\n  "));
-    console.result(&text, &figures)?;
+    console.written(&text, &figures)?;
     Ok(Outcome::Done)
 }
 

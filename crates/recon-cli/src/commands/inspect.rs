@@ -45,7 +45,7 @@ pub(crate) fn run(args: &InspectArgs, console: &Console) -> Result<Outcome, CliE
         Some((target, path)) => {
             write(target, &path, |to| to.write_all(found.draft.text.as_bytes()))?;
             let _ = writeln!(text, "{}", path.display());
-            console.result(&text, &figures)?;
+            console.written(&text, &figures)?;
         }
         None => {
             // With the draft behind it all of it is a mapping, wherever it is sent.

@@ -96,7 +96,7 @@ fn finish(
         Made::Motion(made) => (made.describe(), made.is_reliable()),
         Made::Fit(made) => (planar_fit::describe(made), made.warnings.is_empty()),
     };
-    console.result(&(text + &written_to(Some(folder))), &figures)?;
+    console.written(&(text + &written_to(Some(folder))), &figures)?;
     Ok(if sound { Outcome::Done } else { Outcome::WithReservations })
 }
 

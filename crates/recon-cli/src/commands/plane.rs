@@ -57,7 +57,7 @@ pub(super) fn write_folder(
     figures: &Value,
 ) -> Result<(), CliError> {
     while_writing(|| {
-        let mut folder = target.begin()?;
+        let folder = target.begin()?;
         folder.write("bounds.svg", |to| write_figures(&panels(made), to))?;
         for (name, outline) in made.drawn_outlines() {
             folder.write(name, |to| PlanarBounds::write_outline(outline, to))?;

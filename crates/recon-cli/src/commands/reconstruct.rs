@@ -67,7 +67,7 @@ pub(super) fn tell(
 ) -> Result<Outcome, CliError> {
     figures["folder"] = folder.to_string_lossy().into();
     let text = format!("{}{}", describe(made, &figures), folder.join("report.html").display());
-    console.result(&text, &figures)?;
+    console.written(&text, &figures)?;
     Ok(if made.is_reliable() { Outcome::Done } else { Outcome::WithReservations })
 }
 

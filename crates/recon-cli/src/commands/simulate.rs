@@ -52,7 +52,7 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Cli
         console.note(&made.text);
     } else {
         made.figures["log"] = args.output.to_string_lossy().into();
-        console.result(&format!("{}: {}", args.output.display(), made.text), &made.figures)?;
+        console.written(&format!("{}: {}", args.output.display(), made.text), &made.figures)?;
     }
     Ok(made.outcome)
 }

@@ -19,6 +19,6 @@ pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let figures = made.write(target, &title)?;
     drop(progress);
     let text = format!("{}\n{}", made.describe(), args.output.join("report.html").display());
-    console.result(&text, &figures)?;
+    console.written(&text, &figures)?;
     Ok(if made.bounded.is_some() { Outcome::Done } else { Outcome::WithReservations })
 }

@@ -21,7 +21,7 @@ impl Advice {
     pub(super) fn next(&self) -> &'static str {
         match (self.reliable, self.bounds) {
             (false, _) => {
-                "see which evidence is red in report.html, and what was read of the log: recon check-input LOG --scene SCENE"
+                "see which evidence in report.html is marked (! or a cross), and what was read of the log: recon check-input LOG --scene SCENE"
             }
             (true, _) if self.identified && !self.learned => {
                 "turn the object about more axes: the log does not tell all of its inertia"

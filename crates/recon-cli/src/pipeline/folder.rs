@@ -11,6 +11,8 @@ use recon_io::{
 };
 use serde_json::Value;
 use std::io::{self, Write};
+use std::panic::resume_unwind;
+use std::thread;
 
 /// A further file of a folder: its name and its contents.
 pub(crate) type Extra = (String, Vec<u8>);
@@ -38,20 +40,30 @@ pub(crate) fn write_estimate_folder(
     let data = &made.data;
     let figures = estimated.figures();
     let (times, palms) = (data.log.times(), data.log.palms().len());
+    let curves: Vec<_> = data.curves.iter().map(Vec::as_slice).collect();
     while_writing(|| {
-        let mut folder = Folder(target.begin()?);
-        folder.write("motion.csv", |to| write_estimated_motion(times, &data.estimate, palms, to))?;
-        let curves: Vec<_> = data.curves.iter().map(Vec::as_slice).collect();
-        folder.write("contact_curves.csv", |to| write_contact_curves(times, &curves, to))?;
-        folder.write_bounds(made.bounds.as_ref())?;
-        for (name, contents) in extras {
-            folder.write(name, |to| to.write_all(contents))?;
-        }
-        if estimated.of_planes {
-            folder.write("radius_functions.csv", |to| write_radius_functions(times, &curves, to))?;
-        }
-        folder.write("report.html", |to| estimated.write_page(to))?;
-        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+        let folder = Folder(target.begin()?);
+        // The table of the motion is as long to write as all the rest.
+        let motion =
+            || folder.write("motion.csv", |to| write_estimated_motion(times, &data.estimate, palms, to));
+        let rest = || {
+            folder.write("contact_curves.csv", |to| write_contact_curves(times, &curves, to))?;
+            folder.write_bounds(made.bounds.as_ref())?;
+            for (name, contents) in extras {
+                folder.write(name, |to| to.write_all(contents))?;
+            }
+            if estimated.of_planes {
+                folder.write("radius_functions.csv", |to| write_radius_functions(times, &curves, to))?;
+            }
+            folder.write("report.html", |to| estimated.write_page(to))?;
+            folder.write("summary.json", |to| writeln!(to, "{figures:#}"))
+        };
+        let (motion, rest) = thread::scope(|scope| {
+            let motion = scope.spawn(motion);
+            let rest = rest();
+            (motion.join().unwrap_or_else(|panic| resume_unwind(panic)), rest)
+        });
+        motion.and(rest)?;
         folder.commit()
     })?;
     Ok(figures)
@@ -66,7 +78,7 @@ pub(crate) fn write_touch_folder(
     (page, figures): (&FiguresPage, &Value),
 ) -> Result<(), CliError> {
     while_writing(|| {
-        let mut folder = Folder(target.begin()?);
+        let folder = Folder(target.begin()?);
         folder.write("motion.csv", |to| write_motion(times, motion, to))?;
         folder.write_bounds(bounds)?;
         folder.write("report.html", |to| write_figures_page(page, to))?;
@@ -84,7 +96,7 @@ pub(crate) fn write_contact_folder(
     figures: &Value,
 ) -> Result<(), CliError> {
     while_writing(|| {
-        let mut folder = Folder(target.begin()?);
+        let folder = Folder(target.begin()?);
         folder.write("log.csv", |to| write_contact_log(&run.log, to))?;
         for (name, contents) in extras {
             folder.write(name, |to| to.write_all(contents))?;
@@ -102,7 +114,7 @@ pub(crate) fn write_files_folder(
     figures: &Value,
 ) -> Result<(), CliError> {
     while_writing(|| {
-        let mut folder = Folder(target.begin()?);
+        let folder = Folder(target.begin()?);
         for (name, contents) in files {
             folder.write(name, |to| to.write_all(contents))?;
         }
@@ -119,7 +131,7 @@ pub(crate) fn write_bounds_folder(
     figures: &Value,
 ) -> Result<(), CliError> {
     while_writing(|| {
-        let mut folder = Folder(target.begin()?);
+        let folder = Folder(target.begin()?);
         folder.write_mesh(LOWER, "inside the object; metres", made.lower.as_ref())?;
         folder.write_mesh(UPPER, "around the object; metres", made.upper.as_ref())?;
         folder.write_marks(made)?;
@@ -147,7 +159,7 @@ struct Folder(OutputFolder);
 
 impl Folder {
     fn write(
-        &mut self,
+        &self,
         name: &str,
         contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), CliError> {
@@ -155,7 +167,7 @@ impl Folder {
         Ok(self.0.write(name, |to| contents(&mut Checked(to)))?)
     }
 
-    fn write_bounds(&mut self, bounds: Option<&BoundsResult>) -> Result<(), CliError> {
+    fn write_bounds(&self, bounds: Option<&BoundsResult>) -> Result<(), CliError> {
         let (lower, upper) = bounds.map_or((None, None), |b| (b.lower.as_ref(), b.upper.as_ref()));
         self.write_mesh(LOWER, "inside the object; metres, body axes", lower)?;
         self.write_mesh(UPPER, "around the object; metres, body axes", upper)?;
@@ -167,12 +179,12 @@ impl Folder {
     }
 
     /// What each contact is on, where something is not smooth.
-    fn write_marks(&mut self, bounds: &BoundsResult) -> Result<(), CliError> {
+    fn write_marks(&self, bounds: &BoundsResult) -> Result<(), CliError> {
         let Some(features) = bounds.not_smooth() else { return Ok(()) };
         self.write(MARKS, |to| to.write_all(&features.table()))
     }
 
-    fn write_mesh(&mut self, name: &str, comment: &str, mesh: Option<&TriangleMesh>) -> Result<(), CliError> {
+    fn write_mesh(&self, name: &str, comment: &str, mesh: Option<&TriangleMesh>) -> Result<(), CliError> {
         mesh.map_or(Ok(()), |mesh| self.write(name, |to| write_ply(mesh, comment, to)))
     }
 

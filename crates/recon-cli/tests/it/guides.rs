@@ -155,13 +155,27 @@ fn help_is_short_or_long_and_shells_and_manuals_know_all_commands() {
 }
 
 #[test]
-fn quiet_leaves_results_and_errors() {
+fn quiet_leaves_errors_and_answers_that_stand_nowhere_else() {
     let scratch = scratch_with_log("quiet");
     let noise = ["--contact-noise", "1e-6", "--force-noise", "1e-4"];
     let words = [&["follow", "log.csv", "--scene", "scene.toml"], &noise[..]].concat();
     let (loud, quiet) = (scratch.run(&words), scratch.run(&[&words[..], &["--quiet"]].concat()));
     assert!(!loud.stderr.is_empty() && quiet.stderr.is_empty(), "{}", quiet.stderr);
     assert_eq!((loud.stdout, loud.code), (quiet.stdout, quiet.code));
+    // What stands in files is not told of, unless a program asks.
+    for words in [
+        "init start",
+        "simulate scene.toml -o again.csv",
+        "bounds start/contacts.csv -o bounds",
+        "check bounds",
+    ] {
+        let words: Vec<_> = words.split(' ').collect();
+        let quiet = scratch.run(&[&words[..], &["-q"]].concat());
+        let told = (quiet.code, quiet.stdout.as_str(), quiet.stderr.as_str());
+        assert_eq!(told, (Some(0), "", ""), "{words:?}");
+    }
+    assert!(scratch.run(&["bounds", "start/contacts.csv", "-q"]).stdout.contains("lower bound"));
+    assert!(scratch.run(&["check", "bounds", "-q", "--json"]).stdout.starts_with('{'));
     let wrong = scratch.run(&["-q", "check", "nowhere"]);
     assert!(wrong.code == Some(3) && !wrong.stderr.is_empty());
 }

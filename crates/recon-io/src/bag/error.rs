@@ -170,7 +170,7 @@ pub enum BagErrorKind {
          mapping, or record /tf and /tf_static"
     )]
     UnknownFrame {
-        /// What is in it: a topic or a key.
+        /// What is in it: a topic or a palm.
         asked: String,
         /// The frame.
         frame: String,

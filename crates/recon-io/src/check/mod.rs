@@ -23,7 +23,9 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader};
+use std::panic::resume_unwind;
 use std::path::Path;
+use std::thread;
 
 /// Checks a folder of results again, by its files alone: that they are those that recon wrote, that meshes are closed and
 /// turned one way, bounds convex, as large as stated and the lower one inside the upper one, that all numbers are finite,
@@ -83,14 +85,17 @@ pub fn check_unwritten(
 
 /// Checks the contents of files in a folder, whoever wrote them.
 pub(crate) fn certify(folder: &Path, names: &[String]) -> Result<Vec<String>, Vec<Fault>> {
-    let mut found = Found::default();
-    for file in names.iter().filter(|name| *name != MANIFEST) {
-        if let Err(error) = found.read(folder, file) {
-            found.faults.push(Fault::Unreadable { file: file.clone(), what: error.to_string() });
-        }
-    }
+    let files = || names.iter().filter(|name| *name != MANIFEST);
+    // The table of a motion is as long to read as all the rest.
+    let found = thread::scope(|scope| {
+        let motion = scope.spawn(|| Found::of(folder, files().filter(|name| *name == MOTION)));
+        let rest = Found::of(folder, files().filter(|name| *name != MOTION));
+        motion.join().unwrap_or_else(|panic| resume_unwind(panic)).with(rest)
+    });
     found.certificate()
 }
+
+const MOTION: &str = "motion.csv";
 
 const SUMMARY: &str = "summary.json";
 /// An approximation that need not close between contacts, if the summary says so.
@@ -112,6 +117,24 @@ struct Found {
 }
 
 impl Found {
+    fn of<'a>(folder: &Path, files: impl Iterator<Item = &'a String>) -> Self {
+        let mut found = Self::default();
+        for file in files {
+            if let Err(error) = found.read(folder, file) {
+                found.faults.push(Fault::Unreadable { file: file.clone(), what: error.to_string() });
+            }
+        }
+        found
+    }
+
+    /// What was read of the table of a motion, with what was read of other files.
+    fn with(self, rest: Self) -> Self {
+        let Self { relied_on, mut held, mut faults, .. } = self;
+        held.extend(rest.held);
+        faults.extend(rest.faults);
+        Self { relied_on, held, faults, ..rest }
+    }
+
     fn read(&mut self, folder: &Path, file: &str) -> io::Result<()> {
         let open = || Ok::<_, io::Error>(BufReader::new(File::open(folder.join(file))?));
         let extension = Path::new(file).extension().and_then(|e| e.to_str()).unwrap_or_default();
@@ -123,7 +146,7 @@ impl Found {
                 }
                 Err(fault) => self.faults.push(fault),
             },
-            ("motion.csv", _) => match table::numbers(file, open()?, |row| self.relied_on.count(row))? {
+            (MOTION, _) => match table::numbers(file, open()?, |row| self.relied_on.count(row))? {
                 None => self.held.push(format!("{file}: all numbers are finite")),
                 Some(fault) => self.faults.push(fault),
             },

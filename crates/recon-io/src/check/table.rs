@@ -49,6 +49,7 @@ pub(super) fn numbers(
     let mut text = String::new();
     from.read_line(&mut text)?;
     let columns: Vec<String> = text.trim_end().split(',').map(str::to_owned).collect();
+    let musts: Vec<Option<Must>> = columns.iter().map(|column| must(column)).collect();
     let (mut line, mut row) = (1, Vec::with_capacity(columns.len()));
     loop {
         text.clear();
@@ -64,7 +65,7 @@ pub(super) fn numbers(
                 empty && (file == LOG || (MAY_BE_NAN.0 == file && MAY_BE_NAN.1.contains(&column)))
             };
             match cell.parse::<f64>() {
-                Ok(number) if number.is_finite() => match must(column) {
+                Ok(number) if number.is_finite() => match musts.get(k).copied().flatten() {
                     Some((must, is)) if !is(number) => {
                         let (file, column, text) = (file.to_owned(), column.to_owned(), cell.to_owned());
                         return Ok(Some(Fault::Range { file, line, column, text, must }));

@@ -71,7 +71,7 @@ impl Results {
     /// Writes the files and what is wrong with them.
     fn faults(&self, files: Vec<(String, Vec<u8>)>) -> Vec<Fault> {
         let _ = fs::remove_dir_all(&self.path);
-        let mut folder = FolderTarget::new(&self.path, &[], false).unwrap().begin().unwrap();
+        let folder = FolderTarget::new(&self.path, &[], false).unwrap().begin().unwrap();
         for (name, bytes) in &files {
             folder.write(name, |to| to.write_all(bytes)).unwrap();
         }

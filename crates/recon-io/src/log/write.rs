@@ -1,5 +1,5 @@
 use super::columns::TRUTH;
-use crate::number::exact;
+use crate::number::push_exact;
 use recon::object_dynamics::{PalmReading, SensorLog, TrueState};
 use std::io::{self, Write};
 
@@ -15,16 +15,16 @@ pub fn write_log(log: &SensorLog, mut to: impl Write) -> io::Result<()> {
     let mut row = String::new();
     for (k, sample) in log.samples().iter().enumerate() {
         row.clear();
-        row.push_str(&exact(sample.t));
+        push_exact(&mut row, sample.t);
         for (palm, columns) in sample.palms.iter().zip(&optional) {
             for value in columns.values(palm) {
                 row.push(',');
-                row.push_str(&exact(value));
+                push_exact(&mut row, value);
             }
         }
         for value in log.truth().map(|truth| true_values(&truth[k])).iter().flatten() {
             row.push(',');
-            row.push_str(&exact(*value));
+            push_exact(&mut row, *value);
         }
         writeln!(to, "{row}")?;
     }

@@ -8,6 +8,7 @@ use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Where a folder is to be written, found to be possible before anything is computed.
 #[derive(Clone, Debug)]
@@ -71,7 +72,7 @@ impl FolderTarget {
         };
         let made = fs::create_dir(&temporary).and_then(|()| Held::new(&temporary));
         let held = made.map_err(OutputError::io("create", &self.named))?;
-        Ok(OutputFolder { target: self, temporary, held, files: Vec::new() })
+        Ok(OutputFolder { target: self, temporary, held, files: Mutex::default() })
     }
 
     /// What stands there now, apart from the hidden folder of new files.
@@ -94,17 +95,17 @@ pub struct OutputFolder {
     target: FolderTarget,
     temporary: PathBuf,
     held: Held,
-    files: Vec<Entry>,
+    files: Mutex<Vec<Entry>>,
 }
 
 impl OutputFolder {
-    /// Writes one file of the folder to the disk.
+    /// Writes one file of the folder to the disk; several threads may do so at once.
     ///
     /// # Errors
     /// [`OutputError::Io`] names the file as it would have been called; [`OutputError::Collision`] when a file of that
     /// name stands there that is not recon's to replace.
     pub fn write(
-        &mut self,
+        &self,
         name: &str,
         contents: impl FnOnce(&mut Summed<BufWriter<File>>) -> io::Result<()>,
     ) -> Result<(), OutputError> {
@@ -121,9 +122,14 @@ impl OutputFolder {
         };
         let sum = write().map_err(OutputError::io("write", &self.target.named.join(name)))?;
         if name != MANIFEST {
-            self.files.push(Entry::new(name, &sum));
+            self.entries().push(Entry::new(name, &sum));
         }
         Ok(())
+    }
+
+    /// Of the files so far: a list is whole at any time, also where a thread that wrote ended in a panic.
+    fn entries(&self) -> MutexGuard<'_, Vec<Entry>> {
+        self.files.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Checks what the files hold ([`crate::check`]) and puts them in place, those of an earlier run away; everything else
@@ -132,7 +138,7 @@ impl OutputFolder {
     /// # Errors
     /// [`OutputError`], in particular [`OutputError::Certificate`]; what stood there before stands there again.
     pub fn commit(self) -> Result<(), OutputError> {
-        let names: Vec<String> = self.files.iter().map(|file| file.name.clone()).collect();
+        let names: Vec<String> = self.entries().iter().map(|file| file.name.clone()).collect();
         let fails = |faults| OutputError::Certificate {
             path: self.target.named.clone(),
             source: CheckError::Faults { faults },
@@ -143,8 +149,10 @@ impl OutputFolder {
 
     /// [`commit`](Self::commit) of files that hold anything.
     pub(crate) fn place(mut self) -> Result<(), OutputError> {
-        let manifest =
-            Manifest { recon: env!("CARGO_PKG_VERSION").to_owned(), files: std::mem::take(&mut self.files) };
+        let mut files = std::mem::take(&mut *self.entries());
+        // Whichever was complete first.
+        files.sort_by(|a, b| a.name.cmp(&b.name));
+        let manifest = Manifest { recon: env!("CARGO_PKG_VERSION").to_owned(), files };
         self.write(MANIFEST, |to| {
             serde_json::to_writer_pretty(&mut *to, &manifest)?;
             writeln!(to)

@@ -40,7 +40,7 @@ impl Drop for Scratch {
 
 /// Writes files that hold `text`.
 fn write_folder(target: &Path, names: &[&str], text: &str, force: bool) -> Result<(), OutputError> {
-    let mut folder = FolderTarget::new(target, &[], force)?.begin()?;
+    let folder = FolderTarget::new(target, &[], force)?.begin()?;
     for name in names {
         folder.write(name, |to| to.write_all(text.as_bytes()))?;
     }
@@ -129,7 +129,7 @@ fn folders_without_a_manifest_of_recon_are_foreign() {
 #[test]
 fn abandoned_results_leave_nothing() {
     let scratch = Scratch::new("abandoned");
-    let mut folder = FolderTarget::new(scratch.path("out"), &[], false).unwrap().begin().unwrap();
+    let folder = FolderTarget::new(scratch.path("out"), &[], false).unwrap().begin().unwrap();
     folder.write("a.csv", |w| w.write_all(b"half")).unwrap();
     let full = folder.write("b.csv", |_| Err(io::ErrorKind::StorageFull.into()));
     assert!(
@@ -143,7 +143,7 @@ fn abandoned_results_leave_nothing() {
     assert!(scratch.names("").is_empty(), "{:?}", scratch.names(""));
     // The same over an earlier result, which stays whole.
     write_folder(&scratch.path("out"), &["a.csv"], "one", false).unwrap();
-    let mut folder = FolderTarget::new(scratch.path("out"), &[], false).unwrap().begin().unwrap();
+    let folder = FolderTarget::new(scratch.path("out"), &[], false).unwrap().begin().unwrap();
     folder.write("a.csv", |w| w.write_all(b"half")).unwrap();
     drop(folder);
     assert_eq!((scratch.read("out/a.csv").as_str(), scratch.names("out").len()), ("one", 2));
@@ -154,7 +154,7 @@ fn what_appears_while_recon_computes_is_not_overwritten() {
     let scratch = Scratch::new("meanwhile");
     write_folder(&scratch.path("out"), &["a.csv", "b.csv"], "one", false).unwrap();
     let begun = || {
-        let mut folder = FolderTarget::new(scratch.path("out"), &[], false).unwrap().begin().unwrap();
+        let folder = FolderTarget::new(scratch.path("out"), &[], false).unwrap().begin().unwrap();
         folder.write("a.csv", |w| w.write_all(b"new")).unwrap();
         folder
     };

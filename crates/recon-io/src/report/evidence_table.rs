@@ -20,7 +20,11 @@ fn row(of: &Evidence) -> String {
     let (class, value) = match &of.value {
         EvidenceValue::Number(v) => ("number", brief(*v)),
         EvidenceValue::Count(n) => ("number", n.to_string()),
-        EvidenceValue::Text(text) => ("words", escape_text(&with_brief_numbers(text))),
+        // Several things stand below each other.
+        EvidenceValue::Text(text) => (
+            if text.contains("; ") { "words several" } else { "words" },
+            escape_text(&with_brief_numbers(text)).replace("; ", "<br>"),
+        ),
     };
     let (name, unit, meaning) = (
         escape_text(&of.name),

@@ -21,10 +21,9 @@ pub use found::{Corner, Edge, Face, FeatureKind, FeatureOptions, FeatureRun, Fea
 pub use pieces::Pieces;
 pub use polyhedron::FoundPolyhedron;
 
+use crate::halves::at_once;
 use crate::noise::{NoiseError, NoisyContact};
 use std::ops::Range;
-use std::panic::resume_unwind;
-use std::thread;
 
 impl Features {
     /// What `curves` of contacts, each in the order in which it was traced, say of corners, edges and faces.
@@ -50,12 +49,8 @@ impl Features {
             range.flat_map(of_curve).collect::<Vec<_>>()
         };
         let half = half_of(curves);
-        let runs = thread::scope(|scope| {
-            let second = scope.spawn(|| of(half..curves.len()));
-            let mut runs = of(0..half);
-            runs.extend(second.join().unwrap_or_else(|panic| resume_unwind(panic)));
-            runs
-        });
+        let (mut runs, second) = at_once(|| of(0..half), || of(half..curves.len()));
+        runs.extend(second);
         let first = join::joined(curves, runs, units.size, options);
         let runs = assign::assigned(curves, &first, &units, options);
         Ok(join::joined(curves, runs, units.size, options))

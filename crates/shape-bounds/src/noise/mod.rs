@@ -29,6 +29,7 @@ pub(crate) use traced::FEWEST;
 
 use crate::bounds::{BoundsError, Gap, ShapeBounds};
 use crate::features::FeatureOptions;
+use crate::halves::at_once;
 use chosen::ChosenWindows;
 use exact_hull::Hull;
 use exact_hull::{Intersection, Polyhedron};
@@ -157,18 +158,22 @@ impl CertainBounds {
         let singles = windows(curves, 1);
         let exact = singles.first().is_some_and(|list| nearly_exact(list, alpha, poses));
         let lists = if exact { singles } else { windows(curves, LONGEST) };
-        let upper = match certain_half_spaces(&lists, faces, [alpha, of_chosen], poses) {
+        let upper = || match certain_half_spaces(&lists, faces, [alpha, of_chosen], poses) {
             Ok(half_spaces) => match Intersection::of(&half_spaces).map_err(BoundsError::from)? {
-                Intersection::Bounded(upper) => Some(upper),
-                Intersection::Unbounded(_) => None,
+                Intersection::Bounded(upper) => Ok(Some(upper)),
+                Intersection::Unbounded(_) => Ok(None),
             },
-            Err(NoiseError::NoUpperBound) => None,
-            Err(error) => return Err(error),
+            Err(NoiseError::NoUpperBound) => Ok(None),
+            Err(error) => Err(error),
         };
-        let mut points = certain_points(&lists, alpha, poses);
-        points.extend(points_of_corners(corners, of_chosen, poses));
-        let lower =
-            if points.is_empty() { None } else { Some(Hull::of(&points).map_err(BoundsError::from)?) };
+        let lower = || {
+            let mut points = certain_points(&lists, alpha, poses);
+            points.extend(points_of_corners(corners, of_chosen, poses));
+            let hull = if points.is_empty() { None } else { Some(Hull::of(&points)) };
+            hull.transpose().map_err(BoundsError::from)
+        };
+        let (lower, upper) = at_once(lower, upper);
+        let (upper, lower) = (upper?, lower?);
         Ok(Self { lower, upper })
     }
 

@@ -3,6 +3,7 @@
 use super::model::NoiseError;
 use super::quantile;
 use super::windows::Window;
+use crate::halves::by_halves;
 use exact_hull::HalfSpace;
 use exact_hull::{Intersection, Polyhedron};
 use glam::DVec3;
@@ -12,7 +13,6 @@ const GROWTH: f64 = 1.5;
 const TRIES: usize = 24;
 /// Rounds of computing how far errors of normals can act from the bound itself; the third gains less than a hundredth.
 const ROUNDS: usize = 3;
-
 /// Quantiles for a window, so that margins hold for all together.
 #[derive(Clone, Copy)]
 struct Quantiles {
@@ -52,14 +52,14 @@ pub(super) fn certain_half_spaces(
     let size = windows.iter().map(|(w, _)| w.point.distance(centre)).fold(0.0, f64::max);
     let (mut half_spaces, mut region) = prove_region(&windows, centre, size)?;
     for _ in 0..ROUNDS {
-        let mut caps = region.caps();
-        half_spaces = windows
-            .iter()
-            .map(|(w, quantiles)| {
+        half_spaces = by_halves(&windows, |windows| {
+            let mut caps = region.caps();
+            let one = |(w, quantiles): &(Window, Quantiles)| {
                 let plane = HalfSpace { point: w.point, normal: w.normal, margin: w.offset / w.shrink };
                 w.inflated(quantiles, caps.reach(&plane, w.point))
-            })
-            .collect();
+            };
+            windows.iter().map(one).collect()
+        });
         match Intersection::of(&half_spaces) {
             Ok(Intersection::Bounded(next)) => region = next,
             _ => break,

@@ -137,12 +137,12 @@ fn changed_averages_are_those_of_the_changed_log() {
     let averages = Averages::new(&log, &options.noise, [&whole, &average], longest);
     let along = |k: usize| log.palms()[1].motion(k).pose.R_WP * (DVec3::X * by);
     let moved = averages.changed(|k, contact| match contact.palm {
-        1 => ChangeBy { c: along(k), ..ChangeBy::default() },
-        _ => ChangeBy::default(),
+        1 => Some(ChangeBy { c: along(k), ..ChangeBy::default() }),
+        _ => None,
     });
     let louder = averages.changed(|_, contact| match contact.palm {
-        1 => ChangeBy { f: contact.f * by, ..ChangeBy::default() },
-        _ => ChangeBy::default(),
+        1 => Some(ChangeBy { f: contact.f * by, ..ChangeBy::default() }),
+        _ => None,
     });
     let gain = forces(&log, |i, k, f| if i == 1 { f[k] * (1.0 + by) } else { f[k] });
     for (changed, log) in [(moved, shifted(&log, 1, by)), (louder, gain)] {

@@ -120,6 +120,6 @@ fn tell(args: &BatchArgs, console: &Console, rows: &[Row]) -> Result<Outcome, Cl
         "page": args.output.join(PAGE).to_string_lossy(),
         "rows": rows.iter().map(Row::figures).collect::<Vec<_>>(),
     });
-    console.result(&text, &figures)?;
+    console.written(&text, &figures)?;
     Ok(if good == rows.len() { Outcome::Done } else { Outcome::WithReservations })
 }

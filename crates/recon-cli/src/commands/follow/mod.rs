@@ -295,7 +295,7 @@ impl Followed {
                     "std_position_m": cm,
                     "std_velocity_m_per_s": v,
                 });
-                console.result(&format!("{}: {text}", path.display()), &figures)?;
+                console.written(&format!("{}: {text}", path.display()), &figures)?;
             }
             None => console.note(&text),
         }

@@ -63,7 +63,7 @@ pub(crate) fn run(args: &PushesArgs, console: &Console) -> Result<Outcome, CliEr
     drop(progress);
     let mut text: String = told.iter().map(|told| words::described(told, only)).collect();
     text += &written_to(Some(&args.output));
-    console.result(&text, &figures)?;
+    console.written(&text, &figures)?;
     let sure = shown.iter().all(|log| log.verdict.level == Level::Good);
     Ok(if sure { Outcome::Done } else { Outcome::WithReservations })
 }

@@ -46,7 +46,7 @@ pub(super) fn verdict(told: &Told) -> Verdict {
     Verdict {
         level: Level::Good,
         text: format!(
-            "Outline: {outline}, from {} pushes. Friction {:.3} ± {:.3}, from the {} that slide, at a slip of {:.1} mm/s; it changes by {:+.3} ± {:.3} a mm/s.",
+            "Outline: {outline}, from {} pushes. Friction {:.3} ± {:.3}, from the {} that slide, at a slip of {:.1} mm/s; it changes by {:+.3} ± {:.3} per mm/s.",
             estimate.pushes.len(),
             friction.value,
             friction.deviation,

@@ -58,7 +58,8 @@ impl<'a> PalmReader<'a> {
         match (&self.palm.frame, setup.pose) {
             (Some(frame), _) => {
                 let way = self.source.frames.way(frame, world);
-                let way = way.ok_or_else(|| self.unknown(self.key("frame"), frame, world, "frame"))?;
+                let way =
+                    way.ok_or_else(|| self.unknown(format!("palm {}", self.number), frame, world, "frame"))?;
                 Ok(way.fixed().map_or(Standing::Way(way), Standing::Fixed))
             }
             (None, Some(pose)) => Ok(Standing::Fixed(pose)),

@@ -1,6 +1,6 @@
 use super::super::columns::TRUTH;
 use super::super::write::true_values;
-use crate::number::exact;
+use crate::number::push_row;
 use recon::object_dynamics::{ContactLog, ForceChannel, LoggedPalm, TwistSource};
 use std::io::{self, Write};
 
@@ -20,12 +20,7 @@ pub fn write_contact_log(log: &ContactLog, mut to: impl Write) -> io::Result<()>
         values.push(t);
         log.palms().iter().for_each(|palm| push(palm, k, &mut values));
         values.extend(log.truth().map(|truth| true_values(&truth[k])).iter().flatten());
-        for (place, value) in values.iter().enumerate() {
-            if place > 0 {
-                row.push(',');
-            }
-            row.push_str(&exact(*value));
-        }
+        push_row(&mut row, &values);
         writeln!(to, "{row}")?;
     }
     to.flush()

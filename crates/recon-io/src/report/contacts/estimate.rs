@@ -2,7 +2,7 @@
 
 use super::super::page::Fact;
 use super::super::{Bounds, Evidence, MotionState, PalmContact, TrueShape, Verdict};
-use super::picture::{Line, Picture, Pictures, axes_of_space, per_newton};
+use super::picture::{ForceScale, Line, Picture, Pictures, axes_of_space};
 use super::space::{ShownPalm, normals, palms};
 use super::view::View;
 use crate::planar_figures::FigurePanel;
@@ -96,12 +96,12 @@ impl EstimateData {
         let view = View::onto(&normals(first.iter().map(|(surface, at)| (*surface, at))));
         let reach = self.reach();
         let forces = samples.iter().flat_map(|&k| palms.iter().filter_map(move |palm| palm.force(k)));
-        let newton = per_newton(reach, forces.map(|force| force.vector.length()));
-        Pictures::of(&samples, |k| self.picture(*k, reach, newton, &view))
+        let scale = ForceScale::new(reach, forces.map(|force| force.vector.length()));
+        Pictures::of(&samples, |k| self.picture(*k, reach, scale, &view))
     }
 
     /// What is seen at sample `k`, from back to front.
-    fn picture(&self, k: usize, reach: f64, newton: f64, view: &View) -> Picture {
+    fn picture(&self, k: usize, reach: f64, scale: ForceScale, view: &View) -> Picture {
         let p_WCm = self.estimate.states[k].p_WCm;
         let shown: Vec<ShownPalm> = self.log.palms().iter().map(|palm| shown(palm, k, p_WCm)).collect();
         let (mut lines, front) = palms(view, &shown, p_WCm, reach);
@@ -111,7 +111,7 @@ impl EstimateData {
         lines.push(Line::centre(view.place(p_WCm)));
         for palm in self.log.palms() {
             if let (Some(touch), Some(force)) = (palm.touch(k), palm.force(k)) {
-                lines.push(Line::force(view.place(touch.p_WC), view.place(force.vector), newton));
+                lines.push(Line::force(view.place(touch.p_WC), view.place(force.vector), scale));
             }
         }
         for (i, mode) in self.estimate.modes[k].iter().enumerate() {

@@ -58,7 +58,10 @@ impl EstimateData {
         let departures = self.departures().filter(|of| !of.is_empty());
         let far = departures
             .map(|of| panel("Distance from the truth", "power of ten", distances(self.log.times(), &of)));
-        motion.into_iter().chain(far).collect()
+        // Radius functions have no point where nothing is relied on.
+        let told =
+            |panel: &FigurePanel| panel.curves.iter().flat_map(|of| &of.points).any(|[_, y]| y.is_finite());
+        motion.into_iter().filter(told).chain(far).collect()
     }
 
     /// Size of the force of each palm, with the band of its noise; no number where it was not measured.

@@ -23,8 +23,10 @@ const FOOT: f64 = 26.0;
 const AXIS: f64 = 12.0;
 const BAR: f64 = 45.0;
 /// Longest arrow of a force in sizes of the object, and its head as a share of the arrow.
-const LONGEST: f64 = 0.8;
+const LONGEST: f64 = 1.0;
 const HEAD: f64 = 0.25;
+/// Times the median of all forces beyond which one is a blow, whose arrow is cut.
+const BLOW: f64 = 4.0;
 
 /// A line of a picture, in m on the plane of view.
 pub(super) struct Line {
@@ -58,18 +60,39 @@ impl Line {
         Self::new("centre", vec![at, at])
     }
 
-    /// A force on the object: an arrow that ends where it acts. `per_newton` is its length, m.
-    pub(super) fn force(at: DVec2, force: DVec2, per_newton: f64) -> Self {
-        let shaft = per_newton * force;
+    /// A force on the object: an arrow that ends where it acts.
+    pub(super) fn force(at: DVec2, force: DVec2, scale: ForceScale) -> Self {
+        let shaft = (scale.per_newton * force).clamp_length_max(scale.longest);
         let side = |turn: f64| at - HEAD * DVec2::from_angle(turn).rotate(shaft);
         Self::new("force", vec![at - shaft, at, side(0.4), at, side(-0.4)])
     }
 }
 
-/// Length of a newton, m, in pictures of an object of the size `reach` whose largest force this is.
-pub(super) fn per_newton(reach: f64, forces: impl Iterator<Item = f64>) -> f64 {
-    let largest = forces.filter(|force| force.is_finite()).fold(0.0, f64::max);
-    if largest > 0.0 { LONGEST * reach / largest } else { 0.0 }
+/// How long forces are drawn.
+#[derive(Clone, Copy)]
+pub(super) struct ForceScale {
+    /// Of a newton, m.
+    per_newton: f64,
+    /// Of any force, m.
+    longest: f64,
+}
+
+impl ForceScale {
+    /// For an object of the size `reach`, m, and forces of these sizes, N. By the largest that is no blow: beside one all others would be too short to be
+    /// seen.
+    pub(super) fn new(reach: f64, forces: impl Iterator<Item = f64>) -> Self {
+        let mut sizes: Vec<f64> = forces.filter(|force| force.is_finite() && *force > 0.0).collect();
+        sizes.sort_by(f64::total_cmp);
+        let usual = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+        let largest = sizes.into_iter().rfind(|size| *size <= BLOW * usual);
+        let longest = LONGEST * reach;
+        Self { per_newton: largest.map_or(0.0, |largest| longest / largest), longest }
+    }
+
+    /// The same for an object so many times as large.
+    pub(super) fn times(self, larger: f64) -> Self {
+        Self { per_newton: self.per_newton * larger, longest: self.longest * larger }
+    }
 }
 
 /// Where axes of the world are seen, and where gravity pulls: names and unit vectors on the picture.
@@ -241,4 +264,25 @@ fn foot(axes: &Axes, top: f64, scale: f64) -> String {
         brief_to(1, length)
     );
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_blow_leaves_the_arrows_of_other_forces_as_long_as_they_were() {
+        let shaft = |scale: ForceScale, newton: f64| {
+            let arrow = Line::force(DVec2::ZERO, DVec2::new(newton, 0.0), scale);
+            arrow.points[0].distance(arrow.points[1])
+        };
+        let forces = [0.0, 1.0, 1.5, 2.0, f64::NAN];
+        let [calm, struck] =
+            [&[][..], &[1e4]].map(|blow: &[f64]| ForceScale::new(0.1, forces.iter().chain(blow).copied()));
+        assert_eq!([1.0, 2.0].map(|of| shaft(calm, of)), [0.5 * LONGEST * 0.1, LONGEST * 0.1]);
+        assert_eq!(shaft(struck, 1.0), shaft(calm, 1.0));
+        // What would leave the picture is cut.
+        assert!((shaft(struck, 1e4) - LONGEST * 0.1).abs() < 1e-15);
+        assert_eq!(shaft(ForceScale::new(0.1, [0.0].into_iter()), 1.0), 0.0);
+    }
 }

@@ -1,7 +1,7 @@
 //! A simulated motion in the plane, as its page shows it.
 
 use super::moment::{Moment, Shown};
-use super::picture::{Line, Picture, Pictures, axes_of_plane, per_newton};
+use super::picture::{ForceScale, Line, Picture, Pictures, axes_of_plane};
 use super::spans::planar_mode_spans;
 use glam::DVec2;
 use recon::contact_kinematics::planar::{PalmSurface, RadiusFunction};
@@ -30,11 +30,11 @@ pub(super) fn shown<S: RadiusFunction>(scene: &ContactScene<S>, simulation: &Con
         turn: now.body.phi0 - first,
     };
     // In sizes of the object.
-    let newton = per_newton(1.0, instants.iter().flat_map(|now| &now.forces).map(|force| force.length()));
+    let scale = ForceScale::new(1.0, instants.iter().flat_map(|now| &now.forces).map(|force| force.length()));
     Shown {
         caption: CAPTION,
         moments: instants.iter().map(moment).collect(),
-        pictures: Pictures::of(instants, |now| picture(scene, now, newton)),
+        pictures: Pictures::of(instants, |now| picture(scene, now, scale)),
         spans: (0..scene.palms().len()).map(|palm| planar_mode_spans(simulation, palm)).collect(),
         changes: simulation.events.len(),
     }
@@ -58,7 +58,7 @@ fn slip(now: &ContactInstant, palm: usize) -> f64 {
     }
 }
 
-fn picture<S: RadiusFunction>(scene: &ContactScene<S>, now: &ContactInstant, newton: f64) -> Picture {
+fn picture<S: RadiusFunction>(scene: &ContactScene<S>, now: &ContactInstant, scale: ForceScale) -> Picture {
     let (shape, body) = (&scene.object().shape, &now.body);
     let turn = DVec2::from_angle(body.phi0);
     let at = |theta: f64| body.p_WCm + turn.rotate(shape.point(theta));
@@ -75,7 +75,7 @@ fn picture<S: RadiusFunction>(scene: &ContactScene<S>, now: &ContactInstant, new
     let across = |theta| Line::new("meridian", vec![at(theta), at(theta + PI)]);
     lines.extend([0.0, FRAC_PI_2].map(across));
     lines.push(Line::centre(body.p_WCm));
-    let arrow = |i: usize| Line::force(now.contacts[i].p_WC, now.forces[i], newton * reach);
+    let arrow = |i: usize| Line::force(now.contacts[i].p_WC, now.forces[i], scale.times(reach));
     lines.extend((0..now.forces.len()).filter(|i| now.modes[*i] != ContactMode::Off).map(arrow));
     let touching = now.modes.iter().zip(&now.contacts).filter(|(mode, _)| **mode != ContactMode::Off);
     lines.extend(touching.map(|(mode, contact)| Line::touch(*mode, contact.p_WC)));

@@ -4,7 +4,7 @@ use super::super::page::{Fact, of_body};
 use super::super::{Evidence, Verdict};
 use super::estimate::outline;
 use super::estimate_page::EstimatePage;
-use super::picture::{Line, Picture, Pictures, axes_of_plane, per_newton};
+use super::picture::{ForceScale, Line, Picture, Pictures, axes_of_plane};
 use super::plane::{PalmAt, palm};
 use super::spans::estimated_mode_spans;
 use crate::number::brief;
@@ -121,8 +121,8 @@ impl PlaneEstimateData<'_> {
         let traces = self.traces();
         let reach = self.reach();
         let forces = self.log.samples().iter().flat_map(|sample| &sample.palms);
-        let newton = per_newton(reach, forces.map(|palm| palm.force.length()));
-        Pictures::of(&samples, |k| self.picture(*k, [reach, newton], &traces))
+        let scale = ForceScale::new(reach, forces.map(|palm| palm.force.length()));
+        Pictures::of(&samples, |k| self.picture(*k, (reach, scale), &traces))
     }
 
     /// Largest distance of a contact from the centre of mass, m.
@@ -131,7 +131,12 @@ impl PlaneEstimateData<'_> {
         contacts.map(|contact| contact.p_OC.length()).fold(0.0, f64::max)
     }
 
-    fn picture(&self, k: usize, [reach, newton]: [f64; 2], traces: &[Vec<Option<&PlaneContact>>]) -> Picture {
+    fn picture(
+        &self,
+        k: usize,
+        (reach, scale): (f64, ForceScale),
+        traces: &[Vec<Option<&PlaneContact>>],
+    ) -> Picture {
         let (sample, state) = (&self.log.samples()[k], &self.estimate.states[k]);
         let surfaces = self.log.surfaces().iter().zip(&sample.palms).enumerate();
         let mut lines: Vec<Line> = surfaces
@@ -153,7 +158,7 @@ impl PlaneEstimateData<'_> {
         }
         lines.push(Line::centre(state.p_WCm));
         for now in &sample.palms {
-            lines.extend(now.p_WC.map(|p_WC| Line::force(p_WC, now.force, newton)));
+            lines.extend(now.p_WC.map(|p_WC| Line::force(p_WC, now.force, scale)));
         }
         for (now, mode) in sample.palms.iter().zip(&self.estimate.modes[k]) {
             if let Some(p_WC) = now.p_WC.filter(|_| *mode != ContactMode::Off) {

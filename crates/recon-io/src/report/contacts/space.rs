@@ -1,7 +1,7 @@
 //! A simulated motion in space, as its page shows it.
 
 use super::moment::{Moment, Shown};
-use super::picture::{Line, Picture, Pictures, axes_of_space, per_newton};
+use super::picture::{ForceScale, Line, Picture, Pictures, axes_of_space};
 use super::spans::mode_spans;
 use super::view::View;
 use glam::DVec3;
@@ -28,13 +28,13 @@ pub(super) fn shown<S: SupportFunction>(scene: &ContactScene<S>, simulation: &Co
         turn: first.map_or(0.0, |first| first.angle_between(now.state.body.R_WO)),
     };
     // In sizes of the object.
-    let newton = per_newton(1.0, instants.iter().flat_map(|now| &now.forces).map(|force| force.length()));
+    let scale = ForceScale::new(1.0, instants.iter().flat_map(|now| &now.forces).map(|force| force.length()));
     let planes = scene.palms().iter().zip(instants.first().into_iter().flat_map(|now| &now.palms));
     let view = View::onto(&normals(planes.map(|(palm, at)| (palm.surface, at))));
     Shown {
         caption: CAPTION,
         moments: instants.iter().map(moment).collect(),
-        pictures: Pictures::of(instants, |now| picture(scene, now, (newton, &view))),
+        pictures: Pictures::of(instants, |now| picture(scene, now, (scale, &view))),
         spans: (0..scene.palms().len()).map(|palm| mode_spans(simulation, palm)).collect(),
         changes: simulation.events.len(),
     }
@@ -54,7 +54,7 @@ fn slip(now: &ContactInstant, palm: usize) -> f64 {
 fn picture<S: SupportFunction>(
     scene: &ContactScene<S>,
     now: &ContactInstant,
-    (newton, view): (f64, &View),
+    (scale, view): (ForceScale, &View),
 ) -> Picture {
     let at = &now.state.body;
     let reach = reach(scene.body());
@@ -69,7 +69,7 @@ fn picture<S: SupportFunction>(
     lines.push(Line::centre(view.place(at.p_WCm)));
     for (i, mode) in now.modes.iter().enumerate().filter(|(_, mode)| **mode != ContactMode::Off) {
         let p_WC = view.place(now.contacts[i].p_WC);
-        lines.push(Line::force(p_WC, view.place(now.forces[i]), newton * reach));
+        lines.push(Line::force(p_WC, view.place(now.forces[i]), scale.times(reach)));
         lines.push(Line::touch(*mode, p_WC));
     }
     Picture { t: now.state.t, lines, axes: axes_of_space(view) }

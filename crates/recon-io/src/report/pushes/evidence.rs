@@ -28,7 +28,7 @@ pub(super) fn rows(log: &PushedLog) -> String {
     }
     if let Some(f) = told.friction {
         let [slope, deviation] = [f.by_slip.0, f.by_slip.1].map(|v| 1e-3 * v);
-        let value = format!("{slope:+.3} ± {deviation:.3} a mm/s");
+        let value = format!("{slope:+.3} ± {deviation:.3} per mm/s");
         rows.push((
             "Friction: change with slip".to_owned(),
             value,

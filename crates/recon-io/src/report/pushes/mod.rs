@@ -74,7 +74,7 @@ fn facts(log: &PushedLog) -> Vec<Fact> {
         Some(f) => {
             facts.push(("Friction coefficient", format!("{:.3} ± {:.3}", f.value, f.deviation), ""));
             facts.push(("It is told at a slip of", brief_to(2, 1e3 * f.at_slip), "mm/s"));
-            facts.push(("It changes with slip by", format!("{:+.3}", 1e-3 * f.by_slip.0), "a mm/s"));
+            facts.push(("It changes with slip by", format!("{:+.3}", 1e-3 * f.by_slip.0), "per mm/s"));
             facts.push(("Half angle of the cone", brief_to(3, f.value.atan().to_degrees()), "degrees"));
         }
         None => facts.push(("Friction coefficient", format!("above {:.2}", told.ratio_seen), "")),
