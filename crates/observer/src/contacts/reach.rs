@@ -33,7 +33,7 @@ pub(super) struct Derivatives {
 impl Residuals {
     /// None where the unknowns are beyond all numbers.
     pub(super) fn new(problem: &Problem, at: &Unknowns) -> Option<Self> {
-        let links = problem.linearise::<CONSTANTS>(at)?.links.iter().map(|link| link.residual).collect();
+        let links = problem.linearise::<CONSTANTS>(at)?.links.iter().map(|link| link.left).collect();
         let mut conditions = Vec::new();
         let nodes = &problem.nodes;
         for (j, &from) in nodes.iter().enumerate() {
@@ -85,7 +85,7 @@ impl Residuals {
         let (mut slope, mut own) = (0.0, 0.0);
         for (link, by) in equations.links.iter().zip(&by.links) {
             let weighted = link.information * by;
-            slope += weighted.dot(&link.residual);
+            slope += weighted.dot(&link.left);
             own += weighted.dot(by);
         }
         for (condition, by) in self.conditions.iter().zip(&by.conditions) {

@@ -43,6 +43,9 @@ pub(super) struct Contact {
     pub(super) mode: ContactMode,
     /// Of how many samples it is as good as the mean.
     pub(super) samples: f64,
+    /// Impulses through it before and after its sample, N s, whose moments are off by what it is read beside where it is.
+    pub(super) J_before: DVec3,
+    pub(super) J_after: DVec3,
 }
 
 /// Forces of all palms and their moments about the origin, or an integral of them.
@@ -112,6 +115,8 @@ impl Contact {
             planar,
             mode: ContactMode::Slide,
             samples: 1.0,
+            J_before: DVec3::ZERO,
+            J_after: DVec3::ZERO,
         }
     }
 
@@ -206,6 +211,16 @@ impl Record {
         let mut intervals = intervals(&times, felt, noise);
         impulses::add(log, &contacts, noise, (square / count as f64).sqrt(), &mut intervals);
         let wrenches = contacts.iter().map(wrench).collect();
+        for (k, interval) in intervals.iter().enumerate() {
+            let after: Vec<usize> = contacts[k + 1].iter().map(|contact| contact.palm).collect();
+            for contact in &mut contacts[k] {
+                contact.J_after = match sampled[contact.palm] {
+                    true => contact.f * interval.h,
+                    false if after.contains(&contact.palm) => impulses::over(log, contact.palm, k + 1),
+                    false => DVec3::ZERO,
+                };
+            }
+        }
         let all_impulses = sampled.iter().all(|sampled| !sampled);
         let by_samples = sampled.iter().all(|sampled| *sampled);
         let samples = (0..times.len()).collect();

@@ -248,12 +248,20 @@ impl Record {
             let all = || around.clone().map(|k| &self.contacts[k][i]).zip(&weights);
             let of = |of: fn(&Contact) -> DVec3| all().map(|(c, weight)| of(c) * *weight).sum::<DVec3>();
             let c = of(|c| c.c);
+            // Of the sum of the errors under an impulse as much as the mean's own error tells.
+            let impulse = |part: Range<usize>| {
+                let inside = around.clone().zip(&weights).filter(|(k, _)| part.contains(k));
+                inside.map(|(k, weight)| self.contacts[k][i].J_after * (*weight * samples)).sum::<DVec3>()
+            };
+            let middle = window.middle();
             Contact {
                 c,
                 n: of(|c| c.n).normalize_or(contact.n),
                 u: contact.u + contact.W.cross(c - contact.c),
                 f: of(|c| c.f),
                 samples,
+                J_before: impulse(window.own.start..middle),
+                J_after: impulse(middle..window.own.end),
                 ..*contact
             }
         };
