@@ -8,11 +8,12 @@ use super::equations::{Row, Split};
 use super::link::LinkNoise;
 use super::noise::WrenchNoise;
 use super::problem::Problem;
-use super::record::Contact;
+use super::record::{Contact, Record};
 use super::rows::Rows;
 use super::state::{Motion, Tangent, Turn, tangent};
+use super::windows::Window;
 use glam::DVec3;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 /// A condition that tells of a contact by which the moment over a link is off.
 #[derive(Clone, Copy, Debug)]
@@ -20,8 +21,39 @@ pub(super) struct Foot<const P: usize> {
     /// The condition in its deviation, by the motions at both ends of the link and the body, and its value.
     pub(super) row: Split<P>,
     pub(super) value: f64,
-    /// What the motion at the end of the link is off by for each of its deviations.
+    /// What moment over the link is off by for each of its deviations, and the motion at the end of it.
+    pub(super) moment: Share,
     pub(super) by: Tangent,
+}
+
+/// A share of what the error of a contact does: that of one of the two links over which its impulses are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Share {
+    pub(super) moment: DVec3,
+    /// How often the square of it is its variance: both links have the same error, which counts as two.
+    times: f64,
+}
+
+impl Share {
+    pub(super) fn covariance(&self, deviation: f64) -> Matrix3<f64> {
+        let column = Vector3::from(self.moment * deviation);
+        column * column.transpose() * self.times
+    }
+}
+
+impl Contact {
+    /// Of a contact that is beside where it was read by `foot`, over the link with the impulse `J`, of those that it has.
+    pub(super) fn share(&self, foot: DVec3, J: DVec3) -> Share {
+        let all = (self.J_before + self.J_after).length();
+        let times = if J == DVec3::ZERO { 1.0 } else { all / J.length() };
+        Share { moment: foot.cross(J), times }
+    }
+
+    /// Covariance of the moment over a link, whose contact has the noise `deviation`, m, by how far it may be beside where it was read.
+    fn unsure(&self, J: DVec3, deviation: f64) -> Matrix3<f64> {
+        let along = self.tangents().into_iter().take(self.freedoms());
+        along.map(|tangent| self.share(tangent, J).covariance(deviation / self.samples.sqrt())).sum()
+    }
 }
 
 /// What conditions tell of the moment over a link.
@@ -33,11 +65,10 @@ pub(super) struct Told {
 }
 
 impl Told {
-    /// By `value` deviations of a condition, each of which is `by` of the moment.
-    pub(super) fn add(&mut self, by: DVec3, value: f64) {
-        self.moment += by * value;
-        let column = nalgebra::Vector3::from(by);
-        self.explained.ger(1.0, &column, &column, 1.0);
+    /// By `value` deviations of a condition, each of which is a share of the moment.
+    pub(super) fn add(&mut self, share: &Share, value: f64) {
+        self.moment += share.moment * value;
+        self.explained += share.covariance(1.0);
     }
 
     /// What the motion at the end of a link of duration `h` is off by.
@@ -67,7 +98,7 @@ impl Problem<'_> {
             cost += rows.cost();
             let J = self.shared(contact, &impulse);
             if J != DVec3::ZERO {
-                rows.feet().for_each(|(foot, value)| told.add(foot.cross(J), value));
+                rows.feet().for_each(|(foot, value)| told.add(&contact.share(foot, J), value));
             }
         }
         cost
@@ -84,14 +115,16 @@ impl Problem<'_> {
         k: usize,
         motion: &Motion,
         body: &super::body::Body,
-        mut visit: impl FnMut(Row<P>, DVec3),
+        mut visit: impl FnMut(Row<P>, Share),
     ) {
         let before = |contact: &Contact| self.shared(contact, |contact| contact.J_before);
         if self.record.contacts[k].iter().all(|contact| before(contact) == DVec3::ZERO) {
             return;
         }
         let turn = body.turn(motion.q, motion.L);
-        self.rows(k, motion, &turn, body, |row, contact, foot| visit(row, foot.cross(before(contact))));
+        self.rows(k, motion, &turn, body, |row, contact, foot| {
+            visit(row, contact.share(foot, before(contact)))
+        });
     }
 
     /// Noise of a link, of whose moment conditions tell that much.
@@ -105,5 +138,29 @@ impl Problem<'_> {
         let mut moment = noise.white.fixed_view_mut::<3, 3>(3, 3);
         moment -= told.explained;
         LinkNoise::new(&noise, after)
+    }
+}
+
+impl Record {
+    /// Of moments over its links the noise that the errors of contacts averaged over windows of `raw` make, in place of what those of its samples make from one
+    /// node to the next: the mean of a window tells the sum of its errors, and what is left of them goes to the link after it.
+    pub(super) fn share_errors(&mut self, raw: &Self, windows: &[Window]) {
+        let deviation = self.deviation;
+        let of_sample = |k: usize| -> Matrix3<f64> {
+            raw.contacts[k].iter().map(|contact| contact.unsure(contact.J_after, deviation)).sum()
+        };
+        for (j, pair) in windows.windows(2).enumerate() {
+            let [own, next] = [&self.contacts[j], &self.contacts[j + 1]];
+            let removed = (pair[0].middle()..pair[1].middle()).map(of_sample).sum::<Matrix3<f64>>();
+            let mut change = pair[0].own.clone().map(of_sample).sum::<Matrix3<f64>>() - removed;
+            for contact in own {
+                change += contact.unsure(contact.J_after, deviation)
+                    - contact.unsure(contact.J_before + contact.J_after, deviation);
+            }
+            change +=
+                next.iter().map(|contact| contact.unsure(contact.J_before, deviation)).sum::<Matrix3<f64>>();
+            let mut moment = self.intervals[j].noise.white.fixed_view_mut::<3, 3>(3, 3);
+            moment += change;
+        }
     }
 }

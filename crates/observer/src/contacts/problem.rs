@@ -2,7 +2,7 @@
 
 use super::body::{Body, CONSTANTS};
 use super::equations::{Equations, LinkEquation, NodeEquations, Row, Split};
-use super::feet::{Foot, Told, at_end};
+use super::feet::{Foot, Share, Told, at_end};
 use super::flow::{Carried, Transition};
 use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::plane;
@@ -234,7 +234,7 @@ impl Problem<'_> {
                 let motion = moved.kicked(&r, self.share(j));
                 let turn = after.turn(motion.q, motion.L);
                 cost += self.rows_cost(self.nodes[j], (&motion, &turn), |contact| contact.J_after, &mut told);
-                self.feet_after::<0>(end, &next, &after, |row, by| told.add(by, row.value));
+                self.feet_after::<0>(end, &next, &after, |row, by| told.add(&by, row.value));
             }
             let left = r - told.at_end(carried.after, &carried.turn);
             let noise = self.link_noise(&noise, (carried.motion.p, carried.after), &told)?;
@@ -418,15 +418,16 @@ impl Problem<'_> {
     ) {
         let motion = self.split(j, carried, at);
         let turn = at.body.turn(motion.q, motion.L);
-        let mut tell = |row: Split<P>, value: f64, by: DVec3| {
-            if by != DVec3::ZERO {
-                feet.push(Foot { row, value, by: at_end(by, carried.after, &carried.turn) });
+        let mut tell = |row: Split<P>, value: f64, moment: Share| {
+            if moment.moment != DVec3::ZERO {
+                let by = at_end(moment.moment, carried.after, &carried.turn);
+                feet.push(Foot { row, value, moment, by });
             }
         };
         self.rows(self.nodes[j], &motion, &turn, &at.body, |row, contact, foot| {
             let (own, after) = self.split_row(j, carried, &row);
             all.add_split(j, &own, &after);
-            let by = foot.cross(self.shared(contact, |contact| contact.J_after));
+            let by = contact.share(foot, self.shared(contact, |contact| contact.J_after));
             tell(Split { own: own.tangent(), next: tangent(&after), body: own.by_body }, own.value, by);
         });
         self.feet_after(self.nodes[j + 1], &at.motions[j + 1], &at.body, |row: Row<P>, by| {
@@ -445,7 +446,7 @@ impl Problem<'_> {
         feet: Vec<Foot<P>>,
     ) -> Option<LinkEquation<P>> {
         let mut told = Told::default();
-        feet.iter().for_each(|foot| told.add(parts(&foot.by)[2], foot.value));
+        feet.iter().for_each(|foot| told.add(&foot.moment, foot.value));
         let noise = self.link_noise(noise, (carried.motion.p, carried.after), &told)?;
         let residual = at.motions[j + 1].from(&carried.motion);
         Some(LinkEquation {

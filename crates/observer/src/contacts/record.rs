@@ -88,6 +88,8 @@ pub(super) struct Record {
     pub(super) misread: Vec<Misread>,
     /// Deviation of the mean of what they scatter by along y, m: of the plane's place, where all is in one.
     pub(super) across: f64,
+    /// Deviation of a contact at a sample in each direction along its palm, m.
+    pub(super) deviation: f64,
 }
 
 impl Contact {
@@ -235,6 +237,7 @@ impl Record {
             by_samples,
             misread,
             across: across.sqrt() / count as f64,
+            deviation: noise.contact,
         })
     }
 

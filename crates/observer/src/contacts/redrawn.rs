@@ -6,13 +6,14 @@
 //! of Bardsley and others, 2014, without its weights).
 
 use super::body::CONSTANTS;
+use super::feet::Share;
 use super::problem::{Problem, Unknowns};
 use super::record::{Contact, Interval, Record};
 use super::samples::deviations;
 use super::solve::{Covariances, Solved, solve};
 use crate::random::Normal;
 use glam::DVec3;
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
 
 /// Deviations of logarithms of constants, and of turns in rad, up to which nothing is looked at: what is beyond first order adds a hundredth to a
 /// variance there.
@@ -85,18 +86,26 @@ impl Record {
         let mut record = self.clone();
         // A contact that is off is so in its condition and in the moments of impulses.
         let mut moments = vec![Shared::default(); self.intervals.len() + 1];
-        for (k, contact) in record.contacts.iter_mut().enumerate().flat_map(|(k, of)| of.iter_mut().map(move |c| (k, c))) {
+        for (k, contact) in
+            record.contacts.iter_mut().enumerate().flat_map(|(k, of)| of.iter_mut().map(move |c| (k, c)))
+        {
             let before = k.checked_sub(1).map(|before| (before, contact.J_before));
             let impulses = before.into_iter().chain([(k, contact.J_after)]);
             for (tangent, deviation) in contact.redraw(problem, random) {
                 for (k, J) in impulses.clone() {
-                    moments[k].add(tangent.cross(J), deviation, problem.noise.contact / contact.samples.sqrt());
+                    moments[k].add(
+                        &contact.share(tangent, J),
+                        deviation,
+                        problem.noise.contact / contact.samples.sqrt(),
+                    );
                 }
             }
         }
         let all_impulses = self.all_impulses;
         // What a blow does is open, unless it was measured.
-        for (interval, shared) in record.intervals.iter_mut().zip(moments).filter(|(interval, _)| all_impulses || !interval.blow) {
+        for (interval, shared) in
+            record.intervals.iter_mut().zip(moments).filter(|(interval, _)| all_impulses || !interval.blow)
+        {
             interval.redraw(&shared, random);
         }
         record
@@ -111,10 +120,9 @@ struct Shared {
 }
 
 impl Shared {
-    fn add(&mut self, by: DVec3, drawn: f64, deviation: f64) {
-        self.moment += by * drawn;
-        let column = Vector3::from(by * deviation);
-        self.covariance.ger(1.0, &column, &column, 1.0);
+    fn add(&mut self, by: &Share, drawn: f64, deviation: f64) {
+        self.moment += by.moment * drawn;
+        self.covariance += by.covariance(deviation);
     }
 }
 

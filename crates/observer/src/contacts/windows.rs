@@ -74,7 +74,7 @@ pub(super) struct Window {
 }
 
 impl Window {
-    fn middle(&self) -> usize {
+    pub(super) fn middle(&self) -> usize {
         usize::midpoint(self.own.start, self.own.end - 1)
     }
 
@@ -175,7 +175,9 @@ impl Record {
             sum * (1.0 / window.own.len() as f64)
         };
         let contacts = windows.iter().map(|window| self.smoothed(window)).collect();
-        self.picked(&middles, contacts, windows.iter().map(wrench).collect())
+        let mut averaged = self.picked(&middles, contacts, windows.iter().map(wrench).collect());
+        averaged.share_errors(self, &windows);
+        averaged
     }
 
     /// At some of its samples, with these contacts and wrenches there. What forces did in between is kept.
@@ -191,6 +193,7 @@ impl Record {
             by_samples: self.by_samples,
             misread: Vec::new(),
             across: self.across,
+            deviation: self.deviation,
         }
     }
 
@@ -212,6 +215,7 @@ impl Record {
             by_samples: self.by_samples,
             misread: Vec::new(),
             across: self.across,
+            deviation: self.deviation,
         }
     }
 
