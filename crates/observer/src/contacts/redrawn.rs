@@ -132,8 +132,10 @@ impl Contact {
         let deviation = AMOUNT * problem.noise.contact / self.samples.sqrt();
         let along = self.tangents().into_iter().take(self.freedoms());
         let moves: Vec<_> = along.map(|tangent| (tangent, deviation * random.draw())).collect();
-        self.c += moves.iter().map(|(tangent, by)| *tangent * *by).sum::<DVec3>();
-        self.u += self.n * (AMOUNT * problem.noise.floor * random.draw());
+        let moved = moves.iter().map(|(tangent, by)| *tangent * *by).sum::<DVec3>();
+        self.c += moved;
+        // Of the palm's material that is there then.
+        self.u += self.W.cross(moved) + self.n * (AMOUNT * problem.noise.floor * random.draw());
         moves
     }
 }

@@ -91,7 +91,8 @@ impl Rows {
         let mut covariance = Matrix3::identity() * (noise.floor * noise.floor);
         let deviation = noise.contact / contact.samples.sqrt();
         let mut shifts = [Vector3::zeros(); 2];
-        for (tangent, stored) in [t1, t2].into_iter().zip(&mut shifts) {
+        // In the plane none is across it: a motion that left it would make its conditions worth less.
+        for (tangent, stored) in [t1, t2].into_iter().zip(&mut shifts).take(contact.freedoms()) {
             let shift = turning.cross(tangent);
             let bend = if sticks { 0.0 } else { slip.dot(contact.shape * tangent) };
             let column = Vector3::new(shift.dot(axes[0]) + bend, shift.dot(t1), shift.dot(t2)) * deviation;
