@@ -106,7 +106,7 @@ impl Problem<'_> {
 
     /// The impulse by whose moment a contact is off as it is in its condition.
     pub(super) fn shared(&self, contact: &Contact, impulse: impl Fn(&Contact) -> DVec3) -> DVec3 {
-        if self.exact || std::env::var("NOFEET").is_ok() { DVec3::ZERO } else { impulse(contact) }
+        if self.shares { impulse(contact) } else { DVec3::ZERO }
     }
 
     /// What the conditions of the sample after a link tell of it.
@@ -145,9 +145,6 @@ impl Record {
     /// Of moments over its links the noise that the errors of contacts averaged over windows of `raw` make, in place of what those of its samples make from one
     /// node to the next: the mean of a window tells the sum of its errors, and what is left of them goes to the link after it.
     pub(super) fn share_errors(&mut self, raw: &Self, windows: &[Window]) {
-        if std::env::var("NOFEET").is_ok() {
-            return;
-        }
         let deviation = self.deviation;
         let of_sample = |k: usize| -> Matrix3<f64> {
             raw.contacts[k].iter().map(|contact| contact.unsure(contact.J_after, deviation)).sum()

@@ -65,6 +65,9 @@ pub(super) struct Problem<'a> {
     pub(super) frozen: Vec<SVector<f64, CONSTANTS>>,
     /// Whether all motion is in the plane of x and z.
     pub(super) planar: bool,
+    /// Whether the error of a contact is one in its condition and in the moments of its impulses; a search takes it for two, as from a motion that is not
+    /// the right one conditions tell none.
+    pub(super) shares: bool,
     /// What a step over each interval misses of the motion, where that is known: else none of it.
     pub(super) missed: Vec<Tangent>,
     /// What the conditions of each sample are off by beside noise, since the spin is not known that they are taken with, m/s; else nothing.
@@ -100,7 +103,7 @@ pub(super) struct Trial {
 impl Problem<'_> {
     /// The same on another record.
     pub(super) fn on<'b>(&self, record: &'b Record) -> Problem<'b> {
-        let Self { noise, floor, exact, friction, gravity, units, first, body, planar, .. } = *self;
+        let Self { noise, floor, exact, friction, gravity, units, first, body, planar, shares, .. } = *self;
         let (nodes, frozen) = (self.nodes.clone(), self.frozen.clone());
         let blurred = self.blurred.clone();
         Problem {
@@ -116,6 +119,7 @@ impl Problem<'_> {
             body,
             frozen,
             planar,
+            shares,
             missed: Vec::new(),
             blurred,
         }

@@ -110,7 +110,11 @@ impl<'a> Stage<'a> {
     /// What a search comes to.
     pub(super) fn searched(mut problem: Problem<'a>) -> Option<Self> {
         let ended = search(&mut problem)?;
-        Some(Self::at(problem, ended))
+        if problem.exact {
+            return Some(Self::at(problem, ended));
+        }
+        problem.shares = true;
+        Self::at(problem, ended).replaced(|problem, solved| fine(problem, solved.unknowns))
     }
 
     /// Of which nothing else is known.
