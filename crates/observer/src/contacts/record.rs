@@ -213,15 +213,8 @@ impl Record {
         let mut intervals = intervals(&times, felt, noise);
         impulses::add(log, &contacts, noise, (square / count as f64).sqrt(), &mut intervals);
         let wrenches = contacts.iter().map(wrench).collect();
-        for (k, interval) in intervals.iter().enumerate() {
-            let after: Vec<usize> = contacts[k + 1].iter().map(|contact| contact.palm).collect();
-            for contact in &mut contacts[k] {
-                contact.J_after = match sampled[contact.palm] {
-                    true => contact.f * interval.h,
-                    false if after.contains(&contact.palm) => impulses::over(log, contact.palm, k + 1),
-                    false => DVec3::ZERO,
-                };
-            }
+        if options.planar {
+            share(log, &intervals, &sampled, &mut contacts);
         }
         let all_impulses = sampled.iter().all(|sampled| !sampled);
         let by_samples = sampled.iter().all(|sampled| *sampled);
@@ -313,6 +306,21 @@ fn late(interval: &Interval, ends: [&Wrench; 2]) -> Matrix6<f64> {
     let blow = interval.impulse + (*ends[0] + *ends[1]) * (-0.5 * h);
     let column = six(blow.force, blow.moment) * (h / 12.0_f64.sqrt());
     column * column.transpose()
+}
+
+/// Gives contacts the impulses after them by whose moments they are off, as [`intervals`] and [`impulses::add`] count their noise.
+fn share(log: &ContactLog, intervals: &[Interval], sampled: &[bool], contacts: &mut [Vec<Contact>]) {
+    for (k, interval) in intervals.iter().enumerate() {
+        let [now, after, ..] = &mut contacts[k..] else { return };
+        for contact in now {
+            let stays = after.iter().any(|other| other.palm == contact.palm);
+            contact.J_after = match sampled[contact.palm] {
+                true => contact.f * interval.h,
+                false if stays => impulses::over(log, contact.palm, k + 1),
+                false => DVec3::ZERO,
+            };
+        }
+    }
 }
 
 pub(super) fn wrench<'a>(contacts: impl IntoIterator<Item = &'a Contact>) -> Wrench {

@@ -110,7 +110,8 @@ impl<'a> Stage<'a> {
     /// What a search comes to.
     pub(super) fn searched(mut problem: Problem<'a>) -> Option<Self> {
         let ended = search(&mut problem)?;
-        if problem.exact {
+        // In space what noise says of an inertia is counted for links whose moments conditions tell nothing of.
+        if problem.exact || !problem.planar {
             return Some(Self::at(problem, ended));
         }
         problem.shares = true;
