@@ -4,16 +4,21 @@
 //! through it is off by `e x J`: one error, and not two. What a condition says of `e` (its foot) is taken out of the moment, and a link is as
 //! much better as that is known.
 
+use super::body::Body;
 use super::equations::{Row, Split};
+use super::impulses;
 use super::link::LinkNoise;
 use super::noise::WrenchNoise;
 use super::problem::Problem;
-use super::record::{Contact, Record};
+use super::record::{Contact, Interval, Record};
 use super::rows::Rows;
+use super::search::fine;
+use super::stage::Stage;
 use super::state::{Motion, Tangent, Turn, tangent};
 use super::windows::Window;
 use glam::DVec3;
 use nalgebra::{Matrix3, Vector3};
+use object_dynamics::ContactLog;
 
 /// A condition that tells of a contact by which the moment over a link is off.
 #[derive(Clone, Copy, Debug)]
@@ -114,7 +119,7 @@ impl Problem<'_> {
         &self,
         k: usize,
         motion: &Motion,
-        body: &super::body::Body,
+        body: &Body,
         mut visit: impl FnMut(Row<P>, Share),
     ) {
         let before = |contact: &Contact| self.shared(contact, |contact| contact.J_before);
@@ -138,6 +143,34 @@ impl Problem<'_> {
         let mut moment = noise.white.fixed_view_mut::<3, 3>(3, 3);
         moment -= told.explained;
         LinkNoise::new(&noise, after)
+    }
+}
+
+/// Gives contacts the impulses after them by whose moments they are off, as their noise is counted in intervals.
+pub(super) fn share(
+    log: &ContactLog,
+    intervals: &[Interval],
+    sampled: &[bool],
+    contacts: &mut [Vec<Contact>],
+) {
+    for (k, interval) in intervals.iter().enumerate() {
+        let [now, after, ..] = &mut contacts[k..] else { return };
+        for contact in now {
+            let stays = after.iter().any(|other| other.palm == contact.palm);
+            contact.J_after = match sampled[contact.palm] {
+                true => contact.f * interval.h,
+                false if stays => impulses::over(log, contact.palm, k + 1),
+                false => DVec3::ZERO,
+            };
+        }
+    }
+}
+
+impl Stage<'_> {
+    /// With the error of a contact as one, in the plane. None where the equations are singular.
+    pub(super) fn shared(mut self) -> Option<Self> {
+        self.problem.shares = self.problem.planar && !self.problem.exact;
+        if self.problem.shares { self.replaced(|problem, at| fine(problem, at.unknowns)) } else { Some(self) }
     }
 }
 

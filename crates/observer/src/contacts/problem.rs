@@ -66,7 +66,7 @@ pub(super) struct Problem<'a> {
     /// Whether all motion is in the plane of x and z.
     pub(super) planar: bool,
     /// Whether the error of a contact is one in its condition and in the moments of its impulses; a search takes it for two, as from a motion that is not
-    /// the right one conditions tell none.
+    /// the right one conditions tell none; so it is in space, as what noise says of an inertia is counted for such links.
     pub(super) shares: bool,
     /// What a step over each interval misses of the motion, where that is known: else none of it.
     pub(super) missed: Vec<Tangent>,

@@ -1,6 +1,7 @@
 //! What the estimator reads of a log: contacts at samples, and what the forces do between them.
 
 use super::between::intervals;
+use super::feet;
 use super::impulses;
 use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::options::ContactOptions;
@@ -214,7 +215,7 @@ impl Record {
         impulses::add(log, &contacts, noise, (square / count as f64).sqrt(), &mut intervals);
         let wrenches = contacts.iter().map(wrench).collect();
         if options.planar {
-            share(log, &intervals, &sampled, &mut contacts);
+            feet::share(log, &intervals, &sampled, &mut contacts);
         }
         let all_impulses = sampled.iter().all(|sampled| !sampled);
         let by_samples = sampled.iter().all(|sampled| *sampled);
@@ -306,21 +307,6 @@ fn late(interval: &Interval, ends: [&Wrench; 2]) -> Matrix6<f64> {
     let blow = interval.impulse + (*ends[0] + *ends[1]) * (-0.5 * h);
     let column = six(blow.force, blow.moment) * (h / 12.0_f64.sqrt());
     column * column.transpose()
-}
-
-/// Gives contacts the impulses after them by whose moments they are off, as [`intervals`] and [`impulses::add`] count their noise.
-fn share(log: &ContactLog, intervals: &[Interval], sampled: &[bool], contacts: &mut [Vec<Contact>]) {
-    for (k, interval) in intervals.iter().enumerate() {
-        let [now, after, ..] = &mut contacts[k..] else { return };
-        for contact in now {
-            let stays = after.iter().any(|other| other.palm == contact.palm);
-            contact.J_after = match sampled[contact.palm] {
-                true => contact.f * interval.h,
-                false if stays => impulses::over(log, contact.palm, k + 1),
-                false => DVec3::ZERO,
-            };
-        }
-    }
 }
 
 pub(super) fn wrench<'a>(contacts: impl IntoIterator<Item = &'a Contact>) -> Wrench {

@@ -110,12 +110,7 @@ impl<'a> Stage<'a> {
     /// What a search comes to.
     pub(super) fn searched(mut problem: Problem<'a>) -> Option<Self> {
         let ended = search(&mut problem)?;
-        // In space what noise says of an inertia is counted for links whose moments conditions tell nothing of.
-        if problem.exact || !problem.planar {
-            return Some(Self::at(problem, ended));
-        }
-        problem.shares = true;
-        Self::at(problem, ended).replaced(|problem, solved| fine(problem, solved.unknowns))
+        Some(Self::at(problem, ended))
     }
 
     /// Of which nothing else is known.
@@ -125,7 +120,7 @@ impl<'a> Stage<'a> {
         Self { problem, solved, covariances, found, before, doubt, untold, against, free, others, open }
     }
 
-    fn replaced(
+    pub(super) fn replaced(
         mut self,
         solved: impl FnOnce(&mut Problem, Solved<CONSTANTS>) -> Option<Solved<CONSTANTS>>,
     ) -> Option<Self> {
