@@ -4,7 +4,7 @@ use crate::planar_common::{errors, noise_level, options, scene, times};
 use recon::object_dynamics::planar::*;
 use recon::object_dynamics::{ChannelNoise, ContactNoise};
 use recon::observer::planar::*;
-use recon::observer::{ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::{ContactNoiseLevel, ContactOptions, SensorFault, estimate_contacts};
 use recon_tests::few_or_all;
 
 const CONTACT: f64 = 1e-4;
@@ -12,9 +12,14 @@ const FORCE: f64 = 0.004;
 
 /// A second of S2 at 500 Hz with noise, changed sample by sample.
 fn log(change: impl Fn(usize, &mut PlanarSample)) -> PlanarLog {
+    drawn(5, change)
+}
+
+/// The same with other noise.
+fn drawn(seed: u64, change: impl Fn(usize, &mut PlanarSample)) -> PlanarLog {
     let (object, motion, start) = scene("S2_rotating_pair");
     let run = simulate_prescribed(&object, &motion, start, &times(500.0, 1.0), 1e-13).unwrap();
-    let noisy = PlanarNoise { contact: CONTACT, force: FORCE, torque: 0.0 }.add_to(&run.log().unwrap(), 5);
+    let noisy = PlanarNoise { contact: CONTACT, force: FORCE, torque: 0.0 }.add_to(&run.log().unwrap(), seed);
     let mut samples = noisy.samples().to_vec();
     samples.iter_mut().enumerate().for_each(|(k, sample)| change(k, sample));
     PlanarLog::new(samples, noisy.truth().map(<[_]>::to_vec)).unwrap()
@@ -55,6 +60,31 @@ fn wrong_constants_are_noticed() {
         let made = made();
         println!("{name}: {:?}", made.reliability);
         assert!(!made.reliability.is_reliable(), "{name}");
+    }
+}
+
+/// Its score is standard normal where contacts are on time, and tells a delay to first order where they are not: of 2 and 4 ms, on a body whose natural time is 64.
+#[test]
+fn late_contacts_are_told_from_those_on_time() {
+    let of = |seed: u64, late: usize| {
+        let told = drawn(seed, |_, _| {});
+        let (samples, truth) = (told.samples(), told.truth().unwrap());
+        let late_ones = samples[late..].iter().zip(samples);
+        let late_ones = late_ones.map(|(now, then)| PlanarSample { contacts: then.contacts, ..*now });
+        let log = PlanarLog::new(late_ones.collect(), Some(truth[late..].to_vec())).unwrap();
+        let made = estimate(&log, 1.0, 1.0);
+        *made.suspects.iter().find(|suspect| suspect.fault == SensorFault::ContactDelay).unwrap()
+    };
+    let runs = few_or_all(6, 20);
+    let scores: Vec<f64> = (0..runs).map(|seed| of(300 + seed, 0).score()).collect();
+    let mean = scores.iter().map(|score| score * score).sum::<f64>() / runs as f64;
+    // Chi-squared of six or of twenty is below or above that once in a thousand each.
+    let (least, most) = few_or_all((0.06, 3.75), (0.29, 2.28));
+    assert!((least..most).contains(&mean), "{scores:?}");
+    for (late, seed) in [(1, 307), (2, 308)] {
+        let (suspect, value) = (of(seed, late), late as f64 / 500.0);
+        assert!((suspect.value - value).abs() < 0.2 * value + 4.0 * suspect.deviation, "{suspect}, {value}");
+        assert!(suspect.score() > 4.75, "{suspect}, {value}: not noticed");
     }
 }
 

@@ -77,6 +77,19 @@ impl Efficiency {
         Ok(())
     }
 
+    /// With those of another one.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.runs += other.runs;
+        self.relied += other.relied;
+        self.silent += other.silent;
+        self.below += other.below;
+        self.right += other.right;
+        self.counted += other.counted;
+        self.sums.iter_mut().zip(other.sums).for_each(|(all, own)| *all += own);
+        self.microseconds += other.microseconds;
+        self.samples += other.samples;
+    }
+
     /// Cells of a row.
     pub(super) fn told(&self) -> String {
         let [least, of_two, stated, variance] = self.sums;

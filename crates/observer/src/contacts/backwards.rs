@@ -24,7 +24,13 @@ pub(super) fn backwards(problem: &mut Problem) -> Option<Ended> {
 
 impl Record {
     fn reversed(&self) -> Self {
-        let contact = |contact: &Contact| Contact { u: -contact.u, W: -contact.W, ..*contact };
+        let contact = |contact: &Contact| Contact {
+            u: -contact.u,
+            W: -contact.W,
+            J_before: contact.J_after,
+            J_after: contact.J_before,
+            ..*contact
+        };
         let interval = |of: &Interval| Interval { first: of.h * of.impulse.force - of.first, ..*of };
         Self {
             times: self.times.iter().rev().map(|t| -t).collect(),

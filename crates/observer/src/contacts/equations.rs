@@ -1,9 +1,9 @@
 //! Normal equations of a chain of nodes: what [`Problem`](super::problem::Problem) is linearised to.
 
-use super::body::Body;
+use super::feet::Foot;
 use super::flow::{Carried, Transition};
 use super::solve::Step;
-use super::state::{MOTION, Motion, Tangent, tangent};
+use super::state::{MOTION, Tangent, tangent};
 use glam::DVec3;
 use nalgebra::{SMatrix, SVector};
 
@@ -32,14 +32,52 @@ pub(super) struct Equations<const P: usize> {
 }
 
 /// A link at some unknowns.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct LinkEquation<const P: usize> {
     pub(super) residual: Tangent,
+    /// The same without what conditions tell of contacts by whose moments it is off.
+    pub(super) left: Tangent,
     /// What the motion at its node comes to, with derivatives.
     pub(super) carried: Carried<P>,
-    /// Inverse covariance of the residual, and by what of motion and body it falls, at adjusted impulses.
+    /// Inverse covariance of what is left, and by what of motion and body the residual falls, at adjusted impulses.
     pub(super) information: Transition,
     pub(super) adjusted: Carried<P>,
+    /// What tells of such contacts.
+    pub(super) feet: Vec<Foot<P>>,
+}
+
+/// Derivatives of a number by the motions at a node and the next one and by the body's constants.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Split<const P: usize> {
+    pub(super) own: Tangent,
+    pub(super) next: Tangent,
+    pub(super) body: SVector<f64, P>,
+}
+
+impl<const P: usize> Split<P> {
+    /// Adds a multiple of another one.
+    fn add(&mut self, factor: f64, other: &Self) {
+        self.own.axpy(factor, &other.own, 1.0);
+        self.next.axpy(factor, &other.next, 1.0);
+        self.body.axpy(factor, &other.body, 1.0);
+    }
+}
+
+impl<const P: usize> LinkEquation<P> {
+    /// Derivatives along `weighted` of what is left.
+    fn pulled(&self, weighted: &Tangent) -> Split<P> {
+        let mut all = self.of_residual(weighted);
+        for foot in &self.feet {
+            all.add(-foot.by.dot(weighted), &foot.row);
+        }
+        all
+    }
+
+    /// The same of the residual.
+    fn of_residual(&self, weighted: &Tangent) -> Split<P> {
+        let (own, body) = self.adjusted.pulled(weighted);
+        Split { own: -own, next: *weighted, body: -body }
+    }
 }
 
 /// A condition, linearised: its value and its derivatives by a motion (centre of mass, velocity, angular momentum, turn) and by the
@@ -130,11 +168,10 @@ impl<const P: usize> Equations<P> {
     pub(super) fn gradient_of(&self, residuals: &[Tangent]) -> Gradient<P> {
         let mut all = Gradient { motions: vec![Tangent::zeros(); self.nodes.len()], body: SVector::zeros() };
         for (j, (link, residual)) in self.links.iter().zip(residuals).enumerate() {
-            let weighted = link.information * residual;
-            let (motion, body) = link.adjusted.pulled(&weighted);
-            all.motions[j] -= motion;
-            all.motions[j + 1] += weighted;
-            all.body -= body;
+            let slope = link.pulled(&(link.information * residual));
+            all.motions[j] += slope.own;
+            all.motions[j + 1] += slope.next;
+            all.body += slope.body;
         }
         all
     }
@@ -170,36 +207,50 @@ impl<const P: usize> Equations<P> {
         }
     }
 
-    /// The link from node `i` to the next one, at whose end the motion comes to `carried` and is `next`, with the inverse covariance of the difference.
-    pub(super) fn add_link(
-        &mut self,
-        i: usize,
-        next: &Motion,
-        carried: &Carried<P>,
-        information: &Transition,
-        body: &Body,
-    ) {
-        let residual = next.from(&carried.motion);
-        let weighted = information * residual;
-        let adjusted = carried.adjusted(body, &residual);
+    /// A link after node number `j` of these.
+    pub(super) fn add_link(&mut self, j: usize, link: LinkEquation<P>) {
+        let LinkEquation { information, adjusted, .. } = &link;
+        let weighted = information * link.left;
         let (by_motion, by_body) = adjusted.pulled(information);
         let by_body = by_body.transpose();
         let (of_motion, of_body) = adjusted.pulled(&by_motion.transpose());
-        let (gradient, body_gradient) = adjusted.pulled(&weighted);
-        let cost = weighted.dot(&residual);
+        let slope = link.pulled(&weighted);
+        let cost = weighted.dot(&link.left);
         self.cost += cost;
-        let node = &mut self.nodes[i];
+        let node = &mut self.nodes[j];
         node.cost += cost;
         node.own += of_motion;
         node.next -= by_motion;
-        node.gradient -= gradient;
+        node.gradient += slope.own;
         node.body += of_body.transpose();
         self.body += adjusted.pulled(&by_body).1;
-        self.body_gradient -= body_gradient;
-        let next = &mut self.nodes[i + 1];
+        self.body_gradient += slope.body;
+        let next = &mut self.nodes[j + 1];
         next.own += information;
-        next.gradient += weighted;
+        next.gradient += slope.next;
         next.body -= by_body;
-        self.links.push(LinkEquation { residual, carried: *carried, information: *information, adjusted });
+        // Of what is left the slope is that of the residual less that of what is told: squared, two terms more.
+        for foot in &link.feet {
+            let weighted = information * foot.by;
+            let mut half = link.of_residual(&weighted);
+            link.feet.iter().for_each(|other| half.add(-0.5 * other.by.dot(&weighted), &other.row));
+            self.take_crossed(j, &foot.row, &half);
+        }
+        self.links.push(link);
+    }
+
+    /// Takes away the products of two slopes, both ways round.
+    fn take_crossed(&mut self, j: usize, a: &Split<P>, b: &Split<P>) {
+        for (a, b) in [(a, b), (b, a)] {
+            let node = &mut self.nodes[j];
+            node.own.ger(-1.0, &a.own, &b.own, 1.0);
+            node.next.ger(-1.0, &a.own, &b.next, 1.0);
+            self.nodes[j + 1].own.ger(-1.0, &a.next, &b.next, 1.0);
+            if P > 0 {
+                self.nodes[j].body.ger(-1.0, &a.own, &b.body, 1.0);
+                self.nodes[j + 1].body.ger(-1.0, &a.next, &b.body, 1.0);
+                self.body.ger(-1.0, &a.body, &b.body, 1.0);
+            }
+        }
     }
 }

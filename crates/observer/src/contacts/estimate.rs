@@ -244,7 +244,7 @@ impl Source<'_> {
         let Self { options: ContactOptions { planar, guessed_floor, noise, body, .. }, units, .. } = self;
         // Conditions of exact logs are as good as what is left of them, unless it was said what they are off by.
         let (exact, sharp) = (problem.exact, problem.exact && *guessed_floor);
-        let mut stage = Stage::searched(problem)?;
+        let mut stage = Stage::searched(problem)?.shared()?;
         if !sharp {
             stage = stage.stated()?;
         }

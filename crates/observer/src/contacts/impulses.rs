@@ -40,6 +40,11 @@ pub(super) fn force(log: &ContactLog, palm: &LoggedPalm, k: usize, noise: &Impul
     if time > 0.0 { (sum / time, f64::sqrt(variance / count)) } else { (DVec3::ZERO, 0.0) }
 }
 
+/// The impulse of a palm over the interval that ends at sample `k`, N s.
+pub(super) fn over(log: &ContactLog, palm: usize, k: usize) -> DVec3 {
+    log.palms()[palm].impulse(k).map_or(DVec3::ZERO, |J| J.vector)
+}
+
 /// Adds to `intervals` what palms whose impulses are read do over them, `spread` being how far contacts are from the origin.
 pub(super) fn add(
     log: &ContactLog,
@@ -51,7 +56,7 @@ pub(super) fn add(
     for (i, palm) in log.palms().iter().enumerate() {
         let Some(of_impulse) = read(palm, noise) else { continue };
         for (k, interval) in (1..).zip(intervals.iter_mut()) {
-            let J = palm.impulse(k).map_or(DVec3::ZERO, |J| J.vector);
+            let J = over(log, i, k);
             let at = |k: usize| contacts.get(k).and_then(|all| all.iter().find(|contact| contact.palm == i));
             let path =
                 Path::new([k.checked_sub(2).and_then(at), at(k - 1), at(k), at(k + 1)], k, log.times());

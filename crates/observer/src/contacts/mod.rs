@@ -12,6 +12,7 @@ mod elimination;
 mod equations;
 mod estimate;
 mod explanations;
+mod feet;
 mod flow;
 mod gaps;
 mod impulses;

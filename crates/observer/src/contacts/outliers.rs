@@ -229,6 +229,8 @@ mod tests {
                 planar: false,
                 mode: ContactMode::Slide,
                 samples: 1.0,
+                J_before: DVec3::ZERO,
+                J_after: DVec3::ZERO,
             }]
         };
         (0..60).map(one).collect()

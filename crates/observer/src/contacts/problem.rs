@@ -1,15 +1,15 @@
 //! Least squares over all nodes: links, contact conditions and what is known beforehand, linearised.
 
 use super::body::{Body, CONSTANTS};
-use super::equations::{Equations, Row};
+use super::equations::{Equations, LinkEquation, Row, Split};
+use super::feet::{Foot, Share, Told, at_end};
 use super::flow::{Carried, Transition};
-use super::link::LinkNoise;
 use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::plane;
-use super::record::{Record, Wrench};
+use super::record::{Contact, Record, Wrench};
 use super::rows::Rows;
 use super::solve::{Solved, Step};
-use super::state::{MOTION, Motion, Tangent, Turn, parts};
+use super::state::{MOTION, Motion, Tangent, Turn, parts, tangent};
 use crate::halves::at_once;
 use crate::rigid::exponential;
 use contact_kinematics::is_stopped;
@@ -70,6 +70,9 @@ pub(super) struct Problem<'a> {
     pub(super) frozen: Vec<SVector<f64, CONSTANTS>>,
     /// Whether all motion is in the plane of x and z.
     pub(super) planar: bool,
+    /// Whether the error of a contact is one in its condition and in the moments of its impulses; a search takes it for two, as from a motion that is not
+    /// the right one conditions tell none; so it is in space, as what noise says of an inertia is counted for such links.
+    pub(super) shares: bool,
     /// What a step over each interval misses of the motion, where that is known: else none of it.
     pub(super) missed: Vec<Tangent>,
     /// What the conditions of each sample are off by beside noise, since the spin is not known that they are taken with, m/s; else nothing.
@@ -105,7 +108,7 @@ pub(super) struct Trial {
 impl Problem<'_> {
     /// The same on another record.
     pub(super) fn on<'b>(&self, record: &'b Record) -> Problem<'b> {
-        let Self { noise, floor, exact, friction, gravity, units, first, body, planar, .. } = *self;
+        let Self { noise, floor, exact, friction, gravity, units, first, body, planar, shares, .. } = *self;
         let (nodes, frozen) = (self.nodes.clone(), self.frozen.clone());
         let blurred = self.blurred.clone();
         Problem {
@@ -121,6 +124,7 @@ impl Problem<'_> {
             body,
             frozen,
             planar,
+            shares,
             missed: Vec::new(),
             blurred,
         }
@@ -161,24 +165,24 @@ impl Problem<'_> {
             let from = self.nodes[j];
             let end = self.nodes.get(j + 1).copied().unwrap_or(from);
             if end != from + 1 {
-                self.rows(from, &carried.motion, &carried.turn, &at.body, |row| all.add(i, &row));
+                self.rows(from, &carried.motion, &carried.turn, &at.body, |row, _, _| all.add(i, &row));
             }
             let mut noise = WrenchNoise::default();
             for k in from..end {
                 self.advance(&mut carried, k, &at.body);
                 noise += self.record.intervals[k].noise;
                 if k + 1 < end {
-                    self.rows(k + 1, &carried.motion, &carried.turn, &at.body, |row| {
+                    self.rows(k + 1, &carried.motion, &carried.turn, &at.body, |row, _, _| {
                         all.add(i, &carried.at_node(&row));
                     });
                 }
             }
+            let mut feet = Vec::new();
             if end == from + 1 {
-                self.add_split((i, j), &carried, at, &mut all);
+                self.add_split((i, j), &carried, at, &mut all, &mut feet);
             }
             if end > from {
-                let information = self.link_noise(&noise, &carried)?.information(&at.body, &carried.turn);
-                all.add_link(i, &at.motions[j + 1], &carried, &information, &at.body);
+                all.add_link(i, self.linked(&noise, &carried, at, j, feet)?);
             }
         }
         Some(all)
@@ -216,10 +220,11 @@ impl Problem<'_> {
             let mut carried = Carried::<P>::new(moved, &after);
             let end = self.nodes.get(j + 1).copied().unwrap_or(self.nodes[j] + 1);
             let split = end == self.nodes[j] + 1 && j + 1 < at.motions.len();
-            let mut noise = WrenchNoise::default();
+            let (mut noise, mut told) = (WrenchNoise::default(), Told::default());
             for k in self.nodes[j]..end {
                 if !split {
-                    cost += self.rows_cost(k, &carried.motion, &carried.turn);
+                    let nothing = |_: &Contact| DVec3::ZERO;
+                    cost += self.rows_cost(k, (&carried.motion, &carried.turn), nothing, &mut told);
                 }
                 if j + 1 < at.motions.len() {
                     self.step(&mut carried, k, &after);
@@ -239,9 +244,13 @@ impl Problem<'_> {
             departures.push(r - left);
             if split {
                 let motion = moved.kicked(&r, self.share(j));
-                cost += self.rows_cost(self.nodes[j], &motion, &after.turn(motion.q, motion.L));
+                let turn = after.turn(motion.q, motion.L);
+                cost += self.rows_cost(self.nodes[j], (&motion, &turn), |contact| contact.J_after, &mut told);
+                self.feet_after::<0>(end, &next, &after, |row, by| told.add(&by, row.value));
             }
-            cost += self.link_noise(&noise, &carried)?.cost(&r, &after, &carried.turn);
+            let left = r - told.at_end(carried.after, &carried.turn);
+            let noise = self.link_noise(&noise, (carried.motion.p, carried.after), &told)?;
+            cost += noise.cost(&left, &after, &carried.turn);
             moved = next;
         }
         let unknowns = Unknowns { motions, body: after };
@@ -314,24 +323,20 @@ impl Problem<'_> {
         self.noise.floor.max(self.noise.contact * speed / length)
     }
 
-    fn link_noise<const P: usize>(&self, noise: &WrenchNoise, carried: &Carried<P>) -> Option<LinkNoise> {
-        LinkNoise::new(&self.about(noise, carried.motion.p), carried.after)
-    }
-
     /// Of the conditions of a sample.
     pub(super) fn noise_at(&self, k: usize) -> ContactNoiseLevel {
         let blurred = self.blurred.get(k).copied().unwrap_or(0.0);
         ContactNoiseLevel { floor: self.noise.floor.hypot(blurred), ..self.noise }
     }
 
-    /// The conditions of a sample at a motion there, each in its deviation.
-    fn rows<const P: usize>(
+    /// The conditions of a sample at a motion there, each in its deviation, with their contact and how far it is by that from where it was read.
+    pub(super) fn rows<const P: usize>(
         &self,
         k: usize,
         motion: &Motion,
         turn: &Turn,
         body: &Body,
-        mut visit: impl FnMut(Row<P>),
+        mut visit: impl FnMut(Row<P>, &Contact, DVec3),
     ) {
         let contacts = &self.record.contacts[k];
         if contacts.is_empty() {
@@ -341,14 +346,9 @@ impl Problem<'_> {
         let noise = self.noise_at(k);
         for contact in contacts {
             let Some(rows) = Rows::new(contact, motion, turn, &noise, self.friction) else { continue };
-            rows.whitened(motion, turn, &changes).for_each(&mut visit);
+            let whitened = rows.whitened(motion, turn, &changes).zip(rows.feet());
+            whitened.for_each(|(row, (foot, _))| visit(row, contact, foot));
         }
-    }
-
-    fn rows_cost(&self, k: usize, motion: &Motion, turn: &Turn) -> f64 {
-        let noise = self.noise_at(k);
-        let rows = |c| Rows::new(c, motion, turn, &noise, self.friction);
-        self.record.contacts[k].iter().filter_map(rows).map(|rows| rows.cost()).sum()
     }
 
     /// Share of a link's residual that the node's own sample has, if the link is one interval.
@@ -419,20 +419,57 @@ impl Problem<'_> {
         missed
     }
 
-    /// Conditions of node `j`, number `i` of the equations, with a link of one interval after it.
+    /// Conditions of node `j`, number `i` of the equations, with a link of one interval after it; those that tell of contacts by whose moments it is off
+    /// go to `feet`.
     fn add_split<const P: usize>(
         &self,
         (i, j): (usize, usize),
         carried: &Carried<P>,
         at: &Unknowns,
         all: &mut Equations<P>,
+        feet: &mut Vec<Foot<P>>,
     ) {
         let motion = self.split(j, carried, at);
         let turn = at.body.turn(motion.q, motion.L);
-        self.rows(self.nodes[j], &motion, &turn, &at.body, |row| {
+        let mut tell = |row: Split<P>, value: f64, moment: Share| {
+            if moment.moment != DVec3::ZERO {
+                let by = at_end(moment.moment, carried.after, &carried.turn);
+                feet.push(Foot { row, value, moment, by });
+            }
+        };
+        self.rows(self.nodes[j], &motion, &turn, &at.body, |row, contact, foot| {
             let (own, after) = self.split_row(j, carried, &row);
             all.add_split(i, &own, &after);
+            let by = contact.share(foot, self.shared(contact, |contact| contact.J_after));
+            tell(Split { own: own.tangent(), next: tangent(&after), body: own.by_body }, own.value, by);
         });
+        self.feet_after(self.nodes[j + 1], &at.motions[j + 1], &at.body, |row: Row<P>, by| {
+            let split = Split { own: Tangent::zeros(), next: row.tangent(), body: row.by_body };
+            tell(split, row.value, by);
+        });
+    }
+
+    /// The link after node `j`. None where its noise has no inverse.
+    fn linked<const P: usize>(
+        &self,
+        noise: &WrenchNoise,
+        carried: &Carried<P>,
+        at: &Unknowns,
+        j: usize,
+        feet: Vec<Foot<P>>,
+    ) -> Option<LinkEquation<P>> {
+        let mut told = Told::default();
+        feet.iter().for_each(|foot| told.add(&foot.moment, foot.value));
+        let noise = self.link_noise(noise, (carried.motion.p, carried.after), &told)?;
+        let residual = at.motions[j + 1].from(&carried.motion);
+        Some(LinkEquation {
+            residual,
+            left: residual - told.at_end(carried.after, &carried.turn),
+            carried: *carried,
+            information: noise.information(&at.body, &carried.turn),
+            adjusted: carried.adjusted(&at.body, &residual),
+            feet,
+        })
     }
 
     fn add_prior<const P: usize>(&self, at: &Unknowns, all: &mut Equations<P>) {

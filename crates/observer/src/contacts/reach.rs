@@ -63,7 +63,7 @@ impl Conditions {
         let (mut slope, mut own) = (0.0, 0.0);
         for (link, by) in equations.links.iter().zip(&by.links) {
             let weighted = link.information * by;
-            slope += weighted.dot(&link.residual);
+            slope += weighted.dot(&link.left);
             own += weighted.dot(by);
         }
         for ((condition, residual), by) in self.0.iter().zip(&residuals.conditions).zip(&by.conditions) {
@@ -83,7 +83,8 @@ impl Conditions {
 }
 
 impl Residuals {
-    /// Without derivatives: a constant changes readings alone, and the motion that meets them stays. None where work was stopped.
+    /// Without derivatives: a constant changes readings alone, and the motion that meets them stays. None where work was stopped, or where the unknowns are
+    /// beyond all numbers.
     pub(super) fn new(problem: &Problem, at: &Unknowns) -> Option<Self> {
         if is_stopped() {
             return None;
@@ -94,6 +95,9 @@ impl Residuals {
             conditions.extend(problem.conditions(k, motion, &turn).map(|rows| rows.residual));
         };
         let links = problem.gone_through(at, Problem::step, add);
+        // What conditions tell of the moment of a link is known where both are made.
+        let left = || Some(problem.linearise::<CONSTANTS>(at)?.links.iter().map(|link| link.left).collect());
+        let links = if problem.shares { left()? } else { links };
         Some(Self { conditions, links })
     }
 

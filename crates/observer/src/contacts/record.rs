@@ -1,6 +1,7 @@
 //! What the estimator reads of a log: contacts at samples, and what the forces do between them.
 
 use super::between::intervals;
+use super::feet;
 use super::impulses;
 use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::options::ContactOptions;
@@ -43,6 +44,9 @@ pub(super) struct Contact {
     pub(super) mode: ContactMode,
     /// Of how many samples it is as good as the mean.
     pub(super) samples: f64,
+    /// Impulses through it before and after its sample, N s, whose moments are off by what it is read beside where it is.
+    pub(super) J_before: DVec3,
+    pub(super) J_after: DVec3,
 }
 
 /// Forces of all palms and their moments about the origin, or an integral of them.
@@ -85,6 +89,8 @@ pub(super) struct Record {
     pub(super) misread: Vec<Misread>,
     /// Deviation of the mean of what they scatter by along y, m: of the plane's place, where all is in one.
     pub(super) across: f64,
+    /// Deviation of a contact at a sample in each direction along its palm, m.
+    pub(super) deviation: f64,
 }
 
 impl Contact {
@@ -112,6 +118,8 @@ impl Contact {
             planar,
             mode: ContactMode::Slide,
             samples: 1.0,
+            J_before: DVec3::ZERO,
+            J_after: DVec3::ZERO,
         }
     }
 
@@ -206,6 +214,9 @@ impl Record {
         let mut intervals = intervals(&times, felt, noise);
         impulses::add(log, &contacts, noise, (square / count as f64).sqrt(), &mut intervals);
         let wrenches = contacts.iter().map(wrench).collect();
+        if options.planar {
+            feet::share(log, &intervals, &sampled, &mut contacts);
+        }
         let all_impulses = sampled.iter().all(|sampled| !sampled);
         let by_samples = sampled.iter().all(|sampled| *sampled);
         let samples = (0..times.len()).collect();
@@ -220,6 +231,7 @@ impl Record {
             by_samples,
             misread,
             across: across.sqrt() / count as f64,
+            deviation: noise.contact,
         })
     }
 

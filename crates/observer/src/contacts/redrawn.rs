@@ -6,13 +6,14 @@
 //! of Bardsley and others, 2014, without its weights).
 
 use super::body::CONSTANTS;
+use super::feet::Share;
 use super::problem::{Problem, Unknowns};
 use super::record::{Contact, Interval, Record};
 use super::samples::deviations;
 use super::solve::{Covariances, Solved, solve};
 use crate::random::Normal;
 use glam::DVec3;
-use nalgebra::{SMatrix, SVector, Vector6};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
 
 /// Deviations of logarithms of constants, and of turns in rad, up to which nothing is looked at: what is beyond first order adds a hundredth to a
 /// variance there.
@@ -83,37 +84,75 @@ impl Record {
     /// With as much of its noise drawn once more.
     fn redrawn(&self, problem: &Problem, random: &mut Normal) -> Self {
         let mut record = self.clone();
-        for contact in record.contacts.iter_mut().flatten() {
-            contact.redraw(problem, random);
+        // A contact that is off is so in its condition and in the moments of impulses.
+        let mut moments = vec![Shared::default(); self.intervals.len() + 1];
+        for (k, contact) in
+            record.contacts.iter_mut().enumerate().flat_map(|(k, of)| of.iter_mut().map(move |c| (k, c)))
+        {
+            let before = k.checked_sub(1).map(|before| (before, contact.J_before));
+            let impulses = before.into_iter().chain([(k, contact.J_after)]);
+            for (tangent, deviation) in contact.redraw(problem, random) {
+                for (k, J) in impulses.clone() {
+                    moments[k].add(
+                        &contact.share(tangent, J),
+                        deviation,
+                        problem.noise.contact / contact.samples.sqrt(),
+                    );
+                }
+            }
         }
         let all_impulses = self.all_impulses;
         // What a blow does is open, unless it was measured.
-        for interval in record.intervals.iter_mut().filter(|interval| all_impulses || !interval.blow) {
-            interval.redraw(random);
+        for (interval, shared) in
+            record.intervals.iter_mut().zip(moments).filter(|(interval, _)| all_impulses || !interval.blow)
+        {
+            interval.redraw(&shared, random);
         }
         record
     }
 }
 
+/// What contacts do to the moment over an interval: what was drawn of it, and its covariance.
+#[derive(Clone, Copy, Default)]
+struct Shared {
+    moment: DVec3,
+    covariance: Matrix3<f64>,
+}
+
+impl Shared {
+    fn add(&mut self, by: &Share, drawn: f64, deviation: f64) {
+        self.moment += by.moment * drawn;
+        self.covariance += by.covariance(deviation);
+    }
+}
+
 impl Contact {
-    fn redraw(&mut self, problem: &Problem, random: &mut Normal) {
+    /// Gives how far it moves along each of its tangents, m.
+    fn redraw(&mut self, problem: &Problem, random: &mut Normal) -> Vec<(DVec3, f64)> {
         let deviation = AMOUNT * problem.noise.contact / self.samples.sqrt();
         let along = self.tangents().into_iter().take(self.freedoms());
-        self.c += along.map(|tangent| tangent * (deviation * random.draw())).sum::<DVec3>();
-        self.u += self.n * (AMOUNT * problem.noise.floor * random.draw());
+        let moves: Vec<_> = along.map(|tangent| (tangent, deviation * random.draw())).collect();
+        let moved = moves.iter().map(|(tangent, by)| *tangent * *by).sum::<DVec3>();
+        self.c += moved;
+        // Of the palm's material that is there then.
+        self.u += self.W.cross(moved) + self.n * (AMOUNT * problem.noise.floor * random.draw());
+        moves
     }
 }
 
 impl Interval {
-    fn redraw(&mut self, random: &mut Normal) {
-        let mut white = self.noise.white * (AMOUNT * AMOUNT);
+    fn redraw(&mut self, shared: &Shared, random: &mut Normal) {
+        let mut white = self.noise.white;
+        let mut moment = white.fixed_view_mut::<3, 3>(3, 3);
+        moment -= shared.covariance;
+        white *= AMOUNT * AMOUNT;
         let ridge = RIDGE * white.trace();
         (0..6).for_each(|i| white[(i, i)] += ridge);
         let Some(factor) = white.cholesky() else { return };
         let drawn = factor.l() * Vector6::from_fn(|_, _| random.draw());
         let force = DVec3::new(drawn[0], drawn[1], drawn[2]);
         self.impulse.force += force;
-        self.impulse.moment += DVec3::new(drawn[3], drawn[4], drawn[5]);
+        self.impulse.moment += DVec3::new(drawn[3], drawn[4], drawn[5]) + shared.moment;
         self.first += force * (0.5 * self.h);
     }
 }

@@ -21,6 +21,8 @@ pub(super) struct Rows {
     pub(super) arm: DVec3,
     /// Makes the values independent and of unit variance: lower, rows and columns that do not count are zero.
     whitening: Matrix3<f64>,
+    /// From where the contact was read to where it is, for each deviation of each of the independent values, m.
+    feet: [DVec3; 3],
 }
 
 /// Standard deviations that a contact is moved by at most.
@@ -89,7 +91,8 @@ impl Rows {
         let mut covariance = Matrix3::identity() * (noise.floor * noise.floor);
         let deviation = noise.contact / contact.samples.sqrt();
         let mut shifts = [Vector3::zeros(); 2];
-        for (tangent, stored) in [t1, t2].into_iter().zip(&mut shifts) {
+        // In the plane none is across it: a motion that left it would make its conditions worth less.
+        for (tangent, stored) in [t1, t2].into_iter().zip(&mut shifts).take(contact.freedoms()) {
             let shift = turning.cross(tangent);
             let bend = if sticks { 0.0 } else { slip.dot(contact.shape * tangent) };
             let column = Vector3::new(shift.dot(axes[0]) + bend, shift.dot(t1), shift.dot(t2)) * deviation;
@@ -101,14 +104,14 @@ impl Rows {
         }
         let whitening = whitening(&covariance, count)?;
         let residual = Vector3::from_fn(|i, _| if i < count { axes[i].dot(slip) } else { 0.0 });
-        let mut rows = Self { axes, count, residual, arm, whitening };
-        let pull = whitening.tr_mul(&(whitening * residual));
-        let foot = shifts.map(|column| -(deviation * column.dot(&pull)));
+        let [by1, by2] = shifts.map(|column| whitening * column * -deviation);
+        let values = whitening * residual;
         let farthest = FARTHEST_FOOT * deviation;
-        let length = DVec2::from(foot).length();
+        let length = DVec2::new(by1.dot(&values), by2.dot(&values)).length();
         let share = if length > farthest { farthest / length } else { 1.0 };
-        let foot = (foot[0] * t1 + foot[1] * t2) * share;
-        rows.arm += foot;
+        let feet = std::array::from_fn(|i| (by1[i] * t1 + by2[i] * t2) * share);
+        let foot = (0..3).map(|i| feet[i] * values[i]).sum::<DVec3>();
+        let mut rows = Self { axes, count, residual, arm: arm + foot, whitening, feet };
         if !sticks {
             rows.axes[0] += contact.shape * foot;
         }
@@ -128,6 +131,12 @@ impl Rows {
     /// Squared residuals in their deviations.
     pub(super) fn cost(&self) -> f64 {
         (self.whitening * self.residual).norm_squared()
+    }
+
+    /// Of each value that is independent: from where the contact was read to where it is, by a deviation of it, and the value.
+    pub(super) fn feet(&self) -> impl Iterator<Item = (DVec3, f64)> {
+        let values = self.whitening * self.residual;
+        (0..self.count).map(move |i| (self.feet[i], values[i]))
     }
 
     /// The conditions, linearised at a motion; `changes` of the angular velocity are those by the constants of the inertia.

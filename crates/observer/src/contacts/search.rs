@@ -292,6 +292,7 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: U
         first: (none, first),
         body,
         planar: options.planar,
+        shares: false,
         missed: Vec::new(),
         blurred: Vec::new(),
     }

@@ -120,7 +120,7 @@ impl<'a> Stage<'a> {
         Self { problem, solved, covariances, found, before, doubt, untold, against, free, others, open }
     }
 
-    fn replaced(
+    pub(super) fn replaced(
         mut self,
         solved: impl FnOnce(&mut Problem, Solved<CONSTANTS>) -> Option<Solved<CONSTANTS>>,
     ) -> Option<Self> {

@@ -74,7 +74,7 @@ pub(super) struct Window {
 }
 
 impl Window {
-    fn middle(&self) -> usize {
+    pub(super) fn middle(&self) -> usize {
         usize::midpoint(self.own.start, self.own.end - 1)
     }
 
@@ -175,7 +175,9 @@ impl Record {
             sum * (1.0 / window.own.len() as f64)
         };
         let contacts = windows.iter().map(|window| self.smoothed(window)).collect();
-        self.picked(&middles, contacts, windows.iter().map(wrench).collect())
+        let mut averaged = self.picked(&middles, contacts, windows.iter().map(wrench).collect());
+        averaged.share_errors(self, &windows);
+        averaged
     }
 
     /// At some of its samples, with these contacts and wrenches there. What forces did in between is kept.
@@ -191,6 +193,7 @@ impl Record {
             by_samples: self.by_samples,
             misread: Vec::new(),
             across: self.across,
+            deviation: self.deviation,
         }
     }
 
@@ -212,6 +215,7 @@ impl Record {
             by_samples: self.by_samples,
             misread: Vec::new(),
             across: self.across,
+            deviation: self.deviation,
         }
     }
 
@@ -248,12 +252,20 @@ impl Record {
             let all = || around.clone().map(|k| &self.contacts[k][i]).zip(&weights);
             let of = |of: fn(&Contact) -> DVec3| all().map(|(c, weight)| of(c) * *weight).sum::<DVec3>();
             let c = of(|c| c.c);
+            // Of the sum of the errors under an impulse as much as the mean's own error tells.
+            let impulse = |part: Range<usize>| {
+                let inside = around.clone().zip(&weights).filter(|(k, _)| part.contains(k));
+                inside.map(|(k, weight)| self.contacts[k][i].J_after * (*weight * samples)).sum::<DVec3>()
+            };
+            let middle = window.middle();
             Contact {
                 c,
                 n: of(|c| c.n).normalize_or(contact.n),
                 u: contact.u + contact.W.cross(c - contact.c),
                 f: of(|c| c.f),
                 samples,
+                J_before: impulse(window.own.start..middle),
+                J_after: impulse(middle..window.own.end),
                 ..*contact
             }
         };
