@@ -22,8 +22,6 @@ use object_dynamics::{MOST_PALMS, MassProperties};
 /// seen to lie 0.2 apart and more.
 const RATES: [f64; 3] = [0.0, 1.0, -1.0];
 const SHIFTED: [f64; 3] = [0.2, 0.3, 0.7];
-/// How many of those in space there are.
-pub(super) const STARTS: usize = 6 * SHIFTED.len();
 /// Linearisations that each may take, and after how many it is asked whether to go on; how many times as much as the best motion one may
 /// leave by then.
 const MOST: usize = 40;

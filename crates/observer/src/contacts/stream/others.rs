@@ -2,25 +2,24 @@
 //!
 //! A search looks for them once. Of a body whose inertia, or how it lies, is hardly known the readings may speak for another motion later on, far
 //! from the one that is followed: each window of such a body is tried from one other start, and what that leads to is followed as well until the
-//! readings rule one of them out. As long as there are several none is stated. Where another one turned out to be the better one, there are likely
-//! to be more: none is stated then before all starts were tried in vain, and for twice as long each time that this was not enough.
+//! readings rule one of them out. As long as there are several none is stated. Where there was one there are likely to be more: none is stated for
+//! some windows then, and for twice as many each time that this was not enough.
 
 use super::window::Window;
 use crate::contacts::body::CONSTANTS;
 use crate::contacts::problem::{Beforehand, Problem};
 use crate::contacts::record::Record;
-use crate::contacts::rivals::{STARTS, another, goes_on_beside, is_unsure};
+use crate::contacts::rivals::{another, goes_on_beside, is_unsure};
 use crate::contacts::solve::Solved;
 use glam::DQuat;
 use nalgebra::SVector;
 
 /// How many are followed at most.
 const MOST: usize = 2;
-/// Windows that must show no other motion before one is stated: after a search, which has tried all starts, and after another one was better.
-pub(super) const AFTER_SEARCH: usize = 6;
-const AFTER_WRONG: usize = STARTS;
-/// How often the latter doubles.
-const MOST_DOUBLED: usize = 8;
+/// Windows that must show no other motion before one is stated, after a search and after there was another one.
+pub(super) const ALONE: usize = 6;
+/// How often that doubles at most.
+const MOST_DOUBLED: usize = 9;
 /// Fall of chi-squared by which another one must be the better one to take its place.
 const BETTER: f64 = 1.0;
 
@@ -54,6 +53,7 @@ impl Window {
         problem: &mut Problem,
         first: Solved<CONSTANTS>,
     ) -> (Solved<CONSTANTS>, Vec<Followed>) {
+        let misled = self.misled;
         let mut best = Followed::of(problem, first);
         let mut all = Vec::new();
         for before in &self.others {
@@ -69,20 +69,19 @@ impl Window {
         if alone && unsure {
             self.looked += 1;
             let other = another(problem, &best.solved, self.looked);
+            self.misled += usize::from(other.is_some());
             all.extend(other.map(|solved| Followed::of(problem, solved)));
         }
-        let mut misled = false;
         for other in &mut all {
             if other.solved.equations.cost < best.solved.equations.cost - BETTER {
                 std::mem::swap(&mut best, other);
-                misled = true;
+                self.misled += 1;
             }
         }
         best.put(problem);
         all.retain(|other| goes_on_beside(problem, &best.solved, &other.solved));
-        if misled {
-            self.waits = AFTER_WRONG << self.misled.min(MOST_DOUBLED);
-            self.misled += 1;
+        if self.misled > misled {
+            self.waits = ALONE << (self.misled - 1).min(MOST_DOUBLED);
         }
         (best.solved, all)
     }

@@ -1,7 +1,7 @@
 //! The motion over a window of the latest samples.
 
 use super::dearer::Dearer;
-use super::others::{AFTER_SEARCH, Followed};
+use super::others::{ALONE, Followed};
 use super::sample::{ForceReading, PalmSensed, Raw, StreamPalm};
 use super::solution::{Of, Solution};
 use crate::contacts::body::{Body, CONSTANTS};
@@ -67,7 +67,7 @@ pub(super) struct Window {
     samples: VecDeque<Raw>,
     before: Option<Before>,
     /// Other motions that could not be ruled out, at the same nodes; how many starts others were looked for from, windows for which none
-    /// is stated, and how often another one was better.
+    /// is stated, and how often there was another one, or a better one.
     pub(super) others: Vec<Before>,
     pub(super) looked: usize,
     pub(super) waits: usize,
@@ -237,7 +237,7 @@ impl Window {
     fn found<'a>(&mut self, mut problem: Problem<'a>) -> Option<(Problem<'a>, Solved<CONSTANTS>, bool)> {
         self.before = None;
         self.others.clear();
-        self.waits = AFTER_SEARCH;
+        self.waits = ALONE;
         let ended = whole(&mut problem)?;
         let mut stage = Stage::at(problem, ended);
         if stage.problem.exact {
