@@ -34,6 +34,7 @@
 
 mod contact;
 
+mod halves;
 mod motion_law;
 mod palm;
 pub mod planar;
@@ -46,6 +47,7 @@ pub use contact::{
     acceleration_defect, body_normal, body_normal_rate, contact_curve_rates, contact_velocity, darboux,
     radius_rate, separation_rates,
 };
+pub use halves::at_once;
 pub use motion_law::MotionLaw;
 pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple};
 pub use stop::{Stopped, is_stopped, unless_stopped};

@@ -60,8 +60,6 @@ mod contacts;
 mod core;
 #[cfg(feature = "palms")]
 mod faults;
-#[cfg(feature = "palms")]
-mod halves;
 mod least_squares;
 #[cfg(feature = "palms")]
 pub mod planar;

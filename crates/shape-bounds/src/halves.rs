@@ -1,16 +1,6 @@
-//! Work on two cores at once.
+//! Work on a list by halves.
 
-use std::panic::resume_unwind;
-use std::thread;
-
-/// What both give, the first on a thread of its own.
-pub(crate) fn at_once<A: Send, B>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B) -> (A, B) {
-    thread::scope(|scope| {
-        let first = scope.spawn(first);
-        let second = second();
-        (first.join().unwrap_or_else(|panic| resume_unwind(panic)), second)
-    })
-}
+use contact_kinematics::at_once;
 
 /// What `of` gives of each half of `all`, one after the other.
 pub(crate) fn by_halves<T: Sync, R: Send>(all: &[T], of: impl Fn(&[T]) -> Vec<R> + Sync) -> Vec<R> {

@@ -16,9 +16,8 @@ use super::sensor_change::{Change, slopes_of_contact_noise, slopes_of_noise};
 use super::solve::{Covariances, Reduced, Solved, Step};
 use super::state::{Motion, Tangent};
 use crate::faults::{SensorFault, Suspect};
-use crate::halves::at_once;
 use crate::reliability::LARGEST_DEVIATION;
-use contact_kinematics::PalmSurface;
+use contact_kinematics::{PalmSurface, at_once};
 use glam::DVec3;
 use object_dynamics::ContactLog;
 

@@ -4,6 +4,7 @@ use super::least_model::choice_figures;
 use super::{AnyPalms, ContactRun, Estimated};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
+use recon::contact_kinematics::at_once;
 use recon_io::{
     FiguresPage, FolderTarget, MotionState, OutputFolder, TriangleMesh, estimate_summary,
     write_contact_curves, write_contact_log, write_contact_report, write_estimated_motion,
@@ -11,8 +12,6 @@ use recon_io::{
 };
 use serde_json::Value;
 use std::io::{self, Write};
-use std::panic::resume_unwind;
-use std::thread;
 
 /// A further file of a folder: its name and its contents.
 pub(crate) type Extra = (String, Vec<u8>);
@@ -58,11 +57,7 @@ pub(crate) fn write_estimate_folder(
             folder.write("report.html", |to| estimated.write_page(to))?;
             folder.write("summary.json", |to| writeln!(to, "{figures:#}"))
         };
-        let (motion, rest) = thread::scope(|scope| {
-            let motion = scope.spawn(motion);
-            let rest = rest();
-            (motion.join().unwrap_or_else(|panic| resume_unwind(panic)), rest)
-        });
+        let (motion, rest) = at_once(motion, rest);
         motion.and(rest)?;
         folder.commit()
     })?;

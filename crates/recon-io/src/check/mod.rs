@@ -19,13 +19,12 @@ use crate::TriangleMesh;
 use crate::output::manifest::{MANIFEST, Manifest, State};
 use certificate::{Outline, Surface};
 use glam::DVec2;
+use recon::contact_kinematics::at_once;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader};
-use std::panic::resume_unwind;
 use std::path::Path;
-use std::thread;
 
 /// Checks a folder of results again, by its files alone: that they are those that recon wrote, that meshes are closed and
 /// turned one way, bounds convex, as large as stated and the lower one inside the upper one, that all numbers are finite,
@@ -87,12 +86,9 @@ pub fn check_unwritten(
 pub(crate) fn certify(folder: &Path, names: &[String]) -> Result<Vec<String>, Vec<Fault>> {
     let files = || names.iter().filter(|name| *name != MANIFEST);
     // The table of a motion is as long to read as all the rest.
-    let found = thread::scope(|scope| {
-        let motion = scope.spawn(|| Found::of(folder, files().filter(|name| *name == MOTION)));
-        let rest = Found::of(folder, files().filter(|name| *name != MOTION));
-        motion.join().unwrap_or_else(|panic| resume_unwind(panic)).with(rest)
-    });
-    found.certificate()
+    let motion = || Found::of(folder, files().filter(|name| *name == MOTION));
+    let (motion, rest) = at_once(motion, || Found::of(folder, files().filter(|name| *name != MOTION)));
+    motion.with(rest).certificate()
 }
 
 const MOTION: &str = "motion.csv";

@@ -21,8 +21,8 @@ pub use found::{Corner, Edge, Face, FeatureKind, FeatureOptions, FeatureRun, Fea
 pub use pieces::Pieces;
 pub use polyhedron::FoundPolyhedron;
 
-use crate::halves::at_once;
 use crate::noise::{NoiseError, NoisyContact};
+use contact_kinematics::at_once;
 use std::ops::Range;
 
 impl Features {

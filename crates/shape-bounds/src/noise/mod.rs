@@ -29,8 +29,8 @@ pub(crate) use traced::FEWEST;
 
 use crate::bounds::{BoundsError, Gap, ShapeBounds};
 use crate::features::FeatureOptions;
-use crate::halves::at_once;
 use chosen::ChosenWindows;
+use contact_kinematics::at_once;
 use exact_hull::Hull;
 use exact_hull::{Intersection, Polyhedron};
 use lower::{certain_points, nearly_exact, points_of_corners};
