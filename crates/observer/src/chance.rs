@@ -7,11 +7,11 @@ pub(crate) fn excess(chi_squared: f64, degrees: f64) -> f64 {
 }
 
 /// Integrated correlation time of residuals in samples: the variance of a mean of them is this many times that of a mean of independent
-/// ones. Each series is in the order of time.
+/// ones. Each series is in the order of time; zeros stand where nothing is left.
 ///
-/// Twice the sum of the autocorrelation up to where it first turns negative; the lags grow in proportion, so that the cost stays that of a
-/// few dozen sums.
-pub(crate) fn lasting(series: &[Vec<f64>]) -> f64 {
+/// Twice the sum of the autocorrelation up to where it first turns negative, less what `chance` makes
+/// of it; the lags grow in proportion, so that the cost stays that of a few dozen sums.
+pub(crate) fn lasting(series: &[Vec<f64>], chance: f64) -> f64 {
     let total: f64 = series.iter().flatten().map(|e| e * e).sum();
     if total.is_nan() || total <= 0.0 {
         return 1.0;
@@ -28,7 +28,7 @@ pub(crate) fn lasting(series: &[Vec<f64>]) -> f64 {
         if lag >= longest {
             break;
         }
-        let here = correlation(lag);
+        let here = correlation(lag) - chance;
         if here <= 0.0 {
             break;
         }
@@ -52,15 +52,15 @@ mod tests {
             2.0 * ((seed >> 11) as f64 / (1u64 << 53) as f64) - 1.0
         };
         let white: [Vec<f64>; 3] = std::array::from_fn(|_| (0..20_000).map(|_| random()).collect());
-        assert!(lasting(&white) < 1.3, "{}", lasting(&white));
+        assert!(lasting(&white, 0.0) < 1.3, "{}", lasting(&white, 0.0));
         // First-order autoregression with pole a: integrated time (1 + a) / (1 - a) = 39 at a = 0.95.
         let follow = |state: &mut f64, w: &f64| {
             *state = 0.95 * *state + w;
             Some(*state)
         };
         let slow = white.map(|of| of.iter().scan(0.0, follow).collect::<Vec<_>>());
-        let found = lasting(&slow);
+        let found = lasting(&slow, 0.0);
         assert!((25.0..55.0).contains(&found), "{found}");
-        assert!((lasting(&[vec![0.0; 10]]) - 1.0).abs() < 1e-15);
+        assert!((lasting(&[vec![0.0; 10]], 0.0) - 1.0).abs() < 1e-15);
     }
 }

@@ -319,7 +319,8 @@ impl Stage<'_> {
             nodes: problem.nodes.len(),
             conditions: solved.equations.conditions,
             misfit: solved.misfit(),
-            correlation: solved.correlation(problem),
+            lasting: solved.lasting(problem),
+            unresolved: if problem.exact { 0.0 } else { log.unresolved().sqrt() },
             iterations: [*before, before + solved.iterations],
             settled: solved.settled && covariances.mended <= MENDED,
         }

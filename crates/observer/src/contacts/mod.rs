@@ -51,6 +51,7 @@ mod suspects;
 #[cfg(test)]
 mod tests;
 mod triangular;
+mod unresolved;
 mod verdict;
 mod windows;
 

@@ -151,5 +151,5 @@ fn left(problem: &Problem, solved: &Solved<CONSTANTS>) -> f64 {
         }
     }
     let misfit = problem.cost_of_log(solved) / solved.equations.conditions.max(1) as f64;
-    (misfit * lasting(&series)).sqrt()
+    (misfit * lasting(&series, 0.0)).sqrt()
 }

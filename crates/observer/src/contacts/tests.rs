@@ -14,6 +14,7 @@ mod frictionless;
 mod halves;
 mod impulses;
 mod known;
+mod lasting;
 mod mode_odds;
 mod steady;
 mod suspects;

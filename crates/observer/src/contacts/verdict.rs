@@ -29,8 +29,10 @@ pub struct ContactEvidence {
     pub conditions: usize,
     /// Squared corrections of all readings, in their deviations, over the number of conditions: about 1 when all is as stated.
     pub misfit: f64,
-    /// How far what is left is alike from sample to sample, beyond what chance makes of it: 0 of white noise, at most 0.97.
-    pub correlation: f64,
+    /// How many times the variance of independent noise that of a mean of what is left is, beyond what chance makes of it: 1 of white noise.
+    pub lasting: f64,
+    /// Deviations by which an estimate may be off since forces change faster than they are sampled: 0 where noise hides none of it.
+    pub unresolved: f64,
     /// Linearisations: coarse, all.
     pub iterations: [usize; 2],
     /// Whether less than half a standard deviation was left to gain.
@@ -82,11 +84,10 @@ impl ContactEvidence {
         (most.score().abs() > UNEXPLAINED).then_some(Reason::Fault(named))
     }
 
-    /// What all deviations are to be multiplied by: a misfit that is left is noise that was not stated, and of readings that are alike fewer count as
-    /// independent (those of a first-order autoregressive process).
+    /// What all deviations are to be multiplied by: a misfit that is left is noise that was not stated, of readings that are alike fewer count as
+    /// independent, and what is missed between samples lasts.
     pub(super) fn widening(&self) -> f64 {
-        let lasting = (1.0 + self.correlation) / (1.0 - self.correlation);
-        (self.misfit.max(1.0) * lasting).sqrt()
+        (self.misfit.max(1.0) * self.lasting).sqrt() * self.unresolved.hypot(1.0)
     }
 }
 

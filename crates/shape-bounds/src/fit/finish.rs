@@ -5,7 +5,7 @@ use super::data::Data;
 use super::family::{EllipsoidModel, HarmonicModel, Model, SuperquadricModel};
 use super::information::SquareRoot;
 use super::levenberg::Problem;
-use super::misfit::Misfit;
+use super::misfit::{Misfit, correlation};
 use super::refute::{self, Leftover};
 use super::solve::{Linearised, Solution, Spatial, undetermined};
 use super::{FitError, FitStatistics, FittedBody, ShapeFamily, ShapeFit};
@@ -39,8 +39,9 @@ impl ShapeFit {
         let root = &solution.system.root;
         let known = root.knowledge(&model.scales(data.size)).ok_or_else(|| own.open())?;
         let covariance = root.covariance().ok_or_else(|| own.open())?;
-        let noise_factor = misfit.noise_factor(data.noise_level);
-        if known.rank < model.count() || known.weakest_deviation * noise_factor > 1.0 {
+        let (noise_factor, widening) =
+            (misfit.noise_factor(data.noise_level), misfit.widening(data.noise_level));
+        if known.rank < model.count() || known.weakest_deviation * widening > 1.0 {
             return Err(own.open());
         }
         let refuted = own.check(&body, &misfit).err();
@@ -50,8 +51,9 @@ impl ShapeFit {
             residual: misfit.residual,
             worst: worst(solution),
             noise_factor,
+            correlation: misfit.correlation,
             condition: known.condition,
-            weakest_deviation: known.weakest_deviation * noise_factor,
+            weakest_deviation: known.weakest_deviation * widening,
             active_constraints: *held,
             iterations: solution.iterations,
         };
@@ -59,7 +61,7 @@ impl ShapeFit {
             is_exact: misfit.is_exact(),
             refuted,
             family,
-            covariance: covariance * noise_factor.powi(2),
+            covariance: covariance * widening.powi(2),
             statistics,
             information_criterion: misfit.criterion(data.noise_level),
             names: (0..model.count()).map(|i| model.name(i)).collect(),
@@ -162,6 +164,7 @@ pub(super) fn misfit(solution: &Solution, data: &Data) -> Misfit {
         log_determinants: contacts.iter().map(|c| c.log_determinant).sum(),
         residual: f64::INFINITY,
         size: data.size,
+        correlation: correlation(contacts.iter().map(|c| DVec3::from(c.residual)), 3),
     }
 }
 

@@ -16,6 +16,9 @@ pub struct FitStatistics {
     pub worst: (usize, f64),
     /// Estimated common factor of the noise's standard deviations; 1 where the stated noise is taken as it is.
     pub noise_factor: f64,
+    /// How far residuals are alike from one contact to the next, beyond what chance makes of it: 0 of independent noise, at most 0.97. The
+    /// covariance is wider by it.
+    pub correlation: f64,
     /// Condition number of the least-squares problem in parameters relative to their natural sizes.
     pub condition: f64,
     /// Standard deviation of the least determined combination of parameters, relative to the size of the data.

@@ -3,7 +3,7 @@
 use super::*;
 
 /// A log with the normal forces alone.
-fn normal_only(log: &ContactLog) -> ContactLog {
+pub(super) fn normal_only(log: &ContactLog) -> ContactLog {
     let one = |(i, record): (usize, PalmRecord)| {
         let palm = &log.palms()[i];
         let along = |k: usize| Some(palm.force(k)?.vector.dot(palm.touch(k)?.n.get()));

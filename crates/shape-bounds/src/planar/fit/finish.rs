@@ -36,22 +36,23 @@ impl OutlineFit {
         let root = &own.solution.system.root;
         let known = root.knowledge(&own.problem.scales()).ok_or_else(|| own.open())?;
         let covariance = root.covariance().ok_or_else(|| own.open())?;
-        let noise_factor = misfit.noise_factor(level);
-        if known.rank < misfit.parameters || known.weakest_deviation * noise_factor > 1.0 {
+        let (noise_factor, widening) = (misfit.noise_factor(level), misfit.widening(level));
+        if known.rank < misfit.parameters || known.weakest_deviation * widening > 1.0 {
             return Err(own.open());
         }
         own.check(&body, &misfit)?;
         Ok(Self {
             family,
-            covariance: covariance * noise_factor.powi(2),
+            covariance: covariance * widening.powi(2),
             statistics: FitStatistics {
                 chi_squared: misfit.chi_squared,
                 degrees_of_freedom: misfit.degrees_of_freedom(),
                 residual: misfit.residual,
                 worst: solve::worst(&own.solution),
                 noise_factor,
+                correlation: misfit.correlation,
                 condition: known.condition,
-                weakest_deviation: known.weakest_deviation * noise_factor,
+                weakest_deviation: known.weakest_deviation * widening,
                 active_constraints: own.held,
                 iterations: own.solution.iterations,
             },

@@ -4,7 +4,7 @@ use super::family::Model;
 use super::{FitError, NoisyContact, OutlineFamily};
 use crate::fit::information::SquareRoot;
 use crate::fit::levenberg::{Problem, Solution, System, Unsolved};
-use crate::fit::misfit::Misfit;
+use crate::fit::misfit::{Misfit, correlation};
 use crate::fit::refute::Leftover;
 use contact_kinematics::planar::RadiusFunction;
 use glam::{DMat2, DVec2};
@@ -152,6 +152,7 @@ pub(super) fn misfit(
         log_determinants: own.iter().map(|c| c.log_determinant).sum(),
         residual: (square / (2 * own.len().max(1)) as f64).sqrt(),
         size: problem.size,
+        correlation: correlation(own.iter().map(|c| c.residual.extend(0.0)), 2),
     }
 }
 
