@@ -1,6 +1,7 @@
 //! One contact at one coefficient of friction: probabilities of off, of the speeds of sliding and of the ratios of sticking.
 
 use super::density::Ratio;
+use super::friction::Cell;
 use super::steps::Steps;
 
 /// Probability below which a cell is left out when the largest likelihood is looked for; it may still win by [`Chain::in_logs`].
@@ -54,9 +55,10 @@ impl Likelihood {
         self.ratios.fill(touches);
     }
 
-    /// Of a ratio, at this friction, give or take `unsure` (a variance); those of the speeds are all the same.
-    pub(super) fn of_ratio(&mut self, steps: &Steps, ratio: &Ratio, (friction, unsure): (f64, f64)) {
-        self.speeds.fill(ratio.log_at(friction, unsure));
+    /// Of a ratio, at the friction of this cell; those of the speeds are all the same.
+    pub(super) fn of_ratio(&mut self, steps: &Steps, ratio: &Ratio, cell: &Cell) {
+        self.speeds.fill(ratio.log_at(cell.mean, cell.variance));
+        let friction = steps.friction;
         for (k, log) in self.ratios.iter_mut().enumerate().take(steps.ratios.count()) {
             let spread = friction.powi(2) * steps.ratios.variance(k);
             *log = ratio.log_at(friction * steps.ratios.middle(k), spread);

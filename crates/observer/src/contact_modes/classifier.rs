@@ -340,15 +340,16 @@ impl ContactModes {
         }
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             let grid = &mut self.grids[self.grid_of[i]];
+            let ratio = match &seen[i] {
+                ContactSeen::Read(reading) => reading.ratio(),
+                _ => None,
+            };
+            ratio.iter().for_each(|ratio| contact.learn(ratio));
             self.odds[i] = contact.average(&grid.weights);
             // Forces alone take any plateau of the ratio for sliding: what is learned of friction needs a slip that was read.
             if matches!(seen[i], ContactSeen::Read(ContactReading { slip: Some(_), .. })) {
                 grid.count(self.odds[i][1], dt);
             }
-            let ratio = match &seen[i] {
-                ContactSeen::Read(reading) => reading.ratio(),
-                _ => None,
-            };
             let [off, slide, stick] = self.odds[i];
             self.left[i].take(
                 &ContactOdds { off, slide, stick },

@@ -3,7 +3,7 @@
 use super::bins::Bins;
 use super::chain::{Chain, Likelihood};
 use super::density::{Ratio, Slip};
-use super::friction::FrictionGrid;
+use super::friction::{Cell, FrictionGrid};
 
 /// Probabilities of one contact's modes, in the order off, slide, stick.
 pub(super) type Modes = [f64; 3];
@@ -12,6 +12,7 @@ pub(super) type Modes = [f64; 3];
 #[derive(Clone, Debug)]
 pub(super) struct Contact {
     chains: Vec<Chain>,
+    cells: Vec<Cell>,
     pub(super) log_evidence: Vec<f64>,
     /// To work in.
     spares: Vec<Chain>,
@@ -50,7 +51,16 @@ impl Contact {
         let likelihood = Likelihood { ratios: vec![0.0; longest], ..Likelihood::none(&grid.steps[0]) };
         let log_evidence = vec![0.0; chains.len()];
         let (spare, tried) = (mean.clone(), mean.clone());
-        Self { spares: chains.clone(), chains, log_evidence, likelihood, mean, spare, tried }
+        Self {
+            spares: chains.clone(),
+            chains,
+            cells: grid.cells(),
+            log_evidence,
+            likelihood,
+            mean,
+            spare,
+            tried,
+        }
     }
 
     /// One time step on.
@@ -68,10 +78,10 @@ impl Contact {
             Force::Touches => self.likelihood.set(f64::NEG_INFINITY, 0.0),
             Force::Presses { off, .. } => self.likelihood.off = *off,
         }
-        for (i, friction) in grid.values.iter().enumerate() {
+        for (i, cell) in self.cells.iter().enumerate() {
             let mut shift = 0.0;
             if let Force::Presses { ratio, touching, off } = force {
-                self.likelihood.of_ratio(&grid.steps[i], ratio, (*friction, grid.unsure[i]));
+                self.likelihood.of_ratio(&grid.steps[i], ratio, cell);
                 // The common factor of the modes that touch is taken to the other side.
                 self.likelihood.off = off - touching;
                 shift = *touching;
@@ -87,6 +97,12 @@ impl Contact {
         for ((chain, spare), log_evidence) in all {
             *log_evidence += chain.weigh(&self.likelihood, spare);
         }
+    }
+
+    /// What the ratio says of where in their cells the frictions are, after all of a sample was weighed.
+    pub(super) fn learn(&mut self, ratio: &Ratio) {
+        let all = self.cells.iter_mut().zip(&self.chains);
+        all.for_each(|(cell, chain)| cell.learn(ratio, chain.slides()));
     }
 
     /// What the modes would be with this slip, without taking it; needs [`Self::average`] before.

@@ -1,5 +1,6 @@
 //! Coefficients of friction: one that is known, or a grid of what it may be.
 
+use super::density::Ratio;
 use super::steps::Steps;
 
 /// The grid of an unknown friction: this many values, alike in ratio, from lowest to highest.
@@ -41,8 +42,6 @@ pub(super) struct FrictionGrid {
     /// None where the friction is known.
     pub(super) material: Option<usize>,
     pub(super) values: Vec<f64>,
-    /// Variance of each about its value.
-    pub(super) unsure: Vec<f64>,
     /// What happens at each in a time step.
     pub(super) steps: Vec<Steps>,
     /// Given all samples of the material; sum to one.
@@ -57,22 +56,20 @@ pub(super) struct FrictionGrid {
 impl FrictionGrid {
     /// For time steps of `dt`, s, at first.
     pub(super) fn known(friction: f64, dt: f64) -> Self {
-        Self::of(None, vec![friction], vec![0.0], dt)
+        Self::of(None, vec![friction], dt)
     }
 
     pub(super) fn unknown(material: usize, dt: f64) -> Self {
         let values: Vec<f64> = (0..VALUES).map(|k| LOWEST * (f64::from(k) * log_step()).exp()).collect();
-        let unsure = values.iter().map(|value| unsure(*value)).collect();
-        Self::of(Some(material), values, unsure, dt)
+        Self::of(Some(material), values, dt)
     }
 
-    fn of(material: Option<usize>, values: Vec<f64>, unsure: Vec<f64>, dt: f64) -> Self {
+    fn of(material: Option<usize>, values: Vec<f64>, dt: f64) -> Self {
         let count = values.len();
         Self {
             material,
             steps: values.iter().map(|friction| Steps::that_follow(dt, *friction)).collect(),
             values,
-            unsure,
             weights: vec![1.0 / count as f64; count],
             logs: vec![0.0; count],
             last: 0.0,
@@ -105,6 +102,12 @@ impl FrictionGrid {
         new
     }
 
+    /// What is known of each value before anything was read.
+    pub(super) fn cells(&self) -> Vec<Cell> {
+        let of = if self.material.is_none() { Cell::known } else { Cell::new };
+        self.values.iter().map(|value| of(*value)).collect()
+    }
+
     /// The friction, where it is known.
     pub(super) fn told(&self) -> Option<f64> {
         if self.material.is_none() {
@@ -133,9 +136,39 @@ fn log_step() -> f64 {
     (HIGHEST / LOWEST).ln() / f64::from(VALUES - 1)
 }
 
-/// Variance of a friction that is anywhere in its cell of the grid. Without it forces that are known better than a cell is wide fit no cell.
-pub(super) fn unsure(friction: f64) -> f64 {
-    (friction * log_step()).powi(2) / 12.0
+/// Where in its cell of the grid a friction is, of one contact: what it was while that slid.
+///
+/// A cell is wider than what good forces tell: were its width an error of each sample by itself, sliding at one ratio would be no more likely
+/// than sticking at one that walks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cell {
+    pub(super) mean: f64,
+    pub(super) variance: f64,
+    ends: [f64; 2],
+}
+
+impl Cell {
+    /// Anywhere in the cell about this value.
+    pub(super) fn new(value: f64) -> Self {
+        let half = (0.5 * log_step()).exp();
+        Self {
+            mean: value,
+            variance: (value * log_step()).powi(2) / 12.0,
+            ends: [value / half, value * half],
+        }
+    }
+
+    /// This value and no other.
+    pub(super) fn known(value: f64) -> Self {
+        Self { mean: value, variance: 0.0, ends: [value; 2] }
+    }
+
+    /// Takes a ratio, which is the friction's with the probability `slides`.
+    pub(super) fn learn(&mut self, ratio: &Ratio, slides: f64) {
+        let gain = slides * self.variance / (slides * self.variance + ratio.deviation.powi(2));
+        self.mean = (self.mean + gain * (ratio.size - self.mean)).clamp(self.ends[0], self.ends[1]);
+        self.variance *= 1.0 - gain;
+    }
 }
 
 /// The frictions that are looked at over a whole log.

@@ -3,7 +3,7 @@
 use super::chain::{Chain, Likelihood};
 use super::classifier::{ContactOdds, FIRST};
 use super::contact::Force;
-use super::friction::{SURE, unsure};
+use super::friction::{Cell, SURE};
 use super::options::ContactModesOptions;
 use super::reading::{ContactReading, ContactSeen, turned};
 use super::steps::{SAME as KIND, SPEEDS, Steps, speeds};
@@ -148,15 +148,16 @@ impl Passage {
     pub(super) fn add(&self, pace: &Pace, friction: f64, weight: f64, sums: &mut [[f64; 3]]) {
         let at = pace.at(friction);
         let mut tried = Tried::new(&at);
-        let mut chains = Vec::with_capacity(self.said.len());
+        let mut before = Vec::with_capacity(self.said.len());
         for (k, said) in self.said.iter().enumerate() {
+            let cell = tried.cell;
             tried.take(pace, k, said);
-            chains.push(tried.chain.clone());
+            before.push((tried.chain.clone(), cell));
         }
         let Tried { mut spare, mut likelihood, .. } = tried;
         let steps = &at.steps;
         let mut worth = Chain::even(&steps[0], 1.0);
-        for (k, chain) in chains.iter().enumerate().rev() {
+        for (k, (chain, cell)) in before.iter().enumerate().rev() {
             let modes = chain.times(&worth);
             let all: f64 = modes.iter().sum();
             // Where past and future exclude each other in double precision, the past counts.
@@ -166,7 +167,7 @@ impl Passage {
             };
             sums[k].iter_mut().zip(modes).for_each(|(sum, mode)| *sum += weight * mode / all);
             let steps = &steps[pace.kind[k]];
-            self.said[k].of(steps, friction, &mut likelihood);
+            self.said[k].of(steps, cell, &mut likelihood);
             worth.unread(&likelihood);
             worth.before(steps, &mut spare);
         }
@@ -199,6 +200,7 @@ fn foretold(logs: &[Option<f64>], k: usize, stride: usize) -> Option<f64> {
 struct Tried<'a> {
     at: &'a AtFriction,
     chain: Chain,
+    cell: Cell,
     spare: Chain,
     likelihood: Likelihood,
     /// Logarithm of the density of what was read until now.
@@ -209,7 +211,7 @@ impl<'a> Tried<'a> {
     fn new(at: &'a AtFriction) -> Self {
         let first = &at.steps[0];
         let (chain, likelihood) = (Chain::new(first), Likelihood::none(first));
-        Self { at, spare: chain.clone(), chain, likelihood, log: 0.0 }
+        Self { at, spare: chain.clone(), chain, cell: Cell::new(at.friction), likelihood, log: 0.0 }
     }
 
     fn take(&mut self, pace: &Pace, k: usize, said: &Said) {
@@ -217,8 +219,11 @@ impl<'a> Tried<'a> {
         if k > 0 {
             self.chain.predict(steps, &mut self.spare);
         }
-        said.of(steps, self.at.friction, &mut self.likelihood);
+        said.of(steps, &self.cell, &mut self.likelihood);
         self.log += self.chain.weigh(&self.likelihood, &mut self.spare);
+        if let Force::Presses { ratio, .. } = &said.force {
+            self.cell.learn(ratio, self.chain.slides());
+        }
     }
 }
 
@@ -241,7 +246,7 @@ impl Said {
     }
 
     /// Log-densities of all that is read, in each cell.
-    fn of(&self, steps: &Steps, friction: f64, likelihood: &mut Likelihood) {
+    fn of(&self, steps: &Steps, cell: &Cell, likelihood: &mut Likelihood) {
         let touches = match &self.force {
             Force::Off => {
                 likelihood.set(0.0, f64::NEG_INFINITY);
@@ -253,7 +258,7 @@ impl Said {
             Force::Presses { touching, off, .. } => off - touching,
         };
         match &self.force {
-            Force::Presses { ratio, .. } => likelihood.of_ratio(steps, ratio, (friction, unsure(friction))),
+            Force::Presses { ratio, .. } => likelihood.of_ratio(steps, ratio, cell),
             _ => likelihood.set(0.0, 0.0),
         }
         likelihood.off = touches + self.off;
