@@ -8,7 +8,9 @@ use super::options::ContactModesOptions;
 use super::reading::{ContactReading, ContactSeen, turned};
 use super::steps::{SAME as KIND, SPEEDS, Steps, speeds};
 
-/// Logarithm of the odds against a friction at which it is given up: given the model it would come back once in 10^26.
+/// Logarithm of the odds against a friction at which it is given up: given the model it would come back once in 10^26. They are odds against the
+/// largest friction, of which a contact sticks whatever it does: one that looks like a friction for a while, where a ratio stays the same, is
+/// far ahead of the true one there, and would have it given up before it fails itself.
 const GIVEN_UP: f64 = 60.0;
 /// From one friction to the next of those that are tried first, in steps of all; a power of two.
 const COARSE: usize = 8;
@@ -98,22 +100,18 @@ impl Passage {
     /// no account. Few are gone through the log with at first, and more between where their neighbours do not foretell what comes of it.
     pub(super) fn evidence(&self, pace: &Pace, frictions: &[AtFriction]) -> Vec<f64> {
         let last = frictions.len() - 1;
-        let mut largest = vec![f64::NEG_INFINITY; self.said.len() / LOOKS + 1];
         let mut logs = vec![None; frictions.len()];
+        let always = self.looks(pace, &frictions[last]);
         let coarse: Vec<usize> = (0..last).step_by(COARSE).chain([last]).collect();
-        self.try_all(pace, frictions, &coarse, &mut largest, &mut logs);
+        self.try_all(pace, frictions, &coarse, &always, &mut logs);
         let mut stride = COARSE;
         while stride > 1 {
             stride /= 2;
-            let between: Vec<usize> = (1..)
-                .map(|i| (2 * i - 1) * stride)
-                .take_while(|k| *k < last)
-                .filter(|k| logs[*k].is_none())
-                .collect();
+            let between: Vec<usize> = (1..).map(|i| (2 * i - 1) * stride).take_while(|k| *k < last).collect();
             let foretold: Vec<Option<f64>> = between.iter().map(|k| foretold(&logs, *k, stride)).collect();
             let open: Vec<usize> =
                 between.iter().zip(&foretold).filter(|(_, log)| log.is_none()).map(|(k, _)| *k).collect();
-            self.try_all(pace, frictions, &open, &mut largest, &mut logs);
+            self.try_all(pace, frictions, &open, &always, &mut logs);
             for (k, log) in between.into_iter().zip(foretold) {
                 logs[k] = logs[k].or(log);
             }
@@ -122,26 +120,33 @@ impl Passage {
         logs.into_iter().map(|log| log.unwrap_or(f64::NEG_INFINITY).max(most - GIVEN_UP)).collect()
     }
 
-    /// The same for some of them, into `logs`; `largest` are the largest until now at each look.
+    /// Logarithm of the density of what was read up to each look, at one friction.
+    fn looks(&self, pace: &Pace, at: &AtFriction) -> Vec<f64> {
+        let mut tried = Tried::new(at);
+        let all = self.said.iter().enumerate().map(|(k, said)| {
+            tried.take(pace, k, said);
+            tried.log
+        });
+        all.step_by(LOOKS).collect()
+    }
+
+    /// The same of all that was read for some frictions, into `logs`, but for those that fall far behind `always` at some look.
     fn try_all(
         &self,
         pace: &Pace,
         frictions: &[AtFriction],
         some: &[usize],
-        largest: &mut [f64],
+        always: &[f64],
         logs: &mut [Option<f64>],
     ) {
-        let mut left: Vec<(usize, Tried)> = some.iter().map(|&k| (k, Tried::new(&frictions[k]))).collect();
-        for (k, said) in self.said.iter().enumerate() {
-            left.iter_mut().for_each(|(_, tried)| tried.take(pace, k, said));
-            if k % LOOKS == 0 {
-                let largest = &mut largest[k / LOOKS];
-                *largest = left.iter().map(|(_, tried)| tried.log).fold(*largest, f64::max);
-                left.retain(|(_, tried)| tried.log > *largest - GIVEN_UP);
-            }
+        for &friction in some {
+            let mut tried = Tried::new(&frictions[friction]);
+            let lasts = self.said.iter().enumerate().all(|(k, said)| {
+                tried.take(pace, k, said);
+                k % LOOKS > 0 || tried.log > always[k / LOOKS] - GIVEN_UP
+            });
+            logs[friction] = Some(if lasts { tried.log } else { f64::NEG_INFINITY });
         }
-        some.iter().for_each(|&k| logs[k] = Some(f64::NEG_INFINITY));
-        left.into_iter().for_each(|(k, tried)| logs[k] = Some(tried.log));
     }
 
     /// Adds the modes at all samples given one friction, with a weight.
@@ -179,6 +184,10 @@ fn foretold(logs: &[Option<f64>], k: usize, stride: usize) -> Option<f64> {
     let end = |k: Option<usize>| k.and_then(|k| logs.get(k).copied().flatten());
     let [below, above] = [end(k.checked_sub(stride)), end(Some(k + stride)).or(*logs.last()?)];
     let (below, above) = (below?, above?);
+    // Between a friction that is too low and one that is not is where a contact slides, however little is thought of both.
+    if below.is_finite() != above.is_finite() {
+        return None;
+    }
     let between = 0.5 * (below + above);
     let on = |near: f64, far: Option<f64>| far.map_or(near, |far| near + 0.5 * (near - far));
     let from = [on(below, end(k.checked_sub(3 * stride))), on(above, end(Some(k + 3 * stride)))];
@@ -311,7 +320,7 @@ mod tests {
             let few = passage.evidence(&pace, &at);
             let mut all = vec![None; at.len()];
             let every: Vec<usize> = (0..at.len()).collect();
-            passage.try_all(&pace, &at, &every, &mut [f64::NEG_INFINITY; 30], &mut all);
+            passage.try_all(&pace, &at, &every, &[f64::NEG_INFINITY; 30], &mut all);
             let most = all.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
             let counts = all.iter().flatten().zip(&few).filter(|(log, _)| **log > most - 0.5 * NO_ACCOUNT);
             let off = counts.map(|(log, few)| (log - few).abs()).fold(0.0, f64::max);
