@@ -6,8 +6,9 @@ use super::density::Slip;
 use super::doubt::{ContactModesDoubt, Left};
 use super::error::ContactModesError;
 use super::friction::{ContactFriction, FrictionGrid, LearnedFriction};
+use super::late::{Brought, Late};
 use super::options::ContactModesOptions;
-use super::reading::{ContactReading, ContactSeen, Place, turned};
+use super::reading::{ContactReading, ContactSeen, ContactSlip, Place, turned};
 use super::steps::speeds;
 use super::twist::{Row, TwistError, left_out};
 use crate::core::ModeLabel;
@@ -68,8 +69,10 @@ pub struct ContactModes {
     labels: Vec<ModeLabel>,
     told: Vec<ContactMode>,
     rows: Vec<Row>,
-    /// Of the last sample, in natural units.
-    slips: Vec<Option<Slip>>,
+    /// Of the last sample.
+    forces: Vec<Force>,
+    /// The same, in the world's axes and in natural units.
+    slips: Vec<Option<(ContactSlip, Slip)>>,
     left: Vec<Left>,
     samples: usize,
 }
@@ -108,6 +111,11 @@ impl ContactModes {
             }
         }
         let count = frictions.len();
+        let late = |grid: &usize| {
+            let grid = &grids[*grid];
+            grid.material.is_none().then(|| Late::new(&grid.steps[0], options.natural_speed))
+        };
+        let left = grid_of.iter().map(|grid| Left::new(late(grid))).collect();
         Ok(Self {
             options,
             contacts: grid_of.iter().map(|grid| Contact::new(&grids[*grid])).collect(),
@@ -118,8 +126,9 @@ impl ContactModes {
             labels: vec![label; count],
             told: vec![ContactMode::Off; count],
             rows: vec![Row::NONE; count],
+            forces: vec![Force::Silent; count],
             slips: vec![None; count],
-            left: vec![Left::default(); count],
+            left,
             samples: 0,
         })
     }
@@ -252,6 +261,7 @@ impl ContactModes {
                 ContactSeen::Read(reading) => reading.force(&self.options),
             };
             contact.weigh_force(&force, grid);
+            self.forces[i] = force;
         }
     }
 
@@ -272,7 +282,7 @@ impl ContactModes {
                     let Some((reading, error)) = self.shared(i, &seen[i], Some((twist, information))) else {
                         continue;
                     };
-                    let (slip, turn) = self.slip(reading, error);
+                    let (_, slip, turn) = self.slip(reading, error);
                     self.odds[i] = self.contacts[i].try_slip(&slip, turn, weight, &self.speeds);
                     self.set_row(i, &seen[i], twist);
                 }
@@ -281,9 +291,9 @@ impl ContactModes {
         for i in 0..self.contacts.len() {
             self.slips[i] = None;
             let Some((reading, error)) = self.shared(i, &seen[i], twist) else { continue };
-            let (slip, turn) = self.slip(reading, error);
+            let (own, slip, turn) = self.slip(reading, error);
             self.contacts[i].weigh_slip(&slip, turn, weight, &self.speeds);
-            self.slips[i] = Some(slip);
+            self.slips[i] = Some((own, slip));
         }
     }
 
@@ -306,7 +316,12 @@ impl ContactModes {
         Some((reading, error))
     }
 
-    fn slip(&self, reading: &ContactReading, error: Option<(Vector2<f64>, Matrix2<f64>)>) -> (Slip, f64) {
+    /// The slip without what the twist is off by, the same against and across the friction, and the deviation of that direction, rad.
+    fn slip(
+        &self,
+        reading: &ContactReading,
+        error: Option<(Vector2<f64>, Matrix2<f64>)>,
+    ) -> (ContactSlip, Slip, f64) {
         let (u, turn) = reading.direction();
         let (mut velocity, mut covariance) = reading
             .slip
@@ -315,7 +330,8 @@ impl ContactModes {
             velocity -= mean;
             covariance += spread;
         }
-        (turned(&velocity, &covariance, &u, self.options.natural_speed), turn)
+        let slip = turned(&velocity, &covariance, &u, self.options.natural_speed);
+        (ContactSlip { velocity, covariance }, slip, turn)
     }
 
     fn set_row(&mut self, i: usize, seen: &ContactSeen, twist: &TwistError<'_>) {
@@ -333,6 +349,7 @@ impl ContactModes {
 
     /// Frictions, odds and labels after a sample; the logarithm of its density.
     fn settle(&mut self, dt: f64, seen: &[ContactSeen]) -> f64 {
+        let weight = self.options.slip_weight(dt);
         let mut log_density = 0.0;
         for (g, grid) in self.grids.iter_mut().enumerate() {
             let of_grid = self.contacts.iter_mut().zip(&self.grid_of).filter(|(_, own)| **own == g);
@@ -354,9 +371,17 @@ impl ContactModes {
             self.left[i].take(
                 &ContactOdds { off, slide, stick },
                 ratio.as_ref(),
-                self.slips[i].as_ref(),
+                self.slips[i].as_ref().map(|(_, slip)| slip),
                 grid.told(),
             );
+            if let Some(late) = &mut self.left[i].late {
+                let reading = match &seen[i] {
+                    ContactSeen::Read(reading) => Some(reading),
+                    _ => None,
+                };
+                let slip = self.slips[i].map(|(slip, _)| (slip, weight));
+                late.take(&grid.steps[0], &Brought { dt, force: &self.forces[i], reading, slip });
+            }
             self.told[i] = match self.labels[i].follow(self.odds[i]) {
                 0 => ContactMode::Off,
                 1 => ContactMode::Slide,

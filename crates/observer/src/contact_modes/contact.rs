@@ -72,27 +72,20 @@ impl Contact {
 
     /// Weighs all by the forces.
     pub(super) fn weigh_force(&mut self, force: &Force, grid: &FrictionGrid) {
-        match force {
+        let shift = match force {
             Force::Silent => return,
-            Force::Off => self.likelihood.set(0.0, f64::NEG_INFINITY),
-            Force::Touches => self.likelihood.set(f64::NEG_INFINITY, 0.0),
-            Force::Presses { off, .. } => self.likelihood.off = *off,
-        }
+            Force::Presses { touching, .. } => *touching,
+            Force::Off | Force::Touches => 0.0,
+        };
         for (i, cell) in self.cells.iter().enumerate() {
-            let mut shift = 0.0;
-            if let Force::Presses { ratio, touching, off } = force {
-                self.likelihood.of_ratio(&grid.steps[i], ratio, cell);
-                // The common factor of the modes that touch is taken to the other side.
-                self.likelihood.off = off - touching;
-                shift = *touching;
-            }
+            self.likelihood.of_force(&grid.steps[i], force, cell);
             self.log_evidence[i] += self.chains[i].weigh(&self.likelihood, &mut self.spares[i]) + shift;
         }
     }
 
     /// Weighs all by the slip. `turn` is the deviation of the direction of friction, rad; `weight` the power of the density.
     pub(super) fn weigh_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) {
-        self.set_slip(slip, turn, weight, speeds);
+        self.likelihood.of_slip(slip, turn, weight, speeds);
         let all = self.chains.iter_mut().zip(&mut self.spares).zip(&mut self.log_evidence);
         for ((chain, spare), log_evidence) in all {
             *log_evidence += chain.weigh(&self.likelihood, spare);
@@ -107,19 +100,10 @@ impl Contact {
 
     /// What the modes would be with this slip, without taking it; needs [`Self::average`] before.
     pub(super) fn try_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) -> Modes {
-        self.set_slip(slip, turn, weight, speeds);
+        self.likelihood.of_slip(slip, turn, weight, speeds);
         self.tried.clone_from(&self.mean);
         self.tried.weigh(&self.likelihood, &mut self.spare);
         of(&self.tried)
-    }
-
-    fn set_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) {
-        self.likelihood.off = weight * slip.log_off();
-        self.likelihood.ratios.fill(weight * slip.log_sticking());
-        for (k, log) in self.likelihood.speeds.iter_mut().enumerate() {
-            let (speed, spread) = (speeds.middle(k), speeds.variance(k));
-            *log = weight * slip.log_sliding(speed, spread, turn);
-        }
     }
 
     /// The mean of all chains by these weights of the frictions.

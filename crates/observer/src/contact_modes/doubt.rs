@@ -6,6 +6,7 @@
 
 use super::classifier::ContactOdds;
 use super::density::{CREEP, Ratio, Slip};
+use super::late::Late;
 use std::fmt;
 
 /// Probability above which a mode is told.
@@ -24,7 +25,7 @@ pub struct ContactModesDoubt {
     pub contact: usize,
     /// What it is about.
     pub about: DoubtedReading,
-    /// By how much: a mean in deviations, a root mean square in deviations, or a correlation.
+    /// By how much: a mean in deviations, a root mean square in deviations, a correlation, or a time, s.
     pub by: f64,
     /// How sure, in deviations of what noise as stated would leave.
     pub score: f64,
@@ -44,6 +45,8 @@ pub enum DoubtedReading {
     Slips,
     /// Where it sticks errors of its slip follow each other.
     LastingSlips,
+    /// Its forces and slips are likelier where forces are late by some time.
+    LateForces,
 }
 
 impl fmt::Display for ContactModesDoubt {
@@ -73,6 +76,11 @@ impl fmt::Display for ContactModesDoubt {
                 f,
                 "where contact {contact} sticks errors of its slip follow each other (correlation {by:.2} from sample to sample): state for \
                  how long they last"
+            ),
+            DoubtedReading::LateForces => write!(
+                f,
+                "forces of contact {contact} go better with its slips of about {:.0} ms before: they are late",
+                1e3 * by
             ),
         }
     }
@@ -135,13 +143,20 @@ impl Sums {
 }
 
 /// Residuals of one contact.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Left {
     sliding: Sums,
     sticking: [Sums; 2],
+    /// Where the friction is known.
+    pub(super) late: Option<Late>,
 }
 
 impl Left {
+    /// Nothing yet.
+    pub(super) fn new(late: Option<Late>) -> Self {
+        Self { late, ..Self::default() }
+    }
+
     /// Takes what a sample leaves, with the friction where it is known.
     pub(super) fn take(
         &mut self,
@@ -178,7 +193,9 @@ impl Left {
         let of_slips =
             |about: DoubtedReading| matches!(about, DoubtedReading::Slips | DoubtedReading::LastingSlips);
         let found = found.into_iter().filter(|(about, _)| !(slips_last && of_slips(*about)));
-        let told = found.filter_map(|(about, harm)| {
+        // Odds as the deviations of a number that is as far off.
+        let late = self.late.as_ref().and_then(Late::sure).map(|[lag, odds]| [lag, (2.0 * odds).sqrt()]);
+        let told = found.chain([(DoubtedReading::LateForces, late)]).filter_map(|(about, harm)| {
             harm.map(|[by, score]| ContactModesDoubt { contact, about, by, score })
         });
         told.max_by(|a, b| a.score.abs().total_cmp(&b.score.abs()))

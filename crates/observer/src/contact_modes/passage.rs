@@ -254,23 +254,13 @@ impl Said {
         Self { off: weight * slip.log_off(), speeds, sticks: weight * slip.log_sticking(), ..nothing }
     }
 
-    /// Log-densities of all that is read, in each cell.
+    /// Log-densities of all that is read, in each cell; the factor that all modes that touch have in common is the same for all frictions.
     fn of(&self, steps: &Steps, cell: &Cell, likelihood: &mut Likelihood) {
-        let touches = match &self.force {
-            Force::Off => {
-                likelihood.set(0.0, f64::NEG_INFINITY);
-                return;
-            }
-            Force::Silent => 0.0,
-            Force::Touches => f64::NEG_INFINITY,
-            // The common factor of the modes that touch is left out: it is the same for all frictions.
-            Force::Presses { touching, off, .. } => off - touching,
-        };
-        match &self.force {
-            Force::Presses { ratio, .. } => likelihood.of_ratio(steps, ratio, cell),
-            _ => likelihood.set(0.0, 0.0),
+        likelihood.of_force(steps, &self.force, cell);
+        if let Force::Off = self.force {
+            return;
         }
-        likelihood.off = touches + self.off;
+        likelihood.off += self.off;
         likelihood.speeds.iter_mut().zip(&self.speeds).for_each(|(log, slip)| *log += slip);
         likelihood.ratios.iter_mut().for_each(|log| *log += self.sticks);
     }
