@@ -3,9 +3,9 @@
 use super::bins::Bins;
 use super::contact::{Contact, Force, Modes};
 use super::density::Slip;
-use super::doubt::{ContactModesDoubt, Left};
+use super::doubt::{ContactModesDoubt, Left, Told};
 use super::error::ContactModesError;
-use super::friction::{ContactFriction, FrictionGrid, LearnedFriction};
+use super::friction::{ContactFriction, FrictionGrid, LearnedFriction, together};
 use super::late::{Brought, Late};
 use super::options::ContactModesOptions;
 use super::reading::{ContactReading, ContactSeen, ContactSlip, Place, turned};
@@ -255,11 +255,7 @@ impl ContactModes {
             if self.samples > 0 {
                 contact.predict(grid);
             }
-            let force = match &seen[i] {
-                ContactSeen::Missing => Force::Silent,
-                ContactSeen::Off => Force::Off,
-                ContactSeen::Read(reading) => reading.force(&self.options),
-            };
+            let force = seen[i].force(&self.options);
             contact.weigh_force(&force, grid);
             self.forces[i] = force;
         }
@@ -349,7 +345,6 @@ impl ContactModes {
 
     /// Frictions, odds and labels after a sample; the logarithm of its density.
     fn settle(&mut self, dt: f64, seen: &[ContactSeen]) -> f64 {
-        let weight = self.options.slip_weight(dt);
         let mut log_density = 0.0;
         for (g, grid) in self.grids.iter_mut().enumerate() {
             let of_grid = self.contacts.iter_mut().zip(&self.grid_of).filter(|(_, own)| **own == g);
@@ -357,38 +352,40 @@ impl ContactModes {
         }
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             let grid = &mut self.grids[self.grid_of[i]];
-            let ratio = match &seen[i] {
-                ContactSeen::Read(reading) => reading.ratio(),
-                _ => None,
-            };
+            let ratio = seen[i].reading().and_then(ContactReading::ratio);
             ratio.iter().for_each(|ratio| contact.learn(ratio));
             self.odds[i] = contact.average(&grid.weights);
             // Forces alone take any plateau of the ratio for sliding: what is learned of friction needs a slip that was read.
-            if matches!(seen[i], ContactSeen::Read(ContactReading { slip: Some(_), .. })) {
+            if self.slips[i].is_some() {
                 grid.count(self.odds[i][1], dt);
             }
-            let [off, slide, stick] = self.odds[i];
-            self.left[i].take(
-                &ContactOdds { off, slide, stick },
-                ratio.as_ref(),
-                self.slips[i].as_ref().map(|(_, slip)| slip),
-                grid.told(),
-            );
-            if let Some(late) = &mut self.left[i].late {
-                let reading = match &seen[i] {
-                    ContactSeen::Read(reading) => Some(reading),
-                    _ => None,
-                };
-                let slip = self.slips[i].map(|(slip, _)| (slip, weight));
-                late.take(&grid.steps[0], &Brought { dt, force: &self.forces[i], reading, slip });
-            }
-            self.told[i] = match self.labels[i].follow(self.odds[i]) {
-                0 => ContactMode::Off,
-                1 => ContactMode::Slide,
-                _ => ContactMode::Stick,
-            };
         }
+        for (g, grid) in self.grids.iter_mut().enumerate() {
+            let of_grid = self.contacts.iter().zip(&self.grid_of).filter(|(_, own)| **own == g);
+            let guesses = of_grid.map(|(contact, _)| contact.friction(&grid.weights));
+            grid.guess = together(guesses);
+        }
+        (0..seen.len()).for_each(|i| self.tell(i, dt, &seen[i]));
         self.samples += 1;
         log_density
+    }
+
+    /// The label of a contact after a sample, and what that leaves.
+    fn tell(&mut self, i: usize, dt: f64, seen: &ContactSeen) {
+        let grid = &self.grids[self.grid_of[i]];
+        let [off, slide, stick] = self.odds[i];
+        let slip = self.slips[i].map(|(slip, _)| (slip, self.options.slip_weight(dt)));
+        let told = Told {
+            odds: ContactOdds { off, slide, stick },
+            friction: grid.told(),
+            slip: self.slips[i].map(|(_, slip)| slip),
+            brought: Brought { dt, force: &self.forces[i], reading: seen.reading(), slip },
+        };
+        self.left[i].take(&told, grid.steps.first());
+        self.told[i] = match self.labels[i].follow(self.odds[i]) {
+            0 => ContactMode::Off,
+            1 => ContactMode::Slide,
+            _ => ContactMode::Stick,
+        };
     }
 }

@@ -3,7 +3,7 @@
 use super::bins::Bins;
 use super::chain::{Chain, Likelihood};
 use super::density::{Ratio, Slip};
-use super::friction::{Cell, FrictionGrid};
+use super::friction::{Cell, FrictionGrid, guessed};
 
 /// Probabilities of one contact's modes, in the order off, slide, stick.
 pub(super) type Modes = [f64; 3];
@@ -96,6 +96,11 @@ impl Contact {
     pub(super) fn learn(&mut self, ratio: &Ratio) {
         let all = self.cells.iter_mut().zip(&self.chains);
         all.for_each(|(cell, chain)| cell.learn(ratio, chain.slides()));
+    }
+
+    /// Mean and variance of the friction by these weights of the cells.
+    pub(super) fn friction(&self, weights: &[f64]) -> [f64; 2] {
+        guessed(weights.iter().copied().zip(&self.cells))
     }
 
     /// What the modes would be with this slip, without taking it; needs [`Self::average`] before.

@@ -6,7 +6,9 @@
 
 use super::classifier::ContactOdds;
 use super::density::{CREEP, Ratio, Slip};
-use super::late::Late;
+use super::late::{Brought, Late};
+use super::reading::ContactReading;
+use super::steps::Steps;
 use std::fmt;
 
 /// Probability above which a mode is told.
@@ -142,13 +144,24 @@ impl Sums {
     }
 }
 
+/// What a sample brought, and what was told of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Told<'a> {
+    pub(super) odds: ContactOdds,
+    /// Where it is known.
+    pub(super) friction: Option<f64>,
+    /// Against and across the friction, in natural units.
+    pub(super) slip: Option<Slip>,
+    pub(super) brought: Brought<'a>,
+}
+
 /// Residuals of one contact.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Left {
     sliding: Sums,
     sticking: [Sums; 2],
     /// Where the friction is known.
-    pub(super) late: Option<Late>,
+    late: Option<Late>,
 }
 
 impl Left {
@@ -157,23 +170,22 @@ impl Left {
         Self { late, ..Self::default() }
     }
 
-    /// Takes what a sample leaves, with the friction where it is known.
-    pub(super) fn take(
-        &mut self,
-        odds: &ContactOdds,
-        ratio: Option<&Ratio>,
-        slip: Option<&Slip>,
-        friction: Option<f64>,
-    ) {
+    /// Takes what a sample leaves. `steps` are those of the friction where it is known.
+    pub(super) fn take(&mut self, told: &Told, steps: Option<&Steps>) {
+        let Told { odds, friction, slip, brought } = told;
         // Noise in two directions makes a ratio larger on average (Rice): by a third of a deviation where the friction is 1.5 of it.
-        let off_friction = |(ratio, friction): (&Ratio, f64)| {
+        let off_friction = |(ratio, friction): (Ratio, f64)| {
             (ratio.size - friction.hypot(ratio.deviation)) / ratio.deviation
         };
-        self.sliding.take(ratio.zip(friction).filter(|_| odds.slide > TOLD).map(off_friction));
+        let ratio = brought.reading.and_then(ContactReading::ratio).filter(|_| odds.slide > TOLD);
+        self.sliding.take(ratio.zip(*friction).map(off_friction));
         let slip = slip.filter(|_| odds.stick > TOLD);
         let in_deviations = |slip: f64, variance: f64| slip / (variance + CREEP * CREEP).sqrt();
         self.sticking[0].take(slip.map(|slip| in_deviations(slip.along, slip.variance_along)));
         self.sticking[1].take(slip.map(|slip| in_deviations(slip.across, slip.variance_across)));
+        if let Some((late, steps)) = self.late.as_mut().zip(steps) {
+            late.take(steps, brought);
+        }
     }
 
     /// What contradicts it most, if anything does. `slips_last`: errors of slips are stated to; then they scatter as ever few do.

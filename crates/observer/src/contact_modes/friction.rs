@@ -12,6 +12,8 @@ const WHOLE: (f64, f64) = (0.02, 2.0);
 /// Time that something must have slid before its friction is told, s, and how probable sliding must be for its time to count.
 const SLID: f64 = 0.01;
 pub(super) const SURE: f64 = 0.99;
+/// Least deviation of a friction as a share of it.
+const KNOWN: f64 = 1e-3;
 
 /// What is known of the friction of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +34,7 @@ pub enum ContactFriction {
 pub struct LearnedFriction {
     /// Its mean.
     pub coefficient: f64,
-    /// Its standard deviation, not below that of a step of the grid, 0.5 % of the coefficient.
+    /// Its standard deviation, not below a thousandth of the coefficient: forces that are better than that have other errors than noise.
     pub deviation: f64,
 }
 
@@ -51,6 +53,8 @@ pub(super) struct FrictionGrid {
     last: f64,
     /// Time for which one of its contacts slid, s.
     slid: f64,
+    /// Its mean and variance by all of its contacts.
+    pub(super) guess: [f64; 2],
 }
 
 impl FrictionGrid {
@@ -74,6 +78,7 @@ impl FrictionGrid {
             logs: vec![0.0; count],
             last: 0.0,
             slid: 0.0,
+            guess: [1.0, 1.0],
         }
     }
 
@@ -108,12 +113,11 @@ impl FrictionGrid {
         self.values.iter().map(|value| of(*value)).collect()
     }
 
-    /// The friction, where it is known.
+    /// The friction, where it is known or learned.
     pub(super) fn told(&self) -> Option<f64> {
-        if self.material.is_none() {
-            self.values.first().copied()
-        } else {
-            self.learned().map(|learned| learned.coefficient)
+        match self.material {
+            None => self.values.first().copied(),
+            Some(_) => self.learned().map(|learned| learned.coefficient),
         }
     }
 
@@ -127,7 +131,7 @@ impl FrictionGrid {
     /// None where it was known from the start, and while nothing slid for long enough: what sticks has only a lower bound.
     pub(super) fn learned(&self) -> Option<LearnedFriction> {
         self.material?;
-        learned(&self.values, &self.weights, self.slid)
+        learned(self.guess, self.slid)
     }
 }
 
@@ -177,17 +181,25 @@ pub(super) fn values() -> Vec<f64> {
     (0..=count).map(|k| WHOLE.0 * (f64::from(k) * log_step()).exp()).collect()
 }
 
-/// From values and their weights, which sum to one; none where nothing slid for long enough, `slid` being the time that something did, s.
-pub(super) fn learned(values: &[f64], weights: &[f64], slid: f64) -> Option<LearnedFriction> {
+/// Mean and variance of a friction from cells and their weights, which sum to one.
+pub(super) fn guessed<'a>(cells: impl Iterator<Item = (f64, &'a Cell)> + Clone) -> [f64; 2] {
+    let mean: f64 = cells.clone().map(|(weight, cell)| weight * cell.mean).sum();
+    let variance = cells.map(|(weight, cell)| weight * (cell.variance + (cell.mean - mean).powi(2))).sum();
+    [mean, variance]
+}
+
+/// Of one friction that several contacts tell. What all had beforehand, a cell of the grid, is of no account beside that.
+pub(super) fn together(all: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    let [by, information] = all.fold([0.0, 0.0], |[by, information], [mean, variance]| {
+        let own = variance.max(f64::MIN_POSITIVE).recip();
+        [by + own * mean, information + own]
+    });
+    [by / information, information.recip()]
+}
+
+/// Of a mean and a variance; none where nothing slid for long enough, `slid` being the time that something did, s.
+pub(super) fn learned([mean, variance]: [f64; 2], slid: f64) -> Option<LearnedFriction> {
     // A sum of steps is not exact.
-    if slid < SLID * (1.0 - 1e-9) {
-        return None;
-    }
-    let mean = |of: &dyn Fn(f64) -> f64| -> f64 {
-        weights.iter().zip(values).map(|(weight, value)| weight * of(*value)).sum()
-    };
-    let coefficient = mean(&|value| value);
-    let step = coefficient * log_step();
-    let variance = mean(&|value| (value - coefficient).powi(2)) + step.powi(2) / 12.0;
-    Some(LearnedFriction { coefficient, deviation: variance.sqrt() })
+    let known = slid >= SLID * (1.0 - 1e-9);
+    known.then(|| LearnedFriction { coefficient: mean, deviation: variance.sqrt().max(KNOWN * mean) })
 }

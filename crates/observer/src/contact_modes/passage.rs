@@ -3,7 +3,9 @@
 use super::chain::{Chain, Likelihood};
 use super::classifier::{ContactOdds, FIRST};
 use super::contact::Force;
+use super::doubt::{Left, Told};
 use super::friction::{Cell, SURE};
+use super::late::{Brought, Late};
 use super::options::ContactModesOptions;
 use super::reading::{ContactReading, ContactSeen, turned};
 use super::steps::{SAME as KIND, SPEEDS, Steps, speeds};
@@ -67,6 +69,32 @@ impl Pace {
             |seen: &ContactSeen| matches!(seen, ContactSeen::Read(ContactReading { slip: Some(_), .. }));
         let sure = odds.iter().zip(seen).zip(&self.steps);
         sure.filter(|((odds, seen), _)| odds.slide >= SURE && read(seen)).map(|(_, dt)| dt).sum()
+    }
+}
+
+impl Pace {
+    /// What a contact's modes leave of what was read of it; `friction` where it is known.
+    pub(super) fn left(
+        &self,
+        odds: &[ContactOdds],
+        seen: &[ContactSeen],
+        friction: Option<f64>,
+        options: &ContactModesOptions,
+    ) -> Left {
+        let at = friction.map(|friction| self.at(friction));
+        let speed = options.natural_speed;
+        let mut left = Left::new(at.as_ref().map(|at| Late::new(&at.steps[0], speed)));
+        for (k, seen) in seen.iter().enumerate() {
+            let reading = seen.reading();
+            let force = seen.force(options);
+            let slip = reading.and_then(|reading| reading.slip.zip(Some(reading.direction())));
+            let turned = slip.map(|(slip, (u, _))| turned(&slip.velocity, &slip.covariance, &u, speed));
+            let slip = slip.map(|(slip, _)| (slip, self.weights[k]));
+            let brought = Brought { dt: self.steps[k], force: &force, reading, slip };
+            let told = Told { odds: odds[k], friction, slip: turned, brought };
+            left.take(&told, at.as_ref().map(|at| &at.steps[self.kind[k]]));
+        }
+        left
     }
 }
 
@@ -149,8 +177,8 @@ impl Passage {
         }
     }
 
-    /// Adds the modes at all samples given one friction, with a weight.
-    pub(super) fn add(&self, pace: &Pace, friction: f64, weight: f64, sums: &mut [[f64; 3]]) {
+    /// Adds the modes at all samples given one friction, with a weight; returns where in its cell that is.
+    pub(super) fn add(&self, pace: &Pace, friction: f64, weight: f64, sums: &mut [[f64; 3]]) -> Cell {
         let at = pace.at(friction);
         let mut tried = Tried::new(&at);
         let mut before = Vec::with_capacity(self.said.len());
@@ -159,7 +187,7 @@ impl Passage {
             tried.take(pace, k, said);
             before.push((tried.chain.clone(), cell));
         }
-        let Tried { mut spare, mut likelihood, .. } = tried;
+        let Tried { mut spare, mut likelihood, cell: learned, .. } = tried;
         let steps = &at.steps;
         let mut worth = Chain::even(&steps[0], 1.0);
         for (k, (chain, cell)) in before.iter().enumerate().rev() {
@@ -176,6 +204,7 @@ impl Passage {
             worth.unread(&likelihood);
             worth.before(steps, &mut spare);
         }
+        learned
     }
 }
 
@@ -238,11 +267,7 @@ impl<'a> Tried<'a> {
 
 impl Said {
     fn new(seen: &ContactSeen, pace: &Pace, k: usize, options: &ContactModesOptions) -> Self {
-        let force = match seen {
-            ContactSeen::Missing => Force::Silent,
-            ContactSeen::Off => Force::Off,
-            ContactSeen::Read(reading) => reading.force(options),
-        };
+        let force = seen.force(options);
         let nothing = Self { force, off: 0.0, speeds: vec![0.0; SPEEDS], sticks: 0.0 };
         let ContactSeen::Read(reading) = seen else { return nothing };
         let Some(slip) = reading.slip else { return nothing };
