@@ -136,9 +136,9 @@ impl Sums {
         [(self.squares / count).sqrt(), (self.squares - self.count) / (2.0 * count).sqrt()]
     }
 
-    /// Correlation from one to the next, and how sure it is not zero.
+    /// Correlation from one to the next, and how sure it is not zero; of errors that are smaller than stated as a share of those stated.
     fn lasting(&self) -> [f64; 2] {
-        let variance = (self.squares / self.count.max(1.0)).max(f64::MIN_POSITIVE);
+        let variance = (self.squares / self.count.max(1.0)).max(1.0);
         let correlation = self.lagged / self.pairs.max(1.0) / variance;
         [correlation, correlation * self.pairs.sqrt()]
     }
