@@ -13,6 +13,8 @@ use std::fmt;
 
 /// Probability above which a mode is told.
 const TOLD: f64 = 0.9;
+/// Probability that sliding must still have at a sample after one at which it was told.
+const LIKELY: f64 = 0.5;
 /// Deviations from what noise as stated leaves on average that count: of 1e4 contacts without fault one is doubted.
 const SURE: f64 = 4.5;
 /// Mean in deviations, share of the variance beyond what was stated, and correlation from sample to sample that do no harm.
@@ -160,6 +162,8 @@ pub(super) struct Told<'a> {
 pub(super) struct Left {
     sliding: Sums,
     sticking: [Sums; 2],
+    /// Probability to slide at the sample before.
+    before: f64,
     /// Where the friction is known.
     late: Option<Late>,
 }
@@ -177,7 +181,10 @@ impl Left {
         let off_friction = |(ratio, friction): (Ratio, f64)| {
             (ratio.size - friction.hypot(ratio.deviation)) / ratio.deviation
         };
-        let ratio = brought.reading.and_then(ContactReading::ratio).filter(|_| odds.slide > TOLD);
+        // A ratio that happens to be low speaks for sticking: were only its own sample asked, those that count would be high on average.
+        let slides = self.before > TOLD && odds.slide > LIKELY;
+        self.before = odds.slide;
+        let ratio = brought.reading.and_then(ContactReading::ratio).filter(|_| slides);
         self.sliding.take(ratio.zip(*friction).map(off_friction));
         let slip = slip.filter(|_| odds.stick > TOLD);
         let in_deviations = |slip: f64, variance: f64| slip / (variance + CREEP * CREEP).sqrt();
