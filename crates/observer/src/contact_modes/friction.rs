@@ -13,7 +13,7 @@ const WHOLE: (f64, f64) = (0.02, 2.0);
 const SLID: f64 = 0.01;
 pub(super) const SURE: f64 = 0.99;
 /// Least deviation of a friction as a share of it.
-const KNOWN: f64 = 1e-3;
+const KNOWN: f64 = 3e-3;
 
 /// What is known of the friction of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +34,7 @@ pub enum ContactFriction {
 pub struct LearnedFriction {
     /// Its mean.
     pub coefficient: f64,
-    /// Its standard deviation, not below a thousandth of the coefficient: forces that are better than that have other errors than noise.
+    /// Its standard deviation, not below 0.3 % of the coefficient: what is told to slide and does not is beyond noise.
     pub deviation: f64,
 }
 
