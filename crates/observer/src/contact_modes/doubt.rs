@@ -17,6 +17,10 @@ const TOLD: f64 = 0.9;
 const LIKELY: f64 = 0.5;
 /// Deviations from what noise as stated leaves on average that count: of 1e4 contacts without fault one is doubted.
 const SURE: f64 = 4.5;
+/// Samples over which a contact that sticks and creeps is looked for, and the deviations of their mean that count: some thousand of samples have as
+/// many means.
+const RECENT: f64 = 100.0;
+const CREPT: f64 = 5.5;
 /// Mean in deviations, share of the variance beyond what was stated, and correlation from sample to sample that do no harm.
 const MEAN: f64 = 0.2;
 const SPREAD: f64 = 0.25;
@@ -47,10 +51,28 @@ pub enum DoubtedReading {
     LastingForces,
     /// Where it sticks its slip is more than its noise.
     Slips,
+    /// Where it sticks it slips against its friction for a while.
+    Creeps,
     /// Where it sticks errors of its slip follow each other.
     LastingSlips,
     /// Its forces and slips are likelier where forces are late by some time.
     LateForces,
+}
+
+impl DoubtedReading {
+    /// In a word or two, for tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Friction => "friction",
+            Self::Forces => "noise of forces",
+            Self::LastingForces => "lasting errors of forces",
+            Self::Slips => "noise of slips",
+            Self::Creeps => "slips of a contact that sticks",
+            Self::LastingSlips => "lasting errors of slips",
+            Self::LateForces => "late forces",
+        }
+    }
 }
 
 impl fmt::Display for ContactModesDoubt {
@@ -75,6 +97,11 @@ impl fmt::Display for ContactModesDoubt {
                 f,
                 "where contact {contact} sticks its slip is {by:.2} times its deviation: slips are noisier than stated, forces are late, or the \
                  friction is lower"
+            ),
+            DoubtedReading::Creeps => write!(
+                f,
+                "where contact {contact} sticks it slips against its friction for a while, by {by:.2} deviations: its coefficient is lower than \
+                 stated, or its forces have a bias or a wrong gain"
             ),
             DoubtedReading::LastingSlips => write!(
                 f,
@@ -164,6 +191,9 @@ pub(super) struct Left {
     sticking: [Sums; 2],
     /// Probability to slide at the sample before.
     before: f64,
+    /// Mean slip against the friction while it sticks, of the last samples, and its largest with its score.
+    creeps: f64,
+    crept: [f64; 2],
     /// Where the friction is known.
     late: Option<Late>,
 }
@@ -188,10 +218,22 @@ impl Left {
         self.sliding.take(ratio.zip(*friction).map(off_friction));
         let slip = slip.filter(|_| odds.stick > TOLD);
         let in_deviations = |slip: f64, variance: f64| slip / (variance + CREEP * CREEP).sqrt();
-        self.sticking[0].take(slip.map(|slip| in_deviations(slip.along, slip.variance_along)));
+        let along = slip.map(|slip| in_deviations(slip.along, slip.variance_along));
+        along.iter().for_each(|along| self.creep(*along));
+        self.sticking[0].take(along);
         self.sticking[1].take(slip.map(|slip| in_deviations(slip.across, slip.variance_across)));
         if let Some((late, steps)) = self.late.as_mut().zip(steps) {
             late.take(steps, brought);
+        }
+    }
+
+    /// A slip against the friction while it sticks, in deviations.
+    fn creep(&mut self, along: f64) {
+        self.creeps += (along - self.creeps) / RECENT;
+        // Of independent errors of one deviation.
+        let score = self.creeps * (2.0 * RECENT - 1.0).sqrt();
+        if score > self.crept[1] {
+            self.crept = [self.creeps, score];
         }
     }
 
@@ -207,10 +249,12 @@ impl Left {
             (DoubtedReading::Forces, harm(self.sliding.spread(), wide)),
             (DoubtedReading::LastingForces, harm(self.sliding.lasting(), LASTS)),
             (DoubtedReading::Slips, harm(sticking.spread(), wide)),
+            (DoubtedReading::Creeps, Some(self.crept).filter(|[_, score]| *score > CREPT)),
             (DoubtedReading::LastingSlips, harm(sticking.lasting(), LASTS)),
         ];
-        let of_slips =
-            |about: DoubtedReading| matches!(about, DoubtedReading::Slips | DoubtedReading::LastingSlips);
+        let of_slips = |about: DoubtedReading| {
+            matches!(about, DoubtedReading::Slips | DoubtedReading::Creeps | DoubtedReading::LastingSlips)
+        };
         let found = found.into_iter().filter(|(about, _)| !(slips_last && of_slips(*about)));
         // Odds as the deviations of a number that is as far off.
         let late = self.late.as_ref().and_then(Late::sure).map(|[lag, odds]| [lag, (2.0 * odds).sqrt()]);

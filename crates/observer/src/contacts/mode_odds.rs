@@ -60,6 +60,10 @@ impl EstimatedModes {
 pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units) -> Option<EstimatedModes> {
     let record = known.log;
     let mut odds = vec![[OFF; MOST_PALMS]; record.times.len()];
+    let in_plane = |slip: ContactSlip, contact: &Contact| match known.problem.planar {
+        true => along_plane(slip, contact, units.speed),
+        false => slip,
+    };
     let (mut palms, mut seen) = (Vec::new(), Vec::new());
     for palm in 0..MOST_PALMS {
         let contacts = || {
@@ -75,7 +79,9 @@ pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units)
         }
         let slips = known.slips(palm);
         let mut own = vec![ContactSeen::Off; record.times.len()];
-        contacts().for_each(|(k, contact)| own[k] = ContactSeen::Read(reading(contact, slips[k])));
+        contacts().for_each(|(k, contact)| {
+            own[k] = ContactSeen::Read(reading(contact, slips[k].map(|slip| in_plane(slip, contact))))
+        });
         palms.push(palm);
         seen.push(own);
     }
@@ -95,6 +101,12 @@ pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units)
     }
     let by_ratio = known.modes.to_vec();
     Some(EstimatedModes { odds, by_ratio, frictions, one_friction: found.one_friction, doubts })
+}
+
+/// The same where there is no motion along y: that there is no slip along it says nothing.
+fn along_plane(slip: ContactSlip, contact: &Contact, speed: f64) -> ContactSlip {
+    let across = Vector2::from(contact.tangents().map(|tangent| speed * tangent.y));
+    ContactSlip { covariance: slip.covariance + across * across.transpose(), ..slip }
 }
 
 fn reading(contact: &Contact, slip: Option<ContactSlip>) -> ContactReading {
