@@ -9,6 +9,7 @@
 
 mod bins;
 mod chain;
+mod checked;
 mod classifier;
 mod contact;
 mod density;
