@@ -266,6 +266,7 @@ impl Source<'_> {
         } else if thinned || sharp {
             stage = stage.on_all(averaged, sharp)?;
         }
+        stage = stage.finished()?;
         if *planar {
             let still = still(log, noise, units);
             stage = if still.is_none() { stage.decided()? } else { stage };
@@ -318,6 +319,7 @@ impl Stage<'_> {
             nodes: problem.nodes.len(),
             conditions: solved.equations.conditions,
             misfit: solved.misfit(),
+            correlation: solved.correlation(problem),
             iterations: [*before, before + solved.iterations],
             settled: solved.settled && covariances.mended <= MENDED,
         }

@@ -20,13 +20,14 @@ const USUAL_NOISE: f64 = 1.0;
 /// How often each constant is corrected at most, and each of those that explain most then; how many these are.
 const ROUNDS: [usize; 2] = [2, 12];
 const KEPT: usize = 5;
+/// How many are corrected at all: those by most of their deviations to first order.
+const TRIED: usize = 8;
 /// The share of its deviation that is no correction, and by how much one that made it worse is shortened.
 const CORRECTED: f64 = 0.1;
 const SHORTER: f64 = 0.3;
 /// Natural units up to which a constant may be off.
 const FARTHEST: f64 = 1.0;
-/// Linearisations of each solution, and what a step of it promises in units of what is left for each condition: twice what it may be off by in a
-/// logarithm of odds.
+/// Linearisations of each solution, and what a step of it promises: twice what it may be off by in a logarithm of odds.
 const MOST: usize = 30;
 const ENOUGH: f64 = 0.1;
 
@@ -124,6 +125,8 @@ fn wrong_sensors(sensors: &Sensors, problem: &Problem, stated: &Solved<CONSTANTS
         first.deviation.is_finite().then_some(begun)
     };
     let mut all: Vec<Correction> = sensors.constants(problem).into_iter().filter_map(begun).collect();
+    all.sort_by(|a, b| b.by_deviations().total_cmp(&a.by_deviations()));
+    all.truncate(TRIED);
     for rounds in ROUNDS {
         for correction in &mut all {
             (0..rounds).any(|_| correction.goes_on(sensors, problem).is_none());
@@ -150,6 +153,11 @@ struct Correction {
 }
 
 impl Correction {
+    /// What is to be corrected, in its deviations.
+    fn by_deviations(&self) -> f64 {
+        self.step.abs() / self.deviation
+    }
+
     /// By one correction; none where there is no more to gain.
     fn goes_on(&mut self, sensors: &Sensors, problem: &Problem) -> Option<()> {
         let enough = CORRECTED * self.deviation * self.misfit.max(1.0).sqrt();
@@ -186,7 +194,7 @@ impl Correction {
         }
         let record = sensors.without(fault, value);
         let own = problem.on(&record);
-        let solved = solve::<CONSTANTS>(&own, self.unknowns.clone(), MOST, ENOUGH * self.misfit)?;
+        let solved = solve::<CONSTANTS>(&own, self.unknowns.clone(), MOST, ENOUGH)?;
         let sensors = sensors.of_body(solved.unknowns.body);
         let score = Scores::new(&sensors, &own, &solved)?.of(fault, value)?;
         let (cost, misfit) = (solved.equations.cost, solved.misfit());

@@ -37,6 +37,7 @@ mod rows;
 mod samples;
 mod search;
 mod sensor_change;
+mod serial;
 mod sharp;
 mod slips;
 mod slopes;

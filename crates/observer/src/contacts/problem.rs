@@ -72,6 +72,8 @@ pub(super) struct Problem<'a> {
     /// Whether the error of a contact is one in its condition and in the moments of its impulses; a search takes it for two, as from a motion that is not
     /// the right one conditions tell none; so it is in space, as what noise says of an inertia is counted for such links.
     pub(super) shares: bool,
+    /// Whether a solution that hardly gets on is worth going on with: not one of the many that are tried.
+    pub(super) patient: bool,
     /// What a step over each interval misses of the motion, where that is known: else none of it.
     pub(super) missed: Vec<Tangent>,
     /// What the conditions of each sample are off by beside noise, since the spin is not known that they are taken with, m/s; else nothing.
@@ -107,7 +109,9 @@ pub(super) struct Trial {
 impl Problem<'_> {
     /// The same on another record.
     pub(super) fn on<'b>(&self, record: &'b Record) -> Problem<'b> {
-        let Self { noise, floor, exact, friction, gravity, units, first, body, planar, shares, .. } = *self;
+        let Self {
+            noise, floor, exact, friction, gravity, units, first, body, planar, shares, patient, ..
+        } = *self;
         let (nodes, frozen) = (self.nodes.clone(), self.frozen.clone());
         let blurred = self.blurred.clone();
         Problem {
@@ -124,6 +128,7 @@ impl Problem<'_> {
             frozen,
             planar,
             shares,
+            patient,
             missed: Vec::new(),
             blurred,
         }

@@ -4,6 +4,7 @@ use super::body::{Body, CONSTANTS};
 use super::equations::{Equations, Gradient, Row};
 use super::flow::Carried;
 use super::problem::{Problem, Unknowns};
+use super::record::Contact;
 use super::rows::Rows;
 use super::state::{Motion, Tangent, Turn, tangent};
 use contact_kinematics::is_stopped;
@@ -39,7 +40,7 @@ impl Conditions {
         let add = |node: usize, k: usize, motion: &Motion, at_nodes: &AtNodes<CONSTANTS>| {
             let turn = at.body.turn(motion.q, motion.L);
             let changes = at.body.by_inertia(&turn);
-            all.extend(problem.conditions(k, motion, &turn).map(|rows| Condition {
+            all.extend(problem.conditions(k, motion, &turn).map(|(_, rows)| Condition {
                 node,
                 rows: rows.linear(motion, &turn, &changes).map(at_nodes).collect(),
                 information: rows.information(),
@@ -92,7 +93,7 @@ impl Residuals {
         let mut conditions = Vec::new();
         let add = |_: usize, k: usize, motion: &Motion, _: &AtNodes<0>| {
             let turn = at.body.turn(motion.q, motion.L);
-            conditions.extend(problem.conditions(k, motion, &turn).map(|rows| rows.residual));
+            conditions.extend(problem.conditions(k, motion, &turn).map(|(_, rows)| rows.residual));
         };
         let links = problem.gone_through(at, Problem::step, add);
         // What conditions tell of the moment of a link is known where both are made.
@@ -151,15 +152,27 @@ impl Problem<'_> {
         links
     }
 
-    /// Of sample `k` at a motion there.
+    /// Visits the conditions of all contacts: the sample, the palm, and what is left of them in deviations.
+    pub(super) fn visit_conditions(&self, at: &Unknowns, mut visit: impl FnMut(usize, usize, Vector3<f64>)) {
+        self.gone_through(at, Problem::step, |_, k, motion, _: &AtNodes<0>| {
+            let turn = at.body.turn(motion.q, motion.L);
+            for (palm, rows) in self.conditions(k, motion, &turn) {
+                visit(k, palm, rows.values());
+            }
+        });
+    }
+
+    /// Of the palms at sample `k`, at a motion there.
     fn conditions<'a>(
         &'a self,
         k: usize,
         motion: &'a Motion,
         turn: &'a Turn,
-    ) -> impl Iterator<Item = Rows> + 'a {
+    ) -> impl Iterator<Item = (usize, Rows)> + 'a {
         let noise = self.noise_at(k);
-        let rows = move |contact| Rows::new(contact, motion, turn, &noise, self.friction);
+        let rows = move |contact: &'a Contact| {
+            Some((contact.palm, Rows::new(contact, motion, turn, &noise, self.friction)?))
+        };
         self.record.contacts[k].iter().filter_map(rows)
     }
 }

@@ -128,14 +128,19 @@ impl Rows {
         self.whitening[(0, 0)] * self.residual[0]
     }
 
+    /// Residuals in their deviations, independent; zero for those that do not count.
+    pub(super) fn values(&self) -> Vector3<f64> {
+        self.whitening * self.residual
+    }
+
     /// Squared residuals in their deviations.
     pub(super) fn cost(&self) -> f64 {
-        (self.whitening * self.residual).norm_squared()
+        self.values().norm_squared()
     }
 
     /// Of each value that is independent: from where the contact was read to where it is, by a deviation of it, and the value.
     pub(super) fn feet(&self) -> impl Iterator<Item = (DVec3, f64)> {
-        let values = self.whitening * self.residual;
+        let values = self.values();
         (0..self.count).map(move |i| (self.feet[i], values[i]))
     }
 

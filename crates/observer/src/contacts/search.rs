@@ -293,6 +293,8 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: U
         body,
         planar: options.planar,
         shares: false,
+        // Noise of nothing is explained, and chains with blows are stiff: steps along a curved valley are short there.
+        patient: !options.noise.limits(&units) || record.intervals.iter().any(|interval| interval.blow),
         missed: Vec::new(),
         blurred: Vec::new(),
     }

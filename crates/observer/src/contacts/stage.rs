@@ -162,6 +162,16 @@ impl<'a> Stage<'a> {
         self.replaced(blunted)
     }
 
+    /// To the end, where it was given up.
+    pub(super) fn finished(mut self) -> Option<Self> {
+        self.problem.patient = true;
+        if self.solved.settled {
+            Some(self)
+        } else {
+            self.replaced(|problem, solved| fine(problem, solved.unknowns))
+        }
+    }
+
     /// With conditions off by what was stated or guessed.
     pub(super) fn stated(self) -> Option<Self> {
         if self.problem.noise.floor == self.problem.floor { Some(self) } else { self.replaced(stated) }

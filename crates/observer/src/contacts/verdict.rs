@@ -29,6 +29,8 @@ pub struct ContactEvidence {
     pub conditions: usize,
     /// Squared corrections of all readings, in their deviations, over the number of conditions: about 1 when all is as stated.
     pub misfit: f64,
+    /// How far what is left is alike from sample to sample, beyond what chance makes of it: 0 of white noise, at most 0.97.
+    pub correlation: f64,
     /// Linearisations: coarse, all.
     pub iterations: [usize; 2],
     /// Whether less than half a standard deviation was left to gain.
@@ -80,9 +82,11 @@ impl ContactEvidence {
         (most.score().abs() > UNEXPLAINED).then_some(Reason::Fault(named))
     }
 
-    /// What all deviations are to be multiplied by: a misfit that is left is noise that was not stated.
+    /// What all deviations are to be multiplied by: a misfit that is left is noise that was not stated, and of readings that are alike fewer count as
+    /// independent (those of a first-order autoregressive process).
     pub(super) fn widening(&self) -> f64 {
-        self.misfit.max(1.0).sqrt()
+        let lasting = (1.0 + self.correlation) / (1.0 - self.correlation);
+        (self.misfit.max(1.0) * lasting).sqrt()
     }
 }
 

@@ -21,6 +21,8 @@ pub(super) struct Of<'a> {
     pub(super) against: bool,
     /// Whether another motion explains it as well.
     pub(super) open: bool,
+    /// How far what is left is alike from sample to sample.
+    pub(super) correlation: f64,
 }
 
 /// The motion at the end of a window.
@@ -77,6 +79,7 @@ impl Of<'_> {
             nodes: problem.nodes.len(),
             conditions: solved.equations.conditions,
             misfit: solved.misfit(),
+            correlation: self.correlation,
             iterations: [0, solved.iterations],
             settled: solved.settled,
         }

@@ -229,7 +229,9 @@ impl Window {
         // motions were lost by that three times as often, while errors over their deviations stayed what they are.
         let covariances = solved.covariances(&problem)?;
         let open = !others.is_empty() || self.waits > 0;
-        let of = Of { problem: &problem, solved: &solved, covariances: &covariances, against, open };
+        let correlation = solved.correlation(&problem);
+        let of =
+            Of { problem: &problem, solved: &solved, covariances: &covariances, against, open, correlation };
         Some(self.taken(&of, &others, (GAP * natural, record.missed_in_world(GAP * natural))))
     }
 

@@ -203,6 +203,7 @@ fn estimate() -> EstimateData {
             nodes: count,
             conditions: 3 * count,
             misfit: 1.0,
+            correlation: 0.0,
             iterations: [5, 9],
             settled: true,
         },
