@@ -8,7 +8,7 @@ use super::error::ContactModesError;
 use super::friction::{ContactFriction, FrictionGrid, LearnedFriction, together};
 use super::late::{Brought, Late};
 use super::options::ContactModesOptions;
-use super::reading::{ContactReading, ContactSeen, ContactSlip, Place, turned};
+use super::reading::{ContactReading, ContactSeen, ContactSlip, turned};
 use super::steps::speeds;
 use super::twist::{Row, TwistError, left_out};
 use crate::core::ModeLabel;
