@@ -64,6 +64,14 @@ pub(super) struct Brought<'a> {
     pub(super) slip: Option<(ContactSlip, f64)>,
 }
 
+impl Lagged {
+    /// The first slip that waits, where it is from this time or before.
+    fn pop_due(&mut self, due: f64) -> Option<Waiting> {
+        let is_due = self.waiting.front().is_some_and(|waiting| waiting.t <= due);
+        if is_due { self.waiting.pop_front() } else { None }
+    }
+}
+
 impl Late {
     /// Of a contact with this friction.
     pub(super) fn new(steps: &Steps, natural_speed: f64) -> Self {
@@ -118,7 +126,7 @@ impl Late {
         for (i, lag) in LAGS.into_iter().enumerate() {
             // A sum of steps is not exact.
             let due = self.t - lag * (1.0 - 1e-9);
-            while let Some(waiting) = self.lagged[i].waiting.pop_front_if(|waiting| waiting.t <= due) {
+            while let Some(waiting) = self.lagged[i].pop_due(due) {
                 self.set(reading, &waiting.slip, waiting.weight);
                 let lagged = &mut self.lagged[i];
                 let late = lagged.chain.weigh(&self.likelihood, &mut self.spare);
