@@ -185,6 +185,7 @@ fn run(
         body: Some(of.scene.object().mass),
         size: None,
         suspects: true,
+        mode_odds: false,
     };
     tally.run(&log, &options, of.length, None)?;
     Ok(())

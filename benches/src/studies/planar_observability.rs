@@ -107,6 +107,7 @@ fn along(name: &str) -> Result<Vec<Told>, Failure> {
         body: Some(object.mass),
         size: None,
         suspects: true,
+        mode_odds: false,
     };
     let estimate = estimate_plane(&log, &options)?;
     let mut all = Vec::new();

@@ -90,10 +90,12 @@ pub use scene::{
 };
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
 pub use summary::{
-    INERTIA_LEARNED, SummaryOf, estimate_summary, explanation, sensor_fault, status_in_words, verdict_figures,
+    INERTIA_LEARNED, SummaryOf, estimate_summary, explanation, mode_figures, sensor_fault, status_in_words,
+    verdict_figures,
 };
 pub use table::{
-    mode_probabilities, write_contact_curves, write_estimated_motion, write_motion, write_radius_functions,
+    mode_probabilities, probabilities, write_contact_curves, write_estimated_motion, write_motion,
+    write_radius_functions,
 };
 pub use touches::{
     Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,

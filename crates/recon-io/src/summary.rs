@@ -5,7 +5,9 @@ use crate::report::{
     mode_times,
 };
 use glam::DMat3;
-use recon::observer::{Assumption, Explanation, LearnedFriction, SensorFault, Suspect};
+use recon::observer::{
+    Assumption, ContactModesDoubt, EstimatedModes, Explanation, LearnedFriction, SensorFault, Suspect,
+};
 use serde_json::{Map, Value, json};
 
 /// What a `summary.json` is of. Its keys are those of `docs/schema/summary.schema.json`.
@@ -123,12 +125,7 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         figures["explanations"] = found.explanations.iter().map(explanation).collect();
     }
     if let Some(modes) = &found.mode_odds {
-        let friction = |(i, of): (usize, &Option<LearnedFriction>)| {
-            let of = (*of)?;
-            Some(json!({ "palm": i + 1, "coefficient": of.coefficient, "std": of.deviation }))
-        };
-        figures["friction"] = modes.frictions.iter().enumerate().filter_map(friction).collect();
-        figures["unsure_mode_samples"] = modes.unsure().into();
+        mode_figures(modes, &mut figures);
     }
     match found.axes_deviations {
         Some(of) => figures["std_axes_rad"] = json!(of.to_array()),
@@ -139,6 +136,18 @@ pub fn estimate_summary(data: &EstimateData) -> Value {
         }
     }
     SummaryOf::Reconstruction.named(figures)
+}
+
+/// What is known of contact modes: frictions, samples of unsure modes, and what of the readings is doubted.
+pub fn mode_figures(modes: &EstimatedModes, figures: &mut Value) {
+    let friction = |(i, of): (usize, &Option<LearnedFriction>)| {
+        let of = (*of)?;
+        Some(json!({ "palm": i + 1, "coefficient": of.coefficient, "std": of.deviation }))
+    };
+    figures["friction"] = modes.frictions.iter().enumerate().filter_map(friction).collect();
+    figures["unsure_mode_samples"] = modes.unsure().into();
+    let doubt = |of: &ContactModesDoubt| json!({ "palm": of.contact + 1, "about": of.about.name(), "by": of.by, "deviations": of.score, "text": of.to_string() });
+    figures["mode_doubts"] = modes.doubts.iter().map(doubt).collect();
 }
 
 /// A verdict as level and text.

@@ -85,7 +85,8 @@ pub fn mode_probabilities(estimate: &ContactEstimate, palms: usize) -> Option<Ve
 }
 
 /// To slide and to stick, to a millionth.
-fn probabilities(of: &ContactOdds) -> [f64; 2] {
+#[must_use]
+pub fn probabilities(of: &ContactOdds) -> [f64; 2] {
     [of.slide, of.stick].map(|probability| (1e6 * probability).round() / 1e6)
 }
 

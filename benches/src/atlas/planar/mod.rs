@@ -122,6 +122,7 @@ pub(super) fn of_spec(of: Spec, seed: u64, known: bool) -> Result<Ran, Failure> 
         body,
         size: None,
         suspects: true,
+        mode_odds: false,
     };
     let found = match estimate_plane(&log, &options) {
         Ok(found) => found,

@@ -6,7 +6,7 @@ use super::sensed::LASTING;
 use recon::object_dynamics::ContactMode;
 use recon::observer::{
     ContactFriction, ContactModes, ContactModesError, ContactModesOptions, ContactOdds, ContactSeen,
-    whole_modes,
+    LearnedFriction, whole_modes,
 };
 use std::fmt::Write as _;
 
@@ -46,8 +46,18 @@ pub(super) struct Judged {
     confusion: [[f64; 3]; 3],
     /// Samples that slide and stick, and all.
     either: [f64; 2],
-    /// Largest error of a friction as a share of it.
-    friction: Option<f64>,
+    /// Largest error of a friction as a share of it, and in its deviations.
+    friction: Option<[f64; 2]>,
+    /// Whether readings of some contact are doubted, which are as stated.
+    doubted: bool,
+}
+
+/// What was told of a run.
+struct Told {
+    /// Of each contact at each sample.
+    odds: Vec<Vec<ContactOdds>>,
+    frictions: Vec<Option<LearnedFriction>>,
+    doubted: bool,
 }
 
 pub(super) fn judged(
@@ -59,41 +69,53 @@ pub(super) fn judged(
     let mut options = ContactModesOptions::new(run.natural_speed(), *unloaded, 0.5 * run.weight);
     options.slip_errors_last = LASTING;
     let contacts = run.samples[0].len();
-    let (odds, frictions) = match way {
+    let told = match way {
         Way::Whole => {
             let of = |i: usize| seen.iter().map(|seen| seen[i]).collect();
             let seen: Vec<Vec<ContactSeen>> = (0..contacts).map(of).collect();
             let times: Vec<f64> = (0..run.samples.len()).map(|k| k as f64 * Run::DT).collect();
             let found = whole_modes(&times, &seen, &options)?;
-            (found.odds, found.frictions)
+            Told { odds: found.odds, frictions: found.frictions, doubted: !found.doubts.is_empty() }
         }
         Way::Known => followed(seen, ContactFriction::Known(run.friction), contacts, options)?,
         Way::Unknown => followed(seen, ContactFriction::Unknown { material: 0 }, contacts, options)?,
     };
-    let error = |found: f64| (found / run.friction - 1.0).abs();
-    let friction = frictions.iter().flatten().map(|found| error(found.coefficient)).reduce(f64::max);
+    let error = |found: &LearnedFriction| {
+        let off = (found.coefficient - run.friction).abs();
+        [off / run.friction, off / found.deviation]
+    };
+    let errors = told.frictions.iter().flatten().map(error);
+    let friction = errors.reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])]);
     let tally = Tally::new("", true);
-    let mut judged =
-        Judged { way, spatial, noise, tally, confusion: [[0.0; 3]; 3], either: [0.0; 2], friction };
-    (0..contacts).for_each(|i| judged.take(run, i, &odds[i]));
+    let mut judged = Judged {
+        way,
+        spatial,
+        noise,
+        tally,
+        confusion: [[0.0; 3]; 3],
+        either: [0.0; 2],
+        friction,
+        doubted: told.doubted,
+    };
+    (0..contacts).for_each(|i| judged.take(run, i, &told.odds[i]));
     Ok(judged)
 }
 
-/// Odds of each contact at each sample, and what is learned of its friction at the end.
-#[expect(clippy::type_complexity, reason = "two lists, by contact")]
+/// Sample by sample.
 fn followed(
     seen: &[Vec<ContactSeen>],
     friction: ContactFriction,
     contacts: usize,
     options: ContactModesOptions,
-) -> Result<(Vec<Vec<ContactOdds>>, Vec<Option<recon::observer::LearnedFriction>>), ContactModesError> {
+) -> Result<Told, ContactModesError> {
     let mut modes = ContactModes::new(&vec![friction; contacts], options)?;
     let mut odds = vec![Vec::with_capacity(seen.len()); contacts];
     for seen in seen {
         modes.push(Run::DT, seen)?;
         odds.iter_mut().enumerate().for_each(|(i, own)| own.extend(modes.odds(i)));
     }
-    Ok((odds, (0..contacts).map(|i| modes.friction(i)).collect()))
+    let frictions = (0..contacts).map(|i| modes.friction(i)).collect();
+    Ok(Told { odds, frictions, doubted: modes.doubts().next().is_some() })
 }
 
 impl Judged {
@@ -125,7 +147,7 @@ impl Judged {
 
 pub(super) fn tables(all: &[&Judged]) -> String {
     let mut out = String::from(
-        "| modes told from | scenes | noise | runs | samples | right | worst run | Brier | above 0.99 | of all: above 0.99 and wrong | slides and sticks | friction: largest error |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        "| modes told from | scenes | noise | runs | samples | right | worst run | Brier | above 0.99 | of all: above 0.99 and wrong | slides and sticks | friction: largest error, in deviations | runs doubted |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for way in Way::ALL {
         for spatial in [true, false] {
@@ -152,10 +174,12 @@ fn row(own: &[&Judged]) -> String {
     let samples = sum(|tally| tally.samples).max(1.0);
     let worst = own.iter().map(|j| j.tally.right / j.tally.samples.max(1.0)).fold(1.0, f64::min);
     let either = |i: usize| own.iter().map(|judged| judged.either[i]).sum::<f64>();
-    let friction = own.iter().filter_map(|judged| judged.friction).reduce(f64::max);
+    let friction =
+        own.iter().filter_map(|judged| judged.friction).reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+    let doubted = own.iter().filter(|judged| judged.doubted).count();
     let Some(first) = own.first() else { return String::new() };
     format!(
-        "| {} | {} | {} % | {} | {samples} | {:.4} | {worst:.3} | {:.4} | {:.3} | {:.5} | {:.3} | {} |",
+        "| {} | {} | {} % | {} | {samples} | {:.4} | {worst:.3} | {:.4} | {:.3} | {:.5} | {:.3} | {} | {doubted} |",
         first.way.words(),
         if first.spatial { "space" } else { "plane" },
         100.0 * first.noise,
@@ -165,7 +189,7 @@ fn row(own: &[&Judged]) -> String {
         sum(|tally| tally.confident) / samples,
         sum(|tally| tally.wrong) / samples,
         either(0) / either(1).max(1.0),
-        friction.map_or("".to_owned(), |error| format!("{:.1} %", 100.0 * error)),
+        friction.map_or(String::new(), |[share, off]| format!("{:.2} %, {off:.1}", 100.0 * share)),
     )
 }
 

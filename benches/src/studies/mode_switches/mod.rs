@@ -22,7 +22,7 @@ const UNKNOWN: u64 = 4;
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let mut words = crate::words();
     let scenes: u64 = words.next().map_or(Ok(100), |word| word.parse())?;
-    let first: u64 = words.next().map_or(Ok(61_000), |word| word.parse())?;
+    let first: u64 = words.next().map_or(Ok(62_000), |word| word.parse())?;
     let file = words.next().map_or_else(|| PathBuf::from("docs/charts/mode-switches.svg"), PathBuf::from);
     let judged = on_two_cores(scenes, first)?;
     let all: Vec<&Judged> = judged.iter().collect();

@@ -158,5 +158,6 @@ fn options(scene: &Scene, noise: PlanarNoise, body: Option<PlanarMass>) -> Plane
         body,
         size: None,
         suspects: true,
+        mode_odds: false,
     }
 }

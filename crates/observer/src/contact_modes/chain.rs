@@ -1,6 +1,9 @@
 //! One contact at one coefficient of friction: probabilities of off, of the speeds of sliding and of the ratios of sticking.
 
-use super::density::Ratio;
+use super::bins::Bins;
+use super::contact::Force;
+use super::density::{Ratio, Slip};
+use super::friction::Cell;
 use super::steps::Steps;
 
 /// Probability below which a cell is left out when the largest likelihood is looked for; it may still win by [`Chain::in_logs`].
@@ -48,15 +51,39 @@ impl Likelihood {
     }
 
     /// The same, in place.
-    pub(super) fn set(&mut self, off: f64, touches: f64) {
+    fn set(&mut self, off: f64, touches: f64) {
         self.off = off;
         self.speeds.fill(touches);
         self.ratios.fill(touches);
     }
 
-    /// Of a ratio, at this friction, give or take `unsure` (a variance); those of the speeds are all the same.
-    pub(super) fn of_ratio(&mut self, steps: &Steps, ratio: &Ratio, (friction, unsure): (f64, f64)) {
-        self.speeds.fill(ratio.log_at(friction, unsure));
+    /// Of a force, at the friction of this cell, without the factor that all modes that touch have in common.
+    pub(super) fn of_force(&mut self, steps: &Steps, force: &Force, cell: &Cell) {
+        match force {
+            Force::Silent => self.set(0.0, 0.0),
+            Force::Off => self.set(0.0, f64::NEG_INFINITY),
+            Force::Touches => self.set(f64::NEG_INFINITY, 0.0),
+            Force::Presses { ratio, touching, off } => {
+                self.of_ratio(steps, ratio, cell);
+                self.off = off - touching;
+            }
+        }
+    }
+
+    /// Of a slip. `turn` is the deviation of the direction of friction, rad; `weight` the power of the density.
+    pub(super) fn of_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) {
+        self.off = weight * slip.log_off();
+        self.ratios.fill(weight * slip.log_sticking());
+        for (k, log) in self.speeds.iter_mut().enumerate() {
+            let (speed, spread) = (speeds.middle(k), speeds.variance(k));
+            *log = weight * slip.log_sliding(speed, spread, turn);
+        }
+    }
+
+    /// Of a ratio, at the friction of this cell; those of the speeds are all the same.
+    fn of_ratio(&mut self, steps: &Steps, ratio: &Ratio, cell: &Cell) {
+        self.speeds.fill(ratio.log_at(cell.mean, cell.variance));
+        let friction = steps.friction;
         for (k, log) in self.ratios.iter_mut().enumerate().take(steps.ratios.count()) {
             let spread = friction.powi(2) * steps.ratios.variance(k);
             *log = ratio.log_at(friction * steps.ratios.middle(k), spread);

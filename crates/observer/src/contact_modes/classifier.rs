@@ -3,11 +3,12 @@
 use super::bins::Bins;
 use super::contact::{Contact, Force, Modes};
 use super::density::Slip;
-use super::doubt::{ContactModesDoubt, Left};
+use super::doubt::{ContactModesDoubt, Left, Told};
 use super::error::ContactModesError;
-use super::friction::{ContactFriction, FrictionGrid, LearnedFriction};
+use super::friction::{ContactFriction, FrictionGrid, LearnedFriction, together};
+use super::late::{Brought, Late};
 use super::options::ContactModesOptions;
-use super::reading::{ContactReading, ContactSeen, Place, turned};
+use super::reading::{ContactReading, ContactSeen, ContactSlip, turned};
 use super::steps::speeds;
 use super::twist::{Row, TwistError, left_out};
 use crate::core::ModeLabel;
@@ -20,8 +21,6 @@ pub(super) const LONGEST: f64 = 1000.0;
 pub(super) const FIRST: f64 = 1e-3;
 /// Times that each contact's odds are set from what the others then say of the twist.
 const SWEEPS: usize = 3;
-/// Largest slope of a slip by the twist times the twist's deviation, in natural speeds.
-const MOST: f64 = 1e9;
 
 /// Probabilities of the modes of a contact. They sum to one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,21 +56,23 @@ pub struct ContactOdds {
 /// ```
 #[derive(Clone, Debug)]
 pub struct ContactModes {
-    options: ContactModesOptions,
+    pub(super) options: ContactModesOptions,
     /// Of the speed of sliding.
     speeds: Bins,
     grids: Vec<FrictionGrid>,
     /// The grid of each contact.
     grid_of: Vec<usize>,
-    contacts: Vec<Contact>,
+    pub(super) contacts: Vec<Contact>,
     odds: Vec<Modes>,
     labels: Vec<ModeLabel>,
     told: Vec<ContactMode>,
     rows: Vec<Row>,
-    /// Of the last sample, in natural units.
-    slips: Vec<Option<Slip>>,
+    /// Of the last sample.
+    forces: Vec<Force>,
+    /// The same, in the world's axes and in natural units.
+    slips: Vec<Option<(ContactSlip, Slip)>>,
     left: Vec<Left>,
-    samples: usize,
+    pub(super) samples: usize,
 }
 
 impl ContactModes {
@@ -108,6 +109,11 @@ impl ContactModes {
             }
         }
         let count = frictions.len();
+        let late = |grid: &usize| {
+            let grid = &grids[*grid];
+            grid.material.is_none().then(|| Late::new(&grid.steps[0], options.natural_speed))
+        };
+        let left = grid_of.iter().map(|grid| Left::new(late(grid))).collect();
         Ok(Self {
             options,
             contacts: grid_of.iter().map(|grid| Contact::new(&grids[*grid])).collect(),
@@ -118,8 +124,9 @@ impl ContactModes {
             labels: vec![label; count],
             told: vec![ContactMode::Off; count],
             rows: vec![Row::NONE; count],
+            forces: vec![Force::Silent; count],
             slips: vec![None; count],
-            left: vec![Left::default(); count],
+            left,
             samples: 0,
         })
     }
@@ -191,52 +198,6 @@ impl ContactModes {
         self.samples
     }
 
-    fn check(&self, dt: f64, seen: &[ContactSeen]) -> Result<(), ContactModesError> {
-        let sample = self.samples;
-        if !(dt > 0.0 && dt < LONGEST) {
-            return Err(ContactModesError::TimeStep { sample, value: dt });
-        }
-        self.check_count("readings", seen.len())?;
-        for (contact, seen) in seen.iter().enumerate() {
-            if let ContactSeen::Read(reading) = seen {
-                reading.check(Place { contact, sample }, &self.options)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn check_count(&self, what: &'static str, found: usize) -> Result<(), ContactModesError> {
-        let (sample, needed) = (self.samples, self.contacts.len());
-        if found == needed {
-            Ok(())
-        } else {
-            Err(ContactModesError::Contacts { what, sample, found, needed })
-        }
-    }
-
-    /// The inverse of the twist's covariance.
-    fn check_twist(&self, twist: &TwistError<'_>) -> Result<Matrix6<f64>, ContactModesError> {
-        self.check_count("slopes", twist.slopes.len())?;
-        let sample = self.samples;
-        let refused = ContactModesError::TwistCovariance { sample };
-        let covariance = twist.covariance;
-        let asymmetry = (covariance - covariance.transpose()).amax();
-        // False of what is not a number as well.
-        let symmetric = asymmetry <= 1e-9 * covariance.amax();
-        let Some(root) = covariance.cholesky().filter(|_| symmetric) else { return Err(refused) };
-        let inverse = root.inverse();
-        if !inverse.iter().all(|entry| entry.is_finite()) {
-            return Err(refused);
-        }
-        for (contact, slope) in twist.slopes.iter().enumerate() {
-            let at = Place { contact, sample };
-            slope.iter().try_for_each(|entry| at.finite("slope of the slip by the twist", *entry))?;
-            let speed = slope.amax() * covariance.diagonal().max().sqrt() / self.options.natural_speed;
-            at.within("slope of the slip by the twist, in natural speeds a deviation", speed, MOST)?;
-        }
-        Ok(inverse)
-    }
-
     /// A time step on, and the forces.
     fn advance(&mut self, dt: f64, seen: &[ContactSeen]) {
         let dt = if self.samples == 0 { FIRST } else { dt };
@@ -246,12 +207,9 @@ impl ContactModes {
             if self.samples > 0 {
                 contact.predict(grid);
             }
-            let force = match &seen[i] {
-                ContactSeen::Missing => Force::Silent,
-                ContactSeen::Off => Force::Off,
-                ContactSeen::Read(reading) => reading.force(&self.options),
-            };
+            let force = seen[i].force(&self.options);
             contact.weigh_force(&force, grid);
+            self.forces[i] = force;
         }
     }
 
@@ -272,7 +230,7 @@ impl ContactModes {
                     let Some((reading, error)) = self.shared(i, &seen[i], Some((twist, information))) else {
                         continue;
                     };
-                    let (slip, turn) = self.slip(reading, error);
+                    let (_, slip, turn) = self.slip(reading, error);
                     self.odds[i] = self.contacts[i].try_slip(&slip, turn, weight, &self.speeds);
                     self.set_row(i, &seen[i], twist);
                 }
@@ -281,9 +239,9 @@ impl ContactModes {
         for i in 0..self.contacts.len() {
             self.slips[i] = None;
             let Some((reading, error)) = self.shared(i, &seen[i], twist) else { continue };
-            let (slip, turn) = self.slip(reading, error);
+            let (own, slip, turn) = self.slip(reading, error);
             self.contacts[i].weigh_slip(&slip, turn, weight, &self.speeds);
-            self.slips[i] = Some(slip);
+            self.slips[i] = Some((own, slip));
         }
     }
 
@@ -306,7 +264,12 @@ impl ContactModes {
         Some((reading, error))
     }
 
-    fn slip(&self, reading: &ContactReading, error: Option<(Vector2<f64>, Matrix2<f64>)>) -> (Slip, f64) {
+    /// The slip without what the twist is off by, the same against and across the friction, and the deviation of that direction, rad.
+    fn slip(
+        &self,
+        reading: &ContactReading,
+        error: Option<(Vector2<f64>, Matrix2<f64>)>,
+    ) -> (ContactSlip, Slip, f64) {
         let (u, turn) = reading.direction();
         let (mut velocity, mut covariance) = reading
             .slip
@@ -315,7 +278,8 @@ impl ContactModes {
             velocity -= mean;
             covariance += spread;
         }
-        (turned(&velocity, &covariance, &u, self.options.natural_speed), turn)
+        let slip = turned(&velocity, &covariance, &u, self.options.natural_speed);
+        (ContactSlip { velocity, covariance }, slip, turn)
     }
 
     fn set_row(&mut self, i: usize, seen: &ContactSeen, twist: &TwistError<'_>) {
@@ -340,29 +304,40 @@ impl ContactModes {
         }
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             let grid = &mut self.grids[self.grid_of[i]];
+            let ratio = seen[i].reading().and_then(ContactReading::ratio);
+            ratio.iter().for_each(|ratio| contact.learn(ratio));
             self.odds[i] = contact.average(&grid.weights);
             // Forces alone take any plateau of the ratio for sliding: what is learned of friction needs a slip that was read.
-            if matches!(seen[i], ContactSeen::Read(ContactReading { slip: Some(_), .. })) {
+            if self.slips[i].is_some() {
                 grid.count(self.odds[i][1], dt);
             }
-            let ratio = match &seen[i] {
-                ContactSeen::Read(reading) => reading.ratio(),
-                _ => None,
-            };
-            let [off, slide, stick] = self.odds[i];
-            self.left[i].take(
-                &ContactOdds { off, slide, stick },
-                ratio.as_ref(),
-                self.slips[i].as_ref(),
-                grid.told(),
-            );
-            self.told[i] = match self.labels[i].follow(self.odds[i]) {
-                0 => ContactMode::Off,
-                1 => ContactMode::Slide,
-                _ => ContactMode::Stick,
-            };
         }
+        for (g, grid) in self.grids.iter_mut().enumerate() {
+            let of_grid = self.contacts.iter().zip(&self.grid_of).filter(|(_, own)| **own == g);
+            let guesses = of_grid.map(|(contact, _)| contact.friction(&grid.weights));
+            grid.guess = together(guesses);
+        }
+        (0..seen.len()).for_each(|i| self.tell(i, dt, &seen[i]));
         self.samples += 1;
         log_density
+    }
+
+    /// The label of a contact after a sample, and what that leaves.
+    fn tell(&mut self, i: usize, dt: f64, seen: &ContactSeen) {
+        let grid = &self.grids[self.grid_of[i]];
+        let [off, slide, stick] = self.odds[i];
+        let slip = self.slips[i].map(|(slip, _)| (slip, self.options.slip_weight(dt)));
+        let told = Told {
+            odds: ContactOdds { off, slide, stick },
+            friction: grid.told(),
+            slip: self.slips[i].map(|(_, slip)| slip),
+            brought: Brought { dt, force: &self.forces[i], reading: seen.reading(), slip },
+        };
+        self.left[i].take(&told, grid.steps.first());
+        self.told[i] = match self.labels[i].follow(self.odds[i]) {
+            0 => ContactMode::Off,
+            1 => ContactMode::Slide,
+            _ => ContactMode::Stick,
+        };
     }
 }

@@ -3,7 +3,7 @@
 use super::bins::Bins;
 use super::chain::{Chain, Likelihood};
 use super::density::{Ratio, Slip};
-use super::friction::FrictionGrid;
+use super::friction::{Cell, FrictionGrid, guessed};
 
 /// Probabilities of one contact's modes, in the order off, slide, stick.
 pub(super) type Modes = [f64; 3];
@@ -12,6 +12,7 @@ pub(super) type Modes = [f64; 3];
 #[derive(Clone, Debug)]
 pub(super) struct Contact {
     chains: Vec<Chain>,
+    cells: Vec<Cell>,
     pub(super) log_evidence: Vec<f64>,
     /// To work in.
     spares: Vec<Chain>,
@@ -50,7 +51,16 @@ impl Contact {
         let likelihood = Likelihood { ratios: vec![0.0; longest], ..Likelihood::none(&grid.steps[0]) };
         let log_evidence = vec![0.0; chains.len()];
         let (spare, tried) = (mean.clone(), mean.clone());
-        Self { spares: chains.clone(), chains, log_evidence, likelihood, mean, spare, tried }
+        Self {
+            spares: chains.clone(),
+            chains,
+            cells: grid.cells(),
+            log_evidence,
+            likelihood,
+            mean,
+            spare,
+            tried,
+        }
     }
 
     /// One time step on.
@@ -62,48 +72,43 @@ impl Contact {
 
     /// Weighs all by the forces.
     pub(super) fn weigh_force(&mut self, force: &Force, grid: &FrictionGrid) {
-        match force {
+        let shift = match force {
             Force::Silent => return,
-            Force::Off => self.likelihood.set(0.0, f64::NEG_INFINITY),
-            Force::Touches => self.likelihood.set(f64::NEG_INFINITY, 0.0),
-            Force::Presses { off, .. } => self.likelihood.off = *off,
-        }
-        for (i, friction) in grid.values.iter().enumerate() {
-            let mut shift = 0.0;
-            if let Force::Presses { ratio, touching, off } = force {
-                self.likelihood.of_ratio(&grid.steps[i], ratio, (*friction, grid.unsure[i]));
-                // The common factor of the modes that touch is taken to the other side.
-                self.likelihood.off = off - touching;
-                shift = *touching;
-            }
+            Force::Presses { touching, .. } => *touching,
+            Force::Off | Force::Touches => 0.0,
+        };
+        for (i, cell) in self.cells.iter().enumerate() {
+            self.likelihood.of_force(&grid.steps[i], force, cell);
             self.log_evidence[i] += self.chains[i].weigh(&self.likelihood, &mut self.spares[i]) + shift;
         }
     }
 
     /// Weighs all by the slip. `turn` is the deviation of the direction of friction, rad; `weight` the power of the density.
     pub(super) fn weigh_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) {
-        self.set_slip(slip, turn, weight, speeds);
+        self.likelihood.of_slip(slip, turn, weight, speeds);
         let all = self.chains.iter_mut().zip(&mut self.spares).zip(&mut self.log_evidence);
         for ((chain, spare), log_evidence) in all {
             *log_evidence += chain.weigh(&self.likelihood, spare);
         }
     }
 
+    /// What the ratio says of where in their cells the frictions are, after all of a sample was weighed.
+    pub(super) fn learn(&mut self, ratio: &Ratio) {
+        let all = self.cells.iter_mut().zip(&self.chains);
+        all.for_each(|(cell, chain)| cell.learn(ratio, chain.slides()));
+    }
+
+    /// Mean and variance of the friction by these weights of the cells.
+    pub(super) fn friction(&self, weights: &[f64]) -> [f64; 2] {
+        guessed(weights.iter().copied().zip(&self.cells))
+    }
+
     /// What the modes would be with this slip, without taking it; needs [`Self::average`] before.
     pub(super) fn try_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) -> Modes {
-        self.set_slip(slip, turn, weight, speeds);
+        self.likelihood.of_slip(slip, turn, weight, speeds);
         self.tried.clone_from(&self.mean);
         self.tried.weigh(&self.likelihood, &mut self.spare);
         of(&self.tried)
-    }
-
-    fn set_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) {
-        self.likelihood.off = weight * slip.log_off();
-        self.likelihood.ratios.fill(weight * slip.log_sticking());
-        for (k, log) in self.likelihood.speeds.iter_mut().enumerate() {
-            let (speed, spread) = (speeds.middle(k), speeds.variance(k));
-            *log = weight * slip.log_sliding(speed, spread, turn);
-        }
     }
 
     /// The mean of all chains by these weights of the frictions.

@@ -1,5 +1,6 @@
 //! Coefficients of friction: one that is known, or a grid of what it may be.
 
+use super::density::Ratio;
 use super::steps::Steps;
 
 /// The grid of an unknown friction: this many values, alike in ratio, from lowest to highest.
@@ -11,6 +12,8 @@ const WHOLE: (f64, f64) = (0.02, 2.0);
 /// Time that something must have slid before its friction is told, s, and how probable sliding must be for its time to count.
 const SLID: f64 = 0.01;
 pub(super) const SURE: f64 = 0.99;
+/// Least deviation of a friction as a share of it.
+const KNOWN: f64 = 3e-3;
 
 /// What is known of the friction of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +34,7 @@ pub enum ContactFriction {
 pub struct LearnedFriction {
     /// Its mean.
     pub coefficient: f64,
-    /// Its standard deviation, not below that of a step of the grid, 0.5 % of the coefficient.
+    /// Its standard deviation, not below 0.3 % of the coefficient: what is told to slide and does not is beyond noise.
     pub deviation: f64,
 }
 
@@ -41,8 +44,6 @@ pub(super) struct FrictionGrid {
     /// None where the friction is known.
     pub(super) material: Option<usize>,
     pub(super) values: Vec<f64>,
-    /// Variance of each about its value.
-    pub(super) unsure: Vec<f64>,
     /// What happens at each in a time step.
     pub(super) steps: Vec<Steps>,
     /// Given all samples of the material; sum to one.
@@ -52,31 +53,32 @@ pub(super) struct FrictionGrid {
     last: f64,
     /// Time for which one of its contacts slid, s.
     slid: f64,
+    /// Its mean and variance by all of its contacts.
+    pub(super) guess: [f64; 2],
 }
 
 impl FrictionGrid {
     /// For time steps of `dt`, s, at first.
     pub(super) fn known(friction: f64, dt: f64) -> Self {
-        Self::of(None, vec![friction], vec![0.0], dt)
+        Self::of(None, vec![friction], dt)
     }
 
     pub(super) fn unknown(material: usize, dt: f64) -> Self {
         let values: Vec<f64> = (0..VALUES).map(|k| LOWEST * (f64::from(k) * log_step()).exp()).collect();
-        let unsure = values.iter().map(|value| unsure(*value)).collect();
-        Self::of(Some(material), values, unsure, dt)
+        Self::of(Some(material), values, dt)
     }
 
-    fn of(material: Option<usize>, values: Vec<f64>, unsure: Vec<f64>, dt: f64) -> Self {
+    fn of(material: Option<usize>, values: Vec<f64>, dt: f64) -> Self {
         let count = values.len();
         Self {
             material,
             steps: values.iter().map(|friction| Steps::that_follow(dt, *friction)).collect(),
             values,
-            unsure,
             weights: vec![1.0 / count as f64; count],
             logs: vec![0.0; count],
             last: 0.0,
             slid: 0.0,
+            guess: [1.0, 1.0],
         }
     }
 
@@ -105,12 +107,17 @@ impl FrictionGrid {
         new
     }
 
-    /// The friction, where it is known.
+    /// What is known of each value before anything was read.
+    pub(super) fn cells(&self) -> Vec<Cell> {
+        let of = if self.material.is_none() { Cell::known } else { Cell::new };
+        self.values.iter().map(|value| of(*value)).collect()
+    }
+
+    /// The friction, where it is known or learned.
     pub(super) fn told(&self) -> Option<f64> {
-        if self.material.is_none() {
-            self.values.first().copied()
-        } else {
-            self.learned().map(|learned| learned.coefficient)
+        match self.material {
+            None => self.values.first().copied(),
+            Some(_) => self.learned().map(|learned| learned.coefficient),
         }
     }
 
@@ -124,7 +131,7 @@ impl FrictionGrid {
     /// None where it was known from the start, and while nothing slid for long enough: what sticks has only a lower bound.
     pub(super) fn learned(&self) -> Option<LearnedFriction> {
         self.material?;
-        learned(&self.values, &self.weights, self.slid)
+        learned(self.guess, self.slid)
     }
 }
 
@@ -133,9 +140,39 @@ fn log_step() -> f64 {
     (HIGHEST / LOWEST).ln() / f64::from(VALUES - 1)
 }
 
-/// Variance of a friction that is anywhere in its cell of the grid. Without it forces that are known better than a cell is wide fit no cell.
-pub(super) fn unsure(friction: f64) -> f64 {
-    (friction * log_step()).powi(2) / 12.0
+/// Where in its cell of the grid a friction is, of one contact: what it was while that slid.
+///
+/// A cell is wider than what good forces tell: were its width an error of each sample by itself, sliding at one ratio would be no more likely
+/// than sticking at one that walks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cell {
+    pub(super) mean: f64,
+    pub(super) variance: f64,
+    ends: [f64; 2],
+}
+
+impl Cell {
+    /// Anywhere in the cell about this value.
+    pub(super) fn new(value: f64) -> Self {
+        let half = (0.5 * log_step()).exp();
+        Self {
+            mean: value,
+            variance: (value * log_step()).powi(2) / 12.0,
+            ends: [value / half, value * half],
+        }
+    }
+
+    /// This value and no other.
+    pub(super) fn known(value: f64) -> Self {
+        Self { mean: value, variance: 0.0, ends: [value; 2] }
+    }
+
+    /// Takes a ratio, which is the friction's with the probability `slides`.
+    pub(super) fn learn(&mut self, ratio: &Ratio, slides: f64) {
+        let gain = slides * self.variance / (slides * self.variance + ratio.deviation.powi(2));
+        self.mean = (self.mean + gain * (ratio.size - self.mean)).clamp(self.ends[0], self.ends[1]);
+        self.variance *= 1.0 - gain;
+    }
 }
 
 /// The frictions that are looked at over a whole log.
@@ -144,17 +181,25 @@ pub(super) fn values() -> Vec<f64> {
     (0..=count).map(|k| WHOLE.0 * (f64::from(k) * log_step()).exp()).collect()
 }
 
-/// From values and their weights, which sum to one; none where nothing slid for long enough, `slid` being the time that something did, s.
-pub(super) fn learned(values: &[f64], weights: &[f64], slid: f64) -> Option<LearnedFriction> {
+/// Mean and variance of a friction from cells and their weights, which sum to one.
+pub(super) fn guessed<'a>(cells: impl Iterator<Item = (f64, &'a Cell)> + Clone) -> [f64; 2] {
+    let mean: f64 = cells.clone().map(|(weight, cell)| weight * cell.mean).sum();
+    let variance = cells.map(|(weight, cell)| weight * (cell.variance + (cell.mean - mean).powi(2))).sum();
+    [mean, variance]
+}
+
+/// Of one friction that several contacts tell. What all had beforehand, a cell of the grid, is of no account beside that.
+pub(super) fn together(all: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    let [by, information] = all.fold([0.0, 0.0], |[by, information], [mean, variance]| {
+        let own = variance.max(f64::MIN_POSITIVE).recip();
+        [by + own * mean, information + own]
+    });
+    [by / information, information.recip()]
+}
+
+/// Of a mean and a variance; none where nothing slid for long enough, `slid` being the time that something did, s.
+pub(super) fn learned([mean, variance]: [f64; 2], slid: f64) -> Option<LearnedFriction> {
     // A sum of steps is not exact.
-    if slid < SLID * (1.0 - 1e-9) {
-        return None;
-    }
-    let mean = |of: &dyn Fn(f64) -> f64| -> f64 {
-        weights.iter().zip(values).map(|(weight, value)| weight * of(*value)).sum()
-    };
-    let coefficient = mean(&|value| value);
-    let step = coefficient * log_step();
-    let variance = mean(&|value| (value - coefficient).powi(2)) + step.powi(2) / 12.0;
-    Some(LearnedFriction { coefficient, deviation: variance.sqrt() })
+    let known = slid >= SLID * (1.0 - 1e-9);
+    known.then(|| LearnedFriction { coefficient: mean, deviation: variance.sqrt().max(KNOWN * mean) })
 }

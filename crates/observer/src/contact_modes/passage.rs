@@ -3,12 +3,16 @@
 use super::chain::{Chain, Likelihood};
 use super::classifier::{ContactOdds, FIRST};
 use super::contact::Force;
-use super::friction::{SURE, unsure};
+use super::doubt::{Left, Told};
+use super::friction::{Cell, SURE};
+use super::late::{Brought, Late};
 use super::options::ContactModesOptions;
 use super::reading::{ContactReading, ContactSeen, turned};
 use super::steps::{SAME as KIND, SPEEDS, Steps, speeds};
 
-/// Logarithm of the odds against a friction at which it is given up: given the model it would come back once in 10^26.
+/// Logarithm of the odds against a friction at which it is given up: given the model it would come back once in 10^26. They are odds against the
+/// largest friction, of which a contact sticks whatever it does: one that looks like a friction for a while, where a ratio stays the same, is
+/// far ahead of the true one there, and would have it given up before it fails itself.
 const GIVEN_UP: f64 = 60.0;
 /// From one friction to the next of those that are tried first, in steps of all; a power of two.
 const COARSE: usize = 8;
@@ -68,6 +72,32 @@ impl Pace {
     }
 }
 
+impl Pace {
+    /// What a contact's modes leave of what was read of it; `friction` where it is known.
+    pub(super) fn left(
+        &self,
+        odds: &[ContactOdds],
+        seen: &[ContactSeen],
+        friction: Option<f64>,
+        options: &ContactModesOptions,
+    ) -> Left {
+        let at = friction.map(|friction| self.at(friction));
+        let speed = options.natural_speed;
+        let mut left = Left::new(at.as_ref().map(|at| Late::new(&at.steps[0], speed)));
+        for (k, seen) in seen.iter().enumerate() {
+            let reading = seen.reading();
+            let force = seen.force(options);
+            let slip = reading.and_then(|reading| reading.slip.zip(Some(reading.direction())));
+            let turned = slip.map(|(slip, (u, _))| turned(&slip.velocity, &slip.covariance, &u, speed));
+            let slip = slip.map(|(slip, _)| (slip, self.weights[k]));
+            let brought = Brought { dt: self.steps[k], force: &force, reading, slip };
+            let told = Told { odds: odds[k], friction, slip: turned, brought };
+            left.take(&told, at.as_ref().map(|at| &at.steps[self.kind[k]]));
+        }
+        left
+    }
+}
+
 /// What happens to a contact with some friction: the same for all contacts.
 pub(super) struct AtFriction {
     friction: f64,
@@ -98,22 +128,18 @@ impl Passage {
     /// no account. Few are gone through the log with at first, and more between where their neighbours do not foretell what comes of it.
     pub(super) fn evidence(&self, pace: &Pace, frictions: &[AtFriction]) -> Vec<f64> {
         let last = frictions.len() - 1;
-        let mut largest = vec![f64::NEG_INFINITY; self.said.len() / LOOKS + 1];
         let mut logs = vec![None; frictions.len()];
+        let always = self.looks(pace, &frictions[last]);
         let coarse: Vec<usize> = (0..last).step_by(COARSE).chain([last]).collect();
-        self.try_all(pace, frictions, &coarse, &mut largest, &mut logs);
+        self.try_all(pace, frictions, &coarse, &always, &mut logs);
         let mut stride = COARSE;
         while stride > 1 {
             stride /= 2;
-            let between: Vec<usize> = (1..)
-                .map(|i| (2 * i - 1) * stride)
-                .take_while(|k| *k < last)
-                .filter(|k| logs[*k].is_none())
-                .collect();
+            let between: Vec<usize> = (1..).map(|i| (2 * i - 1) * stride).take_while(|k| *k < last).collect();
             let foretold: Vec<Option<f64>> = between.iter().map(|k| foretold(&logs, *k, stride)).collect();
             let open: Vec<usize> =
                 between.iter().zip(&foretold).filter(|(_, log)| log.is_none()).map(|(k, _)| *k).collect();
-            self.try_all(pace, frictions, &open, &mut largest, &mut logs);
+            self.try_all(pace, frictions, &open, &always, &mut logs);
             for (k, log) in between.into_iter().zip(foretold) {
                 logs[k] = logs[k].or(log);
             }
@@ -122,41 +148,49 @@ impl Passage {
         logs.into_iter().map(|log| log.unwrap_or(f64::NEG_INFINITY).max(most - GIVEN_UP)).collect()
     }
 
-    /// The same for some of them, into `logs`; `largest` are the largest until now at each look.
+    /// Logarithm of the density of what was read up to each look, at one friction.
+    fn looks(&self, pace: &Pace, at: &AtFriction) -> Vec<f64> {
+        let mut tried = Tried::new(at);
+        let all = self.said.iter().enumerate().map(|(k, said)| {
+            tried.take(pace, k, said);
+            tried.log
+        });
+        all.step_by(LOOKS).collect()
+    }
+
+    /// The same of all that was read for some frictions, into `logs`, but for those that fall far behind `always` at some look.
     fn try_all(
         &self,
         pace: &Pace,
         frictions: &[AtFriction],
         some: &[usize],
-        largest: &mut [f64],
+        always: &[f64],
         logs: &mut [Option<f64>],
     ) {
-        let mut left: Vec<(usize, Tried)> = some.iter().map(|&k| (k, Tried::new(&frictions[k]))).collect();
-        for (k, said) in self.said.iter().enumerate() {
-            left.iter_mut().for_each(|(_, tried)| tried.take(pace, k, said));
-            if k % LOOKS == 0 {
-                let largest = &mut largest[k / LOOKS];
-                *largest = left.iter().map(|(_, tried)| tried.log).fold(*largest, f64::max);
-                left.retain(|(_, tried)| tried.log > *largest - GIVEN_UP);
-            }
+        for &friction in some {
+            let mut tried = Tried::new(&frictions[friction]);
+            let lasts = self.said.iter().enumerate().all(|(k, said)| {
+                tried.take(pace, k, said);
+                k % LOOKS > 0 || tried.log > always[k / LOOKS] - GIVEN_UP
+            });
+            logs[friction] = Some(if lasts { tried.log } else { f64::NEG_INFINITY });
         }
-        some.iter().for_each(|&k| logs[k] = Some(f64::NEG_INFINITY));
-        left.into_iter().for_each(|(k, tried)| logs[k] = Some(tried.log));
     }
 
-    /// Adds the modes at all samples given one friction, with a weight.
-    pub(super) fn add(&self, pace: &Pace, friction: f64, weight: f64, sums: &mut [[f64; 3]]) {
+    /// Adds the modes at all samples given one friction, with a weight; returns where in its cell that is.
+    pub(super) fn add(&self, pace: &Pace, friction: f64, weight: f64, sums: &mut [[f64; 3]]) -> Cell {
         let at = pace.at(friction);
         let mut tried = Tried::new(&at);
-        let mut chains = Vec::with_capacity(self.said.len());
+        let mut before = Vec::with_capacity(self.said.len());
         for (k, said) in self.said.iter().enumerate() {
+            let cell = tried.cell;
             tried.take(pace, k, said);
-            chains.push(tried.chain.clone());
+            before.push((tried.chain.clone(), cell));
         }
-        let Tried { mut spare, mut likelihood, .. } = tried;
+        let Tried { mut spare, mut likelihood, cell: learned, .. } = tried;
         let steps = &at.steps;
         let mut worth = Chain::even(&steps[0], 1.0);
-        for (k, chain) in chains.iter().enumerate().rev() {
+        for (k, (chain, cell)) in before.iter().enumerate().rev() {
             let modes = chain.times(&worth);
             let all: f64 = modes.iter().sum();
             // Where past and future exclude each other in double precision, the past counts.
@@ -166,10 +200,11 @@ impl Passage {
             };
             sums[k].iter_mut().zip(modes).for_each(|(sum, mode)| *sum += weight * mode / all);
             let steps = &steps[pace.kind[k]];
-            self.said[k].of(steps, friction, &mut likelihood);
+            self.said[k].of(steps, cell, &mut likelihood);
             worth.unread(&likelihood);
             worth.before(steps, &mut spare);
         }
+        learned
     }
 }
 
@@ -178,6 +213,10 @@ fn foretold(logs: &[Option<f64>], k: usize, stride: usize) -> Option<f64> {
     let end = |k: Option<usize>| k.and_then(|k| logs.get(k).copied().flatten());
     let [below, above] = [end(k.checked_sub(stride)), end(Some(k + stride)).or(*logs.last()?)];
     let (below, above) = (below?, above?);
+    // Between a friction that is too low and one that is not is where a contact slides, however little is thought of both.
+    if below.is_finite() != above.is_finite() {
+        return None;
+    }
     let between = 0.5 * (below + above);
     let on = |near: f64, far: Option<f64>| far.map_or(near, |far| near + 0.5 * (near - far));
     let from = [on(below, end(k.checked_sub(3 * stride))), on(above, end(Some(k + 3 * stride)))];
@@ -199,6 +238,7 @@ fn foretold(logs: &[Option<f64>], k: usize, stride: usize) -> Option<f64> {
 struct Tried<'a> {
     at: &'a AtFriction,
     chain: Chain,
+    cell: Cell,
     spare: Chain,
     likelihood: Likelihood,
     /// Logarithm of the density of what was read until now.
@@ -209,7 +249,7 @@ impl<'a> Tried<'a> {
     fn new(at: &'a AtFriction) -> Self {
         let first = &at.steps[0];
         let (chain, likelihood) = (Chain::new(first), Likelihood::none(first));
-        Self { at, spare: chain.clone(), chain, likelihood, log: 0.0 }
+        Self { at, spare: chain.clone(), chain, cell: Cell::new(at.friction), likelihood, log: 0.0 }
     }
 
     fn take(&mut self, pace: &Pace, k: usize, said: &Said) {
@@ -217,18 +257,17 @@ impl<'a> Tried<'a> {
         if k > 0 {
             self.chain.predict(steps, &mut self.spare);
         }
-        said.of(steps, self.at.friction, &mut self.likelihood);
+        said.of(steps, &self.cell, &mut self.likelihood);
         self.log += self.chain.weigh(&self.likelihood, &mut self.spare);
+        if let Force::Presses { ratio, .. } = &said.force {
+            self.cell.learn(ratio, self.chain.slides());
+        }
     }
 }
 
 impl Said {
     fn new(seen: &ContactSeen, pace: &Pace, k: usize, options: &ContactModesOptions) -> Self {
-        let force = match seen {
-            ContactSeen::Missing => Force::Silent,
-            ContactSeen::Off => Force::Off,
-            ContactSeen::Read(reading) => reading.force(options),
-        };
+        let force = seen.force(options);
         let nothing = Self { force, off: 0.0, speeds: vec![0.0; SPEEDS], sticks: 0.0 };
         let ContactSeen::Read(reading) = seen else { return nothing };
         let Some(slip) = reading.slip else { return nothing };
@@ -240,23 +279,13 @@ impl Said {
         Self { off: weight * slip.log_off(), speeds, sticks: weight * slip.log_sticking(), ..nothing }
     }
 
-    /// Log-densities of all that is read, in each cell.
-    fn of(&self, steps: &Steps, friction: f64, likelihood: &mut Likelihood) {
-        let touches = match &self.force {
-            Force::Off => {
-                likelihood.set(0.0, f64::NEG_INFINITY);
-                return;
-            }
-            Force::Silent => 0.0,
-            Force::Touches => f64::NEG_INFINITY,
-            // The common factor of the modes that touch is left out: it is the same for all frictions.
-            Force::Presses { touching, off, .. } => off - touching,
-        };
-        match &self.force {
-            Force::Presses { ratio, .. } => likelihood.of_ratio(steps, ratio, (friction, unsure(friction))),
-            _ => likelihood.set(0.0, 0.0),
+    /// Log-densities of all that is read, in each cell; the factor that all modes that touch have in common is the same for all frictions.
+    fn of(&self, steps: &Steps, cell: &Cell, likelihood: &mut Likelihood) {
+        likelihood.of_force(steps, &self.force, cell);
+        if let Force::Off = self.force {
+            return;
         }
-        likelihood.off = touches + self.off;
+        likelihood.off += self.off;
         likelihood.speeds.iter_mut().zip(&self.speeds).for_each(|(log, slip)| *log += slip);
         likelihood.ratios.iter_mut().for_each(|log| *log += self.sticks);
     }
@@ -306,7 +335,7 @@ mod tests {
             let few = passage.evidence(&pace, &at);
             let mut all = vec![None; at.len()];
             let every: Vec<usize> = (0..at.len()).collect();
-            passage.try_all(&pace, &at, &every, &mut [f64::NEG_INFINITY; 30], &mut all);
+            passage.try_all(&pace, &at, &every, &[f64::NEG_INFINITY; 30], &mut all);
             let most = all.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
             let counts = all.iter().flatten().zip(&few).filter(|(log, _)| **log > most - 0.5 * NO_ACCOUNT);
             let off = counts.map(|(log, few)| (log - few).abs()).fold(0.0, f64::max);

@@ -48,6 +48,25 @@ pub struct ContactSlip {
     pub covariance: Matrix2<f64>,
 }
 
+impl ContactSeen {
+    /// Where it was read.
+    pub(super) fn reading(&self) -> Option<&ContactReading> {
+        match self {
+            Self::Read(reading) => Some(reading),
+            Self::Missing | Self::Off => None,
+        }
+    }
+
+    /// What the forces tell.
+    pub(super) fn force(&self, options: &ContactModesOptions) -> Force {
+        match self {
+            Self::Missing => Force::Silent,
+            Self::Off => Force::Off,
+            Self::Read(reading) => reading.force(options),
+        }
+    }
+}
+
 /// Where a reading is, for errors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
@@ -116,7 +135,7 @@ impl ContactReading {
     }
 
     /// What the forces tell.
-    pub(super) fn force(&self, options: &ContactModesOptions) -> Force {
+    fn force(&self, options: &ContactModesOptions) -> Force {
         let normal = self.normal_force;
         let Some(ratio) = self.ratio() else {
             return if self.touches { Force::Touches } else { Force::Off };

@@ -61,7 +61,8 @@ pub(super) struct Steps {
     pub(super) landing: Vec<f64>,
     pub(super) stops: Vec<f64>,
     pub(super) disc: Vec<f64>,
-    friction: f64,
+    /// What it is of.
+    pub(super) friction: f64,
     dt: f64,
 }
 

@@ -1,6 +1,7 @@
 //! What every sample must obey.
 
 mod between_cells;
+mod doubts;
 
 use super::*;
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Vector2};

@@ -5,8 +5,9 @@
 //! friction, and that each has its own.
 
 use super::classifier::ContactOdds;
+use super::doubt::ContactModesDoubt;
 use super::error::ContactModesError;
-use super::friction::{LearnedFriction, learned, values};
+use super::friction::{Cell, LearnedFriction, guessed, learned, together, values};
 use super::options::ContactModesOptions;
 use super::passage::{AtFriction, Pace, Passage};
 use super::reading::{ContactSeen, Place};
@@ -27,11 +28,14 @@ pub struct WholeModes {
     pub frictions: Vec<Option<LearnedFriction>>,
     /// Probability that all contacts have one friction.
     pub one_friction: f64,
+    /// What contradicts that readings are as stated, of each contact the clearest, as [`ContactModes::doubts`](super::ContactModes::doubts) has it.
+    pub doubts: Vec<ContactModesDoubt>,
 }
 
 /// Tells the modes of contacts at all samples of a log from all of them, the friction unknown (from 0.02 to 2).
 ///
-/// `times` are those of the samples, s; `seen` has for each contact what is read of it at each sample, slips with errors that
+/// `times` are those of the samples, s; `seen` has for each contact what is read of it at each sample, slips with errors that are independent of
+/// those of other contacts.
 ///
 /// # Errors
 /// Where there is no contact, time does not go on, numbers of samples differ, an option is not usable, or a reading is not a number, has
@@ -49,24 +53,29 @@ pub fn whole_modes(
     let evidence: Vec<Vec<f64>> = passages.iter().map(|passage| passage.evidence(&pace, &at)).collect();
     drop(at);
     let (one_friction, weights) = weigh(&evidence);
-    let odds: Vec<Vec<ContactOdds>> = passages
-        .iter()
-        .zip(&weights)
-        .map(|(passage, weights)| {
-            let mut sums = vec![[0.0; 3]; times.len()];
-            for (friction, weight) in fewer(&frictions, weights) {
-                passage.add(&pace, friction, weight, &mut sums);
-            }
-            sums.into_iter().map(normal).collect()
-        })
-        .collect();
+    let (mut odds, mut guesses) = (Vec::new(), Vec::new());
+    for (passage, weights) in passages.iter().zip(&weights) {
+        let mut sums = vec![[0.0; 3]; times.len()];
+        let few = fewer(&frictions, weights);
+        let cells: Vec<Cell> =
+            few.iter().map(|(friction, weight)| passage.add(&pace, *friction, *weight, &mut sums)).collect();
+        let all: f64 = few.iter().map(|(_, weight)| weight).sum();
+        guesses.push(guessed(few.iter().map(|(_, weight)| weight / all).zip(&cells)));
+        odds.push(sums.into_iter().map(normal).collect::<Vec<_>>());
+    }
     let slid: Vec<f64> = odds.iter().zip(seen).map(|(odds, seen)| pace.slid(odds, seen)).collect();
-    let any = slid.iter().copied().fold(0.0, f64::max);
-    let of = |(own, weights): (&f64, &Vec<f64>)| {
-        learned(&frictions, weights, if one_friction > 0.5 { any } else { *own })
+    let frictions: Vec<Option<LearnedFriction>> = if one_friction > 0.5 {
+        let any = slid.iter().copied().fold(0.0, f64::max);
+        vec![learned(together(guesses.into_iter()), any); seen.len()]
+    } else {
+        guesses.into_iter().zip(&slid).map(|(guess, slid)| learned(guess, *slid)).collect()
     };
-    let frictions = slid.iter().zip(&weights).map(of).collect();
-    Ok(WholeModes { odds, frictions, one_friction })
+    let doubts = seen.iter().enumerate().filter_map(|(contact, seen)| {
+        let friction = frictions[contact].map(|learned| learned.coefficient);
+        pace.left(&odds[contact], seen, friction, options).doubt(contact, options.slip_errors_last > 0.0)
+    });
+    let doubts = doubts.collect();
+    Ok(WholeModes { odds, frictions, one_friction, doubts })
 }
 
 fn normal(sums: [f64; 3]) -> ContactOdds {

@@ -148,7 +148,7 @@ impl Source<'_> {
         let time = AVERAGED * self.units.time();
         let again = surer(&record.times, &found.modes, odds, time);
         // Without noise a search is long, and what limits is when within a sample modes change.
-        let worth = self.options.noise.limits(&self.units) && again != found.modes;
+        let worth = self.options.noise.limits(&self.units) && again != found.modes && !self.options.planar;
         let second = if worth { self.with_modes(record, again, false).ok() } else { None };
         if let Some((second, slips)) = second {
             let stands = slips.is_empty() && second.evidence.settled && second.reliability.is_reliable();

@@ -5,7 +5,8 @@ use super::problem::Units;
 use super::record::{Contact, Record};
 use super::slips::Known;
 use crate::contact_modes::{
-    ContactModesOptions, ContactOdds, ContactReading, ContactSeen, ContactSlip, LearnedFriction, whole_modes,
+    ContactModesDoubt, ContactModesOptions, ContactOdds, ContactReading, ContactSeen, ContactSlip,
+    LearnedFriction, whole_modes,
 };
 use nalgebra::Vector2;
 use object_dynamics::{ContactMode, MOST_PALMS};
@@ -28,6 +29,8 @@ pub struct EstimatedModes {
     pub frictions: [Option<LearnedFriction>; MOST_PALMS],
     /// Probability that all palms with friction have one coefficient.
     pub one_friction: f64,
+    /// What contradicts that readings are as stated, of each palm the clearest: its modes can be sure and wrong.
+    pub doubts: Vec<ContactModesDoubt>,
 }
 
 const OFF: ContactOdds = ContactOdds { off: 1.0, slide: 0.0, stick: 0.0 };
@@ -57,6 +60,10 @@ impl EstimatedModes {
 pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units) -> Option<EstimatedModes> {
     let record = known.log;
     let mut odds = vec![[OFF; MOST_PALMS]; record.times.len()];
+    let in_plane = |slip: ContactSlip, contact: &Contact| match known.problem.planar {
+        true => along_plane(slip, contact, units.speed),
+        false => slip,
+    };
     let (mut palms, mut seen) = (Vec::new(), Vec::new());
     for palm in 0..MOST_PALMS {
         let contacts = || {
@@ -72,7 +79,9 @@ pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units)
         }
         let slips = known.slips(palm);
         let mut own = vec![ContactSeen::Off; record.times.len()];
-        contacts().for_each(|(k, contact)| own[k] = ContactSeen::Read(reading(contact, slips[k])));
+        contacts().for_each(|(k, contact)| {
+            own[k] = ContactSeen::Read(reading(contact, slips[k].map(|slip| in_plane(slip, contact))))
+        });
         palms.push(palm);
         seen.push(own);
     }
@@ -83,12 +92,21 @@ pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units)
     options.unloaded_deviation = options.unloaded_deviation.max(1e-6 * options.typical_force);
     options.slip_errors_last = LASTING * units.length / units.speed;
     let found = whole_modes(&record.times, &seen, &options).ok()?;
+    let doubts =
+        found.doubts.iter().map(|of| ContactModesDoubt { contact: palms[of.contact], ..*of }).collect();
     let mut frictions = [None; MOST_PALMS];
     for ((palm, own), friction) in palms.into_iter().zip(&found.odds).zip(&found.frictions) {
         frictions[palm] = *friction;
         odds.iter_mut().zip(own).for_each(|(all, own)| all[palm] = *own);
     }
-    Some(EstimatedModes { odds, by_ratio: known.modes.to_vec(), frictions, one_friction: found.one_friction })
+    let by_ratio = known.modes.to_vec();
+    Some(EstimatedModes { odds, by_ratio, frictions, one_friction: found.one_friction, doubts })
+}
+
+/// The same where there is no motion along y: that there is no slip along it says nothing.
+fn along_plane(slip: ContactSlip, contact: &Contact, speed: f64) -> ContactSlip {
+    let across = Vector2::from(contact.tangents().map(|tangent| speed * tangent.y));
+    ContactSlip { covariance: slip.covariance + across * across.transpose(), ..slip }
 }
 
 fn reading(contact: &Contact, slip: Option<ContactSlip>) -> ContactReading {

@@ -67,8 +67,13 @@ mod tests {
         let times: Vec<f64> = (0..8).map(|k| 1e-3 * f64::from(k)).collect();
         let all = |own| [own, Off, Off, Off, Off];
         let odds = sticks.map(|of| [odds(of); MOST_PALMS]).to_vec();
-        let found =
-            EstimatedModes { odds, by_ratio: Vec::new(), frictions: [None; MOST_PALMS], one_friction: 1.0 };
+        let found = EstimatedModes {
+            odds,
+            by_ratio: Vec::new(),
+            frictions: [None; MOST_PALMS],
+            one_friction: 1.0,
+            doubts: Vec::new(),
+        };
         let again = surer(&times, &before.map(all), &found, 1.5e-3);
         assert_eq!(again, [Stick, Stick, Slide, Slide, Slide, Stick, Slide, Off].map(all));
     }

@@ -2,7 +2,7 @@
 
 use crate::contacts::estimate_contacts;
 use crate::contacts::{
-    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions,
+    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions, EstimatedModes,
 };
 use crate::{Explanation, Reliability, Suspect};
 use glam::{DVec2, DVec3};
@@ -26,6 +26,8 @@ pub struct PlaneOptions {
     pub size: Option<f64>,
     /// Whether to test what is taken as known of the sensors.
     pub suspects: bool,
+    /// Whether to tell how probable contact modes are.
+    pub mode_odds: bool,
 }
 
 /// Why there is no estimate.
@@ -80,6 +82,8 @@ pub struct PlaneEstimate {
     pub contacts: Vec<Vec<Option<PlaneContact>>>,
     /// Contact modes at all samples.
     pub modes: Vec<[ContactMode; MOST_PALMS]>,
+    /// How probable the modes are, of palms with friction; none unless asked for.
+    pub mode_odds: Option<EstimatedModes>,
     /// Mass (kg) and the standard deviation of its logarithm.
     pub mass: (f64, f64),
     /// Moment of inertia about the centre of mass and its standard deviation, kg m^2; none of a known body.
@@ -122,6 +126,7 @@ pub fn estimate_plane(log: &ContactLog, options: &PlaneOptions) -> Result<PlaneE
         body,
         size: options.size,
         suspects: options.suspects,
+        mode_odds: options.mode_odds,
         planar: true,
         guessed_floor: false,
         ..ContactOptions::new(options.noise, options.gravity)
@@ -163,6 +168,7 @@ impl PlaneEstimate {
             inertia: (of.inertia.y_axis.y, of.moment_deviation(DVec3::Y)),
             relied_on: of.relied_on,
             modes: of.modes,
+            mode_odds: of.mode_odds,
             suspects: of.suspects,
             explanations: of.explanations,
             reliability: of.reliability,

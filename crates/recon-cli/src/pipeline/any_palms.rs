@@ -2,7 +2,7 @@
 
 use super::advice::Advice;
 use super::any_palms_bounds::estimate_bounds;
-use super::any_palms_words::{Checks, evidence, touch_next, verdict};
+use super::any_palms_words::{Checks, evidence, mode_doubts, touch_next, verdict};
 use super::bounds::{BoundsResult, CONFIDENCE, NOTABLE_NOISE};
 use super::export::Object;
 use super::least_model::choice_rows;
@@ -137,6 +137,7 @@ pub(crate) fn estimate_any_palms(
     warnings.extend(not_relied_on(&estimate));
     warnings.extend(impulses_not_read(&log, &options));
     warnings.extend(misread(&log, &estimate));
+    warnings.extend(estimate.mode_odds.as_ref().and_then(mode_doubts));
     progress.step("bounding the shape");
     let bounds = match estimate_bounds(&log, &estimate, &curves, options.noise.contact, CONFIDENCE) {
         Ok(bounds) => bounds,

@@ -246,7 +246,7 @@ pub(super) fn fit(e: &ContactEvidence, reliability: &Reliability, share: f64) ->
 }
 
 /// What is known of the friction, and how sure contact modes are.
-fn modes(found: &EstimatedModes) -> Vec<Evidence> {
+pub(super) fn modes(found: &EstimatedModes) -> Vec<Evidence> {
     let learned = |(i, of): (usize, &Option<LearnedFriction>)| {
         let of = (*of)?;
         let [mean, deviation] = [brief_to(3, of.coefficient), brief_to(2, of.deviation)];
@@ -262,6 +262,17 @@ fn modes(found: &EstimatedModes) -> Vec<Evidence> {
         neutral("friction", "Coefficients of friction", Text(learned), "", friction),
         neutral("unsure_modes", "Samples of unsure modes", count, "", unsure),
     ]
+}
+
+/// What to say where readings contradict what contact modes rest on.
+pub(super) fn mode_doubts(found: &EstimatedModes) -> Option<String> {
+    let all: Vec<String> = found.doubts.iter().map(ToString::to_string).collect();
+    (!all.is_empty()).then(|| {
+        format!(
+            "Contact modes can be sure and wrong, for their readings are not as stated: {}.",
+            all.join("; ")
+        )
+    })
 }
 
 /// What the estimator was told of the sensors.

@@ -2,6 +2,7 @@
 
 use super::advice::Advice;
 use super::any_palms::as_stated;
+use super::any_palms_words::mode_doubts;
 use super::bounds::CONFIDENCE;
 use super::planar_motion_bounds::motion_bounds;
 use super::planar_motion_words::{NOTE, evidence, verdict};
@@ -13,7 +14,7 @@ use recon::observer::{ContactNoiseLevel, Reliability};
 use recon::shape_bounds::planar::NoiseError;
 use recon_io::{
     Evidence, Level, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, Verdict, brief, brief_to,
-    explanation, sensor_fault, verdict_figures, write_plane_estimate_report,
+    explanation, mode_figures, sensor_fault, verdict_figures, write_plane_estimate_report,
 };
 use serde_json::{Value, json};
 use std::error::Error;
@@ -44,6 +45,7 @@ pub(crate) fn planar_motion(log: ContactLog, known: &PlanarKnown) -> Result<Plan
         body: known.mass,
         size: known.size,
         suspects: true,
+        mode_odds: true,
     };
     let estimate = estimate_plane(&log, &options)?;
     let (bounds, of_bounds) = bounded(&log, &estimate, noise.contact);
@@ -151,6 +153,7 @@ impl PlanarMotion {
                 self.estimate.relied_on.len()
             ));
         }
+        all.extend(self.estimate.mode_odds.as_ref().and_then(mode_doubts));
         all.extend(self.of_bounds.iter().cloned());
         all
     }
@@ -232,6 +235,9 @@ impl PlanarMotion {
         }));
         if !estimate.suspects.is_empty() {
             figures["sensor_faults"] = faults.collect();
+        }
+        if let Some(modes) = &estimate.mode_odds {
+            mode_figures(modes, &mut figures);
         }
         if !estimate.explanations.is_empty() {
             figures["explanations"] = estimate.explanations.iter().map(explanation).collect();

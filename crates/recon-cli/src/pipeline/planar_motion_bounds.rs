@@ -68,6 +68,7 @@ mod tests {
                 body: (seed % 2 == 0).then_some(mass),
                 size: None,
                 suspects: false,
+                mode_odds: false,
             };
             let estimate = estimate_plane(&log, &options).unwrap();
             let made = motion_bounds(&log, &estimate, 1e-4, 0.95).unwrap().unwrap();

@@ -2,6 +2,7 @@
 
 use super::planar_motion::PlanarMotion;
 use recon::object_dynamics::planar::BodyState;
+use recon_io::probabilities;
 use std::io::{self, Write};
 
 impl PlanarMotion {
@@ -10,6 +11,10 @@ impl PlanarMotion {
         let palms = self.estimate.contacts.len();
         write!(to, "t,x,y,phi0,vx,vy,omega0,std_x,std_y,std_phi0,std_vx,std_vy,std_omega0")?;
         (1..=palms).try_for_each(|i| write!(to, ",mode_{i}"))?;
+        let odds = self.estimate.mode_odds.as_ref().map(|found| &found.odds);
+        if odds.is_some() {
+            (1..=palms).try_for_each(|i| write!(to, ",p_slide_{i},p_stick_{i}"))?;
+        }
         writeln!(to, ",relied_on")?;
         for (k, sample) in self.log.samples().iter().enumerate() {
             let BodyState { p_WCm: p, phi0, v_WCm: v, omega0 } = self.estimate.states[k];
@@ -20,6 +25,8 @@ impl PlanarMotion {
             for mode in &self.estimate.modes[k][..palms] {
                 write!(to, ",{}", mode.number())?;
             }
+            let odds = odds.map(|odds| odds[k].iter().take(palms).flat_map(probabilities));
+            odds.into_iter().flatten().try_for_each(|probability| write!(to, ",{probability}"))?;
             writeln!(to, ",{}", u8::from(self.estimate.relied_on[k]))?;
         }
         Ok(())

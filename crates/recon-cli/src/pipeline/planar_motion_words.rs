@@ -1,6 +1,6 @@
 //! A motion that was estimated in the plane, in words and numbers for people.
 
-use super::any_palms_words::{explained, fit, neutral, percent, suspects, told};
+use super::any_palms_words::{explained, fit, modes, neutral, percent, suspects, told};
 use super::planar_motion::ENOUGH;
 use recon::observer::planar::PlaneEstimate;
 use recon::observer::{ContactNoiseLevel, Reliability};
@@ -54,5 +54,6 @@ pub(super) fn evidence(
     rows.extend(told(noise));
     rows.extend(suspects(&estimate.suspects));
     rows.extend(explained(&estimate.explanations));
+    rows.extend(estimate.mode_odds.as_ref().map(modes).into_iter().flatten());
     rows
 }

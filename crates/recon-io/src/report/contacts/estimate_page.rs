@@ -21,7 +21,7 @@ const NO_OBJECT: &str =
 const KICKER: &str = "Motion, mass and inertia from contacts of any palms";
 const BANDS: &str = "Bands hold 95 % of what the estimate may be off by, or a reading by its noise, as standard deviations say.";
 const DASHED: &str = " Dashed: the true motion, from the log.";
-const MODES: &str = "Modes from the ratio of friction to normal force and, in space, from the slip: the paler, the less sure. Time in s. \
+const MODES: &str = "Modes from the ratio of friction to normal force and from the slip: the paler, the less sure. Time in s. \
     Dashed lines: the instants of the small pictures.";
 const LEFT_OUT: &str = "What was modelled, what was left out, what that costs";
 

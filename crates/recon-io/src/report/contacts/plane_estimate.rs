@@ -72,7 +72,7 @@ pub fn write_plane_estimate_report(data: &PlaneEstimateData, to: impl Write) -> 
         pictures: data.pictures(),
         caption: if relied { CAPTION } else { NO_OBJECT }.to_owned(),
         spans: (0..found.contacts.len())
-            .map(|palm| estimated_mode_spans(&times, &found.modes, None, palm))
+            .map(|palm| estimated_mode_spans(&times, &found.modes, found.mode_odds.as_ref(), palm))
             .collect(),
         times: &times,
         relied_on: &found.relied_on,

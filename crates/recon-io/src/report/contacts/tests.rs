@@ -324,7 +324,8 @@ fn probabilities_of_modes_are_in_the_table_the_summary_and_the_bands() {
     all[4][0] = odds(0.7);
     let mut frictions = [None; MOST_PALMS];
     frictions[1] = Some(LearnedFriction { coefficient: 0.8, deviation: 4e-3 });
-    let modes = EstimatedModes { odds: all, by_ratio: Vec::new(), frictions, one_friction: 0.9 };
+    let modes =
+        EstimatedModes { odds: all, by_ratio: Vec::new(), frictions, one_friction: 0.9, doubts: Vec::new() };
     data.estimate.modes.fill([ContactMode::Slide; MOST_PALMS]);
     data.estimate.mode_odds = Some(modes);
     let figures = estimate_summary(&data);
