@@ -14,9 +14,10 @@ pub(crate) fn lint() -> Result<Outcome, String> {
     all(["clippy --workspace --all-targets --features recon-py/extension -- -D warnings".to_owned()])
 }
 
-/// Libraries only: the command of `recon-cli` has the name of the facade, and their pages would overwrite each other.
+/// Of what others use. Libraries only: the command of `recon-cli` has the name of the facade, and their pages would overwrite each other.
 pub(crate) fn docs() -> Result<Outcome, String> {
-    run(cargo("doc --workspace --no-deps --lib").env("RUSTDOCFLAGS", "-D warnings"))?;
+    run(cargo("doc --workspace --exclude recon-benches --exclude recon-tests --no-deps --lib")
+        .env("RUSTDOCFLAGS", "-D warnings"))?;
     Ok(Outcome::Passed)
 }
 

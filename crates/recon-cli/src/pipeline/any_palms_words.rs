@@ -55,10 +55,28 @@ pub(super) fn verdict(estimate: &ContactEstimate, checks: &Checks) -> Verdict {
     };
     let text = format!(
         "The fit settled, noise explains what is left (chi-squared {misfit:.2} a condition), and the motion is relied on at {} of the \
-         samples; {body}.",
+         samples; {body}.{}",
         percent(share),
+        wider(&estimate.evidence),
     );
     Verdict { level: if share < ENOUGH { Level::Caution } else { Level::Good }, text }
+}
+
+/// What makes deviations wider than the stated noise does: words to add to a verdict, none where nothing does.
+pub(super) fn wider(evidence: &ContactEvidence) -> String {
+    let (lasting, between) = (evidence.lasting.sqrt(), evidence.unresolved.hypot(1.0));
+    let mut words = String::new();
+    if lasting > WIDER {
+        words += &format!(
+            " What is left of the readings lasts from sample to sample, which white noise does not: deviations are {lasting:.1} times wider for it."
+        );
+    }
+    if between > WIDER {
+        words += &format!(
+            " Forces change faster than they are sampled: deviations are {between:.1} times wider for it, and a higher rate tells more."
+        );
+    }
+    words
 }
 
 /// Share of the samples whose motion is relied on.
@@ -71,6 +89,9 @@ pub(super) fn relied_on(estimate: &ContactEstimate) -> f64 {
 pub(super) fn percent(share: f64) -> String {
     format!("{} %", brief_to(3, (1000.0 * share).floor() / 10.0))
 }
+
+/// Factor of all deviations that is worth words.
+const WIDER: f64 = 1.1;
 
 /// How well the axes of a known body are known.
 fn axes_known(deviations: DVec3) -> String {
