@@ -5,15 +5,16 @@ use super::super::spatial::scene::{Scene, Spec};
 use super::super::{Failure, Method, Way};
 use super::{GROWN, TOLERANCE};
 use crate::multipliers::by_multipliers;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use recon::object_dynamics::integrate::Tolerance;
+use recon::object_dynamics::{InitialMotion, SimulationError};
 
 /// Tolerance of the other way.
 const FINE: f64 = 1e-13;
 
 pub(in super::super) const METHOD: Method = Method {
     name: "simulation, three palms",
-    about: "minimal coordinates at a tolerance of 1e-9, over ten natural times or to the loss of contact; right: poses within ten thousand tolerances (sizes, rad) of those by multipliers at 1e-13",
+    about: "minimal coordinates at a tolerance of 1e-9, over ten natural times or to the loss of contact; right: poses within ten thousand tolerances (sizes, rad) of those by multipliers at 1e-13, or within ten times what a start that is a tolerance off comes to: long motions amplify errors",
     ways: {
         use Way::*;
         &[
@@ -26,23 +27,38 @@ pub(in super::super) const METHOD: Method = Method {
     run,
 };
 
+/// Errors of a tolerance that steps make along a motion, of which each grows as much as one of the start does.
+const ERRORS: f64 = 10.0;
+
+/// How far two poses are apart, in sizes and rad, whichever is more.
+fn apart((p, q): (DVec3, DQuat), (p_of, q_of): (DVec3, DQuat), size: f64) -> f64 {
+    let turn = q * q_of.inverse();
+    let angle = 2.0 * DVec3::new(turn.x, turn.y, turn.z).length().atan2(turn.w.abs());
+    (p.distance(p_of) / size).max(angle)
+}
+
+fn largest(all: impl Iterator<Item = f64>) -> f64 {
+    all.fold(0.0, |most, of| if of > most || of.is_nan() { of } else { most })
+}
+
 fn run(way: Way, strength: f64, seed: u64) -> Result<Ran, Failure> {
     let scene = Scene::drawn(Spec::of(way, strength), seed)?;
     let tolerance = if way == Way::Tolerance { strength } else { TOLERANCE };
-    let times = scene.times();
-    let run = match scene.scene.simulate(scene.start, times, self::Tolerance::uniform(tolerance)) {
+    let (times, size) = (scene.times(), scene.of.size);
+    let poses = |start: InitialMotion| -> Result<Vec<(DVec3, DQuat)>, _> {
+        let run = scene.scene.simulate(start, times, self::Tolerance::uniform(tolerance))?;
+        Ok::<_, SimulationError>(run.instants.iter().map(|now| (now.touch.p_WCm, now.R_WO)).collect())
+    };
+    let run = match poses(scene.start) {
         Ok(run) => run,
         Err(error) => return Ok(Ran::refused(&error)),
     };
-    let count = run.instants.len();
     let fine = self::Tolerance::uniform(FINE);
-    let truth = by_multipliers(&scene.scene, scene.start, (times.rate.recip(), count), fine)?;
-    let mut off = 0.0;
-    for (now, (p, q)) in run.instants.iter().zip(truth) {
-        let turn = now.R_WO * q.inverse();
-        let angle = 2.0 * DVec3::new(turn.x, turn.y, turn.z).length().atan2(turn.w.abs());
-        let error = (now.touch.p_WCm.distance(p) / scene.of.size).max(angle);
-        off = if error > off || error.is_nan() { error } else { off };
-    }
-    Ok(Ran::Found { off: off / (GROWN * tolerance), doubt: None })
+    let truth = by_multipliers(&scene.scene, scene.start, (times.rate.recip(), run.len()), fine)?;
+    let off = largest(run.iter().zip(truth).map(|(now, of)| apart(*now, of, size)));
+    let InitialMotion { R_WO, w_WO } = scene.start;
+    let other = poses(InitialMotion { R_WO: DQuat::from_scaled_axis(DVec3::splat(tolerance)) * R_WO, w_WO });
+    let grown =
+        other.map_or(0.0, |other| largest(run.iter().zip(other).map(|(now, of)| apart(*now, of, size))));
+    Ok(Ran::Found { off: off / (GROWN * tolerance).max(ERRORS * grown), doubt: None })
 }
