@@ -277,19 +277,6 @@ impl Problem<'_> {
         (0..at.motions.len()).map(one).collect()
     }
 
-    /// The motion at each sample of the record.
-    pub(super) fn at_all_samples(&self, at: &Unknowns) -> Vec<Motion> {
-        let own = self.at_samples(at);
-        let mut all = Vec::with_capacity(self.record.times.len());
-        for (j, &from) in self.nodes.iter().enumerate() {
-            let end = self.nodes.get(j + 1).copied().unwrap_or(from + 1);
-            let between: Vec<usize> = (from + 1..end).collect();
-            all.push(own[j]);
-            all.extend(self.carried(from, at.motions[j], &at.body, &between));
-        }
-        all
-    }
-
     /// The samples at which there are nodes, by their numbers in the log.
     pub(super) fn node_samples(&self) -> Vec<usize> {
         self.nodes.iter().map(|&k| self.record.samples[k]).collect()

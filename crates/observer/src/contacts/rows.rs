@@ -123,11 +123,6 @@ impl Rows {
         self.whitening.tr_mul(&self.whitening)
     }
 
-    /// Residual of the normal condition in its deviation.
-    pub(super) fn normal(&self) -> f64 {
-        self.whitening[(0, 0)] * self.residual[0]
-    }
-
     /// Residuals in their deviations, independent; zero for those that do not count.
     pub(super) fn values(&self) -> Vector3<f64> {
         self.whitening * self.residual

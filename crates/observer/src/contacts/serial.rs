@@ -41,7 +41,7 @@ fn links_left<const P: usize>(links: &[LinkEquation<P>]) -> Vec<Vec<f64>> {
 
 impl Problem<'_> {
     /// What is left of the conditions of each palm in independent deviations, each number a series; zero where there is none.
-    fn conditions_left(&self, at: &Unknowns) -> Vec<Vec<f64>> {
+    pub(super) fn conditions_left(&self, at: &Unknowns) -> Vec<Vec<f64>> {
         let mut series = vec![vec![0.0; self.record.times.len()]; 3 * MOST_PALMS];
         self.visit_conditions(at, |k, palm, values| {
             series[3 * palm..].iter_mut().zip(values.iter()).for_each(|(series, left)| series[k] = *left);

@@ -6,11 +6,9 @@
 
 use super::body::CONSTANTS;
 use super::problem::{Problem, Units, Unknowns};
-use super::rows::Rows;
 use super::search::{fine, fine_within};
 use super::solve::{Covariances, Solved, solve};
 use crate::chance::lasting;
-use object_dynamics::MOST_PALMS;
 
 /// Best conditions, as a share of the natural speed: beyond, equations of some scenes are singular in double precision.
 const BEST: f64 = 1e-8;
@@ -141,15 +139,6 @@ pub(super) fn is_rounded(problem: &Problem) -> bool {
 
 /// What is left of the conditions in their deviations, if what lasts of it is one error and not many.
 fn left(problem: &Problem, solved: &Solved<CONSTANTS>) -> f64 {
-    let mut series: [Vec<f64>; MOST_PALMS] = Default::default();
-    let motions = problem.at_all_samples(&solved.unknowns);
-    for (contacts, motion) in problem.record.contacts.iter().zip(&motions) {
-        let turn = solved.unknowns.body.turn(motion.q, motion.L);
-        for contact in contacts {
-            let rows = Rows::new(contact, motion, &turn, &problem.noise, problem.friction);
-            series[contact.palm].extend(rows.map(|rows| rows.normal()));
-        }
-    }
     let misfit = problem.cost_of_log(solved) / solved.equations.conditions.max(1) as f64;
-    (misfit * lasting(&series, 0.0)).sqrt()
+    (misfit * lasting(&problem.conditions_left(&solved.unknowns), 0.0)).sqrt()
 }
