@@ -220,8 +220,9 @@ impl Source<'_> {
         let (duration, needed) = (log.times[log.times.len() - 1] - log.times[0], shortest * units.time());
         let short = (duration < needed).then_some(Reason::TooShort { duration, needed });
         let told = !exact && thinned.is_none() && (last || slips.is_empty());
+        let evidence = stage.evidence(log, &covariances);
         let wrong = match options.suspects && told {
-            true => self.suspects(&stage, &covariances, &motions, (log, longest)),
+            true => self.suspects(&stage, &evidence, (&covariances, &motions), (log, longest)),
             false => Wrong::default(),
         };
         let odds = || {
@@ -230,7 +231,7 @@ impl Source<'_> {
             mode_odds(&known, &options.noise, &units)
         };
         let mode_odds = if options.mode_odds && (last || slips.is_empty()) { odds() } else { None };
-        let found = Found { log, stage: &stage, covariances: &covariances, short, wrong: &wrong };
+        let found = Found { log, stage: &stage, covariances: &covariances, evidence, short, wrong: &wrong };
         Ok((ContactEstimate { mode_odds, ..found.estimate(&motions, modes, options) }, slips))
     }
 
@@ -281,8 +282,8 @@ impl Source<'_> {
     fn suspects(
         &self,
         stage: &Stage,
-        covariances: &Covariances<CONSTANTS>,
-        motions: &[(Motion, Deviations)],
+        evidence: &ContactEvidence,
+        (covariances, motions): (&Covariances<CONSTANTS>, &[(Motion, Deviations)]),
         (record, longest): (&Record, f64),
     ) -> Wrong {
         let Stage { problem, solved, free, .. } = stage;
@@ -292,7 +293,6 @@ impl Source<'_> {
         let sensors = Sensors::new(self.log, (motions, solved.unknowns.body), slopes, &averages);
         let scores = Scores::new(&sensors, problem, solved);
         let suspects = scores.map_or_else(Vec::new, |scores| suspects(&scores, covariances));
-        let evidence = stage.evidence(record, covariances);
         let contradicted = free.is_some()
             || !evidence.reliability().is_reliable()
             || ContactEvidence::against(&suspects, &[]).is_some();
@@ -351,6 +351,7 @@ struct Found<'a> {
     log: &'a Record,
     stage: &'a Stage<'a>,
     covariances: &'a Covariances<CONSTANTS>,
+    evidence: ContactEvidence,
     /// Why the log is too short.
     short: Option<Reason>,
     wrong: &'a Wrong,
@@ -363,7 +364,7 @@ impl Found<'_> {
         modes: Vec<[ContactMode; MOST_PALMS]>,
         options: &ContactOptions,
     ) -> ContactEstimate {
-        let Self { log, stage, covariances, ref short, wrong } = *self;
+        let Self { log, stage, covariances, evidence, ref short, wrong } = *self;
         let Wrong { suspects, explanations } = wrong;
         let Stage { problem, solved, doubt, untold, against, open, .. } = stage;
         let Solved { unknowns, equations, .. } = solved;
@@ -371,7 +372,6 @@ impl Found<'_> {
         // The body's own axes in those of the first sample.
         let told = || known.map_or(DQuat::IDENTITY, |mass| body.orientation(mass));
         let own = untold.unwrap_or_else(told);
-        let evidence = stage.evidence(log, covariances);
         let state = |motion: &Motion| BodyState {
             p_WCm: motion.p + log.origin,
             v_WCm: motion.v,

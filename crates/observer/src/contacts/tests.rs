@@ -96,6 +96,12 @@ fn noisy(log: &ContactLog, noise: &ContactNoiseLevel, seed: u64) -> ContactLog {
     log.with_noise(&noise, seed).unwrap()
 }
 
+/// The log with another record of each palm, by its number.
+fn with_records(log: &ContactLog, one: impl Fn(usize, PalmRecord) -> PalmRecord) -> ContactLog {
+    let palms = log.records().into_iter().enumerate().map(|(i, record)| one(i, record)).collect();
+    ContactLog::new(log.times().to_vec(), palms, log.truth().map(<[_]>::to_vec)).unwrap()
+}
+
 fn options(noise: ContactNoiseLevel) -> ContactOptions {
     ContactOptions::new(noise, G)
 }

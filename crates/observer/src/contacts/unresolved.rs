@@ -63,20 +63,13 @@ fn missed(stencils: &[[DVec3; STENCIL]], noise: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Normal;
 
-    /// A force that shakes by `angle` from sample to sample, with noise of a deviation from a generator that repeats.
+    /// A force that shakes by `angle` from sample to sample, with noise of a deviation.
     fn stencils(angle: f64, deviation: f64) -> Vec<[DVec3; STENCIL]> {
-        let mut state = 1u64;
-        let mut noise = || {
-            let uniform = |state: &mut u64| {
-                *state =
-                    state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (*state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-            };
-            (0..12).map(|_| uniform(&mut state)).sum::<f64>() * deviation
-        };
+        let mut normal = Normal::seeded(1);
         let forces: Vec<DVec3> =
-            (0..400).map(|k| DVec3::Z * ((angle * f64::from(k)).sin() + noise())).collect();
+            (0..400).map(|k| DVec3::Z * ((angle * f64::from(k)).sin() + deviation * normal.draw())).collect();
         forces.windows(STENCIL).map(|all| std::array::from_fn(|i| all[i])).collect()
     }
 

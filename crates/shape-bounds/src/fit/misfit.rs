@@ -93,18 +93,14 @@ impl Misfit {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::generators::Source;
 
-    /// Residuals of which each is so much of the one before, and a fresh sign.
+    /// Residuals of which each is so much of the one before, and fresh noise.
     fn alike(by: f64) -> f64 {
-        let mut state = 1u64;
-        let mut held = DVec3::ZERO;
-        let mut sign = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            if state >> 63 == 0 { 1.0 } else { -1.0 }
-        };
+        let (mut source, mut held) = (Source::new(1), DVec3::ZERO);
         let residuals: Vec<DVec3> = (0..400)
             .map(|_| {
-                held = by * held + (1.0 - by * by).sqrt() * DVec3::new(sign(), sign(), sign());
+                held = by * held + (1.0 - by * by).sqrt() * source.normal3();
                 held
             })
             .collect();

@@ -4,14 +4,12 @@ use super::*;
 
 /// A log with the normal forces alone.
 pub(super) fn normal_only(log: &ContactLog) -> ContactLog {
-    let one = |(i, record): (usize, PalmRecord)| {
+    with_records(log, |i, record| {
         let palm = &log.palms()[i];
         let along = |k: usize| Some(palm.force(k)?.vector.dot(palm.touch(k)?.n.get()));
         let force = (0..log.times().len()).map(|k| along(k).unwrap_or(0.0)).collect();
         PalmRecord { force: ForceChannel::Normal(force), impulse: ForceChannel::Missing, ..record }
-    };
-    let palms = log.records().into_iter().enumerate().map(one).collect();
-    ContactLog::new(log.times().to_vec(), palms, log.truth().map(<[_]>::to_vec)).unwrap()
+    })
 }
 
 #[test]

@@ -7,7 +7,7 @@ use super::*;
 fn lasting(exact: &ContactLog, log: &ContactLog, correlation: f64) -> ContactLog {
     let fresh = (1.0 - correlation * correlation).sqrt();
     let force = |log: &ContactLog, i: usize, k: usize| log.palms()[i].force(k).unwrap().vector.length();
-    let one = |(i, record): (usize, PalmRecord)| {
+    with_records(log, |i, record| {
         let mut held = 0.0;
         let all = (0..log.times().len()).map(|k| {
             let error = force(log, i, k) - force(exact, i, k);
@@ -15,9 +15,7 @@ fn lasting(exact: &ContactLog, log: &ContactLog, correlation: f64) -> ContactLog
             force(exact, i, k) + held
         });
         PalmRecord { force: ForceChannel::Normal(all.collect()), ..record }
-    };
-    let palms = log.records().into_iter().enumerate().map(one).collect();
-    ContactLog::new(log.times().to_vec(), palms, log.truth().map(<[_]>::to_vec)).unwrap()
+    })
 }
 
 /// White noise is alike by chance alone, and nothing is wider for it. Of noise that lasts part is left, is alike, and makes deviations
