@@ -225,6 +225,14 @@ pub(crate) enum CliError {
     Roll(#[from] recon::exploration::rolling::RollError),
     #[error("the object cannot be rolled")]
     Sensed(#[from] recon::exploration::rolling::SensedError),
+    #[error("the finger cannot follow the outline")]
+    Finger(#[source] recon::exploration::contour::StuckFinger),
+    #[error("the outline cannot be followed")]
+    Traced(#[from] recon::exploration::contour::TraceError<recon::exploration::contour::StuckFinger>),
+    #[error(
+        "no finger: give its radius in m by --finger, or as `finger.radius` in {}", path.display()
+    )]
+    NoFinger { path: PathBuf },
     #[error("the scene has no gravity, and palms do not hold an object without")]
     RolledWithoutGravity,
     #[error(
@@ -245,6 +253,8 @@ pub(crate) enum CliError {
         "{} says no goal: give one by --until, as gap=0.1, or a folder of `recon explore`", path.display()
     )]
     NoGoal { path: PathBuf },
+    #[error("{} is of a contour, which is followed in one go: there is no next touch", path.display())]
+    Followed { path: PathBuf },
     #[error("{} cannot be read as the summary of an exploration: {what}", path.display())]
     NotExplored { path: PathBuf, what: String },
     #[error("{} holds poses; where to touch next is asked of contacts", path.display())]
@@ -328,6 +338,9 @@ impl CliError {
             | Self::Explore(_)
             | Self::Roll(_)
             | Self::Sensed(_)
+            | Self::Finger(_)
+            | Self::Traced(_)
+            | Self::NoFinger { .. }
             | Self::RolledWithoutGravity
             | Self::HalfNoise
             | Self::Palms(_)
@@ -336,6 +349,7 @@ impl CliError {
             | Self::Confidence(_)
             | Self::Goal(_)
             | Self::NoGoal { .. }
+            | Self::Followed { .. }
             | Self::NotExplored { .. }
             | Self::PosesExplored { .. }
             | Self::Check(_)

@@ -77,16 +77,16 @@ pub use output::{
 pub use planar_figures::{FigureCurve, FigureFrame, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities, implausible_contacts};
 pub use report::{
-    BatchPage, Bound, Bounds, EstimateData, Evidence, EvidenceValue, ExplorationPage, ExplorationWords, Fact,
-    FiguresPage, Level, LogCard, ModeSpan, MotionState, PalmContact, PlaneEstimateData, PushedLog,
-    ShapeMarks, TouchRow, TrueShape, Verdict, doubtful_spans, estimated_mode_spans, mode_spans, mode_times,
-    planar_mode_spans, sample_gaps, write_batch_report, write_contact_report, write_estimate_report,
-    write_exploration_report, write_figures_page, write_planar_contact_report, write_plane_estimate_report,
-    write_pushes_report,
+    BatchPage, Bound, Bounds, ContourPage, EstimateData, Evidence, EvidenceValue, ExplorationPage,
+    ExplorationWords, Fact, FiguresPage, JumpRow, Level, LogCard, ModeSpan, MotionState, PalmContact,
+    PlaneEstimateData, PushedLog, ShapeMarks, TouchRow, TrueShape, Verdict, doubtful_spans,
+    estimated_mode_spans, mode_spans, mode_times, planar_mode_spans, sample_gaps, write_batch_report,
+    write_contact_report, write_contour_report, write_estimate_report, write_exploration_report,
+    write_figures_page, write_planar_contact_report, write_plane_estimate_report, write_pushes_report,
 };
 pub use scene::{
-    BoxedShape, KnownInertia, KnownPalm, PlanarBody, PlanarKnown, PlanarScene, Scene, SceneError,
-    SceneErrorKind, Sensors, Shape, Simulation,
+    AnyOutline, BoxedShape, KnownInertia, KnownPalm, OutlineScene, PlanarBody, PlanarKnown, PlanarScene,
+    Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation,
 };
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
 pub use summary::{

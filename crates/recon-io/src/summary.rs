@@ -28,6 +28,8 @@ pub enum SummaryOf {
     Exploration,
     /// Motions of palms, one after the other, to a goal.
     Rolling,
+    /// An outline that a finger followed.
+    Contour,
     /// A simulated scene.
     Simulation,
     /// An object or a scene for simulators.
@@ -50,6 +52,7 @@ impl SummaryOf {
             Self::Bounds => "bounds/1",
             Self::Exploration => "exploration/1",
             Self::Rolling => "rolling/1",
+            Self::Contour => "contour/1",
             Self::Simulation => "simulation/1",
             Self::Export => "export/1",
             Self::Start => "start/1",

@@ -3,10 +3,10 @@
 //! Usage: `contour [BODIES [FIRST]]`: bodies for each range of radii (40) and the first of their seeds. Prints docs/contour.md.
 
 use exploration::contour::{
-    HullBounds, SimulatedFinger, SmoothOutline, TraceEnd, Traced, Tracing, Waved, trace,
+    HullBounds, Margins, SimulatedFinger, SmoothOutline, TraceEnd, Tracing, Waved, trace,
 };
 use exploration::{Heading, Source};
-use recon::shape_bounds::planar::Direction;
+use recon::shape_bounds::planar::{ConvexPolygon, Direction};
 use std::f64::consts::{PI, TAU};
 
 type Failure = Box<dyn std::error::Error>;
@@ -28,9 +28,10 @@ const RANGES: [[f64; 2]; 8] = [
 const STEP: f64 = 0.02;
 const LEAST: f64 = STEP / 256.0;
 const TURN: f64 = 0.1;
-/// Standard deviation of normals, rad, and the deviations of a turn that are taken for noise.
-const NORMAL: f64 = 2e-3;
-const DEVIATIONS: f64 = 5.0;
+/// Standard deviations of points per axis over the size and of normals, rad, and the confidence at which bounds and jumps are told.
+const NOISE: [f64; 2] = [1e-3, 2e-3];
+const LEVEL: f64 = 0.95;
+const READINGS: usize = 20_000;
 
 /// What came of one range.
 #[derive(Default)]
@@ -41,6 +42,8 @@ struct Tally {
     jumped: usize,
     other: usize,
     sound: usize,
+    /// Sum of the gaps of the hull's bounds, as shares.
+    gap: f64,
     touches: usize,
     /// Error of the area over the area.
     area: f64,
@@ -55,18 +58,19 @@ pub(crate) fn main() -> Result<(), Failure> {
     let first: u64 = crate::words().nth(1).map_or(Ok(FIRST_SEED), |a| a.parse())?;
     println!("{}", include_str!("intro.md").trim_end());
     println!("\nMade by `cargo xtask study contour {each} {first}`.\n");
-    for (title, normal) in [("Exact contacts", 0.0), ("Normals off by 2 mrad", NORMAL)] {
+    let noisy = "Points off by 0.1 % of the size, normals by 2 mrad, at 95 %";
+    for (title, noise) in [("Exact contacts", None), (noisy, Some(NOISE))] {
         println!("## {title}\n");
         println!(
-            "| finger over hollow | runs | once round | all felt | a jump in each hollow | anything else | hollows wider than a jump says | hull between its bounds | touches, mean | largest error of the area, % | of the radius told, % |"
+            "| finger over hollow | runs | once round | all felt | a jump in each hollow | anything else | hollows wider than a jump says | hull between its bounds | gap of the hull, %, mean | touches, mean | largest error of the area, % | of the radius told, % |"
         );
-        println!("|---|---|---|---|---|---|---|---|---|---|---|");
+        println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
         for (k, range) in RANGES.into_iter().enumerate() {
             let mut tally = Tally::default();
             for body in 0..each {
-                one(&mut tally, first + each * k as u64 + body, range, normal)?;
+                one(&mut tally, first + each * k as u64 + body, range, noise)?;
             }
-            println!("| {} to {} | {} |", range[0], range[1], tally.cells(normal == 0.0));
+            println!("| {} to {} | {} |", range[0], range[1], tally.cells());
         }
         println!();
     }
@@ -75,14 +79,14 @@ pub(crate) fn main() -> Result<(), Failure> {
 }
 
 impl Tally {
-    fn cells(&self, exact: bool) -> String {
+    fn cells(&self) -> String {
         let told = |share: f64| if share > 0.0 { format!("{:.2}", 100.0 * share) } else { "-".to_owned() };
         let Self { runs, closed, felt, jumped, other, sound, wrong, .. } = self;
-        let sound = if exact { sound.to_string() } else { "-".to_owned() };
-        let touches = self.touches as f64 / (*runs).max(1) as f64;
+        let mean = |sum: f64| sum / (*runs).max(1) as f64;
+        let (touches, gap) = (mean(self.touches as f64), 100.0 * mean(self.gap));
         let [area, radius] = [self.area, self.told].map(told);
         format!(
-            "{runs} | {closed} | {felt} | {jumped} | {other} | {wrong} | {sound} | {touches:.0} | {area} | {radius}"
+            "{runs} | {closed} | {felt} | {jumped} | {other} | {wrong} | {sound} | {gap:.2} | {touches:.0} | {area} | {radius}"
         )
     }
 }
@@ -98,13 +102,18 @@ fn body(source: &mut Source) -> (Waved, f64) {
     }
 }
 
-fn one(tally: &mut Tally, seed: u64, [low, high]: [f64; 2], normal: f64) -> Result<(), Failure> {
+fn one(tally: &mut Tally, seed: u64, [low, high]: [f64; 2], noise: Option<[f64; 2]>) -> Result<(), Failure> {
     let mut source = Source::new(seed);
     let (body, hollow) = body(&mut source);
     let radius = hollow * source.between(low, high);
-    let mut finger = SimulatedFinger::new(body, radius)?.with_noise(0.0, normal, seed);
-    let doubt = DEVIATIONS * normal * 2f64.sqrt();
-    let tracing = Tracing { step: STEP, least: LEAST, turn: TURN, doubt, touches: 20_000 };
+    let margins = match noise {
+        Some(deviations) => Margins::of_noise(deviations, LEVEL, READINGS)?,
+        None => Margins::EXACT,
+    };
+    let [point, normal] = noise.unwrap_or_default();
+    let mut finger = SimulatedFinger::new(body, radius)?.with_noise(point, normal, seed);
+    let doubt = margins.of_turn();
+    let tracing = Tracing { step: STEP, least: LEAST, turn: TURN, doubt, readings: READINGS };
     let found = trace(&mut finger, &tracing)?;
     tally.runs += 1;
     tally.closed += usize::from(found.end == TraceEnd::Closed);
@@ -123,13 +132,16 @@ fn one(tally: &mut Tally, seed: u64, [low, high]: [f64; 2], normal: f64) -> Resu
     } else {
         tally.other += 1;
     }
-    tally.sound += usize::from(normal == 0.0 && sound(&found, &body));
+    if let Some(bounds) = HullBounds::of(&found, margins) {
+        tally.sound += usize::from(sound(&bounds, &body));
+        let area = |corners| ConvexPolygon::new(corners).area();
+        tally.gap += 1.0 - area(bounds.lower()) / area(bounds.upper());
+    }
     Ok(())
 }
 
 /// Whether the support function of the body is between those of the bounds of its hull, at 24 directions.
-fn sound(found: &Traced, body: &Waved) -> bool {
-    let Some(bounds) = HullBounds::of(found) else { return false };
+fn sound(bounds: &HullBounds<'_>, body: &Waved) -> bool {
     Direction::spread(24).into_iter().all(|u| {
         let point = |k: u32| body.at(TAU * f64::from(k) / 20_000.0).point.dot(u.get());
         let h = (0..20_000).map(point).fold(f64::NEG_INFINITY, f64::max);

@@ -1,5 +1,6 @@
 //! Smooth closed curves.
 
+use contact_kinematics::planar::RadiusFunction;
 use glam::DVec2;
 
 /// A point of an outline with its derivatives over the parameter.
@@ -36,6 +37,18 @@ pub trait SmoothOutline {
 impl<F: Fn(f64) -> OutlinePoint> SmoothOutline for F {
     fn at(&self, t: f64) -> OutlinePoint {
         self(t)
+    }
+}
+
+/// The outline of a convex body, by the angle of its normal.
+#[derive(Clone, Copy, Debug)]
+pub struct ConvexOutline<S>(pub S);
+
+impl<S: RadiusFunction> SmoothOutline for ConvexOutline<S> {
+    /// The second derivative without its part along the tangent, which neither curvature nor places nearest to a point need.
+    fn at(&self, t: f64) -> OutlinePoint {
+        let (normal, rho) = (DVec2::from_angle(t), self.0.jet(t).rho);
+        OutlinePoint { point: self.0.point(t), first: normal.perp() * rho, second: -normal * rho }
     }
 }
 

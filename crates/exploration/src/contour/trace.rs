@@ -38,10 +38,10 @@ pub struct Tracing {
     pub least: f64,
     /// The normal turns by so much from touch to touch at most, rad, unless over the least step.
     pub turn: f64,
-    /// How far a measured turn may be off, rad: zero for exact normals, else as many deviations as are wanted for all touches together.
+    /// How far a measured turn may be off, rad: zero for exact normals, else [`super::Margins::of_turn`].
     pub doubt: f64,
-    /// Touches at most.
-    pub touches: usize,
+    /// Touches at most, with those that the finger went back from.
+    pub readings: usize,
 }
 
 /// Why nothing is followed.
@@ -97,6 +97,8 @@ pub struct Traced {
     pub end: TraceEnd,
     /// Radius of the finger, m.
     pub radius: f64,
+    /// Touches in all, with those that the finger went back from.
+    pub readings: usize,
 }
 
 /// Follows an outline once round.
@@ -106,7 +108,7 @@ pub struct Traced {
 /// # Errors
 /// [`TraceError`].
 pub fn trace<F: ContourFinger>(finger: &mut F, tracing: &Tracing) -> Result<Traced, TraceError<F::Error>> {
-    let Tracing { step, least, turn, doubt, touches: most } = *tracing;
+    let Tracing { step, least, turn, doubt, readings } = *tracing;
     if !(doubt >= 0.0 && doubt.is_finite()) {
         return Err(TraceError::Setting { what: "doubt", value: doubt });
     }
@@ -129,10 +131,12 @@ pub fn trace<F: ContourFinger>(finger: &mut F, tracing: &Tracing) -> Result<Trac
         bridges: Vec::new(),
         end: TraceEnd::Budget,
         radius: 0.0,
+        readings: 1,
     };
     let mut turned_in_all = 0.0;
-    while traced.touches.len() < most {
+    while traced.readings < readings {
         let next = go(length)?;
+        traced.readings += 1;
         let turned = signed(last.normal, next.normal);
         if turned.abs() > turn + doubt && length > least {
             go(-length)?;

@@ -76,6 +76,10 @@ sides, slowly and without friction, and the object lies where its centre of mass
 --contact-noise and --force-noise the object moves by the equations of motion, sensors are noisy, and its motion is estimated from all that
 was sensed after each motion of the palms: nothing else is known of it, and bounds hold at the confidence for all these looks together.
 
+With --contour a round finger keeps in touch with the outline of the scene (`[outline]`, through points or with waves, or the object of a scene of the
+plane), once round. Where it does not get in it jumps, and that is told: between the two contacts nothing was felt. The hull of the outline is bounded, with
+--contact-noise and --normal-noise at the confidence, whatever the finger does not get into. It writes contour.csv, jumps.csv and the bounds.
+
 The output folder appears as a whole or not at all: contacts.csv, the bounds, summary.json (goal, proof, each touch and why), and
 report.html. `recon next` goes on from there.
 
@@ -85,15 +89,25 @@ Examples:
   recon explore scene.toml --until hausdorff=0.05 --planner hausdorff -o out
   recon explore plane.toml --rolling --until gap=0.1 -o out
   recon explore plane.toml --rolling --until gap=0.1 --contact-noise 5e-5 --force-noise 2e-3 -o out
+  recon explore outline.toml --contour --finger 0.01 -o out
   recon explore scene.toml --until width=0.001@0,0,1 --json | jq .proof")]
 pub(crate) struct ExploreArgs {
     /// Scene file (TOML)
     pub(crate) scene: PathBuf,
     /// What is to be proven: gap=SHARE, hausdorff=M or width=M@X,Y,Z
-    #[arg(long, value_name = "GOAL", value_parser = until)]
-    pub(crate) until: Until,
+    #[arg(long, value_name = "GOAL", value_parser = until, required_unless_present = "contour")]
+    pub(crate) until: Option<Until>,
     #[command(flatten)]
     pub(crate) goal: GoalArgs,
+    /// Follow an outline once round with a round finger; it need not be convex
+    #[arg(long, conflicts_with_all = ["until", "planner", "rays", "rolling"])]
+    pub(crate) contour: bool,
+    /// With --contour: radius of the finger, m [default: finger.radius of the scene]
+    #[arg(long, value_name = "M", requires = "contour", value_parser = positive)]
+    pub(crate) finger: Option<f64>,
+    /// With --contour: motion of the finger's centre from touch to touch at most, m [default: a fiftieth of the size, less for small fingers]
+    #[arg(long, value_name = "M", requires = "contour", value_parser = positive)]
+    pub(crate) step: Option<f64>,
     /// Touch along rays rather than with a plane (line)
     #[arg(long)]
     pub(crate) rays: bool,

@@ -1,9 +1,10 @@
 use super::answers::written_to;
-use crate::cli::{ExploreArgs, PlannerAs};
+use crate::cli::{ExploreArgs, PlannerAs, Until};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
-    CONFIDENCE, Explored, InPlane, InSpace, Settings, explored, goal_of, rolled, sensed, write_files_folder,
+    CONFIDENCE, Explored, Following, InPlane, InSpace, Settings, explored, followed, goal_of, rolled, sensed,
+    write_files_folder,
 };
 use crate::progress::Progress;
 use glam::{DVec2, DVec3};
@@ -13,7 +14,7 @@ use recon::exploration::rolling::{RollingBody, SensedError, SimulatedHands, Simu
 use recon::exploration::{Heading, Motion, Source, planar, space};
 use recon::object_dynamics::planar::PlanarObject;
 use recon::shape_bounds::planar as flat;
-use recon_io::{FolderTarget, PlanarBody, PlanarScene, Scene, SceneErrorKind};
+use recon_io::{FolderTarget, OutlineScene, PlanarBody, PlanarScene, Scene, SceneErrorKind};
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::slice;
@@ -28,6 +29,7 @@ pub(crate) fn run(args: &ExploreArgs, console: &Console) -> Result<Outcome, CliE
     }
     progress.step("reading the scene");
     let made = match Scene::read(&args.scene) {
+        _ if args.contour => contour(args, &progress)?,
         Ok(_) if args.rolling => return Err(CliError::RolledInSpace { path: args.scene.clone() }),
         Ok(scene) => in_space(args, &scene, &progress)?,
         Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
@@ -57,6 +59,20 @@ fn title(args: &ExploreArgs) -> String {
     args.scene.file_stem().map_or_else(|| "scene".to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
+/// What is to be proven: the command line asks for it wherever it is needed.
+fn until(args: &ExploreArgs) -> Result<&Until, CliError> {
+    args.until.as_ref().ok_or_else(|| CliError::NoGoal { path: args.scene.clone() })
+}
+
+fn contour(args: &ExploreArgs, progress: &Progress) -> Result<Explored, CliError> {
+    let scene = OutlineScene::read(&args.scene)?;
+    let radius = args.finger.or(scene.finger);
+    let radius = radius.ok_or_else(|| CliError::NoFinger { path: args.scene.clone() })?;
+    let following = Following::new(&args.goal, args.step, [scene.outline.size(), radius])?;
+    progress.step("following the outline");
+    followed(&title(args), scene.outline, radius, &following)
+}
+
 fn in_space(args: &ExploreArgs, scene: &Scene, progress: &Progress) -> Result<Explored, CliError> {
     let nothing = || CliError::NothingToSimulate { path: args.scene.clone() };
     let body = scene.simulation.as_ref().ok_or_else(nothing)?.body()?;
@@ -65,7 +81,7 @@ fn in_space(args: &ExploreArgs, scene: &Scene, progress: &Progress) -> Result<Ex
     let [point, normal] = settings.noise.map_or([0.0; 2], |(noise, _)| noise);
     let mut finger =
         space::SimulatedFinger::new(support, motion(args)).with_noise(point, normal, settings.seed);
-    let goal = goal_of::<InSpace>(&args.until)?;
+    let goal = goal_of::<InSpace>(until(args)?)?;
     // The scene's size is a mean radius.
     let width = scene.size.map(|radius| 2.0 * radius);
     progress.step("touching");
@@ -106,7 +122,7 @@ fn rolling(args: &ExploreArgs, scene: &PlanarScene, progress: &Progress) -> Resu
         (None, None) if args.goal.normal_noise.is_none() => {
             let workspace = Workspace::for_size(width);
             let mut palms = SimulatedPalms::new(body, workspace.length, PALMS, let_go)?;
-            rolled(&title(args), &args.until, &settings, workspace, &mut palms, |words| progress.say(words))
+            rolled(&title(args), until(args)?, &settings, workspace, &mut palms, |words| progress.say(words))
         }
         _ => Err(CliError::HalfNoise),
     }
@@ -142,7 +158,7 @@ fn estimated(
     let mut hands = hands.map_err(SensedError::Start)?.with_noise(noise, settings.seed);
     let sensors = hands.sensors(FLOOR * (0.5 * width * gravity).sqrt());
     let with = (workspace, sensors, level);
-    sensed(&title(args), &args.until, settings, with, &mut hands, |words| progress.say(words))
+    sensed(&title(args), until(args)?, settings, with, &mut hands, |words| progress.say(words))
 }
 
 /// In m; to within what it is needed for: lengths of palms, and bodies that are drawn where nothing is known yet.
@@ -161,7 +177,7 @@ fn in_plane(args: &ExploreArgs, scene: &PlanarScene, progress: &Progress) -> Res
     let [point, normal] = settings.noise.map_or([0.0; 2], |(noise, _)| noise);
     let mut finger =
         planar::SimulatedFinger::new(support, motion(args)).with_noise(point, normal, settings.seed);
-    let goal = goal_of::<InPlane>(&args.until)?;
+    let goal = goal_of::<InPlane>(until(args)?)?;
     progress.step("touching");
     explored::<InPlane>(&title(args), goal, &settings, None, &mut finger, |_, words| progress.say(words))
 }

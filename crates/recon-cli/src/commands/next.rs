@@ -8,6 +8,9 @@ use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &NextArgs) -> Result<Outcome, CliError> {
     let (contacts, earlier) = inputs(&args.input)?;
+    if earlier["schema"] == SummaryOf::Contour.schema() {
+        return Err(CliError::Followed { path: args.input.clone() });
+    }
     let (told, exit) = planned(args, &contacts, &earlier, &read_touches(&contacts)?)?;
     // For a program in any case: there is nothing else to say.
     Console::new(true, false).result("", &told)?;

@@ -4,7 +4,7 @@ use crate::common::Scratch;
 use serde_json::Value;
 
 const SPACE: &str = include_str!("../../scenes/fig5.toml");
-const PLANE: &str = r#"
+pub(super) const PLANE: &str = r#"
 plane = true
 gravity = 9.81
 [object]

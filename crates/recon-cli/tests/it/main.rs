@@ -14,6 +14,7 @@ mod bounds_noise;
 mod bounds_shapes;
 mod check;
 mod common;
+mod contour;
 mod end_to_end;
 mod explore;
 mod export;

@@ -2,6 +2,7 @@
 
 mod batch;
 mod contacts;
+mod contour;
 mod data;
 mod evidence_table;
 mod exploration;
@@ -17,6 +18,7 @@ pub use contacts::{
     mode_times, planar_mode_spans, sample_gaps, write_contact_report, write_estimate_report,
     write_planar_contact_report, write_plane_estimate_report,
 };
+pub use contour::{ContourPage, JumpRow, write_contour_report};
 pub use data::{Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, TrueShape, Verdict};
 pub use exploration::{ExplorationPage, ExplorationWords, TouchRow, write_exploration_report};
 pub use figures_page::{FiguresPage, write_figures_page};

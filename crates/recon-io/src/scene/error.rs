@@ -141,6 +141,9 @@ pub enum SceneErrorKind {
     /// The object's outline.
     #[error("`simulation.shape`: {0}")]
     Outline(recon::contact_kinematics::planar::ShapeError),
+    /// The outline that a finger follows.
+    #[error("`outline.points`: {0}")]
+    FollowedOutline(#[from] recon::exploration::contour::OutlineError),
     /// Mass and inertia that no body in the plane has.
     #[error("`object`: {0}")]
     PlanarMass(#[from] PlanarMassError),

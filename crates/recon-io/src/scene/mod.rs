@@ -3,6 +3,7 @@
 mod build;
 mod error;
 mod file;
+mod outline;
 mod palms;
 mod planar;
 mod possible;
@@ -14,6 +15,7 @@ mod tests;
 #[cfg(feature = "mcap")]
 pub(crate) use error::in_words;
 pub use error::{SceneError, SceneErrorKind};
+pub use outline::{AnyOutline, OutlineScene};
 pub use palms::{BoxedShape, KnownPalm};
 pub use planar::{PlanarBody, PlanarKnown, PlanarScene};
 

@@ -29,7 +29,7 @@ const TRUTH: Column = may(
     "truth, to compare with alone: centre of mass, body to world, velocities in world axes",
 );
 
-pub(super) const FORMATS: [Format; 18] = [
+pub(super) const FORMATS: [Format; 21] = [
     Format {
         name: "log",
         about: "sensor log, version 1: three flat palms through the origin. t1 of a palm is horizontal, t2 points up it, n towards the object, t1 = t2 x n",
@@ -293,6 +293,51 @@ pub(super) const FORMATS: [Format; 18] = [
             needed("lower_volume_m3, upper_volume_m3", "m^3", "volumes of the bounds"),
             needed("warnings", "-", "how many there are"),
             needed("why", "-", "the verdict, or why the log was skipped"),
+        ],
+    },
+    Format {
+        name: "contour",
+        about: "contour.csv of recon explore --contour: touches of a round finger along an outline, counter-clockwise; of one followed once round the last is past the first",
+        columns: &[
+            needed("touch", "-", "number of the touch, from 1"),
+            needed("x, y", "m", "point of the outline"),
+            needed(
+                "nx, ny",
+                "1",
+                "outward unit normal there; the finger's centre is its radius along it away",
+            ),
+            needed("way", "m", "motion of the finger's centre from the touch before"),
+        ],
+    },
+    Format {
+        name: "jumps",
+        about: "jumps.csv of recon explore --contour: where the finger does not get in",
+        columns: &[
+            needed("after", "-", "number of the touch before it"),
+            needed("x1, y1, x2, y2", "m", "the contacts before and after it"),
+            needed("mouth", "m", "how far they are apart"),
+            needed(
+                "radius_at_most",
+                "m",
+                "mean radius of curvature of what is between at most, if it was felt after all",
+            ),
+        ],
+    },
+    Format {
+        name: "outline",
+        about: "scene of an outline (TOML) for recon explore --contour; a scene of the plane with the shape of an object serves as well",
+        columns: &[
+            may("finger.radius", "m", "radius of the round finger; else --finger"),
+            may(
+                "outline.points",
+                "m",
+                "points, in either sense, of a closed curve that is twice differentiable: 4 or more, as [[x, y], ..]",
+            ),
+            may(
+                "outline.waves",
+                "m, 1, -",
+                "or r = size (1 + depth cos(count angle)): { size, depth, count }",
+            ),
         ],
     },
     Format {

@@ -1,5 +1,7 @@
 //! Explorations, in space and in the plane: what is asked for, what was done, where the next touch would be.
 
+mod contour;
+mod contour_page;
 mod motions;
 mod page;
 mod plane;
@@ -11,6 +13,7 @@ mod space;
 mod state;
 mod story;
 
+pub(crate) use contour::{Following, followed};
 pub(crate) use plane::InPlane;
 pub(crate) use rolling::{next_motion, rolled};
 pub(crate) use sensed::sensed;
