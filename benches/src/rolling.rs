@@ -33,6 +33,47 @@ pub const PLANNERS: [Roller; 6] = [
     Roller { name: "random", make: |s| Box::new(RandomTurns::new(s)) },
 ];
 
+/// Motions ahead and bodies drawn of "gap per radian", and how it is made.
+pub type Lookahead = (usize, usize, Roller);
+
+/// The same with other horizons and numbers of bodies: cost against benefit. Two ahead on twelve is the one that is compared with others.
+pub const LOOKAHEAD: [Lookahead; 8] = [
+    (
+        1,
+        1,
+        per_radian("1 ahead, 1 body", |s| Box::new(InformationRate::new(s, 1).per_radian().with_bodies(1))),
+    ),
+    (
+        1,
+        4,
+        per_radian("1 ahead, 4 bodies", |s| Box::new(InformationRate::new(s, 1).per_radian().with_bodies(4))),
+    ),
+    (1, 12, per_radian("1 ahead, 12 bodies", |s| Box::new(InformationRate::new(s, 1).per_radian()))),
+    (
+        1,
+        32,
+        per_radian("1 ahead, 32 bodies", |s| {
+            Box::new(InformationRate::new(s, 1).per_radian().with_bodies(32))
+        }),
+    ),
+    (
+        2,
+        4,
+        per_radian("2 ahead, 4 bodies", |s| Box::new(InformationRate::new(s, 2).per_radian().with_bodies(4))),
+    ),
+    (2, 12, per_radian("2 ahead, 12 bodies", |s| Box::new(InformationRate::new(s, 2).per_radian()))),
+    (
+        3,
+        4,
+        per_radian("3 ahead, 4 bodies", |s| Box::new(InformationRate::new(s, 3).per_radian().with_bodies(4))),
+    ),
+    (3, 12, per_radian("3 ahead, 12 bodies", |s| Box::new(InformationRate::new(s, 3).per_radian()))),
+];
+
+const fn per_radian(name: &'static str, make: fn(u64) -> Box<dyn RollPlanner>) -> Roller {
+    Roller { name, make }
+}
+
 /// A generator's body with its centre of mass.
 pub struct Rolled {
     outline: Outline,

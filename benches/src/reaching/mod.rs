@@ -1,5 +1,6 @@
 //! Planners on seeded bodies: the runs behind the study `reaching` and its charts.
 
+pub mod hindsight;
 pub mod plane;
 pub mod space;
 pub mod statistics;

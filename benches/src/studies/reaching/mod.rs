@@ -3,6 +3,7 @@
 //! Usage: `reaching [EACH [RUNS]]`: bodies of each family (10) and runs under noise (1000). Prints docs/exploration.md.
 
 mod cost;
+mod lookahead;
 mod noise;
 mod polygons;
 mod tables;
@@ -33,6 +34,7 @@ pub(crate) fn main() -> Result<(), Failure> {
     by_family(&plane, 0.1);
     ratios(&plane, 0.1);
     polygons::table()?;
+    lookahead::table(bodies)?;
 
     let space = space::PLANNERS
         .iter()

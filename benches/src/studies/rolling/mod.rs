@@ -4,7 +4,7 @@
 
 use recon_benches::reaching::Bodies;
 use recon_benches::reaching::statistics::{quantile, ratio_of_medians};
-use recon_benches::rolling::{Noisy, PLANNERS, Rolling, runs};
+use recon_benches::rolling::{LOOKAHEAD, Noisy, PLANNERS, Rolling, runs};
 use recon_benches::rows::is_part;
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -34,6 +34,10 @@ pub(crate) fn main() -> Result<(), Failure> {
         .iter()
         .map(|p| Ok((p.name, runs(p, few, 0.15, RADIANS, noise)?)))
         .collect::<Result<Vec<_>, Failure>>()?;
+    let ahead = LOOKAHEAD
+        .iter()
+        .map(|(horizon, drawn, p)| Ok(([*horizon, *drawn], runs(p, bodies, 0.05, RADIANS, None)?)))
+        .collect::<Result<Vec<_>, Failure>>()?;
     if is_part() {
         return Ok(());
     }
@@ -42,6 +46,7 @@ pub(crate) fn main() -> Result<(), Failure> {
     ways(&exact, 1, "Seconds");
     ends(&exact);
     ratios(&exact);
+    lookahead(&ahead);
     println!(
         "## Under noise\n\nPoints off by 0.1 % of the mean width per axis, normals by 2 mrad (standard deviations), 95 % shared among 60 contacts, to 15 %.\n"
     );
@@ -60,6 +65,31 @@ pub(crate) fn main() -> Result<(), Failure> {
     }
     println!("\n{}", include_str!("outro.md").trim_end());
     Ok(())
+}
+
+/// Cost against benefit of "gap per radian": radians to a gap over motions ahead and bodies drawn, beside those of the cheapest.
+fn lookahead(all: &[([usize; 2], Vec<Rolling>)]) {
+    println!(
+        "## Horizon and bodies drawn\n\nGap per radian. Radians of palm motion to a gap, median / 90 %, and how many times those of one ahead on one body (ratio of medians, 95 % bootstrap interval over bodies).\n"
+    );
+    println!("![radians against milliseconds](charts/rolling-lookahead.svg)\n");
+    println!(
+        "| motions ahead | bodies drawn | 20 % | 10 % | 5 % | of the cheapest, to 10 % | proven | motions a run | ms a choice |\n|---|---|---|---|---|---|---|---|---|"
+    );
+    let Some((_, cheapest)) = all.first() else { return };
+    for ([horizon, drawn], runs) in all {
+        let ways = [0.2, 0.1, 0.05].map(|gap| pair(&to(runs, gap, 0)));
+        let (ratio, [low, high]) = ratio_of_medians(&to(runs, 0.1, 0), &to(cheapest, 0.1, 0));
+        let motions: usize = runs.iter().map(|r| r.motions).sum();
+        println!(
+            "| {horizon} | {drawn} | {} | {ratio:.2} ({low:.2} to {high:.2}) | {} | {:.1} | {:.1} |",
+            ways.join(" | "),
+            count(runs, |r| r.short.is_none()),
+            motions as f64 / runs.len() as f64,
+            1e3 * runs.iter().map(|r| r.planning).sum::<f64>() / motions.max(1) as f64
+        );
+    }
+    println!();
 }
 
 type Compared = (&'static str, Vec<Rolling>);

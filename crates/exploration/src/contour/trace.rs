@@ -44,6 +44,15 @@ pub struct Tracing {
     pub readings: usize,
 }
 
+impl Tracing {
+    /// How wide what a finger of radius `q` (m) jumps over may be at most without being told, m: both sides are touched by one disc, whose normals there are
+    /// apart by a turn that is not told from noise, and by what the outline turns outwards over the step, which the centre goes by round a corner.
+    #[must_use]
+    pub fn unseen(&self, q: f64) -> f64 {
+        (self.turn + 2.0 * self.doubt).mul_add(q, self.step)
+    }
+}
+
 /// Why nothing is followed.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]

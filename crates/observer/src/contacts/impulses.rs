@@ -60,7 +60,8 @@ pub(super) fn add(
             let at = |k: usize| contacts.get(k).and_then(|all| all.iter().find(|contact| contact.palm == i));
             let path =
                 Path::new([k.checked_sub(2).and_then(at), at(k - 1), at(k), at(k + 1)], k, log.times());
-            match path {
+            let bend = |k: usize| kink(|back: usize| at((k + 2).checked_sub(back)?), noise.contact);
+            match path.map(|path| path.kinked([bend(k - 1), bend(k), bend(k + 1)])) {
                 Some(path) => path.push(J, of_impulse.of(J), noise.contact, interval),
                 None if J.length() > FELT * of_impulse.of(J) => unseen(J, of_impulse.of(J), spread, interval),
                 None => {}
@@ -79,9 +80,33 @@ struct Path<'a> {
     /// Change of the force.
     force: DVec3,
     /// Of the mean: variance of what noise of contacts does to it over that of a contact, and how far off it may be as nobody knows
-    /// when the palm was touched.
+    /// when the palm was touched, or when within the intervals the contact changed its speed.
     noise: f64,
     unsure: DVec3,
+}
+
+/// Root mean square of what the mean of a contact over an interval is off by, over what its change of speed within makes in one interval, if the time is
+/// uniform: `x (1 - x) / 2` of it at the share `x` of the interval, where the parabola has a 24th.
+const KINKED: f64 = 0.056;
+/// The same where it is in an interval beside, whose bend the parabola takes for its own: at most a 24th, a half of the variance as good as that.
+const BESIDE: f64 = 0.5;
+/// Variance of a kink by noise of contacts over that of one of them, and times that from which on it is one.
+const OF_KINK: f64 = 28.0;
+const SEEN: f64 = 9.0;
+
+/// What a contact goes on by in an interval that it would not but for a change of its speed within the one between the two samples in the middle of six, the last of
+/// which is `at(0)`: what the way changes by there beyond the changes beside it, as far as noise of the given deviation, m, does not make it. None where none is seen.
+fn kink<'a>(at: impl Fn(usize) -> Option<&'a Contact>, deviation: f64) -> Option<DVec3> {
+    let c = |back: usize| at(back).map(|contact| contact.c);
+    let (a, b, c, d, e, f) = (c(5)?, c(4)?, c(3)?, c(2)?, c(1)?, c(0)?);
+    let beside = a - 2.0 * b + c + (d - 2.0 * e + f);
+    let kink = b - c - d + e - beside;
+    // A smooth path changes its speed about as much beside.
+    if kink.length_squared() < beside.length_squared() {
+        return None;
+    }
+    let seen = 1.0 - SEEN * OF_KINK * deviation * deviation / kink.length_squared().max(f64::MIN_POSITIVE);
+    (seen > 0.0).then(|| kink * seen.sqrt())
 }
 
 impl<'a> Path<'a> {
@@ -126,6 +151,15 @@ impl<'a> Path<'a> {
         Self { contact, mean, change: DVec3::ZERO, force, noise, unsure }
     }
 
+    /// With what changes of its speed make unsure, in the interval before, its own and the one after.
+    fn kinked(self, [before, own, after]: [Option<DVec3>; 3]) -> Self {
+        let square = |of: Option<DVec3>| of.map_or(0.0, DVec3::length_squared);
+        let variance = square(own) + BESIDE * (square(before) + square(after));
+        let along = own.or(before).or(after).unwrap_or_default().normalize_or_zero();
+        let beside = along * (KINKED * variance.sqrt());
+        Self { unsure: if beside == DVec3::ZERO { self.unsure } else { beside }, ..self }
+    }
+
     /// Adds the impulse `J` along it, of which each axis has the standard deviation `deviation`.
     ///
     /// The moment is that of the mean contact, with what a force that grows while the contact moves adds: exact for contacts and forces
@@ -159,4 +193,67 @@ fn unseen(J: DVec3, deviation: f64, spread: f64, interval: &mut Interval) {
     interval.impulse = interval.impulse + Wrench { force: J, moment: DVec3::ZERO };
     interval.first += J * (0.5 * interval.h);
     interval.blow = true;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DMat3;
+    use object_dynamics::ContactMode;
+
+    const NOISE: f64 = 1e-5;
+
+    fn contact(x: f64) -> Contact {
+        Contact {
+            palm: 0,
+            c: DVec3::new(x, 0.0, 0.0),
+            n: DVec3::Z,
+            u: DVec3::ZERO,
+            W: DVec3::ZERO,
+            shape: DMat3::ZERO,
+            f: DVec3::Z,
+            f_deviation: 0.01,
+            frictionless: true,
+            planar: true,
+            mode: ContactMode::Slide,
+            samples: 1.0,
+            J_before: DVec3::ZERO,
+            J_after: DVec3::ZERO,
+        }
+    }
+
+    /// A contact on its way `x` over the time in samples, and what its mean over the interval that ends at sample `k` is off by and said to be off by.
+    fn off(x: impl Fn(f64) -> f64, k: usize) -> (f64, f64) {
+        let times: Vec<f64> = (0..12).map(f64::from).collect();
+        let way: Vec<Contact> = times.iter().map(|t| contact(x(*t))).collect();
+        let bend = |k: usize| kink(|back| way.get((k + 2).checked_sub(back)?), NOISE);
+        let path = Path::new([k - 2, k - 1, k, k + 1].map(|k| way.get(k)), k, &times).unwrap();
+        let path = path.kinked([bend(k - 1), bend(k), bend(k + 1)]);
+        const PARTS: u32 = 2000;
+        let mean = (0..PARTS).map(|i| x(k as f64 - 1.0 + (f64::from(i) + 0.5) / f64::from(PARTS)));
+        (path.mean.x - mean.sum::<f64>() / f64::from(PARTS), path.unsure.length())
+    }
+
+    /// Where the curvature of the object jumps a contact changes its speed within an interval; the parabola does not follow that, and it is said, there and beside.
+    #[test]
+    fn what_a_mean_is_off_by_where_a_contact_changes_its_speed_is_told() {
+        for part in [0.05, 0.3, 0.5, 0.8, 0.95] {
+            let bent = |t: f64| 1e-3 * t + 5e-3 * (t - 5.0 - part).max(0.0);
+            for k in [5, 6, 7] {
+                let (error, said) = off(bent, k);
+                assert!(error.abs() < 2.5 * said, "{part} {k}: {error} {said}");
+            }
+            let (_, said) = off(bent, 6);
+            assert!(said < 5e-3 / 8.0, "no more than it can be: {said}");
+            assert_eq!(off(bent, 9).1, 0.0, "elsewhere nothing is doubted");
+        }
+    }
+
+    #[test]
+    fn a_smooth_way_and_one_that_bends_by_less_than_noise_are_not_doubted() {
+        for k in 4..9 {
+            assert_eq!(off(|t| 3e-3 * (0.7 * t).sin(), k).1, 0.0, "{k}");
+            assert_eq!(off(|t| 1e-4 * (t - 5.5).max(0.0), k).1, 0.0, "{k}");
+        }
+    }
 }

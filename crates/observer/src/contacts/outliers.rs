@@ -20,6 +20,8 @@ const MOST: f64 = 0.05;
 const ROLLS: f64 = 2.0;
 /// Samples on either side of such a peak whose contacts it bends the way of.
 const BENT: usize = 2;
+/// Root of one and the squared weights of a cubic through two contacts on either side, evenly spaced: noise of what a contact is off it by over that of one.
+const OF_CUBIC: f64 = 1.394;
 /// Fewest contacts of a palm whose scatter can be told.
 const FEWEST: usize = 20;
 /// Median of the length of a vector of two standard normal numbers.
@@ -136,8 +138,11 @@ impl Way {
         let left: Vec<f64> =
             (0..count).map(|j| self.told(j, &suspected).map_or(0.0, |told| told.1)).collect();
         let most = limit(&left);
-        let off: Vec<usize> =
-            (0..count).filter(|&j| suspected[j] && left[j] > most + self.bends[j]).collect();
+        let is_off = |&j: &usize| {
+            let limit = most + self.bends[j];
+            suspected[j] && left[j] > limit && !self.goes_on(j, OF_CUBIC * limit)
+        };
+        let off: Vec<usize> = (0..count).filter(is_off).collect();
         let together = off.chunk_by(|a, b| *b == a + 1).filter(|run| run.len() <= TOGETHER);
         let off: Vec<_> =
             together.flatten().filter_map(|&j| Some((j, self.told(j, &suspected)?.0))).collect();
@@ -168,6 +173,32 @@ impl Way {
         DVec3::new(of(0), of(1), of(2))
     }
 
+    /// Whether a contact is where the way from one side leads, to within so many metres, by the line through two contacts there or the parabola through three.
+    ///
+    /// Where the curvature of the object jumps, its contact changes its speed from one sample to the next: nothing that is smooth over both sides leads there.
+    fn goes_on(&self, j: usize, within: f64) -> bool {
+        let near = |other: &usize| self.samples[*other].abs_diff(self.samples[j]) <= AMONG;
+        // Those that may be off themselves as well: so few in a row lead to no other one.
+        let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).collect();
+        let after: Vec<usize> = (j + 1..self.points.len()).take(AMONG).filter(near).collect();
+        [before, after].iter().any(|side| {
+            let through = |few: usize| side.get(..few).map(|few| self.through(few, j).0);
+            [2, 3].into_iter().filter_map(through).any(|point| point.distance(self.points[j]) <= within)
+        })
+    }
+
+    /// The polynomial through some contacts at the time of another one, and its weights.
+    fn through(&self, beside: &[usize], j: usize) -> (DVec3, Vec<f64>) {
+        let weight = |i: &usize| -> f64 {
+            let others = beside.iter().filter(|other| *other != i);
+            others
+                .map(|&other| (self.times[j] - self.times[other]) / (self.times[*i] - self.times[other]))
+                .product()
+        };
+        let weights: Vec<f64> = beside.iter().map(weight).collect();
+        (beside.iter().zip(&weights).map(|(&i, weight)| self.points[i] * *weight).sum(), weights)
+    }
+
     /// Where the contacts beside one say that it is, and by how many metres of unit noise it is elsewhere; those that are `out` say nothing. None
     /// with too few of them.
     fn told(&self, j: usize, out: &[bool]) -> Option<(DVec3, f64)> {
@@ -184,14 +215,7 @@ impl Way {
         let beside: Vec<usize> =
             before.into_iter().take(from_before).chain(after.into_iter().take(from_after)).collect();
         // The cubic through all of them.
-        let weight = |i: &usize| -> f64 {
-            let others = beside.iter().filter(|other| *other != i);
-            others
-                .map(|&other| (self.times[j] - self.times[other]) / (self.times[*i] - self.times[other]))
-                .product()
-        };
-        let weights: Vec<f64> = beside.iter().map(weight).collect();
-        let point: DVec3 = beside.iter().zip(&weights).map(|(&i, weight)| self.points[i] * *weight).sum();
+        let (point, weights) = self.through(&beside, j);
         let noise = (1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>()).sqrt();
         Some((point, point.distance(self.points[j]) / noise))
     }
@@ -234,6 +258,31 @@ mod tests {
             }]
         };
         (0..60).map(one).collect()
+    }
+
+    /// Where the curvature of the object jumps a contact changes its speed at once, and one that is elsewhere is still found next to it.
+    #[test]
+    fn a_contact_that_changes_its_speed_is_not_misread() {
+        for speed in [-3.0, 0.5, 3.0] {
+            // At some time between two samples.
+            for part in [0.0, 0.3, 0.7] {
+                let bent = |off: f64| {
+                    let mut log = run(1.0, 0.0, off);
+                    for (k, contacts) in log.iter_mut().enumerate() {
+                        contacts[0].c.x += speed * (k as f64 - 30.0 - part).max(0.0) * STEP;
+                    }
+                    log
+                };
+                assert_eq!(found(&bent(0.0)), [], "{speed} {part}");
+                assert_eq!(found(&bent(2e-3)), [45], "{speed} {part}");
+                let mut beside = bent(0.0);
+                beside[32][0].c.y += 2e-3;
+                assert_eq!(found(&beside), [32], "{speed} {part}");
+                // As two in a row are that are off together.
+                beside[33][0].c.y += 2e-3;
+                assert_eq!(found(&beside), [32, 33], "{speed} {part}");
+            }
+        }
     }
 
     fn found(log: &[Vec<Contact>]) -> Vec<usize> {

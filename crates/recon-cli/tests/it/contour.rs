@@ -72,7 +72,7 @@ fn a_finger_that_gets_in_feels_everything_and_one_that_does_not_says_so() {
     assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
     let page = scratch.read("out/report.html");
     assert!(
-        page.contains("All felt")
+        page.contains("No jump")
             && page.contains("Curvature along the way")
             && !page.contains("Where it jumped")
     );
@@ -112,6 +112,15 @@ fn outlines_through_points_and_convex_ones_are_followed() {
     // The only hollow is about the y axis.
     let [from, to] = ["from_m", "to_m"].map(|key| number(&bean["jumps"][0][key][0]));
     assert!(from > 0.0 && to < 0.0 && (from + to).abs() < 1e-4, "{from} {to}");
+    // Of one twelve times as large as the outline noise hides the jump, and nothing is claimed.
+    let noise = ["--contact-noise", "5e-5", "--normal-noise", "2e-2"];
+    let huge = [&["explore", "bean.toml", "--contour", "--finger", "0.6", "--json"], &noise[..]].concat();
+    let huge = json(&scratch, &huge, 4);
+    assert!(
+        number(&huge["unseen_m"]) > 0.05
+            && huge["warnings"][0].as_str().unwrap().contains("nothing is said of hollows"),
+        "{huge}"
+    );
     scratch.write("plane.toml", super::explore::PLANE);
     let convex = ["explore", "plane.toml", "--contour", "--finger", "0.01", "--json"];
     let convex = json(&scratch, &convex, 0);

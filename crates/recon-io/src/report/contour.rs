@@ -55,7 +55,7 @@ pub fn write_contour_report(page: &ContourPage, to: impl Write) -> io::Result<()
         );
         body += &section("Where it jumped", &table, ABOUT);
     }
-    let verdict = notices(&page.verdict, ["All felt", "Not all felt", "Refused"], &[]);
+    let verdict = notices(&page.verdict, ["No jump", "Not all felt", "Refused"], &[]);
     let kicker = "An outline followed by a round finger: what it felt, and what that proves of the hull";
     Page { kicker, title: &page.title, verdict, facts: &page.facts, body }.write(to)
 }

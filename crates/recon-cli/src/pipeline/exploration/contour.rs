@@ -30,9 +30,11 @@ const READINGS: u32 = 20_000;
 /// Steps to half of the extent, and what the hull's upper bound may be off by for their sake, as a share of it.
 const STEPS: f64 = 50.0;
 const BULGE: f64 = 1e-3;
-/// The least step over the step, and the turn from touch to touch, rad.
+/// The least step over the step, and the turn from touch to touch, rad; of a finger that is large beside the outline less, so that it notices jumps over this
+/// share of it.
 const LEAST: f64 = 1.0 / 256.0;
 const TURN: f64 = 0.1;
+const NOTICED: f64 = 0.05;
 
 impl Following {
     /// Of an outline of half the extent `size` and a finger of `radius`, both in m.
@@ -51,7 +53,8 @@ impl Following {
             None => Margins::EXACT,
         };
         let doubt = margins.of_turn();
-        let tracing = Tracing { step, least: LEAST * step, turn: TURN, doubt, readings };
+        let turn = TURN.min(NOTICED * size / radius);
+        let tracing = Tracing { step, least: LEAST * step, turn, doubt, readings };
         Ok(Self { tracing, margins, noise, seed: args.seed.unwrap_or(1) })
     }
 
@@ -187,6 +190,7 @@ fn figures(title: &str, known: &Known, following: &Following, (statement, exit):
         "closed": known.is_closed(),
         "touches": known.ring(),
         "readings": traced.readings,
+        "unseen_m": following.tracing.unseen(traced.radius),
         "way_m": traced.ways.iter().sum::<f64>(),
         "jumps": traced.bridges.iter().map(jump).collect::<Vec<_>>(),
         "warnings": [],
@@ -223,25 +227,33 @@ fn statement(known: &Known, following: &Following) -> (String, Exit) {
         |(_, level)| format!("at {} % confidence", 100.0 * level),
     );
     let hull = format!("The hull has an area of {} to {} m^2 {sure}", brief_to(4, lower), brief_to(4, upper));
-    match (traced.bridges.len(), known.least_hollow) {
+    let unseen = following.tracing.unseen(traced.radius);
+    let but = format!(
+        "what is narrower than {} m could have been jumped over without a trace",
+        brief_to(2, unseen)
+    );
+    if traced.bridges.is_empty() && unseen > known.size() {
+        return (format!("{hull}; nothing is said of hollows: {but}."), Exit::WithReservations);
+    }
+    let told = match (traced.bridges.len(), known.least_hollow) {
         (0, Some(radius)) => {
-            let felt = format!(
-                "all of the outline was felt, its narrowest hollow with a mean radius of {} m",
+            format!(
+                "the finger felt its way without a jump, the narrowest hollow with a mean radius of {} m; {but}",
                 brief_to(3, radius)
-            );
-            (format!("{hull}; {felt}."), Exit::Done)
+            )
         }
-        (0, None) => (format!("{hull}; all of the outline was felt, and it has no hollow."), Exit::Done),
+        (0, None) => format!("the finger felt its way without a jump and found no hollow; {but}"),
         (jumps, _) => {
             let widest = traced.bridges.iter().map(|b| b.mouth).fold(0.0, f64::max);
             let places = if jumps == 1 { "one place".to_owned() } else { format!("{jumps} places") };
-            let what = format!(
-                "the finger jumped at {places} that it does not get into, {} m wide at most: what is between was not felt",
+            format!(
+                "the finger jumped at {places} that it does not get into, {} m wide at most: what is between was not felt; {but}",
                 brief_to(3, widest)
-            );
-            (format!("{hull}; {what}."), Exit::WithReservations)
+            )
         }
-    }
+    };
+    let exit = if traced.bridges.is_empty() { Exit::Done } else { Exit::WithReservations };
+    (format!("{hull}; {told}."), exit)
 }
 
 fn drawn(known: &Known) -> Drawn {
