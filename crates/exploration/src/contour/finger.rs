@@ -40,6 +40,8 @@ pub struct SimulatedFinger<O> {
     /// Parameter of the contact.
     t: f64,
     table: Vec<DVec2>,
+    /// Of so many of these in a row the middle, and how far they are from it.
+    blocks: Vec<(DVec2, f64)>,
     size: f64,
     /// Standard deviations of points per axis (m) and of normals (rad).
     noise: [f64; 2],
@@ -48,6 +50,8 @@ pub struct SimulatedFinger<O> {
 
 /// Points by which it is looked whether the disc is free.
 const POINTS: usize = 2048;
+/// Points that are looked at together.
+const BLOCK: usize = 32;
 /// The contact moves by this share of a turn of the parameter at most between two looks.
 const STEP: f64 = TAU / 4096.0;
 /// A disc that is entered by less than this share of the size is free.
@@ -73,8 +77,13 @@ impl<O: SmoothOutline> SimulatedFinger<O> {
         let table: Vec<DVec2> = (0..POINTS).map(|k| outline.at(place(k)).point).collect();
         let farthest = (0..POINTS).max_by(|a, b| table[*a].x.total_cmp(&table[*b].x)).unwrap_or(0);
         let size = table.iter().map(|p| p.length()).fold(0.0, f64::max);
+        let block = |points: &[DVec2]| {
+            let middle = points[points.len() / 2];
+            (middle, points.iter().map(|p| p.distance(middle)).fold(0.0, f64::max))
+        };
+        let blocks = table.chunks(BLOCK).map(block).collect();
         let (t, source) = (place(farthest), Source::new(0));
-        Ok(Self { outline, radius, t, table, size, noise: [0.0; 2], source })
+        Ok(Self { outline, radius, t, table, blocks, size, noise: [0.0; 2], source })
     }
 
     /// With normal noise: standard deviations of a point per axis, in m, and of a normal, in rad.
@@ -106,8 +115,21 @@ impl<O: SmoothOutline> SimulatedFinger<O> {
             let turn = (TAU * k as f64 / POINTS as f64 - t).rem_euclid(TAU);
             turn.min(TAU - turn)
         };
-        let far = (0..POINTS).filter(|k| apart(*k) > OWN).map(|k| (k, self.table[k].distance_squared(c)));
-        let (k, _) = far.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let (mut nearest, mut least) = (None, f64::INFINITY);
+        for (block, (middle, reach)) in self.blocks.iter().enumerate() {
+            // None of a block is nearer than this.
+            if middle.distance(c) - reach > least {
+                continue;
+            }
+            let points = self.table.iter().enumerate().skip(BLOCK * block).take(BLOCK);
+            for (k, point) in points.filter(|(k, _)| apart(*k) > OWN) {
+                let distance = point.distance(c);
+                if distance < least {
+                    (nearest, least) = (Some(k), distance);
+                }
+            }
+        }
+        let k = nearest?;
         let mut s = TAU * k as f64 / POINTS as f64;
         // Stationary: (x - c) . x' = 0.
         for _ in 0..NEWTON {
