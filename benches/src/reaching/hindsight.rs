@@ -1,7 +1,7 @@
 //! What could be had by looking ahead at touches in the plane: the best pattern of all, by who knows the body, and the shortest way through touches that were made.
 
 use super::Bodies;
-use crate::rows::rows_in_threads;
+use crate::rows::{Cells, rows_in_threads};
 use exploration::generators::{Family, Outline, outline};
 use exploration::planar::{PathAware, PlanarKnowledge, SimulatedFinger, turned_start};
 use exploration::{ExploreError, Goal, Heading, Motion, Task, explore};
@@ -86,16 +86,23 @@ pub const GAPS: [f64; 3] = [0.3, 0.2, 0.1];
 /// The first error of a run.
 pub fn hindsight(bodies: Bodies) -> Result<Vec<Hindsight>, Box<dyn std::error::Error + Send + Sync>> {
     let all: Vec<_> = bodies.all().collect();
-    let rows = rows_in_threads(&all, |(family, seed)| {
-        let of = one(*family, *seed)?;
-        let counts = [of.fewest, of.made].map(|counts| counts.map(|n| n.unwrap_or(usize::MAX)));
-        Ok::<_, Box<dyn std::error::Error + Send + Sync>>((counts, of.way))
-    })?;
-    let told = |((family, _), (counts, way)): (&(Family, u64), ([[usize; 3]; 2], [f64; 2]))| {
+    rows_in_threads(&all, |(family, seed)| Ok(one(*family, *seed)?))
+}
+
+impl Cells for Hindsight {
+    fn write(&self, to: &mut Vec<String>) {
+        self.family.name().to_owned().write(to);
+        let counts = [self.fewest, self.made].map(|counts| counts.map(|n| n.unwrap_or(usize::MAX)));
+        (counts, self.way).write(to);
+    }
+
+    fn read<'a>(from: &mut impl Iterator<Item = &'a str>) -> Option<Self> {
+        let name = String::read(from)?;
+        let family = Family::ALL.into_iter().find(|family| family.name() == name)?;
+        let (counts, way): ([[usize; 3]; 2], _) = Cells::read(from)?;
         let [fewest, made] = counts.map(|of| of.map(|n| (n < usize::MAX).then_some(n)));
-        Hindsight { family: *family, fewest, made, way }
-    };
-    Ok(all.iter().zip(rows).map(told).collect())
+        Some(Self { family, fewest, made, way })
+    }
 }
 
 fn one(family: Family, seed: u64) -> Result<Hindsight, ExploreError> {
