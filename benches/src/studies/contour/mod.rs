@@ -11,8 +11,8 @@ use std::f64::consts::{PI, TAU};
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Seeds of the bodies; those of the tests are three fixed bodies.
-const FIRST_SEED: u64 = 870_000;
+/// Seeds of the bodies; those of the tests are three fixed bodies, those of a first run without noise of points 870000 to 870319.
+const FIRST_SEED: u64 = 880_000;
 /// Radius of the finger over that of the hollows.
 const RANGES: [[f64; 2]; 8] = [
     [0.2, 0.5],
