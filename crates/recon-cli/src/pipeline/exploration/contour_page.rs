@@ -92,7 +92,7 @@ fn picture(known: &Known, last: usize) -> FigurePanel {
     });
     let here = &traced.touches[last];
     // Of a large finger the part that is nearest to the outline.
-    let shown = (known.size() / traced.radius).min(PI);
+    let shown = PI * (known.size() / traced.radius).min(1.0);
     let centre = here.point + here.normal.get() * traced.radius;
     let round = |k: usize| {
         let angle = shown * (2.0 * k as f64 / ROUND as f64 - 1.0);
@@ -168,7 +168,7 @@ fn curvature(known: &Known) -> FigurePanel {
     }
     let finger = vec![[0.0, -1.0 / traced.radius], [way, -1.0 / traced.radius]];
     let jumps = FigureCurve { dots: true, ..curve("jumps", jumps) };
-    let curves = [curve("outline", points), jumps, curve("finger", finger)];
+    let curves = [curve("outline", points), curve("finger", finger), jumps];
     FigurePanel {
         title: "Curvature along the way".to_owned(),
         axes: ["way of the finger in m".to_owned(), "curvature in 1/m".to_owned()],
