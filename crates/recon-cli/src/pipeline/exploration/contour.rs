@@ -83,7 +83,7 @@ pub(super) struct Known {
     /// Corners of the bounds of the hull; none of what was not followed to its end, or where noise leaves nothing.
     pub(super) lower: Vec<DVec2>,
     pub(super) upper: Vec<DVec2>,
-    /// Largest difference of their support functions, m.
+    /// What their support functions differ by, m, over the direction in degrees.
     pub(super) apart: Vec<[f64; 2]>,
     /// The smallest mean radius of a hollow that was felt, m.
     pub(super) least_hollow: Option<f64>,
