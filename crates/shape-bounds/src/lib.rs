@@ -40,6 +40,7 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod approximation;
 mod bounds;
 mod concave;
 mod curvature;
@@ -63,6 +64,7 @@ mod sample;
 #[cfg(any(test, feature = "strategies"))]
 pub mod strategies;
 
+pub use approximation::{ApproximationError, PrincipalSurface, SplineSurface};
 pub use bounds::{BoundsError, Contradiction, Gap, IncrementalBounds, ShapeBounds};
 pub use concave::{AlphaError, AlphaShape, HermiteSurface, SurfaceError};
 pub use curvature::{
