@@ -47,6 +47,11 @@ impl<const D: usize> Lattice<D> {
         lattice
     }
 
+    /// Cells from the centre to the sphere along an axis.
+    pub(super) fn half(&self) -> usize {
+        self.half
+    }
+
     /// How many B-splines there are.
     pub(super) fn count(&self) -> usize {
         self.count

@@ -4,9 +4,11 @@ use super::envelope::{Envelope, Factor};
 use super::lattice::Lattice;
 use nalgebra::SVector;
 
-/// Weight of the energy beside data that are to be interpolated, where these count one each: small enough that few rounds are
-/// left, large enough that the equations keep half of their digits.
-const STIFFNESS: f64 = 1e-7;
+/// Weight of the energy beside data that are to be interpolated, where these count one each, on a lattice of one cell: it falls as the
+/// energy of the waves that fit into a cell, over their number, grows. So few rounds are left on any lattice. At the least weight the
+/// equations keep four of their digits where there are no data.
+const STIFFNESS: f64 = 1e-5;
+const LEAST_STIFFNESS: f64 = 1e-12;
 /// Rounds in which what is missed is asked for again.
 const ROUNDS: usize = 6;
 /// Data that are left out in turn, at most.
@@ -88,7 +90,8 @@ impl<const D: usize> Smoother<D> {
     ///
     /// Method of multipliers (Hestenes 1969): each round asks for what the one before missed, once more.
     pub(super) fn through(&self, rows: &[Row]) -> Option<Vec<f64>> {
-        let factor = self.equations(rows, STIFFNESS)?;
+        let stiffness = STIFFNESS * (self.lattice.half() as f64).powi(D as i32 - 7);
+        let factor = self.equations(rows, stiffness.max(LEAST_STIFFNESS))?;
         let mut asked: Vec<f64> = rows.iter().map(|row| row.target).collect();
         let mut coefficients = factor.solve(self.right(rows, asked.iter().copied()));
         for _ in 0..ROUNDS {

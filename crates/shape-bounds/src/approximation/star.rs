@@ -77,6 +77,14 @@ impl<const D: usize> Frame<D> {
     }
 }
 
+/// Points made ready.
+pub(crate) struct Prepared<const D: usize, H> {
+    /// The frame of their hull, and the power of two that all is in units of (m).
+    pub(crate) framed: (Frame<D>, f64),
+    pub(crate) points: Vec<SVector<f64, D>>,
+    pub(crate) hull: H,
+}
+
 /// The spline on its frame: `|y| = exp g(y / |y|)` in round coordinates.
 #[derive(Clone, Debug)]
 pub(super) struct Star<const D: usize> {

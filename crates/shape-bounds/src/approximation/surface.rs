@@ -1,7 +1,7 @@
 use super::error::ApproximationError;
 use super::mesh::sphere;
 use super::principal::{Principal, principal};
-use super::star::Frame;
+use super::star::{Frame, Prepared};
 use super::through::Spline;
 use super::{cells, check, unit};
 use crate::sample::ContactSample;
@@ -57,7 +57,7 @@ impl SplineSurface {
     /// star-shaped as far as its contacts tell, and equations that are singular.
     pub fn through(contacts: &[ContactSample]) -> Result<Self, ApproximationError> {
         let points: Vec<DVec3> = contacts.iter().map(|c| c.point).collect();
-        let (framed, points, hull) = prepared(&points, LEAST)?;
+        let Prepared { framed, points, hull } = prepared(&points, LEAST)?;
         let pairs: Vec<_> = points.iter().zip(contacts).map(|(p, c)| (*p, vector(c.normal.get()))).collect();
         let half = cells(FINE, spacing(contacts.len()), SPLINE_CELLS);
         let kernel = || {
@@ -158,7 +158,7 @@ impl PrincipalSurface {
     /// [`ApproximationError`] for fewer than 20 points, values that are not finite, points without volume, noise that is not above
     /// zero, and equations that are singular.
     pub fn of(points: &[DVec3], noise: Option<f64>) -> Result<Self, ApproximationError> {
-        let (framed, points, _) = prepared(points, LEAST_SCATTERED)?;
+        let Prepared { framed, points, .. } = prepared(points, LEAST_SCATTERED)?;
         let half = cells(1.0, spacing(points.len()), PRINCIPAL_CELLS);
         Ok(Self(principal(framed, &points, half, noise)?.map(SplineSurface)))
     }
@@ -215,10 +215,7 @@ fn spacing(count: usize) -> f64 {
 }
 
 /// The frame of the points' hull with the power of two that it is in units of, points and hull in these.
-fn prepared(
-    points: &[DVec3],
-    least: usize,
-) -> Result<((Frame<3>, f64), Vec<Vector3<f64>>, SolidHull), ApproximationError> {
+fn prepared(points: &[DVec3], least: usize) -> Result<Prepared<3, SolidHull>, ApproximationError> {
     check(points.iter().map(|p| p.is_finite()), least)?;
     let unit = unit(points.iter().flat_map(|p| p.to_array()));
     let points: Vec<DVec3> = points.iter().map(|p| *p / unit).collect();
@@ -231,5 +228,6 @@ fn prepared(
         ([a, b, c].map(vector), a.dot((b - a).cross(c - a)))
     });
     let frame = Frame::of_hull(vector(centre), facets)?;
-    Ok(((frame, unit), points.into_iter().map(vector).collect(), hull))
+    let points = points.into_iter().map(vector).collect();
+    Ok(Prepared { framed: (frame, unit), points, hull })
 }

@@ -2,7 +2,7 @@
 
 use super::{ContactSample, ConvexPolygon, Direction, HalfPlane, Hull, Intersection, IntersectionError};
 use crate::approximation::principal::{Principal, principal};
-use crate::approximation::star::Frame;
+use crate::approximation::star::{Frame, Prepared};
 use crate::approximation::through::Spline;
 use crate::approximation::{ApproximationError, cells, check, unit};
 use glam::DVec2;
@@ -50,7 +50,7 @@ impl SplineCurve {
     /// star-shaped as far as its contacts tell, and equations that are singular.
     pub fn through(contacts: &[ContactSample]) -> Result<Self, ApproximationError> {
         let points: Vec<DVec2> = contacts.iter().map(|c| c.point).collect();
-        let (framed, points, hull) = prepared(&points, LEAST)?;
+        let Prepared { framed, points, hull } = prepared(&points, LEAST)?;
         let pairs: Vec<_> = points.iter().zip(contacts).map(|(p, c)| (*p, vector(c.normal.get()))).collect();
         let half = cells(FINE, TAU / contacts.len() as f64, SPLINE_CELLS);
         let kernel = || {
@@ -137,7 +137,7 @@ impl PrincipalCurve {
     /// [`ApproximationError`] for fewer than 12 points, values that are not finite, points on one line, noise that is not above
     /// zero, and equations that are singular.
     pub fn of(points: &[DVec2], noise: Option<f64>) -> Result<Self, ApproximationError> {
-        let (framed, points, _) = prepared(points, LEAST_SCATTERED)?;
+        let Prepared { framed, points, .. } = prepared(points, LEAST_SCATTERED)?;
         let half = cells(1.0, TAU / points.len() as f64, PRINCIPAL_CELLS);
         Ok(Self(principal(framed, &points, half, noise)?.map(SplineCurve)))
     }
@@ -208,10 +208,7 @@ fn centroid(corners: &[DVec2]) -> DVec2 {
 }
 
 /// The frame of the points' hull with the power of two that it is in units of, points and hull in these.
-fn prepared(
-    points: &[DVec2],
-    least: usize,
-) -> Result<((Frame<2>, f64), Vec<Vector2<f64>>, ConvexPolygon), ApproximationError> {
+fn prepared(points: &[DVec2], least: usize) -> Result<Prepared<2, ConvexPolygon>, ApproximationError> {
     check(points.iter().map(|p| p.is_finite()), least)?;
     let unit = unit(points.iter().flat_map(|p| p.to_array()));
     let points: Vec<DVec2> = points.iter().map(|p| *p / unit).collect();
@@ -224,5 +221,6 @@ fn prepared(
         ([a, b].map(vector), a.perp_dot(b))
     });
     let frame = Frame::of_hull(vector(centre), facets)?;
-    Ok(((frame, unit), points.into_iter().map(vector).collect(), polygon.clone()))
+    let points = points.into_iter().map(vector).collect();
+    Ok(Prepared { framed: (frame, unit), points, hull: polygon.clone() })
 }
