@@ -248,7 +248,8 @@ fn smooth_surfaces_are_written_beside_the_bounds() {
     // An ellipsoid is nearly a constant in round coordinates.
     assert!(spline["about"]["surface"]["residual_m"].as_f64().unwrap() < 1e-5);
     let residual = principal["about"]["surface"]["residual_m"].as_f64().unwrap();
-    assert!((0.7e-3..1.3e-3).contains(&residual), "{residual}");
+    // Uniform within 1 mm: a deviation of 0.58 mm.
+    assert!((0.4e-3..0.75e-3).contains(&residual), "{residual}");
 }
 
 #[test]
