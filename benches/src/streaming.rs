@@ -51,7 +51,7 @@ impl Case {
     /// None: its options are usable.
     pub fn stream(&self, known: bool) -> Result<MotionStream, Failure> {
         let body = known.then_some(self.mass);
-        let contacts = ContactOptions { body, ..ContactOptions::new(self.noise, GRAVITY) };
+        let contacts = ContactOptions { body, suspects: true, ..ContactOptions::new(self.noise, GRAVITY) };
         Ok(MotionStream::new(PlaneReadings::palms(), StreamOptions { contacts, sample_rate: self.rate })?)
     }
 }

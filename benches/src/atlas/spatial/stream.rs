@@ -66,7 +66,7 @@ fn run(way: Way, strength: f64, seed: u64) -> Result<Ran, Failure> {
         floor,
     };
     let body = matches!(way, Way::Mass | Way::Inertia).then(|| motion.told());
-    let contacts = ContactOptions { body, ..ContactOptions::new(noise, G) };
+    let contacts = ContactOptions { body, suspects: true, ..ContactOptions::new(noise, G) };
     let options = StreamOptions { contacts, sample_rate: motion.scene.times().rate };
     let mut stream = match MotionStream::new(PlaneReadings::palms(), options) {
         Ok(stream) => stream,

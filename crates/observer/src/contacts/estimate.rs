@@ -1,7 +1,7 @@
 use super::axes::ANY_TURN;
 use super::body::{Body, CONSTANTS};
-use super::changed::Averages;
 use super::cold;
+use super::doubted;
 use super::explanations::explanations;
 use super::joint::pose_errors;
 use super::mode_odds::{EstimatedModes, mode_odds};
@@ -14,13 +14,12 @@ use super::rivals::still;
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{problem, thinned};
-use super::sensor_change::{slopes_of_contacts, slopes_of_forces};
 use super::sharp::{is_rounded, is_sharp, leaves_something};
 use super::slips::Known;
-use super::solve::{Covariances, Solved};
+use super::solve::{Covariances, Solved, Step};
 use super::stage::Stage;
 use super::state::Motion;
-use super::suspects::{Scores, Sensors, suspects};
+use super::suspects::{Readings, Scores, Sensors, suspects};
 use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::longest;
 use crate::faults::{Explanation, Suspect};
@@ -215,16 +214,20 @@ impl Source<'_> {
             false if thinned.is_some() => 0.0,
             _ => SHORTEST,
         };
-        let motions = at_all(log, problem, &solved.unknowns, &covariances);
+        let mut motions = at_all(log, problem, &solved.unknowns, &covariances);
         let slips = slips(problem, &motions, &solved.unknowns.body);
         let (duration, needed) = (log.times[log.times.len() - 1] - log.times[0], shortest * units.time());
         let short = (duration < needed).then_some(Reason::TooShort { duration, needed });
         let told = !exact && thinned.is_none() && (last || slips.is_empty());
         let evidence = stage.evidence(log, &covariances);
-        let wrong = match options.suspects && told {
+        let (wrong, errors) = match options.suspects && told {
             true => self.suspects(&stage, &evidence, (&covariances, &motions), (log, longest)),
-            false => Wrong::default(),
+            false => Default::default(),
         };
+        let covariances = covariances.with_errors(errors);
+        if !covariances.errors.is_empty() {
+            motions = at_all(log, problem, &solved.unknowns, &covariances);
+        }
         let odds = || {
             let (covariances, motions) = (&covariances, &motions);
             let known = Known { log, modes: &modes, problem, solved, covariances, motions, longest };
@@ -278,21 +281,21 @@ impl Source<'_> {
     }
 
     /// Scores of constants of the sensors at a solution whose contacts were averaged over windows of at most `longest`, s; where something contradicts
-    /// it, what explains that.
+    /// it, what explains that; and errors that these constants may make.
     fn suspects(
         &self,
         stage: &Stage,
         evidence: &ContactEvidence,
         (covariances, motions): (&Covariances<CONSTANTS>, &[(Motion, Deviations)]),
         (record, longest): (&Record, f64),
-    ) -> Wrong {
+    ) -> (Wrong, Vec<Step<CONSTANTS>>) {
         let Stage { problem, solved, free, .. } = stage;
-        let slopes = [slopes_of_forces(self.log, &self.units), slopes_of_contacts(self.log, &self.units)];
-        let slopes = slopes.each_ref().map(Vec::as_slice);
-        let averages = Averages::new(self.log, &self.options.noise, [record, problem.record], longest);
-        let sensors = Sensors::new(self.log, (motions, solved.unknowns.body), slopes, &averages);
+        let told = (&self.options.noise, &self.units);
+        let readings = Readings::new(self.log, told, [record, problem.record], longest);
+        let sensors = Sensors::new(&readings, motions, solved.unknowns.body);
         let scores = Scores::new(&sensors, problem, solved);
-        let suspects = scores.map_or_else(Vec::new, |scores| suspects(&scores, covariances));
+        let suspects = scores.map_or_else(Vec::new, |scores| suspects(&scores, covariances, evidence));
+        let (suspects, errors) = doubted::errors(suspects, evidence.widening());
         let contradicted = free.is_some()
             || !evidence.reliability().is_reliable()
             || ContactEvidence::against(&suspects, &[]).is_some();
@@ -300,7 +303,7 @@ impl Source<'_> {
             true => explanations(&sensors, problem, solved, free.as_ref()),
             false => Vec::new(),
         };
-        Wrong { suspects, explanations }
+        (Wrong { suspects, explanations }, errors)
     }
 }
 
@@ -396,7 +399,8 @@ impl Found<'_> {
         let relied_on: Vec<bool> = deviations.iter().enumerate().map(one).collect();
         let sound: Vec<usize> = (0..nodes.len()).filter(|&j| relied_on[nodes[j]]).collect();
         let joint = || pose_errors(problem, solved, covariances, &sound, (own, known.is_some(), wider));
-        let deviation = |i: usize| covariances.body[(i, i)].max(0.0).sqrt() * wider;
+        let of_body = covariances.of_body();
+        let deviation = |i: usize| of_body[(i, i)].max(0.0).sqrt() * wider;
         ContactEstimate {
             states: motions.iter().map(|(motion, _)| state(motion)).collect(),
             misread: log.misread.iter().map(|of| (of.sample, of.palm)).collect(),
@@ -416,7 +420,7 @@ impl Found<'_> {
             inertia: known.map_or(body.inertia(), MassProperties::inertia),
             inertia_covariance: match known {
                 Some(_) => Default::default(),
-                None => (body.inertia_covariance(&covariances.body) * (wider * wider)).into(),
+                None => (body.inertia_covariance(&of_body) * (wider * wider)).into(),
             },
             inertia_deviations: [deviation(1), deviation(2), deviation(3)],
             reliability,

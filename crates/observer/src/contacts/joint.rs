@@ -30,8 +30,13 @@ pub(super) fn pose_errors(
     let poses: Vec<_> = nodes.iter().map(|&j| (motions[j].p, (motions[j].q * axes).normalize())).collect();
     let (body, joint) = (root(&covariances.body), covariances.joint(&nodes));
     let draw = |_: usize| {
-        let constants = body * normals(&mut random);
-        let steps = joint.draw(&constants, &mut random);
+        let mut constants = body * normals(&mut random);
+        let mut steps = joint.draw(&constants, &mut random);
+        for error in &covariances.errors {
+            let by = random.draw();
+            constants += error.body * by;
+            steps.iter_mut().zip(&nodes).for_each(|(step, &j)| *step += error.motions[j] * by);
+        }
         // Of a known body the last constants are how its own axes lie at the first sample.
         let lie = if known { DVec3::from_slice(&constants.as_slice()[4..7]) * wider } else { DVec3::ZERO };
         let own = (exponential(lie) * axes).normalize();

@@ -7,6 +7,7 @@ mod body;
 mod changed;
 mod cold;
 mod directly;
+mod doubted;
 mod drawn;
 mod elimination;
 mod equations;
@@ -53,6 +54,7 @@ mod tests;
 mod triangular;
 mod unresolved;
 mod verdict;
+mod widened;
 mod windows;
 
 pub use estimate::{ContactEstimate, estimate_contacts};

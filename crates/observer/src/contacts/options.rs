@@ -71,7 +71,8 @@ pub struct ContactOptions {
     pub size: Option<f64>,
     /// Whether to tell how far all poses together may be off, for bounds on the shape: a thousand motions are drawn for it.
     pub pose_errors: bool,
-    /// Whether to test what is taken as known of the sensors.
+    /// Whether to test what is taken as known of the sensors, and to count in all deviations what of it may be wrong: without, they are those of
+    /// sensors that are as stated.
     pub suspects: bool,
     /// Whether to tell how probable each contact mode is. For each palm that sticks somewhere a motion is solved for in which it need not, and modes
     /// that were not given are made anew from what is sure, for a second solution.

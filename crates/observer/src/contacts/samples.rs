@@ -159,5 +159,8 @@ pub(super) fn covariance<const P: usize>(
     let linear = to * own * to.transpose() + by_constants * covariances.body * by_constants.transpose();
     let beyond = covariances.beyond(j);
     let wider = SMatrix::from_diagonal(&Tangent::from_fn(|i, _| beyond[i / 3]));
-    wider * linear * wider
+    covariances.errors.iter().fold(wider * linear * wider, |sum, step| {
+        let error = to * step.motions[j] + through * step.body;
+        sum + error * error.transpose()
+    })
 }

@@ -56,6 +56,12 @@ pub(super) struct Step<const P: usize> {
     pub(super) body: SVector<f64, P>,
 }
 
+impl<const P: usize> Step<P> {
+    pub(super) fn scaled(&self, by: f64) -> Self {
+        Self { motions: self.motions.iter().map(|of| of * by).collect(), body: self.body * by }
+    }
+}
+
 /// The chain with the nodes eliminated, first to last, and what is left for the constants.
 pub(super) struct Reduced<const P: usize> {
     nodes: Vec<Eliminated<P>>,
@@ -74,6 +80,8 @@ pub(super) struct Covariances<const P: usize> {
     pub(super) mended: f64,
     /// By how much solutions spread farther than a linear model says at each node, where it was looked at.
     pub(super) beyond: Vec<[f64; 4]>,
+    /// Errors beside noise, each of which carries the solution by a step.
+    pub(super) errors: Vec<Step<P>>,
 }
 
 impl<const P: usize> Reduced<P> {
@@ -179,6 +187,7 @@ impl<const P: usize> Equations<P> {
             chain: reduced.nodes,
             mended,
             beyond: Vec::new(),
+            errors: Vec::new(),
         })
     }
 }

@@ -8,45 +8,19 @@ use super::body::CONSTANTS;
 use super::flow::Carried;
 use super::problem::Problem;
 use super::record::Record;
-use super::samples::deviations;
 use super::solve::{Covariances, Solved};
 use super::state::Tangent;
-use glam::DVec3;
-use nalgebra::{SMatrix, SVector, Vector6};
 
 /// What two steps miss, as a share of what one step over both misses beyond them: they are of order 4.
 const SHARE: f64 = 1.0 / 15.0;
 
 impl Covariances<CONSTANTS> {
     /// Widened by how far what steps miss carries the solution, as one error beside that of noise. The same where impulses are read, or the equations are singular.
-    pub(super) fn with_steps(mut self, log: &Record, problem: &Problem, solved: &Solved<CONSTANTS>) -> Self {
+    pub(super) fn with_steps(self, log: &Record, problem: &Problem, solved: &Solved<CONSTANTS>) -> Self {
         let Some(missed) = missed(log, problem, solved) else { return self };
         let Some((solver, _)) = solved.equations.solver(&problem.natural_information()) else { return self };
         let step = solver.step(&solved.equations.gradient_of(&missed));
-        let widened = |error: f64, variance: f64| {
-            if error == 0.0 { 1.0 } else { (1.0 + error * error / variance.max(f64::MIN_POSITIVE)).sqrt() }
-        };
-        let wider = SVector::<f64, CONSTANTS>::from_fn(|i, _| widened(step.body[i], self.body[(i, i)]));
-        let at = &solved.unknowns;
-        let known: Vec<_> =
-            (0..at.motions.len()).map(|j| deviations(&at.motions[j], &at.body, j, &self)).collect();
-        let numbers = Vector6::from_fn(|i, _| step.body[i + 1]);
-        let beyond = |(j, known): (usize, &[DVec3; 4])| {
-            let (by_motion, by_body) = at.motions[j].spin_derivatives(&at.body);
-            let spin = by_motion * step.motions[j] + by_body * numbers;
-            let part =
-                |i: usize| DVec3::new(step.motions[j][i], step.motions[j][i + 1], step.motions[j][i + 2]);
-            let errors = [part(0), part(3), DVec3::new(spin[0], spin[1], spin[2]), part(9)];
-            let before = self.beyond(j);
-            std::array::from_fn(|i| {
-                let each = |axis: usize| widened(errors[i][axis], known[i][axis].powi(2));
-                before[i] * each(0).max(each(1)).max(each(2))
-            })
-        };
-        self.beyond = known.iter().enumerate().map(beyond).collect();
-        let wider = SMatrix::from_diagonal(&wider);
-        self.body = wider * self.body * wider;
-        self
+        self.with_errors([step])
     }
 }
 

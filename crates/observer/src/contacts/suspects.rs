@@ -7,14 +7,17 @@
 use super::body::{Body, CONSTANTS};
 use super::changed::Averages;
 use super::equations::Equations;
-use super::noise::force_trace;
+use super::noise::{ContactNoiseLevel, force_trace};
 use super::problem::{Problem, Units};
 use super::reach::{Conditions, Residuals};
 use super::record::Record;
 use super::samples::Deviations;
-use super::sensor_change::{Change, slopes_of_contact_noise, slopes_of_noise};
+use super::sensor_change::{
+    Change, slopes_of_contact_noise, slopes_of_contacts, slopes_of_forces, slopes_of_noise,
+};
 use super::solve::{Covariances, Reduced, Solved, Step};
 use super::state::{Motion, Tangent};
+use super::verdict::ContactEvidence;
 use crate::faults::{SensorFault, Suspect};
 use crate::reliability::LARGEST_DEVIATION;
 use contact_kinematics::{PalmSurface, at_once};
@@ -28,30 +31,41 @@ const LEAST_SOUND: f64 = 0.3;
 /// Step of differences to one side, in natural units: a millionth is what it leaves out, and rounding a tenth of that.
 const STEP: f64 = 1e-6;
 
+/// What constants of the sensors are judged by beside a solution.
+pub(super) struct Readings<'a> {
+    log: &'a ContactLog,
+    /// What the forces change by in a unit of time, N/s, and what contacts move by in axes of their palms, m/s; by palm and sample.
+    slopes: [Vec<Vec<DVec3>>; 2],
+    /// Of which the record is one that a problem is on.
+    averages: Averages<'a>,
+}
+
+impl<'a> Readings<'a> {
+    /// Of `log`, whose record was averaged over windows of at most `longest`, s.
+    pub(super) fn new(
+        log: &'a ContactLog,
+        (noise, units): (&ContactNoiseLevel, &Units),
+        records: [&'a Record; 2],
+        longest: f64,
+    ) -> Self {
+        let slopes = [slopes_of_forces(log, units), slopes_of_contacts(log, units)];
+        Self { log, slopes, averages: Averages::new(log, noise, records, longest) }
+    }
+}
+
 /// What a log says of the constants of its sensors.
 #[derive(Clone, Copy)]
 pub(super) struct Sensors<'a> {
-    log: &'a ContactLog,
+    readings: &'a Readings<'a>,
     /// Motion at all samples, positions from the record's origin.
     motions: &'a [(Motion, Deviations)],
     body: Body,
-    /// What the forces change by in a unit of time, N/s, by palm and sample.
-    slopes: &'a [Vec<DVec3>],
-    /// What contacts move by in axes of their palms, m/s.
-    paths: &'a [Vec<DVec3>],
-    /// Of which the record is one that a problem is on.
-    averages: &'a Averages<'a>,
 }
 
 impl<'a> Sensors<'a> {
-    /// Of `log` with a motion of `body`; slopes are [`slopes_of_forces`] and [`slopes_of_contacts`].
-    pub(super) fn new(
-        log: &'a ContactLog,
-        (motions, body): (&'a [(Motion, Deviations)], Body),
-        [slopes, paths]: [&'a [Vec<DVec3>]; 2],
-        averages: &'a Averages<'a>,
-    ) -> Self {
-        Self { log, motions, body, slopes, paths, averages }
+    /// With a motion of `body`.
+    pub(super) fn new(readings: &'a Readings<'a>, motions: &'a [(Motion, Deviations)], body: Body) -> Self {
+        Self { readings, motions, body }
     }
 
     /// With another body.
@@ -61,7 +75,7 @@ impl<'a> Sensors<'a> {
 
     /// From sample to sample on average, s.
     pub(super) fn interval(&self) -> f64 {
-        self.log.duration() / (self.log.times().len() - 1).max(1) as f64
+        self.readings.log.duration() / (self.readings.log.times().len() - 1).max(1) as f64
     }
 
     /// The record of a log whose `fault` is known.
@@ -71,12 +85,13 @@ impl<'a> Sensors<'a> {
 
     /// Of what comes late, if it is that.
     fn slopes_of(&self, fault: SensorFault) -> &'a [Vec<DVec3>] {
-        if fault == SensorFault::ContactDelay { self.paths } else { self.slopes }
+        let [forces, paths] = &self.readings.slopes;
+        if fault == SensorFault::ContactDelay { paths } else { forces }
     }
 
     /// With a value of the constant, and a step from there along which what is late has some `slopes`.
     fn changed(&self, fault: SensorFault, [value, step]: [f64; 2], slopes: &[Vec<DVec3>]) -> Record {
-        let Self { log, motions, ref body, averages, .. } = *self;
+        let Self { readings: Readings { log, averages, .. }, motions, ref body } = *self;
         let slopes = [self.slopes_of(fault), slopes];
         let origin = averages.origin();
         let change = Change { fault, value, by: value + step, log, motions, body, slopes, origin };
@@ -85,7 +100,7 @@ impl<'a> Sensors<'a> {
 
     /// Constants that the log may have.
     pub(super) fn constants(&self, problem: &Problem) -> Vec<SensorFault> {
-        constants(self.log, problem)
+        constants(self.readings.log, problem)
     }
 }
 
@@ -144,7 +159,7 @@ impl<'a> Scores<'a> {
         };
         let (slope, own, left, follows) = told(sensors.slopes_of(fault))?;
         // Noise in slopes poses as information on a delay.
-        let (log, units, noise) = (sensors.log, &problem.units, &problem.noise);
+        let (log, units, noise) = (sensors.readings.log, &problem.units, &problem.noise);
         let spurious = match fault {
             SensorFault::ForceDelay => told(&slopes_of_noise(log, units, noise))?.2,
             SensorFault::ContactDelay => told(&slopes_of_contact_noise(log, units, noise.contact))?.2,
@@ -161,20 +176,24 @@ impl<'a> Scores<'a> {
     }
 }
 
-/// Scores of all constants at a solution.
-pub(super) fn suspects(scores: &Scores, covariances: &Covariances<CONSTANTS>) -> Vec<Suspect> {
+/// Scores of all constants at a solution, and by what motion and body follow a unit of each.
+pub(super) fn suspects(
+    scores: &Scores,
+    covariances: &Covariances<CONSTANTS>,
+    evidence: &ContactEvidence,
+) -> Vec<(Suspect, Step<CONSTANTS>)> {
     let problem = scores.problem;
-    let scale = scores.solved.misfit().max(1.0).sqrt();
+    let wider = evidence.widening_of_constants();
     let deviations: Vec<Tangent> = covariances.motions.iter().map(|of| covariances.deviations(of)).collect();
     let one = |fault: SensorFault| {
         let score = scores.of(fault, 0.0)?;
-        let deviation = (scale * score.deviation).hypot(score.posing);
+        let deviation = (wider * score.deviation).hypot(score.posing);
         // A constant that is known no better than that is beyond what a linearisation tells.
         let far = deviation > LARGEST_DEVIATION * fault.natural(&problem.units);
         let (value, deviation) = if far { (0.0, f64::INFINITY) } else { (score.value, deviation) };
         let moved = |(of, by): (&Tangent, &Tangent)| by.component_div(of).abs().max();
         let most = deviations.iter().zip(&score.follows.motions).map(moved).fold(0.0, f64::max);
-        Some(Suspect { fault, value, deviation, tolerated: most.recip() })
+        Some((Suspect { fault, value, deviation, tolerated: evidence.widening() / most }, score.follows))
     };
     // Each is a pass over all samples: two at a time.
     let constants = scores.sensors.constants(problem);

@@ -89,6 +89,11 @@ impl ContactEvidence {
     pub(super) fn widening(&self) -> f64 {
         (self.misfit.max(1.0) * self.lasting).sqrt() * self.unresolved.hypot(1.0)
     }
+
+    /// The same of constants of the sensors: where noise does not explain what is left, that lasts since one of them is wrong.
+    pub(super) fn widening_of_constants(&self) -> f64 {
+        if self.is_explained() { self.widening() } else { self.misfit.max(1.0).sqrt() }
+    }
 }
 
 /// Whether noise explains this misfit, of so many conditions.

@@ -2,11 +2,14 @@
 
 use super::estimate::StreamBody;
 use crate::contacts::body::{Body, CONSTANTS};
+use crate::contacts::doubted::errors;
 use crate::contacts::flow::Transition;
 use crate::contacts::problem::Problem;
-use crate::contacts::samples::{Deviations, deviations};
+use crate::contacts::record::Record;
+use crate::contacts::samples::{Deviations, at_all, deviations};
 use crate::contacts::solve::{Covariances, Solved};
 use crate::contacts::state::{MOTION, Motion};
+use crate::contacts::suspects::{Readings, Scores, Sensors, suspects};
 use crate::contacts::verdict::{ContactEvidence, UNEXPLAINED, relied_on, stretches};
 use glam::DQuat;
 use nalgebra::{Matrix3, Matrix6, SMatrix};
@@ -16,7 +19,7 @@ use object_dynamics::MassProperties;
 pub(super) struct Of<'a> {
     pub(super) problem: &'a Problem<'a>,
     pub(super) solved: &'a Solved<CONSTANTS>,
-    pub(super) covariances: &'a Covariances<CONSTANTS>,
+    pub(super) covariances: Covariances<CONSTANTS>,
     /// Whether the body is another one than was stated.
     pub(super) against: bool,
     /// Whether another motion explains it as well.
@@ -65,10 +68,27 @@ impl Of<'_> {
         Motion { p: motion.p + self.problem.record.origin, ..*motion }
     }
 
+    /// Whether iterations came to an end and noise explains what is left.
+    pub(super) fn is_sound(&self) -> bool {
+        self.solved.settled && self.evidence().is_explained() && !self.against
+    }
+
+    /// Counts what constants of the sensors that may be wrong make of motion and body; where one is wrong for sure, the data speak against them.
+    pub(super) fn doubt(&mut self, record: &Record, readings: &Readings) {
+        let Self { problem, solved, covariances, .. } = self;
+        let motions = at_all(record, problem, &solved.unknowns, covariances);
+        let sensors = Sensors::new(readings, &motions, solved.unknowns.body);
+        let Some(scores) = Scores::new(&sensors, problem, solved) else { return };
+        let (evidence, of) = (self.evidence(), &self.covariances);
+        let (suspects, errors) = errors(suspects(&scores, of, &evidence), evidence.widening());
+        self.covariances.errors.extend(errors);
+        self.open |= ContactEvidence::against(&suspects, &[]).is_some();
+    }
+
     /// Covariance of the turn from the window's start to node `j`.
     pub(super) fn turn(&self, j: usize) -> Matrix3<f64> {
-        let (own, follows) = &self.covariances.motions[j];
-        let all = own + follows * self.covariances.body * follows.transpose();
+        let (own, follows, body) = self.covariances.folded(j);
+        let all = own + follows * body * follows.transpose();
         all.fixed_view::<3, 3>(9, 9) * self.evidence().widening().powi(2)
     }
 
@@ -89,7 +109,7 @@ impl Of<'_> {
     fn deviations(&self, j: usize) -> Deviations {
         let unknowns = &self.solved.unknowns;
         let wider = self.evidence().widening();
-        deviations(&unknowns.motions[j], &unknowns.body, j, self.covariances).map(|of| of * wider)
+        deviations(&unknowns.motions[j], &unknowns.body, j, &self.covariances).map(|of| of * wider)
     }
 
     /// Whether the data do not speak against it, and whether it is known well enough at its end.
@@ -107,7 +127,7 @@ impl Of<'_> {
     }
 
     fn stated(&self, known: Option<&MassProperties>) -> StreamBody {
-        let (body, of_body) = (&self.solved.unknowns.body, &self.covariances.body);
+        let (body, of_body) = (&self.solved.unknowns.body, &self.covariances.of_body());
         let square = self.evidence().widening().powi(2);
         match known {
             Some(mass) => StreamBody {
@@ -137,7 +157,7 @@ impl Solution {
     ) -> Self {
         let last = of.problem.nodes.len() - 1;
         let (body, square) = (of.solved.unknowns.body, of.evidence().widening().powi(2));
-        let (covariance, follows) = &of.covariances.motions[last];
+        let (covariance, follows, of_body) = of.covariances.folded(last);
         let [explained, relied_on] = of.verdict();
         Self {
             number,
@@ -147,8 +167,8 @@ impl Solution {
             own: known.map_or(DQuat::IDENTITY, |mass| body.orientation(mass)),
             known: known.is_some(),
             covariance: covariance * square,
-            follows: *follows,
-            of_body: of.covariances.body * square,
+            follows,
+            of_body: of_body * square,
             turned,
             stated: of.stated(known),
             misfit: of.solved.misfit(),

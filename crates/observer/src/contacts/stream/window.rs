@@ -17,6 +17,7 @@ use crate::contacts::search::{fine_nodes, fine_within, problem, thinned, whole};
 use crate::contacts::solve::Solved;
 use crate::contacts::stage::Stage;
 use crate::contacts::state::Motion;
+use crate::contacts::suspects::Readings;
 use crate::contacts::windows::longest;
 use nalgebra::{Matrix3, Matrix6};
 use object_dynamics::{ContactLog, ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion};
@@ -113,7 +114,7 @@ impl Window {
         outcome.natural = Some(natural);
         outcome.lacks = Some(SHORTEST - log.duration() / natural).filter(|lacks| *lacks > 0.0);
         if outcome.lacks.is_none() {
-            outcome.solution = self.solution(record, units, asked);
+            outcome.solution = self.solution((&log, record), units, asked);
         }
         self.forget(Some(natural));
         outcome
@@ -193,7 +194,12 @@ impl Window {
         }
     }
 
-    fn solution(&mut self, mut record: Record, units: Units, asked: Asked) -> Option<Solution> {
+    fn solution(
+        &mut self,
+        (log, mut record): (&ContactLog, Record),
+        units: Units,
+        asked: Asked,
+    ) -> Option<Solution> {
         let natural = units.time();
         record.mark_blows(&units, self.options.gravity);
         let modes = by_ratio(&record, AVERAGED * natural);
@@ -230,7 +236,12 @@ impl Window {
         let covariances = solved.covariances(&problem)?;
         let open = !others.is_empty() || self.waits > 0;
         let lasting = solved.lasting(&problem);
-        let of = Of { problem: &problem, solved: &solved, covariances: &covariances, against, open, lasting };
+        let mut of = Of { problem: &problem, solved: &solved, covariances, against, open, lasting };
+        if self.options.suspects && !problem.exact && thinned.is_none() && of.is_sound() {
+            let told = (&self.options.noise, &units);
+            let readings = Readings::new(log, told, [record, problem.record], longest);
+            of.doubt(record, &readings);
+        }
         Some(self.taken(&of, &others, (GAP * natural, record.missed_in_world(GAP * natural))))
     }
 

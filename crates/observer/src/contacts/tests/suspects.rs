@@ -165,3 +165,32 @@ fn changed_averages_are_those_of_the_changed_log() {
         }
     }
 }
+
+/// A constant that is a little wrong, so that the data do not refute it: what it carries the motion by is counted, and where nothing is wrong
+/// hardly anything is.
+#[test]
+fn a_constant_that_may_be_wrong_is_counted_in_the_deviations() {
+    let (exact, noise) = (log(0.4, 500.0), noise(4e-5, 0.004));
+    let told = noisy(&exact, &noise, 5);
+    let truth = exact.truth().unwrap();
+    let worst = |of: &ContactEstimate| {
+        let off = |(k, [p, v, ..]): (usize, &[DVec3; 4])| {
+            let state = &of.states[k];
+            let p = (state.p_WCm - truth[k].p_WCm).abs() / *p;
+            p.max((state.v_WCm - truth[k].v_WCm).abs() / *v).max_element()
+        };
+        of.deviations.iter().enumerate().map(off).fold(0.0, f64::max)
+    };
+    let of_bias = |by: f64| {
+        let biased = forces(&told, |i, k, f| {
+            let n = exact.palms()[i].touch(k).map_or(DVec3::ZERO, |touch| touch.n.get());
+            if i == 1 { f[k] + n * by } else { f[k] }
+        });
+        let untested = estimate_contacts(&biased, Some(&modes(&biased)), &options(noise)).unwrap();
+        [worst(&untested), worst(&tested(&biased, noise))]
+    };
+    let [untested, tested] = of_bias(0.0);
+    assert!(tested > 0.99 * untested, "{tested} {untested}");
+    let [untested, tested] = of_bias(0.006);
+    assert!(untested > 5.0 && tested < 4.0, "{tested} {untested}");
+}

@@ -36,7 +36,12 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     let body = if args.identify { None } else { Some(known_body(&scene)?) };
     let mut samples = Samples::open(&args.log, &scene)?;
     let noise = noise(args, &scene, || samples.size())?;
-    let contacts = ContactOptions { body, size: scene.size, ..ContactOptions::new(noise, scene.gravity) };
+    let contacts = ContactOptions {
+        body,
+        size: scene.size,
+        suspects: true,
+        ..ContactOptions::new(noise, scene.gravity)
+    };
     let sample_rate = match args.rate {
         Some(rate) => rate,
         None => samples.rate()?,
