@@ -31,6 +31,7 @@
 //! | a family of shapes of few parameters | [`ShapeFit`] |
 //! | that there are corners, edges and faces | [`Features`] |
 //! | that the body is not convex | [`ShapeBounds::from_concave_contacts`], [`AlphaShape`], [`HermiteSurface`] |
+//! | that it is seen from some place inside as a whole, smooth; that contacts are noisy | [`SplineSurface`]; [`PrincipalSurface`] |
 //! | poses of a body that rests on a plane | [`PoseBounds`] |
 //! | that it all lies in a plane | [`planar`] |
 //!
