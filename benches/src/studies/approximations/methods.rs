@@ -8,10 +8,10 @@ use recon::shape_bounds::{
 use shape_bounds::generators::Source;
 
 /// Places of the body's surface from which distances are measured.
-const PLACES: usize = 600;
+const PLACES: usize = 300;
 /// Triangles of a spline's mesh along an edge of the octahedron, and cells of a Hermite surface's.
-const PARTS: usize = 16;
-const CELLS: usize = 32;
+const PARTS: usize = 10;
+const CELLS: usize = 24;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Method {
@@ -37,6 +37,18 @@ impl Method {
             Self::Spline => "spline",
             Self::Principal => "principal surface",
             Self::Stated => "principal, noise stated",
+        }
+    }
+
+    /// The name in a legend.
+    pub(super) fn short(self) -> &'static str {
+        match self {
+            Self::Hull => "hull",
+            Self::Alpha => "alpha",
+            Self::Hermite => "Hermite",
+            Self::Spline => "spline",
+            Self::Principal => "principal",
+            Self::Stated => "noise stated",
         }
     }
 }
@@ -106,7 +118,7 @@ impl Made {
             Self::Hermite(surface) => {
                 // Down the gradient to the surface: its nearest place but for the square of the distance over the radius of curvature.
                 let mut at = x;
-                for _ in 0..20 {
+                for _ in 0..6 {
                     let (value, gradient) = surface.value(at);
                     at -= gradient * (value / gradient.length_squared());
                 }

@@ -310,6 +310,9 @@ fn describe(made: &BoundsResult, what: &str, about: &Value) -> String {
     if let Some(volume) = about["concave"]["alpha_volume_m3"].as_f64() {
         let _ = writeln!(text, "  alpha shape, about     {} m^3", brief(volume));
     }
+    if let Some(kind) = about["surface"]["kind"].as_str() {
+        let _ = writeln!(text, "  smooth surface         {kind}, an approximation and no bound");
+    }
     for (name, value) in feature_lines(&about["features"]) {
         let _ = writeln!(text, "  {name:<22} {value}");
     }
