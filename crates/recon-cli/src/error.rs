@@ -297,6 +297,7 @@ impl CliError {
             | Self::Pushes { .. }
             | Self::Alpha(_)
             | Self::Surface(_)
+            | Self::Approximation(_)
             | Self::UnknownBody
             | Self::NothingToSimulate { .. }
             | Self::NotThreePlanes { .. }
