@@ -25,8 +25,9 @@ pub(super) enum Method {
     Stated,
 }
 
+/// The hull, which concave bodies have none of, behind those that all have: a method has one colour.
 pub(super) const ALL: [Method; 6] =
-    [Method::Hull, Method::Alpha, Method::Hermite, Method::Spline, Method::Principal, Method::Stated];
+    [Method::Alpha, Method::Hermite, Method::Spline, Method::Principal, Method::Hull, Method::Stated];
 
 impl Method {
     pub(super) fn name(self) -> &'static str {
