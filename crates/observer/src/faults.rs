@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// Deviations from which on a two-sided test at one in a hundred (2.576 of them) tells nine times in ten (1.282 more).
+const TOLD: f64 = 3.858;
+
 /// A constant of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SensorFault {
@@ -55,6 +58,18 @@ impl Suspect {
     #[must_use]
     pub fn score(&self) -> f64 {
         if self.deviation.is_finite() { self.value / self.deviation } else { 0.0 }
+    }
+
+    /// What it must be off by for a score test at one false alarm in a hundred to tell it nine times in ten; infinite where the data cannot.
+    #[must_use]
+    pub fn told_from(&self) -> f64 {
+        TOLD * self.deviation
+    }
+
+    /// By how many of its deviations a number of the motion may be off through what is not told of this constant.
+    #[must_use]
+    pub fn untold(&self) -> f64 {
+        self.told_from() / self.tolerated
     }
 }
 

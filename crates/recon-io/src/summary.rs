@@ -165,6 +165,7 @@ pub fn sensor_fault(of: &Suspect) -> Value {
     said["score"] = json!(of.score());
     if of.tolerated.is_finite() {
         said["moves_motion_by_one_deviation"] = json!(of.tolerated);
+        said["told_from"] = json!(of.told_from());
     }
     said
 }

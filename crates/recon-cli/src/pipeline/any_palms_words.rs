@@ -1,11 +1,12 @@
 //! An estimate from contacts of any palms in words and numbers for people.
 
 use super::evidence::{of_bounds, samples_together};
+use super::sensor_words::{explained, suspects};
 use glam::DVec3;
 use recon::object_dynamics::MassProperties;
 use recon::observer::{
-    Assumption, ContactEstimate, ContactEvidence, ContactNoiseLevel, ContactOptions, EstimatedModes,
-    Explanation, LearnedFriction, Reason, Reliability, Suspect,
+    ContactEstimate, ContactEvidence, ContactNoiseLevel, ContactOptions, EstimatedModes, LearnedFriction,
+    Reason, Reliability,
 };
 use recon::shape_bounds::Gap;
 use recon_io::EvidenceValue::{Number, Text};
@@ -13,10 +14,6 @@ use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Verdict, brief_t
 
 /// Share of the samples whose motion must be relied on for a result without reservations.
 const ENOUGH: f64 = 0.5;
-/// Chi-squared over the conditions up to which a log is explained, as the estimator has it.
-const EXPLAINED: f64 = 1.4;
-/// Decades of odds up to which explanations are told side by side.
-const TOLD_APART: f64 = 2.0;
 
 /// What speaks for or against an estimate beside its own evidence.
 pub(super) struct Checks {
@@ -341,64 +338,6 @@ pub(super) fn told(noise: &ContactNoiseLevel) -> Vec<Evidence> {
     rows.extend(of_impulse.into_iter().flatten());
     rows.push(neutral("contact_speed", "Speed of contacts", Number(noise.floor), "m/s", speed));
     rows
-}
-
-/// What the data say of constants of the sensors, and how well these must be known: those that are farthest off, and those that matter
-/// most.
-pub(super) fn suspects(all: &[Suspect]) -> Vec<Evidence> {
-    let sorted = |key: fn(&Suspect) -> f64| {
-        let mut sorted: Vec<&Suspect> = all.iter().filter(|suspect| key(suspect).is_finite()).collect();
-        sorted.sort_by(|a, b| key(a).total_cmp(&key(b)));
-        sorted
-    };
-    let most = sorted(|suspect| -suspect.score().abs());
-    let Some(first) = most.first() else { return Vec::new() };
-    let score =
-        |s: &&Suspect| format!("{} {} +- {}", s.fault, brief_to(2, s.value), brief_to(2, s.deviation));
-    let said: Vec<String> = most.iter().take(3).map(score).collect();
-    let mut kinds: Vec<&Suspect> = Vec::new();
-    for suspect in sorted(|suspect| suspect.tolerated) {
-        let kind = std::mem::discriminant(&suspect.fault);
-        if kinds.iter().all(|other| std::mem::discriminant(&other.fault) != kind) {
-            kinds.push(suspect);
-        }
-    }
-    let needed: Vec<String> =
-        kinds.iter().map(|s| format!("{} {}", s.fault, brief_to(2, s.tolerated))).collect();
-    let meaning = "What was taken as known of the sensors, and what it is to be off by as the data have it (score tests): those that are farthest \
-                   off in their deviations. Beyond 4.75 of them the result is not to be relied on.";
-    let matters = "Of each kind the one that matters most: an error as large as this, which need not be seen, moves some number of the \
-                   motion by one of its deviations.";
-    vec![
-        Evidence {
-            level: if first.score().abs() > 4.75 { Level::Bad } else { Level::Good },
-            ..neutral("sensor_faults", "Constants of the sensors", Text(said.join("; ")), "", meaning)
-        },
-        neutral("sensor_accuracy_needed", "Needed to be known to", Text(needed.join("; ")), "", matters),
-    ]
-}
-
-/// What explains a log that contradicts what was taken as known; none of a log that does not.
-pub(super) fn explained(all: &[Explanation]) -> Option<Evidence> {
-    let (first, others) = all.split_first()?;
-    let value = |of: &Explanation| match of.assumption {
-        Assumption::None => of.assumption.to_string(),
-        _ => format!("{}: {} +- {}", of.assumption, brief_to(3, of.value), brief_to(2, of.deviation)),
-    };
-    let explains = |of: &Explanation| of.assumption != Assumption::None && of.misfit < EXPLAINED;
-    let odds = |of: &Explanation| (first.log_odds - of.log_odds) / std::f64::consts::LN_10;
-    let said = if explains(first) {
-        let as_good: Vec<String> =
-            others.iter().filter(|of| odds(of) < TOLD_APART && explains(of)).map(value).collect();
-        let next = others.get(as_good.len());
-        let next = next.map(|of| format!("; {}, is 10^{:.0} times less probable", value(of), odds(of)));
-        [vec![value(first)], as_good].concat().join(", or ") + &next.unwrap_or_default()
-    } else {
-        "no single constant that was tried, nor noise".to_owned()
-    };
-    let meaning = "The log contradicts what was taken as known. Each of the constants alone was let go, and mass and inertia, and the noise: what explains \
-                   most, weighed against how much else it could have explained; those that are less than a hundred times less probable are told with it.";
-    Some(Evidence { level: Level::Bad, ..neutral("explained_by", "Explained by", Text(said), "", meaning) })
 }
 
 /// A row that speaks neither for nor against the result.

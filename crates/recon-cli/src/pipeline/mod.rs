@@ -32,6 +32,7 @@ mod plane;
 mod planes;
 mod read;
 mod result_bag;
+mod sensor_words;
 mod simulate;
 mod smooth;
 mod sound;

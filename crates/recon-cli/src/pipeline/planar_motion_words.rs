@@ -1,7 +1,8 @@
 //! A motion that was estimated in the plane, in words and numbers for people.
 
-use super::any_palms_words::{explained, fit, modes, neutral, percent, suspects, told, wider};
+use super::any_palms_words::{fit, modes, neutral, percent, told, wider};
 use super::planar_motion::ENOUGH;
+use super::sensor_words::{explained, suspects};
 use recon::observer::planar::PlaneEstimate;
 use recon::observer::{ContactNoiseLevel, Reliability};
 use recon_io::EvidenceValue::Number;

@@ -7,7 +7,7 @@ use thiserror::Error;
 /// What a stream must know beforehand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreamOptions {
-    /// Noise, gravity, friction, and the body where it is known. Joint errors are for whole logs; score tests cost a stream about as much again as its motion.
+    /// Noise, gravity, friction, and the body where it is known. Joint errors are for whole logs; score tests take a stream half as long as its motion.
     pub contacts: ContactOptions,
     /// Samples a second, about.
     pub sample_rate: f64,

@@ -24,8 +24,9 @@ pub(super) struct Of<'a> {
     pub(super) against: bool,
     /// Whether another motion explains it as well.
     pub(super) open: bool,
-    /// How far noise lasts.
+    /// How far noise lasts, and what is missed between samples.
     pub(super) lasting: f64,
+    pub(super) unresolved: f64,
 }
 
 /// The motion at the end of a window.
@@ -100,7 +101,7 @@ impl Of<'_> {
             conditions: solved.equations.conditions,
             misfit: solved.misfit(),
             lasting: self.lasting,
-            unresolved: 0.0,
+            unresolved: self.unresolved,
             iterations: [0, solved.iterations],
             settled: solved.settled,
         }

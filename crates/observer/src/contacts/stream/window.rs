@@ -236,7 +236,9 @@ impl Window {
         let covariances = solved.covariances(&problem)?;
         let open = !others.is_empty() || self.waits > 0;
         let lasting = solved.lasting(&problem);
-        let mut of = Of { problem: &problem, solved: &solved, covariances, against, open, lasting };
+        let unresolved = if problem.exact { 0.0 } else { record.unresolved().sqrt() };
+        let (problem, solved) = (&problem, &solved);
+        let mut of = Of { problem, solved, covariances, against, open, lasting, unresolved };
         if self.options.suspects && !problem.exact && thinned.is_none() && of.is_sound() {
             let told = (&self.options.noise, &units);
             let readings = Readings::new(log, told, [record, problem.record], longest);
