@@ -50,12 +50,12 @@ pub enum Reason {
     },
     /// Without the stated mass and inertia the search leads to no motion, so that nothing confirms the one that was found with them.
     Unconfirmed,
-    /// Contacts and forces hardly change beyond noise: rest, slow rocking, or a disc.
+    /// Forces hardly change beyond noise: rest, slow rocking, or a disc.
     Unchanging {
-        /// Largest spread of the contacts of a palm, in natural lengths, noise taken out.
-        contacts: f64,
-        /// Largest spread of the whole force, in weights, noise taken out.
+        /// Spread of the whole force, N, noise taken out.
         forces: f64,
+        /// Standard deviation of its noise at a sample, N.
+        noise: f64,
     },
     /// Another motion explains the log as well.
     Ambiguous {
@@ -98,10 +98,10 @@ impl fmt::Display for Reason {
                 "the body hardly turns: its angular velocity changes by {deviations:.1} of its deviations at most, and where its centre of mass is \
                  follows from such changes"
             ),
-            Self::Unchanging { contacts, forces } => write!(
+            Self::Unchanging { forces, noise } => write!(
                 f,
-                "the readings hardly change beyond their noise (contacts by {contacts:.3} of the body's size, the whole force by {forces:.3} of \
-                 the weight): at rest, rocking slowly, or round, a body shows no motion"
+                "the whole force hardly changes beyond its noise (by {forces:.1e} N, and {noise:.1e} N from sample to sample): at rest, rocking \
+                 slowly, or round, a body shows no motion"
             ),
             Self::Ambiguous { apart } => write!(
                 f,

@@ -245,7 +245,7 @@ impl Source<'_> {
         log: &Record,
         (averaged, thinned): (&'r Record, bool),
     ) -> Option<Stage<'r>> {
-        let Self { options: ContactOptions { planar, guessed_floor, noise, body, .. }, units, .. } = self;
+        let Self { options: ContactOptions { planar, guessed_floor, noise, body, .. }, .. } = self;
         // Conditions of exact logs are as good as what is left of them, unless it was said what they are off by.
         let (exact, sharp) = (problem.exact, problem.exact && *guessed_floor);
         let mut stage = Stage::searched(problem)?.shared()?;
@@ -272,7 +272,7 @@ impl Source<'_> {
         }
         stage = stage.finished()?;
         if *planar {
-            let still = still(log, noise, units);
+            let still = still(log);
             stage = if still.is_none() { stage.decided()? } else { stage };
             stage.open = stage.open.or(still);
             stage = if exact { stage } else { stage.blurred()? };

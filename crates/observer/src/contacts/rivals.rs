@@ -6,9 +6,8 @@
 
 use super::body::{Body, CONSTANTS};
 use super::cold;
-use super::noise::ContactNoiseLevel;
-use super::problem::{Problem, Units, Unknowns};
-use super::record::{Contact, Record};
+use super::problem::{Problem, Unknowns};
+use super::record::Record;
 use super::redrawn::SMALL;
 use super::samples::deviations;
 use super::search::{ENOUGH, fine_within};
@@ -16,7 +15,7 @@ use super::solve::{Covariances, Solved, solve};
 use crate::reliability::Reason;
 use glam::{DMat3, DVec3};
 use nalgebra::SVector;
-use object_dynamics::{MOST_PALMS, MassProperties};
+use object_dynamics::MassProperties;
 
 /// Rates of the starts in the plane, and what the spins of those in space are off by, in natural ones: motions that explain a log almost as well were
 /// seen to lie 0.2 apart and more.
@@ -40,43 +39,27 @@ const SAME: f64 = 1.0;
 /// Deviation of a constant of a body, as a share of what it is, or of a turn in rad, from which on other motions are looked for as a stream goes on.
 const UNSURE: f64 = 0.1;
 
-/// Spread of the contacts along their palms in natural lengths, and of the whole force about its mean in weights, below which a log of the plane
-/// tells nothing of a motion: at rest, in slow rocking and for discs forces spread by less than 0.004, for a disc with its centre of mass
-/// 5 % off by up to 0.01.
-const STILLEST: [f64; 2] = [0.07, 0.014];
-/// Standard deviations of the spread's own scatter that noise may pretend.
-const PRETENDED: f64 = 4.0;
-/// Spread of the whole force over the deviation of its mean by noise, below which it tells nothing, however far contacts move: of slow rocking on palms
-/// at rest motions up to 28 deviations off were found where it was 0, none from 50 on.
+/// Spread of the whole force over the deviation of its mean by noise, below which a log of the plane tells nothing of a motion, however far contacts move:
+/// of slow rocking on palms at rest motions up to 28 deviations off were found where it was 0, none from 50 on.
 const FELT: f64 = 10.0;
+/// Noise of the whole force that there is at least, as a share of it: that of readings of so many digits.
+const SMALLEST: f64 = 1e-9;
 
-/// Whether contacts and forces hardly change beyond noise: a judgement of the readings alone.
-pub(super) fn still(record: &Record, noise: &ContactNoiseLevel, units: &Units) -> Option<Reason> {
-    let mut places = [Spread::default(); MOST_PALMS];
+/// Whether forces hardly change beyond noise: a judgement of the readings alone.
+pub(super) fn still(record: &Record) -> Option<Reason> {
     let mut forces = [Spread::default(); 2];
-    let (mut variance, mut samples) = (0.0, 0.0_f64);
-    let mut first: [Option<Contact>; MOST_PALMS] = [None; MOST_PALMS];
+    let mut variance = 0.0;
     for contacts in record.contacts.iter().filter(|contacts| !contacts.is_empty()) {
         let whole: DVec3 = contacts.iter().map(|contact| contact.f).sum();
         forces[0].add(whole.x);
         forces[1].add(whole.z);
         variance += contacts.iter().map(|contact| contact.f_deviation.powi(2)).sum::<f64>();
-        samples += 1.0;
-        for contact in contacts {
-            let from = first[contact.palm].get_or_insert(*contact);
-            // Along the palm, from where it was touched first.
-            places[contact.palm].add(contact.tangents()[0].dot(contact.c - from.c));
-        }
     }
-    let weight = units.mass * units.speed * units.speed / units.length;
-    let place = places.map(|of| of.beyond(noise.contact, STILLEST[0] * units.length));
-    let of_force = (variance / samples.max(1.0)).sqrt();
-    let force = forces.map(|of| of.beyond(of_force, STILLEST[1] * weight));
-    let felt = force.iter().any(|(spread, _)| spread * samples.sqrt() > FELT * of_force);
-    let changes = felt && place.iter().chain(&force).any(|(_, beyond)| *beyond);
-    let most = |of: &[(f64, bool)], unit: f64| of.iter().map(|(spread, _)| spread / unit).fold(0.0, f64::max);
-    (!changes)
-        .then(|| Reason::Unchanging { contacts: most(&place, units.length), forces: most(&force, weight) })
+    let [x, z] = forces.map(|of| of.beyond(variance / of.count.max(1.0)));
+    let rounding = SMALLEST * (forces[0].mean().hypot(forces[1].mean()));
+    let (spread, noise) = (x.max(z), (variance / forces[0].count.max(1.0)).sqrt().max(rounding));
+    let felt = spread * forces[0].count.sqrt() > FELT * noise;
+    (!felt).then_some(Reason::Unchanging { forces: spread, noise })
 }
 
 /// Spread of readings: sums of value and square, about the first one, so that the square of a large mean does not cancel.
@@ -96,13 +79,15 @@ impl Spread {
         self.count += 1.0;
     }
 
-    /// Standard deviation beyond noise of the given one, and whether it exceeds `least` by more than noise may pretend.
-    fn beyond(&self, noise: f64, least: f64) -> (f64, bool) {
+    fn mean(&self) -> f64 {
+        self.first.unwrap_or(0.0) + self.sum / self.count.max(1.0)
+    }
+
+    /// Standard deviation beyond that of noise of such a variance.
+    fn beyond(&self, noise: f64) -> f64 {
         let count = self.count.max(1.0);
         let mean = self.sum / count;
-        let excess = self.squares / count - mean * mean - noise * noise;
-        let pretended = PRETENDED * noise * noise * (2.0 / count).sqrt();
-        (excess.max(0.0).sqrt(), excess > least * least + pretended)
+        (self.squares / count - mean * mean - noise).max(0.0).sqrt()
     }
 }
 
