@@ -29,6 +29,7 @@ def bounds(
     fit: str | None = None,
     concave: bool = False,
     alpha: float | None = None,
+    surface: str | None = None,
     plane_height: float | None = None,
     height_deviation: float | None = None,
     run_height_deviation: float | None = None,
@@ -46,6 +47,7 @@ def bounds(
     rho_min, rho_max: limits on the radii of curvature, m, which tighten the bounds.
     fit: `"auto"`, `"ball"`, `"ellipsoid"`, `"superquadric"`, `"harmonics:4"`; in the plane `"auto"`, `"circle"`, `"ellipse"`, `"waves:4"`.
     concave, alpha: the body need not be convex; radius of the balls that hollow out the alpha shape, m.
+    surface: `"hermite"`, `"spline"` (through exact contacts) or `"principal"` (through the midst of noisy ones): an approximation, no bound.
     plane_height, height_deviation, run_height_deviation, tight: of poses above a plane, m.
 
     Raises InputError (row from 0, or line) and OptionError.
@@ -60,6 +62,7 @@ def bounds(
         fit=fit,
         concave=concave,
         alpha=alpha,
+        surface=surface,
         plane_height=plane_height,
         height_deviation=height_deviation,
         run_height_deviation=run_height_deviation,

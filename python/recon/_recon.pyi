@@ -418,7 +418,7 @@ class Bounds:
         """Alpha shape of a body that need not be convex; an approximation."""
     @property
     def smooth_surface(self) -> Mesh | None:
-        """Smooth surface through points and normals of a body that need not be convex; an approximation."""
+        """Smooth surface of the kind that was asked for, or of a body that need not be convex; an approximation."""
     def write(self, folder: _Path, *, mesh: Sequence[str] = (), force: bool = False) -> None:
         """Writes the folder that the command writes; `mesh` names formats beside PLY ("stl", "glb"), `force` writes beside files that recon
         did not write."""

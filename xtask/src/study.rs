@@ -14,6 +14,11 @@ const FUZZ: &str = "fuzz_targets";
 /// table of `benches/src/studies/main.rs`, and is told where a part is asked for.
 const STUDIES: &[(&str, &str, &str)] = &[
     (
+        "approximations",
+        "approximations.md",
+        "alpha shapes, Hermite surfaces, splines, principal surfaces: error by number of contacts and by noise",
+    ),
+    (
         "assumptions",
         "assumptions.md",
         "what contradicts a log: false alarms of the score tests, and which assumption is named",

@@ -4,6 +4,7 @@
 //!
 //! `cargo xtask study` and `cargo xtask chart` call it and know what each one writes.
 
+mod approximations;
 mod assumptions;
 mod atlas;
 mod bounds_corners;
@@ -64,6 +65,7 @@ const SHORT: Parts = Parts::Whole("it is done within minutes");
 const DRAWN: Parts = Parts::Whole("its runs are drawn one after the other from one source of random numbers");
 
 const STUDIES: &[(&str, Parts, Run)] = &[
+    ("approximations", OF_RUNS, || in_words(approximations::main())),
     ("assumptions", OF_RUNS, || in_words(assumptions::main())),
     ("atlas", OF_RUNS, || in_words(atlas::main())),
     ("bounds_corners", OF_RUNS, || in_words(bounds_corners::main())),

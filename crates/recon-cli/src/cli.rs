@@ -364,7 +364,9 @@ With --fit a shape of few parameters is fitted too, and told with its covariance
 smallest information criterion. A shape that the contacts refute (p-value below 1e-4 of the chi-squared test where noise is
 stated, of the likeness of neighbours' residuals where it is not) is refused with exit code 4; bounds are written all the
 same. With --concave the object need not be convex: the bounds are those of its hull, and an alpha shape and a smooth
-surface are written too, which are approximations.
+surface are written too, which are approximations. --surface writes a smooth surface of any contacts: hermite and spline go
+through exact ones, principal through the midst of noisy ones, smoothed by what the contacts or the stated noise ask for. A
+spline errs least where its object is seen from some place inside as a whole; one that is not takes hermite.
 
 Contacts in the plane have the columns x, y and nx, ny alone. Areas stand for volumes, and a picture (bounds.svg) and
 corners (lower_bound.csv, upper_bound.csv) for meshes.
@@ -377,14 +379,16 @@ was tried. Runs that contradict the others are left out and named. What the plan
 bounds are the wider for it.
 
 The output folder appears as a whole or not at all: lower_bound.ply, upper_bound.ply (m; in the plane
-.csv and bounds.svg), summary.json and the page report.html, with --fit fitted_shape.ply, with --concave alpha_shape.ply and
-smooth_surface.ply.
+.csv and bounds.svg), summary.json and the page report.html, with --fit fitted_shape.ply, with --concave
+alpha_shape.ply, with that or --surface smooth_surface.ply.
 
 Examples:
   recon bounds contacts.csv
   recon bounds contacts.csv --fit auto
   recon bounds contacts.csv --estimate-noise --fit harmonics:4 -o bounds
   recon bounds contacts.csv --concave -o bounds
+  recon bounds contacts.csv --surface spline -o bounds
+  recon bounds contacts.csv --estimate-noise --surface principal -o bounds
   recon bounds contacts.csv --contact-noise 1e-4 --normal-noise 2e-3 --confidence 0.99 -o bounds
   recon bounds contacts.csv --estimate-noise -o bounds
   recon bounds contacts.csv --rho-min 0.02 --rho-max 0.2 -o bounds
@@ -421,6 +425,9 @@ pub(crate) struct BoundsArgs {
     /// Radius of the balls that hollow the alpha shape out, m [default: the smallest that leaves it in one piece]
     #[arg(long, value_name = "M", requires = "concave", value_parser = positive)]
     pub(crate) alpha: Option<f64>,
+    /// Approximate the object by a smooth surface, which is no bound [default with --concave: hermite]
+    #[arg(long, value_name = "KIND")]
+    pub(crate) surface: Option<SurfaceAs>,
     /// Narrower margins for poses, right for trackers like the simulated ones alone
     #[arg(long)]
     pub(crate) tight: bool,
@@ -449,6 +456,17 @@ impl PlanarArgs {
     pub(crate) fn palm_inertias(&self) -> [f64; 2] {
         [0, 1].map(|i| self.palm_inertias.get(i).copied().unwrap_or_default())
     }
+}
+
+/// A smooth surface that approximates the object.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub(crate) enum SurfaceAs {
+    /// Through contacts and normals, of any shape
+    Hermite,
+    /// Through contacts and normals, of an object that is seen from inside as a whole
+    Spline,
+    /// Through the midst of noisy contacts, their normals left out
+    Principal,
 }
 
 /// A family of shapes to fit.

@@ -6,8 +6,8 @@ use recon::object_dynamics::{
 use recon::observer::ContactEstimateError;
 use recon::observer::pushes::PushesError;
 use recon::shape_bounds::{
-    AlphaError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError, NoiseError, PoseError,
-    SurfaceError, planar,
+    AlphaError, ApproximationError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError,
+    NoiseError, PoseError, SurfaceError, planar,
 };
 use recon_io::{
     BagError, CheckError, ExportError, LogFileError, MappingError, MeshError, OutputError, SceneError,
@@ -101,6 +101,8 @@ pub(crate) enum CliError {
     Alpha(#[from] AlphaError),
     #[error("no smooth surface goes through the contacts")]
     Surface(#[from] SurfaceError),
+    #[error("no smooth surface approximates the contacts")]
+    Approximation(#[from] ApproximationError),
     #[error("the poses give no bounds")]
     PoseBounds(#[from] PoseError),
     #[error(
@@ -305,6 +307,7 @@ impl CliError {
             | Self::Pushes { .. }
             | Self::Alpha(_)
             | Self::Surface(_)
+            | Self::Approximation(_)
             | Self::UnknownBody
             | Self::NothingToSimulate { .. }
             | Self::NotThreePlanes { .. }

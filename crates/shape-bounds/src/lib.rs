@@ -31,6 +31,7 @@
 //! | a family of shapes of few parameters | [`ShapeFit`] |
 //! | that there are corners, edges and faces | [`Features`] |
 //! | that the body is not convex | [`ShapeBounds::from_concave_contacts`], [`AlphaShape`], [`HermiteSurface`] |
+//! | that it is seen from some place inside as a whole, smooth; that contacts are noisy | [`SplineSurface`]; [`PrincipalSurface`] |
 //! | poses of a body that rests on a plane | [`PoseBounds`] |
 //! | that it all lies in a plane | [`planar`] |
 //!
@@ -40,6 +41,7 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod approximation;
 mod bounds;
 mod concave;
 mod curvature;
@@ -63,6 +65,7 @@ mod sample;
 #[cfg(any(test, feature = "strategies"))]
 pub mod strategies;
 
+pub use approximation::{ApproximationError, PrincipalSurface, SplineSurface};
 pub use bounds::{BoundsError, Contradiction, Gap, IncrementalBounds, ShapeBounds};
 pub use concave::{AlphaError, AlphaShape, HermiteSurface, SurfaceError};
 pub use curvature::{

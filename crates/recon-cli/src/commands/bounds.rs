@@ -1,12 +1,12 @@
 use super::answers::written_to;
 use super::plane;
-use crate::cli::{BoundsArgs, FitAs, MeshAs};
+use crate::cli::{BoundsArgs, FitAs, MeshAs, SurfaceAs};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
     BoundsResult, Noise, PlanarBounds, PlanarRequest, bounds_page, concave_bounds, doubtful_fit,
     exact_bounds, feature_lines, fit_words, fitted_shape, meshes_as, noisy_bounds, planar_bounds,
-    pose_bounds, sharp_bounds, write_bounds_folder,
+    pose_bounds, sharp_bounds, smooth_surface, write_bounds_folder,
 };
 use crate::progress::Progress;
 use glam::DVec3;
@@ -153,10 +153,23 @@ impl Bounded {
     }
 }
 
+/// Bounds of contacts in space, with what approximates the object where that is asked for.
 fn of_contacts(args: &BoundsArgs, curves: &[Vec<ContactSample>]) -> Result<(BoundsResult, Value), CliError> {
-    if args.concave {
-        return concave_bounds(&curves.concat(), args.alpha);
+    let (mut made, mut about) = match args.concave {
+        true => concave_bounds(&curves.concat(), args.alpha)?,
+        false => of_convex(args, curves)?,
+    };
+    if let Some(kind) = args.surface.or(args.concave.then_some(SurfaceAs::Hermite)) {
+        let smooth = smooth_surface(&curves.concat(), kind, args.contact_noise)?;
+        about["surface"] = smooth.about;
+        made.warnings.extend(smooth.warning.map(str::to_owned));
+        let comment = "smooth surface, an approximation and no bound; metres";
+        made.others.push(("smooth_surface.ply", comment, smooth.mesh));
     }
+    Ok((made, about))
+}
+
+fn of_convex(args: &BoundsArgs, curves: &[Vec<ContactSample>]) -> Result<(BoundsResult, Value), CliError> {
     let noise = noise(args).map(|noise| (noise, confidence(args)));
     let (mut made, mut about) = match (radii(args), noise) {
         (Some(radii), noise) => sharp_bounds(curves, radii, noise)?,
@@ -206,16 +219,20 @@ fn check_options(args: &BoundsArgs, touches: &Touches) -> Result<(), CliError> {
                 (args.rho_max.is_some(), "rho-max", "contacts"),
                 (args.fit.is_some(), "fit", "contacts"),
                 (args.concave, "concave", "contacts"),
+                (args.surface.is_some(), "surface", "contacts"),
             ],
         ),
         Touches::Contacts { .. } => {
             let family = (!in_space, "fit circle, ellipse or waves", "contacts in the plane");
-            let found = if exact { "contacts without stated noise" } else { "contacts" };
-            (found, pointless.into_iter().chain([family]).collect())
+            let through = matches!(args.surface, Some(SurfaceAs::Hermite | SurfaceAs::Spline));
+            let through = (through && !exact, "surface hermite or spline", "exact contacts; take principal");
+            let found = if exact { "contacts without stated noise" } else { "noisy contacts" };
+            (found, pointless.into_iter().chain([family, through]).collect())
         }
         Touches::PlanarContacts { .. } => {
             let of_space = [
                 (args.concave, "concave", "contacts in space"),
+                (args.surface.is_some(), "surface", "contacts in space"),
                 (!args.mesh.is_empty(), "mesh", "contacts in space"),
                 (!in_plane, "fit ball, ellipsoid, superquadric or harmonics", "contacts in space"),
                 (args.rho_max.is_some() && !exact, "rho-max beside noise", "contacts in space"),
@@ -292,6 +309,9 @@ fn describe(made: &BoundsResult, what: &str, about: &Value) -> String {
     }
     if let Some(volume) = about["concave"]["alpha_volume_m3"].as_f64() {
         let _ = writeln!(text, "  alpha shape, about     {} m^3", brief(volume));
+    }
+    if let Some(kind) = about["surface"]["kind"].as_str() {
+        let _ = writeln!(text, "  smooth surface         {kind}, an approximation and no bound");
     }
     for (name, value) in feature_lines(&about["features"]) {
         let _ = writeln!(text, "  {name:<22} {value}");

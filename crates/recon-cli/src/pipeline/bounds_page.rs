@@ -158,6 +158,7 @@ fn evidence(about: &Value, contradiction: f64) -> Vec<Evidence> {
     }
     rows.extend(fit(&about["fit"]));
     rows.extend(concave(&about["concave"]));
+    rows.extend(surface(&about["surface"]));
     rows
 }
 
@@ -222,11 +223,34 @@ fn concave(of: &Value) -> Vec<Evidence> {
     let radius = of["alpha_radius_m"].as_f64();
     let meaning = "Of the balls that hollow the alpha shape out; it is no bound.";
     let radius = radius.map(|r| row("alpha_radius", "Radius of the alpha shape", Number(r), "m", meaning));
-    let closed = of["surface_is_closed"].as_bool().map(|closed| {
-        let text = Text(if closed { "closed" } else { "open" }.to_owned());
-        row("surface", "Smooth surface", text, "", "Through contacts and their normals; it is no bound.")
-    });
-    [kept, radius, closed].into_iter().flatten().collect()
+    [kept, radius].into_iter().flatten().collect()
+}
+
+/// A smooth surface.
+fn surface(of: &Value) -> Vec<Evidence> {
+    let Some(kind) = of["kind"].as_str() else { return Vec::new() };
+    let open = if of["is_closed"] == false { ", open" } else { "" };
+    let meaning = match kind {
+        "principal" => "Through the midst of the contacts; it is no bound.",
+        _ => "Through contacts and their normals; it is no bound.",
+    };
+    let mut rows = vec![row("surface", "Smooth surface", Text(format!("{kind}{open}")), "", meaning)];
+    let lengths = [
+        (
+            "residual_m",
+            "Contacts off the surface",
+            "Root mean square; of a principal surface for what is left free.",
+        ),
+        (
+            "bias_m",
+            "Too far out by",
+            "On the average, since it is curved, if contacts are off alike in all directions.",
+        ),
+    ];
+    for (key, name, meaning) in lengths {
+        rows.extend(of[key].as_f64().map(|value| row(key, name, Number(value), "m", meaning)));
+    }
+    rows
 }
 
 fn row(key: &str, name: &str, value: EvidenceValue, unit: &str, meaning: &str) -> Evidence {

@@ -1,17 +1,12 @@
-//! A body that need not be convex: bounds of its hull, and two approximations of itself.
+//! A body that need not be convex: bounds of its hull, and its alpha shape.
 
 use super::bounds::{BoundsResult, meshes, own, unbounded};
 use crate::error::CliError;
-use recon::shape_bounds::{AlphaShape, ContactSample, HermiteSurface, ShapeBounds};
+use recon::shape_bounds::{AlphaShape, ContactSample, ShapeBounds};
 use recon_io::{Bound, Bounds};
 use serde_json::{Value, json};
 
-/// Contacts that the smooth surface goes through, at most: its equations are dense.
-const INTERPOLATED: usize = 400;
-/// Cells of its mesh along the longest side.
-const CELLS: usize = 48;
-
-/// Bounds of the hull of a body, and approximations of the body, from exact contacts; the alpha shape for a radius, or for
+/// Bounds of the hull of a body, and its alpha shape, from exact contacts; the alpha shape for a radius, or for
 /// the smallest that leaves it in one piece.
 pub(crate) fn concave_bounds(
     contacts: &[ContactSample],
@@ -22,31 +17,18 @@ pub(crate) fn concave_bounds(
     let points: Vec<_> = contacts.iter().map(|c| c.point).collect();
     let alpha = AlphaShape::of(&points)?;
     let radius = radius.unwrap_or_else(|| alpha.connecting_radius());
-    let some: Vec<ContactSample> = (0..contacts.len().min(INTERPOLATED))
-        .map(|k| contacts[k * contacts.len() / contacts.len().min(INTERPOLATED)])
-        .collect();
-    let surface = HermiteSurface::through(&some)?;
-    let smooth = own(surface.mesh(CELLS))?;
-    let closed = smooth.is_closed();
-    let mut warnings = vec![
+    let warnings = vec![
         "The bounds are those of the object's hull. The upper one holds if the contacts that were kept lie on the hull's \
          boundary, which contacts alone cannot prove."
             .to_owned(),
         "alpha_shape.ply and smooth_surface.ply are approximations of the object, no bounds.".to_owned(),
     ];
-    if !closed {
-        warnings.push(
-            "The smooth surface is open: between the contacts it leaves the space around them.".to_owned(),
-        );
-    }
     let about = json!({
         "noise": "none",
         "concave": {
             "contacts_kept_for_the_upper_bound": kept.len(),
             "alpha_radius_m": radius,
             "alpha_volume_m3": alpha.volume(radius)?,
-            "surface_through_contacts": some.len(),
-            "surface_is_closed": closed,
         },
     });
     let drawn = Bounds {
@@ -54,14 +36,8 @@ pub(crate) fn concave_bounds(
         upper: upper.clone().map(|mesh| Bound { mesh, volume: bounds.upper_volume() }),
         largest_gap: bounds.largest_gap(),
     };
-    let others = vec![
-        ("alpha_shape.ply", "alpha shape, an approximation and no bound; metres", own(alpha.mesh(radius)?)?),
-        (
-            "smooth_surface.ply",
-            "surface through points and normals, an approximation and no bound; metres",
-            smooth,
-        ),
-    ];
+    let comment = "alpha shape, an approximation and no bound; metres";
+    let others = vec![("alpha_shape.ply", comment, own(alpha.mesh(radius)?)?)];
     let warnings = warnings.into_iter().chain(unbounded(&bounds)).collect();
     Ok((
         BoundsResult { drawn, lower, upper, others, features: None, contradiction: 0.0, warnings }.compared(),

@@ -34,6 +34,7 @@ mod read;
 mod result_bag;
 mod sensor_words;
 mod simulate;
+mod smooth;
 mod sound;
 mod truth;
 mod views;
@@ -67,6 +68,7 @@ pub(crate) use read::{
     three_palms,
 };
 pub(crate) use simulate::{Simulated, known_body, simulate};
+pub(crate) use smooth::smooth_surface;
 pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};
 pub(crate) use without_forces::{WithoutForces, without_forces};
 pub(crate) use without_forces_page::without_forces_page;

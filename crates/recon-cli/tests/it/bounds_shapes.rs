@@ -229,6 +229,27 @@ fn a_waist_is_approximated_inside_of_the_bounds_of_its_hull() {
     for name in ["lower_bound.ply", "upper_bound.ply", "alpha_shape.ply", "smooth_surface.ply"] {
         assert!(scratch.path().join("out").join(name).is_file(), "{name}");
     }
+    assert_eq!(summary["about"]["surface"]["kind"], "hermite");
+}
+
+#[test]
+fn smooth_surfaces_are_written_beside_the_bounds() {
+    let scratch = Scratch::new("surfaces");
+    scratch.write("exact.csv", &ellipsoid(0.0)).write("noisy.csv", &ellipsoid(1e-3));
+    let noise = ["--contact-noise", "1e-3", "--normal-noise", "1e-3"];
+    let spline = bounds(&scratch, &["exact.csv", "--surface", "spline", "-o", "spline"]);
+    let principal =
+        bounds(&scratch, &[&["noisy.csv", "--surface", "principal", "-o", "principal"], &noise[..]].concat());
+    for (kind, summary) in [("spline", &spline), ("principal", &principal)] {
+        let about = &summary["about"]["surface"];
+        assert_eq!((&about["kind"], &about["is_closed"]), (&kind.into(), &true.into()));
+        assert!(scratch.path().join(kind).join("smooth_surface.ply").is_file());
+    }
+    // An ellipsoid is nearly a constant in round coordinates.
+    assert!(spline["about"]["surface"]["residual_m"].as_f64().unwrap() < 1e-5);
+    let residual = principal["about"]["surface"]["residual_m"].as_f64().unwrap();
+    // Uniform within 1 mm: a deviation of 0.58 mm.
+    assert!((0.4e-3..0.75e-3).contains(&residual), "{residual}");
 }
 
 #[test]
@@ -246,6 +267,8 @@ fn what_does_not_go_together_is_named() {
         assert!(!scratch.path().join("out").exists() && run.stdout.is_empty());
     };
     refused(&["plane.csv", "--concave"], 2, &["--concave", "in the plane"]);
+    refused(&["plane.csv", "--surface", "spline"], 2, &["--surface", "in the plane"]);
+    refused(&["space.csv", "--surface", "spline", "--estimate-noise"], 2, &["spline", "take principal"]);
     refused(&["plane.csv", "--fit", "ball"], 2, &["ball", "in the plane"]);
     refused(&["plane.csv", "--plane-height", "1"], 2, &["--plane-height"]);
     let limits = ["--rho-max", "5", "--estimate-noise"];

@@ -184,7 +184,7 @@ impl Found {
 
     fn check_open(&mut self) {
         let Some(edge) = self.open else { return };
-        let stated = self.summary.as_ref().and_then(|s| s["about"]["concave"]["surface_is_closed"].as_bool());
+        let stated = self.summary.as_ref().and_then(|s| s["about"]["surface"]["is_closed"].as_bool());
         if stated == Some(false) {
             self.held.push(format!("{MAY_BE_OPEN}: open, as stated"));
         } else {

@@ -17,6 +17,7 @@
 //! # }
 //! ```
 
+mod approximation;
 mod bounds;
 mod curvature;
 mod distance;
@@ -26,6 +27,7 @@ mod sample;
 #[cfg(test)]
 mod tests;
 
+pub use approximation::{PrincipalCurve, SplineCurve};
 pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
 pub use curvature::{CurvatureBounds, CurvatureError, Disc, DiscIntersection, RoundedHull, Side};
 pub use exact_hull::planar::{
