@@ -22,7 +22,7 @@ pub(super) const STATED: Method = Method {
         use Way::*;
         &[Sphere, Revolution, Noise, Unstated, Correlation, Outliers, Size, Contacts, Cone]
     },
-    seeds: 10,
+    seeds: 30,
     every: 1,
     run: stated,
 };
@@ -34,7 +34,7 @@ pub(super) const CURVED: Method = Method {
         use Way::*;
         &[Sphere, Revolution, Noise, Unstated, Size, Contacts, Cone, Limit]
     },
-    seeds: 10,
+    seeds: 30,
     every: 1,
     run: curved,
 };

@@ -21,7 +21,7 @@ pub(super) const METHOD: Method = Method {
         use Way::*;
         &[Sphere, Revolution, Noise, Unstated, Correlation, Outliers, Size, Contacts, Cone, Family]
     },
-    seeds: 10,
+    seeds: 30,
     every: 1,
     run,
 };

@@ -21,7 +21,7 @@ pub(super) const METHOD: Method = Method {
         use Way::*;
         &[Unstated, Bias, Gain, Delay, Correlation, Gap, Dropped, Coefficient, Friction]
     },
-    seeds: 10,
+    seeds: 30,
     every: 1,
     run,
 };

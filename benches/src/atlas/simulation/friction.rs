@@ -20,7 +20,7 @@ pub(in super::super) const METHOD: Method = Method {
             Switches, Size, Tolerance,
         ]
     },
-    seeds: 4,
+    seeds: 12,
     every: 1,
     run,
 };

@@ -16,7 +16,7 @@ pub(in super::super) const METHOD: Method = Method {
         use Way::*;
         &[Parallel, Flat, Sphere, Relative, Force, Slow, Shaking, Long, Size, Tolerance]
     },
-    seeds: 10,
+    seeds: 30,
     every: 1,
     run,
 };

@@ -22,7 +22,7 @@ pub(in super::super) const METHOD: Method = Method {
             Size, Tolerance,
         ]
     },
-    seeds: 10,
+    seeds: 30,
     every: 1,
     run,
 };

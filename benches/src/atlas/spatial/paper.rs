@@ -26,7 +26,7 @@ pub(in super::super) const METHOD: Method = Method {
             Delay, Taxels, Outliers, Gap, Rate, Palm, Shaking, Long, Size,
         ]
     },
-    seeds: 10,
+    seeds: 30,
     every: 1,
     run,
 };
