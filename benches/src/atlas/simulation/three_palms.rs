@@ -3,7 +3,7 @@
 use super::super::judged::Ran;
 use super::super::spatial::scene::{Scene, Spec};
 use super::super::{Failure, Method, Way};
-use super::{GROWN, TOLERANCE};
+use super::{TOLERANCE, allowed, largest};
 use crate::multipliers::by_multipliers;
 use glam::{DQuat, DVec3};
 use recon::object_dynamics::integrate::Tolerance;
@@ -27,18 +27,11 @@ pub(in super::super) const METHOD: Method = Method {
     run,
 };
 
-/// Errors of a tolerance that steps make along a motion, of which each grows as much as one of the start does.
-const ERRORS: f64 = 10.0;
-
 /// How far two poses are apart, in sizes and rad, whichever is more.
 fn apart((p, q): (DVec3, DQuat), (p_of, q_of): (DVec3, DQuat), size: f64) -> f64 {
     let turn = q * q_of.inverse();
     let angle = 2.0 * DVec3::new(turn.x, turn.y, turn.z).length().atan2(turn.w.abs());
     (p.distance(p_of) / size).max(angle)
-}
-
-fn largest(all: impl Iterator<Item = f64>) -> f64 {
-    all.fold(0.0, |most, of| if of > most || of.is_nan() { of } else { most })
 }
 
 fn run(way: Way, strength: f64, seed: u64) -> Result<Ran, Failure> {
@@ -60,5 +53,5 @@ fn run(way: Way, strength: f64, seed: u64) -> Result<Ran, Failure> {
     let other = poses(InitialMotion { R_WO: DQuat::from_scaled_axis(DVec3::splat(tolerance)) * R_WO, w_WO });
     let grown =
         other.map_or(0.0, |other| largest(run.iter().zip(other).map(|(now, of)| apart(*now, of, size))));
-    Ok(Ran::Found { off: off / (GROWN * tolerance).max(ERRORS * grown), doubt: None })
+    Ok(Ran::Found { off: off / allowed(tolerance, grown), doubt: None })
 }
