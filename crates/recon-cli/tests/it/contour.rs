@@ -32,15 +32,18 @@ fn number(value: &Value) -> f64 {
 
 /// The support function of the waves at 0 is their farthest point; the hull is larger than they are.
 fn hull() -> f64 {
-    let points: Vec<[f64; 2]> = (0..20_000)
+    let points: Vec<[f64; 2]> = (0..5_000)
         .map(|k| {
-            let t = 2.0 * PI * f64::from(k) / 20_000.0;
+            let t = 2.0 * PI * f64::from(k) / 5_000.0;
             let r = SIZE * (1.0 + DEPTH * (3.0 * t).cos());
             [r * t.cos(), r * t.sin()]
         })
         .collect();
     // By its support function: the area is half of the integral of h (h + h'') over the normal; Cauchy's formula for the polygon of tangents.
-    let h = |u: f64| points.iter().map(|[x, y]| x * u.cos() + y * u.sin()).fold(f64::NEG_INFINITY, f64::max);
+    let h = |u: f64| {
+        let (sin, cos) = u.sin_cos();
+        points.iter().map(|[x, y]| x * cos + y * sin).fold(f64::NEG_INFINITY, f64::max)
+    };
     let count = 720;
     let heights: Vec<f64> = (0..count).map(|k| h(2.0 * PI * f64::from(k) / f64::from(count))).collect();
     let step = 2.0 * PI / f64::from(count);
