@@ -55,10 +55,12 @@ pub(super) fn still(record: &Record) -> Option<Reason> {
         forces[1].add(whole.z);
         variance += contacts.iter().map(|contact| contact.f_deviation.powi(2)).sum::<f64>();
     }
-    let [x, z] = forces.map(|of| of.beyond(variance / of.count.max(1.0)));
-    let rounding = SMALLEST * (forces[0].mean().hypot(forces[1].mean()));
-    let (spread, noise) = (x.max(z), (variance / forces[0].count.max(1.0)).sqrt().max(rounding));
-    let felt = spread * forces[0].count.sqrt() > FELT * noise;
+    let samples = forces[0].count;
+    let variance = variance / samples.max(1.0);
+    let [x, z] = forces.map(|of| of.beyond(variance));
+    let rounding = SMALLEST * forces[0].mean().hypot(forces[1].mean());
+    let (spread, noise) = (x.max(z), variance.sqrt().max(rounding));
+    let felt = spread * samples.sqrt() > FELT * noise;
     (!felt).then_some(Reason::Unchanging { forces: spread, noise })
 }
 

@@ -23,20 +23,24 @@ impl<const P: usize> Covariances<P> {
         self.errors.iter().fold(self.body, |sum, step| sum + step.body * step.body.transpose())
     }
 
+    /// Of the motion at node `j`, with all errors.
+    pub(super) fn of_motion(&self, j: usize) -> Transition {
+        let (own, follows) = &self.motions[j];
+        let all = own + follows * self.body * follows.transpose();
+        self.errors.iter().fold(all, |sum, step| sum + step.motions[j] * step.motions[j].transpose())
+    }
+
     /// Of the motion at node `j` and the constants, with all errors.
     pub(super) fn folded(&self, j: usize) -> Folded<P> {
         let (own, follows) = &self.motions[j];
         if self.errors.is_empty() {
             return (*own, *follows, self.body);
         }
-        let (mut motion, mut cross) = (own + follows * self.body * follows.transpose(), follows * self.body);
-        for step in &self.errors {
-            motion += step.motions[j] * step.motions[j].transpose();
-            cross += step.motions[j] * step.body.transpose();
-        }
+        let cross = |sum, step: &Step<P>| sum + step.motions[j] * step.body.transpose();
+        let cross = self.errors.iter().fold(follows * self.body, cross);
         let body = self.of_body();
         let follows = divided(&cross, &body).unwrap_or_else(SMatrix::zeros);
-        (motion - follows * body * follows.transpose(), follows, body)
+        (self.of_motion(j) - follows * body * follows.transpose(), follows, body)
     }
 }
 

@@ -149,9 +149,7 @@ fn evidence(about: &Value, contradiction: f64) -> Vec<Evidence> {
             "How far outlines are off the bounds, to the safe side.",
         ),
     ];
-    for (key, name, meaning) in lengths {
-        rows.extend(about[key].as_f64().map(|value| row(key, name, Number(value), "m", meaning)));
-    }
+    rows.extend(in_metres(about, &lengths));
     if let Some([min, max]) = about["radii_of_curvature_m"].as_array().map(Vec::as_slice) {
         let text = Text(format!("{min} to {max}"));
         rows.push(row("radii_of_curvature", "Radii of curvature", text, "m", "As they were stated."));
@@ -226,6 +224,13 @@ fn concave(of: &Value) -> Vec<Evidence> {
     [kept, radius].into_iter().flatten().collect()
 }
 
+/// Lengths that are there, by key, name and meaning.
+fn in_metres<'a>(of: &'a Value, all: &'a [(&str, &str, &str)]) -> impl Iterator<Item = Evidence> + 'a {
+    all.iter().filter_map(|(key, name, meaning)| {
+        of[*key].as_f64().map(|value| row(key, name, Number(value), "m", meaning))
+    })
+}
+
 /// A smooth surface.
 fn surface(of: &Value) -> Vec<Evidence> {
     let Some(kind) = of["kind"].as_str() else { return Vec::new() };
@@ -247,9 +252,7 @@ fn surface(of: &Value) -> Vec<Evidence> {
             "On the average, since it is curved, if contacts are off alike in all directions.",
         ),
     ];
-    for (key, name, meaning) in lengths {
-        rows.extend(of[key].as_f64().map(|value| row(key, name, Number(value), "m", meaning)));
-    }
+    rows.extend(in_metres(of, &lengths));
     rows
 }
 

@@ -2,7 +2,7 @@ use crate::log::LogFileError;
 use recon::contact_kinematics::{DirectionError, PalmError, ShapeError, SurfaceError};
 use recon::object_dynamics::planar::{self, PlanarMassError};
 use recon::object_dynamics::{ContactSceneError, ContactSimulationError, DriveError, MassError};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// A scene file that cannot be used: which file, and what is wrong with it where.
@@ -13,6 +13,17 @@ pub struct SceneError {
     pub path: PathBuf,
     /// What is wrong.
     pub kind: SceneErrorKind,
+}
+
+impl SceneError {
+    /// What is read of the text of a file; what is wrong with either names it.
+    pub(super) fn in_file<T>(
+        path: &Path,
+        parse: impl FnOnce(&str) -> Result<T, SceneErrorKind>,
+    ) -> Result<T, Self> {
+        let text = std::fs::read_to_string(path).map_err(SceneErrorKind::from);
+        text.and_then(|text| parse(&text)).map_err(|kind| Self { path: path.to_owned(), kind })
+    }
 }
 
 /// What is wrong with a scene. Keys are named by their full path, such as `object.mass`.

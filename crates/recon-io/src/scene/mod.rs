@@ -202,9 +202,8 @@ impl Scene {
     /// [`SceneError`] names the file and the key.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
-        let in_file = |kind| SceneError { path: path.to_owned(), kind };
-        let text = std::fs::read_to_string(path).map_err(|e| in_file(e.into()))?;
-        Self::in_folder(&text, path.parent().unwrap_or(Path::new(""))).map_err(in_file)
+        let folder = path.parent().unwrap_or(Path::new(""));
+        SceneError::in_file(path, |text| Self::in_folder(text, folder))
     }
 
     /// Reads a scene from TOML text. Files that it names are looked for in the present folder.

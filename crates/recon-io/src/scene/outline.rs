@@ -111,10 +111,7 @@ impl OutlineScene {
     /// # Errors
     /// [`SceneError`] names the file and the key.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        let path = path.as_ref();
-        let in_file = |kind| SceneError { path: path.to_owned(), kind };
-        let text = std::fs::read_to_string(path).map_err(|e| in_file(e.into()))?;
-        Self::parse(&text).map_err(in_file)
+        SceneError::in_file(path.as_ref(), Self::parse)
     }
 
     /// The same from TOML text.

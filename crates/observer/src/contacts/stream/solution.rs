@@ -88,9 +88,7 @@ impl Of<'_> {
 
     /// Covariance of the turn from the window's start to node `j`.
     pub(super) fn turn(&self, j: usize) -> Matrix3<f64> {
-        let (own, follows, body) = self.covariances.folded(j);
-        let all = own + follows * body * follows.transpose();
-        all.fixed_view::<3, 3>(9, 9) * self.evidence().widening().powi(2)
+        self.covariances.of_motion(j).fixed_view::<3, 3>(9, 9) * self.evidence().widening().powi(2)
     }
 
     fn evidence(&self) -> ContactEvidence {

@@ -11,9 +11,10 @@ fn with_impulses(noise: ContactNoiseLevel, share: f64) -> ContactNoiseLevel {
 
 /// The log with its palms as `change` leaves them.
 fn changed(log: &ContactLog, change: impl Fn(usize, &mut PalmRecord)) -> ContactLog {
-    let mut records = log.records();
-    records.iter_mut().enumerate().for_each(|(i, record)| change(i, record));
-    ContactLog::new(log.times().to_vec(), records, log.truth().map(<[_]>::to_vec)).unwrap()
+    with_records(log, |i, mut record| {
+        change(i, &mut record);
+        record
+    })
 }
 
 fn without_forces(log: &ContactLog) -> ContactLog {

@@ -18,23 +18,23 @@ fn of(found: &ContactEstimate, fault: SensorFault) -> Suspect {
 
 /// The log as palms tell it whose forces are to be changed.
 fn forces(log: &ContactLog, change: impl Fn(usize, usize, &[DVec3]) -> DVec3) -> ContactLog {
-    let mut records = log.records();
-    for (i, record) in records.iter_mut().enumerate() {
+    with_records(log, |i, record| {
         let ForceChannel::Three(told) = &record.force else { panic!("forces of three axes") };
         let changed = (0..told.len()).map(|k| change(i, k, told)).collect();
-        record.force = ForceChannel::Three(changed);
-    }
-    ContactLog::new(log.times().to_vec(), records, log.truth().map(<[_]>::to_vec)).unwrap()
+        PalmRecord { force: ForceChannel::Three(changed), ..record }
+    })
 }
 
 /// The log as it is told by a palm that says contacts to be elsewhere along its x axis, m.
 fn shifted(log: &ContactLog, palm: usize, by: f64) -> ContactLog {
-    let mut records = log.records();
-    let ContactPoints::World(points) = &mut records[palm].contacts else { panic!("points in the world") };
-    for (k, point) in points.iter_mut().enumerate().filter_map(|(k, point)| Some((k, point.as_mut()?))) {
-        *point += log.palms()[palm].motion(k).pose.R_WP * (DVec3::X * by);
-    }
-    ContactLog::new(log.times().to_vec(), records, log.truth().map(<[_]>::to_vec)).unwrap()
+    with_records(log, |i, mut record| {
+        let ContactPoints::World(points) = &mut record.contacts else { panic!("points in the world") };
+        for (k, point) in points.iter_mut().enumerate().filter(|_| i == palm) {
+            let moved = log.palms()[palm].motion(k).pose.R_WP * (DVec3::X * by);
+            *point = point.map(|point| point + moved);
+        }
+        record
+    })
 }
 
 #[test]

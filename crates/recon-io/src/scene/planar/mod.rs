@@ -125,10 +125,7 @@ impl PlanarScene {
     /// # Errors
     /// [`SceneError`] names the file and the key.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        let path = path.as_ref();
-        let in_file = |kind| SceneError { path: path.to_owned(), kind };
-        let text = std::fs::read_to_string(path).map_err(|e| in_file(e.into()))?;
-        Self::parse(&text).map_err(in_file)
+        SceneError::in_file(path.as_ref(), Self::parse)
     }
 
     /// Reads a scene of the plane from TOML text.
@@ -144,10 +141,7 @@ impl PlanarScene {
     /// # Errors
     /// [`SceneError`] names the file and the key.
     pub fn read_known(path: impl AsRef<Path>) -> Result<PlanarKnown, SceneError> {
-        let path = path.as_ref();
-        let in_file = |kind| SceneError { path: path.to_owned(), kind };
-        let text = std::fs::read_to_string(path).map_err(|e| in_file(e.into()))?;
-        Self::parse_known(&text).map_err(in_file)
+        SceneError::in_file(path.as_ref(), Self::parse_known)
     }
 
     /// The same from TOML text.
