@@ -7,6 +7,8 @@ use recon_io::{Evidence, Level, brief_to};
 
 /// Chi-squared over the conditions up to which a log is explained, as the estimator has it.
 const EXPLAINED: f64 = 1.4;
+/// Deviations of a constant from what it was taken for that chance does not explain, as the estimator has it.
+pub(super) const UNEXPLAINED: f64 = 4.75;
 /// Decades of odds up to which explanations are told side by side.
 const TOLD_APART: f64 = 2.0;
 /// Deviations beyond which an error counts as wrong.
@@ -35,7 +37,7 @@ pub(super) fn suspects(all: &[Suspect]) -> Vec<Evidence> {
                    motion by one of its deviations.";
     vec![
         Evidence {
-            level: if first.score().abs() > 4.75 { Level::Bad } else { Level::Good },
+            level: if first.score().abs() > UNEXPLAINED { Level::Bad } else { Level::Good },
             ..neutral("sensor_faults", "Constants of the sensors", Text(said.join("; ")), "", meaning)
         },
         neutral("sensor_accuracy_needed", "Needed to be known to", Text(needed.join("; ")), "", matters),

@@ -3,15 +3,16 @@
 use super::bounds::NOTABLE_NOISE;
 use super::bounds::{BoundsResult, bounds};
 use super::folder::write_touch_folder;
+use super::sensor_words::UNEXPLAINED;
 use super::without_forces_page::without_forces_page;
 use crate::error::CliError;
 use crate::progress::Progress;
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::SensorLog;
-use recon::observer::{KnownTouch, NoForceEstimate, estimate_without_forces};
+use recon::observer::{KnownTouch, NoForceEstimate, Suspect, estimate_without_forces};
 use recon::shape_bounds::ContactSample;
-use recon_io::{FolderTarget, MotionState, Scene, SummaryOf, brief, brief_to, status_in_words};
+use recon_io::{FolderTarget, MotionState, Scene, SummaryOf, brief, brief_to, sensor_fault, status_in_words};
 use serde_json::{Value, json};
 use std::error::Error;
 
@@ -42,7 +43,14 @@ pub(crate) fn without_forces(
     let found = estimate_without_forces(&log, &known)?;
     progress.step("bounding the shape");
     let noise = found.evidence.noise_explains;
-    let bounded = if noise > NOTABLE_NOISE * found.shape.semi_axes.max_element() {
+    let against = contradicted(&found.evidence.suspects);
+    let bounded = if let Some(against) = against {
+        warnings.push(format!(
+            "The contacts speak against what the scene and the log say of the palms: {against}. It counts in all deviations; bounds on the shape, which \
+             take palms as they are said to stand, are not given."
+        ));
+        None
+    } else if noise > NOTABLE_NOISE * found.shape.semi_axes.max_element() {
         warnings.push(format!(
             "There are no bounds on the shape: means of contacts are noisy by {noise:.1e} m, and without forces it is not known \
              how far that moves the poses. The fitted ellipsoid comes with its deviations."
@@ -62,6 +70,12 @@ pub(crate) fn without_forces(
         }
     };
     Ok(WithoutForces { found, bounded, warnings })
+}
+
+/// The constant that is farthest from what it was taken for, if chance does not take it there.
+fn contradicted(suspects: &[Suspect]) -> Option<&Suspect> {
+    let most = suspects.iter().max_by(|a, b| a.score().abs().total_cmp(&b.score().abs()))?;
+    (most.score().abs() > UNEXPLAINED).then_some(most)
 }
 
 impl WithoutForces {
@@ -146,6 +160,7 @@ fn figures(made: &WithoutForces) -> Value {
         "condition": evidence.condition,
         "weakest": evidence.weakest,
         "std_weakest": evidence.weakest_deviation,
+        "sensor_faults": evidence.suspects.iter().filter(|of| of.deviation.is_finite()).map(sensor_fault).collect::<Vec<_>>(),
         "bounds": bounded.as_ref().map(|b| json!({
             "lower_volume_m3": b.drawn.lower.volume,
             "upper_volume_m3": b.drawn.upper.as_ref().map(|u| u.volume),

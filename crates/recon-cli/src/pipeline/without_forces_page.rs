@@ -1,5 +1,6 @@
 //! The page of motion and shape without forces.
 
+use super::sensor_words::suspects;
 use super::views::views;
 use super::without_forces::WithoutForces;
 use glam::{DVec2, DVec3};
@@ -112,7 +113,7 @@ fn rows(made: &WithoutForces) -> Vec<Evidence> {
         let [key, name, unit, meaning] = [key, name, unit, meaning].map(str::to_owned);
         Evidence { key, name, value, unit, meaning, level: Level::Neutral }
     };
-    vec![
+    let mut rows = vec![
         row("status", "Fit", Text(status_in_words(of.status)), "", "How the fit ended."),
         row("samples", "Samples", Count(of.samples as u64), "", "Those that were used."),
         row("residual_rms", "Residual", Number(of.residual_rms), "m", "Root mean square of what is left."),
@@ -132,5 +133,7 @@ fn rows(made: &WithoutForces) -> Vec<Evidence> {
             "",
             "The direction that the log tells worst.",
         ),
-    ]
+    ];
+    rows.extend(suspects(&of.suspects));
+    rows
 }
