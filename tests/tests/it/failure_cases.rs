@@ -117,7 +117,7 @@ fn parallel_palms_are_right_or_reported() {
         let palms = azimuths.map(|a| Palm::fixed(a.to_radians(), 60f64.to_radians()).unwrap());
         let scene = ThreePalmScene::new(Ellipsoid::new(axes).unwrap(), mass, palms, 9.81).unwrap();
         let start = InitialMotion { R_WO: DQuat::IDENTITY, w_WO: DVec3::new(0.0, 0.1, 0.1) };
-        let times = SampleTimes { duration: few_or_all(0.5, 3.0), rate: 100.0 };
+        let times = SampleTimes { duration: few_or_all(0.8, 3.0), rate: 100.0 };
         let Ok(simulation) = scene.simulate(start, times, Tolerance::uniform(1e-13)) else { continue };
         let Ok(log) = simulation.sensor_log(&scene) else { continue };
         let found = exactly(&scene, &log.split_truth().0, true).unwrap();
