@@ -9,6 +9,8 @@ const ROWS: &str = "target/study-rows";
 
 /// The study of the fuzz targets, which are outside of the workspace.
 const FUZZ: &str = "fuzz_targets";
+/// The study that reads with another crate, which a feature switches on.
+const URDF: &str = "exported_objects";
 
 /// Name of a study, the file under docs/ that it writes, and what it is about. Which are made in parts, and why others are not, stands in the
 /// table of `benches/src/studies/main.rs`, and is told where a part is asked for.
@@ -229,7 +231,8 @@ pub(crate) fn main(mut words: impl Iterator<Item = String>) -> ExitCode {
     let mut command = if *name == FUZZ {
         cargo("run --release --quiet --locked --manifest-path fuzz/Cargo.toml --bin study --")
     } else {
-        cargo(&format!("run --release --quiet --package recon-benches --bin study -- {name}"))
+        let features = if *name == URDF { " --features urdf" } else { "" };
+        cargo(&format!("run --release --quiet --package recon-benches{features} --bin study -- {name}"))
     };
     let path = root().join("docs").join(file);
     let written = output(command.args(&words)).and_then(|table| match is_part {

@@ -27,6 +27,7 @@ mod contact_logs;
 mod contact_modes_estimated;
 mod contact_wedging;
 mod contour;
+#[cfg(feature = "urdf")]
 mod exported_objects;
 mod least_model;
 mod mode_bank;
@@ -88,6 +89,7 @@ const STUDIES: &[(&str, Parts, Run)] = &[
     ("contact_logs", SHORT, || in_words(contact_logs::main())),
     ("contact_wedging", DRAWN, || in_words(contact_wedging::main())),
     ("contour", SHORT, || in_words(contour::main())),
+    #[cfg(feature = "urdf")]
     ("exported_objects", SHORT, || in_words(exported_objects::main())),
     ("least_model", TIMES, || in_words(least_model::main())),
     ("contact_modes_estimated", SHORT, || in_words(contact_modes_estimated::main())),

@@ -60,7 +60,7 @@ fn a_wrong_force_gain_is_reported() {
 #[test]
 fn a_noisy_log_goes_on_where_a_palm_is_lost() {
     let (scene, start) = g2();
-    let (_, log) = exact_log(&scene, start, 2.0, few_or_all(100.0, 250.0));
+    let (_, log) = exact_log(&scene, start, few_or_all(1.2, 2.0), few_or_all(100.0, 250.0));
     let noisy = log.with_noise(&NOISE, 4).unwrap();
     let early = changed(&noisy, |k, i, palm| {
         if i == 0 && k >= log.samples().len() / 4 {

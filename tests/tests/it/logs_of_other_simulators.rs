@@ -48,11 +48,11 @@ fn check(path: &Path, case: &Case) {
 #[test]
 fn excerpts_are_reconstructed() {
     let excerpts = [
-        (case("dr_D_tilted", TILTED, 9.81, 3e-4, 1e-3), "dr_D_tilted_thinned.csv"),
         (case("mj_B_gentle", FIG5, 1.0, 2e-5, 5e-5), "mj_B_gentle_thinned.csv"),
+        (case("dr_D_tilted", TILTED, 9.81, 3e-4, 1e-3), "dr_D_tilted_thinned.csv"),
         (case("mj_A_fig5", FIG5, 9.81, 2e-5, 5e-5), "mj_A_fig5_thinned.csv"),
     ];
-    for (case, thinned) in &excerpts[..few_or_all(2, 3)] {
+    for (case, thinned) in &excerpts[..few_or_all(1, 3)] {
         check(&Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(thinned), case);
     }
 }

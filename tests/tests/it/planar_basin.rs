@@ -118,7 +118,12 @@ fn undamped(model: &TorquesAlone, samples: &[Sample<TorqueInput, 2>], start: &St
         if estimate.report.status == Status::Diverged {
             return V5::zeros();
         }
+        let at_rest = (estimate.first_state - last).amax() < 1e-13;
         last = estimate.first_state;
+        // Further steps would not move it.
+        if at_rest {
+            break;
+        }
     }
     last
 }

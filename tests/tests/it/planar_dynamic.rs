@@ -96,7 +96,8 @@ fn figure_3_of_the_paper() {
 fn exact_logs_are_right_within_what_they_say() {
     for &name in few_or_all(&SCENES[1..2], &SCENES) {
         let (object, motion, start) = scene(name);
-        for (rate, most) in [(1000.0, 1e-6), (250.0, 2e-5), (100.0, 1e-3)] {
+        let rates = [(100.0, 1e-3), (250.0, 2e-5), (1000.0, 1e-6)];
+        for &(rate, most) in &rates[..few_or_all(2, 3)] {
             let run = simulate_prescribed(&object, &motion, start, &times(rate, 1.0), 1e-13).unwrap();
             let log = run.log().unwrap().contact_log([0.0; 2]).unwrap();
             let noise = plane_noise(&log, &[Some(0.0); 2], noise_level(0.0, 0.0, SIZE).floor).unwrap();

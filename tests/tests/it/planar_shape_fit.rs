@@ -5,6 +5,7 @@ use recon::contact_kinematics::planar::{PairContact, RadiusFunction};
 use recon::object_dynamics::planar::*;
 use recon::observer::Status;
 use recon::observer::planar::*;
+use recon_tests::few_or_all;
 
 struct Outcome {
     radius_rms: f64,
@@ -86,7 +87,7 @@ fn an_ellipse_finds_its_order() {
     let object = PlanarObject { shape, mass, gravity: 9.81 };
     let motion = ConstantRates { angles: [0.75, 1.6], rates: [0.2, 0.0] };
     let start = PlanarStart { phi0: 0.3, omega0: 7.0 };
-    for (seed, order) in [(1, 5), (2, 5), (3, 2)] {
+    for &(seed, order) in few_or_all(&[(2, 5), (3, 2)][..], &[(1, 5), (2, 5), (3, 2)]) {
         let run = simulate_prescribed(&object, &motion, start, &times(250.0, 1.5), 1e-13).unwrap();
         let noise = PlanarNoise { contact: 1e-4, ..PlanarNoise::default() };
         let log = noise.add_to(&run.log().unwrap(), seed);

@@ -9,9 +9,10 @@ pub(crate) fn format() -> Result<Outcome, String> {
     all(["fmt --all --check".to_owned()])
 }
 
-/// The module for Python as well: it is checked without a Python.
+/// The module for Python as well, which is checked without a Python, and the study of another reader.
 pub(crate) fn lint() -> Result<Outcome, String> {
-    all(["clippy --workspace --all-targets --features recon-py/extension -- -D warnings".to_owned()])
+    all(["clippy --workspace --all-targets --features recon-py/extension,recon-benches/urdf -- -D warnings"
+        .to_owned()])
 }
 
 /// Of what others use. Libraries only: the command of `recon-cli` has the name of the facade, and their pages would overwrite each other.
@@ -58,8 +59,8 @@ pub(crate) fn fuzz() -> Result<Outcome, String> {
         .chain(["clippy", "test"].map(|line| format!("{line} --locked --manifest-path fuzz/Cargo.toml"))))
 }
 
-/// Its features are on where everything is linted, and no crate has it in its tree.
-const LINTED: &str = "recon-py";
+/// Their features are on where everything is linted, and no crate has them in its tree.
+const LINTED: [&str; 2] = ["recon-py", "recon-benches"];
 
 /// All features of all members, each without the others and without the default ones. By clippy as the steps before, since what that
 /// has checked a plain check would check again.
@@ -70,7 +71,8 @@ pub(crate) fn features() -> Result<Outcome, String> {
 fn feature_lines(metadata: &Metadata) -> Vec<String> {
     let pairs =
         metadata.members().flat_map(|member| member.features.iter().map(move |feature| (member, feature)));
-    let pairs = pairs.filter(|(member, feature)| *feature != "default" && member.name != LINTED);
+    let pairs =
+        pairs.filter(|(member, feature)| *feature != "default" && !LINTED.contains(&member.name.as_str()));
     let line = |package: &str, feature: &str| {
         format!("clippy --package {package} --no-default-features --features {feature} -- -D warnings")
     };

@@ -1,5 +1,6 @@
 //! Outlines that are not convex, followed by a round finger: on either side of the radius that gets into the hollows.
 
+use crate::rolling::few_or_all;
 use contact_kinematics::planar::Ellipse;
 use exploration::Heading;
 use exploration::contour::{
@@ -146,17 +147,20 @@ fn bounds_of_the_hull_under_noise_are_sound() {
     let body = bodies()[1];
     let noise = [1e-3, 2e-3];
     let margins = Margins::of_noise(noise, 0.95, 2000).unwrap();
-    let mut wrong = 0;
-    for (seed, share) in (0..8).map(|seed| (seed, if seed % 2 == 0 { 0.7 } else { 1.5 })) {
+    let heights = Direction::spread(12).into_iter().map(|u| {
+        let point = |k: u32| body.at(TAU * f64::from(k) / 1000.0).point.dot(u.get());
+        (u, (0..1000).map(point).fold(f64::NEG_INFINITY, f64::max))
+    });
+    let heights: Vec<_> = heights.collect();
+    let (seeds, most, mut wrong) = (few_or_all(4, 8), few_or_all(1, 2), 0);
+    for (seed, share) in (0..seeds).map(|seed| (seed, if seed % 2 == 0 { 0.7 } else { 1.5 })) {
         let finger = SimulatedFinger::new(body, share * body.hollow().unwrap()).unwrap();
         let mut finger = finger.with_noise(noise[0], noise[1], seed);
         let with = Tracing { doubt: margins.of_turn(), readings: 2000, ..tracing(0.05) };
         let found = trace(&mut finger, &with).unwrap();
         let bounds = HullBounds::of(&found, margins).unwrap();
         let mut holds = true;
-        for u in Direction::spread(12) {
-            let point = |k: u32| body.at(TAU * f64::from(k) / 1000.0).point.dot(u.get());
-            let h = (0..1000).map(point).fold(f64::NEG_INFINITY, f64::max);
+        for &(u, h) in &heights {
             let (low, high) = bounds.support(u);
             holds &= low <= h + 1e-5 && h <= high;
             // Both margins, what the path bulges by over a step of 0.05, and what is between touches.
@@ -172,8 +176,8 @@ fn bounds_of_the_hull_under_noise_are_sound() {
         }
         wrong += usize::from(!holds);
     }
-    // At 95 % three of eight would be seen once in two hundred tries, were it no more than that.
-    assert!(wrong <= 2, "{wrong}");
+    // At 95 % two of four would be seen once in seventy tries, three of eight once in two hundred, were it no more than that.
+    assert!(wrong <= most, "{wrong}");
 }
 
 /// A margin that is too small is found out: a hull of noisy touches that are taken for exact does not hold.

@@ -86,7 +86,10 @@ fn three_planes_are_simulated_through_modes_and_estimated_from_their_log() {
     }
     // The three fingertips and the table of another scene are not three planes.
     scratch.write("pick-up.toml", include_str!("../../scenes/pick-up.toml"));
-    assert_eq!(scratch.run(&["simulate", "pick-up.toml", "-o", "four.csv"]).code, Some(0));
+    assert_eq!(
+        scratch.run(&["simulate", "pick-up.toml", "-o", "four.csv", "--tolerance", "1e-6"]).code,
+        Some(0)
+    );
     let run =
         scratch.run(&["reconstruct", "four.csv", "--scene", "pick-up.toml", "-o", "no", "--without-forces"]);
     assert_eq!(run.code, Some(3), "{}", run.stdout);

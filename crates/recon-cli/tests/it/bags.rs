@@ -1,6 +1,7 @@
 //! Bags of ROS 2 through the command: looked over, mapped, reconstructed, written.
 
 use crate::common::{Run, Scratch};
+use recon_tests::few_or_all;
 use serde_json::Value;
 use std::path::PathBuf;
 
@@ -80,6 +81,10 @@ fn assert_table(dir: &Scratch, bag: &str) {
         again.stderr
     );
     assert!(again.stdout.contains("241 samples over 1 s"), "{}", again.stdout);
+    // It is the same log: what else is made of it is another second.
+    if few_or_all(true, false) {
+        return;
+    }
     let run = dir.run(&["reconstruct", "log.csv", "-s", "scene.toml", "-o", "again"]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let [of_bag, of_csv] = ["out", "again"].map(|out| dir.read(&format!("{out}/motion.csv")));
@@ -101,7 +106,9 @@ fn assert_table(dir: &Scratch, bag: &str) {
 fn a_bag_of_three_planes_goes_to_their_estimator() {
     let dir = Scratch::new("bag-planes");
     dir.write("scene.toml", include_str!("../../scenes/fig5.toml"));
-    let bag = bag("fig5.mcap");
+    // Two tenths of a second, or four seconds of the same: the first is too short to rely on.
+    let (name, code) = few_or_all(("whole_short.mcap", 4), ("fig5.mcap", 0));
+    let bag = bag(name);
     assert_eq!(dir.run(&["inspect", &bag, "-o", "map.toml"]).code, Some(0));
     let made = dir.run(&[
         "reconstruct",
@@ -115,10 +122,12 @@ fn a_bag_of_three_planes_goes_to_their_estimator() {
         "--mcap",
         "--json",
     ]);
-    assert_eq!(made.code, Some(0), "{}{}", made.stdout, made.stderr);
-    // The simulator that made the log departs from exact dynamics by 9e-7 m over 4 s.
-    let error = json(&made)["largest_error"]["position_m"].as_f64().unwrap();
-    assert!(error < 3e-6, "{error}");
+    assert_eq!(made.code, Some(code), "{}{}", made.stdout, made.stderr);
+    if code == 0 {
+        // The simulator that made the log departs from exact dynamics by 9e-7 m over 4 s.
+        let error = json(&made)["largest_error"]["position_m"].as_f64().unwrap();
+        assert!(error < 3e-6, "{error}");
+    }
     assert!(dir.path().join("out/result.mcap").is_file());
     assert_eq!(dir.run(&["check", "out"]).code, Some(0));
 }

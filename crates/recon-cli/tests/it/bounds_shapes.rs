@@ -52,7 +52,7 @@ fn directions(count: usize) -> impl Iterator<Item = [f64; 3]> {
 /// Contacts on the ellipsoid 2, 1.5, 1, points off by up to `noise`.
 fn ellipsoid(noise: f64) -> String {
     let mut text = String::from("x,y,z,nx,ny,nz\n");
-    for (k, n) in directions(300).enumerate() {
+    for (k, n) in directions(200).enumerate() {
         let axes = [2.0, 1.5, 1.0];
         let h = (0..3).map(|i| (axes[i] * n[i]).powi(2)).sum::<f64>().sqrt();
         let x = |i: usize| axes[i] * axes[i] * n[i] / h + noise * wobble(3 * k + i);
@@ -61,7 +61,7 @@ fn ellipsoid(noise: f64) -> String {
     text
 }
 
-const WAIST: usize = 300;
+const WAIST: usize = 220;
 
 /// Contacts on a body of revolution with a waist: `r = 1 + 0.35 cos 2 polar`.
 fn waist() -> String {

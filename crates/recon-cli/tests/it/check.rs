@@ -17,7 +17,6 @@ fn results_of_every_command_hold_until_they_are_changed() {
         (&["bounds", "out/contact_curves.csv", "--rho-max", "7", "-o", "sharp"], "sharp"),
         (&["bounds", "flat.csv", "-o", "flat"], "flat"),
         (&["bounds", "flat.csv", "--rho-max", "2", "--rho-min", "0.5", "-o", "round"], "round"),
-        (&["planar", "-o", "planar"], "planar"),
     ] {
         let run = scratch.run(arguments);
         assert_eq!(run.code, Some(0), "{arguments:?}: {}{}", run.stdout, run.stderr);

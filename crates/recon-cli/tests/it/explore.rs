@@ -1,6 +1,7 @@
 //! Where to touch next, from a scene to a proof.
 
 use crate::common::Scratch;
+use recon_tests::few_or_all;
 use serde_json::Value;
 
 const SPACE: &str = include_str!("../../scenes/fig5.toml");
@@ -164,8 +165,10 @@ fn palms_turn_until_the_gap_is_proven_and_say_what_they_cannot() {
     assert!(to(0) > 0.0 && to(1) < 3.1 && to(1) - to(0) > 0.5, "{next}");
     assert!(next["action"]["expected"]["area_m2"].as_f64().unwrap() > 0.0);
     // The same seed gives the same folder, to the last byte.
-    scratch.run(&rolling(&["--until", "gap=0.2", "-o", "again"]));
-    assert_eq!(scratch.read("again/report.html"), page);
+    if few_or_all(false, true) {
+        scratch.run(&rolling(&["--until", "gap=0.2", "-o", "again"]));
+        assert_eq!(scratch.read("again/report.html"), page);
+    }
     let refusals = [
         (vec!["explore", "space.toml", "--rolling", "--until", "gap=0.2"], "is a scene of space"),
         (rolling(&["--planner", "gaussian", "--until", "gap=0.2"]), "use per-second"),

@@ -130,7 +130,7 @@ fn bounds_hold_under_noise_and_keep_most_of_the_volume() {
     let scratch = Scratch::new("margins");
     let text = fig5().replace("sample_rate = 100.0", "sample_rate = 200.0");
     let mut free = [0.0; 2];
-    for (level, seed) in [(0.0, 0), (1e-3, 1), (1e-2, 3)] {
+    for &(level, seed) in few_or_all(&[(0.0, 0), (1e-2, 3)][..], &[(0.0, 0), (1e-3, 1), (1e-2, 3)]) {
         let sensors = format!("\n[sensors]\ncontact_std = {}\nforce_std = {}\n", 2.5 * level, 9.81 * level);
         let seeded = text.replace("[simulation]", &format!("[simulation]\nseed = {seed}"));
         scratch.write("scene.toml", &if level > 0.0 { seeded + &sensors } else { seeded });

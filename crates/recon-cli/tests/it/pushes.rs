@@ -19,7 +19,7 @@ fn pushed(name: &str) -> Scratch {
         sliding_force: 4.0,
         compliance: 5e-5,
     };
-    let log = simulate_pushes(&scene, &PushDisturbances::default(), 24, 5).unwrap().log;
+    let log = simulate_pushes(&scene, &PushDisturbances::default(), 16, 5).unwrap().log;
     let logs = BTreeMap::from([(3, log)]);
     let (mut samples, mut poses) = (Vec::new(), Vec::new());
     recon_io::write_push_samples(&logs, &mut samples).unwrap();

@@ -1,4 +1,4 @@
-use super::{SIZE, body, few_or_all, palms};
+use super::{Body, SIZE, body, few_or_all, palms};
 use exploration::generators::Family;
 use exploration::planar::{Noise, PlanarKnowledge};
 use exploration::rolling::{
@@ -25,8 +25,7 @@ fn task(gap: f64) -> RollTask {
 }
 
 /// Largest amount, in m, by which the true body protrudes from the bounds.
-fn protrusion(known: &PlanarKnowledge, family: Family, seed: u64) -> f64 {
-    let truth = body(family, seed);
+fn protrusion(known: &PlanarKnowledge, truth: &Body) -> f64 {
     let off = |u: &Direction| {
         let (low, high) = known.support(*u);
         let h = truth.farthest(u.angle()).dot(u.get());
@@ -42,26 +41,27 @@ fn run(
     task: &RollTask,
 ) -> (RollOutcome, Vec<RollStep>) {
     let mut known = PlanarKnowledge::exact();
-    let mut steps = Vec::new();
+    let (truth, mut steps) = (body(family, seed), Vec::new());
     let outcome = explore_rolling(&mut known, planner, &mut palms(family, seed), task, |step, known| {
         steps.push(*step);
-        assert!(protrusion(known, family, seed) < 1e-9, "{family:?} {seed} after {step:?}");
+        assert!(protrusion(known, &truth) < 1e-9, "{family:?} {seed} after {step:?}");
     });
     (outcome.unwrap(), steps)
 }
 
 #[test]
 fn the_body_is_between_the_bounds_at_every_step_of_every_planner() {
-    // A few: every planner on one family, every family with one planner at least. All: each with each.
+    // A few: every planner on one family, every family with one planner at least, to a coarser goal. All: each with each.
+    let goal = few_or_all(0.2, 0.1);
     for (k, family) in Family::ALL.into_iter().enumerate() {
         let here = |j: usize| few_or_all(j % Family::ALL.len() == k, true);
         for (_, mut planner) in planners(3).into_iter().enumerate().filter(|(j, _)| here(*j)) {
-            let (outcome, steps) = run(&mut *planner, family, 3, &task(0.1));
+            let (outcome, steps) = run(&mut *planner, family, 3, &task(goal));
             let proven = outcome.certificate().proven;
             assert!(steps.windows(2).all(|w| w[1].progress <= w[0].progress + 1e-12), "{}", planner.name());
             assert!(steps.windows(2).all(|w| w[1].radians >= w[0].radians && w[1].seconds >= w[0].seconds));
             assert_eq!(steps.last().unwrap().progress, proven);
-            assert_eq!(matches!(outcome, RollOutcome::Reached(_)), proven <= 0.1);
+            assert_eq!(matches!(outcome, RollOutcome::Reached(_)), proven <= goal);
         }
     }
 }
@@ -112,16 +112,17 @@ fn normals_that_no_motion_was_found_for_are_named() {
 fn under_noise_bounds_hold_and_the_goal_is_proven() {
     let spending = Spending::Budget(60);
     let (mut wrong, mut reached) = (0, 0);
-    for seed in 0..8 {
+    let (seeds, most, least) = few_or_all((4, 1, 2), (8, 2, 5));
+    for seed in 0..seeds {
         let confidence = Confidence::new(0.95, spending).unwrap();
         let mut known = PlanarKnowledge::noisy(Noise { point: 1.5e-3, normal: 2e-3, confidence });
         let mut hands = palms(Family::Sum, seed).with_noise(1.5e-3, 2e-3, seed);
         let mut planner = InformationRate::new(seed, 1).per_radian();
         let task = RollTask { spending: Some(spending), ..task(0.2) };
         let outcome = explore_rolling(&mut known, &mut planner, &mut hands, &task, |_, _| ()).unwrap();
-        wrong += usize::from(protrusion(&known, Family::Sum, seed) > 1e-9);
+        wrong += usize::from(protrusion(&known, &body(Family::Sum, seed)) > 1e-9);
         reached += usize::from(matches!(outcome, RollOutcome::Reached(_)));
     }
-    // At 95 % more than 2 of 8 have a probability of six in a thousand.
-    assert!(wrong <= 2 && reached >= 5, "{wrong} {reached}");
+    // At 95 % more than 1 of 4 have a probability of one in seventy, more than 2 of 8 of six in a thousand.
+    assert!(wrong <= most && reached >= least, "{wrong} {reached}");
 }

@@ -55,7 +55,7 @@ fn harmonics_are_held_convex_and_nearer_to_the_truth() {
     let body = Ellipsoid::new(DVec3::new(1.0, 0.9, 0.6)).unwrap();
     let family = ShapeFamily::Harmonics { degree: 4 };
     let mut held = 0;
-    let runs = crate::few_or_all(6, 12);
+    let runs = crate::few_or_all(4, 12);
     for seed in 0..runs {
         let mut s = Source::new(seed + 500);
         let normals: Vec<DVec3> = scattered(120, &mut s).into_iter().filter(|n| n.z > -0.1).collect();
