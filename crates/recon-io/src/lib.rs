@@ -34,6 +34,7 @@ mod export;
 mod log;
 mod mesh;
 mod mesh_formats;
+mod mode_columns;
 mod number;
 mod output;
 mod planar_figures;
@@ -88,13 +89,14 @@ pub use scene::{
     AnyOutline, BoxedShape, KnownInertia, KnownPalm, OutlineScene, PlanarBody, PlanarKnown, PlanarScene,
     Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation,
 };
+pub use mode_columns::{mode_columns, probabilities, push_modes};
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
 pub use summary::{
     INERTIA_LEARNED, SummaryOf, estimate_summary, explanation, mode_figures, sensor_fault, status_in_words,
     verdict_figures,
 };
 pub use table::{
-    mode_probabilities, probabilities, write_contact_curves, write_estimated_motion, write_motion,
+    mode_probabilities, write_contact_curves, write_estimated_motion, write_motion,
     write_radius_functions,
 };
 pub use touches::{

@@ -72,6 +72,8 @@ pub struct ContactModes {
     /// The same, in the world's axes and in natural units.
     slips: Vec<Option<(ContactSlip, Slip)>>,
     left: Vec<Left>,
+    /// Steps of the walks up to the last sample.
+    times: usize,
     pub(super) samples: usize,
 }
 
@@ -81,6 +83,15 @@ impl ContactModes {
     /// # Errors
     /// Where there is no contact, a friction is not from 1e-3 to 10, or an option is not usable.
     pub fn new(
+        frictions: &[ContactFriction],
+        options: ContactModesOptions,
+    ) -> Result<Self, ContactModesError> {
+        Self::every(FIRST, frictions, options)
+    }
+
+    /// The same for samples that come every `dt`, s: walks for that are made at once, and not at the second sample.
+    pub(crate) fn every(
+        dt: f64,
         frictions: &[ContactFriction],
         options: ContactModesOptions,
     ) -> Result<Self, ContactModesError> {
@@ -96,22 +107,17 @@ impl ContactModes {
                     return Err(ContactModesError::Friction { contact, value });
                 }
                 ContactFriction::Known(_) => None,
-                ContactFriction::Unknown { material } => {
-                    grids.iter().position(|grid| grid.material == Some(material))
-                }
+                of => grids.iter().position(|grid| grid.of == of),
             };
             grid_of.push(same.unwrap_or(grids.len()));
             if same.is_none() {
-                grids.push(match *friction {
-                    ContactFriction::Known(value) => FrictionGrid::known(value, FIRST),
-                    ContactFriction::Unknown { material } => FrictionGrid::unknown(material, FIRST),
-                });
+                grids.push(FrictionGrid::new(*friction, dt));
             }
         }
         let count = frictions.len();
         let late = |grid: &usize| {
             let grid = &grids[*grid];
-            grid.material.is_none().then(|| Late::new(&grid.steps[0], options.natural_speed))
+            matches!(grid.of, ContactFriction::Known(_)).then(|| Late::new(&grid.steps[0], options.natural_speed))
         };
         let left = grid_of.iter().map(|grid| Left::new(late(grid))).collect();
         Ok(Self {
@@ -127,6 +133,7 @@ impl ContactModes {
             forces: vec![Force::Silent; count],
             slips: vec![None; count],
             left,
+            times: 0,
             samples: 0,
         })
     }
@@ -182,7 +189,14 @@ impl ContactModes {
     /// probability of 0.99, for what sticks has only a lower bound; none where it was stated.
     #[must_use]
     pub fn friction(&self, contact: usize) -> Option<LearnedFriction> {
-        self.grid_of.get(contact).and_then(|grid| self.grids[*grid].learned())
+        let grid = self.grids.get(*self.grid_of.get(contact)?)?;
+        grid.learned(self.contacts.get(contact)?)
+    }
+
+    /// The same, or what was stated.
+    pub(crate) fn friction_told(&self, contact: usize) -> Option<f64> {
+        let grid = self.grids.get(*self.grid_of.get(contact)?)?;
+        grid.told(self.contacts.get(contact)?)
     }
 
     /// What contradicts that readings are as stated, of each contact the clearest: odds of a contact that is doubted can be sure and wrong.
@@ -200,13 +214,15 @@ impl ContactModes {
 
     /// A time step on, and the forces.
     fn advance(&mut self, dt: f64, seen: &[ContactSeen]) {
-        let dt = if self.samples == 0 { FIRST } else { dt };
-        self.grids.iter_mut().flat_map(|grid| &mut grid.steps).for_each(|steps| steps.follow(dt));
+        // All have steps of one time.
+        self.times = 0;
+        if self.samples > 0 {
+            let all = self.grids.iter_mut().flat_map(|grid| &mut grid.steps);
+            all.for_each(|steps| self.times = steps.follow(dt));
+        }
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             let grid = &self.grids[self.grid_of[i]];
-            if self.samples > 0 {
-                contact.predict(grid);
-            }
+            contact.predict(grid, self.times);
             let force = seen[i].force(&self.options);
             contact.weigh_force(&force, grid);
             self.forces[i] = force;
@@ -222,7 +238,7 @@ impl ContactModes {
         let weight = self.options.slip_weight(dt);
         if let Some((twist, information)) = twist {
             for i in 0..self.contacts.len() {
-                self.odds[i] = self.contacts[i].average(&self.grids[self.grid_of[i]].weights);
+                self.odds[i] = self.contacts[i].average();
                 self.set_row(i, &seen[i], twist);
             }
             for _ in 0..SWEEPS {
@@ -298,24 +314,25 @@ impl ContactModes {
     /// Frictions, odds and labels after a sample; the logarithm of its density.
     fn settle(&mut self, dt: f64, seen: &[ContactSeen]) -> f64 {
         let mut log_density = 0.0;
+        let of = &self.grid_of;
         for (g, grid) in self.grids.iter_mut().enumerate() {
-            let of_grid = self.contacts.iter_mut().zip(&self.grid_of).filter(|(_, own)| **own == g);
-            log_density += grid.gather(of_grid.map(|(contact, _)| &mut contact.log_evidence));
+            log_density += grid.gather(&mut self.contacts, |i| of[i] == g);
         }
         for (i, contact) in self.contacts.iter_mut().enumerate() {
-            let grid = &mut self.grids[self.grid_of[i]];
             let ratio = seen[i].reading().and_then(ContactReading::ratio);
             ratio.iter().for_each(|ratio| contact.learn(ratio));
-            self.odds[i] = contact.average(&grid.weights);
+            self.odds[i] = contact.average();
+            contact.guess.moments = contact.friction();
             // Forces alone take any plateau of the ratio for sliding: what is learned of friction needs a slip that was read.
             if self.slips[i].is_some() {
-                grid.count(self.odds[i][1], dt);
+                let slides = self.odds[i][1];
+                contact.guess.count(slides, dt);
+                self.grids[of[i]].together.count(slides, dt);
             }
         }
         for (g, grid) in self.grids.iter_mut().enumerate() {
-            let of_grid = self.contacts.iter().zip(&self.grid_of).filter(|(_, own)| **own == g);
-            let guesses = of_grid.map(|(contact, _)| contact.friction(&grid.weights));
-            grid.guess = together(guesses);
+            let own = self.contacts.iter().zip(of).filter(|(_, own)| **own == g);
+            grid.together.moments = together(own.map(|(contact, _)| contact.guess.moments));
         }
         (0..seen.len()).for_each(|i| self.tell(i, dt, &seen[i]));
         self.samples += 1;
@@ -329,9 +346,9 @@ impl ContactModes {
         let slip = self.slips[i].map(|(slip, _)| (slip, self.options.slip_weight(dt)));
         let told = Told {
             odds: ContactOdds { off, slide, stick },
-            friction: grid.told(),
+            friction: grid.told(&self.contacts[i]),
             slip: self.slips[i].map(|(_, slip)| slip),
-            brought: Brought { dt, force: &self.forces[i], reading: seen.reading(), slip },
+            brought: Brought { dt, times: self.times, force: &self.forces[i], reading: seen.reading(), slip },
         };
         self.left[i].take(&told, grid.steps.first());
         self.told[i] = match self.labels[i].follow(self.odds[i]) {

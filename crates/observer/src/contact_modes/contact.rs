@@ -3,7 +3,7 @@
 use super::bins::Bins;
 use super::chain::{Chain, Likelihood};
 use super::density::{Ratio, Slip};
-use super::friction::{Cell, FrictionGrid, guessed};
+use super::friction::{Cell, FrictionGrid, Guess, guessed};
 
 /// Probabilities of one contact's modes, in the order off, slide, stick.
 pub(super) type Modes = [f64; 3];
@@ -14,6 +14,10 @@ pub(super) struct Contact {
     chains: Vec<Chain>,
     cells: Vec<Cell>,
     pub(super) log_evidence: Vec<f64>,
+    /// How likely each friction is; they sum to one.
+    pub(super) weights: Vec<f64>,
+    /// What it says of its friction.
+    pub(super) guess: Guess,
     /// To work in.
     spares: Vec<Chain>,
     /// As long as the longest chain needs.
@@ -55,7 +59,9 @@ impl Contact {
             spares: chains.clone(),
             chains,
             cells: grid.cells(),
+            weights: vec![1.0 / log_evidence.len() as f64; log_evidence.len()],
             log_evidence,
+            guess: Guess::NONE,
             likelihood,
             mean,
             spare,
@@ -63,10 +69,10 @@ impl Contact {
         }
     }
 
-    /// One time step on.
-    pub(super) fn predict(&mut self, grid: &FrictionGrid) {
+    /// So many time steps on.
+    pub(super) fn predict(&mut self, grid: &FrictionGrid, times: usize) {
         for ((chain, spare), steps) in self.chains.iter_mut().zip(&mut self.spares).zip(&grid.steps) {
-            chain.predict(steps, spare);
+            (0..times).for_each(|_| chain.predict(steps, spare));
         }
     }
 
@@ -98,9 +104,9 @@ impl Contact {
         all.for_each(|(cell, chain)| cell.learn(ratio, chain.slides()));
     }
 
-    /// Mean and variance of the friction by these weights of the cells.
-    pub(super) fn friction(&self, weights: &[f64]) -> [f64; 2] {
-        guessed(weights.iter().copied().zip(&self.cells))
+    /// Mean and variance of the friction.
+    pub(super) fn friction(&self) -> [f64; 2] {
+        guessed(self.weights.iter().copied().zip(&self.cells))
     }
 
     /// What the modes would be with this slip, without taking it; needs [`Self::average`] before.
@@ -111,13 +117,13 @@ impl Contact {
         of(&self.tried)
     }
 
-    /// The mean of all chains by these weights of the frictions.
-    pub(super) fn average(&mut self, weights: &[f64]) -> Modes {
+    /// The mean of all chains by the weights of the frictions.
+    pub(super) fn average(&mut self) -> Modes {
         let mean = &mut self.mean;
         mean.off = 0.0;
         mean.speeds.fill(0.0);
         mean.ratios[0] = 0.0;
-        for (weight, chain) in weights.iter().zip(&self.chains) {
+        for (weight, chain) in self.weights.iter().zip(&self.chains) {
             mean.off += weight * chain.off;
             mean.speeds.iter_mut().zip(&chain.speeds).for_each(|(sum, mass)| *sum += weight * mass);
             mean.ratios[0] += weight * chain.sticks();

@@ -90,7 +90,7 @@ impl Pace {
             let slip = reading.and_then(|reading| reading.slip.zip(Some(reading.direction())));
             let turned = slip.map(|(slip, (u, _))| turned(&slip.velocity, &slip.covariance, &u, speed));
             let slip = slip.map(|(slip, _)| (slip, self.weights[k]));
-            let brought = Brought { dt: self.steps[k], force: &force, reading, slip };
+            let brought = Brought { dt: self.steps[k], times: 1, force: &force, reading, slip };
             let told = Told { odds: odds[k], friction, slip: turned, brought };
             left.take(&told, at.as_ref().map(|at| &at.steps[self.kind[k]]));
         }

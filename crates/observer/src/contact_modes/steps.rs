@@ -9,6 +9,8 @@ const RATIOS: usize = 40;
 
 /// Time steps within this share of each other are taken as one: walks grow by their root, and are no better known.
 pub(super) const SAME: f64 = 0.1;
+/// Steps that are gone rather than made anew as one: where samples are missing.
+const FEW: f64 = 32.0;
 /// The time that the numbers below are of, s.
 const UNIT: f64 = 1e-3;
 /// Deviation of the change of the speed, in shares of the natural speed, and of the ratio.
@@ -126,11 +128,14 @@ impl Steps {
         self.dt = dt;
     }
 
-    /// Made anew where the time step is another. Clocks jitter, and the walks are no better known than this.
-    pub(super) fn follow(&mut self, dt: f64) {
-        if (dt - self.dt).abs() > SAME * self.dt {
-            self.set(dt);
+    /// How many of these steps a time step is. Made anew where it is none of few: clocks jitter, and the walks are no better known than this.
+    pub(super) fn follow(&mut self, dt: f64) -> usize {
+        let times = (dt / self.dt).round();
+        if (1.0..=FEW).contains(&times) && (dt - times * self.dt).abs() <= SAME * dt {
+            return times as usize;
         }
+        self.set(dt);
+        1
     }
 }
 

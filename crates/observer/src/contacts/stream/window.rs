@@ -1,6 +1,7 @@
 //! The motion over a window of the latest samples.
 
 use super::dearer::Dearer;
+use super::modes::Modes;
 use super::others::{ALONE, Followed};
 use super::sample::{ForceReading, PalmSensed, Raw, StreamPalm};
 use super::solution::{Of, Solution};
@@ -8,19 +9,24 @@ use crate::contacts::body::{Body, CONSTANTS};
 use crate::contacts::cold;
 use crate::contacts::estimate::AVERAGED;
 use crate::contacts::flow::Carried;
+use crate::contacts::mode_odds::typical;
 use crate::contacts::modes::by_ratio;
 use crate::contacts::onward::{FOLLOWED, WINDOW};
 use crate::contacts::options::ContactOptions;
 use crate::contacts::problem::{Problem, Units, Unknowns};
 use crate::contacts::record::Record;
+use crate::contacts::samples::at_all;
 use crate::contacts::search::{fine_nodes, fine_within, problem, thinned, whole};
+use crate::contacts::slips::Known;
 use crate::contacts::solve::Solved;
 use crate::contacts::stage::Stage;
 use crate::contacts::state::Motion;
 use crate::contacts::suspects::Readings;
 use crate::contacts::windows::longest;
 use nalgebra::{Matrix3, Matrix6};
-use object_dynamics::{ContactLog, ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion};
+use object_dynamics::{
+    ContactLog, ContactMode, ContactPoints, ForceChannel, MOST_PALMS, MeasuredMotion, PalmRecord, RecordedMotion,
+};
 use std::collections::VecDeque;
 
 /// Longest window in natural times: a body that is held turns by some radians in it, and so shows its inertia.
@@ -49,6 +55,10 @@ pub(super) struct Outcome {
     /// Natural times by which the window is too short to look for a motion.
     pub(super) lacks: Option<f64>,
     pub(super) solution: Option<Solution>,
+    /// Beside it, of each palm that sticks somewhere in the window, the motion in which it need not: its slip says something of its mode.
+    pub(super) freed: Vec<(usize, Solution)>,
+    /// What tells modes, with the first motion, where it is asked for.
+    pub(super) modes: Option<Box<Modes>>,
     /// Samples that could not be used.
     pub(super) left_out: usize,
 }
@@ -65,6 +75,9 @@ pub(super) struct Before {
 pub(super) struct Window {
     palms: Vec<StreamPalm>,
     options: ContactOptions,
+    sample_rate: f64,
+    /// Whether modes are to be told and nothing does yet.
+    untold: bool,
     samples: VecDeque<Raw>,
     before: Option<Before>,
     /// Other motions that could not be ruled out, at the same nodes; how many starts others were looked for from, windows for which none
@@ -79,10 +92,12 @@ pub(super) struct Window {
 }
 
 impl Window {
-    pub(super) fn new(palms: Vec<StreamPalm>, options: ContactOptions) -> Self {
+    pub(super) fn new(palms: Vec<StreamPalm>, options: ContactOptions, sample_rate: f64) -> Self {
         Self {
             palms,
+            untold: options.mode_odds,
             options,
+            sample_rate,
             samples: VecDeque::new(),
             before: None,
             others: Vec::new(),
@@ -97,9 +112,9 @@ impl Window {
     /// Takes later samples and does what is asked for.
     pub(super) fn work(&mut self, fresh: &[Raw], asked: Asked) -> Outcome {
         self.samples.extend(fresh);
-        let mut outcome = Outcome { natural: None, lacks: Some(0.0), solution: None, left_out: 0 };
         let (log, left_out) = self.log();
-        outcome.left_out = left_out;
+        let (natural, solution, freed, modes) = (None, None, Vec::new(), None);
+        let mut outcome = Outcome { natural, lacks: Some(0.0), solution, freed, modes, left_out };
         let Some((log, record)) = log.and_then(|log| Record::new(&log, &self.options).map(|r| (log, r)))
         else {
             self.forget(None);
@@ -114,7 +129,15 @@ impl Window {
         outcome.natural = Some(natural);
         outcome.lacks = Some(SHORTEST - log.duration() / natural).filter(|lacks| *lacks > 0.0);
         if outcome.lacks.is_none() {
-            outcome.solution = self.solution((&log, record), units, asked);
+            let typical = typical(&record);
+            let found = self.solution((&log, record), units, asked);
+            if self.untold && found.is_some() {
+                self.untold = false;
+                outcome.modes = Modes::new(&self.palms, &self.options, (&units, typical, self.sample_rate));
+            }
+            if let Some((solution, freed)) = found {
+                (outcome.solution, outcome.freed) = (Some(solution), freed);
+            }
         }
         self.forget(Some(natural));
         outcome
@@ -199,7 +222,7 @@ impl Window {
         (log, mut record): (&ContactLog, Record),
         units: Units,
         asked: Asked,
-    ) -> Option<Solution> {
+    ) -> Option<(Solution, Vec<(usize, Solution)>)> {
         let natural = units.time();
         record.mark_blows(&units, self.options.gravity);
         let modes = by_ratio(&record, AVERAGED * natural);
@@ -244,7 +267,41 @@ impl Window {
             let readings = Readings::new(log, told, [record, problem.record], longest);
             of.doubt(record, &readings);
         }
-        Some(self.taken(&of, &others, (GAP * natural, record.missed_in_world(GAP * natural))))
+        let solution = self.taken(&of, &others, (GAP * natural, record.missed_in_world(GAP * natural)));
+        let freed = match self.options.mode_odds && solution.explained && solution.settled {
+            true => self.freed(record, (&modes, longest), &of, &solution),
+            false => Vec::new(),
+        };
+        Some((solution, freed))
+    }
+
+    /// The motions at the window's end in which one palm each, of those that stick somewhere, need not.
+    fn freed(
+        &self,
+        record: &Record,
+        (modes, longest): (&[[ContactMode; MOST_PALMS]], f64),
+        of: &Of,
+        solution: &Solution,
+    ) -> Vec<(usize, Solution)> {
+        let Of { problem, solved, ref covariances, unresolved, .. } = *of;
+        let sticks = |palm: &usize| modes.iter().any(|modes| modes[*palm] == ContactMode::Stick);
+        let palms: Vec<usize> = (0..self.palms.len()).filter(sticks).collect();
+        if palms.is_empty() {
+            return Vec::new();
+        }
+        let motions = at_all(record, problem, &solved.unknowns, covariances);
+        let known = Known { log: record, modes, problem, solved, covariances, motions: &motions, longest };
+        let Solution { number, t, turned, missed, .. } = *solution;
+        let one = |palm: usize| {
+            let freed = known.without_sticking(palm, |problem, solved, covariances| {
+                let (problem, lasting) = (&problem, solved.lasting(&problem));
+                let (solved, against, open) = (&solved, false, false);
+                let of = Of { problem, solved, covariances, against, open, lasting, unresolved };
+                Solution::new(&of, (number, t), self.options.body.as_ref(), turned, missed)
+            });
+            freed.map(|solution| (palm, solution))
+        };
+        palms.into_iter().filter_map(one).collect()
     }
 
     /// From nothing, and whether the body is another one than was stated. None where the window leaves it open which of several motions it is.
