@@ -70,6 +70,7 @@ pub use log::{
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use mesh_formats::{write_glb, write_stl};
+pub use mode_columns::{mode_columns, probabilities, push_modes};
 pub use number::{brief, brief_to, with_brief_numbers};
 pub use output::{
     AtomicFile, FileTarget, FolderTarget, OutputError, OutputFolder, Summed, fingerprint, is_standard_output,
@@ -89,15 +90,13 @@ pub use scene::{
     AnyOutline, BoxedShape, KnownInertia, KnownPalm, OutlineScene, PlanarBody, PlanarKnown, PlanarScene,
     Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation,
 };
-pub use mode_columns::{mode_columns, probabilities, push_modes};
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
 pub use summary::{
     INERTIA_LEARNED, SummaryOf, estimate_summary, explanation, mode_figures, sensor_fault, status_in_words,
     verdict_figures,
 };
 pub use table::{
-    mode_probabilities, write_contact_curves, write_estimated_motion, write_motion,
-    write_radius_functions,
+    mode_probabilities, write_contact_curves, write_estimated_motion, write_motion, write_radius_functions,
 };
 pub use touches::{
     Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,

@@ -60,7 +60,8 @@ pub(crate) fn main() -> Anything<()> {
 /// What the palms of a log sense at each sample.
 fn sensed(log: &ContactLog) -> Anything<(Vec<StreamPalm>, Vec<Vec<PalmSensed>>)> {
     let records = log.records();
-    let palms = records.iter().map(|record| StreamPalm { surface: record.surface, friction: record.friction });
+    let palms =
+        records.iter().map(|record| StreamPalm { surface: record.surface, friction: record.friction });
     let palms = palms.collect();
     let one = |k: usize| -> Anything<Vec<PalmSensed>> {
         let palm = |record: &recon::object_dynamics::PalmRecord| -> Anything<PalmSensed> {
@@ -87,8 +88,7 @@ fn run(file: &Log, name: &str, seed: u64) -> Anything<Followed> {
     let truth = Truth::new(file, log.times())?;
     let (palms, samples) = sensed(&log)?;
     let mut stream = stream(palms, options)?;
-    let mut followed =
-        Followed { run: Run::new(name, false), samples: [0; 3], decided: 0.0, doubted: false };
+    let mut followed = Followed { run: Run::new(name, false), samples: [0; 3], decided: 0.0, doubted: false };
     let mut last = None;
     for (k, sensed) in samples.iter().enumerate() {
         let estimate = stream.push(log.times()[k], sensed)?;
@@ -131,8 +131,7 @@ fn row(name: &str, all: &[&Followed]) -> String {
     let sum = |of: &dyn Fn(&Followed) -> f64| all.iter().map(|followed| of(followed)).sum::<f64>();
     let samples = sum(&|of| of.run.samples).max(1.0);
     let worst = all.iter().map(|of| of.run.wrong / of.run.samples.max(1.0)).fold(0.0, f64::max);
-    let largest =
-        |i: usize| all.iter().filter_map(|of| of.run.friction).map(|of| of[i]).fold(0.0, f64::max);
+    let largest = |i: usize| all.iter().filter_map(|of| of.run.friction).map(|of| of[i]).fold(0.0, f64::max);
     let [every, told, tracked] = [0, 1, 2].map(|i| sum(&|of| of.samples[i] as f64));
     format!(
         "| {name} | {}, {} | {:.2}, {:.3} | {samples} | {:.4} | {:.4} | {:.3} | {:.5} ({worst:.5}) | {:.4} | {:.4}, {:.1} | {} |",

@@ -1,7 +1,7 @@
 //! The way of a sample.
 
 use super::bins::Bins;
-use super::contact::{Contact, Force, Modes};
+use super::contact::{Contact, Force, Modes, SlipRead};
 use super::density::Slip;
 use super::doubt::{ContactModesDoubt, Left, Told};
 use super::error::ContactModesError;
@@ -72,8 +72,6 @@ pub struct ContactModes {
     /// The same, in the world's axes and in natural units.
     slips: Vec<Option<(ContactSlip, Slip)>>,
     left: Vec<Left>,
-    /// Steps of the walks up to the last sample.
-    times: usize,
     pub(super) samples: usize,
 }
 
@@ -117,7 +115,8 @@ impl ContactModes {
         let count = frictions.len();
         let late = |grid: &usize| {
             let grid = &grids[*grid];
-            matches!(grid.of, ContactFriction::Known(_)).then(|| Late::new(&grid.steps[0], options.natural_speed))
+            matches!(grid.of, ContactFriction::Known(_))
+                .then(|| Late::new(&grid.steps[0], options.natural_speed))
         };
         let left = grid_of.iter().map(|grid| Left::new(late(grid))).collect();
         Ok(Self {
@@ -133,7 +132,6 @@ impl ContactModes {
             forces: vec![Force::Silent; count],
             slips: vec![None; count],
             left,
-            times: 0,
             samples: 0,
         })
     }
@@ -149,7 +147,7 @@ impl ContactModes {
     pub fn push(&mut self, dt: f64, seen: &[ContactSeen]) -> Result<f64, ContactModesError> {
         self.check(dt, seen)?;
         self.advance(dt, seen);
-        self.weigh_slips(dt, seen, None);
+        self.weigh(dt, seen, None);
         Ok(self.settle(dt, seen))
     }
 
@@ -168,7 +166,7 @@ impl ContactModes {
         self.check(dt, seen)?;
         let information = self.check_twist(twist)?;
         self.advance(dt, seen);
-        self.weigh_slips(dt, seen, Some((twist, &information)));
+        self.weigh(dt, seen, Some((twist, &information)));
         Ok(self.settle(dt, seen))
     }
 
@@ -212,32 +210,25 @@ impl ContactModes {
         self.samples
     }
 
-    /// A time step on, and the forces.
+    /// A time step on, and what forces say.
     fn advance(&mut self, dt: f64, seen: &[ContactSeen]) {
-        // All have steps of one time.
-        self.times = 0;
         if self.samples > 0 {
-            let all = self.grids.iter_mut().flat_map(|grid| &mut grid.steps);
-            all.for_each(|steps| self.times = steps.follow(dt));
+            self.grids.iter_mut().for_each(|grid| grid.follow(dt));
         }
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             let grid = &self.grids[self.grid_of[i]];
-            contact.predict(grid, self.times);
-            let force = seen[i].force(&self.options);
-            contact.weigh_force(&force, grid);
-            self.forces[i] = force;
+            contact.predict(grid);
+            self.forces[i] = seen[i].force(&self.options);
         }
     }
 
-    fn weigh_slips(
-        &mut self,
-        dt: f64,
-        seen: &[ContactSeen],
-        twist: Option<(&TwistError<'_>, &Matrix6<f64>)>,
-    ) {
+    /// Forces and slips.
+    fn weigh(&mut self, dt: f64, seen: &[ContactSeen], twist: Option<(&TwistError<'_>, &Matrix6<f64>)>) {
         let weight = self.options.slip_weight(dt);
         if let Some((twist, information)) = twist {
             for i in 0..self.contacts.len() {
+                let grid = &self.grids[self.grid_of[i]];
+                self.contacts[i].weigh(&self.forces[i], None, grid, &self.speeds);
                 self.odds[i] = self.contacts[i].average();
                 self.set_row(i, &seen[i], twist);
             }
@@ -247,17 +238,19 @@ impl ContactModes {
                         continue;
                     };
                     let (_, slip, turn) = self.slip(reading, error);
-                    self.odds[i] = self.contacts[i].try_slip(&slip, turn, weight, &self.speeds);
+                    let read = SlipRead { slip, turn, weight };
+                    self.odds[i] = self.contacts[i].try_slip(&read, &self.speeds);
                     self.set_row(i, &seen[i], twist);
                 }
             }
         }
         for i in 0..self.contacts.len() {
-            self.slips[i] = None;
-            let Some((reading, error)) = self.shared(i, &seen[i], twist) else { continue };
-            let (own, slip, turn) = self.slip(reading, error);
-            self.contacts[i].weigh_slip(&slip, turn, weight, &self.speeds);
-            self.slips[i] = Some((own, slip));
+            let read = self.shared(i, &seen[i], twist).map(|(reading, error)| self.slip(reading, error));
+            self.slips[i] = read.map(|(own, slip, _)| (own, slip));
+            let read = read.map(|(_, slip, turn)| SlipRead { slip, turn, weight });
+            // With a twist forces have counted before.
+            let force = if twist.is_some() { &Force::Silent } else { &self.forces[i] };
+            self.contacts[i].weigh(force, read.as_ref(), &self.grids[self.grid_of[i]], &self.speeds);
         }
     }
 
@@ -348,7 +341,7 @@ impl ContactModes {
             odds: ContactOdds { off, slide, stick },
             friction: grid.told(&self.contacts[i]),
             slip: self.slips[i].map(|(_, slip)| slip),
-            brought: Brought { dt, times: self.times, force: &self.forces[i], reading: seen.reading(), slip },
+            brought: Brought { dt, times: grid.times, force: &self.forces[i], reading: seen.reading(), slip },
         };
         self.left[i].take(&told, grid.steps.first());
         self.told[i] = match self.labels[i].follow(self.odds[i]) {

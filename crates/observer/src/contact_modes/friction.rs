@@ -55,6 +55,8 @@ pub(super) struct FrictionGrid {
     pub(super) values: Vec<f64>,
     /// What happens at each in a time step.
     pub(super) steps: Vec<Steps>,
+    /// Of these the latest time step was so many.
+    pub(super) times: usize,
     /// Given all samples of the material, were it one friction; sum to one.
     shared: Vec<f64>,
     /// Probability that it is one.
@@ -99,6 +101,7 @@ impl FrictionGrid {
         Self {
             of,
             steps: values.iter().map(|friction| Steps::that_follow(dt, *friction)).collect(),
+            times: 0,
             shared: vec![0.0; values.len()],
             values,
             one: 1.0,
@@ -107,7 +110,16 @@ impl FrictionGrid {
         }
     }
 
-    /// Takes the evidence of its contacts, takes the largest of each one's away, so that it stays small, and sets the weights of their frictions. Returns
+    /// A time step, s.
+    pub(super) fn follow(&mut self, dt: f64) {
+        // To make the walks of all frictions anew takes milliseconds: a sample that is missing is none.
+        let twice = !matches!(self.of, ContactFriction::Known(_));
+        for steps in &mut self.steps {
+            self.times = steps.follow(dt, twice);
+        }
+    }
+
+    /// Takes the evidence of its contacts, which stays small by that, and sets the weights of their frictions. Returns
     /// the logarithm of the density of what was new in it.
     ///
     /// Given one friction the contacts are independent: the product of their densities is exact. With one for each they are so anyway, and each has a prior
@@ -118,11 +130,9 @@ impl FrictionGrid {
         let (mut taken, mut apart) = (0.0, 0.0);
         let own = |(i, _): &(usize, &mut Contact)| is_own(*i);
         for (_, contact) in contacts.iter_mut().enumerate().filter(own) {
-            let logs = &mut contact.log_evidence;
-            let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            logs.iter_mut().for_each(|log| *log -= largest);
-            self.shared.iter_mut().zip(logs.iter()).for_each(|(sum, log)| *sum += log);
-            taken += largest;
+            taken += contact.level();
+            let logs = &contact.log_evidence;
+            self.shared.iter_mut().zip(logs).for_each(|(sum, log)| *sum += log);
             contact.weights.copy_from_slice(logs);
             apart += soften(&mut contact.weights) - even;
         }

@@ -5,7 +5,7 @@
 
 use super::bins::Bins;
 use super::chain::{Chain, Likelihood};
-use super::contact::Force;
+use super::contact::{Force, SlipRead};
 use super::friction::Cell;
 use super::reading::{ContactReading, ContactSlip, turned};
 use super::steps::{Steps, speeds};
@@ -140,7 +140,7 @@ impl Late {
     fn set(&mut self, reading: &ContactReading, slip: &ContactSlip, weight: f64) {
         let (u, turn) = reading.direction();
         let slip = turned(&slip.velocity, &slip.covariance, &u, self.natural_speed);
-        self.likelihood.of_slip(&slip, turn, weight, &self.speeds);
+        self.likelihood.of_slip(&SlipRead { slip, turn, weight }, &self.speeds);
     }
 
     /// The likeliest of the lags and the logarithm of its odds against none, where forces are late for sure.

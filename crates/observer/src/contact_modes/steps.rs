@@ -9,13 +9,14 @@ const RATIOS: usize = 40;
 
 /// Time steps within this share of each other are taken as one: walks grow by their root, and are no better known.
 pub(super) const SAME: f64 = 0.1;
-/// Steps that are gone rather than made anew as one: where samples are missing.
-const FEW: f64 = 32.0;
 /// The time that the numbers below are of, s.
 const UNIT: f64 = 1e-3;
 /// Deviation of the change of the speed, in shares of the natural speed, and of the ratio.
 const SPEED_STEP: f64 = 0.0055;
 const RATIO_STEP: f64 = 0.002;
+/// Units for which a ratio goes on as it goes: what presses and turns a body has inertia. Were it a walk over the time without samples, it would come
+/// less far than it does, and what begins to slide there would be held for sticking.
+const SMOOTH: f64 = 30.0;
 /// Probability that the ratio jumps anywhere in the disc.
 const JUMP: f64 = 0.002;
 /// Share of sticking that begins near its cone.
@@ -114,8 +115,9 @@ impl Steps {
 
     /// For steps of another time.
     fn set(&mut self, dt: f64) {
-        let share = (dt / UNIT).sqrt();
-        let (speed_step, ratio_step) = (SPEED_STEP * share, RATIO_STEP / self.friction * share);
+        let units = dt / UNIT;
+        let (speed_step, ratio_step) =
+            (SPEED_STEP * units.sqrt(), RATIO_STEP / self.friction * of_smooth(units));
         self.speed.set(&self.speeds, speed_step, SPEED_ENDS);
         self.ratio.set(&self.ratios, ratio_step, RATIO_ENDS);
         let within = |a_unit: f64| (1.0 - (-rate_of(a_unit) * dt / UNIT).exp()).clamp(LEAST, 1.0 - LEAST);
@@ -128,15 +130,24 @@ impl Steps {
         self.dt = dt;
     }
 
-    /// How many of these steps a time step is. Made anew where it is none of few: clocks jitter, and the walks are no better known than this.
-    pub(super) fn follow(&mut self, dt: f64) -> usize {
+    /// How many of these steps a time step is. Made anew where it is not one of them, or of two where `twice` allows: clocks jitter, and the walks are no
+    /// better known than this.
+    pub(super) fn follow(&mut self, dt: f64, twice: bool) -> usize {
         let times = (dt / self.dt).round();
-        if (1.0..=FEW).contains(&times) && (dt - times * self.dt).abs() <= SAME * dt {
+        let most = if twice { 2.0 } else { 1.0 };
+        if (1.0..=most).contains(&times) && (dt - times * self.dt).abs() <= SAME * dt {
             return times as usize;
         }
         self.set(dt);
         1
     }
+}
+
+/// By how much more a ratio changes in so many units than in one: as a walk within one, at the same rate from there on, and as a walk of steps of
+/// [`SMOOTH`] beyond that.
+fn of_smooth(units: f64) -> f64 {
+    let at_one_rate = units.clamp(1.0, SMOOTH);
+    at_one_rate * (units / at_one_rate).sqrt()
 }
 
 /// Edges of ratios over a known friction: close together near one.

@@ -62,7 +62,7 @@ pub use mode_odds::EstimatedModes;
 pub use noise::{ContactNoiseLevel, ImpulseNoise};
 pub use options::{ContactEstimateError, ContactOptions};
 pub use stream::{
-    ForceReading, MotionStream, PalmSensed, PlaneReadings, StreamBody, StreamError, StreamEstimate, StreamModes,
-    StreamMotion, StreamOptions, StreamPalm, StreamStage,
+    ForceReading, MotionStream, PalmSensed, PlaneReadings, StreamBody, StreamError, StreamEstimate,
+    StreamModes, StreamMotion, StreamOptions, StreamPalm, StreamStage,
 };
 pub use verdict::ContactEvidence;

@@ -75,9 +75,8 @@ pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units)
         }
         let slips = known.slips(palm);
         let mut own = vec![ContactSeen::Off; record.times.len()];
-        contacts().for_each(|(k, contact)| {
-            own[k] = ContactSeen::Read(reading(contact, slips[k], units.speed))
-        });
+        contacts()
+            .for_each(|(k, contact)| own[k] = ContactSeen::Read(reading(contact, slips[k], units.speed)));
         palms.push(palm);
         seen.push(own);
     }

@@ -25,7 +25,8 @@ use crate::contacts::suspects::Readings;
 use crate::contacts::windows::longest;
 use nalgebra::{Matrix3, Matrix6};
 use object_dynamics::{
-    ContactLog, ContactMode, ContactPoints, ForceChannel, MOST_PALMS, MeasuredMotion, PalmRecord, RecordedMotion,
+    ContactLog, ContactMode, ContactPoints, ForceChannel, MOST_PALMS, MeasuredMotion, PalmRecord,
+    RecordedMotion,
 };
 use std::collections::VecDeque;
 

@@ -15,10 +15,10 @@ use recon::object_dynamics::MassProperties;
 use recon::observer::{
     ContactNoiseLevel, ContactOptions, MotionStream, StreamEstimate, StreamOptions, StreamStage,
 };
+use recon_io::StreamRow;
 use recon_io::{
     FileTarget, OutputError, Scene, is_bag, is_standard_output, write_stream_header, write_stream_row,
 };
-use recon_io::StreamRow;
 use serde_json::json;
 use spans::Spans;
 use std::io::{self, Write};
@@ -75,7 +75,11 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
 }
 
 /// What the stream is told of a body that may be known.
-pub(crate) fn options(body: Option<MassProperties>, scene: &Scene, noise: ContactNoiseLevel) -> ContactOptions {
+pub(crate) fn options(
+    body: Option<MassProperties>,
+    scene: &Scene,
+    noise: ContactNoiseLevel,
+) -> ContactOptions {
     ContactOptions {
         body,
         size: scene.size,

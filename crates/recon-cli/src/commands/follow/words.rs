@@ -65,7 +65,8 @@ pub(super) fn told(modes: &StreamModes, palms: usize) -> Told {
     }
     if !told.doubts.is_empty() {
         let all = told.doubts.join("; ");
-        told.text += &format!("\ncontact modes can be sure and wrong, for their readings are not as stated: {all}");
+        told.text +=
+            &format!("\ncontact modes can be sure and wrong, for their readings are not as stated: {all}");
     }
     told
 }

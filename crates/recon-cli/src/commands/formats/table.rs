@@ -29,8 +29,11 @@ const TRUTH: Column = may(
     "truth, to compare with alone: centre of mass, body to world, velocities in world axes",
 );
 
-const MODE: Column =
-    may("mode_i", "-", "contact mode of the palm: 0 off, 1 slides, 2 sticks; while it is followed the one to act on");
+const MODE: Column = may(
+    "mode_i",
+    "-",
+    "contact mode of the palm: 0 off, 1 slides, 2 sticks; while it is followed the one to act on",
+);
 const MODE_ODDS: Column = may(
     "p_slide_i, p_stick_i",
     "-",
