@@ -5,9 +5,11 @@
 
 use super::bins::Bins;
 use super::chain::Chain;
-use super::contact::{Contact, Force};
+use super::contact::Contact;
+use super::density::Ratio;
 use super::friction::FrictionGrid;
 use super::steps::Steps;
+use std::ops::Range;
 
 /// Logarithm of the odds against a friction at most: one that an outlier, or a model that was wrong for a while, speaks against comes back.
 pub(super) const GIVEN_UP: f64 = 60.0;
@@ -32,44 +34,32 @@ pub(super) enum Followed {
 }
 
 impl Contact {
-    /// Sets which frictions are followed, once the time step was made and before the force counts.
-    pub(super) fn rouse(&mut self, grid: &FrictionGrid, force: &Force) {
-        if let Force::Presses { ratio, .. } = force {
-            self.noise = ratio.deviation;
-        }
+    /// Has those frictions followed that the ratio came near to, once the time step was made and before the force counts.
+    pub(super) fn rouse(&mut self, grid: &FrictionGrid, read: &Ratio) {
+        self.noise = read.deviation;
         let Some((last, others)) = self.chains.split_last_mut() else { return };
         let largest = &grid.steps[others.len()];
-        let Some([ratio, deviation]) = last.ratio(largest) else { return };
-        let above = ratio + FAR * deviation + READ * self.noise;
-        let below = ratio - FAR * deviation;
+        let walked = largest.walked(grid.times);
+        let Some(near) = self.ratio.map(|ratio| near(ratio, walked, self.noise)) else { return };
         for (i, chain) in others.iter_mut().enumerate() {
             let (value, steps) = (grid.values[i], &grid.steps[i]);
-            let near = (below..above).contains(&value);
-            self.followed[i] = match self.followed[i] {
-                Followed::AsLargest if value < above => {
-                    chain.take(last, [largest, steps], None);
-                    Followed::Alone
+            let modes = match self.followed[i] {
+                Followed::AsLargest if value < near.end => None,
+                Followed::GivenUp if near.contains(&value) => Some(&self.mean),
+                Followed::GivenUp if value >= near.end => {
+                    self.followed[i] = Followed::AsLargest;
+                    continue;
                 }
-                Followed::GivenUp if near => {
-                    chain.take(last, [largest, steps], Some(&self.mean));
-                    Followed::Alone
-                }
-                Followed::GivenUp if value >= above => Followed::AsLargest,
-                Followed::Alone if !near => {
-                    let faint = self.log_evidence[i] <= -GIVEN_UP;
-                    match value >= above {
-                        true if faint || chain.slides() < SLIDES => Followed::AsLargest,
-                        false if faint => Followed::GivenUp,
-                        _ => Followed::Alone,
-                    }
-                }
-                as_it_was => as_it_was,
+                _ => continue,
             };
+            chain.take(last, [largest, steps], modes);
+            self.followed[i] = Followed::Alone;
         }
     }
 
-    /// Takes the largest of the evidence away from all, so that it stays small, and returns it.
-    pub(super) fn level(&mut self) -> f64 {
+    /// Takes the largest of the evidence away from all, so that it stays small, and returns it; follows those frictions no more that the ratio is far from,
+    /// before a step that may jump anywhere.
+    pub(super) fn level(&mut self, grid: &[Steps]) -> f64 {
         let last = self.log_evidence.len() - 1;
         let moved = self.log_evidence[last] - self.largest_before;
         let all = self.log_evidence.iter_mut().zip(&self.followed);
@@ -81,8 +71,32 @@ impl Contact {
             *log = own.max(-GIVEN_UP);
         }
         self.largest_before = self.log_evidence[last];
+        self.ratio = self.chains[last].ratio(&grid[last]);
+        if let Some(ratio) = self.ratio {
+            self.rest(grid, &near(ratio, 0.0, self.noise));
+        }
         largest
     }
+
+    /// Those far from the ratio, where nothing hangs on them.
+    fn rest(&mut self, grid: &[Steps], near: &Range<f64>) {
+        let last = self.chains.len() - 1;
+        for (i, steps) in grid.iter().enumerate().take(last) {
+            let is_far = self.followed[i] == Followed::Alone && !near.contains(&steps.friction);
+            let faint = self.log_evidence[i] <= -GIVEN_UP;
+            if is_far && steps.friction >= near.end && (faint || self.chains[i].slides() < SLIDES) {
+                self.followed[i] = Followed::AsLargest;
+            } else if is_far && steps.friction < near.start && faint {
+                self.followed[i] = Followed::GivenUp;
+            }
+        }
+    }
+}
+
+/// What is near a ratio of this mean and deviation that walked for so far, where one is read with this noise.
+fn near([ratio, deviation]: [f64; 2], walked: f64, noise: f64) -> Range<f64> {
+    let far = FAR * deviation.hypot(walked);
+    ratio - far..ratio + far + READ * noise
 }
 
 impl Chain {
@@ -102,7 +116,8 @@ impl Chain {
     /// there are any.
     fn take(&mut self, largest: &Self, [its, own]: [&Steps; 2], modes: Option<&Self>) {
         let like = modes.unwrap_or(largest);
-        self.off = like.off;
+        // That of `modes` is of before the time step, after which nothing is impossible.
+        self.off = largest.off;
         self.speeds.clone_from(&like.speeds);
         let share =
             if modes.is_some() { like.sticks() / largest.sticks().max(f64::MIN_POSITIVE) } else { 1.0 };

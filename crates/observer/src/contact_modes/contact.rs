@@ -19,6 +19,8 @@ pub(super) struct Contact {
     pub(super) log_evidence: Vec<f64>,
     /// Of the largest friction after the sample before.
     pub(super) largest_before: f64,
+    /// Mean and deviation of the ratio by the largest friction, after the sample before, where it sticks.
+    pub(super) ratio: Option<[f64; 2]>,
     /// Deviation of the latest ratio that was read.
     pub(super) noise: f64,
     /// How likely each friction is; they sum to one.
@@ -83,6 +85,7 @@ impl Contact {
             weights: vec![1.0 / log_evidence.len() as f64; log_evidence.len()],
             log_evidence,
             largest_before: 0.0,
+            ratio: None,
             noise: 0.0,
             guess: Guess::NONE,
             likelihood,
@@ -114,8 +117,8 @@ impl Contact {
             Force::Presses { touching, .. } => *touching,
             Force::Silent | Force::Off | Force::Touches => 0.0,
         };
-        if !matches!(force, Force::Silent) {
-            self.rouse(grid, force);
+        if let Force::Presses { ratio, .. } = force {
+            self.rouse(grid, ratio);
         }
         slip.iter().for_each(|slip| self.by_slip.of_slip(slip, speeds));
         for (i, cell) in self.cells.iter().enumerate().filter(|(i, _)| self.followed[*i] == Followed::Alone) {

@@ -130,7 +130,7 @@ impl FrictionGrid {
         let (mut taken, mut apart) = (0.0, 0.0);
         let own = |(i, _): &(usize, &mut Contact)| is_own(*i);
         for (_, contact) in contacts.iter_mut().enumerate().filter(own) {
-            taken += contact.level();
+            taken += contact.level(&self.steps);
             let logs = &contact.log_evidence;
             self.shared.iter_mut().zip(logs).for_each(|(sum, log)| *sum += log);
             contact.weights.copy_from_slice(logs);

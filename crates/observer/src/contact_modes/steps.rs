@@ -130,6 +130,11 @@ impl Steps {
         self.dt = dt;
     }
 
+    /// Deviation of the change of the ratio in so many steps.
+    pub(super) fn walked(&self, times: usize) -> f64 {
+        RATIO_STEP * of_smooth(self.dt / UNIT) * (times as f64).sqrt()
+    }
+
     /// How many of these steps a time step is. Made anew where it is not one of them, or of two where `twice` allows: clocks jitter, and the walks are no
     /// better known than this.
     pub(super) fn follow(&mut self, dt: f64, twice: bool) -> usize {
