@@ -43,13 +43,17 @@ pub(crate) fn main() -> Anything<()> {
         SCENES.into_iter().filter(|name| names.is_empty() || names.iter().any(|n| n == name)).collect();
     let jobs: Vec<(&str, u64)> =
         asked.iter().flat_map(|name| (first..first + seeds).map(move |seed| (*name, seed))).collect();
-    let all = on_two_cores(&jobs, |name, seed| run(&Log::read(&folder, name)?, name, seed))?;
     print!("{}", include_str!("about.md"));
     println!("Seeds {first} to {}.\n", first + seeds - 1);
     println!("{HEAD}");
-    for name in &asked {
-        let own: Vec<&Followed> = all.iter().filter(|followed| followed.run.name == *name).collect();
-        println!("{}", row(name, &own));
+    let mut all = Vec::new();
+    for (known, words) in [(true, "friction known"), (false, "friction unknown")] {
+        let made = on_two_cores(&jobs, |name, seed| run(&Log::read(&folder, name)?, name, known, seed))?;
+        for name in &asked {
+            let own: Vec<&Followed> = made.iter().filter(|followed| followed.run.name == *name).collect();
+            println!("{}", row(&format!("{name}, {words}"), &own));
+        }
+        all = made;
     }
     println!("\n{}", include_str!("reliability.md").trim_end());
     println!();
@@ -83,10 +87,13 @@ fn stream(palms: Vec<StreamPalm>, options: ContactOptions) -> Anything<MotionStr
     Ok(MotionStream::new(palms, StreamOptions { contacts, sample_rate: RATE })?)
 }
 
-fn run(file: &Log, name: &str, seed: u64) -> Anything<Followed> {
+fn run(file: &Log, name: &str, known: bool, seed: u64) -> Anything<Followed> {
     let Case { log, options, .. } = case(file, NOISE, f64::INFINITY, seed)?;
     let truth = Truth::new(file, log.times())?;
-    let (palms, samples) = sensed(&log)?;
+    let (mut palms, samples) = sensed(&log)?;
+    for (i, palm) in palms.iter_mut().enumerate().filter(|_| known) {
+        palm.friction = Some(file.friction(i + 1));
+    }
     let mut stream = stream(palms, options)?;
     let mut followed = Followed { run: Run::new(name, false), samples: [0; 3], decided: 0.0, doubted: false };
     let mut last = None;

@@ -144,3 +144,28 @@ fn spread(masses: &mut [f64], bins: &Bins, mut at: usize, [from, to]: [f64; 2], 
     masses[at] += mass * (to - start) / (to - from);
     at
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::density::Ratio;
+    use super::*;
+
+    /// What is known of the ratio is the same on the bins of another friction.
+    #[test]
+    fn a_friction_takes_over_what_the_largest_knows() {
+        let [largest, own] = [1.2, 0.31].map(|friction| Steps::of_friction(1e-3, friction));
+        let mut chain = Chain::new(&largest);
+        for (k, mass) in chain.ratios.iter_mut().enumerate() {
+            *mass = Ratio { size: 0.2, deviation: 0.02 }.log_at(1.2 * largest.ratios.middle(k), 0.0).exp();
+        }
+        let mut taken = Chain::new(&own);
+        taken.take(&chain, [&largest, &own], None);
+        assert!((taken.sticks() - chain.sticks()).abs() < 1e-12 * chain.sticks());
+        let [a, b] = [(&chain, &largest), (&taken, &own)].map(|(of, steps)| of.ratio(steps).unwrap());
+        // Bins there are 0.0065 wide.
+        assert!((a[0] - b[0]).abs() < 1e-3 && (a[1] - b[1]).abs() < 1e-3, "{a:?} {b:?}");
+        let modes = Chain { off: 0.0, ratios: vec![0.25], speeds: vec![0.75 / 36.0; 36] };
+        taken.take(&chain, [&largest, &own], Some(&modes));
+        assert!((taken.sticks() - 0.25).abs() < 1e-12 && (taken.slides() - 0.75).abs() < 1e-12);
+    }
+}
