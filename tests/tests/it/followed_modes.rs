@@ -22,7 +22,7 @@ fn followed(mode_odds: bool, seed: u64) -> (Vec<Sensed>, Vec<StreamEstimate>) {
     let floor = 3e-5 * log.natural_speed();
     let noise = ContactNoiseLevel { contact, force_fixed: 0.0, force_share, impulse: None, floor };
     let contacts = ContactOptions { mode_odds, ..ContactOptions::new(noise, 9.81) };
-    let palms = vec![StreamPalm { surface: PalmSurface::Flat, friction: None }; log.palms()];
+    let palms = vec![StreamPalm { surface: PalmSurface::Plane, friction: None }; log.palms()];
     let mut stream = MotionStream::new(palms, StreamOptions { contacts, sample_rate: RATE }).unwrap();
     assert_eq!(stream.palms_with_modes(), if mode_odds { 3 } else { 0 });
     let samples = log.sensed(contact, force_share, seed);
