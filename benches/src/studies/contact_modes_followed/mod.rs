@@ -58,7 +58,9 @@ pub(crate) fn main() -> Anything<()> {
     println!("\n{}", include_str!("reliability.md").trim_end());
     println!();
     print!("{}", reliability(&all.iter().map(|followed| &followed.run).collect::<Vec<_>>()));
-    cost::main(&folder, first, &asked)
+    cost::main(&folder, first, &asked)?;
+    print!("\n{}", include_str!("holds.md"));
+    Ok(())
 }
 
 /// What the palms of a log sense at each sample.
@@ -141,7 +143,7 @@ fn row(name: &str, all: &[&Followed]) -> String {
     let largest = |i: usize| all.iter().filter_map(|of| of.run.friction).map(|of| of[i]).fold(0.0, f64::max);
     let [every, told, tracked] = [0, 1, 2].map(|i| sum(&|of| of.samples[i] as f64));
     format!(
-        "| {name} | {}, {} | {:.2}, {:.3} | {samples} | {:.4} | {:.4} | {:.3} | {:.5} ({worst:.5}) | {:.4} | {:.4}, {:.1} | {} |",
+        "| {name} | {}, {} | {:.2}, {:.3} | {samples} | {:.4} | {:.4} | {:.3} | {:.5} ({worst:.5}) | {:.4} | {friction} | {} |",
         all.len(),
         all.iter().filter(|of| of.run.relied_on).count(),
         (every - told) / RATE / all.len().max(1) as f64,
@@ -151,8 +153,6 @@ fn row(name: &str, all: &[&Followed]) -> String {
         sum(&|of| of.run.confident) / samples,
         sum(&|of| of.run.wrong) / samples,
         sum(&|of| of.run.brier) / samples,
-        largest(0),
-        largest(1),
         all.iter().filter(|of| of.doubted).count(),
     )
 }
