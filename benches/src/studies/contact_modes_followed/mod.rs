@@ -140,7 +140,9 @@ fn row(name: &str, all: &[&Followed]) -> String {
     let sum = |of: &dyn Fn(&Followed) -> f64| all.iter().map(|followed| of(followed)).sum::<f64>();
     let samples = sum(&|of| of.run.samples).max(1.0);
     let worst = all.iter().map(|of| of.run.wrong / of.run.samples.max(1.0)).fold(0.0, f64::max);
-    let largest = |i: usize| all.iter().filter_map(|of| of.run.friction).map(|of| of[i]).fold(0.0, f64::max);
+    let learned = all.iter().filter_map(|of| of.run.friction);
+    let largest = learned.reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+    let friction = largest.map_or(String::new(), |[error, of]| format!("{error:.4}, {of:.1}"));
     let [every, told, tracked] = [0, 1, 2].map(|i| sum(&|of| of.samples[i] as f64));
     format!(
         "| {name} | {}, {} | {:.2}, {:.3} | {samples} | {:.4} | {:.4} | {:.3} | {:.5} ({worst:.5}) | {:.4} | {friction} | {} |",
