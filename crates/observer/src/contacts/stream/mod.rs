@@ -10,6 +10,7 @@
 
 mod dearer;
 mod estimate;
+mod freed;
 mod front;
 mod modes;
 mod others;

@@ -15,19 +15,14 @@ use crate::contacts::onward::{FOLLOWED, WINDOW};
 use crate::contacts::options::ContactOptions;
 use crate::contacts::problem::{Problem, Units, Unknowns};
 use crate::contacts::record::Record;
-use crate::contacts::samples::at_all;
 use crate::contacts::search::{fine_nodes, fine_within, problem, thinned, whole};
-use crate::contacts::slips::Known;
 use crate::contacts::solve::Solved;
 use crate::contacts::stage::Stage;
 use crate::contacts::state::Motion;
 use crate::contacts::suspects::Readings;
 use crate::contacts::windows::longest;
 use nalgebra::{Matrix3, Matrix6};
-use object_dynamics::{
-    ContactLog, ContactMode, ContactPoints, ForceChannel, MOST_PALMS, MeasuredMotion, PalmRecord,
-    RecordedMotion,
-};
+use object_dynamics::{ContactLog, ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion};
 use std::collections::VecDeque;
 
 /// Longest window in natural times: a body that is held turns by some radians in it, and so shows its inertia.
@@ -74,8 +69,8 @@ pub(super) struct Before {
 
 /// The latest samples, and the motion that they were last found to have.
 pub(super) struct Window {
-    palms: Vec<StreamPalm>,
-    options: ContactOptions,
+    pub(super) palms: Vec<StreamPalm>,
+    pub(super) options: ContactOptions,
     sample_rate: f64,
     /// Whether modes are to be told and nothing does yet.
     untold: bool,
@@ -274,35 +269,6 @@ impl Window {
             false => Vec::new(),
         };
         Some((solution, freed))
-    }
-
-    /// The motions at the window's end in which one palm each, of those that stick somewhere, need not.
-    fn freed(
-        &self,
-        record: &Record,
-        (modes, longest): (&[[ContactMode; MOST_PALMS]], f64),
-        of: &Of,
-        solution: &Solution,
-    ) -> Vec<(usize, Solution)> {
-        let Of { problem, solved, ref covariances, unresolved, .. } = *of;
-        let sticks = |palm: &usize| modes.iter().any(|modes| modes[*palm] == ContactMode::Stick);
-        let palms: Vec<usize> = (0..self.palms.len()).filter(sticks).collect();
-        if palms.is_empty() {
-            return Vec::new();
-        }
-        let motions = at_all(record, problem, &solved.unknowns, covariances);
-        let known = Known { log: record, modes, problem, solved, covariances, motions: &motions, longest };
-        let Solution { number, t, turned, missed, .. } = *solution;
-        let one = |palm: usize| {
-            let freed = known.without_sticking(palm, |problem, solved, covariances| {
-                let (problem, lasting) = (&problem, solved.lasting(&problem));
-                let (solved, against, open) = (&solved, false, false);
-                let of = Of { problem, solved, covariances, against, open, lasting, unresolved };
-                Solution::new(&of, (number, t), self.options.body.as_ref(), turned, missed)
-            });
-            freed.map(|solution| (palm, solution))
-        };
-        palms.into_iter().filter_map(one).collect()
     }
 
     /// From nothing, and whether the body is another one than was stated. None where the window leaves it open which of several motions it is.
