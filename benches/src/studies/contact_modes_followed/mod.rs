@@ -37,7 +37,7 @@ pub(crate) fn main() -> Anything<()> {
     let mut words = crate::words();
     let folder = PathBuf::from(words.next().ok_or("the folder of the logs is missing")?);
     let first: u64 = words.next().map_or(Ok(FIRST_SEED), |s| s.parse())?;
-    let seeds: u64 = words.next().map_or(Ok(20), |s| s.parse())?;
+    let seeds: u64 = words.next().map_or(Ok(3), |s| s.parse())?;
     let names: Vec<String> = words.collect();
     let asked: Vec<&str> =
         SCENES.into_iter().filter(|name| names.is_empty() || names.iter().any(|n| n == name)).collect();
