@@ -25,6 +25,9 @@ class Estimate(NamedTuple):
     angular_velocity: rad/s, world axes. The std_* are standard deviations of all axes together (m, rad, m/s, rad/s). stage is "gathering",
     "searching", "tracking" or "contradicted"; reliable says whether the motion is relied on to within its deviations. misfit is about 1 where
     all is as stated. mass and std_mass (kg) where they are estimated.
+
+    Of palms with friction, None before a motion is found and where no palm has any: modes has the contact mode to act on for each palm (0 off, 1
+    slides, 2 sticks), mode_probabilities (slide, stick) for each, doubts what contradicts its readings, in a word, or None.
     """
 
     t: float
@@ -41,10 +44,13 @@ class Estimate(NamedTuple):
     misfit: float
     mass: float
     std_mass: float
+    modes: tuple[int, ...] | None
+    mode_probabilities: tuple[tuple[float, float], ...] | None
+    doubts: tuple[str | None, ...] | None
 
 
 def _estimate(row: tuple[Any, ...]) -> Estimate:
-    t, motion, deviations, stage, reliable, misfit, mass = row
+    t, motion, deviations, stage, reliable, misfit, mass, told = row
     mass, std_mass = mass or (float("nan"), float("nan"))
     x, y, z, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz = motion
     std_position, std_velocity, std_angular_velocity, std_turn = deviations
@@ -63,6 +69,9 @@ def _estimate(row: tuple[Any, ...]) -> Estimate:
         misfit=misfit,
         mass=mass,
         std_mass=std_mass,
+        modes=None if told is None else tuple(mode for mode, *_ in told),
+        mode_probabilities=None if told is None else tuple((slide, stick) for _, slide, stick, _ in told),
+        doubts=None if told is None else tuple(doubt for *_, doubt in told),
     )
 
 
@@ -155,6 +164,8 @@ class Following:
 
     times: (n,). motion: (n, 13): position, orientation (scalar first), velocity, angular velocity. deviations: (n, 4): of position,
     velocity, angular velocity, turn. stages: (n,), text. reliable: (n,), bool. misfit: (n,). mass: (n, 2), kg, with its deviation.
+    modes: (n, palms), the contact modes to act on (0 off, 1 slides, 2 sticks), nan before a motion is found; mode_probabilities: (n, palms, 2), to slide
+    and to stick; doubts: (n, palms), text, "none" where nothing is doubted. All three None where no palm has friction.
     left_out: how many samples could not be used, and why the first of them.
     """
 
@@ -165,6 +176,9 @@ class Following:
     reliable: NDArray[np.bool_]
     misfit: Array
     mass: Array
+    modes: Array | None
+    mode_probabilities: Array | None
+    doubts: NDArray[np.str_] | None
     left_out: tuple[int, str | None]
 
     @property
@@ -218,6 +232,11 @@ def follow(
         names, columns = columns_of(source)
     follower = Follower(names, known, rate=rate, identify=identify, contact_noise=contact_noise, force_noise=force_noise)
     rows = follower.push_all(np.column_stack(columns)) + follower.finish()
+    palms = max((len(row.modes) for row in rows if row.modes is not None), default=0)
+    unknown = (float("nan"),) * palms
+    modes = [unknown if row.modes is None else row.modes for row in rows]
+    odds = [[(float("nan"),) * 2] * palms if row.mode_probabilities is None else row.mode_probabilities for row in rows]
+    doubts = [["none"] * palms if row.doubts is None else [doubt or "none" for doubt in row.doubts] for row in rows]
     return Following(
         times=np.array([row.t for row in rows]),
         motion=np.array([[*row.position, *row.orientation, *row.velocity, *row.angular_velocity] for row in rows]).reshape(-1, 13),
@@ -226,6 +245,9 @@ def follow(
         reliable=np.array([row.reliable for row in rows], dtype=np.bool_),
         misfit=np.array([row.misfit for row in rows]),
         mass=np.array([row[12:14] for row in rows], dtype=np.float64).reshape(-1, 2),
+        modes=np.array(modes, dtype=np.float64) if palms else None,
+        mode_probabilities=np.array(odds, dtype=np.float64) if palms else None,
+        doubts=np.array(doubts, dtype=np.str_) if palms else None,
         left_out=follower.left_out,
     )
 

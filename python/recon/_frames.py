@@ -29,17 +29,24 @@ def columns(of: Log | Reconstruction | Following) -> dict[str, Array]:
         names = ["std_cm", "std_v", "std_w", "std_turn"]
         table |= {name: of.deviations[:, k] for k, name in enumerate(names)}
         table |= {"stage": of.stages, "relied_on": of.reliable, "misfit": of.misfit}
-        return table | {"mass": of.mass[:, 0], "std_mass": of.mass[:, 1]}
+        table |= {"mass": of.mass[:, 0], "std_mass": of.mass[:, 1]} | _modes(of)
+        return table if of.doubts is None else table | {f"doubt_{i + 1}": of.doubts[:, i] for i in range(of.doubts.shape[1])}
     stds = {"cm": of.position_std, "v": of.velocity_std, "w": of.angular_velocity_std, "turn": of.turn_std}
     for name, std in stds.items():
         if std is not None:
             table |= {f"std_{name}{axis}": std[:, k] for k, axis in enumerate("xyz")}
+    return table | _modes(of) | {"relied_on": of.relied_on}
+
+
+def _modes(of: Reconstruction | Following) -> dict[str, Array]:
+    """Contact modes and their probabilities, where they are told."""
+    table: dict[str, Array] = {}
     if of.modes is not None:
         table |= {f"mode_{i + 1}": of.modes[:, i] for i in range(of.modes.shape[1])}
     if of.mode_probabilities is not None:
         for i in range(of.mode_probabilities.shape[1]):
             table |= {f"p_{mode}_{i + 1}": of.mode_probabilities[:, i, k] for k, mode in enumerate(["slide", "stick"])}
-    return table | {"relied_on": of.relied_on}
+    return table
 
 
 def to_frame(of: Log | Reconstruction | Following) -> pandas.DataFrame:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 _Array = NDArray[np.float64]
 _Path = str | os.PathLike[str]
 _Progress = Callable[[str], object] | None
-_Row = tuple[float, list[float], list[float], str, bool, float, list[float] | None]
+_Row = tuple[float, list[float], list[float], str, bool, float, list[float] | None, list[tuple[int, float, float, str | None]] | None]
 
 __version__: str
 

@@ -5,7 +5,7 @@ mod logs;
 mod score;
 
 pub use drawn::drawn;
-pub use logs::{LoggedContacts, SlipNoise, TWIST_CORRELATION};
+pub use logs::{LoggedContacts, Sensed, SlipNoise, TWIST_CORRELATION};
 pub use score::Score;
 
 use nalgebra::{Matrix2x6, Matrix6};

@@ -118,6 +118,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "contact-modes-estimated.md",
         "contact modes with probabilities after an estimate from reference logs, friction unknown",
     ),
+    (
+        "contact_modes_followed",
+        "contact-modes-followed.md",
+        "contact modes with probabilities of a stream that follows reference logs, friction unknown, and what they cost",
+    ),
     ("contact_logs", "contact-logs.md", "reference logs of any palms simulated from their start"),
     (
         "tilting_palms",

@@ -25,6 +25,7 @@ mod contact_estimates;
 mod contact_exports;
 mod contact_logs;
 mod contact_modes_estimated;
+mod contact_modes_followed;
 mod contact_wedging;
 mod contour;
 #[cfg(feature = "urdf")]
@@ -93,6 +94,7 @@ const STUDIES: &[(&str, Parts, Run)] = &[
     ("exported_objects", SHORT, || in_words(exported_objects::main())),
     ("least_model", TIMES, || in_words(least_model::main())),
     ("contact_modes_estimated", SHORT, || in_words(contact_modes_estimated::main())),
+    ("contact_modes_followed", TIMES, || in_words(contact_modes_followed::main())),
     ("mode_bank", SHORT, || in_words(mode_bank::main())),
     ("mode_switches", SHORT, || in_words(mode_switches::main())),
     ("no_force", OF_RUNS, || in_words(no_force::main())),

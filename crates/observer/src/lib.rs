@@ -90,7 +90,8 @@ pub use contact_modes::{
 pub use contacts::{
     ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions,
     EstimatedModes, ForceReading, ImpulseNoise, MotionStream, PalmSensed, PlaneReadings, StreamBody,
-    StreamError, StreamEstimate, StreamMotion, StreamOptions, StreamPalm, StreamStage, estimate_contacts,
+    StreamError, StreamEstimate, StreamModes, StreamMotion, StreamOptions, StreamPalm, StreamStage,
+    estimate_contacts,
 };
 pub use core::{
     Arrival, Bank, BankError, BankOptions, BatchOptions, BatchSolution, Branch, EkfEstimate,

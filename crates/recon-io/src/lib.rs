@@ -34,6 +34,7 @@ mod export;
 mod log;
 mod mesh;
 mod mesh_formats;
+mod mode_columns;
 mod number;
 mod output;
 mod planar_figures;
@@ -69,6 +70,7 @@ pub use log::{
 };
 pub use mesh::{MeshError, TriangleMesh, write_ply};
 pub use mesh_formats::{write_glb, write_stl};
+pub use mode_columns::{mode_columns, probabilities, push_modes};
 pub use number::{brief, brief_to, with_brief_numbers};
 pub use output::{
     AtomicFile, FileTarget, FolderTarget, OutputError, OutputFolder, Summed, fingerprint, is_standard_output,
@@ -94,8 +96,7 @@ pub use summary::{
     verdict_figures,
 };
 pub use table::{
-    mode_probabilities, probabilities, write_contact_curves, write_estimated_motion, write_motion,
-    write_radius_functions,
+    mode_probabilities, write_contact_curves, write_estimated_motion, write_motion, write_radius_functions,
 };
 pub use touches::{
     Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,

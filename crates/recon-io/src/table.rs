@@ -1,10 +1,11 @@
 //! Results as CSV tables, with numbers that read back bit for bit.
 
 use crate::log::TRUTH;
+use crate::mode_columns::{mode_columns, probabilities, push_modes};
 use crate::number::push_row;
 use crate::report::{MotionState, PalmContact};
-use recon::observer::{ContactEstimate, ContactOdds};
-use std::fmt::Write as _;
+use recon::object_dynamics::MOST_PALMS;
+use recon::observer::ContactEstimate;
 use std::io::{self, Write};
 
 /// Writes the motion as `t` and the truth columns of the sensor-log format.
@@ -51,11 +52,9 @@ pub fn write_estimated_motion(
     palms: usize,
     mut to: impl Write,
 ) -> io::Result<()> {
-    let modes: String = (1..=palms).map(|i| format!("mode_{i},")).collect();
     let odds = estimate.mode_odds.as_ref().map(|found| &found.odds);
-    let name = |i: usize| format!("p_slide_{i},p_stick_{i},");
-    let named: String = odds.map_or_else(String::new, |_| (1..=palms).map(name).collect());
-    writeln!(to, "t,{},{},{modes}{named}relied_on", TRUTH.join(","), DEVIATIONS.join(","))?;
+    let modes = mode_columns(palms, odds.is_some());
+    writeln!(to, "t,{},{}{modes},relied_on", TRUTH.join(","), DEVIATIONS.join(","))?;
     let (mut row, mut numbers) = (String::new(), Vec::new());
     for (k, t) in times.iter().enumerate() {
         row.clear();
@@ -63,14 +62,8 @@ pub fn write_estimated_motion(
         numbers.extend(cells(*t, &estimate.states[k].into()));
         numbers.extend(estimate.deviations[k].iter().flat_map(|of| of.to_array()));
         push_row(&mut row, &numbers);
-        for mode in estimate.modes[k].iter().take(palms) {
-            let _ = write!(row, ",{}", mode.number());
-        }
-        let odds = odds.map(|odds| odds[k].iter().take(palms).flat_map(probabilities));
-        for probability in odds.into_iter().flatten() {
-            // Digits of a probability are written as people read them: there are six at most.
-            let _ = write!(row, ",{probability}");
-        }
+        let few = palms.min(MOST_PALMS);
+        push_modes(&mut row, &estimate.modes[k][..few], odds.map(|odds| &odds[k][..few]));
         writeln!(to, "{row},{}", u8::from(estimate.relied_on[k]))?;
     }
     to.flush()
@@ -84,14 +77,8 @@ pub fn mode_probabilities(estimate: &ContactEstimate, palms: usize) -> Option<Ve
     Some(odds.map(|all| all.iter().take(palms).map(probabilities).collect()).collect())
 }
 
-/// To slide and to stick, to a millionth.
-#[must_use]
-pub fn probabilities(of: &ContactOdds) -> [f64; 2] {
-    [of.slide, of.stick].map(|probability| (1e6 * probability).round() / 1e6)
-}
-
 /// A time and a state in the order of the truth columns.
-fn cells(t: f64, state: &MotionState) -> [f64; 14] {
+pub(crate) fn cells(t: f64, state: &MotionState) -> [f64; 14] {
     let (p, q, v, w) = (state.p_WCm, state.R_WO, state.v_WCm, state.w_WO);
     [t, p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z]
 }

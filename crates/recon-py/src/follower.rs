@@ -5,11 +5,14 @@ use crate::errors::{input, raised};
 use crate::scene::Scene;
 use pyo3::prelude::*;
 use recon_cli::Follower as Made;
-use recon_io::StreamRow;
+use recon_io::{StreamRow, probabilities};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A row of the table of `recon follow`: 24 entries, of which two are a word and a mark.
-type Row = (f64, [f64; 13], [f64; 4], &'static str, bool, f64, Option<[f64; 2]>);
+/// Of one palm: its decided mode, how probable it is that it slides and that it sticks, and what is doubted.
+type Mode = (u8, f64, f64, Option<&'static str>);
+
+/// A row of the table of `recon follow`: 24 entries, of which two are a word and a mark, and the modes of all palms where they are told.
+type Row = (f64, [f64; 13], [f64; 4], &'static str, bool, f64, Option<[f64; 2]>, Option<Vec<Mode>>);
 
 /// Follows a motion row by row.
 #[pyclass(frozen, module = "recon._recon")]
@@ -22,6 +25,11 @@ pub(crate) struct Follower {
 impl Follower {
     fn locked(&self) -> MutexGuard<'_, Made> {
         self.made.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn told(&self, rows: &[StreamRow]) -> Vec<Row> {
+        let palms = self.locked().palms_with_modes();
+        rows.iter().map(|row| told(row, palms)).collect()
     }
 
     fn check(&self, found: usize) -> PyResult<()> {
@@ -43,7 +51,7 @@ impl Follower {
     fn push(&self, py: Python<'_>, row: Vec<f64>) -> PyResult<Vec<Row>> {
         self.check(row.len())?;
         let made = py.detach(|| self.locked().push(&row)).map_err(raised)?;
-        Ok(made.iter().map(told).collect())
+        Ok(self.told(&made))
     }
 
     /// The same of a row that is an array.
@@ -62,7 +70,7 @@ impl Follower {
                 let mut follower = self.locked();
                 some.iter().map(|row| follower.push(row)).collect::<Result<Vec<_>, _>>()
             });
-            all.extend(made.map_err(raised)?.iter().flatten().map(told));
+            all.extend(self.told(&made.map_err(raised)?.concat()));
             py.check_signals()?;
         }
         Ok(all)
@@ -71,7 +79,7 @@ impl Follower {
     /// The estimates that were held back.
     fn finish(&self, py: Python<'_>) -> PyResult<Vec<Row>> {
         let made = py.detach(|| self.locked().finish()).map_err(raised)?;
-        Ok(made.iter().map(told).collect())
+        Ok(self.told(&made))
     }
 
     /// Samples that could not be used, and what was wrong with the first of them.
@@ -82,11 +90,18 @@ impl Follower {
     }
 }
 
-fn told(row: &StreamRow) -> Row {
+fn told(row: &StreamRow, palms: usize) -> Row {
     let motion = row.motion.map_or([f64::NAN; 13], |motion| {
         let (p, [qw, qx, qy, qz]) = (motion.p_WCm, wxyz(motion.R_WO));
         let (v, w) = (motion.v_WCm, motion.w_WO);
         [p.x, p.y, p.z, qw, qx, qy, qz, v.x, v.y, v.z, w.x, w.y, w.z]
     });
-    (row.t, motion, row.deviations, row.stage, row.relied_on, row.misfit, row.mass)
+    let modes = row.modes.as_ref().map(|modes| {
+        let one = |palm: usize| {
+            let [slide, stick] = probabilities(&modes.odds[palm]);
+            (modes.decided[palm].number(), slide, stick, row.doubt(palm))
+        };
+        (0..palms).map(one).collect()
+    });
+    (row.t, motion, row.deviations, row.stage, row.relied_on, row.misfit, row.mass, modes)
 }

@@ -2,10 +2,11 @@
 
 use super::{Moment, settle};
 use crate::Random;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Vector2, Vector6};
+use recon::contact_kinematics::SurfacePose;
 use recon::object_dynamics::ContactMode;
-use recon::observer::{ContactReading, ContactSeen, ContactSlip};
+use recon::observer::{ContactReading, ContactSeen, ContactSlip, ForceReading, PalmSensed};
 use std::collections::HashMap;
 
 /// Of each component of a force, of its size.
@@ -29,6 +30,17 @@ pub enum SlipNoise {
     Correlated,
     /// The same, and the classifier knows that slips share it.
     Shared,
+}
+
+/// A sample of a stream.
+#[derive(Clone, Debug)]
+pub struct Sensed {
+    /// s.
+    pub t: f64,
+    /// What is read.
+    pub palms: Vec<PalmSensed>,
+    /// Modes of all palms.
+    pub truth: Vec<ContactMode>,
 }
 
 /// Columns of a log by name.
@@ -75,6 +87,43 @@ impl LoggedContacts {
         DVec3::new(at("x"), at("y"), at("z"))
     }
 
+    /// What palms whose frames stay at the origin sense, with contacts off by `contact` (m) in each direction along the palm and forces by a share of
+    /// themselves, and what is true.
+    #[must_use]
+    pub fn sensed(&self, contact: f64, share: f64, seed: u64) -> Vec<Sensed> {
+        let mut normal = super::drawn::Normal::new(Random::new(seed));
+        let mut draw = || DVec3::new(normal.draw(), normal.draw(), normal.draw());
+        let all = (0..self.columns["t"].len()).map(|k| {
+            let palm = |i: usize| {
+                let tail = format!("_{i}");
+                let [p, f, w_WP] = ["p", "f", "W"].map(|stem| self.vector(stem, &tail, k));
+                let v = self.vector("Q", &tail, k);
+                let R_WP = DQuat::from_xyzw(v.x, v.y, v.z, self.columns[&format!("Qw{tail}")][k]);
+                let off = (contact * draw()).reject_from(R_WP * DVec3::Z);
+                PalmSensed {
+                    pose: SurfacePose::new(DVec3::ZERO, R_WP.normalize()).unwrap(),
+                    twist: Some([DVec3::ZERO, w_WP]),
+                    contact: p.is_finite().then_some(p + off),
+                    force: ForceReading::Three(f + share * f.length() * draw()),
+                }
+            };
+            Sensed {
+                t: self.columns["t"][k],
+                palms: (1..=self.palms).map(palm).collect(),
+                truth: (1..=self.palms).map(|i| self.mode(i, k)).collect(),
+            }
+        });
+        all.collect()
+    }
+
+    fn mode(&self, palm: usize, k: usize) -> ContactMode {
+        match self.columns[&format!("mode_{palm}")][k] as u8 {
+            0 => ContactMode::Off,
+            1 => ContactMode::Slide,
+            _ => ContactMode::Stick,
+        }
+    }
+
     /// Readings with noise of this seed.
     #[must_use]
     pub fn moments(&self, slips: SlipNoise, seed: u64) -> Vec<Moment> {
@@ -95,11 +144,7 @@ impl LoggedContacts {
             let (mut seen, mut slopes, mut truth) = (Vec::new(), Vec::new(), Vec::new());
             for i in 1..=self.palms {
                 let tail = format!("_{i}");
-                let mode = match self.columns[&format!("mode{tail}")][k] as u8 {
-                    0 => ContactMode::Off,
-                    1 => ContactMode::Slide,
-                    _ => ContactMode::Stick,
-                };
+                let mode = self.mode(i, k);
                 truth.push(mode);
                 if mode == ContactMode::Off {
                     seen.push(ContactSeen::Off);

@@ -11,6 +11,7 @@ mod estimate_motion;
 mod exported_scenes;
 mod failure_cases;
 mod failures_unknown_body;
+mod followed_modes;
 mod logs_of_other_simulators;
 mod mode_bank;
 mod mode_bank_on_a_belt;

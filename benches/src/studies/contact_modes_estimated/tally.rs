@@ -18,7 +18,7 @@ type Bin = [f64; 3];
 /// One log with one noise. Shares are over samples away from switches, but where it is said.
 pub(crate) struct Run {
     pub(crate) name: String,
-    relied_on: bool,
+    pub(crate) relied_on: bool,
     pub(crate) samples: f64,
     pub(crate) right: f64,
     all: [f64; 2],
@@ -28,7 +28,7 @@ pub(crate) struct Run {
     pub(crate) brier: f64,
     pub(crate) bins: [Bin; BINS],
     /// Largest error of a friction, and the largest in its deviations.
-    friction: Option<[f64; 2]>,
+    pub(crate) friction: Option<[f64; 2]>,
 }
 
 impl Run {

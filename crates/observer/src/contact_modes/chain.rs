@@ -1,8 +1,8 @@
 //! One contact at one coefficient of friction: probabilities of off, of the speeds of sliding and of the ratios of sticking.
 
 use super::bins::Bins;
-use super::contact::Force;
-use super::density::{Ratio, Slip};
+use super::contact::{Force, SlipRead};
+use super::density::Ratio;
 use super::friction::Cell;
 use super::steps::Steps;
 
@@ -70,14 +70,23 @@ impl Likelihood {
         }
     }
 
-    /// Of a slip. `turn` is the deviation of the direction of friction, rad; `weight` the power of the density.
-    pub(super) fn of_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) {
+    /// Of a slip.
+    pub(super) fn of_slip(&mut self, read: &SlipRead, speeds: &Bins) {
+        let SlipRead { slip, turn, weight } = read;
         self.off = weight * slip.log_off();
         self.ratios.fill(weight * slip.log_sticking());
         for (k, log) in self.speeds.iter_mut().enumerate() {
             let (speed, spread) = (speeds.middle(k), speeds.variance(k));
-            *log = weight * slip.log_sliding(speed, spread, turn);
+            *log = weight * slip.log_sliding(speed, spread, *turn);
         }
+    }
+
+    /// With that of a slip beside it, of which all ratios are one cell.
+    pub(super) fn add_slip(&mut self, by_slip: &Self) {
+        self.off += by_slip.off;
+        self.speeds.iter_mut().zip(&by_slip.speeds).for_each(|(log, slip)| *log += slip);
+        let sticks = by_slip.ratios.first().copied().unwrap_or_default();
+        self.ratios.iter_mut().for_each(|log| *log += sticks);
     }
 
     /// Of a ratio, at the friction of this cell; those of the speeds are all the same.

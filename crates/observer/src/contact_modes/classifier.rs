@@ -1,7 +1,7 @@
 //! The way of a sample.
 
 use super::bins::Bins;
-use super::contact::{Contact, Force, Modes};
+use super::contact::{Contact, Force, Modes, SlipRead};
 use super::density::Slip;
 use super::doubt::{ContactModesDoubt, Left, Told};
 use super::error::ContactModesError;
@@ -84,6 +84,15 @@ impl ContactModes {
         frictions: &[ContactFriction],
         options: ContactModesOptions,
     ) -> Result<Self, ContactModesError> {
+        Self::every(FIRST, frictions, options)
+    }
+
+    /// The same for samples that come every `dt`, s: walks for that are made at once, and not at the second sample.
+    pub(crate) fn every(
+        dt: f64,
+        frictions: &[ContactFriction],
+        options: ContactModesOptions,
+    ) -> Result<Self, ContactModesError> {
         options.check()?;
         let label = ModeLabel::new(options.label_level)?;
         if frictions.is_empty() {
@@ -96,22 +105,18 @@ impl ContactModes {
                     return Err(ContactModesError::Friction { contact, value });
                 }
                 ContactFriction::Known(_) => None,
-                ContactFriction::Unknown { material } => {
-                    grids.iter().position(|grid| grid.material == Some(material))
-                }
+                of => grids.iter().position(|grid| grid.of == of),
             };
             grid_of.push(same.unwrap_or(grids.len()));
             if same.is_none() {
-                grids.push(match *friction {
-                    ContactFriction::Known(value) => FrictionGrid::known(value, FIRST),
-                    ContactFriction::Unknown { material } => FrictionGrid::unknown(material, FIRST),
-                });
+                grids.push(FrictionGrid::new(*friction, dt));
             }
         }
         let count = frictions.len();
         let late = |grid: &usize| {
             let grid = &grids[*grid];
-            grid.material.is_none().then(|| Late::new(&grid.steps[0], options.natural_speed))
+            matches!(grid.of, ContactFriction::Known(_))
+                .then(|| Late::new(&grid.steps[0], options.natural_speed))
         };
         let left = grid_of.iter().map(|grid| Left::new(late(grid))).collect();
         Ok(Self {
@@ -142,7 +147,7 @@ impl ContactModes {
     pub fn push(&mut self, dt: f64, seen: &[ContactSeen]) -> Result<f64, ContactModesError> {
         self.check(dt, seen)?;
         self.advance(dt, seen);
-        self.weigh_slips(dt, seen, None);
+        self.weigh(dt, seen, None);
         Ok(self.settle(dt, seen))
     }
 
@@ -161,7 +166,7 @@ impl ContactModes {
         self.check(dt, seen)?;
         let information = self.check_twist(twist)?;
         self.advance(dt, seen);
-        self.weigh_slips(dt, seen, Some((twist, &information)));
+        self.weigh(dt, seen, Some((twist, &information)));
         Ok(self.settle(dt, seen))
     }
 
@@ -182,7 +187,14 @@ impl ContactModes {
     /// probability of 0.99, for what sticks has only a lower bound; none where it was stated.
     #[must_use]
     pub fn friction(&self, contact: usize) -> Option<LearnedFriction> {
-        self.grid_of.get(contact).and_then(|grid| self.grids[*grid].learned())
+        let grid = self.grids.get(*self.grid_of.get(contact)?)?;
+        grid.learned(self.contacts.get(contact)?)
+    }
+
+    /// The same, or what was stated.
+    pub(crate) fn friction_told(&self, contact: usize) -> Option<f64> {
+        let grid = self.grids.get(*self.grid_of.get(contact)?)?;
+        grid.told(self.contacts.get(contact)?)
     }
 
     /// What contradicts that readings are as stated, of each contact the clearest: odds of a contact that is doubted can be sure and wrong.
@@ -198,31 +210,26 @@ impl ContactModes {
         self.samples
     }
 
-    /// A time step on, and the forces.
+    /// A time step on, and what forces say.
     fn advance(&mut self, dt: f64, seen: &[ContactSeen]) {
-        let dt = if self.samples == 0 { FIRST } else { dt };
-        self.grids.iter_mut().flat_map(|grid| &mut grid.steps).for_each(|steps| steps.follow(dt));
+        if self.samples > 0 {
+            self.grids.iter_mut().for_each(|grid| grid.follow(dt));
+        }
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             let grid = &self.grids[self.grid_of[i]];
-            if self.samples > 0 {
-                contact.predict(grid);
-            }
-            let force = seen[i].force(&self.options);
-            contact.weigh_force(&force, grid);
-            self.forces[i] = force;
+            contact.predict(grid);
+            self.forces[i] = seen[i].force(&self.options);
         }
     }
 
-    fn weigh_slips(
-        &mut self,
-        dt: f64,
-        seen: &[ContactSeen],
-        twist: Option<(&TwistError<'_>, &Matrix6<f64>)>,
-    ) {
+    /// Forces and slips.
+    fn weigh(&mut self, dt: f64, seen: &[ContactSeen], twist: Option<(&TwistError<'_>, &Matrix6<f64>)>) {
         let weight = self.options.slip_weight(dt);
         if let Some((twist, information)) = twist {
             for i in 0..self.contacts.len() {
-                self.odds[i] = self.contacts[i].average(&self.grids[self.grid_of[i]].weights);
+                let grid = &self.grids[self.grid_of[i]];
+                self.contacts[i].weigh(&self.forces[i], None, grid, &self.speeds);
+                self.odds[i] = self.contacts[i].average();
                 self.set_row(i, &seen[i], twist);
             }
             for _ in 0..SWEEPS {
@@ -231,17 +238,19 @@ impl ContactModes {
                         continue;
                     };
                     let (_, slip, turn) = self.slip(reading, error);
-                    self.odds[i] = self.contacts[i].try_slip(&slip, turn, weight, &self.speeds);
+                    let read = SlipRead { slip, turn, weight };
+                    self.odds[i] = self.contacts[i].try_slip(&read, &self.speeds);
                     self.set_row(i, &seen[i], twist);
                 }
             }
         }
         for i in 0..self.contacts.len() {
-            self.slips[i] = None;
-            let Some((reading, error)) = self.shared(i, &seen[i], twist) else { continue };
-            let (own, slip, turn) = self.slip(reading, error);
-            self.contacts[i].weigh_slip(&slip, turn, weight, &self.speeds);
-            self.slips[i] = Some((own, slip));
+            let read = self.shared(i, &seen[i], twist).map(|(reading, error)| self.slip(reading, error));
+            self.slips[i] = read.map(|(own, slip, _)| (own, slip));
+            let read = read.map(|(_, slip, turn)| SlipRead { slip, turn, weight });
+            // With a twist forces have counted before.
+            let force = if twist.is_some() { &Force::Silent } else { &self.forces[i] };
+            self.contacts[i].weigh(force, read.as_ref(), &self.grids[self.grid_of[i]], &self.speeds);
         }
     }
 
@@ -298,24 +307,25 @@ impl ContactModes {
     /// Frictions, odds and labels after a sample; the logarithm of its density.
     fn settle(&mut self, dt: f64, seen: &[ContactSeen]) -> f64 {
         let mut log_density = 0.0;
+        let of = &self.grid_of;
         for (g, grid) in self.grids.iter_mut().enumerate() {
-            let of_grid = self.contacts.iter_mut().zip(&self.grid_of).filter(|(_, own)| **own == g);
-            log_density += grid.gather(of_grid.map(|(contact, _)| &mut contact.log_evidence));
+            log_density += grid.gather(&mut self.contacts, |i| of[i] == g);
         }
         for (i, contact) in self.contacts.iter_mut().enumerate() {
-            let grid = &mut self.grids[self.grid_of[i]];
             let ratio = seen[i].reading().and_then(ContactReading::ratio);
             ratio.iter().for_each(|ratio| contact.learn(ratio));
-            self.odds[i] = contact.average(&grid.weights);
+            self.odds[i] = contact.average();
+            contact.guess.moments = contact.friction();
             // Forces alone take any plateau of the ratio for sliding: what is learned of friction needs a slip that was read.
             if self.slips[i].is_some() {
-                grid.count(self.odds[i][1], dt);
+                let slides = self.odds[i][1];
+                contact.guess.count(slides, dt);
+                self.grids[of[i]].together.count(slides, dt);
             }
         }
         for (g, grid) in self.grids.iter_mut().enumerate() {
-            let of_grid = self.contacts.iter().zip(&self.grid_of).filter(|(_, own)| **own == g);
-            let guesses = of_grid.map(|(contact, _)| contact.friction(&grid.weights));
-            grid.guess = together(guesses);
+            let own = self.contacts.iter().zip(of).filter(|(_, own)| **own == g);
+            grid.together.moments = together(own.map(|(contact, _)| contact.guess.moments));
         }
         (0..seen.len()).for_each(|i| self.tell(i, dt, &seen[i]));
         self.samples += 1;
@@ -329,9 +339,9 @@ impl ContactModes {
         let slip = self.slips[i].map(|(slip, _)| (slip, self.options.slip_weight(dt)));
         let told = Told {
             odds: ContactOdds { off, slide, stick },
-            friction: grid.told(),
+            friction: grid.told(&self.contacts[i]),
             slip: self.slips[i].map(|(_, slip)| slip),
-            brought: Brought { dt, force: &self.forces[i], reading: seen.reading(), slip },
+            brought: Brought { dt, times: grid.times, force: &self.forces[i], reading: seen.reading(), slip },
         };
         self.left[i].take(&told, grid.steps.first());
         self.told[i] = match self.labels[i].follow(self.odds[i]) {

@@ -1,9 +1,10 @@
 //! One contact at every coefficient of friction that it may have.
 
+use super::asleep::Followed;
 use super::bins::Bins;
 use super::chain::{Chain, Likelihood};
 use super::density::{Ratio, Slip};
-use super::friction::{Cell, FrictionGrid, guessed};
+use super::friction::{Cell, FrictionGrid, Guess, guessed};
 
 /// Probabilities of one contact's modes, in the order off, slide, stick.
 pub(super) type Modes = [f64; 3];
@@ -11,17 +12,41 @@ pub(super) type Modes = [f64; 3];
 /// A chain for each friction, and how likely all was that this contact read, for each friction.
 #[derive(Clone, Debug)]
 pub(super) struct Contact {
-    chains: Vec<Chain>,
+    pub(super) chains: Vec<Chain>,
+    /// How each friction is.
+    pub(super) followed: Vec<Followed>,
     cells: Vec<Cell>,
     pub(super) log_evidence: Vec<f64>,
+    /// Of the largest friction after the sample before.
+    pub(super) largest_before: f64,
+    /// Mean and deviation of the ratio by the largest friction, after the sample before, where it sticks.
+    pub(super) ratio: Option<[f64; 2]>,
+    /// Deviation of the latest ratio that was read.
+    pub(super) noise: f64,
+    /// How likely each friction is; they sum to one.
+    pub(super) weights: Vec<f64>,
+    /// What it says of its friction.
+    pub(super) guess: Guess,
     /// To work in.
     spares: Vec<Chain>,
     /// As long as the longest chain needs.
     likelihood: Likelihood,
+    /// Of a slip alone, which says the same of all ratios: they are one cell.
+    by_slip: Likelihood,
     /// Sum over the frictions, by their weights: what the slip is weighed against. All ratios are one cell: the slip tells none from another.
-    mean: Chain,
+    pub(super) mean: Chain,
     spare: Chain,
     tried: Chain,
+}
+
+/// A slip that was read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SlipRead {
+    pub(super) slip: Slip,
+    /// Deviation of the direction of friction, rad.
+    pub(super) turn: f64,
+    /// Power of its density.
+    pub(super) weight: f64,
 }
 
 /// What a contact's forces tell.
@@ -49,75 +74,95 @@ impl Contact {
         let longest = grid.steps.iter().map(|steps| steps.ratios.count()).max().unwrap_or(0);
         let mean = Chain { ratios: vec![0.0], ..chains[0].clone() };
         let likelihood = Likelihood { ratios: vec![0.0; longest], ..Likelihood::none(&grid.steps[0]) };
+        let by_slip = Likelihood { ratios: vec![0.0], ..Likelihood::none(&grid.steps[0]) };
         let log_evidence = vec![0.0; chains.len()];
         let (spare, tried) = (mean.clone(), mean.clone());
         Self {
             spares: chains.clone(),
+            followed: vec![Followed::Alone; chains.len()],
             chains,
             cells: grid.cells(),
+            weights: vec![1.0 / log_evidence.len() as f64; log_evidence.len()],
             log_evidence,
+            largest_before: 0.0,
+            ratio: None,
+            noise: 0.0,
+            guess: Guess::NONE,
             likelihood,
+            by_slip,
             mean,
             spare,
             tried,
         }
     }
 
-    /// One time step on.
+    /// A time step on.
     pub(super) fn predict(&mut self, grid: &FrictionGrid) {
-        for ((chain, spare), steps) in self.chains.iter_mut().zip(&mut self.spares).zip(&grid.steps) {
-            chain.predict(steps, spare);
+        for (i, steps) in grid.steps.iter().enumerate().filter(|(i, _)| self.followed[*i] == Followed::Alone)
+        {
+            (0..grid.times).for_each(|_| self.chains[i].predict(steps, &mut self.spares[i]));
         }
     }
 
-    /// Weighs all by the forces.
-    pub(super) fn weigh_force(&mut self, force: &Force, grid: &FrictionGrid) {
+    /// Weighs all by what a force and a slip say at once: where there is none, by the other alone.
+    pub(super) fn weigh(
+        &mut self,
+        force: &Force,
+        slip: Option<&SlipRead>,
+        grid: &FrictionGrid,
+        speeds: &Bins,
+    ) {
         let shift = match force {
-            Force::Silent => return,
+            Force::Silent if slip.is_none() => return,
             Force::Presses { touching, .. } => *touching,
-            Force::Off | Force::Touches => 0.0,
+            Force::Silent | Force::Off | Force::Touches => 0.0,
         };
-        for (i, cell) in self.cells.iter().enumerate() {
-            self.likelihood.of_force(&grid.steps[i], force, cell);
-            self.log_evidence[i] += self.chains[i].weigh(&self.likelihood, &mut self.spares[i]) + shift;
+        if let Force::Presses { ratio, .. } = force {
+            self.rouse(grid, ratio);
         }
-    }
-
-    /// Weighs all by the slip. `turn` is the deviation of the direction of friction, rad; `weight` the power of the density.
-    pub(super) fn weigh_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) {
-        self.likelihood.of_slip(slip, turn, weight, speeds);
-        let all = self.chains.iter_mut().zip(&mut self.spares).zip(&mut self.log_evidence);
-        for ((chain, spare), log_evidence) in all {
-            *log_evidence += chain.weigh(&self.likelihood, spare);
+        slip.iter().for_each(|slip| self.by_slip.of_slip(slip, speeds));
+        for (i, cell) in self.cells.iter().enumerate().filter(|(i, _)| self.followed[*i] == Followed::Alone) {
+            self.likelihood.of_force(&grid.steps[i], force, cell);
+            if slip.is_some() {
+                self.likelihood.add_slip(&self.by_slip);
+            }
+            self.log_evidence[i] += self.chains[i].weigh(&self.likelihood, &mut self.spares[i]) + shift;
         }
     }
 
     /// What the ratio says of where in their cells the frictions are, after all of a sample was weighed.
     pub(super) fn learn(&mut self, ratio: &Ratio) {
-        let all = self.cells.iter_mut().zip(&self.chains);
-        all.for_each(|(cell, chain)| cell.learn(ratio, chain.slides()));
+        let all = self.cells.iter_mut().zip(&self.chains).zip(&self.followed);
+        let alone = all.filter(|(_, of)| **of == Followed::Alone);
+        alone.for_each(|((cell, chain), _)| cell.learn(ratio, chain.slides()));
     }
 
-    /// Mean and variance of the friction by these weights of the cells.
-    pub(super) fn friction(&self, weights: &[f64]) -> [f64; 2] {
-        guessed(weights.iter().copied().zip(&self.cells))
+    /// Mean and variance of the friction.
+    pub(super) fn friction(&self) -> [f64; 2] {
+        guessed(self.weights.iter().copied().zip(&self.cells))
     }
 
     /// What the modes would be with this slip, without taking it; needs [`Self::average`] before.
-    pub(super) fn try_slip(&mut self, slip: &Slip, turn: f64, weight: f64, speeds: &Bins) -> Modes {
-        self.likelihood.of_slip(slip, turn, weight, speeds);
+    pub(super) fn try_slip(&mut self, slip: &SlipRead, speeds: &Bins) -> Modes {
+        self.by_slip.of_slip(slip, speeds);
         self.tried.clone_from(&self.mean);
-        self.tried.weigh(&self.likelihood, &mut self.spare);
+        self.tried.weigh(&self.by_slip, &mut self.spare);
         of(&self.tried)
     }
 
-    /// The mean of all chains by these weights of the frictions.
-    pub(super) fn average(&mut self, weights: &[f64]) -> Modes {
+    /// The mean of all chains by the weights of the frictions.
+    pub(super) fn average(&mut self) -> Modes {
         let mean = &mut self.mean;
         mean.off = 0.0;
         mean.speeds.fill(0.0);
         mean.ratios[0] = 0.0;
-        for (weight, chain) in weights.iter().zip(&self.chains) {
+        let last = self.chains.len() - 1;
+        let is_alone = |i: &usize| self.followed[*i] == Followed::Alone;
+        let others: f64 = (0..last).filter(|i| !is_alone(i)).map(|i| self.weights[i]).sum();
+        for i in (0..=last).filter(is_alone) {
+            // All others are as the largest, or of no account.
+            let weight = self.weights[i] + if i == last { others } else { 0.0 };
+            let chain = &self.chains[i];
             mean.off += weight * chain.off;
             mean.speeds.iter_mut().zip(&chain.speeds).for_each(|(sum, mass)| *sum += weight * mass);
             mean.ratios[0] += weight * chain.sticks();

@@ -1,5 +1,6 @@
 //! Coefficients of friction: one that is known, or a grid of what it may be.
 
+use super::contact::Contact;
 use super::density::Ratio;
 use super::steps::Steps;
 
@@ -9,6 +10,8 @@ const LOWEST: f64 = 0.1;
 const HIGHEST: f64 = 1.2;
 /// The grid over a whole log, of steps of the same ratio: frictions that contradict it cost nothing for long there.
 const WHOLE: (f64, f64) = (0.02, 2.0);
+/// Prior probability that contacts that may have one friction have one.
+pub(super) const ALIKE: f64 = 0.5;
 /// Time that something must have slid before its friction is told, s, and how probable sliding must be for its time to count.
 const SLID: f64 = 0.01;
 pub(super) const SURE: f64 = 0.99;
@@ -27,6 +30,12 @@ pub enum ContactFriction {
         /// Any number that names the pair of materials.
         material: usize,
     },
+    /// The same, but whether contacts that give this number have one coefficient or each its own is not known either: beforehand one is as likely as
+    /// the other.
+    Alike {
+        /// Any number that names what may be one pair of materials.
+        material: usize,
+    },
 }
 
 /// A coefficient of friction that was learned.
@@ -41,98 +50,140 @@ pub struct LearnedFriction {
 /// What the contacts of one material may have, and how likely that is.
 #[derive(Clone, Debug)]
 pub(super) struct FrictionGrid {
-    /// None where the friction is known.
-    pub(super) material: Option<usize>,
+    /// As it was stated.
+    pub(super) of: ContactFriction,
     pub(super) values: Vec<f64>,
     /// What happens at each in a time step.
     pub(super) steps: Vec<Steps>,
-    /// Given all samples of the material; sum to one.
-    pub(super) weights: Vec<f64>,
-    logs: Vec<f64>,
+    /// Of these the latest time step was so many.
+    pub(super) times: usize,
+    /// Given all samples of the material, were it one friction; sum to one.
+    shared: Vec<f64>,
+    /// Probability that it is one.
+    one: f64,
     /// Logarithm of what the evidence summed to after the last sample, beside what was taken away.
     last: f64,
-    /// Time for which one of its contacts slid, s.
-    slid: f64,
-    /// Its mean and variance by all of its contacts.
-    pub(super) guess: [f64; 2],
+    /// What its contacts say together.
+    pub(super) together: Guess,
 }
 
-impl FrictionGrid {
-    /// For time steps of `dt`, s, at first.
-    pub(super) fn known(friction: f64, dt: f64) -> Self {
-        Self::of(None, vec![friction], dt)
-    }
+/// What is known of a friction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Guess {
+    /// Time for which something slid, s.
+    slid: f64,
+    /// Mean and variance.
+    pub(super) moments: [f64; 2],
+}
 
-    pub(super) fn unknown(material: usize, dt: f64) -> Self {
-        let values: Vec<f64> = (0..VALUES).map(|k| LOWEST * (f64::from(k) * log_step()).exp()).collect();
-        Self::of(Some(material), values, dt)
-    }
+impl Guess {
+    pub(super) const NONE: Self = Self { slid: 0.0, moments: [1.0, 1.0] };
 
-    fn of(material: Option<usize>, values: Vec<f64>, dt: f64) -> Self {
-        let count = values.len();
-        Self {
-            material,
-            steps: values.iter().map(|friction| Steps::that_follow(dt, *friction)).collect(),
-            values,
-            weights: vec![1.0 / count as f64; count],
-            logs: vec![0.0; count],
-            last: 0.0,
-            slid: 0.0,
-            guess: [1.0, 1.0],
-        }
-    }
-
-    /// Takes the evidence of all its contacts, and takes the largest of its sums away from each contact's, so that they stay
-    /// small. Returns the logarithm of the density of what was new in it.
-    ///
-    /// Given the friction the contacts are independent: the product of their densities is exact.
-    pub(super) fn gather<'a>(&mut self, evidence: impl Iterator<Item = &'a mut Vec<f64>>) -> f64 {
-        let count = self.values.len() as f64;
-        self.logs.fill(-count.ln());
-        let mut taken = 0.0;
-        for logs in evidence {
-            let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            logs.iter_mut().for_each(|log| *log -= largest);
-            self.logs.iter_mut().zip(logs.iter()).for_each(|(sum, log)| *sum += log);
-            taken += largest;
-        }
-        let largest = self.logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let sum: f64 = self.logs.iter().map(|log| (log - largest).exp()).sum();
-        self.weights
-            .iter_mut()
-            .zip(&self.logs)
-            .for_each(|(weight, log)| *weight = (log - largest).exp() / sum);
-        let new = taken + (largest + sum.ln() - self.last);
-        self.last = largest + sum.ln();
-        new
-    }
-
-    /// What is known of each value before anything was read.
-    pub(super) fn cells(&self) -> Vec<Cell> {
-        let of = if self.material.is_none() { Cell::known } else { Cell::new };
-        self.values.iter().map(|value| of(*value)).collect()
-    }
-
-    /// The friction, where it is known or learned.
-    pub(super) fn told(&self) -> Option<f64> {
-        match self.material {
-            None => self.values.first().copied(),
-            Some(_) => self.learned().map(|learned| learned.coefficient),
-        }
-    }
-
-    /// Counts the time in which a contact of its slid.
+    /// Counts the time in which a contact slid.
     pub(super) fn count(&mut self, slides: f64, dt: f64) {
         if slides >= SURE {
             self.slid += dt;
         }
     }
 
-    /// None where it was known from the start, and while nothing slid for long enough: what sticks has only a lower bound.
-    pub(super) fn learned(&self) -> Option<LearnedFriction> {
-        self.material?;
-        learned(self.guess, self.slid)
+    fn learned(self) -> Option<LearnedFriction> {
+        learned(self.moments, self.slid)
     }
+}
+
+impl FrictionGrid {
+    /// For time steps of `dt`, s, at first.
+    pub(super) fn new(of: ContactFriction, dt: f64) -> Self {
+        let values: Vec<f64> = match of {
+            ContactFriction::Known(friction) => vec![friction],
+            _ => (0..VALUES).map(|k| LOWEST * (f64::from(k) * log_step()).exp()).collect(),
+        };
+        Self {
+            of,
+            steps: values.iter().map(|friction| Steps::that_follow(dt, *friction)).collect(),
+            times: 0,
+            shared: vec![0.0; values.len()],
+            values,
+            one: 1.0,
+            last: 0.0,
+            together: Guess::NONE,
+        }
+    }
+
+    /// A time step, s.
+    pub(super) fn follow(&mut self, dt: f64) {
+        // To make the walks of all frictions anew takes milliseconds: a sample that is missing is none.
+        let twice = !matches!(self.of, ContactFriction::Known(_));
+        for steps in &mut self.steps {
+            self.times = steps.follow(dt, twice);
+        }
+    }
+
+    /// Takes the evidence of its contacts, which stays small by that, and sets the weights of their frictions. Returns
+    /// the logarithm of the density of what was new in it.
+    ///
+    /// Given one friction the contacts are independent: the product of their densities is exact. With one for each they are so anyway, and each has a prior
+    /// of its own: a mean over the grid is the evidence of a hypothesis with a prior that is even over it.
+    pub(super) fn gather(&mut self, contacts: &mut [Contact], is_own: impl Fn(usize) -> bool) -> f64 {
+        let even = (self.values.len() as f64).ln();
+        self.shared.fill(-even);
+        let (mut taken, mut apart) = (0.0, 0.0);
+        let own = |(i, _): &(usize, &mut Contact)| is_own(*i);
+        for (_, contact) in contacts.iter_mut().enumerate().filter(own) {
+            taken += contact.level(&self.steps);
+            let logs = &contact.log_evidence;
+            self.shared.iter_mut().zip(logs).for_each(|(sum, log)| *sum += log);
+            contact.weights.copy_from_slice(logs);
+            apart += soften(&mut contact.weights) - even;
+        }
+        let together = soften(&mut self.shared);
+        let mut sum = together;
+        if let ContactFriction::Alike { .. } = self.of {
+            let odds = ALIKE / (1.0 - ALIKE) * (together - apart).exp();
+            self.one = if odds.is_finite() { odds / (1.0 + odds) } else { 1.0 };
+            let both = [ALIKE.ln() + together, (1.0 - ALIKE).ln() + apart];
+            sum = both[0].max(both[1]) + (-(both[0] - both[1]).abs()).exp().ln_1p();
+        }
+        for (_, contact) in contacts.iter_mut().enumerate().filter(own) {
+            let all = contact.weights.iter_mut().zip(&self.shared);
+            all.for_each(|(weight, shared)| *weight = self.one * shared + (1.0 - self.one) * *weight);
+        }
+        let new = taken + (sum - self.last);
+        self.last = sum;
+        new
+    }
+
+    /// What is known of each value before anything was read.
+    pub(super) fn cells(&self) -> Vec<Cell> {
+        let of = if let ContactFriction::Known(_) = self.of { Cell::known } else { Cell::new };
+        self.values.iter().map(|value| of(*value)).collect()
+    }
+
+    /// The friction of a contact, where it is known or learned.
+    pub(super) fn told(&self, contact: &Contact) -> Option<f64> {
+        match self.of {
+            ContactFriction::Known(friction) => Some(friction),
+            _ => self.learned(contact).map(|learned| learned.coefficient),
+        }
+    }
+
+    /// Of a contact: none where it was known from the start, and while nothing slid for long enough: what sticks has only a lower bound.
+    pub(super) fn learned(&self, contact: &Contact) -> Option<LearnedFriction> {
+        match self.of {
+            ContactFriction::Known(_) => None,
+            _ if self.one > 0.5 => self.together.learned(),
+            _ => contact.guess.learned(),
+        }
+    }
+}
+
+/// Makes shares of logarithms, in place; returns the logarithm of the sum of what they are of.
+pub(super) fn soften(logs: &mut [f64]) -> f64 {
+    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    logs.iter_mut().for_each(|log| *log = (*log - largest).exp());
+    let sum: f64 = logs.iter().sum();
+    logs.iter_mut().for_each(|share| *share /= sum);
+    largest + sum.ln()
 }
 
 /// Logarithm of the ratio of one value of a grid to the one before.

@@ -5,7 +5,7 @@
 
 use super::bins::Bins;
 use super::chain::{Chain, Likelihood};
-use super::contact::Force;
+use super::contact::{Force, SlipRead};
 use super::friction::Cell;
 use super::reading::{ContactReading, ContactSlip, turned};
 use super::steps::{Steps, speeds};
@@ -58,6 +58,8 @@ pub(super) struct Late {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Brought<'a> {
     pub(super) dt: f64,
+    /// In so many steps.
+    pub(super) times: usize,
     pub(super) force: &'a Force,
     pub(super) reading: Option<&'a ContactReading>,
     /// And the power of its density.
@@ -90,7 +92,7 @@ impl Late {
     }
 
     pub(super) fn take(&mut self, steps: &Steps, brought: &Brought) {
-        let Brought { dt, force, reading, slip } = *brought;
+        let Brought { dt, times, force, reading, slip } = *brought;
         self.t += dt;
         let counts = match force {
             Force::Presses { ratio, .. } => self.cell.mean > CLEAR * ratio.deviation,
@@ -99,7 +101,7 @@ impl Late {
         self.likelihood.of_force(steps, force, &self.cell);
         let Self { likelihood, spare, .. } = self;
         let mut step = |chain: &mut Chain| {
-            chain.predict(steps, spare);
+            (0..times).for_each(|_| chain.predict(steps, spare));
             chain.weigh(likelihood, spare)
         };
         let at_once = step(&mut self.at_once);
@@ -138,7 +140,7 @@ impl Late {
     fn set(&mut self, reading: &ContactReading, slip: &ContactSlip, weight: f64) {
         let (u, turn) = reading.direction();
         let slip = turned(&slip.velocity, &slip.covariance, &u, self.natural_speed);
-        self.likelihood.of_slip(&slip, turn, weight, &self.speeds);
+        self.likelihood.of_slip(&SlipRead { slip, turn, weight }, &self.speeds);
     }
 
     /// The likeliest of the lags and the logarithm of its odds against none, where forces are late for sure.

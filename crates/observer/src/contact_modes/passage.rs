@@ -1,13 +1,14 @@
 //! One contact through a whole log: its evidence for each friction, and its modes given one.
 
+use super::bins::Bins;
 use super::chain::{Chain, Likelihood};
 use super::classifier::{ContactOdds, FIRST};
-use super::contact::Force;
+use super::contact::{Force, SlipRead};
 use super::doubt::{Left, Told};
 use super::friction::{Cell, SURE};
 use super::late::{Brought, Late};
 use super::options::ContactModesOptions;
-use super::reading::{ContactReading, ContactSeen, turned};
+use super::reading::{ContactReading, ContactSeen, ContactSlip, turned};
 use super::steps::{SAME as KIND, SPEEDS, Steps, speeds};
 
 /// Logarithm of the odds against a friction at which it is given up: given the model it would come back once in 10^26. They are odds against the
@@ -32,6 +33,8 @@ pub(super) struct Pace {
     steps: Vec<f64>,
     /// Power of the density of a slip at each sample: errors that last tell less often.
     weights: Vec<f64>,
+    /// Bins of the speed.
+    speeds: Bins,
 }
 
 impl Pace {
@@ -52,7 +55,7 @@ impl Pace {
         if let [first, second, ..] = &mut weights[..] {
             *first = *second;
         }
-        Self { kinds, kind, steps, weights }
+        Self { kinds, kind, steps, weights, speeds: speeds() }
     }
 
     /// What happens to a contact with this friction.
@@ -90,7 +93,7 @@ impl Pace {
             let slip = reading.and_then(|reading| reading.slip.zip(Some(reading.direction())));
             let turned = slip.map(|(slip, (u, _))| turned(&slip.velocity, &slip.covariance, &u, speed));
             let slip = slip.map(|(slip, _)| (slip, self.weights[k]));
-            let brought = Brought { dt: self.steps[k], force: &force, reading, slip };
+            let brought = Brought { dt: self.steps[k], times: 1, force: &force, reading, slip };
             let told = Told { odds: odds[k], friction, slip: turned, brought };
             left.take(&told, at.as_ref().map(|at| &at.steps[self.kind[k]]));
         }
@@ -105,12 +108,10 @@ pub(super) struct AtFriction {
     steps: Vec<Steps>,
 }
 
-/// What a sample says beside the ratio: the force, and log-densities of the slip in each cell.
+/// What a sample says beside the ratio: the force, and log-densities of the slip, where one is read.
 struct Said {
     force: Force,
-    off: f64,
-    speeds: Vec<f64>,
-    sticks: f64,
+    by_slip: Option<Likelihood>,
 }
 
 /// One contact through a whole log.
@@ -267,27 +268,23 @@ impl<'a> Tried<'a> {
 
 impl Said {
     fn new(seen: &ContactSeen, pace: &Pace, k: usize, options: &ContactModesOptions) -> Self {
-        let force = seen.force(options);
-        let nothing = Self { force, off: 0.0, speeds: vec![0.0; SPEEDS], sticks: 0.0 };
-        let ContactSeen::Read(reading) = seen else { return nothing };
-        let Some(slip) = reading.slip else { return nothing };
-        let (u, turn) = reading.direction();
-        let slip = turned(&slip.velocity, &slip.covariance, &u, options.natural_speed);
-        let (speeds, weight) = (speeds(), pace.weights[k]);
-        let sliding = |k: usize| weight * slip.log_sliding(speeds.middle(k), speeds.variance(k), turn);
-        let speeds = (0..SPEEDS).map(sliding).collect();
-        Self { off: weight * slip.log_off(), speeds, sticks: weight * slip.log_sticking(), ..nothing }
+        let by_slip = seen.reading().and_then(|reading| {
+            let ContactSlip { velocity, covariance } = reading.slip?;
+            let (u, turn) = reading.direction();
+            let slip = turned(&velocity, &covariance, &u, options.natural_speed);
+            let mut by_slip = Likelihood { off: 0.0, speeds: vec![0.0; SPEEDS], ratios: vec![0.0] };
+            by_slip.of_slip(&SlipRead { slip, turn, weight: pace.weights[k] }, &pace.speeds);
+            Some(by_slip)
+        });
+        Self { force: seen.force(options), by_slip }
     }
 
     /// Log-densities of all that is read, in each cell; the factor that all modes that touch have in common is the same for all frictions.
     fn of(&self, steps: &Steps, cell: &Cell, likelihood: &mut Likelihood) {
         likelihood.of_force(steps, &self.force, cell);
-        if let Force::Off = self.force {
-            return;
+        if let (Some(by_slip), false) = (&self.by_slip, matches!(self.force, Force::Off)) {
+            likelihood.add_slip(by_slip);
         }
-        likelihood.off += self.off;
-        likelihood.speeds.iter_mut().zip(&self.speeds).for_each(|(log, slip)| *log += slip);
-        likelihood.ratios.iter_mut().for_each(|log| *log += self.sticks);
     }
 }
 

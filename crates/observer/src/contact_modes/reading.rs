@@ -19,6 +19,8 @@ pub enum ContactSeen {
     Missing,
     /// Palm and body are known not to touch: by the gap, by taxels, or by the log.
     Off,
+    /// They are known to touch, and nothing else is read.
+    Touches,
     /// It was read.
     Read(ContactReading),
 }
@@ -53,7 +55,7 @@ impl ContactSeen {
     pub(super) fn reading(&self) -> Option<&ContactReading> {
         match self {
             Self::Read(reading) => Some(reading),
-            Self::Missing | Self::Off => None,
+            Self::Missing | Self::Off | Self::Touches => None,
         }
     }
 
@@ -62,6 +64,7 @@ impl ContactSeen {
         match self {
             Self::Missing => Force::Silent,
             Self::Off => Force::Off,
+            Self::Touches => Force::Touches,
             Self::Read(reading) => reading.force(options),
         }
     }

@@ -14,6 +14,9 @@ const UNIT: f64 = 1e-3;
 /// Deviation of the change of the speed, in shares of the natural speed, and of the ratio.
 const SPEED_STEP: f64 = 0.0055;
 const RATIO_STEP: f64 = 0.002;
+/// Units for which a ratio goes on as it goes: what presses and turns a body has inertia. Were it a walk over the time without samples, it would come
+/// less far than it does, and what begins to slide there would be held for sticking.
+const SMOOTH: f64 = 30.0;
 /// Probability that the ratio jumps anywhere in the disc.
 const JUMP: f64 = 0.002;
 /// Share of sticking that begins near its cone.
@@ -112,8 +115,9 @@ impl Steps {
 
     /// For steps of another time.
     fn set(&mut self, dt: f64) {
-        let share = (dt / UNIT).sqrt();
-        let (speed_step, ratio_step) = (SPEED_STEP * share, RATIO_STEP / self.friction * share);
+        let units = dt / UNIT;
+        let (speed_step, ratio_step) =
+            (SPEED_STEP * units.sqrt(), RATIO_STEP / self.friction * of_smooth(units));
         self.speed.set(&self.speeds, speed_step, SPEED_ENDS);
         self.ratio.set(&self.ratios, ratio_step, RATIO_ENDS);
         let within = |a_unit: f64| (1.0 - (-rate_of(a_unit) * dt / UNIT).exp()).clamp(LEAST, 1.0 - LEAST);
@@ -126,12 +130,29 @@ impl Steps {
         self.dt = dt;
     }
 
-    /// Made anew where the time step is another. Clocks jitter, and the walks are no better known than this.
-    pub(super) fn follow(&mut self, dt: f64) {
-        if (dt - self.dt).abs() > SAME * self.dt {
-            self.set(dt);
-        }
+    /// Deviation of the change of the ratio in so many steps.
+    pub(super) fn walked(&self, times: usize) -> f64 {
+        RATIO_STEP * of_smooth(self.dt / UNIT) * (times as f64).sqrt()
     }
+
+    /// How many of these steps a time step is. Made anew where it is not one of them, or of two where `twice` allows: clocks jitter, and the walks are no
+    /// better known than this.
+    pub(super) fn follow(&mut self, dt: f64, twice: bool) -> usize {
+        let times = (dt / self.dt).round();
+        let most = if twice { 2.0 } else { 1.0 };
+        if (1.0..=most).contains(&times) && (dt - times * self.dt).abs() <= SAME * dt {
+            return times as usize;
+        }
+        self.set(dt);
+        1
+    }
+}
+
+/// By how much more a ratio changes in so many units than in one: as a walk within one, at the same rate from there on, and as a walk of steps of
+/// [`SMOOTH`] beyond that.
+fn of_smooth(units: f64) -> f64 {
+    let at_one_rate = units.clamp(1.0, SMOOTH);
+    at_one_rate * (units / at_one_rate).sqrt()
 }
 
 /// Edges of ratios over a known friction: close together near one.

@@ -1,8 +1,10 @@
 //! What every sample must obey.
 
+mod alike;
 mod between_cells;
 mod doubts;
 
+use super::asleep::Followed;
 use super::*;
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Vector2};
 

@@ -7,13 +7,11 @@
 use super::classifier::ContactOdds;
 use super::doubt::ContactModesDoubt;
 use super::error::ContactModesError;
-use super::friction::{Cell, LearnedFriction, guessed, learned, together, values};
+use super::friction::{ALIKE, Cell, LearnedFriction, guessed, learned, soften, together, values};
 use super::options::ContactModesOptions;
 use super::passage::{AtFriction, Pace, Passage};
 use super::reading::{ContactSeen, Place};
 
-/// Prior probability that all contacts have one friction.
-const ALIKE: f64 = 0.5;
 /// Frictions whose probability is below this share of the most probable one's are left out of the modes.
 const FAINT: f64 = 1e-4;
 /// Frictions of a contact at most that modes are made for: of a contact that never slides neighbours count as one.
@@ -90,8 +88,9 @@ fn normal(sums: [f64; 3]) -> ContactOdds {
 fn weigh(evidence: &[Vec<f64>]) -> (f64, Vec<Vec<f64>>) {
     let count = evidence[0].len();
     let sums: Vec<f64> = (0..count).map(|k| evidence.iter().map(|logs| logs[k]).sum()).collect();
-    let (together, shared) = soft(&sums);
-    let apart: Vec<(f64, Vec<f64>)> = evidence.iter().map(|logs| soft(logs)).collect();
+    let soft = |mut logs: Vec<f64>| (soften(&mut logs), logs);
+    let (together, shared) = soft(sums);
+    let apart: Vec<(f64, Vec<f64>)> = evidence.iter().map(|logs| soft(logs.clone())).collect();
     // Each mean over the grid is the evidence of a hypothesis with a prior that is even over it.
     let even = (count as f64).ln();
     let odds = (ALIKE / (1.0 - ALIKE)).ln() + (together - even)
@@ -101,13 +100,6 @@ fn weigh(evidence: &[Vec<f64>]) -> (f64, Vec<Vec<f64>>) {
         own.iter().zip(&shared).map(|(own, shared)| one * shared + (1.0 - one) * own).collect()
     };
     (one, apart.iter().map(mixed).collect())
-}
-
-/// The logarithm of the sum of the exponentials, and their shares of it.
-fn soft(logs: &[f64]) -> (f64, Vec<f64>) {
-    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let sum: f64 = logs.iter().map(|log| (log - largest).exp()).sum();
-    (largest + sum.ln(), logs.iter().map(|log| (log - largest).exp() / sum).collect())
 }
 
 /// The frictions that count, with their weights; neighbours are taken together where they are many.

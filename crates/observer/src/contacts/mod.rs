@@ -62,6 +62,6 @@ pub use noise::{ContactNoiseLevel, ImpulseNoise};
 pub use options::{ContactEstimateError, ContactOptions};
 pub use stream::{
     ForceReading, MotionStream, PalmSensed, PlaneReadings, StreamBody, StreamError, StreamEstimate,
-    StreamMotion, StreamOptions, StreamPalm, StreamStage,
+    StreamModes, StreamMotion, StreamOptions, StreamPalm, StreamStage,
 };
 pub use verdict::ContactEvidence;

@@ -60,10 +60,6 @@ impl EstimatedModes {
 pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units) -> Option<EstimatedModes> {
     let record = known.log;
     let mut odds = vec![[OFF; MOST_PALMS]; record.times.len()];
-    let in_plane = |slip: ContactSlip, contact: &Contact| match known.problem.planar {
-        true => along_plane(slip, contact, units.speed),
-        false => slip,
-    };
     let (mut palms, mut seen) = (Vec::new(), Vec::new());
     for palm in 0..MOST_PALMS {
         let contacts = || {
@@ -79,18 +75,15 @@ pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units)
         }
         let slips = known.slips(palm);
         let mut own = vec![ContactSeen::Off; record.times.len()];
-        contacts().for_each(|(k, contact)| {
-            own[k] = ContactSeen::Read(reading(contact, slips[k].map(|slip| in_plane(slip, contact))))
-        });
+        contacts()
+            .for_each(|(k, contact)| own[k] = ContactSeen::Read(reading(contact, slips[k], units.speed)));
         palms.push(palm);
         seen.push(own);
     }
     if palms.is_empty() {
         return None;
     }
-    let mut options = ContactModesOptions::new(units.speed, noise.force_fixed.max(1e-9), typical(record));
-    options.unloaded_deviation = options.unloaded_deviation.max(1e-6 * options.typical_force);
-    options.slip_errors_last = LASTING * units.length / units.speed;
+    let options = mode_options(noise, units, typical(record));
     let found = whole_modes(&record.times, &seen, &options).ok()?;
     let doubts =
         found.doubts.iter().map(|of| ContactModesDoubt { contact: palms[of.contact], ..*of }).collect();
@@ -109,8 +102,10 @@ fn along_plane(slip: ContactSlip, contact: &Contact, speed: f64) -> ContactSlip 
     ContactSlip { covariance: slip.covariance + across * across.transpose(), ..slip }
 }
 
-fn reading(contact: &Contact, slip: Option<ContactSlip>) -> ContactReading {
+/// What is read of a contact with its slip; `speed` is the natural one, m/s.
+pub(super) fn reading(contact: &Contact, slip: Option<ContactSlip>, speed: f64) -> ContactReading {
     let [a, b] = contact.tangents();
+    let slip = slip.map(|slip| if contact.planar { along_plane(slip, contact, speed) } else { slip });
     ContactReading {
         normal_force: contact.f.dot(contact.n),
         friction: Vector2::new(contact.f.dot(a), contact.f.dot(b)),
@@ -123,8 +118,15 @@ fn reading(contact: &Contact, slip: Option<ContactSlip>) -> ContactReading {
     }
 }
 
+/// Of contacts whose mean force is `typical`, N.
+pub(super) fn mode_options(noise: &ContactNoiseLevel, units: &Units, typical: f64) -> ContactModesOptions {
+    let unloaded = noise.force_fixed.max(1e-9).max(1e-6 * typical);
+    let options = ContactModesOptions::new(units.speed, unloaded, typical);
+    ContactModesOptions { slip_errors_last: LASTING * units.time(), ..options }
+}
+
 /// Mean force of all contacts, N.
-fn typical(record: &Record) -> f64 {
+pub(super) fn typical(record: &Record) -> f64 {
     let forces = || record.contacts.iter().flatten().map(|contact| contact.f.length());
     (forces().sum::<f64>() / forces().count().max(1) as f64).max(1e-9)
 }

@@ -3,8 +3,8 @@
 //! A contact that was taken to stick has no slip in a motion that rests on that: its slip is asked of the motion that is found where it, and it
 //! alone, is taken to slide. What it then is says something of its mode that was not put in.
 
-use super::body::{Body, CONSTANTS};
-use super::noise::WrenchNoise;
+use super::body::CONSTANTS;
+use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::problem::{Problem, Unknowns};
 use super::record::{Contact, Record};
 use super::samples::{Deviations, at_all, covariance};
@@ -14,7 +14,7 @@ use super::state::{MOTION, Motion};
 use crate::contact_modes::ContactSlip;
 use crate::rigid::cross_matrix;
 use glam::DVec3;
-use nalgebra::{Matrix2, Matrix3, Matrix6, SMatrix, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2, Vector3};
 use object_dynamics::{ContactMode, MOST_PALMS};
 
 /// Linearisations at most of a motion without the sticking of one palm: it begins where all is known but that.
@@ -45,11 +45,22 @@ impl Known<'_> {
             let found = &solved.unknowns;
             return Seen { log, problem, found, covariances, motions: &motions }.slips(palm, solved.misfit());
         }
-        self.slips_without_sticking(palm).unwrap_or_else(|| vec![None; self.log.times.len()])
+        let seen = self.without_sticking(palm, |own, solved, covariances| {
+            let motions = at_all(self.log, &own, &solved.unknowns, &covariances);
+            let motions: Vec<Motion> = motions.into_iter().map(|(motion, _)| motion).collect();
+            let (log, found, covariances) = (self.log, &solved.unknowns, &covariances);
+            let seen = Seen { log, problem: &own, found, covariances, motions: &motions };
+            seen.slips(palm, solved.misfit())
+        });
+        seen.unwrap_or_else(|| vec![None; self.log.times.len()])
     }
 
-    /// None where no such motion is found.
-    fn slips_without_sticking(&self, palm: usize) -> Option<Vec<Option<ContactSlip>>> {
+    /// What comes of the motion in which one palm, and it alone, is taken to slide wherever it is touched. None where no such motion is found.
+    pub(super) fn without_sticking<T>(
+        &self,
+        palm: usize,
+        then: impl FnOnce(Problem, Solved<CONSTANTS>, Covariances<CONSTANTS>) -> T,
+    ) -> Option<T> {
         let Self { log, modes, problem, solved, motions, longest, .. } = *self;
         let mut free = modes.to_vec();
         for mode in free.iter_mut().map(|modes| &mut modes[palm]).filter(|m| **m == ContactMode::Stick) {
@@ -65,11 +76,7 @@ impl Known<'_> {
         let start = Unknowns { motions: at, body: solved.unknowns.body };
         let solved = solve::<CONSTANTS>(&own, start, MOST, ENOUGH[1])?;
         let covariances = solved.equations.covariances(&own.natural_information())?;
-        let motions = at_all(log, &own, &solved.unknowns, &covariances);
-        let motions: Vec<Motion> = motions.into_iter().map(|(motion, _)| motion).collect();
-        let (found, covariances) = (&solved.unknowns, &covariances);
-        let seen = Seen { log, problem: &own, found, covariances, motions: &motions };
-        Some(seen.slips(palm, solved.misfit()))
+        Some(then(own, solved, covariances))
     }
 }
 
@@ -101,54 +108,56 @@ impl Seen<'_> {
                 let Some(contact) = log.contacts[k].iter().find(|c| c.palm == palm) else { continue };
                 let share = (log.times[k] - log.times[start]) / duration;
                 let covariance = known[j] * (1.0 - share) + known[next] * share;
-                let noise = MotionNoise { covariance, white, wider: misfit.max(1.0) };
-                slips[k] = slip(contact, &motions[k], &found.body, problem, &noise);
+                let (motion, wider) = (&motions[k], misfit.max(1.0));
+                let turn = found.body.turn(motion.q, motion.L);
+                let mut by_wrench = SMatrix::<f64, 3, 6>::zeros();
+                let by_force = Matrix3::identity() * found.body.inverse_mass();
+                let by_moment = -Matrix3::from(cross_matrix(contact.c - motion.p)) * Matrix3::from(turn.K);
+                by_wrench.fixed_view_mut::<3, 3>(0, 0).copy_from(&by_force);
+                by_wrench.fixed_view_mut::<3, 3>(0, 3).copy_from(&by_moment);
+                let moving = Moving {
+                    p_WCm: motion.p,
+                    v_WCm: motion.v,
+                    w_WO: turn.w,
+                    covariance: covariance * wider,
+                    beside: by_wrench * white * by_wrench.transpose() * wider,
+                };
+                slips[k] = slip(contact, &moving, &problem.noise);
             }
         }
         slips
     }
 }
 
-/// How far a motion may be off.
-struct MotionNoise {
+/// A body that moves, and how well that is known.
+pub(super) struct Moving {
+    pub(super) p_WCm: DVec3,
+    pub(super) v_WCm: DVec3,
+    pub(super) w_WO: DVec3,
     /// Of centre of mass, velocity, angular velocity and turn.
-    covariance: SMatrix<f64, MOTION, MOTION>,
-    /// Of impulse and moment about the centre of mass beside it.
-    white: Matrix6<f64>,
-    /// What both are multiplied by.
-    wider: f64,
+    pub(super) covariance: SMatrix<f64, MOTION, MOTION>,
+    /// Covariance of the velocity at the contact beside that.
+    pub(super) beside: Matrix3<f64>,
 }
 
 /// `slip = v + w x (c - p) - u` along the contact's tangents. None where it is beyond all numbers.
-fn slip(
-    contact: &Contact,
-    motion: &Motion,
-    body: &Body,
-    problem: &Problem,
-    noise: &MotionNoise,
-) -> Option<ContactSlip> {
-    let turn = body.turn(motion.q, motion.L);
-    let arm = contact.c - motion.p;
-    let by_spin = -Matrix3::from(cross_matrix(arm));
+pub(super) fn slip(contact: &Contact, of: &Moving, noise: &ContactNoiseLevel) -> Option<ContactSlip> {
+    let arm = contact.c - of.p_WCm;
     let mut by_motion = SMatrix::<f64, 3, MOTION>::zeros();
-    by_motion.fixed_view_mut::<3, 3>(0, 0).copy_from(&-Matrix3::from(cross_matrix(turn.w)));
+    by_motion.fixed_view_mut::<3, 3>(0, 0).copy_from(&-Matrix3::from(cross_matrix(of.w_WO)));
     by_motion.fixed_view_mut::<3, 3>(0, 3).copy_from(&Matrix3::identity());
-    by_motion.fixed_view_mut::<3, 3>(0, 6).copy_from(&by_spin);
-    let mut by_wrench = SMatrix::<f64, 3, 6>::zeros();
-    by_wrench.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Matrix3::identity() * body.inverse_mass()));
-    by_wrench.fixed_view_mut::<3, 3>(0, 3).copy_from(&(by_spin * Matrix3::from(turn.K)));
-    let of_motion = by_motion * noise.covariance * by_motion.transpose();
-    let moved = (of_motion + by_wrench * noise.white * by_wrench.transpose()) * noise.wider;
+    by_motion.fixed_view_mut::<3, 3>(0, 6).copy_from(&-Matrix3::from(cross_matrix(arm)));
+    let moved = by_motion * of.covariance * by_motion.transpose() + of.beside;
     let tangents = contact.tangents();
     // A contact that is read beside where it is has another velocity of body and palm.
-    let shifts = tangents.map(|tangent| (turn.w - contact.W).cross(tangent) * problem.noise.contact);
+    let shifts = tangents.map(|tangent| (of.w_WO - contact.W).cross(tangent) * noise.contact);
     let read = |a: DVec3, b: DVec3| shifts.iter().map(|shift| shift.dot(a) * shift.dot(b)).sum::<f64>();
     let entry = |a: DVec3, b: DVec3| Vector3::from(a).dot(&(moved * Vector3::from(b))) + read(a, b);
     let [a, b] = tangents;
     let both = 0.5 * (entry(a, b) + entry(b, a));
-    let floor = problem.noise.floor.powi(2);
+    let floor = noise.floor.powi(2);
     let covariance = Matrix2::new(entry(a, a) + floor, both, both, entry(b, b) + floor);
-    let velocity = motion.v + turn.w.cross(arm) - contact.u;
+    let velocity = of.v_WCm + of.w_WO.cross(arm) - contact.u;
     let velocity = Vector2::new(velocity.dot(a), velocity.dot(b));
     let finite = covariance.iter().chain(&velocity).all(|x| x.is_finite());
     let sound = finite && covariance[(0, 0)] > 0.0 && covariance.determinant() > 0.0;

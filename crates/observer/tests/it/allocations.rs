@@ -10,7 +10,8 @@ use object_dynamics::integrate::Tolerance;
 use object_dynamics::{InitialMotion, MassProperties, Sample, SampleTimes, SensorNoise, ThreePalmScene};
 use observer::{
     ContactFriction, ContactModes, ContactModesOptions, ContactNoiseLevel, ContactOptions, ContactReading,
-    ContactSeen, ContactSlip, MotionStream, PlaneReadings, StreamOptions, StreamStage, TwistError,
+    ContactSeen, ContactSlip, ForceReading, MotionStream, PlaneReadings, StreamOptions, StreamStage,
+    TwistError,
 };
 
 const NOISE: ContactNoiseLevel =
@@ -35,18 +36,27 @@ fn samples() -> (MassProperties, Vec<Sample>) {
 #[test]
 fn no_sample_allocates_once_a_motion_is_followed() {
     let (mass, samples) = samples();
-    for body in [Some(mass), None] {
-        let contacts = ContactOptions { body, ..ContactOptions::new(NOISE, 9.81) };
+    // Of an unknown body that is told to rub modes are told as well.
+    for (body, mode_odds) in [(Some(mass), false), (None, true)] {
+        let contacts = ContactOptions { body, mode_odds, ..ContactOptions::new(NOISE, 9.81) };
         let options = StreamOptions { contacts, sample_rate: 1000.0 };
-        let mut stream = MotionStream::new(PlaneReadings::palms(), options).unwrap();
+        let mut palms = PlaneReadings::palms();
+        palms.iter_mut().filter(|_| mode_odds).for_each(|palm| palm.friction = Some(0.1));
+        let mut stream = MotionStream::new(palms, options).unwrap();
         let mut readings = PlaneReadings::new(None);
         // Memory for samples grows until a window of motion has been taken twice.
         let (mut followed, mut allocated, mut searching) = (0, 0, 0);
         for sample in &samples {
             let mut tracking = false;
             let counted = allocation_counter::measure(|| {
-                if let Some((t, sensed)) = readings.push(sample).unwrap() {
-                    tracking = stream.push(t, &sensed).unwrap().stage == StreamStage::Tracking;
+                if let Some((t, mut sensed)) = readings.push(sample).unwrap() {
+                    for palm in sensed.iter_mut().filter(|_| mode_odds) {
+                        let ForceReading::Normal(f) = palm.force else { continue };
+                        palm.force = ForceReading::Three(f * (palm.pose.R_WP * DVec3::Z));
+                    }
+                    let estimate = stream.push(t, &sensed).unwrap();
+                    tracking = estimate.stage == StreamStage::Tracking;
+                    assert!(!tracking || estimate.modes.is_some() == mode_odds);
                 }
             });
             *(if followed > 500 { &mut allocated } else { &mut searching }) += counted.count_total;
@@ -64,9 +74,9 @@ fn contact_modes_allocate_at_set_up_alone() {
     let (normal_force, friction, force_deviation) = (2.0, Vector2::new(0.6, 0.0), 0.04);
     let reading =
         ContactReading { normal_force, friction, force_deviation, slip: Some(slip), touches: false };
-    let seen = [ContactSeen::Read(reading), ContactSeen::Off, ContactSeen::Missing];
-    let frictions =
-        [ContactFriction::Unknown { material: 0 }, ContactFriction::Known(0.3), ContactFriction::Known(0.5)];
+    let seen = [ContactSeen::Read(reading), ContactSeen::Off, ContactSeen::Touches];
+    let alike = ContactFriction::Alike { material: 0 };
+    let frictions = [alike, ContactFriction::Known(0.3), alike];
     let mut modes = ContactModes::new(&frictions, ContactModesOptions::new(0.6, 0.01, 1.0)).unwrap();
     let (slopes, covariance) = ([Matrix2x6::identity(); 3], Matrix6::identity() * 1e-6);
     let counted = allocation_counter::measure(|| {

@@ -2,11 +2,11 @@ use super::failure::Failure;
 use super::options::{parsed, unlike};
 use crate::cli::{Command, FollowArgs};
 use crate::commands::follow::input::{FIRST, Sensed, rate_of, size_of, without_friction};
-use crate::commands::follow::{noise, stream_row};
+use crate::commands::follow::{noise, options, stream_row};
 use crate::error::CliError;
 use crate::pipeline::known_body;
 use recon::object_dynamics::MassProperties;
-use recon::observer::{ContactOptions, MotionStream, PlaneReadings, StreamOptions, StreamPalm};
+use recon::observer::{MotionStream, PlaneReadings, StreamOptions, StreamPalm};
 use recon_io::{LogFileError, RowReader, RowSample, Scene, StreamRow};
 
 /// The motion of a body sample by sample, from rows of numbers as they come: what `recon follow` makes of a file.
@@ -99,6 +99,11 @@ impl Follower {
         Ok(rows)
     }
 
+    /// Number of palms whose contact modes are told; zero before the first rows.
+    pub fn palms_with_modes(&self) -> usize {
+        self.stream.as_ref().map_or(0, MotionStream::palms_with_modes)
+    }
+
     /// Samples that could not be used, and what was wrong with the first of them.
     pub fn left_out(&self) -> (usize, Option<&str>) {
         let by_stream = self.stream.as_ref().map_or(0, MotionStream::left_out);
@@ -116,11 +121,7 @@ impl Follower {
     fn begin(&mut self) -> Result<Vec<StreamRow>, Failure> {
         let first = std::mem::take(&mut self.first);
         let noise = noise(&self.args, &self.scene, || Ok(size_of(first.iter())))?;
-        let contacts = ContactOptions {
-            body: self.body,
-            size: self.scene.size,
-            ..ContactOptions::new(noise, self.scene.gravity)
-        };
+        let contacts = options(self.body, &self.scene, noise);
         let sample_rate = self.args.rate.map_or_else(|| rate_of(first.iter()), Ok)?;
         let palms = without_friction(self.palms.clone(), first.first().map(|(_, sensed)| &sensed[..]));
         let stream = MotionStream::new(palms, StreamOptions { contacts, sample_rate });

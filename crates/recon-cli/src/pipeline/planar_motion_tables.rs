@@ -2,7 +2,7 @@
 
 use super::planar_motion::PlanarMotion;
 use recon::object_dynamics::planar::BodyState;
-use recon_io::probabilities;
+use recon_io::{mode_columns, push_modes};
 use std::io::{self, Write};
 
 impl PlanarMotion {
@@ -10,24 +10,18 @@ impl PlanarMotion {
     pub(crate) fn write_motion(&self, to: &mut dyn Write) -> io::Result<()> {
         let palms = self.estimate.contacts.len();
         write!(to, "t,x,y,phi0,vx,vy,omega0,std_x,std_y,std_phi0,std_vx,std_vy,std_omega0")?;
-        (1..=palms).try_for_each(|i| write!(to, ",mode_{i}"))?;
         let odds = self.estimate.mode_odds.as_ref().map(|found| &found.odds);
-        if odds.is_some() {
-            (1..=palms).try_for_each(|i| write!(to, ",p_slide_{i},p_stick_{i}"))?;
-        }
-        writeln!(to, ",relied_on")?;
+        writeln!(to, "{},relied_on", mode_columns(palms, odds.is_some()))?;
+        let mut modes = String::new();
         for (k, sample) in self.log.samples().iter().enumerate() {
             let BodyState { p_WCm: p, phi0, v_WCm: v, omega0 } = self.estimate.states[k];
             let of = self.estimate.deviations[k];
             write!(to, "{:?},{:?},{:?},{phi0:?},{:?},{:?},{omega0:?}", sample.t, p.x, p.y, v.x, v.y)?;
             write!(to, ",{:?},{:?},{:?}", of.p_WCm.x, of.p_WCm.y, of.phi0)?;
             write!(to, ",{:?},{:?},{:?}", of.v_WCm.x, of.v_WCm.y, of.omega0)?;
-            for mode in &self.estimate.modes[k][..palms] {
-                write!(to, ",{}", mode.number())?;
-            }
-            let odds = odds.map(|odds| odds[k].iter().take(palms).flat_map(probabilities));
-            odds.into_iter().flatten().try_for_each(|probability| write!(to, ",{probability}"))?;
-            writeln!(to, ",{}", u8::from(self.estimate.relied_on[k]))?;
+            modes.clear();
+            push_modes(&mut modes, &self.estimate.modes[k][..palms], odds.map(|odds| &odds[k][..palms]));
+            writeln!(to, "{modes},{}", u8::from(self.estimate.relied_on[k]))?;
         }
         Ok(())
     }

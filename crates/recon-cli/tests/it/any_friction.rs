@@ -177,6 +177,44 @@ fn a_motion_with_friction_is_estimated_to_within_what_is_said() {
     }
 }
 
+/// The table of `recon follow` has the columns of modes that `motion.csv` has, and what is doubted; body known, its friction not told.
+#[test]
+fn modes_are_followed_with_the_motion() {
+    let scratch = simulated("friction_followed", &SPINNING.replace("duration = 0.4", "duration = 0.7"));
+    scratch
+        .write("known.toml", &SPINNING.split("[simulation]").next().unwrap().replace("friction = 0.1", ""));
+    let words = ["follow", "log.csv", "--scene", "known.toml", "--every", "0"];
+    let run = scratch.run(&[&words[..], &["-o", "followed.csv"]].concat());
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let (log, followed) =
+        (Table::parse(&scratch.read("log.csv")), Table::parse(&scratch.read("followed.csv")));
+    let last = "std_mass,mode_1,mode_2,mode_3,p_slide_1,p_stick_1,p_slide_2,p_stick_2,p_slide_3,p_stick_3,doubt_1,doubt_2,doubt_3";
+    assert!(followed.header.join(",").ends_with(last), "{:?}", followed.header);
+    let number =
+        |table: &Table, k: usize, name: &str| table.rows[k][table.column(name)].parse::<f64>().unwrap();
+    let told = |k: &usize| number(&followed, *k, "mode_1").is_finite();
+    let first = (0..followed.rows.len()).find(told).expect("modes are told");
+    assert!(first > 100 && number(&followed, first - 1, "p_slide_2").is_nan(), "{first}");
+    let (mut all, mut right) = (0.0, 0.0);
+    for k in first..followed.rows.len() {
+        for palm in 1..=3 {
+            let of = |name: &str| number(&followed, k, &format!("{name}_{palm}"));
+            let (slide, stick) = (of("p_slide"), of("p_stick"));
+            assert!((0.0..=1.0).contains(&slide) && (slide + stick - 1.0).abs() < 2e-6, "{slide} {stick}");
+            all += 1.0;
+            right += f64::from(of("mode") == number(&log, k, &format!("mode_{palm}")));
+            assert_eq!(followed.rows[k][followed.column(&format!("doubt_{palm}"))], "none");
+        }
+    }
+    assert!(right > 0.95 * all, "{right} of {all}");
+    let run = scratch.run(&[&words[..], &["--json"]].concat());
+    let objects: Vec<Value> = run.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert!(objects[0]["modes"].is_null());
+    let end = objects.last().unwrap()["modes"].as_array().unwrap();
+    assert_eq!((end.len(), &end[2]["palm"], &end[0]["doubt"]), (3, &Value::from(3), &Value::Null));
+    assert_eq!(end[1]["p_slide"].as_f64(), Some(number(&followed, followed.rows.len() - 1, "p_slide_2")));
+}
+
 #[test]
 fn mass_and_inertia_are_estimated_where_they_are_not_to_be_looked_at() {
     let scratch = simulated("friction_identify", SPINNING);

@@ -74,9 +74,10 @@ fn rows_give_the_table_that_the_command_writes() {
     let scene = Scene::read(scratch.path().join("scene.toml")).unwrap();
     let mut follower = Follower::new(&names, scene, &words(&noise)).unwrap();
     let mut text = Vec::new();
-    recon_io::write_stream_header(&mut text).unwrap();
+    // Planes that measure their normal force alone have no modes.
+    recon_io::write_stream_header(0, &mut text).unwrap();
     let mut write = |rows: Vec<recon_io::StreamRow>| {
-        rows.iter().for_each(|row| recon_io::write_stream_row(row, &mut text).unwrap());
+        rows.iter().for_each(|row| recon_io::write_stream_row(row, 0, &mut text).unwrap());
     };
     for k in 0..values[0].len() {
         write(follower.push(&values.iter().map(|column| column[k]).collect::<Vec<_>>()).unwrap());

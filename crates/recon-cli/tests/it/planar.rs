@@ -1,6 +1,6 @@
 //! `recon planar`: the paper's Fig. 3 from nothing, its log without forces, and bad input.
 
-use crate::common::Scratch;
+use crate::common::{Scratch, Table};
 use recon_tests::few_or_all;
 
 /// Last row of a CSV table as numbers.
@@ -122,6 +122,73 @@ fn palms_that_rub_are_estimated() {
     }
     let run = scratch.run(&["check", "out"]);
     assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    modes_are_told(&scratch);
+    // Forces that are said to be three times as good as they are.
+    scratch.write("better.toml", &known.replace("force_std = 0.01", "force_std = 0.003"));
+    let run = scratch.run(&["reconstruct", "log.csv", "--scene", "better.toml", "-o", "doubted"]);
+    let summary: serde_json::Value = serde_json::from_str(&scratch.read("doubted/summary.json")).unwrap();
+    let doubts = summary["mode_doubts"].as_array().unwrap();
+    let of_forces = |doubt: &&serde_json::Value| doubt["about"] == "noise of forces";
+    let doubt = doubts.iter().find(of_forces).unwrap_or_else(|| panic!("{summary}"));
+    assert!(doubt["by"].as_f64().unwrap() > 1.5 && doubt["deviations"].as_f64().unwrap() > 4.5, "{doubt}");
+    assert!(matches!(doubt["palm"].as_u64(), Some(1 | 2)));
+    assert!(doubt["text"].as_str().unwrap().contains("forces are noisier, or late"), "{doubt}");
+    assert!(run.stdout.contains("sure and wrong"), "{}", run.stdout);
+}
+
+/// Columns of modes and their probabilities against the modes of the log, and what the summary says of them.
+fn modes_are_told(scratch: &Scratch) {
+    let (log, motion) =
+        (Table::parse(&scratch.read("log.csv")), Table::parse(&scratch.read("out/motion.csv")));
+    let last = "mode_1,mode_2,p_slide_1,p_stick_1,p_slide_2,p_stick_2,relied_on";
+    assert!(motion.header.join(",").ends_with(last), "{:?}", motion.header);
+    let number =
+        |table: &Table, k: usize, name: &str| table.rows[k][table.column(name)].parse::<f64>().unwrap();
+    // What the log's truth slips by at its contacts, which are off by 0.1 mm and so these by some tenths of mm/s; none where that leaves it open.
+    let slides = |k: usize, palm: usize| {
+        let at = |name: &str| number(&log, k, name);
+        let of = |name: &str, k: usize| number(&log, k, &format!("{name}_{palm}"));
+        let rate = (of("angle", k + 1) - of("angle", k - 1)) / (at("t") - number(&log, k - 1, "t")) / 2.0;
+        let [x, y] = ["px", "py"].map(|name| of(name, k));
+        let (omega, arm) = (at("omega0"), [x - at("cmx"), y - at("cmy")]);
+        let slip = [at("vx") - omega * arm[1] + rate * y, at("vy") + omega * arm[0] - rate * x];
+        match slip[0].hypot(slip[1]) {
+            0.0..1.5e-3 => Some(false),
+            6e-3.. => Some(true),
+            _ => None,
+        }
+    };
+    let (mut right, mut all, mut unsure) = (0.0, [0.0; 2], 0);
+    for k in 0..motion.rows.len() {
+        let mut open = false;
+        for palm in 1..=2 {
+            let of = |name: &str| number(&motion, k, &format!("{name}_{palm}"));
+            let told = [1.0 - of("p_slide") - of("p_stick"), of("p_slide"), of("p_stick")];
+            assert!(told.iter().all(|p| (-2e-6..=1.0).contains(p)), "{told:?}");
+            let most = (0..3).fold(0, |most, mode| if told[mode] > told[most] { mode } else { most });
+            assert_eq!(of("mode"), most as f64, "the mode is the most probable one");
+            open |= told[most] < 0.99;
+            let inside = k > 0 && k + 1 < motion.rows.len();
+            if let Some(slides) = inside.then(|| slides(k, palm)).flatten() {
+                all[usize::from(slides)] += 1.0;
+                right += f64::from(slides == (most == 1));
+            }
+        }
+        unsure += usize::from(open);
+    }
+    assert!(all[0] > 100.0 && all[1] > 100.0, "both modes count: {all:?}");
+    assert!(right > 0.95 * all.iter().sum::<f64>(), "{right} of {all:?}");
+    let summary: serde_json::Value = serde_json::from_str(&scratch.read("out/summary.json")).unwrap();
+    // Rounding to a millionth moves none over the border but by chance.
+    assert!(summary["unsure_mode_samples"].as_u64().unwrap().abs_diff(unsure as u64) <= 1, "{unsure}");
+    assert_eq!(summary["mode_doubts"], serde_json::json!([]));
+    for learned in summary["friction"].as_array().unwrap() {
+        let stated = [0.3, 0.2][learned["palm"].as_u64().unwrap() as usize - 1];
+        let error = learned["coefficient"].as_f64().unwrap() / stated - 1.0;
+        // A step of the grid is 1.6 %.
+        assert!(error.abs() < 0.016, "{learned}");
+    }
+    assert!(!summary["friction"].as_array().unwrap().is_empty());
 }
 
 #[test]

@@ -1,3 +1,4 @@
+use super::modes::StreamModes;
 use crate::contacts::options::{ContactEstimateError, ContactOptions};
 use glam::DMat3;
 use nalgebra::SMatrix;
@@ -7,7 +8,8 @@ use thiserror::Error;
 /// What a stream must know beforehand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreamOptions {
-    /// Noise, gravity, friction, and the body where it is known. Joint errors are for whole logs; score tests take a stream half as long as its motion.
+    /// Noise, gravity, friction, and the body where it is known. Joint errors are for whole logs; score tests take a stream half as long as its motion;
+    /// modes take as many solutions more as palms stick, on the other thread.
     pub contacts: ContactOptions,
     /// Samples a second, about.
     pub sample_rate: f64,
@@ -35,6 +37,8 @@ pub struct StreamEstimate {
     pub stage: StreamStage,
     /// Palms that are touched at this sample.
     pub touching: [bool; MOST_PALMS],
+    /// How probable the contact modes are; none before there was a motion, and unless [`ContactOptions::mode_odds`] asks for it.
+    pub modes: Option<StreamModes>,
 }
 
 /// A motion, and how well it is known.

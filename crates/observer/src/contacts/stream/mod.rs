@@ -10,7 +10,9 @@
 
 mod dearer;
 mod estimate;
+mod freed;
 mod front;
+mod modes;
 mod others;
 mod planes;
 mod sample;
@@ -22,6 +24,7 @@ mod thread;
 mod window;
 
 pub use estimate::{StreamBody, StreamError, StreamEstimate, StreamMotion, StreamOptions, StreamStage};
+pub use modes::StreamModes;
 pub use planes::PlaneReadings;
 pub use sample::{ForceReading, PalmSensed, StreamPalm};
 pub use schedule::MotionStream;

@@ -49,6 +49,9 @@ pub(super) struct Raw {
     pub(super) palms: [Option<PalmSensed>; MOST_PALMS],
 }
 
+/// Contacts of all palms at a sample.
+pub(super) type Contacts = [Option<Contact>; MOST_PALMS];
+
 /// Forces of all palms at a sample and their noise, with moments about the world's origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Felt {
@@ -113,7 +116,8 @@ impl PalmSensed {
 }
 
 impl Raw {
-    pub(super) fn felt(&self, palms: &[StreamPalm], options: &ContactOptions) -> Felt {
+    /// The contacts of all palms, from the world's origin, and what they make together.
+    pub(super) fn felt(&self, palms: &[StreamPalm], options: &ContactOptions) -> (Contacts, Felt) {
         let mut felt = Felt {
             number: self.number,
             t: self.t,
@@ -121,14 +125,15 @@ impl Raw {
             noise: Matrix6::zeros(),
             touching: [false; MOST_PALMS],
         };
+        let mut contacts = [None; MOST_PALMS];
         for (i, (palm, sensed)) in palms.iter().zip(&self.palms).enumerate() {
-            let contact = sensed.as_ref().and_then(|sensed| sensed.felt(i, palm, options));
-            if let Some(contact) = contact {
-                felt.wrench = felt.wrench + wrench([&contact]);
-                add_noise(&mut felt.noise, &contact, options.noise.contact, 1.0);
+            contacts[i] = sensed.as_ref().and_then(|sensed| sensed.felt(i, palm, options));
+            if let Some(contact) = &contacts[i] {
+                felt.wrench = felt.wrench + wrench([contact]);
+                add_noise(&mut felt.noise, contact, options.noise.contact, 1.0);
                 felt.touching[i] = true;
             }
         }
-        felt
+        (contacts, felt)
     }
 }

@@ -2,7 +2,8 @@
 
 use super::estimate::{StreamError, StreamEstimate, StreamOptions, StreamStage};
 use super::front::Front;
-use super::sample::{Felt, PalmSensed, Raw, StreamPalm};
+use super::modes::{Modes, StreamModes};
+use super::sample::{Contacts, Felt, PalmSensed, Raw, StreamPalm};
 use super::solution::Solution;
 use super::thread::Worker;
 use super::window::{Asked, LEFT_OUT, LONGEST, Outcome, Window};
@@ -38,6 +39,10 @@ pub struct MotionStream {
     /// Forces since the end of the latest window, oldest first.
     felt: VecDeque<Felt>,
     front: Option<Front>,
+    /// Beside it, of each palm, the motion in which that need not stick, where there is one.
+    freed: Vec<Option<Front>>,
+    /// What tells modes, once there was a motion.
+    modes: Option<Box<Modes>>,
     /// Number of the sample at which the task that was begun is taken.
     due: Option<usize>,
     /// Number of the sample at which the next one begins.
@@ -67,8 +72,10 @@ impl MotionStream {
         if palms.len() == 1 && options.contacts.size.is_none() {
             return Err(ContactEstimateError::NoSize.into());
         }
-        let worker = Worker::new(Window::new(palms.clone(), options.contacts))?;
+        let worker = Worker::new(Window::new(palms.clone(), options.contacts, options.sample_rate))?;
         Ok(Self {
+            freed: palms.iter().map(|_| None).collect(),
+            modes: None,
             palms,
             options,
             worker,
@@ -95,6 +102,14 @@ impl MotionStream {
         self.left_out
     }
 
+    /// Number of palms whose contact modes are told, once there is a motion: all, or none where it is not asked for or no palm has friction.
+    #[must_use]
+    pub fn palms_with_modes(&self) -> usize {
+        let contacts = &self.options.contacts;
+        let rubs = self.palms.iter().any(|palm| !contacts.frictionless(palm.friction));
+        if contacts.mode_odds && rubs { self.palms.len() } else { 0 }
+    }
+
     /// Takes what the palms sense at the time `t` (s) and returns the motion there.
     ///
     /// # Errors
@@ -104,12 +119,10 @@ impl MotionStream {
         let raw = self.checked(t, sensed)?;
         self.latest = t;
         self.count += 1;
-        let felt = raw.felt(&self.palms, &self.options.contacts);
+        let (contacts, felt) = raw.felt(&self.palms, &self.options.contacts);
         self.fresh.push(raw);
         self.felt.push_back(felt);
-        if let Some(front) = &mut self.front {
-            front.advance(&felt);
-        }
+        self.front.iter_mut().chain(self.freed.iter_mut().flatten()).for_each(|front| front.advance(&felt));
         if self.due.is_some_and(|due| raw.number >= due) {
             let (outcome, memory) = self.worker.take()?;
             self.due = None;
@@ -121,7 +134,15 @@ impl MotionStream {
         let motion = self.front.as_ref().map(Front::motion);
         let gapped = self.front.as_ref().is_some_and(|front| front.gapped);
         let stage = if gapped && self.stage == StreamStage::Tracking { self.searching() } else { self.stage };
-        Ok(StreamEstimate { t, motion, stage, touching: felt.touching })
+        let modes = self.told(t, &contacts);
+        Ok(StreamEstimate { t, motion, stage, touching: felt.touching, modes })
+    }
+
+    /// Modes at the newest sample, by slips of motions that do not rest on the modes they tell.
+    fn told(&mut self, t: f64, contacts: &Contacts) -> Option<StreamModes> {
+        let (front, freed) = (&self.front, &self.freed);
+        let motion = |palm: usize| freed.get(palm).and_then(Option::as_ref).or(front.as_ref());
+        self.modes.as_mut().map(|modes| modes.take(t, contacts, motion))
     }
 
     fn checked(&self, t: f64, sensed: &[PalmSensed]) -> Result<Raw, StreamError> {
@@ -180,14 +201,21 @@ impl MotionStream {
         }
         self.unsettled = 0;
         let found = found.filter(|solution| solution.settled);
-        if let Some(front) = found.and_then(|solution| self.front(solution)) {
+        let gravity = self.gravity();
+        self.modes = self.modes.take().or(outcome.modes);
+        if let Some(newest) = found.and_then(|solution| front(&self.felt, solution, gravity)) {
             // What the window before has foretold is confirmed.
             let confirmed =
-                self.front.as_ref().is_some_and(|before| !before.gapped && before.foretold(&front));
-            let relied_on = front.solution().relied_on && confirmed;
+                self.front.as_ref().is_some_and(|before| !before.gapped && before.foretold(&newest));
+            let relied_on = newest.solution().relied_on && confirmed;
             self.rounds += usize::from(!relied_on);
             self.stage = if relied_on { StreamStage::Tracking } else { self.searching() };
-            self.front = Some(front);
+            self.front = Some(newest);
+            let mut freed = outcome.freed;
+            for (palm, kept) in self.freed.iter_mut().enumerate() {
+                let own = freed.iter().position(|(freed, _)| *freed == palm);
+                *kept = own.and_then(|own| front(&self.felt, freed.swap_remove(own).1, gravity));
+            }
             self.asked = Asked::Follow;
             return;
         }
@@ -196,6 +224,7 @@ impl MotionStream {
         let longest = self.natural.map_or(0.0, |natural| LONGEST * natural);
         if self.front.as_ref().is_some_and(|front| self.latest - front.solution().t > longest) {
             self.front = None;
+            self.freed.iter_mut().for_each(|front| *front = None);
         }
         self.stage = match (&self.front, outcome.lacks.is_none()) {
             (Some(_), _) => StreamStage::Contradicted,
@@ -212,13 +241,16 @@ impl MotionStream {
         StreamStage::Searching { rounds: self.rounds }
     }
 
-    /// At the newest sample, from the end of a window.
-    fn front(&self, solution: Solution) -> Option<Front> {
-        let from = self.felt.iter().position(|felt| felt.number == solution.number)?;
-        let mut felt = self.felt.iter().skip(from);
-        let gravity = DVec3::new(0.0, 0.0, -self.options.contacts.gravity);
-        let mut front = Front::new(solution, *felt.next()?, gravity);
-        felt.for_each(|felt| front.advance(felt));
-        Some(front)
+    fn gravity(&self) -> DVec3 {
+        DVec3::new(0.0, 0.0, -self.options.contacts.gravity)
     }
+}
+
+/// At the newest sample, from the end of a window.
+fn front(felt: &VecDeque<Felt>, solution: Solution, gravity: DVec3) -> Option<Front> {
+    let from = felt.iter().position(|felt| felt.number == solution.number)?;
+    let mut felt = felt.iter().skip(from);
+    let mut front = Front::new(solution, *felt.next()?, gravity);
+    felt.for_each(|felt| front.advance(felt));
+    Some(front)
 }

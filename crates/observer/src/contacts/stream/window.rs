@@ -1,6 +1,7 @@
 //! The motion over a window of the latest samples.
 
 use super::dearer::Dearer;
+use super::modes::Modes;
 use super::others::{ALONE, Followed};
 use super::sample::{ForceReading, PalmSensed, Raw, StreamPalm};
 use super::solution::{Of, Solution};
@@ -8,6 +9,7 @@ use crate::contacts::body::{Body, CONSTANTS};
 use crate::contacts::cold;
 use crate::contacts::estimate::AVERAGED;
 use crate::contacts::flow::Carried;
+use crate::contacts::mode_odds::typical;
 use crate::contacts::modes::by_ratio;
 use crate::contacts::onward::{FOLLOWED, WINDOW};
 use crate::contacts::options::ContactOptions;
@@ -49,6 +51,10 @@ pub(super) struct Outcome {
     /// Natural times by which the window is too short to look for a motion.
     pub(super) lacks: Option<f64>,
     pub(super) solution: Option<Solution>,
+    /// Beside it, of each palm that sticks somewhere in the window, the motion in which it need not: its slip says something of its mode.
+    pub(super) freed: Vec<(usize, Solution)>,
+    /// What tells modes, with the first motion, where it is asked for.
+    pub(super) modes: Option<Box<Modes>>,
     /// Samples that could not be used.
     pub(super) left_out: usize,
 }
@@ -63,8 +69,11 @@ pub(super) struct Before {
 
 /// The latest samples, and the motion that they were last found to have.
 pub(super) struct Window {
-    palms: Vec<StreamPalm>,
-    options: ContactOptions,
+    pub(super) palms: Vec<StreamPalm>,
+    pub(super) options: ContactOptions,
+    sample_rate: f64,
+    /// Whether modes are to be told and nothing does yet.
+    untold: bool,
     samples: VecDeque<Raw>,
     before: Option<Before>,
     /// Other motions that could not be ruled out, at the same nodes; how many starts others were looked for from, windows for which none
@@ -79,10 +88,12 @@ pub(super) struct Window {
 }
 
 impl Window {
-    pub(super) fn new(palms: Vec<StreamPalm>, options: ContactOptions) -> Self {
+    pub(super) fn new(palms: Vec<StreamPalm>, options: ContactOptions, sample_rate: f64) -> Self {
         Self {
             palms,
+            untold: options.mode_odds,
             options,
+            sample_rate,
             samples: VecDeque::new(),
             before: None,
             others: Vec::new(),
@@ -97,9 +108,9 @@ impl Window {
     /// Takes later samples and does what is asked for.
     pub(super) fn work(&mut self, fresh: &[Raw], asked: Asked) -> Outcome {
         self.samples.extend(fresh);
-        let mut outcome = Outcome { natural: None, lacks: Some(0.0), solution: None, left_out: 0 };
         let (log, left_out) = self.log();
-        outcome.left_out = left_out;
+        let (natural, solution, freed, modes) = (None, None, Vec::new(), None);
+        let mut outcome = Outcome { natural, lacks: Some(0.0), solution, freed, modes, left_out };
         let Some((log, record)) = log.and_then(|log| Record::new(&log, &self.options).map(|r| (log, r)))
         else {
             self.forget(None);
@@ -114,7 +125,15 @@ impl Window {
         outcome.natural = Some(natural);
         outcome.lacks = Some(SHORTEST - log.duration() / natural).filter(|lacks| *lacks > 0.0);
         if outcome.lacks.is_none() {
-            outcome.solution = self.solution((&log, record), units, asked);
+            let typical = typical(&record);
+            let found = self.solution((&log, record), units, asked);
+            if self.untold && found.is_some() {
+                self.untold = false;
+                outcome.modes = Modes::new(&self.palms, &self.options, (&units, typical, self.sample_rate));
+            }
+            if let Some((solution, freed)) = found {
+                (outcome.solution, outcome.freed) = (Some(solution), freed);
+            }
         }
         self.forget(Some(natural));
         outcome
@@ -199,7 +218,7 @@ impl Window {
         (log, mut record): (&ContactLog, Record),
         units: Units,
         asked: Asked,
-    ) -> Option<Solution> {
+    ) -> Option<(Solution, Vec<(usize, Solution)>)> {
         let natural = units.time();
         record.mark_blows(&units, self.options.gravity);
         let modes = by_ratio(&record, AVERAGED * natural);
@@ -244,7 +263,12 @@ impl Window {
             let readings = Readings::new(log, told, [record, problem.record], longest);
             of.doubt(record, &readings);
         }
-        Some(self.taken(&of, &others, (GAP * natural, record.missed_in_world(GAP * natural))))
+        let solution = self.taken(&of, &others, (GAP * natural, record.missed_in_world(GAP * natural)));
+        let freed = match self.options.mode_odds && solution.explained && solution.settled {
+            true => self.freed(record, (&modes, longest), &of, &solution),
+            false => Vec::new(),
+        };
+        Some((solution, freed))
     }
 
     /// From nothing, and whether the body is another one than was stated. None where the window leaves it open which of several motions it is.

@@ -2,6 +2,7 @@
 
 pub(crate) mod input;
 mod spans;
+mod words;
 
 use crate::cli::FollowArgs;
 use crate::console::{Console, listened};
@@ -10,17 +11,19 @@ use crate::interrupt::{Checked, check, while_writing};
 use crate::pipeline::{condition_floor, known_body};
 use crate::progress::Progress;
 use input::Samples;
+use recon::object_dynamics::MassProperties;
 use recon::observer::{
     ContactNoiseLevel, ContactOptions, MotionStream, StreamEstimate, StreamOptions, StreamStage,
 };
+use recon_io::StreamRow;
 use recon_io::{
     FileTarget, OutputError, Scene, is_bag, is_standard_output, write_stream_header, write_stream_row,
 };
-use recon_io::{MotionState, StreamRow};
-use serde_json::{Value, json};
+use serde_json::json;
 use spans::Spans;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use words::object;
 
 /// Share of the interval between rows by which rounding moves a sample's time at most.
 const ROUNDING: f64 = 1e-6;
@@ -36,12 +39,7 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     let body = if args.identify { None } else { Some(known_body(&scene)?) };
     let mut samples = Samples::open(&args.log, &scene)?;
     let noise = noise(args, &scene, || samples.size())?;
-    let contacts = ContactOptions {
-        body,
-        size: scene.size,
-        suspects: true,
-        ..ContactOptions::new(noise, scene.gravity)
-    };
+    let contacts = options(body, &scene, noise);
     let sample_rate = match args.rate {
         Some(rate) => rate,
         None => samples.rate()?,
@@ -74,6 +72,21 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     };
     drop(progress);
     followed.tell(console, output.map(PathBuf::as_path))
+}
+
+/// What the stream is told of a body that may be known.
+pub(crate) fn options(
+    body: Option<MassProperties>,
+    scene: &Scene,
+    noise: ContactNoiseLevel,
+) -> ContactOptions {
+    ContactOptions {
+        body,
+        size: scene.size,
+        suspects: true,
+        mode_odds: true,
+        ..ContactOptions::new(noise, scene.gravity)
+    }
 }
 
 /// What is known of the sensors' noise; `size` is about that of the object, m, where the first samples tell it.
@@ -157,6 +170,8 @@ struct Followed {
     left_out: usize,
     why: Option<String>,
     spans: Spans,
+    /// Palms whose modes are told.
+    palms: usize,
     last: Option<StreamEstimate>,
 }
 
@@ -164,8 +179,9 @@ impl Run<'_> {
     fn all(mut self, mut samples: Samples<'_>, mut to: impl Write) -> Result<Followed, Failure> {
         let mut followed = Followed::default();
         let mut rows = Rows { every: self.every, first: None, latest: -1.0 };
+        let palms = self.stream.palms_with_modes();
         if !self.json {
-            write_stream_header(&mut to)?;
+            write_stream_header(palms, &mut to)?;
         }
         while let Some((t, sensed)) = samples.next()? {
             check()?;
@@ -180,11 +196,12 @@ impl Run<'_> {
             self.tell(before, &estimate);
             followed.spans.take(t, estimate.stage == StreamStage::Tracking);
             if rows.due(t) {
-                self.row(&estimate, &mut to)?;
+                self.row(&estimate, palms, &mut to)?;
             }
         }
         to.flush()?;
         let left_out = samples.left_out + self.stream.left_out();
+        followed.palms = palms;
         Ok(Followed { samples: samples.rows, left_out, why: samples.why, ..followed })
     }
 
@@ -208,9 +225,9 @@ impl Run<'_> {
         }
     }
 
-    fn row(&self, estimate: &StreamEstimate, to: &mut impl Write) -> io::Result<()> {
+    fn row(&self, estimate: &StreamEstimate, palms: usize, to: &mut impl Write) -> io::Result<()> {
         let row = stream_row(estimate);
-        if self.json { writeln!(to, "{}", object(&row)) } else { write_stream_row(&row, to) }
+        if self.json { writeln!(to, "{}", object(&row, palms)) } else { write_stream_row(&row, palms, to) }
     }
 }
 
@@ -225,6 +242,7 @@ pub(crate) fn stream_row(estimate: &StreamEstimate) -> StreamRow {
         relied_on: estimate.stage == StreamStage::Tracking,
         misfit: estimate.motion.map_or(f64::NAN, |motion| motion.misfit),
         mass: body.map(|body| [body.mass, body.mass_deviation]),
+        modes: estimate.modes,
     }
 }
 
@@ -243,28 +261,6 @@ fn name(stage: StreamStage) -> &'static str {
         StreamStage::Tracking => "tracking",
         StreamStage::Contradicted => "contradicted",
     }
-}
-
-fn object(row: &StreamRow) -> Value {
-    let motion = |of: fn(MotionState) -> Value| row.motion.map(of);
-    let [cm, v, w, turn] = row.deviations;
-    json!({
-        "t_s": row.t,
-        "stage": row.stage,
-        "relied_on": row.relied_on,
-        // No numbers before there is a motion: null.
-        "p_WCm_m": motion(|m| json!(m.p_WCm.to_array())),
-        "R_WO_wxyz": motion(|m| json!([m.R_WO.w, m.R_WO.x, m.R_WO.y, m.R_WO.z])),
-        "v_WCm_m_per_s": motion(|m| json!(m.v_WCm.to_array())),
-        "w_WO_rad_per_s": motion(|m| json!(m.w_WO.to_array())),
-        "std_position_m": cm,
-        "std_velocity_m_per_s": v,
-        "std_angular_velocity_rad_per_s": w,
-        "std_orientation_rad": turn,
-        "misfit": row.misfit,
-        "mass_kg": row.mass.map(|m| m[0]),
-        "std_mass_kg": row.mass.map(|m| m[1]),
-    })
 }
 
 impl Followed {
@@ -288,6 +284,8 @@ impl Followed {
         if let Some(why) = &self.why {
             text += &format!("; the first: {why}");
         }
+        let told = last.modes.as_ref().map(|modes| words::told(modes, self.palms)).unwrap_or_default();
+        text += &told.text;
         match output {
             Some(path) => {
                 let figures = json!({
@@ -299,12 +297,14 @@ impl Followed {
                     "stage": name(last.stage),
                     "std_position_m": cm,
                     "std_velocity_m_per_s": v,
+                    "friction": told.frictions,
+                    "mode_doubts": told.doubts,
                 });
                 console.written(&format!("{}: {text}", path.display()), &figures)?;
             }
             None => console.note(&text),
         }
-        let known = last.stage == StreamStage::Tracking && self.left_out == 0;
+        let known = last.stage == StreamStage::Tracking && self.left_out == 0 && told.doubts.is_empty();
         Ok(if known { Outcome::Done } else { Outcome::WithReservations })
     }
 }

@@ -29,6 +29,17 @@ const TRUTH: Column = may(
     "truth, to compare with alone: centre of mass, body to world, velocities in world axes",
 );
 
+const MODE: Column = may(
+    "mode_i",
+    "-",
+    "contact mode of the palm: 0 off, 1 slides, 2 sticks; while it is followed the one to act on",
+);
+const MODE_ODDS: Column = may(
+    "p_slide_i, p_stick_i",
+    "-",
+    "how probable it is that palm i slides and that it sticks; off is what is left to 1",
+);
+
 pub(super) const FORMATS: [Format; 21] = [
     Format {
         name: "log",
@@ -219,12 +230,8 @@ pub(super) const FORMATS: [Format; 21] = [
                 "rad",
                 "standard deviations of the turn since the first sample, world axes",
             ),
-            may("mode_i", "-", "contact mode of the palm: 0 off, 1 slides, 2 sticks"),
-            may(
-                "p_slide_i, p_stick_i",
-                "-",
-                "how probable it is that palm i slides and that it sticks; off is what is left to 1",
-            ),
+            MODE,
+            MODE_ODDS,
             may("relied_on", "-", "1 where the motion is relied on to within its deviations"),
         ],
     },
@@ -270,6 +277,9 @@ pub(super) const FORMATS: [Format; 21] = [
             needed("relied_on", "-", "1 where the motion is relied on"),
             needed("misfit", "-", "about 1 where all is as stated"),
             needed("mass, std_mass", "kg", "where they are estimated along, else nan"),
+            MODE,
+            MODE_ODDS,
+            may("doubt_i", "-", "what contradicts the readings that the palm's modes rest on, or none"),
         ],
     },
     Format {
