@@ -22,6 +22,7 @@
 //! ```
 
 pub mod atlas;
+pub mod bound;
 pub mod departures;
 mod diagram;
 pub mod fault;

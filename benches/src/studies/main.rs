@@ -89,7 +89,7 @@ const STUDIES: &[(&str, Parts, Run)] = &[
     ("contact_wedging", DRAWN, || in_words(contact_wedging::main())),
     ("contour", SHORT, || in_words(contour::main())),
     ("exported_objects", SHORT, || in_words(exported_objects::main())),
-    ("least_model", TIMES, || in_words(least_model::main())),
+    ("least_model", OF_RUNS, || in_words(least_model::main())),
     ("contact_modes_estimated", SHORT, || in_words(contact_modes_estimated::main())),
     ("mode_bank", SHORT, || in_words(mode_bank::main())),
     ("mode_switches", SHORT, || in_words(mode_switches::main())),
