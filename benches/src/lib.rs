@@ -26,6 +26,8 @@ pub mod bound;
 pub mod departures;
 mod diagram;
 pub mod fault;
+pub mod fig5;
+pub mod instructions;
 mod machine;
 pub mod multipliers;
 pub mod noisy_contacts;

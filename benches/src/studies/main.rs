@@ -51,6 +51,7 @@ mod three_palms_timing;
 mod tilting_palms;
 mod whole_logs;
 
+use recon_benches::instructions::{listed, repeat};
 pub(crate) use recon_benches::rows;
 pub(crate) use rows::words;
 use rows::{Parts, RowsError};
@@ -118,6 +119,9 @@ fn main() -> ExitCode {
     if name == "chart" {
         return chart::main();
     }
+    if name == "inner_loop" {
+        return inner_loop();
+    }
     let Some((_, parts, run)) = STUDIES.iter().find(|(known, ..)| *known == name) else {
         eprintln!("no study is called {name:?}; there are:");
         STUDIES.iter().for_each(|(known, ..)| eprintln!("  {known}"));
@@ -127,6 +131,22 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(complaint) => {
             eprintln!("{name}: {complaint}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Runs an inner loop so often, `inner_loop NAME COUNT`, for a program that counts instructions; without a name it lists them with their repeats.
+fn inner_loop() -> ExitCode {
+    let mut words = words();
+    let (Some(name), count) = (words.next(), words.next().and_then(|count| count.parse().ok())) else {
+        print!("{}", listed());
+        return ExitCode::SUCCESS;
+    };
+    match repeat(&name, count.unwrap_or(1)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(complaint) => {
+            eprintln!("{complaint}");
             ExitCode::FAILURE
         }
     }

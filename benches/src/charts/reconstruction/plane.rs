@@ -16,7 +16,7 @@ pub(in super::super) const CHART: Chart = Chart {
 const SEED: u64 = 98_100;
 /// Natural times, samples in one, and noise of contacts over the size, where they do not change.
 const LASTS: f64 = 20.0;
-const DENSITY: f64 = 50.0;
+const DENSITY: f64 = 25.0;
 const NOISE: f64 = 1e-3;
 
 /// How a log is sensed.
@@ -34,8 +34,8 @@ fn draw(budget: Budget) -> Drawn {
     let scene = scenes.first_mut().ok_or("no scene")?;
     let usual = Setting { lasts: LASTS, density: DENSITY, noise: NOISE };
     let by_window = [2.0, 4.0, 8.0, 14.0, 20.0].map(|lasts| (format!("{lasts}"), Setting { lasts, ..usual }));
-    let by_rate = [5.0, 10.0, 20.0, 50.0, 100.0, 200.0]
-        .map(|density| (format!("{density}"), Setting { density, ..usual }));
+    let by_rate =
+        [5.0, 10.0, 25.0, 50.0, 100.0].map(|density| (format!("{density}"), Setting { density, ..usual }));
     let by_noise = [1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2]
         .map(|noise| (format!("{} %", 100.0 * noise), Setting { noise, ..usual }));
     let size = format!("{:.2} m", scene.length);
