@@ -54,19 +54,20 @@ pub struct Method {
     name: String,
     origin: Origin,
     points: Vec<Point>,
+    joined: bool,
 }
 
 impl Method {
     /// A method measured in this run.
     #[must_use]
     pub fn new(name: impl Into<String>) -> Self {
-        Self { name: name.into(), origin: Origin::Here, points: Vec::new() }
+        Self { name: name.into(), origin: Origin::Here, points: Vec::new(), joined: true }
     }
 
     /// A method whose figures come from elsewhere, and where from; drawn dashed and marked in the legend.
     #[must_use]
     pub fn recorded(name: impl Into<String>, source: impl Into<String>) -> Self {
-        Self { name: name.into(), origin: Origin::Recorded(source.into()), points: Vec::new() }
+        Self { name: name.into(), origin: Origin::Recorded(source.into()), points: Vec::new(), joined: true }
     }
 
     /// The line that no curve of a method crosses: the least error that what it is given allows at each of its settings. Drawn dashed in the method's colour,
@@ -74,7 +75,14 @@ impl Method {
     #[must_use]
     pub fn least_of(method: impl Into<String>) -> Self {
         let method = method.into();
-        Self { name: format!("{LEAST}, {method}"), origin: Origin::LeastOf(method), points: Vec::new() }
+        let name = format!("{LEAST}, {method}");
+        Self { name, origin: Origin::LeastOf(method), points: Vec::new(), joined: true }
+    }
+
+    /// Points that have nothing to do with each other: no line joins them, and the table alone tells their settings.
+    #[must_use]
+    pub fn apart(self) -> Self {
+        Self { joined: false, ..self }
     }
 
     /// Adds a setting with its error and cost.
@@ -264,6 +272,7 @@ impl WorkPrecision {
     }
 
     fn draw_method(&self, drawing: &mut Drawing, method: &Method, style: Style) {
+        let style = if method.joined { style } else { Style { line_width: 0.0, ..style } };
         let mut curve = Curve { points: Vec::new(), style, dashed: method.origin != Origin::Here };
         let mut notes = Vec::new();
         for Point { setting, outcome } in &method.points {
@@ -277,7 +286,7 @@ impl WorkPrecision {
             };
             let tooltip = format!("{}, {setting}: error {error:.2e}, cost {cost:.3e}", method.name);
             curve.points.push((at, tooltip));
-            if !method.is_least() && !is_on_the_axis(setting, error) {
+            if method.joined && !method.is_least() && !is_on_the_axis(setting, error) {
                 notes.push(Note { at, text: setting.clone() });
             }
         }
