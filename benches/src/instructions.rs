@@ -47,7 +47,7 @@ pub const KERNELS: &[Kernel] = &[
         [5, 25],
         friction,
     ),
-    kernel("estimate", "the motion of Fig. 5 from a noisy log of 150 samples, body known", [1, 2], estimate),
+    kernel("estimate", "the motion of Fig. 5 from a noisy log of 1,500 samples, body known", [1, 2], estimate),
     kernel("stream_sample", "a sample of a stream before its first motion", [40, 120], stream),
     kernel("bank_sample", "a sample of a bank of two modes, eight hypotheses", [50, 450], bank),
     kernel("modes_sample", "a sample of a contact's modes, friction known", [50, 450], contact_modes),
@@ -114,7 +114,7 @@ fn friction(count: usize) -> Result<(), Failure> {
 
 fn estimate(count: usize) -> Result<(), Failure> {
     let (scene, start) = scene();
-    let times = SampleTimes { duration: 2.98, rate: 50.0 };
+    let times = SampleTimes { duration: 2.998, rate: 500.0 };
     let exact = scene.simulate(start, times, Tolerance::uniform(1e-10))?.sensor_log(&scene)?.split_truth().0;
     let noise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };
     let log = ContactLog::try_from(&exact.with_noise(&noise, 1)?)?;

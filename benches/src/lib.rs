@@ -51,5 +51,5 @@ pub use diagram::{
     Axis, ChartError, Diagram, Goal, Method, Outcome, Outlines, Point, Scale, Stroke, WorkPrecision,
     WrittenChart,
 };
-pub use machine::machine_line;
+pub use machine::{load, machine_line};
 pub use timing::{Budget, SideBySide, Study, Timing};

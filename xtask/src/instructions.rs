@@ -123,11 +123,12 @@ fn loops(binary: &Path) -> Result<Vec<Loop>, String> {
 
 /// What a repeat of each loop took with the tests' build, by the table.
 fn read(table: &str) -> Option<BTreeMap<&str, u64>> {
-    let row = |line: &'_ str| -> Option<(&'_ str, u64)> {
-        let mut cells = line.split(',');
-        Some((cells.next()?, cells.nth(1)?.parse().ok()?))
-    };
     table.lines().skip(1).map(row).collect()
+}
+
+fn row(line: &str) -> Option<(&str, u64)> {
+    let mut cells = line.split(',');
+    Some((cells.next()?, cells.nth(1)?.parse().ok()?))
 }
 
 /// Counts anew what the tests' build takes, and tells what changed against the committed table.

@@ -2,7 +2,7 @@
 
 use super::{Chart, Drawn};
 use crate::streaming::{Case, Paced, paced, some};
-use crate::{Axis, Budget, Method, Outcome, Point, WorkPrecision};
+use crate::{Axis, Budget, Method, Outcome, Point, WorkPrecision, load};
 use recon::observer::{StreamEstimate, StreamStage};
 
 pub(super) const CHART: Chart =
@@ -40,7 +40,7 @@ fn draw(budget: Budget) -> Drawn {
     let [errors, shares, times] = all;
     let chart = |name: &str, title: &str, axis: Axis, methods: Vec<Method>| {
         WorkPrecision::new(name, title)
-            .subtitle("sample by sample, two unknown bodies of 0.3 m, 30 natural times at their own pace; curves: noise of contacts and forces")
+            .subtitle(format!("sample by sample, two unknown bodies of 0.3 m, 30 natural times at their own pace; curves: noise of contacts and forces{}", load()))
             .axes(Axis::log("rate of the sensors", "Hz"), axis)
             .methods(methods)
             .into()

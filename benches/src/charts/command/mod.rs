@@ -3,7 +3,7 @@
 mod process;
 
 use super::{Chart, Drawn};
-use crate::{Axis, Budget, Method, Outcome, Point, WorkPrecision};
+use crate::{Axis, Budget, Method, Outcome, Point, WorkPrecision, load};
 use process::{Used, used};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -134,7 +134,7 @@ fn diagrams(all: Measured) -> Vec<crate::Diagram> {
             })
         });
         WorkPrecision::new(name, title)
-            .subtitle("recon reconstruct from log.csv to the folder with report.html; ellipsoid of 2.5, 2 and 1.6 m on three planes, at 1 kHz, noise of 0.1 % and 1 %")
+            .subtitle(format!("recon reconstruct from log.csv to the folder with report.html; ellipsoid of 2.5, 2 and 1.6 m on three planes, at 1 kHz, noise of 0.1 % and 1 %{}", load()))
             .axes(Axis::log("rows of the log", "1"), Axis::log(what, unit))
             .methods(methods)
             .into()
