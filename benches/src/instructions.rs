@@ -47,7 +47,12 @@ pub const KERNELS: &[Kernel] = &[
         [5, 25],
         friction,
     ),
-    kernel("estimate", "the motion of Fig. 5 from a noisy log of 1,500 samples, body known", [1, 2], estimate),
+    kernel(
+        "estimate",
+        "the motion of Fig. 5 from a noisy log of 1,500 samples, body known",
+        [1, 2],
+        estimate,
+    ),
     kernel("stream_sample", "a sample of a stream before its first motion", [40, 120], stream),
     kernel("bank_sample", "a sample of a bank of two modes, eight hypotheses", [50, 450], bank),
     kernel("modes_sample", "a sample of a contact's modes, friction known", [50, 450], contact_modes),

@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_change_of_more_than_a_twentieth_is_told_with_both_numbers() {
-        assert_eq!(told("a", Some(1000), 1050), None);
+        assert_eq!(told("a", Some(1000), 1049), None);
         assert_eq!(told("a", Some(1000), 951), None);
         let words = told("a", Some(1000), 1100).expect("a tenth");
         assert!(words.contains("1100") && words.contains("1000") && words.contains("+10.0 %"), "{words}");
