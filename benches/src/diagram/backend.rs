@@ -247,7 +247,8 @@ fn range(places: &[f64], scale: Scale) -> (f64, f64) {
     }
     let least = match scale {
         Scale::Log => 2.0,
-        Scale::Linear => (1e-6 * low.abs().max(high.abs())).max(f64::MIN_POSITIVE.sqrt()),
+        // Ticks of three digits must differ.
+        Scale::Linear => (0.1 * low.abs().max(high.abs())).max(f64::MIN_POSITIVE.sqrt()),
     };
     let grow = (0.5 * (least - (high - low))).max(0.07 * (high - low));
     (low - grow, high + grow)
