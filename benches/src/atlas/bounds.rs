@@ -2,11 +2,11 @@
 
 use super::judged::Ran;
 use super::{Failure, Method, Way};
-use crate::noisy_contacts::{Body, Case, Course, Levels, TrueNoise, WrongContacts, bounded};
+use crate::noisy_contacts::{Body, Case, Course, Levels, TrueNoise, WrongContacts, bounded, cleaned};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, Direction};
+use shape_bounds::SharpBounds;
 use shape_bounds::generators::Source;
-use shape_bounds::{ContactNoise, NoisyContact, SharpBounds};
 use std::f64::consts::{PI, TAU};
 
 const CONFIDENCE: f64 = 0.9999;
@@ -29,7 +29,7 @@ pub(super) const STATED: Method = Method {
 
 pub(super) const CURVED: Method = Method {
     name: "bounds, limits on curvature",
-    about: "ellipsoids with their own limits on the radii of curvature, at a confidence of 0.9999; right: the support function lies between those of the bounds in 300 directions",
+    about: "ellipsoids with their own limits on the radii of curvature, at a confidence of 0.9999, as `recon bounds` makes them; right: the support function lies between those of the bounds in 300 directions",
     ways: {
         use Way::*;
         &[Sphere, Revolution, Noise, Unstated, Size, Contacts, Cone, Limit]
@@ -115,11 +115,12 @@ fn curved(way: Way, strength: f64, seed: u64) -> Result<Ran, Failure> {
         min: shortest * shortest / longest * narrow,
         max: longest * longest / shortest / narrow,
     };
-    let noise = ContactNoise::isotropic(case.point_sd, case.normal_sd);
-    let with = |contact: &_| NoisyContact { contact: *contact, noise };
-    let noisy: Vec<Vec<NoisyContact>> =
-        case.curves.iter().map(|curve| curve.iter().map(with).collect()).collect();
-    let bounds = match SharpBounds::from_noisy_curves(&noisy, radii, CONFIDENCE) {
+    let (kept, warned) = match cleaned(&case, Levels::Stated, CONFIDENCE) {
+        Err(error) => return Ok(Ran::refused(&error)),
+        Ok(None) => return Ok(Ran::Refused("noise that is alike".to_owned())),
+        Ok(Some(found)) => (found.kept, found.warned),
+    };
+    let bounds = match SharpBounds::from_noisy_curves(&kept, radii, CONFIDENCE) {
         Ok(bounds) => bounds,
         Err(error) => return Ok(Ran::refused(&error)),
     };
@@ -130,5 +131,6 @@ fn curved(way: Way, strength: f64, seed: u64) -> Result<Ran, Failure> {
         let (lower, upper) = bounds.support(Direction::new_unchecked(n));
         (lower - rounding..=upper + rounding).contains(&body.support(n))
     });
-    Ok(Ran::Found { off: if between { 0.0 } else { f64::INFINITY }, doubt: None })
+    let doubt = warned.then(|| "noise is not as stated".to_owned());
+    Ok(Ran::Found { off: if between { 0.0 } else { f64::INFINITY }, doubt })
 }

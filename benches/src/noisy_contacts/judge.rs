@@ -70,11 +70,23 @@ impl Tally {
     }
 }
 
-/// None where estimated noise is alike from one contact to the next: the estimate says nothing then.
+/// Contacts that are left of a case where noise is as found, as the command leaves them.
+pub struct Cleaned {
+    /// In curves, with their noise.
+    pub kept: Vec<Vec<NoisyContact>>,
+    /// Contacts that are taken for wrong.
+    pub outliers: Vec<Outlier>,
+    /// Whether noise is alike from contact to contact.
+    pub correlated: bool,
+    /// Whether anything is said of the noise.
+    pub warned: bool,
+}
+
+/// Contacts of a case whose noise is as found and which are not taken for wrong; `None` where estimated noise is alike from contact to contact.
 ///
 /// # Errors
-/// For contacts that contradict what is stated or assumed by more than can be mended.
-pub fn bounded(case: &Case, levels: Levels, confidence: f64) -> Result<Option<Bounded>, NoiseError> {
+/// Those of the bounds.
+pub fn cleaned(case: &Case, levels: Levels, confidence: f64) -> Result<Option<Cleaned>, NoiseError> {
     let noisy = match levels {
         Levels::Stated => stated(case),
         Levels::Estimated => estimate_noise(&case.curves, confidence)?,
@@ -87,12 +99,23 @@ pub fn bounded(case: &Case, levels: Levels, confidence: f64) -> Result<Option<Bo
     let (noisy, doubts) = with_noise_as_found(&noisy);
     let untested = estimated && !independence_is_tested(&noisy);
     let (kept, outliers) = without_outliers(&noisy, confidence)?;
+    Ok(Some(Cleaned { kept, outliers, correlated, warned: correlated || untested || !doubts.is_empty() }))
+}
+
+/// None where estimated noise is alike from one contact to the next: the estimate says nothing then.
+///
+/// # Errors
+/// For contacts that contradict what is stated or assumed by more than can be mended.
+pub fn bounded(case: &Case, levels: Levels, confidence: f64) -> Result<Option<Bounded>, NoiseError> {
+    let Some(Cleaned { kept, outliers, correlated, warned }) = cleaned(case, levels, confidence)? else {
+        return Ok(None);
+    };
     let bounds = if correlated {
         CertainBounds::from_correlated_curves(&kept, confidence)?
     } else {
         CertainBounds::from_noisy_curves(&kept, confidence)?
     };
-    Ok(Some(Bounded { bounds, outliers, warned: correlated || untested || !doubts.is_empty() }))
+    Ok(Some(Bounded { bounds, outliers, warned }))
 }
 
 fn stated(case: &Case) -> Vec<Vec<NoisyContact>> {

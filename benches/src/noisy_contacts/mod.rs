@@ -5,5 +5,5 @@ mod judge;
 mod noise;
 
 pub use bodies::Body;
-pub use judge::{Bounded, Levels, Tally, bounded};
+pub use judge::{Bounded, Levels, Tally, bounded, cleaned};
 pub use noise::{Case, Course, TrueNoise, WrongContacts};

@@ -59,6 +59,8 @@ mod contact_modes;
 mod contacts;
 mod core;
 #[cfg(feature = "palms")]
+mod doubted;
+#[cfg(feature = "palms")]
 mod faults;
 mod least_squares;
 #[cfg(feature = "palms")]

@@ -1,7 +1,6 @@
 use super::axes::ANY_TURN;
 use super::body::{Body, CONSTANTS};
 use super::cold;
-use super::doubted;
 use super::explanations::explanations;
 use super::joint::pose_errors;
 use super::mode_odds::{EstimatedModes, mode_odds};
@@ -294,8 +293,8 @@ impl Source<'_> {
         let readings = Readings::new(self.log, told, [record, problem.record], longest);
         let sensors = Sensors::new(&readings, motions, solved.unknowns.body);
         let scores = Scores::new(&sensors, problem, solved);
-        let suspects = scores.map_or_else(Vec::new, |scores| suspects(&scores, covariances, evidence));
-        let (suspects, errors) = doubted::errors(suspects, evidence.widening());
+        let (suspects, errors) =
+            scores.map(|scores| suspects(&scores, covariances, evidence)).unwrap_or_default();
         let contradicted = free.is_some()
             || !evidence.reliability().is_reliable()
             || ContactEvidence::against(&suspects, &[]).is_some();

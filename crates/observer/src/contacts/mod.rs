@@ -7,7 +7,6 @@ mod body;
 mod changed;
 mod cold;
 mod directly;
-mod doubted;
 mod drawn;
 mod elimination;
 mod equations;

@@ -18,6 +18,7 @@ use super::sensor_change::{
 use super::solve::{Covariances, Reduced, Solved, Step};
 use super::state::{Motion, Tangent};
 use super::verdict::ContactEvidence;
+use crate::doubted;
 use crate::faults::{SensorFault, Suspect};
 use crate::reliability::LARGEST_DEVIATION;
 use contact_kinematics::{PalmSurface, at_once};
@@ -176,8 +177,22 @@ impl<'a> Scores<'a> {
     }
 }
 
-/// Scores of all constants at a solution, and by what motion and body follow a unit of each.
+/// Scores of all constants at a solution, and the errors of motion and body by each that may be wrong, as steps of one deviation each that the widening of
+/// all deviations is not in.
 pub(super) fn suspects(
+    scores: &Scores,
+    covariances: &Covariances<CONSTANTS>,
+    evidence: &ContactEvidence,
+) -> (Vec<Suspect>, Vec<Step<CONSTANTS>>) {
+    let (suspects, follows): (Vec<Suspect>, Vec<_>) =
+        followed(scores, covariances, evidence).into_iter().unzip();
+    let off = doubted::errors(&suspects).into_iter().zip(&follows).filter(|(off, _)| *off > 0.0);
+    let errors = off.map(|(off, follows)| follows.scaled(off / evidence.widening())).collect();
+    (suspects, errors)
+}
+
+/// Scores of all constants, and by what motion and body follow a unit of each.
+fn followed(
     scores: &Scores,
     covariances: &Covariances<CONSTANTS>,
     evidence: &ContactEvidence,

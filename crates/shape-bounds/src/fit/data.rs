@@ -2,6 +2,7 @@
 
 use super::family::{HarmonicModel, Model};
 use super::information::SquareRoot;
+use super::refute::coincide;
 use super::{FitError, FitOptions, NoiseLevel, ShapeFamily};
 use crate::noise::NoisyContact;
 use glam::DVec3;
@@ -25,7 +26,13 @@ impl Data {
         }
         let centre = contacts.iter().map(|c| c.contact.point).sum::<DVec3>() / contacts.len().max(1) as f64;
         let size = contacts.iter().map(|c| c.contact.point.distance(centre)).fold(0.0, f64::max);
-        if contacts.len() > 1 && (size == 0.0 || !size.is_finite()) {
+        let squares = contacts.iter().map(|c| {
+            let off = c.contact.point - centre;
+            off.dot(c.noise.point.inverse() * off)
+        });
+        let equations = 3 * contacts.len().saturating_sub(1);
+        let one = coincide(options.noise_level, squares.sum(), equations);
+        if contacts.len() > 1 && (size == 0.0 || !size.is_finite() || one) {
             return Err(FitError::NoExtent { found: contacts.len() });
         }
         let smallest_radius = options.smallest_radius.unwrap_or(0.01 * size);

@@ -26,8 +26,10 @@ pub enum FitError {
         /// The point as given.
         point: DVec3,
     },
-    /// All contact points coincide, so that there is no length to measure by.
-    #[error("all {found} contact points coincide: there is no size to fit")]
+    /// All contact points coincide, or are one to within the stated noise, so that there is no length to measure by.
+    #[error(
+        "all {found} contact points coincide, or are one to within the stated noise: there is no size to fit; touch the body from more sides"
+    )]
     NoExtent {
         /// Contacts given.
         found: usize,

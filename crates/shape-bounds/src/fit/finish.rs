@@ -4,13 +4,15 @@ use super::convex;
 use super::data::Data;
 use super::family::{EllipsoidModel, HarmonicModel, Model, SuperquadricModel};
 use super::information::SquareRoot;
+use super::lasting::Deviations;
 use super::levenberg::Problem;
-use super::misfit::{Misfit, correlation};
+use super::misfit::Misfit;
 use super::refute::{self, Leftover};
 use super::solve::{Linearised, Solution, Spatial, undetermined};
 use super::{FitError, FitStatistics, FittedBody, ShapeFamily, ShapeFit};
 use contact_kinematics::{Sphere, SupportFunction, Translated};
 use glam::DVec3;
+use nalgebra::DMatrix;
 
 /// A solution that is to be made a fit.
 struct Unfinished<'a> {
@@ -38,20 +40,21 @@ impl ShapeFit {
         let Unfinished { solution, held, .. } = &own;
         let root = &solution.system.root;
         let known = root.knowledge(&model.scales(data.size)).ok_or_else(|| own.open())?;
-        let covariance = root.covariance().ok_or_else(|| own.open())?;
-        let (noise_factor, widening) =
-            (misfit.noise_factor(data.noise_level), misfit.widening(data.noise_level));
+        let deviations = Deviations::of(&own.problem, solution, &misfit, data.noise_level);
+        let Deviations { covariance, noise_factor, correlation, widening } =
+            deviations.ok_or_else(|| own.open())?;
         if known.rank < model.count() || known.weakest_deviation * widening > 1.0 {
             return Err(own.open());
         }
-        let refuted = own.check(&body, &misfit).err();
+        let refuted =
+            own.check(&body, &misfit).err().or_else(|| own.departure(&misfit, widening / noise_factor));
         let statistics = FitStatistics {
             chi_squared: misfit.chi_squared,
             degrees_of_freedom: misfit.degrees_of_freedom(),
             residual: misfit.residual,
             worst: worst(solution),
             noise_factor,
-            correlation: misfit.correlation,
+            correlation,
             condition: known.condition,
             weakest_deviation: known.weakest_deviation * widening,
             active_constraints: *held,
@@ -61,7 +64,7 @@ impl ShapeFit {
             is_exact: misfit.is_exact(),
             refuted,
             family,
-            covariance: covariance * widening.powi(2),
+            covariance,
             statistics,
             information_criterion: misfit.criterion(data.noise_level),
             names: (0..model.count()).map(|i| model.name(i)).collect(),
@@ -139,6 +142,33 @@ impl Unfinished<'_> {
         by.map_or(Ok(()), |by| Err(FitError::Refuted { family: self.family, by }))
     }
 
+    /// Whether harmonics of the first degree that the family lacks explain what noise does not.
+    fn departure(&self, misfit: &Misfit, lasting: f64) -> Option<FitError> {
+        let degree = match self.family {
+            ShapeFamily::Sphere => 2,
+            ShapeFamily::Ellipsoid | ShapeFamily::Superquadric => 3,
+            ShapeFamily::Harmonics { degree } => degree + 1,
+        };
+        if misfit.is_exact() || self.held > 0 {
+            return None;
+        }
+        let model = HarmonicModel::new(degree).ok()?;
+        let harmonics = 2 * degree + 1;
+        let contacts = &self.solution.system.contacts;
+        let mut columns = vec![DVec3::ZERO; model.count()];
+        let mut beyond = DMatrix::zeros(3 * contacts.len(), harmonics);
+        for (k, own) in contacts.iter().enumerate() {
+            model.columns(&self.solution.theta, own.normal, &mut columns)?;
+            for (j, column) in columns[model.count() - harmonics..].iter().enumerate() {
+                (0..3).for_each(|i| beyond[(3 * k + i, j)] = own.entry(i, *column));
+            }
+        }
+        let whitened = self.problem.whitened(&self.solution)?;
+        let improvement = refute::departure(self.data.noise_level, &whitened, &beyond, lasting)?;
+        let by = refute::Refutation::Departure { degree, harmonics, improvement };
+        Some(FitError::Refuted { family: self.family, by })
+    }
+
     fn misfit(&self, body: &FittedBody) -> Misfit {
         let square: f64 = self
             .problem
@@ -164,7 +194,6 @@ pub(super) fn misfit(solution: &Solution, data: &Data) -> Misfit {
         log_determinants: contacts.iter().map(|c| c.log_determinant).sum(),
         residual: f64::INFINITY,
         size: data.size,
-        correlation: correlation(contacts.iter().map(|c| DVec3::from(c.residual)), 3),
     }
 }
 

@@ -85,11 +85,10 @@ impl SquareRoot {
         })
     }
 
-    /// `(R'R)^-1`; `None` where a pivot vanishes.
-    pub(crate) fn covariance(&self) -> Option<DMatrix<f64>> {
+    /// `R^-1`; `None` where a pivot vanishes.
+    pub(crate) fn inverse(&self) -> Option<DMatrix<f64>> {
         let inverse = self.triangle().solve_upper_triangular(&DMatrix::identity(self.count, self.count))?;
-        let covariance = &inverse * inverse.transpose();
-        covariance.iter().all(|v| v.is_finite()).then_some(covariance)
+        inverse.iter().all(|v| v.is_finite()).then_some(inverse)
     }
 }
 
@@ -127,7 +126,8 @@ mod tests {
         let information = rows.transpose() * &rows;
         let x = information.clone().cholesky().unwrap().solve(&(rows.transpose() * &right));
         assert!((root.solve(0.0).unwrap() - &x).norm() < 1e-13);
-        assert!((root.covariance().unwrap() * &information - DMatrix::identity(6, 6)).norm() < 1e-13);
+        let inverse = root.inverse().unwrap();
+        assert!((&inverse * inverse.transpose() * &information - DMatrix::identity(6, 6)).norm() < 1e-13);
         // Damping is Levenberg's with Marquardt's scaling.
         let damped = &information + DMatrix::from_diagonal(&information.diagonal()) * 0.3;
         let expected = damped.cholesky().unwrap().solve(&(rows.transpose() * &right));

@@ -1,7 +1,7 @@
 //! Levenberg's and Marquardt's iteration, for contacts in the plane and in space.
 
 use super::information::SquareRoot;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 /// Iterations before a fit is given up; a handful suffices near a solution.
 pub(crate) const ITERATIONS: usize = 200;
@@ -45,6 +45,16 @@ pub(crate) trait Problem {
 
     /// Natural sizes of the parameters.
     fn scales(&self) -> DVector<f64>;
+
+    /// Whitened rows of the contacts at a solution, as many to each, with what it leaves of them; `None` where it is no body.
+    fn whitened(&self, solution: &Solution<Self::Contact>) -> Option<Whitened>;
+}
+
+/// Whitened rows, so many to a contact, and residuals.
+pub(crate) struct Whitened {
+    pub(crate) dimension: usize,
+    pub(crate) rows: DMatrix<f64>,
+    pub(crate) residuals: Vec<f64>,
 }
 
 /// Where an iteration came to rest.

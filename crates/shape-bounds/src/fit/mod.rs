@@ -13,6 +13,7 @@ mod family;
 mod finish;
 mod incremental;
 pub(crate) mod information;
+pub(crate) mod lasting;
 pub(crate) mod levenberg;
 pub(crate) mod misfit;
 pub(crate) mod nnls;

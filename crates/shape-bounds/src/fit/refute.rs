@@ -1,10 +1,12 @@
 //! Whether the contacts refute a fitted shape, in the plane and in space.
 
 use super::NoiseLevel;
+use super::levenberg::Whitened;
 use super::misfit::Misfit;
 use crate::bounds::PRINTED;
 use crate::noise::quantile::normal;
 use glam::DVec3;
+use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use thiserror::Error;
 
@@ -28,6 +30,20 @@ pub enum Refutation {
         chi_squared: f64,
         /// Equations minus parameters that no constraint holds.
         degrees_of_freedom: usize,
+    },
+    /// Harmonics that the family does not have explain more of the residuals than noise lets them.
+    #[error(
+        "harmonics of degree {degree} take {improvement:.1} of chi-squared for {harmonics} parameters, which of such a shape they do \
+         once in {:.0} times; the body is no such shape",
+        1.0 / SIGNIFICANCE
+    )]
+    Departure {
+        /// Degree of the harmonics, ...
+        degree: usize,
+        /// ... their number, ...
+        harmonics: usize,
+        /// ... and by how much they lower the sum of squared residuals in units of the noise.
+        improvement: f64,
     },
     /// Residuals of neighbours are alike, which noise is not.
     #[error(
@@ -79,6 +95,41 @@ pub(crate) fn refutation(
         }
         _ => None,
     }
+}
+
+/// Whether points are one to within the stated noise, from the sum of squares of their distances from their mean in units of it.
+///
+/// A body of no size then explains them, whatever they were measured on.
+pub(crate) fn coincide(level: NoiseLevel, squares: f64, equations: usize) -> bool {
+    level == NoiseLevel::Stated && squares <= chi_squared_quantile(equations)
+}
+
+/// What columns beyond a family's own take of the residuals' sum of squares, if noise lets them take so much once in
+/// `1 / SIGNIFICANCE` times only: the score test (Rao 1948). With noise of an unknown level of what is left, and of noise that lasts less by the square
+/// of what it makes deviations wider by. `None` also where they cannot be told from the family's own.
+pub(crate) fn departure(
+    level: NoiseLevel,
+    whitened: &Whitened,
+    beyond: &DMatrix<f64>,
+    lasting: f64,
+) -> Option<f64> {
+    let residuals = DVector::from_column_slice(&whitened.residuals);
+    let all = DMatrix::from_columns(
+        &[whitened.rows.column_iter().collect::<Vec<_>>(), beyond.column_iter().collect()].concat(),
+    );
+    let left = (all.nrows()).checked_sub(all.ncols()).filter(|left| *left > 0)?;
+    let scaled = DMatrix::from_columns(
+        &all.column_iter().map(|c| c / c.norm().max(f64::MIN_POSITIVE)).collect::<Vec<_>>(),
+    );
+    let right = scaled.tr_mul(&residuals);
+    let squares = residuals.norm_squared();
+    let explained = (scaled.tr_mul(&scaled)).cholesky()?.solve(&right).dot(&right);
+    let scale = match level {
+        NoiseLevel::Stated => 1.0,
+        NoiseLevel::Estimated => (squares - explained) / left as f64,
+    };
+    let improvement = explained / scale / lasting.powi(2);
+    (improvement > chi_squared_quantile(beyond.ncols())).then_some(improvement)
 }
 
 /// Whether the sum of squares is one that contacts of such a shape leave; with unknown noise, whether it is next to none.

@@ -14,10 +14,10 @@ pub struct FitStatistics {
     pub residual: f64,
     /// The contact that fits worst, and its squared residual in units of the noise (about 3 is expected).
     pub worst: (usize, f64),
-    /// Estimated common factor of the noise's standard deviations; 1 where the stated noise is taken as it is.
+    /// Estimated common factor of the noise's standard deviations; 1 where the stated noise is taken as it is, and no less than that of stated noise that lasts.
     pub noise_factor: f64,
-    /// How far residuals are alike from one contact to the next, beyond what chance makes of it: 0 of independent noise, at most 0.97. The
-    /// covariance is wider by it.
+    /// Correlation of the noise from one contact to the next that makes residuals as alike as they are: 0 where chance explains it, at most 0.999.
+    /// The covariance is that of such noise.
     pub correlation: f64,
     /// Condition number of the least-squares problem in parameters relative to their natural sizes.
     pub condition: f64,

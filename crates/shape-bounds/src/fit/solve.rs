@@ -2,12 +2,12 @@
 
 use super::family::Model;
 use super::information::SquareRoot;
-use super::levenberg::{self, ITERATIONS, Problem, System, ends, iterate};
+use super::levenberg::{self, ITERATIONS, Problem, System, Whitened, ends, iterate};
 use super::{FitError, ShapeFamily};
 use crate::noise::NoisyContact;
 use contact_kinematics::{Direction, SupportFunction, SupportJet};
 use glam::{DMat3, DVec3};
-use nalgebra::{DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// Steps of the search for a contact's true normal, and halvings of one that goes too far.
 const NORMAL_STEPS: usize = 30;
@@ -106,13 +106,16 @@ fn vector(v: DVec3) -> Vector3<f64> {
 }
 
 impl Linearised {
+    /// A whitened column's entry in one of the three rows.
+    pub(super) fn entry(&self, i: usize, column: DVec3) -> f64 {
+        (0..=i).map(|j| self.whitening[(i, j)] * column[j]).sum()
+    }
+
     /// Hands the three whitened rows of the step's equations to `root`. `row` has room for parameters and right-hand side.
     pub(super) fn insert(&self, columns: &[DVec3], root: &mut SquareRoot, row: &mut [f64]) {
         let count = columns.len();
         for i in 0..3 {
-            for (entry, column) in row.iter_mut().zip(columns) {
-                *entry = (0..=i).map(|j| self.whitening[(i, j)] * column[j]).sum();
-            }
+            row.iter_mut().zip(columns).for_each(|(entry, column)| *entry = self.entry(i, *column));
             row[count] = self.residual[i];
             root.insert(row);
         }
@@ -157,6 +160,21 @@ impl<M: Model + ?Sized> Problem for Spatial<'_, M> {
 
     fn scales(&self) -> DVector<f64> {
         self.model.scales(self.size)
+    }
+
+    fn whitened(&self, solution: &Solution) -> Option<Whitened> {
+        let contacts = &solution.system.contacts;
+        let mut columns = vec![DVec3::ZERO; self.model.count()];
+        let mut rows = DMatrix::zeros(3 * contacts.len(), columns.len());
+        for (k, own) in contacts.iter().enumerate() {
+            self.model.columns(&solution.theta, own.normal, &mut columns)?;
+            for (j, column) in columns.iter().enumerate() {
+                (0..3).for_each(|i| rows[(3 * k + i, j)] = own.entry(i, *column));
+            }
+        }
+        let residuals =
+            contacts.iter().flat_map(|own| [own.residual.x, own.residual.y, own.residual.z]).collect();
+        Some(Whitened { dimension: 3, rows, residuals })
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::estimate::StreamBody;
 use crate::contacts::body::{Body, CONSTANTS};
-use crate::contacts::doubted::errors;
 use crate::contacts::flow::Transition;
 use crate::contacts::problem::Problem;
 use crate::contacts::record::Record;
@@ -81,7 +80,7 @@ impl Of<'_> {
         let sensors = Sensors::new(readings, &motions, solved.unknowns.body);
         let Some(scores) = Scores::new(&sensors, problem, solved) else { return };
         let (evidence, of) = (self.evidence(), &self.covariances);
-        let (suspects, errors) = errors(suspects(&scores, of, &evidence), evidence.widening());
+        let (suspects, errors) = suspects(&scores, of, &evidence);
         self.covariances.errors.extend(errors);
         self.open |= ContactEvidence::against(&suspects, &[]).is_some();
     }

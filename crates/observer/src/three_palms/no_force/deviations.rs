@@ -1,6 +1,7 @@
 //! How far a motion may be off that numbers with a covariance make.
 
 use super::problem::{DIFFERENCE, Guess, Row, TouchProblem, UNKNOWNS};
+use super::suspects::Wrong;
 use glam::{DQuat, DVec3};
 use nalgebra::SMatrix;
 use object_dynamics::Instant;
@@ -9,12 +10,14 @@ use object_dynamics::Instant;
 type Slope = [DVec3; 4];
 
 /// Standard deviations at each of `nodes` nodes of centre of mass (m), velocity (m/s), angular velocity (rad/s) and turn since the first
-/// node (rad), world axes, for the covariance of steps from `point` in natural sizes. None where steps next to it make no motion.
+/// node (rad), world axes, for the covariance by noise of steps from `point` in natural sizes and for what may be wrong beside it. None where steps next to
+/// it make no motion.
 pub(super) fn deviations(
     problem: &TouchProblem,
     point: &Guess,
     nodes: usize,
     covariance: &SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+    wrong: &[Wrong],
 ) -> Option<Vec<[DVec3; 4]>> {
     let moved = |i: usize, h: f64| {
         problem.motion(&problem.retract_by(point, &Row::from_fn(|j, _| if i == j { h } else { 0.0 })), nodes)
@@ -24,9 +27,16 @@ pub(super) fn deviations(
         let (ahead, behind) = (moved(i, DIFFERENCE)?, moved(i, -DIFFERENCE)?);
         slopes.push(ahead.iter().zip(&behind).map(|(a, b)| slope(a, b)).collect());
     }
+    let mut errors: Vec<Vec<Slope>> = Vec::with_capacity(wrong.len());
+    for wrong in wrong {
+        let moved = |share: f64| wrong.motion(problem, point, share, nodes);
+        let (ahead, behind) = (moved(DIFFERENCE)?, moved(-DIFFERENCE)?);
+        errors.push(ahead.iter().zip(&behind).map(|(a, b)| slope(a, b)).collect());
+    }
     let deviation = |k: usize, what: usize, axis: usize| {
         let along = Row::from_fn(|i, _| slopes[i][k][what][axis]);
-        along.dot(&(covariance * along)).max(0.0).sqrt()
+        let beside: f64 = errors.iter().map(|of| of[k][what][axis].powi(2)).sum();
+        (along.dot(&(covariance * along)).max(0.0) + beside).sqrt()
     };
     let at = |k: usize| -> [DVec3; 4] {
         std::array::from_fn(|what| DVec3::from_array([0, 1, 2].map(|axis| deviation(k, what, axis))))

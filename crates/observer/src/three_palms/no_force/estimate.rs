@@ -5,7 +5,9 @@ use super::problem::{Guess, Row, TouchProblem, UNKNOWNS};
 use super::search::search;
 use super::series::{Nodes, TouchSeries};
 use super::shape::FreeEllipsoid;
+use super::suspects::{Wrong, doubts};
 use crate::core::describe_direction;
+use crate::faults::Suspect;
 use crate::least_squares::{FitStatus, LevenbergMarquardt, Observability};
 use crate::rigid::inertia_of_numbers;
 use crate::three_palms::motion_state::MotionState;
@@ -72,6 +74,8 @@ pub struct NoForceEvidence {
     pub weakest_deviation: f64,
     /// Agreement of the contact curves where they cross; none where they do not.
     pub closure: Option<Closure>,
+    /// What the data say of tilts of palms and of offsets of contacts. What may be wrong counts in all deviations, by its odds.
+    pub suspects: Vec<Suspect>,
 }
 
 /// Motion, shape and inertia over mass of a body of which only contacts are known. The mass itself cannot be known:
@@ -198,6 +202,10 @@ impl Scene<'_> {
         }
         let motion = problem.motion(&fit.point, nodes.t.len()).ok_or(no_fit.clone())?;
         let (largest, smallest) = (spectrum.eigenvalues[UNKNOWNS - 1], spectrum.eigenvalues[0]);
+        let of_noise = spectrum.directions
+            * SMatrix::from_diagonal(&spectrum.eigenvalues.map(|v| left * left / v))
+            * spectrum.directions.transpose();
+        let doubts = doubts(&problem, &fit.point, left, &of_noise).ok_or(no_fit.clone())?;
         let evidence = NoForceEvidence {
             status: fit.status,
             samples: self.series.t.len(),
@@ -208,10 +216,10 @@ impl Scene<'_> {
             weakest: words,
             weakest_deviation: weakest,
             closure: closure(self.series, &problem, &fit.point, self.noise),
+            suspects: doubts.suspects,
         };
-        let inverse = spectrum.directions
-            * SMatrix::from_diagonal(&spectrum.eigenvalues.map(|v| left * left / v))
-            * spectrum.directions.transpose();
+        let of_wrong = |sum, wrong: &Wrong| sum + wrong.numbers * wrong.numbers.transpose();
+        let inverse = doubts.errors.iter().fold(of_noise, of_wrong);
         let scales = problem.scales();
         let outward = by_numbers(&fit.point) * SMatrix::from_diagonal(&scales);
         let state = |now: &Instant| MotionState {
@@ -221,7 +229,8 @@ impl Scene<'_> {
             v_WCm: now.rates.v_WCm,
             w_WO: now.w_WO,
         };
-        let deviations = deviations(&problem, &fit.point, motion.len(), &inverse).ok_or(no_fit)?;
+        let deviations =
+            deviations(&problem, &fit.point, motion.len(), &of_noise, &doubts.errors).ok_or(no_fit)?;
         Ok(NoForceEstimate {
             motion: motion.iter().map(state).collect(),
             deviations,

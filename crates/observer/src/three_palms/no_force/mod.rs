@@ -9,6 +9,7 @@ mod problem;
 mod search;
 mod series;
 mod shape;
+mod suspects;
 
 #[cfg(test)]
 mod tests;

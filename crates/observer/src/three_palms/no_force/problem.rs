@@ -46,6 +46,12 @@ impl<'a> TouchProblem<'a> {
         Self { nodes, gravity, length, end, one_sided: false }
     }
 
+    /// The same of other readings.
+    pub(super) fn with_nodes<'b>(&self, nodes: &'b Nodes) -> TouchProblem<'b> {
+        let Self { gravity, length, end, one_sided, .. } = *self;
+        TouchProblem { nodes, gravity, length, end, one_sided }
+    }
+
     /// The same with derivatives that do for a search.
     pub(super) fn coarse(self) -> Self {
         Self { one_sided: true, ..self }

@@ -23,6 +23,7 @@ pub(super) struct TouchSeries {
 }
 
 /// Every so many samples of a series.
+#[derive(Clone)]
 pub(super) struct Nodes {
     pub(super) t: Vec<f64>,
     /// At nodes and half-way between, in turns.

@@ -3,9 +3,13 @@ use super::problem::{Guess, Row, TouchProblem, UNKNOWNS, uniform};
 use super::series::TouchSeries;
 use super::shape::FreeEllipsoid;
 use super::*;
+use crate::faults::SensorFault;
 use crate::least_squares::FitStatus;
 use crate::rigid::{inertia_of_numbers, numbers_of_inertia};
-use contact_kinematics::{Ellipsoid, MotionLaw, Palm, Sphere, SupportFunction, Translated};
+use crate::three_palms::motion_state::MotionState;
+use contact_kinematics::{
+    Direction, Ellipsoid, MotionLaw, Palm, PalmFrame, Sphere, SupportFunction, Translated,
+};
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::integrate::Tolerance;
 use object_dynamics::{
@@ -208,4 +212,36 @@ fn what_contacts_do_not_determine_is_refused_in_words() {
     assert!(matches!(estimate_without_forces(&log, &floating), Err(NoForceError::Gravity { .. })));
     let odd = KnownTouch { contact_noise: Some(-1.0), ..KNOWN };
     assert_eq!(estimate_without_forces(&log, &odd).unwrap_err(), NoForceError::Noise { value: -1.0 });
+}
+
+/// Without noise of its own a tilt of a fiftieth of a degree moves the motion by far more than noise explains: it is named, and counts in the deviations.
+#[test]
+fn a_tilted_palm_is_named_and_counts() {
+    const TILT: f64 = 3e-4;
+    let (simulation, log, _) = general(3.0, 100.0);
+    let noise = SensorNoise { contact: 2e-4, ..SensorNoise::default() };
+    let mut samples = log.with_noise(&noise, 3).unwrap().samples().to_vec();
+    for sample in &mut samples {
+        let palm = &mut sample.palms[1];
+        let frame = PalmFrame::from_normal(palm.normal).unwrap();
+        palm.normal = Direction::new(DQuat::from_axis_angle(frame.t1, TILT) * frame.n).unwrap();
+    }
+    let known = KnownTouch { contact_noise: Some(2e-4), ..KNOWN };
+    let found = estimate_without_forces(&SensorLog::new(samples, None).unwrap(), &known).unwrap();
+    let first =
+        found.evidence.suspects.iter().max_by(|a, b| a.score().abs().total_cmp(&b.score().abs())).unwrap();
+    assert_eq!(first.fault, SensorFault::PalmTilt { palm: 2, axis: 0 }, "{first}");
+    // The palm stands turned back from where it is said to be.
+    assert!((first.value + TILT).abs() < 5.0 * first.deviation && first.score() < -4.75, "{first}");
+    let off = |(motion, deviations): (&MotionState, &[DVec3; 4])| {
+        let now = simulation.instants.iter().find(|now| (now.t - motion.t).abs() < 1e-9).unwrap();
+        let errors = [motion.p_WCm - now.touch.p_WCm, motion.w_WO - now.w_WO];
+        errors
+            .into_iter()
+            .zip([deviations[0], deviations[2]])
+            .map(|(e, d)| (e / d).abs().max_element())
+            .fold(0.0, f64::max)
+    };
+    let worst = found.motion.iter().zip(&found.deviations).map(off).fold(0.0, f64::max);
+    assert!(worst < 3.0, "{worst} deviations");
 }

@@ -42,12 +42,13 @@ fn consistency(
     };
     let mut clean = at_truth(&normals, &mut s, (0.0, 0.0));
     clean.iter_mut().for_each(|c| c.noise = ContactNoise::isotropic(noise.0, noise.1));
-    let bound = Spatial { model: model.as_ref(), contacts: &clean, size: 1.0 }
+    let root = Spatial { model: model.as_ref(), contacts: &clean, size: 1.0 }
         .assemble(truth, None)
         .unwrap()
         .root
-        .covariance()
+        .inverse()
         .unwrap();
+    let bound = &root * root.transpose();
     let mut nees = 0.0;
     let mut square = DMatrix::zeros(parameters, parameters);
     for _ in 0..runs {

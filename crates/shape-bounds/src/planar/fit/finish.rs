@@ -3,6 +3,7 @@
 use super::family::{self, AnyWaves};
 use super::solve::{self, Linearised, Plane};
 use super::{FitError, OutlineFamily, OutlineFit, convex};
+use crate::fit::lasting::Deviations;
 use crate::fit::levenberg::{Problem, Solution};
 use crate::fit::misfit::Misfit;
 use crate::fit::refute;
@@ -35,22 +36,23 @@ impl OutlineFit {
         let misfit = solve::misfit(&body, &own.solution, &own.problem, own.held);
         let root = &own.solution.system.root;
         let known = root.knowledge(&own.problem.scales()).ok_or_else(|| own.open())?;
-        let covariance = root.covariance().ok_or_else(|| own.open())?;
-        let (noise_factor, widening) = (misfit.noise_factor(level), misfit.widening(level));
+        let deviations = Deviations::of(&own.problem, &own.solution, &misfit, level);
+        let Deviations { covariance, noise_factor, correlation, widening } =
+            deviations.ok_or_else(|| own.open())?;
         if known.rank < misfit.parameters || known.weakest_deviation * widening > 1.0 {
             return Err(own.open());
         }
         own.check(&body, &misfit)?;
         Ok(Self {
             family,
-            covariance: covariance * widening.powi(2),
+            covariance,
             statistics: FitStatistics {
                 chi_squared: misfit.chi_squared,
                 degrees_of_freedom: misfit.degrees_of_freedom(),
                 residual: misfit.residual,
                 worst: solve::worst(&own.solution),
                 noise_factor,
-                correlation: misfit.correlation,
+                correlation,
                 condition: known.condition,
                 weakest_deviation: known.weakest_deviation * widening,
                 active_constraints: own.held,

@@ -18,7 +18,8 @@ pub use family::{FittedOutline, TurnedEllipse};
 use super::{NoisyContact, noise::ContactNoise};
 use crate::fit::choose::{Fit, compared};
 use crate::fit::levenberg::{ITERATIONS, LINEAR, best_of, iterate};
-use crate::fit::{Candidate, FitOptions, FitStatistics};
+use crate::fit::refute::coincide;
+use crate::fit::{Candidate, FitOptions, FitStatistics, NoiseLevel};
 use contact_kinematics::planar::{RadiusBounds, RadiusFunction, RadiusJet};
 use family::model;
 use glam::DVec2;
@@ -104,7 +105,7 @@ impl OutlineFit {
         family: OutlineFamily,
         options: &FitOptions,
     ) -> Result<Self, FitError> {
-        let (centre, size) = check(contacts, family)?;
+        let (centre, size) = check(contacts, family, options.noise_level)?;
         let limit = options.smallest_radius.unwrap_or(0.01 * size);
         if !(limit >= 0.0 && limit.is_finite()) {
             return Err(FitError::Radius(limit));
@@ -225,7 +226,11 @@ impl RadiusFunction for OutlineFit {
 }
 
 /// Centre and size of usable contacts.
-fn check(contacts: &[NoisyContact], family: OutlineFamily) -> Result<(DVec2, f64), FitError> {
+fn check(
+    contacts: &[NoisyContact],
+    family: OutlineFamily,
+    level: NoiseLevel,
+) -> Result<(DVec2, f64), FitError> {
     for (index, NoisyContact { contact, noise }) in contacts.iter().enumerate() {
         if !contact.point.is_finite() {
             return Err(FitError::NotFinite { index, point: contact.point });
@@ -247,7 +252,12 @@ fn check(contacts: &[NoisyContact], family: OutlineFamily) -> Result<(DVec2, f64
     }
     let centre = contacts.iter().map(|c| c.contact.point).sum::<DVec2>() / contacts.len() as f64;
     let size = contacts.iter().map(|c| c.contact.point.distance(centre)).fold(0.0, f64::max);
-    if size == 0.0 || !size.is_finite() {
+    let squares = contacts.iter().map(|c| {
+        let off = c.contact.point - centre;
+        off.dot(c.noise.point.inverse() * off)
+    });
+    let one = coincide(level, squares.sum(), 2 * (contacts.len() - 1));
+    if size == 0.0 || !size.is_finite() || one {
         return Err(FitError::NoExtent { found: contacts.len() });
     }
     Ok((centre, size))

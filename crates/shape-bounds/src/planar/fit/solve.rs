@@ -3,12 +3,12 @@
 use super::family::Model;
 use super::{FitError, NoisyContact, OutlineFamily};
 use crate::fit::information::SquareRoot;
-use crate::fit::levenberg::{Problem, Solution, System, Unsolved};
-use crate::fit::misfit::{Misfit, correlation};
+use crate::fit::levenberg::{Problem, Solution, System, Unsolved, Whitened};
+use crate::fit::misfit::Misfit;
 use crate::fit::refute::Leftover;
 use contact_kinematics::planar::RadiusFunction;
 use glam::{DMat2, DVec2};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
 /// Steps of the search for a contact's true normal, and halvings of one that goes too far.
@@ -70,6 +70,20 @@ impl Problem for Plane<'_> {
 
     fn scales(&self) -> DVector<f64> {
         DVector::from_element(self.model.count(), self.size)
+    }
+
+    fn whitened(&self, solution: &Solution<Linearised>) -> Option<Whitened> {
+        let contacts = &solution.system.contacts;
+        let mut columns = vec![DVec2::ZERO; self.model.count()];
+        let mut rows = DMatrix::zeros(2 * contacts.len(), columns.len());
+        for (k, own) in contacts.iter().enumerate() {
+            self.model.columns(&solution.theta, own.angle, &mut columns)?;
+            for (j, column) in columns.iter().enumerate() {
+                (0..2).for_each(|i| rows[(2 * k + i, j)] = own.whitening[i].dot(*column));
+            }
+        }
+        let residuals = contacts.iter().flat_map(|own| own.residual.to_array()).collect();
+        Some(Whitened { dimension: 2, rows, residuals })
     }
 }
 
@@ -152,7 +166,6 @@ pub(super) fn misfit(
         log_determinants: own.iter().map(|c| c.log_determinant).sum(),
         residual: (square / (2 * own.len().max(1)) as f64).sqrt(),
         size: problem.size,
-        correlation: correlation(own.iter().map(|c| c.residual.extend(0.0)), 2),
     }
 }
 

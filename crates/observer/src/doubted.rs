@@ -4,8 +4,6 @@
 //! nothing is wrong, or one constant, by an unknown amount whose most probable variance `(s^2 - 1) / s^2` of its square the score `s` tells (MacKay's
 //! evidence, as for an automatic relevance). Against nothing being wrong the odds of that are `exp((s^2 - 1) / 2) / |s|` times those beforehand.
 
-use super::body::CONSTANTS;
-use super::solve::Step;
 use crate::faults::Suspect;
 
 /// Odds beforehand that one of the constants of a log, whichever, is not what it was taken for.
@@ -13,24 +11,18 @@ const BEFOREHAND: f64 = 0.1;
 /// Squared score beyond which nothing changes any more: such a constant is wrong.
 const CERTAIN: f64 = 100.0;
 
-/// Errors of motion and body by each constant that may be wrong, as steps of one deviation each; `wider` is what all deviations are to be multiplied by
-/// that these go with.
-pub(super) fn errors(
-    suspects: Vec<(Suspect, Step<CONSTANTS>)>,
-    wider: f64,
-) -> (Vec<Suspect>, Vec<Step<CONSTANTS>>) {
-    let scores: Vec<f64> = suspects.iter().map(|(suspect, _)| suspect.score()).collect();
-    let mut errors = Vec::new();
-    for ((suspect, follows), probability) in suspects.iter().zip(probabilities(&scores)) {
-        let s = suspect.score();
-        if probability > 0.0 {
-            let sure = 1.0 - 1.0 / (s * s);
-            let mean = sure * suspect.value;
-            let square = probability * (mean * mean + sure * suspect.deviation * suspect.deviation);
-            errors.push(follows.scaled(square.sqrt() / wider));
+/// What each constant may be off by, as the standard deviation of an error of its own in its unit: 0 of those that nothing speaks against.
+pub(crate) fn errors(suspects: &[Suspect]) -> Vec<f64> {
+    let scores: Vec<f64> = suspects.iter().map(Suspect::score).collect();
+    let error = |(suspect, probability): (&Suspect, f64)| {
+        if probability == 0.0 {
+            return 0.0;
         }
-    }
-    (suspects.into_iter().map(|(suspect, _)| suspect).collect(), errors)
+        let sure = 1.0 - suspect.score().powi(-2);
+        let mean = sure * suspect.value;
+        (probability * (mean * mean + sure * suspect.deviation * suspect.deviation)).sqrt()
+    };
+    suspects.iter().zip(probabilities(&scores)).map(error).collect()
 }
 
 /// That each constant, by its score, is the one that is wrong.
