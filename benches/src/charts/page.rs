@@ -19,6 +19,8 @@ const OF_STUDIES: &[(&str, &str)] = &[
 
 /// Titles of diagrams that have none in the picture.
 const TITLES: &[(&str, &str)] = &[
+    ("approximations", "Approximations of shapes: error by number of contacts"),
+    ("mode-switches", "Contact modes told as they switch"),
     ("nonsmooth", "Corners, edges and faces told from contacts"),
     ("planar-observability", "Observability in the plane, along S1 to S4"),
     ("pushes", "Friction and outlines from pushes"),
