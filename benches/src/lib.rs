@@ -22,9 +22,12 @@
 //! ```
 
 pub mod atlas;
+pub mod bound;
 pub mod departures;
 mod diagram;
 pub mod fault;
+pub mod fig5;
+pub mod instructions;
 mod machine;
 pub mod multipliers;
 pub mod noisy_contacts;
@@ -48,5 +51,5 @@ pub use diagram::{
     Axis, ChartError, Diagram, Goal, Method, Outcome, Outlines, Point, Scale, Stroke, WorkPrecision,
     WrittenChart,
 };
-pub use machine::machine_line;
+pub use machine::{load, machine_line};
 pub use timing::{Budget, SideBySide, Study, Timing};

@@ -19,6 +19,15 @@ pub fn machine_line() -> String {
     parts.join(", ")
 }
 
+/// Programs that ran or waited for a core over the last minute, in words for a diagram of wall times; empty where that is not told.
+#[must_use]
+pub fn load() -> String {
+    let told = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    let mean = told.split_whitespace().next().and_then(|mean| mean.parse::<f64>().ok());
+    let cores = available_parallelism().map_or(1, usize::from);
+    mean.map_or_else(String::new, |mean| format!("; load of the machine then {mean:.0} on {cores} cores"))
+}
+
 fn model_name(cpuinfo: &str) -> Option<String> {
     let line = cpuinfo.lines().find(|line| line.starts_with("model name"))?;
     let (_, name) = line.split_once(':')?;

@@ -1,12 +1,13 @@
-//! Charts: handed to the release build of `recon-benches`, so that this crate depends on none of the others.
+//! Charts: handed to the release build of `recon-benches`, so that this crate depends on none of the others. The command is built as well: one of them times it.
 
 use std::process::ExitCode;
 
-use crate::cargo::{cargo, run};
+use crate::cargo::{cargo, program, run, target};
 
 pub(crate) fn main(words: impl Iterator<Item = String>) -> ExitCode {
-    let mut command = cargo("run --release --package recon-benches --bin study -- chart");
-    match run(command.args(words)) {
+    let build = || run(&mut cargo("build --release --package recon-benches --package recon-touch-cli"));
+    let draw = || run(program(&target().join("release/study").to_string_lossy()).arg("chart").args(words));
+    match build().and_then(|()| draw()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(complaint) => {
             eprintln!("{complaint}");

@@ -8,6 +8,8 @@ use crate::cargo::holding;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
     Passed,
+    /// Nothing is wrong, but something is to be looked at, one a line.
+    Warned(String),
     /// It could not do its work here, and why.
     Skipped(String),
 }
@@ -125,6 +127,13 @@ impl Report {
         let took = self.took.as_secs_f64();
         match &self.result {
             Ok(Outcome::Passed) => format!("{:<12} {took:>7.1} s  pass", self.name),
+            Ok(Outcome::Warned(what)) => {
+                format!(
+                    "{:<12} {took:>7.1} s  pass, look at\n    {}",
+                    self.name,
+                    what.trim().replace('\n', "\n    ")
+                )
+            }
             Ok(Outcome::Skipped(why)) => format!("{:<12} {took:>7.1} s  skipped: {why}", self.name),
             Err(complaints) => {
                 format!(
@@ -155,9 +164,15 @@ pub(crate) fn table(reports: &[Report], took: Duration) -> String {
 mod tests {
     use super::*;
 
-    const STEPS: [Step; 3] = [
+    const STEPS: [Step; 4] = [
         Step { name: "bad", about: "", when: When::Beside, run: || Err("one\ntwo".to_owned()) },
         Step { name: "good", about: "", when: When::InTurn, run: || Ok(Outcome::Passed) },
+        Step {
+            name: "odd",
+            about: "",
+            when: When::InTurn,
+            run: || Ok(Outcome::Warned("1 was 2\n3 was 4".to_owned())),
+        },
         Step {
             name: "extra",
             about: "",
@@ -175,17 +190,18 @@ mod tests {
     #[test]
     fn a_failure_does_not_hide_the_steps_after_it() {
         let reports = run(&STEPS, &Choice::default());
-        assert_eq!(reports.iter().map(Report::failed).collect::<Vec<_>>(), [false, true]);
+        assert_eq!(reports.iter().map(Report::failed).collect::<Vec<_>>(), [false, false, true]);
         let table = table(&reports, Duration::ZERO);
         assert!(table.contains("    one\n    two") && table.ends_with("1 FAILED, 0 skipped"), "{table}");
+        assert!(table.contains("pass, look at\n    1 was 2\n    3 was 4"), "{table}");
     }
 
     #[test]
     fn optional_steps_run_only_when_asked_for() {
-        assert_eq!(names(""), ["good", "bad"]);
-        assert_eq!(names("--with extra"), ["good", "extra", "bad"]);
+        assert_eq!(names(""), ["good", "odd", "bad"]);
+        assert_eq!(names("--with extra"), ["good", "odd", "extra", "bad"]);
         assert_eq!(names("--only extra"), ["extra"]);
-        assert_eq!(names("--skip bad"), ["good"]);
+        assert_eq!(names("--skip bad"), ["good", "odd"]);
     }
 
     #[test]

@@ -182,12 +182,12 @@ const STUDIES: &[(&str, &str, &str)] = &[
 ];
 
 /// The atlas of failures, all of it or in parts: what came of its runs is kept while it is made, so that one that was broken off goes on where it
-/// was. `--smoke` makes few runs and writes nothing, nor does `one`.
+/// was. `--smoke` makes few runs and writes nothing, nor does `one`; `boundaries` makes none, and writes docs/boundaries.md anew.
 pub(crate) fn atlas(words: impl Iterator<Item = String>) -> ExitCode {
     let words: Vec<String> =
         words.map(|word| if word == "--smoke" { "smoke".to_owned() } else { word }).collect();
     let first = words.first().map(String::as_str);
-    if first == Some("smoke") || first == Some("one") {
+    if matches!(first, Some("smoke" | "one" | "boundaries")) {
         let mut command = cargo("run --release --quiet --package recon-benches --bin study -- atlas");
         return match run(command.args(&words)) {
             Ok(()) => ExitCode::SUCCESS,

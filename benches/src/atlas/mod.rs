@@ -4,6 +4,7 @@
 //! A [`Way`] has some strengths, a [`Method`] the ways that concern it; a run is one method, one way, one strength and one seed. What
 //! became of it is an [`Outcome`]. `cargo xtask atlas` makes all of them and writes `docs/atlas.md` with a picture for each method.
 
+mod boundaries;
 mod bounds;
 mod fits;
 mod judged;
@@ -16,6 +17,7 @@ mod spatial;
 mod table;
 mod way;
 
+pub use boundaries::boundaries;
 pub use judged::{Outcome, Run};
 pub use picture::{map_picture, picture};
 pub use plan::{Counts, MAPS, Map, Spot, spots};

@@ -1,6 +1,7 @@
 //! Simulation of the paper's Fig. 5: cost against error, for formulations, integrators and other simulators.
 
 use super::{Chart, Drawn, mujoco};
+use crate::fig5::largest_error;
 use crate::multipliers::{Pose, by_multipliers, turning};
 use crate::{Axis, Budget, Method, Study, WorkPrecision};
 use glam::{DQuat, DVec3};
@@ -114,17 +115,4 @@ fn exact_poses() -> Result<Vec<Pose>, Failure> {
     let log = recon_io::parse_log(EXACT.as_bytes())?;
     let truth = log.truth().ok_or("the exact log has no truth columns")?;
     Ok(truth.iter().map(|state| (state.p_WCm, state.R_WO)).collect())
-}
-
-/// Largest distance of the positions and angle between the orientations, whichever is larger.
-pub(super) fn largest_error(poses: &[Pose], exact: &[Pose]) -> f64 {
-    if poses.len() < exact.len() {
-        return f64::NAN;
-    }
-    let one = |((p, q), (pe, qe)): (&Pose, &Pose)| {
-        let turn = *q * qe.inverse();
-        let angle = 2.0 * DVec3::new(turn.x, turn.y, turn.z).length().atan2(turn.w.abs());
-        p.distance(*pe).max(angle)
-    };
-    poses.iter().zip(exact).map(one).fold(0.0, f64::max)
 }

@@ -3,6 +3,7 @@
 //! A new diagram is a new file here with a constant of the type [`Chart`], and one line in [`ALL`].
 
 mod bounds;
+mod command;
 mod fig5_simulation;
 mod mujoco;
 mod page;
@@ -37,7 +38,10 @@ pub const ALL: &[Chart] = &[
     fig5_simulation::CHART,
     reconstruction::BY_WINDOW,
     reconstruction::BY_RATE,
+    reconstruction::BY_NOISE,
+    reconstruction::PLANE,
     streaming::CHART,
+    command::CHART,
     bounds::CHART,
     planar_bounds::CHART,
     reaching::CHART,

@@ -1,7 +1,7 @@
 //! MuJoCo on the same scene, where Python on this machine has it.
 
-use super::fig5_simulation::largest_error;
 use crate::Method;
+use crate::fig5::largest_error;
 use glam::{DQuat, DVec3};
 use std::process::Command;
 

@@ -8,6 +8,9 @@ use std::process::Command;
 /// Stems of diagrams that studies draw, with the study; the others are drawn by `cargo xtask chart` under the name that [`of_chart`] tells.
 const OF_STUDIES: &[(&str, &str)] = &[
     ("contact-cost", "contact_cost"),
+    ("approximations", "approximations"),
+    ("least-model", "least_model"),
+    ("mode-switches", "mode_switches"),
     ("nonsmooth", "nonsmooth"),
     ("palms-", "palms"),
     ("planar-observability", "planar_observability"),
@@ -16,15 +19,31 @@ const OF_STUDIES: &[(&str, &str)] = &[
 
 /// Titles of diagrams that have none in the picture.
 const TITLES: &[(&str, &str)] = &[
+    ("approximations", "Approximations of shapes: error by number of contacts"),
+    ("mode-switches", "Contact modes told as they switch"),
     ("nonsmooth", "Corners, edges and faces told from contacts"),
     ("planar-observability", "Observability in the plane, along S1 to S4"),
     ("pushes", "Friction and outlines from pushes"),
 ];
 
 /// Charts of several diagrams, by the stems of these.
-const OF_CHARTS: &[(&str, &str)] =
-    &[("reaching-", "reaching"), ("rolling-", "rolling"), ("bounds-", "bounds")];
+const OF_CHARTS: &[(&str, &str)] = &[
+    ("reaching-", "reaching"),
+    ("rolling-", "rolling"),
+    ("bounds-", "bounds"),
+    ("command-", "command"),
+    ("planar-reconstruction-", "planar-reconstruction"),
+    ("streaming-", "streaming"),
+];
 
+/// Tables beside the folder of diagrams that the page ends with: file, title, command.
+const TABLES: &[(&str, &str, &str)] = &[
+    ("instructions.csv", "Instructions of the inner loops", "cargo xtask instructions"),
+    ("crates.csv", "Compile time and dependencies of each crate", "cargo xtask compile-times"),
+];
+
+/// The column that names the machine.
+const ORIGIN: &str = "origin";
 /// Rows of a table that are shown.
 const MOST_ROWS: usize = 200;
 
@@ -60,7 +79,19 @@ pub fn write_page(folder: &Path) -> std::io::Result<usize> {
         let known = TITLES.iter().find(|(of, _)| of == stem).map(|(_, title)| (*title).to_owned());
         let title = known.or_else(|| title(&svg)).unwrap_or_else(|| stem.replace('-', " "));
         let _ = write!(page, "<a href=\"#{stem}\">{}</a>", escaped(&title));
-        bodies += &section(stem, &title, &svg, &csv, &commit(folder, stem));
+        bodies += &section(stem, &title, &svg, &csv, &commit(folder, &format!("{stem}.svg")));
+    }
+    for (file, title, command) in TABLES {
+        let Ok(csv) = fs::read_to_string(folder.join("..").join(file)) else { continue };
+        let stem = file.trim_end_matches(".csv");
+        let _ = write!(page, "<a href=\"#{stem}\">{}</a>", escaped(title));
+        let _ = write!(
+            bodies,
+            "<h2 id=\"{stem}\">{}</h2><p class=\"of\"><code>{command}</code>{}; what it is: <a href=\"../cost.md\">cost</a></p>{}",
+            escaped(title),
+            commit(&folder.join(".."), file),
+            table(&csv)
+        );
     }
     let _ = writeln!(page, "</nav>{bodies}</body></html>");
     fs::write(folder.join("index.html"), page)?;
@@ -69,10 +100,9 @@ pub fn write_page(folder: &Path) -> std::io::Result<usize> {
 
 fn section(stem: &str, title: &str, svg: &str, csv: &str, commit: &str) -> String {
     let rows: Vec<Vec<String>> = csv.lines().map(cells).collect();
-    let (head, rows) = rows.split_first().map_or((&[][..], &[][..]), |(head, rows)| (head.as_slice(), rows));
-    let origin = head.iter().position(|name| name == "origin");
+    let origin = rows.first().and_then(|head| head.iter().position(|name| name == ORIGIN));
     let mut machines: Vec<&str> =
-        rows.iter().filter_map(|row| row.get(origin?).map(String::as_str)).collect();
+        rows.iter().skip(1).filter_map(|row| row.get(origin?).map(String::as_str)).collect();
     machines.sort_unstable();
     machines.dedup();
     let command = command(stem);
@@ -86,29 +116,28 @@ fn section(stem: &str, title: &str, svg: &str, csv: &str, commit: &str) -> Strin
         let _ = write!(text, " &middot; {}", escaped(&machines.join("; ")));
     }
     text += "</p>";
-    if !rows.is_empty() {
-        let kept: Vec<usize> = (0..head.len())
-            .filter(|k| {
-                Some(*k) != origin && rows.iter().any(|row| row.get(*k).is_some_and(|c| !c.is_empty()))
-            })
-            .collect();
-        let row = |cells: &[String], tag: &str| {
-            let cells: String = kept
-                .iter()
-                .map(|k| format!("<{tag}>{}</{tag}>", escaped(cells.get(*k).map_or("", |cell| cell))))
-                .collect();
-            format!("<tr>{cells}</tr>")
-        };
-        let _ = write!(
-            text,
-            "<details><summary>{} rows</summary><div class=\"table\"><table>{}",
-            rows.len(),
-            row(head, "th")
-        );
-        rows.iter().take(MOST_ROWS).for_each(|cells| text += &row(cells, "td"));
-        text += "</table></div></details>";
+    if rows.len() > 1 {
+        let _ = write!(text, "<details><summary>{} rows</summary>{}</details>", rows.len() - 1, table(csv));
     }
     text
+}
+
+/// As rows and columns, without columns that are empty and that of the machine.
+fn table(csv: &str) -> String {
+    let rows: Vec<Vec<String>> = csv.lines().map(cells).collect();
+    let Some((head, rows)) = rows.split_first() else { return String::new() };
+    let kept: Vec<usize> = (0..head.len())
+        .filter(|k| head[*k] != ORIGIN && rows.iter().any(|row| row.get(*k).is_some_and(|c| !c.is_empty())))
+        .collect();
+    let row = |cells: &[String], tag: &str| {
+        let cells: String = kept
+            .iter()
+            .map(|k| format!("<{tag}>{}</{tag}>", escaped(cells.get(*k).map_or("", |cell| cell))))
+            .collect();
+        format!("<tr>{cells}</tr>")
+    };
+    let body: String = rows.iter().take(MOST_ROWS).map(|cells| row(cells, "td")).collect();
+    format!("<div class=\"table\"><table>{}{body}</table></div>", row(head, "th"))
 }
 
 /// What draws it.
@@ -123,11 +152,9 @@ fn command(stem: &str) -> String {
 }
 
 /// The commit in which the diagram was drawn last, where there is a repository.
-fn commit(folder: &Path, stem: &str) -> String {
-    let asked = Command::new("git")
-        .args(["log", "-1", "--format=%h, %as", "--", &format!("{stem}.svg")])
-        .current_dir(folder)
-        .output();
+fn commit(folder: &Path, file: &str) -> String {
+    let asked =
+        Command::new("git").args(["log", "-1", "--format=%h, %as", "--", file]).current_dir(folder).output();
     let told = asked.ok().and_then(|output| String::from_utf8(output.stdout).ok()).unwrap_or_default();
     let told = told.trim();
     if told.is_empty() { String::new() } else { format!(" &middot; commit {told}") }

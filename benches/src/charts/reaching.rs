@@ -10,21 +10,23 @@ use exploration::least_touches;
 pub(super) const CHART: Chart =
     Chart { name: "reaching", about: "gap between the bounds against touches, planner by planner", draw };
 
-/// Bodies as in the study.
-const BODIES: Bodies = Bodies { first: 77_000, each: 10 };
+/// Bodies as in the study, and of a smoke test with the last gap, in the plane and in space.
+const BODIES: [Bodies; 2] = [Bodies { first: 77_000, each: 10 }, Bodies { first: 77_000, each: 1 }];
+const LAST: [[f64; 2]; 2] = [[0.05, 0.15], [0.3, 0.4]];
 
-fn draw(_: Budget) -> Drawn {
+fn draw(budget: Budget) -> Drawn {
+    let (bodies, [in_plane, in_space]) = (budget.of(BODIES), budget.of(LAST));
     let mut flat = Vec::new();
     for planner in &plane::PLANNERS {
-        flat.push(method(planner.name, &plane::runs(planner, BODIES, 0.05, 200)?, 0.05));
+        flat.push(method(planner.name, &plane::runs(planner, bodies, in_plane, 200)?, in_plane));
     }
-    flat.push(line(2, 0.05));
+    flat.push(line(2, in_plane));
     let mut round = Vec::new();
     for planner in &space::PLANNERS {
         let most = if planner.name == "Gaussian process" { 100 } else { 400 };
-        round.push(method(planner.name, &space::runs(planner, BODIES, 0.15, most)?, 0.15));
+        round.push(method(planner.name, &space::runs(planner, bodies, in_space, most)?, in_space));
     }
-    round.push(line(3, 0.15));
+    round.push(line(3, in_space));
     let chart = |name: &str, title: &str, methods: Vec<Method>| {
         Diagram::from(
             WorkPrecision::new(name, title)

@@ -10,17 +10,18 @@ use crate::{Budget, Diagram};
 pub(super) const CHART: Chart =
     Chart { name: "rolling", about: "gap between the bounds against radians of palm motion", draw };
 
-/// Bodies as in the study.
-const BODIES: Bodies = Bodies { first: 84_000, each: 10 };
+/// Bodies as in the study, and of a smoke test.
+const BODIES: [Bodies; 2] = [Bodies { first: 84_000, each: 10 }, Bodies { first: 84_000, each: 1 }];
 /// Radians of palm motion at most, as in the study.
 const RADIANS: f64 = 40.0;
-/// The last goal.
-const LAST: f64 = 0.05;
+/// The last goal of each.
+const LAST: [f64; 2] = [0.05, 0.4];
 
-fn draw(_: Budget) -> Drawn {
+fn draw(budget: Budget) -> Drawn {
+    let (bodies, last) = (budget.of(BODIES), budget.of(LAST));
     let mut methods = Vec::new();
     for planner in &PLANNERS {
-        methods.push(method(planner.name, &runs(planner, BODIES, LAST, RADIANS, None)?));
+        methods.push(method(planner.name, &runs(planner, bodies, last, RADIANS, None)?, last));
     }
     Ok(vec![Diagram::from(
         WorkPrecision::new("rolling-plane", "Palm motion to a gap in the plane")
@@ -30,8 +31,8 @@ fn draw(_: Budget) -> Drawn {
     )])
 }
 
-fn method(name: &str, all: &[Rolling]) -> Method {
-    let goals = (0..=10).map(|k| 0.5 * (LAST / 0.5_f64).powf(f64::from(k) / 10.0));
+fn method(name: &str, all: &[Rolling], last: f64) -> Method {
+    let goals = (0..=10).map(|k| 0.5 * (last / 0.5_f64).powf(f64::from(k) / 10.0));
     goals.fold(Method::new(name), |method, goal| {
         let ways: Vec<Option<f64>> = all.iter().map(|run| run.to(goal).map(|way| way[0])).collect();
         let median = quantile(&ways, 0.5);

@@ -41,21 +41,19 @@ pub(super) fn exact_estimate(
     estimate_contacts(log, None, &options).map_err(|error| error.to_string())
 }
 
-/// What conditions are off by beside noise, m/s.
-pub(super) const FLOOR: f64 = 1e-4;
-
-/// The same from a noisy log, as one of contacts; `floor` is what conditions are off by beside noise, m/s.
+/// The same from a noisy log, as one of contacts, of a known body or an unknown; `floor` is what conditions are off by beside noise, m/s.
 pub(super) fn noisy_estimate<S: SupportFunction>(
     scene: &ThreePalmScene<S>,
     log: &SensorLog,
     noise: &SensorNoise,
+    known: bool,
     floor: f64,
 ) -> Result<ContactEstimate, String> {
     let (contact, force_fixed) = (noise.contact, noise.force);
     let level = ContactNoiseLevel { contact, force_fixed, force_share: 0.0, impulse: None, floor };
     let options = ContactOptions {
         friction: Some(0.0),
-        body: Some(*scene.mass()),
+        body: known.then_some(*scene.mass()),
         ..ContactOptions::new(level, scene.gravity().length())
     };
     let log = ContactLog::try_from(log).map_err(|error| error.to_string())?;

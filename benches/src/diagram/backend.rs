@@ -30,6 +30,7 @@ const FAINT: &str = "#7B8794";
 /// A subtitle is broken into lines of at most so many characters, which fit into the width.
 const SUBTITLE_COLUMNS: usize = 100;
 const NOTE_SIZE: u32 = 10;
+const DASHES: &str = "7 7";
 /// What the axes leave of the usual width and height for the diagram itself.
 const PLOT_WIDTH: f64 = 540.0;
 const PLOT_HEIGHT: f64 = 360.0;
@@ -82,7 +83,7 @@ fn plots_of(curve: &Curve) -> Vec<Plot> {
     if line_width > 0.0 {
         let line = LinePlot::new().with_data(curve.points.iter().map(|(at, _)| *at));
         let line = line.with_color(colour).with_stroke_width(line_width);
-        let dashes = LineStyle::Custom("7 7".into());
+        let dashes = LineStyle::Custom(DASHES.into());
         plots.push(if curve.dashed { line.with_line_style(dashes) } else { line }.into());
     }
     if marker != Marker::None {
@@ -155,8 +156,8 @@ fn legend_entry(item: &LegendItem) -> LegendEntry {
     LegendEntry {
         label: item.label.clone(),
         color: item.style.colour.to_owned(),
-        shape: LegendShape::Marker(shape(item.style.marker)),
-        dasharray: None,
+        shape: if item.dashed { LegendShape::Line } else { LegendShape::Marker(shape(item.style.marker)) },
+        dasharray: item.dashed.then(|| DASHES.to_owned()),
     }
 }
 
@@ -246,7 +247,8 @@ fn range(places: &[f64], scale: Scale) -> (f64, f64) {
     }
     let least = match scale {
         Scale::Log => 2.0,
-        Scale::Linear => (1e-6 * low.abs().max(high.abs())).max(f64::MIN_POSITIVE.sqrt()),
+        // Ticks of three digits must differ.
+        Scale::Linear => (0.1 * low.abs().max(high.abs())).max(f64::MIN_POSITIVE.sqrt()),
     };
     let grow = (0.5 * (least - (high - low))).max(0.07 * (high - low));
     (low - grow, high + grow)

@@ -31,6 +31,8 @@ pub(super) struct Star {
 pub(super) struct LegendItem {
     pub(super) label: String,
     pub(super) style: Style,
+    /// Shown as a dashed line in place of a point.
+    pub(super) dashed: bool,
 }
 
 /// A diagram before it is rendered.

@@ -20,8 +20,12 @@ pub(super) struct Placed {
 /// Left, low, right and high end, in units of the drawing.
 type Extent = [f64; 4];
 
-/// The notes and the labels of goals of a drawing of so many units whose axes reach so far: above its point, below it, to the right or to the left of it,
-/// wherever it lies over nothing; a note without such a place is left out, as the table has it.
+/// Half of what a line takes, and how far apart places on it are looked at.
+const STROKE: f64 = 1.5;
+const ALONG: f64 = 4.0;
+
+/// The notes and the labels of goals of a drawing of so many units whose axes reach so far: above its point, below it, to the right or to the left of it, near
+/// or a line further off, wherever it lies over nothing; a note without such a place is left out, as the table has it.
 pub(super) fn placed(drawing: &Drawing, axes: [(f64, f64); 2], size: [f64; 2]) -> Vec<Placed> {
     let unit = [0, 1].map(|i| size[i] / (axes[i].1 - axes[i].0));
     let on_page = |at: Place| [(at.0 - axes[0].0) * unit[0], (at.1 - axes[1].0) * unit[1]];
@@ -32,6 +36,13 @@ pub(super) fn placed(drawing: &Drawing, axes: [(f64, f64); 2], size: [f64; 2]) -
         .map(on_page)
         .map(|[x, y]| [x - MARKER, y - MARKER, x + MARKER, y + MARKER])
         .collect();
+    taken.extend(drawing.curves.iter().filter(|curve| curve.style.line_width > 0.0).flat_map(|curve| {
+        curve
+            .points
+            .windows(2)
+            .flat_map(|ends| on_line([on_page(ends[0].0), on_page(ends[1].0)]))
+            .collect::<Vec<_>>()
+    }));
     let goals = drawing.stars.iter().map(|star| (star.at, &star.label));
     let mut all = Vec::new();
     for (at, text) in goals.chain(drawing.notes.iter().map(|note| (note.at, &note.text))) {
@@ -48,6 +59,14 @@ pub(super) fn placed(drawing: &Drawing, axes: [(f64, f64); 2], size: [f64; 2]) -
             (-aside, low),
             (aside, above),
             (-aside, above),
+            (aside, -above - LINE),
+            (-aside, -above - LINE),
+            (0.0, above + LINE),
+            (0.0, -above - 2.0 * LINE),
+            (aside, above + LINE),
+            (-aside, above + LINE),
+            (aside, -above - 2.0 * LINE),
+            (-aside, -above - 2.0 * LINE),
         ];
         let free = around.into_iter().find_map(|(dx, dy)| {
             let own = [x + dx - half, y + dy, x + dx + half, y + dy + LINE];
@@ -60,6 +79,15 @@ pub(super) fn placed(drawing: &Drawing, axes: [(f64, f64); 2], size: [f64; 2]) -
         all.push(Placed { at: place, text: text.clone() });
     }
     all
+}
+
+/// What a straight line takes.
+fn on_line([from, to]: [[f64; 2]; 2]) -> Vec<Extent> {
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let steps = (way[0].hypot(way[1]) / ALONG).ceil().max(1.0);
+    let at = |k: f64, i: usize| from[i] + way[i] * k / steps;
+    let extent = |k: f64| [at(k, 0) - STROKE, at(k, 1) - STROKE, at(k, 0) + STROKE, at(k, 1) + STROKE];
+    (0..=steps as u32).map(|k| extent(f64::from(k))).collect()
 }
 
 fn overlap(a: &Extent, b: &Extent) -> bool {
@@ -80,10 +108,10 @@ mod tests {
     }
 
     #[test]
-    fn notes_at_one_point_go_to_four_sides_and_more_are_left_out() {
+    fn notes_at_one_point_go_to_all_sides_and_more_are_left_out() {
         let axes = [(0.0, 100.0), (0.0, 100.0)];
-        let all = placed(&drawing(&[(50.0, 50.0); 9]), axes, [400.0, 400.0]);
-        assert!((4..9).contains(&all.len()), "{all:?}");
+        let all = placed(&drawing(&[(50.0, 50.0); 20]), axes, [400.0, 400.0]);
+        assert!((6..20).contains(&all.len()), "{all:?}");
         for (i, a) in all.iter().enumerate() {
             for b in &all[..i] {
                 let far =
@@ -91,6 +119,17 @@ mod tests {
                 assert!(far, "{a:?} {b:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_note_lies_over_no_line() {
+        let mut of = drawing(&[(50.0, 50.0)]);
+        let style = crate::diagram::style::Style::of_methods(["m"])[0];
+        let ends = [(50.0, 50.0), (50.0, 100.0)].map(|at| (at, String::new()));
+        of.curves.push(crate::diagram::drawing::Curve { points: ends.to_vec(), style, dashed: false });
+        let all = placed(&of, [(0.0, 100.0), (0.0, 100.0)], [400.0, 400.0]);
+        // The line goes up from the point, so that the note is below it.
+        assert!(all.len() == 1 && all[0].at.1 < 50.0, "{all:?}");
     }
 
     #[test]

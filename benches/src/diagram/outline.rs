@@ -79,7 +79,7 @@ impl Outlines {
             let close = points.first().filter(|_| !dots);
             let places = points.iter().chain(close).map(|at| (*at, label.clone())).collect();
             drawing.curves.push(Curve { points: places, style, dashed: false });
-            legend.push(LegendItem { label: label.clone(), style });
+            legend.push(LegendItem { label: label.clone(), style, dashed: false });
         }
         drawing.require_points(&self.name)?;
         drawing.curves.push(even_scale(&drawing));

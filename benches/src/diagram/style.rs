@@ -50,7 +50,6 @@ const KNOWN: &[(&str, usize)] = &[
     ("from contacts, no guess", 0),
     ("0.1 %", 4),
     ("1 %", 2),
-    ("Cram", 7),
     ("(35)-(37), Adams, held", 17),
     ("(35)-(37), Adams", 9),
     ("(35)-(37), Heun", 25),
@@ -99,6 +98,11 @@ impl Style {
             line_width: 2.0,
             size: 4.5,
         }
+    }
+
+    /// Of a line without points.
+    pub(super) fn without_marker(self) -> Self {
+        Self { marker: Marker::None, line_width: 1.6, ..self }
     }
 
     /// A goal on a work-precision chart.

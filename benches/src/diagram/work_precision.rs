@@ -6,6 +6,9 @@ use super::style::Style;
 use super::{Axis, files::check_name};
 use crate::{ChartError, machine_line};
 
+/// How the lines that no estimate crosses are called.
+const LEAST: &str = "least possible (Cramér-Rao)";
+
 /// What one setting of a method came to.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
@@ -34,25 +37,52 @@ pub struct Point {
     pub outcome: Outcome,
 }
 
+/// What a curve is of.
+#[derive(Clone, Debug, PartialEq)]
+enum Origin {
+    /// Measured in this run.
+    Here,
+    /// Figures from elsewhere, and where from.
+    Recorded(String),
+    /// No method: the least error that is possible, of the method of this name.
+    LeastOf(String),
+}
+
 /// A curve: a method at its settings, in the order they were added.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Method {
     name: String,
-    recorded: Option<String>,
+    origin: Origin,
     points: Vec<Point>,
+    joined: bool,
 }
 
 impl Method {
     /// A method measured in this run.
     #[must_use]
     pub fn new(name: impl Into<String>) -> Self {
-        Self { name: name.into(), recorded: None, points: Vec::new() }
+        Self { name: name.into(), origin: Origin::Here, points: Vec::new(), joined: true }
     }
 
     /// A method whose figures come from elsewhere, and where from; drawn dashed and marked in the legend.
     #[must_use]
     pub fn recorded(name: impl Into<String>, source: impl Into<String>) -> Self {
-        Self { name: name.into(), recorded: Some(source.into()), points: Vec::new() }
+        Self { name: name.into(), origin: Origin::Recorded(source.into()), points: Vec::new(), joined: true }
+    }
+
+    /// The line that no curve of a method crosses: the least error that what it is given allows at each of its settings. Drawn dashed in the method's colour,
+    /// without points, and named once for all of them.
+    #[must_use]
+    pub fn least_of(method: impl Into<String>) -> Self {
+        let method = method.into();
+        let name = format!("{LEAST}, {method}");
+        Self { name, origin: Origin::LeastOf(method), points: Vec::new(), joined: true }
+    }
+
+    /// Points that have nothing to do with each other: no line joins them, and the table alone tells their settings.
+    #[must_use]
+    pub fn apart(self) -> Self {
+        Self { joined: false, ..self }
     }
 
     /// Adds a setting with its error and cost.
@@ -82,8 +112,20 @@ impl Method {
         &self.name
     }
 
+    fn is_least(&self) -> bool {
+        matches!(self.origin, Origin::LeastOf(_))
+    }
+
+    /// The method whose look it has.
+    fn look(&self) -> &str {
+        match &self.origin {
+            Origin::LeastOf(method) => method,
+            _ => &self.name,
+        }
+    }
+
     fn legend(&self) -> String {
-        let suffix = if self.recorded.is_some() { " (recorded elsewhere)" } else { "" };
+        let suffix = if matches!(self.origin, Origin::Recorded(_)) { " (recorded elsewhere)" } else { "" };
         format!("{}{suffix}", self.name)
     }
 
@@ -176,7 +218,10 @@ impl WorkPrecision {
         let mut text = row(["method", "setting", &error, &cost, &least, "failure", "origin"]);
         let here = machine_line();
         for method in &self.methods {
-            let origin = method.recorded.as_ref().unwrap_or(&here);
+            let origin = match &method.origin {
+                Origin::Recorded(source) => source,
+                _ => &here,
+            };
             for Point { setting, outcome } in &method.points {
                 let (error, cost, least, failure) = match outcome {
                     Outcome::Measured { error, cost, least_cost } => {
@@ -196,10 +241,21 @@ impl WorkPrecision {
         check_name(&self.name)?;
         let mut drawing = Drawing::new(&self.title, &self.subtitle, &self.error, &self.cost);
         let mut legend = Vec::new();
-        let styles = Style::of_methods(self.methods.iter().map(Method::name));
-        for (method, style) in self.methods.iter().zip(styles) {
+        let of_methods = self.methods.iter().filter(|method| !method.is_least());
+        let styles = Style::of_methods(of_methods.clone().map(Method::name));
+        let styled: Vec<(&str, Style)> = of_methods.map(Method::name).zip(styles).collect();
+        for method in &self.methods {
+            let style = styled.iter().find(|(name, _)| *name == method.look()).map(|(_, style)| *style);
+            let style = style.unwrap_or_else(Style::goal);
+            let style = if method.is_least() { style.without_marker() } else { style };
             self.draw_method(&mut drawing, method, style);
-            legend.push(LegendItem { label: method.legend(), style });
+            if !method.is_least() {
+                legend.push(LegendItem { label: method.legend(), style, dashed: false });
+            }
+        }
+        if self.methods.iter().any(Method::is_least) {
+            let style = Style::goal().without_marker();
+            legend.push(LegendItem { label: format!("{LEAST}, each"), style, dashed: true });
         }
         drawing.legend.push(("", legend));
         for goal in &self.goals {
@@ -208,7 +264,7 @@ impl WorkPrecision {
                 None => drawing.left_out += 1,
             }
         }
-        if self.methods.iter().any(|method| method.recorded.is_none()) {
+        if self.methods.iter().any(|method| method.origin == Origin::Here) {
             drawing.foot = machine_line();
         }
         drawing.require_points(&self.name)?;
@@ -216,7 +272,8 @@ impl WorkPrecision {
     }
 
     fn draw_method(&self, drawing: &mut Drawing, method: &Method, style: Style) {
-        let mut curve = Curve { points: Vec::new(), style, dashed: method.recorded.is_some() };
+        let style = if method.joined { style } else { Style { line_width: 0.0, ..style } };
+        let mut curve = Curve { points: Vec::new(), style, dashed: method.origin != Origin::Here };
         let mut notes = Vec::new();
         for Point { setting, outcome } in &method.points {
             let Outcome::Measured { error, cost, .. } = *outcome else {
@@ -229,7 +286,7 @@ impl WorkPrecision {
             };
             let tooltip = format!("{}, {setting}: error {error:.2e}, cost {cost:.3e}", method.name);
             curve.points.push((at, tooltip));
-            if !is_on_the_axis(setting, error) {
+            if method.joined && !method.is_least() && !is_on_the_axis(setting, error) {
                 notes.push(Note { at, text: setting.clone() });
             }
         }
@@ -257,6 +314,20 @@ fn ends(mut notes: Vec<Note>) -> impl Iterator<Item = Note> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_least_possible_has_the_colour_of_its_method_no_points_and_one_name_for_all() {
+        let two = [Method::new("a").point("1", 2.0, 1.0), Method::new("b").point("1", 3.0, 1.0)];
+        let least = ["a", "b"].map(|of| Method::least_of(of).point("1", 1.0, 1.0));
+        let drawing = WorkPrecision::new("c", "").methods(two).methods(least).drawing().unwrap();
+        for k in 0..2 {
+            let [own, least] = [k, k + 2].map(|i| &drawing.curves[i]);
+            assert_eq!(own.style.colour, least.style.colour);
+            assert!(least.dashed && !own.dashed && least.style.marker != own.style.marker);
+        }
+        assert_eq!(drawing.legend[0].1.len(), 3);
+        assert_eq!(drawing.notes.len(), 2);
+    }
 
     #[test]
     fn what_the_axis_tells_is_not_noted() {

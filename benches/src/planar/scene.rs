@@ -1,7 +1,8 @@
 //! Bodies between two frictionless palms in the plane, drawn at random: bodies of 3 cm to 3 m, palms that stand, swing slowly or fast, bodies
 //! that turn on, turn back or are let go at rest.
 
-use super::bound::{ContactErrors, Scales, TrueSample, least_covariance};
+use crate::bound::Scales;
+use crate::bound::plane::{ContactErrors, TrueSample, least_covariance};
 use glam::DVec2;
 use nalgebra::SMatrix;
 use recon::contact_kinematics::MotionLaw;
@@ -9,6 +10,8 @@ use recon::contact_kinematics::planar::{
     FourierBody, MotionPart, PalmSurface, RadiusFunction, SurfaceMotion, SurfacePose,
 };
 use recon::object_dynamics::planar::*;
+use recon::observer::ContactNoiseLevel;
+use recon::observer::planar::PlaneOptions;
 use recon_tests::Random;
 use std::f64::consts::{PI, TAU};
 
@@ -16,6 +19,8 @@ type Failure = Box<dyn std::error::Error>;
 
 /// Gravity, m/s^2.
 pub const GRAVITY: f64 = 9.81;
+/// What contact conditions are off by beside noise, natural speeds.
+const FLOOR: f64 = 1e-6;
 /// Length of a log, natural times.
 pub const LASTS: f64 = 20.0;
 
@@ -160,8 +165,28 @@ impl Scene {
         PlanarNoise { contact: share * self.length, force: 0.01 * self.weight(), torque: 0.0 }
     }
 
+    /// What is told of a log of this noise, without friction.
+    #[must_use]
+    pub fn options(&self, noise: PlanarNoise, body: Option<PlanarMass>) -> PlaneOptions {
+        PlaneOptions {
+            noise: ContactNoiseLevel {
+                contact: noise.contact,
+                force_fixed: noise.force,
+                force_share: 0.0,
+                impulse: None,
+                floor: FLOOR * self.length / self.time,
+            },
+            gravity: GRAVITY,
+            friction: vec![Some(0.0); 2],
+            body,
+            size: None,
+            suspects: true,
+            mode_odds: false,
+        }
+    }
+
     /// Of an exact log.
-    pub(super) fn true_samples(&self, log: &PlanarLog) -> Result<Vec<TrueSample>, Failure> {
+    pub(crate) fn true_samples(&self, log: &PlanarLog) -> Result<Vec<TrueSample>, Failure> {
         let truth = log.truth().ok_or("no truth")?;
         let one = |(of, truth): (&PlanarSample, &PlanarTruth)| {
             let [Some(a), Some(b)] = of.contacts else { return Err("a palm without contact".into()) };

@@ -1,10 +1,12 @@
 //! The atlas of failures: `atlas [SEEDS [FIRST]]` makes all runs and writes docs/atlas.md, docs/atlas.csv and the pictures under docs/atlas;
+//! `atlas boundaries` writes docs/boundaries.md anew from docs/atlas.csv;
 //! `atlas smoke` makes a run of every way at its middle strength; `atlas one NAME WAY STRENGTH SEED` tells of one run.
 
 use crate::rows;
 use recon::contact_kinematics::unless_stopped;
 use recon_benches::atlas::{
-    Counts, MAPS, METHODS, Outcome, Run, Spot, counts_csv, map_picture, page, picture, spots, stem,
+    Counts, MAPS, METHODS, Outcome, Run, Spot, boundaries, counts_csv, map_picture, page, picture, spots,
+    stem,
 };
 use std::fs;
 use std::path::Path;
@@ -15,6 +17,9 @@ use std::time::{Duration, Instant};
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
+/// Counts of the atlas, and what follows from them.
+const COUNTS: &str = "docs/atlas.csv";
+const BOUNDARIES: &str = "docs/boundaries.md";
 const SEEDS: u64 = 1;
 const FIRST: u64 = 20_000;
 /// Longest time of a run, s: beyond it, it is counted as a crash.
@@ -27,6 +32,7 @@ pub(crate) fn main() -> Result<(), Failure> {
     match words.first().map(String::as_str) {
         Some("one") => return one(&words[1..]),
         Some("smoke") => return smoke(),
+        Some("boundaries") => return write_boundaries(&fs::read_to_string(COUNTS)?),
         _ => {}
     }
     let number = |k: usize, usual: u64| words.get(k).map_or(Ok(usual), |word| word.parse());
@@ -45,7 +51,9 @@ pub(crate) fn main() -> Result<(), Failure> {
         run.iter().for_each(|run| counts[*k].take(*seed, run));
     }
     pictures(&spots, &counts)?;
-    fs::write("docs/atlas.csv", counts_csv(&spots, &counts))?;
+    let csv = counts_csv(&spots, &counts);
+    fs::write(COUNTS, &csv)?;
+    write_boundaries(&csv)?;
     let seconds = runs.iter().flatten().map(|run| run.milliseconds).sum::<f64>() / 1e3;
     let part = if made < runs.len() { format!("{made} of its {}", runs.len()) } else { made.to_string() };
     println!("# Atlas of failures\n");
@@ -57,13 +65,17 @@ pub(crate) fn main() -> Result<(), Failure> {
         "is harmless to where nothing can be known. Bodies of 5 cm between palms, logs of 0.7 s at 200 Hz with noise of 0.1 % of the size and 0.3 % of the weight, but for what the way"
     );
     println!(
-        "changes; judged by the simulator's truth. Reported: not relied on, in words. Natural times are `sqrt(size / g)`. Counts are in [atlas.csv](atlas.csv). Thresholds were set on"
+        "changes; judged by the simulator's truth. Reported: not relied on, in words. Natural times are `sqrt(size / g)`. Counts are in [atlas.csv](atlas.csv), boundaries in [boundaries.md](boundaries.md). Thresholds were set on"
     );
     println!(
         "these seeds as well: what was proven on seeds used once stands beside each of them in [limits.md](limits.md).\n"
     );
     print!("{}", page(&spots, &counts));
     Ok(())
+}
+
+fn write_boundaries(csv: &str) -> Result<(), Failure> {
+    Ok(fs::write(BOUNDARIES, boundaries(csv).ok_or_else(|| format!("{COUNTS} is no such table"))?)?)
 }
 
 /// Whether this process makes the page from the rows of others.

@@ -1,4 +1,4 @@
-//! Draws the charts of the project: `chart [--list] [--page] [--quick] [--out FOLDER] [NAME..]`, and the page of all of them.
+//! Draws the charts of the project: `chart [--list] [--page] [--quick | --smoke] [--out FOLDER] [NAME..]`, and the page of all of them.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,11 +15,12 @@ struct Options {
     charts: Vec<&'static Chart>,
 }
 
-const USAGE: &str = "usage: chart [--list] [--page] [--quick] [--out FOLDER] [NAME..]
+const USAGE: &str = "usage: chart [--list] [--page] [--quick | --smoke] [--out FOLDER] [NAME..]
   NAME          charts to draw (all of them without a name)
   --list        print the names and stop
   --page        draw none, only make the page index.html of those that are there
   --quick       short timings, for a look
+  --smoke       that all of it runs: few repeats, few points; into a folder that is removed
   --out FOLDER  where the files go (docs/charts)";
 
 pub(crate) fn main() -> ExitCode {
@@ -53,6 +54,9 @@ pub(crate) fn main() -> ExitCode {
             good = false;
         }
     }
+    if options.budget.smoke {
+        let _ = std::fs::remove_dir_all(&options.out);
+    }
     if good { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
@@ -76,6 +80,10 @@ fn options(mut words: impl Iterator<Item = String>) -> Result<Options, String> {
             "--list" => options.list = true,
             "--page" => options.page = true,
             "--quick" => options.budget = Budget::quick(),
+            "--smoke" => {
+                options.budget = Budget::smoke();
+                options.out = std::env::temp_dir().join(format!("recon-charts-{}", std::process::id()));
+            }
             "--out" => options.out = words.next().ok_or("--out needs a folder")?.into(),
             flag if flag.starts_with('-') => return Err(format!("unknown option {flag}")),
             name => {

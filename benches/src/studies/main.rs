@@ -53,6 +53,7 @@ mod three_palms_timing;
 mod tilting_palms;
 mod whole_logs;
 
+use recon_benches::instructions::{listed, repeat};
 pub(crate) use recon_benches::rows;
 pub(crate) use rows::words;
 use rows::{Parts, RowsError};
@@ -92,7 +93,7 @@ const STUDIES: &[(&str, Parts, Run)] = &[
     ("contour", SHORT, || in_words(contour::main())),
     #[cfg(feature = "urdf")]
     ("exported_objects", SHORT, || in_words(exported_objects::main())),
-    ("least_model", TIMES, || in_words(least_model::main())),
+    ("least_model", OF_RUNS, || in_words(least_model::main())),
     ("contact_modes_estimated", SHORT, || in_words(contact_modes_estimated::main())),
     ("contact_modes_followed", TIMES, || in_words(contact_modes_followed::main())),
     ("mode_bank", SHORT, || in_words(mode_bank::main())),
@@ -122,6 +123,9 @@ fn main() -> ExitCode {
     if name == "chart" {
         return chart::main();
     }
+    if name == "inner_loop" {
+        return inner_loop();
+    }
     let Some((_, parts, run)) = STUDIES.iter().find(|(known, ..)| *known == name) else {
         eprintln!("no study is called {name:?}; there are:");
         STUDIES.iter().for_each(|(known, ..)| eprintln!("  {known}"));
@@ -131,6 +135,22 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(complaint) => {
             eprintln!("{name}: {complaint}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Runs an inner loop so often, `inner_loop NAME COUNT`, for a program that counts instructions; without a name it lists them with their repeats.
+fn inner_loop() -> ExitCode {
+    let mut words = words();
+    let (Some(name), count) = (words.next(), words.next().and_then(|count| count.parse().ok())) else {
+        print!("{}", listed());
+        return ExitCode::SUCCESS;
+    };
+    match repeat(&name, count.unwrap_or(1)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(complaint) => {
+            eprintln!("{complaint}");
             ExitCode::FAILURE
         }
     }

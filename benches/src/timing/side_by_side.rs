@@ -19,6 +19,8 @@ pub struct Budget {
     pub most_rounds: usize,
     /// Between the two, so many that a job takes about this long in all.
     pub patience: Duration,
+    /// Whether it is to be seen only that all of it runs.
+    pub smoke: bool,
 }
 
 impl Budget {
@@ -30,6 +32,7 @@ impl Budget {
             least_rounds: 7,
             most_rounds: 51,
             patience: Duration::from_secs(1),
+            smoke: false,
         }
     }
 
@@ -41,7 +44,20 @@ impl Budget {
             least_rounds: 3,
             most_rounds: 15,
             patience: Duration::from_millis(10),
+            smoke: false,
         }
+    }
+
+    /// To see that all of it runs: as [`Self::quick`], and what is repeated is repeated less.
+    #[must_use]
+    pub fn smoke() -> Self {
+        Self { least_rounds: 1, most_rounds: 1, patience: Duration::ZERO, smoke: true, ..Self::quick() }
+    }
+
+    /// Of what there is to be of a chart that is kept, and of a smoke test.
+    #[must_use]
+    pub fn of<T>(&self, [kept, smoke]: [T; 2]) -> T {
+        if self.smoke { smoke } else { kept }
     }
 
     fn rounds(&self, batch_took: Duration) -> usize {
@@ -175,8 +191,13 @@ mod tests {
         let order = std::cell::RefCell::new(Vec::new());
         let mut jobs = SideBySide::new();
         jobs.job(|| order.borrow_mut().push('a')).job(|| order.borrow_mut().push('b'));
-        let budget =
-            Budget { batch: Duration::ZERO, least_rounds: 3, most_rounds: 3, patience: Duration::ZERO };
+        let budget = Budget {
+            batch: Duration::ZERO,
+            least_rounds: 3,
+            most_rounds: 3,
+            patience: Duration::ZERO,
+            smoke: false,
+        };
         assert_eq!(jobs.run(budget).len(), 2);
         // Two calls each to find the number of calls, then three rounds.
         assert_eq!(order.into_inner().iter().collect::<String>(), "aabbababab");

@@ -129,10 +129,6 @@ pub(crate) enum CliError {
         "contacts on one palm at a time tell no size of the object: give its mean radius in m, about, in the scene as object.size"
     )]
     SizeNotStated,
-    #[error(
-        "--accuracy chooses a model for logs of space; that of a scene in the plane is stated by `plane = true`: leave it out"
-    )]
-    AccuracyInPlane,
     #[error("the log gives no motion")]
     ContactEstimate(#[from] ContactEstimateError),
     #[error("the object's shape cannot be used")]
@@ -313,7 +309,6 @@ impl CliError {
             | Self::NotThreePlanes { .. }
             | Self::NotThreeAxes { .. }
             | Self::SizeNotStated
-            | Self::AccuracyInPlane
             | Self::ContactEstimate(_)
             | Self::Shape(_)
             | Self::Dynamics(_)

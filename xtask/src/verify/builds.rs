@@ -37,6 +37,15 @@ pub(crate) fn atlas() -> Result<Outcome, String> {
     all(["run --package recon-benches --bin study -- atlas smoke".to_owned()])
 }
 
+/// The command as well, which one of them times.
+pub(crate) fn charts() -> Result<Outcome, String> {
+    all([
+        "build --package recon-benches --package recon-touch-cli --bins",
+        "run --package recon-benches --bin study -- chart --smoke",
+    ]
+    .map(str::to_owned))
+}
+
 /// In a build of the whole workspace a crate that may be picked alone sees the features that others switch on in its dependencies. Here
 /// it has its own only, and the least of them. Its tests are compiled and not run: they ran with the workspace, and
 /// what a feature of a dependency changes is whether something is there.

@@ -16,6 +16,7 @@ mod versions;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use crate::instructions;
 use crate::metadata::Metadata;
 use crate::package;
 use crate::steps::{Choice, Outcome, Step, When, run, table};
@@ -47,6 +48,11 @@ const STEPS: &[Step] = &[
     ),
     beside("pages", "each command's page in a browser, where there is one", pages::check),
     step("tests", "all tests and doctests of the workspace", builds::tests),
+    beside(
+        "instructions",
+        "inner loops take as many instructions as in docs/instructions.csv, where they can be counted (a warning)",
+        instructions::check,
+    ),
     step("alone", "each core crate and its tests compile and lint with its own features only", builds::alone),
     step("features", "each Cargo feature builds without the others", builds::features),
     step("docs", "rustdoc, warnings are errors", builds::docs),
@@ -62,6 +68,7 @@ const STEPS: &[Step] = &[
         "a run of each method along each way of failing: none crashes, each is right somewhere (a minute)",
         builds::atlas,
     ),
+    optional("charts", "each chart with few points is drawn (a minute)", builds::charts),
     optional("fuzz", "the fuzz targets are linted, and each one runs its committed seeds", builds::fuzz),
     optional("hack", "cargo-hack: all combinations of features build", extras::hack),
     optional(

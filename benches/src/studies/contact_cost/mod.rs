@@ -4,13 +4,12 @@
 //! peer's rows, which are left out without. Prints a page in Markdown.
 
 mod mujoco;
-mod scene;
 
 use glam::{DQuat, DVec3};
 use mujoco::{Run, front};
 use recon::object_dynamics::SampleTimes;
+use recon_benches::fig5::{Fig5, Pose, largest_error};
 use recon_benches::{Axis, Budget, Diagram, Method, Outcome, Study, WorkPrecision, machine_line};
-use scene::{Anything, Fig5, Pose, largest_error};
 use std::path::Path;
 
 /// Of the log S1, which another solver of rigid contacts made.
@@ -25,6 +24,8 @@ damping lift it. `springs` are as soft as it takes them (impedance 1e-4 or 1e-3)
 viscous up to Coulomb's bound.";
 /// Error within which the costs are compared in a word.
 const ASKED: f64 = 1e-6;
+
+type Anything<T> = Result<T, Box<dyn std::error::Error>>;
 
 pub(crate) fn main() -> Anything<()> {
     let mut words = crate::words();

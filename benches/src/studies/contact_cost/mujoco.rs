@@ -1,6 +1,7 @@
 //! What the peer has found.
 
-use super::scene::{Anything, Fig5, Pose};
+use super::Anything;
+use recon_benches::fig5::{Fig5, Pose};
 use serde_json::Value;
 use std::process::Command;
 

@@ -27,23 +27,13 @@ struct Tried {
     name: String,
 }
 
-pub(super) fn some(count: usize, seed: u64) -> Result<Vec<Outcome>, Failure> {
-    let mut all = Vec::with_capacity(count);
-    for k in 0.. {
-        if all.len() == count {
-            break;
-        }
-        let of_seed = seed + k;
-        let outcome =
-            logged(KINDS[(k % 3) as usize], of_seed)?.map(|of| one(&of, of_seed)).transpose()?.flatten();
-        outcome.iter().for_each(super::progress);
-        all.extend(outcome);
-    }
-    Ok(all)
+/// Of the scene that a seed draws, of the kind whose turn it is.
+pub(super) fn one(turn: usize, seed: u64) -> Result<Option<Outcome>, Failure> {
+    logged(KINDS[turn % KINDS.len()], seed)?.map_or(Ok(None), |of| judged(&of, seed))
 }
 
 /// None where no model comes to an estimate that is relied on, or none better than the loosest accuracy.
-fn one(of: &Logged, seed: u64) -> Result<Option<Outcome>, Failure> {
+fn judged(of: &Logged, seed: u64) -> Result<Option<Outcome>, Failure> {
     let tried = all(of)?;
     let best = tried.iter().filter_map(|of| of.stated).fold(f64::INFINITY, f64::min) * ABOVE;
     if best >= LOOSEST {
@@ -61,7 +51,7 @@ fn one(of: &Logged, seed: u64) -> Result<Option<Outcome>, Failure> {
     let (ms, cheapest) = cheapest.map_or((f64::INFINITY, String::new()), |of| (of.ms, of.name.clone()));
     let (ms, cheapest) = if own < ms { (own, what.clone()) } else { (ms, cheapest) };
     Ok(Some(Outcome {
-        kind: of.kind,
+        kind: of.kind.to_owned(),
         wanted: wanted.get(),
         error: error(of, &found.estimate, found.every),
         stated: found.choice.reached,

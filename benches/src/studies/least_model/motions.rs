@@ -15,22 +15,12 @@ const TRIED: std::ops::RangeInclusive<i32> = 4..=26;
 /// Runs of which the fastest counts.
 const REPEATED: usize = 3;
 
-pub(super) fn some(count: usize, seed: u64) -> Result<Vec<Outcome>, Failure> {
-    let mut all = Vec::with_capacity(count);
-    for k in 0.. {
-        if all.len() == count {
-            break;
-        }
-        let of_seed = seed + k;
-        let kind = (k % 3) as usize;
-        let outcome = scene(kind, of_seed)?.map(|of| one(&of, of_seed)).transpose()?.flatten();
-        outcome.iter().for_each(super::progress);
-        all.extend(outcome);
-    }
-    Ok(all)
+/// Of the scene that a seed draws, of the kind whose turn it is.
+pub(super) fn one(turn: usize, seed: u64) -> Result<Option<Outcome>, Failure> {
+    scene(turn % 3, seed)?.map_or(Ok(None), |of| judged(&of, seed))
 }
 
-fn one(of: &Scene, seed: u64) -> Result<Option<Outcome>, Failure> {
+fn judged(of: &Scene, seed: u64) -> Result<Option<Outcome>, Failure> {
     let decades = Random::new(seed ^ 0xACC).within(WANTED[0], WANTED[1]);
     let wanted = Accuracy::new(10_f64.powf(decades))?;
     // An oracle a hundred times tighter than the tightest that is chosen.
@@ -66,7 +56,7 @@ fn one(of: &Scene, seed: u64) -> Result<Option<Outcome>, Failure> {
         }
     }
     Ok(Some(Outcome {
-        kind: of.kind,
+        kind: of.kind.to_owned(),
         wanted: wanted.get(),
         error,
         stated: choice.reached,

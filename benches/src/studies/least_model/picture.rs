@@ -18,7 +18,7 @@ pub(super) fn write(motions: &[Outcome], estimates: &[Outcome]) -> Result<(), Fa
         let point = |method: Method, of: &&Outcome| {
             method.point(of.what[0].clone(), of.wanted, of.chosen / of.cheapest)
         };
-        chart = chart.method(sorted.iter().fold(Method::new(name), point));
+        chart = chart.method(sorted.iter().fold(Method::new(name).apart(), point));
     }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/charts");
     Diagram::from(chart).save(&folder)?;

@@ -1,12 +1,12 @@
 //! How near estimates are to the least deviations that the readings allow.
 
-use super::{Failure, options};
+use super::Failure;
 use crate::planar_tally::{SILENT, errors};
 use cpu_time::ThreadTime;
 use nalgebra::SMatrix;
 use recon::object_dynamics::planar::PlanarTruth;
 use recon::observer::planar::{PlaneEstimate, estimate_plane};
-use recon_benches::planar::bound::ContactErrors;
+use recon_benches::bound::plane::ContactErrors;
 use recon_benches::planar::scene::Scene;
 
 /// Deviation of the place at the end, over the size, below which a run counts.
@@ -49,7 +49,7 @@ impl Efficiency {
         let run = crate::rows::row(|| -> Result<Run, Failure> {
             let level = scene.noise(noise);
             let log = level.add_to(&exact, seed).contact_log([0.0; 2]).ok_or("no forces")?;
-            let told = options(scene, level, known.then_some(scene.object.mass));
+            let told = scene.options(level, known.then_some(scene.object.mass));
             let clock = ThreadTime::now();
             let made = estimate_plane(&log, &told)?;
             let microseconds = 1e6 * clock.elapsed().as_secs_f64();

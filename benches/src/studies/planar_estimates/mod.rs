@@ -8,15 +8,12 @@ mod efficiency;
 use crate::planar_tally::{SILENT, Tally};
 use efficiency::Efficiency;
 use recon::object_dynamics::planar::*;
-use recon::observer::ContactNoiseLevel;
 use recon::observer::planar::PlaneOptions;
 use recon_benches::planar::broken::{FAULTS, Wrong};
-use recon_benches::planar::scene::{GRAVITY, LASTS, Scene, drawn};
+use recon_benches::planar::scene::{LASTS, Scene, drawn};
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Floor of contact conditions, natural speeds.
-const FLOOR: f64 = 1e-6;
 /// Noise of contacts over the size in logs that are wrong.
 const NOISE_OF_WRONG: f64 = 2e-3;
 
@@ -90,7 +87,7 @@ fn starts(seed: u64) -> Result<(), Failure> {
                 }
                 share => scene.noise(share),
             };
-            let told = options(scene, noise, Some(scene.object.mass));
+            let told = scene.options(noise, Some(scene.object.mass));
             for run in 0..runs {
                 let log = noise.add_to(&exact, seed + 20_000 + (i as u64) * RUNS + run);
                 tally.run(&log.contact_log([0.0; 2]).ok_or("no forces")?, &told, scene.length, None)?;
@@ -118,7 +115,7 @@ fn head(scenes: &[Scene], bodies: usize, seed: u64) -> Result<(), Failure> {
         backs.iter().sum::<usize>()
     );
     println!(
-        "The bound is the least deviation that the readings allow (Cramér-Rao, by sensitivities about the simulated motion: `benches/src/planar/bound.rs`). \
+        "The bound is the least deviation that the readings allow (Cramér-Rao, by sensitivities about the simulated motion: `benches/src/bound/plane.rs`). \
          Below 1 %: runs whose place is known to a hundredth of the size at the end by it; right: of these, relied on and within {SILENT} deviations at all \
          samples. Over these: root mean square errors at the end over the bound, and over that of an estimator that takes the error of a contact \
          in its condition and in the moment of its force for two (see [planar.md](planar.md)); mean square of errors at the end in their deviations, and the band in which it is 19 times \
@@ -140,24 +137,6 @@ fn of_wrong(
 ) -> Result<(ContactLog, PlaneOptions), Failure> {
     let noise = scene.noise(NOISE_OF_WRONG);
     let log = wrong.misread(noise.add_to(&wrong.log(scene, rate)?, seed), scene.length, seed)?;
-    let options = options(scene, noise, Some(wrong.told(scene.object.mass)?));
+    let options = scene.options(noise, Some(wrong.told(scene.object.mass)?));
     Ok((log.contact_log([0.0; 2]).ok_or("no forces")?, options))
-}
-
-fn options(scene: &Scene, noise: PlanarNoise, body: Option<PlanarMass>) -> PlaneOptions {
-    PlaneOptions {
-        noise: ContactNoiseLevel {
-            contact: noise.contact,
-            force_fixed: noise.force,
-            force_share: 0.0,
-            impulse: None,
-            floor: FLOOR * scene.length / scene.time,
-        },
-        gravity: GRAVITY,
-        friction: vec![Some(0.0); 2],
-        body,
-        size: None,
-        suspects: true,
-        mode_odds: false,
-    }
 }

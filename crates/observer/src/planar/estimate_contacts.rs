@@ -118,24 +118,35 @@ pub fn plane_noise(
 /// [`PlaneEstimateError`].
 pub fn estimate_plane(log: &ContactLog, options: &PlaneOptions) -> Result<PlaneEstimate, PlaneEstimateError> {
     let in_space = log.in_space(&options.friction)?;
-    // Of a known body all three moments are the one that shows.
-    let ball =
-        |known: &PlanarMass| MassProperties::from_principal(known.mass(), DVec3::splat(known.inertia()));
-    let body = options.body.as_ref().map(ball).transpose()?;
-    let of_space = ContactOptions {
-        body,
-        size: options.size,
-        suspects: options.suspects,
-        mode_odds: options.mode_odds,
-        planar: true,
-        guessed_floor: false,
-        ..ContactOptions::new(options.noise, options.gravity)
-    };
-    Ok(PlaneEstimate::new(estimate_contacts(&in_space, None, &of_space)?, &in_space))
+    let found = estimate_contacts(&in_space, None, &options.in_space()?)?;
+    Ok(PlaneEstimate::of_space(found, &in_space))
+}
+
+impl PlaneOptions {
+    /// The same for the log in space; the coefficients of friction stand in that log itself.
+    ///
+    /// # Errors
+    /// [`MassError`] for a body that none in space is like.
+    pub fn in_space(&self) -> Result<ContactOptions, MassError> {
+        // Of a known body all three moments are the one that shows.
+        let ball =
+            |known: &PlanarMass| MassProperties::from_principal(known.mass(), DVec3::splat(known.inertia()));
+        Ok(ContactOptions {
+            body: self.body.as_ref().map(ball).transpose()?,
+            size: self.size,
+            suspects: self.suspects,
+            mode_odds: self.mode_odds,
+            planar: true,
+            guessed_floor: false,
+            ..ContactOptions::new(self.noise, self.gravity)
+        })
+    }
 }
 
 impl PlaneEstimate {
-    fn new(of: ContactEstimate, log: &object_dynamics::ContactLog) -> Self {
+    /// In the plane, of what was estimated from a log in space ([`ContactLog::in_space`]) of a motion that is held in a plane.
+    #[must_use]
+    pub fn of_space(of: ContactEstimate, log: &object_dynamics::ContactLog) -> Self {
         let mut phi0 = 0.0;
         let states = of.states.iter().enumerate().map(|(k, state)| {
             let turned = of.states[0].R_WO.conjugate() * state.R_WO;

@@ -7,7 +7,7 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::interrupt::while_writing;
 use crate::pipeline::{
-    PlanarBounds, PlanarMotion, PlanarSource, hinged_pair, planar_motion, read_planar, with_palms,
+    PlanarBounds, PlanarMotion, PlanarSource, explained, hinged_pair, planar_motion, read_planar, with_palms,
 };
 use crate::progress::Progress;
 use recon::contact_kinematics::planar::FourierBody;
@@ -44,7 +44,7 @@ pub(crate) fn run(args: &PlanarArgs, console: &Console) -> Result<Outcome, CliEr
     let made = match log.contact_log(args.palm_inertias()) {
         Some(contacts) => {
             let known = hinged_pair(args.gravity, mass, args.contact_noise, args.force_noise);
-            Made::Motion(Box::new(planar_motion(contacts, &known)?))
+            Made::Motion(Box::new(planar_motion(contacts, &known, None)?))
         }
         None => Made::Fit(planar_fit::fit(args, &log)?),
     };
@@ -68,8 +68,10 @@ pub(crate) fn reconstruct(
     }
     let log = read_planar(&PlanarSource::File(&args.log), &known)?;
     progress.step("estimating the motion");
-    let made = planar_motion(log, &with_palms(known))?;
+    let made = planar_motion(log, &with_palms(known), args.accuracy)?;
     let title = name(&args.log);
+    let explained = made.choice.as_ref().filter(|_| args.explain).map(|choice| explained(choice, true));
+    explained.iter().for_each(|text| console.note(text));
     finish(Made::Motion(Box::new(made)), target, None, (progress, &args.output, &title), console)
 }
 

@@ -14,9 +14,6 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     let path = args.scene.as_ref().ok_or(CliError::LogNeedsScene)?;
     let scene = match Scene::read(path) {
         Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
-            if args.accuracy.is_some() {
-                return Err(CliError::AccuracyInPlane);
-            }
             return super::planar::reconstruct(args, path, console);
         }
         read => read?,

@@ -175,7 +175,7 @@ impl PlaneReconstructed {
             known.mass = None;
         }
         Progress::watched(watch).step("estimating the motion");
-        let made = Box::new(planar_motion(log.log.as_ref().clone(), &known)?);
+        let made = Box::new(planar_motion(log.log.as_ref().clone(), &known, None)?);
         let figures = made.figures();
         let text = recon_io::with_brief_numbers(made.describe().trim_end());
         Ok(Self { made, log: log.clone(), figures, text })

@@ -4,10 +4,12 @@ use super::advice::Advice;
 use super::any_palms::as_stated;
 use super::any_palms_words::mode_doubts;
 use super::bounds::CONFIDENCE;
+use super::least_model::{choice_figures, choice_rows};
 use super::planar_motion_bounds::motion_bounds;
 use super::planar_motion_words::{NOTE, evidence, verdict};
 use super::plane::PlanarBounds;
 use crate::error::CliError;
+use recon::least_model::{Accuracy, Choice, least_plane_estimate, one_of_plane};
 use recon::object_dynamics::planar::{ContactLog, PlanarMass, PlanarTruth};
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
 use recon::observer::{ContactNoiseLevel, Reliability};
@@ -33,10 +35,16 @@ pub(crate) struct PlanarMotion {
     pub(super) bounds: Option<PlanarBounds>,
     /// What is to be said of them.
     of_bounds: Vec<String>,
+    /// Why it was modelled as it is, where an accuracy was wanted.
+    pub(crate) choice: Option<Choice>,
 }
 
-/// Estimates the motion; truth in the log is only compared with.
-pub(crate) fn planar_motion(log: ContactLog, known: &PlanarKnown) -> Result<PlanarMotion, CliError> {
+/// Estimates the motion, by the least model that serves where an accuracy is wanted; truth in the log is only compared with.
+pub(crate) fn planar_motion(
+    log: ContactLog,
+    known: &PlanarKnown,
+    accuracy: Option<Accuracy>,
+) -> Result<PlanarMotion, CliError> {
     let noise = noise(&log, known)?;
     let options = PlaneOptions {
         noise,
@@ -47,9 +55,19 @@ pub(crate) fn planar_motion(log: ContactLog, known: &PlanarKnown) -> Result<Plan
         suspects: true,
         mode_odds: true,
     };
-    let estimate = estimate_plane(&log, &options)?;
+    let (log, estimate, known_body, choice) = match accuracy {
+        None => {
+            let estimate = estimate_plane(&log, &options)?;
+            (log, estimate, known.mass.is_some(), None)
+        }
+        Some(wanted) => {
+            let least = least_plane_estimate(&log, &options, wanted)?;
+            let log = one_of_plane(&log, least.every)?;
+            (log, least.estimate, least.is_of_known_body, Some(least.choice))
+        }
+    };
     let (bounds, of_bounds) = bounded(&log, &estimate, noise.contact);
-    Ok(PlanarMotion { log, noise, estimate, known_body: known.mass.is_some(), bounds, of_bounds })
+    Ok(PlanarMotion { log, noise, estimate, known_body, bounds, of_bounds, choice })
 }
 
 /// Bounds on the outline, and what is to be said of them.
@@ -127,7 +145,9 @@ impl PlanarMotion {
 
     /// What it rests on.
     pub(crate) fn evidence(&self) -> Vec<Evidence> {
-        evidence(&self.estimate, &self.noise, self.share(), self.known_body)
+        let mut all = evidence(&self.estimate, &self.noise, self.share(), self.known_body);
+        all.extend(self.choice.iter().flat_map(choice_rows));
+        all
     }
 
     /// Whether it is to be relied on, at most samples.
@@ -155,6 +175,7 @@ impl PlanarMotion {
         }
         all.extend(self.estimate.mode_odds.as_ref().and_then(mode_doubts));
         all.extend(self.of_bounds.iter().cloned());
+        all.extend(self.choice.iter().filter(|choice| !choice.is_reached).map(Choice::verdict));
         all
     }
 
@@ -233,6 +254,9 @@ impl PlanarMotion {
             },
             "warnings": self.warnings(),
         }));
+        if let Some(choice) = &self.choice {
+            figures["least_model"] = choice_figures(choice);
+        }
         if !estimate.suspects.is_empty() {
             figures["sensor_faults"] = faults.collect();
         }

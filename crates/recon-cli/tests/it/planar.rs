@@ -120,9 +120,8 @@ fn palms_that_rub_are_estimated() {
                 && errors["orientation_rad"].as_f64().unwrap() < 0.01
         );
     }
-    let run = scratch.run(&["check", "out"]);
-    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
     modes_are_told(&scratch);
+    no_more_than_needed(&scratch);
     // Forces that are said to be three times as good as they are.
     scratch.write("better.toml", &known.replace("force_std = 0.01", "force_std = 0.003"));
     let run = scratch.run(&["reconstruct", "log.csv", "--scene", "better.toml", "-o", "doubted"]);
@@ -189,6 +188,25 @@ fn modes_are_told(scratch: &Scratch) {
         assert!(error.abs() < 0.016, "{learned}");
     }
     assert!(!summary["friction"].as_array().unwrap().is_empty());
+}
+
+/// No more than an accuracy needs: at 500 Hz a body of 4 cm has 34 samples in a natural time, and mass and inertia need not be known.
+fn no_more_than_needed(scratch: &Scratch) {
+    let wanted =
+        ["reconstruct", "log.csv", "--scene", "known.toml", "-o", "least", "--accuracy", "0.03", "--explain"];
+    let run = scratch.run(&wanted);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    assert!(run.stderr.contains("Mass and inertia:") && run.stderr.contains("* estimated"), "{}", run.stderr);
+    let summary: serde_json::Value = serde_json::from_str(&scratch.read("least/summary.json")).unwrap();
+    let least = &summary["least_model"];
+    assert!(least["is_reached"] == true && summary["body_as_stated"] == false, "{summary}");
+    // In sizes of about 4 cm.
+    assert!(summary["largest_error"]["position_m"].as_f64().unwrap() < 0.03 * 0.04, "{summary}");
+    assert!(scratch.read("least/report.html").contains("Mass and inertia"));
+    for folder in ["out", "least"] {
+        let run = scratch.run(&["check", folder]);
+        assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    }
 }
 
 #[test]

@@ -16,7 +16,7 @@ use std::time::Instant;
 const QUANTILE: f64 = 2.2414;
 /// Samples in a natural time that are left: with twice as many cost grows with their number, with fewer contacts are no longer averaged where they
 /// are noisy, which takes five times as long.
-const DENSE: f64 = 250.0;
+const DENSE: f64 = 125.0;
 /// How much better than predicted a bound is asked for, as the one at another thinning scatters.
 const MARGIN: f64 = 1.15;
 /// What a known body makes of a bound, at best: 0.2 was seen.

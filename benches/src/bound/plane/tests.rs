@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::planar::scene::{Scene, drawn};
-use nalgebra::{DMatrix, DVector};
 
 const STEP: f64 = 1e-6;
+/// Errors of both contacts and of both forces at a sample.
+const EACH: usize = 4;
 
 /// Motion and openings at the samples from what is unknown: the start, the body, and the readings.
 struct Readings<'a> {
@@ -26,7 +27,7 @@ impl Readings<'_> {
         ];
         let mut told = Vec::new();
         for (k, sample) in self.samples.iter().enumerate() {
-            let read = |i: usize| unknown[OWN + READ * k + i];
+            let read = |i: usize| unknown[OWN + EACH * k + i];
             let force_and_moment = |x: &[f64; 5], sample: &TrueSample, read: &dyn Fn(usize) -> f64| {
                 let (mut force, mut moment) = (DVec2::ZERO, 0.0);
                 for palm in 0..2 {
@@ -44,7 +45,7 @@ impl Readings<'_> {
                 told.push(n.dot(v - c.perp() * sample.palms.motion.rates[palm]));
             }
             let Some(after) = self.samples.get(k + 1) else { break };
-            let next_read = |i: usize| unknown[OWN + READ * (k + 1) + i];
+            let next_read = |i: usize| unknown[OWN + EACH * (k + 1) + i];
             let h = after.t - sample.t;
             let rate = force_and_moment(&x, sample, &read);
             let mut next: [f64; 5] = std::array::from_fn(|i| x[i] + h * rate[i]);

@@ -10,12 +10,13 @@ use recon_tests::fig5;
 use serde_json::{Value, json};
 
 /// Position of the centre of mass and orientation.
-pub(super) type Pose = (DVec3, DQuat);
-pub(super) type Anything<T> = Result<T, Box<dyn std::error::Error>>;
+pub type Pose = (DVec3, DQuat);
+type Anything<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// An ellipsoid that slides over three flat palms at rest.
-pub(super) struct Fig5 {
-    pub(super) friction: f64,
+pub struct Fig5 {
+    /// Coefficient of all palms.
+    pub friction: f64,
     times: SampleTimes,
     minimal: ThreePalmScene<Ellipsoid>,
     spin: InitialMotion,
@@ -25,7 +26,11 @@ pub(super) struct Fig5 {
 }
 
 impl Fig5 {
-    pub(super) fn new(friction: f64, times: SampleTimes) -> Anything<Self> {
+    /// With a friction, over these times.
+    ///
+    /// # Errors
+    /// Times or a friction that are not usable.
+    pub fn new(friction: f64, times: SampleTimes) -> Anything<Self> {
         let (minimal, spin) = fig5(9.81);
         let now = minimal.instant(0.0, spin.R_WO, spin.w_WO)?;
         let palm = |i: usize| -> Anything<ScenePalm> {
@@ -41,26 +46,35 @@ impl Fig5 {
         Ok(Self { friction, times, minimal, spin, general, start, normals })
     }
 
-    pub(super) fn duration(&self) -> f64 {
+    /// s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
         self.times.duration
     }
 
     /// Poses by simulation through contact modes.
-    pub(super) fn general(&self, tolerance: f64) -> Result<Vec<Pose>, String> {
+    ///
+    /// # Errors
+    /// Those of the simulation, in words.
+    pub fn general(&self, tolerance: f64) -> Result<Vec<Pose>, String> {
         let start = ContactStart::touching(self.start);
         let run = self.general.simulate(&start, self.times, tolerance).map_err(|e| e.to_string())?;
         Ok(run.instants.iter().map(|now| (now.state.body.p_WCm, now.state.body.R_WO)).collect())
     }
 
     /// Poses in minimal coordinates, which know no friction.
-    pub(super) fn minimal(&self, tolerance: f64) -> Result<Vec<Pose>, String> {
+    ///
+    /// # Errors
+    /// Those of the simulation, in words.
+    pub fn minimal(&self, tolerance: f64) -> Result<Vec<Pose>, String> {
         let tolerance = Tolerance::uniform(tolerance);
         let run = self.minimal.simulate(self.spin, self.times, tolerance).map_err(|e| e.to_string())?;
         Ok(run.instants.iter().map(|now| (now.touch.p_WCm, now.R_WO)).collect())
     }
 
     /// What the peer is told, with the poses that it is judged by.
-    pub(super) fn for_peer(&self, poses: &[Pose]) -> Value {
+    #[must_use]
+    pub fn for_peer(&self, poses: &[Pose]) -> Value {
         let vector = |v: DVec3| v.to_array();
         let quaternion = |q: DQuat| [q.w, q.x, q.y, q.z];
         let (start, inertia) = (&self.start, self.general.mass().inertia());
@@ -82,8 +96,9 @@ impl Fig5 {
 }
 
 /// Largest distance of the positions and angle between the orientations, whichever is larger; NaN where poses are missing.
-pub(super) fn largest_error(poses: &[Pose], exact: &[Pose]) -> f64 {
-    if poses.len() != exact.len() {
+#[must_use]
+pub fn largest_error(poses: &[Pose], exact: &[Pose]) -> f64 {
+    if poses.len() < exact.len() {
         return f64::NAN;
     }
     let one = |((p, q), (pe, qe)): (&Pose, &Pose)| {
