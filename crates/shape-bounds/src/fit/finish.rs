@@ -43,11 +43,15 @@ impl ShapeFit {
         let deviations = Deviations::of(&own.problem, solution, &misfit, data.noise_level);
         let Deviations { covariance, noise_factor, correlation, widening } =
             deviations.ok_or_else(|| own.open())?;
-        if known.rank < model.count() || known.weakest_deviation * widening > 1.0 {
+        if known.rank < model.count() {
             return Err(own.open());
         }
-        let refuted =
-            own.check(&body, &misfit).err().or_else(|| own.departure(&misfit, widening / noise_factor));
+        // What a wrong family leaves is alike, and makes deviations as wide as it likes.
+        let refuted = own.check(&body, &misfit).err();
+        if refuted.is_none() && known.weakest_deviation * widening > 1.0 {
+            return Err(own.open());
+        }
+        let refuted = refuted.or_else(|| own.departure(&misfit, widening / noise_factor));
         let statistics = FitStatistics {
             chi_squared: misfit.chi_squared,
             degrees_of_freedom: misfit.degrees_of_freedom(),

@@ -39,10 +39,14 @@ impl OutlineFit {
         let deviations = Deviations::of(&own.problem, &own.solution, &misfit, level);
         let Deviations { covariance, noise_factor, correlation, widening } =
             deviations.ok_or_else(|| own.open())?;
-        if known.rank < misfit.parameters || known.weakest_deviation * widening > 1.0 {
+        if known.rank < misfit.parameters {
             return Err(own.open());
         }
+        // What a wrong family leaves is alike, and makes deviations as wide as it likes.
         own.check(&body, &misfit)?;
+        if known.weakest_deviation * widening > 1.0 {
+            return Err(own.open());
+        }
         Ok(Self {
             family,
             covariance,
