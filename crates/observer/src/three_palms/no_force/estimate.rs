@@ -5,7 +5,7 @@ use super::problem::{Guess, Row, TouchProblem, UNKNOWNS};
 use super::search::search;
 use super::series::{Nodes, TouchSeries};
 use super::shape::FreeEllipsoid;
-use super::suspects::{Wrong, doubts};
+use super::suspects::{Doubts, Wrong, doubts};
 use crate::core::describe_direction;
 use crate::faults::Suspect;
 use crate::least_squares::{FitStatus, LevenbergMarquardt, Observability};
@@ -74,7 +74,8 @@ pub struct NoForceEvidence {
     pub weakest_deviation: f64,
     /// Agreement of the contact curves where they cross; none where they do not.
     pub closure: Option<Closure>,
-    /// What the data say of tilts of palms and of offsets of contacts. What may be wrong counts in all deviations, by its odds.
+    /// What the data say of tilts of palms and of offsets of contacts. What may be wrong counts in all deviations, by its odds. Nothing where more is left than
+    /// noise explains, as steps leave of exact logs.
     pub suspects: Vec<Suspect>,
 }
 
@@ -205,7 +206,12 @@ impl Scene<'_> {
         let of_noise = spectrum.directions
             * SMatrix::from_diagonal(&spectrum.eigenvalues.map(|v| left * left / v))
             * spectrum.directions.transpose();
-        let doubts = doubts(&problem, &fit.point, left, &of_noise).ok_or(no_fit.clone())?;
+        // What steps leave of an exact log lasts, and would be laid to any constant.
+        let by_noise = rms <= EXPLAINED.0 * deviation;
+        let doubts = match by_noise {
+            true => doubts(&problem, &fit.point, left, &of_noise).ok_or(no_fit.clone())?,
+            false => Doubts::default(),
+        };
         let evidence = NoForceEvidence {
             status: fit.status,
             samples: self.series.t.len(),

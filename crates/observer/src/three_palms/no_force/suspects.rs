@@ -13,6 +13,7 @@ use object_dynamics::Instant;
 const LEAST_LEFT: f64 = 1e-6;
 
 /// Suspects with the errors of the numbers that go with them.
+#[derive(Default)]
 pub(super) struct Doubts {
     pub(super) suspects: Vec<Suspect>,
     /// Those that may be wrong.
