@@ -2,16 +2,10 @@
 
 use std::process::ExitCode;
 
-use crate::cargo::{cargo, program, run, target};
+use crate::cargo::{cargo, exit_code, program, run, target};
 
 pub(crate) fn main(words: impl Iterator<Item = String>) -> ExitCode {
     let build = || run(&mut cargo("build --release --package recon-benches --package recon-touch-cli"));
     let draw = || run(program(&target().join("release/study").to_string_lossy()).arg("chart").args(words));
-    match build().and_then(|()| draw()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(complaint) => {
-            eprintln!("{complaint}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(build().and_then(|()| draw()))
 }

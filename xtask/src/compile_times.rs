@@ -8,7 +8,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-use crate::cargo::{cargo, output, root, run, target};
+use crate::cargo::{cargo, exit_code, output, root, run, target};
 use crate::metadata::Metadata;
 
 /// Names the file into which a call of the compiler is noted; where it is set, this program stands for the compiler.
@@ -44,13 +44,7 @@ fn of_children() -> Option<f64> {
 
 /// Builds all that the command is made of, optimised, and writes the table.
 pub(crate) fn main() -> ExitCode {
-    match write() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(complaint) => {
-            eprintln!("{complaint}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(write())
 }
 
 fn write() -> Result<(), String> {

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-use crate::cargo::{cargo, output, program, root, run, say, target};
+use crate::cargo::{cargo, exit_code, output, program, root, run, say, target};
 use crate::steps::Outcome;
 
 /// Counts that are committed; docs/cost.md tells what they are, and the page of charts shows them.
@@ -159,13 +159,7 @@ fn told(name: &str, before: Option<u64>, now: u64) -> Option<String> {
 
 /// Counts all anew, of both builds, and writes the table.
 pub(crate) fn main() -> ExitCode {
-    match write() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(complaint) => {
-            eprintln!("{complaint}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(write())
 }
 
 fn write() -> Result<(), String> {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::cargo::{cargo, program, root, run, target};
+use crate::cargo::{cargo, exit_code, program, root, run, target};
 use crate::landing;
 use crate::metadata::{Metadata, Package};
 use crate::steps::Outcome;
@@ -94,13 +94,7 @@ pub(crate) fn main(words: impl Iterator<Item = String>) -> ExitCode {
         made(&metadata)?;
         if options.is_empty() { Ok(()) } else { tried(&metadata, &names) }
     });
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(complaint) => {
-            eprintln!("{complaint}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(done)
 }
 
 fn tried(metadata: &Metadata, names: &[String]) -> Result<(), String> {

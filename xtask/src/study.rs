@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use crate::cargo::{cargo, output, root, run};
+use crate::cargo::{cargo, exit_code, output, root, run};
 
 /// Where rows of parts are kept.
 const ROWS: &str = "target/study-rows";
@@ -189,13 +189,7 @@ pub(crate) fn atlas(words: impl Iterator<Item = String>) -> ExitCode {
     let first = words.first().map(String::as_str);
     if matches!(first, Some("smoke" | "one" | "boundaries")) {
         let mut command = cargo("run --release --quiet --package recon-benches --bin study -- atlas");
-        return match run(command.args(&words)) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(complaint) => {
-                eprintln!("{complaint}");
-                ExitCode::FAILURE
-            }
-        };
+        return exit_code(run(command.args(&words)));
     }
     let study = |more: &[&str]| {
         let more = more.iter().map(|word| (*word).to_owned());

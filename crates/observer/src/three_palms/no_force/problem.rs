@@ -132,6 +132,26 @@ impl<'a> TouchProblem<'a> {
     }
 }
 
+impl TouchProblem<'_> {
+    /// Derivatives of the residuals, which are those at `point`, by the unknowns in natural sizes.
+    pub(super) fn slopes(&self, point: &Guess, residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let mut slopes = Vec::with_capacity(UNKNOWNS);
+        for i in 0..UNKNOWNS {
+            let moved = |h: f64| {
+                self.residuals(&self.retract_by(point, &Row::from_fn(|j, _| if i == j { h } else { 0.0 })))
+            };
+            let ahead = moved(DIFFERENCE)?;
+            let (behind, apart) = if self.one_sided {
+                (residuals.to_vec(), DIFFERENCE)
+            } else {
+                (moved(-DIFFERENCE)?, 2.0 * DIFFERENCE)
+            };
+            slopes.push(ahead.iter().zip(&behind).map(|(a, b)| (a - b) / apart).collect::<Vec<f64>>());
+        }
+        Some(slopes)
+    }
+}
+
 impl LeastSquares<UNKNOWNS> for TouchProblem<'_> {
     type Point = Guess;
 
@@ -140,19 +160,7 @@ impl LeastSquares<UNKNOWNS> for TouchProblem<'_> {
             return None;
         }
         let residuals = self.residuals(point)?;
-        let mut slopes = Vec::with_capacity(UNKNOWNS);
-        for i in 0..UNKNOWNS {
-            let moved = |h: f64| {
-                self.residuals(&self.retract(point, &Row::from_fn(|j, _| if i == j { h } else { 0.0 })))
-            };
-            let ahead = moved(DIFFERENCE)?;
-            let (behind, apart) = if self.one_sided {
-                (residuals.clone(), DIFFERENCE)
-            } else {
-                (moved(-DIFFERENCE)?, 2.0 * DIFFERENCE)
-            };
-            slopes.push(ahead.iter().zip(&behind).map(|(a, b)| (a - b) / apart).collect::<Vec<f64>>());
-        }
+        let slopes = self.slopes(point, &residuals)?;
         let mut normal = NormalEquations::default();
         for (k, &residual) in residuals.iter().enumerate() {
             normal.add(&Row::from_fn(|i, _| slopes[i][k]), residual);

@@ -43,14 +43,9 @@ pub(super) fn doubts(
             ahead.iter().zip(behind).map(|(a, b)| (a - b) / (2.0 * DIFFERENCE)),
         )
     };
-    let residuals = DVector::from_vec(problem.residuals(point)?);
-    let mut slopes = DMatrix::zeros(residuals.len(), UNKNOWNS);
-    for i in 0..UNKNOWNS {
-        let moved = |h: f64| {
-            problem.residuals(&problem.retract_by(point, &Row::from_fn(|j, _| if i == j { h } else { 0.0 })))
-        };
-        slopes.set_column(i, &column(&moved(DIFFERENCE)?, &moved(-DIFFERENCE)?));
-    }
+    let residuals = problem.residuals(point)?;
+    let slopes = problem.slopes(point, &residuals)?.into_iter().map(DVector::from_vec).collect::<Vec<_>>();
+    let (slopes, residuals) = (DMatrix::from_columns(&slopes), DVector::from_vec(residuals));
     let information = of_noise / (deviation * deviation);
     let (mut suspects, mut follows) = (Vec::new(), Vec::new());
     for fault in constants() {
