@@ -8,11 +8,10 @@ use super::lasting::Deviations;
 use super::levenberg::Problem;
 use super::misfit::Misfit;
 use super::refute::{self, Leftover};
-use super::solve::{Linearised, Solution, Spatial, undetermined};
+use super::solve::{Linearised, Solution, Spatial, undetermined, whitened_rows};
 use super::{FitError, FitStatistics, FittedBody, ShapeFamily, ShapeFit};
 use contact_kinematics::{Sphere, SupportFunction, Translated};
 use glam::DVec3;
-use nalgebra::DMatrix;
 
 /// A solution that is to be made a fit.
 struct Unfinished<'a> {
@@ -159,14 +158,7 @@ impl Unfinished<'_> {
         let model = HarmonicModel::new(degree).ok()?;
         let harmonics = 2 * degree + 1;
         let contacts = &self.solution.system.contacts;
-        let mut columns = vec![DVec3::ZERO; model.count()];
-        let mut beyond = DMatrix::zeros(3 * contacts.len(), harmonics);
-        for (k, own) in contacts.iter().enumerate() {
-            model.columns(&self.solution.theta, own.normal, &mut columns)?;
-            for (j, column) in columns[model.count() - harmonics..].iter().enumerate() {
-                (0..3).for_each(|i| beyond[(3 * k + i, j)] = own.entry(i, *column));
-            }
-        }
+        let beyond = whitened_rows(&model, &self.solution.theta, contacts, model.count() - harmonics)?;
         let whitened = self.problem.whitened(&self.solution)?;
         let improvement = refute::departure(self.data.noise_level, &whitened, &beyond, lasting)?;
         let by = refute::Refutation::Departure { degree, harmonics, improvement };

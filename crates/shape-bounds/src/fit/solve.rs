@@ -107,7 +107,7 @@ fn vector(v: DVec3) -> Vector3<f64> {
 
 impl Linearised {
     /// A whitened column's entry in one of the three rows.
-    pub(super) fn entry(&self, i: usize, column: DVec3) -> f64 {
+    fn entry(&self, i: usize, column: DVec3) -> f64 {
         (0..=i).map(|j| self.whitening[(i, j)] * column[j]).sum()
     }
 
@@ -164,18 +164,29 @@ impl<M: Model + ?Sized> Problem for Spatial<'_, M> {
 
     fn whitened(&self, solution: &Solution) -> Option<Whitened> {
         let contacts = &solution.system.contacts;
-        let mut columns = vec![DVec3::ZERO; self.model.count()];
-        let mut rows = DMatrix::zeros(3 * contacts.len(), columns.len());
-        for (k, own) in contacts.iter().enumerate() {
-            self.model.columns(&solution.theta, own.normal, &mut columns)?;
-            for (j, column) in columns.iter().enumerate() {
-                (0..3).for_each(|i| rows[(3 * k + i, j)] = own.entry(i, *column));
-            }
-        }
+        let rows = whitened_rows(self.model, &solution.theta, contacts, 0)?;
         let residuals =
             contacts.iter().flat_map(|own| [own.residual.x, own.residual.y, own.residual.z]).collect();
         Some(Whitened { dimension: 3, rows, residuals })
     }
+}
+
+/// Whitened rows of a model's parameters from a first one on, three to a contact; `None` where it is no body.
+pub(super) fn whitened_rows(
+    model: &(impl Model + ?Sized),
+    theta: &DVector<f64>,
+    contacts: &[Linearised],
+    first: usize,
+) -> Option<DMatrix<f64>> {
+    let mut columns = vec![DVec3::ZERO; model.count()];
+    let mut rows = DMatrix::zeros(3 * contacts.len(), columns.len() - first);
+    for (k, own) in contacts.iter().enumerate() {
+        model.columns(theta, own.normal, &mut columns)?;
+        for (j, column) in columns[first..].iter().enumerate() {
+            (0..3).for_each(|i| rows[(3 * k + i, j)] = own.entry(i, *column));
+        }
+    }
+    Some(rows)
 }
 
 /// Where a fit in space came to rest.
