@@ -60,7 +60,10 @@ fn estimated(exact: &ContactLog, length: f64, seed: u64) -> Result<ContactEstima
     let log = exact.with_noise(&ContactNoise { contact, force, ..ContactNoise::default() }, seed)?;
     let floor = FLOOR * (G * length).sqrt();
     let noise = ContactNoiseLevel { contact, force_fixed: 0.0, force_share: NOISE.1, impulse: None, floor };
-    Ok(estimate_contacts(&log, None, &ContactOptions::new(noise, G))?)
+    // As the command asks for it.
+    let (suspects, mode_odds) = (true, true);
+    let options = ContactOptions { suspects, mode_odds, ..ContactOptions::new(noise, G) };
+    Ok(estimate_contacts(&log, None, &options)?)
 }
 
 fn errors(

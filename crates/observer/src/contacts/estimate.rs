@@ -8,7 +8,7 @@ use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
 use super::problem::{Problem, Units};
 use super::record::Record;
-use super::relabel::surer;
+use super::relabel::{apart, surer};
 use super::rivals::still;
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
@@ -148,12 +148,14 @@ impl Source<'_> {
         // Without noise a search is long, and what limits is when within a sample modes change.
         let worth = self.options.noise.limits(&self.units) && again != found.modes && !self.options.planar;
         let second = if worth { self.with_modes(record, again, false).ok() } else { None };
-        if let Some((second, slips)) = second {
-            let stands = slips.is_empty() && second.evidence.settled && second.reliability.is_reliable();
+        let holds = |second: &ContactEstimate| second.evidence.settled && second.reliability.is_reliable();
+        if let Some((mut second, slips)) = second.filter(|(second, _)| holds(second)) {
+            let apart = apart(&found.states, &found.deviations, &second.states);
             let by_ratio = odds.by_ratio.clone();
-            if let Some(odds) = second.mode_odds.clone().filter(|_| stands) {
+            if let Some(odds) = second.mode_odds.take().filter(|_| slips.is_empty()) {
                 found = ContactEstimate { mode_odds: Some(EstimatedModes { by_ratio, ..odds }), ..second };
             }
+            found.relied_on.iter_mut().zip(apart).for_each(|(relied_on, apart)| *relied_on &= !apart);
         }
         if let Some(odds) = &found.mode_odds {
             found.modes = odds.most_probable();

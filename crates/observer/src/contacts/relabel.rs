@@ -1,7 +1,10 @@
 //! Contact modes for the conditions of a second solution, from the probabilities that the first one left.
 
 use super::mode_odds::EstimatedModes;
-use object_dynamics::{ContactMode, MOST_PALMS};
+use super::samples::Deviations;
+use super::verdict::UNEXPLAINED;
+use glam::{DQuat, DVec3};
+use object_dynamics::{BodyState, ContactMode, MOST_PALMS};
 
 /// Probability with which a contact must stick to be taken to do so.
 const SURE: f64 = 0.99;
@@ -34,6 +37,24 @@ pub(super) fn surer(
     again
 }
 
+/// Samples at which a second solution, whose modes are surer, is away from the first by more than that one's deviations explain.
+///
+/// If both sets of modes are right it is within them, since it has all conditions of the first but a few and more (Hausman's test of
+/// two estimates, one of which assumes more). Otherwise one of them has wrong ones, and it is not known which.
+pub(super) fn apart(first: &[BodyState], deviations: &[Deviations], second: &[BodyState]) -> Vec<bool> {
+    let turned = |of: &[BodyState], k: usize| of[k].R_WO * of[0].R_WO.inverse();
+    let one = |k: usize| {
+        let (a, b) = (&first[k], &second[k]);
+        // Of the first sample it is none but for rounding, and so is its deviation.
+        let turn = if k > 0 { turned(first, k) * turned(second, k).inverse() } else { DQuat::IDENTITY };
+        let turn = turn.to_scaled_axis();
+        let differences = [a.p_WCm - b.p_WCm, a.v_WCm - b.v_WCm, a.w_WO - b.w_WO, turn];
+        let beyond = |(d, deviation): (DVec3, DVec3)| d.abs().cmpgt(deviation * UNEXPLAINED).any();
+        differences.into_iter().zip(deviations[k]).any(beyond)
+    };
+    (0..first.len()).map(one).collect()
+}
+
 /// Whether a sample is within `time` of one that is `open`.
 fn near(times: &[f64], open: impl Fn(usize) -> bool, time: f64) -> Vec<bool> {
     let (mut before, mut after) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -58,6 +79,23 @@ mod tests {
     use super::*;
     use crate::contact_modes::ContactOdds;
     use ContactMode::{Off, Slide, Stick};
+
+    /// A quaternion's sign says nothing, nor do the first sample's axes.
+    #[test]
+    fn solutions_are_apart_where_any_number_is_beyond_what_the_first_may_be_off_by() {
+        let at = |v: f64, turn: f64| BodyState {
+            p_WCm: DVec3::ZERO,
+            v_WCm: DVec3::X * v,
+            R_WO: DQuat::from_rotation_y(turn),
+            w_WO: DVec3::ZERO,
+        };
+        let first = [at(0.0, 0.2), at(0.0, 0.3), at(0.0, 0.3), at(0.0, 0.3)];
+        let second = [at(0.04, 0.7), at(-0.05, 0.8), at(0.0, 0.8), at(0.0, 0.86)];
+        let second = second.map(|state| BodyState { R_WO: -state.R_WO, ..state });
+        let of = [0.01; 4].map(DVec3::splat);
+        let deviations = [[of[0], of[1], of[2], DVec3::ZERO], of, of, of];
+        assert_eq!(apart(&first, &deviations, &second), [false, true, false, true]);
+    }
 
     #[test]
     fn what_is_sure_for_long_enough_sticks_and_what_stuck_is_kept_unless_it_slides() {
