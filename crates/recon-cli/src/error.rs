@@ -3,7 +3,7 @@ use recon::object_dynamics::{
     ContactLogError, ContactSimulationError, LogError, MassError, NotThreePlanes,
     SceneError as DynamicsError, SimulationError,
 };
-use recon::observer::ContactEstimateError;
+use recon::observer::contacts::ContactEstimateError;
 use recon::observer::pushes::PushesError;
 use recon::shape_bounds::{
     AlphaError, ApproximationError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError,
@@ -169,7 +169,7 @@ pub(crate) enum CliError {
         source: ContactEstimateError,
     },
     #[error("the log cannot be followed")]
-    Stream(#[from] recon::observer::StreamError),
+    Stream(#[from] recon::observer::contacts::stream::StreamError),
     #[error(
         "following a motion needs the noise of the sensors: give --contact-noise (m) and --force-noise (N), or \
          sensors.contact_std and sensors.force_std in the scene"
@@ -178,7 +178,7 @@ pub(crate) enum CliError {
     #[error("the log has {found} sample(s); following a motion needs {needed}")]
     TooFewSamples { found: usize, needed: usize },
     #[error("contacts alone give no motion")]
-    WithoutForces(#[from] recon::observer::NoForceError),
+    WithoutForces(#[from] recon::observer::three_palms::no_force::NoForceError),
     #[error("--without-forces needs a scene file (--scene), for gravity")]
     NoGravity,
     #[error("the planar log gives no motion")]

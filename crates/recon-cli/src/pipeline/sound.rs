@@ -6,7 +6,7 @@ use super::features::FoundFeatures;
 use crate::error::CliError;
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::CurvatureRadii;
-use recon::observer::{PoseCovariance, PoseErrors};
+use recon::observer::rigid::{PoseCovariance, PoseErrors};
 use recon::shape_bounds::{
     BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, FeatureOptions,
     Features, NoisyContact, Outlier, Pieces, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds,

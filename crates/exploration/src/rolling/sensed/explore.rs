@@ -18,8 +18,8 @@ use crate::planar::PlanarKnowledge;
 use crate::planner::Reason;
 use glam::DVec2;
 use object_dynamics::planar::{ContactLog, PlanarMass};
-use observer::Reliability;
 use observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
+use observer::reliability::Reliability;
 use shape_bounds::planar::Direction;
 use thiserror::Error;
 

@@ -8,8 +8,8 @@ use exploration::rolling::{
 };
 use exploration::{ConfidenceError, Goal, Heading, Knowledge, KnowledgeError};
 use object_dynamics::planar::{PlanarMass, PlanarObject};
+use observer::contacts::{ContactNoiseLevel, ImpulseNoise};
 use observer::planar::{PlaneOptions, estimate_plane};
-use observer::{ContactNoiseLevel, ImpulseNoise};
 use shape_bounds::planar::Direction;
 
 const GRAVITY: f64 = 9.81;

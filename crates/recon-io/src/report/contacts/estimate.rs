@@ -9,7 +9,7 @@ use crate::planar_figures::FigurePanel;
 use glam::{DVec2, DVec3};
 use recon::contact_kinematics::SurfaceState;
 use recon::object_dynamics::{ContactLog, ContactMode, LoggedPalm};
-use recon::observer::ContactEstimate;
+use recon::observer::contacts::ContactEstimate;
 use recon::shape_bounds::planar::Hull;
 
 /// Points of a contact curve that are drawn at most.
