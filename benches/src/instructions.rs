@@ -14,8 +14,8 @@ use recon::observer::contacts::stream::PlaneReadings;
 use recon::observer::contacts::{ContactNoiseLevel, ContactOptions, estimate_contacts};
 use recon_tests::belt::{Entry, belt_velocity, modes, run, start};
 use recon_tests::contact_modes::drawn;
+use shape_bounds::exact_hull::{HalfSpace, Hull, Intersection};
 use shape_bounds::generators::{InputKind, curve_contacts};
-use shape_bounds::{HalfSpace, Hull, Intersection};
 use std::hint::black_box;
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;

@@ -5,10 +5,14 @@ use recon::object_dynamics::{
 };
 use recon::observer::contacts::ContactEstimateError;
 use recon::observer::pushes::PushesError;
-use recon::shape_bounds::{
-    AlphaError, ApproximationError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError,
-    NoiseError, PoseError, SurfaceError, planar,
-};
+use recon::shape_bounds::approximation::ApproximationError;
+use recon::shape_bounds::concave::{AlphaError, SurfaceError};
+use recon::shape_bounds::curvature::CurvatureError;
+use recon::shape_bounds::exact_hull::IntersectionError;
+use recon::shape_bounds::fit::FitError;
+use recon::shape_bounds::noise::NoiseError;
+use recon::shape_bounds::poses::PoseError;
+use recon::shape_bounds::{BoundsError, FacetError, planar};
 use recon_io::{
     BagError, CheckError, ExportError, LogFileError, MappingError, MeshError, OutputError, SceneError,
     TouchesError,
@@ -88,15 +92,15 @@ pub(crate) enum CliError {
     #[error("the contacts in the plane give no bounds")]
     PlanarBounds(#[from] planar::BoundsError),
     #[error("the contacts in the plane give no bounds under noise")]
-    PlanarNoisyBounds(#[from] planar::NoiseError),
+    PlanarNoisyBounds(#[from] planar::noise::NoiseError),
     #[error("the contacts in the plane and the limits on the curvature give no bounds")]
-    PlanarCurvature(#[from] planar::CurvatureError),
+    PlanarCurvature(#[from] planar::curvature::CurvatureError),
     #[error("{} has no log {number}; it has {there}", path.display())]
     NoPushLog { path: PathBuf, number: u32, there: String },
     #[error("the pushes of log {log} tell no outline")]
     Pushes { log: u32, source: PushesError },
     #[error("no outline can be fitted to the contacts")]
-    PlanarFit(#[from] planar::FitError),
+    PlanarFit(#[from] planar::fit::FitError),
     #[error("the contacts have no alpha shape")]
     Alpha(#[from] AlphaError),
     #[error("no smooth surface goes through the contacts")]

@@ -14,7 +14,7 @@ use recon::object_dynamics::planar::{ContactLog, PlanarMass, PlanarTruth};
 use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
 use recon::observer::reliability::Reliability;
-use recon::shape_bounds::planar::NoiseError;
+use recon::shape_bounds::planar::noise::NoiseError;
 use recon_io::{
     Evidence, Level, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, Verdict, brief, brief_to,
     explanation, mode_figures, sensor_fault, verdict_figures, write_plane_estimate_report,

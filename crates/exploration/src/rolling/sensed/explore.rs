@@ -20,7 +20,7 @@ use glam::DVec2;
 use object_dynamics::planar::{ContactLog, PlanarMass};
 use observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
 use observer::reliability::Reliability;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 use thiserror::Error;
 
 /// What is to be reached, with what sensors, at which confidence.
