@@ -36,6 +36,13 @@ pub(crate) fn check() -> Result<Outcome, String> {
     Ok(Outcome::Passed)
 }
 
+/// The optional step of `verify`: the example of each first page, from the packages, alone.
+pub(crate) fn examples() -> Result<Outcome, String> {
+    let metadata = Metadata::load()?;
+    made(&metadata)?;
+    tried(&metadata, &[]).map(|()| Outcome::Passed)
+}
+
 fn lacking(package: &Package, folder: &Path) -> Vec<String> {
     let name = &package.name;
     let files = HELD.into_iter().filter(|file| !folder.join(file).is_file());
