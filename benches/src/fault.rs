@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::{MassProperties, Sample, SensorLog};
-use recon::observer::{Assumption, SensorFault};
+use recon::observer::faults::{Assumption, SensorFault};
 use recon_tests::Random;
 
 type Failure = Box<dyn std::error::Error>;

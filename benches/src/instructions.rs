@@ -8,14 +8,14 @@ use crate::streaming::some;
 use recon::contact_kinematics::Ellipsoid;
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{ContactLog, SampleTimes, SensorNoise, ThreePalmScene};
-use recon::observer::{
-    Bank, BankOptions, ContactFriction, ContactModes, ContactModesOptions, ContactNoiseLevel, ContactOptions,
-    Memory, PlaneReadings, estimate_contacts,
-};
+use recon::observer::bank::{Bank, BankOptions, Memory};
+use recon::observer::contact_modes::{ContactFriction, ContactModes, ContactModesOptions};
+use recon::observer::contacts::stream::PlaneReadings;
+use recon::observer::contacts::{ContactNoiseLevel, ContactOptions, estimate_contacts};
 use recon_tests::belt::{Entry, belt_velocity, modes, run, start};
 use recon_tests::contact_modes::drawn;
+use shape_bounds::exact_hull::{HalfSpace, Hull, Intersection};
 use shape_bounds::generators::{InputKind, curve_contacts};
-use shape_bounds::{HalfSpace, Hull, Intersection};
 use std::hint::black_box;
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;

@@ -11,7 +11,7 @@ use exploration::rolling::{
 };
 use exploration::{Confidence, Goal, Heading, Knowledge, KnowledgeError, Source, Spending};
 use glam::DVec2;
-use recon::shape_bounds::planar::Direction;
+use recon::shape_bounds::exact_hull::planar::Direction;
 use std::f64::consts::TAU;
 use std::time::Instant;
 

@@ -11,7 +11,7 @@ use recon::contact_kinematics::planar::{
     Ellipse, FourierBody, RadiusBounds, RadiusFunction, RadiusJet, RoundedPolygon,
 };
 use recon::object_dynamics::planar::{PlanarMass, PlanarObject};
-use recon::shape_bounds::planar::Direction;
+use recon::shape_bounds::exact_hull::planar::Direction;
 use std::f64::consts::TAU;
 use thiserror::Error;
 

@@ -7,8 +7,9 @@ use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, Instant, MassProperties, Sample, SampleTimes, SensorNoise, ThreePalmScene,
 };
-use recon::observer::StreamEstimate;
-use recon::observer::{ContactNoiseLevel, ContactOptions, MotionStream, PlaneReadings, StreamOptions};
+use recon::observer::contacts::stream::StreamEstimate;
+use recon::observer::contacts::stream::{MotionStream, PlaneReadings, StreamOptions};
+use recon::observer::contacts::{ContactNoiseLevel, ContactOptions};
 use recon_tests::Random;
 use std::f64::consts::TAU;
 use std::thread::sleep;

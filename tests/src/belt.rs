@@ -4,7 +4,8 @@
 
 use crate::Random;
 use nalgebra::{SMatrix, SVector};
-use recon::observer::{Gaussian, KalmanMember, Landing, ModeState, Model, Modes, jump};
+use recon::observer::Model;
+use recon::observer::bank::{Gaussian, KalmanMember, Landing, ModeState, Modes, jump};
 
 /// Sampling interval, gravity (natural units).
 const DT: f64 = 0.01;

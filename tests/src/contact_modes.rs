@@ -10,7 +10,7 @@ pub use score::Score;
 
 use nalgebra::{Matrix2x6, Matrix6};
 use recon::object_dynamics::ContactMode;
-use recon::observer::{ContactModes, ContactModesError, ContactSeen, TwistError};
+use recon::observer::contact_modes::{ContactModes, ContactModesError, ContactSeen, TwistError};
 
 /// One sample: what is read and what is true.
 #[derive(Clone, Debug)]

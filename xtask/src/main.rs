@@ -7,6 +7,7 @@ mod compile_times;
 mod instructions;
 mod landing;
 mod metadata;
+mod names;
 mod package;
 mod steps;
 mod study;
@@ -24,6 +25,7 @@ const USAGE: &str = "usage:
   cargo xtask compile-times
   cargo xtask package [--try [NAME..]]
   cargo xtask readme
+  cargo xtask names
   cargo xtask study  NAME [ARGUMENT..] [--shard K/N [--rows FOLDER] | --merge [FOLDER]]
 
 verify  runs the checks of the house; optional steps run only with --with or --only
@@ -33,6 +35,7 @@ instructions counts those of the inner loops into docs/instructions.csv, where p
 compile-times builds the command anew, and writes what each crate of it takes into docs/crates.csv
 package makes the packages of all crates; --try runs the example of each one's first page in a new project outside of this one
 readme  writes README.md of each crate from the first page of its documentation
+names   writes docs/names.txt, the public names of each crate, with which verify compares them
 study   runs a long study and writes its table under docs; in N parts, on as many machines, merged to the same table";
 
 fn main() -> ExitCode {
@@ -47,7 +50,8 @@ fn main() -> ExitCode {
         Some("instructions") => instructions::main(),
         Some("compile-times") => compile_times::main(),
         Some("package") => package::main(words),
-        Some("readme") => readme(),
+        Some("readme") => wrote(landing::write()),
+        Some("names") => wrote(names::write()),
         Some("study") => study::main(words),
         Some("help" | "--help" | "-h") => {
             println!("{USAGE}");
@@ -62,8 +66,8 @@ fn main() -> ExitCode {
     }
 }
 
-fn readme() -> ExitCode {
-    match landing::write() {
+fn wrote(done: Result<Vec<String>, String>) -> ExitCode {
+    match done {
         Ok(changed) => {
             changed.iter().for_each(|path| println!("wrote {path}"));
             ExitCode::SUCCESS

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use crate::cargo::{cargo, exit_code, program, root, run, target};
 use crate::landing;
 use crate::metadata::{Metadata, Package};
+use crate::names;
 use crate::steps::Outcome;
 
 /// What each package holds beside its code.
@@ -22,6 +23,7 @@ pub(crate) fn made(metadata: &Metadata) -> Result<(), String> {
 pub(crate) fn check() -> Result<Outcome, String> {
     let metadata = Metadata::load()?;
     let mut complaints = landing::complaints(&metadata);
+    complaints.extend(names::complaints(&metadata)?);
     for package in metadata.published() {
         let folder = landing::folder(package);
         complaints.extend(lacking(package, &folder));
@@ -32,6 +34,13 @@ pub(crate) fn check() -> Result<Outcome, String> {
     }
     made(&metadata)?;
     Ok(Outcome::Passed)
+}
+
+/// The optional step of `verify`: the example of each first page, from the packages, alone.
+pub(crate) fn examples() -> Result<Outcome, String> {
+    let metadata = Metadata::load()?;
+    made(&metadata)?;
+    tried(&metadata, &[]).map(|()| Outcome::Passed)
 }
 
 fn lacking(package: &Package, folder: &Path) -> Vec<String> {

@@ -5,7 +5,7 @@ use super::{Failure, Method, Way};
 use crate::noisy_contacts::{Body, Case, Course, Levels, TrueNoise, WrongContacts, bounded, cleaned};
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, Direction};
-use shape_bounds::SharpBounds;
+use shape_bounds::curvature::SharpBounds;
 use shape_bounds::generators::Source;
 use std::f64::consts::{PI, TAU};
 

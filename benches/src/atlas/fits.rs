@@ -4,10 +4,10 @@ use super::judged::Ran;
 use super::{DEVIATIONS, Failure, Method, Way};
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::{Direction, SupportFunction};
+use shape_bounds::ContactSample;
+use shape_bounds::fit::{FitOptions, ShapeFamily, ShapeFit, SkewEllipsoid};
 use shape_bounds::generators::Source;
-use shape_bounds::{
-    ContactNoise, ContactSample, FitOptions, NoisyContact, ShapeFamily, ShapeFit, SkewEllipsoid,
-};
+use shape_bounds::noise::{ContactNoise, NoisyContact};
 
 /// Directions in which support functions are compared.
 const DIRECTIONS: usize = 50;

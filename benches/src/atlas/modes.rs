@@ -3,7 +3,7 @@
 use super::judged::Ran;
 use super::{Failure, Method, Way};
 use nalgebra::{Matrix2, Vector2};
-use recon::observer::{ContactFriction, ContactModes, ContactModesOptions, ContactSeen};
+use recon::observer::contact_modes::{ContactFriction, ContactModes, ContactModesOptions, ContactSeen};
 use recon_tests::Random;
 use recon_tests::contact_modes::{Moment, classify, drawn};
 

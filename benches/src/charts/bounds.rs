@@ -3,8 +3,10 @@
 use super::{Chart, Drawn};
 use crate::{Axis, Budget, Study, WorkPrecision};
 use recon::contact_kinematics::CurvatureRadii;
+use shape_bounds::curvature::SharpBounds;
 use shape_bounds::generators::{AXES, curve_contacts, noisy_curves};
-use shape_bounds::{ContactNoise, ContactSample, NoisyContact, ShapeBounds, SharpBounds};
+use shape_bounds::noise::{ContactNoise, NoisyContact};
+use shape_bounds::{ContactSample, ShapeBounds};
 
 pub(super) const CHART: Chart =
     Chart { name: "bounds", about: "bounds on a shape by number of contacts, noise and time", draw };

@@ -5,7 +5,9 @@ use crate::diagram::{Outlines, Stroke};
 use crate::{Budget, Diagram};
 use glam::DVec2;
 use recon::contact_kinematics::planar::{FourierBody, RadiusBounds, RadiusFunction};
-use recon::shape_bounds::planar::{ContactSample, CurvatureBounds, Direction, ShapeBounds};
+use recon::shape_bounds::exact_hull::planar::Direction;
+use recon::shape_bounds::planar::curvature::CurvatureBounds;
+use recon::shape_bounds::planar::{ContactSample, ShapeBounds};
 use std::f64::consts::TAU;
 
 pub(super) const CHART: Chart =

@@ -6,7 +6,7 @@ use recon::object_dynamics::{
     ContactLog, InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation,
     SimulationError, ThreePalmScene,
 };
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::contacts::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
 
 /// A simulation close to rounding, and its log without truth.
 pub(super) fn exact_log<S: SupportFunction>(

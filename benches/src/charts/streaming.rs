@@ -3,7 +3,7 @@
 use super::{Chart, Drawn};
 use crate::streaming::{Case, Paced, paced, some};
 use crate::{Axis, Budget, Method, Outcome, Point, WorkPrecision, load};
-use recon::observer::{StreamEstimate, StreamStage};
+use recon::observer::contacts::stream::{StreamEstimate, StreamStage};
 
 pub(super) const CHART: Chart =
     Chart { name: "streaming", about: "sample by sample, by rate and quality of the sensors", draw };

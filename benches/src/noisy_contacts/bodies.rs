@@ -1,8 +1,9 @@
 //! Bodies that are touched, and whether they lie between bounds.
 
 use glam::{DQuat, DVec3};
+use shape_bounds::exact_hull::Hull;
 use shape_bounds::generators::{AXES, Source};
-use shape_bounds::{CertainBounds, Hull};
+use shape_bounds::noise::CertainBounds;
 use std::f64::consts::TAU;
 
 /// What a vertex or a plane may be off by rounding, m, on bodies about 1 m in size.

@@ -1,7 +1,7 @@
 //! The way from measured contacts to bounds, as `recon bounds` goes it, and what came of it.
 
 use super::Case;
-use shape_bounds::{
+use shape_bounds::noise::{
     CertainBounds, ContactNoise, NoiseError, NoisyContact, Outlier, correlated_noise, estimate_noise,
     independence_is_tested, with_noise_as_found, without_outliers,
 };

@@ -2,7 +2,8 @@
 
 use exploration::Heading;
 use recon::contact_kinematics::Direction;
-use recon::shape_bounds::{BoundsError, ContactSample, IncrementalBounds, PalmContact, PalmIntersection};
+use recon::shape_bounds::palms::{PalmContact, PalmIntersection};
+use recon::shape_bounds::{BoundsError, ContactSample, IncrementalBounds};
 
 /// Normals nearer than this to one that was taken are left out, rad: bounds from thousands of contacts would cost more than they tell.
 const APART: f64 = 0.04;

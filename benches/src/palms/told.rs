@@ -6,7 +6,9 @@ use nalgebra::Matrix6;
 use recon::object_dynamics::{
     ChannelNoise, ContactLog, ContactMode, ContactNoise, ContactScene, ContactSimulation, MOST_PALMS,
 };
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, ImpulseNoise, estimate_contacts};
+use recon::observer::contacts::{
+    ContactEstimate, ContactNoiseLevel, ContactOptions, ImpulseNoise, estimate_contacts,
+};
 
 /// Noise of contacts over the size, and of each axis of a force over the weight.
 pub const NOISE: [f64; 2] = [0.0005, 0.002];

@@ -2,7 +2,7 @@
 
 use super::scene::Scene;
 use recon::object_dynamics::planar::*;
-use recon::observer::SensorFault;
+use recon::observer::faults::SensorFault;
 use recon_tests::Random;
 
 type Failure = Box<dyn std::error::Error>;

@@ -10,7 +10,7 @@ use recon::contact_kinematics::planar::{
     FourierBody, MotionPart, PalmSurface, RadiusFunction, SurfaceMotion, SurfacePose,
 };
 use recon::object_dynamics::planar::*;
-use recon::observer::ContactNoiseLevel;
+use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::PlaneOptions;
 use recon_tests::Random;
 use std::f64::consts::{PI, TAU};

@@ -6,7 +6,7 @@ use exploration::generators::{Family, Outline, outline};
 use exploration::planar::{PathAware, PlanarKnowledge, SimulatedFinger, turned_start};
 use exploration::{ExploreError, Goal, Heading, Motion, Task, explore};
 use glam::DVec2;
-use recon::shape_bounds::planar::Direction;
+use recon::shape_bounds::exact_hull::planar::Direction;
 use std::f64::consts::TAU;
 
 /// Directions that a pattern is made of.

@@ -12,8 +12,9 @@ use exploration::{
     Situation, Spending, Task, explore,
 };
 use glam::DVec3;
-use recon::shape_bounds::nearest;
-use recon::shape_bounds::planar::{ContactSample, Direction, ShapeBounds};
+use recon::shape_bounds::distance::nearest;
+use recon::shape_bounds::exact_hull::planar::Direction;
+use recon::shape_bounds::planar::{ContactSample, ShapeBounds};
 use std::time::Instant;
 
 /// Any planner in the plane.
@@ -146,7 +147,7 @@ fn between(body: &Outline, bounds: &ShapeBounds) -> bool {
     let support = |d: DVec3| Direction::new(d.truncate()).map_or(DVec3::ZERO, |d| body(d).extend(0.0));
     let corners = bounds.lower().polygon().map_or(&[][..], |p| p.shape().vertices());
     let inside = corners.iter().all(|v| nearest(v.extend(0.0), &[], support).certified <= 1e-12);
-    let around = |region: &recon::shape_bounds::planar::Region| {
+    let around = |region: &recon::shape_bounds::exact_hull::planar::Region| {
         region.shape().edges().all(|(a, b)| {
             Direction::new(-(b - a).perp()).is_ok_and(|n| body(n).dot(n.get()) <= a.dot(n.get()) + 1e-12)
         })

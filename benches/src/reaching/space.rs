@@ -13,7 +13,8 @@ use exploration::{
 };
 use glam::DVec3;
 use recon::contact_kinematics::Direction;
-use recon::shape_bounds::{ContactSample, ShapeBounds, nearest};
+use recon::shape_bounds::distance::nearest;
+use recon::shape_bounds::{ContactSample, ShapeBounds};
 use std::time::Instant;
 
 /// Any planner in space.
@@ -150,6 +151,6 @@ fn between(body: &Solid, bounds: &ShapeBounds) -> bool {
     let support = |d: DVec3| Direction::new(d).map_or(DVec3::ZERO, body);
     let corners = bounds.lower().solid().map_or(&[][..], |s| s.vertices());
     let inside = corners.iter().all(|v| nearest(*v, &[], support).certified <= 1e-12);
-    let cuts_nothing = |h: &recon::shape_bounds::HalfSpace| h.excess(body(h.normal)) <= 1e-12;
+    let cuts_nothing = |h: &recon::shape_bounds::exact_hull::HalfSpace| h.excess(body(h.normal)) <= 1e-12;
     inside && bounds.upper().bounded().is_none_or(|upper| upper.face_half_spaces().iter().all(cuts_nothing))
 }

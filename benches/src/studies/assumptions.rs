@@ -5,7 +5,8 @@
 use crate::whole_logs::body::{self, Body};
 use crate::whole_logs::options;
 use recon::object_dynamics::ContactLog;
-use recon::observer::{Assumption, ContactEstimate, SensorFault, estimate_contacts};
+use recon::observer::contacts::{ContactEstimate, estimate_contacts};
+use recon::observer::faults::{Assumption, SensorFault};
 use recon_benches::fault::Fault;
 
 type Failure = Box<dyn std::error::Error>;
@@ -167,8 +168,9 @@ fn faulty(body: &Body, noise: f64, fault: &Fault) -> Result<Option<(usize, bool)
 }
 
 fn outcome(found: &ContactEstimate, fault: &Fault, body: &Body) -> (usize, bool) {
-    let explains =
-        |of: &&recon::observer::Explanation| of.assumption != Assumption::None && of.misfit < EXPLAINED;
+    let explains = |of: &&recon::observer::faults::Explanation| {
+        of.assumption != Assumption::None && of.misfit < EXPLAINED
+    };
     let Some(first) = found.explanations.first() else { return (1, false) };
     let own = found.explanations.iter().filter(explains).find(|of| fault.is(&of.assumption));
     match own {

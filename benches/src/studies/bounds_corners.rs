@@ -6,8 +6,8 @@
 
 use glam::DVec3;
 use num_rational::BigRational;
+use shape_bounds::exact_hull::{HalfSpace, Hull, Intersection, Polyhedron};
 use shape_bounds::generators::{AXES, Source, curve_contacts};
-use shape_bounds::{HalfSpace, Hull, Intersection, Polyhedron};
 
 type Failure = Box<dyn std::error::Error>;
 

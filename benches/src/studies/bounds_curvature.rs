@@ -9,10 +9,10 @@ use crate::rows;
 use cpu_time::ThreadTime;
 use glam::DVec3;
 use recon::contact_kinematics::{CurvatureRadii, Direction};
+use shape_bounds::curvature::{BallIntersection, CurvatureBounds, SharpBounds};
+use shape_bounds::exact_hull::{HalfSpace, Intersection};
 use shape_bounds::generators::{AXES, Source, curve_contacts};
-use shape_bounds::{
-    BallIntersection, ContactSample, CurvatureBounds, HalfSpace, Intersection, ShapeBounds, SharpBounds,
-};
+use shape_bounds::{ContactSample, ShapeBounds};
 use std::fmt::Write as _;
 
 type Failure = Box<dyn std::error::Error>;

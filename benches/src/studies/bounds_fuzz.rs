@@ -2,8 +2,8 @@
 //!
 //! Usage: `bounds_fuzz [CASES]` (100,000 by default). Prints a table as CSV; an error if the hull failed on any case.
 
+use shape_bounds::exact_hull::{Hull, HullCertificate, TriangleMesh};
 use shape_bounds::generators::{InputKind, Source};
-use shape_bounds::{Hull, HullCertificate, TriangleMesh};
 use std::io::{Read, Write as _};
 use std::process::Command;
 

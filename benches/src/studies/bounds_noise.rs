@@ -3,10 +3,11 @@
 //! Usage: `bounds_noise [RUNS]` (1000 by default). Prints a table in Markdown.
 
 use recon::contact_kinematics::{CurvatureRadii, Direction};
+use shape_bounds::curvature::SharpBounds;
+use shape_bounds::exact_hull::Intersection;
 use shape_bounds::generators::{AXES, Source, ellipsoid_support, noisy_curves};
-use shape_bounds::{
-    ContactNoise, ContactSample, Intersection, NoisyContact, ShapeBounds, SharpBounds, estimate_noise,
-};
+use shape_bounds::noise::{ContactNoise, NoisyContact, estimate_noise};
+use shape_bounds::{ContactSample, ShapeBounds};
 
 const CONTACTS: usize = 1000;
 /// Limits on the radii of curvature: those of the ellipsoid.

@@ -7,12 +7,12 @@ use cpu_time::ThreadTime;
 use glam::{DVec2, DVec3};
 use recon::contact_kinematics::Direction as Direction3;
 use recon::contact_kinematics::planar::{Ellipse, RadiusBounds, RadiusFunction};
+use shape_bounds::concave::{AlphaShape, HermiteSurface};
+use shape_bounds::exact_hull::planar::{Direction, Hull, Intersection};
 use shape_bounds::generators::{AXES, Source};
-use shape_bounds::planar::{
-    ContactNoise, ContactSample, CurvatureBounds, Direction, Hull, IncrementalBounds, Intersection,
-    NoisyContact, ShapeBounds,
-};
-use shape_bounds::{AlphaShape, HermiteSurface};
+use shape_bounds::planar::curvature::CurvatureBounds;
+use shape_bounds::planar::noise::{ContactNoise, NoisyContact};
+use shape_bounds::planar::{ContactSample, IncrementalBounds, ShapeBounds};
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 

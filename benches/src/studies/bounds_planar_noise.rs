@@ -6,10 +6,10 @@
 use cpu_time::ThreadTime;
 use glam::DVec2;
 use recon::contact_kinematics::planar::{Ellipse, RadiusFunction};
+use shape_bounds::exact_hull::planar::Direction;
 use shape_bounds::generators::Source;
-use shape_bounds::planar::{
-    ContactNoise, ContactSample, Direction, NoisyContact, ShapeBounds, with_noise_as_found, without_outliers,
-};
+use shape_bounds::planar::noise::{ContactNoise, NoisyContact, with_noise_as_found, without_outliers};
+use shape_bounds::planar::{ContactSample, ShapeBounds};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write as _;
 

@@ -6,8 +6,8 @@
 
 use cpu_time::ThreadTime;
 use glam::DVec3;
+use shape_bounds::exact_hull::{HalfSpace, Hull, Intersection};
 use shape_bounds::generators::{InputKind, curve_contacts};
-use shape_bounds::{HalfSpace, Hull, Intersection};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};

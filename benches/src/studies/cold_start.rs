@@ -10,9 +10,8 @@ use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     ContactLog, InitialMotion, MassProperties, SampleTimes, SensorLog, Simulation, ThreePalmScene,
 };
-use recon::observer::{
-    ContactEstimate, ContactNoiseLevel, ContactOptions, Reason, Reliability, estimate_contacts,
-};
+use recon::observer::contacts::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::reliability::{Reason, Reliability};
 use recon_tests::Random;
 use std::collections::BTreeMap;
 

@@ -2,8 +2,9 @@
 
 use cpu_time::ThreadTime;
 use nalgebra::{SMatrix, SVector};
-use recon::observer::{
-    Bank, BankError, BankOptions, Gaussian, KalmanMember, Memory, ModeState, Model, Modes, smooth_backward,
+use recon::observer::Model;
+use recon::observer::bank::{
+    Bank, BankError, BankOptions, Gaussian, KalmanMember, Memory, ModeState, Modes, smooth_backward,
 };
 use recon_tests::belt::{Entry, belt_velocity, modes, run, start};
 use std::time::Duration;

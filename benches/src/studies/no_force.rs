@@ -6,7 +6,7 @@ use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, ThreePalmScene,
 };
-use recon::observer::{KnownTouch, NoForceError, estimate_without_forces};
+use recon::observer::three_palms::no_force::{KnownTouch, NoForceError, estimate_without_forces};
 use recon_tests::Random;
 use std::time::Instant;
 

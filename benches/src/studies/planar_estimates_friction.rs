@@ -11,8 +11,8 @@ use recon::contact_kinematics::planar::{
 };
 use recon::object_dynamics::planar::*;
 use recon::object_dynamics::{ChannelNoise, ContactMode};
+use recon::observer::contacts::{ContactNoiseLevel, ImpulseNoise};
 use recon::observer::planar::*;
-use recon::observer::{ContactNoiseLevel, ImpulseNoise};
 use recon_benches::planar::scene::outline;
 use recon_tests::Random;
 use std::f64::consts::{PI, TAU};

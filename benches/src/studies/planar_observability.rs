@@ -4,7 +4,7 @@
 
 use recon::contact_kinematics::planar::{Ellipse, PairContact, PalmPair};
 use recon::object_dynamics::planar::*;
-use recon::observer::ContactNoiseLevel;
+use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::*;
 use recon_io::{FigureCurve, FigurePanel, write_figures};
 use recon_tests::planar_scenes::scene;

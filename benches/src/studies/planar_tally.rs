@@ -3,7 +3,7 @@
 use crate::rows::RowsError;
 use cpu_time::ThreadTime;
 use recon::object_dynamics::planar::{ContactLog, PlanarTruth};
-use recon::observer::SensorFault;
+use recon::observer::faults::SensorFault;
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
 
 /// Deviations beyond which an error that nothing warned of is silent.

@@ -7,7 +7,7 @@
 use cpu_time::ThreadTime;
 use glam::{DMat3, DQuat, DVec3};
 use recon::object_dynamics::{ContactLog, MassProperties, SensorLog};
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::contacts::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
 use recon_tests::{Random, exact_log, fig5};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -2,7 +2,7 @@
 
 use contact_kinematics::Direction;
 use glam::DVec2;
-use shape_bounds::planar;
+use shape_bounds::exact_hull::planar;
 use std::f64::consts::PI;
 
 /// A direction along which a body can be touched: the outward normal of the plane or line that a finger brings up to it.

@@ -41,7 +41,7 @@ pub enum KnowledgeError {
         touch: usize,
         /// What is wrong.
         #[source]
-        reason: shape_bounds::NoiseError,
+        reason: shape_bounds::noise::NoiseError,
     },
     /// The same in the plane.
     #[error("contact {touch} (from 1): {reason}")]
@@ -50,7 +50,7 @@ pub enum KnowledgeError {
         touch: usize,
         /// What is wrong.
         #[source]
-        reason: shape_bounds::planar::NoiseError,
+        reason: shape_bounds::planar::noise::NoiseError,
     },
     /// A contact beside an estimate.
     #[error("contacts of an estimate come together with it: make the estimate anew")]

@@ -1,4 +1,15 @@
 //! What may be wrong with sensors, and what data say of it.
+//!
+//! ```
+//! use observer::faults::{SensorFault, Suspect};
+//!
+//! // The second palm seems to say 4 % too little, and more than 1 % would turn the motion.
+//! let fault = SensorFault::ForceGain { palm: 2 };
+//! let suspect = Suspect { fault, value: 0.04, deviation: 0.005, tolerated: 0.01 };
+//! assert_eq!(suspect.score(), 8.0); // deviations: not by chance
+//! assert!(suspect.untold() > 1.0); // a gain that goes unseen may be off by more than the motion bears
+//! assert!(suspect.to_string().starts_with("gain of the forces of palm 2 less 1, which comes out as 4.00e-2"));
+//! ```
 
 use std::fmt;
 

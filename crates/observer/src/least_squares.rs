@@ -1,9 +1,27 @@
 //! Nonlinear least squares with few unknowns and many residuals, on a manifold if need be.
 //!
-//! The steps of [`solve_batch`](crate::solve_batch) are damped too, in a loop of its own: there a trial is a whole trajectory that
-//! is rolled out and linearised in place, its cost comes with the linearisation, and with process noise full steps are taken
-//! without a trial. What the two loops have in common, "less damping after a gain, more after none", is shorter than an
-//! interface that would serve both.
+//! The steps of [`solve_batch`](crate::batch::solve_batch) are damped too, in a loop of its own: there a trial is a whole trajectory that is rolled
+//! out and linearised in place, its cost comes with the linearisation, and with process noise full steps are taken without a trial. What the two
+//! have in common, "less damping after a gain, more after none", is shorter than an interface that would serve both.
+//!
+//! ```
+//! // The rate of a decay, 2 exp(-b t), from twenty readings.
+//! use observer::least_squares::{FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations};
+//! struct Decay;
+//! impl LeastSquares<1> for Decay {
+//!     type Point = f64;
+//!     fn linearise(&self, b: &f64) -> Option<NormalEquations<1>> {
+//!         let mut normal = NormalEquations::default();
+//!         let told = |b: f64, t: f64| 2.0 * (-b * t).exp();
+//!         (0..20).map(|k| 0.1 * f64::from(k)).for_each(|t| normal.add(&[-t * told(*b, t)].into(), told(*b, t) - told(1.5, t)));
+//!         Some(normal)
+//!     }
+//!     fn cost(&self, b: &f64) -> Option<f64> { self.linearise(b).map(|normal| normal.cost) }
+//!     fn retract(&self, b: &f64, step: &nalgebra::SVector<f64, 1>) -> f64 { b + step[0] }
+//! }
+//! let fit = LevenbergMarquardt::default().fit(&Decay, 0.5);
+//! assert!(fit.status == FitStatus::Converged && (fit.point - 1.5).abs() < 1e-9);
+//! ```
 
 use nalgebra::{Cholesky, SMatrix, SVector, SymmetricEigen};
 

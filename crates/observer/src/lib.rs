@@ -1,16 +1,30 @@
 //! Observers: estimate the state of a system from its outputs, and say how well it is known.
 //!
-//! The generic part needs a [`Model`] (flow, output, linearisation) and knows nothing about palms: the Newton-method
-//! observer on a moving window ([`NewtonObserver`]), all samples at once ([`solve_batch`]) and the extended Kalman filter
-//! ([`ExtendedKalmanFilter`]). Each estimate comes with a [`Report`]: status, residual, rank, smallest information and its
-//! direction, condition, covariance. For a system that changes between modes there is a bank of filters, one for each
-//! ([`Bank`]), which says how probable each mode is.
+//! # Start here
+//! With a system of your own: describe it by a [`Model`] (flow, output, linearisation) and take one of the first four rows. With palms that
+//! sense: [`contacts::estimate_contacts`], which needs no guess. Each module has a worked example. Every estimate comes with a [`Report`] or
+//! its like: status, residual, rank, the worst known direction, condition, covariance.
 //!
-//! Start with [`estimate_contacts`] for the motion, mass and inertia of a body between palms; for a system of your own with a [`Model`]:
+//! | to do | take |
+//! |---|---|
+//! | follow a system sample by sample: by Newton's method on a moving window; by a Kalman filter | [`newton`]; [`ekf`] |
+//! | estimate from all samples at once | [`batch`] |
+//! | follow a system that changes between modes, and tell how probable each is | [`bank`] |
+//! | integrate a flow with its linearisation | [`rk4`] |
+//! | nonlinear least squares of few unknowns | [`least_squares`] |
+//! | motion, mass and inertia of a body from what palms sense; the same sample by sample | [`contacts`]; [`contacts::stream`] |
+//! | motion and shape from where three palms are touched, without forces | [`three_palms::no_force`] |
+//! | tell whether contacts slide, stick or are off | [`contact_modes`] |
+//! | all that in the plane | [`planar`] |
+//! | outline and friction of an object that is pushed over a table | [`pushes`] |
+//! | read what an estimate says of itself, of sensors, of poses | [`reliability`], [`faults`], [`rigid`] |
+//! | the paper's own method, as an oracle | [`three_palms::paper_method`] |
+//!
+//! A Kalman filter of a cart:
 //!
 //! ```
 //! use nalgebra::{SMatrix, SVector};
-//! use observer::{ExtendedKalmanFilter, Model, Sample, Start, Status};
+//! use observer::{Model, Sample, Start, Status, ekf::ExtendedKalmanFilter};
 //!
 //! /// Position and speed of a cart, sampled at 10 Hz; its position is measured.
 //! struct Cart;
@@ -47,22 +61,22 @@
 //! # }
 //! ```
 //!
-//! The feature `palms` (on by default) adds the estimators of shape and motion from touch.
+//! The feature `palms` (on by default) adds the estimators of shape and motion from touch: all rows from the sixth on.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(feature = "palms")]
 mod chance;
 #[cfg(feature = "palms")]
-mod contact_modes;
+pub mod contact_modes;
 #[cfg(feature = "palms")]
-mod contacts;
+pub mod contacts;
 mod core;
 #[cfg(feature = "palms")]
 mod doubted;
 #[cfg(feature = "palms")]
-mod faults;
-mod least_squares;
+pub mod faults;
+pub mod least_squares;
 #[cfg(feature = "palms")]
 pub mod planar;
 #[cfg(feature = "palms")]
@@ -72,47 +86,16 @@ mod quadrature;
 #[cfg(feature = "palms")]
 mod random;
 #[cfg(feature = "palms")]
-mod reliability;
+pub mod reliability;
 #[cfg(feature = "palms")]
-mod rigid;
+pub mod rigid;
 #[cfg(feature = "palms")]
 mod roughness;
 #[cfg(feature = "palms")]
-mod three_palms;
+pub mod three_palms;
 
-#[cfg(feature = "palms")]
-pub use contact_modes::{
-    ContactFriction, ContactModes, ContactModesDoubt, ContactModesError, ContactModesOptions, ContactOdds,
-    ContactReading, ContactSeen, ContactSlip, DoubtedReading, LearnedFriction, TwistError, WholeModes,
-    whole_modes,
-};
-#[cfg(feature = "palms")]
-pub use contacts::{
-    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions,
-    EstimatedModes, ForceReading, ImpulseNoise, MotionStream, PalmSensed, PlaneReadings, StreamBody,
-    StreamError, StreamEstimate, StreamModes, StreamMotion, StreamOptions, StreamPalm, StreamStage,
-    estimate_contacts,
-};
 pub use core::{
-    Arrival, Bank, BankError, BankOptions, BatchOptions, BatchSolution, Branch, EkfEstimate,
-    ExtendedKalmanFilter, Gaussian, Hypothesis, Jump, KalmanMember, Landing, Link, Member, Memory, ModeLabel,
-    ModeState, Model, Modes, NewtonEstimate, NewtonObserver, NewtonOptions, ObserverError, Odds, Report,
-    Sample, Start, Status, describe_direction, jump, match_rotations, rk4, rk4_linearised,
-    rotation_difference, rotation_retract, rotation_slope, smooth_backward, solve_batch, solve_batch_along,
-    solve_batch_from,
-};
-#[cfg(feature = "palms")]
-pub use faults::{Assumption, Explanation, SensorFault, Suspect};
-pub use least_squares::{Fit, FitStatus, LeastSquares, LevenbergMarquardt, NormalEquations, Observability};
-#[cfg(feature = "palms")]
-pub use reliability::{Reason, Reliability};
-#[cfg(feature = "palms")]
-pub use rigid::{PoseAxes, PoseCovariance, PoseErrors, equivalent_orientations, nearest_turn};
-#[cfg(feature = "palms")]
-pub use three_palms::{
-    Closure, KnownTouch, MotionState, NoForceError, NoForceEstimate, NoForceEvidence, PaperError,
-    PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, TouchShape, Track, TrackError,
-    estimate_without_forces, integrate_paper_system,
+    Model, ObserverError, Report, Sample, Start, Status, bank, batch, describe_direction, ekf, newton, rk4,
 };
 
 /// How much of a test is run: a decisive part of it, all of it where the environment says `RECON_TESTS=all`, as

@@ -1,4 +1,16 @@
 //! Whether to believe an estimate, and why not.
+//!
+//! ```
+//! use observer::reliability::{Reason, Reliability};
+//!
+//! let told = Reliability::Unreliable(vec![Reason::TooShort { duration: 0.2, needed: 0.5 }]);
+//! match told {
+//!     Reliability::Reliable => println!("off by its deviations"),
+//!     Reliability::Unreliable(reasons) => {
+//!         assert!(reasons[0].to_string().starts_with("0.20 s are too short"));
+//!     }
+//! }
+//! ```
 
 use crate::faults::Suspect;
 use std::fmt;

@@ -3,12 +3,16 @@ use recon::object_dynamics::{
     ContactLogError, ContactSimulationError, LogError, MassError, NotThreePlanes,
     SceneError as DynamicsError, SimulationError,
 };
-use recon::observer::ContactEstimateError;
+use recon::observer::contacts::ContactEstimateError;
 use recon::observer::pushes::PushesError;
-use recon::shape_bounds::{
-    AlphaError, ApproximationError, BoundsError, CurvatureError, FacetError, FitError, IntersectionError,
-    NoiseError, PoseError, SurfaceError, planar,
-};
+use recon::shape_bounds::approximation::ApproximationError;
+use recon::shape_bounds::concave::{AlphaError, SurfaceError};
+use recon::shape_bounds::curvature::CurvatureError;
+use recon::shape_bounds::exact_hull::IntersectionError;
+use recon::shape_bounds::fit::FitError;
+use recon::shape_bounds::noise::NoiseError;
+use recon::shape_bounds::poses::PoseError;
+use recon::shape_bounds::{BoundsError, FacetError, planar};
 use recon_io::{
     BagError, CheckError, ExportError, LogFileError, MappingError, MeshError, OutputError, SceneError,
     TouchesError,
@@ -88,15 +92,15 @@ pub(crate) enum CliError {
     #[error("the contacts in the plane give no bounds")]
     PlanarBounds(#[from] planar::BoundsError),
     #[error("the contacts in the plane give no bounds under noise")]
-    PlanarNoisyBounds(#[from] planar::NoiseError),
+    PlanarNoisyBounds(#[from] planar::noise::NoiseError),
     #[error("the contacts in the plane and the limits on the curvature give no bounds")]
-    PlanarCurvature(#[from] planar::CurvatureError),
+    PlanarCurvature(#[from] planar::curvature::CurvatureError),
     #[error("{} has no log {number}; it has {there}", path.display())]
     NoPushLog { path: PathBuf, number: u32, there: String },
     #[error("the pushes of log {log} tell no outline")]
     Pushes { log: u32, source: PushesError },
     #[error("no outline can be fitted to the contacts")]
-    PlanarFit(#[from] planar::FitError),
+    PlanarFit(#[from] planar::fit::FitError),
     #[error("the contacts have no alpha shape")]
     Alpha(#[from] AlphaError),
     #[error("no smooth surface goes through the contacts")]
@@ -169,7 +173,7 @@ pub(crate) enum CliError {
         source: ContactEstimateError,
     },
     #[error("the log cannot be followed")]
-    Stream(#[from] recon::observer::StreamError),
+    Stream(#[from] recon::observer::contacts::stream::StreamError),
     #[error(
         "following a motion needs the noise of the sensors: give --contact-noise (m) and --force-noise (N), or \
          sensors.contact_std and sensors.force_std in the scene"
@@ -178,7 +182,7 @@ pub(crate) enum CliError {
     #[error("the log has {found} sample(s); following a motion needs {needed}")]
     TooFewSamples { found: usize, needed: usize },
     #[error("contacts alone give no motion")]
-    WithoutForces(#[from] recon::observer::NoForceError),
+    WithoutForces(#[from] recon::observer::three_palms::no_force::NoForceError),
     #[error("--without-forces needs a scene file (--scene), for gravity")]
     NoGravity,
     #[error("the planar log gives no motion")]

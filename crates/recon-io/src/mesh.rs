@@ -154,7 +154,10 @@ mod tests {
             }
         }
         assert!(edges.iter().all(|(&(a, b), &count)| count == 1 && edges.get(&(b, a)) == Some(&1)));
-        let solid = recon::shape_bounds::TriangleMesh { vertices: mesh.vertices, triangles: mesh.triangles };
+        let solid = recon::shape_bounds::exact_hull::TriangleMesh {
+            vertices: mesh.vertices,
+            triangles: mesh.triangles,
+        };
         let missing = 4.0 / 3.0 * PI - solid.moments().volume;
         assert!(missing > 0.0 && missing < 0.03, "{missing}");
     }

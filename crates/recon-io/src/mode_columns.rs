@@ -1,7 +1,7 @@
 //! Columns of contact modes: the same in every table of a motion.
 
 use recon::object_dynamics::ContactMode;
-use recon::observer::ContactOdds;
+use recon::observer::contact_modes::ContactOdds;
 use std::fmt::Write as _;
 
 /// Names of the columns of contact modes of `palms` palms, a comma before each: `mode_i` (0 off, 1 slides, 2 sticks), and where they are told the

@@ -7,7 +7,7 @@ use crate::report::MotionState;
 use crate::table::cells;
 use glam::{DQuat, DVec3};
 use recon::object_dynamics::MOST_PALMS;
-use recon::observer::StreamModes;
+use recon::observer::contacts::stream::StreamModes;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 

@@ -5,9 +5,9 @@ use crate::report::{
     mode_times,
 };
 use glam::DMat3;
-use recon::observer::{
-    Assumption, ContactModesDoubt, EstimatedModes, Explanation, LearnedFriction, SensorFault, Suspect,
-};
+use recon::observer::contact_modes::{ContactModesDoubt, LearnedFriction};
+use recon::observer::contacts::EstimatedModes;
+use recon::observer::faults::{Assumption, Explanation, SensorFault, Suspect};
 use serde_json::{Map, Value, json};
 
 /// What a `summary.json` is of. Its keys are those of `docs/schema/summary.schema.json`.

@@ -5,7 +5,7 @@ use crate::mode_columns::{mode_columns, probabilities, push_modes};
 use crate::number::push_row;
 use crate::report::{MotionState, PalmContact};
 use recon::object_dynamics::MOST_PALMS;
-use recon::observer::ContactEstimate;
+use recon::observer::contacts::ContactEstimate;
 use std::io::{self, Write};
 
 /// Writes the motion as `t` and the truth columns of the sensor-log format.

@@ -2,6 +2,17 @@
 //!
 //! Gilbert, Johnson and Keerthi (1988), written with the stopping rule that a bound needs: the direction that is
 //! returned certifies a distance by itself, whatever the iteration did.
+//!
+//! ```
+//! use glam::DVec3;
+//! use shape_bounds::distance::nearest;
+//!
+//! // From a point beside a cube of edge 2 about the origin: what is nearest is on a face, and nothing is nearer than 2.
+//! let corner = |d: DVec3| DVec3::ONE.copysign(d);
+//! let found = nearest(DVec3::new(3.0, 0.25, 0.5), &[], corner);
+//! assert!((found.point - DVec3::new(1.0, 0.25, 0.5)).length() < 1e-12);
+//! assert!((found.certified - 2.0).abs() < 1e-12);
+//! ```
 
 use glam::DVec3;
 
@@ -196,7 +207,7 @@ mod tests {
             .iter()
             .flat_map(|p| [(); 6].map(|()| spread(&mut s, *p)))
             .collect();
-        let Ok(crate::Hull::Solid(hull)) = crate::Hull::of(&points) else { panic!("flat") };
+        let Ok(exact_hull::Hull::Solid(hull)) = exact_hull::Hull::of(&points) else { panic!("flat") };
         for _ in 0..2000 {
             let middle = points[s.below(points.len())].lerp(points[s.below(points.len())], s.unit());
             let query = middle * s.between(1.0, 3.0);

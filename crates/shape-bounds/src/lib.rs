@@ -4,7 +4,8 @@
 //! contained in the half-spaces `n_k . (y - x_k) <= 0` (Moll and Erdmann, WAFR 2002, section 8). Which point is outside of
 //! which facet is decided by exact arithmetic, so that the bounds hold on thin, flat, repeated and far-away data.
 //!
-//! Start with [`ShapeBounds::from_contacts`]:
+//! # Start here
+//! [`ShapeBounds::from_contacts`]; what else there is stands in modules, each with a worked example:
 //!
 //! ```
 //! use glam::DVec3;
@@ -26,30 +27,32 @@
 //! | what is known besides | take |
 //! |---|---|
 //! | nothing; contacts come one by one | [`ShapeBounds`]; [`IncrementalBounds`] |
-//! | how noisy contacts are, or that they are | [`CertainBounds`], [`estimate_noise`] |
-//! | limits on the radii of curvature | [`CurvatureBounds`], [`SharpBounds`] |
-//! | a family of shapes of few parameters | [`ShapeFit`] |
-//! | that there are corners, edges and faces | [`Features`] |
-//! | that the body is not convex | [`ShapeBounds::from_concave_contacts`], [`AlphaShape`], [`HermiteSurface`] |
-//! | that it is seen from some place inside as a whole, smooth; that contacts are noisy | [`SplineSurface`]; [`PrincipalSurface`] |
-//! | poses of a body that rests on a plane | [`PoseBounds`] |
+//! | how noisy contacts are, or that they are | [`noise`] |
+//! | limits on the radii of curvature | [`curvature`] |
+//! | that palms are hollow, of which radius | [`palms`] |
+//! | a family of shapes of few parameters | [`fit`] |
+//! | that there are corners, edges and faces | [`features`] |
+//! | that the body is not convex | [`ShapeBounds::from_concave_contacts`], [`concave`] |
+//! | that it is seen from some place inside as a whole, smooth; that contacts are noisy | [`approximation`] |
+//! | poses of a body that rests on a plane | [`poses`] |
+//! | its farthest points along directions, and how far from it a point is, is asked | [`distance`] |
 //! | that it all lies in a plane | [`planar`] |
 //!
-//! Hulls and half-spaces themselves are those of the crate `exact-hull`.
+//! Hulls and half-spaces themselves are those of the crate [`exact_hull`], which stands here as a module.
 //!
 //! All lengths are in m, all coordinates in the body's frame.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-mod approximation;
+pub mod approximation;
 mod bounds;
-mod concave;
-mod curvature;
-mod distance;
+pub mod concave;
+pub mod curvature;
+pub mod distance;
 mod erosion;
 mod faceted;
-mod features;
-mod fit;
+pub mod features;
+pub mod fit;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
 mod halves;
@@ -57,45 +60,18 @@ mod halves;
 mod laws;
 mod matrix;
 mod median;
-mod noise;
-mod palms;
+pub mod noise;
+pub mod palms;
 pub mod planar;
-mod poses;
+pub mod poses;
 mod sample;
 #[cfg(any(test, feature = "strategies"))]
 pub mod strategies;
 
-pub use approximation::{ApproximationError, PrincipalSurface, SplineSurface};
 pub use bounds::{BoundsError, Contradiction, Gap, IncrementalBounds, ShapeBounds};
-pub use concave::{AlphaError, AlphaShape, HermiteSurface, SurfaceError};
-pub use curvature::{
-    BallHull, BallIntersection, ConvexMeasures, CurvatureBounds, CurvatureError, RoundedHull,
-    RoundedIntersection, SharpBounds,
-};
-pub use distance::{Nearest, nearest};
-pub use exact_hull::{
-    HalfSpace, Hull, HullCertificate, IncrementalHull, IncrementalIntersection, Intersection,
-    IntersectionError, PointsError, Polyhedron, SolidHull, SolidMoments, SupportWalk, TriangleMesh,
-    Unbounded,
-};
+#[doc(no_inline)]
+pub use exact_hull;
 pub use faceted::FacetError;
-pub use features::{
-    Corner, Edge, Face, FeatureKind, FeatureOptions, FeatureRun, Features, FoundPolyhedron, Pieces,
-};
-pub use fit::{
-    COMPARED, Candidate, FitError, FitOptions, FitStatistics, FittedBody, IncrementalFit, NoiseLevel,
-    Refutation, SIGNIFICANCE, ShapeChoice, ShapeFamily, ShapeFit, SkewEllipsoid, Superquadric,
-};
-pub use noise::quantile;
-pub use noise::{
-    CertainBounds, ContactNoise, NoiseDoubt, NoiseError, NoisyContact, Outlier, PoseNoise, correlated_noise,
-    estimate_noise, independence_is_tested, with_noise_as_found, without_outliers,
-};
-pub use palms::{PalmContact, PalmError, PalmIntersection};
-pub use poses::{
-    BodyPose, CALIBRATED_RUNS, CONFIDENCES, ContradictingRun, PlaneHeight, PoseBounds, PoseError, PoseRule,
-    half_space_above_plane,
-};
 pub use sample::{ContactError, ContactSample, NORMAL_TOLERANCE};
 
 /// How much of a test is run: a decisive part of it, all of it where the environment says `RECON_TESTS=all`, as

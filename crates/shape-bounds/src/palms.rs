@@ -1,4 +1,22 @@
 //! What contacts with spherical palms say about a convex body.
+//!
+//! ```
+//! use glam::DVec3;
+//! use shape_bounds::ContactSample;
+//! use shape_bounds::palms::{PalmContact, PalmIntersection};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A unit ball, touched at the corners of a cube.
+//! let corner = |i: u32| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * 2.0 - DVec3::ONE;
+//! let contacts = ContactSample::from_raw((0..8).map(|i| corner(i).normalize()).map(|n| (n, n)))?;
+//! // The palms are hollow, of radius 3: smaller is what they leave than what flat ones would, a regular octahedron.
+//! let palms: Vec<_> = contacts.into_iter().map(|contact| PalmContact { contact, hollow_radius: 3.0 }).collect();
+//! let bounds = PalmIntersection::of(&palms)?.faceted(0.01)?;
+//! let ball = 4.0 / 3.0 * std::f64::consts::PI;
+//! assert!(ball < bounds.lower_volume() && bounds.upper_volume() < 4.0 * 3.0_f64.sqrt());
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::bounds::ShapeBounds;
 use crate::faceted::{FacetError, faceted};
@@ -92,7 +110,7 @@ pub enum PalmError {
 /// The intersection of what palms of any radii leave: balls for hollow palms, half-spaces for others. An upper bound of a
 /// convex body that they touch.
 ///
-/// For palms of one radius [`crate::BallIntersection`] is exact; here the surface is found to any stated tolerance.
+/// For palms of one radius [`crate::curvature::BallIntersection`] is exact; here the surface is found to any stated tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PalmIntersection {
     palms: Vec<PalmContact>,

@@ -4,7 +4,7 @@ use super::{Moment, settle};
 use crate::Random;
 use nalgebra::{Matrix2, Matrix6, Vector2};
 use recon::object_dynamics::ContactMode;
-use recon::observer::{ContactReading, ContactSeen, ContactSlip};
+use recon::observer::contact_modes::{ContactReading, ContactSeen, ContactSlip};
 
 const DT: f64 = 1e-3;
 const FORCE_NOISE: f64 = 0.02;

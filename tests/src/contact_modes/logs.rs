@@ -6,7 +6,8 @@ use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Vector2, Vector6};
 use recon::contact_kinematics::SurfacePose;
 use recon::object_dynamics::ContactMode;
-use recon::observer::{ContactReading, ContactSeen, ContactSlip, ForceReading, PalmSensed};
+use recon::observer::contact_modes::{ContactReading, ContactSeen, ContactSlip};
+use recon::observer::contacts::stream::{ForceReading, PalmSensed};
 use std::collections::HashMap;
 
 /// Of each component of a force, of its size.

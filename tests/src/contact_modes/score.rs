@@ -1,7 +1,7 @@
 //! How right odds of sliding and sticking are.
 
 use recon::object_dynamics::ContactMode;
-use recon::observer::ContactOdds;
+use recon::observer::contact_modes::ContactOdds;
 
 /// Probability above which a mode counts as told with confidence.
 const CONFIDENT: f64 = 0.99;

@@ -2,7 +2,7 @@
 //!
 //! Bands were set from the seeds beside them; what they rest on is in `docs/contact-modes.md`.
 
-use recon::observer::{
+use recon::observer::contact_modes::{
     ContactFriction, ContactModes, ContactModesOptions, ContactReading, ContactSeen, DoubtedReading,
 };
 use recon_tests::contact_modes::{LoggedContacts, Score, SlipNoise, TWIST_CORRELATION, classify, drawn};

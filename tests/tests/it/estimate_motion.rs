@@ -8,7 +8,8 @@ use recon::object_dynamics::{
     ContactLog, InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation,
     ThreePalmScene,
 };
-use recon::observer::{ContactEstimate, nearest_turn};
+use recon::observer::contacts::ContactEstimate;
+use recon::observer::rigid::nearest_turn;
 use recon_tests::{Random, exact_log, f5, few_or_all, g2};
 
 #[test]

@@ -10,7 +10,7 @@ use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, MassProperties, SampleTimes, SensorLog, Simulation, ThreePalmScene,
 };
-use recon::observer::{ContactEstimate, ContactEstimateError};
+use recon::observer::contacts::{ContactEstimate, ContactEstimateError};
 use recon_tests::{exact_log, f5, few_or_all, fig5};
 
 /// Right to within a share of the size or within deviations, or refused.

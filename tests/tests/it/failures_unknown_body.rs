@@ -8,7 +8,7 @@ use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation, ThreePalmScene,
 };
-use recon::observer::ContactEstimate;
+use recon::observer::contacts::ContactEstimate;
 use recon_tests::{exact_log, few_or_all, g2};
 
 const NOISE: SensorNoise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };

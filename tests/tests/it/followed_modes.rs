@@ -2,9 +2,10 @@
 
 use recon::contact_kinematics::PalmSurface;
 use recon::object_dynamics::ContactMode;
-use recon::observer::{
-    ContactNoiseLevel, ContactOptions, MotionStream, StreamEstimate, StreamOptions, StreamPalm, StreamStage,
+use recon::observer::contacts::stream::{
+    MotionStream, StreamEstimate, StreamOptions, StreamPalm, StreamStage,
 };
+use recon::observer::contacts::{ContactNoiseLevel, ContactOptions};
 use recon_tests::contact_modes::{LoggedContacts, Sensed};
 use recon_tests::few_or_all;
 use std::sync::LazyLock;

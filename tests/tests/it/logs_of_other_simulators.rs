@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 use recon::object_dynamics::{ContactLog, MassProperties, SensorLog};
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::contacts::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
 use recon_tests::few_or_all;
 use std::path::{Path, PathBuf};
 

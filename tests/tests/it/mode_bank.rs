@@ -1,8 +1,9 @@
 //! Banks of modes against the numbers of another implementation (`tests/data/modes.json`).
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
-use recon::observer::{
-    Bank, BankOptions, Gaussian, KalmanMember, Landing, Member, Memory, ModeState, Model, Modes, jump,
+use recon::observer::Model;
+use recon::observer::bank::{
+    Bank, BankOptions, Gaussian, KalmanMember, Landing, Member, Memory, ModeState, Modes, jump,
     match_rotations, smooth_backward,
 };
 use recon_tests::belt::{Entry, belt_velocity, modes, start};

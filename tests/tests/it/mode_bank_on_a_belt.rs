@@ -3,7 +3,7 @@
 //! The reference keeps every switch time and merges what lies beyond the last switch; against all sequences of modes it is off
 //! by 2e-4 in the mean.
 
-use recon::observer::{Bank, BankOptions, Memory, ModeLabel, smooth_backward};
+use recon::observer::bank::{Bank, BankOptions, Memory, ModeLabel, smooth_backward};
 use recon_tests::belt::{Entry, belt_velocity, modes, run, start};
 use recon_tests::few_or_all;
 use std::sync::LazyLock;

@@ -2,9 +2,10 @@
 
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::{ContactLog, Instant, PalmReading, SensorLog, SensorNoise, ThreePalmScene};
-use recon::observer::{
-    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, Reliability, estimate_contacts,
+use recon::observer::contacts::{
+    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, estimate_contacts,
 };
+use recon::observer::reliability::Reliability;
 
 /// What conditions are off by beside noise, m/s: next to nothing for bodies of some metres.
 const FLOOR: f64 = 1e-5;

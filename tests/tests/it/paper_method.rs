@@ -5,9 +5,9 @@ use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::{
     BodyState, Instant, Sample, SensorLog, SensorNoise, Simulation, ThreePalmScene,
 };
-use recon::observer::{
-    PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, Track,
-    integrate_paper_system,
+use recon::observer::three_palms::Track;
+use recon::observer::three_palms::paper_method::{
+    PaperError, PaperMethod, PaperReconstruction, PaperStart, PredictorCorrector, integrate_paper_system,
 };
 use recon_tests::{exact_log, f5, g2};
 

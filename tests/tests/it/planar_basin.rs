@@ -6,8 +6,9 @@ use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 use recon::object_dynamics::planar::*;
+use recon::observer::newton::{Arrival, NewtonObserver, NewtonOptions};
 use recon::observer::planar::*;
-use recon::observer::{Arrival, Model, NewtonObserver, NewtonOptions, Sample, Start, Status};
+use recon::observer::{Model, Sample, Start, Status};
 use recon_tests::few_or_all;
 
 type V5 = SVector<f64, 5>;
@@ -27,7 +28,7 @@ struct TorqueInput {
 
 impl TorquesAlone {
     fn step(&self, x: &V5, input: &TorqueInput) -> V5 {
-        recon::observer::rk4(x, input.dt, |fraction, x| {
+        recon::observer::rk4::rk4(x, input.dt, |fraction, x| {
             let stage = (2.0 * fraction) as usize;
             let a = input.angles[stage];
             let q = AuthorsState::from([x[0], x[1], x[2], x[3], x[4], a[0], a[1]]);

@@ -4,7 +4,7 @@ use crate::planar_common::{errors, noise_level, options, scene, times};
 use recon::contact_kinematics::planar::PairContact;
 use recon::object_dynamics::planar::*;
 use recon::observer::planar::*;
-use recon::observer::{Reason, Reliability};
+use recon::observer::reliability::{Reason, Reliability};
 use recon_tests::few_or_all;
 
 const SCENES: [&str; 4] =

@@ -3,8 +3,9 @@
 use crate::planar_common::{errors, noise_level, options, scene, times};
 use recon::object_dynamics::planar::*;
 use recon::object_dynamics::{ChannelNoise, ContactNoise};
+use recon::observer::contacts::{ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::faults::SensorFault;
 use recon::observer::planar::*;
-use recon::observer::{ContactNoiseLevel, ContactOptions, SensorFault, estimate_contacts};
 use recon_tests::few_or_all;
 
 const CONTACT: f64 = 1e-4;

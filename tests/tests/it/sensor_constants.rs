@@ -2,7 +2,8 @@
 
 use crate::noisy::{changed, estimated, words};
 use recon::object_dynamics::{SensorLog, SensorNoise};
-use recon::observer::{ContactEstimate, SensorFault, Suspect};
+use recon::observer::contacts::ContactEstimate;
+use recon::observer::faults::{SensorFault, Suspect};
 use recon_tests::{exact_log, f5, few_or_all, g2};
 
 const NOISE: SensorNoise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };

@@ -70,6 +70,11 @@ const STEPS: &[Step] = &[
     ),
     optional("charts", "each chart with few points is drawn (a minute)", builds::charts),
     optional("fuzz", "the fuzz targets are linted, and each one runs its committed seeds", builds::fuzz),
+    optional(
+        "examples",
+        "the example of each crate's first page runs in a project of its own, on the packages alone (minutes)",
+        package::examples,
+    ),
     optional("hack", "cargo-hack: all combinations of features build", extras::hack),
     optional(
         "semver",

@@ -9,8 +9,9 @@ use super::judged::Ran;
 use super::{DEVIATIONS, Failure, G, Method, Way};
 use crate::planar::scene::Scene;
 use recon::object_dynamics::planar::{PlanarNoise, PlanarTruth};
+use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
-use recon::observer::{ContactNoiseLevel, Reliability};
+use recon::observer::reliability::Reliability;
 
 /// What contact conditions are off by beside noise, natural speeds.
 const FLOOR: f64 = 1e-6;

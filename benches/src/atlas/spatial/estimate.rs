@@ -8,7 +8,8 @@ use super::{WAYS, WAYS_OF_KNOWN, in_deviations, lost, worse};
 use glam::DVec3;
 use recon::contact_kinematics::Direction;
 use recon::object_dynamics::{BodyState, ContactLog, ContactLogError, ForceChannel, PalmHinge};
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, Reliability, estimate_contacts};
+use recon::observer::contacts::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::reliability::Reliability;
 
 /// What conditions are off by beside noise, as a share of the natural speed.
 pub(super) const FLOOR: f64 = 3e-5;

@@ -6,7 +6,7 @@ use super::estimate::doubt;
 use super::worse;
 use glam::DVec3;
 use recon::object_dynamics::{ContactLog, MassProperties, Sample, SensorLog};
-use recon::observer::{ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::contacts::{ContactNoiseLevel, ContactOptions, estimate_contacts};
 
 /// MuJoCo's log of the gentle scene at 250 Hz; palm 2 loses contact at 1.25888 s.
 const LOG: &str = include_str!("../../../../tests/data/mj_B_gentle_thinned.csv");

@@ -4,7 +4,10 @@ use super::super::judged::Ran;
 use super::super::{Failure, Method, Way};
 use super::scene::{Motion, Spec};
 use glam::{DQuat, DVec3};
-use recon::observer::{PaperMethod, PaperStart, PredictorCorrector, Track, integrate_paper_system};
+use recon::observer::three_palms::Track;
+use recon::observer::three_palms::paper_method::{
+    PaperMethod, PaperStart, PredictorCorrector, integrate_paper_system,
+};
 use recon_tests::Random;
 
 /// Growth of an error of the start beyond which an open-loop integration is not to be believed: it leaves 1e-9 of data printed to 12 digits

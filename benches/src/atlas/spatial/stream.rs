@@ -6,10 +6,10 @@ use super::estimate::FLOOR;
 use super::scene::{Motion, Spec, state};
 use super::{in_deviations, worse};
 use glam::DVec3;
-use recon::observer::{
-    ContactNoiseLevel, ContactOptions, MotionStream, PlaneReadings, StreamEstimate, StreamOptions,
-    StreamStage,
+use recon::observer::contacts::stream::{
+    MotionStream, PlaneReadings, StreamEstimate, StreamOptions, StreamStage,
 };
+use recon::observer::contacts::{ContactNoiseLevel, ContactOptions};
 
 pub(in super::super) const METHOD: Method = Method {
     name: "streaming",

@@ -6,7 +6,7 @@ use super::scene::{Motion, Spec};
 use super::worse;
 use glam::DVec3;
 use recon::object_dynamics::SensorLog;
-use recon::observer::{KnownTouch, estimate_without_forces};
+use recon::observer::three_palms::no_force::{KnownTouch, estimate_without_forces};
 
 /// What semi-axes from exact readings may be off by, in sizes.
 const EXACT: f64 = 1e-5;

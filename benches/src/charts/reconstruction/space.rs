@@ -8,7 +8,10 @@ use crate::bound::space::least_place;
 use crate::{Axis, Budget, Method, Study, WorkPrecision};
 use recon::contact_kinematics::Ellipsoid;
 use recon::object_dynamics::{SensorLog, SensorNoise, Simulation, ThreePalmScene};
-use recon::observer::{PaperMethod, PaperStart, PredictorCorrector, Track, integrate_paper_system};
+use recon::observer::three_palms::Track;
+use recon::observer::three_palms::paper_method::{
+    PaperMethod, PaperStart, PredictorCorrector, integrate_paper_system,
+};
 
 pub(in super::super) const BY_WINDOW: Chart = Chart {
     name: "reconstruction-by-window",

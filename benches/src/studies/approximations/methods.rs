@@ -2,9 +2,10 @@
 
 use super::{Failure, bodies::Body};
 use glam::DVec3;
-use recon::shape_bounds::{
-    AlphaShape, ContactSample, HermiteSurface, Hull, PrincipalSurface, SplineSurface, TriangleMesh,
-};
+use recon::shape_bounds::ContactSample;
+use recon::shape_bounds::approximation::{PrincipalSurface, SplineSurface};
+use recon::shape_bounds::concave::{AlphaShape, HermiteSurface};
+use recon::shape_bounds::exact_hull::{Hull, TriangleMesh};
 use shape_bounds::generators::Source;
 
 /// Places of the body's surface from which distances are measured.

@@ -1,7 +1,7 @@
 //! The bodies that `benches/peers/tosses.py` tosses, as it tells them.
 
 use glam::DVec3;
-use recon::shape_bounds::Hull;
+use recon::shape_bounds::exact_hull::Hull;
 use std::f64::consts::PI;
 
 /// A convex body about its own origin, sizes in m.

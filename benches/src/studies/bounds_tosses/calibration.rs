@@ -2,9 +2,8 @@
 
 use super::body::Body;
 use super::sets::{Set, Tosses};
-use recon::shape_bounds::{
-    BodyPose, CALIBRATED_RUNS, CONFIDENCES, HalfSpace, Intersection, PoseBounds, PoseError, PoseRule,
-};
+use recon::shape_bounds::exact_hull::{HalfSpace, Intersection};
+use recon::shape_bounds::poses::{BodyPose, CALIBRATED_RUNS, CONFIDENCES, PoseBounds, PoseError, PoseRule};
 
 /// Tosses in a cut of a set.
 const FEW: usize = 25;

@@ -2,7 +2,8 @@
 
 use super::calibration::{shortfall, volume};
 use super::sets::{Set, Tosses};
-use recon::shape_bounds::{CONFIDENCES, HalfSpace, PoseBounds, PoseError, PoseRule};
+use recon::shape_bounds::exact_hull::HalfSpace;
+use recon::shape_bounds::poses::{CONFIDENCES, PoseBounds, PoseError, PoseRule};
 use std::error::Error;
 
 /// Tosses in a cut of a set.

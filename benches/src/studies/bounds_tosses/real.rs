@@ -4,7 +4,8 @@
 use super::body::Body;
 use super::calibration::{conformal, moved, shortfall, volume};
 use glam::DVec3;
-use recon::shape_bounds::{BodyPose, CONFIDENCES, HalfSpace, PoseBounds, half_space_above_plane};
+use recon::shape_bounds::exact_hull::HalfSpace;
+use recon::shape_bounds::poses::{BodyPose, CONFIDENCES, PoseBounds, half_space_above_plane};
 use recon_io::parse_poses;
 use shape_bounds::generators::Source;
 use std::error::Error;

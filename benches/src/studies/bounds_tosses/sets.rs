@@ -1,7 +1,8 @@
 //! Sets of tosses: which there are, and what they hold.
 
 use super::body::Body;
-use recon::shape_bounds::{BodyPose, HalfSpace, half_space_above_plane};
+use recon::shape_bounds::exact_hull::HalfSpace;
+use recon::shape_bounds::poses::{BodyPose, half_space_above_plane};
 use recon_io::parse_poses;
 use std::error::Error;
 use std::fs;

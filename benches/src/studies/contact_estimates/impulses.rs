@@ -5,7 +5,7 @@
 use super::super::contact_logs::log::{Anything, Log};
 use super::{BOUNDS, Case, FIRST_SEED, NOISES, case, errors};
 use recon::object_dynamics::{ContactLog, ForceChannel};
-use recon::observer::{ImpulseNoise, estimate_contacts};
+use recon::observer::contacts::{ImpulseNoise, estimate_contacts};
 use std::path::PathBuf;
 
 /// Duration of the log with landings, s.

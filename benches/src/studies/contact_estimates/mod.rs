@@ -8,7 +8,7 @@ pub(crate) mod random;
 use super::contact_logs::log::{Anything, Log};
 use glam::DMat3;
 use recon::object_dynamics::{ChannelNoise, ContactLog, ContactMode, ContactNoise, MOST_PALMS};
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::contacts::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
 use std::path::PathBuf;
 
 const G: f64 = 9.81;

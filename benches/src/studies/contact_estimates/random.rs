@@ -8,7 +8,7 @@ use recon::contact_kinematics::Ellipsoid;
 use recon::object_dynamics::{
     ChannelNoise, ContactLog, ContactNoise, ContactScene, ContactStart, SampleTimes,
 };
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::contacts::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
 use shape_bounds::generators::Source;
 use std::error::Error;
 

@@ -7,7 +7,7 @@ pub(super) mod tally;
 use super::contact_estimates::{Case, case};
 use super::contact_logs::log::{Anything, Log};
 use recon::object_dynamics::{ContactMode, MOST_PALMS};
-use recon::observer::{ContactEstimate, ContactOptions, estimate_contacts};
+use recon::observer::contacts::{ContactEstimate, ContactOptions, estimate_contacts};
 use std::path::{Path, PathBuf};
 use tally::{Run, reliability, row};
 

@@ -11,9 +11,10 @@ use super::contact_modes_estimated::{NOISE, SCENES, Truth, on_two_cores};
 use recon::object_dynamics::{
     ContactLog, ContactMode, ContactPoints, ForceChannel, MOST_PALMS, MeasuredMotion, RecordedMotion,
 };
-use recon::observer::{
-    ContactOptions, ForceReading, LearnedFriction, MotionStream, PalmSensed, StreamEstimate, StreamOptions,
-    StreamPalm, StreamStage,
+use recon::observer::contact_modes::LearnedFriction;
+use recon::observer::contacts::ContactOptions;
+use recon::observer::contacts::stream::{
+    ForceReading, MotionStream, PalmSensed, StreamEstimate, StreamOptions, StreamPalm, StreamStage,
 };
 use std::path::PathBuf;
 

@@ -6,7 +6,7 @@ use exploration::contour::{
     HullBounds, Margins, SimulatedFinger, SmoothOutline, TraceEnd, Tracing, Waved, trace,
 };
 use exploration::{Heading, Source};
-use recon::shape_bounds::planar::{ConvexPolygon, Direction};
+use recon::shape_bounds::exact_hull::planar::{ConvexPolygon, Direction};
 use std::f64::consts::{PI, TAU};
 
 type Failure = Box<dyn std::error::Error>;

@@ -4,7 +4,7 @@ use super::logs::{Logged, logged};
 use super::{Failure, Outcome};
 use cpu_time::ProcessTime;
 use recon::least_model::{Accuracy, Pose, least_estimate, one_of, stated_accuracy};
-use recon::observer::{ContactEstimate, ContactOptions, estimate_contacts};
+use recon::observer::contacts::{ContactEstimate, ContactOptions, estimate_contacts};
 use recon_tests::Random;
 
 /// Scenes by turns: without friction, in a plane, with little friction.

@@ -6,7 +6,7 @@ use recon::least_model::contact_size;
 use recon::object_dynamics::{
     BodyState, ChannelNoise, ContactLog, ContactNoise, ForceChannel, MassProperties, SampleTimes, planar,
 };
-use recon::observer::{ContactNoiseLevel, ContactOptions};
+use recon::observer::contacts::{ContactNoiseLevel, ContactOptions};
 use recon_tests::Random;
 
 const G: f64 = 9.81;

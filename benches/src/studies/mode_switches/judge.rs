@@ -4,7 +4,7 @@ use super::super::contact_modes_estimated::tally::{Run as Tally, reliability};
 use super::scenes::Run;
 use super::sensed::LASTING;
 use recon::object_dynamics::ContactMode;
-use recon::observer::{
+use recon::observer::contact_modes::{
     ContactFriction, ContactModes, ContactModesError, ContactModesOptions, ContactOdds, ContactSeen,
     LearnedFriction, whole_modes,
 };

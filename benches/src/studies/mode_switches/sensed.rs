@@ -3,7 +3,7 @@
 use super::scenes::{Exact, Run};
 use nalgebra::{Matrix2, Vector2, Vector6};
 use recon::object_dynamics::ContactMode;
-use recon::observer::{ContactReading, ContactSeen, ContactSlip};
+use recon::observer::contact_modes::{ContactReading, ContactSeen, ContactSlip};
 use recon_tests::Random;
 use std::f64::consts::TAU;
 

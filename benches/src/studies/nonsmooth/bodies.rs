@@ -3,7 +3,9 @@
 use super::Failure;
 use glam::DVec3;
 use recon::contact_kinematics::Direction;
-use recon::shape_bounds::{ContactNoise, ContactSample, FeatureKind, FeatureOptions, Features, NoisyContact};
+use recon::shape_bounds::ContactSample;
+use recon::shape_bounds::features::{FeatureKind, FeatureOptions, Features};
+use recon::shape_bounds::noise::{ContactNoise, NoisyContact};
 use recon_io::{FigureCurve, FigurePanel};
 use shape_bounds::generators::{Source, TouchedBody};
 use std::fmt::Write as _;

@@ -9,7 +9,8 @@ mod tally;
 
 use crate::rows;
 use bodies::BODIES;
-use recon::shape_bounds::{CertainBounds, FeatureOptions, Features};
+use recon::shape_bounds::features::{FeatureOptions, Features};
+use recon::shape_bounds::noise::CertainBounds;
 use recon_io::write_figures;
 use shape_bounds::generators::{Touched, TouchedBody, Touching};
 use std::error::Error;

@@ -1,7 +1,7 @@
 //! Contacts of a body, in the colours of what they are told to be.
 
 use glam::DVec3;
-use recon::shape_bounds::{FeatureKind, Features};
+use recon::shape_bounds::features::{FeatureKind, Features};
 use recon_io::{FigureCurve, FigurePanel};
 use shape_bounds::generators::{Touched, TouchedBody};
 

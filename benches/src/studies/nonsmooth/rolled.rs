@@ -5,9 +5,9 @@ use super::tally::confusion;
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{Direction, SupportFunction};
 use recon::object_dynamics::{ContactMode, ContactSimulation};
-use recon::shape_bounds::{
-    CertainBounds, ContactNoise, ContactSample, FeatureKind, FeatureOptions, Features, NoisyContact,
-};
+use recon::shape_bounds::ContactSample;
+use recon::shape_bounds::features::{FeatureKind, FeatureOptions, Features};
+use recon::shape_bounds::noise::{CertainBounds, ContactNoise, NoisyContact};
 use recon_io::Scene;
 use shape_bounds::generators::{Source, Touched, TouchedBody};
 use std::fmt::Write as _;

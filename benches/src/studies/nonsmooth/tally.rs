@@ -1,6 +1,8 @@
 //! What is told and what is true.
 
-use recon::shape_bounds::{CertainBounds, FeatureKind, Features, Hull};
+use recon::shape_bounds::exact_hull::Hull;
+use recon::shape_bounds::features::{FeatureKind, Features};
+use recon::shape_bounds::noise::CertainBounds;
 use shape_bounds::generators::{Touched, TouchedBody};
 
 pub(super) const TOLD_HEAD: &str = "| body | noise | corners: contacts, told right, open | edges | faces | smooth | corners found | error, median, largest; rms over stated | polyhedra: right number of corners, volume off by | ms |\n|---|---|---|---|---|---|---|---|---|---|\n";

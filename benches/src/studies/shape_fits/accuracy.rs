@@ -4,8 +4,9 @@ use super::Failure;
 use super::bodies::{Truth, measured, normals};
 use cpu_time::ThreadTime;
 use recon::contact_kinematics::{Direction, SupportFunction};
+use shape_bounds::fit::{FitOptions, ShapeFamily, ShapeFit};
 use shape_bounds::generators::Source;
-use shape_bounds::{ContactNoise, FitOptions, ShapeFamily, ShapeFit};
+use shape_bounds::noise::ContactNoise;
 
 /// Sums over the runs of one row.
 #[derive(Default)]

@@ -5,8 +5,10 @@ use glam::{DMat3, DVec3};
 use recon::contact_kinematics::{
     Direction, MinkowskiSum, PolynomialSupport, Sphere, SupportFunction, Translated,
 };
+use shape_bounds::ContactSample;
+use shape_bounds::fit::{ShapeFamily, SkewEllipsoid, Superquadric};
 use shape_bounds::generators::{Source, scattered_normals, traced_normals};
-use shape_bounds::{ContactNoise, ContactSample, NoisyContact, ShapeFamily, SkewEllipsoid, Superquadric};
+use shape_bounds::noise::{ContactNoise, NoisyContact};
 
 /// Seeded bodies, one new for each run, all about 1 m in size.
 #[derive(Clone, Copy, PartialEq)]

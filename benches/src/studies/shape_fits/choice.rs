@@ -3,8 +3,9 @@
 use super::Failure;
 use super::bodies::{Truth, exact, measured, normals};
 use cpu_time::ThreadTime;
+use shape_bounds::fit::{FitError, FitOptions, NoiseLevel, ShapeChoice, ShapeFamily, ShapeFit};
 use shape_bounds::generators::Source;
-use shape_bounds::{FitError, FitOptions, NoiseLevel, NoisyContact, ShapeChoice, ShapeFamily, ShapeFit};
+use shape_bounds::noise::NoisyContact;
 
 pub(super) fn choice(runs: u64) -> Result<(), Failure> {
     println!("\n## Choice of the family\n");

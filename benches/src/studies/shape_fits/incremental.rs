@@ -5,8 +5,8 @@ use super::bodies::{measured, normals};
 use cpu_time::ThreadTime;
 use glam::DVec3;
 use recon::contact_kinematics::{Ellipsoid, MinkowskiSum, Sphere, SupportFunction};
+use shape_bounds::fit::{FitOptions, IncrementalFit, ShapeFamily, ShapeFit};
 use shape_bounds::generators::Source;
-use shape_bounds::{FitOptions, IncrementalFit, ShapeFamily, ShapeFit};
 
 /// Cost of one more contact, and how far the running estimate is from the fit to all.
 pub(super) fn incremental() -> Result<(), Failure> {

@@ -5,8 +5,9 @@ use super::bodies::{measured, normals};
 use cpu_time::ThreadTime;
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::{Direction, SupportFunction};
+use shape_bounds::fit::{FitOptions, NoiseLevel, ShapeFamily, ShapeFit, Superquadric};
 use shape_bounds::generators::Source;
-use shape_bounds::{FitOptions, NoiseLevel, NoisyContact, ShapeFamily, ShapeFit, Superquadric};
+use shape_bounds::noise::NoisyContact;
 
 /// Deviations that an error exceeds in some direction once in 10^6 fits of 11 parameters with a true covariance:
 /// chi-squared of 11 degrees of freedom is above their square so often.

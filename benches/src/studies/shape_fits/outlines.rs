@@ -5,12 +5,12 @@ use glam::DVec2;
 use recon::contact_kinematics::planar::{
     Circle, FourierBody, RadiusBounds, RadiusFunction, RadiusJet, RoundedPolygon,
 };
+use shape_bounds::exact_hull::planar::Direction;
+use shape_bounds::fit::{FitOptions, NoiseLevel};
 use shape_bounds::generators::Source;
-use shape_bounds::planar::{
-    ContactNoise, ContactSample, Direction, FitError, NoisyContact, OutlineFamily, OutlineFit, TurnedEllipse,
-    estimate_noise,
-};
-use shape_bounds::{FitOptions, NoiseLevel};
+use shape_bounds::planar::ContactSample;
+use shape_bounds::planar::fit::{FitError, OutlineFamily, OutlineFit, TurnedEllipse};
+use shape_bounds::planar::noise::{ContactNoise, NoisyContact, estimate_noise};
 use std::f64::consts::TAU;
 
 const UNKNOWN: FitOptions = FitOptions { noise_level: NoiseLevel::Estimated, smallest_radius: None };

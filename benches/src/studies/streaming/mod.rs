@@ -4,7 +4,7 @@
 mod paced;
 mod tally;
 
-use recon::observer::{PlaneReadings, StreamEstimate};
+use recon::observer::contacts::stream::{PlaneReadings, StreamEstimate};
 use recon_benches::streaming::{Case, some};
 use tally::Tally;
 

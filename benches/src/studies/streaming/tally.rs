@@ -1,7 +1,7 @@
 //! What came of a stream over many scenes.
 
 use nalgebra::SVector;
-use recon::observer::{StreamEstimate, StreamStage};
+use recon::observer::contacts::stream::{StreamEstimate, StreamStage};
 use recon_benches::streaming::Case;
 
 /// Deviations beyond which a stated number is wrong without a warning.

@@ -4,7 +4,8 @@ use cpu_time::ThreadTime;
 use glam::DVec3;
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::{ContactLog, Instant as Now, SensorLog, SensorNoise, ThreePalmScene};
-use recon::observer::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts, nearest_turn};
+use recon::observer::contacts::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::rigid::nearest_turn;
 
 /// What conditions are off by beside noise, as a share of the natural speed.
 const FLOOR: f64 = 3e-5;

@@ -6,7 +6,7 @@ mod tally;
 
 use body::Body;
 use recon::object_dynamics::ContactLog;
-use recon::observer::{ContactNoiseLevel, ContactOptions, estimate_contacts};
+use recon::observer::contacts::{ContactNoiseLevel, ContactOptions, estimate_contacts};
 use recon_benches::fault::{FAULTS, Fault};
 use tally::{Run, Tally, judged};
 

@@ -3,7 +3,8 @@
 use cpu_time::ProcessTime;
 use glam::DVec3;
 use recon::object_dynamics::BodyState;
-use recon::observer::{ContactEstimate, ContactEstimateError, Reason, Reliability};
+use recon::observer::contacts::{ContactEstimate, ContactEstimateError};
+use recon::observer::reliability::{Reason, Reliability};
 
 /// Deviations from which on an error is one that was not told.
 const BEYOND: f64 = 5.0;

@@ -4,7 +4,7 @@ use super::outline::SmoothOutline;
 use super::trace::{ContourFinger, Touch};
 use crate::random::Source;
 use glam::DVec2;
-use shape_bounds::planar::{Direction, DirectionError};
+use shape_bounds::exact_hull::planar::{Direction, DirectionError};
 use std::f64::consts::TAU;
 use thiserror::Error;
 

@@ -4,7 +4,7 @@ use super::margins::Margins;
 use super::trace::{Touch, TraceEnd, Traced};
 use crate::heading::Heading;
 use glam::DVec2;
-use shape_bounds::planar::{Direction, HalfPlane, Hull, Intersection};
+use shape_bounds::exact_hull::planar::{Direction, HalfPlane, Hull, Intersection};
 use std::f64::consts::FRAC_PI_2;
 
 /// Bounds on the hull of a body that was followed once round by a round finger.

@@ -1,7 +1,7 @@
 //! How far readings of a finger may be off.
 
 use crate::confidence::{Confidence, ConfidenceError, Spending};
-use shape_bounds::quantile;
+use shape_bounds::noise::quantile;
 
 /// How far a touch may be off at most: exactly, or for all readings of a finger together with a stated probability.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Following an outline once round, and telling hollows from jumps.
 
 use glam::DVec2;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 use std::f64::consts::{PI, TAU};
 use thiserror::Error;
 

@@ -78,7 +78,9 @@ mod tests {
                 for _ in 0..200 {
                     let (u, v) = (source.direction(), source.direction());
                     assert!(u.get().dot(space(u) - space(v)) > -1e-12, "{family:?} {seed}");
-                    let flat = |_: ()| shape_bounds::planar::Direction::from_angle(source.between(0.0, 6.3));
+                    let flat = |_: ()| {
+                        shape_bounds::exact_hull::planar::Direction::from_angle(source.between(0.0, 6.3))
+                    };
                     let [a, b] = [(), ()].map(flat);
                     assert!(a.get().dot(plane(a) - plane(b)) > -1e-12, "{family:?} {seed}");
                 }
@@ -90,7 +92,7 @@ mod tests {
     fn eggs_are_bent_outwards_everywhere() {
         for seed in 0..10 {
             let body = outline(Family::Egg, seed);
-            let lattice = shape_bounds::planar::Direction::spread(3600);
+            let lattice = shape_bounds::exact_hull::planar::Direction::spread(3600);
             let least = (0..lattice.len())
                 .map(|k| {
                     let (a, b) = (lattice[k], lattice[(k + 1) % lattice.len()]);

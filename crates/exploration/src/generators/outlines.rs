@@ -3,7 +3,7 @@
 use super::{Family, norm_and_gradient};
 use crate::random::Source;
 use glam::DVec2;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 use std::f64::consts::TAU;
 
 /// The farthest point (m) of a body in the plane along a direction.

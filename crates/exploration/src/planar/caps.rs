@@ -3,7 +3,8 @@
 use super::knowledge::Prospects;
 use crate::limits::Limits;
 use glam::DVec2;
-use shape_bounds::planar::{ConvexPolygon, Direction, ShapeBounds};
+use shape_bounds::exact_hull::planar::{ConvexPolygon, Direction};
+use shape_bounds::planar::ShapeBounds;
 
 /// Heights at which the body may meet the touch, as shares of the way between the bounds: the middles of three equal parts.
 const HEIGHTS: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
@@ -191,7 +192,8 @@ fn area_beyond(shape: &ConvexPolygon, u: DVec2, t: f64, summit: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::random::Source;
-    use shape_bounds::planar::{ContactSample, HalfPlane, Intersection};
+    use shape_bounds::exact_hull::planar::{HalfPlane, Intersection};
+    use shape_bounds::planar::ContactSample;
 
     /// Oracle: the upper bound made anew with one half-plane more.
     #[test]

@@ -5,11 +5,10 @@ use crate::goal::Goal;
 use crate::heading::Heading;
 use crate::knowledge::{Knowledge, KnowledgeError, Measures};
 use glam::DVec2;
-use shape_bounds::planar::{
-    BoundsError, ContactNoise, ContactSample, Direction, IncrementalBounds, Intersection, NoiseError,
-    NoisyContact, ShapeBounds,
-};
-use shape_bounds::quantile;
+use shape_bounds::exact_hull::planar::{Direction, Intersection};
+use shape_bounds::noise::quantile;
+use shape_bounds::planar::noise::{ContactNoise, NoiseError, NoisyContact};
+use shape_bounds::planar::{BoundsError, ContactSample, IncrementalBounds, ShapeBounds};
 use std::f64::consts::PI;
 
 /// Standard deviations of every contact, the same along both axes, and the confidence that bounds are to hold at.

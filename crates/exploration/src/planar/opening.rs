@@ -6,8 +6,9 @@ use crate::heading::Heading;
 use crate::knowledge::Knowledge;
 use crate::planner::{PlanError, Proposal, Reason, Situation};
 use glam::DVec2;
-use shape_bounds::planar::Direction;
-use shape_bounds::planar::{ConvexPolygon, Intersection, ShapeBounds};
+use shape_bounds::exact_hull::planar::Direction;
+use shape_bounds::exact_hull::planar::{ConvexPolygon, Intersection};
+use shape_bounds::planar::ShapeBounds;
 use std::f64::consts::FRAC_PI_2;
 
 /// What there is to plan on.

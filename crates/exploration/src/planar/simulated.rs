@@ -5,9 +5,9 @@ use crate::finger::{Finger, Motion, TouchError};
 use crate::planner::Proposal;
 use crate::random::Source;
 use glam::{DVec2, DVec3};
-use shape_bounds::nearest;
+use shape_bounds::distance::nearest;
+use shape_bounds::exact_hull::planar::Direction;
 use shape_bounds::planar::ContactSample;
-use shape_bounds::planar::Direction;
 
 /// Touches the convex body whose farthest point along a direction is `support(direction)`, with seeded normal noise.
 pub struct SimulatedFinger<F> {

@@ -1,5 +1,5 @@
 use crate::random::Source;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 use std::f64::consts::{PI, TAU};
 
 /// `count` directions spread evenly, the first at `angle` (rad). Five are best for gaps about 10 %: cells are halved from there, and

@@ -13,7 +13,7 @@ use crate::heading::Heading;
 use crate::knowledge::{Knowledge, KnowledgeError};
 use crate::planar::PlanarKnowledge;
 use crate::planner::Reason;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 use thiserror::Error;
 
 /// What is to be reached, and with what.

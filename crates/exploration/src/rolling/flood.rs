@@ -10,7 +10,7 @@ use super::planner::{RollPlanError, RollProposal, View};
 use super::predict::Course;
 use super::workspace::{along, pair, radians};
 use crate::planner::Reason;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 use std::f64::consts::TAU;
 
 /// A rest that can be got to.

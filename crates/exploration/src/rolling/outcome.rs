@@ -2,7 +2,7 @@
 
 use super::palms::PalmsError;
 use crate::certificate::Certificate;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 
 /// Why a goal was not reached.
 #[derive(Clone, Debug, PartialEq)]

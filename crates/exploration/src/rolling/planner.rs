@@ -8,7 +8,7 @@ use crate::goal::Goal;
 use crate::knowledge::Knowledge;
 use crate::planar::PlanarKnowledge;
 use crate::planner::Reason;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 use thiserror::Error;
 
 /// What a planner is shown: never the body.

@@ -5,7 +5,8 @@ use super::palms::{Palms, PalmsError, Reading, SENSED};
 use super::workspace::{along, pair};
 use crate::random::Source;
 use glam::DVec2;
-use shape_bounds::planar::{ContactSample, Direction};
+use shape_bounds::exact_hull::planar::Direction;
+use shape_bounds::planar::ContactSample;
 
 /// A body at rest between palms, felt with seeded normal noise.
 pub struct SimulatedPalms<B> {

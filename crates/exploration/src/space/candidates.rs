@@ -5,7 +5,8 @@ use super::knowledge::Prospects;
 use crate::limits::Limits;
 use contact_kinematics::Direction;
 use glam::DVec3;
-use shape_bounds::{Gap, Polyhedron, ShapeBounds, SolidHull, SupportWalk};
+use shape_bounds::exact_hull::{Polyhedron, SolidHull, SupportWalk};
+use shape_bounds::{Gap, ShapeBounds};
 
 /// Heights at which the body may meet the touch, as shares of the way between the bounds: the middles of three equal parts.
 const HEIGHTS: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];

@@ -1,7 +1,7 @@
 //! What a half-space would cut off the upper bound, and a point would add to the lower one, without making either anew.
 
 use glam::DVec3;
-use shape_bounds::{Polyhedron, SolidHull};
+use shape_bounds::exact_hull::{Polyhedron, SolidHull};
 
 /// Corners closer in height than this, relative to their coordinates, may be at one place.
 const LEVEL: f64 = 1e-13;
@@ -172,7 +172,8 @@ mod tests {
     use super::*;
     use crate::random::Source;
     use contact_kinematics::Direction;
-    use shape_bounds::{ContactSample, HalfSpace, Hull, Intersection, ShapeBounds};
+    use shape_bounds::exact_hull::{HalfSpace, Hull, Intersection};
+    use shape_bounds::{ContactSample, ShapeBounds};
 
     fn touched(source: &mut Source, count: usize) -> (Vec<ContactSample>, ShapeBounds) {
         let axes = DVec3::new(2.5, 1.5, 1.0);

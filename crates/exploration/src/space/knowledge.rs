@@ -6,10 +6,9 @@ use crate::heading::Heading;
 use crate::knowledge::{Knowledge, KnowledgeError, Measures};
 use contact_kinematics::Direction;
 use glam::DVec3;
-use shape_bounds::{
-    BoundsError, CertainBounds, ContactNoise, ContactSample, IncrementalBounds, Intersection, NoiseError,
-    NoisyContact, PoseNoise, ShapeBounds, quantile,
-};
+use shape_bounds::exact_hull::Intersection;
+use shape_bounds::noise::{CertainBounds, ContactNoise, NoiseError, NoisyContact, PoseNoise, quantile};
+use shape_bounds::{BoundsError, ContactSample, IncrementalBounds, ShapeBounds};
 
 /// Standard deviations of every contact, the same along all axes, and the confidence that bounds are to hold at.
 #[derive(Clone, Copy, Debug, PartialEq)]

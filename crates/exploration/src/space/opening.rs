@@ -7,7 +7,8 @@ use crate::knowledge::Knowledge;
 use crate::planner::{PlanError, Proposal, Reason, Situation};
 use contact_kinematics::Direction;
 use glam::DVec3;
-use shape_bounds::{Intersection, Polyhedron, ShapeBounds};
+use shape_bounds::ShapeBounds;
+use shape_bounds::exact_hull::{Intersection, Polyhedron};
 use std::f64::consts::FRAC_PI_2;
 
 /// What there is to plan on.

@@ -6,7 +6,8 @@ use crate::planner::Proposal;
 use crate::random::Source;
 use contact_kinematics::Direction;
 use glam::DVec3;
-use shape_bounds::{ContactSample, nearest};
+use shape_bounds::ContactSample;
+use shape_bounds::distance::nearest;
 
 /// Touches the convex body whose farthest point along a direction is `support(direction)`, with seeded normal noise.
 pub struct SimulatedFinger<F> {

@@ -8,7 +8,8 @@ use exploration::{
 };
 use glam::DVec3;
 use proptest::prelude::*;
-use shape_bounds::{ContactSample, planar as flat};
+use shape_bounds::exact_hull::planar as flat;
+use shape_bounds::{ContactSample, planar::ContactSample as FlatSample};
 
 fn mean_width(family: Family, seed: u64) -> f64 {
     let body = outline(family, seed);
@@ -109,7 +110,7 @@ fn a_budget_is_kept_to() {
     let ended = explore(&mut known, &mut planner, &mut finger, &task, |_, _| ()).unwrap();
     assert!(matches!(ended, Outcome::Short { shortfall: Shortfall::Budget, .. }));
     assert_eq!(known.touches(), 8);
-    let more = flat::ContactSample { point: glam::DVec2::X, normal: flat::Direction::from_angle(0.0) };
+    let more = FlatSample { point: glam::DVec2::X, normal: flat::Direction::from_angle(0.0) };
     assert!(matches!(known.insert(more), Err(KnowledgeError::Confidence(_))));
 }
 

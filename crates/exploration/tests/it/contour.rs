@@ -8,7 +8,7 @@ use exploration::contour::{
     TraceError, Traced, Tracing, Waved, trace,
 };
 use glam::DVec2;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 use std::f64::consts::{PI, TAU};
 
 fn tracing(step: f64) -> Tracing {

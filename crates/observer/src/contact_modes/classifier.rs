@@ -11,7 +11,7 @@ use super::options::ContactModesOptions;
 use super::reading::{ContactReading, ContactSeen, ContactSlip, turned};
 use super::steps::speeds;
 use super::twist::{Row, TwistError, left_out};
-use crate::core::ModeLabel;
+use crate::bank::ModeLabel;
 use nalgebra::{Matrix2, Matrix6, Vector2};
 use object_dynamics::ContactMode;
 
@@ -37,23 +37,6 @@ pub struct ContactOdds {
 ///
 /// Between near its friction cone and slow sliding little is to be seen: then probabilities stay between the two for as long
 /// as it takes. Limits and figures: `docs/contact-modes.md` of the repository.
-///
-/// ```
-/// use nalgebra::{Matrix2, Vector2};
-/// use observer::{ContactFriction, ContactModes, ContactModesOptions, ContactReading, ContactSeen, ContactSlip};
-/// # fn main() -> Result<(), observer::ContactModesError> {
-/// let options = ContactModesOptions::new(0.6, 0.01, 1.0);
-/// let mut modes = ContactModes::new(&[ContactFriction::Known(0.3)], options)?;
-/// let slip = ContactSlip { velocity: Vector2::new(-0.05, 0.0), covariance: Matrix2::identity() * 4e-6 };
-/// let (normal_force, friction, force_deviation) = (2.0, Vector2::new(0.6, 0.0), 0.04);
-/// let reading = ContactReading { normal_force, friction, force_deviation, slip: Some(slip), touches: false };
-/// for _ in 0..5 {
-///     modes.push(1e-3, &[ContactSeen::Read(reading)])?;
-/// }
-/// assert!(modes.odds(0).is_some_and(|odds| odds.slide > 0.99));
-/// # Ok(())
-/// # }
-/// ```
 #[derive(Clone, Debug)]
 pub struct ContactModes {
     pub(super) options: ContactModesOptions,

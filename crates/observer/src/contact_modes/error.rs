@@ -1,6 +1,6 @@
 //! Why contact modes cannot be told.
 
-use crate::core::BankError;
+use crate::bank::BankError;
 use thiserror::Error;
 
 /// Why contact modes cannot be told. Contacts and samples are counted from zero. A sample that is refused leaves everything as

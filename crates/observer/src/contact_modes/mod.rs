@@ -6,6 +6,23 @@
 //! as a grid (`friction.rs`, `contact.rs`), of which those are followed that are near the ratio (`asleep.rs`). Slips of several contacts share the error of one twist (`twist.rs`).
 //! What is left of readings where modes are told is held against their noise (`doubt.rs`), and whether forces go better
 //! with slips of before is followed beside them (`late.rs`). `classifier.rs` is the way of a sample.
+//!
+//! ```
+//! use nalgebra::{Matrix2, Vector2};
+//! use observer::contact_modes::{ContactFriction, ContactModes, ContactModesOptions, ContactReading, ContactSeen, ContactSlip};
+//! # fn main() -> Result<(), observer::contact_modes::ContactModesError> {
+//! let options = ContactModesOptions::new(0.6, 0.01, 1.0);
+//! let mut modes = ContactModes::new(&[ContactFriction::Known(0.3)], options)?;
+//! let slip = ContactSlip { velocity: Vector2::new(-0.05, 0.0), covariance: Matrix2::identity() * 4e-6 };
+//! let (normal_force, friction, force_deviation) = (2.0, Vector2::new(0.6, 0.0), 0.04);
+//! let reading = ContactReading { normal_force, friction, force_deviation, slip: Some(slip), touches: false };
+//! for _ in 0..5 {
+//!     modes.push(1e-3, &[ContactSeen::Read(reading)])?;
+//! }
+//! assert!(modes.odds(0).is_some_and(|odds| odds.slide > 0.99));
+//! # Ok(())
+//! # }
+//! ```
 
 mod asleep;
 mod bins;

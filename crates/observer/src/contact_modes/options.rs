@@ -16,7 +16,7 @@ pub struct ContactModesOptions {
     /// Time for which errors of slips last, s: 0 where they are independent from sample to sample. Samples within twice this time tell as
     /// much as one.
     pub slip_errors_last: f64,
-    /// Probability above which a label changes, from 0.5 to below 1 (see [`ModeLabel`](crate::ModeLabel)).
+    /// Probability above which a label changes, from 0.5 to below 1 (see [`ModeLabel`](crate::bank::ModeLabel)).
     pub label_level: f64,
 }
 

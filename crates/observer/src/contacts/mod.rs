@@ -1,4 +1,30 @@
 //! Motion, mass and inertia from contacts of any palms: nodes linked by measured impulses.
+//!
+//! ```
+//! use contact_kinematics::{Ellipsoid, Palm};
+//! use glam::{DQuat, DVec3};
+//! use object_dynamics::integrate::Tolerance;
+//! use object_dynamics::{ContactLog, InitialMotion, MassProperties, SampleTimes, ThreePalmScene};
+//! use observer::contacts::{ContactNoiseLevel, ContactOptions, estimate_contacts};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // What three palms sense of 300 g between them, for a second and a half.
+//! let axes = DVec3::new(0.05, 0.045, 0.04);
+//! let mass = MassProperties::uniform_ellipsoid(0.3, axes)?;
+//! let palm = |k: f64| Palm::fixed(k * std::f64::consts::TAU / 3.0, 0.8);
+//! let scene = ThreePalmScene::new(Ellipsoid::new(axes)?, mass, [palm(0.0)?, palm(1.0)?, palm(2.0)?], 9.81)?;
+//! let start = InitialMotion { R_WO: DQuat::IDENTITY, w_WO: DVec3::new(2.0, -1.0, 4.0) };
+//! let times = SampleTimes { duration: 1.5, rate: 200.0 };
+//! let run = scene.simulate(start, times, Tolerance::uniform(1e-12))?;
+//! let log = run.sensor_log(&scene)?;
+//! let noise = ContactNoiseLevel { contact: 0.0, force_fixed: 0.0, force_share: 0.0, impulse: None, floor: 1e-6 };
+//! let options = ContactOptions { friction: Some(0.0), ..ContactOptions::new(noise, 9.81) };
+//! let found = estimate_contacts(&ContactLog::try_from(&log)?, None, &options)?;
+//! assert!((found.mass - 0.3).abs() < 1e-4, "{}", found.mass);
+//! assert!((found.states[0].w_WO - start.w_WO).length() < 1e-3, "{}", found.states[0].w_WO);
+//! # Ok(())
+//! # }
+//! ```
 
 mod axes;
 mod backwards;
@@ -46,7 +72,7 @@ mod spurious;
 mod stage;
 mod state;
 mod stepping;
-mod stream;
+pub mod stream;
 mod suspects;
 #[cfg(test)]
 mod tests;
@@ -60,8 +86,4 @@ pub use estimate::{ContactEstimate, estimate_contacts};
 pub use mode_odds::EstimatedModes;
 pub use noise::{ContactNoiseLevel, ImpulseNoise};
 pub use options::{ContactEstimateError, ContactOptions};
-pub use stream::{
-    ForceReading, MotionStream, PalmSensed, PlaneReadings, StreamBody, StreamError, StreamEstimate,
-    StreamModes, StreamMotion, StreamOptions, StreamPalm, StreamStage,
-};
 pub use verdict::ContactEvidence;

@@ -55,7 +55,7 @@ pub enum ContactEstimateError {
     Singular,
 }
 
-/// How [`estimate_contacts`](crate::estimate_contacts) works.
+/// How [`estimate_contacts`](crate::contacts::estimate_contacts) works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactOptions {
     /// Noise of the sensors.

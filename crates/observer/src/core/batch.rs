@@ -1,11 +1,46 @@
 //! All samples at once, with Levenberg-Marquardt steps until nothing moves.
 //!
-//! The damping has a loop of its own beside that of [`LevenbergMarquardt`](crate::LevenbergMarquardt): here a trial is a whole
+//! The damping has a loop of its own beside that of [`LevenbergMarquardt`](crate::least_squares::LevenbergMarquardt): here a trial is a whole
 //! trajectory, rolled out and linearised in place, and with process noise there are no trials.
+//!
+//! ```
+//! use nalgebra::{SMatrix, SVector};
+//! use observer::batch::{BatchOptions, solve_batch};
+//! use observer::{Model, Sample, Start, Status};
+//!
+//! struct Cart; // position and speed, at 10 Hz; the position is measured
+//!
+//! impl Model<2, 1> for Cart {
+//!     type Input = ();
+//!     fn flow(&self, x: &SVector<f64, 2>, (): &()) -> (SVector<f64, 2>, SMatrix<f64, 2, 2>) {
+//!         let slope = SMatrix::<f64, 2, 2>::new(1.0, 0.1, 0.0, 1.0);
+//!         (slope * x, slope)
+//!     }
+//!     fn output(&self, x: &SVector<f64, 2>, (): &()) -> (SVector<f64, 1>, SMatrix<f64, 1, 2>) {
+//!         (SVector::<f64, 1>::new(x[0]), SMatrix::<f64, 1, 2>::new(1.0, 0.0))
+//!     }
+//!     fn scales(&self) -> SVector<f64, 2> { SVector::<f64, 2>::new(1.0, 1.0) }
+//!     fn names(&self) -> [&'static str; 2] { ["position", "speed"] }
+//! }
+//!
+//! # fn main() -> Result<(), observer::ObserverError> {
+//! let at = |position: f64| Sample {
+//!     input: (),
+//!     measured: SVector::<f64, 1>::new(position),
+//!     information: SVector::<f64, 1>::new(1e6), // one over (1 mm)^2
+//! };
+//! let samples: Vec<_> = (0..50).map(|k| at(2.0 + 0.03 * f64::from(k))).collect();
+//! let start = Start::guess(SVector::<f64, 2>::zeros());
+//! let found = solve_batch(&Cart, &samples, &start, &BatchOptions::default())?;
+//! assert_eq!(found.report.status, Status::Converged);
+//! assert!((found.states[0][1] - 0.3).abs() < 1e-9); // the speed at the first sample, known from all
+//! # Ok(())
+//! # }
+//! ```
 
 use super::model::{Model, Sample};
 use super::newton::check_start;
-use super::node::Link;
+pub use super::node::Link;
 use super::report::{ObserverError, Report, ScaledInformation, Status};
 use super::window::{Start, Window};
 use nalgebra::{SMatrix, SVector};
@@ -75,7 +110,7 @@ impl<const N: usize> BatchSolution<N> {
     /// measured channels. Exact where the model is linear (there it is the sum of the innovations' log-likelihoods), else
     /// Laplace's approximation. None where the prior's information is not positive definite: a guess has no density.
     ///
-    /// What a sample adds to it is the log-likelihood that an observer on a window gives to [`Odds`](crate::Odds), with the
+    /// What a sample adds to it is the log-likelihood that an observer on a window gives to [`Odds`](crate::bank::Odds), with the
     /// same prior before and after. The difference of the costs alone leaves out how much narrower the estimate became.
     #[must_use]
     pub fn log_evidence<I, const M: usize>(&self, samples: &[Sample<I, M>], start: &Start<N>) -> Option<f64> {

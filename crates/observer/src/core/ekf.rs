@@ -1,4 +1,6 @@
 //! The extended Kalman filter: the cheap rival.
+//!
+//! The crate's first page has an example: a cart of which the position is measured.
 
 use super::kalman::{correct, predict};
 use super::model::{Model, Sample};

@@ -8,7 +8,7 @@ use nalgebra::{SMatrix, SVector};
 /// measured and is not predicted (inputs, times, angles) belongs there. Noise enters in two places: independent noise on
 /// each output channel, whose information stands in the [`Sample`], and optional process noise of the flow.
 ///
-/// See [`NewtonObserver`](crate::NewtonObserver) for a worked example.
+/// See [`NewtonObserver`](crate::newton::NewtonObserver) for a worked example.
 pub trait Model<const N: usize, const M: usize> {
     /// What drives the flow over one sampling interval and the output at its end.
     type Input;
@@ -42,7 +42,7 @@ pub trait Model<const N: usize, const M: usize> {
     }
 
     /// Derivative of `difference(retract(to, step), from)` with respect to `step`, at zero: the identity in a vector space,
-    /// the inverse of the right Jacobian for rotations ([`rotation_slope`](crate::rotation_slope)). Only a bank of modes asks
+    /// the inverse of the right Jacobian for rotations ([`rotation_slope`](crate::bank::rotation_slope)). Only a bank of modes asks
     /// for it, when it merges estimates that lie apart.
     fn difference_slope(&self, _to: &SVector<f64, N>, _from: &SVector<f64, N>) -> SMatrix<f64, N, N> {
         SMatrix::identity()

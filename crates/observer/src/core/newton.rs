@@ -1,4 +1,55 @@
 //! The Newton-method observer on a moving window.
+//!
+//! A pendulum whose angle is measured, neither its speed nor its length known:
+//!
+//! ```
+//! use nalgebra::{SMatrix, SVector};
+//! use observer::newton::{Arrival, NewtonObserver, NewtonOptions};
+//! use observer::{Model, Sample, Start, Status, rk4::rk4_linearised};
+//!
+//! struct Pendulum; // states: angle, speed, g / length; sampled at 100 Hz
+//!
+//! impl Model<3, 1> for Pendulum {
+//!     type Input = ();
+//!     fn flow(&self, x: &SVector<f64, 3>, (): &()) -> (SVector<f64, 3>, SMatrix<f64, 3, 3>) {
+//!         rk4_linearised(x, 0.01, |_, x| {
+//!             let (sin, cos) = x[0].sin_cos();
+//!             let rate = SVector::<f64, 3>::new(x[1], -x[2] * sin, 0.0);
+//!             let slope = SMatrix::<f64, 3, 3>::new(0.0, 1.0, 0.0, -x[2] * cos, 0.0, -sin, 0.0, 0.0, 0.0);
+//!             (rate, slope)
+//!         })
+//!     }
+//!     fn output(&self, x: &SVector<f64, 3>, (): &()) -> (SVector<f64, 1>, SMatrix<f64, 1, 3>) {
+//!         (SVector::<f64, 1>::new(x[0]), SMatrix::<f64, 1, 3>::new(1.0, 0.0, 0.0))
+//!     }
+//!     fn scales(&self) -> SVector<f64, 3> { SVector::<f64, 3>::new(1.0, 3.0, 10.0) }
+//!     fn names(&self) -> [&'static str; 3] { ["angle", "angular velocity", "gravity over length"] }
+//! }
+//!
+//! # fn main() -> Result<(), observer::ObserverError> {
+//! let options = NewtonOptions { window: 100, steps: 1, damping: 0.0, arrival: Arrival::Forget };
+//! let guess = Start::guess(SVector::<f64, 3>::new(0.9, 0.1, 8.0));
+//! let mut observer = NewtonObserver::new(Pendulum, options, guess)?;
+//! let mut truth = SVector::<f64, 3>::new(1.0, 0.0, 9.81);
+//! for _ in 0..150 {
+//!     let information = SVector::<f64, 1>::new(1e6); // one over (1 mrad)^2
+//!     let sample = Sample { input: (), measured: SVector::<f64, 1>::new(truth[0]), information };
+//!     let estimate = observer.push(sample);
+//!     if estimate.report.status == Status::NotObservable {
+//!         // the first samples: one angle says nothing about speed and length
+//!         let names = Pendulum.names();
+//!         assert!(!estimate.report.direction_in_words(&names).is_empty());
+//!     }
+//!     if estimate.report.status == Status::Converged {
+//!         assert!((estimate.state[2] - 9.81).abs() < 5.0 * estimate.report.deviations()[2]);
+//!     }
+//!     truth = Pendulum.flow(&truth, &()).0;
+//! }
+//! # let last = observer.estimate().map(|e| e.state[2]);
+//! # assert!(last.is_some_and(|g| (g - 9.81).abs() < 1e-9), "{last:?}");
+//! # Ok(())
+//! # }
+//! ```
 
 use super::density::log_density;
 use super::model::{Model, Sample};
@@ -54,56 +105,6 @@ pub struct NewtonEstimate<const N: usize> {
 /// the residuals, which vanish at the solution. Work and memory per sample are bounded by the window; nothing is allocated
 /// after construction. Without process noise the window's states follow from its first one by the flow (single shooting);
 /// with process noise all states of the window are free and the noise is estimated along.
-///
-/// A pendulum whose angle is measured, neither its speed nor its length known:
-///
-/// ```
-/// use nalgebra::{SMatrix, SVector};
-/// use observer::{Arrival, Model, NewtonObserver, NewtonOptions, Sample, Start, Status, rk4_linearised};
-///
-/// struct Pendulum; // states: angle, speed, g / length; sampled at 100 Hz
-///
-/// impl Model<3, 1> for Pendulum {
-///     type Input = ();
-///     fn flow(&self, x: &SVector<f64, 3>, (): &()) -> (SVector<f64, 3>, SMatrix<f64, 3, 3>) {
-///         rk4_linearised(x, 0.01, |_, x| {
-///             let (sin, cos) = x[0].sin_cos();
-///             let rate = SVector::<f64, 3>::new(x[1], -x[2] * sin, 0.0);
-///             let slope = SMatrix::<f64, 3, 3>::new(0.0, 1.0, 0.0, -x[2] * cos, 0.0, -sin, 0.0, 0.0, 0.0);
-///             (rate, slope)
-///         })
-///     }
-///     fn output(&self, x: &SVector<f64, 3>, (): &()) -> (SVector<f64, 1>, SMatrix<f64, 1, 3>) {
-///         (SVector::<f64, 1>::new(x[0]), SMatrix::<f64, 1, 3>::new(1.0, 0.0, 0.0))
-///     }
-///     fn scales(&self) -> SVector<f64, 3> { SVector::<f64, 3>::new(1.0, 3.0, 10.0) }
-///     fn names(&self) -> [&'static str; 3] { ["angle", "angular velocity", "gravity over length"] }
-/// }
-///
-/// # fn main() -> Result<(), observer::ObserverError> {
-/// let options = NewtonOptions { window: 100, steps: 1, damping: 0.0, arrival: Arrival::Forget };
-/// let guess = Start::guess(SVector::<f64, 3>::new(0.9, 0.1, 8.0));
-/// let mut observer = NewtonObserver::new(Pendulum, options, guess)?;
-/// let mut truth = SVector::<f64, 3>::new(1.0, 0.0, 9.81);
-/// for _ in 0..150 {
-///     let information = SVector::<f64, 1>::new(1e6); // one over (1 mrad)^2
-///     let sample = Sample { input: (), measured: SVector::<f64, 1>::new(truth[0]), information };
-///     let estimate = observer.push(sample);
-///     if estimate.report.status == Status::NotObservable {
-///         // the first samples: one angle says nothing about speed and length
-///         let names = Pendulum.names();
-///         assert!(!estimate.report.direction_in_words(&names).is_empty());
-///     }
-///     if estimate.report.status == Status::Converged {
-///         assert!((estimate.state[2] - 9.81).abs() < 5.0 * estimate.report.deviations()[2]);
-///     }
-///     truth = Pendulum.flow(&truth, &()).0;
-/// }
-/// # let last = observer.estimate().map(|e| e.state[2]);
-/// # assert!(last.is_some_and(|g| (g - 9.81).abs() < 1e-9), "{last:?}");
-/// # Ok(())
-/// # }
-/// ```
 pub struct NewtonObserver<Mo: Model<N, M>, const N: usize, const M: usize> {
     model: Mo,
     options: NewtonOptions,
@@ -198,7 +199,7 @@ impl<Mo: Model<N, M>, const N: usize, const M: usize> NewtonObserver<Mo, N, M> {
     }
 
     /// Logarithm of the density of the newest sample, given the others of the window and what was carried into it: what
-    /// [`Odds`](crate::Odds) takes. As good as the estimate is converged, and exact for a linear model. None before the first
+    /// [`Odds`](crate::bank::Odds) takes. As good as the estimate is converged, and exact for a linear model. None before the first
     /// sample, and where nothing but that sample tells its outputs.
     #[must_use]
     pub fn log_density(&self) -> Option<f64> {

@@ -1,4 +1,15 @@
 //! One classical Runge-Kutta step, alone and with its variational equations.
+//!
+//! ```
+//! use nalgebra::SVector;
+//! use observer::rk4::rk4;
+//!
+//! // A swing, a hundredth of its turn a step: after all of them it is where it was.
+//! let step = |x| rk4(&x, std::f64::consts::TAU / 100.0, |_, x| SVector::<f64, 2>::new(x[1], -x[0]));
+//! let start = SVector::<f64, 2>::new(1.0, 0.0);
+//! let end = (0..100).fold(start, |x, _| step(x));
+//! assert!((end - start).norm() < 1e-6);
+//! ```
 
 use nalgebra::{SMatrix, SVector};
 

@@ -4,7 +4,8 @@ use crate::contacts::estimate_contacts;
 use crate::contacts::{
     ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions, EstimatedModes,
 };
-use crate::{Explanation, Reliability, Suspect};
+use crate::faults::{Explanation, Suspect};
+use crate::reliability::Reliability;
 use glam::{DVec2, DVec3};
 use object_dynamics::planar::{BodyState, ContactLog, PlanarMass, in_plane};
 use object_dynamics::{ContactLogError, ContactMode, LoggedPalm, MOST_PALMS, MassError, MassProperties};

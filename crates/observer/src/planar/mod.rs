@@ -3,6 +3,38 @@
 //! with their observability by Lie derivatives ([`AuthorsFields::observability`]).
 //!
 //! Conventions as in [`contact_kinematics::planar`] and [`object_dynamics::planar`].
+//!
+//! ```
+//! use contact_kinematics::planar::FourierBody;
+//! use object_dynamics::planar::{ConstantRates, PlanarMass, PlanarObject, PlanarStart, simulate_prescribed};
+//! use observer::contacts::ContactNoiseLevel;
+//! use observer::planar::{PlaneOptions, estimate_plane};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // What two palms without friction sense of 200 g that turn between them, for a second and a half.
+//! let shape = FourierBody::new(&[0.04, 0.003, 0.0045, 0.0006], &[0.0, -0.002, 0.001, -0.0008])?;
+//! let mass = PlanarMass::from_gyration(0.2, 0.000_729)?;
+//! let motion = ConstantRates { angles: [0.785, 1.571], rates: [0.2, 0.0] };
+//! let times: Vec<f64> = (0..=350).map(|k| f64::from(k) * 4e-3).collect();
+//! let object = PlanarObject { shape, mass, gravity: 9.81 };
+//! let run = simulate_prescribed(&object, &motion, PlanarStart { phi0: 5.85, omega0: 6.0 }, &times, 1e-12)?;
+//! let log = run.log()?.contact_log([0.0; 2]).ok_or("no force")?;
+//!
+//! let options = PlaneOptions {
+//!     noise: ContactNoiseLevel { contact: 0.0, force_fixed: 0.0, force_share: 0.0, impulse: None, floor: 2e-5 },
+//!     gravity: 9.81,
+//!     friction: vec![Some(0.0); 2],
+//!     body: None,
+//!     size: None,
+//!     suspects: false,
+//!     mode_odds: false,
+//! };
+//! let found = estimate_plane(&log, &options)?;
+//! assert!((found.mass.0 - 0.2).abs() < 1e-3);
+//! assert!((found.states[0].omega0 - 6.0).abs() < 1e-2);
+//! # Ok(())
+//! # }
+//! ```
 
 mod authors;
 mod error;

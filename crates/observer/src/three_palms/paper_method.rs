@@ -3,7 +3,40 @@
 //!
 //! It is exponentially unstable (errors of the start grow about 1e5-fold over the paper's Fig. 5), takes no force as
 //! redundant and never uses Newton's law (30) but in the constraint. It stays as an oracle for data without noise, and
-//! on the charts; to estimate, use [`crate::estimate_contacts`].
+//! on the charts; to estimate, use [`crate::contacts::estimate_contacts`].
+//!
+//! ```
+//! use contact_kinematics::{Ellipsoid, Palm};
+//! use glam::{DQuat, DVec3};
+//! use object_dynamics::integrate::Tolerance;
+//! use object_dynamics::{InitialMotion, MassProperties, SampleTimes, ThreePalmScene};
+//! use observer::three_palms::Track;
+//! use observer::three_palms::paper_method::{
+//!     PaperMethod, PaperStart, PredictorCorrector, integrate_paper_system,
+//! };
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // What three palms sense, exactly, for a second.
+//! let axes = DVec3::new(0.05, 0.045, 0.04);
+//! let mass = MassProperties::uniform_ellipsoid(0.3, axes)?;
+//! let palm = |k: f64| Palm::fixed(k * std::f64::consts::TAU / 3.0, 0.8);
+//! let scene = ThreePalmScene::new(Ellipsoid::new(axes)?, mass, [palm(0.0)?, palm(1.0)?, palm(2.0)?], 9.81)?;
+//! let start = InitialMotion { R_WO: DQuat::IDENTITY, w_WO: DVec3::new(2.0, -1.0, 4.0) };
+//! let times = SampleTimes { duration: 1.0, rate: 500.0 };
+//! let run = scene.simulate(start, times, Tolerance::uniform(1e-12))?;
+//! let log = run.sensor_log(&scene)?;
+//! let touch = &run.instants[0].touch;
+//! let exact = PaperStart { radii: touch.contacts.map(|c| c.jet.value), R_WO: start.R_WO, w_WO: start.w_WO };
+//! let method = PaperMethod { scheme: PredictorCorrector::Adams4, enforce_constraint: false };
+//! let track = Track::new(&log, scene.gravity(), None)?;
+//! let found = integrate_paper_system(&track, scene.mass(), &exact, method)?;
+//! assert_eq!((found.diverged_at, found.radii.len()), (None, 501));
+//! let last = run.instants[500].touch.contacts[0].jet.value;
+//! assert!((found.radii[500][0] - last).abs() < 1e-8);
+//! assert!(found.amplification() > 1.0); // an error of the start grows
+//! # Ok(())
+//! # }
+//! ```
 
 use super::motion_state::MotionState;
 use super::paper_system::{State, System};

@@ -8,11 +8,11 @@ use glam::{DQuat, DVec3};
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Vector2};
 use object_dynamics::integrate::Tolerance;
 use object_dynamics::{InitialMotion, MassProperties, Sample, SampleTimes, SensorNoise, ThreePalmScene};
-use observer::{
-    ContactFriction, ContactModes, ContactModesOptions, ContactNoiseLevel, ContactOptions, ContactReading,
-    ContactSeen, ContactSlip, ForceReading, MotionStream, PlaneReadings, StreamOptions, StreamStage,
-    TwistError,
+use observer::contact_modes::{
+    ContactFriction, ContactModes, ContactModesOptions, ContactReading, ContactSeen, ContactSlip, TwistError,
 };
+use observer::contacts::stream::{ForceReading, MotionStream, PlaneReadings, StreamOptions, StreamStage};
+use observer::contacts::{ContactNoiseLevel, ContactOptions};
 
 const NOISE: ContactNoiseLevel =
     ContactNoiseLevel { contact: 2.5e-3, force_fixed: 0.065, force_share: 0.0, impulse: None, floor: 1e-4 };

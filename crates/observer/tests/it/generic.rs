@@ -1,6 +1,10 @@
 //! The generic observers on a linear problem, where the Kalman filter is exact, and on a pendulum.
 
 use nalgebra::{SMatrix, SVector};
+use observer::batch::*;
+use observer::ekf::*;
+use observer::newton::*;
+use observer::rk4::*;
 use observer::*;
 
 type V3 = SVector<f64, 3>;

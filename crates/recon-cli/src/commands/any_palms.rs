@@ -3,7 +3,7 @@
 use super::answers::{bounds_and_errors, of_body};
 use crate::pipeline::{describe_times, feature_lines};
 use recon::object_dynamics::MassProperties;
-use recon::observer::ContactEstimate;
+use recon::observer::contacts::ContactEstimate;
 use recon_io::{EstimateData, brief, brief_to, estimated_mode_spans};
 use serde_json::Value;
 use std::fmt::Write;

@@ -12,7 +12,8 @@ use crate::progress::Progress;
 use glam::DVec3;
 use recon::contact_kinematics::CurvatureRadii;
 use recon::contact_kinematics::planar::RadiusBounds;
-use recon::shape_bounds::{ContactSample, PlaneHeight};
+use recon::shape_bounds::ContactSample;
+use recon::shape_bounds::poses::PlaneHeight;
 use recon_io::{
     FiguresPage, FolderTarget, SummaryOf, Touches, brief, brief_to, check_unwritten, read_touches,
 };

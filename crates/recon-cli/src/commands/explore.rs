@@ -13,7 +13,7 @@ use recon::contact_kinematics::{Direction, SupportFunction};
 use recon::exploration::rolling::{RollingBody, SensedError, SimulatedHands, SimulatedPalms, Workspace};
 use recon::exploration::{Heading, Motion, Source, planar, space};
 use recon::object_dynamics::planar::PlanarObject;
-use recon::shape_bounds::planar as flat;
+use recon::shape_bounds::exact_hull::planar as flat;
 use recon_io::{FolderTarget, OutlineScene, PlanarBody, PlanarScene, Scene, SceneErrorKind};
 use serde_json::Value;
 use std::f64::consts::TAU;

@@ -6,7 +6,7 @@ use crate::commands::follow::{noise, options, stream_row};
 use crate::error::CliError;
 use crate::pipeline::known_body;
 use recon::object_dynamics::MassProperties;
-use recon::observer::{MotionStream, PlaneReadings, StreamOptions, StreamPalm};
+use recon::observer::contacts::stream::{MotionStream, PlaneReadings, StreamOptions, StreamPalm};
 use recon_io::{LogFileError, RowReader, RowSample, Scene, StreamRow};
 
 /// The motion of a body sample by sample, from rows of numbers as they come: what `recon follow` makes of a file.

@@ -15,10 +15,10 @@ use glam::{DMat3, DVec3};
 use recon::contact_kinematics::Direction;
 use recon::least_model::{Accuracy, Choice, least_estimate, one_of};
 use recon::object_dynamics::{ContactLog, LoggedPalm, MassProperties, NotThreePlanes, SensedAxes, TrueState};
-use recon::observer::{
-    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, ImpulseNoise,
-    estimate_contacts, nearest_turn,
+use recon::observer::contacts::{
+    ContactEstimate, ContactEstimateError, ContactNoiseLevel, ContactOptions, ImpulseNoise, estimate_contacts,
 };
+use recon::observer::rigid::nearest_turn;
 use recon::shape_bounds::ContactSample;
 use recon_io::{
     EstimateData, INERTIA_LEARNED, Implausibility, Level, MassDeviations, PalmContact, Scene, Sensors,

@@ -5,7 +5,7 @@ use super::sound::{PosedContact, bounds_of_poses, in_tangent};
 use crate::error::CliError;
 use recon::contact_kinematics::{Direction, PalmSurface};
 use recon::object_dynamics::{ContactLog, LoggedPalm};
-use recon::observer::ContactEstimate;
+use recon::observer::contacts::ContactEstimate;
 use recon::shape_bounds::ContactSample;
 use recon_io::PalmContact;
 

@@ -4,10 +4,11 @@ use super::evidence::{of_bounds, samples_together};
 use super::sensor_words::{explained, suspects};
 use glam::DVec3;
 use recon::object_dynamics::MassProperties;
-use recon::observer::{
-    ContactEstimate, ContactEvidence, ContactNoiseLevel, ContactOptions, EstimatedModes, LearnedFriction,
-    Reason, Reliability,
+use recon::observer::contact_modes::LearnedFriction;
+use recon::observer::contacts::{
+    ContactEstimate, ContactEvidence, ContactNoiseLevel, ContactOptions, EstimatedModes,
 };
+use recon::observer::reliability::{Reason, Reliability};
 use recon::shape_bounds::Gap;
 use recon_io::EvidenceValue::{Number, Text};
 use recon_io::{Evidence, EvidenceValue, INERTIA_LEARNED, Level, Verdict, brief_to};

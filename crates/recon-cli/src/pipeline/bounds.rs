@@ -1,6 +1,7 @@
 use super::features::FoundFeatures;
 use crate::error::CliError;
-use recon::shape_bounds::{ContactSample, Hull, Intersection, Polyhedron, ShapeBounds, SolidHull};
+use recon::shape_bounds::exact_hull::{Hull, Intersection, Polyhedron, SolidHull};
+use recon::shape_bounds::{ContactSample, ShapeBounds};
 use recon_io::{Bound, Bounds, MeshError, TriangleMesh, stands_out};
 
 /// Files of the bounds.
@@ -126,7 +127,7 @@ pub(super) fn drawn_surfaces(
 }
 
 /// A surface as the writer of meshes takes it.
-pub(super) fn own(mesh: recon::shape_bounds::TriangleMesh) -> Result<TriangleMesh, MeshError> {
+pub(super) fn own(mesh: recon::shape_bounds::exact_hull::TriangleMesh) -> Result<TriangleMesh, MeshError> {
     TriangleMesh::new(mesh.vertices, mesh.triangles)
 }
 

@@ -2,7 +2,8 @@
 
 use super::bounds::{BoundsResult, meshes, own, unbounded};
 use crate::error::CliError;
-use recon::shape_bounds::{AlphaShape, ContactSample, ShapeBounds};
+use recon::shape_bounds::concave::AlphaShape;
+use recon::shape_bounds::{ContactSample, ShapeBounds};
 use recon_io::{Bound, Bounds};
 use serde_json::{Value, json};
 

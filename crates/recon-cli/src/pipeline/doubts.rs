@@ -2,7 +2,7 @@
 
 use super::sound::Noise;
 use crate::error::CliError;
-use recon::shape_bounds::NoiseDoubt;
+use recon::shape_bounds::noise::NoiseDoubt;
 use serde_json::{Value, json};
 
 /// What is not as was assumed of the noise of contacts, in space or in the plane.

@@ -1,7 +1,7 @@
 //! Rows of evidence that several results share.
 
 use glam::DMat3;
-use recon::observer::{PoseAxes, PoseErrors};
+use recon::observer::rigid::{PoseAxes, PoseErrors};
 use recon_io::{Evidence, EvidenceValue, Level};
 
 /// Of a log that was thinned by means.

@@ -4,10 +4,9 @@ use crate::cli::{ExportAs, ShapeAs};
 use crate::error::CliError;
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::MassProperties;
-use recon::shape_bounds::{
-    ContactNoise, ContactSample, FitOptions, FittedBody, NoiseLevel, NoisyContact, ShapeFamily, ShapeFit,
-    SkewEllipsoid,
-};
+use recon::shape_bounds::ContactSample;
+use recon::shape_bounds::fit::{FitOptions, FittedBody, NoiseLevel, ShapeFamily, ShapeFit, SkewEllipsoid};
+use recon::shape_bounds::noise::{ContactNoise, NoisyContact};
 use recon_io::{
     ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, MotionState, ObjectModel,
     TriangleMesh,

@@ -4,7 +4,9 @@ use super::bounds::{BoundsResult, own};
 use super::views::views;
 use crate::error::CliError;
 use glam::{DMat3, DVec3};
-use recon::shape_bounds::{ContactSample, FeatureKind, Features, FoundPolyhedron, NoisyContact};
+use recon::shape_bounds::ContactSample;
+use recon::shape_bounds::features::{FeatureKind, Features, FoundPolyhedron};
+use recon::shape_bounds::noise::NoisyContact;
 use recon_io::{ShapeMarks, TriangleMesh, brief};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -45,15 +47,15 @@ impl FoundFeatures {
     /// For the summary.
     pub(crate) fn figures(&self) -> Value {
         let found = &self.found;
-        let corner = |c: &recon::shape_bounds::Corner| json!({ "point_m": c.point.to_array(), "std_m": deviations(c.covariance), "contacts": c.contacts, "touched": c.runs.len() });
-        let edge = |e: &recon::shape_bounds::Edge| {
+        let corner = |c: &recon::shape_bounds::features::Corner| json!({ "point_m": c.point.to_array(), "std_m": deviations(c.covariance), "contacts": c.contacts, "touched": c.runs.len() });
+        let edge = |e: &recon::shape_bounds::features::Edge| {
             let at = |s: f64| (e.point + s * e.direction.get()).to_array();
             json!({
                 "from_m": at(e.extent[0]), "to_m": at(e.extent[1]), "std_m": deviations(e.covariance), "std_direction_rad": e.turn,
                 "contacts": e.contacts, "touched": e.runs.len(),
             })
         };
-        let face = |f: &recon::shape_bounds::Face| {
+        let face = |f: &recon::shape_bounds::features::Face| {
             json!({
                 "point_m": f.point.to_array(), "normal": f.normal.get().to_array(), "std_m": deviations(f.covariance),
                 "std_normal_rad": f.turn, "contacts": f.contacts, "touched": f.runs.len(),

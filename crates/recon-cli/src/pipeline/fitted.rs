@@ -6,11 +6,13 @@ use crate::error::CliError;
 use glam::DVec2;
 use recon::contact_kinematics::planar::RadiusFunction;
 use recon::contact_kinematics::{Direction, SupportFunction};
-use recon::shape_bounds::planar::{self, OutlineFamily, OutlineFit};
-use recon::shape_bounds::{
-    Candidate, ContactNoise, ContactSample, FitError, FitOptions, FitStatistics, NoiseLevel, NoisyContact,
-    ShapeFamily, ShapeFit,
+use recon::shape_bounds::ContactSample;
+use recon::shape_bounds::fit::{
+    Candidate, FitError, FitOptions, FitStatistics, NoiseLevel, ShapeFamily, ShapeFit,
 };
+use recon::shape_bounds::noise::{ContactNoise, NoisyContact};
+use recon::shape_bounds::planar;
+use recon::shape_bounds::planar::fit::{OutlineFamily, OutlineFit};
 use recon_io::{TriangleMesh, brief, brief_to};
 use serde_json::{Value, json};
 use std::error::Error;
@@ -107,7 +109,7 @@ fn tried<F: Display, E: Display>(candidates: &[Candidate<F, E>]) -> Value {
 
 /// Fits an outline to contacts in the plane, drawn by its corners; refused as in space.
 pub(crate) fn fitted_outline(
-    contacts: &[planar::NoisyContact],
+    contacts: &[planar::noise::NoisyContact],
     stated_noise: bool,
     family: FitAs,
 ) -> Result<Fitted<Vec<DVec2>>, CliError> {
@@ -123,8 +125,10 @@ pub(crate) fn fitted_outline(
         Ok(choice) => choice,
         Err(error) => {
             return match &error {
-                planar::FitError::NoneFits { candidates } => Ok(Fitted::refused(&error, tried(candidates))),
-                planar::FitError::Refuted { .. } => Ok(Fitted::refused(&error, Value::Null)),
+                planar::fit::FitError::NoneFits { candidates } => {
+                    Ok(Fitted::refused(&error, tried(candidates)))
+                }
+                planar::fit::FitError::Refuted { .. } => Ok(Fitted::refused(&error, Value::Null)),
                 _ => Err(error.into()),
             };
         }
@@ -138,10 +142,10 @@ pub(crate) fn fitted_outline(
 }
 
 /// Contacts in the plane with noise of which only the ratio between points and normals is meant.
-pub(super) fn relative_noise(contacts: &[planar::ContactSample]) -> Vec<planar::NoisyContact> {
+pub(super) fn relative_noise(contacts: &[planar::ContactSample]) -> Vec<planar::noise::NoisyContact> {
     let level = RELATIVE_NOISE * size(contacts.iter().map(|c| c.point.extend(0.0)));
-    let noise = planar::ContactNoise::isotropic(level, RELATIVE_NOISE);
-    contacts.iter().map(|&contact| planar::NoisyContact { contact, noise }).collect()
+    let noise = planar::noise::ContactNoise::isotropic(level, RELATIVE_NOISE);
+    contacts.iter().map(|&contact| planar::noise::NoisyContact { contact, noise }).collect()
 }
 
 fn stated() -> FitOptions {

@@ -11,9 +11,10 @@ use super::plane::PlanarBounds;
 use crate::error::CliError;
 use recon::least_model::{Accuracy, Choice, least_plane_estimate, one_of_plane};
 use recon::object_dynamics::planar::{ContactLog, PlanarMass, PlanarTruth};
+use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
-use recon::observer::{ContactNoiseLevel, Reliability};
-use recon::shape_bounds::planar::NoiseError;
+use recon::observer::reliability::Reliability;
+use recon::shape_bounds::planar::noise::NoiseError;
 use recon_io::{
     Evidence, Level, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, Verdict, brief, brief_to,
     explanation, mode_figures, sensor_fault, verdict_figures, write_plane_estimate_report,

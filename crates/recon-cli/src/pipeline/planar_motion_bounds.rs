@@ -37,7 +37,7 @@ mod tests {
     use recon::object_dynamics::planar::{
         ConstantRates, PlanarMass, PlanarNoise, PlanarObject, PlanarStart, simulate_prescribed,
     };
-    use recon::observer::ContactNoiseLevel;
+    use recon::observer::contacts::ContactNoiseLevel;
     use recon::observer::planar::{PlaneOptions, estimate_plane};
 
     #[test]

@@ -3,8 +3,9 @@
 use super::any_palms_words::{fit, modes, neutral, percent, told, wider};
 use super::planar_motion::ENOUGH;
 use super::sensor_words::{explained, suspects};
+use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::PlaneEstimate;
-use recon::observer::{ContactNoiseLevel, Reliability};
+use recon::observer::reliability::Reliability;
 use recon_io::EvidenceValue::Number;
 use recon_io::{Evidence, Level, Verdict};
 

@@ -8,10 +8,13 @@ use crate::cli::FitAs;
 use crate::error::CliError;
 use glam::DVec2;
 use recon::contact_kinematics::planar::RadiusBounds;
-use recon::shape_bounds::planar::{
-    ContactNoise, ContactSample, CurvatureBounds, Direction, Intersection, NoisyContact, ShapeBounds,
-    correlated_noise, estimate_noise, independence_is_tested, with_noise_as_found, without_outliers,
+use recon::shape_bounds::exact_hull::planar::{Direction, Intersection};
+use recon::shape_bounds::planar::curvature::CurvatureBounds;
+use recon::shape_bounds::planar::noise::{
+    ContactNoise, NoisyContact, correlated_noise, estimate_noise, independence_is_tested,
+    with_noise_as_found, without_outliers,
 };
+use recon::shape_bounds::planar::{ContactSample, ShapeBounds};
 use recon_io::{FigureCurve, FigurePanel, outline_stands_out};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;

@@ -1,7 +1,7 @@
 //! What the data say of constants of the sensors, in words for people.
 
 use super::any_palms_words::neutral;
-use recon::observer::{Assumption, Explanation, Suspect};
+use recon::observer::faults::{Assumption, Explanation, Suspect};
 use recon_io::EvidenceValue::Text;
 use recon_io::{Evidence, Level, brief_to};
 

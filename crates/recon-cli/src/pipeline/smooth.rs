@@ -3,7 +3,9 @@
 use super::bounds::own;
 use crate::cli::SurfaceAs;
 use crate::error::CliError;
-use recon::shape_bounds::{ContactSample, HermiteSurface, PrincipalSurface, SplineSurface};
+use recon::shape_bounds::ContactSample;
+use recon::shape_bounds::approximation::{PrincipalSurface, SplineSurface};
+use recon::shape_bounds::concave::HermiteSurface;
 use recon_io::TriangleMesh;
 use serde_json::{Value, json};
 

@@ -6,12 +6,15 @@ use super::features::FoundFeatures;
 use crate::error::CliError;
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::CurvatureRadii;
-use recon::observer::{PoseCovariance, PoseErrors};
-use recon::shape_bounds::{
-    BodyPose, CertainBounds, ContactNoise, ContactSample, ContradictingRun, FacetError, FeatureOptions,
-    Features, NoisyContact, Outlier, Pieces, PlaneHeight, PoseBounds, PoseNoise, PoseRule, SharpBounds,
-    correlated_noise, estimate_noise, independence_is_tested, with_noise_as_found, without_outliers,
+use recon::observer::rigid::{PoseCovariance, PoseErrors};
+use recon::shape_bounds::curvature::SharpBounds;
+use recon::shape_bounds::features::{FeatureOptions, Features, Pieces};
+use recon::shape_bounds::noise::{
+    CertainBounds, ContactNoise, NoisyContact, Outlier, PoseNoise, correlated_noise, estimate_noise,
+    independence_is_tested, with_noise_as_found, without_outliers,
 };
+use recon::shape_bounds::poses::{BodyPose, ContradictingRun, PlaneHeight, PoseBounds, PoseRule};
+use recon::shape_bounds::{ContactSample, FacetError};
 use recon_io::{Bound, Bounds, brief_to};
 use serde_json::{Value, json};
 

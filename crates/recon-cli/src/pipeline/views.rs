@@ -2,7 +2,7 @@
 
 use super::bounds::BoundsResult;
 use glam::{DVec2, DVec3};
-use recon::shape_bounds::planar;
+use recon::shape_bounds::exact_hull::planar;
 use recon_io::{FigureCurve, FigureFrame, FigurePanel};
 use std::f64::consts::TAU;
 

@@ -10,7 +10,8 @@ use crate::progress::Progress;
 use glam::{DMat3, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::SensorLog;
-use recon::observer::{KnownTouch, NoForceEstimate, Suspect, estimate_without_forces};
+use recon::observer::faults::Suspect;
+use recon::observer::three_palms::no_force::{KnownTouch, NoForceEstimate, estimate_without_forces};
 use recon::shape_bounds::ContactSample;
 use recon_io::{FolderTarget, MotionState, Scene, SummaryOf, brief, brief_to, sensor_fault, status_in_words};
 use serde_json::{Value, json};
@@ -85,7 +86,7 @@ impl WithoutForces {
     }
 
     pub(crate) fn motion(&self) -> Vec<MotionState> {
-        let state = |m: &recon::observer::MotionState| MotionState {
+        let state = |m: &recon::observer::three_palms::MotionState| MotionState {
             p_WCm: m.p_WCm,
             R_WO: m.R_WO,
             v_WCm: m.v_WCm,

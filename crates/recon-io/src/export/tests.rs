@@ -67,7 +67,7 @@ fn the_mesh_of_an_ellipsoid_is_closed_and_near_it() {
     let semi_axes = DVec3::new(1.0, 2.0, 2.5);
     let mesh = surface::ellipsoid(DVec3::ZERO, DQuat::IDENTITY, semi_axes);
     surface::check("ellipsoid", &mesh).unwrap();
-    let solid = recon::shape_bounds::TriangleMesh {
+    let solid = recon::shape_bounds::exact_hull::TriangleMesh {
         vertices: mesh.vertices.clone(),
         triangles: mesh.triangles.clone(),
     };

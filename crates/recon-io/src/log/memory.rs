@@ -12,7 +12,7 @@ use super::read::{Cells, EachRow, Row, Table, three_palms};
 use recon::contact_kinematics::planar::PalmSurface;
 use recon::object_dynamics::Sample;
 use recon::object_dynamics::planar::{ContactLog as PlanarContactLog, PlanarLog};
-use recon::observer::PalmSensed;
+use recon::observer::contacts::stream::PalmSensed;
 
 /// A sensor log of version 1 or 2 from its columns, with the names and units of the format; `names` and `columns` are in the same order, and
 /// all columns are of the same length. What a CSV file of these numbers gives, to the last bit.

@@ -1,6 +1,6 @@
 use crate::separator::advice;
 use recon::contact_kinematics::DirectionError;
-use recon::shape_bounds::planar;
+use recon::shape_bounds::exact_hull::planar;
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;

@@ -14,7 +14,8 @@ pub use memory::touches_of_columns;
 pub use planar::parse_planar_contacts;
 pub use poses::parse_poses;
 
-use recon::shape_bounds::{BodyPose, ContactSample, planar as flat};
+use recon::shape_bounds::poses::BodyPose;
+use recon::shape_bounds::{ContactSample, planar as flat};
 use std::io::Read;
 use std::path::Path;
 

@@ -4,7 +4,8 @@ use super::columns::{CURVES, Numbers, by_group, read_columns};
 use super::contacts::UNIT_TOLERANCE;
 use super::error::TouchesErrorKind;
 use glam::DVec2;
-use recon::shape_bounds::planar::{ContactSample, Direction};
+use recon::shape_bounds::exact_hull::planar::Direction;
+use recon::shape_bounds::planar::ContactSample;
 use std::io::Read;
 
 pub(super) const COLUMNS: [&str; 4] = ["x", "y", "nx", "ny"];

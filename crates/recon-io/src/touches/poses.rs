@@ -3,7 +3,7 @@
 use super::columns::{Numbers, RUNS, by_group, read_columns};
 use super::error::TouchesErrorKind;
 use glam::{DQuat, DVec3};
-use recon::shape_bounds::BodyPose;
+use recon::shape_bounds::poses::BodyPose;
 use std::io::Read;
 
 /// Largest departure of a quaternion's length from 1: measured ones are rounded, other things are not near it.

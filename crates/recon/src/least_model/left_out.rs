@@ -3,7 +3,7 @@
 use super::Evidence;
 use glam::DVec3;
 use object_dynamics::{ContactLog, SensedAxes};
-use observer::ContactNoiseLevel;
+use observer::contacts::ContactNoiseLevel;
 
 /// A standard normal number goes beyond this, to one side, once in a thousand.
 const ONCE_IN_A_THOUSAND: f64 = 3.09;

@@ -7,7 +7,7 @@ use super::thinned::one_of;
 use super::{Accuracy, Alternative, Choice, Decision, Evidence, Model, Question};
 use glam::DVec3;
 use object_dynamics::{ContactLog, SensedAxes};
-use observer::{ContactEstimate, ContactEstimateError, ContactOptions, estimate_contacts};
+use observer::contacts::{ContactEstimate, ContactEstimateError, ContactOptions, estimate_contacts};
 use std::time::Instant;
 
 /// What the root mean square of errors, each normally distributed, stays below with a probability of 97.5 %, over the root of their mean variance:

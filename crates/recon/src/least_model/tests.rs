@@ -7,7 +7,7 @@ use object_dynamics::{
     MassProperties, PalmDrive, PalmRecord, RecordedMotion, SampleTimes, ScenePalm, SensorNoise,
     ThreePalmScene,
 };
-use observer::{ContactNoiseLevel, ContactOptions};
+use observer::contacts::{ContactNoiseLevel, ContactOptions};
 use std::f64::consts::TAU;
 
 const G: f64 = 9.81;

@@ -1,9 +1,10 @@
 //! What holds for every input: order, size and exact turns do not matter.
 
+use crate::ContactSample;
+use crate::approximation::SplineSurface;
 use crate::generators::Source;
-use crate::planar::PrincipalCurve;
+use crate::planar::approximation::PrincipalCurve;
 use crate::strategies::{contacts, exact_isometry, shuffled};
-use crate::{ContactSample, SplineSurface};
 use contact_kinematics::Direction;
 use exact_hull::generators::AXES;
 use glam::{DVec2, DVec3};

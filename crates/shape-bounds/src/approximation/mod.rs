@@ -5,10 +5,31 @@
 //! the slopes there, which are linear conditions: no patches are to be sewn together, and the surface is twice continuously
 //! differentiable everywhere, across the curves as well. [`SplineSurface`] meets them with the least energy;
 //! [`PrincipalSurface`] smooths points whose normals it does not need, by as much as they ask for. In the plane the same are
-//! [`crate::planar::SplineCurve`] and [`crate::planar::PrincipalCurve`].
+//! [`crate::planar::approximation::SplineCurve`] and [`crate::planar::approximation::PrincipalCurve`].
 //!
 //! Not by patches between the curves: where curves cross, end or leave wide gaps is as the motion happened to go, so there is no net of
 //! four-sided patches to fill. Not by the support function, whose splines are convex bodies alone.
+//!
+//! ```
+//! use glam::DVec3;
+//! use shape_bounds::ContactSample;
+//! use shape_bounds::approximation::SplineSurface;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // An ellipsoid, touched where its normals point to the corners, edges and faces of a cube.
+//! let axes = DVec3::new(2.0, 1.5, 1.0);
+//! let normals = (0..27).filter(|k| *k != 13).map(|k| DVec3::new((k % 3) as f64, (k / 3 % 3) as f64, (k / 9) as f64) - DVec3::ONE);
+//! let contact = |n: DVec3| (axes * axes * n / (axes * n).length(), n.normalize());
+//! let contacts = ContactSample::from_raw(normals.map(contact))?;
+//! let surface = SplineSurface::through(&contacts)?;
+//! // Where it was not touched:
+//! let direction = DVec3::new(1.0, 0.4, 0.3);
+//! let exact = direction / (direction / axes).length();
+//! assert!((surface.point(direction) - exact).length() < 0.01);
+//! assert!(surface.residual() < 1e-9);
+//! # Ok(())
+//! # }
+//! ```
 
 mod basis;
 mod envelope;

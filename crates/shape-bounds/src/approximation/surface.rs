@@ -26,26 +26,6 @@ const LEAST_SCATTERED: usize = 20;
 /// Of all cubic splines on a lattice about the sphere it has the smallest second and third derivatives (mean squares), and is twice continuously differentiable. On a
 /// smooth body it errs with the fourth power of the contacts' spacing. Contacts that are denser than the lattice, as along a curve, are
 /// met by least squares ([`SplineSurface::residual`]). Noise is interpolated as well.
-///
-/// ```
-/// use glam::DVec3;
-/// use shape_bounds::{ContactSample, SplineSurface};
-///
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// // An ellipsoid, touched where its normals point to the corners, edges and faces of a cube.
-/// let axes = DVec3::new(2.0, 1.5, 1.0);
-/// let normals = (0..27).filter(|k| *k != 13).map(|k| DVec3::new((k % 3) as f64, (k / 3 % 3) as f64, (k / 9) as f64) - DVec3::ONE);
-/// let contact = |n: DVec3| (axes * axes * n / (axes * n).length(), n.normalize());
-/// let contacts = ContactSample::from_raw(normals.map(contact))?;
-/// let surface = SplineSurface::through(&contacts)?;
-/// // Where it was not touched:
-/// let direction = DVec3::new(1.0, 0.4, 0.3);
-/// let exact = direction / (direction / axes).length();
-/// assert!((surface.point(direction) - exact).length() < 0.01);
-/// assert!(surface.residual() < 1e-9);
-/// # Ok(())
-/// # }
-/// ```
 #[derive(Clone, Debug)]
 pub struct SplineSurface(Spline<3>);
 
@@ -129,7 +109,7 @@ impl SplineSurface {
 ///
 /// ```
 /// use glam::DVec3;
-/// use shape_bounds::PrincipalSurface;
+/// use shape_bounds::approximation::PrincipalSurface;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// // A ball of radius 0.1 m; every other point is 1 mm too far out, the others too far in.

@@ -1,7 +1,8 @@
 //! Splines and principal surfaces against theory: order, interpolation, tangent planes, bias, refusals.
 
 use super::*;
-use crate::planar::{self, PrincipalCurve, SplineCurve};
+use crate::planar;
+use crate::planar::approximation::{PrincipalCurve, SplineCurve};
 use crate::sample::ContactSample;
 use contact_kinematics::Direction;
 use exact_hull::TriangleMesh;
@@ -61,7 +62,7 @@ fn outline(t: f64) -> planar::ContactSample {
     let radius = 1.0 + 0.3 * (2.0 * t).cos() + 0.1 * (3.0 * t).sin();
     let slope = -0.6 * (2.0 * t).sin() + 0.3 * (3.0 * t).cos();
     let out = DVec2::from_angle(t);
-    let normal = planar::Direction::new(out * radius - out.perp() * slope).unwrap();
+    let normal = exact_hull::planar::Direction::new(out * radius - out.perp() * slope).unwrap();
     planar::ContactSample { point: out * radius, normal }
 }
 

@@ -161,7 +161,7 @@ fn the_size_of_the_points_does_not_matter() {
             shape.mesh(expected * unit * 1.001).unwrap().triangles,
             own.mesh(expected * 1.001).unwrap().triangles
         );
-        let crate::Hull::Solid(hull) = crate::Hull::of(&scaled).unwrap() else { panic!("flat") };
+        let exact_hull::Hull::Solid(hull) = exact_hull::Hull::of(&scaled).unwrap() else { panic!("flat") };
         assert!(scaled.iter().all(|p| hull.contains(*p)), "{exponent}");
         assert!(!hull.contains(scaled[0] * 100.0) && !hull.contains(DVec3::splat(1e300)));
     }

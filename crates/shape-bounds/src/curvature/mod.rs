@@ -3,6 +3,25 @@
 //! Where no principal radius of curvature is below `rho_min`, a ball of that radius rolls freely inside of the body; where
 //! none is above `rho_max`, the body rolls freely inside of a ball of that radius (Blaschke). So the ball of radius
 //! `rho_min` that touches from inside at a contact is in the body, and the one of radius `rho_max` contains it.
+//!
+//! ```
+//! use contact_kinematics::CurvatureRadii;
+//! use glam::DVec3;
+//! use shape_bounds::curvature::CurvatureBounds;
+//! use shape_bounds::{ContactSample, ShapeBounds};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A unit ball, touched at the corners of a cube.
+//! let corner = |i: u32| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * 2.0 - DVec3::ONE;
+//! let contacts = ContactSample::from_raw((0..8).map(|i| corner(i).normalize()).map(|n| (n, n)))?;
+//! let plain = ShapeBounds::from_contacts(&contacts)?;
+//! let limited = CurvatureBounds::from_contacts(&contacts, CurvatureRadii { min: 0.7, max: 1.5 })?;
+//! let ball = 4.0 / 3.0 * std::f64::consts::PI;
+//! assert!(plain.lower_volume() < limited.lower().volume() && limited.lower().volume() < ball);
+//! assert!(ball < limited.upper().volume() && limited.upper().volume() < plain.upper_volume());
+//! # Ok(())
+//! # }
+//! ```
 
 mod ball_hull;
 mod balls;

@@ -3,6 +3,31 @@
 //! At a corner the contact stays at one body point while the normal sweeps; on an edge the point moves along a line about which
 //! the normal turns; on a face the normal stays while the point moves or jumps. In each of two tangent directions the
 //! ratio of both motions is a radius of curvature: zero, without end, or in between where the body is smooth.
+//!
+//! ```
+//! use glam::DVec3;
+//! use shape_bounds::ContactSample;
+//! use shape_bounds::features::{FeatureKind, FeatureOptions, Features};
+//! use shape_bounds::noise::{ContactNoise, NoisyContact};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A palm turns about two opposite corners of a cube: the normal sweeps, and the contact stays but for noise of 0.1 mm.
+//! let wave = |k: u32, of: f64| (of * f64::from(k)).sin();
+//! let sweep = |side: f64| {
+//!     let off = move |k| 1e-4 * DVec3::new(wave(k, 2.1), wave(k, 3.7), wave(k, 5.3));
+//!     let normal = move |k| side * (DVec3::ONE + 0.6 * DVec3::new(wave(k, 0.31), wave(k, 0.47), wave(k, 0.23))).normalize();
+//!     (0..40).map(move |k| (DVec3::splat(0.05 * side) + off(k), normal(k)))
+//! };
+//! let noise = ContactNoise::isotropic(1e-4, 1e-3);
+//! let noisy = |contact| NoisyContact { contact, noise };
+//! let curve = |side| Ok::<_, Box<dyn std::error::Error>>(ContactSample::from_raw(sweep(side))?.into_iter().map(noisy).collect());
+//! let found = Features::find(&[curve(1.0)?, curve(-1.0)?], &FeatureOptions::default())?;
+//! assert!(found.runs.iter().all(|run| run.kind == Some(FeatureKind::Corner)));
+//! assert_eq!(found.corners.len(), 2);
+//! assert!((found.corners[0].point - DVec3::splat(0.05)).length() < 1e-4);
+//! # Ok(())
+//! # }
+//! ```
 
 mod assign;
 mod evidence;

@@ -52,26 +52,6 @@ impl ShapeFit {
     /// determinants of the covariances, so that a family is not rewarded for strong curvature, through which errors of
     /// normals could explain any residual.
     ///
-    /// ```
-    /// use glam::DVec3;
-    /// use shape_bounds::{ContactNoise, ContactSample, FitOptions, NoisyContact, ShapeFamily, ShapeFit};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// // A ball of 50 mm about (10, 0, 0) mm, touched at the corners of a cube.
-    /// let corner = |i: u32| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * 2.0 - DVec3::ONE;
-    /// let normals = (0..8).map(|i| corner(i).normalize());
-    /// let contacts = ContactSample::from_raw(normals.map(|n| (DVec3::X * 0.01 + n * 0.05, n)))?;
-    /// let noise = ContactNoise::isotropic(1e-4, 1e-2);
-    /// let noisy: Vec<_> = contacts.iter().map(|&contact| NoisyContact { contact, noise }).collect();
-    /// let choice = ShapeFit::choose(&noisy, &ShapeFamily::candidates(noisy.len()), &FitOptions::default())?;
-    /// assert_eq!(choice.best.family(), ShapeFamily::Sphere);
-    /// let radius = choice.best.parameters()[3];
-    /// let deviation = choice.best.covariance()[(3, 3)].sqrt();
-    /// assert!((radius - 0.05).abs() < 1e-9 && deviation < 1e-3);
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
     /// Families that cannot be fitted, or that the contacts refute, are reported and left out, and so are those of more
     /// parameters once one fits exactly. Of more than [`COMPARED`] contacts so many, spread evenly, say in which order families
     /// are fitted to all; the first that all do not refute is the best.

@@ -50,7 +50,7 @@ impl Misfit {
         }
     }
 
-    /// Schwarz's information criterion: see [`crate::ShapeFit::choose`].
+    /// Schwarz's information criterion: see [`crate::fit::ShapeFit::choose`].
     pub(crate) fn criterion(&self, level: NoiseLevel) -> f64 {
         let equations = self.equations as f64;
         let misfit = match level {

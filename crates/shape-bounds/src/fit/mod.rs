@@ -4,6 +4,28 @@
 //! equations in the shape's parameters, linear in those of a ball and of spherical harmonics, and free of the search for
 //! a foot point that a fit to points alone needs. Both `x` and `n` are measured; the error of the normal enters through
 //! the Hessian of `h`, see `solve`.
+//!
+//! ```
+//! use glam::DVec3;
+//! use shape_bounds::ContactSample;
+//! use shape_bounds::fit::{FitOptions, ShapeFamily, ShapeFit};
+//! use shape_bounds::noise::{ContactNoise, NoisyContact};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A ball of 50 mm about (10, 0, 0) mm, touched at the corners of a cube.
+//! let corner = |i: u32| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * 2.0 - DVec3::ONE;
+//! let normals = (0..8).map(|i| corner(i).normalize());
+//! let contacts = ContactSample::from_raw(normals.map(|n| (DVec3::X * 0.01 + n * 0.05, n)))?;
+//! let noise = ContactNoise::isotropic(1e-4, 1e-2);
+//! let noisy: Vec<_> = contacts.iter().map(|&contact| NoisyContact { contact, noise }).collect();
+//! let choice = ShapeFit::choose(&noisy, &ShapeFamily::candidates(noisy.len()), &FitOptions::default())?;
+//! assert_eq!(choice.best.family(), ShapeFamily::Sphere);
+//! let radius = choice.best.parameters()[3];
+//! let deviation = choice.best.covariance()[(3, 3)].sqrt();
+//! assert!((radius - 0.05).abs() < 1e-9 && deviation < 1e-3);
+//! # Ok(())
+//! # }
+//! ```
 
 pub(crate) mod choose;
 mod convex;

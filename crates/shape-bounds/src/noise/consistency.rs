@@ -14,7 +14,7 @@ const ORDERS: std::ops::RangeInclusive<usize> = 2..=5;
 /// Differences of order 2 to 5 along a curve take away a smooth curve and leave its noise. Their median absolute values
 /// give standard deviations of the point across and along the surface and of the normal, which a few outliers do not
 /// change. Being estimates, they are raised so far that the true ones are below them at the stated `confidence`. One level is
-/// found for a curve; [`with_noise_as_found`](crate::with_noise_as_found) raises it where a part of the curve is rougher. What
+/// found for a curve; [`with_noise_as_found`](crate::noise::with_noise_as_found) raises it where a part of the curve is rougher. What
 /// neighbours have in common, as the error of a pose that drifts, is not seen: state it in
 /// [`ContactNoise::pose`].
 ///

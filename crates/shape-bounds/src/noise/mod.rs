@@ -1,4 +1,22 @@
 //! Bounds that hold at a stated confidence when contacts are measured with noise.
+//!
+//! ```
+//! use glam::DVec3;
+//! use shape_bounds::ContactSample;
+//! use shape_bounds::noise::{CertainBounds, ContactNoise, NoisyContact};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A unit ball, touched at the corners, edges and faces of a cube, with contacts off by 1 mm and normals by 1 mrad.
+//! let around = (0..27).filter(|k| *k != 13).map(|k| DVec3::new((k % 3) as f64, (k / 3 % 3) as f64, (k / 9) as f64) - DVec3::ONE);
+//! let contacts = ContactSample::from_raw(around.map(DVec3::normalize).map(|n| (n, n)))?;
+//! let noise = ContactNoise::isotropic(1e-3, 1e-3);
+//! let noisy: Vec<_> = contacts.into_iter().map(|contact| NoisyContact { contact, noise }).collect();
+//! let bounds = CertainBounds::from_noisy_curves(&[noisy], 0.95)?.both().ok_or("nothing is certain")?;
+//! let ball = 4.0 / 3.0 * std::f64::consts::PI;
+//! assert!(bounds.lower_volume() < ball && ball < bounds.upper_volume());
+//! # Ok(())
+//! # }
+//! ```
 
 pub(crate) mod assumptions;
 mod chosen;

@@ -1,10 +1,11 @@
 //! Approximations of an outline: a spline through contacts, a principal curve of noisy points.
 
-use super::{ContactSample, ConvexPolygon, Direction, HalfPlane, Hull, Intersection, IntersectionError};
+use super::ContactSample;
 use crate::approximation::principal::{Principal, principal};
 use crate::approximation::star::{Frame, Prepared};
 use crate::approximation::through::Spline;
 use crate::approximation::{ApproximationError, cells, check, unit};
+use exact_hull::planar::{ConvexPolygon, Direction, HalfPlane, Hull, Intersection, IntersectionError};
 use glam::DVec2;
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
@@ -18,11 +19,12 @@ const LEAST: usize = 3;
 const LEAST_SCATTERED: usize = 12;
 
 /// The smooth closed curve through contact points with the contact normals, of an outline that is seen from some place inside as a
-/// whole: what [`crate::SplineSurface`] is in space.
+/// whole: what [`crate::approximation::SplineSurface`] is in space.
 ///
 /// ```
 /// use glam::DVec2;
-/// use shape_bounds::planar::{ContactSample, SplineCurve};
+/// use shape_bounds::planar::ContactSample;
+/// use shape_bounds::planar::approximation::SplineCurve;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// // The outline at 1 + 0.3 cos 2t m, which has a waist, touched at 16 places.
@@ -111,12 +113,12 @@ impl SplineCurve {
 }
 
 /// The principal curve of noisy points, closed: each of its points is the mean of those that are nearest to it. What
-/// [`crate::PrincipalSurface`] is in space, with the same words; points spread by `s` lie `s^2 / 2r` too far out where the radius of
+/// [`crate::approximation::PrincipalSurface`] is in space, with the same words; points spread by `s` lie `s^2 / 2r` too far out where the radius of
 /// curvature is `r`.
 ///
 /// ```
 /// use glam::DVec2;
-/// use shape_bounds::planar::PrincipalCurve;
+/// use shape_bounds::planar::approximation::PrincipalCurve;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// // A disc of radius 0.1 m; every other point is 1 mm too far out, the others too far in.

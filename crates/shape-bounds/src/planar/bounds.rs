@@ -1,12 +1,13 @@
 //! Both bounds of a convex outline from its contacts, and the gap between them.
 
+use super::ContactSample;
 use super::distance::nearest_around;
-use super::{
-    ContactSample, Direction, HalfPlane, Hull, IncrementalHull, IncrementalIntersection, Intersection,
-    IntersectionError, PointsError,
-};
 use crate::bounds::{Contradiction, PRINTED, ROUNDING_ULPS};
 use exact_hull::planar::Ring;
+use exact_hull::planar::{
+    Direction, HalfPlane, Hull, IncrementalHull, IncrementalIntersection, Intersection, IntersectionError,
+    PointsError,
+};
 use glam::DVec2;
 use thiserror::Error;
 

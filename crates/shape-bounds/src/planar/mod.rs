@@ -1,7 +1,8 @@
 //! The same in the plane: bounds on a convex outline from contact points and outward normals.
 //!
 //! The names are those of the bounds in space; what differs is that areas stand for volumes, half-planes for half-spaces
-//! and discs for balls. The plane has closed forms that space lacks, so this is a module of its own.
+//! and discs for balls. The plane has closed forms that space lacks, so this is a module of its own. Directions, hulls and half-planes are those of
+//! [`exact_hull::planar`].
 //!
 //! ```
 //! use glam::DVec2;
@@ -17,26 +18,15 @@
 //! # }
 //! ```
 
-mod approximation;
+pub mod approximation;
 mod bounds;
-mod curvature;
+pub mod curvature;
 mod distance;
-mod fit;
-mod noise;
+pub mod fit;
+pub mod noise;
 mod sample;
 #[cfg(test)]
 mod tests;
 
-pub use approximation::{PrincipalCurve, SplineCurve};
 pub use bounds::{BoundsError, Gap, IncrementalBounds, ShapeBounds};
-pub use curvature::{CurvatureBounds, CurvatureError, Disc, DiscIntersection, RoundedHull, Side};
-pub use exact_hull::planar::{
-    ConvexPolygon, Direction, DirectionError, HalfPlane, Hull, HullPolygon, IncrementalHull,
-    IncrementalIntersection, Intersection, IntersectionError, PointsError, Region, Unbounded,
-};
-pub use fit::{FitError, FittedOutline, OutlineChoice, OutlineFamily, OutlineFit, TurnedEllipse};
-pub use noise::{
-    ContactNoise, NoiseError, NoisyContact, correlated_noise, estimate_noise, independence_is_tested,
-    with_noise_as_found, without_outliers,
-};
 pub use sample::{ContactError, ContactSample};

@@ -1,5 +1,5 @@
-use super::{Direction, DirectionError, HalfPlane};
 use crate::sample::NORMAL_TOLERANCE;
+use exact_hull::planar::{Direction, DirectionError, HalfPlane};
 use glam::DVec2;
 use thiserror::Error;
 

@@ -1,8 +1,12 @@
 //! The planar bounds against theory: exactness, closed forms, the chain of bounds, and typed refusals.
 
+use super::curvature::*;
 use super::*;
 use crate::generators::Source;
 use contact_kinematics::planar::{Ellipse, RadiusBounds, RadiusFunction};
+use exact_hull::planar::{
+    Direction, DirectionError, HalfPlane, Hull, IncrementalHull, Intersection, IntersectionError, PointsError,
+};
 use glam::DVec2;
 use std::f64::consts::{PI, TAU};
 

@@ -4,6 +4,22 @@
 //! plane the half-space is tight. Both together tell the noise: a touching half-space that the others cut far below its
 //! own plane contradicts them. And where it touches, some point of the body is near the plane, which bounds it from
 //! inside.
+//!
+//! ```
+//! use glam::{DQuat, DVec3};
+//! use shape_bounds::poses::{BodyPose, PoseBounds};
+//! use std::f64::consts::FRAC_PI_2;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A cube of 100 mm that came to rest twice on each of its faces; of each end five frames.
+//! let about = |axis: DVec3, turns: u32| DQuat::from_axis_angle(axis, f64::from(turns) * FRAC_PI_2);
+//! let faces = (0..4).map(|k| about(DVec3::X, k)).chain([about(DVec3::Y, 1), about(DVec3::Y, 3)]).cycle().take(12);
+//! let lies = |turn| vec![BodyPose { R_WO: turn, p_WO: DVec3::new(0.0, 0.0, 0.05) }; 5];
+//! let bounds = PoseBounds::above_plane(&faces.map(lies).collect::<Vec<_>>(), 0.0, 0.95)?;
+//! assert!((bounds.upper.volume() - 1e-3).abs() < 1e-6);
+//! # Ok(())
+//! # }
+//! ```
 
 mod error;
 mod height;

@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test file uses its part of the shared scenes")]
 
 use recon::object_dynamics::planar::{PlanarMass, PlanarTruth};
-use recon::observer::ContactNoiseLevel;
+use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::{PlaneEstimate, PlaneOptions};
 
 pub(crate) use recon_tests::planar_scenes::*;

@@ -3,7 +3,7 @@ use super::super::caps::by_area;
 use super::super::opening::{Stage, stage};
 use super::{NOTHING, best, proposal};
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 
 /// Touches along the normal of the edge of the lower bound with the largest area beyond it: of a triangle a touch leaves a quarter at
 /// most, and a sixth in the mean, whatever the body.

@@ -5,7 +5,7 @@ use crate::heading::Heading;
 use crate::knowledge::Knowledge;
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
 use glam::DVec2;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 
 /// Touches where a Gaussian process over implicit surfaces is least sure: a baseline, given the best length that is known for it, a
 /// sphere as prior mean, normals as gradients, and no place twice. It has no proof of anything: the bounds of the loop have.

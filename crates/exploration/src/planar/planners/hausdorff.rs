@@ -3,7 +3,7 @@ use super::super::caps::by_distance;
 use super::super::opening::{Stage, stage};
 use super::{NOTHING, best, proposal};
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 
 /// Touches where the bounds are furthest apart: along the line from the corner of the upper bound that is farthest from the lower
 /// one to its nearest point there.

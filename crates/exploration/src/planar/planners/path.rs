@@ -7,7 +7,7 @@ use crate::goal::Goal;
 use crate::heading::Heading;
 use crate::knowledge::Knowledge;
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 
 /// Of all touches that pay nearly as much as the best one, takes the nearest: three quarters of the way of a greedy planner for a few
 /// per cent more touches.

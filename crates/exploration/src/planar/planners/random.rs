@@ -2,7 +2,7 @@ use super::super::PlanarKnowledge;
 use super::super::opening::{Stage, stage};
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
 use crate::random::Source;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 use std::f64::consts::TAU;
 
 /// Directions that are uniform over the circle: what any planner must beat.

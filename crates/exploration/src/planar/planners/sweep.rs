@@ -2,7 +2,7 @@ use super::super::PlanarKnowledge;
 use super::super::opening::{Stage, stage};
 use super::super::start::golden;
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 
 /// Turns by the golden angle, spread evenly at any length: what can be had without looking.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@ use super::super::knowledge::Prospects;
 use crate::heading::Heading;
 use crate::knowledge::Knowledge;
 use crate::planner::{PlanError, Proposal, Reason, Situation};
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 
 /// The side of the width along `along` on which the bounds are further apart: one exact touch each closes it.
 pub(super) fn width_touch(

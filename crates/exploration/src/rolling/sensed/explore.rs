@@ -18,9 +18,9 @@ use crate::planar::PlanarKnowledge;
 use crate::planner::Reason;
 use glam::DVec2;
 use object_dynamics::planar::{ContactLog, PlanarMass};
-use observer::Reliability;
 use observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
-use shape_bounds::planar::Direction;
+use observer::reliability::Reliability;
+use shape_bounds::exact_hull::planar::Direction;
 use thiserror::Error;
 
 /// What is to be reached, with what sensors, at which confidence.

@@ -8,7 +8,9 @@ use contact_kinematics::planar::PalmSurface;
 use glam::{DMat2, DVec2};
 use object_dynamics::planar::ContactLog;
 use observer::planar::{PlaneContact, PlaneDeviations, PlaneEstimate};
-use shape_bounds::planar::{ContactNoise, ContactSample, Direction, NoisyContact};
+use shape_bounds::exact_hull::planar::Direction;
+use shape_bounds::planar::ContactSample;
+use shape_bounds::planar::noise::{ContactNoise, NoisyContact};
 use std::f64::consts::TAU;
 
 /// Samples whose contacts bound the body, at most: more of them gain next to nothing.

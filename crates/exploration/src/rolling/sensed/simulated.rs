@@ -9,8 +9,8 @@ use object_dynamics::planar::{
     PlanarObject, PlanarTruth,
 };
 use object_dynamics::{ChannelNoise, ContactMode};
+use observer::contacts::{ContactNoiseLevel, ImpulseNoise};
 use observer::planar::PlaneOptions;
-use observer::{ContactNoiseLevel, ImpulseNoise};
 
 /// Relative tolerance of the integrator in a step.
 const TOLERANCE: f64 = 1e-9;

@@ -4,7 +4,8 @@ use super::super::opening::{Stage, stage};
 use super::{NOTHING, best, proposal};
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
 use contact_kinematics::Direction;
-use shape_bounds::{Polyhedron, ShapeBounds};
+use shape_bounds::ShapeBounds;
+use shape_bounds::exact_hull::Polyhedron;
 
 /// Touches where the bounds are furthest apart: along the line from the corner of the upper bound that is farthest from the lower
 /// one to its nearest point there.

@@ -6,7 +6,7 @@ use exploration::rolling::{
     RollStep, RollTask, RollingBody, Workspace, explore_rolling,
 };
 use exploration::{Confidence, Goal, Heading, Knowledge, Spending};
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 
 /// All planners; a test that runs over them runs over every one.
 fn planners(seed: u64) -> Vec<Box<dyn RollPlanner>> {

@@ -8,7 +8,7 @@ mod sensed;
 use exploration::generators::{Family, Outline, outline};
 use exploration::rolling::{RollingBody, SimulatedPalms, Workspace};
 use glam::DVec2;
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 
 /// What a test draws: a decisive few, or all where `RECON_TESTS=all` asks for it.
 pub(crate) fn few_or_all<T>(few: T, all: T) -> T {

@@ -8,9 +8,9 @@ use exploration::rolling::{
 };
 use exploration::{ConfidenceError, Goal, Heading, Knowledge, KnowledgeError};
 use object_dynamics::planar::{PlanarMass, PlanarObject};
+use observer::contacts::{ContactNoiseLevel, ImpulseNoise};
 use observer::planar::{PlaneOptions, estimate_plane};
-use observer::{ContactNoiseLevel, ImpulseNoise};
-use shape_bounds::planar::Direction;
+use shape_bounds::exact_hull::planar::Direction;
 
 const GRAVITY: f64 = 9.81;
 const RATE: f64 = 250.0;

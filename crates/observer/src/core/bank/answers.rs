@@ -26,8 +26,8 @@ impl<I> Bank<I> {
         self.log_evidence
     }
 
-    /// Sum of the probabilities that were given up ([`BankOptions::drop`](crate::BankOptions::drop),
-    /// [`BankOptions::skip`](crate::BankOptions::skip)). If the model is true, the truth is among what went with at most this
+    /// Sum of the probabilities that were given up ([`BankOptions::drop`](crate::bank::BankOptions::drop),
+    /// [`BankOptions::skip`](crate::bank::BankOptions::skip)). If the model is true, the truth is among what went with at most this
     /// probability; and the probability that what went ever comes to have more than a share `a` is at most this over `a`
     /// (a posterior probability is a martingale; Doob).
     #[must_use]

@@ -7,14 +7,14 @@ use super::log_weights::log_sum_exp;
 use super::system::{Modes, check_sum};
 use nalgebra::{DMatrix, DVector};
 
-/// Modes and states at each sample given all samples, from `filtered`, what [`Bank::mode_states`](crate::Bank::mode_states) said
+/// Modes and states at each sample given all samples, from `filtered`, what [`Bank::mode_states`](crate::bank::Bank::mode_states) said
 /// after each one, and the `inputs` of the same samples.
 ///
 /// Backward over each pair of modes with its jump, in the space of the later mode; what the future says is the smoothed
 /// Gaussian divided by the predicted one, and nothing where that would take information away. With one mode it is the smoother
 /// of Rauch, Tung and Striebel, and exact where the model is linear. With several it is **not reliable**: what a mode holds is
 /// not one Gaussian (it was entered at different times). Where it was measured, probabilities beyond 0.99 were wrong twice as
-/// often as those of exact paths (`docs/observer-banks.md`). For the modes use [`Bank::smoothed`](crate::Bank::smoothed) with
+/// often as those of exact paths (`docs/observer-banks.md`). For the modes use [`Bank::smoothed`](crate::bank::Bank::smoothed) with
 /// eight hypotheses or more; this function adds states. States that are no vector space are treated as if they were one.
 ///
 /// # Errors

@@ -7,8 +7,8 @@ use super::error::BankError;
 /// misses switches. What is said to others should be the probabilities.
 ///
 /// ```
-/// # fn main() -> Result<(), observer::BankError> {
-/// let mut label = observer::ModeLabel::new(0.75)?;
+/// # fn main() -> Result<(), observer::bank::BankError> {
+/// let mut label = observer::bank::ModeLabel::new(0.75)?;
 /// let told = [[0.9, 0.1], [0.45, 0.55], [0.3, 0.7], [0.2, 0.8], [0.6, 0.4]].map(|odds| label.follow(odds));
 /// assert_eq!(told, [0, 0, 0, 1, 1]);
 /// # Ok(())

@@ -5,13 +5,13 @@ use super::log_weights::{log_sum, log_sum_exp};
 use super::system::{check_sum, log_switches};
 
 /// Odds between modes whose observers run apart, each on its own data, and do not mix: observers on a moving window
-/// ([`NewtonObserver::log_density`](crate::NewtonObserver::log_density),
-/// [`BatchSolution::log_evidence`](crate::BatchSolution::log_evidence)), or models that differ in a constant. A
-/// [`Bank`](crate::Bank) mixes states too, and is what to use where modes change.
+/// ([`NewtonObserver::log_density`](crate::newton::NewtonObserver::log_density),
+/// [`BatchSolution::log_evidence`](crate::batch::BatchSolution::log_evidence)), or models that differ in a constant. A
+/// [`Bank`](crate::bank::Bank) mixes states too, and is what to use where modes change.
 ///
 /// ```
-/// # fn main() -> Result<(), observer::BankError> {
-/// let mut odds = observer::Odds::new(&[0.5, 0.5], &[&[1.0, 0.0], &[0.0, 1.0]])?;
+/// # fn main() -> Result<(), observer::bank::BankError> {
+/// let mut odds = observer::bank::Odds::new(&[0.5, 0.5], &[&[1.0, 0.0], &[0.0, 1.0]])?;
 /// odds.push(&[-1.0, -1.0 + 3.0_f64.ln()])?; // a sample that is three times as likely in mode 1
 /// assert!((odds.probability(1) - 0.75).abs() < 1e-12);
 /// # Ok(())

@@ -14,13 +14,13 @@ pub enum Memory {
     Hypotheses(usize),
 }
 
-/// How a [`Bank`](crate::Bank) works.
+/// How a [`Bank`](crate::bank::Bank) works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BankOptions {
     /// What is remembered of the past.
     pub memory: Memory,
     /// Probability that may be given up after each sample, from 0 to below 1, to run fewer hypotheses; with zero none is. Its sum
-    /// is kept: [`Bank::lost`](crate::Bank::lost).
+    /// is kept: [`Bank::lost`](crate::bank::Bank::lost).
     pub drop: f64,
     /// Probability, from 0 to below 1, under which a hypothesis is not even run, before a sample is weighed; what is skipped
     /// is counted as given up. Keep it well below the probability of every switch that matters: a switch that is less likely

@@ -72,7 +72,7 @@ impl<I> Modes<I> {
     /// `P`, of `d` components, is `h (2 pi)^(d / 2) c^d N(m; 0, P + c^2)`. What the switch says of the state belongs into the jump.
     ///
     /// # Errors
-    /// [`BankError::NoMode`] for a mode that there is not. Rows that are no probabilities are errors of [`Bank::push`](crate::Bank::push).
+    /// [`BankError::NoMode`] for a mode that there is not. Rows that are no probabilities are errors of [`Bank::push`](crate::bank::Bank::push).
     pub fn with_rates(
         mut self,
         from: usize,

@@ -2,7 +2,7 @@
 
 use super::target::*;
 use nalgebra::{DMatrix, DVector};
-use observer::*;
+use observer::bank::*;
 use std::f64::consts::TAU;
 
 /// One sequence of modes: its probability together with the density of the readings, and the state at its end.

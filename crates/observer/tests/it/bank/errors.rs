@@ -2,6 +2,7 @@
 
 use super::target::*;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+use observer::bank::*;
 use observer::*;
 use proptest::prelude::*;
 

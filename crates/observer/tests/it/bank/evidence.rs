@@ -2,6 +2,9 @@
 
 use super::target::*;
 use nalgebra::{SMatrix, SVector};
+use observer::bank::*;
+use observer::batch::*;
+use observer::newton::*;
 use observer::*;
 
 fn samples(count: usize) -> Vec<Sample<(), 2>> {

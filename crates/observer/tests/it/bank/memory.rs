@@ -1,7 +1,7 @@
 //! What a bank keeps, merges and gives up; and that it makes nothing on the way.
 
 use super::target::*;
-use observer::*;
+use observer::bank::*;
 
 fn bank(back: f64, options: BankOptions) -> Bank<()> {
     Bank::new(modes(back), &start(), options).unwrap()

@@ -1,7 +1,7 @@
 //! Switches whose probabilities depend on the state.
 
 use super::target::*;
-use observer::*;
+use observer::bank::*;
 
 fn bank(modes: Modes<()>, memory: Memory) -> Bank<()> {
     Bank::new(modes, &start(), BankOptions { memory, lag: 5, ..BankOptions::default() }).unwrap()

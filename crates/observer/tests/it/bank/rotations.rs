@@ -1,6 +1,7 @@
 //! Modes whose states are orientations.
 
 use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, UnitQuaternion, Vector3};
+use observer::bank::*;
 use observer::*;
 
 /// Attitude from a gyro that is off by a bias which differs from mode to mode; what is measured is a direction `g` of the world

@@ -2,6 +2,8 @@
 
 use super::target::*;
 use nalgebra::SVector;
+use observer::bank::*;
+use observer::batch::*;
 use observer::*;
 
 /// With one mode the pass backward is the smoother of Rauch, Tung and Striebel, which a batch solution is too.

@@ -3,6 +3,7 @@
 
 use crate::generic::wobble;
 use nalgebra::{SMatrix, SVector};
+use observer::bank::*;
 use observer::*;
 
 pub(super) const DT: f64 = 0.1;

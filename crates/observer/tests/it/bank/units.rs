@@ -2,6 +2,7 @@
 
 use super::target::*;
 use nalgebra::{SMatrix, SVector};
+use observer::bank::*;
 use observer::*;
 
 /// Of position, velocity and acceleration, and of the outputs.

@@ -5,7 +5,7 @@ use crate::console::causes;
 use crate::error::CliError;
 use crate::pipeline::{Asked, LogSource, estimated, load, sorted_with_forces};
 use crate::progress::Progress;
-use recon::observer::ContactEstimate;
+use recon::observer::contacts::ContactEstimate;
 use recon_io::{FolderTarget, Scene, brief_to, fingerprint, is_bag, with_brief_numbers};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::pipeline::{LoadedLog, LogOf, sorted_with_forces};
 use recon::contact_kinematics::PalmSurface;
 use recon::object_dynamics::{ContactLog, LoggedPalm, SensedAxes, TwistSource};
-use recon::observer::ContactNoiseLevel;
+use recon::observer::contacts::ContactNoiseLevel;
 use recon_io::{AnyLog, Scene, brief, brief_to, implausibilities, implausible_contacts};
 use serde_json::{Value, json};
 

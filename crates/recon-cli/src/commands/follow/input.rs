@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::pipeline::spread;
 use recon::object_dynamics::Sample;
-use recon::observer::{ForceReading, PalmSensed, PlaneReadings, StreamError, StreamPalm};
+use recon::observer::contacts::stream::{ForceReading, PalmSensed, PlaneReadings, StreamError, StreamPalm};
 use recon_io::{LogFileError, LogReader, Scene};
 use std::collections::VecDeque;
 use std::fs::File;

@@ -12,9 +12,8 @@ use crate::pipeline::{condition_floor, known_body};
 use crate::progress::Progress;
 use input::Samples;
 use recon::object_dynamics::MassProperties;
-use recon::observer::{
-    ContactNoiseLevel, ContactOptions, MotionStream, StreamEstimate, StreamOptions, StreamStage,
-};
+use recon::observer::contacts::stream::{MotionStream, StreamEstimate, StreamOptions, StreamStage};
+use recon::observer::contacts::{ContactNoiseLevel, ContactOptions};
 use recon_io::StreamRow;
 use recon_io::{
     FileTarget, OutputError, Scene, is_bag, is_standard_output, write_stream_header, write_stream_row,
@@ -248,7 +247,7 @@ pub(crate) fn stream_row(estimate: &StreamEstimate) -> StreamRow {
 
 /// Standard deviations of position, velocity, angular velocity and orientation, all axes together; no numbers without a motion.
 fn deviations(estimate: &StreamEstimate) -> [f64; 4] {
-    let of = |motion: &recon::observer::StreamMotion, first: usize| {
+    let of = |motion: &recon::observer::contacts::stream::StreamMotion, first: usize| {
         (first..first + 3).map(|i| motion.covariance[(i, i)]).sum::<f64>().sqrt()
     };
     [0, 3, 6, 9].map(|first| estimate.motion.as_ref().map_or(f64::NAN, |motion| of(motion, first)))

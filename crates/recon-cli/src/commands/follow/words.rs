@@ -1,6 +1,6 @@
 //! What is said of a motion that is followed: rows as objects, and what there is to know of contact modes at the end.
 
-use recon::observer::StreamModes;
+use recon::observer::contacts::stream::StreamModes;
 use recon_io::{MotionState, StreamRow, brief, probabilities};
 use serde_json::{Value, json};
 

@@ -11,7 +11,7 @@ use glam::DVec2;
 use recon::exploration::contour::{
     Bridge, HullBounds, Margins, SimulatedFinger, TraceEnd, Traced, Tracing, trace,
 };
-use recon::shape_bounds::planar::{ConvexPolygon, Direction};
+use recon::shape_bounds::exact_hull::planar::{ConvexPolygon, Direction};
 use recon_io::{AnyOutline, SummaryOf, brief_to, write_contour_report};
 use serde_json::{Value, json};
 use std::fmt::Write;

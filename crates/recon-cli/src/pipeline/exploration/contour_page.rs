@@ -4,7 +4,7 @@ use super::contour::{Following, Known};
 use super::page::in_turn;
 use crate::error::Outcome as Exit;
 use glam::DVec2;
-use recon::shape_bounds::planar::{ConvexPolygon, Hull};
+use recon::shape_bounds::exact_hull::planar::{ConvexPolygon, Hull};
 use recon_io::{ContourPage, Fact, FigureCurve, FigurePanel, JumpRow, Level, Verdict, brief_to};
 use std::f64::consts::PI;
 

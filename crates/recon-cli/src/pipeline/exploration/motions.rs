@@ -8,7 +8,8 @@ use glam::DVec2;
 use recon::exploration::planar::PlanarKnowledge;
 use recon::exploration::rolling::{Prediction, RollStep, SensedStep};
 use recon::exploration::{Knowledge, Measures, Reason};
-use recon::shape_bounds::planar::{ContactSample, Direction};
+use recon::shape_bounds::exact_hull::planar::Direction;
+use recon::shape_bounds::planar::ContactSample;
 use recon_io::{
     ExplorationPage, ExplorationWords, FigureCurve, FigurePanel, Level, TouchRow, Verdict, brief_to,
 };

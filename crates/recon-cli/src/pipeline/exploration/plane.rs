@@ -12,7 +12,8 @@ use recon::exploration::planar::{
     RandomTouches, turned_start,
 };
 use recon::exploration::{Knowledge, Planner};
-use recon::shape_bounds::planar::{ContactSample, Direction};
+use recon::shape_bounds::exact_hull::planar::Direction;
+use recon::shape_bounds::planar::ContactSample;
 use recon_io::FigurePanel;
 use serde_json::{Value, json};
 use std::fmt::Write;

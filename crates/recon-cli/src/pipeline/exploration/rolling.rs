@@ -16,7 +16,8 @@ use recon::exploration::rolling::{
     RollOutcome, RollPlanner, RollProposal, RollTask, Track, View, Workspace, explore_rolling,
 };
 use recon::exploration::{Certificate, Goal, Knowledge};
-use recon::shape_bounds::planar::{ContactSample, Direction};
+use recon::shape_bounds::exact_hull::planar::Direction;
+use recon::shape_bounds::planar::ContactSample;
 use recon_io::{SummaryOf, brief_to, write_exploration_report};
 use serde_json::{Value, json};
 

@@ -10,7 +10,7 @@ use recon::object_dynamics::{
     ContactLog, ContactMode, ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion,
     TrueContact, TrueState,
 };
-use recon::observer::{ForceReading, PalmSensed};
+use recon::observer::contacts::stream::{ForceReading, PalmSensed};
 use std::io::{BufReader, Read};
 use std::path::Path;
 

@@ -5,7 +5,7 @@ use super::PalmSetup;
 use super::columns::Columns;
 use super::read::Palm;
 use crate::rows::Whole;
-use recon::observer::PalmSensed;
+use recon::observer::contacts::stream::PalmSensed;
 use std::io::Read;
 
 /// What palms of a log of version 2 sense, sample by sample as its lines come; an error ends them.

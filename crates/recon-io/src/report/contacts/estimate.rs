@@ -9,8 +9,8 @@ use crate::planar_figures::FigurePanel;
 use glam::{DVec2, DVec3};
 use recon::contact_kinematics::SurfaceState;
 use recon::object_dynamics::{ContactLog, ContactMode, LoggedPalm};
-use recon::observer::ContactEstimate;
-use recon::shape_bounds::planar::Hull;
+use recon::observer::contacts::ContactEstimate;
+use recon::shape_bounds::exact_hull::planar::Hull;
 
 /// Points of a contact curve that are drawn at most.
 const TRACED: usize = 200;

@@ -1,7 +1,8 @@
 //! What each contact does over time.
 
 use recon::object_dynamics::{ContactMode, ContactSimulation, MOST_PALMS, planar};
-use recon::observer::{ContactOdds, EstimatedModes};
+use recon::observer::contact_modes::ContactOdds;
+use recon::observer::contacts::EstimatedModes;
 
 /// A stretch of time over which a contact does the same.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,9 +7,9 @@ use crate::{
 };
 use glam::{DMat3, DVec3};
 use recon::object_dynamics::{ContactLog, ContactMode, ContactSimulation, MOST_PALMS, SampleTimes, planar};
-use recon::observer::{
-    ContactEstimate, ContactEvidence, ContactOdds, EstimatedModes, LearnedFriction, Reliability,
-};
+use recon::observer::contact_modes::{ContactOdds, LearnedFriction};
+use recon::observer::contacts::{ContactEstimate, ContactEvidence, EstimatedModes};
+use recon::observer::reliability::Reliability;
 
 const PICK_UP: &str = include_str!("../../../scenes/pick-up.toml");
 const OTHERS: &str = r#"

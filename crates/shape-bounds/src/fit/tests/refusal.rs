@@ -104,7 +104,7 @@ fn bad_values_are_named() {
         FitError::Noise { index: 7, name: "point", .. }
     ));
     assert!(matches!(
-        with(&|c| c.noise.pose = crate::PoseNoise::isotropic(0.0, 1e-3)),
+        with(&|c| c.noise.pose = crate::noise::PoseNoise::isotropic(0.0, 1e-3)),
         FitError::PoseNoise { index: 7 }
     ));
     assert!(matches!(

@@ -1,7 +1,7 @@
 use super::envelope::{Around, Piece};
 use super::interior::common_point;
 use super::{CurvatureError, arc};
-use crate::planar::{Direction, HalfPlane};
+use exact_hull::planar::{Direction, HalfPlane};
 use glam::DVec2;
 use std::f64::consts::TAU;
 

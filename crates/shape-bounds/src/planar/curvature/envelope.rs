@@ -1,7 +1,7 @@
 //! Which disc or half-plane bounds their intersection in which direction, seen from a point inside of it.
 
 use super::Disc;
-use crate::planar::HalfPlane;
+use exact_hull::planar::HalfPlane;
 use glam::DVec2;
 use std::f64::consts::TAU;
 
@@ -139,7 +139,8 @@ fn cut(disc: &Disc, normal: DVec2, height: f64) -> [Option<DVec2>; 2] {
 mod tests {
     use super::*;
     use crate::generators::Source;
-    use crate::planar::{Direction, DiscIntersection};
+    use crate::planar::curvature::DiscIntersection;
+    use exact_hull::planar::Direction;
 
     #[test]
     fn pieces_are_the_nearest_of_all_sources() {

@@ -1,4 +1,4 @@
-use crate::planar::PointsError;
+use exact_hull::planar::PointsError;
 use thiserror::Error;
 
 /// Why contacts and discs give no bounds.

@@ -1,8 +1,8 @@
 //! A point inside of discs and half-planes, or which few of them have nothing in common.
 
 use super::Disc;
-use crate::planar::{Direction, HalfPlane, IntersectionError};
 use exact_hull::planar::interior_point;
+use exact_hull::planar::{Direction, HalfPlane, IntersectionError};
 use glam::DVec2;
 
 /// Cuts before the search is content with what it has; a few are enough but for lenses thinner than a millionth.
@@ -70,7 +70,8 @@ fn smallest(mut conflict: Vec<usize>, discs: &[Disc], half_planes: &[HalfPlane])
 #[cfg(test)]
 mod tests {
     use crate::generators::Source;
-    use crate::planar::{CurvatureError, Direction, Disc, DiscIntersection, HalfPlane};
+    use crate::planar::curvature::{CurvatureError, Disc, DiscIntersection};
+    use exact_hull::planar::{Direction, HalfPlane};
     use glam::DVec2;
 
     #[test]

@@ -14,10 +14,11 @@ pub use discs::{Disc, DiscIntersection, Side};
 pub use error::CurvatureError;
 pub use rounded::RoundedHull;
 
-#[cfg(test)]
-use super::HalfPlane;
-use super::{ContactSample, Direction};
+use super::ContactSample;
 use contact_kinematics::planar::RadiusBounds;
+use exact_hull::planar::Direction;
+#[cfg(test)]
+use exact_hull::planar::HalfPlane;
 use exact_hull::planar::Ring;
 use glam::DVec2;
 
@@ -127,7 +128,7 @@ fn arc(from: f64, angle: f64, step: f64) -> impl Iterator<Item = DVec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planar::ConvexPolygon;
+    use exact_hull::planar::ConvexPolygon;
 
     /// Area of a drawn outline; its error falls with the square of the step.
     fn drawn(points: Vec<DVec2>) -> f64 {

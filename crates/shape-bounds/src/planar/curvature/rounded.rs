@@ -1,6 +1,6 @@
 use super::arc;
 use crate::planar::distance::on_segment;
-use crate::planar::{Direction, Hull, PointsError};
+use exact_hull::planar::{Direction, Hull, PointsError};
 use glam::DVec2;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

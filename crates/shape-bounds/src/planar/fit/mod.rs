@@ -15,7 +15,7 @@ mod tests;
 pub use error::FitError;
 pub use family::{FittedOutline, TurnedEllipse};
 
-use super::{NoisyContact, noise::ContactNoise};
+use super::noise::{ContactNoise, NoisyContact};
 use crate::fit::choose::{Fit, compared};
 use crate::fit::levenberg::{ITERATIONS, LINEAR, best_of, iterate};
 use crate::fit::refute::coincide;
@@ -99,7 +99,7 @@ impl OutlineFit {
     ///
     /// # Errors
     /// [`FitError`] for bad values, too few contacts, contacts that leave a parameter open, no convergence, and an outline
-    /// that the contacts refute: see [`crate::ShapeFit::of`].
+    /// that the contacts refute: see [`crate::fit::ShapeFit::of`].
     pub fn of(
         contacts: &[NoisyContact],
         family: OutlineFamily,
@@ -122,7 +122,7 @@ impl OutlineFit {
         Self::finish(plane(contacts), family, solution, limit, options.noise_level)
     }
 
-    /// The family of the smallest Bayesian information criterion; see [`crate::ShapeFit::choose`].
+    /// The family of the smallest Bayesian information criterion; see [`crate::fit::ShapeFit::choose`].
     ///
     /// # Errors
     /// [`FitError::NoFamily`] for none, the family's own error if there is but one, and [`FitError::NoneFits`] if none of several

@@ -4,8 +4,9 @@ mod refusal;
 
 use super::*;
 use crate::generators::Source;
-use crate::planar::{ContactSample, Direction};
+use crate::planar::ContactSample;
 use contact_kinematics::planar::FourierBody;
+use exact_hull::planar::Direction;
 use std::f64::consts::TAU;
 
 fn measured(body: &dyn RadiusFunction, angles: &[f64], noise: f64, s: &mut Source) -> Vec<NoisyContact> {

@@ -8,7 +8,7 @@ use crate::noise::consistency::{estimated, raise};
 use crate::planar::ContactSample;
 
 /// Contacts with the noise that they themselves show, curve by curve, each in the order in which it was traced: the twin
-/// of [`crate::estimate_noise`], which says how.
+/// of [`crate::noise::estimate_noise`], which says how.
 ///
 /// # Errors
 /// [`NoiseError`] for an impossible confidence, a curve of fewer than 30 contacts, and a point that is not finite.
@@ -36,7 +36,7 @@ pub fn estimate_noise(
 }
 
 /// `curves` with noise no smaller than they show themselves, and what was stated too small: the twin of
-/// [`crate::with_noise_as_found`].
+/// [`crate::noise::with_noise_as_found`].
 #[must_use]
 pub fn with_noise_as_found(curves: &[Vec<NoisyContact>]) -> (Vec<Vec<NoisyContact>>, Vec<NoiseDoubt>) {
     let in_space: Vec<_> = curves.iter().map(|curve| lifted(curve)).collect();
@@ -50,7 +50,7 @@ pub fn correlated_noise(curves: &[Vec<NoisyContact>]) -> Option<NoiseDoubt> {
     correlated(&curves.iter().map(|curve| lifted(curve)).collect::<Vec<_>>(), 2)
 }
 
-/// Whether [`correlated_noise`] would find a random walk: the twin of [`crate::independence_is_tested`].
+/// Whether [`correlated_noise`] would find a random walk: the twin of [`crate::noise::independence_is_tested`].
 #[must_use]
 pub fn independence_is_tested(curves: &[Vec<NoisyContact>]) -> bool {
     tested(&curves.iter().map(|curve| lifted(curve)).collect::<Vec<_>>(), 2)

@@ -2,7 +2,7 @@
 
 use super::windows::Window;
 use crate::noise::quantile;
-use crate::planar::{Direction, HalfPlane, Hull, Intersection};
+use exact_hull::planar::{Direction, HalfPlane, Hull, Intersection};
 use glam::DVec2;
 
 /// Corners of convex regions that lie in the body if no point is off by more than its margin, which fails with

@@ -6,7 +6,7 @@ use crate::noise::Outlier;
 use crate::noise::outliers::{Undecided, judged};
 
 /// `curves`, each in the order in which it was traced, without the contacts that cannot be right, and these: the twin of
-/// [`crate::without_outliers`], which says how, and judges the contacts as ones in the plane `z = 0` of space.
+/// [`crate::noise::without_outliers`], which says how, and judges the contacts as ones in the plane `z = 0` of space.
 ///
 /// Its limits are those of three dimensions, which are wider than two would need: on the side of keeping a contact.
 ///

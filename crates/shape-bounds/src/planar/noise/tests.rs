@@ -1,10 +1,11 @@
 //! Coverage of the bounds under noise, and what they cost.
 
 use super::*;
-use crate::NoiseDoubt;
 use crate::generators::Source;
-use crate::planar::{BoundsError, ContactSample, Direction};
+use crate::noise::NoiseDoubt;
+use crate::planar::{BoundsError, ContactSample};
 use contact_kinematics::planar::{Ellipse, RadiusFunction};
+use exact_hull::planar::Direction;
 use glam::DVec2;
 use std::f64::consts::{FRAC_PI_2, TAU};
 

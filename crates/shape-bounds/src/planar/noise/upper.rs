@@ -3,8 +3,8 @@
 use super::NoiseError;
 use super::windows::Window;
 use crate::noise::quantile;
-use crate::planar::{HalfPlane, Intersection, Region};
 use exact_hull::planar::Ring;
+use exact_hull::planar::{HalfPlane, Intersection, Region};
 use glam::DVec2;
 
 /// Regions that are assumed to hold the body, each so many times as large as the one before, until one proves itself.

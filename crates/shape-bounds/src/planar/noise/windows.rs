@@ -1,7 +1,7 @@
 //! Averages over runs of neighbouring contacts.
 
 use super::NoisyContact;
-use crate::planar::Direction;
+use exact_hull::planar::Direction;
 use glam::{DMat2, DVec2};
 
 /// The longest run, in contacts: beyond, the noise left is below a tenth and the loss on a curve large.
