@@ -344,9 +344,11 @@ impl Problem<'_> {
 
     /// Share of a link's residual that the node's own sample has, if the link is one interval.
     ///
-    /// The noise of a force at a sample is felt in the intervals before and after it, half in each. A link takes all of it, which leaves
-    /// links independent; the node is then the motion before it, and its contact is touched after half of it. Of a link over several of the
-    /// log's intervals it is that of the first. The noise of a measured impulse is that of its interval, and all after the sample.
+    /// The noise of a force at a sample is felt in the intervals before and after it, half in each: changes of the velocity from node to node have a
+    /// variance of `R (1 - q / 2)` and `R q / 4` in common with those beside them, of links with the variance `R` that a sample makes the share `q` of. A
+    /// link takes all of `R`, which leaves links independent; the node is then the motion before it, and its contact is touched after the share
+    /// `s` of the link's, where `s (1 - s) = q / 4`: after half of it where a link is one interval of the log. The noise of a measured impulse is that of
+    /// its interval, and all after the sample. In space it is `q / 2`, the same for one interval: what noise says of an inertia is counted for that.
     ///
     /// A blow is after the sample before it.
     fn share(&self, j: usize) -> f64 {
@@ -356,7 +358,8 @@ impl Problem<'_> {
         }
         let at = |k: usize| self.record.samples[k];
         let intervals = at(self.nodes[j] + 1).abs_diff(at(self.nodes[j])).max(1);
-        0.5 * interval.noise.sampled_share() / intervals as f64
+        let of_sample = interval.noise.sampled_share() / intervals as f64;
+        if self.planar { 0.5 * (1.0 - (1.0 - of_sample).max(0.0).sqrt()) } else { 0.5 * of_sample }
     }
 
     /// The motion at the sample of a node with a link of one interval after it.
