@@ -62,7 +62,7 @@ fn a_stream_tells_modes_and_friction_of_what_it_follows() {
             }
         }
         let count = counts[0] + counts[1];
-        assert!(counts[0] > 100.0 && counts[1] > 400.0, "both modes count: {counts:?}");
+        assert!(counts[0] > 100.0 && counts[1] > few_or_all(400.0, 500.0), "both modes count: {counts:?}");
         assert!(right > 0.97 * count && decided > 0.96 * count, "{seed}: {right} {decided} of {count}");
         assert!(wrong <= 0.002 * count, "{seed}: {wrong} of {count}");
         let last = all.last().unwrap();

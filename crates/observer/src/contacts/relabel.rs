@@ -3,6 +3,7 @@
 use super::mode_odds::EstimatedModes;
 use super::samples::Deviations;
 use super::verdict::UNEXPLAINED;
+use crate::rigid::logarithm;
 use glam::{DQuat, DVec3};
 use object_dynamics::{BodyState, ContactMode, MOST_PALMS};
 
@@ -47,8 +48,7 @@ pub(super) fn apart(first: &[BodyState], deviations: &[Deviations], second: &[Bo
         let (a, b) = (&first[k], &second[k]);
         // Of the first sample it is none but for rounding, and so is its deviation.
         let turn = if k > 0 { turned(first, k) * turned(second, k).inverse() } else { DQuat::IDENTITY };
-        let turn = turn.to_scaled_axis();
-        let differences = [a.p_WCm - b.p_WCm, a.v_WCm - b.v_WCm, a.w_WO - b.w_WO, turn];
+        let differences = [a.p_WCm - b.p_WCm, a.v_WCm - b.v_WCm, a.w_WO - b.w_WO, logarithm(turn)];
         let beyond = |(d, deviation): (DVec3, DVec3)| d.abs().cmpgt(deviation * UNEXPLAINED).any();
         differences.into_iter().zip(deviations[k]).any(beyond)
     };
@@ -91,10 +91,13 @@ mod tests {
         };
         let first = [at(0.0, 0.2), at(0.0, 0.3), at(0.0, 0.3), at(0.0, 0.3)];
         let second = [at(0.04, 0.7), at(-0.05, 0.8), at(0.0, 0.8), at(0.0, 0.86)];
-        let second = second.map(|state| BodyState { R_WO: -state.R_WO, ..state });
+        let mut negated = second;
+        negated[1..].iter_mut().for_each(|state| state.R_WO = -state.R_WO);
         let of = [0.01; 4].map(DVec3::splat);
         let deviations = [[of[0], of[1], of[2], DVec3::ZERO], of, of, of];
-        assert_eq!(apart(&first, &deviations, &second), [false, true, false, true]);
+        for second in [second, negated] {
+            assert_eq!(apart(&first, &deviations, &second), [false, true, false, true]);
+        }
     }
 
     #[test]
