@@ -24,7 +24,8 @@ pub(super) fn intervals<'a, I: Iterator<Item = &'a Contact>>(
     };
     let mut all: Vec<Interval> = (1..times.len()).map(rough).collect();
     smooth(&since, &wrenches, &mut all);
-    doubt(&mut all, &wrenches);
+    let rubs = (0..times.len()).any(|k| felt(k).any(|contact| contact.planar && !contact.frictionless));
+    doubt(&mut all, &wrenches, if rubs { EXPECTED } else { SEEN });
     all
 }
 
@@ -46,10 +47,12 @@ fn smooth(since: &[f64], wrenches: &[Wrench], all: &mut [Interval]) {
     }
 }
 
-/// Adds to the noise what the impulse and moment of each interval may be off by, if the force jumps within one: nobody knows when.
-fn doubt(all: &mut [Interval], wrenches: &[Wrench]) {
+/// Adds to the noise what the impulse and moment of each interval may be off by, if the force jumps within one: nobody knows when. A jump is one from
+/// so many times the variance on that noise makes of it.
+fn doubt(all: &mut [Interval], wrenches: &[Wrench], least: f64) {
     all.iter_mut().for_each(|interval| interval.noise.sampled = force_trace(&interval.noise.white));
-    let jumps: Vec<Option<Vector6<f64>>> = (0..all.len()).map(|k| jump(k, &all[k], wrenches)).collect();
+    let jumps: Vec<Option<Vector6<f64>>> =
+        (0..all.len()).map(|k| jump(k, &all[k], wrenches, least)).collect();
     for (k, interval) in all.iter_mut().enumerate() {
         let beside = [k.checked_sub(1), Some(k + 1)].into_iter().flatten().map(|j| (j, BESIDE));
         for (j, share) in beside.chain([(k, 1.0)]) {
@@ -62,14 +65,20 @@ fn doubt(all: &mut [Interval], wrenches: &[Wrench]) {
 
 /// Standard deviation that a jump within the interval after sample `k` gives to its impulse and moment; none where none is seen.
 ///
-/// A jump is what a step between two samples is more than the mean of the steps beside it, and more than noise makes of it.
-fn jump(k: usize, interval: &Interval, wrenches: &[Wrench]) -> Option<Vector6<f64>> {
-    let (before, after) = (wrenches[k.checked_sub(1)?], *wrenches.get(k + 2)?);
+/// A jump is what a step between two samples is more than the mean of the steps beside it, at an end of the log than the one beside it, and more than
+/// noise makes of it.
+fn jump(k: usize, interval: &Interval, wrenches: &[Wrench], least: f64) -> Option<Vector6<f64>> {
     let h = interval.h;
-    let jump = (wrenches[k + 1] + wrenches[k] * -1.0) * 1.5 + (before + after * -1.0) * 0.5;
-    // Noise of one sample makes five times its variance of a jump.
-    let noise = 5.0 * interval.noise.sampled / (h * h);
-    let seen = 1.0 - SEEN * noise / jump.force.length_squared().max(f64::MIN_POSITIVE);
+    let step = |k: usize| Some(*wrenches.get(k + 1)? + wrenches[k] * -1.0);
+    let own = step(k)?;
+    // Noise of one sample makes so many times its variance of a jump.
+    let (jump, times) = match (k.checked_sub(1).and_then(step), step(k + 1)) {
+        (Some(before), Some(after)) => (own + (before + after) * -0.5, 5.0),
+        (Some(beside), None) | (None, Some(beside)) => (own + beside * -1.0, 6.0),
+        (None, None) => return None,
+    };
+    let noise = times * interval.noise.sampled / (h * h);
+    let seen = 1.0 - least * noise / jump.force.length_squared().max(f64::MIN_POSITIVE);
     // Of a time that is uniform over the interval.
     (seen > 0.0).then(|| six(jump.force, jump.moment) * (h * (seen / 12.0).sqrt()))
 }
@@ -78,8 +87,11 @@ fn jump(k: usize, interval: &Interval, wrenches: &[Wrench]) -> Option<Vector6<f6
 /// both sides are alike, and nothing seems to jump where the rule errs most.
 const BESIDE: f64 = 0.5;
 
-/// Times the variance that noise makes of a jump from which on it is one.
+/// Times the variance that noise makes of a jump from which on it is one; and the same of palms that rub in the plane: whenever a slip ends friction jumps
+/// there, and jumps below nine times, up to 13 deviations of a force at a sample, would be taken for none, which is five deviations of an interval's
+/// impulse. In space one motion in twelve at 200 Hz was beyond five deviations with the lower one, none with the higher.
 const SEEN: f64 = 9.0;
+const EXPECTED: f64 = 1.0;
 
 /// Variance of the difference between the rule of order 6 and the trapezoidal one, of samples of unit variance and spacing.
 ///
@@ -119,7 +131,7 @@ mod tests {
         let ends = |k: usize| Interval::trapezoid(1.0, [&wrenches[k], &wrenches[k + 1]], noise);
         let mut all: Vec<Interval> = (0..39).map(ends).collect();
         smooth(&times, &wrenches, &mut all);
-        doubt(&mut all, &wrenches);
+        doubt(&mut all, &wrenches, SEEN);
         let one = |(interval, t): (&Interval, &f64)| {
             let off = interval.impulse.force - peak.momentum(*t, t + 1.0);
             let off = six(off, DVec3::ZERO);

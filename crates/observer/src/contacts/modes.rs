@@ -7,6 +7,8 @@ use std::ops::Add;
 
 /// Quantile of a palm's ratios that is taken for that of sliding.
 const SLIDING: f64 = 0.9;
+/// The same quantile of a normal variable: where all samples slide, noise alone raises it by so many deviations.
+const BY_NOISE: f64 = 1.2816;
 /// Standard deviations by which a ratio is below that of sliding where a contact is said to stick. One that slides and is said
 /// to stick is an error of its slip; one that sticks and is said to slide loses two conditions.
 const BELOW: f64 = 4.0;
@@ -26,6 +28,14 @@ struct Ratio {
 struct Mean {
     ratio: Ratio,
     samples: usize,
+}
+
+impl Mean {
+    /// What noise raises a quantile by taken off, the more the less a force presses.
+    fn less_noise(&self) -> f64 {
+        let Self { ratio: Ratio { value, share }, samples } = *self;
+        value - BY_NOISE * (1.0 + value * value) * (share / samples as f64).sqrt()
+    }
 }
 
 /// Modes of all contacts at all samples, by ratios averaged over `time` on either side.
@@ -55,12 +65,16 @@ pub(super) fn by_ratio(record: &Record, time: f64) -> Vec<[ContactMode; MOST_PAL
 
 /// Whether a contact is not clearly below the ratio of sliding.
 fn sliding(means: &[Option<Mean>]) -> Vec<bool> {
-    let mut sorted: Vec<f64> = means.iter().flatten().map(|mean| mean.ratio.value).collect();
+    // Of a mean over forces that do not press nothing is known.
+    let mut sorted: Vec<f64> =
+        means.iter().flatten().map(Mean::less_noise).filter(|ratio| ratio.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
-    let Some(&sliding) = sorted.get((SLIDING * sorted.len() as f64) as usize) else {
-        return vec![false; means.len()];
+    let quantile = sorted.get((SLIDING * sorted.len() as f64) as usize);
+    let Some(&sliding) = quantile.filter(|sliding| **sliding > 0.0) else {
+        // Nothing is clearly below what noise alone may be.
+        return means.iter().map(Option::is_some).collect();
     };
-    let grows = (1.0 + sliding * sliding) / sliding.max(f64::MIN_POSITIVE);
+    let grows = (1.0 + sliding * sliding) / sliding;
     let slides = |mean: &Mean| {
         let deviation = LEAST.hypot(grows * (mean.ratio.share / mean.samples as f64).sqrt());
         mean.ratio.value >= sliding * (1.0 - BELOW * deviation)
@@ -149,6 +163,35 @@ mod tests {
         }
         let count = samples as f64;
         Some(Mean { ratio: Ratio { value: value / count, share: share / count }, samples })
+    }
+
+    /// Where a palm presses little, noise raises the quantile of its ratios: contacts that slide and press more are no less so for that.
+    #[test]
+    fn what_slides_everywhere_is_not_said_to_stick_since_some_of_it_presses_little() {
+        let mut random = Normal::seeded(7);
+        let (friction, noise) = (0.3, 0.02);
+        let mut mean = |normal: f64| {
+            let [n, f] = [normal + noise * random.draw(), friction * normal + noise * random.draw()];
+            let ratio = if n > 0.0 { f.abs() / n } else { f64::INFINITY };
+            Some(Mean { ratio: Ratio { value: ratio, share: noise * noise / (n * n + f * f) }, samples: 1 })
+        };
+        let means: Vec<_> = (0..900).map(|k| mean(if k % 3 == 0 { 1.0 } else { 0.05 })).collect();
+        let sticks = sliding(&means).into_iter().filter(|slides| !slides).count();
+        assert!(sticks <= 1, "{sticks} of {}", means.len());
+        // One that is held at half of its cone is told, of those that press.
+        let held = |k: usize| k.is_multiple_of(9);
+        let half: Vec<_> = (0..900)
+            .map(|k| {
+                means[k]
+                    .map(|m| if held(k) { Mean { ratio: Ratio { value: 0.15, ..m.ratio }, ..m } } else { m })
+            })
+            .collect();
+        let slides = sliding(&half);
+        assert!((0..900).filter(|&k| held(k)).all(|k| !slides[k]));
+        // Of what does not press at all nothing is known.
+        let none = Mean { ratio: Ratio { value: f64::INFINITY, share: 0.0 }, samples: 1 };
+        assert!(sliding(&[Some(none); 5]).into_iter().all(|slides| slides));
+        assert!(sliding(&[None; 5]).into_iter().all(|slides| !slides));
     }
 
     #[test]
