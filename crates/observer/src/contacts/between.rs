@@ -25,7 +25,7 @@ pub(super) fn intervals<'a, I: Iterator<Item = &'a Contact>>(
     let mut all: Vec<Interval> = (1..times.len()).map(rough).collect();
     smooth(&since, &wrenches, &mut all);
     let rubs = (0..times.len()).any(|k| felt(k).any(|contact| contact.planar && !contact.frictionless));
-    doubt(&mut all, &wrenches, if rubs { EXPECTED } else { SEEN });
+    doubt(&mut all, &wrenches, rubs);
     all
 }
 
@@ -47,12 +47,11 @@ fn smooth(since: &[f64], wrenches: &[Wrench], all: &mut [Interval]) {
     }
 }
 
-/// Adds to the noise what the impulse and moment of each interval may be off by, if the force jumps within one: nobody knows when. A jump is one from
-/// so many times the variance on that noise makes of it.
-fn doubt(all: &mut [Interval], wrenches: &[Wrench], least: f64) {
+/// Adds to the noise what the impulse and moment of each interval may be off by, if the force jumps within one: nobody knows when. Where palms rub in
+/// the plane jumps are expected, at the ends of a log too.
+fn doubt(all: &mut [Interval], wrenches: &[Wrench], rubs: bool) {
     all.iter_mut().for_each(|interval| interval.noise.sampled = force_trace(&interval.noise.white));
-    let jumps: Vec<Option<Vector6<f64>>> =
-        (0..all.len()).map(|k| jump(k, &all[k], wrenches, least)).collect();
+    let jumps: Vec<Option<Vector6<f64>>> = (0..all.len()).map(|k| jump(k, &all[k], wrenches, rubs)).collect();
     for (k, interval) in all.iter_mut().enumerate() {
         let beside = [k.checked_sub(1), Some(k + 1)].into_iter().flatten().map(|j| (j, BESIDE));
         for (j, share) in beside.chain([(k, 1.0)]) {
@@ -67,17 +66,18 @@ fn doubt(all: &mut [Interval], wrenches: &[Wrench], least: f64) {
 ///
 /// A jump is what a step between two samples is more than the mean of the steps beside it, at an end of the log than the one beside it, and more than
 /// noise makes of it.
-fn jump(k: usize, interval: &Interval, wrenches: &[Wrench], least: f64) -> Option<Vector6<f64>> {
+fn jump(k: usize, interval: &Interval, wrenches: &[Wrench], rubs: bool) -> Option<Vector6<f64>> {
     let h = interval.h;
     let step = |k: usize| Some(*wrenches.get(k + 1)? + wrenches[k] * -1.0);
     let own = step(k)?;
     // Noise of one sample makes so many times its variance of a jump.
     let (jump, times) = match (k.checked_sub(1).and_then(step), step(k + 1)) {
         (Some(before), Some(after)) => (own + (before + after) * -0.5, 5.0),
-        (Some(beside), None) | (None, Some(beside)) => (own + beside * -1.0, 6.0),
-        (None, None) => return None,
+        (Some(beside), None) | (None, Some(beside)) if rubs => (own + beside * -1.0, 6.0),
+        _ => return None,
     };
     let noise = times * interval.noise.sampled / (h * h);
+    let least = if rubs { EXPECTED } else { SEEN };
     let seen = 1.0 - least * noise / jump.force.length_squared().max(f64::MIN_POSITIVE);
     // Of a time that is uniform over the interval.
     (seen > 0.0).then(|| six(jump.force, jump.moment) * (h * (seen / 12.0).sqrt()))
@@ -131,7 +131,7 @@ mod tests {
         let ends = |k: usize| Interval::trapezoid(1.0, [&wrenches[k], &wrenches[k + 1]], noise);
         let mut all: Vec<Interval> = (0..39).map(ends).collect();
         smooth(&times, &wrenches, &mut all);
-        doubt(&mut all, &wrenches, SEEN);
+        doubt(&mut all, &wrenches, false);
         let one = |(interval, t): (&Interval, &f64)| {
             let off = interval.impulse.force - peak.momentum(*t, t + 1.0);
             let off = six(off, DVec3::ZERO);
