@@ -1,6 +1,6 @@
 //! What sampled forces do between samples, and what that may be off by.
 
-use super::noise::{ContactNoiseLevel, WrenchNoise, force_trace};
+use super::noise::{ContactNoiseLevel, WrenchNoise, force_trace, traces};
 use super::record::{Contact, Interval, Wrench, add_noise, six, wrench};
 use crate::quadrature::running_integral;
 use glam::DVec3;
@@ -50,7 +50,7 @@ fn smooth(since: &[f64], wrenches: &[Wrench], all: &mut [Interval]) {
 /// Adds to the noise what the impulse and moment of each interval may be off by, if the force jumps within one: nobody knows when. Where palms rub in
 /// the plane jumps are expected, at the ends of a log too.
 fn doubt(all: &mut [Interval], wrenches: &[Wrench], rubs: bool) {
-    all.iter_mut().for_each(|interval| interval.noise.sampled = force_trace(&interval.noise.white));
+    all.iter_mut().for_each(|interval| interval.noise.sampled = traces(&interval.noise.white));
     let jumps: Vec<Option<Vector6<f64>>> = (0..all.len()).map(|k| jump(k, &all[k], wrenches, rubs)).collect();
     for (k, interval) in all.iter_mut().enumerate() {
         let beside = [k.checked_sub(1), Some(k + 1)].into_iter().flatten().map(|j| (j, BESIDE));
@@ -76,9 +76,13 @@ fn jump(k: usize, interval: &Interval, wrenches: &[Wrench], rubs: bool) -> Optio
         (Some(beside), None) | (None, Some(beside)) if rubs => (own + beside * -1.0, 6.0),
         _ => return None,
     };
-    let noise = times * interval.noise.sampled / (h * h);
-    let least = if rubs { EXPECTED } else { SEEN };
-    let seen = 1.0 - least * noise / jump.force.length_squared().max(f64::MIN_POSITIVE);
+    let noise = times * if rubs { EXPECTED } else { SEEN } / (h * h);
+    // Palms that press against each other leave each other's force, and the moment alone jumps as they let go.
+    let seen = |(jump, variance): (DVec3, f64)| {
+        1.0 - noise * variance / jump.length_squared().max(f64::MIN_POSITIVE)
+    };
+    let seen =
+        [jump.force, jump.moment].into_iter().zip(interval.noise.sampled).map(seen).fold(0.0, f64::max);
     // Of a time that is uniform over the interval.
     (seen > 0.0).then(|| six(jump.force, jump.moment) * (h * (seen / 12.0).sqrt()))
 }
@@ -139,6 +143,25 @@ mod tests {
             off.dot(&(inverse * off)).sqrt()
         };
         all.iter().zip(&times).map(one).collect()
+    }
+
+    /// Two palms that press against each other and let go: no force is left of them before or after, but a moment is.
+    #[test]
+    fn a_moment_that_jumps_alone_is_noise_of_its_interval_and_none_of_its_samples() {
+        let moment = |k: usize| DVec3::Y * if k < 20 { 1.0 } else { 0.0 };
+        let wrenches: Vec<Wrench> =
+            (0..40).map(|k| Wrench { moment: moment(k), ..Wrench::default() }).collect();
+        let noise = WrenchNoise { white: Matrix6::identity() * 1e-6, ..WrenchNoise::default() };
+        for rubs in [false, true] {
+            let ends = |k: usize| Interval::trapezoid(1.0, [&wrenches[k], &wrenches[k + 1]], noise);
+            let mut all: Vec<Interval> = (0..39).map(ends).collect();
+            doubt(&mut all, &wrenches, rubs);
+            // Of a time that is uniform over the interval, and half of what is beside it at both sides.
+            let variance = all[19].noise.white[(4, 4)];
+            assert!((1.0..1.3).contains(&(12.0 * variance)), "{variance}");
+            assert!(all[19].noise.sampled_share() < 1e-4 && all[10].noise.sampled_share() == 1.0);
+            assert_eq!(all[19].noise.white[(0, 0)], 1e-6);
+        }
     }
 
     /// Down to a standard deviation of half a spacing: one that is narrower stands between two samples, and is a blow.

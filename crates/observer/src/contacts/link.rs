@@ -113,7 +113,7 @@ mod tests {
         let body = Body::free(0.3, DMat3::from_diagonal(DVec3::new(2.0, 2.5, 3.1)));
         let turn = body.turn(DQuat::from_rotation_y(0.7), DVec3::new(0.2, -0.4, 1.0));
         for late in [Matrix6::zeros(), covariance()] {
-            let noise = WrenchNoise { white: covariance(), late, sampled: 0.0 };
+            let noise = WrenchNoise { white: covariance(), late, sampled: [0.0; 2] };
             let noise = noise.about(DVec3::new(0.3, -0.2, 0.5));
             let link = LinkNoise::new(&noise, 0.4).unwrap();
             let information = link.information(&body, &turn);

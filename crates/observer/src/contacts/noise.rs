@@ -54,15 +54,15 @@ pub(super) struct WrenchNoise {
     pub(super) white: Matrix6<f64>,
     /// Of their integral over time and once more, beside what white noise makes of it: what acted is known, but not when.
     pub(super) late: Matrix6<f64>,
-    /// How much of the trace of the force's part of `white` is noise of forces at samples, which both intervals beside one feel.
-    pub(super) sampled: f64,
+    /// How much of the traces of the force's and of the moment's part of `white` is noise of forces at samples, which both intervals beside one feel.
+    pub(super) sampled: [f64; 2],
 }
 
 impl WrenchNoise {
-    /// Share of the noise that is felt before the sample as well as after it; all where there is none.
+    /// Share of the noise that is felt before the sample as well as after it, of forces or of moments, whichever have less; all where there is none.
     pub(super) fn sampled_share(&self) -> f64 {
-        let all = force_trace(&self.white);
-        if all > 0.0 { self.sampled / all } else { 1.0 }
+        let share = |(sampled, all): (f64, f64)| if all > 0.0 { sampled / all } else { 1.0 };
+        self.sampled.into_iter().zip(traces(&self.white)).map(share).fold(1.0, f64::min)
     }
 
     /// With moments about `p` in place of the origin.
@@ -93,7 +93,7 @@ impl Add for WrenchNoise {
         Self {
             white: self.white + other.white,
             late: self.late + other.late,
-            sampled: self.sampled + other.sampled,
+            sampled: std::array::from_fn(|i| self.sampled[i] + other.sampled[i]),
         }
     }
 }
@@ -104,7 +104,12 @@ impl AddAssign for WrenchNoise {
     }
 }
 
+/// Sums of the variances of the three axes of the force and of those of the moment.
+pub(super) fn traces(covariance: &Matrix6<f64>) -> [f64; 2] {
+    [0, 3].map(|i| covariance.fixed_view::<3, 3>(i, i).trace())
+}
+
 /// Sum of the variances of the three axes of the force.
 pub(super) fn force_trace(covariance: &Matrix6<f64>) -> f64 {
-    covariance.fixed_view::<3, 3>(0, 0).trace()
+    traces(covariance)[0]
 }

@@ -22,7 +22,7 @@ impl Record {
     pub(super) fn unresolved(&self) -> f64 {
         let count = self.intervals.len() as f64;
         let noise =
-            self.intervals.iter().map(|interval| interval.noise.sampled).sum::<f64>() / count.max(1.0);
+            self.intervals.iter().map(|interval| interval.noise.sampled[0]).sum::<f64>() / count.max(1.0);
         if !self.by_samples || noise.is_nan() || noise <= 0.0 {
             return 0.0;
         }
