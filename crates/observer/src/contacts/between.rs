@@ -93,7 +93,7 @@ const BESIDE: f64 = 0.5;
 
 /// Times the variance that noise makes of a jump from which on it is one; and the same of palms that rub in the plane: whenever a slip ends friction jumps
 /// there, and jumps below nine times, up to 13 deviations of a force at a sample, would be taken for none, which is five deviations of an interval's
-/// impulse. In space one motion in twelve at 200 Hz was beyond five deviations with the lower one, none with the higher.
+/// impulse. In space the lower one mends nothing: one motion of twelve at 200 Hz is beyond five deviations with either.
 const SEEN: f64 = 9.0;
 const EXPECTED: f64 = 1.0;
 
