@@ -31,10 +31,14 @@ struct Mean {
 }
 
 impl Mean {
+    /// Its standard deviation where it is `ratio`.
+    fn deviation(&self, ratio: f64) -> f64 {
+        (1.0 + ratio * ratio) * (self.ratio.share / self.samples as f64).sqrt()
+    }
+
     /// What noise raises a quantile by taken off, the more the less a force presses.
     fn less_noise(&self) -> f64 {
-        let Self { ratio: Ratio { value, share }, samples } = *self;
-        value - BY_NOISE * (1.0 + value * value) * (share / samples as f64).sqrt()
+        self.ratio.value - BY_NOISE * self.deviation(self.ratio.value)
     }
 }
 
@@ -74,9 +78,8 @@ fn sliding(means: &[Option<Mean>]) -> Vec<bool> {
         // Nothing is clearly below what noise alone may be.
         return means.iter().map(Option::is_some).collect();
     };
-    let grows = (1.0 + sliding * sliding) / sliding;
     let slides = |mean: &Mean| {
-        let deviation = LEAST.hypot(grows * (mean.ratio.share / mean.samples as f64).sqrt());
+        let deviation = LEAST.hypot(mean.deviation(sliding) / sliding);
         mean.ratio.value >= sliding * (1.0 - BELOW * deviation)
     };
     means.iter().map(|mean| mean.as_ref().is_some_and(slides)).collect()

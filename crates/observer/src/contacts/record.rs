@@ -3,7 +3,7 @@
 use super::between::intervals;
 use super::feet;
 use super::impulses;
-use super::noise::{ContactNoiseLevel, WrenchNoise};
+use super::noise::{ContactNoiseLevel, WrenchNoise, traces};
 use super::options::ContactOptions;
 use super::outliers::{Misread, mend, misread};
 use super::problem::Units;
@@ -166,8 +166,8 @@ impl Interval {
 
     /// Variance of the impulse, of the moment as well at so long a lever, N^2 s^2.
     pub(super) fn velocity_noise(&self, lever: f64) -> f64 {
-        let part = |i: usize| self.noise.white.fixed_view::<3, 3>(i, i).trace();
-        part(0).max(part(3) / (lever * lever))
+        let [force, moment] = traces(&self.noise.white);
+        force.max(moment / (lever * lever))
     }
 }
 
