@@ -102,13 +102,15 @@ fn near([ratio, deviation]: [f64; 2], walked: f64, noise: f64) -> Range<f64> {
 impl Chain {
     /// Mean and deviation of the ratio where it sticks; none where it hardly does.
     fn ratio(&self, steps: &Steps) -> Option<[f64; 2]> {
-        let sticks = self.sticks();
+        let sticks: f64 = self.ratios.iter().sum();
         let known = sticks > STICKS;
         let mean = |of: &dyn Fn(usize) -> f64| {
             self.ratios.iter().enumerate().map(|(k, mass)| mass * of(k)).sum::<f64>() / sticks
         };
-        let middle = mean(&|k| steps.ratios.middle(k));
-        let variance = mean(&|k| (steps.ratios.middle(k) - middle).powi(2) + steps.ratios.variance(k));
+        let count = steps.ratios.count();
+        let middle = mean(&|k| steps.ratios.middle(k % count));
+        let variance =
+            mean(&|k| (steps.ratios.middle(k % count) - middle).powi(2) + steps.ratios.variance(k % count));
         known.then(|| [middle, variance.sqrt()].map(|of| steps.friction * of))
     }
 
@@ -121,12 +123,16 @@ impl Chain {
         self.speeds.clone_from(&like.speeds);
         let share =
             if modes.is_some() { like.sticks() / largest.sticks().max(f64::MIN_POSITIVE) } else { 1.0 };
+        self.edge = share * largest.edge;
         self.ratios.fill(0.0);
         let scale = its.friction / own.friction;
-        let mut at = 0;
-        for (k, mass) in largest.ratios.iter().enumerate() {
-            let [from, to] = [its.ratios.lower[k], its.ratios.upper[k]].map(|edge| edge * scale);
-            at = spread(&mut self.ratios, &own.ratios, at, [from, to], share * mass);
+        let [from, to] = [its, own].map(|steps| steps.ratios.count());
+        for (from, to) in largest.ratios.chunks(from).zip(self.ratios.chunks_mut(to)) {
+            let mut at = 0;
+            for (k, mass) in from.iter().enumerate() {
+                let [from, until] = [its.ratios.lower[k], its.ratios.upper[k]].map(|edge| edge * scale);
+                at = spread(to, &own.ratios, at, [from, until], share * mass);
+            }
         }
     }
 }
@@ -155,8 +161,11 @@ mod tests {
     fn a_friction_takes_over_what_the_largest_knows() {
         let [largest, own] = [1.2, 0.31].map(|friction| Steps::of_friction(1e-3, friction));
         let mut chain = Chain::new(&largest);
+        let count = largest.ratios.count();
         for (k, mass) in chain.ratios.iter_mut().enumerate() {
-            *mass = Ratio { size: 0.2, deviation: 0.02 }.log_at(1.2 * largest.ratios.middle(k), 0.0).exp();
+            *mass = Ratio { size: 0.2, deviation: 0.02 }
+                .log_at(1.2 * largest.ratios.middle(k % count), 0.0)
+                .exp();
         }
         let mut taken = Chain::new(&own);
         taken.take(&chain, [&largest, &own], None);
@@ -164,7 +173,7 @@ mod tests {
         let [a, b] = [(&chain, &largest), (&taken, &own)].map(|(of, steps)| of.ratio(steps).unwrap());
         // Bins there are 0.0065 wide.
         assert!((a[0] - b[0]).abs() < 1e-3 && (a[1] - b[1]).abs() < 1e-3, "{a:?} {b:?}");
-        let modes = Chain { off: 0.0, ratios: vec![0.25], speeds: vec![0.75 / 36.0; 36] };
+        let modes = Chain { off: 0.0, edge: 0.0, ratios: vec![0.25], speeds: vec![0.75 / 72.0; 72] };
         taken.take(&chain, [&largest, &own], Some(&modes));
         assert!((taken.sticks() - 0.25).abs() < 1e-12 && (taken.slides() - 0.75).abs() < 1e-12);
     }

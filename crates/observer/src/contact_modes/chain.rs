@@ -4,7 +4,7 @@ use super::bins::Bins;
 use super::contact::{Force, SlipRead};
 use super::density::Ratio;
 use super::friction::Cell;
-use super::steps::Steps;
+use super::steps::{EDGE, PACES, SPEEDS, Steps};
 
 /// Probability below which a cell is left out when the largest likelihood is looked for; it may still win by [`Chain::in_logs`].
 const FAINT: f64 = 1e-30;
@@ -14,27 +14,31 @@ const FAINT: f64 = 1e-30;
 #[derive(Debug)]
 pub(super) struct Chain {
     pub(super) off: f64,
+    /// It sticks with its force at the edge of the cone, and does not move at all.
+    pub(super) edge: f64,
+    /// Of each pace, one after the other.
     pub(super) speeds: Vec<f64>,
     pub(super) ratios: Vec<f64>,
 }
 
 impl Clone for Chain {
     fn clone(&self) -> Self {
-        Self { off: self.off, speeds: self.speeds.clone(), ratios: self.ratios.clone() }
+        Self { off: self.off, edge: self.edge, speeds: self.speeds.clone(), ratios: self.ratios.clone() }
     }
 
     /// Into what is there: nothing is allocated.
     fn clone_from(&mut self, other: &Self) {
-        self.off = other.off;
+        (self.off, self.edge) = (other.off, other.edge);
         self.speeds.clone_from(&other.speeds);
         self.ratios.clone_from(&other.ratios);
     }
 }
 
-/// Log-likelihoods of a sample in every cell.
+/// Log-likelihoods of a sample in every cell, which are the same at all paces.
 #[derive(Clone, Debug)]
 pub(super) struct Likelihood {
     pub(super) off: f64,
+    pub(super) edge: f64,
     pub(super) speeds: Vec<f64>,
     pub(super) ratios: Vec<f64>,
 }
@@ -47,12 +51,17 @@ impl Likelihood {
 
     /// The same wherever it touches.
     pub(super) fn same(steps: &Steps, off: f64, touches: f64) -> Self {
-        Self { off, speeds: vec![touches; steps.speeds.count()], ratios: vec![touches; steps.ratios.count()] }
+        Self {
+            off,
+            edge: touches,
+            speeds: vec![touches; SPEEDS],
+            ratios: vec![touches; steps.ratios.count()],
+        }
     }
 
     /// The same, in place.
     fn set(&mut self, off: f64, touches: f64) {
-        self.off = off;
+        (self.off, self.edge) = (off, touches);
         self.speeds.fill(touches);
         self.ratios.fill(touches);
     }
@@ -74,6 +83,7 @@ impl Likelihood {
     pub(super) fn of_slip(&mut self, read: &SlipRead, speeds: &Bins) {
         let SlipRead { slip, turn, weight } = read;
         self.off = weight * slip.log_off();
+        self.edge = weight * slip.log_still();
         self.ratios.fill(weight * slip.log_sticking());
         for (k, log) in self.speeds.iter_mut().enumerate() {
             let (speed, spread) = (speeds.middle(k), speeds.variance(k));
@@ -84,14 +94,16 @@ impl Likelihood {
     /// With that of a slip beside it, of which all ratios are one cell.
     pub(super) fn add_slip(&mut self, by_slip: &Self) {
         self.off += by_slip.off;
+        self.edge += by_slip.edge;
         self.speeds.iter_mut().zip(&by_slip.speeds).for_each(|(log, slip)| *log += slip);
         let sticks = by_slip.ratios.first().copied().unwrap_or_default();
         self.ratios.iter_mut().for_each(|log| *log += sticks);
     }
 
-    /// Of a ratio, at the friction of this cell; those of the speeds are all the same.
+    /// Of a ratio, at the friction of this cell; those of the speeds and of the edge are all the same.
     fn of_ratio(&mut self, steps: &Steps, ratio: &Ratio, cell: &Cell) {
-        self.speeds.fill(ratio.log_at(cell.mean, cell.variance));
+        self.edge = ratio.log_at(cell.mean, cell.variance);
+        self.speeds.fill(self.edge);
         let friction = steps.friction;
         for (k, log) in self.ratios.iter_mut().enumerate().take(steps.ratios.count()) {
             let spread = friction.powi(2) * steps.ratios.variance(k);
@@ -105,8 +117,9 @@ impl Chain {
     pub(super) fn new(steps: &Steps) -> Self {
         Self {
             off: 1.0 / 3.0,
+            edge: EDGE / 3.0,
             speeds: steps.landing.iter().map(|share| share / 3.0).collect(),
-            ratios: steps.disc.iter().map(|share| share / 3.0).collect(),
+            ratios: steps.disc.iter().map(|share| (1.0 - EDGE) * share / 3.0).collect(),
         }
     }
 
@@ -115,33 +128,67 @@ impl Chain {
     }
 
     pub(super) fn sticks(&self) -> f64 {
-        self.ratios.iter().sum()
+        self.edge + self.ratios.iter().sum::<f64>()
+    }
+
+    /// Probability that the ratio is that of the friction.
+    pub(super) fn at_friction(&self) -> f64 {
+        self.edge + self.slides()
     }
 
     /// With this in every cell.
     pub(super) fn even(steps: &Steps, each: f64) -> Self {
-        Self { off: each, speeds: vec![each; steps.speeds.count()], ratios: vec![each; steps.ratios.count()] }
+        Self {
+            off: each,
+            edge: each,
+            speeds: vec![each; PACES * SPEEDS],
+            ratios: vec![each; PACES * steps.ratios.count()],
+        }
+    }
+
+    /// Speeds and ratios change at the other pace now and then, as likely one way as the other: what that does is its own transpose.
+    fn change_pace(&mut self, steps: &Steps) {
+        for all in [&mut self.speeds, &mut self.ratios] {
+            let cells = all.len() / PACES;
+            let (fast, slow) = all.split_at_mut(cells);
+            for (fast, slow) in fast.iter_mut().zip(slow) {
+                let over = steps.paced * (*fast - *slow);
+                *fast -= over;
+                *slow += over;
+            }
+        }
     }
 
     /// One time step on, before anything is read. `spare` is any chain of these bins, to work in.
     pub(super) fn predict(&mut self, steps: &Steps, spare: &mut Self) {
-        let (slid, stuck, off) = (self.slides(), self.sticks(), self.off);
+        self.change_pace(steps);
+        let (slid, off, edge) = (self.slides(), self.off, self.edge);
+        let within: f64 = self.ratios.iter().sum();
         let stays = 1.0 - steps.touch;
         let walks = stays * (1.0 - steps.breaks);
-        let stops = stays * dot(&self.speeds, &steps.speed.under);
-        let jumps = walks * steps.jump * stuck;
+        let under = self.speeds.chunks(SPEEDS).zip(&steps.speed).map(|(own, walk)| dot(own, &walk.under));
+        let (stops, leaves) = (stays * under.sum::<f64>(), stays * steps.breaks * edge);
+        let jumps = walks * steps.jump * within;
         let kept = walks * (1.0 - steps.jump);
-        let starts = stays * steps.breaks * stuck + kept * dot(&self.ratios, &steps.ratio.over);
+        let count = steps.ratios.count();
+        let over: f64 =
+            self.ratios.chunks(count).zip(&steps.ratio).map(|(own, walk)| dot(own, &walk.over)).sum();
+        let over = kept * over;
+        let starts = stays * steps.breaks * within + (1.0 - EDGE) * over + 0.5 * leaves;
+        spare.edge = stays * edge - leaves + EDGE * (over + stops);
+        let stops = (1.0 - EDGE) * stops + 0.5 * leaves;
         let lands = 0.5 * steps.touch * off;
         for ((next, start), landing) in spare.speeds.iter_mut().zip(&steps.starts).zip(&steps.landing) {
             *next = starts * start + lands * landing;
         }
-        steps.speed.apply(&self.speeds, stays, &mut spare.speeds);
+        let paces = self.speeds.chunks(SPEEDS).zip(spare.speeds.chunks_mut(SPEEDS));
+        paces.zip(&steps.speed).for_each(|((own, next), walk)| walk.apply(own, stays, next));
         for ((next, stop), disc) in spare.ratios.iter_mut().zip(&steps.stops).zip(&steps.disc) {
             *next = stops * stop + (jumps + lands) * disc;
         }
-        steps.ratio.apply(&self.ratios, kept, &mut spare.ratios);
-        spare.off = stays * off + steps.touch * (slid + stuck);
+        let paces = self.ratios.chunks(count).zip(spare.ratios.chunks_mut(count));
+        paces.zip(&steps.ratio).for_each(|((own, next), walk)| walk.apply(own, kept, next));
+        spare.off = stays * off + steps.touch * (slid + within + edge);
         std::mem::swap(self, spare);
     }
 
@@ -153,14 +200,26 @@ impl Chain {
         let [starts, landing] = [&steps.starts, &steps.landing].map(|shares| dot(&self.speeds, shares));
         let [stops, disc] = [&steps.stops, &steps.disc].map(|shares| dot(&self.ratios, shares));
         let lost = steps.touch * self.off;
-        steps.speed.worth(&self.speeds, stays, &mut spare.speeds);
-        for (worth, under) in spare.speeds.iter_mut().zip(&steps.speed.under) {
-            *worth += stays * under * stops + lost;
+        let [over_worth, under_worth] = [starts, stops].map(|worth| worth + EDGE * (self.edge - worth));
+        let paces = self.speeds.chunks(SPEEDS).zip(spare.speeds.chunks_mut(SPEEDS));
+        for ((own, before), walk) in paces.zip(&steps.speed) {
+            walk.worth(own, stays, before);
+            for (worth, under) in before.iter_mut().zip(&walk.under) {
+                *worth += stays * under * under_worth + lost;
+            }
         }
-        steps.ratio.worth(&self.ratios, kept, &mut spare.ratios);
-        for (worth, over) in spare.ratios.iter_mut().zip(&steps.ratio.over) {
-            *worth += (stays * steps.breaks + kept * over) * starts + walks * steps.jump * disc + lost;
+        let count = steps.ratios.count();
+        let paces = self.ratios.chunks(count).zip(spare.ratios.chunks_mut(count));
+        for ((own, before), walk) in paces.zip(&steps.ratio) {
+            walk.worth(own, kept, before);
+            for (worth, over) in before.iter_mut().zip(&walk.over) {
+                let leaves = stays * steps.breaks * starts + kept * over * over_worth;
+                *worth += leaves + walks * steps.jump * disc + lost;
+            }
         }
+        spare.change_pace(steps);
+        let left = 0.5 * (starts + stops);
+        spare.edge = stays * (self.edge + steps.breaks * (left - self.edge)) + lost;
         spare.off = stays * self.off + 0.5 * steps.touch * (landing + disc);
         std::mem::swap(self, spare);
     }
@@ -172,9 +231,10 @@ impl Chain {
         self.each(of, |worth, log| *worth = (worth.ln() + log - largest).exp());
     }
 
-    /// Sums over off, speeds and ratios of the products with what the cells are worth.
+    /// Sums over what is off, slides and sticks of the products with what the cells are worth.
     pub(super) fn times(&self, worth: &Self) -> [f64; 3] {
-        [self.off * worth.off, dot(&self.speeds, &worth.speeds), dot(&self.ratios, &worth.ratios)]
+        let sticks = self.edge * worth.edge + dot(&self.ratios, &worth.ratios);
+        [self.off * worth.off, dot(&self.speeds, &worth.speeds), sticks]
     }
 
     /// Weighs every cell by its likelihood; returns the logarithm of the density of what was read. `spare` is any chain of these bins.
@@ -188,10 +248,7 @@ impl Chain {
         spare.clone_from(self);
         let mut sum = 0.0;
         if largest > f64::NEG_INFINITY {
-            spare.each(of, |mass, log| {
-                *mass *= (log - largest).exp();
-                sum += *mass;
-            });
+            sum = spare.scale(of, |log| (log - largest).exp());
         }
         // A faint cell may be all that explains the sample.
         if !(1e-12..1e12).contains(&sum) {
@@ -214,8 +271,32 @@ impl Chain {
 
     fn each(&mut self, of: &Likelihood, mut visit: impl FnMut(&mut f64, f64)) {
         visit(&mut self.off, of.off);
-        self.speeds.iter_mut().zip(&of.speeds).for_each(|(mass, log)| visit(mass, *log));
-        self.ratios.iter_mut().zip(&of.ratios).for_each(|(mass, log)| visit(mass, *log));
+        visit(&mut self.edge, of.edge);
+        for (masses, logs) in [(&mut self.speeds, &of.speeds), (&mut self.ratios, &of.ratios)] {
+            // Where all ratios are one cell, all paces are.
+            let cells = masses.len().div_ceil(PACES);
+            for masses in masses.chunks_mut(cells) {
+                masses.iter_mut().zip(logs).for_each(|(mass, log)| visit(mass, *log));
+            }
+        }
+    }
+
+    /// Takes every cell times what its logarithm comes to, which is the same at all paces; returns the sum.
+    fn scale(&mut self, of: &Likelihood, factor: impl Fn(f64) -> f64) -> f64 {
+        self.off *= factor(of.off);
+        self.edge *= factor(of.edge);
+        let mut sum = self.off + self.edge;
+        for (masses, logs) in [(&mut self.speeds, &of.speeds), (&mut self.ratios, &of.ratios)] {
+            let cells = masses.len().div_ceil(PACES);
+            for (k, log) in logs.iter().enumerate().take(cells) {
+                let factor = factor(*log);
+                for mass in masses.iter_mut().skip(k).step_by(cells) {
+                    *mass *= factor;
+                    sum += *mass;
+                }
+            }
+        }
+        sum
     }
 }
 
@@ -230,7 +311,7 @@ mod tests {
     fn some(steps: &Steps, seed: f64) -> Chain {
         let mut chain = Chain::even(steps, 1.0);
         let mut k = 0.0;
-        let cells = chain.speeds.iter_mut().chain(&mut chain.ratios).chain([&mut chain.off]);
+        let cells = chain.speeds.iter_mut().chain(&mut chain.ratios).chain([&mut chain.off, &mut chain.edge]);
         cells.for_each(|cell| {
             k += 1.0;
             *cell = (0.5_f64 + 0.5 * (seed * k).sin()).powi(3);

@@ -134,7 +134,7 @@ impl Contact {
     pub(super) fn learn(&mut self, ratio: &Ratio) {
         let all = self.cells.iter_mut().zip(&self.chains).zip(&self.followed);
         let alone = all.filter(|(_, of)| **of == Followed::Alone);
-        alone.for_each(|((cell, chain), _)| cell.learn(ratio, chain.slides()));
+        alone.for_each(|((cell, chain), _)| cell.learn(ratio, chain.at_friction()));
     }
 
     /// Mean and variance of the friction.
@@ -153,7 +153,7 @@ impl Contact {
     /// The mean of all chains by the weights of the frictions.
     pub(super) fn average(&mut self) -> Modes {
         let mean = &mut self.mean;
-        mean.off = 0.0;
+        (mean.off, mean.edge) = (0.0, 0.0);
         mean.speeds.fill(0.0);
         mean.ratios[0] = 0.0;
         let last = self.chains.len() - 1;
@@ -164,8 +164,9 @@ impl Contact {
             let weight = self.weights[i] + if i == last { others } else { 0.0 };
             let chain = &self.chains[i];
             mean.off += weight * chain.off;
+            mean.edge += weight * chain.edge;
             mean.speeds.iter_mut().zip(&chain.speeds).for_each(|(sum, mass)| *sum += weight * mass);
-            mean.ratios[0] += weight * chain.sticks();
+            mean.ratios[0] += weight * (chain.sticks() - chain.edge).max(0.0);
         }
         of(mean)
     }

@@ -75,6 +75,11 @@ impl Slip {
         self.log_centred(self.along, self.variance_along + creep, self.variance_across + creep)
     }
 
+    /// Log-density where the contact does not move at all.
+    pub(super) fn log_still(&self) -> f64 {
+        self.log_centred(self.along, self.variance_along, self.variance_across)
+    }
+
     /// Log-density where nothing touches.
     pub(super) fn log_off(&self) -> f64 {
         let free = FREE.powi(2);

@@ -261,7 +261,7 @@ impl<'a> Tried<'a> {
         said.of(steps, &self.cell, &mut self.likelihood);
         self.log += self.chain.weigh(&self.likelihood, &mut self.spare);
         if let Force::Presses { ratio, .. } = &said.force {
-            self.cell.learn(ratio, self.chain.slides());
+            self.cell.learn(ratio, self.chain.at_friction());
         }
     }
 }
@@ -272,7 +272,8 @@ impl Said {
             let ContactSlip { velocity, covariance } = reading.slip?;
             let (u, turn) = reading.direction();
             let slip = turned(&velocity, &covariance, &u, options.natural_speed);
-            let mut by_slip = Likelihood { off: 0.0, speeds: vec![0.0; SPEEDS], ratios: vec![0.0] };
+            let mut by_slip =
+                Likelihood { off: 0.0, edge: 0.0, speeds: vec![0.0; SPEEDS], ratios: vec![0.0] };
             by_slip.of_slip(&SlipRead { slip, turn, weight: pace.weights[k] }, &pace.speeds);
             Some(by_slip)
         });

@@ -11,9 +11,16 @@ const RATIOS: usize = 40;
 pub(super) const SAME: f64 = 0.1;
 /// The time that the numbers below are of, s.
 const UNIT: f64 = 1e-3;
-/// Deviation of the change of the speed, in shares of the natural speed, and of the ratio.
-const SPEED_STEP: f64 = 0.0055;
-const RATIO_STEP: f64 = 0.002;
+/// How fast things change has two paces: where a body moves on its own, and where it goes along with palms that move slowly. At the first one alone, what
+/// slides slowly for long is next to impossible, and is held for sticking at a ratio that happens to stay: frictions come out too high.
+pub(super) const PACES: usize = 2;
+/// Share of what begins at each.
+const EACH: f64 = 1.0 / PACES as f64;
+/// Deviation of the change of the speed, in shares of the natural speed, and of the ratio, at each.
+const SPEED_STEPS: [f64; PACES] = [0.0055, 0.06 * 0.0055];
+const RATIO_STEPS: [f64; PACES] = [0.002, 0.1 * 0.002];
+/// Probability a millisecond that the pace changes.
+const PACED: f64 = 0.002;
 /// Units for which a ratio goes on as it goes: what presses and turns a body has inertia. Were it a walk over the time without samples, it would come
 /// less far than it does, and what begins to slide there would be held for sticking.
 const SMOOTH: f64 = 30.0;
@@ -35,6 +42,10 @@ const TOUCH: f64 = 0.002;
 /// with inertia comes to rest once: were each crossing a stop, sliding slowly and sticking near the cone would change with each other from sample to
 /// sample, and a ratio that stays at the cone would be held for sticking.
 const CAPTURED: f64 = 0.2;
+/// Share of what comes to the edge of the cone, from sliding or from within, that stays there without a slip until it breaks away. A ratio that stays the same says
+/// that it is the friction, whatever the friction is, and of a body at rest all do: were there but sliding at that ratio, a body at rest would be held for sliding
+/// slowly, and tell its friction.
+pub(super) const EDGE: f64 = 0.02;
 /// Steps of the ratio within which sticking begins near its cone.
 const NEAR_STEPS: f64 = 3.0;
 /// Deviation of the slip at touch-down, in shares of the natural speed.
@@ -50,15 +61,16 @@ const LEAST: f64 = 1e-12;
 pub(super) struct Steps {
     pub(super) speeds: Bins,
     pub(super) ratios: Bins,
-    /// What steps under zero sticks from now on.
-    pub(super) speed: Walk,
-    /// What steps over one, the friction, slides from now on.
-    pub(super) ratio: Walk,
-    /// Probabilities of a jump of the ratio, of the end of sticking, of touch and its loss.
+    /// Of each pace: what steps under zero sticks from now on.
+    pub(super) speed: [Walk; PACES],
+    /// Of each pace: what steps over one, the friction, slides from now on.
+    pub(super) ratio: [Walk; PACES],
+    /// Probabilities of a jump of the ratio, of the end of sticking, of touch and its loss, and that the pace changes.
     pub(super) jump: f64,
     pub(super) breaks: f64,
     pub(super) touch: f64,
-    /// Speeds at the start of sliding, after sticking and after touch-down; ratios at the start of sticking, after sliding
+    pub(super) paced: f64,
+    /// Of each pace, one after the other: speeds at the start of sliding, after sticking and after touch-down; ratios at the start of sticking, after sliding
     /// and anywhere.
     pub(super) starts: Vec<f64>,
     pub(super) landing: Vec<f64>,
@@ -85,19 +97,23 @@ impl Steps {
         let mut edges: Vec<f64> = (0..).map(|k| edge(k) / friction).take_while(within).collect();
         edges.extend(rim);
         let (speeds, ratios) = (speeds(), Bins::between(&edges));
-        let [speed, ratio] = [&speeds, &ratios].map(|bins| Walk::on(bins.count()));
+        let at_each = |shares: Vec<f64>| -> Vec<f64> {
+            let all = shares.into_iter().map(|share| EACH * share);
+            all.collect::<Vec<_>>().repeat(PACES)
+        };
         let mut steps = Self {
-            starts: vec![0.0; speeds.count()],
-            landing: speeds.shares(|s| below(s / LANDING)),
+            starts: vec![0.0; PACES * SPEEDS],
+            landing: at_each(speeds.shares(|s| below(s / LANDING))),
             jump: 0.0,
             breaks: 0.0,
             touch: 0.0,
-            stops: vec![0.0; ratios.count()],
-            disc: ratios.shares(|q| q * q),
+            paced: 0.0,
+            stops: vec![0.0; PACES * ratios.count()],
+            disc: at_each(ratios.shares(|q| q * q)),
+            speed: std::array::from_fn(|_| Walk::on(SPEEDS)),
+            ratio: std::array::from_fn(|_| Walk::on(ratios.count())),
             speeds,
             ratios,
-            speed,
-            ratio,
             friction,
             dt,
         };
@@ -108,31 +124,41 @@ impl Steps {
     /// The same, with room to be made anew for another time without allocating.
     pub(super) fn that_follow(dt: f64, friction: f64) -> Self {
         let mut steps = Self::of_friction(dt, friction);
-        steps.speed.make_room();
-        steps.ratio.make_room();
+        steps.speed.iter_mut().for_each(Walk::make_room);
+        steps.ratio.iter_mut().for_each(Walk::make_room);
         steps
     }
 
     /// For steps of another time.
     fn set(&mut self, dt: f64) {
         let units = dt / UNIT;
-        let (speed_step, ratio_step) =
-            (SPEED_STEP * units.sqrt(), RATIO_STEP / self.friction * of_smooth(units));
-        self.speed.set(&self.speeds, speed_step, SPEED_ENDS);
-        self.ratio.set(&self.ratios, ratio_step, RATIO_ENDS);
+        let speed_steps = SPEED_STEPS.map(|a_unit| a_unit * units.sqrt());
+        let ratio_steps = RATIO_STEPS.map(|a_unit| a_unit / self.friction * of_smooth(units));
+        let count = self.ratios.count();
+        for (pace, step) in speed_steps.into_iter().enumerate() {
+            self.speed[pace].set(&self.speeds, step, SPEED_ENDS);
+            let starts = &mut self.starts[pace * SPEEDS..][..SPEEDS];
+            self.speeds.put_shares(|s| below(s / step), starts);
+            starts.iter_mut().for_each(|share| *share *= EACH);
+        }
+        for (pace, step) in ratio_steps.into_iter().enumerate() {
+            self.ratio[pace].set(&self.ratios, step, RATIO_ENDS);
+            let own = pace * count..(pace + 1) * count;
+            let stops = &mut self.stops[own.clone()];
+            self.ratios.put_shares(|q| ((q - 1.0) / (NEAR_STEPS * step)).exp(), stops);
+            for (stop, disc) in stops.iter_mut().zip(&self.disc[own]) {
+                *stop = NEAR * EACH * *stop + (1.0 - NEAR) * disc;
+            }
+        }
         let within = |a_unit: f64| (1.0 - (-rate_of(a_unit) * dt / UNIT).exp()).clamp(LEAST, 1.0 - LEAST);
         (self.jump, self.breaks, self.touch) = (within(JUMP), within(BREAK), within(TOUCH));
-        self.speeds.put_shares(|s| below(s / speed_step), &mut self.starts);
-        self.ratios.put_shares(|q| ((q - 1.0) / (NEAR_STEPS * ratio_step)).exp(), &mut self.stops);
-        for (stop, disc) in self.stops.iter_mut().zip(&self.disc) {
-            *stop = NEAR * *stop + (1.0 - NEAR) * disc;
-        }
+        self.paced = within(PACED);
         self.dt = dt;
     }
 
     /// Deviation of the change of the ratio in so many steps.
     pub(super) fn walked(&self, times: usize) -> f64 {
-        RATIO_STEP * of_smooth(self.dt / UNIT) * (times as f64).sqrt()
+        RATIO_STEPS[0] * of_smooth(self.dt / UNIT) * (times as f64).sqrt()
     }
 
     /// How many of these steps a time step is. Made anew where it is not one of them, or of two where `twice` allows: clocks jitter, and the walks are no

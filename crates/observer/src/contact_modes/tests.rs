@@ -45,7 +45,9 @@ fn clear_cases_are_told_and_a_loss_is_seen() {
         for _ in 0..50 {
             modes.push(DT, &seen(0.1, 0.0)).unwrap();
         }
-        assert!(modes.odds(0).unwrap().stick > 0.99);
+        // Where the friction is not known, a ratio that stays the same may be it.
+        let sure = if matches!(friction, ContactFriction::Known(_)) { 0.99 } else { 0.95 };
+        assert!(modes.odds(0).unwrap().stick > sure);
         assert_eq!(modes.friction(0), None, "nothing slid");
         for _ in 0..200 {
             modes.push(DT, &seen(0.3, 0.1)).unwrap();

@@ -151,7 +151,7 @@ fn check(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ContactReading, ContactSlip};
+    use super::super::{ContactFriction, ContactModes, ContactReading, ContactSlip};
     use super::*;
     use crate::random::Normal;
     use nalgebra::{Matrix2, Vector2};
@@ -231,6 +231,62 @@ mod tests {
         let alone = whole_modes(&times(600), &[seen], &lasting).unwrap();
         assert_eq!(alone.frictions, [None], "nothing slid");
         assert!(alone.odds[0].iter().filter(|odds| odds.stick > 0.9).count() > 590);
+    }
+
+    /// Of `[ratio, slip]` at each of so many samples, with forces and slips as noisy as said.
+    fn noisy(count: usize, [force, slip]: [f64; 2], of: impl Fn(usize) -> [f64; 2]) -> Vec<ContactSeen> {
+        let mut normal = Normal::seeded(5);
+        let mut draw = || normal.draw();
+        let read = |k: usize| {
+            let [ratio, along] = of(k);
+            let velocity = Vector2::new(slip * draw() - along, slip * draw());
+            let covariance = Matrix2::identity() * (slip * slip);
+            ContactSeen::Read(ContactReading {
+                normal_force: 1.0 + force * draw(),
+                friction: Vector2::new(ratio + force * draw(), force * draw()),
+                force_deviation: force,
+                slip: Some(ContactSlip { velocity, covariance }),
+                touches: true,
+            })
+        };
+        (0..count).map(read).collect()
+    }
+
+    /// A ratio that stays the same is no friction, however well it is read: without a slip nothing slides.
+    #[test]
+    fn what_rests_does_not_slide_and_tells_no_friction() {
+        for noise in [[0.02, 2e-3], [0.02, 2e-4], [1e-3, 2e-3], [1e-3, 2e-4]] {
+            for slip_errors_last in [0.0, 0.03] {
+                let seen = noisy(800, noise, |_| [0.2, 0.0]);
+                let options = ContactModesOptions { slip_errors_last, ..options() };
+                let found = whole_modes(&times(800), std::slice::from_ref(&seen), &options).unwrap();
+                let slides = found.odds[0].iter().map(|odds| odds.slide).fold(0.0, f64::max);
+                assert!(slides < 0.3, "{noise:?} {slip_errors_last} {slides}");
+                assert_eq!(found.frictions, [None], "{noise:?}");
+                let material = 0;
+                let mut modes = ContactModes::new(&[ContactFriction::Unknown { material }], options).unwrap();
+                for seen in seen {
+                    modes.push(DT, &[seen]).unwrap();
+                    let slides = modes.odds(0).unwrap().slide;
+                    assert!(slides < 0.6, "{noise:?} {slip_errors_last} {slides}");
+                }
+                assert_eq!(modes.friction(0), None);
+            }
+        }
+    }
+
+    /// Slips of 5 mm/s for long, as palms that move slowly have it: that is no walk of a body on its own.
+    #[test]
+    fn what_slides_slowly_for_long_slides_and_tells_its_friction() {
+        let slides = |k: usize| (300..900).contains(&k);
+        let of = |k: usize| if slides(k) { [0.3, 5e-3] } else { [0.2, 0.0] };
+        let seen = noisy(1200, [0.02, 2e-3], of);
+        let options = ContactModesOptions { slip_errors_last: 0.01, ..options() };
+        let found = whole_modes(&times(1200), &[seen], &options).unwrap();
+        let right = (0..1200).filter(|k| (found.odds[0][*k].slide > 0.5) == slides(*k)).count();
+        assert!(right > 1180, "{right}");
+        let friction = found.frictions[0].unwrap();
+        assert!((friction.coefficient - 0.3).abs() < 3.0 * friction.deviation, "{friction:?}");
     }
 
     /// What comes later moves what was, by less the longer ago it is; at the end there is nothing later.
