@@ -18,7 +18,7 @@ use std::error::Error;
 use std::f64::consts::TAU;
 use std::time::Instant;
 
-const FRICTION: f64 = 0.3;
+pub(crate) const FRICTION: f64 = 0.3;
 const GRAVITY: f64 = 9.81;
 
 /// Seconds; why it is refused, or how many changes of modes there are, the angle that it is turned by, and departures.

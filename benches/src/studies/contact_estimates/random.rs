@@ -2,11 +2,12 @@
 //!
 //! Arguments: scenes, first seed, rate (Hz). Writes a Markdown table.
 
-use super::super::tilting_palms::variant;
+use super::super::mode_switches::scenes::slides_and_sticks;
+use super::super::tilting_palms::{FRICTION, variant};
 use super::{FLOOR, G};
 use recon::contact_kinematics::Ellipsoid;
 use recon::object_dynamics::{
-    ChannelNoise, ContactLog, ContactNoise, ContactScene, ContactStart, SampleTimes,
+    ChannelNoise, ContactLog, ContactNoise, ContactScene, ContactSimulation, ContactStart, SampleTimes,
 };
 use recon::observer::contacts::{ContactEstimate, ContactNoiseLevel, ContactOptions, estimate_contacts};
 use shape_bounds::generators::Source;
@@ -35,9 +36,9 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let rate: f64 = words.next().map_or(Ok(200.0), |s| s.parse())?;
     let mut source = Source::new(first);
     println!(
-        "| scene | relied on | chi-squared a condition | largest error relied on, in deviations: centre, velocity, mass | centre, velocity, mass (natural) |"
+        "| scene | relied on | chi-squared a condition | largest error relied on, in deviations: centre, velocity, mass | centre, velocity, mass (natural) | modes right | above 0.99 and wrong | friction: largest error, in deviations |"
     );
-    println!("|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|");
     for k in 0..wanted {
         let (scene, body, duration) = variant(&mut source)?;
         let row = crate::rows::row(|| -> Result<String, Box<dyn Error>> {
@@ -45,8 +46,11 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
             let exact = ContactLog::from_simulation(&scene, &run)?;
             let length = scene.body().semi_axes().element_sum() / 3.0;
             Ok(match estimated(&exact, length, first + k) {
-                Ok(found) => row(&errors(&found, &exact, &scene, length)),
-                Err(error) => format!("{error} | | |"),
+                Ok(found) => {
+                    let modes = modes(&found, &run, (G * length).sqrt());
+                    format!("{} | {modes}", row(&errors(&found, &exact, &scene, length)))
+                }
+                Err(error) => format!("{error} | | | | | |"),
             })
         })?;
         row.iter().for_each(|row| println!("| {k} | {row} |"));
@@ -95,6 +99,28 @@ fn errors(
         mass: mass.abs() / found.mass_deviation,
         of_natural: [p, v, mass.abs()],
     }
+}
+
+/// How the modes are, of contacts whose mode is one, and the coefficient of friction. `speed` is the natural one, m/s.
+fn modes(found: &ContactEstimate, run: &ContactSimulation, speed: f64) -> String {
+    let Some(odds) = &found.mode_odds else { return "none | |".to_owned() };
+    let (mut all, mut right, mut wrong) = (0.0, 0.0, 0.0);
+    for (now, odds) in run.instants.iter().zip(&odds.odds) {
+        for (i, mode) in now.modes.iter().enumerate().filter(|(i, _)| !slides_and_sticks(now, *i, speed)) {
+            let said = [odds[i].off, odds[i].slide, odds[i].stick];
+            let of = said[usize::from(mode.number())];
+            all += 1.0;
+            right += f64::from(u8::from(said.iter().all(|other| *other <= of)));
+            wrong += f64::from(u8::from(of < 0.01 && said.iter().any(|other| *other > 0.99)));
+        }
+    }
+    let off = odds.frictions.iter().flatten().map(|of| {
+        let off = (of.coefficient - FRICTION).abs();
+        [off / FRICTION, off / of.deviation]
+    });
+    let [relative, deviations] = off.fold([0.0f64; 2], |[a, b], [c, d]| [a.max(c), b.max(d)]);
+    let friction = format!("{:.1} %, {deviations:.1}", 100.0 * relative);
+    format!("{:.3} | {:.4} | {friction}", right / all, wrong / all)
 }
 
 fn row(errors: &Errors) -> String {

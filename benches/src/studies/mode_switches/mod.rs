@@ -5,7 +5,7 @@
 
 mod judge;
 mod picture;
-mod scenes;
+pub(super) mod scenes;
 mod sensed;
 
 use judge::{Judged, Way};

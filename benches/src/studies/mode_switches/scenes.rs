@@ -6,7 +6,9 @@ use nalgebra::{Matrix2x6, Vector2};
 use recon::contact_kinematics::planar::{self as plane, FourierBody, RadiusFunction};
 use recon::contact_kinematics::{Direction, MotionLaw, MotionPart, SurfaceMotion};
 use recon::object_dynamics::planar as in_plane;
-use recon::object_dynamics::{ContactMode, ContactScene, ContactStart, PalmDrive, SampleTimes, ScenePalm};
+use recon::object_dynamics::{
+    ContactInstant, ContactMode, ContactScene, ContactStart, PalmDrive, SampleTimes, ScenePalm,
+};
 use recon_benches::planar::scene::outline;
 use shape_bounds::generators::Source;
 use std::error::Error;
@@ -79,6 +81,19 @@ impl Run {
     }
 }
 
+/// Velocity of the body's material against that of palm `i` at their contact, m/s.
+fn slip(now: &ContactInstant, i: usize) -> DVec3 {
+    let (contact, body, palm) = (&now.contacts[i], &now.state.body, &now.palms[i]);
+    let material = palm.v_WP + palm.w_WP.cross(contact.p_WC - palm.p_WP);
+    body.v_WCm + body.w_WO.cross(contact.b_W) - material
+}
+
+/// Whether a contact slides by its force and sticks by its slip, of a body of this natural speed, m/s.
+pub(crate) fn slides_and_sticks(now: &ContactInstant, i: usize, speed: f64) -> bool {
+    let across = slip(now, i).reject_from_normalized(now.contacts[i].n);
+    now.modes[i] == ContactMode::Slide && across.length() < CREEPS * speed
+}
+
 /// One contact in space: `n` into the body, `arm` from the centre of mass.
 fn exact(mode: ContactMode, [n, force, slip, arm]: [DVec3; 4], speed: f64) -> Exact {
     let (t1, t2) = n.any_orthonormal_pair();
@@ -113,11 +128,8 @@ fn in_space(source: &mut Source) -> Anything<Option<Run>> {
     let Ok(run) = scene.simulate(&ContactStart::touching(body), times, 1e-8) else { return Ok(None) };
     let samples = run.instants.iter().map(|now| {
         let one = |i: usize| {
-            let (contact, body) = (&now.contacts[i], &now.state.body);
-            let palm = &now.palms[i];
-            let material = palm.v_WP + palm.w_WP.cross(contact.p_WC - palm.p_WP);
-            let slip = body.v_WCm + body.w_WO.cross(contact.b_W) - material;
-            exact(now.modes[i], [contact.n, now.forces[i], slip, contact.b_W], speed)
+            let contact = &now.contacts[i];
+            exact(now.modes[i], [contact.n, now.forces[i], slip(now, i), contact.b_W], speed)
         };
         (0..now.modes.len()).map(one).collect()
     });

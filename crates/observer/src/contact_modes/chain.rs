@@ -167,7 +167,7 @@ impl Chain {
         let stays = 1.0 - steps.touch;
         let walks = stays * (1.0 - steps.breaks);
         let under = self.speeds.chunks(SPEEDS).zip(&steps.speed).map(|(own, walk)| dot(own, &walk.under));
-        let (stops, leaves) = (stays * under.sum::<f64>(), stays * steps.breaks * edge);
+        let (stops, leaves) = (stays * under.sum::<f64>(), stays * steps.leaves * edge);
         let jumps = walks * steps.jump * within;
         let kept = walks * (1.0 - steps.jump);
         let count = steps.ratios.count();
@@ -219,7 +219,7 @@ impl Chain {
         }
         spare.change_pace(steps);
         let left = 0.5 * (starts + stops);
-        spare.edge = stays * (self.edge + steps.breaks * (left - self.edge)) + lost;
+        spare.edge = stays * (self.edge + steps.leaves * (left - self.edge)) + lost;
         spare.off = stays * self.off + 0.5 * steps.touch * (landing + disc);
         std::mem::swap(self, spare);
     }

@@ -45,7 +45,9 @@ const CAPTURED: f64 = 0.2;
 /// Share of what comes to the edge of the cone, from sliding or from within, that stays there without a slip until it breaks away. A ratio that stays the same says
 /// that it is the friction, whatever the friction is, and of a body at rest all do: were there but sliding at that ratio, a body at rest would be held for sliding
 /// slowly, and tell its friction.
-pub(super) const EDGE: f64 = 0.02;
+pub(super) const EDGE: f64 = 0.005;
+/// Probability a millisecond that it does break away.
+const LEAVES: f64 = 0.01;
 /// Steps of the ratio within which sticking begins near its cone.
 const NEAR_STEPS: f64 = 3.0;
 /// Deviation of the slip at touch-down, in shares of the natural speed.
@@ -65,11 +67,12 @@ pub(super) struct Steps {
     pub(super) speed: [Walk; PACES],
     /// Of each pace: what steps over one, the friction, slides from now on.
     pub(super) ratio: [Walk; PACES],
-    /// Probabilities of a jump of the ratio, of the end of sticking, of touch and its loss, and that the pace changes.
+    /// Probabilities of a jump of the ratio, of the end of sticking, of touch and its loss, that the pace changes, and that rest at the edge ends.
     pub(super) jump: f64,
     pub(super) breaks: f64,
     pub(super) touch: f64,
     pub(super) paced: f64,
+    pub(super) leaves: f64,
     /// Of each pace, one after the other: speeds at the start of sliding, after sticking and after touch-down; ratios at the start of sticking, after sliding
     /// and anywhere.
     pub(super) starts: Vec<f64>,
@@ -108,6 +111,7 @@ impl Steps {
             breaks: 0.0,
             touch: 0.0,
             paced: 0.0,
+            leaves: 0.0,
             stops: vec![0.0; PACES * ratios.count()],
             disc: at_each(ratios.shares(|q| q * q)),
             speed: std::array::from_fn(|_| Walk::on(SPEEDS)),
@@ -152,7 +156,7 @@ impl Steps {
         }
         let within = |a_unit: f64| (1.0 - (-rate_of(a_unit) * dt / UNIT).exp()).clamp(LEAST, 1.0 - LEAST);
         (self.jump, self.breaks, self.touch) = (within(JUMP), within(BREAK), within(TOUCH));
-        self.paced = within(PACED);
+        (self.paced, self.leaves) = (within(PACED), within(LEAVES));
         self.dt = dt;
     }
 
