@@ -20,6 +20,8 @@ const COARSE: usize = 8;
 /// Neighbours nearer to each other foretell what is between them; what is so far below the most probable one is of no account.
 const SAME: f64 = 0.1;
 const NO_ACCOUNT: f64 = 25.0;
+/// Of how many readings of a ratio one next to a friction is enough to try that.
+const DWELT: usize = 20;
 /// Samples from one look for such frictions to the next.
 const LOOKS: usize = 8;
 
@@ -131,15 +133,18 @@ impl Passage {
         let last = frictions.len() - 1;
         let mut logs = vec![None; frictions.len()];
         let always = self.looks(pace, &frictions[last]);
-        let coarse: Vec<usize> = (0..last).step_by(COARSE).chain([last]).collect();
-        self.try_all(pace, frictions, &coarse, &always, &mut logs);
+        let mut first: Vec<usize> = (0..last).step_by(COARSE).chain([last]).collect();
+        first.extend(self.dwelt_at(frictions));
+        first.sort_unstable();
+        first.dedup();
+        self.try_all(pace, frictions, &first, &always, &mut logs);
         let mut stride = COARSE;
         while stride > 1 {
             stride /= 2;
             let between: Vec<usize> = (1..).map(|i| (2 * i - 1) * stride).take_while(|k| *k < last).collect();
             let foretold: Vec<Option<f64>> = between.iter().map(|k| foretold(&logs, *k, stride)).collect();
-            let open: Vec<usize> =
-                between.iter().zip(&foretold).filter(|(_, log)| log.is_none()).map(|(k, _)| *k).collect();
+            let is_open = |(k, log): &(&usize, &Option<f64>)| log.is_none() && logs[**k].is_none();
+            let open: Vec<usize> = between.iter().zip(&foretold).filter(is_open).map(|(k, _)| *k).collect();
             self.try_all(pace, frictions, &open, &always, &mut logs);
             for (k, log) in between.into_iter().zip(foretold) {
                 logs[k] = logs[k].or(log);
@@ -147,6 +152,22 @@ impl Passage {
         }
         let most = logs.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
         logs.into_iter().map(|log| log.unwrap_or(f64::NEG_INFINITY).max(most - GIVEN_UP)).collect()
+    }
+
+    /// Frictions next to which ratios dwell. Where forces are good, that at which a contact slides stands alone among others that are given up, and neighbours do not
+    /// foretell it.
+    fn dwelt_at<'a>(&self, frictions: &'a [AtFriction]) -> impl Iterator<Item = usize> + 'a {
+        let mut counts = vec![0; frictions.len()];
+        let mut all = 0;
+        for said in &self.said {
+            let Force::Presses { ratio, .. } = &said.force else { continue };
+            all += 1;
+            let above = frictions.partition_point(|at| at.friction < ratio.size);
+            let near = [above.checked_sub(1), Some(above)].into_iter().flatten();
+            near.filter(|k| *k < frictions.len()).for_each(|k| counts[k] += 1);
+        }
+        let dwells = move |k: &usize| DWELT * counts[*k] > all;
+        (0..frictions.len()).filter(dwells)
     }
 
     /// Logarithm of the density of what was read up to each look, at one friction.
