@@ -201,11 +201,6 @@ impl Source<'_> {
         let mut stage = stage.ok_or(ContactEstimateError::Singular)?;
         let covariances = stage.covariances().ok_or(ContactEstimateError::Singular)?;
         let (problem, solved) = (&stage.problem, &stage.solved);
-        let covariances = if exact && options.guessed_floor {
-            covariances.with_steps(log, problem, solved)
-        } else {
-            covariances
-        };
         let shortest = match exact {
             true if options.guessed_floor && is_sharp(problem) => 0.0,
             true if options.guessed_floor && options.body.is_none() && leaves_something(problem) => {
@@ -217,16 +212,23 @@ impl Source<'_> {
         };
         let mut motions = at_all(log, problem, &solved.unknowns, &covariances);
         let slips = slips(problem, &motions, &solved.unknowns.body);
+        let uncontradicted = last || slips.is_empty();
+        let covariances = if uncontradicted { stage.widened(covariances) } else { covariances };
+        let covariances = if exact && options.guessed_floor {
+            covariances.with_steps(log, problem, solved)
+        } else {
+            covariances
+        };
         let (duration, needed) = (log.times[log.times.len() - 1] - log.times[0], shortest * units.time());
         let short = (duration < needed).then_some(Reason::TooShort { duration, needed });
-        let told = !exact && thinned.is_none() && (last || slips.is_empty());
+        let told = !exact && thinned.is_none() && uncontradicted;
         let evidence = stage.evidence(log, &covariances);
         let (wrong, errors) = match options.suspects && told {
             true => self.suspects(&stage, &evidence, (&covariances, &motions), (log, longest)),
             false => Default::default(),
         };
         let covariances = covariances.with_errors(errors);
-        if !covariances.errors.is_empty() {
+        if covariances.are_wider() {
             motions = at_all(log, problem, &solved.unknowns, &covariances);
         }
         let odds = || {
@@ -234,7 +236,7 @@ impl Source<'_> {
             let known = Known { log, modes: &modes, problem, solved, covariances, motions, longest };
             mode_odds(&known, &options.noise, &units)
         };
-        let mode_odds = if options.mode_odds && (last || slips.is_empty()) { odds() } else { None };
+        let mode_odds = if options.mode_odds && uncontradicted { odds() } else { None };
         let found = Found { log, stage: &stage, covariances: &covariances, evidence, short, wrong: &wrong };
         Ok((ContactEstimate { mode_odds, ..found.estimate(&motions, modes, options) }, slips))
     }

@@ -362,6 +362,15 @@ impl Problem<'_> {
         if self.planar { 0.5 * (1.0 - (1.0 - of_sample).max(0.0).sqrt()) } else { 0.5 * of_sample }
     }
 
+    /// The same of each sample: none of those after which a link is longer.
+    pub(super) fn shares_of_samples(&self) -> Vec<f64> {
+        let mut shares = vec![0.0; self.record.contacts.len()];
+        for (j, pair) in self.nodes.windows(2).enumerate().filter(|(_, pair)| pair[1] == pair[0] + 1) {
+            shares[pair[0]] = self.share(j);
+        }
+        shares
+    }
+
     /// The motion at the sample of a node with a link of one interval after it.
     pub(super) fn split<const P: usize>(&self, j: usize, carried: &Carried<P>, at: &Unknowns) -> Motion {
         at.motions[j].kicked(&at.motions[j + 1].from(&carried.motion), self.share(j))

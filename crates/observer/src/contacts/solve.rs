@@ -198,6 +198,11 @@ impl<const P: usize> Covariances<P> {
         self.beyond.get(j).copied().unwrap_or([1.0; 4])
     }
 
+    /// Whether they are not those of a linear model of noise alone.
+    pub(super) fn are_wider(&self) -> bool {
+        !self.beyond.is_empty() || !self.errors.is_empty()
+    }
+
     /// Of the numbers of one of the motions.
     pub(super) fn deviations(&self, (own, follows): &(Transition, SMatrix<f64, MOTION, P>)) -> Tangent {
         (own + follows * self.body * follows.transpose())

@@ -296,13 +296,17 @@ impl<'a> Stage<'a> {
         Some(self)
     }
 
-    /// Beyond what a linear model makes of them only for what is not refused anyway.
+    /// As a linear model has them.
     pub(super) fn covariances(&mut self) -> Option<Covariances<CONSTANTS>> {
-        let claimed = self.covariances.take().or_else(|| self.solved.covariances(&self.problem))?;
+        self.covariances.take().or_else(|| self.solved.covariances(&self.problem))
+    }
+
+    /// With what is beyond a linear model, of what is not refused anyway.
+    pub(super) fn widened(&self, linear: Covariances<CONSTANTS>) -> Covariances<CONSTANTS> {
         let refused = self.open.is_some()
             || self.against.is_some()
             || !self.solved.settled
             || !is_explained(self.solved.misfit(), self.solved.equations.conditions);
-        Some(if refused { claimed } else { claimed.redrawn(&self.problem, &self.solved, DRAWS) })
+        if refused { linear } else { linear.redrawn(&self.problem, &self.solved, DRAWS) }
     }
 }

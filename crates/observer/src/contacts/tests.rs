@@ -19,8 +19,8 @@ mod mode_odds;
 mod steady;
 mod suspects;
 
-const G: f64 = 9.81;
-const SIZE: f64 = 0.04;
+pub(super) const G: f64 = 9.81;
+pub(super) const SIZE: f64 = 0.04;
 const SLOPE: f64 = 0.9;
 
 /// An ellipsoid that spins between three rubbing planes.
@@ -28,7 +28,7 @@ fn log(seconds: f64, rate: f64) -> ContactLog {
     rubbed(seconds, rate, 0.1)
 }
 
-fn rubbed(seconds: f64, rate: f64, friction: f64) -> ContactLog {
+pub(super) fn rubbed(seconds: f64, rate: f64, friction: f64) -> ContactLog {
     let (scene, start) = scene(friction, 0.0);
     simulated(&scene, &ContactStart::touching(start), seconds, rate)
 }
@@ -72,13 +72,13 @@ fn scene(friction: f64, gap: f64) -> (ContactScene<Ellipsoid>, BodyState) {
     (scene, BodyState { p_WCm: DVec3::ZERO, R_WO, v_WCm: v, w_WO: w })
 }
 
-fn modes(log: &ContactLog) -> Vec<[ContactMode; MOST_PALMS]> {
+pub(super) fn modes(log: &ContactLog) -> Vec<[ContactMode; MOST_PALMS]> {
     let mode =
         |k: usize, i: usize| log.palms().get(i).and_then(|p| p.truth(k)).map_or(ContactMode::Off, |t| t.mode);
     (0..log.times().len()).map(|k| std::array::from_fn(|i| mode(k, i))).collect()
 }
 
-fn noise(contact: f64, force_share: f64) -> ContactNoiseLevel {
+pub(super) fn noise(contact: f64, force_share: f64) -> ContactNoiseLevel {
     ContactNoiseLevel {
         contact,
         force_fixed: 0.0,
@@ -88,7 +88,7 @@ fn noise(contact: f64, force_share: f64) -> ContactNoiseLevel {
     }
 }
 
-fn noisy(log: &ContactLog, noise: &ContactNoiseLevel, seed: u64) -> ContactLog {
+pub(super) fn noisy(log: &ContactLog, noise: &ContactNoiseLevel, seed: u64) -> ContactLog {
     let force = ChannelNoise { fixed: noise.force_fixed, share: noise.force_share };
     let impulse =
         noise.impulse.map_or(force, |noise| ChannelNoise { fixed: noise.fixed, share: noise.share });
@@ -102,7 +102,7 @@ fn with_records(log: &ContactLog, one: impl Fn(usize, PalmRecord) -> PalmRecord)
     ContactLog::new(log.times().to_vec(), palms, log.truth().map(<[_]>::to_vec)).unwrap()
 }
 
-fn options(noise: ContactNoiseLevel) -> ContactOptions {
+pub(super) fn options(noise: ContactNoiseLevel) -> ContactOptions {
     ContactOptions::new(noise, G)
 }
 
