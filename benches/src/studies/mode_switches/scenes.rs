@@ -91,7 +91,12 @@ fn slip(now: &ContactInstant, i: usize) -> DVec3 {
 /// Whether a contact slides by its force and sticks by its slip, of a body of this natural speed, m/s.
 pub(crate) fn slides_and_sticks(now: &ContactInstant, i: usize, speed: f64) -> bool {
     let across = slip(now, i).reject_from_normalized(now.contacts[i].n);
-    now.modes[i] == ContactMode::Slide && across.length() < CREEPS * speed
+    creeps(now.modes[i], across.length(), speed)
+}
+
+/// The same by the speed of its slip along the palm, m/s.
+fn creeps(mode: ContactMode, slip: f64, speed: f64) -> bool {
+    mode == ContactMode::Slide && slip < CREEPS * speed
 }
 
 /// One contact in space: `n` into the body, `arm` from the centre of mass.
@@ -102,7 +107,7 @@ fn exact(mode: ContactMode, [n, force, slip, arm]: [DVec3; 4], speed: f64) -> Ex
     let columns = [DVec3::X, DVec3::Y, DVec3::Z, turned[0], turned[1], turned[2]];
     Exact {
         mode,
-        either: mode == ContactMode::Slide && across(slip).norm() < CREEPS * speed,
+        either: creeps(mode, across(slip).norm(), speed),
         normal: n.dot(force),
         friction: across(force),
         slip: across(slip),

@@ -68,6 +68,7 @@ mod sharp;
 mod slips;
 mod slopes;
 mod solve;
+mod split;
 mod spurious;
 mod stage;
 mod state;
