@@ -9,7 +9,7 @@ use super::options::{ContactEstimateError, ContactOptions, check};
 use super::problem::{Problem, Units};
 use super::record::Record;
 use super::relabel::{apart, surer};
-use super::rivals::still;
+use super::rivals::{is_short, still};
 use super::rows::Rows;
 use super::samples::{Deviations, at_all};
 use super::search::{problem, thinned};
@@ -255,7 +255,8 @@ impl Source<'_> {
         if !sharp {
             stage = stage.stated()?;
         }
-        if !planar && log.frictionless() && stage.solved.explained() {
+        let worth = stage.solved.explained() || !exact && is_short(&stage.problem);
+        if !planar && log.frictionless() && worth {
             stage = match exact {
                 false => stage.decided()?,
                 true if sharp => stage.blunted()?,
