@@ -29,6 +29,48 @@ pub fn least_place(
     noise: SensorNoise,
     scales: Scales,
 ) -> Option<f64> {
+    let own = least(samples.iter(), mass, known, noise, scales)?;
+    Some((0..3).map(|i| own[(i, i)]).sum::<f64>().sqrt())
+}
+
+/// Least deviations at the first sample from all of them, as the filter has them that runs back from the last one: centre of mass (m), velocity (m/s) and
+/// angular velocity (rad/s), world axes; then of a known body how its axes lie (rad), of an unknown one its mass (kg) and principal moments
+/// (kg m^2), to which it is the same at which sample its axes are those of the world.
+#[must_use]
+pub fn least_at_start(
+    samples: &[Instant],
+    mass: MassProperties,
+    known: bool,
+    noise: SensorNoise,
+    scales: Scales,
+) -> Option<Vec<f64>> {
+    let own = least(samples.iter().rev(), mass, known, noise, scales)?;
+    let root = |i: usize| own[(i, i)].max(0.0).sqrt();
+    let motion = (PLACE..TURN).chain(SPIN..MASS).map(root);
+    if known {
+        return Some(motion.chain((TURN..SPIN).map(root)).collect());
+    }
+    let moment = |axis: DVec3| {
+        let by_entry = DVector::from_iterator(
+            ENTRIES.len(),
+            ENTRIES.iter().map(|(i, j)| axis[*i] * axis[*j] * if i == j { 1.0 } else { 2.0 }),
+        );
+        let of_inertia = own.view((INERTIA, INERTIA), (ENTRIES.len(), ENTRIES.len()));
+        by_entry.dot(&(of_inertia * &by_entry)).max(0.0).sqrt()
+    };
+    let axes = mass.principal().axes;
+    let moments = DVec3::AXES.map(|axis| moment(axes * axis));
+    Some(motion.chain([root(MASS) * mass.mass()]).chain(moments).collect())
+}
+
+/// Covariance of what is unknown at the last of some samples, from all of them.
+fn least<'a>(
+    samples: impl Iterator<Item = &'a Instant>,
+    mass: MassProperties,
+    known: bool,
+    noise: SensorNoise,
+    scales: Scales,
+) -> Option<DMatrix<f64>> {
     let Scales { length, time } = scales;
     let speed = length / time;
     let moment = mass.mass() * length * length;
@@ -38,7 +80,7 @@ pub fn least_place(
             * match i {
                 PLACE..VELOCITY => length,
                 VELOCITY..TURN => speed,
-                // The axes of a body of which nothing is known are those of the world at the first sample.
+                // The axes of a body of which nothing is known are those of the world at one sample.
                 TURN..SPIN => turn,
                 SPIN..MASS => time.recip(),
                 MASS => constant,
@@ -46,9 +88,8 @@ pub fn least_place(
             }
     });
     let read = DVector::from_fn(READ, |i, _| if i % EACH == 2 { noise.force } else { noise.contact });
-    let told: Vec<Told> = samples.iter().map(|at| Told { at, mass }).collect();
-    let own = covariance(&told, &before, &read, ROUNDING * speed)?;
-    Some((0..3).map(|i| own[(i, i)]).sum::<f64>().sqrt())
+    let told: Vec<Told> = samples.map(|at| Told { at, mass }).collect();
+    covariance(&told, &before, &read, ROUNDING * speed)
 }
 
 /// A sample with what is true of the body.

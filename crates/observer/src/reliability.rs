@@ -81,6 +81,13 @@ pub enum Reason {
         /// Length that is needed, s.
         needed: f64,
     },
+    /// Samples are far apart beside the time in which the body falls its own length: what forces do in between is not known.
+    TooSparse {
+        /// Median of the time from sample to sample, s.
+        spacing: f64,
+        /// Largest that serves, s.
+        most: f64,
+    },
 }
 
 impl fmt::Display for Reason {
@@ -126,6 +133,10 @@ impl fmt::Display for Reason {
             Self::TooShort { duration, needed } => write!(
                 f,
                 "{duration:.2} s are too short for a body of this size and data that are not exact: at least {needed:.2} s are needed"
+            ),
+            Self::TooSparse { spacing, most } => write!(
+                f,
+                "samples {spacing:.3} s apart are too far apart for a body of this size: what forces do in between is known up to {most:.3} s"
             ),
         }
     }

@@ -29,12 +29,6 @@ impl Estimated {
     pub(crate) fn exists(&self) -> bool {
         self.errors.iter().all(|e| e.is_finite())
     }
-
-    /// What the deviations would be under noise that is larger by a factor.
-    pub(crate) fn scaled(mut self, factor: f64) -> Self {
-        self.deviations.iter_mut().for_each(|d| *d *= factor);
-        self
-    }
 }
 
 /// What a log is of, and what is known of that.
@@ -49,8 +43,8 @@ pub(crate) struct Experiment<'a, S> {
 }
 
 impl<S: SupportFunction> Experiment<'_, S> {
-    /// Estimates from a log of such a noise, the floor of the conditions taken `share` times, and compares with the truth.
-    pub(crate) fn estimate(&self, log: &SensorLog, noise: SensorNoise, share: f64) -> Estimated {
+    /// Estimates from a log of such a noise, and compares with the truth.
+    pub(crate) fn estimate(&self, log: &SensorLog, noise: SensorNoise) -> Estimated {
         let clock = ThreadTime::now();
         let mass = *self.scene.mass();
         let noise = ContactNoiseLevel {
@@ -58,7 +52,7 @@ impl<S: SupportFunction> Experiment<'_, S> {
             force_fixed: noise.force,
             force_share: 0.0,
             impulse: None,
-            floor: share * FLOOR * self.speed,
+            floor: FLOOR * self.speed,
         };
         let options = ContactOptions {
             friction: Some(0.0),

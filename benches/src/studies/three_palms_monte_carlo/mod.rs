@@ -10,6 +10,8 @@ mod statistics;
 use estimates::{Estimated, Experiment};
 use recon::contact_kinematics::SupportFunction;
 use recon::object_dynamics::{InitialMotion, SampleTimes, SensorNoise, ThreePalmScene, integrate::Tolerance};
+use recon_benches::bound::Scales;
+use recon_benches::bound::space::least_at_start;
 use recon_tests::{f5, g2};
 use statistics::Statistics;
 use std::ops::Range;
@@ -24,8 +26,6 @@ const FORCE: f64 = 6.5;
 const LENGTH: f64 = 1.3;
 /// Deviation of the estimators' prior in natural sizes: numbers whose bound is below it are counted.
 const PRIOR: f64 = 1.0;
-/// Factor by which the noise is made small where the bound is taken: it is then that of the linearised model at the truth.
-const SMALL: f64 = 0.01;
 /// Ratio to the bound beyond which there is no number in the table: some run led nowhere.
 const FAR: f64 = 10.0;
 /// A failure is an error beyond this many of its deviations without a warning.
@@ -138,8 +138,8 @@ fn introduce(runs: u64, first: u64, words: &[String]) {
     println!(
         "Compared are centre of mass, velocity and angular velocity at the start; of a known body the three numbers of how its \
          axes lie as well, of an unknown one mass and moments of inertia about its true axes. Counted are the numbers whose bound is below the \
-         prior of the estimator: one natural size (axes: a radian). The bound is that of the data alone (deviations at a hundredth of the \
-         noise): where the prior says something too, the error can be below it. RMSE / bound: geometric mean over these numbers, \
+         prior of the estimator: one natural size (axes: a radian). The bound (Cramér-Rao) is that of the data alone, by a filter that knows nothing of the \
+         estimators: where their prior says something too, the error can be below it. RMSE / bound: geometric mean over these numbers, \
          over runs that are relied on, and over all runs with an estimate. Error^2 / variance: mean over the same, relied on, with its \
          95 % band (numbers of one run hang together, and are taken to be worth three); below 1 the deviations are on the safe side. Reported: \
          runs that come with a warning. Silent: runs with an error beyond {SILENT} deviations and no warning. Time: median of processor \
@@ -197,27 +197,26 @@ fn line_of<S: SupportFunction>(
     let times = SampleTimes { duration: window, rate };
     let simulation = scene.simulate(start, times, Tolerance::uniform(1e-13))?;
     let clean = simulation.sensor_log(scene)?.split_truth().0;
-    let level = |factor: f64| SensorNoise {
-        contact: factor * noise * SIZE,
-        force: factor * 0.01 * FORCE,
-        torque: 0.0,
-    };
-    let experiment =
-        Experiment { scene, now: &simulation.instants[0], unknown, speed: (9.81 * LENGTH).sqrt() };
-    let bound = experiment.estimate(&clean, level(SMALL), SMALL).scaled(1.0 / SMALL);
+    let level = SensorNoise { contact: noise * SIZE, force: 0.01 * FORCE, torque: 0.0 };
+    let speed = (9.81 * LENGTH).sqrt();
+    let experiment = Experiment { scene, now: &simulation.instants[0], unknown, speed };
+    let scales = Scales { length: LENGTH, time: LENGTH / speed };
+    let bound = least_at_start(&simulation.instants, *scene.mass(), !unknown, level, scales);
+    let bound = bound.ok_or("the equations of the bound are singular")?;
     let mut runs = Vec::new();
     for seed in seeds {
-        runs.push(experiment.estimate(&clean.with_noise(&level(1.0), seed)?, level(1.0), 1.0));
+        runs.push(experiment.estimate(&clean.with_noise(&level, seed)?, level));
     }
     let sizes = sizes(scene, unknown);
-    let counted: Vec<usize> = (0..sizes.len()).filter(|&i| bound.deviations[i] < PRIOR * sizes[i]).collect();
+    let counted: Vec<usize> = (0..sizes.len()).filter(|&i| bound[i] < PRIOR * sizes[i]).collect();
     Ok(format(row, &Outcome { runs, bound, counted }))
 }
 
 /// What came of a row.
 struct Outcome {
     runs: Vec<Estimated>,
-    bound: Estimated,
+    /// Least deviations.
+    bound: Vec<f64>,
     /// Numbers that are counted.
     counted: Vec<usize>,
 }

@@ -17,13 +17,13 @@ pub(crate) struct Statistics {
 
 impl Statistics {
     /// None without runs or numbers.
-    pub(crate) fn new(runs: &[&Estimated], bound: &Estimated, counted: &[usize]) -> Option<Self> {
+    pub(crate) fn new(runs: &[&Estimated], bound: &[f64], counted: &[usize]) -> Option<Self> {
         if runs.is_empty() || counted.is_empty() {
             return None;
         }
         let count = runs.len() as f64;
         let mean = |i: usize| runs.iter().map(|o| o.errors[i].powi(2)).sum::<f64>() / count;
-        let logs: f64 = counted.iter().map(|&i| 0.5 * (mean(i) / bound.deviations[i].powi(2)).ln()).sum();
+        let logs: f64 = counted.iter().map(|&i| 0.5 * (mean(i) / bound[i].powi(2)).ln()).sum();
         let squares: f64 = counted
             .iter()
             .map(|&i| runs.iter().map(|o| (o.errors[i] / o.deviations[i]).powi(2)).sum::<f64>() / count)

@@ -50,6 +50,7 @@ mod noise;
 mod onward;
 mod options;
 mod outliers;
+mod palm_rates;
 mod plane;
 mod problem;
 mod ranges;

@@ -246,6 +246,7 @@ mod tests {
                 n: DVec3::Z,
                 u: DVec3::ZERO,
                 W: DVec3::ZERO,
+                u_deviation: 0.0,
                 shape: DMat3::ZERO,
                 f: DVec3::Z * weights,
                 f_deviation: 0.01,

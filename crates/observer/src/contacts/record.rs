@@ -6,6 +6,7 @@ use super::impulses;
 use super::noise::{ContactNoiseLevel, WrenchNoise, traces};
 use super::options::ContactOptions;
 use super::outliers::{Misread, mend, misread};
+use super::palm_rates::MissedTwist;
 use super::problem::Units;
 use contact_kinematics::PalmSurface;
 use glam::{DMat3, DVec3};
@@ -32,6 +33,8 @@ pub(super) struct Contact {
     /// Velocity of the palm's material at the contact, m/s, and the palm's angular velocity, rad/s.
     pub(super) u: DVec3,
     pub(super) W: DVec3,
+    /// Standard deviation of that velocity at a sample, m/s, where it follows from poses.
+    pub(super) u_deviation: f64,
     /// Shape operator of the palm in world axes, 1/m: how its normal turns along it.
     pub(super) shape: DMat3,
     pub(super) f: DVec3,
@@ -111,6 +114,7 @@ impl Contact {
             n,
             u: motion.material_velocity(touch.p_WC),
             W: motion.w_WP,
+            u_deviation: 0.0,
             shape: shape_operator(surface, n, motion.pose.R_WP * DVec3::X),
             f: if frictionless { force.project_onto_normalized(n) } else { force },
             f_deviation,
@@ -204,8 +208,9 @@ impl Record {
         let origin = points().map(|touch| touch.p_WC).sum::<DVec3>() / count as f64;
         let square = points().map(|touch| touch.p_WC.distance_squared(origin)).sum::<f64>();
         let across = points().map(|touch| (touch.p_WC.y - origin.y).powi(2)).sum::<f64>();
+        let missed = MissedTwist::of(log);
         let mut contacts: Vec<Vec<Contact>> =
-            (0..times.len()).map(|k| contacts_at(log, k, origin, options)).collect();
+            (0..times.len()).map(|k| contacts_at(log, k, (origin, &missed), options)).collect();
         let misread = misread(&contacts, &times, noise.contact, options.gravity);
         mend(&mut contacts, &misread);
         let sampled: Vec<bool> =
@@ -314,7 +319,12 @@ pub(super) fn wrench<'a>(contacts: impl IntoIterator<Item = &'a Contact>) -> Wre
     contacts.into_iter().map(of).fold(Wrench::default(), Add::add)
 }
 
-fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, options: &ContactOptions) -> Vec<Contact> {
+fn contacts_at(
+    log: &ContactLog,
+    k: usize,
+    (origin, missed): (DVec3, &[MissedTwist]),
+    options: &ContactOptions,
+) -> Vec<Contact> {
     let one = |(palm, logged): (usize, &LoggedPalm)| {
         let frictionless = options.frictionless(logged.friction());
         let touch = logged.touch(k)?;
@@ -323,7 +333,8 @@ fn contacts_at(log: &ContactLog, k: usize, origin: DVec3, options: &ContactOptio
         let felt = Contact::new(palm, logged.surface(), &touch, &motion, force, frictionless, options.planar);
         // All in one plane, about which they scatter by noise alone.
         let c = felt.c - origin;
-        Some(Contact { c: if options.planar { c.with_y(0.0) } else { c }, ..felt })
+        let u_deviation = missed[palm].at(felt.c.distance(motion.pose.p_WP));
+        Some(Contact { u_deviation, c: if options.planar { c.with_y(0.0) } else { c }, ..felt })
     };
     log.palms().iter().enumerate().filter_map(one).collect()
 }

@@ -147,7 +147,7 @@ impl Contact {
         let moved = moves.iter().map(|(tangent, by)| *tangent * *by).sum::<DVec3>();
         self.c += moved;
         // Of the palm's material that is there then.
-        self.u += self.W.cross(moved) + self.n * (AMOUNT * problem.noise.floor * random.draw());
+        self.u += self.W.cross(moved) + self.n * (AMOUNT * self.floor(problem.noise.floor) * random.draw());
         moves
     }
 }

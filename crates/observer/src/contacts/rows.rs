@@ -88,7 +88,7 @@ impl Rows {
         let sticks = contact.mode == ContactMode::Stick;
         // What a shift of the contact along a tangent does to each condition.
         let turning = turn.w - contact.W;
-        let mut covariance = Matrix3::identity() * (noise.floor * noise.floor);
+        let mut covariance = Matrix3::identity() * contact.floor(noise.floor).powi(2);
         let deviation = noise.contact / contact.samples.sqrt();
         let mut shifts = [Vector3::zeros(); 2];
         // In the plane none is across it: a motion that left it would make its conditions worth less.

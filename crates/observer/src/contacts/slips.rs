@@ -155,7 +155,7 @@ pub(super) fn slip(contact: &Contact, of: &Moving, noise: &ContactNoiseLevel) ->
     let entry = |a: DVec3, b: DVec3| Vector3::from(a).dot(&(moved * Vector3::from(b))) + read(a, b);
     let [a, b] = tangents;
     let both = 0.5 * (entry(a, b) + entry(b, a));
-    let floor = noise.floor.powi(2);
+    let floor = contact.floor(noise.floor).powi(2);
     let covariance = Matrix2::new(entry(a, a) + floor, both, both, entry(b, b) + floor);
     let velocity = of.v_WCm + of.w_WO.cross(arm) - contact.u;
     let velocity = Vector2::new(velocity.dot(a), velocity.dot(b));
