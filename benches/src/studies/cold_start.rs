@@ -72,6 +72,7 @@ fn kind(reason: &Reason) -> &'static str {
         Reason::Unchanging { .. } => "readings hardly change",
         Reason::Unconfirmed => "not confirmed without the stated body",
         Reason::TooShort { .. } => "too short for its noise",
+        Reason::TooSparse { .. } => "samples too far apart",
         Reason::Fault(_) => "a constant of the sensors is not as stated",
         Reason::OtherBody { .. } => "another body than was stated",
         Reason::Inconsistent { .. } => "data and motion disagree",
