@@ -80,8 +80,9 @@ pub mod least_squares;
 #[cfg(feature = "palms")]
 pub mod planar;
 #[cfg(feature = "palms")]
-pub mod pushes;
+mod predicted;
 #[cfg(feature = "palms")]
+pub mod pushes;
 mod quadrature;
 #[cfg(feature = "palms")]
 mod random;

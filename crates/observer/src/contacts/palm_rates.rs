@@ -1,16 +1,11 @@
 //! How far twists of palms that follow from their poses may be off: those of palms that shake faster than they are sampled, or whose poses are noisy.
 
 use super::record::Contact;
-use glam::{DMat3, DVec3};
+use crate::predicted::{Predicted, predicted};
+use glam::DMat3;
 use object_dynamics::{ContactLog, LoggedPalm, TwistSource};
+use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Samples before and after one, in spacings, by which it is predicted, and their weights: exact for cubic polynomials.
-const AROUND: [i32; 4] = [-3, -1, 1, 3];
-const WEIGHTS: [f64; 4] = [-0.0625, 0.5625, 0.5625, -0.0625];
-/// Spacings over which that is done: how the error falls from the second to the first says how far a spline through all samples is off.
-const WIDTHS: [i32; 2] = [1, 2];
-/// Share by which spacings may differ for these weights.
-const EVEN: f64 = 0.02;
 /// Velocity that is missed, over what a sample is predicted wrongly by and the spacing, of poses that alternate: half of pi, and of a spline through resolved
 /// ones not more.
 const OF_ALTERNATING: f64 = 1.6;
@@ -32,36 +27,13 @@ impl MissedTwist {
         if palm.twist_source() != TwistSource::FromPoses {
             return Self::default();
         }
-        let reach = AROUND[3] * WIDTHS[1];
-        let Some(last) = times.len().checked_sub(1 + 2 * reach as usize) else { return Self::default() };
-        let (mut squares, mut count, mut time) = ([[0.0; 2]; 2], 0.0, 0.0);
-        for k in (0..=last)
-            .filter(|&from| is_even(&times[from..=from + 2 * reach as usize]))
-            .map(|from| from as i32 + reach)
-        {
-            let place = |k: i32| palm.motion(k as usize).pose.p_WP;
-            let turn = |k: i32| DMat3::from_quat(palm.motion(k as usize).pose.R_WP);
-            for (width, squares) in WIDTHS.into_iter().zip(&mut squares) {
-                let at = AROUND.map(|around| k + around * width);
-                let off: DVec3 =
-                    at.into_iter().zip(WEIGHTS).map(|(at, weight)| (place(at) - place(k)) * weight).sum();
-                let axes = at
-                    .into_iter()
-                    .zip(WEIGHTS)
-                    .fold(DMat3::ZERO, |sum, (at, weight)| sum + (turn(at) - turn(k)) * weight);
-                squares[0] += off.length_squared();
-                // A small turn moves each of two axes by its angle.
-                squares[1] += 0.5 * axes.to_cols_array().iter().map(|entry| entry * entry).sum::<f64>();
-            }
-            (count, time) = (count + 1.0, time + times[k as usize] - times[k as usize - 1]);
-        }
-        let missed = |i: usize| {
-            let [fine, coarse] = squares.map(|of| of[i]);
-            // The fourth power of the spacing twice: once to all samples, once as a spline is of higher order there.
-            let falls = if fine < coarse { fine / coarse } else { 1.0 };
-            if fine > 0.0 { OF_ALTERNATING * (fine / count).sqrt() * falls * count / time } else { 0.0 }
-        };
-        Self { velocity: missed(0), spin: missed(1) }
+        let pose = |k: usize| palm.motion(k).pose;
+        // As a spline is of higher order at samples, the error falls once more.
+        let missed = |of: Predicted| OF_ALTERNATING * of.off * of.falls / of.spacing;
+        let velocity = predicted(times, |k| pose(k).p_WP.to_array()).map_or(0.0, missed);
+        // A small turn moves each of two axes by its angle.
+        let spin = predicted(times, |k| DMat3::from_quat(pose(k).R_WP).to_cols_array()).map_or(0.0, missed);
+        Self { velocity, spin: spin * FRAC_1_SQRT_2 }
     }
 
     /// Of the material at a contact, m/s, so far from the origin of the palm's frame.
@@ -77,16 +49,11 @@ impl Contact {
     }
 }
 
-fn is_even(times: &[f64]) -> bool {
-    let first = times[1] - times[0];
-    times.windows(2).all(|pair| (pair[1] - pair[0] - first).abs() < EVEN * first)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use contact_kinematics::{PalmSurface, SurfacePose};
-    use glam::DQuat;
+    use glam::{DQuat, DVec3};
     use object_dynamics::{ContactPoints, ForceChannel, PalmRecord, RecordedMotion};
 
     /// A palm that moves and turns as a sine, of which each sample is `step` rad of its phase later; true rates over its amplitudes, and those told.

@@ -235,14 +235,22 @@ impl Scene<'_> {
             v_WCm: now.rates.v_WCm,
             w_WO: now.w_WO,
         };
-        let deviations =
+        let mut deviations =
             deviations(&problem, &fit.point, motion.len(), &of_noise, &doubts.errors).ok_or(no_fit)?;
+        // A body shakes as its palms do, faster than steps tell.
+        let missed = nodes.missed_rates;
+        for [_, velocity, spin, _] in &mut deviations {
+            *velocity = velocity.map(|of| of.hypot(missed * self.length));
+            *spin = spin.map(|of| of.hypot(missed));
+        }
+        let mut covariance = outward * inverse * outward.transpose();
+        (0..3).for_each(|i| covariance[(i, i)] += missed * missed);
         Ok(NoForceEstimate {
             motion: motion.iter().map(state).collect(),
             deviations,
             shape: shape(&fit.point),
             inertia_per_mass: inertia_of_numbers(&fit.point.inertia),
-            covariance: outward * inverse * outward.transpose(),
+            covariance,
             evidence,
         })
     }

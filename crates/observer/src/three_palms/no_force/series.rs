@@ -1,6 +1,7 @@
 //! A log without forces: palms at nodes and half-way between, and means of the contacts over blocks about nodes.
 
 use super::NoForceError;
+use crate::predicted::predicted;
 use crate::roughness::Rough;
 use crate::three_palms::track::{FEWEST_SAMPLES, TrackError, palm_states};
 use contact_kinematics::{PalmState, PalmTriple};
@@ -34,6 +35,8 @@ pub(super) struct Nodes {
     pub(super) curved: f64,
     /// Variance of a mean in variances of a sample.
     pub(super) variance: f64,
+    /// What is missed of the rates of palms between those that are used, rad/s.
+    pub(super) missed_rates: f64,
 }
 
 impl TouchSeries {
@@ -90,6 +93,22 @@ impl TouchSeries {
         (centre, (0..3).map(|i| palms[i].frame.n.dot(centre)).sum::<f64>() / 3.0)
     }
 
+    /// What rates are off by, rad/s, as the angles between samples tell: of palms that shake so fast that samples of them look slow.
+    fn against_angles(&self) -> f64 {
+        let one = |k: usize| {
+            let h = self.t[k + 1] - self.t[k];
+            let off = |i: usize| {
+                let [a, b] = [&self.palms[k].0[i], &self.palms[k + 1].0[i]];
+                let turned = a.frame.t1.dot(a.frame.n.cross(b.frame.n)).clamp(-1.0, 1.0).asin();
+                let stated = 0.5 * (a.rate + b.rate) + h / 12.0 * (a.acceleration - b.acceleration);
+                turned / h - stated
+            };
+            (0..3).map(|i| off(i).powi(2)).sum::<f64>()
+        };
+        let intervals = self.t.len() - 1;
+        ((0..intervals).map(one).sum::<f64>() / intervals as f64).sqrt()
+    }
+
     /// Nodes at every `stride`-th sample (an even number).
     pub(super) fn nodes(&self, stride: usize) -> Nodes {
         let half = stride / 2;
@@ -104,7 +123,10 @@ impl TouchSeries {
             })
         };
         let curved = (0..=stride).map(|j| 0.5 * weight(j) * (j as f64 / stride as f64 - 0.5).powi(2)).sum();
+        let used: Vec<f64> = self.t.iter().copied().step_by(half).collect();
+        let missed = predicted(&used, |k| self.palms[k * half].0.map(|palm| palm.rate));
         Nodes {
+            missed_rates: missed.map_or(0.0, |of| of.off * of.falls.sqrt()).hypot(self.against_angles()),
             t: (0..=count).map(|k| self.t[k * stride]).collect(),
             palms: (0..=2 * count).map(|k| self.palms[k * half]).collect(),
             means: (1..count).map(mean).collect(),
