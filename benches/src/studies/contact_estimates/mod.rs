@@ -3,6 +3,7 @@
 //! Arguments: the folder of the logs, seeds, scenes. Writes a Markdown table.
 
 pub(crate) mod impulses;
+mod mixed;
 pub(crate) mod random;
 
 use super::contact_logs::log::{Anything, Log};

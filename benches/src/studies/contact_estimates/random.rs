@@ -1,9 +1,10 @@
 //! The estimate from contacts on random scenes of three tilting palms from rest: modes, friction and body unknown.
 //!
-//! Arguments: scenes, first seed, rate (Hz). Writes a Markdown table.
+//! Arguments: scenes, first seed, rate (Hz), and `mixed` for palms of all shapes. Writes a Markdown table.
 
 use super::super::mode_switches::scenes::slides_and_sticks;
 use super::super::tilting_palms::{FRICTION, variant};
+use super::mixed::mixed;
 use super::{FLOOR, G};
 use recon::contact_kinematics::Ellipsoid;
 use recon::object_dynamics::{
@@ -34,13 +35,15 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let wanted: u64 = words.next().map_or(Ok(40), |s| s.parse())?;
     let first: u64 = words.next().map_or(Ok(1), |s| s.parse())?;
     let rate: f64 = words.next().map_or(Ok(200.0), |s| s.parse())?;
+    let all_shapes = words.next().is_some_and(|word| word == "mixed");
     let mut source = Source::new(first);
     println!(
         "| scene | relied on | chi-squared a condition | largest error relied on, in deviations: centre, velocity, mass | centre, velocity, mass (natural) | modes right | above 0.99 and wrong | friction: largest error, in deviations |"
     );
     println!("|---|---|---|---|---|---|---|---|");
     for k in 0..wanted {
-        let (scene, body, duration) = variant(&mut source)?;
+        let (planes, body, duration) = variant(&mut source)?;
+        let scene = if all_shapes { mixed(&planes, &body, &mut source)? } else { planes };
         let row = crate::rows::row(|| -> Result<String, Box<dyn Error>> {
             let run = scene.simulate(&ContactStart::touching(body), SampleTimes { duration, rate }, 1e-8)?;
             let exact = ContactLog::from_simulation(&scene, &run)?;

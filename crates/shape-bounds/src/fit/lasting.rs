@@ -127,7 +127,8 @@ impl Lasting {
         let ratio = |expected: &Expected| expected.products / expected.squares.max(f64::MIN_POSITIVE);
         let is_alike = may_be_alike && alike - ratio(&own.expected(0.0)) > chance;
         // As alike as noise may be of which chance made residuals look less so.
-        let by_likeness = is_alike.then(|| own.explaining(|expected| alike + chance - ratio(expected), alike));
+        let by_likeness =
+            is_alike.then(|| own.explaining(|expected| alike + chance - ratio(expected), alike));
         let by_size = small.then(|| own.explaining(|expected| 1.0 - squares / expected.squares, 0.5));
         let longest = by_likeness.into_iter().chain(by_size).max_by(|a, b| a.0.total_cmp(&b.0));
         let Some((correlation, Expected { squares: expected, spread, .. })) = longest else { return none };
