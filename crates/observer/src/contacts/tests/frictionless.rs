@@ -1,6 +1,7 @@
 //! Of palms without friction.
 
 use super::*;
+use crate::reliability::{Reason, Reliability};
 use contact_kinematics::Palm;
 use object_dynamics::integrate::Tolerance;
 
@@ -121,5 +122,20 @@ fn what_a_short_log_leaves_open_is_looked_for_from_many_starts() {
         let off = [(state.p_WCm - at.p_WCm) / of[0], (state.w_WO - at.w_WO) / of[2]];
         let worst = off.into_iter().map(|off| off.abs().max_element()).fold(0.0, f64::max);
         assert!(worst < 5.0 || !found.reliability.is_reliable(), "{seed}: {worst} deviations in silence");
+    }
+}
+
+/// At more than 0.4 natural times from sample to sample nobody knows what forces do in between.
+#[test]
+fn samples_too_far_apart_are_refused_by_name() {
+    let noise = noise(4e-5, 0.004);
+    let natural = (SIZE / G).sqrt();
+    for (spacing, refused) in [(0.3, false), (0.5, true)] {
+        let log = noisy(&normal_only(&rubbed(2.0, 1.0 / (spacing * natural), 0.0)), &noise, 1);
+        let options = ContactOptions { size: Some(SIZE), ..options(noise) };
+        let found = estimate_contacts(&log, None, &options).unwrap();
+        let told = matches!(&found.reliability, Reliability::Unreliable(reasons)
+            if reasons.iter().any(|of| matches!(of, Reason::TooSparse { most, .. } if (most / natural - 0.4).abs() < 1e-9)));
+        assert_eq!(told, refused, "{:?}", found.reliability);
     }
 }

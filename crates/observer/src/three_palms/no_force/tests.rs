@@ -13,7 +13,8 @@ use contact_kinematics::{
 use glam::{DMat3, DQuat, DVec3};
 use object_dynamics::integrate::Tolerance;
 use object_dynamics::{
-    InitialMotion, MassProperties, SampleTimes, SensorLog, SensorNoise, Simulation, ThreePalmScene,
+    InitialMotion, MassProperties, PalmReading, Sample, SampleTimes, SensorLog, SensorNoise, Simulation,
+    ThreePalmScene,
 };
 
 const AXES: DVec3 = DVec3::new(1.0, 2.0, 2.5);
@@ -52,6 +53,37 @@ fn general(duration: f64, rate: f64) -> (Simulation, SensorLog, Guess) {
 }
 
 const KNOWN: KnownTouch = KnownTouch { gravity: DVec3::new(0.0, 0.0, -9.81), contact_noise: None };
+
+/// Of palms that shake faster than steps tell their rates are missed, up to all of them; of palms that swing slowly next to nothing is, whatever the phase of
+/// the samples and though rates are logged.
+#[test]
+fn rates_of_palms_that_shake_are_missed() {
+    let (amplitude, h) = (1e-3, 0.01);
+    // Beyond pi samples of a fast motion look like those of a slow one, as 6.1 rad like 0.18.
+    for (angle, least, most) in
+        [(0.05, 0.0, 1e-6), (0.3, 1e-6, 0.01), (2.5, 0.3, 3.0), (3.1, 0.3, 3.0), (6.1, 0.3, 3.0)]
+    {
+        let frequency = angle / h;
+        let palm = |azimuth: f64, phase| {
+            Palm::new(azimuth, MotionLaw::Sinusoid { mean: 1.0, amplitude, frequency, phase }).unwrap()
+        };
+        let palms = [palm(0.1, 0.3), palm(2.2, 1.0), palm(4.3, 2.0)];
+        let reading = |t: f64, i: usize| {
+            let at = palms[i].at(t);
+            let normal = Direction::new(at.frame.n).unwrap();
+            PalmReading { normal, contact: Some([0.1, 0.2]), force: None, torque: None, rate: Some(at.rate) }
+        };
+        let sample = |k: u32| {
+            let t = f64::from(k) * h;
+            Sample { t, palms: [0, 1, 2].map(|i| reading(t, i)) }
+        };
+        let log = SensorLog::new((0..200).map(sample).collect(), None).unwrap();
+        let missed = TouchSeries::new(&log).unwrap().nodes(2).missed_rates;
+        // Root of the mean square of three rates.
+        let all = amplitude * frequency * 1.5f64.sqrt();
+        assert!((least..most).contains(&(missed / all)), "{angle}: {missed} of {all}");
+    }
+}
 
 /// Steps of a search may lead anywhere; what is no number there must not reach the contacts.
 #[test]
