@@ -59,7 +59,7 @@ fn once(
             *pose = SurfacePose::new(centre, pose.R_WP)?;
         }
     }
-    let made = ContactScene::new(scene.body().clone(), *scene.mass(), palms, scene.gravity().length())?;
+    let made = ContactScene::new(*scene.body(), *scene.mass(), palms, scene.gravity().length())?;
     made.simulate(&ContactStart::touching(*start), SampleTimes { duration: 1e-3, rate: 1000.0 }, 1e-6)?;
     Ok(made)
 }
