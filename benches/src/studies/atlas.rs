@@ -65,10 +65,10 @@ pub(crate) fn main() -> Result<(), Failure> {
         "is harmless to where nothing can be known. Bodies of 5 cm between palms, logs of 0.7 s at 200 Hz with noise of 0.1 % of the size and 0.3 % of the weight, but for what the way"
     );
     println!(
-        "changes; judged by the simulator's truth. Reported: not relied on, in words. Natural times are `sqrt(size / g)`. Counts are in [atlas.csv](atlas.csv), boundaries in [boundaries.md](boundaries.md). Thresholds were set on"
+        "changes; judged by the simulator's truth. Reported: not relied on, in words. Natural times are `sqrt(size / g)`. Counts are in [atlas.csv](atlas.csv), boundaries in [boundaries.md](boundaries.md). Thresholds were set"
     );
     println!(
-        "these seeds as well: what was proven on seeds used once stands beside each of them in [limits.md](limits.md).\n"
+        "on seeds from {FIRST} on as well: what was proven on seeds used once stands beside each of them in [limits.md](limits.md).\n"
     );
     print!("{}", page(&spots, &counts));
     Ok(())
