@@ -83,6 +83,7 @@ pub mod planar;
 mod predicted;
 #[cfg(feature = "palms")]
 pub mod pushes;
+#[cfg(feature = "palms")]
 mod quadrature;
 #[cfg(feature = "palms")]
 mod random;
