@@ -47,7 +47,7 @@ pub(crate) fn predicted<const N: usize>(
     (count > 0.0).then(|| Predicted { off: (fine / count).sqrt(), falls, spacing: time / count })
 }
 
-fn is_even(times: &[f64]) -> bool {
+pub(crate) fn is_even(times: &[f64]) -> bool {
     let first = times[1] - times[0];
     times.windows(2).all(|pair| (pair[1] - pair[0] - first).abs() < EVEN * first)
 }

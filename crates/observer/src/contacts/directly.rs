@@ -7,13 +7,12 @@ use super::axes::orientation;
 use super::body::CONSTANTS;
 use super::cold;
 use super::problem::Problem;
+use super::rivals::is_short;
 use super::search::{ENOUGH, Ended, fine, fine_nodes, refined};
 use super::solve::solve;
 use glam::DQuat;
 use object_dynamics::MassProperties;
 
-/// Natural times up to which it is worth it.
-const SHORT: f64 = 12.0;
 /// Orientations that are begun from, of so many in all, and how many of them are followed.
 const BEGUN: usize = 40;
 const FOLLOWED: usize = 6;
@@ -24,9 +23,7 @@ const FLOOR: f64 = 1e-2;
 /// The motion of a body of the mass properties `mass` of which next to nothing is left; then the problem is that of the known body. None else, with
 /// the problem as it was.
 pub(super) fn directly(problem: &mut Problem, mass: &MassProperties) -> Option<Ended> {
-    let natural = problem.units.length / problem.units.speed;
-    let times = &problem.record.times;
-    if times[times.len() - 1] - times[0] > SHORT * natural {
+    if !is_short(problem) {
         return None;
     }
     let before = (problem.body, problem.nodes.clone(), problem.frozen.clone());

@@ -18,6 +18,11 @@ pub(super) struct Eliminated<const P: usize> {
 }
 
 impl<const P: usize> Eliminated<P> {
+    /// Logarithm of the determinant of its own equations.
+    pub(super) fn log_det(&self) -> f64 {
+        (0..MOTION).map(|i| -2.0 * self.factor[i][i].ln()).sum()
+    }
+
     /// Of symmetric equations, of which the lower half is read. None where they are not positive definite.
     pub(super) fn new(own: &Transition, next: &Transition, body: &SMatrix<f64, MOTION, P>) -> Option<Self> {
         let mut all = Self {

@@ -75,10 +75,12 @@ mod stage;
 mod state;
 mod stepping;
 pub mod stream;
+mod surprise;
 mod suspects;
 #[cfg(test)]
 mod tests;
 mod triangular;
+mod unchanging;
 mod unresolved;
 mod verdict;
 mod widened;

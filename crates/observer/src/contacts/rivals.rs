@@ -7,11 +7,11 @@
 use super::body::{Body, CONSTANTS};
 use super::cold;
 use super::problem::{Problem, Unknowns};
-use super::record::Record;
 use super::redrawn::SMALL;
 use super::samples::deviations;
 use super::search::{ENOUGH, fine_within};
 use super::solve::{Covariances, Solved, solve};
+use super::surprise::surprise;
 use crate::random::Normal;
 use crate::reliability::Reason;
 use glam::{DMat3, DVec3};
@@ -43,63 +43,8 @@ const MORE_PROBABLE_IN_WINDOW: f64 = 6.0;
 /// Deviations from which on another motion is one that they do not reach, and within which it is the same.
 const BEYOND: f64 = 5.0;
 const SAME: f64 = 1.0;
-
 /// Deviation of a constant of a body, as a share of what it is, or of a turn in rad, from which on other motions are looked for as a stream goes on.
 const UNSURE: f64 = 0.1;
-
-/// Spread of the whole force over the deviation of its mean by noise, below which a log of the plane tells nothing of a motion, however far contacts move:
-/// of slow rocking on palms at rest motions up to 28 deviations off were found where it was 0, none from 50 on.
-const FELT: f64 = 10.0;
-/// Noise of the whole force that there is at least, as a share of it: that of readings of so many digits.
-const SMALLEST: f64 = 1e-9;
-
-/// Whether forces hardly change beyond noise: a judgement of the readings alone.
-pub(super) fn still(record: &Record) -> Option<Reason> {
-    let mut forces = [Spread::default(); 2];
-    let mut variance = 0.0;
-    for contacts in record.contacts.iter().filter(|contacts| !contacts.is_empty()) {
-        let whole: DVec3 = contacts.iter().map(|contact| contact.f).sum();
-        forces[0].add(whole.x);
-        forces[1].add(whole.z);
-        variance += contacts.iter().map(|contact| contact.f_deviation.powi(2)).sum::<f64>();
-    }
-    let samples = forces[0].count;
-    let variance = variance / samples.max(1.0);
-    let [x, z] = forces.map(|of| of.beyond(variance));
-    let rounding = SMALLEST * forces[0].mean().hypot(forces[1].mean());
-    let (spread, noise) = (x.max(z), variance.sqrt().max(rounding));
-    let felt = spread * samples.sqrt() > FELT * noise;
-    (!felt).then_some(Reason::Unchanging { forces: spread, noise })
-}
-
-/// Spread of readings: sums of value and square, about the first one, so that the square of a large mean does not cancel.
-#[derive(Clone, Copy, Default)]
-struct Spread {
-    first: Option<f64>,
-    sum: f64,
-    squares: f64,
-    count: f64,
-}
-
-impl Spread {
-    fn add(&mut self, value: f64) {
-        let away = value - *self.first.get_or_insert(value);
-        self.sum += away;
-        self.squares += away * away;
-        self.count += 1.0;
-    }
-
-    fn mean(&self) -> f64 {
-        self.first.unwrap_or(0.0) + self.sum / self.count.max(1.0)
-    }
-
-    /// Standard deviation beyond that of noise of such a variance.
-    fn beyond(&self, noise: f64) -> f64 {
-        let count = self.count.max(1.0);
-        let mean = self.sum / count;
-        (self.squares / count - mean * mean - noise).max(0.0).sqrt()
-    }
-}
 
 /// A motion, with the combinations of the body's constants that are held in it.
 pub(super) type Rival = (Solved<CONSTANTS>, Vec<SVector<f64, CONSTANTS>>);
@@ -120,10 +65,10 @@ pub(super) struct Decided {
 /// In space a body whose moments are known well has no others. Of one that is nearly round noise leaves the spin between palms without friction
 /// open, which is felt through its inertia alone.
 pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option<Decided> {
-    let mut all = vec![(found, std::mem::take(&mut problem.frozen))];
+    let mut all = vec![Weighed::of(problem, found)];
     let mut best = 0;
     for _ in 0..SEARCHES {
-        let (solved, frozen) = &all[best];
+        let (solved, frozen) = &all[best].rival;
         problem.frozen.clone_from(frozen);
         if !problem.planar && well_known(problem, solved) {
             break;
@@ -138,11 +83,12 @@ pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option
         }
         for start in starts {
             problem.frozen.clear();
-            if let Some(other) = tried(problem, start, [&all[before].0, &all[best].0], &covariances) {
-                all.push((other, problem.frozen.clone()));
+            let so_far = [before, best].map(|i| &all[i].rival.0);
+            if let Some(other) = tried(problem, start, so_far, &covariances) {
+                all.push(Weighed::of(problem, other));
                 let last = all.len() - 1;
                 // What was found first stays unless another one is clearly better: the best of several is no better for a share of a deviation.
-                if all[last].0.equations.cost < all[best].0.equations.cost - 1.0 {
+                if all[last].surprise < all[best].surprise - 1.0 {
                     best = last;
                 }
             }
@@ -151,22 +97,46 @@ pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option
             break;
         }
     }
-    let (solved, frozen) = all.swap_remove(best);
-    problem.frozen = frozen;
-    if all.is_empty() {
-        return Some(Decided { solved, covariances: None, others: all, open: None });
+    let best = all.swap_remove(best);
+    problem.frozen.clone_from(&best.rival.1);
+    among(problem, best, all)
+}
+
+/// A motion with what `surprise` says of it.
+struct Weighed {
+    rival: Rival,
+    surprise: f64,
+}
+
+impl Weighed {
+    /// Of a motion with what `problem` holds of the body in it.
+    fn of(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Self {
+        let surprise = surprise(problem, &solved);
+        Self { rival: (solved, problem.frozen.clone()), surprise }
+    }
+}
+
+/// The best of several motions, and those of the others that cannot be ruled out beside it: by what they leave or by all near them, since the latter is no
+/// better than a parabola fits.
+fn among(problem: &Problem, best: Weighed, others: Vec<Weighed>) -> Option<Decided> {
+    let (solved, least) = (best.rival.0, best.surprise);
+    if others.is_empty() {
+        return Some(Decided { solved, covariances: None, others: Vec::new(), open: None });
     }
     let covariances = solved.covariances(problem)?;
     let mut farthest = 0.0;
-    all.retain(|(other, _)| {
-        let apart = apart(&solved, other, &covariances);
-        let open = other.equations.cost < solved.equations.cost + MORE_PROBABLE && apart > BEYOND;
-        farthest = if open { apart.max(farthest) } else { farthest };
-        open
-    });
-    all.sort_by(|a, b| a.0.equations.cost.total_cmp(&b.0.equations.cost));
-    let open = (!all.is_empty()).then_some(Reason::Ambiguous { apart: farthest });
-    Some(Decided { solved, covariances: Some(covariances), others: all, open })
+    let mut open = Vec::new();
+    for Weighed { rival, surprise } in others {
+        let dearer = (surprise - least).min(rival.0.equations.cost - solved.equations.cost);
+        let apart = apart(&solved, &rival.0, &covariances);
+        if dearer < MORE_PROBABLE && apart > BEYOND {
+            farthest = apart.max(farthest);
+            open.push(rival);
+        }
+    }
+    open.sort_by(|a, b| a.0.equations.cost.total_cmp(&b.0.equations.cost));
+    let reason = (!open.is_empty()).then_some(Reason::Ambiguous { apart: farthest });
+    Some(Decided { solved, covariances: Some(covariances), others: open, open: reason })
 }
 
 /// Whether the less probable one of two motions cannot be ruled out, at odds of a thousand to one: by how many deviations it is another one.

@@ -123,6 +123,11 @@ impl Rows {
         self.whitening.tr_mul(&self.whitening)
     }
 
+    /// Logarithm of the determinant of the information of the values that count, these in units of `speed`.
+    pub(super) fn log_information(&self, speed: f64) -> f64 {
+        (0..self.count).map(|i| 2.0 * (self.whitening[(i, i)] * speed).ln()).sum()
+    }
+
     /// Residuals in their deviations, independent; zero for those that do not count.
     pub(super) fn values(&self) -> Vector3<f64> {
         self.whitening * self.residual

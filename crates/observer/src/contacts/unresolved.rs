@@ -1,12 +1,11 @@
 //! Whether forces change faster than they are sampled: what the rule of order 6 misses of impulses is then no noise, and lasts.
 
 use super::record::Record;
+use crate::predicted::is_even;
 use glam::DVec3;
 
 /// Samples that the rules of order 2, 4 and 6 take for the interval in their middle.
 const STENCIL: usize = 6;
-/// Share by which spacings may differ for weights of equal ones.
-const EVEN: f64 = 0.02;
 /// Weights of what the rules of order 2 and 4, and of 4 and 6, differ by, over the spacing.
 const FOURTH: [f64; STENCIL] = [0.0, -1.0 / 24.0, 1.0 / 24.0, 1.0 / 24.0, -1.0 / 24.0, 0.0];
 const SIXTH: [f64; STENCIL] =
@@ -38,9 +37,7 @@ impl Record {
     /// Whether spacings are equal and contacts the same from a sample on.
     fn is_even(&self, from: usize) -> bool {
         let palms = |k: usize| self.contacts[k].iter().map(|contact| contact.palm);
-        let first = self.intervals[from].h;
-        (from..from + STENCIL).all(|k| palms(k).eq(palms(from)))
-            && self.intervals[from..from + STENCIL - 1].iter().all(|i| (i.h - first).abs() < EVEN * first)
+        (from..from + STENCIL).all(|k| palms(k).eq(palms(from))) && is_even(&self.times[from..from + STENCIL])
     }
 }
 
