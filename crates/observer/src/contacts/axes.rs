@@ -48,7 +48,7 @@ pub(super) fn against_by_cost(
     mass: &MassProperties,
     squares: f64,
 ) -> Option<Reason> {
-    let covariance = unknown.equations.covariances(&problem.natural_information())?.body;
+    let covariance = unknown.equations.covariance_of_body(&problem.natural_information())?;
     let log_mass = unknown.unknowns.body.log_mass - mass.mass().ln();
     let deviations = log_mass.abs() / covariance[(0, 0)].max(f64::MIN_POSITIVE).sqrt();
     Some(Reason::OtherBody { mass: log_mass.exp(), deviations, squares })

@@ -2,13 +2,20 @@
 //!
 //! What a start is wrong by the motion amplifies, so that over many natural times no search from nothing ends at the right one: of
 //! clean logs at hand scale all are found over 15 natural times, and hardly any over 40.
+//!
+//! A window tells little of a body, and its axes drift from one to the next. All that was gone through is therefore solved at quarters of quarters of the record,
+//! and the windows after know the body from there: the last solution then begins beside where it ends.
 
-use super::problem::{Problem, Unknowns};
-use super::search::{Ended, fine, fine_nodes, fine_within, refined, whole};
+use super::body::CONSTANTS;
+use super::problem::{Beforehand, Problem, Unknowns};
+use super::search::{ENOUGH, Ended, fine, fine_nodes, fine_within, refined, whole};
+use super::solve::{Solved, solve};
 use std::ops::Range;
 
 /// Natural times of the window that a motion is solved over as it is carried on.
 pub(in crate::contacts) const WINDOW: f64 = 20.0;
+/// The same once the body is known from all before.
+const WINDOW_OF_KNOWN: f64 = 8.0;
 /// Linearisations within which a motion that goes on settles, beyond the first ones: most take four in all.
 pub(in crate::contacts) const FOLLOWED: usize = 30;
 
@@ -40,19 +47,16 @@ pub(super) fn onward(problem: &mut Problem, way: &Way) -> Option<Ended> {
     let nodes = fine_nodes(problem);
     let (mut unknowns, mut iterations) = beginning(problem, &nodes, way)?;
     let last = nodes.len() - 1;
+    let mut next = last >> (2 * (last / unknowns.motions.len()).max(1).ilog(4));
+    let mut known = None;
     while unknowns.motions.len() <= last {
         let at = unknowns.motions.len() - 1;
         let end = until(problem, &nodes, at, way.onward).max(at + 1);
         let motion = unknowns.motions[at];
         unknowns.motions.extend(problem.carried(nodes[at], motion, &unknowns.body, &nodes[at + 1..=end]));
-        let from = nodes.partition_point(|&k| times[k] < times[nodes[end]] - WINDOW * natural).min(at);
-        let part = record.part(nodes[from]..nodes[end] + 1);
-        let mut window = problem.on(&part);
-        window.nodes = nodes[from..=end].iter().map(|k| k - nodes[from]).collect();
-        window.first.0.q = unknowns.motions[from].q;
-        window.frozen.clear();
-        let start = Unknowns { motions: unknowns.motions[from..].to_vec(), body: unknowns.body };
-        let solved = fine_within(&mut window, start, FOLLOWED)?;
+        let window = if known.is_some() { WINDOW_OF_KNOWN } else { WINDOW };
+        let from = nodes.partition_point(|&k| times[k] < times[nodes[end]] - window * natural).min(at);
+        let solved = over(problem, &nodes[from..=end], &unknowns, from, known)?;
         iterations += solved.iterations;
         if solved.misfit() > LOST {
             return None;
@@ -60,11 +64,40 @@ pub(super) fn onward(problem: &mut Problem, way: &Way) -> Option<Ended> {
         unknowns.motions.truncate(from);
         unknowns.motions.extend(solved.unknowns.motions);
         unknowns.body = solved.unknowns.body;
+        if from > 0 && end > next && 2 * end < last {
+            let solved = over(problem, &nodes[..=end], &unknowns, 0, None)?;
+            iterations += solved.iterations;
+            let claimed = solved.equations.covariance_of_body(&problem.natural_information())?;
+            known = Some((solved.unknowns.body, claimed.try_inverse()?));
+            unknowns = solved.unknowns;
+            while next <= end {
+                next *= 4;
+            }
+        }
     }
     problem.nodes = nodes;
     problem.frozen.clear();
     let solved = fine(problem, unknowns)?;
     Some(Ended::at(problem, solved, iterations))
+}
+
+/// Motions at some nodes, of which the first is number `from`, of a body that is known beforehand as `problem` or `known` says.
+fn over(
+    problem: &Problem,
+    nodes: &[usize],
+    unknowns: &Unknowns,
+    from: usize,
+    known: Option<Beforehand>,
+) -> Option<Solved<CONSTANTS>> {
+    let part = problem.record.part(nodes[0]..nodes[nodes.len() - 1] + 1);
+    let mut window = problem.on(&part);
+    window.nodes = nodes.iter().map(|k| k - nodes[0]).collect();
+    window.first.0.q = unknowns.motions[from].q;
+    window.frozen.clear();
+    let start = Unknowns { motions: unknowns.motions[from..].to_vec(), body: unknowns.body };
+    let Some(known) = known else { return fine_within(&mut window, start, FOLLOWED) };
+    window.body = known;
+    solve(&window, start, FOLLOWED, ENOUGH[0])
 }
 
 /// Motions at the first of `nodes`, by a search of a beginning that is explained.

@@ -65,12 +65,15 @@ pub(super) struct Decided {
 /// In space a body whose moments are known well has no others. Of one that is nearly round noise leaves the spin between palms without friction
 /// open, which is felt through its inertia alone.
 pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option<Decided> {
+    if !problem.planar && well_known(problem, &found) {
+        return Some(Decided { solved: found, covariances: None, others: Vec::new(), open: None });
+    }
     let mut all = vec![Weighed::of(problem, found)];
     let mut best = 0;
     for _ in 0..SEARCHES {
         let (solved, frozen) = &all[best].rival;
         problem.frozen.clone_from(frozen);
-        if !problem.planar && well_known(problem, solved) {
+        if !problem.planar && best > 0 && well_known(problem, solved) {
             break;
         }
         let before = best;
@@ -187,17 +190,17 @@ pub(super) fn others_of_any_axes(
 
 /// Whether mass and inertia are known so well that there is nothing beyond first order.
 pub(super) fn well_known(problem: &Problem, solved: &Solved<CONSTANTS>) -> bool {
-    let claimed = solved.equations.covariances(&problem.natural_information());
-    claimed.is_some_and(|claimed| claimed.body.diagonal().max() < SMALL * SMALL)
+    let claimed = solved.equations.covariance_of_body(&problem.natural_information());
+    claimed.is_some_and(|claimed| claimed.diagonal().max() < SMALL * SMALL)
 }
 
 /// Whether mass, inertia or how a known body lies are known so badly that other motions may explain the log as well.
 pub(super) fn is_unsure(problem: &Problem, solved: &Solved<CONSTANTS>) -> bool {
-    let claimed = solved.equations.covariances(&problem.natural_information());
+    let claimed = solved.equations.covariance_of_body(&problem.natural_information());
     let units = solved.unknowns.body.inertia_units();
     let share = |i: usize, variance: f64| variance / if i == 0 { 1.0 } else { units[i - 1] * units[i - 1] };
     claimed.is_none_or(|claimed| {
-        claimed.body.diagonal().iter().enumerate().any(|(i, of)| share(i, *of) > UNSURE * UNSURE)
+        claimed.diagonal().iter().enumerate().any(|(i, of)| share(i, *of) > UNSURE * UNSURE)
     })
 }
 

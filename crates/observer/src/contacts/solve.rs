@@ -163,6 +163,11 @@ impl<const P: usize> Equations<P> {
         [0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0].into_iter().find_map(with)
     }
 
+    /// Covariance of the constants, as [`Self::solver`].
+    pub(super) fn covariance_of_body(&self, unit: &Tangent) -> Option<SMatrix<f64, P, P>> {
+        Some(self.solver(unit)?.0.body)
+    }
+
     /// As [`Self::solver`].
     pub(super) fn covariances(&self, unit: &Tangent) -> Option<Covariances<P>> {
         let (reduced, mended) = self.solver(unit)?;

@@ -55,11 +55,11 @@ pub(super) struct Stage<'a> {
 /// What was found without knowing a body that is not the one; `problem` may know it.
 fn free_body(problem: &Problem, unknown: &Solved<CONSTANTS>, against: Option<Reason>) -> Option<FreeBody> {
     let Some(Reason::OtherBody { mass, squares, .. }) = against else { return None };
-    let covariances = unknown.equations.covariances(&problem.natural_information())?;
+    let covariance = unknown.equations.covariance_of_body(&problem.natural_information())?;
     // Of a body in the plane mass and moment of inertia.
     let departures = if problem.planar { 2 } else { 4 };
     let each = (squares / f64::from(departures)).sqrt();
-    let deviation = |i: u8| covariances.body[(usize::from(i), usize::from(i))].max(0.0).sqrt();
+    let deviation = |i: u8| covariance[(usize::from(i), usize::from(i))].max(0.0).sqrt();
     let departures = (0..departures).map(|i| (each * deviation(i), deviation(i))).collect();
     Some(FreeBody { cost: unknown.equations.cost, mass: mass - 1.0, departures })
 }
