@@ -16,9 +16,13 @@ use std::ops::Range;
 pub(in crate::contacts) const WINDOW: f64 = 20.0;
 /// The same once the body is known from all before.
 const WINDOW_OF_KNOWN: f64 = 8.0;
+/// Deviation of how its axes lie at the beginning of such a window, rad.
+const AXES: f64 = 0.3;
 /// Linearisations within which a motion that goes on settles, beyond the first ones: most take four in all.
 pub(in crate::contacts) const FOLLOWED: usize = 30;
 
+/// Natural times over which hardly any motion is found from nothing.
+const AT_ONCE: f64 = 40.0;
 /// Chi-squared a condition of a window from which on a motion is lost.
 const LOST: f64 = 10.0;
 
@@ -35,6 +39,12 @@ pub(super) struct Way {
 /// Of a long record, and of a short one that is not explained when it is searched at once.
 pub(super) const LONG: Way = Way { beginnings: &[8.0, 12.0, 20.0], onward: 4.0, lasts: 12.0..f64::INFINITY };
 pub(super) const SHORT: Way = Way { beginnings: &[2.0, 3.0, 4.0, 6.0, 1.0], onward: 0.5, lasts: 1.0..12.0 };
+
+/// Whether a record lasts so long that no search of all of it at once comes to its motion.
+pub(super) fn is_too_long(problem: &Problem) -> bool {
+    let times = &problem.record.times;
+    times[times.len() - 1] - times[0] > AT_ONCE * problem.units.time()
+}
 
 /// A solution of all of a record. None of one that lasts otherwise, or where no beginning is explained or a motion cannot be carried on.
 pub(super) fn onward(problem: &mut Problem, way: &Way) -> Option<Ended> {
@@ -97,6 +107,8 @@ fn over(
     let start = Unknowns { motions: unknowns.motions[from..].to_vec(), body: unknowns.body };
     let Some(known) = known else { return fine_within(&mut window, start, FOLLOWED) };
     window.body = known;
+    // The axes are not where the window before had them: where a body is nearly round they would drift.
+    window.first.1.fixed_rows_mut::<3>(9).fill(AXES.powi(-2));
     solve(&window, start, FOLLOWED, ENOUGH[0])
 }
 

@@ -24,6 +24,9 @@ const LINK_FLOOR: f64 = 0.03;
 /// Information that keeps a combination of the body's constants, where the conditions claim to have one.
 pub(super) const FROZEN: f64 = 1e4;
 
+/// Natural times over which steps integrate the motion anew: a minute of a body of 0.1 m (700) settles with 1 to 20 of them, and not with all.
+const STRETCH: f64 = 20.0;
+
 /// Nodes from which on two threads linearise. Of whole logs alone: the windows of a stream are fewer, and leave the other cores to the robot.
 const SHARED: usize = 500;
 
@@ -194,8 +197,9 @@ impl Problem<'_> {
 
     /// The unknowns after a step, and their cost. None beyond all numbers.
     ///
-    /// Positions and orientations follow from velocities with hardly any noise: they are integrated anew, with what the step
-    /// leaves of each link's defect. Moved one by one they would miss each other by the square of the step.
+    /// Positions and orientations follow from velocities with hardly any noise: over a stretch they are integrated anew, with what the step
+    /// leaves of each link's defect. Moved one by one they would miss each other by the square of the step; integrated over many natural
+    /// times they would be carried away by such squares.
     pub(super) fn trial<const P: usize>(
         &self,
         at: &Unknowns,
@@ -237,7 +241,10 @@ impl Problem<'_> {
             }
             let Some(link) = equations.links.get(j) else { break };
             let left = link.residual + steps[j + 1] - link.carried.along(&steps[j], body);
-            let mut next = place(j + 1, carried.motion.p, carried.motion.q, &left);
+            let mut next = match at.motions[j + 1] {
+                Motion { p, q, .. } if self.begins_stretch(j + 1) => place(j + 1, p, q, &steps[j + 1]),
+                _ => place(j + 1, carried.motion.p, carried.motion.q, &left),
+            };
             if self.record.contacts[end].is_empty() {
                 // Of a flight the momenta are known best, and no condition is there to keep.
                 let [_, velocity, momentum, _] = parts(&left);
@@ -260,6 +267,13 @@ impl Problem<'_> {
         let unknowns = Unknowns { motions, body: after };
         cost += self.prior_cost::<P>(&unknowns);
         cost.is_finite().then_some(Trial { unknowns, cost, departures })
+    }
+
+    /// Whether a node is the first of a stretch of the log.
+    fn begins_stretch(&self, j: usize) -> bool {
+        let times = &self.record.times;
+        let stretch = |j: usize| ((times[self.nodes[j]] - times[0]) / (STRETCH * self.units.time())).floor();
+        j > 0 && stretch(j) > stretch(j - 1)
     }
 
     /// The samples at which there are nodes, by their numbers in the log.

@@ -3,7 +3,7 @@
 use super::backwards::backwards;
 use super::body::CONSTANTS;
 use super::cold;
-use super::onward::{LONG, SHORT, onward};
+use super::onward::{LONG, SHORT, is_too_long, onward};
 use super::options::ContactOptions;
 use super::plane;
 use super::problem::{Problem, Units, Unknowns};
@@ -135,6 +135,7 @@ pub(super) fn forwards(problem: &mut Problem) -> Option<Ended> {
         let ended = match way {
             Some(way) if way.lasts.end.is_finite() && !problem.record.frictionless() => None,
             Some(way) => onward(problem, way),
+            None if best.is_some() && is_too_long(problem) => None,
             None => whole(problem),
         };
         let Some(ended) = ended else { continue };
