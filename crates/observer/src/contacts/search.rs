@@ -135,7 +135,7 @@ pub(super) fn forwards(problem: &mut Problem) -> Option<Ended> {
         let ended = match way {
             Some(way) if way.lasts.end.is_finite() && !problem.record.frictionless() => None,
             Some(way) => onward(problem, way),
-            None if best.is_some() && is_too_long(problem) => None,
+            None if is_too_long(problem) => at_last(problem).filter(|_| best.is_none()),
             None => whole(problem),
         };
         let Some(ended) = ended else { continue };
@@ -184,6 +184,14 @@ pub(super) fn whole(problem: &mut Problem) -> Option<Ended> {
     let (best, frozen) = best?;
     problem.frozen = frozen;
     Some(Ended { before: before - best.solved.iterations, ..best })
+}
+
+/// What a few steps from nothing come to, where nothing is to be expected of a search: something that can be told of as what it is.
+fn at_last(problem: &mut Problem) -> Option<Ended> {
+    problem.nodes = fine_nodes(problem);
+    let start = cold::start(problem, problem.body.0, DQuat::IDENTITY);
+    let solved = solve::<CONSTANTS>(problem, start, FIRST, ENOUGH[0])?;
+    Some(Ended { solved, found: false, before: 0, agreed: false })
 }
 
 /// What leaves least so far, with the combinations of the body's constants that are held in it.
