@@ -133,6 +133,9 @@ mod tests {
         assert!((inverse * block(0, 0) - Transition::identity()).norm() < 1e-9);
         assert!((block(0, 0) * by_next - block(0, 1)).norm() < 1e-9);
         assert!((block(0, 0) * by_body - to_body(0)).norm() < 1e-9);
+        // Determinants of what is eliminated one after the other multiply.
+        let chain = first.log_det() + second.log_det() + body.determinant().ln();
+        assert!((chain - all.determinant().ln()).abs() < 1e-9, "{chain}");
 
         // What is not positive definite has no factor, nor has what is no number.
         for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {

@@ -42,8 +42,7 @@ pub(super) const SHORT: Way = Way { beginnings: &[2.0, 3.0, 4.0, 6.0, 1.0], onwa
 
 /// Whether a record lasts so long that no search of all of it at once comes to its motion.
 pub(super) fn is_too_long(problem: &Problem) -> bool {
-    let times = &problem.record.times;
-    times[times.len() - 1] - times[0] > AT_ONCE * problem.units.time()
+    problem.lasts() > AT_ONCE
 }
 
 /// A solution of all of a record. None of one that lasts otherwise, or where no beginning is explained or a motion cannot be carried on.
@@ -51,12 +50,13 @@ pub(super) fn onward(problem: &mut Problem, way: &Way) -> Option<Ended> {
     let natural = problem.units.length / problem.units.speed;
     let record = problem.record;
     let times = &record.times;
-    if !way.lasts.contains(&((times[times.len() - 1] - times[0]) / natural)) {
+    if !way.lasts.contains(&problem.lasts()) {
         return None;
     }
     let nodes = fine_nodes(problem);
     let (mut unknowns, mut iterations) = beginning(problem, &nodes, way)?;
     let last = nodes.len() - 1;
+    // The last solution is of four times as many nodes as the one before, and so on.
     let mut next = last >> (2 * (last / unknowns.motions.len()).max(1).ilog(4));
     let mut known = None;
     while unknowns.motions.len() <= last {

@@ -295,6 +295,12 @@ impl Problem<'_> {
         samples.iter().map(|&k| to(k)).collect()
     }
 
+    /// How many natural times the record lasts.
+    pub(super) fn lasts(&self) -> f64 {
+        let times = &self.record.times;
+        (times[times.len() - 1] - times[0]) / self.units.time()
+    }
+
     /// One over the squares of the natural units of a motion's numbers.
     pub(super) fn natural_information(&self) -> Tangent {
         let Units { length, speed, mass } = self.units;

@@ -163,7 +163,7 @@ impl Problem<'_> {
     }
 
     /// Of the palms at sample `k`, at a motion there.
-    fn conditions<'a>(
+    pub(super) fn conditions<'a>(
         &'a self,
         k: usize,
         motion: &'a Motion,

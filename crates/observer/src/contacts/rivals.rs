@@ -60,22 +60,26 @@ pub(super) struct Decided {
     pub(super) open: Option<Reason>,
 }
 
+impl Decided {
+    /// Of one to which there is no other.
+    fn alone(solved: Solved<CONSTANTS>) -> Self {
+        Self { solved, covariances: None, others: Vec::new(), open: None }
+    }
+}
+
 /// The most probable of the motions that are found, begun from the one that was found first. None where the equations are singular.
 ///
 /// In space a body whose moments are known well has no others. Of one that is nearly round noise leaves the spin between palms without friction
 /// open, which is felt through its inertia alone.
 pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option<Decided> {
     if !problem.planar && well_known(problem, &found) {
-        return Some(Decided { solved: found, covariances: None, others: Vec::new(), open: None });
+        return Some(Decided::alone(found));
     }
     let mut all = vec![Weighed::of(problem, found)];
     let mut best = 0;
     for _ in 0..SEARCHES {
         let (solved, frozen) = &all[best].rival;
         problem.frozen.clone_from(frozen);
-        if !problem.planar && best > 0 && well_known(problem, solved) {
-            break;
-        }
         let before = best;
         let body = solved.unknowns.body;
         let body = if problem.planar { body } else { round(&body) };
@@ -96,7 +100,7 @@ pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option
                 }
             }
         }
-        if best == before || problem.planar {
+        if best == before || problem.planar || well_known(problem, &all[best].rival.0) {
             break;
         }
     }
@@ -124,7 +128,7 @@ impl Weighed {
 fn among(problem: &Problem, best: Weighed, others: Vec<Weighed>) -> Option<Decided> {
     let (solved, least) = (best.rival.0, best.surprise);
     if others.is_empty() {
-        return Some(Decided { solved, covariances: None, others: Vec::new(), open: None });
+        return Some(Decided::alone(solved));
     }
     let covariances = solved.covariances(problem)?;
     let mut farthest = 0.0;
@@ -236,8 +240,7 @@ fn starts(problem: &Problem, found: &Unknowns, body: Body) -> Vec<Unknowns> {
 
 /// Whether a log of an unknown body is one over which starts that differ much lead to motions that leave little.
 pub(super) fn is_short(problem: &Problem) -> bool {
-    let times = &problem.record.times;
-    times[times.len() - 1] - times[0] < SHORT * problem.units.time()
+    problem.lasts() < SHORT
 }
 
 /// Bodies that are expected before a log is read, which turn at constant rates.

@@ -135,7 +135,7 @@ pub(super) fn forwards(problem: &mut Problem) -> Option<Ended> {
         let ended = match way {
             Some(way) if way.lasts.end.is_finite() && !problem.record.frictionless() => None,
             Some(way) => onward(problem, way),
-            None if is_too_long(problem) => at_last(problem).filter(|_| best.is_none()),
+            None if is_too_long(problem) => best.is_none().then(|| at_last(problem)).flatten(),
             None => whole(problem),
         };
         let Some(ended) = ended else { continue };
