@@ -7,8 +7,9 @@ use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
     InitialMotion, Instant, MassProperties, Sample, SampleTimes, SensorNoise, ThreePalmScene,
 };
-use recon::observer::contacts::stream::StreamEstimate;
-use recon::observer::contacts::stream::{MotionStream, PlaneReadings, StreamOptions};
+use recon::observer::contacts::stream::{
+    MotionStream, PlaneReadings, StreamBody, StreamEstimate, StreamOptions,
+};
 use recon::observer::contacts::{ContactNoiseLevel, ContactOptions};
 use recon_tests::Random;
 use std::f64::consts::TAU;
@@ -44,6 +45,13 @@ impl Case {
     #[must_use]
     pub fn start(&self) -> f64 {
         self.samples.first().map_or(0.0, |sample| sample.t)
+    }
+
+    /// By how much principal moments are off, as shares of the true ones: the largest.
+    #[must_use]
+    pub fn moments_off(&self, body: &StreamBody) -> f64 {
+        let found = MassProperties::new(body.mass, body.inertia).map(|mass| mass.principal().moments);
+        found.map_or(f64::NAN, |found| (found / self.mass.principal().moments - 1.0).abs().max_element())
     }
 
     /// A stream for it, of a body that is known or not.

@@ -1,5 +1,7 @@
 //! The motion sample by sample: over many scenes, sizes and qualities of sensors, whether it is found, kept and as good as it says;
 //! what gaps cost; and at the pace of a robot, the time of a sample.
+//!
+//! Usage: `streaming [SCENES SEED]`: with these the first table alone, of so many scenes a size and of the two worse qualities.
 
 mod paced;
 mod tally;
@@ -24,6 +26,11 @@ const GAPS: [f64; 3] = [20.0, 60.0, 200.0];
 const WITH_GAPS: usize = 10;
 
 pub(crate) fn main() -> Result<(), Failure> {
+    let mut words = std::env::args().skip(2);
+    let given = words.next().zip(words.next());
+    if let Some((scenes, seed)) = &given {
+        return table(scenes.parse()?, seed.parse()?, &QUALITIES[2..]);
+    }
     println!("# Streaming\n\nMade by `cargo xtask study streaming`.\n");
     println!(
         "Ellipsoids with axes of up to 1 : 2.5 and moments up to 15 % off those of a uniform one, on three palms that swing, with spins of up"
@@ -39,18 +46,25 @@ pub(crate) fn main() -> Result<(), Failure> {
         "which one is stated. Lost: how often one is not any more. NEES / 9: squared errors of position, velocity and angular velocity over"
     );
     println!(
-        "their covariance, one where that is true. Beyond 5: share of scenes with a stated number more than 5 deviations off.\n"
+        "their covariance, one where that is true. Beyond 5: share of scenes with a stated number more than 5 deviations off. Moments: how far"
     );
+    println!("the worst of three principal moments is off at the last stated sample, in the median.\n");
+    table(SCENES, SEED, &QUALITIES)?;
+    gaps()?;
+    paced::main()
+}
+
+fn table(scenes: usize, seed: u64, qualities: &[[f64; 2]]) -> Result<(), Failure> {
     println!(
-        "| size m | contacts %, forces % | body | found | after: median, largest | available: mean, least | lost | NEES / 9: mean, largest | beyond 5 |"
+        "| size m | contacts %, forces % | body | found | after: median, largest | available: mean, least | lost | NEES / 9: mean, largest | beyond 5 | moments % |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     for (size, rate) in SIZES {
-        for quality in QUALITIES {
+        for &quality in qualities {
             for (name, known) in [("known", true), ("unknown", false)] {
                 crate::print_line(|| -> Result<String, Failure> {
                     let mut tally = Tally::default();
-                    for case in some(SCENES, SEED, size, rate, quality, LONGEST)? {
+                    for case in some(scenes, seed, size, rate, quality, LONGEST)? {
                         tally.take(&case, &followed(&case, known, |_| true)?, f64::NEG_INFINITY);
                     }
                     Ok(format!("| {size} | {}, {} | {name} |{}", quality[0], quality[1], tally.row()))
@@ -58,8 +72,7 @@ pub(crate) fn main() -> Result<(), Failure> {
             }
         }
     }
-    gaps()?;
-    paced::main()
+    Ok(())
 }
 
 fn gaps() -> Result<(), Failure> {
@@ -70,9 +83,9 @@ fn gaps() -> Result<(), Failure> {
         "availability and errors after the gap; and how long after its end, in natural times, the motion is stated again.\n"
     );
     println!(
-        "| gap ms | body | stated again after: median, largest | available: mean, least | lost | NEES / 9: mean, largest | beyond 5 |"
+        "| gap ms | body | stated again after: median, largest | available: mean, least | lost | NEES / 9: mean, largest | beyond 5 | moments % |"
     );
-    println!("|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|");
     for gap in GAPS {
         for (name, known) in [("known", true), ("unknown", false)] {
             crate::print_line(|| -> Result<String, Failure> {

@@ -16,6 +16,8 @@ pub(super) struct Tally {
     available: Vec<f64>,
     means: Vec<f64>,
     worst: Vec<f64>,
+    /// By what share moments are off at the last stated sample.
+    moments: Vec<f64>,
     lost: usize,
 }
 
@@ -35,6 +37,8 @@ impl Tally {
         let errors: Vec<[f64; 2]> = stated.iter().filter_map(|(k, e)| errors(case, *k, e)).collect();
         self.means.push(errors.iter().map(|e| e[0]).sum::<f64>() / errors.len().max(1) as f64);
         self.worst.push(errors.iter().map(|e| e[1]).fold(0.0, f64::max));
+        let last = stated.last().and_then(|(_, e)| e.motion.as_ref());
+        self.moments.extend(last.map(|motion| case.moments_off(&motion.body)));
     }
 
     pub(super) fn row(&mut self) -> String {
@@ -43,14 +47,14 @@ impl Tally {
     }
 
     pub(super) fn after_gap(&mut self) -> String {
-        for of in [&mut self.firsts, &mut self.available, &mut self.means] {
+        for of in [&mut self.firsts, &mut self.available, &mut self.means, &mut self.moments] {
             of.sort_by(f64::total_cmp);
         }
         let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len().max(1) as f64;
         let at = |of: &[f64], p: f64| quantile(of, p);
         let silent = self.worst.iter().filter(|worst| **worst > SILENT).count();
         format!(
-            " {:.2}, {:.2} | {:.4}, {:.3} | {} | {:.2}, {:.2} | {silent} of {} |",
+            " {:.2}, {:.2} | {:.4}, {:.3} | {} | {:.2}, {:.2} | {silent} of {} | {:.2} |",
             at(&self.firsts, 0.5),
             at(&self.firsts, 1.0),
             mean(&self.available),
@@ -58,7 +62,8 @@ impl Tally {
             self.lost,
             mean(&self.means),
             at(&self.means, 1.0),
-            self.worst.len()
+            self.worst.len(),
+            100.0 * at(&self.moments, 0.5)
         )
     }
 }

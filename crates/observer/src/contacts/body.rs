@@ -1,9 +1,11 @@
 //! Mass and inertia: of an unknown body, or of one whose axes alone are unknown.
 
 use super::state::Turn;
-use crate::rigid::{exponential, inertia_of_numbers, inertia_slope, logarithm, numbers_of_inertia};
+use crate::rigid::{
+    exponential, inertia_of_numbers, inertia_slope, logarithm, logarithm_slope, numbers_of_inertia,
+};
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::{Matrix6, SMatrix, SVector, Vector6};
+use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector6};
 use object_dynamics::MassProperties;
 
 /// Constants of a body: logarithm of the mass, six of the inertia.
@@ -142,6 +144,17 @@ impl Body {
         Self::new(self.log_mass + log_mass, constants)
     }
 
+    /// After a step that is straight in the constants themselves: [`Self::from`] leads back by it.
+    pub(super) fn beside(&self, log_mass: f64, by: &Vector6<f64>) -> Self {
+        match self.constants {
+            Constants::Free(numbers) => Self::new(
+                self.log_mass + log_mass,
+                Constants::Free(std::array::from_fn(|i| numbers[i] + by[i])),
+            ),
+            Constants::Turned(..) => self.moved(log_mass, by),
+        }
+    }
+
     /// The step that leads here from another body of the same kind.
     pub(super) fn from(&self, other: &Self) -> SVector<f64, CONSTANTS> {
         let inertia: [f64; INERTIA] = match (&self.constants, &other.constants) {
@@ -154,6 +167,18 @@ impl Body {
             _ => [f64::NAN; INERTIA],
         };
         SVector::from_fn(|i, _| if i == 0 { self.log_mass - other.log_mass } else { inertia[i - 1] })
+    }
+
+    /// How that step changes with a further one.
+    pub(super) fn slope_from(&self, other: &Self) -> SMatrix<f64, CONSTANTS, CONSTANTS> {
+        let mut slope = SMatrix::<f64, CONSTANTS, CONSTANTS>::identity();
+        if let (Constants::Turned(_, axes), Constants::Turned(_, before)) =
+            (&self.constants, &other.constants)
+        {
+            let turn = logarithm((*axes * before.conjugate()).normalize());
+            slope.fixed_view_mut::<3, 3>(4, 4).copy_from(&Matrix3::from(logarithm_slope(turn)));
+        }
+        slope
     }
 }
 

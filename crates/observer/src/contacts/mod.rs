@@ -39,6 +39,7 @@ mod equations;
 mod estimate;
 mod explanations;
 mod feet;
+mod first;
 mod flow;
 mod gaps;
 mod impulses;

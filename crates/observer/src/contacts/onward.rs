@@ -7,6 +7,7 @@
 //! and the windows after know the body from there: the last solution then begins beside where it ends.
 
 use super::body::CONSTANTS;
+use super::first::First;
 use super::problem::{Beforehand, Problem, Unknowns};
 use super::search::{ENOUGH, Ended, fine, fine_nodes, fine_within, refined, whole};
 use super::solve::{Solved, solve};
@@ -102,13 +103,14 @@ fn over(
     let part = problem.record.part(nodes[0]..nodes[nodes.len() - 1] + 1);
     let mut window = problem.on(&part);
     window.nodes = nodes.iter().map(|k| k - nodes[0]).collect();
-    window.first.0.q = unknowns.motions[from].q;
+    let q = unknowns.motions[from].q;
+    window.first = First::of_axes(q);
     window.frozen.clear();
     let start = Unknowns { motions: unknowns.motions[from..].to_vec(), body: unknowns.body };
     let Some(known) = known else { return fine_within(&mut window, start, FOLLOWED) };
     window.body = known;
     // The axes are not where the window before had them: where a body is nearly round they would drift.
-    window.first.1.fixed_rows_mut::<3>(9).fill(AXES.powi(-2));
+    window.first = First::turned(q, AXES);
     solve(&window, start, FOLLOWED, ENOUGH[0])
 }
 

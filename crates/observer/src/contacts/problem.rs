@@ -3,13 +3,14 @@
 use super::body::{Body, CONSTANTS};
 use super::equations::{Equations, LinkEquation, Row, Split};
 use super::feet::{Foot, Share, Told, at_end};
+use super::first::First;
 use super::flow::{Carried, Transition};
 use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::plane;
 use super::record::{Contact, Record, Wrench};
 use super::rows::Rows;
 use super::solve::{Solved, Step};
-use super::state::{MOTION, Motion, Tangent, Turn, parts, tangent};
+use super::state::{Motion, Tangent, Turn, parts, tangent};
 use crate::rigid::exponential;
 use contact_kinematics::{at_once, is_stopped};
 use glam::{DQuat, DVec3};
@@ -64,8 +65,8 @@ pub(super) struct Problem<'a> {
     /// Samples at which there is a node, in order; the first and the last of the record among them.
     pub(super) nodes: Vec<usize>,
     pub(super) units: Units,
-    /// What is known of the first motion: value and information of each number.
-    pub(super) first: (Motion, Tangent),
+    /// What is known of the first motion.
+    pub(super) first: First,
     /// What is known of the body beforehand: values and information.
     pub(super) body: Beforehand,
     /// Combinations of the body's constants that keep their value from beforehand.
@@ -431,33 +432,28 @@ impl Problem<'_> {
         })
     }
 
-    fn add_prior<const P: usize>(&self, at: &Unknowns, all: &mut Equations<P>) {
+    pub(super) fn add_prior<const P: usize>(&self, at: &Unknowns, all: &mut Equations<P>) {
         all.cost += self.prior_cost::<P>(at);
-        let (value, information) = &self.first;
-        let d = at.motions[0].from(value);
-        let node = &mut all.nodes[0];
-        for i in 0..MOTION {
-            node.own[(i, i)] += information[i];
-            node.gradient[i] += information[i] * d[i];
-        }
+        self.first.add(&at.motions[0], &at.body, self.record.origin, all);
         if self.planar {
             let held = plane::held().component_mul(&self.natural_information());
             all.nodes.iter_mut().for_each(|node| node.own += Transition::from_diagonal(&held));
         }
         if P > 0 {
-            let known = self.body_information();
-            all.body += known.fixed_view::<P, P>(0, 0);
-            all.body_gradient += (known * at.body.from(&self.body.0)).fixed_rows::<P>(0);
+            let (known, slope) = (self.body_information(), at.body.slope_from(&self.body.0));
+            all.body += (slope.transpose() * known * slope).fixed_view::<P, P>(0, 0);
+            all.body_gradient += (slope.transpose() * known * at.body.from(&self.body.0)).fixed_rows::<P>(0);
         }
     }
 
     /// Equations without what keeps the frozen combinations.
     pub(super) fn unfrozen(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Equations<CONSTANTS> {
         let mut free = equations.clone();
-        let d = at.body.from(&self.body.0);
-        for g in &self.frozen {
+        let (d, slope) = (at.body.from(&self.body.0), at.body.slope_from(&self.body.0));
+        for combination in &self.frozen {
+            let g = slope.transpose() * combination;
             free.body -= g * g.transpose() * FROZEN;
-            free.body_gradient -= g * (FROZEN * g.dot(&d));
+            free.body_gradient -= g * (FROZEN * combination.dot(&d));
         }
         free
     }
@@ -473,9 +469,7 @@ impl Problem<'_> {
     }
 
     fn prior_cost<const P: usize>(&self, at: &Unknowns) -> f64 {
-        let (value, information) = &self.first;
-        let d = at.motions[0].from(value);
-        let cost = d.component_mul(&d).dot(information);
+        let cost = self.first.cost(&at.motions[0], &at.body, self.record.origin);
         if P == 0 {
             return cost;
         }

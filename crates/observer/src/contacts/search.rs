@@ -3,6 +3,7 @@
 use super::backwards::backwards;
 use super::body::CONSTANTS;
 use super::cold;
+use super::first::First;
 use super::onward::{LONG, SHORT, is_too_long, onward};
 use super::options::ContactOptions;
 use super::plane;
@@ -10,7 +11,6 @@ use super::problem::{Problem, Units, Unknowns};
 use super::record::Record;
 use super::sharp::found;
 use super::solve::{Solved, solve};
-use super::state::{Motion, Tangent};
 use glam::{DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
 
@@ -43,8 +43,6 @@ const ALIKE: f64 = 1e-3;
 /// size, and of that of the mass.
 const PRIOR: f64 = 0.7;
 const PRIOR_MASS: f64 = 10.0;
-/// Deviation of the first orientation, rad: an unknown body has no axes but those it is given.
-const FIRST_TURN: f64 = 1e-7;
 
 /// Where a search ended.
 pub(super) struct Ended {
@@ -274,7 +272,6 @@ fn nodes_within(problem: &Problem, farthest: f64) -> Vec<usize> {
 
 pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: Units) -> Problem<'a> {
     let Units { length, mass, .. } = units;
-    let none = Motion { p: DVec3::ZERO, v: DVec3::ZERO, L: DVec3::ZERO, q: DQuat::IDENTITY };
     let information = |deviation: f64| 1.0 / (deviation * deviation);
     // Entries beside the diagonal of the factor of the second moments are of the size of those on it.
     let entry = PRIOR * (0.2 * mass).sqrt() * length;
@@ -283,7 +280,6 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: U
         1..=3 => information(PRIOR),
         _ => information(entry),
     });
-    let first = Tangent::from_fn(|i, _| if i < 9 { 0.0 } else { information(FIRST_TURN) });
     let body = match options.planar {
         true => plane::body(&cold::ball(&units), PRIOR_MASS, PRIOR),
         false => (cold::ball(&units), SMatrix::from_diagonal(&known)),
@@ -298,7 +294,7 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: U
         nodes: Vec::new(),
         frozen: Vec::new(),
         units,
-        first: (none, first),
+        first: First::of_axes(DQuat::IDENTITY),
         body,
         planar: options.planar,
         shares: false,

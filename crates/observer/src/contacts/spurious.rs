@@ -38,7 +38,7 @@ impl Solved<CONSTANTS> {
     pub(super) fn covariances(&self, problem: &Problem) -> Option<Covariances<CONSTANTS>> {
         let claimed = self.equations.covariances(&problem.natural_information())?;
         let widened = claimed.widened(problem, &self.equations, &self.unknowns)?;
-        widened.centre_widened(&self.equations, &self.unknowns)
+        widened.centre_widened(problem, &self.equations, &self.unknowns)
     }
 }
 
@@ -51,7 +51,7 @@ impl Covariances<CONSTANTS> {
         equations: &Equations<CONSTANTS>,
         at: &Unknowns,
     ) -> Option<Vec<SVector<f64, CONSTANTS>>> {
-        let Shares { values, axes } = self.shares(equations, at)?;
+        let Shares { values, axes } = self.shares(problem, equations, at)?;
         let rows = axes.try_inverse()?;
         let beforehand = axes.transpose() * problem.body.1 * axes;
         let better = |&i: &usize| {
@@ -69,7 +69,7 @@ impl Covariances<CONSTANTS> {
         equations: &Equations<CONSTANTS>,
         at: &Unknowns,
     ) -> Option<Self> {
-        let Shares { values, axes } = self.shares(equations, at)?;
+        let Shares { values, axes } = self.shares(problem, equations, at)?;
         let wider = values.map(|share| (1.0 - share).clamp(LEAST, 1.0).powi(-2));
         let mut body = axes * OfBody::from_diagonal(&wider) * axes.transpose();
         let beforehand = problem.body.1.try_inverse()?;
@@ -85,10 +85,16 @@ impl Covariances<CONSTANTS> {
     ///
     /// Where it is in the body follows from how velocity changes with the spin: contacts tell the twist of the body, and forces how the
     /// velocity of the centre changes, so that a link weighs a shift that turns with the body by the change of its product with the angular velocity.
-    pub(super) fn centre_widened(mut self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Option<Self> {
+    pub(super) fn centre_widened(
+        mut self,
+        problem: &Problem,
+        equations: &Equations<CONSTANTS>,
+        at: &Unknowns,
+    ) -> Option<Self> {
         let first = self.motions[0].0.fixed_view::<3, 3>(0, 0).into_owned();
         let factor = first.cholesky()?.l();
-        let eigen = SymmetricEigen::new(factor.transpose() * self.spurious_of_centre(equations, at) * factor);
+        let spurious = problem.first.spurious_of_centre + self.spurious_of_centre(equations, at);
+        let eigen = SymmetricEigen::new(factor.transpose() * spurious * factor);
         let axes = factor * eigen.eigenvectors;
         let more = eigen.eigenvalues.map(|share| (1.0 - share).clamp(LEAST, 1.0).powi(-2) - 1.0);
         let more = axes * Matrix3::from_diagonal(&more) * axes.transpose();
@@ -105,7 +111,8 @@ impl Covariances<CONSTANTS> {
         Some(self)
     }
 
-    fn spurious_of_centre(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Matrix3<f64> {
+    /// What noise adds to the information on where the centre of mass is, at the first node.
+    pub(super) fn spurious_of_centre(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Matrix3<f64> {
         let turned = at.motions[0].q.conjugate();
         let mut all = Matrix3::zeros();
         for (j, link) in equations.links.iter().enumerate() {
@@ -177,14 +184,16 @@ impl Covariances<CONSTANTS> {
         Some(self)
     }
 
-    fn shares(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Option<Shares> {
+    fn shares(&self, problem: &Problem, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Option<Shares> {
         // In units of the deviations as claimed: the information is one, and what noise adds to it a share.
         let factor = self.body.cholesky()?.l();
-        let eigen = SymmetricEigen::new(factor.transpose() * self.spurious(equations, at) * factor);
+        let spurious = problem.first.spurious + self.spurious(equations, at);
+        let eigen = SymmetricEigen::new(factor.transpose() * spurious * factor);
         Some(Shares { values: eigen.eigenvalues, axes: factor * eigen.eigenvectors })
     }
 
-    fn spurious(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> OfBody {
+    /// What noise adds to the information on the body.
+    pub(super) fn spurious(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> OfBody {
         let mut all = OfBody::zeros();
         for (j, link) in equations.links.iter().enumerate() {
             let ends = [&at.motions[j], &at.motions[j + 1]];

@@ -12,6 +12,7 @@ use object_dynamics::*;
 
 mod frictionless;
 mod halves;
+mod handed_on;
 mod impulses;
 mod known;
 mod lasting;

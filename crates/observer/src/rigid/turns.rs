@@ -32,3 +32,15 @@ pub(crate) fn logarithm(q: DQuat) -> DVec3 {
     let ratio = if sine < 1e-4 { 2.0 + sine * sine / 3.0 } else { 2.0 * sine.atan2(q.w) / sine };
     v * ratio
 }
+
+/// How the rotation vector `v` of a turn changes with a small turn after it.
+pub(crate) fn logarithm_slope(v: DVec3) -> DMat3 {
+    let (cross, angle) = (cross_matrix(v), v.length());
+    // 1 / a^2 - cot(a / 2) / (2 a); the series is exact to rounding below 1e-2.
+    let bend = if angle < 1e-2 {
+        1.0 / 12.0 + angle * angle / 720.0
+    } else {
+        (1.0 / angle - 0.5 / (0.5 * angle).tan()) / angle
+    };
+    DMat3::IDENTITY - cross * 0.5 + cross * cross * bend
+}

@@ -24,13 +24,13 @@ impl Window {
         }
         let motions = at_all(record, problem, &solved.unknowns, covariances);
         let known = Known { log: record, modes, problem, solved, covariances, motions: &motions, longest };
-        let Solution { number, t, turned, missed, .. } = *solution;
+        let Solution { number, t, missed, .. } = *solution;
         let one = |palm: usize| {
             let freed = known.without_sticking(palm, |problem, solved, covariances| {
                 let (problem, lasting) = (&problem, solved.lasting(&problem));
                 let (solved, against, open) = (&solved, false, false);
                 let of = Of { problem, solved, covariances, against, open, lasting, unresolved };
-                Solution::new(&of, (number, t), self.options.body.as_ref(), turned, missed)
+                Solution::new(&of, (number, t), self.options.body.as_ref(), missed)
             });
             freed.map(|solution| (palm, solution))
         };

@@ -108,7 +108,7 @@ impl Front {
     }
 
     fn covariance(&self, body: &crate::contacts::body::Body) -> SMatrix<f64, MOTION, MOTION> {
-        let Solution { covariance, follows, of_body, turned, known, .. } = &self.solution;
+        let Solution { covariance, follows, of_body, known, .. } = &self.solution;
         let (F, E) = self.carried.derivatives();
         let mut own = F * covariance * F.transpose();
         if self.carried.after > 0.0 {
@@ -127,10 +127,7 @@ impl Front {
             let mut axes = by_body.fixed_view_mut::<3, 3>(9, 4);
             axes += Matrix3::from(DMat3::from_quat(self.carried.motion.q));
         }
-        let mut all = to * own * to.transpose() + by_body * of_body * by_body.transpose();
-        let mut turn = all.fixed_view_mut::<3, 3>(9, 9);
-        turn += turned;
-        all
+        to * own * to.transpose() + by_body * of_body * by_body.transpose()
     }
 
     /// What noise of the forces did since the window's end.

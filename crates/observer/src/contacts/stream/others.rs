@@ -7,11 +7,11 @@
 
 use super::window::Window;
 use crate::contacts::body::CONSTANTS;
+use crate::contacts::first::First;
 use crate::contacts::problem::{Beforehand, Problem};
 use crate::contacts::record::Record;
 use crate::contacts::rivals::{another, goes_on_beside, is_unsure};
 use crate::contacts::solve::Solved;
-use glam::DQuat;
 use nalgebra::SVector;
 
 /// How many are followed at most.
@@ -28,19 +28,19 @@ pub(super) struct Followed {
     pub(super) solved: Solved<CONSTANTS>,
     body: Beforehand,
     frozen: Vec<SVector<f64, CONSTANTS>>,
-    q: DQuat,
+    first: First,
 }
 
 impl Followed {
     pub(super) fn of(problem: &Problem, solved: Solved<CONSTANTS>) -> Self {
         let Problem { body, frozen, first, .. } = problem;
-        Self { solved, body: *body, frozen: frozen.clone(), q: first.0.q }
+        Self { solved, body: *body, frozen: frozen.clone(), first: *first }
     }
 
-    fn put(&self, problem: &mut Problem) {
+    pub(super) fn put(&self, problem: &mut Problem) {
         problem.body = self.body;
         problem.frozen.clone_from(&self.frozen);
-        problem.first.0.q = self.q;
+        problem.first = self.first;
     }
 }
 
@@ -52,15 +52,15 @@ impl Window {
         record: &Record,
         problem: &mut Problem,
         first: Solved<CONSTANTS>,
-    ) -> (Solved<CONSTANTS>, Vec<Followed>) {
+        free: Beforehand,
+    ) -> (Followed, Vec<Followed>) {
         let misled = self.misled;
         let mut best = Followed::of(problem, first);
         let mut all = Vec::new();
         for before in &self.others {
-            let free = problem.body;
+            problem.body = free;
             let solved = self.followed(record, problem, before);
             all.extend(solved.map(|solved| Followed::of(problem, solved)));
-            problem.body = free;
         }
         best.put(problem);
         let alone = !problem.planar && !problem.exact && record.frictionless() && all.len() < MOST;
@@ -83,6 +83,6 @@ impl Window {
         if self.misled > misled {
             self.waits = ALONE << (self.misled - 1).min(MOST_DOUBLED);
         }
-        (best.solved, all)
+        (best, all)
     }
 }

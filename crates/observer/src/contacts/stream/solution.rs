@@ -11,7 +11,7 @@ use crate::contacts::state::{MOTION, Motion};
 use crate::contacts::suspects::{Readings, Scores, Sensors, suspects};
 use crate::contacts::verdict::{ContactEvidence, UNEXPLAINED, relied_on, stretches};
 use glam::DQuat;
-use nalgebra::{Matrix3, Matrix6, SMatrix};
+use nalgebra::{Matrix6, SMatrix};
 use object_dynamics::MassProperties;
 
 /// What was solved.
@@ -44,8 +44,6 @@ pub(super) struct Solution {
     pub(super) covariance: Transition,
     pub(super) follows: SMatrix<f64, MOTION, CONSTANTS>,
     pub(super) of_body: SMatrix<f64, CONSTANTS, CONSTANTS>,
-    /// Covariance of the turn of the motion's axes from where a motion was found to this window's start.
-    pub(super) turned: Matrix3<f64>,
     pub(super) stated: StreamBody,
     pub(super) misfit: f64,
     /// What the trapezoidal rule misses of an impulse over a time, s, about the world's origin.
@@ -59,12 +57,7 @@ pub(super) struct Solution {
 impl Of<'_> {
     /// At node `j`, from the world's origin.
     pub(super) fn motion(&self, j: usize) -> Motion {
-        self.motion_of(self.solved, j)
-    }
-
-    /// That of another solution.
-    pub(super) fn motion_of(&self, solved: &Solved<CONSTANTS>, j: usize) -> Motion {
-        let motion = &solved.unknowns.motions[j];
+        let motion = &self.solved.unknowns.motions[j];
         Motion { p: motion.p + self.problem.record.origin, ..*motion }
     }
 
@@ -83,11 +76,6 @@ impl Of<'_> {
         let (suspects, errors) = suspects(&scores, of, &evidence);
         self.covariances.errors.extend(errors);
         self.open |= ContactEvidence::against(&suspects, &[]).is_some();
-    }
-
-    /// Covariance of the turn from the window's start to node `j`.
-    pub(super) fn turn(&self, j: usize) -> Matrix3<f64> {
-        self.covariances.of_motion(j).fixed_view::<3, 3>(9, 9) * self.evidence().widening().powi(2)
     }
 
     fn evidence(&self) -> ContactEvidence {
@@ -150,7 +138,6 @@ impl Solution {
         of: &Of,
         (number, t): (usize, f64),
         known: Option<&MassProperties>,
-        turned: Matrix3<f64>,
         missed: (f64, Matrix6<f64>),
     ) -> Self {
         let last = of.problem.nodes.len() - 1;
@@ -167,7 +154,6 @@ impl Solution {
             covariance: covariance * square,
             follows,
             of_body: of_body * square,
-            turned,
             stated: of.stated(known),
             misfit: of.solved.misfit(),
             missed,

@@ -8,12 +8,13 @@ use super::solution::{Of, Solution};
 use crate::contacts::body::{Body, CONSTANTS};
 use crate::contacts::cold;
 use crate::contacts::estimate::AVERAGED;
+use crate::contacts::first::First;
 use crate::contacts::flow::Carried;
 use crate::contacts::mode_odds::typical;
 use crate::contacts::modes::by_ratio;
 use crate::contacts::onward::{FOLLOWED, WINDOW};
 use crate::contacts::options::ContactOptions;
-use crate::contacts::problem::{Problem, Units, Unknowns};
+use crate::contacts::problem::{Beforehand, Problem, Units, Unknowns};
 use crate::contacts::record::Record;
 use crate::contacts::search::{fine_nodes, fine_within, problem, thinned, whole};
 use crate::contacts::solve::Solved;
@@ -21,7 +22,7 @@ use crate::contacts::stage::Stage;
 use crate::contacts::state::Motion;
 use crate::contacts::suspects::Readings;
 use crate::contacts::windows::longest;
-use nalgebra::{Matrix3, Matrix6};
+use nalgebra::Matrix6;
 use object_dynamics::{ContactLog, ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion};
 use std::collections::VecDeque;
 
@@ -29,6 +30,8 @@ use std::collections::VecDeque;
 pub(super) const LONGEST: f64 = WINDOW;
 /// Shortest one: a motion of fewer natural times is hardly more than its start.
 const SHORTEST: f64 = 5.0;
+/// Natural times by which a window is longer before what lies before it is handed on as what it tells of the rest.
+const HANDED_ON: f64 = 4.0;
 /// Natural times over which it is looked what the trapezoidal rule misses, for gaps after a window.
 const GAP: f64 = 0.2;
 /// Samples that are left out at most because a window cannot be read with them.
@@ -61,10 +64,11 @@ pub(super) struct Outcome {
 
 /// A solved window, to begin the next one from.
 pub(super) struct Before {
-    /// Motions at nodes, from the world's origin, by numbers of samples; covariances of their turns.
-    nodes: Vec<(usize, Motion, Matrix3<f64>)>,
+    /// Motions at the nodes from which on the next one begins, from the world's origin, by numbers of samples.
+    nodes: Vec<(usize, Motion)>,
     body: Body,
-    turned: Matrix3<f64>,
+    /// What all before these tell, once a window was longer than it need be.
+    carried: Option<(First, Beforehand)>,
 }
 
 /// The latest samples, and the motion that they were last found to have.
@@ -139,7 +143,7 @@ impl Window {
         outcome
     }
 
-    /// Drops what is older than the longest window: up to a node of the latest solution, where the next one begins.
+    /// Drops what is older than the longest window, and what lies before the node of the latest solution at which the next one begins.
     fn forget(&mut self, natural: Option<f64>) {
         let (Some(last), Some(natural)) = (self.samples.back().map(|raw| raw.t), natural) else {
             // Without a size there is nothing to begin from.
@@ -148,16 +152,10 @@ impl Window {
             self.before = None;
             return;
         };
-        let old = |raw: &Raw| last - raw.t > LONGEST * natural;
-        let mut dropped = self.samples.partition_point(old);
-        if let Some(before) = &self.before {
-            let number = self.samples.get(dropped).map_or(0, |raw| raw.number);
-            let kept = before.nodes.partition_point(|node| node.0 <= number).saturating_sub(1);
-            dropped = before
-                .nodes
-                .get(kept)
-                .map_or(0, |node| self.samples.partition_point(|raw| raw.number < node.0));
-        }
+        let dropped = match self.before.as_ref().and_then(|before| before.nodes.first()) {
+            Some(node) => self.samples.partition_point(|raw| raw.number < node.0),
+            None => self.samples.partition_point(|raw| last - raw.t > LONGEST * natural),
+        };
         self.samples.drain(..dropped);
     }
 
@@ -230,24 +228,27 @@ impl Window {
         let thinned = thinned(&averaged, &self.options, &units);
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), &self.options, units);
         let free = problem.body;
-        let (mut problem, solved, others, against) = match asked {
+        let (mut problem, best, others, against) = match asked {
             Asked::Search => {
                 let (problem, solved, against) = self.found(problem)?;
-                (problem, solved, Vec::new(), against)
+                let best = Followed::of(&problem, solved);
+                (problem, best, Vec::new(), against)
             }
             Asked::Follow => {
                 let solved = self.followed(record, &mut problem, self.before.as_ref()?)?;
-                let (solved, others) = self.most_probable(record, &mut problem, solved);
-                (problem, solved, others, false)
+                let (best, others) = self.most_probable(record, &mut problem, solved, free);
+                (problem, best, others, false)
             }
         };
+        let kept = self.kept(&mut problem, &best, &others);
+        let solved = best.solved;
         let samples = problem.node_samples();
         let number = |k: Option<&usize>| k.and_then(|k| self.samples.get(*k)).map_or(0, |raw| raw.number);
         let over = number(samples.first())..number(samples.last());
         // As of whole logs constants are judged by noise, and not by what steps from sample to sample miss.
-        let judged = self.options.body.is_some() && !problem.planar && !problem.exact;
-        if judged && (!self.believed || self.dearer.is_due(&over)) {
-            self.dearer.count(&mut problem, &solved, free, over);
+        let stated = self.options.body.filter(|_| !problem.planar && !problem.exact);
+        if let Some(stated) = stated.filter(|_| !self.believed || self.dearer.is_due(&over)) {
+            self.dearer.count(&mut problem, &solved, (&stated, free), over);
         }
         let against = against || self.dearer.contradicts(self.believed);
         // Not those of noise drawn once more, as for whole logs: few draws a window differ from one to the next by as much as they tell, and
@@ -263,7 +264,7 @@ impl Window {
             let readings = Readings::new(log, told, [record, problem.record], longest);
             of.doubt(record, &readings);
         }
-        let solution = self.taken(&of, &others, (GAP * natural, record.missed_in_world(GAP * natural)));
+        let solution = self.taken(&of, kept, (GAP * natural, record.missed_in_world(GAP * natural)));
         let freed = match self.options.mode_odds && solution.explained && solution.settled {
             true => self.freed(record, (&modes, longest), &of, &solution),
             false => Vec::new(),
@@ -301,13 +302,16 @@ impl Window {
         if let Some(mass) = &self.options.body {
             problem.take_known(mass, before.body.orientation(mass));
         }
+        if let Some((_, body)) = before.carried {
+            problem.body = body;
+        }
         problem.nodes = fine_nodes(problem);
         let nodes = problem.node_samples();
         let mut motions = Vec::with_capacity(nodes.len());
         let (mut known, mut nodes) = (before.nodes.iter().peekable(), nodes.into_iter().peekable());
         let mut carried: Option<Carried<0>> = None;
         for (k, raw) in self.samples.iter().enumerate() {
-            while let Some((_, motion, _)) = known.next_if(|node| node.0 <= raw.number) {
+            while let Some((_, motion)) = known.next_if(|node| node.0 <= raw.number) {
                 let from_origin = Motion { p: motion.p - record.origin, ..*motion };
                 carried = Some(Carried::new(from_origin, &before.body));
             }
@@ -320,33 +324,54 @@ impl Window {
                 carried.step(interval, ends, &before.body, problem.gravity);
             }
         }
-        problem.first.0.q = motions.first()?.q;
+        let of_axes = First::of_axes(motions.first()?.q);
+        problem.first = before.carried.map_or(of_axes, |(first, _)| first);
         fine_within(problem, Unknowns { motions, body: before.body }, FOLLOWED)
     }
 
-    /// Keeps a solution to begin the next one from.
-    fn taken(&mut self, of: &Of, others: &[Followed], missed: (f64, Matrix6<f64>)) -> Solution {
-        let samples = of.problem.node_samples();
-        let raw = |j: usize| samples.get(j).and_then(|&k| self.samples.get(k));
-        let number = |j: usize| raw(j).map_or(0, |raw| raw.number);
-        // How far the axes of the motion may have turned against the body up to where this window begins.
-        let since = self.before.as_ref().filter(|_| self.options.body.is_none());
-        let turned = since.map_or_else(Matrix3::zeros, |before| {
-            let at = before.nodes.partition_point(|node| node.0 <= number(0)).saturating_sub(1);
-            before.turned + before.nodes.get(at).map_or_else(Matrix3::zeros, |node| node.2)
-        });
-        let last = samples.len() - 1;
-        let at = (number(last), raw(last).map_or(f64::NAN, |raw| raw.t));
-        let solution = Solution::new(of, at, self.options.body.as_ref(), turned, missed);
+    /// What the next window begins from, by the motion that is followed and by each of the others. `problem` is left as the first was solved.
+    fn kept(&self, problem: &mut Problem, best: &Followed, others: &[Followed]) -> Vec<Before> {
+        let mut one = |followed: &Followed| {
+            followed.put(problem);
+            self.kept_of(problem, &followed.solved)
+        };
+        let mut all = vec![one(best)];
+        all.extend(others.iter().map(one));
+        best.put(problem);
+        all
+    }
+
+    fn kept_of(&self, problem: &Problem, solved: &Solved<CONSTANTS>) -> Before {
+        let Problem { nodes, record, .. } = problem;
+        let at = |j: usize| record.times[nodes[j]];
+        let last = nodes.len() - 1;
+        let begin = at(last) - LONGEST * problem.units.time();
+        let long = problem.lasts() > LONGEST + HANDED_ON;
+        let from =
+            if long { nodes.partition_point(|&k| record.times[k] <= begin).saturating_sub(1) } else { 0 };
+        let carried = match from {
+            0 => problem.first.is_handed_on().then_some((problem.first, problem.body)),
+            _ => First::at(problem, solved, from),
+        };
+        let node = |(motion, k): (&Motion, usize)| {
+            let number = self.samples.get(k).map_or(0, |raw| raw.number);
+            (number, Motion { p: motion.p + record.origin, ..*motion })
+        };
+        let nodes = solved.unknowns.motions.iter().zip(problem.node_samples()).skip(from).map(node).collect();
+        Before { nodes, body: solved.unknowns.body, carried }
+    }
+
+    /// Keeps what the next window begins from.
+    fn taken(&mut self, of: &Of, kept: Vec<Before>, missed: (f64, Matrix6<f64>)) -> Solution {
+        let last = of.problem.node_samples().last().and_then(|&k| self.samples.get(k));
+        let at = last.map_or((0, f64::NAN), |raw| (raw.number, raw.t));
+        let solution = Solution::new(of, at, self.options.body.as_ref(), missed);
         let sound = solution.explained && solution.settled;
         self.believed |= sound && solution.relied_on;
         if sound {
-            let begun = |solved: &Solved<CONSTANTS>| {
-                let node = |j| (number(j), of.motion_of(solved, j), of.turn(j));
-                Before { nodes: (0..=last).map(node).collect(), body: solved.unknowns.body, turned }
-            };
-            self.before = Some(begun(of.solved));
-            self.others = others.iter().map(|other| begun(&other.solved)).collect();
+            let mut kept = kept.into_iter();
+            self.before = kept.next();
+            self.others = kept.collect();
         }
         solution
     }

@@ -1,0 +1,169 @@
+//! What is known beforehand of the first motion of a record, and how the windows of a stream hand on what is known.
+//!
+//! What all before a node tell of the motion there and of the body is what is left of their equations when the motions before it are eliminated. It is
+//! counted in numbers in which conditions are straight: contacts tell the twist about a point of space, whatever centre of mass and inertia the
+//! body has.
+
+use super::body::{Body, CONSTANTS};
+use super::equations::Equations;
+use super::flow::Transition;
+use super::problem::{Beforehand, Problem};
+use super::solve::Solved;
+use super::state::{MOTION, Motion, Tangent, tangent};
+use crate::rigid::{cross_matrix, logarithm, logarithm_slope};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::{Matrix3, SMatrix};
+
+/// Deviation of the orientation of a body that has no axes but those it is given, rad.
+const FIRST_TURN: f64 = 1e-7;
+
+/// By how the numbers of a motion fall with the body's constants.
+type Follows = SMatrix<f64, MOTION, CONSTANTS>;
+/// Of the body's constants.
+type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
+
+/// What is known of the first motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct First {
+    /// Centre of mass from the world's origin, velocity of the body at that point of space, angular velocity, orientation.
+    p: DVec3,
+    v: DVec3,
+    w: DVec3,
+    q: DQuat,
+    /// By how much the most probable ones are others, of a body beside which constants are counted.
+    beside: Tangent,
+    /// Information on them for given constants of the body, and how they rise with the constants.
+    information: Transition,
+    follows: Option<(Follows, Body)>,
+    /// Information that noise alone made the equations before claim, on the body and on its centre of mass.
+    pub(super) spurious: OfBody,
+    pub(super) spurious_of_centre: Matrix3<f64>,
+}
+
+/// How far a motion is from what is known of it, and how that changes with the motion and the body's constants.
+struct Departure {
+    value: Tangent,
+    by_motion: Transition,
+    by_body: Follows,
+}
+
+impl First {
+    /// Nothing but how the body's axes are chosen.
+    pub(super) fn of_axes(q: DQuat) -> Self {
+        Self::turned(q, FIRST_TURN)
+    }
+
+    /// Nothing but an orientation, to within a deviation (rad).
+    pub(super) fn turned(q: DQuat, deviation: f64) -> Self {
+        let known = |i: usize| if i < 9 { 0.0 } else { deviation.powi(-2) };
+        Self {
+            p: DVec3::ZERO,
+            v: DVec3::ZERO,
+            w: DVec3::ZERO,
+            q,
+            beside: Tangent::zeros(),
+            information: Transition::from_diagonal(&Tangent::from_fn(|i, _| known(i))),
+            follows: None,
+            spurious: OfBody::zeros(),
+            spurious_of_centre: Matrix3::zeros(),
+        }
+    }
+
+    /// Whether it is what all before tell, beside what is known of the body.
+    pub(super) fn is_handed_on(&self) -> bool {
+        self.follows.is_some()
+    }
+
+    /// What all before node `m` of a solution tell of the motion there and of the body. None where that is not all of both.
+    pub(super) fn at(problem: &Problem, solved: &Solved<CONSTANTS>, m: usize) -> Option<(Self, Beforehand)> {
+        let claimed = solved.equations.covariances(&problem.natural_information())?;
+        let at = &solved.unknowns;
+        let mut before = problem.linearised::<CONSTANTS>(at, 0..m)?;
+        problem.add_prior(at, &mut before);
+        let before = problem.unfrozen(&before, at);
+        let last = before.onto_last()?;
+        let inverse = last.own.cholesky()?.inverse();
+        let by_body = inverse * last.to_body;
+        let of_body = last.body - last.to_body.transpose() * by_body;
+        // The most probable ones by what lies before alone.
+        let constants = -of_body.cholesky()?.solve(&(last.of_body - by_body.transpose() * last.gradient));
+        let step = -(inverse * last.gradient) - by_body * constants;
+
+        let motion = &at.motions[m];
+        let (w, origin) = (at.body.spin(motion.q, motion.L), problem.record.origin);
+        let here = Self { p: motion.p + origin, v: motion.v, w, ..Self::of_axes(motion.q) };
+        let Departure { by_motion, by_body: slopes, .. } = here.departure(motion, &at.body, origin);
+        let straight = by_motion.try_inverse()?;
+        let follows = slopes - by_motion * by_body;
+        let turned = Matrix3::from(DMat3::from_quat((motion.q * at.motions[0].q.conjugate()).normalize()));
+        let centre = problem.first.spurious_of_centre + claimed.spurious_of_centre(&before, at);
+        let first = Self {
+            beside: by_motion * step + slopes * constants - follows * constants,
+            information: symmetric(straight.transpose() * last.own * straight),
+            follows: Some((follows, at.body)),
+            spurious: problem.first.spurious + claimed.spurious(&before, at),
+            spurious_of_centre: turned * centre * turned.transpose(),
+            ..here
+        };
+        let body = at.body.beside(constants[0], &constants.fixed_rows::<6>(1).into_owned());
+        // Counted from there.
+        let back = at.body.slope_from(&body).try_inverse()?;
+        Some((first, (body, symmetric(back.transpose() * of_body * back))))
+    }
+
+    /// Of a motion whose positions are from `origin`.
+    fn departure(&self, motion: &Motion, body: &Body, origin: DVec3) -> Departure {
+        let (place, w) = (motion.p + origin - self.p, body.spin(motion.q, motion.L));
+        let turn = logarithm((motion.q * self.q.conjugate()).normalize());
+        let apart = tangent(&[place, motion.v - w.cross(place) - self.v, w - self.w, turn]) - self.beside;
+        let (spin, spin_by_body) = motion.spin_derivatives(body);
+        let about = Matrix3::from(cross_matrix(place));
+        let mut by_motion = Transition::identity();
+        by_motion.fixed_view_mut::<3, 3>(9, 9).copy_from(&Matrix3::from(logarithm_slope(turn)));
+        by_motion.fixed_rows_mut::<3>(6).copy_from(&spin);
+        let mut velocity = by_motion.fixed_rows_mut::<3>(3);
+        velocity += about * spin;
+        let mut of_place = by_motion.fixed_view_mut::<3, 3>(3, 0);
+        of_place -= Matrix3::from(cross_matrix(w));
+        let mut by_body = Follows::zeros();
+        let mut spins = by_body.fixed_view_mut::<3, 6>(6, 1);
+        spins += spin_by_body;
+        let mut velocities = by_body.fixed_view_mut::<3, 6>(3, 1);
+        velocities += about * spin_by_body;
+        let Some((follows, of)) = &self.follows else {
+            return Departure { value: apart, by_motion, by_body };
+        };
+        let by_body = by_body - follows * body.slope_from(of);
+        Departure { value: apart - follows * body.from(of), by_motion, by_body }
+    }
+
+    /// Chi-squared of a motion.
+    pub(super) fn cost(&self, motion: &Motion, body: &Body, origin: DVec3) -> f64 {
+        let value = self.departure(motion, body, origin).value;
+        (self.information * value).dot(&value)
+    }
+
+    /// Adds what is known to equations.
+    pub(super) fn add<const P: usize>(
+        &self,
+        motion: &Motion,
+        body: &Body,
+        origin: DVec3,
+        all: &mut Equations<P>,
+    ) {
+        let Departure { value, by_motion, by_body } = self.departure(motion, body, origin);
+        let by_body = by_body.fixed_columns::<P>(0);
+        let rows = self.information * by_motion;
+        let pull = self.information * value;
+        let node = &mut all.nodes[0];
+        node.own += by_motion.transpose() * rows;
+        node.body += rows.transpose() * by_body;
+        node.gradient += by_motion.transpose() * pull;
+        all.body += by_body.transpose() * self.information * by_body;
+        all.body_gradient += by_body.transpose() * pull;
+    }
+}
+
+fn symmetric<const N: usize>(of: SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+    0.5 * (of + of.transpose())
+}
