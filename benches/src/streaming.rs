@@ -1,11 +1,12 @@
 //! Random scenes of three palms that swing, followed sample by sample at the pace of a robot.
 
+use crate::fault::{Fault, Scale};
 use cpu_time::ProcessTime;
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Ellipsoid, MotionLaw, Palm};
 use recon::object_dynamics::integrate::Tolerance;
 use recon::object_dynamics::{
-    InitialMotion, Instant, MassProperties, Sample, SampleTimes, SensorNoise, ThreePalmScene,
+    InitialMotion, Instant, MassProperties, Sample, SampleTimes, SensorLog, SensorNoise, ThreePalmScene,
 };
 use recon::observer::contacts::stream::{
     MotionStream, PlaneReadings, StreamBody, StreamEstimate, StreamOptions,
@@ -52,6 +53,22 @@ impl Case {
     pub fn moments_off(&self, body: &StreamBody) -> f64 {
         let found = MassProperties::new(body.mass, body.inertia).map(|mass| mass.principal().moments);
         found.map_or(f64::NAN, |found| (found / self.mass.principal().moments - 1.0).abs().max_element())
+    }
+
+    /// The same with what is not as stated of sensors or body.
+    ///
+    /// # Errors
+    /// Those of readings that are no log any more.
+    pub fn with(&self, fault: &Fault) -> Result<Self, Failure> {
+        let size = self.natural * self.natural * GRAVITY;
+        let of = Scale { size, weight: MASS * GRAVITY };
+        let log =
+            fault.of_log(&SensorLog::new(self.samples.clone(), None)?, of).map_err(|e| e.to_string())?;
+        let samples = log.samples().to_vec();
+        let is_left = |truth: &&Instant| samples.binary_search_by(|s| s.t.total_cmp(&truth.t)).is_ok();
+        let truth = self.truth.iter().filter(is_left).copied().collect();
+        let (mass, noise) = (fault.of_mass(self.mass), self.noise);
+        Ok(Self { truth, samples, natural: self.natural, mass, noise, rate: self.rate })
     }
 
     /// A stream for it, of a body that is known or not.
