@@ -7,11 +7,11 @@
 use super::body::{Body, CONSTANTS};
 use super::equations::Equations;
 use super::flow::Transition;
-use super::problem::{Beforehand, Problem};
+use super::problem::{Beforehand, FROZEN, Problem};
 use super::solve::Solved;
 use super::state::{MOTION, Motion, Tangent, tangent};
 use crate::rigid::{cross_matrix, logarithm, logarithm_slope};
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DQuat, DVec3};
 use nalgebra::{Matrix3, SMatrix};
 
 /// Deviation of the orientation of a body that has no axes but those it is given, rad.
@@ -35,9 +35,8 @@ pub(super) struct First {
     /// Information on them for given constants of the body, and how they rise with the constants.
     information: Transition,
     follows: Option<(Follows, Body)>,
-    /// Information that noise alone made the equations before claim, on the body and on its centre of mass.
+    /// Information on the body that noise alone made the equations before claim.
     pub(super) spurious: OfBody,
-    pub(super) spurious_of_centre: Matrix3<f64>,
 }
 
 /// How far a motion is from what is known of it, and how that changes with the motion and the body's constants.
@@ -65,7 +64,6 @@ impl First {
             information: Transition::from_diagonal(&Tangent::from_fn(|i, _| known(i))),
             follows: None,
             spurious: OfBody::zeros(),
-            spurious_of_centre: Matrix3::zeros(),
         }
     }
 
@@ -80,13 +78,22 @@ impl First {
         let at = &solved.unknowns;
         let mut before = problem.linearised::<CONSTANTS>(at, 0..m)?;
         problem.add_prior(at, &mut before);
-        let before = problem.unfrozen(&before, at);
         let last = before.onto_last()?;
         let inverse = last.own.cholesky()?.inverse();
         let by_body = inverse * last.to_body;
         let of_body = last.body - last.to_body.transpose() * by_body;
         // The most probable ones by what lies before alone.
-        let constants = -of_body.cholesky()?.solve(&(last.of_body - by_body.transpose() * last.gradient));
+        let mut covariance = of_body.cholesky()?.inverse();
+        let constants = -covariance * (last.of_body - by_body.transpose() * last.gradient);
+        let mut spurious = problem.first.spurious + claimed.spurious(&before, at);
+        let beforehand = problem.body.1.try_inverse()?;
+        for combination in &problem.frozen {
+            // It is known as it was: what equations claim of it counts no more than what noise makes of that.
+            let follows = covariance * combination * FROZEN;
+            covariance += follows * follows.transpose() * combination.dot(&(beforehand * combination));
+            let others = OfBody::identity() - follows * combination.transpose() / follows.dot(combination);
+            spurious = others.transpose() * spurious * others;
+        }
         let step = -(inverse * last.gradient) - by_body * constants;
 
         let motion = &at.motions[m];
@@ -95,20 +102,18 @@ impl First {
         let Departure { by_motion, by_body: slopes, .. } = here.departure(motion, &at.body, origin);
         let straight = by_motion.try_inverse()?;
         let follows = slopes - by_motion * by_body;
-        let turned = Matrix3::from(DMat3::from_quat((motion.q * at.motions[0].q.conjugate()).normalize()));
-        let centre = problem.first.spurious_of_centre + claimed.spurious_of_centre(&before, at);
         let first = Self {
             beside: by_motion * step + slopes * constants - follows * constants,
             information: symmetric(straight.transpose() * last.own * straight),
             follows: Some((follows, at.body)),
-            spurious: problem.first.spurious + claimed.spurious(&before, at),
-            spurious_of_centre: turned * centre * turned.transpose(),
+            spurious,
             ..here
         };
         let body = at.body.beside(constants[0], &constants.fixed_rows::<6>(1).into_owned());
         // Counted from there.
         let back = at.body.slope_from(&body).try_inverse()?;
-        Some((first, (body, symmetric(back.transpose() * of_body * back))))
+        let information = covariance.cholesky()?.inverse();
+        Some((first, (body, symmetric(back.transpose() * information * back))))
     }
 
     /// Of a motion whose positions are from `origin`.

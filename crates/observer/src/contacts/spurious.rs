@@ -38,7 +38,7 @@ impl Solved<CONSTANTS> {
     pub(super) fn covariances(&self, problem: &Problem) -> Option<Covariances<CONSTANTS>> {
         let claimed = self.equations.covariances(&problem.natural_information())?;
         let widened = claimed.widened(problem, &self.equations, &self.unknowns)?;
-        widened.centre_widened(problem, &self.equations, &self.unknowns)
+        widened.centre_widened(&self.equations, &self.unknowns)
     }
 }
 
@@ -54,8 +54,10 @@ impl Covariances<CONSTANTS> {
         let Shares { values, axes } = self.shares(problem, equations, at)?;
         let rows = axes.try_inverse()?;
         let beforehand = axes.transpose() * problem.body.1 * axes;
+        // What windows before tell hangs together: known along a combination, it may be little of that which keeps its value.
+        let alone = if problem.first.is_handed_on() { Some(beforehand.try_inverse()?) } else { None };
         let better = |&i: &usize| {
-            let known = beforehand[(i, i)];
+            let known = alone.as_ref().map_or(beforehand[(i, i)], |variances| 1.0 / variances[(i, i)]);
             known < KEPT && known > (1.0 - values[i]).max(0.0).powi(2)
         };
         Some((0..CONSTANTS).filter(better).map(|i| rows.row(i).transpose()).collect())
@@ -85,16 +87,10 @@ impl Covariances<CONSTANTS> {
     ///
     /// Where it is in the body follows from how velocity changes with the spin: contacts tell the twist of the body, and forces how the
     /// velocity of the centre changes, so that a link weighs a shift that turns with the body by the change of its product with the angular velocity.
-    pub(super) fn centre_widened(
-        mut self,
-        problem: &Problem,
-        equations: &Equations<CONSTANTS>,
-        at: &Unknowns,
-    ) -> Option<Self> {
+    pub(super) fn centre_widened(mut self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Option<Self> {
         let first = self.motions[0].0.fixed_view::<3, 3>(0, 0).into_owned();
         let factor = first.cholesky()?.l();
-        let spurious = problem.first.spurious_of_centre + self.spurious_of_centre(equations, at);
-        let eigen = SymmetricEigen::new(factor.transpose() * spurious * factor);
+        let eigen = SymmetricEigen::new(factor.transpose() * self.spurious_of_centre(equations, at) * factor);
         let axes = factor * eigen.eigenvectors;
         let more = eigen.eigenvalues.map(|share| (1.0 - share).clamp(LEAST, 1.0).powi(-2) - 1.0);
         let more = axes * Matrix3::from_diagonal(&more) * axes.transpose();
@@ -111,8 +107,7 @@ impl Covariances<CONSTANTS> {
         Some(self)
     }
 
-    /// What noise adds to the information on where the centre of mass is, at the first node.
-    pub(super) fn spurious_of_centre(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Matrix3<f64> {
+    fn spurious_of_centre(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Matrix3<f64> {
         let turned = at.motions[0].q.conjugate();
         let mut all = Matrix3::zeros();
         for (j, link) in equations.links.iter().enumerate() {
