@@ -6,13 +6,11 @@
 
 use crate::chance::excess;
 use crate::contacts::body::{Body, CONSTANTS};
-use crate::contacts::first::First;
 use crate::contacts::onward::FOLLOWED;
 use crate::contacts::problem::{Beforehand, Problem};
 use crate::contacts::search::fine_within;
 use crate::contacts::solve::Solved;
 use crate::contacts::verdict::UNEXPLAINED;
-use object_dynamics::MassProperties;
 use std::ops::Range;
 
 /// Constants that are stated: mass and principal moments.
@@ -40,20 +38,23 @@ impl Dearer {
         self.latest.as_ref().is_none_or(fresh)
     }
 
-    /// Counts a window of those samples that was solved with the body of the `stated` mass properties, in place of the latest one if they share some;
-    /// `free` is what is known beforehand of any body. What windows before tell of the motion they tell of the stated body: it counts for neither.
-    /// `problem` is left as it was solved.
+    /// Counts a window of those samples that was solved with the stated body, in place of the latest one if they share some; `free` is what is known
+    /// beforehand of any body. `problem` is left as it was solved.
     pub(super) fn count(
         &mut self,
         problem: &mut Problem,
         solved: &Solved<CONSTANTS>,
-        (stated, free): (&MassProperties, Beforehand),
+        free: Beforehand,
         samples: Range<usize>,
     ) {
-        let kept = (problem.body, std::mem::take(&mut problem.frozen), problem.first);
-        let costs = costs(problem, solved, stated, free);
-        (problem.body, problem.frozen, problem.first) = kept;
-        let Some([known, cost]) = costs else { return };
+        let known = problem.cost_of_log(solved);
+        let body = solved.unknowns.body;
+        let start = solved.unknowns.with(Body::free(body.log_mass, body.inertia()));
+        let kept = (std::mem::replace(&mut problem.body, free), std::mem::take(&mut problem.frozen));
+        let any = fine_within(problem, start, FOLLOWED);
+        let cost = any.as_ref().map(|any| problem.cost_of_log(any));
+        (problem.body, problem.frozen) = kept;
+        let Some(cost) = cost else { return };
         if let Some((_, squares)) = self.latest.take_if(|(last, _)| samples.start >= last.end) {
             self.before = (self.before.0 + squares, self.before.1 + STATED);
         }
@@ -68,26 +69,4 @@ impl Dearer {
         let most = if believed { UNEXPLAINED } else { DOUBTFUL };
         self.latest.as_ref().is_some_and(|latest| all(latest) > most)
     }
-}
-
-/// What a window alone leaves with the stated body and with any.
-fn costs(
-    problem: &mut Problem,
-    solved: &Solved<CONSTANTS>,
-    stated: &MassProperties,
-    free: Beforehand,
-) -> Option<[f64; 2]> {
-    let mut known = problem.cost_of_log(solved);
-    let mut unknowns = solved.unknowns.clone();
-    if problem.first.is_handed_on() {
-        problem.first = First::of_axes(unknowns.motions[0].q);
-        problem.take_known(stated, unknowns.body.orientation(stated));
-        let alone = fine_within(problem, unknowns, FOLLOWED)?;
-        known = problem.cost_of_log(&alone);
-        unknowns = alone.unknowns;
-    }
-    let Body { log_mass, .. } = unknowns.body;
-    problem.body = free;
-    let any = fine_within(problem, unknowns.with(Body::free(log_mass, unknowns.body.inertia())), FOLLOWED)?;
-    Some([known, problem.cost_of_log(&any)])
 }
