@@ -128,31 +128,32 @@ impl Body {
     /// After a step of its constants. The angular momentum of a given motion is linear in the inertia, so that steps are taken straight in that
     /// where they are short: along a bend of the constants links would miss each other by the square of the step.
     pub(super) fn moved(&self, log_mass: f64, by: &Vector6<f64>) -> Self {
-        let constants = match self.constants {
+        let straight = match self.constants {
             Constants::Free(numbers) => {
                 let straight =
                     self.slopes.iter().zip(by.iter()).fold(self.inertia, |all, (s, by)| all + *s * *by);
                 let to = numbers_of_inertia(straight);
                 let near = (0..3).all(|i| (to[i] - numbers[i]).abs() < STRAIGHT);
-                Constants::Free(if near { to } else { std::array::from_fn(|i| numbers[i] + by[i]) })
+                near.then_some(Constants::Free(to))
             }
+            Constants::Turned(..) => None,
+        };
+        match straight {
+            Some(constants) => Self::new(self.log_mass + log_mass, constants),
+            None => self.beside(log_mass, by),
+        }
+    }
+
+    /// After a step that is straight in the constants themselves: [`Self::from`] leads back by it.
+    pub(super) fn beside(&self, log_mass: f64, by: &Vector6<f64>) -> Self {
+        let constants = match self.constants {
+            Constants::Free(numbers) => Constants::Free(std::array::from_fn(|i| numbers[i] + by[i])),
             Constants::Turned(roots, axes) => {
                 let turn = exponential(DVec3::new(by[3], by[4], by[5]));
                 Constants::Turned(std::array::from_fn(|i| roots[i] + by[i]), (turn * axes).normalize())
             }
         };
         Self::new(self.log_mass + log_mass, constants)
-    }
-
-    /// After a step that is straight in the constants themselves: [`Self::from`] leads back by it.
-    pub(super) fn beside(&self, log_mass: f64, by: &Vector6<f64>) -> Self {
-        match self.constants {
-            Constants::Free(numbers) => Self::new(
-                self.log_mass + log_mass,
-                Constants::Free(std::array::from_fn(|i| numbers[i] + by[i])),
-            ),
-            Constants::Turned(..) => self.moved(log_mass, by),
-        }
     }
 
     /// The step that leads here from another body of the same kind.

@@ -7,8 +7,9 @@
 use super::body::{Body, CONSTANTS};
 use super::equations::Equations;
 use super::flow::Transition;
-use super::problem::{Beforehand, FROZEN, Problem};
-use super::solve::Solved;
+use super::problem::{Beforehand, Problem};
+use super::solve::{Solved, Step};
+use super::spurious::{follows, held};
 use super::state::{MOTION, Motion, Tangent, tangent};
 use crate::rigid::{cross_matrix, logarithm, logarithm_slope};
 use glam::{DQuat, DVec3};
@@ -17,7 +18,7 @@ use nalgebra::{Matrix3, SMatrix};
 /// Deviation of the orientation of a body that has no axes but those it is given, rad.
 const FIRST_TURN: f64 = 1e-7;
 
-/// By how the numbers of a motion fall with the body's constants.
+/// By how the numbers of a motion rise with the body's constants.
 type Follows = SMatrix<f64, MOTION, CONSTANTS>;
 /// Of the body's constants.
 type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
@@ -37,13 +38,6 @@ pub(super) struct First {
     follows: Option<(Follows, Body)>,
     /// Information on the body that noise alone made the equations before claim.
     pub(super) spurious: OfBody,
-}
-
-/// How far a motion is from what is known of it, and how that changes with the motion and the body's constants.
-struct Departure {
-    value: Tangent,
-    by_motion: Transition,
-    by_body: Follows,
 }
 
 impl First {
@@ -78,33 +72,30 @@ impl First {
         let at = &solved.unknowns;
         let mut before = problem.linearised::<CONSTANTS>(at, 0..m)?;
         problem.add_prior(at, &mut before);
-        let last = before.onto_last()?;
-        let inverse = last.own.cholesky()?.inverse();
-        let by_body = inverse * last.to_body;
-        let of_body = last.body - last.to_body.transpose() * by_body;
+        let (reduced, mended) = before.solver(&problem.natural_information())?;
+        let (own, by_body) = reduced.last().filter(|_| mended == 0.0)?;
         // The most probable ones by what lies before alone.
-        let mut covariance = of_body.cholesky()?.inverse();
-        let constants = -covariance * (last.of_body - by_body.transpose() * last.gradient);
+        let Step { motions, body: constants } = reduced.step(&before.gradient());
+        let step = motions[m];
+        let of_body = reduced.of_body();
         let mut spurious = problem.first.spurious + claimed.spurious(&before, at);
-        let beforehand = problem.body.1.try_inverse()?;
         for combination in &problem.frozen {
             // It is known as it was: what equations claim of it counts no more than what noise makes of that.
-            let follows = covariance * combination * FROZEN;
-            covariance += follows * follows.transpose() * combination.dot(&(beforehand * combination));
+            let follows = follows(of_body, combination);
             let others = OfBody::identity() - follows * combination.transpose() / follows.dot(combination);
             spurious = others.transpose() * spurious * others;
         }
-        let step = -(inverse * last.gradient) - by_body * constants;
+        let covariance = of_body + held(problem, of_body)?;
 
         let motion = &at.motions[m];
         let (w, origin) = (at.body.spin(motion.q, motion.L), problem.record.origin);
         let here = Self { p: motion.p + origin, v: motion.v, w, ..Self::of_axes(motion.q) };
-        let Departure { by_motion, by_body: slopes, .. } = here.departure(motion, &at.body, origin);
+        let (by_motion, slopes) = here.slopes(motion, &at.body, origin);
         let straight = by_motion.try_inverse()?;
         let follows = slopes - by_motion * by_body;
         let first = Self {
             beside: by_motion * step + slopes * constants - follows * constants,
-            information: symmetric(straight.transpose() * last.own * straight),
+            information: symmetric(straight.transpose() * own.cholesky()?.inverse() * straight),
             follows: Some((follows, at.body)),
             spurious,
             ..here
@@ -116,36 +107,45 @@ impl First {
         Some((first, (body, symmetric(back.transpose() * information * back))))
     }
 
-    /// Of a motion whose positions are from `origin`.
-    fn departure(&self, motion: &Motion, body: &Body, origin: DVec3) -> Departure {
+    /// How far a motion, whose positions are from `origin`, is from what is known of it.
+    fn departure(&self, motion: &Motion, body: &Body, origin: DVec3) -> Tangent {
         let (place, w) = (motion.p + origin - self.p, body.spin(motion.q, motion.L));
-        let turn = logarithm((motion.q * self.q.conjugate()).normalize());
-        let apart = tangent(&[place, motion.v - w.cross(place) - self.v, w - self.w, turn]) - self.beside;
+        let apart = tangent(&[place, motion.v - w.cross(place) - self.v, w - self.w, self.turn(motion)]);
+        let follows =
+            self.follows.as_ref().map_or_else(Tangent::zeros, |(follows, of)| follows * body.from(of));
+        apart - self.beside - follows
+    }
+
+    fn turn(&self, motion: &Motion) -> DVec3 {
+        logarithm((motion.q * self.q.conjugate()).normalize())
+    }
+
+    /// How that changes with the motion and with the body's constants.
+    fn slopes(&self, motion: &Motion, body: &Body, origin: DVec3) -> (Transition, Follows) {
+        let (place, w) = (motion.p + origin - self.p, body.spin(motion.q, motion.L));
         let (spin, spin_by_body) = motion.spin_derivatives(body);
         let about = Matrix3::from(cross_matrix(place));
+        let turn = Matrix3::from(logarithm_slope(self.turn(motion)));
         let mut by_motion = Transition::identity();
-        by_motion.fixed_view_mut::<3, 3>(9, 9).copy_from(&Matrix3::from(logarithm_slope(turn)));
+        by_motion.fixed_view_mut::<3, 3>(9, 9).copy_from(&turn);
         by_motion.fixed_rows_mut::<3>(6).copy_from(&spin);
         let mut velocity = by_motion.fixed_rows_mut::<3>(3);
         velocity += about * spin;
         let mut of_place = by_motion.fixed_view_mut::<3, 3>(3, 0);
         of_place -= Matrix3::from(cross_matrix(w));
-        let mut by_body = Follows::zeros();
+        let follows = self.follows.as_ref();
+        let mut by_body = follows.map_or_else(Follows::zeros, |(follows, of)| -follows * body.slope_from(of));
         let mut spins = by_body.fixed_view_mut::<3, 6>(6, 1);
         spins += spin_by_body;
         let mut velocities = by_body.fixed_view_mut::<3, 6>(3, 1);
         velocities += about * spin_by_body;
-        let Some((follows, of)) = &self.follows else {
-            return Departure { value: apart, by_motion, by_body };
-        };
-        let by_body = by_body - follows * body.slope_from(of);
-        Departure { value: apart - follows * body.from(of), by_motion, by_body }
+        (by_motion, by_body)
     }
 
     /// Chi-squared of a motion.
     pub(super) fn cost(&self, motion: &Motion, body: &Body, origin: DVec3) -> f64 {
-        let value = self.departure(motion, body, origin).value;
-        (self.information * value).dot(&value)
+        let apart = self.departure(motion, body, origin);
+        (self.information * apart).dot(&apart)
     }
 
     /// Adds what is known to equations.
@@ -156,10 +156,10 @@ impl First {
         origin: DVec3,
         all: &mut Equations<P>,
     ) {
-        let Departure { value, by_motion, by_body } = self.departure(motion, body, origin);
+        let (by_motion, by_body) = self.slopes(motion, body, origin);
         let by_body = by_body.fixed_columns::<P>(0);
         let rows = self.information * by_motion;
-        let pull = self.information * value;
+        let pull = self.information * self.departure(motion, body, origin);
         let node = &mut all.nodes[0];
         node.own += by_motion.transpose() * rows;
         node.body += rows.transpose() * by_body;

@@ -68,16 +68,6 @@ pub(super) struct Reduced<const P: usize> {
     body: SMatrix<f64, P, P>,
 }
 
-/// What equations say of the last motion and of the constants, whatever the motions before it.
-pub(super) struct OntoLast<const P: usize> {
-    pub(super) own: Transition,
-    pub(super) to_body: SMatrix<f64, MOTION, P>,
-    pub(super) body: SMatrix<f64, P, P>,
-    /// Halves of their gradients.
-    pub(super) gradient: Tangent,
-    pub(super) of_body: SVector<f64, P>,
-}
-
 /// Covariances of the unknowns.
 pub(super) struct Covariances<const P: usize> {
     /// Of each motion for given constants, and how it follows the constants.
@@ -95,6 +85,17 @@ pub(super) struct Covariances<const P: usize> {
 }
 
 impl<const P: usize> Reduced<P> {
+    /// Covariance of the constants.
+    pub(super) fn of_body(&self) -> &SMatrix<f64, P, P> {
+        &self.body
+    }
+
+    /// Covariance of the last motion for given constants, and by what it falls with them.
+    pub(super) fn last(&self) -> Option<(Transition, SMatrix<f64, MOTION, P>)> {
+        let (own, _, by_body) = self.nodes.last()?.inverse();
+        Some((own, by_body))
+    }
+
     /// The step that takes a gradient to zero.
     pub(super) fn step(&self, gradient: &Gradient<P>) -> Step<P> {
         let mut left = Vec::with_capacity(self.nodes.len());
@@ -134,27 +135,6 @@ impl<const P: usize> Equations<P> {
             last.lessen(&mut Transition::zeros(), &mut SMatrix::zeros(), &mut body);
         }
         Some(Reduced { nodes, body: inverse(&factor(&body)?) })
-    }
-
-    /// With all nodes but the last eliminated. None where their equations are not positive definite.
-    pub(super) fn onto_last(&self) -> Option<OntoLast<P>> {
-        let first = self.nodes.first()?;
-        let mut last = OntoLast {
-            own: first.own,
-            to_body: first.body,
-            body: self.body,
-            gradient: first.gradient,
-            of_body: self.body_gradient,
-        };
-        for pair in self.nodes.windows(2) {
-            let node = Eliminated::new(&last.own, &pair[0].next, &last.to_body)?;
-            (last.own, last.to_body) = (pair[1].own, pair[1].body);
-            node.lessen(&mut last.own, &mut last.to_body, &mut last.body);
-            let mut carried = Tangent::zeros();
-            node.down(&mut last.gradient, &mut carried, &mut last.of_body);
-            last.gradient = pair[1].gradient + carried;
-        }
-        Some(last)
     }
 
     /// Fall of the cost that the linear model promises of a step which solves the damped equations, the damping counted as

@@ -74,12 +74,7 @@ impl Covariances<CONSTANTS> {
         let Shares { values, axes } = self.shares(problem, equations, at)?;
         let wider = values.map(|share| (1.0 - share).clamp(LEAST, 1.0).powi(-2));
         let mut body = axes * OfBody::from_diagonal(&wider) * axes.transpose();
-        let beforehand = problem.body.1.try_inverse()?;
-        for combination in &problem.frozen {
-            // What a change of its value from beforehand would do to all constants.
-            let follows = self.body * combination * FROZEN;
-            body += follows * follows.transpose() * combination.dot(&(beforehand * combination));
-        }
+        body += held(problem, &self.body)?;
         Self { body, ..self }.without_inexact(problem, equations, at)
     }
 
@@ -199,6 +194,21 @@ impl Covariances<CONSTANTS> {
         }
         0.5 * (all + all.transpose())
     }
+}
+
+/// What a change of a frozen combination's value from beforehand would do to all constants, of which `claimed` is the covariance with it frozen.
+pub(super) fn follows(claimed: &OfBody, combination: &SVector<f64, CONSTANTS>) -> SVector<f64, CONSTANTS> {
+    claimed * combination * FROZEN
+}
+
+/// By how much that covariance is larger for what was known beforehand of what is frozen. None where nothing was known of a constant.
+pub(super) fn held(problem: &Problem, claimed: &OfBody) -> Option<OfBody> {
+    let beforehand = problem.body.1.try_inverse()?;
+    let one = |combination: &SVector<f64, CONSTANTS>| {
+        let follows = follows(claimed, combination);
+        follows * follows.transpose() * combination.dot(&(beforehand * combination))
+    };
+    Some(problem.frozen.iter().map(one).sum())
 }
 
 /// Covariances of the angular velocities at the ends of a link.
