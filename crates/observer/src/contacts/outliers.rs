@@ -4,7 +4,7 @@ use super::record::Contact;
 use glam::DVec3;
 
 /// Deviations from which on a contact is off: of what noise or, where that is more, the motion itself leaves of a cubic at most samples.
-const OFF: f64 = 8.0;
+pub(super) const OFF: f64 = 8.0;
 /// Contacts on either side that tell where one should be, and among how many samples they are looked for.
 const BESIDE: usize = 2;
 const AMONG: usize = 6;
@@ -13,9 +13,9 @@ const STEADY: usize = 3;
 /// Share of the spread of all contacts of a palm that it is off by at least: less harms nothing.
 const NOTABLE: f64 = 3e-3;
 /// Neighbours that may be off together: more are a motion that turns sharply.
-const TOGETHER: usize = 2;
+pub(super) const TOGETHER: usize = 2;
 /// Share of a palm's contacts beyond which they are not outliers but what the sensor is like.
-const MOST: f64 = 0.05;
+pub(super) const MOST: f64 = 0.05;
 /// Times what a peak of the force between samples moves the centre of mass by, that it may move a contact: that rolls, and the body turns too.
 const ROLLS: f64 = 2.0;
 /// Samples on either side of such a peak whose contacts it bends the way of.
@@ -25,7 +25,7 @@ const OF_CUBIC: f64 = 1.394;
 /// Fewest contacts of a palm whose scatter can be told.
 const FEWEST: usize = 20;
 /// Median of the length of a vector of two standard normal numbers.
-const MEDIAN_LENGTH: f64 = 1.177_410_022_515_474_7;
+pub(super) const MEDIAN_LENGTH: f64 = 1.177_410_022_515_474_7;
 
 /// A contact that is off.
 #[derive(Clone, Copy, Debug)]
@@ -33,8 +33,16 @@ pub(super) struct Misread {
     pub(super) sample: usize,
     /// From 0.
     pub(super) palm: usize,
-    /// Where those around it say that it is, from the record's origin, m.
+    /// Where those around it say that it is, from the record's origin, m, as well as so many contacts that are read do.
     c: DVec3,
+    samples: f64,
+}
+
+/// Where others say that a contact is, m, and the sum of the squares of what they count by.
+#[derive(Clone, Copy, Debug)]
+struct Told {
+    c: DVec3,
+    squares: f64,
 }
 
 /// Contacts on planes that are off, by their samples. `deviation` is that of a contact, m, `gravity` in m/s^2.
@@ -50,7 +58,13 @@ pub(super) fn misread(
     for palm in 0..palms {
         let way = Way::new(contacts, times, palm, &bends);
         let off = way.off(deviation);
-        all.extend(off.into_iter().map(|(j, c)| Misread { sample: way.samples[j], palm, c }));
+        let one = |(j, Told { c, squares }): (usize, Told)| Misread {
+            sample: way.samples[j],
+            palm,
+            c,
+            samples: squares.recip(),
+        };
+        all.extend(off.into_iter().map(one));
     }
     all.sort_unstable_by_key(|of| (of.sample, of.palm));
     all
@@ -76,10 +90,9 @@ fn bends(contacts: &[Vec<Contact>], times: &[f64], gravity: f64) -> Vec<f64> {
 
 /// Moves them to where those around them say.
 pub(super) fn mend(contacts: &mut [Vec<Contact>], misread: &[Misread]) {
-    for &Misread { sample, palm, c } in misread {
+    for &Misread { sample, palm, c, samples } in misread {
         for contact in contacts[sample].iter_mut().filter(|contact| contact.palm == palm) {
-            contact.u += contact.W.cross(c - contact.c);
-            contact.c = c;
+            contact.move_to(c, samples);
         }
     }
 }
@@ -117,7 +130,7 @@ impl Way {
     }
 
     /// Numbers of the contacts that are off, and where they should be.
-    fn off(&self, deviation: f64) -> Vec<(usize, DVec3)> {
+    fn off(&self, deviation: f64) -> Vec<(usize, Told)> {
         let count = self.points.len();
         if count < FEWEST {
             return Vec::new();
@@ -136,7 +149,7 @@ impl Way {
         let most = limit(&left);
         let suspected: Vec<bool> = (0..count).map(|j| self.steady[j] && left[j] > most).collect();
         let left: Vec<f64> =
-            (0..count).map(|j| self.told(j, &suspected).map_or(0.0, |told| told.1)).collect();
+            (0..count).map(|j| self.told(j, &suspected).map_or(0.0, |told| self.left(j, &told))).collect();
         let most = limit(&left);
         let is_off = |&j: &usize| {
             let limit = most + self.bends[j];
@@ -144,8 +157,7 @@ impl Way {
         };
         let off: Vec<usize> = (0..count).filter(is_off).collect();
         let together = off.chunk_by(|a, b| *b == a + 1).filter(|run| run.len() <= TOGETHER);
-        let off: Vec<_> =
-            together.flatten().filter_map(|&j| Some((j, self.told(j, &suspected)?.0))).collect();
+        let off: Vec<_> = together.flatten().filter_map(|&j| Some((j, self.told(j, &suspected)?))).collect();
         if off.len() as f64 > MOST * count as f64 { Vec::new() } else { off }
     }
 
@@ -173,7 +185,8 @@ impl Way {
         DVec3::new(of(0), of(1), of(2))
     }
 
-    /// Whether a contact is where the way from one side leads, to within so many metres, by the line through two contacts there or the parabola through three.
+    /// Whether a contact is where the way from one side leads, to within so many metres, by the line through two contacts there or the parabola through three;
+    /// where there is a fourth, by that with it in place of the third as well: a third that is off by as much as this one leads to it.
     ///
     /// Where the curvature of the object jumps, its contact changes its speed from one sample to the next: nothing that is smooth over both sides leads there.
     fn goes_on(&self, j: usize, within: f64) -> bool {
@@ -181,9 +194,12 @@ impl Way {
         // Those that may be off themselves as well: so few in a row lead to no other one.
         let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).collect();
         let after: Vec<usize> = (j + 1..self.points.len()).take(AMONG).filter(near).collect();
-        [before, after].iter().any(|side| {
-            let through = |few: usize| side.get(..few).map(|few| self.through(few, j).0);
-            [2, 3].into_iter().filter_map(through).any(|point| point.distance(self.points[j]) <= within)
+        let leads = |few: &[usize]| self.through(few, j).0.distance(self.points[j]) <= within;
+        [&before[..], &after].iter().any(|side| match *side {
+            [a, b, c, d, ..] => leads(&[*a, *b]) || (leads(&[*a, *b, *c]) && leads(&[*a, *b, *d])),
+            [a, b, c] => leads(&[*a, *b]) || leads(&[*a, *b, *c]),
+            [a, b] => leads(&[*a, *b]),
+            _ => false,
         })
     }
 
@@ -199,9 +215,13 @@ impl Way {
         (beside.iter().zip(&weights).map(|(&i, weight)| self.points[i] * *weight).sum(), weights)
     }
 
-    /// Where the contacts beside one say that it is, and by how many metres of unit noise it is elsewhere; those that are `out` say nothing. None
-    /// with too few of them.
-    fn told(&self, j: usize, out: &[bool]) -> Option<(DVec3, f64)> {
+    /// By how many metres of unit noise a contact is elsewhere than it is told.
+    fn left(&self, j: usize, told: &Told) -> f64 {
+        told.c.distance(self.points[j]) / (1.0 + told.squares).sqrt()
+    }
+
+    /// Where the contacts beside one say that it is; those that are `out` say nothing. None with too few of them.
+    fn told(&self, j: usize, out: &[bool]) -> Option<Told> {
         let near = |other: &usize| !out[*other] && self.samples[*other].abs_diff(self.samples[j]) <= AMONG;
         let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).take(2 * BESIDE).collect();
         let after: Vec<usize> =
@@ -215,14 +235,13 @@ impl Way {
         let beside: Vec<usize> =
             before.into_iter().take(from_before).chain(after.into_iter().take(from_after)).collect();
         // The cubic through all of them.
-        let (point, weights) = self.through(&beside, j);
-        let noise = (1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>()).sqrt();
-        Some((point, point.distance(self.points[j]) / noise))
+        let (c, weights) = self.through(&beside, j);
+        Some(Told { c, squares: weights.iter().map(|weight| weight * weight).sum() })
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use glam::DMat3;
     use object_dynamics::ContactMode;
@@ -231,7 +250,7 @@ mod tests {
     const G: f64 = 9.81;
 
     /// A palm whose contact runs at a steady rate, is thrown by a blow of `peak` weights at sample 30, and is elsewhere at sample 45 by `off`.
-    fn run(peak: f64, throw: f64, off: f64) -> Vec<Vec<Contact>> {
+    pub(in crate::contacts) fn run(peak: f64, throw: f64, off: f64) -> Vec<Vec<Contact>> {
         let one = |k: u32| {
             let t = f64::from(k) * STEP;
             let after = (t - 30.0 * STEP).max(0.0);
@@ -284,6 +303,16 @@ mod tests {
                 assert_eq!(found(&beside), [32, 33], "{speed} {part}");
             }
         }
+    }
+
+    /// A third sample that is off by as much leads to the first along a parabola.
+    #[test]
+    fn misread_contacts_three_samples_apart_are_told() {
+        let mut log = run(1.0, 0.0, 2e-3);
+        for k in [42, 48] {
+            log[k][0].c.y += 2e-3;
+        }
+        assert_eq!(found(&log), [42, 45, 48]);
     }
 
     fn found(log: &[Vec<Contact>]) -> Vec<usize> {

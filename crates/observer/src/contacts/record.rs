@@ -127,6 +127,12 @@ impl Contact {
         }
     }
 
+    /// To another place on its plane, as good as the mean of so many samples.
+    pub(super) fn move_to(&mut self, c: DVec3, samples: f64) {
+        self.u += self.W.cross(c - self.c);
+        (self.c, self.samples) = (c, samples);
+    }
+
     /// Unit vectors along the palm, normal to each other; in the plane the first one is in it.
     pub(super) fn tangents(&self) -> [DVec3; 2] {
         if self.planar { [self.n.cross(DVec3::Y), DVec3::Y] } else { self.n.any_orthonormal_pair().into() }
@@ -373,7 +379,7 @@ pub(super) fn add_noise(covariance: &mut Matrix6<f64>, contact: &Contact, deviat
     add_contact_noise(covariance, contact, contact.f * h, deviation);
 }
 
-/// What a contact that is off by `deviation` in each direction along the palm does to the moment of an impulse.
+/// What a contact does to the moment of an impulse that is off in each direction along the palm, at one sample by `deviation`.
 pub(super) fn add_contact_noise(
     covariance: &mut Matrix6<f64>,
     contact: &Contact,
@@ -381,7 +387,7 @@ pub(super) fn add_contact_noise(
     deviation: f64,
 ) {
     for tangent in contact.tangents().into_iter().take(contact.freedoms()) {
-        let column = six(DVec3::ZERO, tangent.cross(impulse)) * deviation;
+        let column = six(DVec3::ZERO, tangent.cross(impulse)) * (deviation / contact.samples.sqrt());
         covariance.ger(1.0, &column, &column, 1.0);
     }
 }

@@ -246,16 +246,21 @@ impl Record {
     /// Contacts of the sample in the middle of a window.
     fn smoothed(&self, window: &Window) -> Vec<Contact> {
         let (around, weights) = weights(window, &self.times);
-        // What slope and bend add is noisy too, most where there are samples on one side alone.
-        let samples = weights.iter().map(|weight| weight * weight).sum::<f64>().recip();
         let one = |(i, contact): (usize, &Contact)| {
+            // What slope and bend add is noisy too, most where there are samples on one side alone.
+            let share = |k: usize, weight: f64| weight / self.contacts[k][i].samples;
+            let square: f64 =
+                around.clone().zip(&weights).map(|(k, weight)| weight * share(k, *weight)).sum();
+            let samples = square.recip();
             let all = || around.clone().map(|k| &self.contacts[k][i]).zip(&weights);
             let of = |of: fn(&Contact) -> DVec3| all().map(|(c, weight)| of(c) * *weight).sum::<DVec3>();
             let c = of(|c| c.c);
             // Of the sum of the errors under an impulse as much as the mean's own error tells.
             let impulse = |part: Range<usize>| {
                 let inside = around.clone().zip(&weights).filter(|(k, _)| part.contains(k));
-                inside.map(|(k, weight)| self.contacts[k][i].J_after * (*weight * samples)).sum::<DVec3>()
+                let of =
+                    |(k, weight): (usize, &f64)| self.contacts[k][i].J_after * (share(k, *weight) * samples);
+                inside.map(of).sum::<DVec3>()
             };
             let middle = window.middle();
             Contact {

@@ -8,7 +8,7 @@ use crate::contacts::flow::{Carried, Transition};
 use crate::contacts::link::link_covariance;
 use crate::contacts::noise::{WrenchNoise, force_trace};
 use crate::contacts::record::{Interval, six};
-use crate::contacts::state::{MOTION, Motion};
+use crate::contacts::state::{MOTION, Motion, tangent};
 use crate::contacts::verdict::UNEXPLAINED;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix};
@@ -78,6 +78,11 @@ impl Front {
         self.carried.advance(&interval, wrenches, &self.solution.body, self.gravity);
         self.noise += white;
         self.at = *next;
+    }
+
+    /// Gives the moment of an impulse back, N m s, that was taken a few samples ago.
+    pub(super) fn give_back(&mut self, moment: DVec3) {
+        self.carried.shift(&tangent(&[DVec3::ZERO, DVec3::ZERO, moment, DVec3::ZERO]), &self.solution.body);
     }
 
     /// Whether this motion has foretold another one of the same sample to within the deviations of both: a window that no longer holds the data of

@@ -48,6 +48,7 @@ mod dearer;
 mod estimate;
 mod freed;
 mod front;
+mod misread;
 mod modes;
 mod others;
 mod planes;

@@ -2,6 +2,7 @@
 
 use super::estimate::{StreamError, StreamEstimate, StreamOptions, StreamStage};
 use super::front::Front;
+use super::misread::Newest;
 use super::modes::{Modes, StreamModes};
 use super::sample::{Contacts, Felt, PalmSensed, Raw, StreamPalm};
 use super::solution::Solution;
@@ -36,6 +37,7 @@ pub struct MotionStream {
     fresh: Vec<Raw>,
     /// Memory for them while the thread has the other.
     spare: Vec<Raw>,
+    newest: Newest,
     /// Forces since the end of the latest window, oldest first.
     felt: VecDeque<Felt>,
     front: Option<Front>,
@@ -82,6 +84,7 @@ impl MotionStream {
             fresh: Vec::with_capacity(2 * FIRST),
             spare: Vec::with_capacity(2 * FIRST),
             natural: None,
+            newest: Newest::default(),
             felt: VecDeque::with_capacity(4 * FIRST),
             front: None,
             due: None,
@@ -117,9 +120,17 @@ impl MotionStream {
     /// is left out); [`StreamError::Thread`] where the thread that estimates is gone.
     pub fn push(&mut self, t: f64, sensed: &[PalmSensed]) -> Result<StreamEstimate, StreamError> {
         let raw = self.checked(t, sensed)?;
+        let since = t - self.latest;
         self.latest = t;
         self.count += 1;
-        let (contacts, felt) = raw.felt(&self.palms, &self.options.contacts);
+        let (mut contacts, mut felt) = raw.felt(&self.palms, &self.options.contacts);
+        self.newest.judge(&mut contacts, &mut felt, self.options.contacts.noise.contact, |taken| {
+            if let Some(felt) = self.felt.iter_mut().find(|felt| felt.number == taken.number) {
+                felt.wrench.moment += taken.moment;
+            }
+            let fronts = self.front.iter_mut().chain(self.freed.iter_mut().flatten());
+            fronts.for_each(|front| front.give_back(taken.moment * since));
+        });
         self.fresh.push(raw);
         self.felt.push_back(felt);
         self.front.iter_mut().chain(self.freed.iter_mut().flatten()).for_each(|front| front.advance(&felt));

@@ -81,6 +81,8 @@ pub(super) struct Window {
     /// Whether modes are to be told and nothing does yet.
     untold: bool,
     samples: VecDeque<Raw>,
+    /// Natural time as it was last told, s.
+    natural: f64,
     before: Option<Before>,
     /// Other motions that could not be ruled out, at the same nodes; how many starts others were looked for from, windows for which none
     /// is stated, and how often there was another one, or a better one.
@@ -101,6 +103,7 @@ impl Window {
             options,
             sample_rate,
             samples: VecDeque::new(),
+            natural: f64::INFINITY,
             before: None,
             others: Vec::new(),
             looked: 0,
@@ -114,21 +117,26 @@ impl Window {
     /// Takes later samples and does what is asked for.
     pub(super) fn work(&mut self, fresh: &[Raw], asked: Asked) -> Outcome {
         self.samples.extend(fresh);
+        if asked == Asked::Search && self.before.take().is_some() {
+            // What spoke against the motion that was followed is not to speak against the next one as well.
+            self.drop_older_than(SHORTEST);
+        }
         let (log, left_out) = self.log();
         let (natural, solution, freed, modes) = (None, None, Vec::new(), None);
         let mut outcome = Outcome { natural, lacks: Some(0.0), solution, freed, modes, left_out };
         let Some((log, record)) = log.and_then(|log| Record::new(&log, &self.options).map(|r| (log, r)))
         else {
-            self.forget(None);
+            self.forget_all();
             return outcome;
         };
         let Some(length) = self.options.size.or_else(|| cold::size(&record)) else {
-            self.forget(None);
+            self.forget_all();
             return outcome;
         };
         let units = cold::units(&record, self.options.gravity, length);
         let natural = length / units.speed;
         outcome.natural = Some(natural);
+        self.natural = natural;
         outcome.lacks = Some(SHORTEST - log.duration() / natural).filter(|lacks| *lacks > 0.0);
         if outcome.lacks.is_none() {
             let typical = typical(&record);
@@ -141,23 +149,32 @@ impl Window {
                 (outcome.solution, outcome.freed) = (Some(solution), freed);
             }
         }
-        self.forget(Some(natural));
+        self.forget();
         outcome
     }
 
     /// Drops what is older than the longest window, and what lies before the node of the latest solution at which the next one begins.
-    fn forget(&mut self, natural: Option<f64>) {
-        let (Some(last), Some(natural)) = (self.samples.back().map(|raw| raw.t), natural) else {
-            // Without a size there is nothing to begin from.
-            let most = self.samples.len().saturating_sub(2);
-            self.samples.drain(..most);
-            self.before = None;
-            return;
-        };
-        let dropped = match self.before.as_ref().and_then(|before| before.nodes.first()) {
-            Some(node) => self.samples.partition_point(|raw| raw.number < node.0),
-            None => self.samples.partition_point(|raw| last - raw.t > LONGEST * natural),
-        };
+    fn forget(&mut self) {
+        match self.before.as_ref().and_then(|before| before.nodes.first()) {
+            Some(node) => {
+                let dropped = self.samples.partition_point(|raw| raw.number < node.0);
+                self.samples.drain(..dropped);
+            }
+            None => self.drop_older_than(LONGEST),
+        }
+    }
+
+    /// Drops all but the last two: without a size there is nothing to begin from.
+    fn forget_all(&mut self) {
+        let most = self.samples.len().saturating_sub(2);
+        self.samples.drain(..most);
+        self.before = None;
+    }
+
+    /// Drops what is older than so many natural times.
+    fn drop_older_than(&mut self, times: f64) {
+        let Some(last) = self.samples.back().map(|raw| raw.t) else { return };
+        let dropped = self.samples.partition_point(|raw| last - raw.t > times * self.natural);
         self.samples.drain(..dropped);
     }
 
