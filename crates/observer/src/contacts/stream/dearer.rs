@@ -61,12 +61,19 @@ impl Dearer {
         self.latest = Some((samples, (known - cost).max(0.0) / solved.misfit().max(1.0)));
     }
 
-    /// Whether all windows together speak against what was stated: once in a million by chance, or once in twenty before any of them
-    /// was `believed`. To wait a little costs less than a motion that is stated and wrong.
-    pub(super) fn contradicts(&self, believed: bool) -> bool {
+    /// Whether all windows together speak against what was stated: once in a million by chance.
+    pub(super) fn contradicts(&self) -> bool {
+        self.excess() > UNEXPLAINED
+    }
+
+    /// Whether they do once in twenty by chance, which is not to be while no motion was believed.
+    pub(super) fn doubts(&self) -> bool {
+        self.excess() > DOUBTFUL
+    }
+
+    fn excess(&self) -> f64 {
         let (squares, constants) = self.before;
         let all = |(_, latest): &(Range<usize>, f64)| excess(squares + latest, constants + STATED);
-        let most = if believed { UNEXPLAINED } else { DOUBTFUL };
-        self.latest.as_ref().is_some_and(|latest| all(latest) > most)
+        self.latest.as_ref().map_or(f64::NEG_INFINITY, all)
     }
 }

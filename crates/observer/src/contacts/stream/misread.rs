@@ -13,8 +13,8 @@ use object_dynamics::MOST_PALMS;
 const JUDGED: usize = 100;
 /// Fewest of them.
 const FEWEST: usize = 20;
-/// Squares of what two contacts count by in the line through them, one sample after.
-const SQUARES: f64 = 5.0;
+/// Times from one of two contacts to the next within which the line through them leads on.
+const LEADS: f64 = 3.5;
 
 /// The newest contacts of all palms.
 #[derive(Debug, Default)]
@@ -86,9 +86,15 @@ impl Way {
             self.known = [self.known[1], Some(read)];
             return None;
         };
-        let slope = (b.1 - a.1) / (b.0 - a.0);
-        let line = b.1 + slope * (felt.t - b.0);
-        let left = line.distance(contact.c) / (1.0 + SQUARES).sqrt();
+        let further = (felt.t - b.0) / (b.0 - a.0);
+        if further > LEADS {
+            (self.known, self.together) = ([None, Some(read)], 0);
+            return None;
+        }
+        let line = b.1 + (b.1 - a.1) * further;
+        // Of what both count by in it.
+        let squares = (1.0 + further).powi(2) + further * further;
+        let left = line.distance(contact.c) / (1.0 + squares).sqrt();
         let at = self.judged % JUDGED;
         let seems_off = left > OFF * deviation && self.is_off(left);
         (self.left[at], self.put[at]) = (left, seems_off);
@@ -109,9 +115,10 @@ impl Way {
         self.held[self.together] = (read.0, read.1, Taken { number: felt.number, moment });
         self.together += 1;
         felt.wrench.moment -= moment;
-        contact.move_to(line, 1.0 / SQUARES);
+        contact.move_to(line, squares.recip());
         // One sample's noise is in it already.
-        add_contact_noise(&mut felt.noise, contact, contact.f, deviation * (1.0 - 1.0 / SQUARES).sqrt());
+        let more = (1.0 - squares.recip()).max(0.0).sqrt();
+        add_contact_noise(&mut felt.noise, contact, contact.f, deviation * more);
         None
     }
 

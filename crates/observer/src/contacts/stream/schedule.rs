@@ -15,6 +15,8 @@ use std::collections::VecDeque;
 
 /// Natural times after which a window that follows a motion is taken, and the next one is asked for.
 const FOLLOWED: f64 = 0.5;
+/// The same after a gap, until a window confirms the one before that is the first to bridge it.
+const AFTER_GAP: f64 = 0.25;
 /// Natural times after which a search is taken.
 const SEARCHED: f64 = 1.0;
 /// Samples of the first task, which tells the natural time; after as many more it is taken.
@@ -41,6 +43,8 @@ pub struct MotionStream {
     /// Forces since the end of the latest window, oldest first.
     felt: VecDeque<Felt>,
     front: Option<Front>,
+    /// Whether the window before it was the latest on the other side of a gap.
+    bridged: bool,
     /// Beside it, of each palm, the motion in which that need not stick, where there is one.
     freed: Vec<Option<Front>>,
     /// What tells modes, once there was a motion.
@@ -87,6 +91,7 @@ impl MotionStream {
             newest: Newest::default(),
             felt: VecDeque::with_capacity(4 * FIRST),
             front: None,
+            bridged: false,
             due: None,
             next: FIRST,
             asked: Asked::Search,
@@ -143,8 +148,11 @@ impl MotionStream {
             self.begin(raw.number)?;
         }
         let motion = self.front.as_ref().map(Front::motion);
-        let gapped = self.front.as_ref().is_some_and(|front| front.gapped);
-        let stage = if gapped && self.stage == StreamStage::Tracking { self.searching() } else { self.stage };
+        let stage = if self.is_gapped() && self.stage == StreamStage::Tracking {
+            self.searching()
+        } else {
+            self.stage
+        };
         let modes = self.told(t, &contacts);
         Ok(StreamEstimate { t, motion, stage, touching: felt.touching, modes })
     }
@@ -185,6 +193,7 @@ impl MotionStream {
         let fresh = std::mem::replace(&mut self.fresh, std::mem::take(&mut self.spare));
         self.worker.begin(fresh, self.asked)?;
         let wait = match self.asked {
+            Asked::Follow if self.bridged || self.is_gapped() => self.samples(AFTER_GAP),
             Asked::Follow => self.samples(FOLLOWED),
             Asked::Search => self.samples(SEARCHED),
         };
@@ -216,8 +225,9 @@ impl MotionStream {
         self.modes = self.modes.take().or(outcome.modes);
         if let Some(newest) = found.and_then(|solution| front(&self.felt, solution, gravity)) {
             // What the window before has foretold is confirmed.
+            self.bridged = self.is_gapped();
             let confirmed =
-                self.front.as_ref().is_some_and(|before| !before.gapped && before.foretold(&newest));
+                !self.bridged && self.front.as_ref().is_some_and(|before| before.foretold(&newest));
             let relied_on = newest.solution().relied_on && confirmed;
             self.rounds += usize::from(!relied_on);
             self.stage = if relied_on { StreamStage::Tracking } else { self.searching() };
@@ -246,6 +256,11 @@ impl MotionStream {
             self.next = number + self.samples(outcome.lacks.unwrap_or(PATIENCE));
         }
         self.asked = Asked::Search;
+    }
+
+    /// Whether samples were missing for so long that only later contacts can tell how the motion went on.
+    fn is_gapped(&self) -> bool {
+        self.front.as_ref().is_some_and(|front| front.gapped)
     }
 
     fn searching(&self) -> StreamStage {

@@ -269,11 +269,13 @@ impl Window {
         if judged && (!self.believed || self.dearer.is_due(&over)) {
             self.dearer.count(&mut problem, &solved, free, over);
         }
-        let against = against || self.dearer.contradicts(self.believed);
+        let against = against || self.dearer.contradicts();
         // Not those of noise drawn once more, as for whole logs: few draws a window differ from one to the next by as much as they tell, and
         // motions were lost by that three times as often, while errors over their deviations stayed what they are.
         let covariances = solved.covariances(&problem)?;
-        let open = !others.is_empty() || self.waits > 0;
+        // To wait a little costs less than a motion that is stated and wrong.
+        let doubted = !self.believed && self.dearer.doubts();
+        let open = !others.is_empty() || self.waits > 0 || doubted;
         let lasting = solved.lasting(&problem);
         let unresolved = if problem.exact { 0.0 } else { record.unresolved().sqrt() };
         let (problem, solved) = (&problem, &solved);
