@@ -220,21 +220,21 @@ impl Way {
         told.c.distance(self.points[j]) / (1.0 + told.squares).sqrt()
     }
 
-    /// Where the contacts beside one say that it is; those that are `out` say nothing. None with too few of them.
+    /// Where the cubic through the contacts beside one leads, at an end the parabola; those that are `out` say nothing. None with too few of them.
     fn told(&self, j: usize, out: &[bool]) -> Option<Told> {
         let near = |other: &usize| !out[*other] && self.samples[*other].abs_diff(self.samples[j]) <= AMONG;
         let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).take(2 * BESIDE).collect();
         let after: Vec<usize> =
             (j + 1..self.points.len()).take(AMONG).filter(near).take(2 * BESIDE).collect();
-        // At an end more of them on one side.
-        let from_before = before.len().min((2 * BESIDE).saturating_sub(after.len()).max(BESIDE));
-        let from_after = after.len().min(2 * BESIDE - from_before);
-        if from_before + from_after < 2 * BESIDE {
+        // At an end more of them on one side; a cubic that leads beyond all of them has eight times the noise of one.
+        let most = if before.is_empty() || after.is_empty() { 2 * BESIDE - 1 } else { 2 * BESIDE };
+        let from_before = before.len().min(most.saturating_sub(after.len()).max(BESIDE));
+        let from_after = after.len().min(most - from_before);
+        if from_before + from_after < most {
             return None;
         }
         let beside: Vec<usize> =
             before.into_iter().take(from_before).chain(after.into_iter().take(from_after)).collect();
-        // The cubic through all of them.
         let (c, weights) = self.through(&beside, j);
         Some(Told { c, squares: weights.iter().map(|weight| weight * weight).sum() })
     }
@@ -303,6 +303,16 @@ pub(super) mod tests {
                 assert_eq!(found(&beside), [32, 33], "{speed} {part}");
             }
         }
+    }
+
+    #[test]
+    fn misread_contacts_at_the_ends_are_told() {
+        for k in [0, 1, 58, 59] {
+            let mut log = run(1.0, 0.0, 0.0);
+            log[k][0].c.y += 1e-3;
+            assert_eq!(found(&log), [k]);
+        }
+        assert_eq!(found(&run(1.0, 0.0, 0.0)), []);
     }
 
     /// A third sample that is off by as much leads to the first along a parabola.
